@@ -107,17 +107,16 @@ pub fn shaded(ground: &Grid) {
 }
 
 fn law() -> Pipes {
-    Pipes {
-        rain: 2e-3,
-        evaporation: 0.01,
-        capacity: 2.0,
-        erosion: 0.3,
-        deposition: 0.3,
-        pipe: 1.0,
-        friction: 0.05,
-        gravity: 9.81,
-        time_step: 5.0,
-    }
+    Pipes::default()
+        .with_rain(2e-3)
+        .with_evaporation(0.01)
+        .with_capacity(2.0)
+        .with_erosion(0.3)
+        .with_deposition(0.3)
+        .with_pipe(1.0)
+        .with_friction(0.05)
+        .with_gravity(9.81)
+        .with_time_step(5.0)
 }
 
 fn boxed(ground: &Grid) -> Result<(), orogen::Error> {
@@ -129,23 +128,21 @@ fn open(ground: &Grid) -> Result<(), orogen::Error> {
 }
 
 fn thermal(ground: &Grid) -> Result<(), orogen::Error> {
-    let law = Thermal { talus: 0.1, rate: 1.0 };
+    let law = Thermal::new(0.1).with_rate(1.0);
     law.run(ground, ITERATIONS, &orogen::Progress::none()).map(|heights| _ = std::hint::black_box(heights))
 }
 
 fn local(ground: &Grid) -> Result<(), orogen::Error> {
     let cell = ground.window().cell;
-    let law = LocalStreamPower {
-        cell,
-        years: 2000.0,
-        erodibility: 2e-5,
-        area_exponent: 0.45,
-        slope_exponent: 1.0,
-        uplift: 2e-4,
-        deposition: 0.5,
-        creep: 0.01,
-        sea_level: Some(0.0),
-    };
+    let law = LocalStreamPower::new(cell)
+        .with_years(2000.0)
+        .with_erodibility(2e-5)
+        .with_area_exponent(0.45)
+        .with_slope_exponent(1.0)
+        .with_uplift(2e-4)
+        .with_deposition(0.5)
+        .with_creep(0.01)
+        .with_sea_level(Some(0.0));
     let mut planes = Planes::new(ground.width(), ground.height());
     for j in 0..ground.height() {
         planes.set(local_stream_power::HEIGHT, j, ground.row(j));
@@ -156,18 +153,17 @@ fn local(ground: &Grid) -> Result<(), orogen::Error> {
 
 /// Beyer's parameters: 30 cells, a radius of 3.
 fn droplets(cell: f64) -> Droplets {
-    Droplets {
-        density: 500_000.0 / (SIDE * SIDE) as f64 / (cell * cell) * 1e6,
-        batches: 4,
-        lifetime: 30.0 * cell,
-        radius: 3.0 * cell,
-        inertia: 0.05,
-        capacity: 0.4,
-        least_slope: 0.01,
-        erosion: 0.3,
-        deposition: 0.3,
-        evaporation: 0.01 / cell,
-        gravity: 4.0,
-        seed: 1,
-    }
+    Droplets::default()
+        .with_density(500_000.0 / (SIDE * SIDE) as f64 / (cell * cell) * 1e6)
+        .with_batches(4)
+        .with_lifetime(30.0 * cell)
+        .with_radius(3.0 * cell)
+        .with_inertia(0.05)
+        .with_capacity(0.4)
+        .with_least_slope(0.01)
+        .with_erosion(0.3)
+        .with_deposition(0.3)
+        .with_evaporation(0.01 / cell)
+        .with_gravity(4.0)
+        .with_seed(1)
 }

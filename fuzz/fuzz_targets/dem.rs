@@ -18,7 +18,7 @@ fuzz_target!(|bytes: &[u8]| {
         _ => &["asc", "hgt", "r16", "r32"],
     };
     for extension in extensions {
-        let request = Request { band: Some(1), allowed: 1 << 22 };
+        let request = Request::new(1 << 22).with_band(Some(1));
         if let Ok(dem) = import::parse(&mut Cursor::new(bytes), "it", extension, sidecar.clone(), request) {
             assert_eq!(dem.heights.len(), dem.width * dem.height);
         }

@@ -44,7 +44,7 @@ const STEPS: &[&Step] = &[
     &Step { name: "tests", about: "cargo test --workspace", run: || sh(&mut cargo("test --workspace")) },
     &Step {
         name: "features",
-        about: "orogen-grid with ndarray and image; orogen without files and threads",
+        about: "orogen-grid with ndarray, image and mint; orogen without files and threads",
         run: features,
     },
     &Step {

@@ -18,7 +18,7 @@ pub fn rows(options: &Options) -> Result<Vec<Row>, String> {
         return Ok(Vec::new());
     }
     eprintln!("{CASE} ...");
-    let noise = Perlin { seed: SEED as u64, wavelength: 100.0 };
+    let noise = Perlin::new(SEED as u64, 100.0);
     let axis: Vec<f64> = (0..SIDE).map(|i| i as f64).collect();
     let mut jobs = [
         // On an error no sample is written, and the check before the timings fails.

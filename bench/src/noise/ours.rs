@@ -15,12 +15,12 @@ pub fn level() -> &'static str {
 pub fn job(case: &Case) -> Job {
     let seed = SEED as u64;
     let wavelength = case.wavelength;
-    let perlin = Perlin { seed, wavelength };
-    let fractal = |kind| Fractal { kind, seed, wavelength, octaves: OCTAVES as u32, ..Fractal::default() };
+    let perlin = Perlin::new(seed, wavelength);
+    let fractal = |kind| Fractal::new(seed, wavelength).with_kind(kind).with_octaves(OCTAVES as u32);
     let weighted = Kind::Weighted { k: 1.0, falloff: Falloff::Reciprocal };
     match case.work {
-        Work::White => lattice(move |at, out| White { seed, wavelength }.fill(at, out)),
-        Work::Value => lattice(move |at, out| Value { seed, wavelength, ..Value::default() }.fill(at, out)),
+        Work::White => lattice(move |at, out| White::new(seed, wavelength).fill(at, out)),
+        Work::Value => lattice(move |at, out| Value::new(seed, wavelength).fill(at, out)),
         Work::Perlin => lattice(move |at, out| perlin.fill(at, out)),
         Work::PerlinSlice => lattice(move |at, out| perlin.fill3(at, &Depth::Slice(SLICE), out)),
         Work::PerlinScattered => {
@@ -37,9 +37,11 @@ pub fn job(case: &Case) -> Job {
         Work::Ridged => whole(fractal(Kind::Ridged)),
         Work::WeightedFbm => whole(fractal(weighted)),
         Work::WarpedFbm => warped(fractal(Kind::Fbm), wavelength),
-        Work::Worley => lattice(move |at, out| Worley { seed, wavelength, ..Worley::default() }.fill(at, out)),
-        Work::Simplex => lattice(move |at, out| Simplex { seed, wavelength }.fill(at, out)),
-        Work::SimplexSlice => lattice(move |at, out| Simplex { seed, wavelength }.fill3(at, &Depth::Slice(SLICE), out)),
+        Work::Worley => lattice(move |at, out| Worley::new(seed, wavelength).fill(at, out)),
+        Work::Simplex => lattice(move |at, out| Simplex::new(seed, wavelength).fill(at, out)),
+        Work::SimplexSlice => {
+            lattice(move |at, out| Simplex::new(seed, wavelength).fill3(at, &Depth::Slice(SLICE), out))
+        }
     }
 }
 
@@ -64,7 +66,7 @@ const BAND: usize = 64;
 fn warped(fractal: Fractal, wavelength: f64) -> Job {
     let axis = axis();
     let reach = (WARP * wavelength) as f32;
-    let mut shifts = [1, 2].map(|i| (Fractal { seed: fractal.seed + i, ..fractal }, vec![0.0; BAND * SIZE]));
+    let mut shifts = [1, 2].map(|i| (fractal.with_seed(fractal.seed + i), vec![0.0; BAND * SIZE]));
     job_of(move |out| {
         for (ys, out) in axis.chunks(BAND).zip(out.chunks_mut(BAND * SIZE)) {
             for (shift, values) in &mut shifts {

@@ -21,13 +21,11 @@ const CASES: &[(&str, Fill)] = &[
     ("weighted fBm 6 octaves, two threads", |at, out| {
         fractal(Kind::Weighted { k: 1.0, falloff: Falloff::Reciprocal }).fill(at, out)
     }),
-    ("Worley F1 2D, two threads", |at, out| {
-        Worley { seed: SEED as u64, wavelength: 100.0, ..Worley::default() }.fill(at, out)
-    }),
+    ("Worley F1 2D, two threads", |at, out| Worley::new(SEED as u64, 100.0).fill(at, out)),
 ];
 
 fn fractal(kind: Kind) -> Fractal {
-    Fractal { kind, seed: SEED as u64, wavelength: 100.0, octaves: OCTAVES as u32, ..Fractal::default() }
+    Fractal::new(SEED as u64, 100.0).with_kind(kind).with_octaves(OCTAVES as u32)
 }
 
 /// Measures the selected cases, if there are two processors.

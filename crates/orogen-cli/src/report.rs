@@ -15,7 +15,7 @@ pub fn report(failure: &Failure) {
     match failure {
         Failure::Usage(message) => say::error(&paint.diagnostic(message, None)),
         Failure::Engine(error) => {
-            for Diagnostic { message, place } in error.diagnostics() {
+            for Diagnostic { message, place, .. } in error.diagnostics() {
                 say::error(&paint.diagnostic(message, place.as_ref()));
             }
         }
@@ -108,7 +108,7 @@ mod tests {
     use super::*;
 
     fn place(column: usize, length: usize, text: &str) -> Location {
-        Location { file: "a.toml".into(), line: 12, column, length, text: text.into() }
+        Location::new("a.toml", 12, column).with_length(length).with_text(text)
     }
 
     fn check(place: &Location, expect: &str) {

@@ -1,17 +1,17 @@
-//! The laws that every op obeys, as tests of one op: for the built-in ops and for those of programs.
+//! Laws: properties that every op must have, tested for one op. They apply to built-in ops and to ops of programs.
 //!
-//! | law | what it says |
+//! | law | statement |
 //! |---|---|
-//! | [`Law::TileEqualsCrop`] | a tile has the bits of the crop of the whole, whatever its size and offset, the number of threads, and what was made before; a point has those of the sample there |
-//! | [`Law::Finite`] | finite inputs make finite results |
-//! | [`Law::Levels`] | every SIMD level makes the same bits |
-//! | [`Law::Stored`] | solutions on disk, and sources made in tiles of any size, change no bit |
-//! | [`Law::Warped`] | behind a warp and a turn a tile still equals the crop, and a warp by nothing changes no bit |
-//! | [`Law::Unbounded`] | far out and below zero a tile still equals the crop |
+//! | [`Law::TileEqualsCrop`] | a tile has the bits of the crop of the whole, for any size, offset and number of threads, with a new or a filled store; a point has the bits of the sample at its position |
+//! | [`Law::Finite`] | finite inputs give finite results |
+//! | [`Law::Levels`] | every SIMD level gives the same bits |
+//! | [`Law::Stored`] | solutions on disk, and sources computed in tiles of any size, change no bit |
+//! | [`Law::Warped`] | a tile equals the crop if a warp and a rotation read the op, and a warp by 0 changes no bit |
+//! | [`Law::Unbounded`] | a tile equals the crop at large and at negative positions |
 //! | [`Law::Resolutions`] | a field has the same bits where the samples of two cells coincide |
-//! | [`Law::ContentKeys`] | what changes the samples changes the content key, so that nothing stored is stale |
+//! | [`Law::ContentKeys`] | every change of the world that changes samples changes the content key |
 //! | [`Law::Margin`] | a solver's margin obeys tile == crop, also beyond the world, changes no bit on disk, and is part of the content key |
-//! | [`Law::Cancel`] | work stops within [`LONGEST_CANCEL`] of being asked to |
+//! | [`Law::Cancel`] | work stops within [`LONGEST_CANCEL`] after a request to cancel |
 //!
 //! ```
 //! use orogen_engine::filter::blur::Blur;
@@ -40,10 +40,10 @@ use std::fmt;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// The cells at which [`Laws::check`] makes tiles: none of them is exact in binary.
+/// The cells at which [`Laws::check`] computes tiles. None of them is exact in binary.
 pub const CELLS: [f64; 3] = [10.24, 0.1, 1.0 / 3.0];
 
-/// Longest time that work may go on after it was asked to stop.
+/// Maximum time for which work may continue after a request to cancel.
 pub const LONGEST_CANCEL: Duration = Duration::from_millis(100);
 
 /// The name of the node under test in the recipes of [`recipe_of`] and [`Laws::in_recipes`].
@@ -57,36 +57,36 @@ const SIDES: [usize; 2] = [97, 81];
 pub enum Law {
     /// A tile has the bits of the crop of the whole.
     TileEqualsCrop,
-    /// Finite inputs make finite results.
+    /// Finite inputs give finite results.
     Finite,
-    /// Every SIMD level makes the same bits.
+    /// Every SIMD level gives the same bits.
     Levels,
     /// Solutions on disk and sources in tiles change no bit.
     Stored,
-    /// Behind warps and turns a tile equals the crop.
+    /// A tile equals the crop if warps and rotations read the op.
     Warped,
-    /// Far out a tile equals the crop.
+    /// A tile equals the crop at large and at negative positions.
     Unbounded,
     /// A field has the same bits where the samples of two cells coincide.
     Resolutions,
-    /// What changes the samples changes the content key.
+    /// Every change of the world that changes samples changes the content key.
     ContentKeys,
-    /// A solver with a margin obeys the laws, too.
+    /// A solver with a margin has these properties, too.
     Margin,
-    /// Work stops when it is asked to.
+    /// Work stops after a request to cancel.
     Cancel,
 }
 
-/// A law that an op breaks.
+/// A violation of a law by an op.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Violation {
     /// The op.
     pub op: String,
     /// The law.
     pub law: Law,
-    /// The samples that were made.
+    /// The samples that were computed.
     pub window: Option<Window>,
-    /// What is wrong.
+    /// Description of the violation.
     pub message: String,
 }
 
@@ -105,22 +105,22 @@ impl std::error::Error for Violation {}
 /// Whether a law holds.
 pub type Verdict = std::result::Result<(), Violation>;
 
-/// An op under the laws.
+/// The laws of one op.
 pub struct Laws<'a> {
     node: Node,
     recipe: Box<dyn Fn(WorldSpec, bool) -> Recipe + 'a>,
 }
 
 impl<'a> Laws<'a> {
-    /// The op with the parameters that it has at a cell, each input a noise. The worlds have 97 x 81 samples, so lengths among the parameters are best
-    /// a few cells: an effect that is wider than the world, or narrower than a sample, does not show.
+    /// The laws of the op that `op` returns for a cell size. Each input is a noise. The worlds have 97 x 81 samples, so parameters that are
+    /// lengths should be a few cells: effects wider than the world or narrower than a sample are not tested.
     pub fn of<T: Into<Node>>(op: impl Fn(f64) -> T + 'a) -> Laws<'a> {
         let node = op(CELLS[0]).into();
         Laws::in_recipes(node, move |world, masked| recipe_of(&op(world.cell).into(), world, masked))
     }
 
-    /// The op in recipes of its own, for one that cannot read any noise. `recipe` makes one for a world, with and without a mask; [`NODE`] is the op, and
-    /// the outputs are its layers, the first one named `height`. `node` says what the op is.
+    /// The laws of an op that cannot read an arbitrary noise. `recipe` returns a recipe for a world, with or without a mask. In it the op is the
+    /// node [`NODE`], and the outputs are its layers, the first one named `height`. `node` is the op itself.
     pub fn in_recipes(node: Node, recipe: impl Fn(WorldSpec, bool) -> Recipe + 'a) -> Laws<'a> {
         Laws { node, recipe: Box::new(recipe) }
     }
@@ -164,7 +164,7 @@ impl<'a> Laws<'a> {
         Ok(())
     }
 
-    /// [`Law::Levels`]. It forces levels for the whole process, and then the one that was in force.
+    /// [`Law::Levels`]. It forces SIMD levels for the whole process and restores the previous one at the end.
     ///
     /// # Errors
     /// The first difference.
@@ -191,7 +191,7 @@ impl<'a> Laws<'a> {
         Ok(())
     }
 
-    /// [`Law::Stored`]: a plan is plain data, so it may say that all solutions are on disk, and that their sources are made in tiny tiles.
+    /// [`Law::Stored`]. The test edits the plan, which is plain data: all solutions are on disk, and their sources use tiny tiles.
     ///
     /// # Errors
     /// The first difference.
@@ -218,7 +218,7 @@ impl<'a> Laws<'a> {
             for (whole, made) in expect.iter().zip(&made) {
                 case.same(&format!("in tiles of {side}, on disk"), whole, made)?;
             }
-            // In memory again, from what is on disk.
+            // In memory again, read from the files.
             case.same("in memory again", &expect[0], &case.of(world.window("height", &tile))?)?;
         }
         Ok(())
@@ -284,7 +284,7 @@ impl<'a> Laws<'a> {
         }
     }
 
-    /// [`Law::Resolutions`], of a field. What a filter or solver makes depends on its cell.
+    /// [`Law::Resolutions`], for a field. The results of filters and solvers depend on their cell.
     ///
     /// # Errors
     /// The first difference.
@@ -321,10 +321,10 @@ impl<'a> Laws<'a> {
         Ok(())
     }
 
-    /// [`Law::ContentKeys`]: of five changes of the world, returns how many left the key (and the samples) as they were.
+    /// [`Law::ContentKeys`]. Returns how many of five changes of the world left the key and the samples unchanged.
     ///
     /// # Errors
-    /// The first change that another sample shows, but no other key.
+    /// The first change that changes a sample but not the key.
     pub fn content_keys(&self) -> std::result::Result<usize, Violation> {
         let window = Window::new(24, 20, 30.0).at(20, 18);
         let case = self.case(Law::ContentKeys).in_window(window);
@@ -399,11 +399,11 @@ impl<'a> Laws<'a> {
         Ok(())
     }
 
-    /// [`Law::Cancel`], in a world of `side` x `side` samples: cancels at five moments of the work, and returns the longest time that it went on. A
-    /// field is asked by the engine, between blocks.
+    /// [`Law::Cancel`], in a world of `side` x `side` samples. Cancels the work at five different times and returns the longest time for which it
+    /// continued. For fields the engine checks between blocks.
     ///
     /// # Errors
-    /// If it went on for longer than [`LONGEST_CANCEL`] three times, or ended with anything but [`ErrorKind::Cancelled`].
+    /// If it continued for longer than [`LONGEST_CANCEL`] in three runs, or did not end with [`ErrorKind::Cancelled`].
     pub fn cancel(&self, side: usize) -> std::result::Result<Duration, Violation> {
         let length = (side.max(2) - 1) as f64 * 10.0;
         let window = Window::new(side, side, 10.0);
@@ -415,7 +415,7 @@ impl<'a> Laws<'a> {
         let all = begun.elapsed();
         let mut longest = Duration::ZERO;
         for share in [0.05, 0.27, 0.48, 0.71, 0.93] {
-            // A busy machine may be late by itself: the best of three runs counts.
+            // Other processes can delay a run, so the best of three counts.
             let mut late = Duration::MAX;
             for _ in 0..3 {
                 let world = case.open(&recipe, 2)?;
@@ -454,10 +454,10 @@ impl<'a> Laws<'a> {
 /// Samples along the sides of the world that [`Laws::check`] cancels.
 const CANCELLED_SIDE: usize = 384;
 
-/// Held while levels are forced, which is for the whole process.
+/// Locked while SIMD levels are forced, because they apply to the whole process.
 static FORCED: Mutex<()> = Mutex::new(());
 
-/// A law being tested.
+/// A law during its test.
 struct Case {
     op: String,
     law: Law,
@@ -497,7 +497,7 @@ impl Case {
         refused.map_or(Ok(()), |message| self.breaks(message))
     }
 
-    /// All layers, from a fresh world.
+    /// All layers, from a new world.
     fn layers(&self, recipe: &Recipe, window: &Window) -> std::result::Result<Vec<Grid>, Violation> {
         let layers: Vec<&str> = recipe.outputs().collect();
         self.of(self.open(recipe, 2)?.grids(&layers, window, &Progress::none()))
@@ -570,7 +570,7 @@ fn without_outputs(from: &Recipe) -> Recipe {
     recipe
 }
 
-/// The node and its inputs without the blur below them: what a filter makes depends on the cell.
+/// The node and its inputs without the blur below them, because the result of a filter depends on the cell.
 fn unsoftened(from: &Recipe) -> Recipe {
     let mut recipe = Recipe::new(from.world);
     for named in from.nodes().iter().filter(|named| named.name != SOFT) {
@@ -596,8 +596,8 @@ pub fn world_of(cell: f64) -> WorldSpec {
     WorldSpec { seed: 42, size: Some(size), cell, ..WorldSpec::default() }
 }
 
-/// A recipe of the node alone, named [`NODE`]: each input is a noise of its own, about -1 to 1 and nine cells from hill to hill. An input called
-/// `source` is read through a blur, which puts halos on top of halos. The outputs are the node's layers, the first one named `height`.
+/// A recipe with the node as [`NODE`]. Each input is a separate noise, about -1 to 1 with a wavelength of nine cells. An input called `source` reads
+/// it through a blur, so that halos add up. The outputs are the node's layers, the first one named `height`.
 #[must_use]
 pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
     let mut node = node.clone();

@@ -1,17 +1,17 @@
-//! An op of a program that uses this crate, held without its type.
+//! An op of another crate as a trait object.
 
 use crate::declare::Declared;
 use crate::op::{Op, OpType};
 use std::any::Any;
 use std::fmt;
 
-/// Most bytes of an op's name.
+/// Maximum length of an op's name, in bytes.
 const MAX_NAME: usize = 64;
 
-/// An op that is not built in: a [`Node`](crate::node::Node) holds it beside those that are.
+/// An op that is not built in; [`Node::Registered`](crate::node::Node::Registered) holds it.
 pub struct RegisteredOp(Box<dyn ErasedOp>);
 
-/// An [`OpType`] as an object: what needs the type, without it.
+/// The object-safe interface of an [`OpType`].
 trait ErasedOp: Send + Sync {
     fn declared(&self) -> &dyn Declared;
     fn declared_mut(&mut self) -> &mut dyn Declared;
@@ -100,10 +100,10 @@ pub fn namespace(op: &str) -> Option<&str> {
     op.split_once('.').map(|(namespace, _)| namespace)
 }
 
-/// Whether an op that is not built in may have this name: `namespace.name`, so that no built-in op, today's or a later one, can have it.
+/// Checks the name of an op that is not built in. It must be `namespace.name`; names of built-in ops have no namespace, now and later.
 ///
 /// # Errors
-/// What such a name must be.
+/// The rule that the name violates.
 pub fn check_name(op: &str) -> Result<(), String> {
     let is_word = |word: &str| {
         word.starts_with(|c: char| c.is_ascii_lowercase())

@@ -9,9 +9,9 @@ use orogen_grid::words::{nearest, respelled, suggestion};
 
 /// The ops that recipes may use by their names: all built-in ones, and those that the program registers.
 ///
-/// A registry is a value: it reads recipes ([`Registry::read`], [`Registry::parse`]) and makes their
-/// [schema](crate::recipe::schema::json_schema_of) and [reference](crate::recipe::reference::markdown_of). Only texts need it. A recipe that is read
-/// holds its ops itself, and so do its worlds, plans and sessions; a recipe made in code takes any op by [`Recipe::add`](crate::Recipe::add).
+/// A registry is a value. It reads recipes ([`Registry::read`], [`Registry::parse`]) and writes their
+/// [schema](crate::recipe::schema::json_schema_of) and [reference](crate::recipe::reference::markdown_of). Only texts need it. A recipe
+/// contains its ops, and so do its worlds, plans and sessions. [`Recipe::add`](crate::Recipe::add) accepts any op without a registry.
 ///
 /// ```
 /// use orogen_engine::op::{Field, Inputs, WorldParams};
@@ -70,7 +70,7 @@ impl Registry {
     /// Adds an op that [`op!`](crate::op!) declares.
     ///
     /// # Errors
-    /// If its name has no namespace or is not allowed, an op of that name is registered, or its declaration contradicts itself.
+    /// If its name has no namespace or is not allowed, if an op of that name is registered already, or if its declaration is inconsistent.
     pub fn register<T: OpType>(&mut self) -> Result<&mut Registry> {
         let node = Node::from(T::default());
         self.check(&node).map_err(|message| Error::new(ErrorKind::Request, message))?;
@@ -102,19 +102,19 @@ impl Registry {
         Ok(())
     }
 
-    /// All of them with their defaults: the built-in ones, then the registered ones in the order of their registration.
+    /// All ops with their defaults: the built-in ones, then the registered ones in the order of registration.
     #[must_use]
     pub fn nodes(&self) -> Vec<Node> {
         Node::all().into_iter().chain(self.registered.iter().cloned()).collect()
     }
 
-    /// The registered ones with their defaults.
+    /// The registered ops with their defaults.
     #[must_use]
     pub fn registered(&self) -> &[Node] {
         &self.registered
     }
 
-    /// The op of that name with its defaults.
+    /// The op with this name, with its defaults.
     #[must_use]
     pub fn named(&self, op: &str) -> Option<Node> {
         match namespace(op) {
@@ -123,13 +123,13 @@ impl Registry {
         }
     }
 
-    /// What to say of a name that no op has.
+    /// The message for a name that no op has.
     #[must_use]
     pub fn unknown(&self, op: &str) -> String {
         let registered = || self.registered.iter().map(|node| node.spec().op);
         let of_namespace = |wanted: &str| registered().filter(|op| namespace(op) == Some(wanted)).collect::<Vec<_>>();
         let Some(wanted) = namespace(op) else {
-            // The name may be right, and its namespace missing.
+            // Perhaps only the namespace is missing.
             if let Some(name) = registered().find(|name| name.split_once('.').is_some_and(|(_, name)| name == op)) {
                 return format!("unknown op `{op}`; did you mean `{name}`?");
             }
@@ -172,7 +172,7 @@ fn check_keys(spec: &Spec) -> std::result::Result<(), String> {
 mod tests {
     use super::*;
 
-    /// A name with a namespace is never a built-in op's, so their content keys differ, too.
+    /// Names of built-in ops have no namespace, so content keys differ from theirs.
     #[test]
     fn built_in_ops_have_no_namespace() {
         assert!(Node::all().iter().all(|node| namespace(node.spec().op).is_none()));

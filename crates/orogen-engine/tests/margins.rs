@@ -20,7 +20,7 @@ const AROUND: usize = 24;
 
 fn world(beyond: usize) -> WorldSpec {
     let size = SAMPLES.map(|samples| (samples + 2 * beyond) as f64 * CELL);
-    WorldSpec { seed: 5, size: Some(size), cell: CELL, ..WorldSpec::default() }
+    WorldSpec::default().with_seed(5).with_size(Some(size)).with_cell(CELL)
 }
 
 fn set(node: &mut Node, name: &str, value: &Value) {

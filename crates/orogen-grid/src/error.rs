@@ -39,6 +39,7 @@ pub struct Error {
 
 /// One problem, with its location in a text if it has one.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Diagnostic {
     /// A complete message without the location: what is wrong and what to do instead.
     pub message: String,
@@ -46,8 +47,23 @@ pub struct Diagnostic {
     pub place: Option<Location>,
 }
 
+impl Diagnostic {
+    /// A problem without a location.
+    #[must_use]
+    pub fn new(message: impl Into<String>) -> Diagnostic {
+        Diagnostic { message: message.into(), place: None }
+    }
+
+    /// Sets the location.
+    #[must_use]
+    pub fn with_place(self, place: Option<Location>) -> Diagnostic {
+        Diagnostic { place, ..self }
+    }
+}
+
 /// A location in a text, as an editor needs it.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Location {
     /// The file's name as the user gave it, or the name of a text that is not a file.
     pub file: String,
@@ -59,6 +75,26 @@ pub struct Location {
     pub length: usize,
     /// The whole line, for display; empty if it is too long to read.
     pub text: String,
+}
+
+impl Location {
+    /// The location of one character in a file: line and column from 1; the line's text is empty.
+    #[must_use]
+    pub fn new(file: impl Into<String>, line: usize, column: usize) -> Location {
+        Location { file: file.into(), line, column, length: 1, text: String::new() }
+    }
+
+    /// Sets the length of the marked part, in characters.
+    #[must_use]
+    pub fn with_length(self, length: usize) -> Location {
+        Location { length, ..self }
+    }
+
+    /// Sets the line's text.
+    #[must_use]
+    pub fn with_text(self, text: impl Into<String>) -> Location {
+        Location { text: text.into(), ..self }
+    }
 }
 
 impl Error {
@@ -81,10 +117,12 @@ impl Error {
     #[must_use]
     pub fn file(doing: &str, path: &std::path::Path, cause: &io::Error) -> Error {
         let message = format!("cannot {doing} {}: {}", path.display(), reason(cause));
-        // An I/O error cannot be cloned.
-        let source = match cause.raw_os_error() {
-            Some(code) => io::Error::from_raw_os_error(code),
-            None => io::Error::new(cause.kind(), cause.to_string()),
+        // An I/O error cannot be cloned. What it wraps is kept if it is an `Error`, else its message.
+        let wrapped = cause.get_ref().and_then(|wrapped| wrapped.downcast_ref::<Error>());
+        let source = match (cause.raw_os_error(), wrapped) {
+            (Some(code), _) => io::Error::from_raw_os_error(code),
+            (None, Some(error)) => io::Error::new(cause.kind(), error.clone()),
+            (None, None) => io::Error::new(cause.kind(), cause.to_string()),
         };
         Error { source: Some(Arc::new(source)), ..Error::new(ErrorKind::File, message) }
     }
@@ -154,5 +192,16 @@ mod tests {
         let source = error.source().and_then(|source| source.downcast_ref::<io::Error>()).unwrap();
         assert_eq!((source.kind(), source.raw_os_error()), (cause.kind(), Some(2)));
         assert!(Error::new(ErrorKind::Request, "no").source().is_none());
+    }
+
+    #[test]
+    fn an_error_that_passes_through_a_writer_keeps_its_own_source() {
+        let inner = Error::file("read", Path::new("gone.tif"), &io::Error::from_raw_os_error(2));
+        let outer = Error::file("write", Path::new("new.tif"), &io::Error::from(inner));
+        let source = outer.source().and_then(|source| source.downcast_ref::<io::Error>()).unwrap();
+        let kept = source.get_ref().and_then(|wrapped| wrapped.downcast_ref::<Error>()).unwrap();
+        assert_eq!(kept.kind(), ErrorKind::File);
+        let system = kept.source().and_then(|source| source.downcast_ref::<io::Error>()).unwrap();
+        assert_eq!(system.raw_os_error(), Some(2));
     }
 }

@@ -1,17 +1,19 @@
-//! Terrain analysis, hydrology and erosion on grids of heights, bit for bit the same on every machine, at every SIMD level and thread count.
+//! Terrain analysis, hydrology and erosion on grids of heights, with the same bits on every machine, SIMD level and thread count.
 //!
-//! A [`Grid`] is a rectangle of `f32` samples over a [`Window`]: sample (i, j) stands at ((x + i) cell, (y + j) cell), in metres, x to the east and y
-//! to the south. A sample that is NaN has no value. Everything here is a function of grids: no file, no network, no clock.
+//! A [`Grid`] is a rectangle of `f32` samples over a [`Window`]: sample (i, j) is at ((x + i) cell, (y + j) cell) in metres, with x to the east and
+//! y to the south. NaN marks a sample without a value. All functions depend only on their arguments: no files, no network, no clock.
+//!
+//! Option structs such as [`erosion::droplets::Droplets`] are built from `new` or `Default` and `with_*` methods.
 //!
 //! | module | what it computes |
 //! |---|---|
 //! | [`analysis`] | slope, aspect, curvature, roughness, geomorphons, hillshade, shadows, insolation, viewsheds, distances, hypsometry, spectra |
 //! | [`hydrology`] | depressions (filled, breached, carved), D8 and D-infinity receivers, drainage areas, lakes, watersheds, stream power |
 //! | [`hydrography`] | rivers, lakes, coasts and summits as points, lines and areas |
-//! | [`erosion`] | thermal erosion, water in pipes, droplets, local stream power |
-//! | [`contour`] | lines of one height, smoothed |
-//! | [`aggregate`] | diffusion-limited aggregates, and mountains made of them |
-//! | [`resample`] | a grid read between its samples |
+//! | [`erosion`] | thermal erosion, virtual pipes, droplets, local stream power |
+//! | [`contour`] | contour lines, smoothed |
+//! | [`aggregate`] | diffusion-limited aggregation, and mountains from it |
+//! | [`resample`] | interpolation between samples |
 //!
 //! ```
 //! use orogen_grid::hydrology::{accumulation::accumulate, drainage::route_carving, fill::fill, outlets::Outlets, steepest::Descent};
@@ -38,8 +40,9 @@
 //! |---|---|
 //! | `ndarray` | grids to and from arrays of `ndarray`: `ArrayView2::from(&grid)`, `Array2::from(grid)`, `Grid::from_array` |
 //! | `image` | grids to and from buffers of `image`: `Grid::into_image`, `from_image`, and in 16 bits `to_image16`, `from_image16` |
+//! | `mint` | positions of samples and sizes as types of `mint`: `Window::point`, `Window::corners`, `Window::size` |
 //!
-//! Both are off by default. Grids and windows implement `Serialize` and `Deserialize` of `serde` in any case.
+//! All are off by default. Grids and windows implement `Serialize` and `Deserialize` of `serde` in any case.
 //!
 //! The crate `orogen` is the terrain engine around it: recipes, tiles of any size, files, maps and meshes.
 #![forbid(unsafe_code)]

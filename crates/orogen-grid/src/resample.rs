@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 /// The interpolation of a layer between its samples. At a sample's own position the value is always the sample, bit for
 /// bit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub enum LayerKind {
     /// Smooth values, such as heights: interpolating cubic.
     Height,

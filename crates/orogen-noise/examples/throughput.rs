@@ -45,10 +45,10 @@ fn main() {
     let displaced = Points::Displaced { xs: &xs, ys: &ys, dx: &bend, dy: &bend };
     let slice = Depth::Slice(12.3);
     let (mut out, mut dx, mut dy) = (vec![0.0; SIDE * SIDE], vec![0.0; SIDE * SIDE], vec![0.0; SIDE * SIDE]);
-    let fbm = Fractal { seed: 1, wavelength: 100.0, ..Default::default() };
-    let perlin = Perlin { seed: 1, wavelength: 100.0 };
-    let value = Value { seed: 1, wavelength: 100.0, ..Default::default() };
-    let weighted = Fractal { kind: Kind::Weighted { k: 1.0, falloff: Falloff::Reciprocal }, ..fbm };
+    let fbm = Fractal::new(1, 100.0);
+    let perlin = Perlin::new(1, 100.0);
+    let value = Value::new(1, 100.0);
+    let weighted = fbm.with_kind(Kind::Weighted { k: 1.0, falloff: Falloff::Reciprocal });
 
     for level in Level::available().into_iter().rev() {
         if wanted.as_deref().is_some_and(|name| name != level.name()) || Level::force(level).is_err() {
@@ -66,8 +66,8 @@ fn main() {
             };
         }
         row("plain fill", &mut |out, _, _| std::hint::black_box(out).fill(0.0));
-        fill!("white, wavelength 1", White { seed: 1, wavelength: 1.0 }, lattice);
-        fill!("white, wavelength 100", White { seed: 1, wavelength: 100.0 }, lattice);
+        fill!("white, wavelength 1", White::new(1, 1.0), lattice);
+        fill!("white, wavelength 100", White::new(1, 100.0), lattice);
         fill!("value", value, lattice);
         fill!("perlin", perlin, lattice);
         row("perlin slice in 3D", &mut |out, _, _| assert!(perlin.fill3(&lattice, &slice, out).is_ok()));
@@ -76,19 +76,19 @@ fn main() {
             assert!(perlin.fill_with_gradient(&lattice, out, dx, dy).is_ok());
         });
         fill!("fbm6", fbm, lattice);
-        fill!("fbm6, wavelength 50", Fractal { wavelength: 50.0, ..fbm }, lattice);
-        fill!("fbm6 value", Fractal { basis: Basis::Value, ..fbm }, lattice);
+        fill!("fbm6, wavelength 50", fbm.with_wavelength(50.0), lattice);
+        fill!("fbm6 value", fbm.with_basis(Basis::Value), lattice);
         row("fbm6 with gradient", &mut |out, dx, dy| {
             assert!(fbm.fill_with_gradient(&lattice, out, dx, dy).is_ok());
         });
-        fill!("white scattered", White { seed: 1, wavelength: 1.0 }, scattered);
+        fill!("white scattered", White::new(1, 1.0), scattered);
         fill!("fbm6 displaced", fbm, displaced);
         fill!("fbm6 scattered", fbm, scattered);
-        fill!("ridged6", Fractal { kind: Kind::Ridged, ..fbm }, lattice);
+        fill!("ridged6", fbm.with_kind(Kind::Ridged), lattice);
         fill!("weighted6", weighted, lattice);
         row("weighted6 with gradient", &mut |out, dx, dy| {
             assert!(weighted.fill_with_gradient(&lattice, out, dx, dy).is_ok());
         });
-        fill!("classic diagonal fbm6", Fractal { basis: Basis::ClassicDiagonal, ..fbm }, lattice);
+        fill!("classic diagonal fbm6", fbm.with_basis(Basis::ClassicDiagonal), lattice);
     }
 }

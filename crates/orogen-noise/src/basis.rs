@@ -1,9 +1,10 @@
-//! The list of bases, by name.
+//! The bases of fractals.
 
 use crate::tables::reference::{BOUND_3D, BOUND_4D};
 
-/// A coherent noise that a [`crate::Fractal`] can be made of.
+/// The noise that a [`crate::Fractal`] sums.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[non_exhaustive]
 pub enum Basis {
     /// [`crate::White`]: a value per square.
     White,
@@ -51,7 +52,7 @@ impl Basis {
         &Basis::ALL
     }
 
-    /// The name recipes and the command line use.
+    /// The name in recipes and on the command line.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -69,28 +70,27 @@ impl Basis {
         }
     }
 
-    /// The basis of that [name](Basis::name).
+    /// The basis with this [name](Basis::name).
     #[must_use]
     pub fn from_name(name: &str) -> Option<Basis> {
         Basis::ALL.into_iter().find(|basis| basis.name() == name)
     }
 
-    /// Whether the noise has a slope to give. White noise has none and that of Worley's is not worked out: their gradients are given
-    /// as zero everywhere.
+    /// Whether the noise has a gradient. White noise has none, and that of Worley noise is not computed; methods that return gradients
+    /// return zeros for them.
     #[must_use]
     pub const fn has_gradient(self) -> bool {
         !matches!(self, Basis::White | Basis::Worley | Basis::WorleyEdge)
     }
 
-    /// Whether its lattice can be made to repeat along the axes; lattices of simplices cannot.
+    /// Whether the noise can repeat along the axes; Simplex and OpenSimplex2 cannot.
     #[must_use]
     pub const fn is_tileable(self) -> bool {
         !matches!(self, Basis::Simplex | Basis::OpenSimplex2 | Basis::OpenSimplex2Smooth)
     }
 
-    /// The greatest size a value of the basis reaches in so many dimensions, 2 to 4; a [`crate::Fractal`] divides by it. Perlin's
-    /// reference noise is not bounded by 1 beyond the plane: where its gradients agree best it reaches 1.03635 in 3D and 1.53658
-    /// in 4D.
+    /// The maximum absolute value of the basis in 2, 3 or 4 dimensions; a [`crate::Fractal`] divides by it. Perlin's reference noise
+    /// reaches 1.03635 in 3D and 1.53658 in 4D.
     #[must_use]
     pub const fn bound(self, dimensions: usize) -> f64 {
         match (self, dimensions) {

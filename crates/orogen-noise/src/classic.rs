@@ -1,17 +1,20 @@
 //! Perlin's noise over the permutation table of his 2002 reference.
 
+use crate::builder::noise_builder;
 use crate::choices::ClassicVariant;
 use crate::methods::noise_methods;
+use crate::prepared::preparable;
 use crate::program::{Program, Source};
 use crate::tiled::tileable;
 
-/// Perlin's improved noise as published: a table of 256 entries, so it repeats every 256 cells.
+/// Perlin's improved noise as published: its table has 256 entries, so it repeats every 256 cells.
 ///
-/// For the look of the textbooks, and to check against them: with seed 0, wavelength 1 and depth, it is `ImprovedNoise.noise(x, y,
-/// z)` of the reference. [`crate::Perlin`] is better noise and faster. The table holds no seed; other seeds move the
-/// lattice by whole cells, so two seeds are two places of one endless noise.
+/// For comparison with textbooks: with seed 0 and wavelength 1, its three-dimensional methods return
+/// `ImprovedNoise.noise(x, y, z)` of the reference. [`crate::Perlin`] has better quality and is faster. The table has
+/// no seed; other seeds displace the lattice by whole cells, so two seeds show two parts of one noise.
 ///
-/// Range: within [-1, 1] in 2D, both reached; within 1.03635 in 3D, within 1.53658 in 4D. Zero at every lattice point. Its gradient is exact.
+/// Range: -1 ..= 1 in 2D, within 1.03635 in 3D, within 1.53658 in 4D. Zero at every lattice point. Its gradient is
+/// exact.
 ///
 /// K. Perlin, "Improving noise", SIGGRAPH 2002; reference code at <https://mrl.cs.nyu.edu/~perlin/noise/>.
 ///
@@ -20,10 +23,11 @@ use crate::tiled::tileable;
 /// assert!((noise.sample3(3.14, 42.0, 7.0) - 0.13691995878400012).abs() < 1e-6);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Classic {
-    /// 0 is the published noise; others move it. Default 0.
+    /// 0 is the published noise; other values displace it. Default 0.
     pub seed: u64,
-    /// Distance between lattice points, metres. Default 1.
+    /// Distance between lattice points, in metres. Default 1.
     pub wavelength: f64,
     /// The gradients in 2D. Default [`ClassicVariant::Diagonal`].
     pub variant: ClassicVariant,
@@ -35,6 +39,8 @@ impl Default for Classic {
     }
 }
 
+noise_builder!(Classic: with_variant(variant: ClassicVariant));
+
 impl Classic {
     pub(crate) fn program(&self, _: usize) -> Program {
         Program::single(Source::Classic(self.variant), self.seed, self.wavelength)
@@ -42,4 +48,5 @@ impl Classic {
 }
 
 noise_methods!(Classic);
+preparable!(Classic);
 tileable!(Classic);

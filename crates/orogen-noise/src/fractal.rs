@@ -1,40 +1,43 @@
 //! Fractal sums of octaves.
 
 use crate::basis::Basis;
+use crate::builder::noise_builder;
 use crate::choices::{ClassicVariant, Fade, Feature, Kind, Smoothness};
 use crate::methods::noise_methods;
+use crate::prepared::preparable;
 use crate::program::{Octaves, Program, Source};
 use crate::tiled::tileable;
 use crate::worley::Worley;
 
-/// Octaves of one basis, each finer and weaker than the one before.
+/// A sum of octaves of one basis.
 ///
-/// Octave i has the wavelength `wavelength / lacunarity^i`, the amplitude gain^i over the sum of all amplitudes, and a seed and an
-/// offset of its own, so that the lattices do not line up at the origin. Range: within [-1, 1].
+/// Octave i has the wavelength `wavelength / lacunarity^i`, the amplitude gain^i divided by the sum of all amplitudes, and its own seed and
+/// offset, so that the lattices do not coincide at the origin. Range: -1 ..= 1.
 ///
 /// ```
 /// use orogen_noise::{Basis, Fractal, Kind};
 ///
-/// let hills = Fractal { wavelength: 800.0, seed: 7, ..Default::default() };
-/// let crests = Fractal { kind: Kind::Ridged, basis: Basis::Perlin, ..hills };
+/// let hills = Fractal::new(7, 800.0);
+/// let crests = hills.with_kind(Kind::Ridged).with_basis(Basis::Perlin);
 /// assert!(hills.sample(10.0, 20.0).abs() <= 1.0 && crests.sample(10.0, 20.0).abs() <= 1.0);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Fractal {
-    /// What the octaves are made of. Default [`Basis::Perlin`].
+    /// The noise that is summed. Default [`Basis::Perlin`].
     pub basis: Basis,
-    /// How they are summed. Default [`Kind::Fbm`].
+    /// How the octaves are combined. Default [`Kind::Fbm`].
     pub kind: Kind,
     /// Any number; neighbouring seeds give unrelated noise. Default 0.
     pub seed: u64,
-    /// Wavelength of the first octave, metres. One that is zero, or too small to divide by, gives a constant. Default 1.
+    /// Wavelength of the first octave, in metres. If it is zero or too small to divide by, the noise is constant. Default 1.
     pub wavelength: f64,
-    /// How many octaves, up to [`crate::MAX_OCTAVES`]; more are left out. None at all gives the sum of nothing: 0 (1 for
-    /// ridged; -1 for billow, swiss and jordan). Default 6.
+    /// Number of octaves, up to [`crate::MAX_OCTAVES`]; more are ignored. Without octaves the value is 0 (1 for ridged; -1 for billow, swiss
+    /// and jordan). Default 6.
     pub octaves: u32,
     /// Frequency ratio from one octave to the next. Default 2.
     pub lacunarity: f64,
-    /// Amplitude ratio from one octave to the next, held within -1024 ..= 1024; NaN counts as 0. Default 0.5.
+    /// Amplitude ratio from one octave to the next, clamped to -1024 ..= 1024; NaN counts as 0. Default 0.5.
     pub gain: f64,
 }
 
@@ -51,6 +54,14 @@ impl Default for Fractal {
         }
     }
 }
+
+noise_builder!(
+    Fractal: with_basis(basis: Basis),
+    with_kind(kind: Kind),
+    with_octaves(octaves: u32),
+    with_lacunarity(lacunarity: f64),
+    with_gain(gain: f64)
+);
 
 impl Fractal {
     fn source(&self) -> Source {
@@ -83,4 +94,5 @@ impl Fractal {
 }
 
 noise_methods!(Fractal);
+preparable!(Fractal);
 tileable!(Fractal);

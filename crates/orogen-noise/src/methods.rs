@@ -6,7 +6,7 @@ use crate::points::{Depth, LengthMismatch, Points};
 use crate::program::Program;
 use orogen_simd::{Level, LevelError, dispatch, dispatch_at};
 
-/// Runs a program at the level in force. `depths` are z and w as far as there are these axes; slopes, one slice for each axis.
+/// Runs a program at the current SIMD level. `depths` are z and w, as far as these axes exist; `slopes` has one slice per axis.
 pub(crate) fn fill(
     program: &Program,
     points: &Points,
@@ -70,8 +70,8 @@ pub(crate) fn sample(program: &Program, x: f64, y: f64, depths: &[Depth]) -> f32
 macro_rules! value_methods {
     ($noise:ident) => {
         impl $noise {
-            /// The value at (x, y), metres. Each call pays for picking the level and seeding the octaves: for more than a few
-            /// points, [`fill`](Self::fill) is many times faster and gives the same bits.
+            /// The value at (x, y), metres. For many points at once, [`fill`](Self::fill) is many times faster and gives the same
+            /// bits; for many single points, see [`Prepared`](crate::Prepared).
             #[must_use]
             pub fn sample(&self, x: f64, y: f64) -> f32 {
                 $crate::methods::sample(&self.program(2), x, y, &[])
@@ -110,7 +110,7 @@ macro_rules! value_methods {
                 $crate::methods::fill(&self.program(3), points, &[*depth], value, None)
             }
 
-            /// The values at the points in four dimensions: `depths` are z and w.
+            /// The values at the points in four dimensions; `depths` are z and w.
             ///
             /// # Errors
             /// A slice does not have the points' length; nothing is written.

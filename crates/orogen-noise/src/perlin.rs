@@ -1,33 +1,36 @@
 //! Perlin's gradient noise over a hashed lattice.
 
+use crate::builder::noise_builder;
 use crate::kernel::near::FillAround;
 use crate::methods::noise_methods;
 use crate::points::LengthMismatch;
+use crate::prepared::preparable;
 use crate::program::{Program, Source};
 use crate::tiled::tileable;
 use orogen_simd::dispatch;
 
-/// Perlin's improved gradient noise, with gradients hashed from 64-bit cells instead of looked up in a table of 256: it never
-/// repeats, and every seed is a noise of its own.
+/// Perlin's improved gradient noise. Gradients are hashed from 64-bit cells instead of a table of 256, so it never
+/// repeats, and every seed gives a different noise.
 ///
-/// Gradients have one length. In 2D there are 16 directions, 11.25 + 22.5 k degrees, so that none lies along an axis or a
-/// diagonal; in 3D there are 32, the corners and face centres of an icosahedron. The result is scaled so that its true
-/// maximum is 1: the raw noise reaches .695353 in 2D, at (.5, .5266) in a cell, and sqrt(3/4) in 3D, in a cell's middle.
+/// All gradients have the same length. In 2D there are 16 directions, 11.25 + 22.5 k degrees; none lies along an axis
+/// or a diagonal. In 3D there are 32: the corners and face centres of an icosahedron. The result is scaled to a maximum
+/// of 1: the raw noise reaches .695353 in 2D, at (.5, .5266) in a cell, and sqrt(3/4) in 3D, in the centre of a cell.
 ///
-/// Range: within [-1, 1]. Zero mean; zero at every lattice point. Its gradient is exact.
+/// Range: -1 ..= 1. Zero mean; zero at every lattice point. Its gradient is exact.
 ///
 /// K. Perlin, "Improving noise", SIGGRAPH 2002.
 ///
 /// ```
-/// let noise = orogen_noise::Perlin { seed: 7, wavelength: 100.0 };
+/// let noise = orogen_noise::Perlin::new(7, 100.0);
 /// assert_eq!(noise.sample(200.0, -300.0), 0.0);
 /// assert!(noise.sample(250.0, -250.0).abs() <= 1.0);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Perlin {
     /// Any number; neighbouring seeds give unrelated noise. Default 0.
     pub seed: u64,
-    /// Distance between lattice points, metres. Default 1.
+    /// Distance between lattice points, in metres. Default 1.
     pub wavelength: f64,
 }
 
@@ -37,23 +40,26 @@ impl Default for Perlin {
     }
 }
 
+noise_builder!(Perlin);
+
 impl Perlin {
     pub(crate) fn program(&self, _: usize) -> Program {
         Program::single(Source::Perlin, self.seed, self.wavelength)
     }
 
-    /// The values at points around an origin, in f32: sample k stands at `(origin.0 + x[k], origin.1 + y[k])`, metres. It is faster than
-    /// [`fill`](Self::fill) at scattered points, most of all where they are in no more than 16 cells along each axis.
+    /// The values at points around an origin, in f32: sample k is at `(origin.0 + x[k], origin.1 + y[k])`, in metres.
+    /// It is faster than [`fill`](Self::fill) at scattered points, in particular if they span at most 16 cells along
+    /// each axis.
     ///
-    /// The origin may be anywhere. Coordinates are counted from the corner of its cell and are exact to about 2^-24 of the distance to
-    /// it, so that values are not those of `fill` to the bit, and another origin gives other bits. They are the same at every SIMD
-    /// level. A coordinate is held within 2^30 wavelengths of that corner; NaN counts as the lower end.
+    /// The origin may be any position. Coordinates are relative to the corner of its cell and exact to about 2^-24 of
+    /// the distance to it. Therefore the bits differ from those of `fill` and depend on the origin. They do not depend
+    /// on the SIMD level. Coordinates are clamped to 2^30 wavelengths around that corner; NaN counts as the lower end.
     ///
     /// # Errors
-    /// The slices are not of one length; nothing is written.
+    /// The slices have different lengths; nothing is written.
     ///
     /// ```
-    /// let noise = orogen_noise::Perlin { seed: 7, wavelength: 100.0 };
+    /// let noise = orogen_noise::Perlin::new(7, 100.0);
     /// let mut value = [0.0; 2];
     /// noise.fill_around((2e9, -3e9), &[50.0, -20.0], &[10.0, 0.0], &mut value)?;
     /// assert!((value[1] - noise.sample(2e9 - 20.0, -3e9)).abs() < 1e-6);
@@ -74,4 +80,5 @@ impl Perlin {
 }
 
 noise_methods!(Perlin);
+preparable!(Perlin);
 tileable!(Perlin);

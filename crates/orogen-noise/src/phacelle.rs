@@ -1,53 +1,56 @@
 //! Phacelle noise.
 
+use crate::builder::noise_builder;
 use crate::kernel::phacelle::{Along, Fill};
 use crate::points::{LengthMismatch, Points};
 use crate::program::{MAX_PERIOD, Program, Source};
 use orogen_simd::{Level, LevelError, dispatch, dispatch_at};
 
-/// Phacelle noise: stripes that run along a direction of the caller's, each sample its own, and join where directions change. With the
-/// slope of a terrain as direction they are gullies.
+/// Phacelle noise: stripes along a direction that the caller gives for each sample. Stripes merge where directions change. Along the slope of
+/// a terrain they look like gullies.
 ///
-/// Cells hold a pivot each, within half a cell of their lattice point, with a plane wave of random phase through it; a sample is the mean of
-/// the waves of the 4 x 4 pivots around it, weighted by max(0, e^(-2 d^2) - e^(-4.5)) at distance d in cells, made longer towards length 1:
+/// Each cell has a pivot within half a cell of its lattice point, with a plane wave of random phase. A sample is the mean of the waves of the
+/// 4 x 4 pivots around it, weighted by max(0, e^(-2 d^2) - e^(-4.5)) at distance d in cells, and lengthened towards length 1:
 ///
 /// ```text
 /// wave = sum w (cos phi, sin phi) / sum w,   phi = 2 pi (v . side / wavelength + phase)
 /// result = wave / max(1 - normalisation, |wave|)
 /// ```
 ///
-/// with v from the pivot to the sample and `side` perpendicular to the direction. Pivots beyond the 4 x 4 have no weight: no seams.
+/// with v from the pivot to the sample and `side` perpendicular to the direction. Other pivots have a weight of 0, so there are no
+/// discontinuities.
 ///
-/// Range: both parts within [-1, 1]. Zero mean. There is no exact gradient, as directions are the caller's; across the stripes the slope
-/// of the cosine is about -2 pi / wavelength times the sine. In the plane only.
+/// Range: -1 ..= 1 for cosine and sine. Zero mean. There is no exact gradient, because it would need the derivatives of the directions. Across
+/// the stripes the slope of the cosine is about -2 pi / wavelength times the sine. Two dimensions only.
 ///
 /// R. Skovbo Johansen, "Phacelle noise" (2025).
 ///
 /// ```
 /// use orogen_noise::{Phacelle, Points};
 ///
-/// let stripes = Phacelle { wavelength: 100.0, ..Default::default() };
+/// let stripes = Phacelle::default().with_wavelength(100.0);
 /// let (xs, ys) = ([0.0, 50.0], [0.0]);
 /// let points = Points::Lattice { xs: &xs, ys: &ys };
 /// let (mut cosine, mut sine) = ([0.0; 2], [0.0; 2]);
-/// // One sample's stripes run east, the other's south.
+/// // The stripes of one sample run east, those of the other south.
 /// stripes.fill_along(&points, &[1.0, 0.0], &[0.0, 1.0], &mut cosine, &mut sine)?;
 /// assert!(cosine.iter().chain(&sine).all(|x| x.abs() <= 1.0));
 /// # Ok::<(), orogen_noise::LengthMismatch>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Phacelle {
     /// Any number; neighbouring seeds give unrelated noise. Default 0.
     pub seed: u64,
     /// Distance from stripe to stripe, metres. Default 1.
     pub wavelength: f64,
-    /// Side of a cell in wavelengths: how far a stripe goes before it may end. Default 0.7.
+    /// Side of a cell in wavelengths. It limits the length of a stripe. Default 0.7.
     pub cell: f64,
-    /// How far waves that cancel each other are made longer, 0 (not at all) to 1 (to full height); held within. Default 0.5.
+    /// How far waves that cancel each other are lengthened, from 0 (not at all) to 1 (to full height); clamped. Default 0.5.
     pub normalisation: f64,
-    /// The way of the stripes where samples bring none: an angle from x (east) towards y (south), degrees. Default 0.
+    /// Direction of the stripes for methods without directions: an angle from x (east) towards y (south), in degrees. Default 0.
     pub direction: f64,
-    /// After how many cells the noise repeats along x and y; 0 where it need not. At most 2^26. Default [0, 0].
+    /// Period along x and y in cells; 0 along axes without a period. At most 2^26. Default [0, 0].
     pub period: [u32; 2],
 }
 
@@ -57,6 +60,13 @@ impl Default for Phacelle {
     }
 }
 
+noise_builder!(
+    Phacelle: with_cell(cell: f64),
+    with_normalisation(normalisation: f64),
+    with_direction(direction: f64),
+    with_period(period: [u32; 2])
+);
+
 impl Phacelle {
     fn program(&self) -> Program {
         let program = Program::single(Source::Perlin, self.seed, self.wavelength * self.cell);
@@ -65,33 +75,30 @@ impl Phacelle {
         program.tiled([x, y, 0, 0]).unwrap_or(program)
     }
 
-    fn call<'a>(
-        &self,
-        program: &'a Program,
-        points: &Points<'a>,
-        along: Along<'a>,
-        [cosine, sine]: [&'a mut [f32]; 2],
-    ) -> Fill<'a> {
-        let normalisation = if self.normalisation >= 0.0 { self.normalisation.min(1.0) } else { 0.0 };
-        // Never 0: waves that cancel each other exactly stay as they are.
-        let shortest = ((1.0 - normalisation) as f32).max(1e-6);
-        let stripes = if self.cell.is_finite() { self.cell.clamp(-1e6, 1e6) as f32 } else { 0.0 };
-        Fill { program, points: *points, along, stripes, shortest, cosine, sine }
-    }
-
-    fn way(&self) -> Along<'static> {
+    /// The noise with its tables computed once: the same methods, the same bits, and less work per call.
+    #[must_use]
+    pub fn prepare(&self) -> PreparedPhacelle {
         let angle = self.direction.to_radians();
-        let way = [libm::cos(angle) as f32, libm::sin(angle) as f32];
-        Along::One(if way[0].is_finite() { way } else { [1.0, 0.0] })
+        let direction = [libm::cos(angle) as f32, libm::sin(angle) as f32];
+        self.towards(if direction[0].is_finite() { direction } else { [1.0, 0.0] })
     }
 
-    /// The cosine at (x, y), metres, of stripes along [`Phacelle::direction`].
+    fn towards(&self, direction: [f32; 2]) -> PreparedPhacelle {
+        let normalisation = if self.normalisation >= 0.0 { self.normalisation.min(1.0) } else { 0.0 };
+        PreparedPhacelle {
+            program: self.program(),
+            // Never 0: waves that cancel each other exactly stay as they are.
+            shortest: ((1.0 - normalisation) as f32).max(1e-6),
+            stripes: if self.cell.is_finite() { self.cell.clamp(-1e6, 1e6) as f32 } else { 0.0 },
+            direction,
+        }
+    }
+
+    /// The cosine at (x, y), metres, of stripes along [`Phacelle::direction`]. Each call computes the tables of the noise:
+    /// [`prepare`](Self::prepare) does that once for many calls.
     #[must_use]
     pub fn sample(&self, x: f64, y: f64) -> f32 {
-        let mut value = [0.0];
-        // The lengths agree, so there is no error to hand on.
-        let _ = self.fill(&Points::Scattered { x: &[x], y: &[y] }, &mut value);
-        value[0]
+        self.prepare().sample(x, y)
     }
 
     /// The cosines at the points, of stripes along [`Phacelle::direction`].
@@ -99,14 +106,11 @@ impl Phacelle {
     /// # Errors
     /// A slice does not have the points' length; nothing is written.
     pub fn fill(&self, points: &Points, value: &mut [f32]) -> Result<(), LengthMismatch> {
-        points.check()?;
-        LengthMismatch::check("value", value.len(), points.len())?;
-        dispatch(self.call(&self.program(), points, self.way(), [value, &mut []]));
-        Ok(())
+        self.prepare().fill(points, value)
     }
 
-    /// Cosines and sines at the points, of stripes along (dx, dy), a way for each sample; its length does not matter, and one of no
-    /// length makes no stripes.
+    /// Cosines and sines at the points, of stripes along (dx, dy), one direction for each sample. The length of a direction does not
+    /// matter; a direction of length 0 makes no stripes.
     ///
     /// # Errors
     /// A slice does not have the points' length; nothing is written.
@@ -118,9 +122,8 @@ impl Phacelle {
         cosine: &mut [f32],
         sine: &mut [f32],
     ) -> Result<(), LengthMismatch> {
-        self.check(points, dx, dy, cosine, sine)?;
-        dispatch(self.call(&self.program(), points, Along::Each([dx, dy]), [cosine, sine]));
-        Ok(())
+        // The direction is not read.
+        self.towards([1.0, 0.0]).fill_along(points, dx, dy, cosine, sine)
     }
 
     /// [`fill_along`](Phacelle::fill_along) at a chosen SIMD level, for tests and bug reports: the bits are the same.
@@ -131,28 +134,98 @@ impl Phacelle {
         &self,
         level: Level,
         points: &Points,
-        [dx, dy]: [&[f32]; 2],
-        [cosine, sine]: [&mut [f32]; 2],
+        directions: [&[f32]; 2],
+        results: [&mut [f32]; 2],
     ) -> Result<Result<(), LengthMismatch>, LevelError> {
-        if let Err(mismatch) = self.check(points, dx, dy, cosine, sine) {
-            return Ok(Err(mismatch));
-        }
-        dispatch_at(level, self.call(&self.program(), points, Along::Each([dx, dy]), [cosine, sine]))?;
-        Ok(Ok(()))
+        self.towards([1.0, 0.0]).fill_along_at(level, points, directions, results)
+    }
+}
+
+/// [`Phacelle`] noise whose tables are computed once, for many calls; [`Phacelle::prepare`] makes it. Any number of threads can use it
+/// at the same time.
+///
+/// ```
+/// let stripes = orogen_noise::Phacelle::new(7, 100.0).with_direction(30.0);
+/// let prepared = stripes.prepare();
+/// assert_eq!(prepared.sample(12.5, -3.0), stripes.sample(12.5, -3.0));
+/// ```
+#[derive(Clone, Debug)]
+pub struct PreparedPhacelle {
+    program: Program,
+    /// Side of a cell, in wavelengths.
+    stripes: f32,
+    /// Minimum length that a wave is divided by.
+    shortest: f32,
+    /// Direction of the stripes where samples have none of their own.
+    direction: [f32; 2],
+}
+
+impl PreparedPhacelle {
+    /// [`Phacelle::sample`] of the noise that was prepared.
+    #[must_use]
+    pub fn sample(&self, x: f64, y: f64) -> f32 {
+        let mut value = [0.0];
+        // The lengths agree, so there is no error to hand on.
+        let _ = self.fill(&Points::Scattered { x: &[x], y: &[y] }, &mut value);
+        value[0]
     }
 
-    fn check(
+    /// [`Phacelle::fill`] of the noise that was prepared.
+    ///
+    /// # Errors
+    /// A slice does not have the points' length; nothing is written.
+    pub fn fill(&self, points: &Points, value: &mut [f32]) -> Result<(), LengthMismatch> {
+        points.check()?;
+        LengthMismatch::check("value", value.len(), points.len())?;
+        dispatch(self.call(points, Along::One(self.direction), [value, &mut []]));
+        Ok(())
+    }
+
+    /// [`Phacelle::fill_along`] of the noise that was prepared.
+    ///
+    /// # Errors
+    /// A slice does not have the points' length; nothing is written.
+    pub fn fill_along(
         &self,
         points: &Points,
         dx: &[f32],
         dy: &[f32],
-        cosine: &[f32],
-        sine: &[f32],
+        cosine: &mut [f32],
+        sine: &mut [f32],
     ) -> Result<(), LengthMismatch> {
-        points.check()?;
-        for (name, slice) in [("dx", dx), ("dy", dy), ("cosine", cosine), ("sine", sine)] {
-            LengthMismatch::check(name, slice.len(), points.len())?;
-        }
+        check(points, dx, dy, cosine, sine)?;
+        dispatch(self.call(points, Along::Each([dx, dy]), [cosine, sine]));
         Ok(())
     }
+
+    /// [`Phacelle::fill_along_at`] of the noise that was prepared.
+    ///
+    /// # Errors
+    /// This machine lacks the level; inside, a slice of the wrong length.
+    pub fn fill_along_at(
+        &self,
+        level: Level,
+        points: &Points,
+        [dx, dy]: [&[f32]; 2],
+        [cosine, sine]: [&mut [f32]; 2],
+    ) -> Result<Result<(), LengthMismatch>, LevelError> {
+        if let Err(mismatch) = check(points, dx, dy, cosine, sine) {
+            return Ok(Err(mismatch));
+        }
+        dispatch_at(level, self.call(points, Along::Each([dx, dy]), [cosine, sine]))?;
+        Ok(Ok(()))
+    }
+
+    fn call<'a>(&'a self, points: &Points<'a>, along: Along<'a>, [cosine, sine]: [&'a mut [f32]; 2]) -> Fill<'a> {
+        let PreparedPhacelle { program, stripes, shortest, .. } = self;
+        Fill { program, points: *points, along, stripes: *stripes, shortest: *shortest, cosine, sine }
+    }
+}
+
+fn check(points: &Points, dx: &[f32], dy: &[f32], cosine: &[f32], sine: &[f32]) -> Result<(), LengthMismatch> {
+    points.check()?;
+    for (name, slice) in [("dx", dx), ("dy", dy), ("cosine", cosine), ("sine", sine)] {
+        LengthMismatch::check(name, slice.len(), points.len())?;
+    }
+    Ok(())
 }

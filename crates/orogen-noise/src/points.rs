@@ -1,21 +1,21 @@
-//! Where a noise is asked, and the one error asking can end in.
+//! Positions for noises, and the error of their methods.
 
 use std::fmt;
 
-/// The positions a noise is evaluated at, in metres, in f64.
+/// The positions at which a noise is evaluated, in metres, in f64.
 ///
-/// The three ways give the same bits for the same positions; they differ in speed. A lattice is several times faster than
-/// scattered points, because everything that depends on x alone or y alone is worked out once per column or row.
+/// The three forms give the same bits for the same positions; they differ in speed. A lattice is several times faster than scattered points,
+/// because values that depend on x alone or y alone are computed once per column or row.
 #[derive(Clone, Copy, Debug)]
 pub enum Points<'a> {
-    /// Sample k = j * xs.len() + i stands at `(xs[i], ys[j])`. Evenly spaced, ascending columns are fastest; any values are legal.
+    /// Sample k = j * xs.len() + i is at `(xs[i], ys[j])`. Evenly spaced, ascending columns are fastest; all values are valid.
     Lattice {
         /// x of each column, metres.
         xs: &'a [f64],
         /// y of each row, metres.
         ys: &'a [f64],
     },
-    /// Sample k = j * xs.len() + i stands at `(xs[i] + dx[k], ys[j] + dy[k])`, the sums in f64: a warped lattice.
+    /// A warped lattice: sample k = j * xs.len() + i is at `(xs[i] + dx[k], ys[j] + dy[k])`, with sums in f64.
     Displaced {
         /// x of each column, metres.
         xs: &'a [f64],
@@ -26,7 +26,7 @@ pub enum Points<'a> {
         /// Displacement of each sample along y, metres; row-major.
         dy: &'a [f32],
     },
-    /// Sample k stands at `(x[k], y[k])`.
+    /// Sample k is at `(x[k], y[k])`.
     Scattered {
         /// x of each sample, metres.
         x: &'a [f64],
@@ -36,7 +36,7 @@ pub enum Points<'a> {
 }
 
 impl Points<'_> {
-    /// How many samples there are.
+    /// Number of samples.
     #[must_use]
     pub fn len(&self) -> usize {
         match *self {
@@ -45,13 +45,13 @@ impl Points<'_> {
         }
     }
 
-    /// Whether there is none.
+    /// Whether there are no samples.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Where sample k stands, metres; `None` from [`Points::len`] on.
+    /// Position of sample k, in metres; `None` if k is [`Points::len`] or more.
     #[must_use]
     pub fn position(&self, k: usize) -> Option<(f64, f64)> {
         match *self {
@@ -81,23 +81,23 @@ impl Points<'_> {
     }
 }
 
-/// The third coordinate of the samples, metres.
+/// The third or fourth coordinate of the samples, in metres.
 #[derive(Clone, Copy, Debug)]
 pub enum Depth<'a> {
-    /// One depth for all samples: a slice. Keeps the speed of a lattice.
+    /// One coordinate for all samples, which form a slice. Lattices keep their speed.
     Slice(f64),
-    /// A depth for each sample.
+    /// A coordinate for each sample.
     Each(&'a [f64]),
 }
 
-/// A slice whose length does not fit the points. Nothing has been written.
+/// A slice has the wrong length. Nothing was written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LengthMismatch {
-    /// Which slice.
+    /// Name of the slice.
     pub slice: &'static str,
-    /// How long it is.
+    /// Its length.
     pub length: usize,
-    /// How long it should be.
+    /// The required length.
     pub expected: usize,
 }
 

@@ -1,43 +1,44 @@
-//! What the kernels run: one noise, as a list of octaves. Every public noise boils down to this.
+//! The input of the kernels: a noise as a list of octaves. Every public noise compiles to this.
 
 use crate::choices::{ClassicVariant, Distance, Fade, Falloff, Feature, Kind, Smoothness};
 use crate::seed;
 use std::f32::consts::SQRT_2;
 use std::fmt;
 
-/// The most octaves a fractal has; what is asked beyond is left out. Thirty-two octaves of lacunarity 2 span a factor of four
-/// billion in wavelength, more than f32 can tell apart in one sum.
+/// Maximum number of octaves of a fractal; more are ignored. Thirty-two octaves of lacunarity 2 span a factor of four
+/// billion in wavelength, which exceeds the precision of a sum in f32.
 pub const MAX_OCTAVES: u32 = 32;
 
-/// Positions are held inside this many cells of the finest octave, where f64 still resolves a quarter of a cell. It keeps every
-/// cell number exact and every result finite, for NaN and infinite positions too.
+/// Positions are clamped to this many cells of the finest octave, where f64 still resolves a quarter of a cell. Cell
+/// numbers are then exact and results finite, for NaN and infinite positions too.
 const FARTHEST: f64 = 1_125_899_906_842_624.0;
 
-/// The same on lattices of simplices, whose slant adds up to as many cells again along each axis.
+/// The same on lattices of simplices, where the skew adds up to as many cells again along each axis.
 const FARTHEST_SLANTED: f64 = FARTHEST / 8.0;
 
-/// The same where lattices repeat: there coordinates are rounded to 2^-24 of a cell in a way that holds up to here.
+/// The same for lattices that repeat: rounding of coordinates to 2^-24 of a cell works up to here.
 const FARTHEST_TILED: f64 = 134_217_727.0;
 
-/// The most cells a period may have in any octave: two of them fit where positions are held.
+/// Maximum period in cells, in any octave: twice this is inside the limit.
 pub(crate) const MAX_PERIOD: f64 = 67_108_864.0;
 
-/// Factors of slopes are held within this size: the slopes of all octaves then have a finite sum.
+/// Maximum size of slope factors, so that the slopes of all octaves have a finite sum.
 const STEEPEST: f32 = 1e36;
 
-/// The same where slopes damp octaves: there the square of their sum is finite, and so is the sum's product with another factor.
+/// The same where slopes damp octaves: the square of the sum of slopes is finite too, and so is its product with
+/// another factor.
 const STEEPEST_WEIGHTED: f32 = 1e16;
 
-/// How lattice points get their numbers.
+/// The numbers at lattice points.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Source {
-    /// Values, blended by a fade.
+    /// Values, interpolated.
     Value(Fade),
     /// Hashed gradients.
     Perlin,
     /// Gradients from the 2002 table.
     Classic(ClassicVariant),
-    /// Points, one in each cell.
+    /// Points, one per cell.
     Worley(Cellular),
     /// Gradients on the corners of simplices.
     Simplex,
@@ -56,29 +57,30 @@ impl Source {
         !matches!(self, Source::Value(Fade::Step) | Source::Worley(_))
     }
 
-    /// Whether its lattice can be made to repeat along the axes.
+    /// Whether its lattice can repeat along the axes.
     fn repeats(self) -> bool {
         !matches!(self, Source::Simplex | Source::OpenSimplex2(_))
     }
 }
 
-/// What cellular noise is made of.
+/// The parameters of cellular noise.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Cellular {
     pub distance: Distance,
     pub feature: Feature,
-    /// How much of its cell a point may be in, along each axis.
+    /// Share of its cell in which a point is placed, along each axis.
     pub jitter: f32,
 }
 
 impl Cellular {
-    /// The greatest size of the feature, in cells.
+    /// Maximum size of the feature, in cells.
     ///
-    /// A sample whose nearest lattice corner is x, y (and z) off, each at most 1/2, has its own cell's point within
-    /// (1 - x, 1 - y), and that of the neighbour across the side nearest to it within 2 min(x, y) more along one axis; the greatest
-    /// of these over all places bound the nearest and the second nearest, and points in the farthest corners reach them. An edge is at
-    /// most sqrt 2 (sqrt 3, 2) minus the nearest distance away, or that far off a place would be without a point, and at most half the
-    /// sum of the nearest two: together less than 1 (2 / sqrt 3, 4 / 3).
+    /// Let the nearest lattice corner of a sample be x, y (and z) away, each at most 1/2. Its own cell's point is
+    /// within (1 - x, 1 - y), and that of the neighbour across its nearest side within 2 min(x, y) more along one axis.
+    /// The maxima of these over all positions bound the nearest and the second nearest distance, and points in the
+    /// farthest corners reach them. An edge is at most sqrt 2 (sqrt 3, 2) minus the nearest distance away, because a
+    /// position farther off would have no point, and at most half the sum of the nearest two distances: together less
+    /// than 1 (2 / sqrt 3, 4 / 3).
     #[inline]
     pub(crate) fn bound(self, dims: usize) -> f32 {
         let pick = |bounds: [f32; 3]| bounds[dims.clamp(2, 4) - 2];
@@ -101,34 +103,34 @@ impl Cellular {
     }
 }
 
-/// One octave, ready to run.
+/// One octave in the form of the kernels.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Octave {
     /// Cells per metre.
     pub frequency: f64,
     /// Added to position times frequency, in cells.
     pub offset: [f64; 4],
-    /// What the lattice hash mixes in, per axis.
+    /// The words of the lattice hash, per axis.
     pub words: [[u32; 2]; 4],
     /// Factor of the value.
     pub amplitude: f32,
     /// Factor of the gradient by cell coordinates.
     pub slope: f32,
-    /// Its weight in sums that are no plain ones.
+    /// Weight in combinations that are not plain sums.
     pub gain: f32,
-    /// The octave's frequency over the first one's.
+    /// Ratio of the octave's frequency to that of the first one.
     pub ratio: f64,
-    /// Whether coordinates are rounded so that a seam's two sides agree.
+    /// Whether coordinates are rounded so that both sides of a seam agree.
     pub tiled: bool,
-    /// After how many cells the lattice repeats, per axis; 0 where it does not.
+    /// Period of the lattice in cells, per axis; 0 for none.
     pub period: [f64; 4],
 }
 
-/// What a sum of octaves is made from: the parameters of a fractal.
+/// The parameters of a fractal.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Octaves {
     pub source: Source,
-    /// The greatest size of the source's values.
+    /// Maximum absolute value of the source.
     pub bound: f64,
     pub kind: Kind,
     pub seed: u64,
@@ -139,37 +141,37 @@ pub(crate) struct Octaves {
     pub gain: f64,
 }
 
-/// How octaves become one number.
+/// How octaves are combined.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Combine {
     /// The sum.
     Sum,
-    /// `start + sign * sum of sizes`.
+    /// `start + sign * sum of absolute values`.
     Sizes {
         /// +1 (billow) or -1 (ridged); the sum starts at minus that.
         sign: f32,
     },
-    /// The sum, each octave damped by the slope so far.
+    /// The sum, each octave damped by the slope of the previous ones.
     Weighted {
         /// Strength of the damping.
         k: f32,
         /// Its shape.
         falloff: Falloff,
-        /// From the kernels' gradient unit to 1 / metre of the normalised sum.
+        /// Factor from the kernels' gradient unit to 1 / metre of the normalised sum.
         gradient: f32,
     },
-    /// What is no plain sum: octaves reach the combination as numbers from -1 to 1, with slopes per first wavelength.
+    /// Other combinations: octaves are numbers in -1 ..= 1, with slopes per first wavelength.
     Shaped {
         /// The shape.
         shape: Shape,
-        /// From the shape's own range to -1 ..= 1.
+        /// Factor from the shape's own range to -1 ..= 1.
         scale: f32,
-        /// From the kernels' gradient unit to 1 / metre of the result.
+        /// Factor from the kernels' gradient unit to 1 / metre of the result.
         gradient: f32,
     },
 }
 
-/// How octaves become one number where it is no plain sum; see [`Kind`] for what they are.
+/// Combinations that are not plain sums; see [`Kind`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Shape {
     /// Folded values, summed.
@@ -178,19 +180,19 @@ pub(crate) enum Shape {
     Hybrid { offset: f32 },
     /// Each octave scaled by the sum so far.
     Hetero { offset: f32 },
-    /// Ridges that move what comes after.
+    /// Ridges that displace later octaves.
     Swiss { warp: f32 },
-    /// Squares that move and damp what comes after.
+    /// Squares that displace and damp later octaves.
     Jordan { warp: f32, damp: f32 },
 }
 
 impl Combine {
-    /// Whether octaves move the places of those after them: then a row of samples is no row any more.
+    /// Whether octaves displace the positions of later ones. Then rows of samples share nothing.
     pub(crate) fn moves(self) -> bool {
         matches!(self, Combine::Shaped { shape: Shape::Swiss { .. } | Shape::Jordan { .. }, .. })
     }
 
-    /// Whether slopes are needed whoever asks.
+    /// Whether slopes are needed even if they are not requested.
     pub(crate) fn needs_slopes(self) -> bool {
         matches!(self, Combine::Weighted { .. }) || self.moves()
     }
@@ -201,25 +203,26 @@ impl Combine {
 pub(crate) struct Program {
     pub source: Source,
     pub combine: Combine,
-    /// Positions are clamped to plus and minus this, metres.
+    /// Positions are clamped to plus and minus this, in metres.
     pub limit: f64,
     pub count: usize,
     pub all: [Octave; MAX_OCTAVES as usize],
 }
 
-/// Why a noise cannot repeat.
+/// The reason why a noise cannot repeat.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum TileError {
-    /// An octave does not close.
+    /// An octave does not have a whole number of cells in the period.
     Octave {
         /// The octave, counted from 0.
         octave: usize,
-        /// Along which axis: 0 for x, 1 for y, 2 for z, 3 for w.
+        /// The axis: 0 for x, 1 for y, 2 for z, 3 for w.
         axis: usize,
-        /// How many of its cells would have to fit into one period: the first octave's times a power of the lacunarity.
+        /// The number of its cells in one period: the first octave's times a power of the lacunarity.
         cells: f64,
     },
-    /// The noise stands on a lattice of simplices, which closes along its own slanted axes only.
+    /// The noise uses a lattice of simplices, which can only repeat along its own skewed axes.
     Slanted,
 }
 
@@ -246,7 +249,7 @@ impl fmt::Display for TileError {
 impl std::error::Error for TileError {}
 
 impl Program {
-    /// A single noise: its lattice stands on the origin.
+    /// A single noise: its lattice has a point at the origin.
     pub(crate) fn single(source: Source, seed: u64, wavelength: f64) -> Program {
         let frequency = defined(1.0 / wavelength);
         let mut all = [Octave::default(); MAX_OCTAVES as usize];
@@ -333,7 +336,7 @@ impl Program {
         Program { source, combine, limit: limit(source, fastest), count: count as usize, all }
     }
 
-    /// The same noise on lattices that repeat: the first octave's after `period` cells along x, y, z and w, 0 for never.
+    /// The same noise with a period: `period` cells of the first octave along x, y, z and w; 0 for none.
     pub(crate) fn tiled(mut self, period: [u32; 4]) -> Result<Program, TileError> {
         if period == [0; 4] {
             return Ok(self);
@@ -369,7 +372,7 @@ impl Program {
     }
 }
 
-/// The shape a kind of fractal needs; parameters that are no numbers count as 0.
+/// The shape of a kind of fractal; NaN parameters count as 0.
 fn shape(kind: Kind) -> Option<Shape> {
     let held = |number: f64, most: f64| if number.is_nan() { 0.0 } else { number.clamp(-most, most) as f32 };
     match kind {
@@ -382,7 +385,7 @@ fn shape(kind: Kind) -> Option<Shape> {
     }
 }
 
-/// The greatest size of a shape's result before it is scaled, a hair above so that rounding in f32 cannot carry it past 1.
+/// Maximum size of a shape's result before it is scaled, with a margin so that rounding in f32 cannot exceed 1.
 fn greatest(shape: Shape, gain: f64, count: u32) -> f64 {
     let gains = || (0..count).scan(1.0, move |next, _| Some(std::mem::replace(next, *next * gain.abs())));
     let size = match shape {
@@ -403,12 +406,12 @@ fn words(source: Source, seed: u64) -> [[u32; 2]; 4] {
     }
 }
 
-/// A frequency that cannot be used becomes 0: the octave is then one constant.
+/// Replaces an invalid frequency by 0: the octave is then constant.
 fn defined(frequency: f64) -> f64 {
     if frequency.is_finite() { frequency } else { 0.0 }
 }
 
-/// The same for a factor of slopes, which is also held within a size.
+/// The same for a slope factor, which is also clamped.
 fn defined32(factor: f32, most: f32) -> f32 {
     if factor.is_finite() { factor.clamp(-most, most) } else { 0.0 }
 }

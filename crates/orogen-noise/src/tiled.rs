@@ -3,26 +3,25 @@
 use crate::methods::noise_methods;
 use crate::program::{Program, TileError};
 
-/// A noise whose lattice closes on itself, so that copies of a square of it lie side by side without a seam. Made by `tiled` of
-/// the noise it repeats, which it resembles; it has the same methods, speed, range and gradients.
+/// A noise that repeats, so that copies of one period join without a seam. The method `tiled` of a noise makes it. It has the same methods,
+/// speed, range and gradients, and its tables are computed once, as in [`Prepared`](crate::Prepared).
 ///
-/// A period is a whole number of cells of the first octave: along an axis with period p and wavelength w the noise repeats every
-/// p * w metres. Every other octave needs a whole number of its own cells in there, so the lacunarity is a whole number (or the
-/// period makes up for its fraction).
+/// A period is a whole number of cells of the first octave: along an axis with period p and wavelength w the noise repeats every p * w metres.
+/// Every other octave must have a whole number of cells in the period too. An integer lacunarity always fits; other values fit some
+/// periods.
 ///
-/// Both sides of a seam are equal to the bit. To make them so in spite of rounding, positions are rounded to 2^-24 of a cell; that
-/// holds where a period of n samples lies within 2^26 / n cells of the origin, counted in the finest octave. Positions beyond 2^27
-/// of those cells are held there.
+/// Both sides of a seam are equal to the bit. For this, positions are rounded to 2^-24 of a cell. The equality holds if a period of n
+/// samples lies within 2^26 / n cells of the origin, counted in the finest octave. Positions beyond 2^27 of those cells are clamped.
 ///
 /// ```
 /// use orogen_noise::{Fractal, Points};
 ///
 /// // Repeats every 4 wavelengths of 100 m.
-/// let hills = Fractal { wavelength: 100.0, ..Default::default() }.tiled([4, 4])?;
+/// let hills = Fractal::default().with_wavelength(100.0).tiled([4, 4])?;
 /// assert_eq!(hills.sample(12.5, 70.0), hills.sample(412.5, -330.0));
 ///
-/// // The second octave would need 6.4 cells in the same place.
-/// let odd = Fractal { lacunarity: 1.6, ..Default::default() };
+/// // The second octave would need 6.4 cells in the period.
+/// let odd = Fractal::default().with_lacunarity(1.6);
 /// assert!(odd.tiled([4, 4]).unwrap_err().to_string().starts_with("octave 1 would have to repeat after 6.4 cells"));
 /// # Ok::<(), orogen_noise::TileError>(())
 /// ```
@@ -32,7 +31,7 @@ pub struct Tiled {
     programs: [Program; 3],
 }
 
-/// After how many cells a lattice repeats along x, y, z and w; 0 where it need not. Made of as many numbers as there are to say.
+/// The period along x, y, z and w in cells of the first octave; 0 along axes without a period. Arrays of two to four numbers convert to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Period([u32; 4]);
 
@@ -59,22 +58,23 @@ impl Tiled {
         let [plane, space, time] = programs;
         Ok(Tiled { programs: [plane.tiled(period.0)?, space.tiled(period.0)?, time.tiled(period.0)?] })
     }
-    pub(crate) fn program(&self, dims: usize) -> Program {
-        self.programs[dims.clamp(2, 4) - 2]
+    pub(crate) fn program(&self, dims: usize) -> &Program {
+        &self.programs[dims.clamp(2, 4) - 2]
     }
 }
 
 noise_methods!(Tiled);
 
-/// The way from a noise to one that repeats.
+/// Writes `tiled`.
 macro_rules! tileable {
     ($noise:ident) => {
         impl $noise {
-            /// The noise on a lattice that repeats after `period` cells of the first octave along x, y, z and w: `[4, 4]`, `[4, 4, 2]` ...;
-            /// 0 where it need not.
+            /// The noise with a period, in cells of the first octave along x, y, z and w: `[4, 4]`, `[4, 4, 2]` and so on; 0 along axes
+            /// without a period.
             ///
             /// # Errors
-            /// An octave does not fit, or the noise stands on simplices: see [`Tiled`](crate::Tiled).
+            /// An octave does not have a whole number of cells in the period, or the noise is a simplex noise: see
+            /// [`Tiled`](crate::Tiled).
             pub fn tiled(&self, period: impl Into<$crate::Period>) -> Result<$crate::Tiled, $crate::TileError> {
                 $crate::tiled::Tiled::new([self.program(2), self.program(3), self.program(4)], period.into())
             }

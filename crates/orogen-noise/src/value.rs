@@ -1,26 +1,29 @@
 //! Value noise.
 
+use crate::builder::noise_builder;
 use crate::choices::Fade;
 use crate::methods::noise_methods;
+use crate::prepared::preparable;
 use crate::program::{Program, Source};
 use crate::tiled::tileable;
 
-/// Value noise: random values on a square lattice, blended in between.
+/// Value noise: random values on a square lattice, interpolated.
 ///
-/// Range: within [-1, 1], both reached. Zero mean. Its gradient is exact (of the linear fade: except on the lattice lines).
-/// Cheaper than [`crate::Perlin`], with more visible squares.
+/// Range: -1 ..= 1. Zero mean. Its gradient is exact (with [`Fade::Linear`] except on the lattice lines). It is cheaper
+/// than [`crate::Perlin`], and its lattice is more visible.
 ///
 /// ```
-/// let noise = orogen_noise::Value { seed: 7, wavelength: 100.0, ..Default::default() };
+/// let noise = orogen_noise::Value::new(7, 100.0);
 /// assert!(noise.sample(12.5, -3.0).abs() <= 1.0);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Value {
     /// Any number; neighbouring seeds give unrelated noise. Default 0.
     pub seed: u64,
-    /// Distance between lattice points, metres. Default 1.
+    /// Distance between lattice points, in metres. Default 1.
     pub wavelength: f64,
-    /// The blend. Default [`Fade::Quintic`].
+    /// The interpolation. Default [`Fade::Quintic`].
     pub fade: Fade,
 }
 
@@ -30,6 +33,8 @@ impl Default for Value {
     }
 }
 
+noise_builder!(Value: with_fade(fade: Fade));
+
 impl Value {
     pub(crate) fn program(&self, _: usize) -> Program {
         Program::single(Source::Value(self.fade), self.seed, self.wavelength)
@@ -37,4 +42,5 @@ impl Value {
 }
 
 noise_methods!(Value);
+preparable!(Value);
 tileable!(Value);

@@ -1,36 +1,37 @@
 //! Cellular noise.
 
+use crate::builder::noise_builder;
 use crate::choices::{Distance, Feature};
 use crate::methods::value_methods;
+use crate::prepared::preparable;
 use crate::program::{Cellular, Program, Source};
 use crate::tiled::tileable;
 
-/// Worley's cellular noise: one point at a random place in each cell of a lattice, and what a sample tells about the points nearest
-/// to it.
+/// Worley's cellular noise: a lattice with one random point per cell. The value of a sample follows from the points nearest to it.
 ///
-/// The search goes as far as it must: unlike the usual look at 3 x 3 cells, it never misses a nearer point, so there are no breaks along
-/// the lattice.
+/// The search covers all cells that can hold a nearest point. The usual search of 3 x 3 cells misses some, which causes discontinuities.
 ///
-/// Range: within [-1, 1]. A distance d becomes 2 d / bound - 1, where the bound is the greatest there can be, in wavelengths:
+/// Range: -1 ..= 1. A distance d becomes 2 d / bound - 1, where the bound is the maximum in wavelengths:
 ///
 /// | | euclidean | manhattan | chebyshev |
 /// |---|---|---|---|
 /// | F1 | sqrt 2, sqrt 3, 2 | 2, 3, 4 | 1 |
 /// | F2, F2 - F1 | sqrt 5/2, sqrt 3, 2 | 2, 3, 4 | 1.5 |
 /// | F1 * F2 | 2, 3, 4 | 4, 9, 16 | 1 |
-/// | edge | 1, 2 / sqrt 3, 4 / 3 (never quite reached) | 1, 1.5, 2 | 0.75 |
+/// | edge | 1, 2 / sqrt 3, 4 / 3 (upper bounds that are not reached) | 1, 1.5, 2 | 0.75 |
 ///
-/// in two, three and four dimensions. It has no gradient here.
+/// in two, three and four dimensions. Its gradient is not implemented.
 ///
 /// S. Worley, "A cellular texture basis function", SIGGRAPH 1996.
 ///
 /// ```
 /// use orogen_noise::{Feature, Worley};
 ///
-/// let cracks = Worley { seed: 7, wavelength: 100.0, feature: Feature::Edge, ..Default::default() };
+/// let cracks = Worley::new(7, 100.0).with_feature(Feature::Edge);
 /// assert!(cracks.sample(12.5, -3.0).abs() <= 1.0);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Worley {
     /// Any number; neighbouring seeds give unrelated noise. Default 0.
     pub seed: u64,
@@ -38,9 +39,9 @@ pub struct Worley {
     pub wavelength: f64,
     /// How distance is measured. Default [`Distance::Euclidean`].
     pub distance: Distance,
-    /// What is told. Default [`Feature::F1`].
+    /// The computed value. Default [`Feature::F1`].
     pub feature: Feature,
-    /// How much of its cell a point may be in along each axis, 0 (its middle) to 1 (all); held within. Default 1.
+    /// Share of its cell in which a point is placed, along each axis, from 0 (the centre) to 1 (anywhere); clamped. Default 1.
     pub jitter: f64,
 }
 
@@ -49,6 +50,8 @@ impl Default for Worley {
         Worley { seed: 0, wavelength: 1.0, distance: Distance::Euclidean, feature: Feature::F1, jitter: 1.0 }
     }
 }
+
+noise_builder!(Worley: with_distance(distance: Distance), with_feature(feature: Feature), with_jitter(jitter: f64));
 
 impl Worley {
     pub(crate) fn cellular(&self) -> Cellular {
@@ -61,4 +64,5 @@ impl Worley {
 }
 
 value_methods!(Worley);
+preparable!(Worley);
 tileable!(Worley);

@@ -76,29 +76,29 @@ macro_rules! golden_time {
 
 fn goldens() -> Vec<String> {
     let mut list = Vec::new();
-    golden!(list, "white", White { seed: 11, wavelength: 20.0 });
+    golden!(list, "white", White::new(11, 20.0));
     for fade in [Fade::Linear, Fade::Cubic, Fade::Quintic] {
-        golden!(list, format!("value {fade:?}"), Value { seed: 11, wavelength: 90.0, fade });
+        golden!(list, format!("value {fade:?}"), Value::new(11, 90.0).with_fade(fade));
     }
-    golden!(list, "perlin", Perlin { seed: 11, wavelength: 90.0 });
+    golden!(list, "perlin", Perlin::new(11, 90.0));
     for variant in [ClassicVariant::Diagonal, ClassicVariant::Eight, ClassicVariant::Angle] {
-        golden!(list, format!("classic {variant:?}"), Classic { seed: 11, wavelength: 90.0, variant });
+        golden!(list, format!("classic {variant:?}"), Classic::new(11, 90.0).with_variant(variant));
     }
-    let fractal = Fractal { seed: 11, wavelength: 300.0, ..Default::default() };
+    let fractal = Fractal::new(11, 300.0);
     for &basis in Basis::all() {
-        golden!(list, format!("fbm {}", basis.name()), Fractal { basis, ..fractal });
+        golden!(list, format!("fbm {}", basis.name()), fractal.with_basis(basis));
     }
-    golden!(list, "fbm odd", Fractal { lacunarity: 1.87, gain: 0.62, octaves: 9, ..fractal });
-    golden!(list, "ridged perlin", Fractal { kind: Kind::Ridged, ..fractal });
-    golden!(list, "billow perlin", Fractal { kind: Kind::Billow, ..fractal });
+    golden!(list, "fbm odd", fractal.with_lacunarity(1.87).with_gain(0.62).with_octaves(9));
+    golden!(list, "ridged perlin", fractal.with_kind(Kind::Ridged));
+    golden!(list, "billow perlin", fractal.with_kind(Kind::Billow));
     for falloff in [Falloff::Reciprocal, Falloff::Exponential, Falloff::SquareRoot, Falloff::Smoothstep] {
         let kind = Kind::Weighted { k: 1.3, falloff };
-        golden!(list, format!("weighted {falloff:?} perlin"), Fractal { kind, ..fractal });
-        golden!(list, format!("weighted {falloff:?} value"), Fractal { kind, basis: Basis::Value, ..fractal });
+        golden!(list, format!("weighted {falloff:?} perlin"), fractal.with_kind(kind));
+        golden!(list, format!("weighted {falloff:?} value"), fractal.with_kind(kind).with_basis(Basis::Value));
     }
-    golden!(list, "simplex", Simplex { seed: 11, wavelength: 90.0 });
+    golden!(list, "simplex", Simplex::new(11, 90.0));
     for smoothness in [Smoothness::Fast, Smoothness::Smooth] {
-        golden!(list, format!("opensimplex2 {smoothness:?}"), OpenSimplex2 { seed: 11, wavelength: 90.0, smoothness });
+        golden!(list, format!("opensimplex2 {smoothness:?}"), OpenSimplex2::new(11, 90.0).with_smoothness(smoothness));
     }
     for kind in [
         Kind::PingPong { strength: 2.0 },
@@ -108,21 +108,21 @@ fn goldens() -> Vec<String> {
         Kind::Jordan { warp: 0.35, damp: 0.8 },
     ] {
         for basis in [Basis::Perlin, Basis::Simplex] {
-            golden!(list, format!("{kind:?} {}", basis.name()), Fractal { kind, basis, ..fractal });
+            golden!(list, format!("{kind:?} {}", basis.name()), fractal.with_kind(kind).with_basis(basis));
         }
     }
     for &basis in Basis::all() {
-        golden_time!(list, format!("4D fbm {}", basis.name()), Fractal { basis, octaves: 2, ..fractal });
+        golden_time!(list, format!("4D fbm {}", basis.name()), fractal.with_basis(basis).with_octaves(2));
     }
-    if let Ok(tiled) = (Fractal { octaves: 4, ..fractal }).tiled([3, 2, 5]) {
+    if let Ok(tiled) = fractal.with_octaves(4).tiled([3, 2, 5]) {
         golden!(list, "tiled fbm perlin", tiled);
     }
-    if let Ok(tiled) = (White { seed: 11, wavelength: 20.0 }).tiled([7, 6, 5]) {
+    if let Ok(tiled) = White::new(11, 20.0).tiled([7, 6, 5]) {
         golden!(list, "tiled white", tiled);
     }
     for feature in [Feature::F1, Feature::F2, Feature::Difference, Feature::Product, Feature::Value, Feature::Edge] {
         for distance in [Distance::Euclidean, Distance::Manhattan, Distance::Chebyshev] {
-            let noise = Worley { seed: 11, wavelength: 90.0, distance, feature, ..Default::default() };
+            let noise = Worley::new(11, 90.0).with_distance(distance).with_feature(feature);
             golden_values!(list, format!("worley {feature:?} {distance:?}"), noise);
         }
     }

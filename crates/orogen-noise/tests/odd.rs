@@ -95,21 +95,21 @@ fn odd_places_and_wavelengths() {
 
 #[test]
 fn odd_octaves_gains_and_lacunarities() {
-    let usual = Fractal { seed: 5, wavelength: 30.0, ..Fractal::default() };
+    let usual = Fractal::new(5, 30.0);
     let mut odd = vec![
-        Fractal { octaves: 0, ..usual },
-        Fractal { octaves: 1_000_000, ..usual },
-        Fractal { octaves: u32::MAX, gain: 1e9, lacunarity: 1e30, ..usual },
-        Fractal { octaves: MAX_OCTAVES, gain: 0.99, lacunarity: 0.1, ..usual },
-        Fractal { octaves: MAX_OCTAVES, gain: -1024.0, lacunarity: -3.0, wavelength: 1e-300, ..usual },
+        usual.with_octaves(0),
+        usual.with_octaves(1_000_000),
+        usual.with_octaves(u32::MAX).with_gain(1e9).with_lacunarity(1e30),
+        usual.with_octaves(MAX_OCTAVES).with_gain(0.99).with_lacunarity(0.1),
+        usual.with_octaves(MAX_OCTAVES).with_gain(-1024.0).with_lacunarity(-3.0).with_wavelength(1e-300),
     ];
     for factor in
         [0.0, -0.0, 1.0, -1.0, -2.0, 5.0, 1e30, 1e300, f64::MAX, 5e-324, f64::NAN, f64::INFINITY, f64::NEG_INFINITY]
     {
-        odd.push(Fractal { gain: factor, ..usual });
-        odd.push(Fractal { lacunarity: factor, ..usual });
+        odd.push(usual.with_gain(factor));
+        odd.push(usual.with_lacunarity(factor));
         if factor.abs() > 4.0 || factor.is_nan() {
-            odd.push(Fractal { gain: factor, lacunarity: factor, ..usual });
+            odd.push(usual.with_gain(factor).with_lacunarity(factor));
         }
     }
     hold(|| odd.iter().flat_map(|&like| fractals(like).into_iter().map(move |n| (n, format!("{like:?}")))).collect());
@@ -117,9 +117,9 @@ fn odd_octaves_gains_and_lacunarities() {
 
 #[test]
 fn odd_dampings() {
-    let usual = Fractal { seed: 5, wavelength: 30.0, ..Fractal::default() };
-    let steep = Fractal { gain: 1024.0, lacunarity: -900.0, octaves: MAX_OCTAVES, ..usual };
-    let flat = Fractal { wavelength: f64::INFINITY, ..usual };
+    let usual = Fractal::new(5, 30.0);
+    let steep = usual.with_gain(1024.0).with_lacunarity(-900.0).with_octaves(MAX_OCTAVES);
+    let flat = usual.with_wavelength(f64::INFINITY);
     hold(|| {
         let mut list = Vec::new();
         for k in [0.0, -3.0, 1e30, 1e300, f64::INFINITY, f64::NAN, 5e-324] {
@@ -133,11 +133,11 @@ fn odd_dampings() {
 
 #[test]
 fn too_many_octaves_are_the_most_there_are() {
-    let usual = Fractal { wavelength: 30.0, ..Fractal::default() };
+    let usual = Fractal::default().with_wavelength(30.0);
     let side = [0.0, 3.25, -777.5];
     let points = Points::Lattice { xs: &side, ys: &side };
     let ask = |octaves| -> Vec<Vec<f32>> {
-        fractals(Fractal { octaves, ..usual }).iter().map(|noise| noise.values(&points)).collect()
+        fractals(usual.with_octaves(octaves)).iter().map(|noise| noise.values(&points)).collect()
     };
     assert_eq!(ask(1_000_000), ask(MAX_OCTAVES));
     assert_ne!(ask(MAX_OCTAVES), ask(3));

@@ -82,16 +82,16 @@ fn many_scattered_points_have_the_bits_of_few() {
     at_each_level(|level| {
         let wavelength = 3.7;
         let noises = list![
-            Perlin { seed: 1, wavelength },
-            Value { seed: 2, wavelength, ..Default::default() },
-            White { seed: 3, wavelength },
-            Classic { seed: 4, wavelength, variant: ClassicVariant::Eight },
-            Classic { seed: 5, wavelength, variant: ClassicVariant::Angle },
-            Simplex { seed: 6, wavelength },
-            Fractal { seed: 7, wavelength, octaves: 1, ..Default::default() },
-            Fractal { seed: 8, wavelength, octaves: 3, ..Default::default() },
-            Perlin { seed: 9, wavelength: -3.7 },
-            Perlin { seed: 10, wavelength: 0.0 },
+            Perlin::new(1, wavelength),
+            Value::new(2, wavelength),
+            White::new(3, wavelength),
+            Classic::new(4, wavelength).with_variant(ClassicVariant::Eight),
+            Classic::new(5, wavelength).with_variant(ClassicVariant::Angle),
+            Simplex::new(6, wavelength),
+            Fractal::new(7, wavelength).with_octaves(1),
+            Fractal::new(8, wavelength).with_octaves(3),
+            Perlin::new(9, -3.7),
+            Perlin::new(10, 0.0),
         ];
         for noise in &noises {
             for (number, (x, y)) in cases.iter().enumerate() {
@@ -104,7 +104,7 @@ fn many_scattered_points_have_the_bits_of_few() {
 
 #[test]
 fn points_around_an_origin_are_near_the_exact_ones() {
-    let noise = Perlin { seed: 11, wavelength: 3.7 };
+    let noise = Perlin::new(11, 3.7);
     let mut state = 9;
     let origins =
         [(0.0, 0.0), (-50.3, 70.9), (2e9 + 0.3, -4e9), (3.7 * 4_294_967_295.5, -3.7 * 4_294_967_296.5), (1e15, 1e15)];
@@ -149,7 +149,7 @@ fn points_around_an_origin_are_near_the_exact_ones() {
         let mut value = [f32::NAN; 512];
         let x: [f32; 512] = std::array::from_fn(|i| odd[i % 8]);
         let y: [f32; 512] = std::array::from_fn(|i| odd[i / 8 % 8]);
-        Perlin { seed: 1, wavelength }.fill_around(origin, &x, &y, &mut value).unwrap();
+        Perlin::new(1, wavelength).fill_around(origin, &x, &y, &mut value).unwrap();
         assert!(value.iter().all(|value| value.abs() <= 1.0), "{wavelength}, {origin:?}");
     }
     let mut value = [7.0; 2];
@@ -177,12 +177,12 @@ fn lattices_of_wide_cells_have_the_bits_of_points() {
     at_each_level(|level| {
         for wavelength in [2.5, 7.0, 15.9, 20.0, 33.0, 64.0, 100.0, 777.0] {
             let noises = list![
-                Worley { seed: 1, wavelength, ..Default::default() },
-                Worley { seed: 2, wavelength, jitter: 0.3, ..Default::default() },
-                Simplex { seed: 3, wavelength },
-                OpenSimplex2 { seed: 4, wavelength, ..Default::default() },
-                Fractal { basis: Basis::Simplex, seed: 5, wavelength, octaves: 3, ..Default::default() },
-                Fractal { basis: Basis::Worley, seed: 6, wavelength, octaves: 1, ..Default::default() },
+                Worley::new(1, wavelength),
+                Worley::new(2, wavelength).with_jitter(0.3),
+                Simplex::new(3, wavelength),
+                OpenSimplex2::new(4, wavelength),
+                Fractal::new(5, wavelength).with_basis(Basis::Simplex).with_octaves(3),
+                Fractal::new(6, wavelength).with_basis(Basis::Worley).with_octaves(1),
             ];
             for (number, (xs, ys)) in windows.iter().enumerate() {
                 let lattice = Points::Lattice { xs, ys };

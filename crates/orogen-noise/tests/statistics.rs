@@ -88,7 +88,7 @@ fn neighbouring_seeds_are_strangers() {
     let points = Points::Lattice { xs: &side, ys: &side };
     let ask = |seed: u64| -> Vec<(String, Vec<f32>)> {
         let mut list = bases(seed, 1.0);
-        list.extend(fractals(Fractal { seed, wavelength: 1.0, octaves: 4, ..Fractal::default() }));
+        list.extend(fractals(Fractal::new(seed, 1.0).with_octaves(4)));
         list.extend(singles(seed, 1.0));
         list.into_iter().map(|noise| (noise.name.clone(), noise.values(&points))).collect()
     };

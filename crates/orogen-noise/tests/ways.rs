@@ -114,7 +114,7 @@ fn every_way_of_asking_gives_the_same_bits_at_every_level() {
 /// there, and however its rows do, it is the small one's crop.
 #[test]
 fn huge_windows_are_what_small_ones_are() {
-    let noise = Fractal { seed: 5, wavelength: 90.0, octaves: 2, ..Fractal::default() };
+    let noise = Fractal::new(5, 90.0).with_octaves(2);
     for (width, begin) in [(4112, 0), (4112, 5), (4099, 3)] {
         let height = (1_usize << 24).div_ceil(width);
         let axis = |count: usize| (0..count).map(|i| i as f64 - 1000.0).collect::<Vec<f64>>();

@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicU8, Ordering};
 
 /// A set of instructions a body is compiled for. Every level gives the same bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[non_exhaustive]
 pub enum Level {
     /// No instructions beyond the target's baseline; lanes are emulated over arrays.
     Scalar,
@@ -23,6 +24,7 @@ pub const LEVEL_VARIABLE: &str = "OROGEN_SIMD";
 
 /// The reason why a level cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum LevelError {
     /// No level has this name.
     Unknown(String),

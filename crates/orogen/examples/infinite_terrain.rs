@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let world = World::open(Recipe::parse(RECIPE, "infinite_terrain")?)?;
     let ground = Sampler::new(&world, "height")?;
     // Chunks of 64 x 64 cells: 1 m near the viewer, 32 m at the horizon.
-    let mut chunks = world.chunks(LodConfig { range: 6000.0, ..LodConfig::default() })?;
+    let mut chunks = world.chunks(LodConfig::default().with_range(6000.0))?;
     let mut scene: HashMap<ChunkId, Grid> = HashMap::new();
 
     let (mut made, mut dropped) = (0, 0);

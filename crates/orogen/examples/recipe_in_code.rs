@@ -7,8 +7,7 @@ use orogen::solver::normalise::Normalise;
 use orogen::{Recipe, World, WorldSpec};
 
 fn main() -> Result<(), orogen::Error> {
-    let mut recipe =
-        Recipe::new(WorldSpec { seed: 7, size: Some([8192.0, 8192.0]), cell: 16.0, ..WorldSpec::default() });
+    let mut recipe = Recipe::new(WorldSpec::default().with_seed(7).with_size(Some([8192.0, 8192.0])).with_cell(16.0));
     recipe.about = "An island made in code".to_string();
     recipe
         .add("hills", Fbm { wavelength: 2500.0, octaves: 8, ..Fbm::default() })

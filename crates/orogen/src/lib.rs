@@ -22,8 +22,20 @@
 //! (normalise, bake). Therefore any tile equals the crop of the whole, bit for bit, for any tile size, number of
 //! threads, SIMD level and machine.
 //!
-//! Where to go on: [`Recipe`] builds a world in code; a [`Sampler`] answers many questions quickly, [`Chunks`] follow a viewer; [`node::Node::all`] lists the ops; [`presets`] are the recipes that come
-//! with the library; a [`Registry`] adds ops of your own, which [`op!`] declares and [`laws`] tests; [`mod@format`], [`map`] and [`palette`] make files and pictures of grids.
+//! | task | entry point |
+//! |---|---|
+//! | build a recipe in code | [`Recipe`], [`WorldSpec`], and the ops in [`field`], [`filter`] and [`solver`] ([`node::Node::all`] lists them) |
+//! | start from a recipe of the library | [`presets`] |
+//! | many points or small windows | [`Sampler`] |
+//! | terrain around a moving viewer | [`Chunks`], [`LodConfig`] |
+//! | a large area in tiles or rows | [`World::tiles`], [`bands`] |
+//! | several worlds with shared threads, memory and solutions | [`Session`] |
+//! | ops of your own | [`op!`], [`Registry`], and [`laws`], which tests them |
+//! | files and pictures of grids | [`mod@format`], [`export`], [`map`], [`palette`], [`mesh`], [`render`], [`sheet`] |
+//! | terrain analysis, hydrology and erosion on any grid | [`analysis`], [`hydrology`], [`hydrography`], [`erosion`], [`contour`] |
+//!
+//! Structs with options are built with `new` or `Default` and `with_*` methods, so that later versions can add options. Ops are plain structs;
+//! write `..Default::default()` after the parameters that you set. Noises without recipes are in the crate `orogen-noise`.
 #![forbid(unsafe_code)]
 
 #[doc(inline)]

@@ -44,7 +44,7 @@ fn a_walk_through_chunks_allocates_nothing_once_warm() {
     recipe.world.size = None;
     let world = World::open(recipe).unwrap();
     let sampler = Sampler::new(&world, "height").unwrap();
-    let mut chunks = world.chunks(LodConfig { cells: 32, cell: 4.0, range: 4000.0, ..LodConfig::default() }).unwrap();
+    let mut chunks = world.chunks(LodConfig::default().with_cells(32).with_cell(4.0).with_range(4000.0)).unwrap();
     let mut heights = vec![0.0; 33 * 33];
     let mut walk = |chunks: &mut Chunks| {
         let mut made = 0;

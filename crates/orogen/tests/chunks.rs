@@ -13,7 +13,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, Mutex};
 use support::{Random, open, recipe_of, world_of};
 
-const RINGS: LodConfig = LodConfig { cells: 8, cell: 2.0, levels: 5, detail: 1.25, range: 900.0, slack: 0.25 };
+const RINGS: LodConfig =
+    LodConfig::new().with_cells(8).with_cell(2.0).with_levels(5).with_detail(1.25).with_range(900.0).with_slack(0.25);
 
 /// Returns a random position in -n ..= n.
 fn about(random: &mut Random, n: u64) -> f64 {
@@ -51,7 +52,7 @@ fn finest(lod: &LodConfig, [x, y]: [f64; 2]) -> ChunkId {
 #[test]
 fn the_ground_in_range_is_covered_once_and_neighbours_differ_by_one_level() {
     for detail in [1.25, 2.0] {
-        let lod = LodConfig { detail, ..RINGS };
+        let lod = RINGS.with_detail(detail);
         let mut chunks = Chunks::new(lod, None).unwrap();
         let square = |side: f64| side * side;
         let mut random = Random(3);
@@ -189,10 +190,10 @@ fn every_chunk_is_the_window_and_shares_its_borders() {
         if matches!(node.op(), Op::Solver(_)) || matches!(node.op(), Op::Field(field) if field.needs_bounds()) {
             continue;
         }
-        let spec = WorldSpec { seed: 3, size: None, cell: 1.0 / 3.0, ..WorldSpec::default() };
+        let spec = WorldSpec::default().with_seed(3).with_size(None).with_cell(1.0 / 3.0);
         let (world, op) = (open(&recipe_of(&node, spec, false), 2), node.spec().op);
         let sampler = Sampler::new(open(&recipe_of(&node, spec, false), 1), "height").unwrap();
-        let lod = LodConfig { cells: 8, cell: 1.0 / 3.0, levels: 3, range: 20.0, ..LodConfig::default() };
+        let lod = LodConfig::default().with_cells(8).with_cell(1.0 / 3.0).with_levels(3).with_range(20.0);
         for at in [[0.0, 0.0], [-777.7, 123_456.7], [3e8, -9e9]] {
             let mut chunks = world.chunks(lod).unwrap();
             chunks.set_viewer(at[0], at[1]).unwrap();
@@ -240,7 +241,7 @@ fn chunks_of_bounded_worlds_are_windows_too() {
         }
         let (recipe, op) = (recipe_of(&node, world_of(10.24), true), node.spec().op);
         let (world, sampler) = (open(&recipe, 2), Sampler::new(open(&recipe, 1), "height").unwrap());
-        let lod = LodConfig { cells: 8, cell: 10.24, levels: 3, range: 5000.0, ..LodConfig::default() };
+        let lod = LodConfig::default().with_cells(8).with_cell(10.24).with_levels(3).with_range(5000.0);
         let mut chunks = world.chunks(lod).unwrap();
         // Outside a corner: chunks of every level; those at the far edges are clipped.
         chunks.set_viewer(1000.0, 900.0).unwrap();
@@ -263,7 +264,7 @@ fn chunks_of_bounded_worlds_are_windows_too() {
 fn levels_meet_without_cracks() {
     let world = World::open(presets::find("hills").unwrap().recipe().unwrap()).unwrap();
     let sampler = Sampler::new(&world, "height").unwrap();
-    let lod = LodConfig { cells: 16, cell: 3.0, levels: 4, range: 1500.0, ..LodConfig::default() };
+    let lod = LodConfig::default().with_cells(16).with_cell(3.0).with_levels(4).with_range(1500.0);
     let mut chunks = world.chunks(lod).unwrap();
     chunks.set_viewer(7000.0, 8000.0).unwrap();
     let mut made: BTreeMap<ChunkId, Grid> = BTreeMap::new();
@@ -301,7 +302,7 @@ fn a_world_with_bounds_has_no_chunks_beyond_them() {
     let world = open(&recipe_of(&Node::named("edge").unwrap(), world_of(10.0), false), 1);
     let sampler = Sampler::new(&world, "height").unwrap();
     // Neither 960 m nor 800 m is a multiple of the coarser chunks of 128 and 256 m.
-    let lod = LodConfig { cells: 8, cell: 8.0, levels: 3, range: 3000.0, ..LodConfig::default() };
+    let lod = LodConfig::default().with_cells(8).with_cell(8.0).with_levels(3).with_range(3000.0);
     for at in [[0.0, 0.0], [960.0, 800.0], [-500.0, 400.0], [480.0, 1500.0]] {
         let mut chunks = world.chunks(lod).unwrap();
         chunks.set_viewer(at[0], at[1]).unwrap();

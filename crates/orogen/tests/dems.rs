@@ -98,7 +98,7 @@ fn other_formats_are_read() {
 fn a_band_of_several_is_chosen() {
     let names = ["bands.tif", "bands-pixels-p3.tif", "bands-pixels-p2.tif", "bands-apart.tif", "bands-lerc.tif"];
     for name in names {
-        let read = |band| import::read(&corpus().join(name), Request { band, allowed: 1 << 20 });
+        let read = |band| import::read(&corpus().join(name), Request::new(1 << 20).with_band(band));
         same(name, &read(Some(1)).unwrap(), 0.0, 0.0, false);
         same(name, &read(Some(2)).unwrap(), 1000.0, 0.0, false);
         assert_eq!(read(Some(3)).unwrap().heights[0], formula(36, 22), "{name}");
@@ -107,7 +107,7 @@ fn a_band_of_several_is_chosen() {
         assert!(read(Some(4)).unwrap_err().to_string().contains("not a band 4"));
         assert!(read(Some(0)).unwrap_err().to_string().contains("not a band 0"));
     }
-    let why = import::read(&corpus().join("arc.asc"), Request { band: Some(2), allowed: 1 << 20 }).unwrap_err();
+    let why = import::read(&corpus().join("arc.asc"), Request::new(1 << 20).with_band(Some(2))).unwrap_err();
     assert!(why.to_string().contains("one band, not a band 2"), "{why}");
     same("lossy-lerc.tif", &read("lossy-lerc.tif"), 0.25, 0.5, false);
     // In a recipe, and after a colon.
@@ -185,7 +185,7 @@ fn files_that_lie_otherwise_are_understood_or_refused() {
     assert_eq!(south_up.place.unwrap().origin, [500015.0, 5200000.0 + 22.5 * 30.0]);
     assert!(refused("turned.tif").contains("its rows are rotated"));
     assert!(refused("webp.tif").contains("it has 3 bands"));
-    let webp = Request { band: Some(1), allowed: 1 << 20 };
+    let webp = Request::new(1 << 20).with_band(Some(1));
     let why = import::read(&corpus().join("webp.tif"), webp).unwrap_err().to_string();
     assert!(why.contains("compressed with WebP"), "{why}");
     assert!(refused("all-nodata.tif").contains("37 x 23 samples are nodata"));
@@ -219,7 +219,7 @@ fn degrees_and_oblong_cells_become_square_metres() {
 }
 
 fn world(dem: Node, size: Option<[f64; 2]>) -> World {
-    let mut recipe = Recipe::new(WorldSpec { size, cell: 30.0, ..WorldSpec::default() });
+    let mut recipe = Recipe::new(WorldSpec::default().with_size(size).with_cell(30.0));
     recipe.add("place", dem).output("height", "place");
     World::with_options(recipe, Options { threads: Some(1), memory: Budget::of(64 << 20), ..Options::default() })
         .unwrap()
@@ -290,14 +290,14 @@ fn files_count_in_the_memory_of_a_plan() {
 #[test]
 fn what_a_file_says_of_its_map_is_kept_on_the_way_out() {
     for name in ["f32-strips.tif", "point.tif", "degrees.tif", "arc.asc"] {
-        let mut recipe = Recipe::new(WorldSpec { cell: 30.0, ..WorldSpec::default() });
+        let mut recipe = Recipe::new(WorldSpec::default().with_cell(30.0));
         // The corner of the file is two cells east and one cell north of the origin.
         recipe.add("place", Node { at: [60.0, -30.0], ..node(name) }).output("height", "place");
         let world = World::open(recipe).unwrap();
         let grid = world.window("height", &Window::new(20, 10, 30.0).at(2, 3)).unwrap();
         let map = world.recipe().georeference().unwrap();
         let mut bytes = Vec::new();
-        let options = Layout { map: Some(map.clone()), ..Layout::default() };
+        let options = Layout::default().with_map(Some(map.clone()));
         writer::write(&mut bytes, &grid, &options, Spool::in_memory()).unwrap();
         let back = reader::read(&mut Cursor::new(&bytes), name, 1 << 20).unwrap();
         assert_eq!(back.heights, grid.data());
@@ -367,7 +367,7 @@ fn read_damaged(rounds: usize) {
     let mut files: Vec<PathBuf> = std::fs::read_dir(corpus()).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.sort();
     let (mut read, mut refused) = (0, 0);
-    let request = Request { band: Some(1), allowed: 1 << 20 };
+    let request = Request::new(1 << 20).with_band(Some(1));
     for (k, path) in files.iter().filter(|path| import::is_dem(path)).enumerate() {
         let whole = std::fs::read(path).unwrap();
         let extension = path.extension().unwrap().to_str().unwrap();

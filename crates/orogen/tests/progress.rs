@@ -8,7 +8,7 @@ static SIDE: AtomicUsize = AtomicUsize::new(384);
 
 use orogen::node::Node;
 use orogen::op::Op;
-use orogen::{ErrorKind, Grid, Progress, Recipe, Result, Window, World, WorldSpec};
+use orogen::{ErrorKind, Grid, Progress, Recipe, Result, Window, World};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
@@ -30,7 +30,7 @@ fn side() -> usize {
 /// A node in a world large enough to take some time.
 fn recipe(node: &Node, side: usize) -> Recipe {
     let size = (side - 1) as f64 * 10.0;
-    let world = WorldSpec { size: Some([size, size]), ..world_of(10.0) };
+    let world = world_of(10.0).with_size(Some([size, size]));
     recipe_of(node, world, false)
 }
 

@@ -43,7 +43,7 @@ fn windows_and_points_of_every_node_are_the_worlds() {
 
 /// A world without bounds whose ground needs a halo and is interpolated from the grid.
 fn soft() -> Recipe {
-    let mut recipe = Recipe::new(WorldSpec { seed: 5, size: None, cell: 2.0, ..WorldSpec::default() });
+    let mut recipe = Recipe::new(WorldSpec::default().with_seed(5).with_size(None).with_cell(2.0));
     recipe.add("noise", Fbm { wavelength: 70.0, ..Fbm::default() });
     recipe.add("soft", Blur { source: "noise".into(), radius: 9.0 });
     recipe.add("bent", Warp { source: "soft".into(), x: "noise".into(), y: "noise".into(), strength: 30.0 });

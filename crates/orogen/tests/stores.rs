@@ -43,7 +43,7 @@ impl Folder {
 /// Warps of filters of solvers, twice: more than one page and tile of everything if the world is `large`.
 fn stacked(cell: f64, large: bool) -> Recipe {
     let size = if large { [1300.0 * cell, 1030.0 * cell] } else { [640.0 * cell, 512.0 * cell] };
-    let spec = orogen::WorldSpec { size: Some(size), ..world_of(cell) };
+    let spec = world_of(cell).with_size(Some(size));
     let mut recipe = Recipe::new(spec);
     let noise = |seed, length: f64| Fbm { seed, wavelength: length * cell, octaves: 2, ..Default::default() };
     recipe.add("land", noise(1, 90.0)).add("wx", noise(2, 40.0)).add("wy", noise(3, 40.0));

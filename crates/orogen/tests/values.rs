@@ -12,7 +12,7 @@ use support::open;
 const SIZE: f64 = 1000.0;
 
 fn world() -> WorldSpec {
-    WorldSpec { seed: 5, size: Some([SIZE, SIZE]), cell: 10.0, ..WorldSpec::default() }
+    WorldSpec::default().with_seed(5).with_size(Some([SIZE, SIZE])).with_cell(10.0)
 }
 
 /// A world of the nodes; the last one is the output.

@@ -95,7 +95,7 @@ fn described(recipe: &Path, found: &Result<World, Failure>) -> Value {
 }
 
 /// An error with its position: line and column from 1, and the number of characters.
-fn fault(Diagnostic { message, place }: &Diagnostic) -> Value {
+fn fault(Diagnostic { message, place, .. }: &Diagnostic) -> Value {
     match place {
         None => json!({ "message": message }),
         Some(place) => json!({

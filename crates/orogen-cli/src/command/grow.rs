@@ -122,9 +122,9 @@ fn write(
         land.at(growth.steps()).map_err(|cause| Error::file("read back the spilled data of", &args.out, &cause))?;
     finite::check(HEIGHT, &last)?;
     let painter = Painter::fit(&last, sea_level);
-    let software = say::SOFTWARE;
-    let picture = Picture { width, height, pixel: Pixel::Rgb8, notes: &[("Software", software)] };
-    let animation = Animation { frames: u32::from(args.frames), delay: args.delay };
+    let notes = [("Software", say::SOFTWARE)];
+    let picture = Picture::new(width, height, Pixel::Rgb8).with_notes(&notes);
+    let animation = Animation::new(u32::from(args.frames), args.delay);
     let painted = |ground: &Grid, bytes: &mut [u8]| painter.paint(ground, 0..height, bytes);
     // The start is smooth and the end is rough: colours and shades are fitted to both.
     let sample = || {

@@ -175,15 +175,12 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 }
 
 fn noise(args: &Args) -> Result<Fractal, Failure> {
-    Ok(Fractal {
-        basis: args.basis,
-        kind: args.sum.kind().map_err(Failure::Usage)?,
-        seed: args.seed,
-        wavelength: args.wavelength.or(args.texture.map(Texture::wavelength)).unwrap_or(64.0),
-        octaves: args.octaves.or(args.texture.map(Texture::octaves)).unwrap_or(args.sum.octaves()),
-        lacunarity: args.lacunarity,
-        gain: args.gain,
-    })
+    Ok(Fractal::new(args.seed, args.wavelength.or(args.texture.map(Texture::wavelength)).unwrap_or(64.0))
+        .with_basis(args.basis)
+        .with_kind(args.sum.kind().map_err(Failure::Usage)?)
+        .with_octaves(args.octaves.or(args.texture.map(Texture::octaves)).unwrap_or(args.sum.octaves()))
+        .with_lacunarity(args.lacunarity)
+        .with_gain(args.gain))
 }
 
 impl Task<'_> {
@@ -280,9 +277,9 @@ impl Task<'_> {
 
     fn write_picture(&self, out: &mut dyn Write) -> io::Result<()> {
         let drawing = self.drawing();
-        let (software, description) = (say::SOFTWARE, self.description());
-        let notes = [("Software", software), ("Description", description.as_str())];
-        let picture = Picture { width: self.width, height: self.height, pixel: drawing.pixel(), notes: &notes };
+        let description = self.description();
+        let notes = [("Software", say::SOFTWARE), ("Description", description.as_str())];
+        let picture = Picture::new(self.width, self.height, drawing.pixel()).with_notes(&notes);
         self.progress.expect(self.height as f64);
         png::write(out, &picture, |rows, bytes| {
             self.progress.check()?;
@@ -298,9 +295,9 @@ impl Task<'_> {
         if *target == AnimationTarget::Gif && self.deep() {
             return Err(Failure::Usage("a GIF has 8 bits; leave out --bits 16, or write a .png".into()));
         }
-        let (software, description) = (say::SOFTWARE, self.description());
-        let notes = [("Software", software), ("Description", description.as_str())];
-        let picture = Picture { width: self.width, height: self.height, pixel: drawing.pixel(), notes: &notes };
+        let description = self.description();
+        let notes = [("Software", say::SOFTWARE), ("Description", description.as_str())];
+        let picture = Picture::new(self.width, self.height, drawing.pixel()).with_notes(&notes);
         let frame = |k: u32, bytes: &mut [u8]| drawing.paint(Some(self.depth(k, frames)), 0..self.height, bytes);
         let bytes = self.width * self.height * drawing.pixel().bytes();
         let sample = || {
@@ -310,7 +307,7 @@ impl Task<'_> {
             frame(frames / 3, other);
             Ok(sample)
         };
-        let animation = Animation { frames, delay: DELAY };
+        let animation = Animation::new(frames, DELAY);
         let moving = Moving { outputs, target, picture, animation, sample: &sample };
         self.progress.expect(f64::from(frames));
         moving.write(|k, bytes| {

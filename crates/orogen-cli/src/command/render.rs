@@ -239,7 +239,7 @@ fn sun(args: &Args) -> Result<[f64; 2], Failure> {
         if !(-90.0..=90.0).contains(&latitude) {
             return usage(format!("--latitude must be from -90 to 90 degrees, not {latitude}"));
         }
-        let moment = Moment { latitude, day: args.day.unwrap_or(172), hour };
+        let moment = Moment::new(latitude, args.day.unwrap_or(172), hour);
         let sun = moment.sun();
         return match (sun[1] >= LOWEST_SUN, moment.daylight()) {
             (true, _) => Ok(sun),
@@ -385,8 +385,8 @@ fn draw(
     let scene = Scene::new(&land, &style, &preparing)?;
     preparing.finish();
     let spec = CameraSpec::new(*shot, size).with_fov(args.fov);
-    let software = say::SOFTWARE;
-    let picture = Picture { width, height, pixel: Pixel::Rgb8, notes: &[("Software", software)] };
+    let notes = [("Software", say::SOFTWARE)];
+    let picture = Picture::new(width, height, Pixel::Rgb8).with_notes(&notes);
     let file = args.out.display();
     let samples = format!("{} x {} samples of {} m", window.width, window.height, number(window.cell));
     if let (Some(frames), Shot::Around { azimuth, elevation, distance }) = (args.turntable, *shot) {
@@ -409,7 +409,7 @@ fn draw(
             }
             Ok(sample)
         };
-        let animation = Animation { frames, delay: args.delay };
+        let animation = Animation::new(frames, args.delay);
         let moving = Moving { outputs, target, picture, animation, sample: &sample };
         painting.expect(f64::from(frames));
         moving.write(|frame, bytes| Ok(scene.paint(&side(frame), size, 0..height, bytes, &painting.part(1.0))?))?;

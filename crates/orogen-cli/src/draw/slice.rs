@@ -107,7 +107,7 @@ mod tests {
 
     #[test]
     fn pieces_are_the_noises_own_samples() {
-        let noise = Fractal { seed: 5, wavelength: 31.0, octaves: 3, ..Fractal::default() };
+        let noise = Fractal::new(5, 31.0).with_octaves(3);
         for (width, height, depth) in [(7, 5, None), (300, 501, Some(2.5)), (PIECE + 3, 3, None)] {
             let slice = Slice { noise, width, depth, stretch: 1.0, repeat: [0.0; 3] };
             let mut value = vec![0.0; width * (height - 1)];
@@ -127,7 +127,7 @@ mod tests {
     }
     #[test]
     fn what_repeats_is_the_tiled_noise_at_steps_that_fit() {
-        let noise = Fractal { seed: 5, wavelength: 30.0, octaves: 3, ..Fractal::default() };
+        let noise = Fractal::new(5, 30.0).with_octaves(3);
         let slice = Slice { noise, width: 70, depth: Some(4.0), stretch: 0.5, repeat: [70.0, 90.0, 20.0] };
         let tiled = noise.tiled([2, 2, 1]).unwrap();
         let (mut value, mut dx, mut dy) = (vec![0.0; 6300], vec![0.0; 6300], vec![0.0; 6300]);

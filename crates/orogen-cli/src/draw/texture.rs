@@ -55,7 +55,7 @@ impl Texture {
             Texture::Marble => (Kind::Billow, 1.0),
             Texture::Wood => (Kind::Fbm, 1.0 / STRETCH),
         };
-        Slice { noise: Fractal { kind, ..slice.noise }, stretch, ..*slice }
+        Slice { noise: slice.noise.with_kind(kind), stretch, ..*slice }
     }
 }
 
@@ -138,8 +138,7 @@ impl Painter {
 
 /// The fibres of wood: the brightness of each sample, mostly constant along y.
 fn grain(slice: &Slice, rows: Range<usize>) -> Vec<f32> {
-    let noise =
-        Fractal { kind: Kind::Fbm, seed: slice.noise.seed ^ 1, wavelength: 3.0, octaves: 2, ..Fractal::default() };
+    let noise = Fractal::new(slice.noise.seed ^ 1, 3.0).with_kind(Kind::Fbm).with_octaves(2);
     let mut fibres = vec![0.0; rows.len() * slice.width];
     Slice { noise, stretch: 1.0 / 40.0, ..*slice }.fill(rows, &mut fibres);
     fibres.iter_mut().for_each(|fibre| *fibre *= 0.25);

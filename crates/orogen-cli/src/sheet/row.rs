@@ -60,7 +60,7 @@ impl Noise {
                 let (mut dx, mut dy) = (vec![0.0; out.len()], vec![0.0; out.len()]);
                 by.fill(&lattice, &mut dx)?;
                 // Another seed gives an independent noise.
-                Fractal { seed: by.seed ^ 1, ..by }.fill(&lattice, &mut dy)?;
+                by.with_seed(by.seed ^ 1).fill(&lattice, &mut dy)?;
                 for part in dx.iter_mut().chain(&mut dy) {
                     *part *= strength;
                 }
@@ -72,7 +72,12 @@ impl Noise {
                 Ok(())
             }
             Noise::Peaks(seed) => {
-                let ridges = Ridges { seed, reach: 0.95, density: 0.2, gain: 0.65, taper: 8.0 };
+                let ridges = Ridges::default()
+                    .with_seed(seed)
+                    .with_reach(0.95)
+                    .with_density(0.2)
+                    .with_gain(0.65)
+                    .with_taper(8.0);
                 // It takes a fraction of a second and is never cancelled.
                 if let Ok((across, _, heights)) =
                     relief::heights(SIDE as usize, SIDE as usize, &ridges, &Progress::none())
@@ -101,23 +106,20 @@ pub const SIDE: f64 = 200.0;
 
 /// The rows, with every noise from `seed`.
 pub fn rows(seed: u64) -> Vec<Row> {
-    let single = |basis, wavelength| Fractal {
-        basis,
-        seed,
-        wavelength,
-        octaves: 1,
-        kind: Kind::Fbm,
-        gain: 0.5,
-        lacunarity: 2.0,
+    let single = |basis, wavelength| {
+        Fractal::new(seed, wavelength)
+            .with_basis(basis)
+            .with_octaves(1)
+            .with_kind(Kind::Fbm)
+            .with_gain(0.5)
+            .with_lacunarity(2.0)
     };
-    let summed = |kind| Fractal { octaves: 6, kind, ..single(Basis::Perlin, 100.0) };
+    let summed = |kind| single(Basis::Perlin, 100.0).with_octaves(6).with_kind(kind);
     let weighted = |k, falloff| summed(Kind::Weighted { k, falloff });
     let shown = |name, about, noise| Shown { name, about, noise };
     let plain = |name, about, noise| shown(name, about, Noise::Fractal(noise));
-    let cells = |name, about, feature| {
-        shown(name, about, Noise::Worley(Worley { seed, wavelength: 40.0, feature, ..Worley::default() }))
-    };
-    let by = Fractal { octaves: 2, seed: seed ^ 0xa11ce, ..summed(Kind::Fbm) };
+    let cells = |name, about, feature| shown(name, about, Noise::Worley(Worley::new(seed, 40.0).with_feature(feature)));
+    let by = summed(Kind::Fbm).with_octaves(2).with_seed(seed ^ 0xa11ce);
     let warped = Noise::Warped { noise: summed(Kind::Fbm), by, strength: 80.0 };
     vec![
         Row {
@@ -153,7 +155,7 @@ pub fn rows(seed: u64) -> Vec<Row> {
                 plain("Billow", "the sum of 2 |noise| − 1", summed(Kind::Billow)),
                 plain("Ping-pong", "folded, strength 4", summed(Kind::PingPong { strength: 4.0 })),
                 shown("Domain-warped fBm", "moved by fBm, up to 80", warped),
-                plain("fBm of Worley F1", "cells in cells", Fractal { basis: Basis::Worley, ..summed(Kind::Fbm) }),
+                plain("fBm of Worley F1", "cells in cells", summed(Kind::Fbm).with_basis(Basis::Worley)),
             ],
         },
         Row {
@@ -175,7 +177,7 @@ pub fn rows(seed: u64) -> Vec<Row> {
                 plain(
                     "Hybrid multifractal",
                     "gain 0.8: rough heights",
-                    Fractal { gain: 0.8, ..summed(Kind::Hybrid { offset: 0.7 }) },
+                    summed(Kind::Hybrid { offset: 0.7 }).with_gain(0.8),
                 ),
                 plain("Heterogeneous", "the higher, the rougher", summed(Kind::Hetero { offset: 0.7 })),
                 plain("Swiss turbulence", "branching crests", summed(Kind::Swiss { warp: 0.15 })),

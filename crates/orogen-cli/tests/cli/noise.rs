@@ -29,7 +29,7 @@ fn every_basis_is_drawn_with_the_librarys_own_samples() {
     let folder = Folder::new();
     for &basis in Basis::all() {
         folder.good(&["noise", basis.name(), "-o", "a.npy", "--size", "70x40", "--seed", "9", "-q"]);
-        let noise = Fractal { basis, seed: 9, wavelength: 64.0, octaves: 1, ..Fractal::default() };
+        let noise = Fractal::new(9, 64.0).with_basis(basis).with_octaves(1);
         let grid = npy(&folder.read("a.npy"));
         assert_eq!((grid.width(), grid.height()), (70, 40));
         assert_eq!(grid.data(), samples(&noise, 70, 40, None), "{}", basis.name());
@@ -53,7 +53,7 @@ fn every_parameter_reaches_the_noise() {
         "--seed",
         "5",
     ];
-    let noise = Fractal { seed: 5, wavelength: 12.5, octaves: 4, gain: 0.7, lacunarity: 1.9, ..Fractal::default() };
+    let noise = Fractal::new(5, 12.5).with_octaves(4).with_gain(0.7).with_lacunarity(1.9);
     let weighted = Kind::Weighted { k: 2.5, falloff: Falloff::SquareRoot };
     for (more, kind, depth) in [
         (&["--fractal", "ridged"][..], Kind::Ridged, None),
@@ -72,13 +72,13 @@ fn every_parameter_reaches_the_noise() {
         (&["--fractal", "jordan", "--warp", "0.1", "--damp", "2"], Kind::Jordan { warp: 0.1, damp: 2.0 }, None),
     ] {
         folder.good(&[&["noise", "value", "-o", "a.npy"], &options[..], more].concat());
-        let expect = samples(&Fractal { basis: Basis::Value, kind, ..noise }, 33, 33, depth);
+        let expect = samples(&noise.with_basis(Basis::Value).with_kind(kind), 33, 33, depth);
         assert_eq!(npy(&folder.read("a.npy")).data(), expect, "{more:?}");
     }
     // A fractal has six octaves by default, a plain noise one.
     for (more, octaves) in [(&["--fractal", "fbm"][..], 6), (&[], 1)] {
         folder.good(&[&["noise", "value", "-o", "a.npy", "--size", "33"], more].concat());
-        let expect = Fractal { basis: Basis::Value, wavelength: 64.0, octaves, ..Fractal::default() };
+        let expect = Fractal::default().with_basis(Basis::Value).with_wavelength(64.0).with_octaves(octaves);
         assert_eq!(npy(&folder.read("a.npy")).data(), samples(&expect, 33, 33, None), "{more:?}");
     }
 }
@@ -91,7 +91,7 @@ fn greys_span_minus_one_to_one() {
     folder.good(&["noise", "perlin", "--size", "64x48", "-o", "b.PNG", "--bits", "16"]);
     let (a, b) = (png(&folder.read("noise.png")), png(&folder.read("b.PNG")));
     assert_eq!((a.width, a.height, a.bits, a.channels), (64, 48, 8, 1));
-    let noise = Fractal { wavelength: 64.0, octaves: 1, ..Fractal::default() };
+    let noise = Fractal::default().with_wavelength(64.0).with_octaves(1);
     for ((value, &grey), deep) in samples(&noise, 64, 48, None).into_iter().zip(&a.data).zip(b.grey16()) {
         assert!((f32::from(grey) - (value + 1.0) * 127.5).abs() <= 0.501);
         assert!((f32::from(deep) - (value + 1.0) * 32767.5).abs() <= 0.52);
@@ -127,7 +127,7 @@ fn a_block_is_its_slices() {
     folder.good(&["noise", "perlin", "--size", "20x10", "--volume", "3", "--z", "0.5", "--wavelength", "8"]);
     let (values, shape) = array(&folder.read("noise.npy"), 600);
     assert_eq!(shape, "(3, 10, 20)");
-    let noise = Fractal { wavelength: 8.0, octaves: 1, ..Fractal::default() };
+    let noise = Fractal::default().with_wavelength(8.0).with_octaves(1);
     for (slice, depth) in values.chunks_exact(200).zip([0.5, 1.5, 2.5]) {
         assert_eq!(slice, samples(&noise, 20, 10, Some(depth)));
     }
@@ -139,7 +139,7 @@ fn slopes_are_arrays_or_normals() {
     folder.good(&["noise", "perlin", "--size", "20x10", "--gradient", "-o", "a.npy"]);
     let (slopes, shape) = array(&folder.read("a.npy"), 400);
     assert_eq!(shape, "(2, 10, 20)");
-    let noise = Fractal { wavelength: 64.0, octaves: 1, ..Fractal::default() };
+    let noise = Fractal::default().with_wavelength(64.0).with_octaves(1);
     for k in [0, 57, 199] {
         let (x, y) = (f64::from(k % 20), f64::from(k / 20));
         let east = (noise.sample(x + 0.5, y) - noise.sample(x - 0.5, y)) as f64;
@@ -163,13 +163,13 @@ fn slopes_are_arrays_or_normals() {
 #[test]
 fn what_is_tileable_repeats_to_the_bit() {
     let folder = Folder::new();
-    let noise = Fractal { wavelength: 30.0, octaves: 3, seed: 9, ..Fractal::default() };
+    let noise = Fractal::new(9, 30.0).with_octaves(3);
     let options = ["--wavelength", "30", "--octaves", "3", "--seed", "9", "--tileable"];
     for &basis in Basis::all().iter().filter(|basis| basis.is_tileable()) {
         let outcome = folder.good(&[&["noise", basis.name(), "--size", "60x90", "-o", "a.npy"], &options[..]].concat());
         assert!(outcome.text().ends_with("wavelength 30, seed 9, repeating; 60 x 90 samples\n"), "{}", outcome.text());
         assert_eq!(outcome.err, "");
-        let tiled = Fractal { basis, ..noise }.tiled([2, 3]).unwrap();
+        let tiled = noise.with_basis(basis).tiled([2, 3]).unwrap();
         for (k, &value) in npy(&folder.read("a.npy")).data().iter().enumerate() {
             let (x, y) = ((k % 60) as f64, (k / 60) as f64);
             assert_eq!((value, value), (tiled.sample(x, y), tiled.sample(x + 60.0, y - 90.0)), "{basis:?} {x} {y}");
@@ -187,7 +187,7 @@ fn wavelengths_are_rounded_to_fit_and_it_is_said() {
         "note: the size is not a multiple of the wavelength 30; it is 32 x 25, so that 4 x 2 fit\n"
     );
     assert!(outcome.text().contains("wavelength 32 x 25, seed 0, repeating"), "{}", outcome.text());
-    let tiled = Fractal { wavelength: 1.0, octaves: 1, ..Fractal::default() }.tiled([4, 2]).unwrap();
+    let tiled = Fractal::default().with_wavelength(1.0).with_octaves(1).tiled([4, 2]).unwrap();
     for (k, &value) in npy(&folder.read("a.npy")).data().iter().enumerate() {
         let expect = tiled.sample((k % 128) as f64 / 32.0, (k / 128) as f64 / 25.0);
         assert!((value - expect).abs() < 1e-5, "{k}: {value} {expect}");
@@ -208,7 +208,7 @@ fn tileable_animations_blocks_slopes_and_materials_close() {
         folder.good(&[&["noise", "perlin", "--volume", "20", "--z", "3", "-o", "a.npy"], &options[..]].concat());
     assert!(outcome.err.ends_with("wavelength 16; through the slices it is 20, so that 1 fit\n"), "{}", outcome.err);
     let (values, _) = array(&folder.read("a.npy"), 48 * 48 * 20);
-    let tiled = Fractal { wavelength: 16.0, octaves: 1, ..Fractal::default() }.tiled([3, 3, 1]).unwrap();
+    let tiled = Fractal::default().with_wavelength(16.0).with_octaves(1).tiled([3, 3, 1]).unwrap();
     for k in (0..values.len()).step_by(97) {
         let (x, y, z) = ((k % 48) as f64, (k / 48 % 48) as f64, (k / 2304 + 3) as f64 * 0.8);
         assert_eq!(values[k], tiled.sample3(x + 48.0, y, z), "{k}");

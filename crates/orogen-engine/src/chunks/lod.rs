@@ -17,6 +17,7 @@ use orogen_grid::grid::Window;
 /// same bits. If the neighbour is one level coarser, its samples are every second one of the finer chunk's, with the
 /// same bits unless the recipe has filters (whose results depend on the cell): see [`stitch`](super::seam::stitch).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct LodConfig {
     /// Cells along a chunk's side: an even number from 2 to 4096. Default 64.
     pub cells: usize,
@@ -37,14 +38,29 @@ pub struct LodConfig {
 
 impl Default for LodConfig {
     fn default() -> LodConfig {
-        LodConfig { cells: 64, cell: 1.0, levels: 6, detail: 1.5, range: 8000.0, slack: 0.25 }
+        LodConfig::new()
     }
 }
+
+orogen_noise::builder!(
+    LodConfig: with_cells(cells: usize),
+    with_cell(cell: f64),
+    with_levels(levels: u8),
+    with_detail(detail: f64),
+    with_range(range: f64),
+    with_slack(slack: f64)
+);
 
 /// Maximum number of chunks of the coarsest level along the diameter of the range.
 const MAX_ACROSS: f64 = 256.0;
 
 impl LodConfig {
+    /// The defaults, for constants.
+    #[must_use]
+    pub const fn new() -> LodConfig {
+        LodConfig { cells: 64, cell: 1.0, levels: 6, detail: 1.5, range: 8000.0, slack: 0.25 }
+    }
+
     /// Checks the configuration.
     ///
     /// # Errors

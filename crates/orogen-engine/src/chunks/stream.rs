@@ -29,7 +29,7 @@ pub enum ChunkStep {
 ///
 /// let world = World::open(Recipe::parse("orogen = 1\n[nodes.n]\nop = \"fbm\"\n[outputs]\nheight = \"n\"\n", "example")?)?;
 /// let ground = Sampler::new(&world, "height")?;
-/// let mut chunks = world.chunks(LodConfig { cells: 16, levels: 3, range: 200.0, ..LodConfig::default() })?;
+/// let mut chunks = world.chunks(LodConfig::default().with_cells(16).with_levels(3).with_range(200.0))?;
 /// let mut scene = HashMap::new();
 /// for step in 0..20 {
 ///     chunks.set_viewer(10.0 * f64::from(step), -3.0)?;

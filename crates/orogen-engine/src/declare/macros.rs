@@ -134,15 +134,12 @@ macro_rules! op {
         impl $name {
             /// The octaves as the noise library sums them.
             fn fractal(&self, world_params: &$crate::op::WorldParams, kind: $crate::declare::noise::Kind) -> $crate::declare::noise::Fractal {
-                $crate::declare::noise::Fractal {
-                    basis: self.basis,
-                    kind,
-                    seed: world_params.seed_of(self.seed),
-                    wavelength: self.wavelength,
-                    octaves: self.octaves,
-                    lacunarity: self.lacunarity,
-                    gain: self.gain,
-                }
+                $crate::declare::noise::Fractal::new(world_params.seed_of(self.seed), self.wavelength)
+                    .with_basis(self.basis)
+                    .with_kind(kind)
+                    .with_octaves(self.octaves)
+                    .with_lacunarity(self.lacunarity)
+                    .with_gain(self.gain)
             }
         }
     };

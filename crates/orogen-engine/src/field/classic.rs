@@ -42,7 +42,7 @@ op! {
 impl Field for Classic {
     fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
         let seed = if world_params.seed == 0 && self.seed == 0 { 0 } else { world_params.seed_of(self.seed) };
-        let noise = orogen_noise::Classic { seed, wavelength: self.wavelength, variant: self.variant.noise() };
+        let noise = orogen_noise::Classic::new(seed, self.wavelength).with_variant(self.variant.noise());
         fill(out, |out| noise.fill(at, out));
     }
 

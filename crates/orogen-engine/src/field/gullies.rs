@@ -134,13 +134,9 @@ impl Gullies {
         let (mut wavelength, mut depth) = (self.wavelength, self.strength * self.wavelength);
         let (mut cosine, mut sine) = ([0.0f32; CHUNK], [0.0f32; CHUNK]);
         for octave in 0..self.octaves {
-            let noise = Phacelle {
-                seed: seed.wrapping_add(u64::from(octave)),
-                wavelength,
-                cell: self.cell,
-                normalisation: self.normalisation,
-                ..Default::default()
-            };
+            let noise = Phacelle::new(seed.wrapping_add(u64::from(octave)), wavelength)
+                .with_cell(self.cell)
+                .with_normalisation(self.normalisation);
             let [x, y] = &slope;
             fill(&mut cosine[..count], |cosine| {
                 noise.fill_along(points, &x[..count], &y[..count], cosine, &mut sine[..count])

@@ -40,14 +40,12 @@ op! {
 
 impl Field for OpenSimplex2 {
     fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
-        let noise = orogen_noise::OpenSimplex2 {
-            seed: world_params.seed_of(self.seed),
-            wavelength: self.wavelength,
-            smoothness: match self.smoothness {
+        let noise = orogen_noise::OpenSimplex2::new(world_params.seed_of(self.seed), self.wavelength).with_smoothness(
+            match self.smoothness {
                 Smoothness::Fast => orogen_noise::Smoothness::Fast,
                 Smoothness::Smooth => orogen_noise::Smoothness::Smooth,
             },
-        };
+        );
         fill(out, |out| noise.fill(at, out));
     }
 

@@ -17,7 +17,7 @@ op! {
 
 impl Field for Perlin {
     fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
-        let noise = orogen_noise::Perlin { seed: world_params.seed_of(self.seed), wavelength: self.wavelength };
+        let noise = orogen_noise::Perlin::new(world_params.seed_of(self.seed), self.wavelength);
         fill(out, |out| noise.fill(at, out));
     }
 

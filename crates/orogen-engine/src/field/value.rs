@@ -41,11 +41,8 @@ op! {
 
 impl Field for Value {
     fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
-        let noise = orogen_noise::Value {
-            seed: world_params.seed_of(self.seed),
-            wavelength: self.wavelength,
-            fade: self.fade.noise(),
-        };
+        let noise =
+            orogen_noise::Value::new(world_params.seed_of(self.seed), self.wavelength).with_fade(self.fade.noise());
         fill(out, |out| noise.fill(at, out));
     }
 

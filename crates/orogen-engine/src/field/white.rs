@@ -17,7 +17,7 @@ op! {
 
 impl Field for White {
     fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
-        let noise = orogen_noise::White { seed: world_params.seed_of(self.seed), wavelength: self.wavelength };
+        let noise = orogen_noise::White::new(world_params.seed_of(self.seed), self.wavelength);
         fill(out, |out| noise.fill(at, out));
     }
 

@@ -82,13 +82,10 @@ op! {
 
 impl Field for Worley {
     fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
-        let noise = orogen_noise::Worley {
-            seed: world_params.seed_of(self.seed),
-            wavelength: self.wavelength,
-            distance: self.distance.noise(),
-            feature: self.feature.noise(),
-            jitter: self.jitter,
-        };
+        let noise = orogen_noise::Worley::new(world_params.seed_of(self.seed), self.wavelength)
+            .with_distance(self.distance.noise())
+            .with_feature(self.feature.noise())
+            .with_jitter(self.jitter);
         fill(out, |out| noise.fill(at, out));
     }
 

@@ -84,19 +84,18 @@ impl Filter for Droplets {
 
 impl Droplets {
     fn law(&self, seed: u64) -> Law {
-        Law {
-            density: self.density,
-            batches: self.batches as usize,
-            lifetime: self.lifetime,
-            radius: self.radius,
-            inertia: self.inertia,
-            capacity: self.capacity,
-            least_slope: self.least_slope,
-            erosion: self.erosion,
-            deposition: self.deposition,
-            evaporation: self.evaporation,
-            gravity: self.gravity,
-            seed,
-        }
+        Law::default()
+            .with_density(self.density)
+            .with_batches(self.batches as usize)
+            .with_lifetime(self.lifetime)
+            .with_radius(self.radius)
+            .with_inertia(self.inertia)
+            .with_capacity(self.capacity)
+            .with_least_slope(self.least_slope)
+            .with_erosion(self.erosion)
+            .with_deposition(self.deposition)
+            .with_evaporation(self.evaporation)
+            .with_gravity(self.gravity)
+            .with_seed(seed)
     }
 }

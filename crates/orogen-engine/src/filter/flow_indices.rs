@@ -48,7 +48,7 @@ impl Filter for FlowIndices {
     ) -> Result<()> {
         let [Some(source), Some(flow)] = inputs else { return Ok(()) };
         let indices: [fn(f64, f64) -> f64; 3] = [wetness_index, stream_power, ls_factor];
-        let level = LevelGround { least_slope: self.least_slope };
+        let level = LevelGround::default().with_least_slope(self.least_slope);
         for (layer, index) in out.iter_mut().zip(indices) {
             let Some(layer) = layer.as_mut().filter(|_| !window.is_empty()) else { continue };
             context.progress.expect(window.height as f64);

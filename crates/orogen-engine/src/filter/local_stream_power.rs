@@ -107,16 +107,14 @@ impl Filter for LocalStreamPower {
 
 impl LocalStreamPower {
     fn law(&self, cell: f64, context: &Context) -> Law {
-        Law {
-            cell,
-            years: self.years / f64::from(self.iterations.max(1)),
-            erodibility: self.erodibility,
-            area_exponent: self.area_exponent,
-            slope_exponent: self.slope_exponent,
-            uplift: self.uplift / 1000.0,
-            deposition: self.deposition,
-            creep: self.creep,
-            sea_level: self.sea.then_some(context.world_params.sea_level as f32),
-        }
+        Law::new(cell)
+            .with_years(self.years / f64::from(self.iterations.max(1)))
+            .with_erodibility(self.erodibility)
+            .with_area_exponent(self.area_exponent)
+            .with_slope_exponent(self.slope_exponent)
+            .with_uplift(self.uplift / 1000.0)
+            .with_deposition(self.deposition)
+            .with_creep(self.creep)
+            .with_sea_level(self.sea.then_some(context.world_params.sea_level as f32))
     }
 }

@@ -107,16 +107,15 @@ fn carried(wet: &Wet) -> Grid {
 
 impl Pipes {
     fn law(&self) -> Law {
-        Law {
-            rain: self.rain / 1000.0,
-            evaporation: self.evaporation,
-            capacity: self.capacity,
-            erosion: self.erosion,
-            deposition: self.deposition,
-            pipe: self.pipe,
-            friction: self.friction,
-            gravity: self.gravity,
-            time_step: self.time_step,
-        }
+        Law::default()
+            .with_rain(self.rain / 1000.0)
+            .with_evaporation(self.evaporation)
+            .with_capacity(self.capacity)
+            .with_erosion(self.erosion)
+            .with_deposition(self.deposition)
+            .with_pipe(self.pipe)
+            .with_friction(self.friction)
+            .with_gravity(self.gravity)
+            .with_time_step(self.time_step)
     }
 }

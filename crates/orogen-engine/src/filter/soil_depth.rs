@@ -46,14 +46,13 @@ impl Filter for SoilDepth {
 
     fn apply(&self, inputs: &[Option<&Grid>], _: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
         let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
-        let soil = Soil {
-            production: self.production,
-            decay: self.decay,
-            creep: self.creep,
-            critical_slope: self.critical_slope,
-            density_ratio: self.density_ratio,
-            deepest: self.deepest,
-        };
+        let soil = Soil::default()
+            .with_production(self.production)
+            .with_decay(self.decay)
+            .with_creep(self.creep)
+            .with_critical_slope(self.critical_slope)
+            .with_density_ratio(self.density_ratio)
+            .with_deepest(self.deepest);
         *out = soil.depths_with(source, context.progress)?;
         Ok(())
     }

@@ -49,7 +49,7 @@ impl Filter for Thermal {
         if window.is_empty() {
             return Ok(());
         }
-        let law = Law { talus: libm::tan(self.talus_angle.to_radians()), rate: self.rate };
+        let law = Law::new(libm::tan(self.talus_angle.to_radians())).with_rate(self.rate);
         *out = law.run(source, self.iterations as usize, context.progress)?;
         Ok(())
     }

@@ -61,6 +61,7 @@ type Solved = (NodeId, Arc<Solution>);
 
 /// The number of solutions that a run computed (not found in the store).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Solves {
     /// Solutions shared by all frames: of each stage, and of nodes that no stage affects.
     pub shared: usize,

@@ -31,6 +31,7 @@ pub const MAX_NODES: usize = 65_536;
 
 /// The `[world]` of a recipe. Lengths are in metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct WorldSpec {
     /// The seed of the world, which is hashed with every node's own seed.
     pub seed: u64,
@@ -51,6 +52,15 @@ impl Default for WorldSpec {
         WorldSpec { seed: 0, size: None, cell: 10.0, sea_level: 0.0, crs: None, origin: None }
     }
 }
+
+orogen_noise::builder!(
+    WorldSpec: with_seed(seed: u64),
+    with_size(size: Option<[f64; 2]>),
+    with_cell(cell: f64),
+    with_sea_level(sea_level: f64),
+    with_crs(crs: Option<Crs>),
+    with_origin(origin: Option<[f64; 2]>)
+);
 
 impl WorldSpec {
     /// The parameters of the world for ops.
@@ -93,7 +103,7 @@ pub struct NamedNode {
 /// use orogen_engine::solver::normalise::Normalise;
 /// use orogen_engine::{Recipe, WorldSpec};
 ///
-/// let world = WorldSpec { seed: 7, size: Some([2000.0, 2000.0]), cell: 10.0, ..WorldSpec::default() };
+/// let world = WorldSpec::default().with_seed(7).with_size(Some([2000.0, 2000.0])).with_cell(10.0);
 /// let mut recipe = Recipe::new(world);
 /// recipe.add("base", Fbm { wavelength: 800.0, ..Fbm::default() });
 /// recipe.add("hills", Normalise { source: "base".into(), low: 0.0, high: 300.0, ..Normalise::default() });
@@ -286,7 +296,7 @@ impl Recipe {
                 let left = allowed.saturating_sub(self.held);
                 let read = || match path.1 {
                     true => PreparedDem::picture(&path.0, left),
-                    false => PreparedDem::read(&path.0, None, Request { band, allowed: left }),
+                    false => PreparedDem::read(&path.0, None, Request::new(left).with_band(band)),
                 };
                 let ground = match file.ground().or(known.get(&path)) {
                     Some(ground) => Arc::clone(ground),
@@ -294,7 +304,7 @@ impl Recipe {
                         let message = format!("node `{name}`: {error}");
                         Error::from_diagnostics(
                             ErrorKind::File,
-                            vec![Diagnostic { message, place: file.location().cloned() }],
+                            vec![Diagnostic::new(message).with_place(file.location().cloned())],
                         )
                     })?),
                 };

@@ -188,8 +188,7 @@ impl Graph {
     /// The error for diagnostics without a text.
     #[must_use]
     pub fn error(diagnostics: Vec<GraphDiagnostic>) -> Error {
-        let diagnostics =
-            diagnostics.into_iter().map(|diagnostic| Diagnostic { message: diagnostic.message, place: None }).collect();
+        let diagnostics = diagnostics.into_iter().map(|diagnostic| Diagnostic::new(diagnostic.message)).collect();
         Error::from_diagnostics(ErrorKind::Recipe, diagnostics)
     }
 

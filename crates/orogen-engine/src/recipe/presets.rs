@@ -5,6 +5,7 @@ use orogen_grid::error::Result;
 
 /// A built-in recipe.
 #[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
 pub struct Preset {
     /// The name.
     pub name: &'static str,

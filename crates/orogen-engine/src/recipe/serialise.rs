@@ -192,7 +192,7 @@ impl Lines {
                 "" => diagnostic.message.clone(),
                 key => format!("{key}: {}", diagnostic.message),
             };
-            Diagnostic { message, place: None }
+            Diagnostic::new(message)
         };
         Error::from_diagnostics(error.kind(), error.diagnostics().iter().map(keyed).collect())
     }

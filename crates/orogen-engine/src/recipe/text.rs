@@ -17,7 +17,7 @@ pub struct Text<'a> {
 impl Text<'_> {
     /// A diagnostic about a part of the text.
     pub fn diagnostic(&self, span: &Span, message: impl Into<String>) -> Diagnostic {
-        Diagnostic { message: message.into(), place: Some(self.locate(span)) }
+        Diagnostic::new(message).with_place(Some(self.locate(span)))
     }
 
     /// An error of one diagnostic.
@@ -30,7 +30,7 @@ impl Text<'_> {
         diagnostics.sort_by_key(|diagnostic| diagnostic.place.as_ref().map(|place| (place.line, place.column)));
         diagnostics.extend(elsewhere);
         if more > 0 {
-            diagnostics.push(Diagnostic { message: format!("and {}", count(more, "more diagnostic")), place: None });
+            diagnostics.push(Diagnostic::new(format!("and {}", count(more, "more diagnostic"))));
         }
         Error::from_diagnostics(ErrorKind::Recipe, diagnostics)
     }
@@ -57,13 +57,13 @@ impl Text<'_> {
         // Very long lines are not shown: twenty diagnostics about a line of 16 MiB would copy it twenty times.
         const LONGEST_SHOWN: usize = 20_000;
         let line = if line_end - line_start > LONGEST_SHOWN { "" } else { &self.text[line_start..line_end] };
-        Location {
-            file: self.name.to_string(),
-            line: self.text[..start].matches('\n').count() + 1,
-            column: self.text[line_start..start].chars().count() + 1,
-            length: self.text[start..end.clamp(start, line_end)].chars().count().max(1),
-            text: line.trim_end_matches('\r').to_string(),
-        }
+        Location::new(
+            self.name.to_string(),
+            self.text[..start].matches('\n').count() + 1,
+            self.text[line_start..start].chars().count() + 1,
+        )
+        .with_length(self.text[start..end.clamp(start, line_end)].chars().count().max(1))
+        .with_text(line.trim_end_matches('\r').to_string())
     }
 }
 

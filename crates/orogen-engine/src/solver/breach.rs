@@ -73,7 +73,7 @@ impl Solver for Breach {
             }
             Way::LeastCost => {
                 let longest = (self.longest / land.heights.window().cell).min(f64::from(u32::MAX)) as u32;
-                least_cost::breach(&land.heights, &land.outlets, &Limits { deepest, longest }, context.progress)?
+                least_cost::breach(&land.heights, &land.outlets, &Limits::new(deepest, longest), context.progress)?
             }
         };
         let mut change = land.heights;

@@ -45,13 +45,12 @@ impl Solver for Dla {
 
     fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
         let (domain, padded) = (sources.domain(), sources.padded());
-        let ridges = Ridges {
-            seed: context.world_params.seed_of(self.seed),
-            reach: self.reach,
-            density: self.density,
-            gain: self.gain,
-            taper: self.taper,
-        };
+        let ridges = Ridges::default()
+            .with_seed(context.world_params.seed_of(self.seed))
+            .with_reach(self.reach)
+            .with_density(self.density)
+            .with_gain(self.gain)
+            .with_taper(self.taper);
         let (across, down, map) = relief::heights(domain.width, domain.height, &ridges, context.progress)?;
         context.progress.check()?;
         let summit = map.iter().copied().fold(f32::MIN_POSITIVE, f32::max);

@@ -46,8 +46,8 @@ impl Solver for Insolation {
 
     fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
         let heights = terrain::heights(sources, context)?;
-        let period = Period { latitude: self.latitude, days: self.days.map(|day| day.round() as u16), step: self.step };
-        let sky = ClearSky { turbidity: self.turbidity, albedo: self.albedo };
+        let period = Period::new(self.latitude, self.days.map(|day| day.round() as u16)).with_step(self.step);
+        let sky = ClearSky::default().with_turbidity(self.turbidity).with_albedo(self.albedo);
         let energy = insolation(&heights, &period, &sky, context.progress)?;
         drop(heights);
         Ok(Solution { layers: vec![sources.keep(energy)?], scalars: Vec::new() })

@@ -72,7 +72,7 @@ impl Solver for Rivers {
         let [ordering, carving] = carving.parts([1.0, 1.0]);
         let orders = strahler::orders_with(&drainage.receivers, &drained, threshold, &ordering)?;
         ordering.finish();
-        let channel = Channel { runoff: self.runoff, width: self.width, depth: self.depth };
+        let channel = Channel::default().with_runoff(self.runoff).with_width(self.width).with_depth(self.depth);
         context.progress.check()?;
         carve_with(&mut ground, &drainage.receivers, &drained, &orders, &channel, &carving)?;
         carving.finish();

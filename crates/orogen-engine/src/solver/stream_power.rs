@@ -89,26 +89,24 @@ impl Solver for StreamPower {
         let source = sources.whole(0, &window)?;
         let given = |i: usize| sources.given(i).then(|| sources.whole(i, &window)).transpose();
         let (erodibility_factor, uplift_factor) = (given(1)?, given(2)?);
-        let erosion = Erosion {
-            law: Law {
-                erodibility: self.erodibility,
-                area_exponent: self.area_exponent,
-                slope_exponent: self.slope_exponent,
-                uplift: self.uplift / 1000.0,
-                max_slope: libm::tan(self.talus_angle.to_radians()),
-                min_slope: Law::default().min_slope,
-            },
-            creep: self.creep,
-            years: self.years,
-            steps: self.steps,
-            jitter: self.jitter,
-            scattered: self.random_receivers.then_some(context.world_params.seed_of(self.seed) as u32),
-        };
-        let substrate = Substrate {
-            erodibility_factor: erodibility_factor.as_ref(),
-            uplift_factor: uplift_factor.as_ref(),
-            points: None,
-        };
+        let erosion = Erosion::new(
+            Law::default()
+                .with_erodibility(self.erodibility)
+                .with_area_exponent(self.area_exponent)
+                .with_slope_exponent(self.slope_exponent)
+                .with_uplift(self.uplift / 1000.0)
+                .with_max_slope(libm::tan(self.talus_angle.to_radians()))
+                .with_min_slope(Law::default().min_slope),
+            self.years,
+            self.steps,
+        )
+        .with_creep(self.creep)
+        .with_jitter(self.jitter)
+        .with_scattered(self.random_receivers.then_some(context.world_params.seed_of(self.seed) as u32));
+        let substrate = Substrate::default()
+            .with_erodibility_factor(erodibility_factor.as_ref())
+            .with_uplift_factor(uplift_factor.as_ref())
+            .with_points(None);
         let mut heights = source.clone();
         let sea_level = sea_level(self.sea, context);
         let progress = context.progress;
@@ -125,8 +123,7 @@ impl Solver for StreamPower {
         };
         let wants = |done: u32| context.observer.is_some_and(|observer| observer.wants(done));
         if wants(0) {
-            let mut begun =
-                ErosionRun::new(Erosion { years: 0.0, steps: 1, ..erosion }, &heights, &substrate, sea_level);
+            let mut begun = ErosionRun::new(erosion.with_years(0.0).with_steps(1), &heights, &substrate, sea_level);
             let mut now = heights.clone();
             begun.step(&mut now, &progress.part(0.0))?;
             observe(0, &begun, now)?;

@@ -49,12 +49,12 @@ impl Solver for Viewshed {
         let heights = terrain::heights(sources, context)?;
         let window = *heights.window();
         let [east, south] = self.observer;
-        let observer = Observer {
-            at: [east / window.cell - window.x as f64, south / window.cell - window.y as f64],
-            height: self.observer_height,
-            radius: self.radius,
-            sinking: if self.curvature { sinking(self.refraction) } else { 0.0 },
-        };
+        let observer = Observer::new(
+            [east / window.cell - window.x as f64, south / window.cell - window.y as f64],
+            self.observer_height,
+        )
+        .with_radius(self.radius)
+        .with_sinking(if self.curvature { sinking(self.refraction) } else { 0.0 });
         let hidden = hidden(&heights, &observer, &|| context.progress.check())?;
         let mut visible = heights;
         for (visible, hidden) in visible.data_mut().iter_mut().zip(hidden.data()) {

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 
 /// Parameters of a relief.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Ridges {
     /// Seed of the random choices.
     pub seed: u64,
@@ -20,6 +21,22 @@ pub struct Ridges {
     /// Distance from the tip, in cells, at which a ridge has half its height.
     pub taper: f64,
 }
+
+impl Default for Ridges {
+    /// The defaults of the op `dla`: seed 0, reach 0.95, density 0.2, gain 0.65, taper 8.
+    fn default() -> Ridges {
+        Ridges { seed: 0, reach: 0.95, density: 0.2, gain: 0.65, taper: 8.0 }
+    }
+}
+
+orogen_noise::builder!(
+    Ridges:
+    with_seed(seed: u64),
+    with_reach(reach: f64),
+    with_density(density: f64),
+    with_gain(gain: f64),
+    with_taper(taper: f64)
+);
 
 /// Cells along the longer side of the coarsest grid.
 const COARSEST: usize = 12;

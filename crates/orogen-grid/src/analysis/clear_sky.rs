@@ -15,12 +15,22 @@ const LEVELS: usize = 64;
 
 /// Parameters of the atmosphere and the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct ClearSky {
     /// Linke turbidity for an air mass of 2: 1 is clean dry air, 3 is typical, 6 is hazy.
     pub turbidity: f64,
     /// Albedo: the share of light that the surrounding ground reflects, 0 to 1.
     pub albedo: f64,
 }
+
+impl Default for ClearSky {
+    /// A typical sky: turbidity 3, albedo 0.2.
+    fn default() -> ClearSky {
+        ClearSky { turbidity: 3.0, albedo: 0.2 }
+    }
+}
+
+orogen_noise::builder!(ClearSky: with_turbidity(turbidity: f64), with_albedo(albedo: f64));
 
 /// Orientation of a slope, with the factors that the light model needs.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,6 +57,7 @@ impl Facet {
 
 /// The sun at one moment, and its irradiance at any height.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Sunlight {
     /// Unit vector to the sun: east, south and up.
     pub towards: [f64; 3],

@@ -16,6 +16,7 @@ use crate::grid::Grid;
 
 /// The kinds of curvature.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Curvature {
     /// Profile curvature, along the slope line: positive where the slope steepens downhill. 0 on level ground.
     Profile,

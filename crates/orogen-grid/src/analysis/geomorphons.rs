@@ -31,6 +31,7 @@ const STEPS: [(isize, isize); 8] = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-
 
 /// The rule for a level direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Level {
     /// The zenith and nadir angles of the horizon differ by no more than the limit, as in the paper.
     ByDifference,
@@ -41,6 +42,7 @@ pub enum Level {
 
 /// The search radius and the rule for level directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Look {
     /// Search radius along the axes, in samples.
     pub straight: usize,
@@ -51,6 +53,14 @@ pub struct Look {
     /// The rule to which the limit applies.
     pub level: Level,
 }
+
+orogen_noise::builder!(
+    Look:
+    with_straight(straight: usize),
+    with_diagonal(diagonal: usize),
+    with_flat(flat: f64),
+    with_level(level: Level)
+);
 
 impl Look {
     /// The same number of steps in all directions, with the paper's rule.

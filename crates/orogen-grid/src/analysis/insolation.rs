@@ -13,6 +13,7 @@ use crate::progress::Progress;
 
 /// The time and the latitude.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Period {
     /// Latitude in degrees north.
     pub latitude: f64,
@@ -21,6 +22,16 @@ pub struct Period {
     /// The longest time step within a day, in hours.
     pub step: f64,
 }
+
+impl Period {
+    /// The days of a year at a latitude in degrees north, in time steps of half an hour.
+    #[must_use]
+    pub const fn new(latitude: f64, days: [u16; 2]) -> Period {
+        Period { latitude, days, step: 0.5 }
+    }
+}
+
+orogen_noise::builder!(Period: with_latitude(latitude: f64), with_days(days: [u16; 2]), with_step(step: f64));
 
 /// Maximum number of days that one sampled day represents.
 const DAYS: usize = 30;

@@ -19,6 +19,7 @@ const HIGHEST: f64 = 131_072.0;
 
 /// The topographic position of one sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Position {
     /// Height above the mean of the disc, in metres.
     pub above_mean: f32,

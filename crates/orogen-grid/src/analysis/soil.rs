@@ -21,6 +21,7 @@ use crate::progress::Progress;
 
 /// Parameters of the soil balance.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Soil {
     /// P0: soil production from bare rock, in metres per year.
     pub production: f64,
@@ -35,6 +36,24 @@ pub struct Soil {
     /// The maximum depth, in metres.
     pub deepest: f64,
 }
+
+impl Default for Soil {
+    /// The defaults of the op `soil-depth`: production 7.7e-5, decay 0.43, creep 0.005, critical slope 1.25, density ratio 2, depth up to
+    /// 2 m.
+    fn default() -> Soil {
+        Soil { production: 7.7e-5, decay: 0.43, creep: 0.005, critical_slope: 1.25, density_ratio: 2.0, deepest: 2.0 }
+    }
+}
+
+orogen_noise::builder!(
+    Soil:
+    with_production(production: f64),
+    with_decay(decay: f64),
+    with_creep(creep: f64),
+    with_critical_slope(critical_slope: f64),
+    with_density_ratio(density_ratio: f64),
+    with_deepest(deepest: f64)
+);
 
 impl Soil {
     /// The depth, in metres, where `carried` metres per year are removed (negative where soil accumulates).

@@ -16,6 +16,7 @@ const LAGS: [usize; 7] = [2, 3, 4, 6, 8, 12, 16];
 
 /// Mean power of a wavelength class.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Band {
     /// Wavelength of the class, in metres.
     pub wavelength: f64,
@@ -209,15 +210,12 @@ mod tests {
     fn fractional_brownian_land_has_its_own_exponents() {
         for hurst_exponent in [0.4, 0.7] {
             let window = Window::new(600, 520, 30.0);
-            let fractal = Fractal {
-                basis: Basis::Perlin,
-                kind: Kind::Fbm,
-                seed: 3,
-                wavelength: 20_000.0,
-                octaves: 12,
-                lacunarity: 2.0,
-                gain: libm::pow(2.0, -hurst_exponent),
-            };
+            let fractal = Fractal::new(3, 20_000.0)
+                .with_basis(Basis::Perlin)
+                .with_kind(Kind::Fbm)
+                .with_octaves(12)
+                .with_lacunarity(2.0)
+                .with_gain(libm::pow(2.0, -hurst_exponent));
             let mut grid = Grid::filled(window, 0.0f32);
             let (xs, ys) = (window.eastings(), window.southings());
             fractal.fill(&Points::Lattice { xs: &xs, ys: &ys }, grid.data_mut()).unwrap();

@@ -20,6 +20,7 @@ pub struct Gatherer {
 
 /// Summary statistics of a grid.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Summary {
     /// Number of samples.
     pub samples: u64,

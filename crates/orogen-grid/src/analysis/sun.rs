@@ -2,6 +2,7 @@
 
 /// A latitude and a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Moment {
     /// Degrees north of the equator.
     pub latitude: f64,
@@ -10,6 +11,16 @@ pub struct Moment {
     /// True solar time in hours after midnight: the sun is highest at 12.
     pub hour: f64,
 }
+
+impl Moment {
+    /// A latitude in degrees north, a day from 1, and an hour of true solar time.
+    #[must_use]
+    pub const fn new(latitude: f64, day: u16, hour: f64) -> Moment {
+        Moment { latitude, day, hour }
+    }
+}
+
+orogen_noise::builder!(Moment: with_latitude(latitude: f64), with_day(day: u16), with_hour(hour: f64));
 
 impl Moment {
     /// The sun's azimuth, in degrees clockwise from north, and its elevation, in degrees above the horizon (negative

@@ -10,6 +10,7 @@ pub type Check<'a> = &'a (dyn Fn() -> Result<()> + Sync);
 
 /// The observer and the range of sight.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Observer {
     /// Position: columns east and rows south of the grid's first sample.
     pub at: [f64; 2],
@@ -21,6 +22,22 @@ pub struct Observer {
     /// the distance. 0 for a plane.
     pub sinking: f64,
 }
+
+impl Observer {
+    /// An observer with an eye at this height in metres above the ground, on a plane, without a limit of sight.
+    #[must_use]
+    pub const fn new(at: [f64; 2], height: f64) -> Observer {
+        Observer { at, height, radius: f64::INFINITY, sinking: 0.0 }
+    }
+}
+
+orogen_noise::builder!(
+    Observer:
+    with_at(at: [f64; 2]),
+    with_height(height: f64),
+    with_radius(radius: f64),
+    with_sinking(sinking: f64)
+);
 
 /// The earth's mean radius in metres.
 const EARTH: f64 = 6_371_008.8;

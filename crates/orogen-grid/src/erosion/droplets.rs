@@ -27,6 +27,7 @@ use rayon::prelude::*;
 /// batch see the same ground, and their changes are summed in fixed point, where order does not matter. The result is
 /// therefore exact for any window.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Droplets {
     /// Droplets per km^2, in all batches together.
     pub density: f64,
@@ -53,6 +54,42 @@ pub struct Droplets {
     /// Seed of the droplets.
     pub seed: u64,
 }
+
+impl Default for Droplets {
+    /// The defaults of the op `droplets`.
+    fn default() -> Droplets {
+        Droplets {
+            density: 5000.0,
+            batches: 4,
+            lifetime: 300.0,
+            radius: 30.0,
+            inertia: 0.05,
+            capacity: 0.4,
+            least_slope: 0.01,
+            erosion: 0.3,
+            deposition: 0.3,
+            evaporation: 0.001,
+            gravity: 4.0,
+            seed: 0,
+        }
+    }
+}
+
+orogen_noise::builder!(
+    Droplets:
+    with_density(density: f64),
+    with_batches(batches: usize),
+    with_lifetime(lifetime: f64),
+    with_radius(radius: f64),
+    with_inertia(inertia: f64),
+    with_capacity(capacity: f64),
+    with_least_slope(least_slope: f64),
+    with_erosion(erosion: f64),
+    with_deposition(deposition: f64),
+    with_evaporation(evaporation: f64),
+    with_gravity(gravity: f64),
+    with_seed(seed: u64)
+);
 
 impl Droplets {
     /// Length of a path, in cells.

@@ -23,6 +23,7 @@ use orogen_simd::{Body, Simd, dispatch};
 /// Braun and Willett 2013 with the neighbour's old height). Water and sediment move one cell per iteration; start with
 /// the drainage areas of a coarser solution to include distant catchments. An iteration reads two cells on each side.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct LocalStreamPower {
     /// Distance between samples, in metres.
     pub cell: f64,
@@ -43,6 +44,38 @@ pub struct LocalStreamPower {
     /// Cells at or below this height do not change.
     pub sea_level: Option<f32>,
 }
+
+impl LocalStreamPower {
+    /// The law for cells of this side in metres, without uplift and sea; the other fields are those of the op `local-stream-power`
+    /// at its defaults (1e5 years in 50 iterations).
+    #[must_use]
+    pub const fn new(cell: f64) -> LocalStreamPower {
+        LocalStreamPower {
+            cell,
+            years: 2000.0,
+            erodibility: 2e-5,
+            area_exponent: 0.45,
+            slope_exponent: 1.0,
+            uplift: 0.0,
+            deposition: 0.5,
+            creep: 0.005,
+            sea_level: None,
+        }
+    }
+}
+
+orogen_noise::builder!(
+    LocalStreamPower:
+    with_cell(cell: f64),
+    with_years(years: f64),
+    with_erodibility(erodibility: f64),
+    with_area_exponent(area_exponent: f64),
+    with_slope_exponent(slope_exponent: f64),
+    with_uplift(uplift: f64),
+    with_deposition(deposition: f64),
+    with_creep(creep: f64),
+    with_sea_level(sea_level: Option<f32>)
+);
 
 /// Limit of creep per iteration, as a share of a squared cell: stable, and without oscillation.
 const FASTEST: f64 = 0.2;

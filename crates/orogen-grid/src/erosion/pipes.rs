@@ -31,6 +31,7 @@ use rayon::prelude::*;
 /// form along the grid's axes. An iteration reads three cells on each side: a side's flow reads its cells' surfaces,
 /// the limit reads the other sides of that cell, and then changes are shared.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Pipes {
     /// Rain, in metres of water per second.
     pub rain: f64,
@@ -51,6 +52,36 @@ pub struct Pipes {
     /// Time step in seconds; reduced to the longest stable step.
     pub time_step: f64,
 }
+
+impl Default for Pipes {
+    /// The defaults of the op `pipes`.
+    fn default() -> Pipes {
+        Pipes {
+            rain: 0.002,
+            evaporation: 0.01,
+            capacity: 2.0,
+            erosion: 0.3,
+            deposition: 0.3,
+            pipe: 1.0,
+            friction: 0.05,
+            gravity: 9.81,
+            time_step: 1.0,
+        }
+    }
+}
+
+orogen_noise::builder!(
+    Pipes:
+    with_rain(rain: f64),
+    with_evaporation(evaporation: f64),
+    with_capacity(capacity: f64),
+    with_erosion(erosion: f64),
+    with_deposition(deposition: f64),
+    with_pipe(pipe: f64),
+    with_friction(friction: f64),
+    with_gravity(gravity: f64),
+    with_time_step(time_step: f64)
+);
 
 /// The radius that an iteration reads, in cells.
 pub const RADIUS: usize = 3;

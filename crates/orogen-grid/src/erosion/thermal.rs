@@ -20,12 +20,23 @@ use orogen_simd::{Body, Simd, dispatch};
 ///
 /// so the talus slope is the same in all directions. What leaves one cell enters the next: mass is conserved.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Thermal {
     /// Stable slope, rise over run.
     pub talus: f64,
     /// Share of the excess that moves in a pass, 0 to 1. All values are stable.
     pub rate: f64,
 }
+
+impl Thermal {
+    /// Weathering to this stable slope (rise over run), with a rate of 1.
+    #[must_use]
+    pub const fn new(talus: f64) -> Thermal {
+        Thermal { talus, rate: 1.0 }
+    }
+}
+
+orogen_noise::builder!(Thermal: with_talus(talus: f64), with_rate(rate: f64));
 
 /// The share of a height difference that crosses a side at a rate of 1. From 1/4 on, a chequerboard of heights would
 /// not decay.

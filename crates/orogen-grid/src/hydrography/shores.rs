@@ -16,6 +16,7 @@ const HARDLY: f32 = 1e-3;
 /// The shores of lakes and of the sea, as lines in columns and rows. With north up, land is to the right of the shore
 /// of a lake, in the direction of the line, and to the left of the coast of the sea.
 #[derive(Debug, Clone, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Shores {
     /// Rings whose last point repeats the first; coasts of the sea may be open.
     pub lines: Vec<Path>,
@@ -66,6 +67,7 @@ impl Shores {
 
 /// A lake as a multipolygon: parts, each an outer ring and its islands.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct LakeArea {
     /// The number of the lake, from 1.
     pub lake: u32,

@@ -16,6 +16,7 @@ use crate::progress::Progress;
 
 /// Thresholds of rivers and lakes.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Least {
     /// Samples that must drain to the source of a river.
     pub spring: u32,
@@ -28,8 +29,25 @@ pub struct Least {
     pub scattered: bool,
 }
 
+impl Least {
+    /// Rivers and lakes from these numbers of samples on; lakes of any depth, receivers by steepest descent.
+    #[must_use]
+    pub const fn new(spring: u32, lake: u32) -> Least {
+        Least { spring, lake, depth: 0.0, scattered: false }
+    }
+}
+
+orogen_noise::builder!(
+    Least:
+    with_spring(spring: u32),
+    with_lake(lake: u32),
+    with_depth(depth: f32),
+    with_scattered(scattered: bool)
+);
+
 /// The cover of a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Cover {
     /// Land without water.
     Land,

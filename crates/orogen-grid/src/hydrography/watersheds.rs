@@ -5,6 +5,7 @@ use super::water::{Cover, Frame, Water};
 
 /// The watershed of each sample of a frame.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Watersheds {
     /// Labels from 1, row-major over the frame; 0 for the sea.
     pub labels: Vec<u32>,

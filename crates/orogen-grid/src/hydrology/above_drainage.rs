@@ -10,6 +10,7 @@ use crate::progress::Progress;
 
 /// Position of each cell relative to the stream that it drains to.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct AboveDrainage {
     /// Height above nearest drainage, in the unit of the surface.
     pub height: Grid,

@@ -13,6 +13,7 @@ use crate::progress::Progress;
 
 /// Parameters of a run of the stream power law.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Erosion {
     /// The erosion law.
     pub law: StreamPower,
@@ -28,6 +29,24 @@ pub struct Erosion {
     /// random between jittered points.
     pub jitter: f64,
 }
+
+impl Erosion {
+    /// A run of the law over this many years and steps, without creep, by steepest descent on the lattice.
+    #[must_use]
+    pub const fn new(law: StreamPower, years: f64, steps: u32) -> Erosion {
+        Erosion { law, creep: 0.0, years, steps, scattered: None, jitter: 0.0 }
+    }
+}
+
+orogen_noise::builder!(
+    Erosion:
+    with_law(law: StreamPower),
+    with_creep(creep: f64),
+    with_years(years: f64),
+    with_steps(steps: u32),
+    with_scattered(scattered: Option<u32>),
+    with_jitter(jitter: f64)
+);
 
 impl Erosion {
     /// Erodes `heights`. The border and, if there is a sea level, the sea keep their heights.

@@ -11,6 +11,7 @@ use crate::progress::Progress;
 
 /// One lake.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Lake {
     /// Height of the water surface.
     pub level: f32,
@@ -24,6 +25,7 @@ pub struct Lake {
 
 /// The lakes of a map.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Lakes {
     /// The lake of each cell, numbered from 1 in row order; 0 on land.
     pub labels: Grid<u32>,

@@ -14,12 +14,23 @@ use std::collections::BinaryHeap;
 
 /// Limits of a channel.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Limits {
     /// The maximum depth of a cut, in metres.
     pub deepest: f32,
     /// The maximum length of a channel, in cells.
     pub longest: u32,
 }
+
+impl Limits {
+    /// Cuts up to this depth in metres, along channels of up to this length in cells.
+    #[must_use]
+    pub const fn new(deepest: f32, longest: u32) -> Limits {
+        Limits { deepest, longest }
+    }
+}
+
+orogen_noise::builder!(Limits: with_deepest(deepest: f32), with_longest(longest: u32));
 
 /// The heights without depressions. From the bottom of each depression a channel is cut to lower ground or an outlet:
 /// the one with the least sum of depth times length within the limits. A depression without such a channel is filled

@@ -9,6 +9,7 @@ use crate::progress::Progress;
 
 /// A stretch of river between confluences.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Reach {
     /// Its cells, downstream. The last one is the first of the next reach, or the outlet.
     pub cells: Vec<u32>,
@@ -21,6 +22,7 @@ pub struct Reach {
 /// Discharge from a drainage area, and the width and depth of the channel (Leopold and Maddock 1953: w = a Q^0.5, d = c
 /// Q^0.4, with Q in m^3/s).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Channel {
     /// Runoff, in metres per year.
     pub runoff: f64,
@@ -29,6 +31,15 @@ pub struct Channel {
     /// c: the depth of a river with 1 m^3/s, in metres.
     pub depth: f64,
 }
+
+impl Default for Channel {
+    /// The defaults of the op `rivers`: runoff 0.5 m per year, width 5 m, depth 0.3 m.
+    fn default() -> Channel {
+        Channel { runoff: 0.5, width: 5.0, depth: 0.3 }
+    }
+}
+
+orogen_noise::builder!(Channel: with_runoff(runoff: f64), with_width(width: f64), with_depth(depth: f64));
 
 /// Seconds in a year of 365.25 days.
 const YEAR: f64 = 31_557_600.0;

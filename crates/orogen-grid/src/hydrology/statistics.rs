@@ -137,6 +137,7 @@ pub fn longest_ways(receivers: &Receivers, drained: &Accumulation) -> Vec<Way> {
 
 /// The average of a class.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Average {
     /// The median; for an even count, the upper of the middle two.
     Median,

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 /// The rule that chooses the receiver.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum Descent<'a> {
     /// Steepest descent (O'Callaghan and Mark 1984); the drop is divided by sqrt(2) on a diagonal.
     Steepest,

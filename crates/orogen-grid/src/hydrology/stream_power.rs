@@ -30,6 +30,7 @@ use std::ops::Range;
 
 /// Parameters of the stream power law.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct StreamPower {
     /// K, in m^(1 - 2 m) per year: 1e-6 for hard rock to 5e-5 for soft.
     pub erodibility: f64,
@@ -45,7 +46,18 @@ pub struct StreamPower {
     pub min_slope: f64,
 }
 
+orogen_noise::builder!(
+    StreamPower:
+    with_erodibility(erodibility: f64),
+    with_area_exponent(area_exponent: f64),
+    with_slope_exponent(slope_exponent: f64),
+    with_uplift(uplift: f64),
+    with_max_slope(max_slope: f64),
+    with_min_slope(min_slope: f64)
+);
+
 impl Default for StreamPower {
+    /// Erodibility 2e-5, exponents 0.45 and 1, uplift 0.2 mm per year, slopes from 1e-4 to 1.2.
     fn default() -> StreamPower {
         StreamPower {
             erodibility: 2e-5,
@@ -60,6 +72,7 @@ impl Default for StreamPower {
 
 /// Spatial variation: factors of the law's parameters, on the grid of the heights.
 #[derive(Debug, Clone, Copy, Default)]
+#[non_exhaustive]
 pub struct Substrate<'a> {
     /// Factor of the erodibility; `None` means 1 everywhere. Negative values count as 0.
     pub erodibility_factor: Option<&'a Grid>,
@@ -67,6 +80,26 @@ pub struct Substrate<'a> {
     pub uplift_factor: Option<&'a Grid>,
     /// Positions of the cells, which determine the distances to receivers; `None` means the lattice.
     pub points: Option<&'a Points>,
+}
+
+impl<'a> Substrate<'a> {
+    /// Sets the factor of the erodibility.
+    #[must_use]
+    pub const fn with_erodibility_factor(self, factor: Option<&'a Grid>) -> Substrate<'a> {
+        Substrate { erodibility_factor: factor, ..self }
+    }
+
+    /// Sets the factor of the uplift.
+    #[must_use]
+    pub const fn with_uplift_factor(self, factor: Option<&'a Grid>) -> Substrate<'a> {
+        Substrate { uplift_factor: factor, ..self }
+    }
+
+    /// Sets the positions of the cells.
+    #[must_use]
+    pub const fn with_points(self, points: Option<&'a Points>) -> Substrate<'a> {
+        Substrate { points, ..self }
+    }
 }
 
 impl StreamPower {

@@ -6,10 +6,13 @@ use crate::grid::Grid;
 
 /// The slope of level ground, which would otherwise have an infinite wetness.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct LevelGround {
     /// The minimum slope, rise over run.
     pub least_slope: f64,
 }
+
+orogen_noise::builder!(LevelGround: with_least_slope(least_slope: f64));
 
 impl Default for LevelGround {
     fn default() -> LevelGround {

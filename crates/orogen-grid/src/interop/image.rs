@@ -11,8 +11,8 @@ impl<T: Copy + Primitive> Grid<T>
 where
     Luma<T>: Pixel<Subpixel = T>,
 {
-    /// The samples as they are, not copied: heights in metres of a `Grid<f32>`, levels of a `Grid<u8>` or `Grid<u16>`. `None` if a side
-    /// has more samples than an image can have, 2^32 - 1.
+    /// The samples as an image, unchanged and not copied: heights in metres of a `Grid<f32>`, levels of a `Grid<u8>` or `Grid<u16>`. `None`
+    /// if a side has more than 2^32 - 1 samples, the maximum of an image.
     #[must_use]
     pub fn into_image(self) -> Option<Gray<T>> {
         let (width, height) = sides(self.window())?;
@@ -32,8 +32,8 @@ where
 }
 
 impl Grid<f32> {
-    /// The heights in 16 bits: `low` and what is below becomes 0, `high` and what is above 65535, between them the nearest level of a
-    /// straight line. A sample without a value (NaN) becomes 0. These are the levels of exported 16-bit files with `--range LOW,HIGH`.
+    /// The heights as a 16-bit image. Heights from `low` to `high` are mapped linearly to 0 ..= 65535 and rounded; others are clamped. NaN
+    /// becomes 0. Files exported with `--range LOW,HIGH` have the same levels.
     ///
     /// `None` if `low` and `high` are not two finite numbers in this order, or a side has more samples than an image can have.
     ///
@@ -72,10 +72,10 @@ impl Grid<f32> {
     }
 }
 
-/// The highest level of 16 bits.
+/// Maximum level of 16 bits.
 const LEVELS: f64 = 65535.0;
 
-/// The lowest height, and how far above it the highest one is.
+/// The lowest height, and the difference between the highest and the lowest.
 fn line(low: f32, high: f32) -> Option<(f64, f64)> {
     let valid = low.is_finite() && high.is_finite() && low < high;
     valid.then(|| (f64::from(low), f64::from(high) - f64::from(low)))

@@ -1,8 +1,10 @@
-//! Grids as what other crates of the field take and return, each behind a feature of its name that is off by default.
+//! Conversions to and from types of other crates. Each is behind a feature with the crate's name, off by default.
 //!
-//! Points are plain arrays (`[f64; 2]`, `[f32; 3]`), which the types of `mint` are made from with `into()`; they need no feature.
+//! Points in results are plain arrays (`[f64; 2]`, `[f32; 3]`); types of `mint` convert from them with `into()`, without a feature.
 
 #[cfg(feature = "image")]
 mod image;
+#[cfg(feature = "mint")]
+mod mint;
 #[cfg(feature = "ndarray")]
 mod ndarray;

@@ -19,12 +19,12 @@ use crate::{Grid, Window};
 impl<'a, T: Copy> From<&'a Grid<T>> for ArrayView2<'a, T> {
     fn from(grid: &'a Grid<T>) -> ArrayView2<'a, T> {
         let none: &'a [[T; 0]] = &[];
-        // Refused only where a grid without samples has more rows or columns than an array can count.
+        // Fails only if a grid without samples has more rows or columns than an array can count.
         ArrayView2::from_shape((grid.height(), grid.width()), grid.data()).unwrap_or_else(|_| none.into())
     }
 }
 
-/// The same, to change.
+/// The samples as a mutable array that is indexed by (row, column), without a copy.
 impl<'a, T: Copy> From<&'a mut Grid<T>> for ArrayViewMut2<'a, T> {
     fn from(grid: &'a mut Grid<T>) -> ArrayViewMut2<'a, T> {
         let none: &'a mut [[T; 0]] = &mut [];
@@ -33,7 +33,7 @@ impl<'a, T: Copy> From<&'a mut Grid<T>> for ArrayViewMut2<'a, T> {
     }
 }
 
-/// The samples without their window, not copied.
+/// The samples as an array that is indexed by (row, column). The window is dropped, the samples are not copied.
 impl<T: Copy> From<Grid<T>> for Array2<T> {
     fn from(grid: Grid<T>) -> Array2<T> {
         let none: &[[T; 0]] = &[];
@@ -60,7 +60,7 @@ impl<T: Copy> Grid<T> {
             return None;
         }
         let data = match array.is_standard_layout() {
-            // What was sliced off before the first sample or behind the last one may still be in the memory.
+            // The memory may contain samples before the first one or after the last one, if the array was sliced.
             true => match array.into_raw_vec_and_offset() {
                 (data, None | Some(0)) if data.len() == window.len() => data,
                 (data, offset) => data.into_iter().skip(offset.unwrap_or(0)).take(window.len()).collect(),

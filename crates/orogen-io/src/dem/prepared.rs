@@ -22,6 +22,7 @@ pub const DEFAULT_MEMORY: u64 = 4 << 30;
 
 /// Heights of a real place on a lattice of square cells in metres, without holes.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct PreparedDem {
     /// The heights; the first sample is the north-west corner, at the origin.
     pub grid: Grid,

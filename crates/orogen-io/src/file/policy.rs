@@ -10,6 +10,7 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 
 /// Treatment of existing files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub enum Existing {
     /// Existing files are never replaced.
     Keep,

@@ -18,6 +18,7 @@ impl<T: Read + Seek> Input for T {}
 
 /// Options of a reader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Request {
     /// The band to read, from 1; `None` requires that there is only one.
     pub band: Option<u32>,
@@ -27,11 +28,19 @@ pub struct Request {
 
 impl From<u64> for Request {
     fn from(allowed: u64) -> Request {
-        Request { band: None, allowed }
+        Request::new(allowed)
     }
 }
 
+orogen_noise::builder!(Request: with_band(band: Option<u32>), with_allowed(allowed: u64));
+
 impl Request {
+    /// Heights of up to this many bytes, of a file with one band.
+    #[must_use]
+    pub const fn new(allowed: u64) -> Request {
+        Request { band: None, allowed }
+    }
+
     /// The index, from 0, of the band to read among `bands`.
     ///
     /// # Errors
@@ -51,6 +60,7 @@ impl Request {
 
 /// Heights of a real place.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Dem {
     /// Samples per row.
     pub width: usize,

@@ -2,6 +2,7 @@
 
 /// The encoding of a height in three bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Encoding {
     /// height = 256 R + G + B / 256 - 32768: steps of 1/256 m (Mapzen).
     Terrarium,

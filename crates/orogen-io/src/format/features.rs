@@ -95,6 +95,7 @@ pub struct FeatureLayer {
 
 /// The coordinate system of features.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum Crs<'a> {
     /// Metres east and north of the origin of an invented world.
     Local,
@@ -104,6 +105,7 @@ pub enum Crs<'a> {
 
 /// The definition of a coordinate system in a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Definition {
     /// The EPSG code, and the well-known text if it can be written.
     Epsg(u16, Option<String>),

@@ -16,6 +16,7 @@ const BAND: usize = 1 << 20;
 
 /// The type of a pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Pixel {
     /// One byte of grey.
     Grey8,
@@ -47,6 +48,7 @@ impl Pixel {
 
 /// Description of a picture.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Picture<'a> {
     /// Pixels per row.
     pub width: usize,
@@ -58,13 +60,36 @@ pub struct Picture<'a> {
     pub notes: &'a [(&'a str, &'a str)],
 }
 
+impl<'a> Picture<'a> {
+    /// A picture without text chunks.
+    #[must_use]
+    pub const fn new(width: usize, height: usize, pixel: Pixel) -> Picture<'a> {
+        Picture { width, height, pixel, notes: &[] }
+    }
+
+    /// Sets the text chunks.
+    #[must_use]
+    pub const fn with_notes(self, notes: &'a [(&'a str, &'a str)]) -> Picture<'a> {
+        Picture { notes, ..self }
+    }
+}
+
 /// Properties of an animation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Animation {
     /// Number of frames.
     pub frames: u32,
     /// Duration of a frame, in milliseconds. The animation repeats endlessly.
     pub delay: u16,
+}
+
+impl Animation {
+    /// An animation of `frames` frames of `delay` milliseconds each.
+    #[must_use]
+    pub const fn new(frames: u32, delay: u16) -> Animation {
+        Animation { frames, delay }
+    }
 }
 
 /// Writes a picture. `fill` makes its rows in bands from the top: it gets the range of rows and their bytes.
@@ -187,7 +212,7 @@ fn side(samples: usize) -> io::Result<u32> {
 fn plain(error: EncodingError) -> io::Error {
     match error {
         EncodingError::IoError(cause) => cause,
-        other => io::Error::new(io::ErrorKind::InvalidInput, other.to_string()),
+        other => io::Error::new(io::ErrorKind::InvalidInput, other),
     }
 }
 

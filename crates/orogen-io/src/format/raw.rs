@@ -13,6 +13,7 @@ const PIECE: usize = 1 << 16;
 
 /// The type of the samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Sample {
     /// Two bytes: 0 is the low end of the range and 65535 the high end.
     U16,

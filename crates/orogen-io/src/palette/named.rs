@@ -11,6 +11,7 @@ use super::palette::{Palette, Position, Stop};
 
 /// The scale of a palette's positions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Span {
     /// 0 is the lowest value, 1 the highest.
     Range,
@@ -22,6 +23,7 @@ pub enum Span {
 
 /// A palette with a name.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Named {
     /// The name.
     pub name: &'static str,

@@ -7,6 +7,7 @@ pub const NO_DATA: Rgb = [222, 222, 222];
 
 /// The position of a colour.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum Position {
     /// A height in metres, or a value in the layer's unit.
     Value(f64),
@@ -27,6 +28,7 @@ pub struct Stop {
 
 /// The colour space in which colours between stops are mixed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub enum Mix {
     /// Oklab, which is perceptually uniform.
     #[default]
@@ -39,6 +41,7 @@ pub enum Mix {
 
 /// Colours for a map.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Palette {
     /// The name.
     pub name: String,

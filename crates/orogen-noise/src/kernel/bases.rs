@@ -1,4 +1,4 @@
-//! The list of low-rank bases: from a source's name to its kernels.
+//! The kernels of low-rank bases, by source.
 
 use crate::choices::Fade;
 use crate::kernel::basis::Visit;
@@ -8,7 +8,7 @@ use crate::kernel::value::{Blended, Flat};
 use crate::program::Source;
 use orogen_simd::Simd;
 
-/// Does the work with the basis the source names, in that many dimensions.
+/// Runs the work with the basis of the source, in `DIMS` dimensions.
 #[inline(always)]
 pub(crate) fn with_basis<S: Simd, V: Visit<S>, const DIMS: usize>(simd: S, source: Source, work: V) {
     match source {
@@ -16,7 +16,7 @@ pub(crate) fn with_basis<S: Simd, V: Visit<S>, const DIMS: usize>(simd: S, sourc
         Source::Value(_) => work.visit::<Blended<S, DIMS>>(simd),
         Source::Perlin => work.visit::<Gradient<PerlinSource<S>, DIMS>>(simd),
         Source::Classic(_) => work.visit::<Gradient<ClassicSource<S>, DIMS>>(simd),
-        // These have kernels of their own.
+        // These have separate kernels.
         Source::Worley(_) | Source::Simplex | Source::OpenSimplex2(_) => {}
     }
 }

@@ -1,4 +1,4 @@
-//! One octave of a basis in a form of low rank: along x a few row vectors, along y a few coefficients.
+//! One octave of a basis in low-rank form: a few row vectors along x, and a few coefficients along y.
 //!
 //! For a row of samples at fixed y, with t the fraction of x in its cell, u its fade, and (gx, gy) the gradients of one line of the
 //! lattice,
@@ -9,22 +9,23 @@
 //! noise = (1 - v) (X0 + s Y0) + v (X1 + (s - 1) Y1)
 //! ```
 //!
-//! where 0 and 1 are the lattice lines above and below, s is the fraction of y and v its fade. X and Y are the same for all samples
-//! between two lattice lines: a sample costs four fused multiply-adds. Value noise has one vector per line instead of two. In
-//! 3D a slice at fixed z is noise of the same form, the numbers of each lattice point being blended along z first.
+//! where 0 and 1 are the lattice lines above and below, s is the fraction of y and v its fade. X and Y are the same for
+//! all samples between two lattice lines, so a sample costs four fused multiply-adds. Value noise has one vector per
+//! line instead of two. In 3D a slice at fixed z is noise of the same form, after the numbers of each lattice point are
+//! blended along z.
 //!
-//! Scattered points evaluate the very same functions, so they get the very same bits.
+//! Scattered points evaluate the same functions, so their bits are the same.
 
 use crate::kernel::cell::Cell;
 use crate::program::{Octave, Source};
 use orogen_simd::{F32Lanes, Simd};
 
-/// The numbers of a lattice point: those that make values, then as many for their slopes along z, then for those along w.
+/// The numbers of a lattice point: those of the value, then as many for its slope along z, then for its slope along w.
 pub(crate) type Numbers<S> = [<S as Simd>::F32; 9];
-/// The row vectors of one lattice line: two that make values, two for the slope along x, two for those along z and w each.
+/// The row vectors of one lattice line: two for the value, two for the slope along x, two each for those along z and w.
 pub(crate) type Rows<S> = [<S as Simd>::F32; 8];
 
-/// What one axis contributes: fractions and fades. Made per column for rows, per row for coefficients.
+/// Contributions of one axis: fractions and fades. Computed per column for rows, and per row for coefficients.
 #[derive(Clone, Copy)]
 pub(crate) struct Weights<S: Simd> {
     /// Fraction t and t - 1.
@@ -40,7 +41,7 @@ pub(crate) struct Weights<S: Simd> {
 }
 
 impl<S: Simd> Weights<S> {
-    /// What is not used costs nothing: the compiler drops it.
+    /// The compiler removes fields that are not read.
     #[inline(always)]
     pub(crate) fn new(simd: S, t: S::F32, [u, du]: [S::F32; 2]) -> Weights<S> {
         let one = simd.f32(1.0);
@@ -55,31 +56,31 @@ impl<S: Simd> Weights<S> {
     }
 }
 
-/// Coefficients of the row vectors: first line's, then second line's; one-vector bases use every other place.
+/// Coefficients of the row vectors: of the first line, then of the second. Bases with one vector use every other slot.
 #[derive(Clone, Copy)]
 pub(crate) struct Coefficients<S: Simd> {
     /// Of the value.
     pub value: [S::F32; 4],
-    /// Of the slopes along x, z and w, over their own row vectors.
+    /// Of the slopes along x, z and w, which have their own row vectors.
     pub along: [S::F32; 4],
-    /// Of the slope along y, over the value's row vectors.
+    /// Of the slope along y, which uses the value's row vectors.
     pub across: [S::F32; 4],
 }
 
 /// One octave of a basis.
 pub(crate) trait Basis<S: Simd>: Copy {
-    /// Whether a sample is the number of its cell's lower corner and nothing else: no blend, no slope.
+    /// Whether a sample is the number of its cell's lower corner: no blend, no slope.
     const FLAT: bool = false;
     /// Row vectors per line.
     const RANK: usize;
-    /// Numbers per lattice point without slopes along z and w; those come after them.
+    /// Numbers per lattice point without slopes along z and w, which follow them.
     const NUMBERS: usize;
-    /// How many axes there are: 2, 3 or 4.
+    /// Number of axes: 2, 3 or 4.
     const DIMS: usize;
 
-    /// The basis as the octave needs it.
+    /// The basis for an octave.
     fn new(simd: S, source: Source, octave: &Octave) -> Self;
-    /// The same basis with keys to be kept: see [`crate::kernel::source::Lattice::folded`].
+    /// The same basis with keys that are kept: see [`crate::kernel::source::Lattice::folded`].
     #[inline(always)]
     fn folded(self) -> Self {
         self
@@ -94,7 +95,7 @@ pub(crate) trait Basis<S: Simd>: Copy {
     fn rows<const SLOPES: bool>(self, simd: S, left: &Numbers<S>, right: &Numbers<S>, column: &Weights<S>) -> Rows<S>;
     /// The coefficients of a row of samples.
     fn coefficients(self, simd: S, row: &Weights<S>, amplitude: S::F32, slope: S::F32) -> Coefficients<S>;
-    /// What the axes beyond the plane contribute, in their cells.
+    /// Contributions of the axes beyond the plane, in their cells.
     #[inline(always)]
     fn depths(self, simd: S, cells: &[Cell<S>; 2]) -> Depths<S> {
         let none = simd.f32(0.0);
@@ -109,23 +110,23 @@ pub(crate) trait Basis<S: Simd>: Copy {
     }
 }
 
-/// Work whatever the basis.
+/// Work that is generic over the basis.
 pub(crate) trait Visit<S: Simd> {
     /// The work.
     fn visit<B: Basis<S>>(self, simd: S);
 }
 
-/// What the axes beyond the plane contribute: z and w.
+/// Contributions of the axes beyond the plane: z and w.
 pub(crate) type Depths<S> = [DepthPart<S>; 2];
 
-/// What one axis beyond the plane contributes.
+/// Contributions of one axis beyond the plane.
 #[derive(Clone, Copy)]
 pub(crate) struct DepthPart<S: Simd> {
     pub keys: [S::U32; 2],
     pub weights: Weights<S>,
 }
 
-/// A number between two, by the weights of both.
+/// Interpolation between two numbers, by the weights of both.
 #[inline(always)]
 pub(crate) fn blend<S: Simd>(weights: [S::F32; 2], left: S::F32, right: S::F32) -> S::F32 {
     weights[1].mul_add(right, weights[0] * left)

@@ -1,4 +1,4 @@
-//! From positions to cells and fractions.
+//! Splits positions into cells and fractions.
 
 use crate::program::Octave;
 use orogen_simd::{F32Lanes, F64Lanes, Simd, U32Lanes};
@@ -15,8 +15,8 @@ pub(crate) struct Cell<S: Simd> {
     pub low: S::U32,
     /// High word, plus a constant.
     pub high: S::U32,
-    /// How far into the cell, from 0 to 1. It is 1 where the fraction is so close that f32 rounds it up; every noise here is
-    /// continuous there, so the value is the next cell's at 0.
+    /// Fraction in the cell, from 0 to 1. It is 1 where f32 rounds it up. All noises are continuous there, so the value
+    /// is that of the next cell at 0.
     pub t: S::F32,
 }
 
@@ -26,13 +26,13 @@ pub(crate) fn coordinate<S: Simd>(simd: S, octave: &Octave, axis: usize, positio
     snapped(simd, octave, position * simd.f64(octave.frequency) + simd.f64(octave.offset[axis]))
 }
 
-/// A coordinate moved by so many cells.
+/// A coordinate displaced by this number of cells.
 #[inline(always)]
 pub(crate) fn moved<S: Simd>(simd: S, octave: &Octave, coordinate: S::F64, by: S::F32) -> S::F64 {
     coordinate + snapped(simd, octave, by.widen())
 }
 
-/// Where lattices repeat, coordinates are rounded so that both sides of a seam agree.
+/// Rounds coordinates of repeating lattices so that both sides of a seam agree.
 #[inline(always)]
 fn snapped<S: Simd>(simd: S, octave: &Octave, u: S::F64) -> S::F64 {
     if octave.tiled { (u + simd.f64(SNAP)) - simd.f64(SNAP) } else { u }
@@ -52,7 +52,7 @@ impl<S: Simd> Cell<S> {
         Cell { whole, low, high, t: (u - whole).narrow() }
     }
 
-    /// The lower edge of the cell of that number.
+    /// The lower edge of the cell with this number.
     #[inline(always)]
     pub(crate) fn at(simd: S, whole: S::F64) -> Cell<S> {
         let (_, low, high) = simd.whole(whole);
@@ -68,7 +68,7 @@ impl<S: Simd> Cell<S> {
 }
 
 impl<S: Simd> Cell<S> {
-    /// Low and high words of the cell and of the next, counted round from 0 to the period.
+    /// Low and high words of the cell and of the next one, modulo the period.
     #[inline(always)]
     pub(crate) fn around(&self, simd: S, period: f64) -> [[S::U32; 2]; 2] {
         let next = self.whole + simd.f64(1.0);
@@ -77,14 +77,14 @@ impl<S: Simd> Cell<S> {
 
     #[inline(always)]
     fn wrapped(simd: S, whole: S::F64, period: f64) -> [S::U32; 2] {
-        // The middle of a cell is so far from the ends of a period that rounding cannot carry it across.
+        // The centre of a cell is so far from the ends of a period that rounding cannot move it across.
         let turns = ((whole + simd.f64(0.5)) * simd.f64(1.0 / period)).floor();
         let (_, low, high) = simd.whole(whole - turns * simd.f64(period));
         [low, high]
     }
 }
 
-/// Positions held within the limit; NaN becomes its lower end.
+/// Positions clamped to the limit; NaN becomes its lower end.
 #[inline(always)]
 pub(crate) fn clamp<S: Simd>(simd: S, position: S::F64, limit: f64) -> S::F64 {
     position.max(simd.f64(-limit)).min(simd.f64(limit))

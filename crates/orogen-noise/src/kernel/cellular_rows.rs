@@ -1,4 +1,4 @@
-//! Lattices of samples of cellular noise: each cell is hashed once.
+//! Cellular noise on lattices of samples: each cell is hashed once.
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
@@ -12,56 +12,56 @@ use crate::kernel::source::{Hashed, Lattice};
 use crate::program::{self, Octave, Program};
 use orogen_simd::{Body, F32Lanes, F64Lanes, MaskLanes, Simd, U32Lanes};
 
-/// Columns worked on at a time.
+/// Columns per strip.
 const WIDTH: usize = 256;
-/// Cells a strip may span and still have its points kept.
+/// Maximum number of cells of a strip whose points are kept.
 const SPAN: usize = WIDTH + 48;
-/// The most lanes of any level.
+/// Maximum number of lanes.
 const MAX_LANES: usize = 16;
 
-/// Rows worked on at a time where columns go by runs; they share a line of cells.
+/// Rows per band if columns are processed in runs. All rows of a band lie in one line of cells.
 const BAND: usize = 8;
-/// Columns of a run: the shorter, the fewer points matter to it.
+/// Maximum length of a run, in columns. Fewer points can be nearest in a shorter run.
 const RUN: usize = 64;
 
-/// Columns that follow each other in one cell.
+/// Successive columns in one cell.
 #[derive(Clone, Copy)]
 struct Run {
     start: usize,
     end: usize,
-    /// The cell, counted from the strip's first.
+    /// The cell, relative to the first of the strip.
     cell: usize,
     /// The range of their fractions.
     range: [f32; 2],
 }
 
-/// The points of the cells along three lines of the lattice (times three depths), and the columns over them.
+/// The points of the cells along three lattice lines (at three depths in 3D), and the columns of the strip.
 #[repr(C, align(64))]
 struct Strip {
-    /// Places in their cells.
+    /// Positions of the points in their cells.
     places: [[[f32; SPAN]; 3]; 9],
     hashes: [[u32; SPAN]; 9],
-    /// The keys of the cells, from the one before the strip's first on.
+    /// The keys of the cells, starting one cell before the first of the strip.
     keys: [u32; SPAN],
-    /// Fractions of the columns; the last run's last register reaches beyond them.
+    /// Fractions of the columns. The last register of the last run reads past the end of the columns.
     t: [f32; WIDTH + MAX_LANES],
-    /// Their cells' numbers.
+    /// The cell numbers of the columns.
     wholes: [f64; WIDTH],
-    /// Their cells, counted from their register's first.
+    /// The cells of the columns, relative to the first of their register.
     index: [u32; WIDTH],
-    /// Each register's first cell, counted from the strip's first.
+    /// The first cell of each register, relative to the first of the strip.
     first: [u32; WIDTH / 4],
     /// Whether a register lies within one cell.
     alone: [bool; WIDTH / 4],
-    /// The line of cells each third of the tables holds.
+    /// The line of cells in each third of the tables.
     held: [Option<f64>; 3],
-    /// How many cells there are.
+    /// Number of cells.
     cells: usize,
-    /// The number of the first column's cell.
+    /// The cell number of the first column.
     origin: f64,
-    /// The columns by runs, where these are long enough to pay.
+    /// The runs of columns; empty if runs are too short to be faster.
     runs: Vec<Run>,
-    /// Whether cells follow so closely that those of a register fit one.
+    /// Whether the cells of a register fit into one register of the tables.
     dense: bool,
 }
 
@@ -120,7 +120,7 @@ pub(crate) fn fill<S: Simd, const DIMS: usize>(
     }
 }
 
-/// What is the same for all strips.
+/// Values that all strips share.
 #[derive(Clone, Copy)]
 struct Job<'a> {
     limit: f64,
@@ -156,7 +156,7 @@ impl Body for Columns<'_> {
             }
             cell.t.store(&mut strip.t[at..]);
             cell.whole.store(&mut strip.wholes[at..]);
-            // Exact while small; what is not turns into a huge number and fails the tests below.
+            // Small numbers are exact. Large ones become huge and fail the tests below.
             let place = (cell.whole - simd.f64(origin)).narrow().to_i32();
             let mut places = [0; MAX_LANES];
             place.store(&mut places);
@@ -174,7 +174,7 @@ impl Body for Columns<'_> {
         }
         strip.origin = origin;
         strip.find_runs(xs.len().min(WIDTH), S::LANES);
-        // One cell more on either side.
+        // One more cell on each side.
         strip.cells = (farthest as usize + S::LANES + 2).next_multiple_of(S::LANES).min(SPAN);
         const COUNT: [f64; MAX_LANES] =
             [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0];
@@ -187,7 +187,7 @@ impl Body for Columns<'_> {
 }
 
 impl Strip {
-    /// Makes the list of runs; it stays empty where they are shorter than two registers on average.
+    /// Lists the runs. The list stays empty if runs are shorter than two registers on average.
     fn find_runs(&mut self, columns: usize, lanes: usize) {
         self.runs.clear();
         let cell = |column: usize| (self.first[column / lanes] + self.index[column]) as usize;
@@ -197,7 +197,7 @@ impl Strip {
             while end < columns && cell(end) == cell(start) {
                 end += 1;
             }
-            // In pieces of about the same length, each of whole registers but the last.
+            // Pieces of about equal length. All but the last consist of whole registers.
             let pieces = (end - start).div_ceil(RUN);
             let length = (end - start).div_ceil(pieces).next_multiple_of(lanes);
             for from in (start..end).step_by(length) {
@@ -216,23 +216,22 @@ impl Strip {
     }
 }
 
-/// The rows of a strip that share a line of cells, at most [`BAND`], of the usual noise in the plane; returns how many they are.
-///
-/// The samples of a run in these rows are all in one cell, and of its nine neighbours only those are looked at that are nearest
-/// somewhere among them.
+/// The rows of a strip that lie in one line of cells, at most [`BAND`]; for F1 with euclidean distance in the plane.
+/// Returns their number. The samples of a run in these rows share one cell. Of its nine neighbours, only those that can
+/// be nearest to one of the samples are read.
 struct Band<'a> {
     job: Job<'a>,
     strip: &'a mut Strip,
-    /// y of the rows from the band's first on.
+    /// y of the rows, from the first row of the band on.
     ys: &'a [f64],
-    /// From the first row's first column on.
+    /// The results, from the first column of the first row on.
     to: &'a mut [f32],
-    /// From one row to the next.
+    /// Distance from one row to the next, in samples.
     stride: usize,
     columns: usize,
 }
 
-/// Points that may be nearest, seen from the sample's own cell.
+/// Points that can be nearest, relative to the cell of the samples.
 struct Candidates {
     x: [f32; 9],
     y: [f32; 9],
@@ -293,10 +292,10 @@ impl Body for Band<'_> {
                     continue;
                 }
                 if run.end - run.start >= S::LANES {
-                    // Some columns once more.
+                    // Computes some columns twice.
                     nearest::<S, 1>(simd, &place, &strip.t, to, run.end - S::LANES, None);
                 } else {
-                    // Some columns of the next run, which come out wrong and are made again.
+                    // Writes wrong values into some columns of the next run, which overwrites them.
                     nearest::<S, 1>(simd, &place, &strip.t, to, at, Some(run.range));
                 }
             }
@@ -305,10 +304,10 @@ impl Body for Band<'_> {
     }
 }
 
-/// The points that are nearest anywhere in a run, `y` being the range of its rows' fractions.
+/// The points that can be nearest in a run. `y` is the range of fractions of its rows.
 #[inline(always)]
 fn candidates<S: Simd>(simd: S, strip: &Strip, thirds: [usize; 3], run: &Run, y: [f32; 2]) -> Candidates {
-    /// What rounding could make of a squared distance stays far below this.
+    /// Rounding errors of squared distances are far below this.
     const CLEAR: f32 = 1e-4;
     let (mut xs, mut ys) = ([FAR.sqrt(); MAX_LANES], [0.0; MAX_LANES]);
     for number in 0..9 {
@@ -318,8 +317,8 @@ fn candidates<S: Simd>(simd: S, strip: &Strip, thirds: [usize; 3], run: &Run, y:
         xs[number] = places[0][at] + (x as f32 - 1.0);
         ys[number] = places[1][at] + (y as f32 - 1.0);
     }
-    // Squared distances from the four corners of the samples' box. The difference of two points' squares is a plane over it: a point
-    // that is farther than another in all four corners is farther everywhere.
+    // Squared distances from the four corners of the samples' box. The difference of two squared distances is linear
+    // over the box. Therefore a point that is farther than another from all four corners is farther from every sample.
     let mut corners = [[0.0; MAX_LANES]; 4];
     for at in (0..9).step_by(S::LANES) {
         let (x, height) = (simd.load(&xs[at..]), simd.load(&ys[at..]));
@@ -358,7 +357,7 @@ fn candidates<S: Simd>(simd: S, strip: &Strip, thirds: [usize; 3], run: &Run, y:
     near
 }
 
-/// What the samples of a row and run have in common.
+/// Values that the samples of a row and run share.
 struct RunSamples<'a, S: Simd> {
     field: &'a Field<S>,
     octave: &'a Octave,
@@ -367,11 +366,11 @@ struct RunSamples<'a, S: Simd> {
     whole: [f64; 2],
     /// Their fraction of y.
     y: f32,
-    /// The greatest distance there can be.
+    /// Maximum distance.
     bound: f32,
 }
 
-/// `N` registers of a row from column `at` on; fractions outside of `range` are moved into it.
+/// `N` registers of a row from column `at` on. Fractions outside of `range` are clamped to it.
 #[inline(always)]
 fn nearest<S: Simd, const N: usize>(
     simd: S,
@@ -392,7 +391,7 @@ fn nearest<S: Simd, const N: usize>(
     for number in 0..place.near.count.min(9) {
         let (across, along) = (simd.f32(place.near.y[number] - place.y), simd.f32(place.near.x[number]));
         for n in 0..N {
-            // As [`crate::kernel::sites`] measures.
+            // The same operations as in [`crate::kernel::sites`].
             let way = along - x[n];
             first[n] = first[n].min(across.mul_add(across, way * way));
         }
@@ -412,13 +411,13 @@ fn nearest<S: Simd, const N: usize>(
     }
 }
 
-/// Looks beyond the neighbouring cells of a register of samples, where the nearest point is as far as that.
+/// Searches beyond the neighbouring cells of a register of samples, if the nearest point is farther than [`NEAR`].
 struct Beyond<'a> {
     cellular: program::Cellular,
     octave: &'a Octave,
-    /// The samples' cell,
+    /// The cell of the samples.
     whole: [f64; 2],
-    /// and their fractions.
+    /// The fractions of the samples.
     x: &'a [f32; MAX_LANES],
     y: f32,
     /// Squared distances.
@@ -440,7 +439,7 @@ impl Body for Beyond<'_> {
     }
 }
 
-/// One row of samples within a strip; `PLAIN`: of the usual noise, whose kernel is worth making without the others' choices.
+/// One row of samples within a strip. `PLAIN` selects the kernel without branches for F1 with euclidean distance.
 struct Row<'a, const DIMS: usize, const PLAIN: bool> {
     job: Job<'a>,
     strip: &'a mut Strip,
@@ -474,7 +473,7 @@ impl<const DIMS: usize, const PLAIN: bool> Body for Row<'_, DIMS, PLAIN> {
                 let sites = KeptSites::<S> { strip, thirds, first, index: simd.load_u32(&strip.index[at..]) };
                 evaluate::<S, _, DIMS>(simd, &field, &sites, &cells)
             };
-            // As [`crate::kernel::cellular::Cellular`] adds it.
+            // The same operations as in [`crate::kernel::cellular::Cellular`].
             let scaled = simd.f32(job.octave.amplitude).mul_add(noise, simd.f32(0.0));
             scaled.store_partial(&mut to[at..]);
             at += S::LANES;
@@ -482,7 +481,7 @@ impl<const DIMS: usize, const PLAIN: bool> Body for Row<'_, DIMS, PLAIN> {
     }
 }
 
-/// Makes the points of the three lines of cells around the line `y`, as far as they are not there; returns where they are.
+/// Computes the points of the three lines of cells around the line `y` that are missing; returns their indices.
 #[inline(always)]
 fn hold<S: Simd, const DIMS: usize>(
     simd: S,
@@ -497,7 +496,7 @@ fn hold<S: Simd, const DIMS: usize>(
     let mut thirds = [0; 3];
     for line in 0..3 {
         let number = lanes[0] + line as f64 - 1.0;
-        // Lines take turns, so that the next row of cells needs one new one.
+        // Lines rotate, so the next row of cells needs one new line.
         let third = (number - (number / 3.0).floor() * 3.0) as usize % 3;
         thirds[line] = third;
         if strip.held[third] != Some(number) {
@@ -508,7 +507,7 @@ fn hold<S: Simd, const DIMS: usize>(
     thirds
 }
 
-/// Makes the points of one line of cells (at three depths).
+/// Computes the points of one line of cells (at three depths in 3D).
 #[inline(always)]
 fn build<S: Simd, const DIMS: usize>(
     simd: S,
@@ -530,7 +529,7 @@ fn build<S: Simd, const DIMS: usize>(
     }
 }
 
-/// Points looked up for each register of samples.
+/// Points selected for each register of samples.
 struct KeptSites<'a, S: Simd> {
     strip: &'a Strip,
     thirds: [usize; 3],

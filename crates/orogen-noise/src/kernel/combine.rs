@@ -1,4 +1,4 @@
-//! How octaves become one number, lane by lane. Lattice and scattered points share these steps.
+//! Combines octaves into one number, lane by lane. Lattice and scattered points share these steps.
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
@@ -9,12 +9,12 @@ use orogen_simd::{F32Lanes, Simd, U32Lanes};
 /// A value and its slopes along x, y, z and w.
 pub(crate) type Sample<S> = [<S as Simd>::F32; 5];
 
-/// What is known after some octaves.
+/// The state after some octaves.
 #[derive(Clone, Copy)]
 pub(crate) struct State<S: Simd> {
     pub sum: Sample<S>,
-    /// The slope of the plain sum (weighted), of the weight (hybrid) or what moves the next octave (swiss, jordan), in places
-    /// 1 to 4.
+    /// At indices 1 to 4: the slope of the plain sum (weighted), the slope of the weight (hybrid), or the displacement
+    /// of the next octave (swiss, jordan).
     slope: Sample<S>,
     weight: S::F32,
 }
@@ -25,7 +25,7 @@ impl<S: Simd> State<S> {
         State { sum: [simd.f32(0.0); 5], slope: [simd.f32(0.0); 5], weight: simd.f32(1.0) }
     }
 
-    /// How far along an axis the octave about to come is moved, in its cells.
+    /// The displacement of the next octave along an axis, in its cells.
     #[inline(always)]
     pub(crate) fn shift(&self, simd: S, combine: &Combine, octave: &Octave, axis: usize) -> S::F32 {
         let factor = match *combine {
@@ -34,12 +34,12 @@ impl<S: Simd> State<S> {
             _ => 0.0,
         };
         let shift = self.slope[1 + axis] * simd.f32(factor);
-        // Far beyond any sense, and no number at all: not moved.
+        // Huge displacements and NaN are ignored.
         shift.select(shift.abs().lt(simd.f32(1_048_576.0)), simd.f32(0.0))
     }
 
-    /// Takes an octave into account: its value and slopes, scaled by its amplitude and slope factor. Slopes are there with
-    /// `SLOPES` and where the combination needs them; `axes` of them.
+    /// Adds an octave: its value and slopes, scaled by its amplitude and slope factor. Slopes exist with `SLOPES` and
+    /// if the combination needs them; `axes` of them.
     #[inline(always)]
     pub(crate) fn add<const SLOPES: bool>(
         &mut self,
@@ -97,7 +97,7 @@ impl<S: Simd> State<S> {
                 self.weight = held;
             }
             Shape::Hetero { offset } => {
-                // The weight is the height so far: 1 for the first octave, which is added to nothing.
+                // The weight is the height so far; 1 for the first octave.
                 let signal = (noise + simd.f32(offset)) * gain;
                 let added = self.weight * signal;
                 for axis in 1..=kept {
@@ -139,7 +139,7 @@ impl<S: Simd> State<S> {
         }
     }
 
-    /// What comes after the last octave.
+    /// The steps after the last octave.
     #[inline(always)]
     pub(crate) fn finish<const SLOPES: bool>(&mut self, simd: S, combine: &Combine, axes: usize) {
         let kept = if SLOPES { axes } else { 0 };
@@ -156,7 +156,7 @@ impl<S: Simd> State<S> {
                 let mut gradient = gradient;
                 self.sum[0] = self.sum[0] * simd.f32(scale);
                 if matches!(shape, Shape::Swiss { .. } | Shape::Jordan { .. }) {
-                    // These go from 0 up.
+                    // The sums of these shapes start at 0.
                     self.sum[0] = self.sum[0] * simd.f32(2.0) - one;
                     gradient *= 2.0;
                 }
@@ -170,7 +170,7 @@ impl<S: Simd> State<S> {
     }
 }
 
-/// Adds one octave's size to a sum of sizes; slopes turn with the sign.
+/// Adds the absolute value of an octave to a sum; slopes change sign with the value.
 #[inline(always)]
 pub(crate) fn add_size<S: Simd>(simd: S, sum: &mut Sample<S>, octave: &Sample<S>, axes: usize) {
     let sign = octave[0].bits() & simd.u32(0x8000_0000);
@@ -180,7 +180,7 @@ pub(crate) fn add_size<S: Simd>(simd: S, sum: &mut Sample<S>, octave: &Sample<S>
     }
 }
 
-/// Turns a sum of sizes, 0 to 2, into ridged (sign -1) or billow (sign 1) noise.
+/// Maps a sum of absolute values, 0 to 2, to ridged (sign -1) or billow (sign 1) noise.
 #[inline(always)]
 pub(crate) fn finish_sizes<S: Simd>(simd: S, sum: &mut Sample<S>, sign: f32, axes: usize) {
     let sign = simd.f32(sign);
@@ -190,8 +190,8 @@ pub(crate) fn finish_sizes<S: Simd>(simd: S, sum: &mut Sample<S>, sign: f32, axe
     }
 }
 
-/// Adds one octave to a weighted sum. `slope` is the slope of the plain sum so far (places 1 to 3). The sum's own slopes are kept
-/// where `SLOPES` says so.
+/// Adds one octave to a weighted sum. `slope` is the slope of the plain sum so far (indices 1 to 3). The slopes of the
+/// weighted sum are computed with `SLOPES`.
 #[inline(always)]
 pub(crate) fn add_weighted<S: Simd, const SLOPES: bool>(
     simd: S,
@@ -215,7 +215,7 @@ pub(crate) fn add_weighted<S: Simd, const SLOPES: bool>(
     }
 }
 
-/// The factor for a squared slope.
+/// The factor of an octave for a squared slope.
 #[inline(always)]
 fn damping<S: Simd>(simd: S, squared: S::F32, k: f32, falloff: Falloff) -> S::F32 {
     let (one, k) = (simd.f32(1.0), simd.f32(k));
@@ -230,11 +230,11 @@ fn damping<S: Simd>(simd: S, squared: S::F32, k: f32, falloff: Falloff) -> S::F3
     }
 }
 
-/// e^-x for x of 0 and more, within 3 units in the last place; what would be below e^-87 is e^-87.
+/// e^-x for x >= 0, within 3 units in the last place; results below e^-87 become e^-87.
 #[inline(always)]
 pub(crate) fn exp_minus<S: Simd>(simd: S, x: S::F32) -> S::F32 {
     let x = x.min(simd.f32(87.0));
-    // x = n ln 2 + r, with ln 2 in two pieces so that r keeps its bits.
+    // x = n ln 2 + r, with ln 2 split into two parts so that r keeps its precision.
     let n = x.mul_add(simd.f32(std::f32::consts::LOG2_E), simd.f32(0.5)).floor();
     let r = n.neg_mul_add(simd.f32(1.428_606_8e-6), n.neg_mul_add(simd.f32(0.693_145_75), x));
     // The Taylor polynomial of e^-r for |r| up to ln 2 / 2.
@@ -242,7 +242,7 @@ pub(crate) fn exp_minus<S: Simd>(simd: S, x: S::F32) -> S::F32 {
     for c in [-1.0 / 120.0, 1.0 / 24.0, -1.0 / 6.0, 0.5, -1.0, 1.0] {
         e = e.mul_add(r, simd.f32(c));
     }
-    // Times 2^-n, in the exponent; n is at most 126.
+    // Times 2^-n, by the exponent; n is at most 126.
     let power = (simd.u32(127) - n.to_i32()).shl(23).as_f32();
     e * power
 }

@@ -1,4 +1,4 @@
-//! The list of noises that can be asked sample by sample: from a source's name to its kernels.
+//! The kernels of every noise for evaluation sample by sample, by source.
 
 use crate::choices::{Fade, Smoothness};
 use crate::kernel::cellular::Cellular;
@@ -11,23 +11,24 @@ use crate::kernel::value::{Blended, Flat};
 use crate::program::Source;
 use orogen_simd::Simd;
 
-/// A noise at any level: what [`Pointwise`] noise a source means.
+/// A noise at any SIMD level: the [`Pointwise`] noise of a source.
 pub(crate) trait Family {
-    /// The noise at a level.
+    /// The noise at a SIMD level.
     type At<S: Simd>: Pointwise<S>;
     /// Whether it has slopes; else they are zero.
     const SLOPED: bool = true;
-    /// Whether its plain sums are quicker with two registers of points abreast: not where one takes all the registers there are.
+    /// Whether plain sums are faster with two registers of points at a time. They are not if one point needs all
+    /// registers.
     const PAIRED: bool = false;
 }
 
-/// Work whatever the noise.
+/// Work that is generic over the noise.
 pub(crate) trait VisitFamily {
     /// The work.
     fn visit<F: Family>(self);
 }
 
-/// Does the work with the noise the source names, in that many dimensions.
+/// Runs the work with the noise of the source, in `DIMS` dimensions.
 #[inline(always)]
 pub(crate) fn with_family<V: VisitFamily, const DIMS: usize>(source: Source, work: V) {
     match source {

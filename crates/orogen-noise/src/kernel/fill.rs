@@ -1,4 +1,4 @@
-//! The way in: picks the level and the path.
+//! Entry point of the kernels: selects the code path.
 
 use crate::choices::{Fade, Smoothness};
 use crate::kernel::families::with_family;
@@ -12,7 +12,7 @@ use crate::points::{Depth, Points};
 use crate::program::{Combine, Program, Source};
 use orogen_simd::{Body, Simd};
 
-/// One call of a public `fill`. Depths are z and w, as far as there are these axes.
+/// One call of a public `fill`. Depths are z and w, as far as these axes exist.
 pub(crate) struct Fill<'a> {
     pub program: &'a Program,
     pub points: Points<'a>,
@@ -73,7 +73,7 @@ fn fill<S: Simd, const DIMS: usize>(simd: S, call: Fill) {
     }
 }
 
-/// Points anywhere, some at a time.
+/// Points at any position, in blocks.
 #[inline(always)]
 fn blocks<S: Simd, const DIMS: usize>(
     simd: S,
@@ -82,17 +82,17 @@ fn blocks<S: Simd, const DIMS: usize>(
     depths: &[Depth],
     outputs: &mut Outputs,
 ) {
+    if let (Points::Scattered { x, y }, 2) = (*points, DIMS) {
+        // The positions need no buffers.
+        let target = outputs.part(0, points.len());
+        with_family::<_, DIMS>(program.source, Call::<S, DIMS> { simd, program, at: [x, y, &[], &[]], target });
+        return;
+    }
     let (mut x, mut y, mut z, mut w) = ([0.0; BLOCK], [0.0; BLOCK], [0.0; BLOCK], [0.0; BLOCK]);
     for (axis, depth) in [&mut z, &mut w].into_iter().zip(depths) {
         if let Depth::Slice(depth) = depth {
             axis.fill(*depth);
         }
-    }
-    if let (Points::Scattered { x, y }, 2) = (*points, DIMS) {
-        // They are where they are.
-        let target = outputs.part(0, points.len());
-        with_family::<_, DIMS>(program.source, Call::<S, DIMS> { simd, program, at: [x, y, &[], &[]], target });
-        return;
     }
     for start in (0..points.len()).step_by(BLOCK) {
         let count = BLOCK.min(points.len() - start);

@@ -11,7 +11,7 @@ use orogen_simd::{F32Lanes, Simd};
 #[derive(Clone, Copy)]
 pub(crate) struct Gradient<G, const DIMS: usize>(G);
 
-/// The row vector X in space: the ramps along x, then what the ramps along z (and w) left.
+/// The row vector X in space: the ramps along x, then the remainder of the ramps along z (and w).
 #[inline(always)]
 fn ramp_in_space<S: Simd>(
     column: &Weights<S>,
@@ -30,8 +30,8 @@ fn scaled_ramps<S: Simd>(row: &Weights<S>, factor: S::F32) -> [S::F32; 4] {
     [a, a * row.t[0], c, c * row.t[1]]
 }
 
-/// A lattice point blended along z: gradients along x and y, what the ramp along z left, the slopes of these along z; the
-/// gradient along w, and its slope along z.
+/// A lattice point blended along z: gradients along x and y, the remainder of the ramp along z, the slopes of these
+/// along z; the gradient along w, and its slope along z.
 #[inline(always)]
 fn along_z<S: Simd, G: Gradients<S>, const DIMS: usize>(
     lattice: G,

@@ -1,4 +1,4 @@
-//! Lattices of samples: strip by strip, row by row, all octaves at once.
+//! Lattices of samples: strip by strip, row by row, all octaves of a row together.
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
@@ -9,14 +9,14 @@ use crate::program::{Combine, Octave, Program, Source};
 use orogen_simd::{Body, F32Lanes, Simd, Stream, streaming};
 use std::cell::Cell;
 
-/// Columns from which on a window is wide, and how many rows of one are filled strip by strip before the next ones.
+/// Minimum number of columns of a wide window, and the number of rows that all its strips fill before the next rows.
 const WIDE: usize = 4096;
 const BAND: usize = 64;
 
-/// Samples from which on results are larger than caches are.
+/// Minimum number of samples of results that exceed the caches.
 const HUGE: usize = 1 << 24;
 
-/// Buffers a thread keeps from call to call.
+/// Buffers that a thread keeps between calls.
 struct Scratch {
     octaves: Vec<StripOctave>,
     points: Points,
@@ -26,13 +26,14 @@ thread_local! {
     static SCRATCH: Cell<Option<Box<Scratch>>> = const { Cell::new(None) };
 }
 
-/// Whether there are kernels for it here. What is rare is asked point by point: kernels of its own would be as many again.
+/// Whether kernels exist for this case. Rare cases are evaluated point by point; kernels for them would double the
+/// code.
 pub(crate) fn covers(program: &Program, dims: usize, slopes: bool) -> bool {
     let shaped = matches!(program.combine, Combine::Shaped { .. });
     !(slopes && shaped) && !(dims == 4 && (slopes || program.combine.needs_slopes()))
 }
 
-/// Fills a lattice, as far as this [`covers`] it; `depths` are z and w of the slice, as far as there are `dims`.
+/// Fills a lattice for which [`covers`] returns true. `depths` are z and w of the slice, as many as `dims` requires.
 #[inline(always)]
 pub(crate) fn fill<S: Simd>(
     simd: S,
@@ -41,7 +42,7 @@ pub(crate) fn fill<S: Simd>(
     (dims, depths): (usize, [f64; 2]),
     outputs: &mut Outputs,
 ) {
-    // Taken out and put back: nothing is borrowed while the kernels run.
+    // The buffers are moved out and back, so nothing is borrowed while the kernels run.
     let mut scratch = SCRATCH.take().unwrap_or_else(|| Box::new(Scratch { octaves: Vec::new(), points: NO_POINTS }));
     let octaves = program.octaves();
     if scratch.octaves.len() < octaves.len() {
@@ -51,7 +52,7 @@ pub(crate) fn fill<S: Simd>(
     let strips = &mut strips[..octaves.len()];
     let whole = Whole { simd, program, xs, ys, dims, depths };
     if xs.len() > WIDE && xs.len() * ys.len() >= HUGE {
-        // Written past the caches, whole registers at a time: the first strip ends where one begins in memory.
+        // Stores bypass the caches in whole registers: the first strip ends at an aligned address.
         let register = S::LANES * size_of::<f32>();
         let beyond = outputs.value.as_ptr().addr() % register;
         let lead = (register - beyond) % register / size_of::<f32>();
@@ -73,7 +74,7 @@ struct Whole<'a, S> {
 }
 
 impl<S: Simd> Whole<'_, S> {
-    /// Fills it, strip by strip, the first of them of `lead` columns.
+    /// Fills it strip by strip. The first strip has `lead` columns.
     #[inline(always)]
     fn fill(
         &self,
@@ -86,7 +87,8 @@ impl<S: Simd> Whole<'_, S> {
         let octaves = program.octaves();
         let slopes = outputs.slopes.is_some() || program.combine.needs_slopes();
         let (first, others) = xs.split_at(lead.min(xs.len()));
-        // Rows far apart in memory are in pages of their own: a strip of a wide window goes down only so far before the next.
+        // Rows that are far apart in memory lie in different pages, so a strip of a wide window covers only a band of
+        // rows at a time.
         let band = if xs.len() > WIDE { BAND } else { ys.len().max(1) };
         for (b, band_ys) in ys.chunks(band).enumerate() {
             let mut column = 0;
@@ -120,10 +122,10 @@ impl<S: Simd> Whole<'_, S> {
     }
 }
 
-/// Runs the kernel made for the row: by the rank of its basis, by how octaves are combined, and by what is wanted.
+/// Runs the kernel for the rank of the basis, the combination of octaves, and the requested results.
 #[inline(always)]
 fn in_dimensions<S: Simd, const RANK: usize>(simd: S, dims: usize, row: Row) {
-    // Without slopes all dimensions are the same.
+    // Without slopes the kernel is the same in all dimensions.
     match (dims, row.target.slopes.is_some() || row.combine.needs_slopes()) {
         (_, false) => of_kind::<S, RANK, 2>(simd, row),
         (2, true) => of_kind::<S, RANK, 2>(simd, row),
@@ -144,7 +146,7 @@ fn of_kind<S: Simd, const RANK: usize, const DIMS: usize>(simd: S, row: Row) {
     }
 }
 
-// Which of the ways to combine a kernel is made for.
+// The combination that a kernel is compiled for.
 const SUM: usize = 0;
 const SIZES: usize = 1;
 const WEIGHTED: usize = 2;
@@ -155,10 +157,10 @@ struct Row<'a> {
     combine: &'a Combine,
     octaves: &'a [Octave],
     strips: &'a [StripOctave],
-    /// Its place in the group of rows.
+    /// Its index in the group of rows.
     r: usize,
     target: Outputs<'a>,
-    /// Set where values are written past the caches.
+    /// Set if stores bypass the caches.
     stream: Option<&'a Stream>,
 }
 
@@ -175,12 +177,12 @@ impl<const RANK: usize, const KIND: usize, const DIMS: usize, const SLOPES: bool
         let mut row = self.0;
         let mut at = 0;
         while at < row.target.value.len() {
-            // How many registers are worked on at a time is a matter of speed: enough to hide the latency of the
-            // multiply-adds, few enough to stay in registers. All of them divide a strip's width.
+            // The number of registers per step affects only speed: enough to hide the latency of the multiply-adds, few
+            // enough for the register file. All numbers divide the width of a strip.
             at += S::LANES
                 * match (KIND, SLOPES, S::LANES) {
                     (SUM, false, _) => block::<S, DIMS, RANK, 8, KIND, SLOPES>(simd, &mut row, at),
-                    // 32 registers instead of 16.
+                    // AVX-512 has 32 registers instead of 16.
                     (SIZES, false, 16) => block::<S, DIMS, RANK, 8, KIND, SLOPES>(simd, &mut row, at),
                     (SIZES, false, _) | (WEIGHTED, _, 16) | (SUM | SIZES, true, 16) => {
                         block::<S, DIMS, RANK, 4, KIND, SLOPES>(simd, &mut row, at)
@@ -191,8 +193,8 @@ impl<const RANK: usize, const KIND: usize, const DIMS: usize, const SLOPES: bool
     }
 }
 
-/// `N` registers of one row, from column `at` on; returns `N`. What lies beyond the last column is made from what an earlier strip
-/// left there, and dropped.
+/// `N` registers of one row, from column `at` on; returns `N`. Lanes beyond the last column read values of an earlier
+/// strip; their results are dropped.
 #[inline(always)]
 fn block<S: Simd, const DIMS: usize, const RANK: usize, const N: usize, const KIND: usize, const SLOPES: bool>(
     simd: S,
@@ -206,7 +208,7 @@ fn block<S: Simd, const DIMS: usize, const RANK: usize, const N: usize, const KI
         let (strip, octave) = (&row.strips[o], &row.octaves[o]);
         let mut one = [none; N];
         match combine {
-            // A plain sum runs on from octave to octave.
+            // A plain sum accumulates across octaves.
             Combine::Sum if KIND == SUM => {
                 for n in 0..N {
                     one[n] = states[n].sum;

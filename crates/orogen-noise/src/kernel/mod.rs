@@ -1,7 +1,7 @@
-//! The kernels: every noise, one program; lattice and scattered points.
+//! The kernels: every noise as a program, for lattices and scattered points.
 //!
-//! Everything a kernel runs per sample is an `#[inline(always)]` function or a plain loop over an index: a closure or an iterator
-//! adaptor is a function of its own, compiled *without* the level's instructions where it is not inlined.
+//! Code that runs per sample is in `#[inline(always)]` functions and plain loops over an index. A closure or iterator
+//! adaptor is a separate function; if it is not inlined, it is compiled *without* the instructions of the SIMD level.
 
 pub(crate) mod bases;
 pub(crate) mod basis;

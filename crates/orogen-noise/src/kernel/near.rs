@@ -1,4 +1,4 @@
-//! Points in no order, but in few cells of the plane: the keys of these are looked up.
+//! Scattered points in the plane that share few cells: the keys of these cells are looked up in a table.
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
@@ -9,38 +9,40 @@ use crate::kernel::source::PerlinSource;
 use crate::program::{Octave, Program};
 use orogen_simd::{Body, Double, F32Lanes, F64Lanes, MaskLanes, Simd, U32Lanes};
 
-/// So many points are looked at to find out where cells are,
+/// Number of points that are examined to find their range of cells.
 const AHEAD: usize = 256;
-/// if at least as many are left.
+/// Minimum number of remaining points for a table.
 const WORTH: usize = 4 * AHEAD;
-/// Where that is too far apart, so many points are not looked at.
+/// Number of points that are computed without a table after their range of cells was too large for one.
 const PLAIN: usize = 16 * AHEAD;
-/// Cells along an axis whose keys are kept.
+/// Cells along an axis that a table covers.
 const CELLS: usize = 16;
-/// Registers of points elsewhere after which the next ones are looked at anew.
+/// Number of registers with points outside the table after which a new table is built.
 const MISSES: usize = 4;
-/// The most lanes there can be.
+/// Maximum number of lanes.
 const LANES: usize = 32;
-/// Cells farther out than this are not kept: positions beyond the program's limit, which is twice as far, have to be held there.
+/// Limit of cells in tables. The program's limit is twice as far; positions beyond that must be clamped, which tables
+/// do not do.
 const FARTHEST: f64 = 562_949_953_421_312.0;
 
-/// Points, in registers.
+/// Registers of points.
 pub(crate) trait Placed<S: Simd> {
-    /// The cells along an axis of the points from `start` on: they are at least as many as there are lanes.
+    /// The cells along an axis of the points from `start` on. There are at least as many points as lanes.
     fn wholes(&self, simd: S, axis: usize, start: usize) -> S::F64;
-    /// The fractions along an axis of the points from `start` on, and what [`Simd::place`] tells of their cells.
+    /// The fractions along an axis of the points from `start` on, and the results of [`Simd::place`] for their cells.
     fn place(&self, simd: S, axis: usize, start: usize, from: f64) -> (S::F32, S::U32, S::U32);
-    /// The cells along an axis of the points from `start` on, wherever they are.
+    /// The cells along an axis of the points from `start` on, at any position.
     fn cell(&self, simd: S, axis: usize, start: usize) -> Cell<S>;
 }
 
-/// Whether [`Scattered`] is for the octave: one by itself, as noise that is no fractal has it. Offset and amplitude are then left out.
+/// Whether [`Scattered`] supports the octave: a single octave of a noise that is not a fractal, because offset and
+/// amplitude are left out.
 #[inline(always)]
 pub(crate) fn covers(octave: &Octave) -> bool {
     !octave.tiled && octave.amplitude == 1.0 && octave.offset[0] == 0.0 && octave.offset[1] == 0.0
 }
 
-/// Points anywhere.
+/// Points at any position.
 pub(crate) struct Scattered<'a> {
     pub frequency: f64,
     pub limit: f64,
@@ -75,17 +77,17 @@ impl<S: Simd> Placed<S> for Scattered<'_> {
 /// Points around an origin, in f32.
 struct Around<'a> {
     frequency: f32,
-    /// The origin's cell, and how far into it the origin is.
+    /// The cell of the origin, and the origin's fraction in it.
     whole: [f64; 2],
     t: [f32; 2],
     at: [&'a [f32]; 2],
 }
 
 impl Around<'_> {
-    /// The farthest from the origin's cell, in cells.
+    /// Maximum distance from the origin's cell, in cells.
     const FARTHEST: f32 = 1_073_741_824.0;
 
-    /// In cells, counted from the origin's.
+    /// The coordinate in cells, relative to the origin's cell.
     #[inline(always)]
     fn coordinate<S: Simd>(&self, simd: S, axis: usize, start: usize) -> S::F32 {
         let position = simd.load_partial(self.at[axis].get(start..).unwrap_or_default(), 0.0);
@@ -102,7 +104,7 @@ impl<S: Simd> Placed<S> for Around<'_> {
     fn place(&self, simd: S, axis: usize, start: usize, from: f64) -> (S::F32, S::U32, S::U32) {
         let u = self.coordinate(simd, axis, start);
         let whole = u.floor();
-        // The first place is near: tables are made around points.
+        // Tables lie around the points, so the difference fits into an i32.
         let first = (from - self.whole[axis]) as i32;
         let place = whole.to_i32() - simd.u32(first as u32);
         (u - whole, place, place & simd.u32(!(CELLS as u32 - 1)))
@@ -118,7 +120,7 @@ impl<S: Simd> Placed<S> for Around<'_> {
     }
 }
 
-/// Fills with noise that is [`Pointwise::KEYED`].
+/// Fills with a noise that is [`Pointwise::KEYED`].
 #[inline(always)]
 pub(crate) fn fill<S: Simd, P: Pointwise<S>, A: Placed<S>>(simd: S, noise: P, points: &A, target: &mut [f32]) {
     let mut start = 0;
@@ -137,7 +139,7 @@ pub(crate) fn fill<S: Simd, P: Pointwise<S>, A: Placed<S>>(simd: S, noise: P, po
     }
 }
 
-/// Fills a register, wherever its points are.
+/// Fills a register of points at any position.
 #[inline(always)]
 fn anywhere<S: Simd, P: Pointwise<S>, A: Placed<S>>(simd: S, noise: P, points: &A, target: &mut [f32], start: usize) {
     let (x, y) = (points.cell(simd, 0, start), points.cell(simd, 1, start));
@@ -150,12 +152,13 @@ fn anywhere<S: Simd, P: Pointwise<S>, A: Placed<S>>(simd: S, noise: P, points: &
 struct Near<S: Simd> {
     /// The first cell's number, per axis.
     first: [f64; 2],
-    /// The keys of the cells and of those after them, per axis.
+    /// The keys of the cells and of their successors, per axis.
     keys: [[S::Table16; 2]; 2],
 }
 
 impl<S: Simd> Near<S> {
-    /// The keys around the next points from `start` on, of which there are [`AHEAD`] or more; nothing if these are too far apart.
+    /// The keys around the points from `start` on, of which there are at least [`AHEAD`]; `None` if they span too many
+    /// cells.
     #[inline(always)]
     fn of<P: Pointwise<S>, A: Placed<S>>(simd: S, noise: P, points: &A, start: usize) -> Option<Near<S>> {
         let mut near = Near { first: [0.0; 2], keys: [[simd.table16(&[0.0; 16]); 2]; 2] };
@@ -196,7 +199,7 @@ impl<S: Simd> Near<S> {
         Some(near)
     }
 
-    /// Fills from `start` on for as long as most points are near; returns where it ends.
+    /// Fills from `start` on while most points are inside the table; returns the end.
     #[inline(always)]
     fn fill<P: Pointwise<S>, A: Placed<S>>(
         &self,
@@ -236,7 +239,7 @@ impl<S: Simd> Near<S> {
 pub(crate) struct FillAround<'a> {
     pub program: &'a Program,
     pub origin: [f64; 2],
-    /// x and y of the points from the origin on, metres: as many as there are results.
+    /// x and y of the points relative to the origin, in metres; as many as results.
     pub at: [&'a [f32]; 2],
     pub value: &'a mut [f32],
 }
@@ -250,7 +253,7 @@ impl Body for FillAround<'_> {
     }
 }
 
-/// The same, with as many registers abreast as pay.
+/// The same with the number of registers per step that is fastest.
 struct Abreast<'a>(FillAround<'a>);
 
 impl Body for Abreast<'_> {

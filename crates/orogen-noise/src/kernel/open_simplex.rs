@@ -1,8 +1,7 @@
-//! OpenSimplex2: the lattice of Simplex noise with more gradients; in space turned so that level planes look their best, and with
-//! wider kernels where it is to be smooth.
-//!
-//! In space the corners of simplices are two lattices of cubes, each in the middles of the other's cubes; a sample is turned so that
-//! their common diagonal is the z axis. In each of the two the nearest corners are found at once.
+//! OpenSimplex2: the lattice of Simplex noise with more gradients. In space the lattice is rotated so that horizontal
+//! planes have the least visible structure. The smooth variant has wider kernels. In space the corners are two lattices
+//! of cubes, each at the centres of the other's cubes. A sample is rotated so that their common diagonal is the z axis,
+//! and the nearest corners are found in each lattice separately.
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
@@ -69,7 +68,7 @@ impl<S: Simd> Gradients<S> for OpenSource<S> {
             }
             return gradient;
         }
-        // A number below 12 from the hash's upper half; the signs from what that leaves.
+        // A number below 12 from the upper half of the hash, and the signs from the remainder.
         let twelfths = hash.shr(16) * simd.u32(12);
         for axis in 0..DIMS {
             let (table, sign) =
@@ -94,18 +93,18 @@ impl Corners for Open {
 #[derive(Clone, Copy)]
 pub(crate) struct Wide<S: Simd, const DIMS: usize>(OpenSource<S>);
 
-/// The square of how far its corners reach: in the plane to the next one, in four dimensions almost.
+/// Squared radius of a corner's kernel: in the plane the distance to the next corner, in four dimensions almost that.
 const WIDE_REACH: [f32; 3] = [2.0 / 3.0, 0.75, 0.8];
 const WIDE_SCALE: [f32; 3] = [18.241_9, 11.867_1, 8.491_0];
 
 impl<S: Simd, const DIMS: usize> Wide<S, DIMS> {
-    /// Five corners of a triangle's neighbourhood: those of its rhombus, and of the two beside the triangle's own the nearer.
+    /// Five corners around a triangle: those of its rhombus, and the nearer one of the two beside the triangle.
     #[inline(always)]
     fn plane<const SLOPES: bool>(self, simd: S, at: &[Slanted<S>; 4]) -> Sample<S> {
         let (zero, one) = (simd.f32(0.0), simd.f32(1.0));
         let place = place::<S, 2>(simd, at);
         let t = place.t;
-        // (2, 1) or (0, -1) where x is the greater fraction, (1, 2) or (-1, 0) where y is.
+        // (2, 1) or (0, -1) if x is the larger fraction, (1, 2) or (-1, 0) if y is.
         let wide = t[1].lt(t[0]);
         let ahead = one.lt(t[0] + t[1]);
         let (far, near) = (simd.f32(2.0).select(ahead, zero), one.select(ahead, -one));
@@ -135,7 +134,7 @@ impl<S: Simd, const DIMS: usize> Wide<S, DIMS> {
         raw
     }
 
-    /// All corners that may reach a cube: from one before it to one behind, along each axis.
+    /// All corners whose kernels can reach a cube: from one before it to one after it, along each axis.
     #[inline(always)]
     fn time<const SLOPES: bool>(self, simd: S, at: &[Slanted<S>; 4]) -> Sample<S> {
         let zero = simd.f32(0.0);
@@ -197,18 +196,18 @@ impl<S: Simd, const DIMS: usize> Pointwise<S> for Wide<S, DIMS> {
 #[derive(Clone, Copy)]
 pub(crate) struct Cubes<S: Simd, const SMOOTH: bool>(OpenSource<S>);
 
-/// What tells the second lattice from the first.
+/// The seed offset of the second lattice.
 const SECOND: u32 = 0x5851_F42D;
 const CUBES_SCALE: f32 = 108.291;
 
-// The turn: (x + y) times these, and z times the third.
+// The rotation: factors of (x + y), and of z.
 const ACROSS: f64 = -0.211_324_865_405_187_13;
 const DOWN: f64 = -0.577_350_269_189_625_8;
 const UP: f64 = 0.577_350_269_189_625_8;
 
 impl<S: Simd, const SMOOTH: bool> Cubes<S, SMOOTH> {
-    /// The corner of the cell nearest to a turned sample, and the next along the axis where it is farthest off. Each coordinate is
-    /// that of the cell around the corner.
+    /// The corner nearest to a rotated sample, and the next one along the axis with the largest distance. Each
+    /// coordinate is that of the cell around the corner.
     #[inline(always)]
     fn two<const SLOPES: bool>(self, simd: S, salt: u32, cells: &[Cell<S>; 3], raw: &mut Sample<S>) {
         let (zero, half) = (simd.f32(0.0), simd.f32(0.5));
@@ -232,7 +231,7 @@ impl<S: Simd, const SMOOTH: bool> Cubes<S, SMOOTH> {
         self.corner::<SLOPES>(simd, REACH, key, &way, raw);
     }
 
-    /// The eight corners of the cube a turned sample is in.
+    /// The eight corners of the cube that contains a rotated sample.
     #[inline(always)]
     fn eight<const SLOPES: bool>(self, simd: S, salt: u32, cells: &[Cell<S>; 3], raw: &mut Sample<S>) {
         let mut keys = [[simd.u32(0); 2]; 3];
@@ -281,7 +280,8 @@ impl<S: Simd, const SMOOTH: bool> Pointwise<S> for Cubes<S, SMOOTH> {
         let zero = simd.f64(0.0);
         let [mut first, mut second] = [[Cell::at(simd, zero); 3]; 2];
         for axis in 0..3 {
-            // Corners stand on whole numbers, and on halves; smooth noise looks at the cube between them, fast at that around them.
+            // Corners are at whole numbers in one lattice and at halves in the other. The smooth variant reads the cube
+            // between them, the fast variant the cube around them.
             (first[axis], second[axis]) = if SMOOTH {
                 (Cell::of(simd, turned[axis]), Cell::of(simd, turned[axis] + simd.f64(-0.5)))
             } else {
@@ -297,7 +297,7 @@ impl<S: Simd, const SMOOTH: bool> Pointwise<S> for Cubes<S, SMOOTH> {
             self.two::<SLOPES>(simd, SECOND, &second, &mut raw);
         }
         if SLOPES {
-            // Turned back.
+            // Rotates the slopes back.
             let plane = raw[1] + raw[2];
             let both = plane * simd.f32(ACROSS as f32) + raw[3] * simd.f32(DOWN as f32);
             raw = [raw[0], raw[1] + both, raw[2] + both, (plane + raw[3]) * simd.f32(UP as f32), raw[4]];

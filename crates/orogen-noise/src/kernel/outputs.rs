@@ -1,6 +1,6 @@
-//! Where results go.
+//! Output slices.
 
-/// Where results go: values, and slopes along x, y, z and w where they are wanted. Lengths are checked.
+/// Output slices: values, and slopes along x, y, z and w if requested. Their lengths are checked before.
 pub(crate) struct Outputs<'a> {
     pub value: &'a mut [f32],
     pub slopes: Option<[&'a mut [f32]; 4]>,
@@ -14,7 +14,7 @@ impl Outputs<'_> {
         }
     }
 
-    /// The `count` samples from `start` on. Where an axis is missing, the slice of its slopes is empty.
+    /// The `count` samples from `start` on. If an axis is missing, the slice of its slopes is empty.
     #[inline(always)]
     pub(crate) fn part(&mut self, start: usize, count: usize) -> Outputs<'_> {
         Outputs {

@@ -1,4 +1,4 @@
-//! Phacelle noise: stripes along a direction that each sample brings with it.
+//! Phacelle noise: stripes along a direction given for each sample.
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
@@ -10,12 +10,12 @@ use crate::points::Points;
 use crate::program::Program;
 use orogen_simd::{Body, F32Lanes, Simd, U32Lanes};
 
-/// Where stripes run.
+/// Direction of the stripes.
 #[derive(Clone, Copy)]
 pub(crate) enum Along<'a> {
-    /// The same way everywhere.
+    /// The same direction everywhere.
     One([f32; 2]),
-    /// A way for each sample, of any length.
+    /// A direction for each sample, of any length.
     Each([&'a [f32]; 2]),
 }
 
@@ -27,10 +27,10 @@ pub(crate) struct Fill<'a> {
     pub along: Along<'a>,
     /// Stripes per cell.
     pub stripes: f32,
-    /// The length below which waves are not made longer.
+    /// Minimum length that a wave is divided by.
     pub shortest: f32,
     pub cosine: &'a mut [f32],
-    /// As long as the other, or empty where it is not wanted.
+    /// As long as the other, or empty if not requested.
     pub sine: &'a mut [f32],
 }
 
@@ -89,7 +89,7 @@ impl Body for Block<'_> {
                 Along::One([dx, dy]) => [simd.f32(dx), simd.f32(dy)],
                 Along::Each([dx, dy]) => [simd.load_partial(&dx[start..], 0.0), simd.load_partial(&dy[start..], 0.0)],
             };
-            // Turns per cell across the stripes; a way of no length, or of none that can be told, makes none.
+            // Turns per cell across the stripes; a direction of length 0 or NaN gives none.
             let length = dy.mul_add(dy, dx * dx).sqrt();
             let sensible = zero.lt(length) & length.lt(simd.f32(f32::MAX));
             let scale = (simd.f32(stripes) / length).select(sensible, zero);
@@ -107,7 +107,7 @@ impl Body for Block<'_> {
                 let hash = lattice.hash::<2>(simd, [keys[0][i], keys[1][j], keys[0][i], keys[0][i]]);
                 let second = (hash ^ hash.shr(16)) * simd.u32(0x93D7_65DD);
                 let third = (second ^ second.shr(15)) * simd.u32(0x915F_77F5);
-                // Each pivot within half a cell of its lattice point.
+                // Each pivot is within half a cell of its lattice point.
                 let jitter = [unit(simd, hash) - simd.f32(0.5), unit(simd, second) - simd.f32(0.5)];
                 let v = [
                     cells[0].t - (jitter[0] + simd.f32(i as f32 - 1.0)),
@@ -135,19 +135,19 @@ impl Body for Block<'_> {
     }
 }
 
-/// e^(-2 1.5^2): what weights are less at one and a half cells, where they end.
+/// e^(-2 1.5^2): subtracted from weights so that they are 0 at one and a half cells.
 const LEAST: f32 = 0.011_108_997;
 
-/// A hash as a number from 0 up to 1.
+/// A hash as a number in 0 .. 1.
 #[inline(always)]
 fn unit<S: Simd>(simd: S, hash: S::U32) -> S::F32 {
     hash.shr(8).i32_to_f32() * simd.f32(1.0 / 16_777_216.0)
 }
 
-/// Cosine and sine of so many turns, within 4e-7.
+/// Cosine and sine of this number of turns, within 4e-7.
 #[inline(always)]
 fn circle<S: Simd>(simd: S, turns: S::F32) -> [S::F32; 2] {
-    // Quarter turns from the nearest whole one: an odd or even number of them swaps the two.
+    // Quarter turns from the nearest whole one. An odd number of them swaps sine and cosine.
     let quarters = turns * simd.f32(4.0);
     let whole = (quarters + simd.f32(0.5)).floor();
     let a = (quarters - whole) * simd.f32(std::f32::consts::FRAC_PI_2);
@@ -163,7 +163,7 @@ fn circle<S: Simd>(simd: S, turns: S::F32) -> [S::F32; 2] {
     let sin = sin * a;
     let number = whole.to_i32();
     let even = (number & simd.u32(1)).eq(simd.u32(0));
-    // cos changes its sign in quarters 1 and 2, sin in 2 and 3.
+    // The cosine changes its sign in quarters 1 and 2, the sine in 2 and 3.
     let turn = |number: S::U32| (number & simd.u32(2)).shl(30);
     let (first, second) = (turn(number + simd.u32(1)), turn(number));
     [(cos.select(even, sin).bits() ^ first).as_f32(), (sin.select(even, cos).bits() ^ second).as_f32()]

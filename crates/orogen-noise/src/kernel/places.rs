@@ -1,12 +1,12 @@
-//! Positions of points, some at a time.
+//! Positions of points, in blocks.
 
 use crate::points::Points;
 use orogen_simd::{Body, F32Lanes, F64Lanes, Simd};
 
-/// How many points are worked on at a time where their positions have to be put together: they stay in the first-level cache.
+/// Points per block, if their positions are copied into buffers. The buffers fit into the first-level cache.
 pub(crate) const BLOCK: usize = 256;
 
-/// x and y of as many points from `start` on as there is room for: where they are, or put together in that room.
+/// x and y of the points from `start` on, as many as the buffers hold: the caller's slices, or the buffers.
 #[inline(always)]
 pub(crate) fn positions<'a, S: Simd>(
     simd: S,
@@ -28,7 +28,7 @@ pub(crate) fn positions<'a, S: Simd>(
     }
 }
 
-/// Collects the positions of lattice samples from `start` on, row by row.
+/// Copies the positions of lattice samples from `start` on, row by row.
 #[inline(always)]
 fn gather<S: Simd>(
     simd: S,
@@ -55,7 +55,7 @@ fn gather<S: Simd>(
     }
 }
 
-/// Adds displacements to positions: to each its own, or all on one line.
+/// Adds displacements to positions: to different positions, or all to the same one.
 struct Displace<'a> {
     to: &'a mut [f64],
     from: Option<&'a [f64]>,

@@ -1,4 +1,4 @@
-//! Octaves asked sample by sample: what every noise can do.
+//! Octaves evaluated sample by sample: every noise supports this.
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
@@ -8,19 +8,20 @@ use crate::kernel::combine::Sample;
 use crate::program::{Octave, Source};
 use orogen_simd::{F32Lanes, Simd};
 
-/// One octave of a noise at a register of samples.
+/// One octave of a noise for a register of samples.
 pub(crate) trait Pointwise<S: Simd>: Copy {
-    /// A coordinate along one axis, split as the noise needs it.
+    /// A coordinate along one axis, split into the parts that the noise needs.
     type Coordinate: Copy;
 
-    /// The noise as the octave needs it.
+    /// The noise for an octave.
     fn new(simd: S, source: Source, octave: &Octave) -> Self;
     /// Splits a coordinate in cells.
     fn split(simd: S, coordinate: S::F64) -> Self::Coordinate;
     /// Adds the octave's value and (with `SLOPES`) slopes, scaled, to a sample.
     fn add<const SLOPES: bool>(self, simd: S, octave: &Octave, at: &[Self::Coordinate; 4], sum: &mut Sample<S>);
 
-    /// Whether a sample in the plane takes of its cell no more than keys along x and y, so that the two methods below are there.
+    /// Whether a sample in the plane depends on its cell only through keys along x and y. The two methods below exist
+    /// only then.
     const KEYED: bool = false;
     /// The keys of a cell and of the next along an axis.
     #[inline(always)]
@@ -28,15 +29,15 @@ pub(crate) trait Pointwise<S: Simd>: Copy {
         let _ = (axis, cell);
         [simd.u32(0); 2]
     }
-    /// Adds the value of an octave of amplitude 1 to a sample in the plane: its fractions, and the keys of its cell and the next along x
-    /// and y.
+    /// Adds the value of an octave of amplitude 1 to a sample in the plane. `t` are its fractions, `keys` those of its
+    /// cell and of the next one along x and y.
     #[inline(always)]
     fn add_keyed(self, simd: S, t: [S::F32; 2], keys: [[S::U32; 2]; 2], sum: &mut Sample<S>) {
         let _ = (simd, t, keys, sum);
     }
 }
 
-/// A low-rank basis, sample by sample: the very operations of the lattice, in their order.
+/// A low-rank basis, sample by sample: the operations of the lattice path in the same order.
 #[derive(Clone, Copy)]
 pub(crate) struct LowRank<B>(B);
 
@@ -78,7 +79,8 @@ impl<S: Simd, B: Basis<S>> Pointwise<S> for LowRank<B> {
     }
 }
 
-/// Adds an octave's value (and slopes), times their factors, to a sample of those fractions, in the cell of those keys.
+/// Adds an octave's value (and slopes), times their factors, to a sample with these fractions, in the cell with these
+/// keys.
 #[inline(always)]
 fn add<S: Simd, B: Basis<S>, const SLOPES: bool>(
     simd: S,
@@ -106,7 +108,7 @@ fn add<S: Simd, B: Basis<S>, const SLOPES: bool>(
     accumulate::<S, B, SLOPES>(&coefficients, &rows, sum);
 }
 
-/// Adds the octave's value (and slopes) to a sample: the order of these additions is the order of the lattice path.
+/// Adds the octave's value (and slopes) to a sample. The order of the additions is that of the lattice path.
 #[inline(always)]
 fn accumulate<S: Simd, B: Basis<S>, const SLOPES: bool>(
     coefficients: &Coefficients<S>,

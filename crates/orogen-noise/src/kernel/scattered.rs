@@ -1,4 +1,4 @@
-//! Points anywhere: register by register, all octaves at once.
+//! Points at any position: register by register, all octaves of a register together.
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
@@ -12,11 +12,11 @@ use crate::program::{Combine, Octave, Program};
 use orogen_simd::{Body, Double, F32Lanes, Simd};
 use std::marker::PhantomData;
 
-/// A call of [`Scatter`] to be made for the noise a source names.
+/// A call of [`Scatter`] for the noise of a source.
 pub(crate) struct Call<'a, S: Simd, const DIMS: usize> {
     pub simd: S,
     pub program: &'a Program,
-    /// x, y, z and w of the points, metres: of the first `DIMS` as many as there are results.
+    /// x, y, z and w of the points in metres. The first `DIMS` slices are as long as the results.
     pub at: [&'a [f64]; 4],
     pub target: Outputs<'a>,
 }
@@ -35,7 +35,8 @@ impl<S: Simd, const DIMS: usize> VisitFamily for Call<'_, S, DIMS> {
     }
 }
 
-/// Evaluates a program at points, with slopes where the noise has any. A function of its own for each level and noise.
+/// Evaluates a program at points, with slopes if the noise has any. Compiled as a separate function for each level and
+/// noise.
 struct Scatter<'a, F, const DIMS: usize> {
     program: &'a Program,
     at: [&'a [f64]; 4],
@@ -48,7 +49,7 @@ impl<F: Family, const DIMS: usize> Body for Scatter<'_, F, DIMS> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        // Where all slopes are zero, what needs them adds nothing but zeros.
+        // If all slopes are zero, the terms that read them are zero too.
         if F::SLOPED { self.go::<S, true>(simd) } else { self.go::<S, false>(simd) }
     }
 }
@@ -74,7 +75,8 @@ impl<F: Family, const DIMS: usize> Scatter<'_, F, DIMS> {
                     }
                     place[axis] = F::At::<S>::split(simd, u);
                 }
-                // A plain sum runs on from octave to octave. One call for all: it is inlined, and long.
+                // A plain sum accumulates across octaves. There is only one call for both cases, because it is inlined
+                // and long.
                 let runs_on = matches!(combine, Combine::Sum);
                 let mut one = if runs_on { state.sum } else { [simd.f32(0.0); 5] };
                 noise.add::<SLOPES>(simd, octave, &place, &mut one);
@@ -113,7 +115,7 @@ impl<F: Family, const DIMS: usize> Body for Sums<'_, F, DIMS> {
         let octaves = program.octaves();
         let mut start = 0;
         if let (true, [octave]) = (F::PAIRED, octaves) {
-            // What the one octave needs stays in registers from point to point.
+            // The values of the only octave stay in registers from point to point.
             let noise = F::At::<S>::new(simd, program.source, octave);
             if F::At::<S>::KEYED && DIMS == 2 && near::covers(octave) {
                 let points = near::Scattered { frequency: octave.frequency, limit: program.limit, at: [at[0], at[1]] };
@@ -141,7 +143,7 @@ impl<F: Family, const DIMS: usize> Body for Sums<'_, F, DIMS> {
     }
 }
 
-/// The positions of a register of points, within the program's limit.
+/// The positions of a register of points, clamped to the program's limit.
 #[inline(always)]
 fn positions<S: Simd, const DIMS: usize>(simd: S, program: &Program, at: &[&[f64]; 4], start: usize) -> [S::F64; 4] {
     let mut position = [simd.f64(0.0); 4];
@@ -152,7 +154,7 @@ fn positions<S: Simd, const DIMS: usize>(simd: S, program: &Program, at: &[&[f64
     position
 }
 
-/// Where positions are in an octave, as its noise needs them.
+/// Positions in the coordinates of an octave, split as its noise needs them.
 #[inline(always)]
 fn places<S: Simd, F: Family, const DIMS: usize>(
     simd: S,

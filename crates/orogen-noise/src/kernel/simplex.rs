@@ -1,9 +1,10 @@
-//! Gradients on the corners of simplices: Simplex noise, and what OpenSimplex2 shares with it.
+//! Simplex noise: gradients at the corners of simplices, and the parts that OpenSimplex2 shares.
 //!
-//! The plane is cut into triangles (space into tetrahedra ...) by a lattice of cubes that is squeezed along its main diagonal. A
-//! coordinate u_i of cell and fraction w_i + t_i becomes the skewed u_i + F sum u_j; each F u_j is split into a whole number and a
-//! fraction of its own, so that a sample adds small fractions and whole numbers only, wherever it is. The fractions, sorted, say which
-//! simplex a sample is in. A corner at distance d contributes (r^2 - d^2)^4 g . d while that is positive.
+//! The plane is divided into triangles (space into tetrahedra, and so on) by a lattice of cubes that is compressed
+//! along its main diagonal. A coordinate u_i with cell and fraction w_i + t_i is skewed to u_i + F sum u_j. Each F u_j
+//! is split into a whole number and a fraction, so that a sample adds only small fractions and whole numbers at any
+//! position. The order of the fractions gives the simplex of a sample. A corner at distance d contributes (r^2 - d^2)^4
+//! g . d if r^2 > d^2.
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
@@ -17,19 +18,19 @@ use orogen_simd::{F32Lanes, Simd, U32Lanes};
 /// A coordinate and its share of the skew.
 #[derive(Clone, Copy)]
 pub(crate) struct Slanted<S: Simd> {
-    /// Its cell's number.
+    /// The cell number.
     pub whole: S::F64,
-    /// Its fraction.
+    /// The fraction.
     pub t: S::F32,
-    /// The whole number of F times it.
+    /// Whole number of F times the coordinate.
     pub skew: S::F64,
-    /// The fraction of F times it.
+    /// Fraction of F times the coordinate.
     pub rest: S::F32,
 }
 
-/// (sqrt(n + 1) - 1) / n: what the sum of the coordinates is skewed by.
+/// (sqrt(n + 1) - 1) / n: factor of the skew.
 const SKEW: [f64; 3] = [0.366_025_403_784_438_65, 1.0 / 3.0, 0.309_016_994_374_947_45];
-/// (1 - 1 / sqrt(n + 1)) / n: what the sum of skewed coordinates is taken back by.
+/// (1 - 1 / sqrt(n + 1)) / n: factor of the inverse skew.
 pub(crate) const UNSKEW: [f32; 3] = [0.211_324_87, 1.0 / 6.0, 0.138_196_6];
 
 /// Splits a coordinate.
@@ -40,16 +41,16 @@ pub(crate) fn slanted<S: Simd, const DIMS: usize>(simd: S, coordinate: S::F64) -
     Slanted { whole: here.whole, t: here.t, skew: skew.whole, rest: skew.t }
 }
 
-/// A sample in the skewed lattice: its cube's number and the fractions, from 0 to 1.
+/// A sample in the skewed lattice: the number of its cube, and fractions from 0 to 1.
 pub(crate) struct SkewedPoint<S: Simd> {
     pub whole: [S::F64; 4],
     pub t: [S::F32; 4],
 }
 
-/// Where coordinates come together.
+/// Combines the coordinates.
 #[inline(always)]
 pub(crate) fn place<S: Simd, const DIMS: usize>(simd: S, at: &[Slanted<S>; 4]) -> SkewedPoint<S> {
-    // The axes beyond x first: a row of samples has them in common.
+    // The axes beyond x first: all samples of a row share them.
     let (rest, skew) = beyond_x::<S, DIMS>(at);
     let (carry, rest) = wrapped(simd, at[0].rest + rest);
     let skew = at[0].skew + skew + carry.widen();
@@ -78,7 +79,7 @@ pub(crate) fn beyond_x<S: Simd, const DIMS: usize>(at: &[Slanted<S>; 4]) -> (S::
     (rest, skew)
 }
 
-/// A number from 0 to 2 as 0 or 1 and what is left.
+/// Splits a number from 0 to 2 into 0 or 1 and the remainder.
 #[inline(always)]
 pub(crate) fn wrapped<S: Simd>(simd: S, t: S::F32) -> (S::F32, S::F32) {
     let one = simd.f32(1.0);
@@ -86,7 +87,7 @@ pub(crate) fn wrapped<S: Simd>(simd: S, t: S::F32) -> (S::F32, S::F32) {
     (carry, t - carry)
 }
 
-/// Adds a corner's contribution to value and slopes (in cells): `way` leads from the corner to the sample.
+/// Adds a corner's contribution to value and slopes (in cells). `way` is the vector from the corner to the sample.
 #[inline(always)]
 pub(crate) fn corner<S: Simd, const DIMS: usize, const SLOPES: bool>(
     simd: S,
@@ -134,11 +135,11 @@ pub(crate) fn scaled<S: Simd, const DIMS: usize, const SLOPES: bool>(
     }
 }
 
-/// What differs between noises on corners of simplices.
+/// The parameters of a noise on corners of simplices.
 pub(crate) trait Corners: Copy {
     /// The lattice and its gradients.
     type Lattice<S: Simd>: Gradients<S>;
-    /// One over the greatest raw value, in two to four dimensions.
+    /// Reciprocal of the maximum raw value, in two to four dimensions.
     const SCALE: [f32; 3];
 }
 
@@ -146,14 +147,14 @@ pub(crate) trait Corners: Copy {
 #[derive(Clone, Copy)]
 pub(crate) struct Simplices<S: Simd, C: Corners, const DIMS: usize>(pub C::Lattice<S>);
 
-/// Where the gradients of a simplex's corners come from.
+/// Source of the gradients at the corners of a simplex.
 pub(crate) trait CornerGradients<S: Simd> {
-    /// The gradient of corner `number`, counted from the cube's lower one. `waits` are the axes it has not stepped along; not to be looked
-    /// at for the first and the last corner.
+    /// The gradient of corner `number`, counted from the lower corner of the cube. `waits` are the axes that the corner
+    /// has not stepped along; it is undefined for the first and the last corner.
     fn gradient(&self, simd: S, number: usize, waits: &[S::Mask; 4]) -> [S::F32; 4];
 }
 
-/// Gradients hashed for each sample, from the keys of its cube and the next along each axis.
+/// Gradients computed for each sample, from the keys of its cube and of the next one along each axis.
 struct HashedCorners<'a, S: Simd, G, const DIMS: usize> {
     lattice: G,
     keys: &'a [[S::U32; 2]; 4],
@@ -177,18 +178,19 @@ impl<S: Simd, G: Gradients<S>, const DIMS: usize> CornerGradients<S> for HashedC
     }
 }
 
-/// The square of how far a corner reaches: as far as the opposite face.
+/// Squared radius of a corner's kernel: the distance to the opposite face.
 pub(crate) const REACH: f32 = 0.5;
 
 impl<S: Simd, C: Corners, const DIMS: usize> Simplices<S, C, DIMS> {
-    /// The raw value and slopes in a place of the skewed lattice, with the keys of its cube and the next along each axis.
+    /// The raw value and slopes at a position of the skewed lattice, with the keys of its cube and of the next one
+    /// along each axis.
     #[inline(always)]
     pub(crate) fn raw<const SLOPES: bool>(self, simd: S, t: &[S::F32; 4], keys: &[[S::U32; 2]; 4]) -> Sample<S> {
         raw::<S, _, DIMS, SLOPES>(simd, t, &HashedCorners::<S, _, DIMS> { lattice: self.0, keys })
     }
 }
 
-/// The raw value and slopes in a place of the skewed lattice.
+/// The raw value and slopes at a position of the skewed lattice.
 #[inline(always)]
 pub(crate) fn raw<S: Simd, G: CornerGradients<S>, const DIMS: usize, const SLOPES: bool>(
     simd: S,
@@ -204,7 +206,7 @@ pub(crate) fn raw<S: Simd, G: CornerGradients<S>, const DIMS: usize, const SLOPE
     for axis in 0..DIMS {
         from[axis] = total.neg_mul_add(simd.f32(UNSKEW[DIMS - 2]), t[axis]);
     }
-    // Not a loop: the numbers have to be constants.
+    // Not a loop, because the numbers must be constants.
     let mut raw = [simd.f32(0.0); 5];
     add_corner::<S, G, DIMS, SLOPES>(simd, gradients, 0, &from, &waiting, &mut raw);
     add_corner::<S, G, DIMS, SLOPES>(simd, gradients, 1, &from, &waiting, &mut raw);
@@ -218,7 +220,7 @@ pub(crate) fn raw<S: Simd, G: CornerGradients<S>, const DIMS: usize, const SLOPE
     raw
 }
 
-/// Adds the contribution of corner `number`; `from` leads from the cube's lower corner to the sample.
+/// Adds the contribution of corner `number`. `from` is the vector from the lower corner of the cube to the sample.
 #[inline(always)]
 fn add_corner<S: Simd, G: CornerGradients<S>, const DIMS: usize, const SLOPES: bool>(
     simd: S,
@@ -241,14 +243,14 @@ fn add_corner<S: Simd, G: CornerGradients<S>, const DIMS: usize, const SLOPES: b
     corner::<S, DIMS, SLOPES>(simd, REACH, &gradient, &way, raw);
 }
 
-/// Which axes corner k, from the cube's lower one on, has not stepped along: it has along the k greatest fractions. Of the first and the
-/// last corner it is not told.
+/// The axes that corner k has not stepped along, counted from the lower corner of the cube. It has stepped along the k
+/// largest fractions. Undefined for the first and the last corner.
 #[inline(always)]
 fn waiting<S: Simd, const DIMS: usize>(simd: S, t: &[S::F32; 4]) -> [[S::Mask; 4]; 5] {
     let (zero, one) = (simd.f32(0.0), simd.f32(1.0));
     let mut waiting = [[zero.lt(zero); 4]; 5];
     if DIMS == 4 {
-        // How many fractions are smaller.
+        // Number of smaller fractions.
         let mut rank = [zero; 4];
         for a in 0..DIMS {
             for b in a + 1..DIMS {

@@ -1,9 +1,9 @@
-//! The points that cellular noise is made of, one in each cell, and the search for the nearest.
+//! The points of cellular noise, one per cell, and the search for the nearest.
 //!
-//! The search looks at the cells around the sample's own, then at shells of cells ever farther out. Whatever lies beyond shell r is
-//! at least r + m away, in all three distances, where m is how far the sample is from the side of its cell; so the search is over
-//! once what is sought is nearer than that. What is skipped could not have changed the result: the bits do not depend on how far
-//! the neighbouring lanes made the search go.
+//! The search starts with the cells around the sample's own cell and continues with shells of cells farther out. Any
+//! point beyond shell r is at least r + m away, in all three distances, where m is the distance of the sample from the
+//! side of its cell. The search ends when the result is smaller than that. Skipped points cannot change the result, so
+//! the bits do not depend on how far neighbouring lanes extend the search.
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
@@ -13,31 +13,32 @@ use crate::kernel::source::{Hashed, Lattice, value};
 use crate::program::Cellular;
 use orogen_simd::{F32Lanes, MaskLanes, Simd, U32Lanes};
 
-/// Shells searched at most. With a point in every cell the nearest two are at most 3 away even in the widest case (3D, manhattan),
-/// and nothing that decides an edge is farther than the nearest plus twice the edge's distance, 5 in all.
+/// Maximum number of shells. With one point per cell, the two nearest are at most 3 away in the widest case (3D,
+/// manhattan). Points that decide an edge are at most as far as the nearest plus twice the distance of the edge: 5 in
+/// all.
 const SHELLS: i32 = 5;
-/// Rounding of distances and of what they are compared with stays well below this share.
+/// Rounding errors of distances and of their bounds stay well below this share.
 const MARGIN: f32 = 1.0 - 1e-6;
-/// The same where distances of edges are compared, which come from differences.
+/// The same for distances of edges, which are computed from differences.
 const EDGE_MARGIN: f32 = 1.0 - 1e-5;
 
-/// Farther than any point is.
+/// Larger than any distance.
 pub(crate) const FAR: f32 = 1e9;
 
-/// Where the nearest point is nearer than this, by its squared distance, no point beyond the neighbouring cells is: wherever in its
-/// cell a sample is, the first shell's reach is at least 1.
+/// If the squared distance of the nearest point is less than this, no point beyond the neighbouring cells is nearer:
+/// the first shell's bound is at least 1 at any position in the cell.
 pub(crate) const NEAR: f32 = MARGIN * MARGIN;
 
-/// A point: its place in its cell, and its cell's hash.
+/// A point: its position in its cell, and the hash of its cell.
 pub(crate) type Site<S> = ([<S as Simd>::F32; 4], <S as Simd>::U32);
 
-/// Where the points of the cells next to a sample's come from.
+/// Source of the points in the cells next to a sample's cell.
 pub(crate) trait Sites<S: Simd> {
-    /// The point of the cell that many cells on from the sample's own; each offset is -1, 0 or 1.
+    /// The point of the cell at this offset from the sample's own; each component is -1, 0 or 1.
     fn near(&self, simd: S, offset: [i32; 4]) -> Site<S>;
 }
 
-/// The numbers of one octave of cellular noise.
+/// One octave of cellular noise.
 #[derive(Clone, Copy)]
 pub(crate) struct Field<S: Simd> {
     pub lattice: Hashed<S>,
@@ -45,7 +46,7 @@ pub(crate) struct Field<S: Simd> {
 }
 
 impl<S: Simd> Field<S> {
-    /// The point of the cell with those keys. Coordinates are successive rounds of the hash's own mixing.
+    /// The point of the cell with these keys. Its coordinates are successive rounds of the hash.
     #[inline(always)]
     pub(crate) fn site<const DIMS: usize>(&self, simd: S, keys: [S::U32; 4]) -> Site<S> {
         const ROUNDS: [(u32, u32); 4] = [(0, 0), (16, 0x93D7_65DD), (15, 0x915F_77F5), (16, 0xADB4_A92D)];
@@ -70,7 +71,7 @@ impl<S: Simd> Field<S> {
     }
 }
 
-/// Points hashed for each sample.
+/// Computes the points for each sample.
 pub(crate) struct HashedSites<S: Simd, const DIMS: usize> {
     field: Field<S>,
     keys: [[S::U32; 3]; 4],
@@ -102,16 +103,16 @@ impl<S: Simd, const DIMS: usize> Sites<S> for HashedSites<S, DIMS> {
 
 /// The two nearest points so far.
 pub(crate) struct Nearest<S: Simd> {
-    /// Distances; of the euclidean one, the squares.
+    /// Distances; squared for the euclidean one.
     pub first: S::F32,
     second: S::F32,
-    /// From the sample to the nearest point, and the hash of its cell.
+    /// Vector from the sample to the nearest point, and the hash of that point's cell.
     way: [S::F32; 4],
     hash: S::U32,
 }
 
 impl<S: Simd> Nearest<S> {
-    /// No point but one at that distance.
+    /// A search result with only one point, at this distance.
     #[inline(always)]
     pub(crate) fn at(simd: S, first: S::F32) -> Nearest<S> {
         let far = simd.f32(FAR);
@@ -119,7 +120,7 @@ impl<S: Simd> Nearest<S> {
     }
 }
 
-/// The distance of a vector; of the euclidean one, its square.
+/// The distance of a vector; squared for the euclidean one.
 #[inline(always)]
 fn measure<S: Simd, const DIMS: usize>(distance: Distance, way: &[S::F32; 4]) -> S::F32 {
     match distance {
@@ -147,7 +148,7 @@ fn measure<S: Simd, const DIMS: usize>(distance: Distance, way: &[S::F32; 4]) ->
     }
 }
 
-/// From the sample, `t` into its cell, to a site in the cell `offset` on.
+/// Vector from the sample at fraction `t` to a point in the cell at `offset`.
 #[inline(always)]
 fn way<S: Simd, const DIMS: usize>(simd: S, place: &[S::F32; 4], t: &[S::F32; 4], offset: [i32; 4]) -> [S::F32; 4] {
     let mut way = [simd.f32(0.0); 4];
@@ -157,7 +158,7 @@ fn way<S: Simd, const DIMS: usize>(simd: S, place: &[S::F32; 4], t: &[S::F32; 4]
     way
 }
 
-/// Takes a point into account, as far as the feature needs it.
+/// Updates the search result with a point, as far as the feature needs it.
 #[inline(always)]
 fn keep<S: Simd, const DIMS: usize>(field: &Field<S>, nearest: &mut Nearest<S>, way: [S::F32; 4], hash: S::U32) {
     let Cellular { distance, feature, .. } = field.cellular;
@@ -177,7 +178,7 @@ fn keep<S: Simd, const DIMS: usize>(field: &Field<S>, nearest: &mut Nearest<S>, 
     }
 }
 
-/// How far the sample is from the nearest side of its cell.
+/// Distance of the sample from the nearest side of its cell.
 #[inline(always)]
 fn side<S: Simd, const DIMS: usize>(simd: S, t: &[S::F32; 4]) -> S::F32 {
     let mut side = t[0].min(simd.f32(1.0) - t[0]);
@@ -187,7 +188,7 @@ fn side<S: Simd, const DIMS: usize>(simd: S, t: &[S::F32; 4]) -> S::F32 {
     side
 }
 
-/// The offset of the cell's own neighbours by number, itself among them.
+/// Offset of a neighbouring cell by its number, including the cell itself.
 #[inline(always)]
 fn neighbour<const DIMS: usize>(number: usize) -> [i32; 4] {
     let (mut offset, mut rest) = ([0; 4], number);
@@ -198,7 +199,7 @@ fn neighbour<const DIMS: usize>(number: usize) -> [i32; 4] {
     offset
 }
 
-/// The noise of one register of samples, from -1 to 1. `cells` are the samples' own.
+/// The noise of one register of samples, in -1 ..= 1. `cells` are those of the samples.
 #[inline(always)]
 pub(crate) fn evaluate<S: Simd, P: Sites<S>, const DIMS: usize>(
     simd: S,
@@ -232,14 +233,14 @@ pub(crate) fn evaluate<S: Simd, P: Sites<S>, const DIMS: usize>(
     spread(simd, raw, field.cellular.bound(DIMS))
 }
 
-/// A feature's size as a number from -1 to 1.
+/// Maps the size of a feature to -1 ..= 1.
 #[inline(always)]
 pub(crate) fn spread<S: Simd>(simd: S, raw: S::F32, bound: f32) -> S::F32 {
     raw.mul_add(simd.f32(2.0 / bound), simd.f32(-1.0)).min(simd.f32(1.0))
 }
 
-/// Looks at the shells beyond the neighbouring cells, as far as they matter. Returns how far the sample is from the nearest side of its
-/// cell.
+/// Searches the shells beyond the neighbouring cells as far as necessary. Returns the distance of the sample from the
+/// nearest side of its cell.
 #[inline(always)]
 pub(crate) fn search_shells<S: Simd, const DIMS: usize>(
     simd: S,
@@ -271,7 +272,7 @@ pub(crate) fn search_shells<S: Simd, const DIMS: usize>(
     side
 }
 
-/// The distance to the nearest edge: to the nearest of the planes midway between the nearest point and each other one.
+/// Distance to the nearest edge: to the nearest plane midway between the nearest point and another one.
 #[inline(always)]
 fn edge<S: Simd, P: Sites<S>, const DIMS: usize>(
     simd: S,
@@ -289,7 +290,7 @@ fn edge<S: Simd, P: Sites<S>, const DIMS: usize>(
         least = least.min(midway::<S, DIMS>(simd, &nearest.way, &way));
     }
     for shell in 1..SHELLS {
-        // A point R away has its plane at least (R - first) / 2 away.
+        // The plane of a point at distance R is at least (R - first) / 2 away.
         let reach = (side + simd.f32(shell as f32)) * simd.f32(EDGE_MARGIN);
         if !reach.lt(least.mul_add(simd.f32(2.0), first)).any() {
             break;
@@ -304,7 +305,7 @@ fn edge<S: Simd, P: Sites<S>, const DIMS: usize>(
     least
 }
 
-/// From the sample to the plane midway between two points; far where they are one.
+/// Distance from the sample to the plane midway between two points; very large if they are the same.
 #[inline(always)]
 fn midway<S: Simd, const DIMS: usize>(simd: S, near: &[S::F32; 4], other: &[S::F32; 4]) -> S::F32 {
     let (mut along, mut apart) = (simd.f32(0.0), simd.f32(0.0));
@@ -317,7 +318,7 @@ fn midway<S: Simd, const DIMS: usize>(simd: S, near: &[S::F32; 4], other: &[S::F
     distance.select(simd.f32(1e-12).lt(apart), simd.f32(FAR))
 }
 
-/// A point farther than one cell away.
+/// A point more than one cell away.
 #[inline(always)]
 fn distant<S: Simd, const DIMS: usize>(simd: S, field: &Field<S>, cells: &[Cell<S>; 4], offset: [i32; 4]) -> Site<S> {
     let mut keys = [simd.u32(0); 4];
@@ -327,7 +328,7 @@ fn distant<S: Simd, const DIMS: usize>(simd: S, field: &Field<S>, cells: &[Cell<
     field.site::<DIMS>(simd, keys)
 }
 
-/// The cells that many away, in a fixed order.
+/// The cells at this distance, in a fixed order.
 struct Shell<const DIMS: usize> {
     radius: i32,
     next: [i32; 4],
@@ -343,7 +344,7 @@ impl<const DIMS: usize> Shell<DIMS> {
         Shell { radius, next }
     }
 
-    /// The next cell. (Not an iterator: see kernel/mod.rs.)
+    /// The next cell. This is not an iterator because of inlining: see kernel/mod.rs.
     #[inline(always)]
     fn advance(&mut self) -> Option<[i32; 4]> {
         let radius = self.radius;
@@ -351,7 +352,7 @@ impl<const DIMS: usize> Shell<DIMS> {
         if here[DIMS - 1] > radius {
             return None;
         }
-        // Inside the square (or cube) of the shell there are only the two ends of a row.
+        // Inside the square (or cube) of the shell, only the two ends of a row belong to it.
         let mut whole = false;
         for axis in 1..DIMS {
             whole |= here[axis].abs() == radius;

@@ -1,9 +1,9 @@
-//! Lattices of samples of noise on corners of simplices: sums of octaves, row by row.
+//! Simplex noise on lattices of samples: sums of octaves, row by row.
 //!
-//! Along a row the cubes that samples are in follow each other, so that their keys can be kept in a table and picked by permutes, as
-//! lattice lines are for the low-rank bases. Where cubes are wide, most registers of samples are in one line of cubes along x; there the
-//! gradients themselves are kept, those of the lattice lines at the cubes' edges. Everything else is small fractions: see
-//! [`crate::kernel::simplex`].
+//! Along a row the cubes of successive samples are neighbours, so their keys are kept in a table and selected by
+//! permutes, like lattice lines of the low-rank bases. If cubes are wide, most registers of samples lie in one line of
+//! cubes along x. In that case the gradients of the lattice lines at the edges of these cubes are kept instead. The
+//! remaining arithmetic uses small fractions; see [`crate::kernel::simplex`].
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
@@ -17,18 +17,18 @@ use crate::program::{Octave, Program, Source};
 use orogen_simd::{Body, F32Lanes, F64Lanes, MaskLanes, Simd, U32Lanes};
 use std::marker::PhantomData;
 
-/// Columns worked on at a time.
+/// Columns per strip.
 const WIDTH: usize = 256;
-/// Cubes a strip may span and still have their keys kept.
+/// Maximum number of cubes of a strip whose keys are kept.
 const SPAN: usize = WIDTH + 48;
-/// The most lanes of any level.
+/// Maximum number of lanes.
 const MAX_LANES: usize = 16;
 
-/// Cubes a strip may span along x and still have the gradients of lattice lines kept.
+/// Maximum number of cubes along x of a strip for which the gradients of lattice lines are kept.
 const LINE: usize = 64;
-/// Rows from which on that pays.
+/// Minimum number of rows for which that is faster.
 const ROWS: usize = 16;
-/// Lattice lines that are kept; those at the edges of one line of cubes have places of their own.
+/// Number of lattice lines that are kept. The lines at the edges of one line of cubes have separate slots.
 const LINES: usize = 16;
 
 /// The gradients of the points of a lattice line along x.
@@ -36,7 +36,7 @@ const LINES: usize = 16;
 #[derive(Clone, Copy)]
 struct Line {
     gradients: [[f32; LINE]; 3],
-    /// The numbers of its first point.
+    /// The cell numbers of its first point.
     of: [f64; 3],
 }
 
@@ -46,24 +46,24 @@ struct Strip {
     /// Fractions of the columns, and of their skew.
     t: [f32; WIDTH],
     rest: [f32; WIDTH],
-    /// Cubes along x, and along all other axes: whole numbers counted from their register's first,
+    /// Cubes along x, and along all other axes, relative to the first of their register.
     index: [[u32; WIDTH]; 2],
-    /// and each register's first, counted from the strip's first,
+    /// The first cube of each register, relative to the first of the strip.
     first: [[u32; WIDTH / 4]; 2],
-    /// which is this.
+    /// The first cube of the strip.
     origin: [f64; 2],
-    /// How many keys there are.
+    /// Number of keys.
     span: [usize; 2],
-    /// Keys along each axis from a number on, and that number.
+    /// Keys along each axis, and the cell number of the first one.
     keys: [[u32; SPAN]; 4],
     held: [Option<f64>; 4],
-    /// Whether cubes follow so closely that those of a register fit one.
+    /// Whether the cubes of a register fit into one register of keys.
     dense: bool,
-    /// Whether they follow so closely that registers lie in one line of cubes often enough to keep lattice lines.
+    /// Whether registers lie in one line of cubes often enough to keep lattice lines.
     wide: bool,
-    /// Wide: the lanes of each register whose number along the other axes is one more than the first lane's.
+    /// If wide: the lanes of each register whose number along the other axes is one more than that of the first lane.
     steps: [u32; WIDTH / 4],
-    /// Lattice lines, each in the place that its number picks.
+    /// Lattice lines; the number of a line selects its slot.
     lines: Vec<Line>,
 }
 
@@ -126,7 +126,7 @@ struct Columns<'a, const DIMS: usize> {
     limit: f64,
     strip: &'a mut Strip,
     xs: &'a [f64],
-    /// How many rows there are.
+    /// Number of rows.
     rows: usize,
 }
 
@@ -152,14 +152,14 @@ impl<const DIMS: usize> Body for Columns<'_, DIMS> {
                     whole.store(&mut lanes);
                     strip.origin[which] = lanes[0];
                 }
-                // Exact while small; what is not (or lies before the first) turns into a huge number and fails the test below.
+                // Small numbers are exact. Large ones, and cells before the first, become huge and fail the test below.
                 let place = (whole - simd.f64(strip.origin[which])).narrow().to_i32();
                 let mut places = [0; MAX_LANES];
                 place.store(&mut places);
                 let index = place - simd.u32(places[0]);
                 index.store(&mut strip.index[which][at..]);
                 strip.first[which][v] = places[0];
-                // Fractions that add up to more than one step on by up to two.
+                // If fractions sum to more than one, the cube advances by up to two.
                 reach[which] = reach[which] | index | (index + simd.u32(2));
                 farthest[which] = farthest[which].max(places[0]);
                 if which == 1 {
@@ -174,7 +174,7 @@ impl<const DIMS: usize> Body for Columns<'_, DIMS> {
             strip.dense &= !spread.any() && (farthest[which] as usize) < SPAN - 2 * S::LANES - 1;
             strip.span[which] = (farthest[which] as usize + S::LANES + 1).next_multiple_of(S::LANES).min(SPAN);
         }
-        // Where a register steps on twice along the other axes, hardly any is in one line of cubes.
+        // If a register advances twice along the other axes, hardly any lies in one line of cubes.
         let narrow = !most.shr(1).eq(simd.u32(0));
         strip.wide = strip.dense && DIMS < 4 && rows >= ROWS && !narrow.any() && strip.span[0] <= LINE;
         if strip.wide && strip.lines.is_empty() {
@@ -187,7 +187,7 @@ impl<const DIMS: usize> Body for Columns<'_, DIMS> {
 struct Row<'a, C, const DIMS: usize> {
     program: &'a Program,
     strips: &'a mut [Strip],
-    /// y, z and w of the row, metres, in places 1 to 3.
+    /// y, z and w of the row in metres, at indices 1 to 3.
     at: [f64; 4],
     to: &'a mut [f32],
     corners: PhantomData<C>,
@@ -229,7 +229,7 @@ impl<C: Corners, const DIMS: usize> Body for Row<'_, C, DIMS> {
                     None => noise.raw::<false>(simd, &place.t, &place.keys::<DIMS>(simd, strip, start)),
                 };
                 let before = if o > 0 { simd.load_partial(&to[start..], 0.0) } else { simd.f32(0.0) };
-                // As [`crate::kernel::simplex::scaled`] adds it.
+                // The same operations as [`crate::kernel::simplex::scaled`].
                 factor.mul_add(raw[0], before).store_partial(&mut to[start..]);
                 start += S::LANES;
             }
@@ -240,7 +240,7 @@ impl<C: Corners, const DIMS: usize> Body for Row<'_, C, DIMS> {
     }
 }
 
-/// Makes the keys of the cubes along the row, where they are not those of the row before.
+/// Computes the keys of the cubes along the row, unless they are those of the previous row.
 #[inline(always)]
 fn hold<S: Simd, C: Corners, const DIMS: usize>(
     simd: S,
@@ -274,13 +274,13 @@ fn hold<S: Simd, C: Corners, const DIMS: usize>(
 struct SkewedPoints<S: Simd> {
     /// Fractions.
     t: [S::F32; 4],
-    /// Where the fractions of the skew added up to a step of all axes,
+    /// Lanes where the fractions of the skew sum to a step along all axes.
     shared: S::Mask,
-    /// and where an axis made one of its own.
+    /// Lanes where an axis makes a step of its own.
     carry: [S::Mask; 4],
 }
 
-/// The fractions of a register of samples: what [`crate::kernel::simplex::place`] makes, by the same steps.
+/// The fractions of a register of samples: the result of [`crate::kernel::simplex::place`], by the same steps.
 #[inline(always)]
 fn look_up<S: Simd, const DIMS: usize>(
     simd: S,
@@ -298,7 +298,7 @@ fn look_up<S: Simd, const DIMS: usize>(
     place
 }
 
-/// A number from 0 to 2, less 1 where it is at least that, and where it is.
+/// Splits a number from 0 to 2 into a fraction and a mask of the lanes where it was at least 1.
 #[inline(always)]
 fn stepped<S: Simd>(simd: S, t: S::F32) -> (S::F32, S::Mask) {
     let one = simd.f32(1.0);
@@ -307,16 +307,16 @@ fn stepped<S: Simd>(simd: S, t: S::F32) -> (S::F32, S::Mask) {
 }
 
 impl<S: Simd> SkewedPoints<S> {
-    /// The cubes along an axis, counted from the register's first, for a permute.
+    /// The cubes along an axis, relative to the first of the register, as indices of a permute.
     #[inline(always)]
     fn index(&self, simd: S, strip: &Strip, start: usize, axis: usize) -> S::U32 {
-        // A permute takes this for 1. It becomes one masked addition, where adding 1 would be two instructions.
+        // A permute reads this value as 1. It compiles to one masked addition; adding 1 would take two instructions.
         let (zero, one) = (simd.u32(0), simd.u32(1 + 2 * MAX_LANES as u32));
         let index = simd.load_u32(&strip.index[usize::from(axis > 0)][start..]);
         index + one.select(self.shared, zero) + one.select(self.carry[axis], zero)
     }
 
-    /// The keys of the cubes and of the next.
+    /// The keys of the cubes and of their successors.
     #[inline(always)]
     fn keys<const DIMS: usize>(&self, simd: S, strip: &Strip, start: usize) -> [[S::U32; 2]; 4] {
         let mut keys = [[simd.u32(0); 2]; 4];
@@ -330,14 +330,15 @@ impl<S: Simd> SkewedPoints<S> {
         keys
     }
 
-    /// The line of cubes along x that all samples are in, if there is one: their numbers along y and z from the keys' first on.
+    /// The line of cubes along x that contains all samples, if there is one: its numbers along y and z, relative to the
+    /// first key.
     #[inline(always)]
     fn line<const DIMS: usize>(&self, strip: &Strip, start: usize) -> Option<[usize; 2]> {
         let v = start / S::LANES;
         let (steps, shared) = (strip.steps[v], self.shared.to_bits());
         let (mut line, mut apart) = ([strip.first[1][v] as usize; 2], 0);
         for axis in 1..DIMS.min(3) {
-            // The sum of three bits in each lane, as its two digits.
+            // The sum of three bits per lane, as two binary digits.
             let carry = self.carry[axis].to_bits();
             let (ones, twos) = (steps ^ shared ^ carry, (steps & shared) | (carry & (steps | shared)));
             apart |= (ones ^ 0_u32.wrapping_sub(ones & 1)) | (twos ^ 0_u32.wrapping_sub(twos & 1));
@@ -351,17 +352,17 @@ impl<S: Simd> SkewedPoints<S> {
 /// The lattice lines at the edges of a line of cubes.
 #[derive(Clone, Copy)]
 struct Edges {
-    /// The line of cubes: its numbers along y and z from the keys' first on.
+    /// The line of cubes: its numbers along y and z, relative to the first key.
     y: usize,
     z: usize,
-    /// Where its lattice lines are kept: those at y and y + 1, then the same at z + 1.
+    /// The slots of its lattice lines: those at y and y + 1, then the same at z + 1.
     slots: [usize; 4],
 }
 
 impl Edges {
     const NONE: Edges = Edges { y: usize::MAX, z: usize::MAX, slots: [0; 4] };
 
-    /// Makes those that are not there.
+    /// Computes the lines that are missing.
     #[inline(always)]
     fn of<S: Simd, C: Corners, const DIMS: usize>(
         simd: S,
@@ -393,12 +394,12 @@ impl Edges {
     }
 }
 
-/// Makes the gradients of a lattice line.
+/// Computes the gradients of a lattice line.
 struct Make<'a, C, const DIMS: usize> {
     source: Source,
     octave: &'a Octave,
     strip: &'a mut Strip,
-    /// Its place among the keys along y and z.
+    /// Its index among the keys along y and z.
     at: [usize; 2],
     slot: usize,
     of: [f64; 3],
@@ -425,18 +426,18 @@ impl<C: Corners, const DIMS: usize> Body for Make<'_, C, DIMS> {
     }
 }
 
-/// Gradients kept by lattice lines.
+/// Gradients kept for lattice lines.
 struct LineCorners<'a, S: Simd, const DIMS: usize> {
-    /// As in [`Edges`].
+    /// See [`Edges`].
     lines: [&'a [[f32; LINE]; 3]; 4],
-    /// The register's first point,
+    /// The first point of the register.
     first: usize,
-    /// and the samples' ones counted from it.
+    /// The points of the samples, relative to the first.
     index: S::U32,
 }
 
 impl<S: Simd, const DIMS: usize> LineCorners<'_, S, DIMS> {
-    /// The gradient so many points on along each axis.
+    /// The gradient of the corner at this offset along each axis.
     #[inline(always)]
     fn on(&self, simd: S, [x, y, z]: [usize; 3]) -> [S::F32; 4] {
         let line = self.lines[y + 2 * z];
@@ -447,7 +448,7 @@ impl<S: Simd, const DIMS: usize> LineCorners<'_, S, DIMS> {
         gradient
     }
 
-    /// The first where the mask holds, else the second.
+    /// `a` where the mask is set, else `b`.
     #[inline(always)]
     fn either(mask: S::Mask, mut one: [S::F32; 4], other: [S::F32; 4]) -> [S::F32; 4] {
         for axis in 0..DIMS.min(3) {

@@ -1,4 +1,4 @@
-//! How lattice points get their numbers: hashes, values and gradients.
+//! Numbers at lattice points: hashes, values and gradients.
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
@@ -8,14 +8,15 @@ use crate::program::{Octave, Source};
 use crate::tables::{directions, reference};
 use orogen_simd::{F32Lanes, Simd, U32Lanes};
 
-/// A lattice whose points have hashes. A point's hash comes from one key per axis, so that a lattice of samples works the keys out
-/// once per lattice column and row.
+/// A lattice whose points have hashes. The hash of a point is computed from one key per axis, so a lattice of samples
+/// computes keys once per lattice column and row.
 pub(crate) trait Lattice<S: Simd>: Copy {
     /// The keys of a cell and of the next one.
     fn keys(self, simd: S, axis: usize, cell: &Cell<S>) -> [S::U32; 2];
-    /// The hash of a point with those keys along its first `DIMS` axes; the top bits are the good ones.
+    /// The hash of a point with these keys along its first `DIMS` axes. The top bits have the best quality.
     fn hash<const DIMS: usize>(self, simd: S, keys: [S::U32; 4]) -> S::U32;
-    /// The same lattice with other keys of the same hashes: these take more to make and less to join. For keys that are kept.
+    /// The same lattice and hashes with other keys, which cost more to compute and less to combine; for keys that are
+    /// kept.
     #[inline(always)]
     fn folded(self) -> Self {
         self
@@ -24,18 +25,18 @@ pub(crate) trait Lattice<S: Simd>: Copy {
 
 /// A lattice whose points have gradients.
 pub(crate) trait Gradients<S: Simd>: Lattice<S> {
-    /// The lattice as the octave needs it.
+    /// The lattice for an octave.
     fn new(simd: S, source: Source, octave: &Octave) -> Self;
-    /// The gradient a hash stands for in `DIMS` dimensions; the rest is not to be used.
+    /// The gradient of a hash in `DIMS` dimensions; other components are undefined.
     fn gradient<const DIMS: usize>(self, simd: S, hash: S::U32) -> [S::F32; 4];
 }
 
-/// The hashed lattice: 64-bit cells and 64 bits of seed per axis go into a 32-bit key, the keys into a 32-bit hash.
+/// The hashed lattice: 64-bit cells and 64 bits of seed per axis give a 32-bit key, and the keys give a 32-bit hash.
 ///
-/// A key is two rounds of xorshift-multiply over the low word, the high word and the second half of the seed entering between them.
-/// Keys are joined by xor and a third round, whose top bits depend on every bit of each. That round's xorshift distributes over xor:
-/// folded keys have it behind them. The constants are odd numbers with good
-/// spectral behaviour modulo 2^32 (G. Steele and S. Vigna, "Computationally easy, spectrally good multipliers", 2021).
+/// A key is two rounds of xorshift-multiply: of the low word, and then of the high word and the second half of the
+/// seed. Keys are combined by xor and a third round, whose top bits depend on every bit of each key. The xorshift of
+/// that round distributes over xor, so folded keys already contain it. The constants are odd numbers with good spectral
+/// properties modulo 2^32 (G. Steele and S. Vigna, "Computationally easy, spectrally good multipliers", 2021).
 #[derive(Clone, Copy)]
 pub(crate) struct Hashed<S: Simd> {
     words: [[S::U32; 2]; 4],
@@ -57,13 +58,13 @@ impl<S: Simd> Hashed<S> {
         Hashed { words, period: octave.period, folded: false }
     }
 
-    /// The hash of keys joined by xor.
+    /// The hash of keys combined by xor.
     #[inline(always)]
     fn finish(simd: S, joined: S::U32) -> S::U32 {
         Self::finish_folded(simd, joined ^ joined.shr(15))
     }
 
-    /// The hash of folded keys joined by xor.
+    /// The hash of folded keys combined by xor.
     #[inline(always)]
     pub(crate) fn finish_folded(simd: S, joined: S::U32) -> S::U32 {
         joined * simd.u32(ROUND_3)
@@ -110,7 +111,7 @@ impl<S: Simd> Lattice<S> for Hashed<S> {
     }
 }
 
-/// A hash as a number in [-1, 1], a millionth short of the ends so that blending cannot round past them.
+/// A hash as a number in -1 ..= 1, a millionth inside the ends, so that interpolation cannot round past them.
 #[inline(always)]
 pub(crate) fn value<S: Simd>(simd: S, hash: S::U32) -> S::F32 {
     const UNIT: f32 = (1.0 - 1.0 / 1_048_576.0) / 2_147_483_648.0;
@@ -121,7 +122,8 @@ pub(crate) fn value<S: Simd>(simd: S, hash: S::U32) -> S::F32 {
 #[derive(Clone, Copy)]
 pub(crate) struct PerlinSource<S: Simd> {
     lattice: Hashed<S>,
-    // The same directions twice: sixteen where one instruction looks them up, else eight and a sign.
+    // The same directions twice: a table of sixteen where one instruction can look them up, else a table of eight and a
+    // sign.
     wide: [S::Table16; 2],
     half: [S::Table8; 2],
     space: [S::Table16; 3],
@@ -173,7 +175,7 @@ impl<S: Simd> Gradients<S> for PerlinSource<S> {
             gradient[1] = simd.lookup16(self.wide[1], index);
             return gradient;
         }
-        // The top bit is the sign, the next ones the direction in the upper half.
+        // The top bit is the sign; the next bits select a direction of the upper half.
         let sign = hash & simd.u32(0x8000_0000);
         let index = hash.shr(if DIMS == 2 { 28 } else { 27 });
         for axis in 0..DIMS {

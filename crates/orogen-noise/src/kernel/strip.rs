@@ -1,4 +1,5 @@
-//! A strip of lattice columns, octave by octave: what depends on x alone, and the row vectors of two lattice lines.
+//! A strip of lattice columns, octave by octave: values that depend on x alone, and the row vectors of two lattice
+//! lines.
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
@@ -8,40 +9,41 @@ use crate::kernel::cell::{Cell, clamp};
 use crate::program::{Octave, Source};
 use orogen_simd::{Body, F32Lanes, F64Lanes, MaskLanes, Simd, U32Lanes};
 
-/// Columns worked on at a time. Six octaves' row vectors of this width fill half of a first-level cache.
+/// Columns per strip. The row vectors of six octaves at this width fill half of a first-level cache.
 pub(crate) const WIDTH: usize = 256;
-/// Lattice points a strip may span and still be hashed once each.
+/// Maximum number of lattice points of a strip that are hashed once each.
 const SPAN: usize = WIDTH + 32;
-/// The most lanes of any level.
+/// Maximum number of lanes.
 pub(crate) const MAX_LANES: usize = 16;
 
-/// One octave over the strip. Each array begins on a cache line: a register that straddles two costs twice.
+/// One octave over the strip. Each array starts at a cache line, because a register that straddles two costs twice as
+/// much.
 #[repr(C, align(64))]
 pub(crate) struct StripOctave {
-    /// The row vectors of two lattice lines, side by side: those of values, which are read most, lie in one page, so that octaves
-    /// do not push each other out of the cache.
+    /// The row vectors of two lattice lines, side by side. Vectors of values are read most and lie in one page, so that
+    /// octaves do not evict each other from the cache.
     lines: [[[f32; WIDTH]; 2]; 8],
-    /// Rows: coefficients of value, slope along x (and z and w), slope across; four places each.
+    /// Per row: coefficients of the value, of the slopes along x (and z and w), and of the slope along y; four each.
     pub coefficients: [[[f32; MAX_LANES]; 4]; 3],
     /// Fractions and fades per column: (1 - u) t, u (t - 1), 1 - u, u, then the slopes of the first two and of u.
     weights: [[f32; WIDTH]; 7],
-    /// Dense: each column's lattice point, counted from its register's first.
+    /// If dense: the lattice point of each column, relative to the first of its register.
     index: [u32; WIDTH],
-    /// Dense: the keys of the lattice points. Else: of each column's cell and the next.
+    /// If dense: the keys of the lattice points. Else: the keys of each column's cell and of the next one.
     keys: [[u32; SPAN]; 2],
-    /// Rows: the keys of the lattice lines above and below each.
+    /// Per row: the keys of the lattice lines above and below.
     line_keys: [[u32; MAX_LANES]; 2],
-    /// Rows: the row of cells of each.
+    /// Per row: its row of cells.
     cells: [u64; MAX_LANES],
-    /// Dense: each register's first lattice point, counted from the strip's first.
+    /// If dense: the first lattice point of each register, relative to the first of the strip.
     first: [u32; WIDTH / 4],
-    /// Dense: how many lattice points there are.
+    /// If dense: the number of lattice points.
     points: usize,
-    /// Whether cells follow so closely that each register's lattice points fit one register.
+    /// Whether the lattice points of each register fit into one register.
     dense: bool,
-    /// Which of the lines is the upper one.
+    /// The index of the upper line.
     upper: usize,
-    /// The row of cells the lines enclose.
+    /// The row of cells between the lines.
     held: Option<u64>,
 }
 
@@ -69,8 +71,8 @@ impl StripOctave {
         &self.lines[vector & 7][(self.upper ^ line) & 1]
     }
 
-    /// Makes the lines those around the group's row `r`. Only what changed is built: rows mostly share their lines, and the
-    /// next row of cells keeps one.
+    /// Sets the lines to those around row `r` of the group. Only changes are computed: successive rows mostly share
+    /// both lines, and the next row of cells shares one.
     #[inline(always)]
     pub(crate) fn hold<S: Simd>(&mut self, simd: S, job: &Job, octave: &Octave, points: &mut Points, r: usize) {
         let cell = self.cells[r];
@@ -104,21 +106,22 @@ impl StripOctave {
     }
 }
 
-/// The numbers of a line's lattice points.
+/// The numbers of the lattice points of a line.
 #[repr(align(64))]
 pub(crate) struct Points([[f32; SPAN]; 9]);
 
 /// An empty [`Points`].
 pub(crate) const NO_POINTS: Points = Points([[0.0; SPAN]; 9]);
 
-/// What is the same for all octaves of a strip. Kernels are given where it is: what is copied piece by piece is slow to read at once.
+/// Values that all octaves of a strip share. Kernels get a reference, because a struct that is copied field by field is
+/// slow to read as a whole.
 pub(crate) struct Job {
     pub source: Source,
     pub limit: f64,
     pub slopes: bool,
-    /// How many axes there are.
+    /// Number of axes.
     pub dims: usize,
-    /// z and w of the slice, metres, as far as there are these axes.
+    /// z and w of the slice in metres, as far as these axes exist.
     pub depths: [f64; 2],
     /// Columns of the strip.
     pub columns: usize,
@@ -137,13 +140,13 @@ impl Job {
     }
 }
 
-/// Where register `v` of a strip begins; the compiler sees that it ends inside.
+/// The first column of register `v`. The mask lets the compiler omit bounds checks.
 #[inline(always)]
 fn at<S: Simd>(v: usize) -> usize {
     (v & (WIDTH / S::LANES - 1)) * S::LANES
 }
 
-/// Prepares the columns of a strip.
+/// Computes the columns of a strip.
 pub(crate) struct Columns<'a> {
     pub job: &'a Job,
     pub octave: &'a Octave,
@@ -157,7 +160,7 @@ impl Body for Columns<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        // What depends on x or y alone is the same in all dimensions.
+        // Values that depend on x or y alone are the same in all dimensions.
         with_basis::<S, _, 2>(simd, self.job.source, self);
     }
 }
@@ -184,8 +187,8 @@ impl<S: Simd> Visit<S> for Columns<'_> {
             for place in 0..if job.slopes { 7 } else { 4 } {
                 kept[place].store(&mut strip.weights[place][at::<S>(v)..]);
             }
-            // Cells from the strip's first. Exact while small; what is not (or lies before the first) turns into a huge
-            // number and fails the tests below.
+            // Cells relative to the first of the strip. Small numbers are exact. Large ones, and cells before the
+            // first, become huge and fail the tests below.
             let place = (cell.whole - simd.f64(origin)).narrow().to_i32();
             let mut places = [0; MAX_LANES];
             place.store(&mut places);
@@ -217,12 +220,12 @@ impl<S: Simd> Visit<S> for Columns<'_> {
     }
 }
 
-/// Prepares a group of rows, one per lane.
+/// Computes a group of rows, one per lane.
 pub(crate) struct Rows<'a> {
     pub job: &'a Job,
     pub octave: &'a Octave,
     pub strip: &'a mut StripOctave,
-    /// y of the rows, metres; one to as many as there are lanes.
+    /// y of the rows in metres; from one to the number of lanes.
     pub ys: &'a [f64],
 }
 
@@ -231,7 +234,7 @@ impl Body for Rows<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        // What depends on x or y alone is the same in all dimensions.
+        // Values that depend on x or y alone are the same in all dimensions.
         with_basis::<S, _, 2>(simd, self.job.source, self);
     }
 }
@@ -262,7 +265,7 @@ impl<S: Simd> Visit<S> for Rows<'_> {
     }
 }
 
-/// Builds the row vectors of one lattice line.
+/// Computes the row vectors of one lattice line.
 struct Line<'a, const DIMS: usize, const SLOPES: bool> {
     job: &'a Job,
     octave: &'a Octave,

@@ -27,7 +27,7 @@ fn value_coefficients<S: Simd>(simd: S, row: &Weights<S>, amplitude: S::F32, slo
 }
 
 impl<S: Simd, const DIMS: usize> Blended<S, DIMS> {
-    /// The value of a lattice point blended along z, and its slope; `far` says on which side along w.
+    /// The value of a lattice point blended along z, and its slope. `far` selects the side along w.
     #[inline(always)]
     fn along_z(self, simd: S, [x, y]: [S::U32; 2], depths: &Depths<S>, far: usize) -> [S::F32; 2] {
         let [z, w] = depths;

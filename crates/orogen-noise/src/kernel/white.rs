@@ -1,6 +1,5 @@
-//! Lattices of white noise: a key per column and per row, one hash per sample.
-//!
-//! The numbers are those of [`crate::kernel::value`]'s flat bases over the lattice kernels; here nothing is looked up or blended.
+//! White noise on lattices of samples: one key per column and per row, one hash per sample. The values are those of the
+//! flat bases of [`crate::kernel::value`]; there are no lookups and no interpolation.
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
@@ -12,7 +11,7 @@ use orogen_simd::{Body, F32Lanes, Simd, U32Lanes};
 
 /// Columns whose keys are kept at a time: a quarter of a first-level cache.
 const WIDTH: usize = 2048;
-/// Rows whose keys are made at a time.
+/// Rows whose keys are computed at a time.
 const ROWS: usize = 16;
 
 /// Fills a lattice with one octave of white noise.
@@ -38,7 +37,7 @@ pub(crate) fn fill<S: Simd>(
             for r in 0..group.len() {
                 let start = (g * ROWS + r) * xs.len() + s * WIDTH;
                 let to = &mut outputs.value[start..start + part.len()];
-                // Keys are joined by xor, so that depths count once per row.
+                // Keys are combined by xor, so the keys of depths are applied once per row.
                 simd.run(Row {
                     columns: &columns.0,
                     key: rows[r] ^ depth[0] ^ depth[1],

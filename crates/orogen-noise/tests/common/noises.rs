@@ -118,13 +118,14 @@ fn slope_of(basis: Basis, kind: Kind) -> Slope {
         Kind::Ridged | Kind::Billow | Kind::PingPong { .. } | Kind::Hybrid { .. } => Slope::Creased,
         Kind::Hetero { .. } => Slope::Exact,
         Kind::Weighted { .. } | Kind::Swiss { .. } | Kind::Jordan { .. } => Slope::Approximate,
+        _ => unreachable!("{kind:?} has no entry in this list"),
     }
 }
 
 /// Every basis by itself: a fractal of one octave, which moves its lattice and divides by its bound.
 pub fn bases(seed: u64, wavelength: f64) -> Vec<Noise> {
     let one = |&basis: &Basis| {
-        let fractal = Fractal { basis, seed, wavelength, octaves: 1, ..Fractal::default() };
+        let fractal = Fractal::new(seed, wavelength).with_basis(basis).with_octaves(1);
         noise(basis.name(), slope_of(basis, Kind::Fbm), sloped!(fractal)).one_sided(basis.name().starts_with("worley"))
     };
     Basis::all().iter().map(one).collect()
@@ -151,7 +152,7 @@ pub fn kinds() -> Vec<Kind> {
 /// Weighted fractals of every falloff.
 pub fn damped(k: f64, like: Fractal) -> Vec<Noise> {
     let one = |&falloff: &Falloff| {
-        let fractal = Fractal { kind: Kind::Weighted { k, falloff }, ..like };
+        let fractal = like.with_kind(Kind::Weighted { k, falloff });
         noise(format!("{falloff:?}"), slope_of(like.basis, fractal.kind), sloped!(fractal))
     };
     FALLOFFS.iter().map(one).collect()
@@ -166,7 +167,7 @@ pub fn fractals(like: Fractal) -> Vec<Noise> {
                 let name = format!("{kind:?} over {}", basis.name());
                 let symmetric = matches!(kind, Kind::Fbm | Kind::Weighted { .. });
                 let one_sided = !symmetric || basis.name().starts_with("worley");
-                let fractal = Fractal { basis, kind, ..like };
+                let fractal = like.with_basis(basis).with_kind(kind);
                 list.push(noise(name, slope_of(basis, kind), sloped!(fractal)).one_sided(one_sided));
             }
         }
@@ -177,8 +178,8 @@ pub fn fractals(like: Fractal) -> Vec<Noise> {
 /// What stands for itself and is no basis: lattices on the origin, other fades, cells.
 pub fn singles(seed: u64, wavelength: f64) -> Vec<Noise> {
     let mut list = vec![
-        noise("white noise", Slope::Flat, sloped!(White { seed, wavelength })),
-        noise("perlin noise", Slope::Exact, sloped!(Perlin { seed, wavelength })),
+        noise("white noise", Slope::Flat, sloped!(White::new(seed, wavelength))),
+        noise("perlin noise", Slope::Exact, sloped!(Perlin::new(seed, wavelength))),
     ];
     for (fade, slope) in [
         (Fade::Step, Slope::Flat),
@@ -186,20 +187,20 @@ pub fn singles(seed: u64, wavelength: f64) -> Vec<Noise> {
         (Fade::Cubic, Slope::Exact),
         (Fade::Quintic, Slope::Exact),
     ] {
-        list.push(noise(format!("value {fade:?}"), slope, sloped!(Value { seed, wavelength, fade })));
+        list.push(noise(format!("value {fade:?}"), slope, sloped!(Value::new(seed, wavelength).with_fade(fade))));
     }
     for variant in [ClassicVariant::Diagonal, ClassicVariant::Eight, ClassicVariant::Angle] {
         let name = format!("classic {variant:?}");
-        list.push(noise(name, Slope::Exact, sloped!(Classic { seed, wavelength, variant })));
+        list.push(noise(name, Slope::Exact, sloped!(Classic::new(seed, wavelength).with_variant(variant))));
     }
-    list.push(noise("simplex noise", Slope::Exact, sloped!(Simplex { seed, wavelength })));
+    list.push(noise("simplex noise", Slope::Exact, sloped!(Simplex::new(seed, wavelength))));
     for smoothness in [Smoothness::Fast, Smoothness::Smooth] {
         let name = format!("opensimplex2 {smoothness:?}");
-        list.push(noise(name, Slope::Exact, sloped!(OpenSimplex2 { seed, wavelength, smoothness })));
+        list.push(noise(name, Slope::Exact, sloped!(OpenSimplex2::new(seed, wavelength).with_smoothness(smoothness))));
     }
     for feature in [Feature::F1, Feature::F2, Feature::Difference, Feature::Product, Feature::Value, Feature::Edge] {
         for distance in [Distance::Euclidean, Distance::Manhattan, Distance::Chebyshev] {
-            let worley = Worley { seed, wavelength, distance, feature, jitter: 0.9 };
+            let worley = Worley::new(seed, wavelength).with_distance(distance).with_feature(feature).with_jitter(0.9);
             let name = format!("worley {feature:?} {distance:?}");
             list.push(noise(name, Slope::Flat, flat!(worley)).one_sided(feature != Feature::Value));
         }
@@ -210,12 +211,11 @@ pub fn singles(seed: u64, wavelength: f64) -> Vec<Noise> {
 /// Noises that repeat.
 pub fn tiled(seed: u64, wavelength: f64) -> Vec<Noise> {
     const PERIOD: [u32; 3] = [6, 3, 2];
-    let ridged =
-        Fractal { basis: Basis::ClassicEight, kind: Kind::Ridged, seed, wavelength, octaves: 3, ..Fractal::default() };
-    let edges = Worley { seed, wavelength, feature: Feature::Edge, ..Worley::default() };
+    let ridged = Fractal::new(seed, wavelength).with_basis(Basis::ClassicEight).with_kind(Kind::Ridged).with_octaves(3);
+    let edges = Worley::new(seed, wavelength).with_feature(Feature::Edge);
     vec![
-        noise("tiled white", Slope::Flat, sloped!(White { seed, wavelength }.tiled(PERIOD).unwrap())),
-        noise("tiled perlin", Slope::Exact, sloped!(Perlin { seed, wavelength }.tiled(PERIOD).unwrap())),
+        noise("tiled white", Slope::Flat, sloped!(White::new(seed, wavelength).tiled(PERIOD).unwrap())),
+        noise("tiled perlin", Slope::Exact, sloped!(Perlin::new(seed, wavelength).tiled(PERIOD).unwrap())),
         noise("tiled ridged", Slope::Creased, sloped!(ridged.tiled(PERIOD).unwrap())).one_sided(true),
         noise("tiled edges", Slope::Flat, sloped!(edges.tiled(PERIOD).unwrap())).one_sided(true),
     ]
@@ -223,7 +223,7 @@ pub fn tiled(seed: u64, wavelength: f64) -> Vec<Noise> {
 
 /// All that never repeat.
 pub fn endless(seed: u64, wavelength: f64) -> Vec<Noise> {
-    let fractal = Fractal { seed, wavelength, octaves: 4, lacunarity: 1.9, gain: 0.6, ..Fractal::default() };
+    let fractal = Fractal::new(seed, wavelength).with_octaves(4).with_lacunarity(1.9).with_gain(0.6);
     let mut list = bases(seed, wavelength);
     list.extend(fractals(fractal));
     list.extend(singles(seed, wavelength));

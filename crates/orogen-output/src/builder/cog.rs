@@ -98,7 +98,7 @@ impl Cog {
     /// # Errors
     /// If a GeoTIFF cannot have these sides or tiles.
     pub fn new(identity: &Identity) -> Result<Cog> {
-        let options = Options { tile: Some(identity.tile), map: identity.map.clone(), ..Options::default() };
+        let options = Options::default().with_tile(Some(identity.tile)).with_map(identity.map.clone());
         Ok(Cog { window: identity.window, pyramid: pyramid(&identity.window, &options)? })
     }
 

@@ -83,7 +83,7 @@ impl Folder {
             Samples::R32 => bytes = samples::to_bytes(samples),
             Samples::R16 => bytes.extend(samples.iter().flat_map(|sample| levels.to_u16(*sample).to_le_bytes())),
             Samples::Png => {
-                let picture = Picture { width: side, height: side, pixel: Pixel::Grey16, notes: &[] };
+                let picture = Picture::new(side, side, Pixel::Grey16);
                 let fill = |rows: std::ops::Range<usize>, out: &mut [u8]| {
                     let samples = &samples[rows.start * side..rows.end * side];
                     for (number, sample) in out.chunks_exact_mut(2).zip(samples) {

@@ -185,7 +185,7 @@ impl Tree {
     fn encode(&self, samples: &[f32]) -> Result<Vec<u8>> {
         let side = self.tile();
         let mut bytes = Vec::new();
-        let picture = Picture { width: side, height: side, pixel: Pixel::Data8, notes: &[] };
+        let picture = Picture::new(side, side, Pixel::Data8);
         png::write(&mut bytes, &picture, |rows, out| {
             let samples = &samples[rows.start * side..rows.end * side];
             for (pixel, sample) in out.chunks_exact_mut(3).zip(samples) {

@@ -44,7 +44,7 @@ pub fn write_normals(source: &mut LayerSource, options: &Options, files: &mut Fi
     let about = format!("normals: red east, green {green}, blue up; {} metres a sample", window.cell);
     let notes = [("Software", SOFTWARE), ("Description", about.as_str())];
     let pixel = if most == 255 { Pixel::Data8 } else { Pixel::Data16 };
-    let picture = Picture { width: window.width, height: window.height, pixel, notes: &notes };
+    let picture = Picture::new(window.width, window.height, pixel).with_notes(&notes);
     let levels = Levels::new(-1.0, 1.0);
     files.write(|out| {
         png::write_through(out, &picture, |out| {
@@ -72,7 +72,7 @@ pub fn write_color(source: &mut LayerSource, files: &mut Files) -> io::Result<St
     let window = *source.window();
     let about = format!("{}: unlit color, sRGB; {} metres a sample", source.layer(), window.cell);
     let notes = [("Software", SOFTWARE), ("Description", about.as_str())];
-    let picture = Picture { width: window.width, height: window.height, pixel: Pixel::Rgb8, notes: &notes };
+    let picture = Picture::new(window.width, window.height, Pixel::Rgb8).with_notes(&notes);
     let encoder = Encoder::new();
     files.write(|out| {
         png::write_through(out, &picture, |out| {
@@ -116,7 +116,7 @@ pub fn write_weights(source: &mut LayerSource, options: &Options, files: &mut Fi
         let channels: Vec<String> = group.iter().map(|k| names[*k].clone()).collect();
         let about = format!("weights of {}; {} metres a sample", channels.join(", "), window.cell);
         let notes = [("Software", SOFTWARE), ("Description", about.as_str())];
-        let picture = Picture { width: window.width, height: window.height, pixel, notes: &notes };
+        let picture = Picture::new(window.width, window.height, pixel).with_notes(&notes);
         let from_south = held.from_south;
         let body = |out: &mut dyn Write| {
             png::write_through(out, &picture, |out| {

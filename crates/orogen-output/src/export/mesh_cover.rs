@@ -66,7 +66,7 @@ pub fn of(source: &LayerSource, options: &Options, packed: bool) -> io::Result<O
     }
     let window = *source.window();
     let notes = [("Software", concat!("Orogen ", env!("CARGO_PKG_VERSION")))];
-    let picture = |pixel| Picture { width: window.width, height: window.height, pixel, notes: &notes };
+    let picture = |pixel| Picture::new(window.width, window.height, pixel).with_notes(&notes);
     let encoder = Encoder::new();
     let color = made(source, &albedo::LAYER)?;
     let base = packed_rows(&picture(Pixel::Rgb8), |row, bytes| {
@@ -97,7 +97,7 @@ pub fn normal_map(level: &Surface) -> io::Result<Vec<u8>> {
     let (width, height) = (level.grid.width(), level.grid.height());
     let texels = normal_map::bake(level)?;
     let notes = [("Software", concat!("Orogen ", env!("CARGO_PKG_VERSION")))];
-    packed_rows(&Picture { width, height, pixel: Pixel::Data8, notes: &notes }, |row, bytes| {
+    packed_rows(&Picture::new(width, height, Pixel::Data8).with_notes(&notes), |row, bytes| {
         bytes.copy_from_slice(&texels[3 * width * row..][..3 * width]);
     })
 }

@@ -169,7 +169,7 @@ fn written(values: &ParamValues, stretch: &Stretch, world: &FittedWorld, view: O
     let value = |k: usize| round(value(values, k));
     let wavelength = round(value(0) * cell);
     let size = size.map(|samples| samples as f64 * cell);
-    let mut recipe = Recipe::new(WorldSpec { seed, size: Some(size), cell, ..WorldSpec::default() });
+    let mut recipe = Recipe::new(WorldSpec::default().with_seed(seed).with_size(Some(size)).with_cell(cell));
     let noise = |seed: u64, wavelength: f64, octaves: u32| Fbm { seed, wavelength, octaves, ..Fbm::default() };
     recipe.add("waves", Fbm { gain: value(1), ..noise(1, wavelength, 12) });
     let amplitude = value(2);

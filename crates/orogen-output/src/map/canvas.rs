@@ -89,7 +89,7 @@ impl Canvas {
     pub fn write_png(&self, out: &mut dyn Write, notes: &[(&str, &str)]) -> io::Result<()> {
         let grey = self.pixels.iter().all(|[red, green, blue]| red == green && green == blue);
         let pixel = if grey { Pixel::Grey8 } else { Pixel::Rgb8 };
-        let picture = Picture { width: self.width, height: self.height, pixel, notes };
+        let picture = Picture::new(self.width, self.height, pixel).with_notes(notes);
         png::write(out, &picture, |rows, bytes| {
             let pixels = &self.pixels[rows.start * self.width..rows.end * self.width];
             match grey {

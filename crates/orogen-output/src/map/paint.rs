@@ -63,7 +63,7 @@ impl Painter {
     /// linearly.
     pub fn write_png(&self, out: &mut dyn Write, grid: &Grid, notes: &[(&str, &str)]) -> io::Result<()> {
         let (width, height) = (grid.width(), grid.height());
-        let picture = Picture { width, height, pixel: Pixel::Rgb8, notes };
+        let picture = Picture::new(width, height, Pixel::Rgb8).with_notes(notes);
         png::write(out, &picture, |rows, bytes| {
             self.paint(grid, rows, bytes);
             Ok(())

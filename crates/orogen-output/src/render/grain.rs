@@ -25,7 +25,7 @@ pub(super) struct Bump {
 impl Grain {
     /// Computes the tile.
     pub fn new() -> Grain {
-        let noise = Perlin { seed: 5, wavelength: WAVELENGTH as f64 };
+        let noise = Perlin::new(5, WAVELENGTH as f64);
         let axis: Vec<f64> = (0..SIDE).map(|i| i as f64).collect();
         let mut parts = [vec![0.0; SIDE * SIDE], vec![0.0; SIDE * SIDE], vec![0.0; SIDE * SIDE]];
         if let Ok(tiled) = noise.tiled([(SIDE / WAVELENGTH) as u32; 2]) {

@@ -89,7 +89,7 @@ impl Linework {
                 let lake = if parts.lakes { cells(LAKE) } else { u32::MAX };
                 let scattered = grid.window().cell < ENLARGED * window.cell;
                 let depth = (relief * DEPTH) as f32;
-                find(&grid, sea, Least { spring: cells(SPRING), lake, depth, scattered })?
+                find(&grid, sea, Least::new(cells(SPRING), lake).with_depth(depth).with_scattered(scattered))?
             }
             false => Water { rivers: Vec::new(), lakes: Vec::new(), surface: grid.clone() },
         };

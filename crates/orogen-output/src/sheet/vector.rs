@@ -92,7 +92,7 @@ fn embed(out: &mut dyn Write, area: Rect, size: [usize; 2], pixels: &[u8]) -> io
             let width = (TILE + OVERLAP).min(size[0] - left);
             let height = (TILE + OVERLAP).min(size[1] - top);
             let mut file = Vec::new();
-            let picture = Picture { width, height, pixel: Pixel::Rgb8, notes: &[] };
+            let picture = Picture::new(width, height, Pixel::Rgb8);
             png::write(&mut file, &picture, |rows, bytes| {
                 for (row, bytes) in rows.zip(bytes.chunks_exact_mut(3 * width)) {
                     let from = 3 * ((top + row) * size[0] + left);

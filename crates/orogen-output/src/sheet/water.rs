@@ -82,7 +82,7 @@ mod tests {
     #[test]
     fn a_river_runs_to_the_lake_and_on_from_it() {
         let heights = valley();
-        let water = find(&heights, None, Least { spring: 100, lake: 10, depth: 5.0, scattered: false }).unwrap();
+        let water = find(&heights, None, Least::new(100, 10).with_depth(5.0).with_scattered(false)).unwrap();
         assert_eq!(water.lakes.len(), 1);
         let shore = &water.lakes[0];
         assert!(shore.first() == shore.last() && shore.len() > 10);
@@ -96,8 +96,8 @@ mod tests {
         assert!(level > heights[(30, 40)] + 20.0 && level == water.surface[(31, 41)]);
         // A lake below the minimum area or depth is omitted.
         for least in [
-            Least { spring: 100, lake: 4000, depth: 5.0, scattered: false },
-            Least { spring: 100, lake: 10, depth: 500.0, scattered: false },
+            Least::new(100, 4000).with_depth(5.0).with_scattered(false),
+            Least::new(100, 10).with_depth(500.0).with_scattered(false),
         ] {
             assert!(find(&heights, None, least).unwrap().lakes.is_empty());
         }
@@ -107,14 +107,14 @@ mod tests {
     fn the_sea_takes_the_rivers() {
         let heights = valley();
         let sea = heights[(30, 70)];
-        let water = find(&heights, Some(sea), Least { spring: 100, lake: 10, depth: 5.0, scattered: false }).unwrap();
+        let water = find(&heights, Some(sea), Least::new(100, 10).with_depth(5.0).with_scattered(false)).unwrap();
         let under =
             water.rivers.iter().flat_map(|river| &river.points[..river.points.len() - 1]).filter(|p| p[1] > 74.0);
         assert_eq!(under.count(), 0);
         let flat = find(
             &Grid::filled(Window::new(9, 9, 1.0), 5.0),
             Some(10.0),
-            Least { spring: 1, lake: 1, depth: 0.0, scattered: false },
+            Least::new(1, 1).with_depth(0.0).with_scattered(false),
         );
         assert!(flat.unwrap().rivers.is_empty());
     }

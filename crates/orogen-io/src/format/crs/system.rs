@@ -23,6 +23,7 @@ pub struct Geographic {
 
 /// A map projection, with ESRI's name and parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Method {
     /// Transverse Mercator.
     TransverseMercator,

@@ -31,6 +31,7 @@ pub struct Level {
 
 /// The common description of all directories.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct Description {
     /// The window of the full raster.
     pub window: Window,

@@ -6,6 +6,7 @@ use super::blosc;
 
 /// The data type of an array.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Number {
     /// f32; the fill value is NaN.
     F32,

@@ -85,7 +85,7 @@ impl<'a> FeatureOptions<'a> {
             river: (1e6, FEWEST),
             lake: 2e4,
             sea: true,
-            channel: Channel { runoff: 0.5, width: 5.0, depth: 0.3 },
+            channel: Channel::default().with_runoff(0.5).with_width(5.0).with_depth(0.3),
         };
         for named in recipe.nodes() {
             match &named.node {
@@ -95,7 +95,8 @@ impl<'a> FeatureOptions<'a> {
                 }
                 Node::Rivers(node) => {
                     options.river = (node.stream, 1);
-                    options.channel = Channel { runoff: node.runoff, width: node.width, depth: node.depth };
+                    options.channel =
+                        Channel::default().with_runoff(node.runoff).with_width(node.width).with_depth(node.depth);
                     options.sea = node.sea;
                 }
                 Node::Lakes(node) => {

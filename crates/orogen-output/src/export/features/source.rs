@@ -83,7 +83,7 @@ impl FeatureSource {
     ) -> Result<FeatureSource> {
         let all = *heights.window();
         let [spring, lake] = options.fewest(all.cell);
-        let least = Least { spring, lake, depth: 0.0, scattered: false };
+        let least = Least::new(spring, lake).with_depth(0.0).with_scattered(false);
         let water = Water::of(heights, options.sea.then_some(sea_level), least, progress)?;
         let (left, top) = ((window.x - all.x) as usize, (window.y - all.y) as usize);
         let frame = Frame { columns: left..left + window.width, rows: top..top + window.height };

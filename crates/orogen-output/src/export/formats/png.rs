@@ -71,7 +71,7 @@ fn write_grey(source: &mut LayerSource, options: &Options, files: &mut Files) ->
     let pixel = if most == 255 { Pixel::Grey8 } else { Pixel::Grey16 };
     let notes = notes::of_heights(window.cell, &levels);
     let notes: Vec<(&str, &str)> = notes.iter().map(|(keyword, text)| (*keyword, text.as_str())).collect();
-    let picture = Picture { width: window.width, height: window.height, pixel, notes: &notes };
+    let picture = Picture::new(window.width, window.height, pixel).with_notes(&notes);
     files.write(|out| {
         png::write_through(out, &picture, |out| {
             quantized.rows(|samples| quantizer::write_levels(out, samples, &levels, most))
@@ -94,7 +94,7 @@ fn write_encoded(
     let window = *source.window();
     let about = format!("heights in metres as {} colours; {} metres a sample", encoding.name(), window.cell);
     let notes = [("Software", SOFTWARE), ("Description", about.as_str())];
-    let picture = Picture { width: window.width, height: window.height, pixel: Pixel::Data8, notes: &notes };
+    let picture = Picture::new(window.width, window.height, Pixel::Data8).with_notes(&notes);
     let mut quantized = Quantizer::plain(source, options, files)?;
     files.write(|out| {
         png::write_through(out, &picture, |out| {
