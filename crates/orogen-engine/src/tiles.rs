@@ -201,7 +201,7 @@ impl<'w> Tiles<'w> {
         }
         let layers: Vec<&str> = self.layers.iter().map(String::as_str).collect();
         let window = self.tiling.run(&self.window, [0, 0], self.at_once);
-        let [solving, making] = self.world.work_of(&self.world.plan(&layers, &window)?);
+        let [solving, making] = self.world.work_of(&self.world.plan(&layers, &window)?)?;
         let each = making / window.len().max(1) as f64;
         let samples = self.strips.iter().filter_map(|(first, count)| Some(self.wanted(*first, *count)?.1.len() as f64));
         self.progress.expect(solving + each * samples.sum::<f64>());
@@ -273,7 +273,7 @@ impl<'w> Tiles<'w> {
         let window = self.tiling.run(&self.window, [0, 0], at_once);
         let plan = self.world.plan(&layers, &window)?;
         let cut = (window.len() as u64).saturating_mul(4).saturating_mul(layers.len() as u64);
-        Ok(self.world.memory_of(&plan).saturating_add(cut))
+        Ok(self.world.memory_of(&plan)?.saturating_add(cut))
     }
 }
 

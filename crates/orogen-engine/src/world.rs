@@ -266,20 +266,31 @@ impl World {
     }
 
     /// Maximum memory for running a plan, in bytes.
-    pub fn memory_of(&self, plan: &Plan) -> u64 {
-        memory::needed(plan, &self.recipe, self.threads())
+    ///
+    /// # Errors
+    /// The plan was made for another recipe.
+    pub fn memory_of(&self, plan: &Plan) -> Result<u64> {
+        self.check_plan(plan)?;
+        Ok(memory::needed(plan, &self.recipe, self.threads()))
     }
 
     /// Approximate time of a plan on one core, in nanoseconds: for solving what is not solved yet, and for the steps.
+    ///
+    /// # Errors
+    /// The plan was made for another recipe.
     #[doc(hidden)]
-    pub fn work_of(&self, plan: &Plan) -> [f64; 2] {
-        [self.engine(&Progress::none()).solving_work(plan), cost::steps(plan, &self.recipe)]
+    pub fn work_of(&self, plan: &Plan) -> Result<[f64; 2]> {
+        self.check_plan(plan)?;
+        Ok([self.engine(&Progress::none()).solving_work(plan), cost::steps(plan, &self.recipe)])
     }
 
     /// Approximate time of a plan on one core, in nanoseconds, without existing solutions: the weight of a
     /// [part](Progress::part) of more work.
-    pub fn work(&self, plan: &Plan) -> f64 {
-        self.work_of(plan).iter().sum()
+    ///
+    /// # Errors
+    /// The plan was made for another recipe.
+    pub fn work(&self, plan: &Plan) -> Result<f64> {
+        Ok(self.work_of(plan)?.iter().sum())
     }
 
     /// Approximate time of a plan's steps on one core, in nanoseconds, without solving.
@@ -288,8 +299,12 @@ impl World {
     }
 
     /// A description of the plan for users.
-    pub fn explain(&self, plan: &Plan) -> String {
-        explain(plan, &self.recipe, &self.graph, self.threads())
+    ///
+    /// # Errors
+    /// The plan was made for another recipe.
+    pub fn explain(&self, plan: &Plan) -> Result<String> {
+        self.check_plan(plan)?;
+        Ok(explain(plan, &self.recipe, &self.graph, self.threads()))
     }
 
     /// Number of threads.
@@ -360,7 +375,7 @@ impl World {
     #[doc(hidden)]
     pub fn grid_beside(&self, layer: &str, window: &Window, beside: u64, progress: &Progress) -> Result<Grid> {
         let plan = self.planned(&[self.target(layer)?], *window, false)?;
-        self.session.budget.afford(self.memory_of(&plan).saturating_add(beside))?;
+        self.session.budget.afford(self.memory_of(&plan)?.saturating_add(beside))?;
         let mut grids = self.run(&plan, progress)?;
         grids.pop().ok_or_else(|| Error::new(ErrorKind::Request, "no layer was requested"))
     }
@@ -537,14 +552,19 @@ impl World {
         self.session.budget.afford((window.width as u64).saturating_mul(window.height as u64).saturating_mul(4))
     }
 
+    /// Rejects a plan of another recipe, whose nodes are not these.
+    fn check_plan(&self, plan: &Plan) -> Result<()> {
+        if plan.recipe == self.identity {
+            return Ok(());
+        }
+        let message =
+            "the plan was made for another recipe or another state of this one: make it again with `World::plan`";
+        Err(Error::new(ErrorKind::Request, message))
+    }
+
     /// Reserves the memory that a plan needs, and drops other solutions to make room. Rejects a plan of another recipe.
     fn admit(&self, plan: &Plan, progress: &Progress) -> Result<Reservation> {
-        if plan.recipe != self.identity {
-            let message =
-                "the plan was made for another recipe or another state of this one: make it again with `World::plan`";
-            return Err(Error::new(ErrorKind::Request, message));
-        }
-        let running = self.session.budget.admit(self.memory_of(plan), progress)?;
+        let running = self.session.budget.admit(self.memory_of(plan)?, progress)?;
         let keys: IndexVec<NodeId, Key> = plan.solves.iter().map(|solve| solve.key).collect();
         self.session.make_room(&keys);
         Ok(running)

@@ -119,13 +119,13 @@ fn a_margin_is_in_plans_memory_keys_and_explanations() {
     let [of_none, of_some] = [&none, &some].map(|world| world.plan(&["flow"], &window).unwrap());
     // 54 bytes for every cell of the domain.
     let cells = |around: usize| ((SAMPLES[0] + 5 + 2 * around) * (SAMPLES[1] + 5 + 2 * around)) as u64;
-    let more = some.memory_of(&of_some) - none.memory_of(&of_none);
+    let more = some.memory_of(&of_some).unwrap() - none.memory_of(&of_none).unwrap();
     assert!(more >= 54 * (cells(AROUND) - cells(0)), "{more}");
     assert_ne!(none.key("flow").unwrap(), some.key("flow").unwrap());
     assert_ne!(some.key("flow").unwrap(), open(AROUND as f64 * CELL + 1.0).key("flow").unwrap());
-    let text = some.explain(&of_some);
+    let text = some.explain(&of_some).unwrap();
     assert!(text.contains("solve `node` over the world and 240 m around, 139 x 119 samples at 10 m"), "{text}");
-    assert!(none.explain(&of_none).contains("over the world, 91 x 71 samples at 10 m"));
+    assert!(none.explain(&of_none).unwrap().contains("over the world, 91 x 71 samples at 10 m"));
 }
 
 #[test]

@@ -65,7 +65,7 @@ fn compare(width: usize, height: usize, over: &str, memory: Option<u64>) {
         if memory.is_none() {
             plan.solve_on_disk(1024);
         }
-        assert!(plan.solves().iter().all(|solve| solve.on_disk), "{}", tiled.explain(&plan));
+        assert!(plan.solves().iter().all(|solve| solve.on_disk), "{}", tiled.explain(&plan).unwrap());
         let progress = Progress::none();
         let expect = whole.grids(&LAYERS, &window, &progress).unwrap();
         let got = tiled.run(&plan, &progress).unwrap();

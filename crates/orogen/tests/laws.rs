@@ -168,7 +168,7 @@ fn dear_sources_of_a_filter_are_made_once() {
             Step::Apply { .. } => 0,
         })
         .sum();
-    assert_eq!(fields, 1, "{}", world.explain(&plan));
+    assert_eq!(fields, 1, "{}", world.explain(&plan).unwrap());
 }
 
 #[test]
@@ -185,8 +185,8 @@ fn layers_are_read_by_name_and_only_those_wanted_are_made() {
     let Some(Step::Apply { out, .. }) = plan.steps().iter().find(|step| matches!(step, Step::Apply { .. })) else {
         panic!("a filter is applied")
     };
-    assert!(matches!(out.as_slice(), [None, None, Some(_)]), "{}", world.explain(&plan));
-    assert!(world.explain(&plan).contains("apply `s` (south)"), "{}", world.explain(&plan));
+    assert!(matches!(out.as_slice(), [None, None, Some(_)]), "{}", world.explain(&plan).unwrap());
+    assert!(world.explain(&plan).unwrap().contains("apply `s` (south)"), "{}", world.explain(&plan).unwrap());
     // The layer is the rise per metre; together with its neighbour it gives the whole slope.
     let source = world.window("a", &window.grown(1)).unwrap();
     let [east, south] = ["s.east", "s.south"].map(|layer| world.window(layer, &window).unwrap());
@@ -230,8 +230,22 @@ fn a_plan_is_a_value_that_can_be_sent() {
     assert!(damaged("\"format\":2,", "").contains("has format 1, this version reads format 2"));
     // A plan of another recipe, or of this one before it was edited.
     let edited = World::open(Recipe::parse(&text.replace("\"blur\"", "\"blur\"\nradius = 35"), "t").unwrap()).unwrap();
-    let error = edited.run(&came, &Progress::none()).unwrap_err();
-    assert!(error.kind() == orogen::ErrorKind::Request && error.to_string().contains("another recipe"), "{error}");
+    // Of no node at all: a plan's nodes are not those of another recipe.
+    let bare = Recipe::parse("orogen = 1\n[world]\ncell = 10\n[outputs]\nheight = 5", "t").unwrap();
+    for other in [edited, World::open(bare).unwrap()] {
+        let refusals = [
+            other.run(&came, &Progress::none()).map(|_| ()),
+            other.memory_of(&came).map(|_| ()),
+            other.work(&came).map(|_| ()),
+            other.explain(&came).map(|_| ()),
+        ];
+        for error in refusals.map(Result::unwrap_err) {
+            assert!(
+                error.kind() == orogen::ErrorKind::Request && error.to_string().contains("another recipe"),
+                "{error}"
+            );
+        }
+    }
 }
 
 /// Everything that changes a node's samples changes its content key: stored solutions and cached grids are never stale.

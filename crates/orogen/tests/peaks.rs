@@ -44,7 +44,7 @@ fn expensive_ops() -> Vec<String> {
             let name = node.spec().op;
             let world = world_of_op(name);
             let plan = world.plan(&["height"], &Window::new(256, 256, 10.0)).unwrap();
-            (world.work(&plan), name.to_string())
+            (world.work(&plan).unwrap(), name.to_string())
         })
         .collect();
     works.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -66,12 +66,12 @@ fn run(job: &str) {
         let window = world.window_fitting(side);
         let window = window.unwrap_or_else(|_| Window::new(side, side, world.recipe().world.cell));
         plan = world.plan(&["height"], &window).unwrap();
-        if world.memory_of(&plan) >= least || side >= LARGEST {
+        if world.memory_of(&plan).unwrap() >= least || side >= LARGEST {
             break;
         }
         side *= 2;
     }
-    let stated = world.memory_of(&plan);
+    let stated = world.memory_of(&plan).unwrap();
     let made = world.run(&plan, &Progress::none()).unwrap();
     assert!(made[0].data().iter().any(|height| height.is_finite()));
     let status = std::fs::read_to_string("/proc/self/status").unwrap();

@@ -286,7 +286,7 @@ fn they_stand_beside_built_in_ops_warped_masked_and_by_layers() {
 fn plans_explain_them_and_can_be_sent() {
     let world = World::open(registry().parse(RECIPE, "r").unwrap()).unwrap();
     let plan = world.plan(&["height"], &window()).unwrap();
-    let explained = world.explain(&plan);
+    let explained = world.explain(&plan).unwrap();
     for said in
         ["mygame.ripples", "mygame.crests", "halo of 3 samples", "solve `above`", "apply `crests`", "What lies above"]
     {
@@ -294,7 +294,7 @@ fn plans_explain_them_and_can_be_sent() {
     }
     // Two rasters and three grids of the padded world count.
     let padded = plan.solves()[1].padded.len() as u64;
-    assert!(world.memory_of(&plan) > 5 * 4 * padded, "{explained}");
+    assert!(world.memory_of(&plan).unwrap() > 5 * 4 * padded, "{explained}");
     let sent: Plan = serde_json::from_str(&serde_json::to_string(&plan).unwrap()).unwrap();
     assert_eq!(world.run(&sent, &Progress::none()).unwrap()[0], world.window("height", &window()).unwrap());
     // Another revision of one op makes another recipe.

@@ -62,7 +62,7 @@ fn two_worlds_in_two_threads_stay_below_one_budget() {
     });
     // Enough for one and a half requests.
     let world = session(None).open(recipe()).unwrap();
-    let one = world.memory_of(&world.plan(&["height"], &window()).unwrap());
+    let one = world.memory_of(&world.plan(&["height"], &window()).unwrap()).unwrap();
     let session = session(Some(one * 3 / 2));
     std::thread::scope(|scope| {
         for (grid, recipe) in &expect {

@@ -112,9 +112,13 @@ fn memory_disk_and_folder_make_the_same_bits() {
                 let plan = world.plan(&["height", "steep", "again"], part).unwrap();
                 let on_disk = plan.solves().iter().filter(|solve| solve.on_disk).count();
                 moved += on_disk;
-                assert!(memory.is_none_or(|memory| world.memory_of(&plan) <= memory), "{}", world.explain(&plan));
+                assert!(
+                    memory.is_none_or(|memory| world.memory_of(&plan).unwrap() <= memory),
+                    "{}",
+                    world.explain(&plan).unwrap()
+                );
                 assert_eq!(world.disk_of(&plan) > 0, on_disk > 0);
-                assert_eq!(world.explain(&plan).contains("MiB temporarily"), on_disk > 0);
+                assert_eq!(world.explain(&plan).unwrap().contains("MiB temporarily"), on_disk > 0);
                 same(&name, &whole, &layers(&world, part));
             }
             assert_eq!(moved > 0, memory.is_some(), "{name}");
@@ -142,7 +146,7 @@ fn tiles_of_any_size_solve_the_same() {
     for memory in [40 << 20, 11 << 20, 8 << 20] {
         let world = open(&recipe, Options { threads: Some(2), memory: Budget::of(memory), ..Options::default() });
         let plan = world.plan(&["height", "steep", "again"], &window).unwrap();
-        assert!(world.memory_of(&plan) <= memory, "{memory}: {}", world.explain(&plan));
+        assert!(world.memory_of(&plan).unwrap() <= memory, "{memory}: {}", world.explain(&plan).unwrap());
         sides.push(plan.solves()[0].side);
         same(&format!("{memory} bytes"), &whole, &layers(&world, &window));
     }
@@ -153,7 +157,7 @@ fn tiles_of_any_size_solve_the_same() {
 fn made(recipe: &Recipe, cache: FolderStore, window: &Window) -> (f64, u64, Grid) {
     let world = open(recipe, Options { store: Some(Arc::new(cache)), ..Options::default() });
     let plan = world.plan(&["height"], window).unwrap();
-    let work = world.work(&plan);
+    let work = world.work(&plan).unwrap();
     let reports = Arc::new(AtomicU64::new(0));
     let heard = Arc::clone(&reports);
     let progress = Progress::new(move |_| _ = heard.fetch_add(1, Ordering::Relaxed));
@@ -226,7 +230,7 @@ fn solutions_of_other_layers_leave_memory_when_it_is_short() {
     let window = Window::new(30, 30, 10.0);
     let ample = open(&recipe, Options::default());
     // Just enough for either layer alone.
-    let needed = |layer| ample.memory_of(&ample.plan(&[layer], &window).unwrap());
+    let needed = |layer| ample.memory_of(&ample.plan(&[layer], &window).unwrap()).unwrap();
     let limit = needed("height").max(needed("steep"));
     let world = open(&recipe, Options { memory: Budget::of(limit), ..Options::default() });
     for layer in ["steep", "height", "steep", "again", "height"] {
@@ -246,7 +250,7 @@ fn a_chain_of_solvers_is_planned_in_no_time() {
     let begun = Instant::now();
     let plan = world.plan(&["height"], &Window::new(9, 9, 10.0)).unwrap();
     assert_eq!(plan.solves().len(), 199);
-    let told = world.explain(&plan);
+    let told = world.explain(&plan).unwrap();
     assert!(told.contains("samples: ") && told.contains(" to solve the world once\n"), "{told}");
     assert!(begun.elapsed() < Duration::from_secs(5), "{:?}", begun.elapsed());
     let first = world.window("n0", &Window::new(9, 9, 10.0)).unwrap();

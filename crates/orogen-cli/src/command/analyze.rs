@@ -79,7 +79,7 @@ fn measure(args: &Args) -> Result<(), Failure> {
     let (measures, page) = match Held::of(args, &world, &window)? {
         Held::InMemory(plan, _reserved) => {
             let [making, measuring, drawing] =
-                progress.parts([world.work(&plan), MEASURING * window.len() as f64, args.drawing(&window)]);
+                progress.parts([world.work(&plan)?, MEASURING * window.len() as f64, args.drawing(&window)]);
             let mut grids = world.run(&plan, &making).map_err(stopped)?;
             let Some(heights) = grids.pop() else { return Ok(()) };
             finite::check(&args.layer, &heights)?;
@@ -146,7 +146,7 @@ impl Held {
         let measuring = Measures::memory(window.len() as u64).saturating_sub(4 * window.len() as u64);
         if let Ok(reserved) = world.budget().reserve(measuring.saturating_add(page))
             && let Ok(plan) = world.plan(&[&args.layer], window)
-            && world.budget().afford(world.memory_of(&plan)).is_ok()
+            && world.budget().afford(world.memory_of(&plan)?).is_ok()
         {
             return Ok(Held::InMemory(plan, reserved));
         }

@@ -64,5 +64,5 @@ fn tell(args: &Args) -> Result<(), Failure> {
     let layers: Vec<&str> = layers.iter().map(String::as_str).collect();
     let world = args.limits.open(recipe, &budget)?;
     let plan = world.plan(&layers, &args.samples.window(&world)?)?;
-    say::out(&(parameters(world.recipe()) + &world.explain(&plan)))
+    say::out(&(parameters(world.recipe()) + &world.explain(&plan)?))
 }

@@ -127,7 +127,7 @@ fn land_window(world: &World, target: &FitTarget) -> Result<Window, Failure> {
 fn land_work(args: &Args, budget: &Budget, recipe: Recipe, target: &FitTarget) -> Result<f64, Failure> {
     let world = args.limits.open(recipe, budget)?;
     let plan = world.plan(&[HEIGHT], &land_window(&world, target)?)?;
-    Ok(world.work(&plan))
+    Ok(world.work(&plan)?)
 }
 
 /// The heights of a world with another seed at the place's cell, of the place's size.

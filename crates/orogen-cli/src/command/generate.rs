@@ -91,7 +91,7 @@ fn make(source: &Source, args: &Args, progress: &Progress) -> Result<String, Fai
     let folder = Folder::ready(&args.out)?;
     // The pictures are encoded in parallel, in bands of rows.
     let _pictures = budget.reserve(ENCODERS)?;
-    let [making, writing] = progress.parts([world.work(&plan), WRITING * window.len() as f64]);
+    let [making, writing] = progress.parts([world.work(&plan)?, WRITING * window.len() as f64]);
     let mut grids = world.run(&plan, &making)?;
     let Some(grid) = grids.pop() else {
         return Ok(String::new());

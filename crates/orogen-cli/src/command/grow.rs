@@ -109,7 +109,7 @@ fn write(
     let frames = Frames::new(args.frames, growth.steps());
     let plan = world.plan(&[HEIGHT], &window)?;
     // Growing takes the time of the terrain, and for each frame the work after its step, about a twentieth of that.
-    let growing = world.work(&plan) * (1.0 + frames.steps.len() as f64 / 20.0);
+    let growing = world.work(&plan)? * (1.0 + frames.steps.len() as f64 / 20.0);
     let [growing, painting] = progress.parts([growing, PAINTING * pixels as f64 * f64::from(args.frames)]);
     // All frames use the last frame's colours, so heights wait until it is made.
     let heights = Mutex::new(FrameSpool::new(Spool::beside(&args.out), window));

@@ -246,7 +246,7 @@ fn map(args: &Args) -> Result<(), Failure> {
     let (bar, progress) = Bar::new(args.quiet);
     let stopped = |error: orogen::Error| interrupt::explain(error.into(), "nothing was written");
     let plan = world.plan(&[HEIGHT], &window)?;
-    let work = world.work(&plan);
+    let work = world.work(&plan)?;
     let layered = if args.layer == HEIGHT && !is_covered { 0.0 } else { work };
     let [making, layering, drawing, writing] =
         progress.parts([work, layered, DRAWING * window.len() as f64, WRITING * pixels(&options)]);

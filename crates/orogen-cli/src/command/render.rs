@@ -351,7 +351,7 @@ fn draw(
         _ => 0.0,
     };
     let [making, preparing, previewing, painting] = progress.parts([
-        world.work(&plan),
+        world.work(&plan)?,
         PREPARING * window.len() as f64,
         preview * (width * height) as f64 * RAY * style.samples as f64,
         pixels * RAY * style.samples as f64,

@@ -121,7 +121,7 @@ impl<'w> Growth<'w> {
     /// The errors of [`World::run`] and of `visit`.
     pub fn run(&self, wanted: &BTreeSet<u32>, progress: &Progress, visit: Visit) -> Result<Solves> {
         let before = self.world.solutions_made();
-        let solving = self.world.work(&self.plan);
+        let solving = self.world.work(&self.plan)?;
         let frame = self.frame_work();
         let drafts = wanted.iter().filter(|step| self.is_drafted(**step)).count();
         let full = (wanted.len() - drafts) as f64;

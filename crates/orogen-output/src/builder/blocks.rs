@@ -79,7 +79,7 @@ impl Block {
 fn memory(world: &World, target: &dyn BuildTarget, layers: &[&str], columns: usize, rows: usize) -> Result<u64> {
     let window = union(target, (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))));
     let Some(window) = window else { return Ok(0) };
-    let plan = world.memory_of(&world.plan(layers, &window)?);
+    let plan = world.memory_of(&world.plan(layers, &window)?)?;
     // Beside the block: for each thread a tile cut out of it, and its encoding.
     let tile = target.window(0, 0).len() as u64 * 4 + target.scratch_memory();
     Ok(plan.saturating_add(tile.saturating_mul((layers.len() * world.threads()) as u64)))

@@ -320,7 +320,7 @@ impl<'a> Build<'a> {
         let first = wanted.iter().find(|job| job.stage == 0).map(|job| (job.row, job.column));
         let Some(window) = union(self.target.as_ref(), first.into_iter()) else { return Ok([0.0; 2]) };
         let layers: Vec<&str> = self.identity.layers.iter().map(String::as_str).collect();
-        let [solving, making] = self.world.work_of(&self.world.plan(&layers, &window)?);
+        let [solving, making] = self.world.work_of(&self.world.plan(&layers, &window)?)?;
         Ok([solving, making / window.len().max(1) as f64])
     }
 

@@ -343,7 +343,7 @@ impl Effort {
     pub fn work(&self, target: &FitTarget, options: &Options) -> Result<f64> {
         let (world, inside) = trial_world(target, &[0.5; PARAMS.len()], self.seed, 1, options)?;
         let plan = world.plan(&["soft"], &inside)?;
-        Ok(self.windows(target) * (world.work(&plan) + MEASURING * inside.len() as f64))
+        Ok(self.windows(target) * (world.work(&plan)? + MEASURING * inside.len() as f64))
     }
 }
 
