@@ -82,7 +82,7 @@ impl<'a> Engine<'a> {
             }
         }
         // Each output has its own slot, so a grid is an output only once.
-        Ok(plan.outputs.iter().filter_map(|&slot| grids[slot].take()).collect())
+        plan.outputs.iter().map(|&slot| grids[slot].take().ok_or_else(|| missing("an output"))).collect()
     }
 
     /// Takes kept grids of expensive filters from earlier requests. Returns which steps are still needed: those whose
@@ -264,6 +264,9 @@ impl<'a> Engine<'a> {
         let Op::Filter(filter) = self.recipe.nodes()[node.index()].node.op() else {
             return Err(Error::new(ErrorKind::Internal, "a node that is not a filter was to be applied"));
         };
+        if inputs.iter().flatten().any(|&slot| grids[slot].is_none()) {
+            return Err(missing("an input of a filter"));
+        }
         let grown = window.grown(*halo);
         // An input may cover more samples because other steps read it too: it is cropped to the declared halo.
         let cropped: Vec<Option<Grid>> = inputs
@@ -284,4 +287,9 @@ impl<'a> Engine<'a> {
         filter.apply(&given, window, &mut made, &context)?;
         Ok(made.into_iter().flatten().collect())
     }
+}
+
+/// A grid that steps before should have computed is not there.
+fn missing(what: &str) -> Error {
+    Error::new(ErrorKind::Internal, format!("{what} was not computed"))
 }
