@@ -63,8 +63,8 @@ use std::time::Duration;
 /// }
 ///
 /// let objects = Arc::new(Objects::default());
-/// let mut recipe = Recipe::new(WorldSpec { size: Some([2000.0, 2000.0]), cell: 20.0, ..WorldSpec::default() });
-/// recipe.add("noise", Fbm::default()).add("land", Normalise { source: "noise".into(), low: 0.0, high: 900.0 });
+/// let mut recipe = Recipe::new(WorldSpec::default().with_size(Some([2000.0, 2000.0])).with_cell(20.0));
+/// recipe.add("noise", Fbm::default()).add("land", Normalise { source: "noise".into(), low: 0.0, high: 900.0, ..Normalise::default() });
 /// recipe.output("height", "land");
 /// let make = || -> orogen_engine::Result<u64> {
 ///     let session = Session::new(Options { store: Some(objects.clone()), ..Options::default() })?;
