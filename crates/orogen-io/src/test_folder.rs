@@ -1,9 +1,11 @@
 //! A folder for the files of a test.
 
+use std::io;
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::{fs, io};
+
+use crate::fs;
 
 /// A new, empty folder in the system's folder for temporary files. It is removed with all that is in it when this is
 /// dropped.
