@@ -33,7 +33,7 @@ pub fn bless() -> bool {
     let value = std::env::var_os("OROGEN_BLESS");
     assert!(
         value.as_ref().is_none_or(|value| value == "1"),
-        "OROGEN_BLESS is {value:?}; set it to 1 to rewrite the committed files, or unset it to compare with them"
+        "only OROGEN_BLESS=1 rewrites the committed files: set it to that, or unset it to compare with them"
     );
     value.is_some()
 }
