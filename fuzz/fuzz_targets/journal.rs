@@ -29,7 +29,7 @@ struct Site {
 }
 
 fn spec() -> BuildSpec {
-    BuildSpec { form: Form::Zarr, window: Window::new(20, 17, 30.0), tile: Some(16), layers: vec!["height".into()] }
+    BuildSpec::new(Form::Zarr, Window::new(20, 17, 30.0)).with_tile(16)
 }
 
 fn files(folder: &Path, into: &mut BTreeMap<PathBuf, Vec<u8>>) {

@@ -49,7 +49,7 @@ fuzz_target!(|bytes: &[u8]| {
         }
     }
     for folder in [FOLDER.clone(), FOLDER.join("height")] {
-        if let Ok(dem) = open::read(&folder, Request { band: Some(1), allowed: 1 << 20 }) {
+        if let Ok(dem) = open::read(&folder, Request::new(1 << 20).with_band(Some(1))) {
             assert_eq!(dem.heights.len(), dem.width * dem.height);
         }
     }

@@ -43,7 +43,7 @@ Builds `orogen` in release mode, installs missing clients and runs every step, o
   formats   OpenEXR, GDAL, rasterio, Pillow and Godot read exported heights of every format, not mirrored, rotated or shifted
   relief    gdaldem computes the same hillshade, slope and aspect
   layers    GRASS, WhiteboxTools and gdaldem compute the same derived layers: wetness, HAND, insolation, viewshed, landforms ...
-  fuzz      libFuzzer on the readers of foreign files, 30 s each
+  fuzz      libFuzzer on the readers of foreign files, 15 s each
   taplo     taplo validates every recipe against the JSON Schema, and rejects broken ones
 
 Only if named, because Blender is large and needs Python 3.11:
@@ -179,7 +179,7 @@ const ASKED: &[&Step] = &[&Step { name: "blender", about: "Blender imports meshe
 
 /// A short run, which covers inputs close to the committed files; `cargo xtask fuzz` runs longer.
 fn fuzz() -> Result {
-    crate::fuzz::run(&["--seconds", "30"].map(str::to_owned))
+    crate::fuzz::run(&["--seconds", "15"].map(str::to_owned))
 }
 
 /// Runs the clients.
