@@ -2,7 +2,6 @@
 
 use super::key::Key;
 use super::program::{Instruction, Program};
-use super::stored::StoredPlan;
 use crate::ids::{GridId, IndexVec, NodeId, StepId};
 use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
@@ -13,8 +12,7 @@ use std::collections::BTreeSet;
 ///
 /// It can be stored and sent (serde). It contains the version of the library, the identity of its recipe and a
 /// checksum. Deserialisation fails for other versions and for damaged plans; a plan of another recipe cannot be run.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "StoredPlan", into = "StoredPlan")]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
     /// The identity of its recipe: a hash of the content keys of all nodes.
     pub(crate) recipe: Key,

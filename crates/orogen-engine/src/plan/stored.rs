@@ -4,7 +4,7 @@ use super::key::Key;
 use super::steps::{GridSlot, Plan, Solve, Step};
 use crate::ids::{GridId, IndexVec, StepId};
 use orogen_grid::grid::Window;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 use sha2::{Digest, Sha256};
 use std::fmt::{self, Write};
 
@@ -17,7 +17,7 @@ fn first_format() -> u32 {
 
 /// The serialised form of a plan.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub(super) struct StoredPlan {
+struct StoredPlan {
     orogen: String,
     /// Plans that were made before they had this number have format 1.
     #[serde(default = "first_format")]
@@ -45,6 +45,18 @@ fn checksum(plan: &Plan) -> Key {
     // Hashing cannot fail.
     let _ = write!(text, "{plan:?}");
     text.0.finalize().into()
+}
+
+impl Serialize for Plan {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        StoredPlan::from(self.clone()).serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Plan {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Plan, D::Error> {
+        Plan::try_from(StoredPlan::deserialize(deserializer)?).map_err(de::Error::custom)
+    }
 }
 
 impl From<Plan> for StoredPlan {

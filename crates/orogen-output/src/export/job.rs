@@ -9,9 +9,9 @@ use super::mesh_cover;
 use super::options::Options;
 use super::registry;
 use super::run;
+pub use super::run::Written;
 use orogen_engine::recipe::document::Recipe;
 use orogen_engine::world::{HEIGHT, World};
-use orogen_grid::analysis::finite::FiniteCount;
 use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
 use orogen_grid::progress::Progress;
@@ -120,14 +120,4 @@ impl ExportJob {
         };
         run::source(self.format, world, &self.layer, window, progress)
     }
-}
-
-/// The result of an export.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct Written {
-    /// A description of the samples.
-    pub words: String,
-    /// The count of samples.
-    pub count: FiniteCount,
 }

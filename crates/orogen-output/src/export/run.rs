@@ -5,15 +5,25 @@ use std::io::{self, Write};
 use super::features;
 use super::files::Files;
 use super::format::Format;
-use super::job::Written;
 use super::layer_source::LayerSource;
 use super::options::Options;
 use super::registry;
 use orogen_engine::world::World;
+use orogen_grid::analysis::finite::FiniteCount;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
 use orogen_grid::progress::Progress;
 use orogen_io::file::{self, Output};
+
+/// The result of an export.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Written {
+    /// A description of the samples.
+    pub words: String,
+    /// The count of samples.
+    pub count: FiniteCount,
+}
 
 /// The source for a format: layers of vector features, if the format holds them and all `layers` (comma-separated
 /// names) are such layers; otherwise the layer with that name, as in [`LayerSource::new`].

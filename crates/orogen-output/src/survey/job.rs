@@ -7,6 +7,7 @@ use super::measures::Measures;
 use super::water;
 use orogen_engine::budget::Budget;
 use orogen_grid::error::Result;
+use orogen_grid::grid::Grid;
 use orogen_grid::progress::Progress;
 
 /// The measuring of a piece of land. Land on disk has the numbers of land in memory, to the bit, and needs little memory.
@@ -50,5 +51,13 @@ impl<'a> SurveyJob<'a> {
             true => water::measure_on_disk(land, &self.scratch, &self.budget, progress),
             false => water::measure(&land.rows(0..land.window().height)?, progress),
         })
+    }
+}
+
+impl Measures {
+    /// Measures heights in memory; see [`SurveyJob::measure`], which also has progress and cancellation.
+    #[must_use]
+    pub fn of(heights: &Grid, sea_level: Option<f32>) -> Option<Measures> {
+        SurveyJob::new(Land::in_memory(heights, sea_level)).measure(&Progress::none()).ok().flatten()
     }
 }

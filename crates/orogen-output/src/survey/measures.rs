@@ -1,6 +1,5 @@
 //! Statistics of a terrain.
 
-use super::job::SurveyJob;
 use super::land::{self, Land, ROWS};
 use super::mean::Mean;
 use super::sorted::{Samples, Sorted};
@@ -103,12 +102,6 @@ impl Measures {
         let sorting = 4 * PART as u64 + (2 << 20);
         let counting = land::band_memory(window) + sorting.max(SPECTRUM + rows);
         counting.max(water::memory_on_disk(window))
-    }
-
-    /// Measures heights in memory; see [`SurveyJob::measure`], which also has progress and cancellation.
-    #[must_use]
-    pub fn of(heights: &Grid, sea_level: Option<f32>) -> Option<Measures> {
-        SurveyJob::new(Land::in_memory(heights, sea_level)).measure(&Progress::none()).ok().flatten()
     }
 
     /// Measures land whose water `water` measures.
@@ -399,6 +392,7 @@ fn patches(means: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::survey::job::SurveyJob;
     use orogen_grid::hydrology::samples;
     use orogen_io::pages::Pages;
     use orogen_io::raster::Raster;

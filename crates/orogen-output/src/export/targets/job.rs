@@ -3,17 +3,14 @@
 use std::path::PathBuf;
 
 use super::frame::{Frame, FrameSpec};
-use super::run;
 use super::target::EngineTarget;
 use crate::export::derived::list;
 use crate::export::format::Format;
 use crate::export::options::Options;
 use orogen_engine::recipe::document::Recipe;
-use orogen_engine::world::{HEIGHT, World};
+use orogen_engine::world::HEIGHT;
 use orogen_grid::analysis::finite::FiniteCount;
 use orogen_grid::error::Result;
-use orogen_grid::progress::Progress;
-use orogen_io::file::Output;
 
 /// The export of a layer for an engine, in one file or in tiles. The engine sets the options of the format.
 ///
@@ -71,16 +68,6 @@ impl EngineJob {
     /// The errors of [`list::prepare`].
     pub fn prepare(&self, recipe: &mut Recipe) -> Result<()> {
         list::prepare(recipe, &self.layer, &self.layer_options)
-    }
-
-    /// Exports all tiles, or none. Heights use the engine's format and scale, weights and normals its conventions; other
-    /// layers are 8-bit greyscale pictures.
-    ///
-    /// # Errors
-    /// The errors of [`Frame::new`]; if the engine does not support the format; or those of
-    /// [`ExportJob::to_file`](crate::export::job::ExportJob::to_file).
-    pub fn run(&self, world: &World, output: &Output, progress: &Progress) -> Result<Exported> {
-        run::export(self, Frame::new(self.target, world, &self.samples)?, world, output, progress)
     }
 }
 

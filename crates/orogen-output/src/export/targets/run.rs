@@ -16,17 +16,23 @@ use orogen_grid::grid::Window;
 use orogen_grid::progress::Progress;
 use orogen_io::file::{self, Output};
 
+impl EngineJob {
+    /// Exports all tiles, or none. Heights use the engine's format and scale, weights and normals its conventions; other
+    /// layers are 8-bit greyscale pictures.
+    ///
+    /// # Errors
+    /// The errors of [`Frame::new`]; if the engine does not support the format; or those of
+    /// [`ExportJob::to_file`](crate::export::job::ExportJob::to_file).
+    pub fn run(&self, world: &World, output: &Output, progress: &Progress) -> Result<Exported> {
+        export(self, Frame::new(self.target, world, &self.samples)?, world, output, progress)
+    }
+}
+
 /// Exports the layer of a job over a frame, all tiles or none.
 ///
 /// # Errors
 /// If the target does not support the format, or the errors of [`run::to_file`].
-pub(super) fn export(
-    job: &EngineJob,
-    frame: Frame,
-    world: &World,
-    output: &Output,
-    progress: &Progress,
-) -> Result<Exported> {
+fn export(job: &EngineJob, frame: Frame, world: &World, output: &Output, progress: &Progress) -> Result<Exported> {
     let EngineJob { target, format, ref layer, .. } = *job;
     let path = output.path();
     let mut options = Options::default();
