@@ -4,6 +4,7 @@
 #![no_main]
 
 mod edits;
+mod scratch;
 
 use edits::edited;
 use libfuzzer_sys::fuzz_target;
@@ -51,9 +52,7 @@ impl Site {
 }
 
 static SITE: LazyLock<Site> = LazyLock::new(|| {
-    let folder = Path::new("/dev/shm");
-    let folder = if folder.is_dir() { folder.to_path_buf() } else { std::env::temp_dir() };
-    let out = folder.join(format!("orogen-fuzz-{}.zarr", std::process::id()));
+    let out = scratch::path(".zarr");
     let recipe = Recipe::parse(RECIPE, "it").expect("a recipe");
     let options = Options { threads: Some(1), ..Options::default() };
     let world = World::with_options(recipe, options).expect("a world");

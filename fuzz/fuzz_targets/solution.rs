@@ -3,6 +3,8 @@
 //! The input is the header after the magic and the key; zeros up to the largest length that the target makes follow. Checksums are not verified.
 #![no_main]
 
+mod scratch;
+
 use libfuzzer_sys::fuzz_target;
 use orogen::read_at::PositionedFile;
 use orogen::store::fuzzing::{read, windows};
@@ -15,9 +17,7 @@ use std::sync::LazyLock;
 const PAGE: u64 = 256 * 256 * 4 + 4;
 
 static FILE: LazyLock<File> = LazyLock::new(|| {
-    let folder = Path::new("/dev/shm");
-    let folder = if folder.is_dir() { folder.to_path_buf() } else { std::env::temp_dir() };
-    let path = folder.join(format!("orogen-fuzz-{}", std::process::id()));
+    let path = scratch::path("");
     let file = File::options().create_new(true).read(true).write(true).open(&path).expect("a temporary file");
     // The descriptor keeps the file.
     std::fs::remove_file(&path).expect("its name is removed");
