@@ -4,6 +4,7 @@ use crate::failure::{Failure, Result};
 use crate::shell::{self, cargo, run as sh};
 use crate::steps::{self, Step};
 use crate::{codegen, licences, links, words};
+use std::path::{Path, PathBuf};
 
 pub const ABOUT: &str = "run all tests that need only Rust";
 
@@ -134,7 +135,33 @@ fn docs() -> Result {
 /// Packs every crate as it would be published and builds it from that archive alone, without optimisation: paths that lead out of a
 /// crate's folder, and files that are missing in it, fail here.
 fn package() -> Result {
+    let folder = shell::target_dir().join("packages");
+    forget_archives(&folder);
     let mut command = cargo("package --quiet --workspace --exclude xtask --exclude orogen-bench --allow-dirty");
-    command.arg("--target-dir").arg(shell::target_dir().join("packages"));
+    command.arg("--target-dir").arg(folder);
     sh(command.env("CARGO_PROFILE_DEV_OPT_LEVEL", "0").env("CARGO_PROFILE_DEV_DEBUG", "false"))
+}
+
+/// Removes what earlier runs unpacked and built of our archives. Cargo takes an archive of the same version for the same archive, and
+/// would build the sources of before.
+fn forget_archives(folder: &Path) {
+    let home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
+    let home = home.or_else(|| std::env::home_dir().map(|home| home.join(".cargo"))).unwrap_or_default();
+    // Registries in folders, such as the one that `cargo package` makes, have no host in their names.
+    let unpacked = entries(&home.join("registry/src")).filter(|registry| starts_with(registry, "-"));
+    let built = [folder.join("debug/.fingerprint")];
+    for of_crate in unpacked.chain(built).flat_map(|parent| entries(&parent)).filter(|name| starts_with(name, "orogen"))
+    {
+        // What is left fails the build, if it matters.
+        let _ = std::fs::remove_dir_all(of_crate);
+    }
+}
+
+/// Paths in a folder; none if it cannot be read.
+fn entries(folder: &Path) -> impl Iterator<Item = PathBuf> + use<> {
+    std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path())
+}
+
+fn starts_with(path: &Path, start: &str) -> bool {
+    path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(start))
 }
