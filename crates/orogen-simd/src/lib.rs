@@ -52,6 +52,8 @@ mod avx512;
 mod neon;
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
 mod simd128;
+#[cfg(target_arch = "x86_64")]
+mod sse2;
 
 pub use double::{Double, Pair};
 pub use fma::fma;
@@ -68,6 +70,8 @@ pub use avx512::Avx512;
 pub use neon::Neon;
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
 pub use simd128::Simd128;
+#[cfg(target_arch = "x86_64")]
+pub use sse2::Sse2;
 
 /// Code that is written once for all levels. Mark `run` `#[inline(always)]`.
 pub trait Body {
@@ -76,6 +80,15 @@ pub trait Body {
 
     /// The code; `simd` gives access to the lanes.
     fn run<S: Simd>(self, simd: S) -> Self::Output;
+}
+
+/// The token of the scalar level.
+#[inline(always)]
+fn baseline() -> impl Simd {
+    #[cfg(target_arch = "x86_64")]
+    return Sse2::new();
+    #[cfg(not(target_arch = "x86_64"))]
+    Scalar::<4>
 }
 
 /// Runs `body` at the current level ([`Level::current`]).
@@ -92,7 +105,7 @@ pub fn dispatch<B: Body>(body: B) -> B::Output {
         Level::Neon => Neon::new().run(body),
         #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
         Level::Simd128 => Simd128::new().run(body),
-        _ => Scalar::<4>.run(body),
+        _ => baseline().run(body),
     }
 }
 
@@ -102,7 +115,7 @@ pub fn dispatch<B: Body>(body: B) -> B::Output {
 /// This machine lacks the level; the body was not run.
 pub fn dispatch_at<B: Body>(level: Level, body: B) -> Result<B::Output, LevelError> {
     match level {
-        Level::Scalar => Ok(Scalar::<4>.run(body)),
+        Level::Scalar => Ok(baseline().run(body)),
         #[cfg(target_arch = "x86_64")]
         Level::Avx2 => Avx2::detect().map(|token| token.run(body)).ok_or(LevelError::Unavailable(level)),
         #[cfg(target_arch = "x86_64")]

@@ -3,12 +3,12 @@
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
 use crate::choices::{Distance, Feature};
+use crate::kernel::blocks::Blocks;
 use crate::kernel::cell::{Cell, clamp};
-use crate::kernel::families::with_family;
 use crate::kernel::outputs::Outputs;
-use crate::kernel::scattered::Call;
 use crate::kernel::sites::{FAR, Field, NEAR, Nearest, Site, Sites, evaluate, search_shells, spread};
 use crate::kernel::source::{Hashed, Lattice};
+use crate::points::{Depth, Points};
 use crate::program::{self, Octave, Program};
 use orogen_simd::{Body, F32Lanes, F64Lanes, MaskLanes, Simd, U32Lanes};
 
@@ -93,7 +93,7 @@ pub(crate) fn fill<S: Simd, const DIMS: usize>(
     let job = Job { limit: program.limit, octave, cellular, z };
     for (s, columns) in xs.chunks(WIDTH).enumerate() {
         simd.run(Columns { job, strip: &mut strip, xs: columns });
-        if DIMS == 2 && plain && strip.dense && !strip.runs.is_empty() {
+        if const { DIMS == 2 } && plain && strip.dense && !strip.runs.is_empty() {
             let (mut r, stride) = (0, xs.len());
             while r < ys.len() {
                 let to = &mut outputs.value[r * stride + s * WIDTH..];
@@ -112,9 +112,9 @@ pub(crate) fn fill<S: Simd, const DIMS: usize>(
                     simd.run(Row::<DIMS, false> { job, strip: &mut strip, y, to });
                 }
             } else {
-                let (rows, depths) = ([*y; WIDTH], [z; WIDTH]);
-                let at = [columns, &rows[..columns.len()], &depths[..columns.len()], &[]];
-                with_family::<_, DIMS>(program.source, Call::<S, DIMS> { simd, program, at, target });
+                let points = Points::Lattice { xs: columns, ys: std::slice::from_ref(y) };
+                let depths = &[Depth::Slice(z)][..DIMS - 2];
+                simd.run(Blocks::<DIMS> { program, points, depths, outputs: target });
             }
         }
     }

@@ -38,9 +38,9 @@ pub(crate) fn with_family<V: VisitFamily, const DIMS: usize>(source: Source, wor
         Source::Classic(_) => work.visit::<ClassicFamily<DIMS>>(),
         Source::Worley(_) => work.visit::<WorleyFamily<DIMS>>(),
         Source::Simplex => work.visit::<SimplexFamily<DIMS>>(),
-        Source::OpenSimplex2(Smoothness::Fast) if DIMS == 3 => work.visit::<CubesFamily<false>>(),
+        Source::OpenSimplex2(Smoothness::Fast) if const { DIMS == 3 } => work.visit::<CubesFamily<false>>(),
         Source::OpenSimplex2(Smoothness::Fast) => work.visit::<OpenFamily<DIMS>>(),
-        Source::OpenSimplex2(Smoothness::Smooth) if DIMS == 3 => work.visit::<CubesFamily<true>>(),
+        Source::OpenSimplex2(Smoothness::Smooth) if const { DIMS == 3 } => work.visit::<CubesFamily<true>>(),
         Source::OpenSimplex2(Smoothness::Smooth) => work.visit::<WideFamily<DIMS>>(),
     }
 }

@@ -1,11 +1,9 @@
 //! Entry point of the kernels: selects the code path.
 
 use crate::choices::{Fade, Smoothness};
-use crate::kernel::families::with_family;
+use crate::kernel::blocks::Blocks;
 use crate::kernel::open_simplex::Open;
 use crate::kernel::outputs::Outputs;
-use crate::kernel::places::{BLOCK, positions};
-use crate::kernel::scattered::Call;
 use crate::kernel::simplex::Plain;
 use crate::kernel::{cellular_rows, lattice, slanted, white};
 use crate::points::{Depth, Points};
@@ -49,61 +47,28 @@ fn fill<S: Simd, const DIMS: usize>(simd: S, call: Fill) {
     }
     match points {
         Points::Lattice { xs, ys } if flat && !program.combine.moves() => {
-            let (xs_ys, depths) = ((xs, ys), (DIMS, slice));
+            let xs_ys = (xs, ys);
             match (program.source, program.combine, program.octaves()) {
                 (Source::Value(Fade::Step), Combine::Sum, [octave]) => {
-                    white::fill(simd, program, octave, xs_ys, depths, &mut outputs);
+                    white::fill(simd, program, octave, xs_ys, (DIMS, slice), &mut outputs);
                 }
-                (Source::Worley(kind), Combine::Sum, [octave]) if DIMS < 4 => {
+                (Source::Worley(kind), Combine::Sum, [octave]) if const { DIMS < 4 } => {
                     cellular_rows::fill::<S, DIMS>(simd, (program, octave, kind), xs_ys, slice[0], &mut outputs);
                 }
                 (Source::Simplex, Combine::Sum, _) if outputs.slopes.is_none() => {
                     slanted::fill::<S, Plain, DIMS>(simd, program, xs_ys, slice, &mut outputs);
                 }
-                (Source::OpenSimplex2(Smoothness::Fast), Combine::Sum, _) if outputs.slopes.is_none() && DIMS != 3 => {
+                (Source::OpenSimplex2(Smoothness::Fast), Combine::Sum, _)
+                    if const { DIMS != 3 } && outputs.slopes.is_none() =>
+                {
                     slanted::fill::<S, Open, DIMS>(simd, program, xs_ys, slice, &mut outputs);
                 }
                 (source, ..) if source.low_rank() && lattice::covers(program, DIMS, outputs.slopes.is_some()) => {
-                    lattice::fill(simd, program, xs_ys, depths, &mut outputs);
+                    lattice::fill(simd, program, xs_ys, (DIMS, slice), &mut outputs);
                 }
-                _ => blocks::<S, DIMS>(simd, program, &points, call.depths, &mut outputs),
+                _ => simd.run(Blocks::<DIMS> { program, points, depths, outputs }),
             }
         }
-        _ => blocks::<S, DIMS>(simd, program, &points, call.depths, &mut outputs),
-    }
-}
-
-/// Points at any position, in blocks.
-#[inline(always)]
-fn blocks<S: Simd, const DIMS: usize>(
-    simd: S,
-    program: &Program,
-    points: &Points,
-    depths: &[Depth],
-    outputs: &mut Outputs,
-) {
-    if let (Points::Scattered { x, y }, 2) = (*points, DIMS) {
-        // The positions need no buffers.
-        let target = outputs.part(0, points.len());
-        with_family::<_, DIMS>(program.source, Call::<S, DIMS> { simd, program, at: [x, y, &[], &[]], target });
-        return;
-    }
-    let (mut x, mut y, mut z, mut w) = ([0.0; BLOCK], [0.0; BLOCK], [0.0; BLOCK], [0.0; BLOCK]);
-    for (axis, depth) in [&mut z, &mut w].into_iter().zip(depths) {
-        if let Depth::Slice(depth) = depth {
-            axis.fill(*depth);
-        }
-    }
-    for start in (0..points.len()).step_by(BLOCK) {
-        let count = BLOCK.min(points.len() - start);
-        let target = outputs.part(start, count);
-        let [x, y] = positions(simd, points, start, [&mut x[..count], &mut y[..count]]);
-        let mut at = [x, y, &z[..count], &w[..count]];
-        for (axis, depth) in at[2..].iter_mut().zip(depths) {
-            if let Depth::Each(depth) = depth {
-                *axis = &depth[start..start + count];
-            }
-        }
-        with_family::<_, DIMS>(program.source, Call::<S, DIMS> { simd, program, at, target });
+        _ => simd.run(Blocks::<DIMS> { program, points, depths, outputs }),
     }
 }

@@ -136,13 +136,13 @@ fn in_dimensions<S: Simd, const RANK: usize>(simd: S, dims: usize, row: Row) {
 #[inline(always)]
 fn of_kind<S: Simd, const RANK: usize, const DIMS: usize>(simd: S, row: Row) {
     match (row.combine, row.target.slopes.is_some()) {
-        (Combine::Sum, false) => simd.run(RowOf::<RANK, SUM, DIMS, false>(row)),
+        (Combine::Sum, false) => simd.run(RowOf::<RANK, SUM, 2, false>(row)),
         (Combine::Sum, true) => simd.run(RowOf::<RANK, SUM, DIMS, true>(row)),
-        (Combine::Sizes { .. }, false) => simd.run(RowOf::<RANK, SIZES, DIMS, false>(row)),
+        (Combine::Sizes { .. }, false) => simd.run(RowOf::<RANK, SIZES, 2, false>(row)),
         (Combine::Sizes { .. }, true) => simd.run(RowOf::<RANK, SIZES, DIMS, true>(row)),
         (Combine::Weighted { .. }, false) => simd.run(RowOf::<RANK, WEIGHTED, DIMS, false>(row)),
         (Combine::Weighted { .. }, true) => simd.run(RowOf::<RANK, WEIGHTED, DIMS, true>(row)),
-        (Combine::Shaped { .. }, _) => simd.run(RowOf::<RANK, SHAPED, DIMS, false>(row)),
+        (Combine::Shaped { .. }, _) => simd.run(RowOf::<RANK, SHAPED, 2, false>(row)),
     }
 }
 

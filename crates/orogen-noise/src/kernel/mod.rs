@@ -5,6 +5,7 @@
 
 pub(crate) mod bases;
 pub(crate) mod basis;
+pub(crate) mod blocks;
 pub(crate) mod cell;
 pub(crate) mod cellular;
 pub(crate) mod cellular_rows;

@@ -249,7 +249,7 @@ impl Body for FillAround<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        if S::LANES > 4 { Double(simd).run(Abreast(self)) } else { simd.run(Abreast(self)) }
+        if const { S::LANES > 4 } { Double(simd).run(Abreast(self)) } else { simd.run(Abreast(self)) }
     }
 }
 

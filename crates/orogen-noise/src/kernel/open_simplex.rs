@@ -187,7 +187,7 @@ impl<S: Simd, const DIMS: usize> Pointwise<S> for Wide<S, DIMS> {
 
     #[inline(always)]
     fn add<const SLOPES: bool>(self, simd: S, octave: &Octave, at: &[Slanted<S>; 4], sum: &mut Sample<S>) {
-        let raw = if DIMS == 2 { self.plane::<SLOPES>(simd, at) } else { self.time::<SLOPES>(simd, at) };
+        let raw = if const { DIMS == 2 } { self.plane::<SLOPES>(simd, at) } else { self.time::<SLOPES>(simd, at) };
         scaled::<S, DIMS, SLOPES>(simd, octave, WIDE_SCALE[DIMS - 2], &raw, sum);
     }
 }

@@ -28,7 +28,7 @@ impl<S: Simd, const DIMS: usize> VisitFamily for Call<'_, S, DIMS> {
         let family = PhantomData::<F>;
         if matches!(program.combine, Combine::Sum) && (target.slopes.is_none() || !F::SLOPED) {
             let sums = Sums::<F, DIMS> { program, at, target: target.value, family };
-            if F::PAIRED && S::LANES > 4 { Double(simd).run(sums) } else { simd.run(sums) }
+            if const { F::PAIRED && S::LANES > 4 } { Double(simd).run(sums) } else { simd.run(sums) }
         } else {
             simd.run(Scatter::<F, DIMS> { program, at, target, family });
         }
@@ -114,10 +114,12 @@ impl<F: Family, const DIMS: usize> Body for Sums<'_, F, DIMS> {
         let Sums { program, at, target, .. } = self;
         let octaves = program.octaves();
         let mut start = 0;
-        if let (true, [octave]) = (F::PAIRED, octaves) {
+        if F::PAIRED
+            && let [octave] = octaves
+        {
             // The values of the only octave stay in registers from point to point.
             let noise = F::At::<S>::new(simd, program.source, octave);
-            if F::At::<S>::KEYED && DIMS == 2 && near::covers(octave) {
+            if F::At::<S>::KEYED && const { DIMS == 2 } && near::covers(octave) {
                 let points = near::Scattered { frequency: octave.frequency, limit: program.limit, at: [at[0], at[1]] };
                 return near::fill(simd, noise, &points, target);
             }

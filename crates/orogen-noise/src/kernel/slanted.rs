@@ -7,12 +7,12 @@
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
+use crate::kernel::blocks::Blocks;
 use crate::kernel::cell::{Cell, clamp, coordinate};
-use crate::kernel::families::with_family;
 use crate::kernel::outputs::Outputs;
-use crate::kernel::scattered::Call;
 use crate::kernel::simplex::{CornerGradients, Corners, Simplices, Slanted, beyond_x, raw, slanted};
 use crate::kernel::source::{Gradients, Lattice};
+use crate::points::{Depth, Points};
 use crate::program::{Octave, Program, Source};
 use orogen_simd::{Body, F32Lanes, F64Lanes, MaskLanes, Simd, U32Lanes};
 use std::marker::PhantomData;
@@ -111,10 +111,9 @@ pub(crate) fn fill<S: Simd, C: Corners, const DIMS: usize>(
                 let at = [0.0, *y, depths[0], depths[1]];
                 simd.run(Row::<C, DIMS> { program, strips: &mut strips, at, to: target.value, corners: PhantomData });
             } else {
-                let (rows, z, w) = ([*y; WIDTH], [depths[0]; WIDTH], [depths[1]; WIDTH]);
-                let count = columns.len();
-                let at = [columns, &rows[..count], &z[..count], &w[..count]];
-                with_family::<_, DIMS>(program.source, Call::<S, DIMS> { simd, program, at, target });
+                let points = Points::Lattice { xs: columns, ys: std::slice::from_ref(y) };
+                let depths = &depths.map(Depth::Slice)[..DIMS - 2];
+                simd.run(Blocks::<DIMS> { program, points, depths, outputs: target });
             }
         }
     }
