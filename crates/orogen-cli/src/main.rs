@@ -1,45 +1,8 @@
-//! The `orogen` command: terrains from recipes.
+//! The `orogen` command. All of it is in the library beside it.
 #![forbid(unsafe_code)]
-// These macros panic if the other end of a pipe is closed; `say` does not.
-#![deny(clippy::print_stdout, clippy::print_stderr)]
 
-mod bar;
-mod cli;
-mod command;
-mod contact;
-mod disk;
-mod draw;
-mod export_options;
-mod failure;
-mod finite;
-mod folder;
-mod format;
-mod graph;
-mod interrupt;
-mod memory;
-mod moving;
-mod options;
-mod palette;
-mod pictures;
-mod replace;
-mod report;
-mod say;
-mod sheet;
-mod sink;
-mod source;
-mod values;
-mod view;
-mod watch;
-
-use clap::Parser;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    match cli::Cli::parse().run() {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            report::report(&failure);
-            failure.code()
-        }
-    }
+    orogen_cli::run()
 }

@@ -26,7 +26,7 @@ const BUFFER: usize = 256 * 1024;
 /// # Ok(())
 /// # }
 /// ```
-pub fn write_whole(output: &Output, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+pub fn write_whole<'a>(output: &Output, body: impl FnOnce(&mut dyn Write) -> io::Result<()> + 'a) -> Result<()> {
     stage(output, body)?.commit()
 }
 
@@ -34,14 +34,14 @@ pub fn write_whole(output: &Output, body: impl FnOnce(&mut dyn Write) -> io::Res
 /// it in place.
 ///
 /// A pipe or device is written directly.
-pub fn stage(output: &Output, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<Staged> {
+pub fn stage<'a>(output: &Output, body: impl FnOnce(&mut dyn Write) -> io::Result<()> + 'a) -> Result<Staged> {
     output.check(None)?;
-    stage_through(output.path(), Some(output), |file| Box::new(file), body)
+    stage_through(output.path(), Some(output), |file| Box::new(file), Box::new(body))
 }
 
 /// [`write_whole`] over any existing file, for files whose names only this library uses.
-pub fn replace_whole(path: &Path, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
-    stage_through(path, None, |file| Box::new(file), body)?.commit()
+pub fn replace_whole<'a>(path: &Path, body: impl FnOnce(&mut dyn Write) -> io::Result<()> + 'a) -> Result<()> {
+    stage_through(path, None, |file| Box::new(file), Box::new(body))?.commit()
 }
 
 /// Puts files that belong together in place; none of them if one may not be replaced.
@@ -120,12 +120,15 @@ enum Destination {
     Stream,
 }
 
+/// What writes the content of a file. In a box, so that all files share one copy of the code that stages them.
+type Body<'a> = Box<dyn FnOnce(&mut dyn Write) -> io::Result<()> + 'a>;
+
 /// [`stage`], with `wrap` around the file, through which tests inject faults.
 fn stage_through(
     path: &Path,
     output: Option<&Output>,
     wrap: impl for<'f> FnOnce(&'f File) -> Box<dyn Write + 'f>,
-    body: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    body: Body,
 ) -> Result<Staged> {
     let failed = |cause: io::Error| Error::file("write", path, &cause);
     let file = match target(path)? {
@@ -184,7 +187,7 @@ fn target(path: &Path) -> Result<Destination> {
 
 /// Runs `body` on a buffer over `file`. A failure of the file itself takes precedence over the error of `body`, and is
 /// reported even if `body` ignored it.
-fn fill(path: &Path, file: Box<dyn Write + '_>, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+fn fill(path: &Path, file: Box<dyn Write + '_>, body: Body) -> Result<()> {
     let mut failure = None;
     let done = {
         let mut out = BufWriter::with_capacity(BUFFER, Noting { path, inner: file, failure: &mut failure });
