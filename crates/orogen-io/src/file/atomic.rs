@@ -314,7 +314,7 @@ mod tests {
         wrap: impl for<'f> FnOnce(&'f File) -> Box<dyn Write + 'f>,
         body: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<()> {
-        stage_through(path, None, wrap, body)?.commit()
+        stage_through(path, None, wrap, Box::new(body))?.commit()
     }
 
     #[test]
