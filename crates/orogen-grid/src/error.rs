@@ -117,6 +117,12 @@ impl Error {
     #[must_use]
     pub fn file(doing: &str, path: &std::path::Path, cause: &io::Error) -> Error {
         let message = format!("cannot {doing} {}: {}", path.display(), reason(cause));
+        Error::new(ErrorKind::File, message).with_source(cause)
+    }
+
+    /// Sets the I/O error behind this one, which [`source`](std::error::Error::source) returns.
+    #[must_use]
+    pub fn with_source(self, cause: &io::Error) -> Error {
         // An I/O error cannot be cloned. What it wraps is kept if it is an `Error`, else its message.
         let wrapped = cause.get_ref().and_then(|wrapped| wrapped.downcast_ref::<Error>());
         let source = match (cause.raw_os_error(), wrapped) {
@@ -124,7 +130,7 @@ impl Error {
             (None, Some(error)) => io::Error::new(cause.kind(), error.clone()),
             (None, None) => io::Error::new(cause.kind(), cause.to_string()),
         };
-        Error { source: Some(Arc::new(source)), ..Error::new(ErrorKind::File, message) }
+        Error { source: Some(Arc::new(source)), ..self }
     }
 
     /// The kind of the error.
@@ -165,7 +171,7 @@ impl fmt::Display for Error {
 }
 
 impl std::error::Error for Error {
-    /// The I/O error behind an [`Error::file`].
+    /// The I/O error behind it, if a file could not be read or written.
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         self.source.as_deref().map(|source| source as _)
     }

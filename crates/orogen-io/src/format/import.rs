@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::dem::{Dem, Input, Placement, Request, refused};
+use super::noted::noted;
 use super::raw::Sample;
 use super::sidecar::Sidecar;
 use super::{asc, exr_reader, geotiff, grey, hgt, npy, raw};
@@ -38,11 +39,11 @@ pub fn has_head(path: &Path) -> bool {
 pub fn head(path: &Path) -> Result<([usize; 2], Option<Placement>)> {
     let name = path.display().to_string();
     let mut file = open::regular(path, "read")?;
-    let (size, mut place) = match extension(path).unwrap_or_default().as_str() {
-        "asc" => asc::head(&mut file, &name)?,
-        "hgt" => hgt::head(&mut file, &name)?,
-        _ => geotiff::reader::head(&mut file, &name)?,
-    };
+    let (size, mut place) = noted(&mut file, |file| match extension(path).unwrap_or_default().as_str() {
+        "asc" => asc::head(file, &name),
+        "hgt" => hgt::head(file, &name),
+        _ => geotiff::reader::head(file, &name),
+    })?;
     if let (Some(place), Some(told)) = (&mut place, Sidecar::beside(path)?) {
         told.complete(place);
     }
@@ -75,7 +76,10 @@ pub fn parse(
     sidecar: Option<Sidecar>,
     request: impl Into<Request>,
 ) -> Result<Dem> {
-    let request = request.into();
+    noted(input, |input| band(input, name, extension, sidecar, request.into()))
+}
+
+fn band(input: &mut dyn Input, name: &str, extension: &str, sidecar: Option<Sidecar>, request: Request) -> Result<Dem> {
     let Request { allowed, .. } = request;
     let told = sidecar.unwrap_or_default();
     if !SEVERAL_BANDS.contains(&extension) {

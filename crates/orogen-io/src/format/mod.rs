@@ -24,6 +24,7 @@ pub mod hgt;
 pub mod import;
 pub mod lerc;
 pub mod levels;
+mod noted;
 pub mod npy;
 pub(crate) mod packed_tree;
 pub mod pgm;

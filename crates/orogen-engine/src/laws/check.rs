@@ -1,109 +1,24 @@
-//! Laws: properties that every op must have, tested for one op. They apply to built-in ops and to ops of programs.
-//!
-//! | law | statement |
-//! |---|---|
-//! | [`Law::TileEqualsCrop`] | a tile has the bits of the crop of the whole, for any size, offset and number of threads, with a new or a filled store; a point has the bits of the sample at its position |
-//! | [`Law::Finite`] | finite inputs give finite results |
-//! | [`Law::Levels`] | every SIMD level gives the same bits |
-//! | [`Law::Stored`] | solutions on disk, and sources computed in tiles of any size, change no bit |
-//! | [`Law::Warped`] | a tile equals the crop if a warp and a rotation read the op, and a warp by 0 changes no bit |
-//! | [`Law::Unbounded`] | a tile equals the crop at large and at negative positions |
-//! | [`Law::Resolutions`] | a field has the same bits where the samples of two cells coincide |
-//! | [`Law::ContentKeys`] | every change of the world that changes samples changes the content key |
-//! | [`Law::Margin`] | a solver's margin obeys tile == crop, also beyond the world, changes no bit on disk, and is part of the content key |
-//! | [`Law::Cancel`] | work stops within [`LONGEST_CANCEL`] after a request to cancel |
-//!
-//! ```
-//! use orogen_engine::filter::blur::Blur;
-//! use orogen_engine::laws::Laws;
-//!
-//! let violations = Laws::of(|cell| Blur { radius: 2.5 * cell, ..Blur::default() }).check();
-//! assert!(violations.is_empty(), "{violations:#?}");
-//! ```
+//! The tests of the laws.
 
-use crate::declare::{Input, MARGIN};
-use crate::field::{add::Add, fbm::Fbm, perlin::Perlin, transform::Transform, warp::Warp};
+use super::case::{Case, tiles_equal_crop};
+use super::law::{LONGEST_CANCEL, Law, Verdict, Violation};
+use super::recipes::{NODE, full, recipe_of, unsoftened, without_outputs, world_of};
+use crate::declare::Input;
+use crate::field::{add::Add, fbm::Fbm, transform::Transform, warp::Warp};
 use crate::filter::blur::Blur;
 use crate::node::Node;
 use crate::op::Op;
 use crate::recipe::document::{Recipe, WorldSpec};
-use crate::session::Options;
 use crate::solver::bake::Bake;
-use crate::value::Value;
-use crate::world::World;
-use orogen_grid::error::{ErrorKind, Result};
-use orogen_grid::grid::{Grid, Window};
+use orogen_grid::error::ErrorKind;
+use orogen_grid::grid::Window;
 use orogen_grid::progress::Progress;
-use orogen_grid::random::Random;
 use orogen_noise::Level;
-use std::fmt;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// The cells at which [`Laws::check`] computes tiles. None of them is exact in binary.
 pub const CELLS: [f64; 3] = [10.24, 0.1, 1.0 / 3.0];
-
-/// Maximum time for which work may continue after a request to cancel.
-pub const LONGEST_CANCEL: Duration = Duration::from_millis(100);
-
-/// The name of the node under test in the recipes of [`recipe_of`] and [`Laws::in_recipes`].
-pub const NODE: &str = "node";
-
-/// Samples along the sides of the worlds of [`world_of`], their far edges included.
-const SIDES: [usize; 2] = [97, 81];
-
-/// A law.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Law {
-    /// A tile has the bits of the crop of the whole.
-    TileEqualsCrop,
-    /// Finite inputs give finite results.
-    Finite,
-    /// Every SIMD level gives the same bits.
-    Levels,
-    /// Solutions on disk and sources in tiles change no bit.
-    Stored,
-    /// A tile equals the crop if warps and rotations read the op.
-    Warped,
-    /// A tile equals the crop at large and at negative positions.
-    Unbounded,
-    /// A field has the same bits where the samples of two cells coincide.
-    Resolutions,
-    /// Every change of the world that changes samples changes the content key.
-    ContentKeys,
-    /// A solver with a margin has these properties, too.
-    Margin,
-    /// Work stops after a request to cancel.
-    Cancel,
-}
-
-/// A violation of a law by an op.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Violation {
-    /// The op.
-    pub op: String,
-    /// The law.
-    pub law: Law,
-    /// The samples that were computed.
-    pub window: Option<Window>,
-    /// Description of the violation.
-    pub message: String,
-}
-
-impl fmt::Display for Violation {
-    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-        write!(formatter, "`{}` breaks the law {:?}", self.op, self.law)?;
-        if let Some(Window { x, y, width, height, cell }) = self.window {
-            write!(formatter, " in {width} x {height} samples at ({x}, {y}), cell {cell} m")?;
-        }
-        write!(formatter, ": {}", self.message)
-    }
-}
-
-impl std::error::Error for Violation {}
-
-/// Whether a law holds.
-pub type Verdict = std::result::Result<(), Violation>;
 
 /// The laws of one op.
 pub struct Laws<'a> {
@@ -174,7 +89,7 @@ impl<'a> Laws<'a> {
         let recipe = (self.recipe)(world_of(CELLS[0]), false);
         let _forced = FORCED.lock().unwrap_or_else(PoisonError::into_inner);
         let before = Level::current();
-        let made: std::result::Result<Vec<_>, Violation> = Level::available()
+        let made: Result<Vec<_>, Violation> = Level::available()
             .into_iter()
             .map(|level| {
                 Level::force(level).map_err(|error| case.violation(error.to_string()))?;
@@ -325,7 +240,7 @@ impl<'a> Laws<'a> {
     ///
     /// # Errors
     /// The first change that changes a sample but not the key.
-    pub fn content_keys(&self) -> std::result::Result<usize, Violation> {
+    pub fn content_keys(&self) -> Result<usize, Violation> {
         let window = Window::new(24, 20, 30.0).at(20, 18);
         let case = self.case(Law::ContentKeys).in_window(window);
         let world = world_of(30.0);
@@ -404,7 +319,7 @@ impl<'a> Laws<'a> {
     ///
     /// # Errors
     /// If it continued for longer than [`LONGEST_CANCEL`] in three runs, or did not end with [`ErrorKind::Cancelled`].
-    pub fn cancel(&self, side: usize) -> std::result::Result<Duration, Violation> {
+    pub fn cancel(&self, side: usize) -> Result<Duration, Violation> {
         let length = (side.max(2) - 1) as f64 * 10.0;
         let window = Window::new(side, side, 10.0);
         let case = self.case(Law::Cancel).in_window(window);
@@ -456,173 +371,3 @@ const CANCELLED_SIDE: usize = 384;
 
 /// Locked while SIMD levels are forced, because they apply to the whole process.
 static FORCED: Mutex<()> = Mutex::new(());
-
-/// A law during its test.
-struct Case {
-    op: String,
-    law: Law,
-    window: Option<Window>,
-}
-
-impl Case {
-    fn in_window(&self, window: Window) -> Case {
-        Case { op: self.op.clone(), law: self.law, window: Some(window) }
-    }
-
-    fn violation(&self, message: String) -> Violation {
-        Violation { op: self.op.clone(), law: self.law, window: self.window, message }
-    }
-
-    fn breaks<T>(&self, message: String) -> std::result::Result<T, Violation> {
-        Err(self.violation(message))
-    }
-
-    fn of<T>(&self, result: Result<T>) -> std::result::Result<T, Violation> {
-        result.map_err(|error| self.violation(error.to_string()))
-    }
-
-    fn open(&self, recipe: &Recipe, threads: usize) -> std::result::Result<World, Violation> {
-        self.of(World::with_options(recipe.clone(), Options { threads: Some(threads), ..Options::default() }))
-    }
-
-    /// Sets the margin of the op's nodes.
-    fn set_margin(&self, recipe: &mut Recipe, metres: f64) -> Verdict {
-        let mut refused = None;
-        recipe.change(|node| {
-            let param = node.spec().params.iter().position(|param| param.name == MARGIN);
-            if let (true, Some(param)) = (node.spec().op == self.op, param) {
-                refused = node.set_param(param, &Value::Number(metres)).err();
-            }
-        });
-        refused.map_or(Ok(()), |message| self.breaks(message))
-    }
-
-    /// All layers, from a new world.
-    fn layers(&self, recipe: &Recipe, window: &Window) -> std::result::Result<Vec<Grid>, Violation> {
-        let layers: Vec<&str> = recipe.outputs().collect();
-        self.of(self.open(recipe, 2)?.grids(&layers, window, &Progress::none()))
-    }
-
-    /// Whether a tile has the bits of the part of the whole that it covers.
-    fn same(&self, what: &str, whole: &Grid, tile: &Grid) -> Verdict {
-        let Some(crop) = whole.crop(tile.window()) else {
-            return self.breaks(format!("{what}: {:?} is not part of {:?}", tile.window(), whole.window()));
-        };
-        let differs = |(a, b): (&f32, &f32)| a.to_bits() != b.to_bits();
-        match crop.data().iter().zip(tile.data()).position(differs) {
-            Some(k) => {
-                let (i, j) = (k % tile.width(), k / tile.width());
-                self.breaks(format!("{what}: {} and {} at ({i}, {j})", crop[(i, j)], tile[(i, j)]))
-            }
-            None => Ok(()),
-        }
-    }
-}
-
-/// The whole of [`world_of`], its far edges included.
-fn full(cell: f64) -> Window {
-    Window::new(SIDES[0], SIDES[1], cell)
-}
-
-/// Tile == crop for every layer of one recipe: the whole against tiles of several sizes and offsets, thread counts, fresh and warm.
-fn tiles_equal_crop(case: &Case, what: &str, recipe: &Recipe, cell: f64) -> Verdict {
-    let whole = full(cell);
-    let layers: Vec<&str> = recipe.outputs().collect();
-    let wholes = case.in_window(whole).layers(recipe, &whole)?;
-    let warm = case.open(recipe, 1)?;
-    let mut random = Random::of_state(case.op.len() as u64);
-    let mut tiles = vec![(Window::new(31, 17, cell).at(13, 44), true), (whole, true), (whole, false)];
-    for size in [1usize, 2, 7, 33, 64] {
-        for _ in 0..2 {
-            let [x, y] = SIDES.map(|side| (random.draw() % ((side - size) as u64 + 1)) as i64);
-            tiles.push((Window::new(size, size, cell).at(x, y), false));
-        }
-    }
-    for (tile, fresh) in tiles {
-        let case = case.in_window(tile);
-        let made = match fresh {
-            true => case.layers(recipe, &tile)?,
-            false => case.of(warm.grids(&layers, &tile, &Progress::none()))?,
-        };
-        for ((layer, whole), made) in layers.iter().zip(&wholes).zip(&made) {
-            case.same(&format!("{what}layer `{layer}`, the whole and the tile"), whole, made)?;
-        }
-    }
-    // A point on the lattice is the sample there.
-    let [i, j] = SIDES.map(|side| (random.draw() % side as u64) as usize);
-    let case = case.in_window(Window::new(1, 1, cell).at(i as i64, j as i64));
-    for (layer, grid) in layers.iter().zip(&wholes) {
-        let points = case.of(warm.points(layer, &[whole.east(i)], &[whole.south(j)]))?;
-        if points.first().is_none_or(|point| point.to_bits() != grid[(i, j)].to_bits()) {
-            return case
-                .breaks(format!("{what}layer `{layer}`: {} in the whole, {points:?} at that point", grid[(i, j)]));
-        }
-    }
-    Ok(())
-}
-
-/// The nodes of a recipe.
-fn without_outputs(from: &Recipe) -> Recipe {
-    let mut recipe = Recipe::new(from.world);
-    for named in from.nodes() {
-        recipe.add_masked(&named.name, named.node.clone(), named.mask.clone());
-    }
-    recipe
-}
-
-/// The node and its inputs without the blur below them, because the result of a filter depends on the cell.
-fn unsoftened(from: &Recipe) -> Recipe {
-    let mut recipe = Recipe::new(from.world);
-    for named in from.nodes().iter().filter(|named| named.name != SOFT) {
-        let mut node = named.node.clone();
-        for i in 0..node.inputs().len() {
-            if *node.input(i) == Input::from(SOFT) {
-                node.set_input(i, Input::Node(format!("in{i}")));
-            }
-        }
-        recipe.add_masked(&named.name, node, named.mask.clone());
-    }
-    recipe.output("height", NODE);
-    recipe
-}
-
-/// The node that a `source` is read through.
-const SOFT: &str = "soft";
-
-/// A bounded world of 97 x 81 samples at a cell.
-#[must_use]
-pub fn world_of(cell: f64) -> WorldSpec {
-    let size = SIDES.map(|side| (side - 1) as f64 * cell);
-    WorldSpec { seed: 42, size: Some(size), cell, ..WorldSpec::default() }
-}
-
-/// A recipe with the node as [`NODE`]. Each input is a separate noise, about -1 to 1 with a wavelength of nine cells. An input called `source` reads
-/// it through a blur, so that halos add up. The outputs are the node's layers, the first one named `height`.
-#[must_use]
-pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
-    let mut node = node.clone();
-    let mut recipe = Recipe::new(world);
-    let inputs: Vec<String> = node.inputs().iter().map(|input| input.name.to_string()).collect();
-    for (i, input) in inputs.iter().enumerate() {
-        let name = format!("in{i}");
-        recipe.add(&name, Fbm { seed: i as u64, wavelength: 9.0 * world.cell, octaves: 3, ..Default::default() });
-        if input == "source" {
-            recipe.add(SOFT, Blur { source: Input::from(&name), radius: 1.2 * world.cell });
-            node.set_input(i, Input::from(SOFT));
-        } else {
-            node.set_input(i, Input::Node(name));
-        }
-    }
-    let layers = node.layers();
-    if masked {
-        recipe.add("mask", Perlin { seed: 99, wavelength: 7.0 * world.cell });
-        recipe.add_masked(NODE, node, "mask");
-    } else {
-        recipe.add(NODE, node);
-    }
-    recipe.output("height", NODE);
-    for layer in layers.iter().skip(1) {
-        recipe.output(layer.name, Input::Node(format!("{NODE}.{}", layer.name)));
-    }
-    recipe
-}

@@ -1,0 +1,107 @@
+//! Ops that break laws.
+
+use orogen::laws::{Law, Laws};
+use orogen::op::{Context, Field, Filter, Inputs, Reading, Solution, Solver, Sources, WorldParams};
+use orogen::{Grid, Level, Points, Result, Window};
+use std::time::Duration;
+
+macro_rules! filter {
+    ($($name:ident = $op:literal, $apply:expr;)*) => { $(
+        orogen::op! {
+            /// Breaks a law.
+            pub struct $name = $op, filter, revision 1;
+            inputs {
+                /// What it reads.
+                source: required,
+            }
+        }
+        impl Filter for $name {
+            fn halo(&self, _: f64) -> usize {
+                0
+            }
+
+            fn apply(&self, inputs: &[Option<&Grid>], window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
+                let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
+                let add: fn(&Window, &Context) -> f32 = $apply;
+                let add = add(window, context);
+                out.data_mut().iter_mut().zip(source.data()).for_each(|(out, source)| *out = source + add);
+                Ok(())
+            }
+        }
+    )* };
+}
+
+filter! {
+    Tiled = "lawless.tiled", |window, _| window.width as f32;
+    Infinite = "lawless.infinite", |_, _| f32::NAN;
+    Sea = "lawless.sea", |_, context| context.world_params.sea_level as f32;
+    Deaf = "lawless.deaf", |window, _| {
+        std::thread::sleep(Duration::from_millis(if window.width > 300 { 400 } else { 0 }));
+        0.0
+    };
+    Leveled = "lawless.leveled", |_, _| Level::current().lanes() as f32;
+}
+
+orogen::op! {
+    /// Depends on the tiles of its sources.
+    pub struct Counted = "lawless.counted", solver, revision 1;
+    inputs {
+        /// What it reads.
+        source: required,
+    }
+}
+
+impl Solver for Counted {
+    fn rasters(&self) -> usize {
+        0
+    }
+
+    fn solve(&self, sources: &dyn Sources, _: &Context) -> Result<Solution> {
+        let mut tiles = 0.0;
+        sources.each_tile(0, sources.domain(), &mut |_| {
+            tiles += 1.0;
+            Ok(())
+        })?;
+        Ok(Solution { layers: Vec::new(), scalars: vec![tiles] })
+    }
+
+    fn read(&self, solution: &Solution, _: &Reading, out: &mut [f32]) -> Result<()> {
+        out.fill(solution.scalars.first().map_or(0.0, |tiles| *tiles as f32));
+        Ok(())
+    }
+}
+
+orogen::op! {
+    /// Counts positions by samples.
+    pub struct Celled = "lawless.celled", field, revision 1;
+}
+
+impl Field for Celled {
+    fn eval(&self, at: &Points, _: &Inputs, _: &WorldParams, out: &mut [f32]) {
+        out.iter_mut().enumerate().for_each(|(k, out)| *out = at.position(k + 1).map_or(0.0, |(x, _)| x as f32));
+    }
+}
+
+#[test]
+fn broken_laws_are_found_and_name_the_op() {
+    if Level::available().len() > 1 {
+        assert!(Laws::of(|_| Leveled::default()).levels().is_err_and(|broken| broken.law == Law::Levels));
+    }
+    let tiled = Laws::of(|_| Tiled::default());
+    let broken = tiled.tiles(10.24, false).unwrap_err();
+    assert_eq!((broken.law, broken.op.as_str()), (Law::TileEqualsCrop, "lawless.tiled"));
+    assert_eq!(broken.window, Some(Window::new(31, 17, 10.24).at(13, 44)));
+    let said = broken.to_string();
+    assert!(said.contains("`lawless.tiled` breaks the law TileEqualsCrop in 31 x 17 samples at (13, 44)"), "{said}");
+    assert!(tiled.check().iter().any(|broken| broken.law == Law::Unbounded), "far out, too");
+    assert!(tiled.warped(30.0).is_err_and(|broken| broken.law == Law::Warped));
+    let broken = Laws::of(|_| Infinite::default()).tiles(0.1, false).unwrap_err();
+    assert!(broken.law == Law::Finite && broken.message.contains("NaN"), "{broken}");
+    let broken = Laws::of(|_| Sea::default()).content_keys().unwrap_err();
+    assert!(broken.law == Law::ContentKeys && broken.message.contains("the sea level"), "{broken}");
+    let broken = Laws::of(|_| Deaf::default()).cancel(320).unwrap_err();
+    assert!(broken.law == Law::Cancel && broken.message.contains("it went on for"), "{broken}");
+    assert!(Laws::of(|_| Counted::default()).stored(1.0 / 3.0).is_err_and(|broken| broken.law == Law::Stored));
+    let broken = Laws::of(|_| Celled::default()).resolutions(10.24).unwrap_err();
+    assert_eq!(broken.law, Law::Resolutions, "{broken}");
+}

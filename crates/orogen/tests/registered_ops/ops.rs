@@ -1,0 +1,181 @@
+//! The ops of a program: a field, a filter and a solver.
+
+use orogen::op::{Context, Field, Filter, Inputs, Solution, Solver, Sources, WorldParams};
+use orogen::{Grid, Points, Registry, Result, Window};
+
+orogen::choice! {
+    /// Shape of a ripple.
+    pub enum Wave {
+        /// Straight sides.
+        Triangle = "triangle",
+        /// Upright sides.
+        Square = "square",
+    }
+}
+
+orogen::op! {
+    /// Ripples from west to east. They stand on a source, if there is one.
+    pub struct Ripples = "mygame.ripples", field, revision 1;
+    inputs {
+        /// What they stand on.
+        source: optional,
+    }
+    params {
+        /// Seed of their phase.
+        seed: u64 = 0;
+        /// Distance between crests.
+        wavelength: f64 = 100.0, unit "m", range 1e-3 to 1e9, alias "spacing";
+        /// Their shape.
+        wave: Wave = Wave::Triangle;
+    }
+}
+
+impl Field for Ripples {
+    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+        let phase = (world_params.seed_of(self.seed) % 1000) as f64 / 1000.0;
+        for (k, sample) in out.iter_mut().enumerate() {
+            let (x, _) = at.position(k).unwrap_or((f64::NAN, f64::NAN));
+            let turns = x / self.wavelength + phase;
+            let share = (turns - turns.floor()) as f32;
+            let ripple = match self.wave {
+                Wave::Triangle => (2.0 * share - 1.0).abs(),
+                Wave::Square if share < 0.5 => 0.0,
+                Wave::Square => 1.0,
+            };
+            *sample = ripple + inputs.get(0).map_or(0.0, |source| source[k]);
+        }
+    }
+}
+
+orogen::op! {
+    /// The highest of the samples around each one.
+    pub struct Crests = "mygame.crests", filter, revision 1;
+    inputs {
+        /// Where crests are searched.
+        source: required,
+    }
+    params {
+        /// How far they are searched.
+        reach: f64 = 30.0, unit "m", range 0.0 to 1e5;
+        /// The lowest and the highest result.
+        within: [f64; 2] = [-1e4, 1e4], unit "m", range -1e4 to 1e4;
+    }
+    layers {
+        /// The height of the crest.
+        height: source, unit "m";
+        /// 1 on a crest, 0 elsewhere.
+        crest: label;
+    }
+    check |op| match op.within[0] <= op.within[1] {
+        true => Ok(()),
+        false => Err(("within", "`within` must be the lower bound, then the upper one".to_string())),
+    };
+}
+
+impl Filter for Crests {
+    fn halo(&self, cell: f64) -> usize {
+        (self.reach / cell).floor() as usize
+    }
+
+    fn apply(
+        &self,
+        inputs: &[Option<&Grid>],
+        window: &Window,
+        out: &mut [Option<Grid>],
+        context: &Context,
+    ) -> Result<()> {
+        let ([Some(source)], [heights, crests]) = (inputs, out) else { return Ok(()) };
+        let reach = self.halo(window.cell);
+        for j in 0..window.height {
+            context.progress.check()?;
+            for i in 0..window.width {
+                let around = (j..=j + 2 * reach).flat_map(|j| (i..=i + 2 * reach).map(move |i| (i, j)));
+                let highest = around.map(|at| source[at]).fold(f32::MIN, f32::max);
+                if let Some(heights) = heights.as_mut() {
+                    heights[(i, j)] = highest.clamp(self.within[0] as f32, self.within[1] as f32);
+                }
+                if let Some(crests) = crests.as_mut() {
+                    crests[(i, j)] = f32::from(u8::from(source[(i + reach, j + reach)] >= highest));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+orogen::op! {
+    /// What lies above the mean of the world, and on which side of the mean it is.
+    pub struct Above = "mygame.above", solver, revision 1;
+    inputs {
+        /// The heights.
+        source: required,
+    }
+    layers {
+        /// Height above the mean, 0 below it.
+        height: height, unit "m";
+        /// 1 above the mean, 0 below it.
+        side: label;
+    }
+}
+
+/// The solution of [`Above`] and of its other revision.
+fn above(sources: &dyn Sources, context: &Context, times: f32) -> Result<Solution> {
+    let source = sources.whole(0, sources.padded())?;
+    context.progress.check()?;
+    let mean = source.data().iter().map(|sample| f64::from(*sample)).sum::<f64>() / source.data().len() as f64;
+    let grid = |of: &dyn Fn(f32) -> f32| {
+        let mut grid = Grid::filled(*sources.padded(), 0.0f32);
+        grid.data_mut().iter_mut().zip(source.data()).for_each(|(out, source)| *out = of(*source));
+        sources.keep(grid)
+    };
+    let height = grid(&|height| (height - mean as f32).max(0.0) * times)?;
+    let side = grid(&|height| f32::from(u8::from(height > mean as f32)))?;
+    Ok(Solution { layers: vec![height, side], scalars: vec![mean] })
+}
+
+impl Solver for Above {
+    fn scratch(&self, padded: &Window) -> u64 {
+        3 * 4 * padded.len() as u64
+    }
+
+    fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
+        above(sources, context, 1.0)
+    }
+}
+
+/// Ops under the names of others.
+pub mod other {
+    use super::*;
+
+    orogen::op! {
+        /// Twice what lies above the mean: other bits, so another revision.
+        pub struct Above = "mygame.above", solver, revision 2;
+        inputs {
+            /// The heights.
+            source: required,
+        }
+        layers {
+            /// Height above the mean, 0 below it.
+            height: height, unit "m";
+            /// 1 above the mean, 0 below it.
+            side: label;
+        }
+    }
+
+    impl Solver for Above {
+        fn scratch(&self, padded: &Window) -> u64 {
+            3 * 4 * padded.len() as u64
+        }
+
+        fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
+            above(sources, context, 2.0)
+        }
+    }
+}
+
+/// A registry of these ops.
+pub fn registry() -> Registry {
+    let mut registry = Registry::new();
+    registry.register::<Ripples>().unwrap().register::<Crests>().unwrap().register::<Above>().unwrap();
+    registry
+}
