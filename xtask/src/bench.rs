@@ -33,9 +33,10 @@ Builds the benches at full optimisation, measures one area (or all in turn) and 
   --case TEXT  only cases whose name contains TEXT
   --quick      few repetitions: only to check that it runs
 
-Area realism, only if it is named: compares windows of alpine and endless of 16 seeds with real places; fails if a target is missed.
+Area realism, only if it is named: compares alpine and endless with real places, and five presets with land of their type, 16 seeds each; fails if a
+target is missed.
 
-  --score SCRIPT  the script that compares rasters (Python; OROGEN_REALISM names one that has numpy, scipy, rasterio and numba)
+  --score SCRIPT  the script that compares rasters, with its list of types beside it (Python; OROGEN_REALISM names one that has numpy, scipy, rasterio and numba)
   --dems DIR      the real places, GeoTIFFs of 30 to 90 m
   --first SEED    the first of the seeds [default: from the clock]
 

@@ -1,5 +1,5 @@
 //! `cargo xtask bench realism`: compares presets with real terrain, with a script and real places that are not part of
-//! the project.
+//! the project. Mountains are compared with all places, other presets with land of their type, which the script knows.
 
 use std::path::{Path, PathBuf};
 
@@ -13,9 +13,16 @@ struct Case {
     preset: &'static str,
     /// The name in the table.
     name: &'static str,
-    /// The window's first sample, east and south, for unbounded worlds.
-    at: [i64; 2],
+    land: Land,
     targets: Targets,
+}
+
+/// What a preset is compared with, and which samples of it.
+enum Land {
+    /// With all places of the folder: [`SIDE`] x [`SIDE`] samples at [`CELL`] metres, from this sample east and south on.
+    Any([i64; 2]),
+    /// With land of this type: the whole world, at a cell in metres.
+    Type(&'static str, u32),
 }
 
 /// Maximum values of the figures.
@@ -36,11 +43,14 @@ const ANY: f64 = f64::INFINITY;
 const ENDLESS: Targets =
     Targets { median: 1.25, p90: ANY, energy: 1.5, outliers: ANY, bias: ANY, worst_bias: ANY, judged: 0.0 };
 
+const TYPED: Targets =
+    Targets { median: 0.90, p90: ANY, energy: 1.0, outliers: 1.0, bias: ANY, worst_bias: ANY, judged: 0.0 };
+
 const CASES: &[Case] = &[
     Case {
         preset: "alpine",
         name: "alpine",
-        at: [0, 0],
+        land: Land::Any([0, 0]),
         targets: Targets {
             median: 1.0,
             p90: 1.3,
@@ -51,8 +61,18 @@ const CASES: &[Case] = &[
             judged: 0.9,
         },
     },
-    Case { preset: "endless", name: "endless", at: [0, 0], targets: ENDLESS },
-    Case { preset: "endless", name: "endless, 10 000 km out", at: [166_666_667, -166_666_667], targets: ENDLESS },
+    Case { preset: "endless", name: "endless", land: Land::Any([0, 0]), targets: ENDLESS },
+    Case {
+        preset: "endless",
+        name: "endless, 10 000 km out",
+        land: Land::Any([166_666_667, -166_666_667]),
+        targets: ENDLESS,
+    },
+    Case { preset: "rolling", name: "rolling", land: Land::Type("rolling_hills", 30), targets: TYPED },
+    Case { preset: "hills", name: "hills", land: Land::Type("rolling_hills", 30), targets: TYPED },
+    Case { preset: "island", name: "island", land: Land::Type("islands_coasts", 40), targets: TYPED },
+    Case { preset: "archipelago", name: "archipelago", land: Land::Type("islands_coasts", 40), targets: TYPED },
+    Case { preset: "volcano", name: "volcano", land: Land::Type("volcanoes", 40), targets: TYPED },
 ];
 
 /// Samples per side, and the cell in metres, as the script expects.
@@ -107,25 +127,36 @@ pub fn run(options: &Options, program: &Path) -> Result {
             make(program, case, seed, &file)?;
             files.push(file);
         }
-        let said = shell::capture(shell::program(&python).arg(&score).arg("--real").arg(&real).args(&files))?;
+        let mut compare = shell::program(&python);
+        compare.arg(&score);
+        match case.land {
+            Land::Any(_) => compare.arg("--real").arg(&real),
+            Land::Type(name, _) => compare.args(["--type", name]),
+        };
+        let said = shell::capture(compare.args(&files))?;
         let found = read(&said).ok_or_else(|| Failure::new(format!("the script's answer has no score:\n{said}")))?;
-        rows.push(cells(case.name, &found));
+        rows.push(cells(case, &found));
         missed.extend(misses(case, &found));
         for file in files {
             std::fs::remove_file(&file).map_err(|e| on_file("delete", &file, &e))?;
         }
     }
     println!("{}, {}", host::date(), host::processor());
-    println!("seeds {first} to {}, {SIDE} x {SIDE} samples at {CELL} m\n", first + SEEDS - 1);
+    println!("seeds {first} to {}\n", first + SEEDS - 1);
     println!("{}", table::render(&HEAD, &rows));
     if missed.is_empty() { Ok(()) } else { Err(Failure::new(missed.join("\n"))) }
 }
 
-const HEAD: [&str; 8] = ["preset", "judged", "median", "p90", "energy", "outliers", "grid bias", "its worst"];
+const HEAD: [&str; 9] = ["preset", "beside", "judged", "median", "p90", "energy", "outliers", "grid bias", "its worst"];
 
-fn cells(name: &str, score: &Score) -> Vec<String> {
+fn cells(case: &Case, score: &Score) -> Vec<String> {
+    let beside = match case.land {
+        Land::Any(_) => format!("all, at {CELL} m"),
+        Land::Type(name, cell) => format!("{}, at {cell} m", name.replace('_', " ")),
+    };
     vec![
-        name.to_owned(),
+        case.name.to_owned(),
+        beside,
         format!("{} of {}", score.judged, score.judged + score.dropped),
         format!("{:.2}", score.median),
         format!("{:.2}", score.p90),
@@ -158,10 +189,12 @@ fn misses(case: &Case, score: &Score) -> Vec<String> {
 }
 
 fn make(program: &Path, case: &Case, seed: u64, file: &Path) -> Result {
-    let [x, y] = case.at;
     let mut command = shell::program(program);
-    command.args(["export", case.preset, "--quiet", "--cell", &CELL.to_string(), "--seed", &seed.to_string()]);
-    command.arg("--window").arg(format!("{x},{y},{SIDE},{SIDE}"));
+    command.args(["export", case.preset, "--quiet", "--seed", &seed.to_string()]);
+    match case.land {
+        Land::Any([x, y]) => command.args(["--cell", &CELL.to_string(), "--window", &format!("{x},{y},{SIDE},{SIDE}")]),
+        Land::Type(_, cell) => command.args(["--cell", &cell.to_string()]),
+    };
     shell::run(command.arg("-o").arg(file))
 }
 
