@@ -7,7 +7,7 @@ use crate::node::Node;
 use crate::recipe::document::{Recipe, WorldSpec};
 use orogen_grid::grid::Window;
 
-/// The name of the node under test in the recipes of [`recipe_of`] and [`Laws::in_recipes`].
+/// The name of the node under test in the recipes of [`recipe_of`] and [`Laws::in_recipes`](super::Laws::in_recipes).
 pub const NODE: &str = "node";
 
 /// Samples along the sides of the worlds of [`world_of`], their far edges included.
