@@ -9,7 +9,7 @@ use crate::kernel::near;
 use crate::kernel::outputs::Outputs;
 use crate::kernel::pointwise::Pointwise;
 use crate::program::{Combine, Octave, Program};
-use orogen_simd::{Body, Double, F32Lanes, Level, Simd};
+use orogen_simd::{Body, Double, F32Lanes, Simd};
 use std::marker::PhantomData;
 
 /// A call of [`Scatter`] for the noise of a source.
@@ -26,11 +26,7 @@ impl<S: Simd, const DIMS: usize> VisitFamily for Call<'_, S, DIMS> {
     fn visit<F: Family>(self) {
         let Call { simd, program, at, target } = self;
         let family = PhantomData::<F>;
-        // The scalar level does without them: its processors are few, and its code is the largest.
-        if const { !matches!(S::LEVEL, Level::Scalar) }
-            && matches!(program.combine, Combine::Sum)
-            && (target.slopes.is_none() || !F::SLOPED)
-        {
+        if matches!(program.combine, Combine::Sum) && (target.slopes.is_none() || !F::SLOPED) {
             let sums = Sums::<F, DIMS> { program, at, target: target.value, family };
             if const { F::PAIRED && S::LANES > 4 } { Double(simd).run(sums) } else { simd.run(sums) }
         } else {
