@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU8, Ordering};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum Level {
-    /// No instructions beyond the target's baseline: 4 lanes, emulated over arrays, on x86-64 in SSE2 registers.
+    /// No instructions beyond the target's baseline: 4 lanes, in SSE2 registers on x86-64, in arrays elsewhere.
     Scalar,
     /// WebAssembly's 128-bit vectors: 4 lanes. Available in modules that are built with them.
     Simd128,

@@ -1,5 +1,5 @@
 //! The scalar level of x86-64, in SSE2 registers, which belong to that target: 4 lanes in one register, f64 in two. Arrays
-//! of lanes would do, but become several times as many instructions, which take as much longer to compile and to run.
+//! of lanes (see [`crate::Scalar`]) give the same bits, but take longer to compile and to run.
 //!
 //! SSE2 has no fused multiply-add, no floor and no lookup. They are emulated, each in one function that is not inlined:
 //! copies in every body would make the code of the slowest level the largest.

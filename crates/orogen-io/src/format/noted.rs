@@ -1,4 +1,4 @@
-//! I/O errors of an input, kept while a reader turns them into sentences.
+//! I/O errors of an input, kept while a reader turns them into messages.
 
 use std::io::{Error as IoError, ErrorKind, Read, Result as IoResult, Seek, SeekFrom};
 
