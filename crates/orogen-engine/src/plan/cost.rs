@@ -7,6 +7,7 @@
 //! per side.
 
 use super::program::{Instruction, Program};
+use super::levels;
 use super::steps::{Plan, Solve, Step};
 use crate::ids::{CoordSetId, Id, IndexVec};
 use crate::op::Op;
@@ -34,6 +35,10 @@ pub fn step(step: &Step, plan: &Plan, recipe: &Recipe) -> f64 {
         Step::Fill { program, out, .. } => program_cost(program, plan.scattered && out.is_empty(), recipe),
         Step::Apply { node, window, .. } => match recipe.nodes()[node.index()].node.op() {
             Op::Filter(filter) => filter.cost(window.cell),
+            _ => 0.0,
+        },
+        Step::Refine { node, window, .. } => match recipe.nodes()[node.index()].node.op() {
+            Op::Levelled(op) => return levels::cost(op, window),
             _ => 0.0,
         },
     };
