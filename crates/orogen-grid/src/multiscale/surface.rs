@@ -1,0 +1,1 @@
+//! Heights and water at the lattice points of a level.
