@@ -135,7 +135,8 @@ impl<'a> Coarsest<'a> {
     fn second_costs(&self) -> Vec<f32> {
         let kilometres = self.land.kilometres(0);
         let rise = (law::river_slope(self.land, kilometres * kilometres) * self.land.cell_of(0)) as f32;
-        let cost = |(&uplift, &area): (&f32, &f32)| rise * power(std::f32::consts::E, uplift) * power(area, -law::CONCAVITY);
+        let cost =
+            |(&uplift, &area): (&f32, &f32)| rise * power(std::f32::consts::E, uplift) * power(area, -law::CONCAVITY);
         self.uplift.iter().zip(&self.area).map(cost).collect()
     }
 
@@ -182,7 +183,8 @@ impl<'a> Coarsest<'a> {
                     continue;
                 }
                 let mut rows = (j - 2..=j + 2).map(|row| row * width + i - 2..row * width + i + 3);
-                let alone = rows.all(|row| row.into_iter().all(|o| o == q || (scores[o] > scores[q] && self.shore[o] >= 0.0)));
+                let alone =
+                    rows.all(|row| row.into_iter().all(|o| o == q || (scores[o] > scores[q] && self.shore[o] >= 0.0)));
                 if alone {
                     let height = if unreached { 1500.0 * relief } else { height };
                     found.push((q, height * (0.08 + 0.3 * hash::unit(bits << 24))));

@@ -84,7 +84,10 @@ impl Continents {
             return Err(invalid("the share of land must be 0.05 to 0.95, that of basins 0 to 1"));
         }
         if self.levels > MAX_LEVELS || depth > self.levels {
-            return Err(invalid(format!("level {depth} does not exist: the finest is {}, at most {MAX_LEVELS}", self.levels)));
+            return Err(invalid(format!(
+                "level {depth} does not exist: the finest is {}, at most {MAX_LEVELS}",
+                self.levels
+            )));
         }
         if window.cell != self.cell_of(depth) {
             return Err(invalid(format!("level {depth} has a cell of {} m, not {}", self.cell_of(depth), window.cell)));

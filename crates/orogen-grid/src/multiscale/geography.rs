@@ -73,11 +73,13 @@ impl Geography {
         uplift += (0.2 + 0.6 * swell - uplift).max(0.0) * rim;
         // Old mountains.
         let old = self.noise(14, 1200.0, warped) + 0.3 * self.noise(15, 400.0, twice);
-        let old = smooth_step(0.0, 1.0, 1.0 - old.abs() / 0.2) * smooth_step(-0.05, 0.25, self.noise(16, 2400.0, plain));
+        let old =
+            smooth_step(0.0, 1.0, 1.0 - old.abs() / 0.2) * smooth_step(-0.05, 0.25, self.noise(16, 2400.0, plain));
         uplift += (-0.55 + 0.4 * swell - uplift).max(0.0) * old;
         // Ranges in belts across the continents and along some coasts.
         let belt = self.noise(17, 2600.0, warped) + 0.3 * self.noise(18, 850.0, once);
-        let belt = smooth_step(0.0, 0.8, 1.0 - belt.abs() / 0.15) * smooth_step(-0.08, 0.2, self.noise(19, 2900.0, plain));
+        let belt =
+            smooth_step(0.0, 0.8, 1.0 - belt.abs() / 0.15) * smooth_step(-0.08, 0.2, self.noise(19, 2900.0, plain));
         let inland = (COAST * (site.coast() - self.threshold) - 190.0) / 120.0;
         let coastal = libm::exp(-(inland * inland)) * smooth_step(0.0, 0.22, self.noise(20, 3300.0, twice));
         let range = 0.4 + 0.5 * self.noise(21, 500.0, plain) + 0.35 * self.noise(22, 160.0, once);

@@ -7,8 +7,8 @@ const DEPTH: usize = 77;
 
 /// East components of the 16 gradients; the south component is that of the gradient a quarter turn back.
 const GRADIENTS: [f64; 16] = [
-    1.0, 0.92388, 0.70711, 0.38268, 0.0, -0.38268, -0.70711, -0.92388, -1.0, -0.92388, -0.70711, -0.38268, 0.0, 0.38268,
-    0.70711, 0.92388,
+    1.0, 0.92388, 0.70711, 0.38268, 0.0, -0.38268, -0.70711, -0.92388, -1.0, -0.92388, -0.70711, -0.38268, 0.0,
+    0.38268, 0.70711, 0.92388,
 ];
 
 /// Noise with a wavelength of 1, about -1 to 1.

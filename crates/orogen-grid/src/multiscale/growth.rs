@@ -61,7 +61,14 @@ struct Scale {
 
 impl Growth {
     /// The nodes before growth.
-    pub fn new(height: Vec<f32>, area: Vec<f32>, receiver: Vec<f32>, fixed: Vec<f32>, floors: bool, finest: bool) -> Growth {
+    pub fn new(
+        height: Vec<f32>,
+        area: Vec<f32>,
+        receiver: Vec<f32>,
+        fixed: Vec<f32>,
+        floors: bool,
+        finest: bool,
+    ) -> Growth {
         let cells = height.len();
         let plane = |wanted: bool| if wanted { vec![0.0; cells] } else { Vec::new() };
         Growth {
@@ -152,7 +159,14 @@ impl Body for Pass<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         for j in self.extent.rows() {
-            simd.run(OneRow { pass: &mut *self.growth, extent: self.extent, law: self.law, spacing: self.spacing, scale: self.scale, j });
+            simd.run(OneRow {
+                pass: &mut *self.growth,
+                extent: self.extent,
+                law: self.law,
+                spacing: self.spacing,
+                scale: self.scale,
+                j,
+            });
         }
     }
 }

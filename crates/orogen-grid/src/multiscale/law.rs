@@ -70,7 +70,13 @@ impl Body for Fill<'_> {
 }
 
 #[inline(always)]
-fn fill(variation: &[f32], uplift: &[f32], (river_factor, stable_factor): (f32, f32), river: &mut [f32], stable: &mut [f32]) {
+fn fill(
+    variation: &[f32],
+    uplift: &[f32],
+    (river_factor, stable_factor): (f32, f32),
+    river: &mut [f32],
+    stable: &mut [f32],
+) {
     let n = river.len();
     let (variation, uplift, stable) = (&variation[..n], &uplift[..n], &mut stable[..n]);
     for i in 0..n {
@@ -89,4 +95,12 @@ fn floors(variation: &[f32], uplift: &[f32], floor: &mut [f32]) {
         let factor = power(std::f32::consts::E, -(variation[i] + uplift[i]));
         floor[i] = if factor < 4.0 { factor } else { 4.0 };
     }
+}
+
+/// The rise in metres from a node to its neighbour at the source of a river, where the logarithm of uplift over erodibility is `logarithm`.
+pub fn slope_of_one_cell(land: &Continents, depth: usize, logarithm: f32) -> f32 {
+    let kilometres = land.kilometres(depth);
+    let river = river_slope(land, kilometres * kilometres) as f32 * power(std::f32::consts::E, logarithm);
+    let stable = STABLE * power(land.relief as f32 * power(std::f32::consts::E, logarithm), STABLE_EXPONENT);
+    river * stable / (river + stable) * land.cell_of(depth) as f32
 }

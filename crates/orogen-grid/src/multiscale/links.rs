@@ -100,7 +100,8 @@ impl Links {
     fn cross(&mut self, land: &Continents, parent: &Level, children: &Children, q: usize, wander: f32) {
         let (east, south) = step(parent.receiver[q]);
         let target = self.target(parent, q);
-        let (start, end) = (Child { parent: q, corner: heir(parent, q) }, Child { parent: target, corner: heir(parent, target) });
+        let (start, end) =
+            (Child { parent: q, corner: heir(parent, q) }, Child { parent: target, corner: heir(parent, target) });
         // The bit of the exit's side of the cell in the link's direction, and of the entry's.
         let sides = |step: isize| (u8::from(step > 0), u8::from(step < 0));
         let ((exit_east, entry_east), (exit_south, entry_south)) = (sides(east), sides(south));
@@ -115,10 +116,15 @@ impl Links {
         let mut shortest = f32::INFINITY;
         for choice in 0..4u8 {
             let (a, b) = (choice & 1, choice >> 1);
-            let (exit, entry) =
-                if east != 0 { (exit_east | a << 1, entry_east | b << 1) } else { (a | exit_south << 1, b | entry_south << 1) };
+            let (exit, entry) = if east != 0 {
+                (exit_east | a << 1, entry_east | b << 1)
+            } else {
+                (a | exit_south << 1, b | entry_south << 1)
+            };
             let (out, into) = (Child { parent: q, corner: exit }, Child { parent: target, corner: entry });
-            let length = children.distance(start, out, width) + children.distance(out, into, width) + children.distance(into, end, width);
+            let length = children.distance(start, out, width)
+                + children.distance(out, into, width)
+                + children.distance(into, end, width);
             let length = length * (1.0 + wander * hash::unit16(bits, usize::from(choice)));
             if length < shortest {
                 shortest = length;
@@ -152,7 +158,8 @@ impl Links {
             let bits = hash::node(land.seed, children.depth, x, y, 9);
             let mut shortest = children.distance(exit, entry, width) * (1.0 + wander * hash::unit16(bits, 0));
             let beside = Child { parent: q.wrapping_add_signed(east), corner: link.entry & 1 | link.exit & 2 };
-            let below = Child { parent: q.wrapping_add_signed(south * width as isize), corner: link.exit & 1 | link.entry & 2 };
+            let below =
+                Child { parent: q.wrapping_add_signed(south * width as isize), corner: link.exit & 1 | link.entry & 2 };
             for (choice, child) in [(1, beside), (2, below)] {
                 if used[child.parent] >> child.corner & 1 == 1 {
                     continue;
@@ -180,8 +187,10 @@ impl Children {
     pub fn distance(&self, from: Child, to: Child, parents: usize) -> f32 {
         let (a, b) = (from.index(parents), to.index(parents));
         let width = 2 * parents;
-        let x = self.east[b] - self.east[a] + (b % width) as f32 - (a % width) as f32;
-        let y = self.south[b] - self.south[a] + (b / width) as f32 - (a / width) as f32;
+        // Differences of whole numbers are exact, wherever the window starts.
+        let columns = (b % width) as isize - (a % width) as isize;
+        let rows = (b / width) as isize - (a / width) as isize;
+        let (x, y) = (self.east[b] - self.east[a] + columns as f32, self.south[b] - self.south[a] + rows as f32);
         (x * x + y * y).sqrt()
     }
 }

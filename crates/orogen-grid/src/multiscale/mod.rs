@@ -8,25 +8,25 @@
 //! Related work: J.-D. Génevaux et al., "Terrain generation using procedural models based on hydrology" (2013); M. Gaillard et al., "Dendry: a
 //! procedural model for dendritic patterns" (2019); H. Schott et al., "Terrain amplification using multi-scale erosion" (2024).
 
-pub mod level;
+mod carve;
+mod children;
+mod coarsest;
 pub mod continents;
-mod hash;
-mod gradient_noise;
-mod stencil;
+mod creep;
 mod distances;
 mod drainage;
-mod law;
 mod geography;
-mod routes;
-mod coarsest;
-mod children;
-mod links;
-mod shores;
-mod carve;
-mod straighten;
+mod gradient_noise;
 mod growth;
-mod creep;
+mod hash;
+mod law;
+pub mod level;
+mod links;
 mod refine;
+mod routes;
+mod shores;
+mod stencil;
+mod straighten;
 pub mod surface;
 
 #[cfg(test)]

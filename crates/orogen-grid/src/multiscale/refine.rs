@@ -73,7 +73,10 @@ impl Continents {
         self.check(depth, window)?;
         let needed = self.parent_window(depth, window);
         if !parent.window.contains(&needed) {
-            return Err(invalid(format!("level {depth} over {window:?} needs its parent over {needed:?}, not {:?}", parent.window)));
+            return Err(invalid(format!(
+                "level {depth} over {window:?} needs its parent over {needed:?}, not {:?}",
+                parent.window
+            )));
         }
         let parent = &parent.crop(&needed)?;
         let finest = self.is_finest(depth);
@@ -97,7 +100,8 @@ impl Continents {
         }
         let law = Law::new(self, depth, &children.variation, &children.uplift);
         let spacing = if finest { Spacing::Regular } else { Spacing::Irregular(&carved.distances) };
-        let mut growth = Growth::new(carved.height, carved.area, carved.receiver, carved.fixed, has_floors(self, depth), finest);
+        let mut growth =
+            Growth::new(carved.height, carved.area, carved.receiver, carved.fixed, has_floors(self, depth), finest);
         for pass in 0..FIRST_PASSES + ROUNDS {
             for _ in 0..if pass < FIRST_PASSES { 0 } else { AREA_PASSES } {
                 progress.check()?;
