@@ -1,0 +1,39 @@
+//! Gradient noise of geography, in double precision: positions may be millions of kilometres from the origin.
+
+use super::hash;
+
+/// Stream of hashes of the lattice of gradients: no level has this depth.
+const DEPTH: usize = 77;
+
+/// East components of the 16 gradients; the south component is that of the gradient a quarter turn back.
+const GRADIENTS: [f64; 16] = [
+    1.0, 0.92388, 0.70711, 0.38268, 0.0, -0.38268, -0.70711, -0.92388, -1.0, -0.92388, -0.70711, -0.38268, 0.0,
+    0.38268, 0.70711, 0.92388,
+];
+
+/// Noise with a wavelength of 1, about -1 to 1.
+pub fn noise(seed: u64, stream: u64, x: f64, y: f64) -> f64 {
+    let (left, top) = (x.floor(), y.floor());
+    let (column, row) = (left as i64, top as i64);
+    let (u, v) = (x - left, y - top);
+    let slope = |column: i64, row: i64, u: f64, v: f64| {
+        let turn = (hash::node(seed, DEPTH, column, row, stream) >> 40) as usize & 15;
+        GRADIENTS[turn] * u + GRADIENTS[(turn + 12) & 15] * v
+    };
+    let (right, bottom) = (column.wrapping_add(1), row.wrapping_add(1));
+    let (share_u, share_v) = (quintic(u), quintic(v));
+    let (a, b) = (slope(column, row, u, v), slope(right, row, u - 1.0, v));
+    let (c, d) = (slope(column, bottom, u, v - 1.0), slope(right, bottom, u - 1.0, v - 1.0));
+    let (north, south) = (a + share_u * (b - a), c + share_u * (d - c));
+    (north + share_v * (south - north)) * 1.4
+}
+
+fn quintic(t: f64) -> f64 {
+    t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
+}
+
+/// 0 below `from`, 1 above `to`, smooth between.
+pub fn smooth_step(from: f64, to: f64, x: f64) -> f64 {
+    let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
