@@ -59,6 +59,7 @@ nodes! {
         topographic_position::TopographicPosition,
     }
     levelled {
+        continents::Continents,
     }
     solver {
         bake::Bake,

@@ -348,9 +348,10 @@ pub trait Levelled: Declared + Send + Sync {
         1000.0
     }
 
-    /// The samples of the level above that `level` over `window` is made from.
+    /// The samples of the level above that `level` over `window` is made from: from half the first, rounded down, to half the last,
+    /// rounded up, and the halo around them.
     fn parent(&self, level: usize, window: &Window) -> Window {
-        let halved = |first: i64, end: i64| (first.div_euclid(2), (end + 1).div_euclid(2));
+        let halved = |first: i64, end: i64| (first.div_euclid(2), end.div_euclid(2) + 1);
         let ((x, right), (y, bottom)) = (halved(window.x, window.right()), halved(window.y, window.bottom()));
         let (width, height) = ((right - x).max(0) as usize, (bottom - y).max(0) as usize);
         let cell = self.levels().cell(level.saturating_sub(1));

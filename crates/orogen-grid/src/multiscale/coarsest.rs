@@ -56,6 +56,9 @@ struct Coarsest<'a> {
 }
 
 impl Continents {
+    /// Samples of the coarsest level beyond a window that [`Continents::coarsest`] works on.
+    pub const COARSEST_REACH: usize = REACH;
+
     /// The coarsest level over `window`. It holds about 60 bytes per sample of the window grown by 148.
     ///
     /// # Errors
