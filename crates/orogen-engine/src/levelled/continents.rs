@@ -4,6 +4,7 @@ use crate::op::{Context, Levelled, Levels};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::multiscale::continents::{Continents as Land, MAX_LEVELS};
+use orogen_grid::multiscale::given::Given;
 use orogen_grid::multiscale::level::Level;
 
 op! {
@@ -19,6 +20,13 @@ op! {
     /// Related: hydrology-based terrain (Génevaux and others 2013), Dendry (Gaillard and others 2019), multi-scale terrain amplification
     /// (Schott and others 2024).
     pub struct Continents = "continents", levelled, revision 1;
+    inputs {
+        /// Distance to the shore in metres, positive on land, in place of the op's own continents. Lakes and rivers keep what they need; where it is NaN, the op's own
+        /// is used.
+        shore: optional,
+        /// Uplift over erodibility in place of the op's own ranges and plains: about 1.5 in high mountains, 0.5 in hills, 0.1 in plains. Where it is NaN, the op's own is used.
+        uplift: optional,
+    }
     params {
         /// Seed of the node, hashed with the world's seed.
         seed: u64 = 0;
@@ -65,6 +73,11 @@ impl Continents {
     }
 }
 
+fn given<'a>(inputs: &[Option<&'a Grid>]) -> Given<'a> {
+    let input = |i: usize| inputs.get(i).copied().flatten();
+    Given { shore: input(0), uplift: input(1) }
+}
+
 impl Levelled for Continents {
     fn levels(&self) -> Levels {
         Levels { finest: self.cell, count: self.halvings as usize + 1 }
@@ -78,20 +91,24 @@ impl Levelled for Continents {
         self.with_seed(0).reach(level)
     }
 
-    fn coarsest(&self, _: &[Option<&Grid>], window: &Window, context: &Context) -> Result<Vec<Grid>> {
-        Ok(self.land(context).coarsest(window, context.progress)?.into_planes())
+    fn source_halo(&self, level: usize) -> usize {
+        self.with_seed(0).given_reach(level)
+    }
+
+    fn coarsest(&self, inputs: &[Option<&Grid>], window: &Window, context: &Context) -> Result<Vec<Grid>> {
+        Ok(self.land(context).coarsest_with(&given(inputs), window, context.progress)?.into_planes())
     }
 
     fn refine(
         &self,
         level: usize,
         parent: &[Grid],
-        _: &[Option<&Grid>],
+        inputs: &[Option<&Grid>],
         window: &Window,
         context: &Context,
     ) -> Result<Vec<Grid>> {
         let parent = Level::from_planes(level - 1, &parent.iter().collect::<Vec<_>>())?;
-        Ok(self.land(context).refine(&parent, window, context.progress)?.into_planes())
+        Ok(self.land(context).refine_with(&parent, &given(inputs), window, context.progress)?.into_planes())
     }
 
     fn surface_halo(&self) -> usize {

@@ -3,6 +3,7 @@
 use super::coarsest::jittered;
 use super::continents::Continents;
 use super::geography::Geography;
+use super::given::Given;
 use super::hash;
 use super::level::Level;
 use super::stencil::Extent;
@@ -47,7 +48,7 @@ fn indent(land: &Continents, depth: usize) -> f32 {
 
 impl Children {
     /// The children of `parent`; rock and shores are exact one parent away from its edge.
-    pub fn new(land: &Continents, parent: &Level, progress: &Progress) -> Result<Children> {
+    pub fn new(land: &Continents, parent: &Level, given: &Given, progress: &Progress) -> Result<Children> {
         let (depth, from) = (parent.depth + 1, parent.window);
         let (width, height) = (2 * from.width, 2 * from.height);
         let window = Window { x: 2 * from.x, y: 2 * from.y, width, height, cell: land.cell_of(depth) };
@@ -73,7 +74,7 @@ impl Children {
                 children.place_row(land, parent, j);
             }
             if (2..height - 2).contains(&j) {
-                children.inherit_row(land, parent, j, geography);
+                children.inherit_row(land, parent, j, given, geography);
             }
         }
         Ok(children)
@@ -107,7 +108,14 @@ impl Children {
     }
 
     /// Rock and shore of the inner nodes of row `j`, interpolated from the four nearest parents.
-    fn inherit_row(&mut self, land: &Continents, parent: &Level, j: usize, geography: Option<&Geography>) {
+    fn inherit_row(
+        &mut self,
+        land: &Continents,
+        parent: &Level,
+        j: usize,
+        given: &Given,
+        geography: Option<&Geography>,
+    ) {
         let width = self.extent.width;
         let parents = width / 2;
         let near_row = j / 2 * parents;
@@ -124,17 +132,17 @@ impl Children {
             };
             let (q, bits) = (j * width + i, self.bits(land, i, j));
             self.variation[q] = blend(&parent.variation) + amplitude * hash::normal(mix64(bits ^ 0x5555));
-            self.uplift[q] = match geography {
-                Some(geography) => {
-                    let x = land.metres(self.depth, self.window.x + i as i64, self.east[q]);
-                    let y = land.metres(self.depth, self.window.y + j as i64, self.south[q]);
-                    geography.uplift(x, y)
-                }
-                None => blend(&parent.uplift),
+            let (x, y) = (self.window.x + i as i64, self.window.y + j as i64);
+            self.uplift[q] = match (given.uplift(x, y), geography) {
+                (Some(uplift), _) => uplift,
+                (None, Some(geography)) => geography
+                    .uplift(land.metres(self.depth, x, self.east[q]), land.metres(self.depth, y, self.south[q])),
+                (None, None) => blend(&parent.uplift),
             };
             // Coasts of mountains are more indented than those of plains.
             let rugged = 0.45 + 0.9 * ((self.uplift[q] + 3.0) / 3.2).clamp(0.0, 1.0);
-            self.shore[q] = blend(&parent.shore) + self.indent * rugged * hash::normal(mix64(bits ^ 0xAAAA));
+            let fractal = || blend(&parent.shore) + self.indent * rugged * hash::normal(mix64(bits ^ 0xAAAA));
+            self.shore[q] = given.shore(x, y).unwrap_or_else(fractal);
         }
     }
 }

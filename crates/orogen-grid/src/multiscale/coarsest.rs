@@ -3,6 +3,7 @@
 use super::continents::Continents;
 use super::drainage;
 use super::geography::Geography;
+use super::given::Given;
 use super::hash;
 use super::law;
 use super::level::{Level, cropped};
@@ -64,8 +65,16 @@ impl Continents {
     /// # Errors
     /// If a parameter is out of range, the window is not one of the level, or the work is cancelled.
     pub fn coarsest(&self, window: &Window, progress: &Progress) -> Result<Level> {
+        self.coarsest_with(&Given::default(), window, progress)
+    }
+
+    /// [`Continents::coarsest`] with shores and uplift that are given over the window grown by [`Continents::COARSEST_REACH`].
+    ///
+    /// # Errors
+    /// Those of [`Continents::coarsest`].
+    pub fn coarsest_with(&self, given: &Given, window: &Window, progress: &Progress) -> Result<Level> {
         self.check(0, window)?;
-        let mut coarsest = Coarsest::new(self, window.grown(REACH), progress)?;
+        let mut coarsest = Coarsest::new(self, given, window.grown(REACH), progress)?;
         let first = coarsest.first_costs();
         let heights = coarsest.drain(&first, progress)?;
         coarsest.choose_basins(&heights);
@@ -77,7 +86,7 @@ impl Continents {
 
 impl<'a> Coarsest<'a> {
     /// The nodes with their geography.
-    fn new(land: &'a Continents, window: Window, progress: &Progress) -> Result<Coarsest<'a>> {
+    fn new(land: &'a Continents, given: &Given, window: Window, progress: &Progress) -> Result<Coarsest<'a>> {
         let extent = Extent { width: window.width, height: window.height, inset: 0 };
         let cells = extent.len();
         let mut made = Coarsest {
@@ -100,7 +109,8 @@ impl<'a> Coarsest<'a> {
             for x in window.x..window.right() {
                 let draw = |stream| hash::unit(hash::node(land.seed, 0, x, y, stream));
                 let (east, south) = (jittered(draw(0)), jittered(draw(1)));
-                made.shore.push(geography.shore(land.metres(0, x, east), land.metres(0, y, south)));
+                let (metres_east, metres_south) = (land.metres(0, x, east), land.metres(0, y, south));
+                made.shore.push(given.shore_or((x, y), &geography, metres_east, metres_south));
                 made.east.push(east);
                 made.south.push(south);
                 made.detour.push(0.5 + draw(2));
@@ -113,9 +123,9 @@ impl<'a> Coarsest<'a> {
                 let q = j * extent.width + i;
                 let near = [q - extent.width, q, q + extent.width];
                 if near.iter().any(|&middle| made.shore[middle - 1..middle + 2].iter().any(|&shore| shore >= 0.0)) {
-                    let x = land.metres(0, window.x + i as i64, made.east[q]);
-                    let y = land.metres(0, window.y + j as i64, made.south[q]);
-                    made.uplift[q] = geography.uplift(x, y);
+                    let (x, y) = (window.x + i as i64, window.y + j as i64);
+                    let (east, south) = (land.metres(0, x, made.east[q]), land.metres(0, y, made.south[q]));
+                    made.uplift[q] = given.uplift_or((x, y), &geography, east, south);
                 }
             }
         }

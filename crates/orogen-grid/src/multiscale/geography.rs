@@ -2,6 +2,7 @@
 
 use super::continents::Continents;
 use super::gradient_noise::{noise, smooth_step};
+use super::hash;
 
 /// The noises at a position.
 pub struct Geography {
@@ -10,7 +11,16 @@ pub struct Geography {
     threshold: f64,
     /// Factor from metres to kilometres of the noises.
     scale: f64,
+    /// The place in the noises that lies at the origin, in kilometres.
+    home: (f64, f64),
 }
+
+/// Number of places that are tried as the home.
+const PLACES: u64 = 64;
+
+/// Distance to the shore in kilometres, and logarithm of uplift over erodibility, of a home: mountains not far from the sea.
+const HOME_SHORE: std::ops::Range<f32> = 60.0..400.0;
+const HOME_UPLIFT: f32 = 0.3;
 
 /// The threshold of the coast by share of land, in steps of 0.1 from 0 to 1: quantiles of [`Site::coast`].
 const THRESHOLDS: [f64; 11] = [0.9, 0.5, 0.33, 0.2, 0.09, 0.0, -0.09, -0.2, -0.33, -0.5, -0.9];
@@ -32,7 +42,30 @@ impl Geography {
         let below = (place as usize).min(9);
         let share = place - below as f64;
         let threshold = THRESHOLDS[below] * (1.0 - share) + THRESHOLDS[below + 1] * share;
-        Geography { seed: land.seed, threshold, scale: 0.001 / land.size }
+        let geography = Geography { seed: land.seed, threshold, scale: 0.001 / land.size, home: (0.0, 0.0) };
+        Geography { home: geography.found_home(), ..geography }
+    }
+
+    /// A place in mountains near the sea, otherwise the place with the largest uplift of those on land, so that the land around the origin is
+    /// worth a look with every seed.
+    fn found_home(&self) -> (f64, f64) {
+        let mut best = (f32::NEG_INFINITY, (0.0, 0.0));
+        for place in 0..PLACES {
+            let draw = |shift: u32| f64::from(hash::unit(hash::node(self.seed, 0, place as i64, 0, 6) << shift));
+            let at = (4e4 * draw(0), 4e4 * draw(24));
+            let (x, y) = (at.0 / self.scale, at.1 / self.scale);
+            if !HOME_SHORE.contains(&self.shore(x, y)) {
+                continue;
+            }
+            let uplift = self.uplift(x, y);
+            if uplift >= HOME_UPLIFT {
+                return at;
+            }
+            if uplift > best.0 {
+                best = (uplift, at);
+            }
+        }
+        best.1
     }
 
     fn noise(&self, stream: u64, wavelength: f64, (x, y): (f64, f64)) -> f64 {
@@ -42,7 +75,7 @@ impl Geography {
 
     /// The position (x, y) in metres, warped.
     fn site(&self, x: f64, y: f64) -> Site<'_> {
-        let plain = (x * self.scale, y * self.scale);
+        let plain = (x * self.scale + self.home.0, y * self.scale + self.home.1);
         let shift = |first, second| 420.0 * self.noise(first, 1700.0, plain) + 130.0 * self.noise(second, 520.0, plain);
         let warped = (plain.0 + shift(1, 3), plain.1 + shift(2, 4));
         let turn = |(x, y): (f64, f64)| (0.8 * x - 0.6 * y, 0.6 * x + 0.8 * y);

@@ -16,6 +16,7 @@ mod creep;
 mod distances;
 mod drainage;
 mod geography;
+pub mod given;
 mod gradient_noise;
 mod growth;
 mod hash;

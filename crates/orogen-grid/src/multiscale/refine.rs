@@ -5,6 +5,7 @@ use super::children::Children;
 use super::continents::Continents;
 use super::creep::{creep, steepest};
 use super::drainage;
+use super::given::Given;
 use super::growth::{Growth, Spacing};
 use super::law::{Law, has_floors};
 use super::level::{Level, cropped, invalid};
@@ -47,6 +48,12 @@ impl Continents {
         inset(self.is_finest(depth)).div_ceil(2)
     }
 
+    /// Samples of level `depth` beyond a window that [`Continents::refine_with`] reads of what is given.
+    #[must_use]
+    pub fn given_reach(&self, depth: usize) -> usize {
+        if depth == 0 { Continents::COARSEST_REACH } else { 2 * self.reach(depth) + 1 }
+    }
+
     /// The window of level `depth - 1` that [`Continents::refine`] needs for `window` of level `depth`.
     #[must_use]
     pub fn parent_window(&self, depth: usize, window: &Window) -> Window {
@@ -69,6 +76,14 @@ impl Continents {
     /// # Errors
     /// If the parent covers too little, a parameter is out of range, the window is not one of the level, or the work is cancelled.
     pub fn refine(&self, parent: &Level, window: &Window, progress: &Progress) -> Result<Level> {
+        self.refine_with(parent, &Given::default(), window, progress)
+    }
+
+    /// [`Continents::refine`] with shores and uplift that are given over the window grown by [`Continents::given_reach`].
+    ///
+    /// # Errors
+    /// Those of [`Continents::refine`].
+    pub fn refine_with(&self, parent: &Level, given: &Given, window: &Window, progress: &Progress) -> Result<Level> {
         let depth = parent.depth + 1;
         self.check(depth, window)?;
         let needed = self.parent_window(depth, window);
@@ -80,7 +95,7 @@ impl Continents {
         }
         let parent = &parent.crop(&needed)?;
         let finest = self.is_finest(depth);
-        let mut children = Children::new(self, parent, progress)?;
+        let mut children = Children::new(self, parent, given, progress)?;
         let links = Links::new(self, parent, &children, progress)?;
         let levels = water_levels(parent, &links, &mut children);
         progress.check()?;
