@@ -5,11 +5,14 @@ use super::hash;
 /// Stream of hashes of the lattice of gradients: no level has this depth.
 const DEPTH: usize = 77;
 
+/// East components of the gradients of the first quarter turn, in steps of a 16th of a turn.
+const QUARTER: [f64; 4] = [1.0, 0.923_88, std::f64::consts::FRAC_1_SQRT_2, 0.382_68];
+
 /// East components of the 16 gradients; the south component is that of the gradient a quarter turn back.
-const GRADIENTS: [f64; 16] = [
-    1.0, 0.92388, 0.70711, 0.38268, 0.0, -0.38268, -0.70711, -0.92388, -1.0, -0.92388, -0.70711, -0.38268, 0.0,
-    0.38268, 0.70711, 0.92388,
-];
+const GRADIENTS: [f64; 16] = {
+    let [a, b, c, d] = QUARTER;
+    [a, b, c, d, 0.0, -d, -c, -b, -a, -b, -c, -d, 0.0, d, c, b]
+};
 
 /// Noise with a wavelength of 1, about -1 to 1.
 pub fn noise(seed: u64, stream: u64, x: f64, y: f64) -> f64 {
