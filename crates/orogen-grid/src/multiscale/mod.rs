@@ -18,6 +18,7 @@ mod drainage;
 mod geography;
 mod gradient_noise;
 mod growth;
+mod growth_row;
 mod hash;
 mod law;
 pub mod level;

@@ -76,7 +76,7 @@ fn held(parent: &Level, links: &Links) -> Vec<Held> {
             continue;
         }
         (held[start], held[own(link.exit)]) = (Held::River, Held::River);
-        if let Some(via) = link.via {
+        if let Some(via) = links.via(parent, q) {
             held[via.index(parents)] = Held::River;
         }
         let target = links.target(parent, q);
