@@ -25,18 +25,24 @@ pub struct Carved {
     pub receiver: Vec<f32>,
     /// The same where it must not change; otherwise [`FREE`] or [`WATER`].
     pub fixed: Vec<f32>,
-    pub distances: Distances,
+    /// None on the finest level, where nodes are on the lattice.
+    pub distances: Option<Distances>,
 }
 
-/// The children with the kept links. Exact seven cells from the edge. `levels` are the water levels.
-pub fn carve(parent: &Level, links: &Links, children: &Children, levels: &[f32]) -> Carved {
+/// The children with the kept links, some of them water at `levels`. Exact seven cells from the edge.
+pub fn carve(parent: &Level, links: &Links, children: &Children, levels: Vec<f32>) -> Carved {
     let extent = children.extent;
+    let fixed = levels.iter().map(|&level| if level < LAND { WATER } else { FREE }).collect();
+    let mut height = levels;
+    for height in height.iter_mut().filter(|height| **height >= LAND) {
+        *height = UNKNOWN;
+    }
     let mut carved = Carved {
-        height: levels.iter().map(|&level| if level < LAND { level } else { UNKNOWN }).collect(),
+        height,
         area: vec![1.0; extent.len()],
         receiver: vec![f32::from(NONE); extent.len()],
-        fixed: levels.iter().map(|&level| if level < LAND { WATER } else { FREE }).collect(),
-        distances: Distances::new(extent, &children.east, &children.south),
+        fixed,
+        distances: children.is_irregular().then(|| Distances::new(extent, &children.east, &children.south)),
     };
     let mut arrivals = Vec::new();
     for q in links.inner().filter(|&q| links.list[q].kept && parent.receiver[q] < NONE) {
@@ -68,7 +74,8 @@ impl Carved {
         let end = Child { parent: target, corner: heir(parent, target) };
         let length = |from, to| if from == to { 0.0 } else { children.distance(from, to, parents) };
         let first = length(start, exit);
-        let second = match link.via {
+        let via = links.via(parent, q);
+        let second = match via {
             Some(via) => length(exit, via) + length(via, entry),
             None => length(exit, entry),
         };
@@ -82,7 +89,7 @@ impl Carved {
             self.set(exit, top + fall * to_exit, area);
             self.connect(children, start, exit);
         }
-        match link.via {
+        match via {
             Some(via) => {
                 let via = via.index(parents);
                 self.set(via, top + fall * (0.5 * (to_exit + to_entry)), area);
@@ -125,6 +132,8 @@ impl Carved {
         let code = code(east, south);
         self.receiver[from] = f32::from(code);
         self.fixed[from] = f32::from(code);
-        self.distances.open(from, code, width, &children.east, &children.south);
+        if let Some(distances) = &mut self.distances {
+            distances.open(from, code, width, &children.east, &children.south);
+        }
     }
 }

@@ -26,6 +26,7 @@ pub struct Children {
     pub depth: usize,
     pub window: Window,
     pub extent: Extent,
+    /// Positions in the cells; empty on the finest level, where all nodes are in the middle.
     pub east: Vec<f32>,
     pub south: Vec<f32>,
     pub variation: Vec<f32>,
@@ -57,8 +58,8 @@ impl Children {
             depth,
             window,
             extent: Extent { width, height, inset: 0 },
-            east: vec![0.5; cells],
-            south: vec![0.5; cells],
+            east: vec![0.5; if land.is_finest(depth) { 0 } else { cells }],
+            south: vec![0.5; if land.is_finest(depth) { 0 } else { cells }],
             variation: vec![0.0; cells],
             uplift: vec![0.0; cells],
             shore: vec![0.0; cells],
@@ -70,7 +71,7 @@ impl Children {
             if j % 32 == 0 || geography.is_some() {
                 progress.check()?;
             }
-            if !land.is_finest(depth) {
+            if children.is_irregular() {
                 children.place_row(land, parent, j);
             }
             if (2..height - 2).contains(&j) {
@@ -78,6 +79,11 @@ impl Children {
             }
         }
         Ok(children)
+    }
+
+    /// Whether the nodes are elsewhere than in the middle of their cells.
+    pub fn is_irregular(&self) -> bool {
+        !self.east.is_empty()
     }
 
     /// The bits of all hashes of a node.

@@ -40,7 +40,7 @@ orogen_noise::builder!(Continents: with_seed(seed: u64), with_cell(cell: f64), w
 pub const MAX_LEVELS: usize = 24;
 
 /// The largest coordinate of a sample, either way, so that no sum overflows.
-const FURTHEST: i64 = 1 << 60;
+const FURTHEST: i64 = 1 << 50;
 
 /// The largest number of samples of a side.
 const MAX_SIDE: usize = 1 << 24;

@@ -107,8 +107,8 @@ fn descend([height, fixed]: [&[f32]; 2], heights: [&[f32]; 8], receiver: &mut [f
     for i in 0..n {
         let mut steepest = 0.0;
         let mut best = receiver[i];
-        for code in 0..8 {
-            let fall = height[i] - heights[code][i];
+        for (code, there) in heights.iter().enumerate() {
+            let fall = height[i] - there[i];
             let fall = if code & 1 == 1 { fall * FRAC_1_SQRT_2 } else { fall };
             let better = fall > steepest;
             steepest = if better { fall } else { steepest };

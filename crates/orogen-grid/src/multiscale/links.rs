@@ -31,7 +31,18 @@ impl Child {
     }
 }
 
-/// The way of a parent's link: from the parent's heir to the exit, around a corner if `via` is given, and from the entry to the receiver's heir.
+/// The third cell that a link across a corner passes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Around {
+    /// None.
+    Nothing,
+    /// The cell in the east or west of the parent.
+    Side,
+    /// The cell in the north or south of the parent.
+    End,
+}
+
+/// The way of a parent's link: from the parent's heir to the exit, possibly around a corner, and from the entry to the receiver's heir.
 #[derive(Debug, Clone, Copy)]
 pub struct Link {
     /// Whether the parent has a donor or is water: other parents are forgotten, and their nodes grow anew.
@@ -42,8 +53,8 @@ pub struct Link {
     pub exit: u8,
     /// Child of the receiver through which the river arrives.
     pub entry: u8,
-    /// A child of a third cell that the river passes between exit and entry.
-    pub via: Option<Child>,
+    /// Whether the river passes a child of a third cell between exit and entry.
+    pub around: Around,
 }
 
 /// The links of all parents. Those of parents at least three cells from the edge, and the children that they pass, are exact.
@@ -56,7 +67,7 @@ pub struct Links {
 impl Links {
     pub fn new(land: &Continents, parent: &Level, children: &Children, progress: &Progress) -> Result<Links> {
         let size = (parent.window.width, parent.window.height);
-        let nothing = Link { kept: false, fed: false, exit: 0, entry: 0, via: None };
+        let nothing = Link { kept: false, fed: false, exit: 0, entry: 0, around: Around::Nothing };
         let mut links = Links { list: vec![nothing; parent.window.len()], size };
         links.keep(parent);
         progress.check()?;
@@ -82,6 +93,26 @@ impl Links {
     pub fn target(&self, parent: &Level, q: usize) -> usize {
         let (east, south) = step(parent.receiver[q]);
         q.wrapping_add_signed(south * self.size.0 as isize + east)
+    }
+
+    /// The child of a third cell that the link of `q` passes.
+    #[inline(always)]
+    pub fn via(&self, parent: &Level, q: usize) -> Option<Child> {
+        self.passed(parent, q, self.list[q].around)
+    }
+
+    /// The child at the corner that the link of `q` crosses, in the third cell `around`.
+    fn passed(&self, parent: &Level, q: usize, around: Around) -> Option<Child> {
+        let (east, south) = step(parent.receiver[q]);
+        let link = self.list[q];
+        match around {
+            Around::Nothing => None,
+            Around::Side => Some(Child { parent: q.wrapping_add_signed(east), corner: link.entry & 1 | link.exit & 2 }),
+            Around::End => {
+                let parent = q.wrapping_add_signed(south * self.size.0 as isize);
+                Some(Child { parent, corner: link.exit & 1 | link.entry & 2 })
+            }
+        }
     }
 
     /// Marks the parents that are kept.
@@ -150,17 +181,14 @@ impl Links {
             if !link.kept || parent.receiver[q] >= NONE || parent.receiver[q] & 1 == 0 {
                 continue;
             }
-            let (east, south) = step(parent.receiver[q]);
             let target = self.target(parent, q);
             let (exit, entry) = (Child { parent: q, corner: link.exit }, Child { parent: target, corner: link.entry });
             let window = parent.window;
             let (x, y) = (window.x + (q % width) as i64, window.y + (q / width) as i64);
             let bits = hash::node(land.seed, children.depth, x, y, 9);
             let mut shortest = children.distance(exit, entry, width) * (1.0 + wander * hash::unit16(bits, 0));
-            let beside = Child { parent: q.wrapping_add_signed(east), corner: link.entry & 1 | link.exit & 2 };
-            let below =
-                Child { parent: q.wrapping_add_signed(south * width as isize), corner: link.exit & 1 | link.entry & 2 };
-            for (choice, child) in [(1, beside), (2, below)] {
+            for (choice, around) in [(1, Around::Side), (2, Around::End)] {
+                let Some(child) = self.passed(parent, q, around) else { continue };
                 if used[child.parent] >> child.corner & 1 == 1 {
                     continue;
                 }
@@ -168,7 +196,7 @@ impl Links {
                 let length = length * DETOUR * (1.0 + wander * hash::unit16(bits, choice));
                 if length < shortest {
                     shortest = length;
-                    self.list[q].via = Some(child);
+                    self.list[q].around = around;
                 }
             }
         }
@@ -190,7 +218,10 @@ impl Children {
         // Differences of whole numbers are exact, wherever the window starts.
         let columns = (b % width) as isize - (a % width) as isize;
         let rows = (b / width) as isize - (a / width) as isize;
-        let (x, y) = (self.east[b] - self.east[a] + columns as f32, self.south[b] - self.south[a] + rows as f32);
+        let (mut x, mut y) = (columns as f32, rows as f32);
+        if self.is_irregular() {
+            (x, y) = (self.east[b] - self.east[a] + x, self.south[b] - self.south[a] + y);
+        }
         (x * x + y * y).sqrt()
     }
 }

@@ -19,6 +19,7 @@ mod geography;
 pub mod given;
 mod gradient_noise;
 mod growth;
+mod growth_row;
 mod hash;
 mod law;
 pub mod level;

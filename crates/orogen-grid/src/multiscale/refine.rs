@@ -99,8 +99,8 @@ impl Continents {
         let links = Links::new(self, parent, &children, progress)?;
         let levels = water_levels(parent, &links, &mut children);
         progress.check()?;
-        let mut carved = carve(parent, &links, &children, &levels);
-        drop((links, levels));
+        let mut carved = carve(parent, &links, &children, levels);
+        drop(links);
         progress.check()?;
         let mut extent = children.extent.shrunk(CARVED);
         if finest {
@@ -114,7 +114,10 @@ impl Continents {
             }
         }
         let law = Law::new(self, depth, &children.variation, &children.uplift);
-        let spacing = if finest { Spacing::Regular } else { Spacing::Irregular(&carved.distances) };
+        let spacing = match &carved.distances {
+            Some(distances) => Spacing::Irregular(distances),
+            None => Spacing::Regular,
+        };
         let mut growth =
             Growth::new(carved.height, carved.area, carved.receiver, carved.fixed, has_floors(self, depth), finest);
         for pass in 0..FIRST_PASSES + ROUNDS {
@@ -144,11 +147,12 @@ impl Continents {
         let offset = ((window.x - children.window.x) as usize, (window.y - children.window.y) as usize);
         let size = (window.width, window.height);
         let part = |plane: &[f32]| cropped(plane, children.extent.width, offset, size);
+        let position = |plane: &[f32]| if finest { vec![0.5; window.len()] } else { part(plane) };
         Ok(Level {
             depth,
             window: *window,
-            east: part(&children.east),
-            south: part(&children.south),
+            east: position(&children.east),
+            south: position(&children.south),
             height: part(&growth.height),
             area: part(&growth.area),
             receiver: part(&growth.receiver).into_iter().map(|code| code as u8).collect(),

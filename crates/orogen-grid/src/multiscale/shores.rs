@@ -37,8 +37,8 @@ pub fn water_levels(parent: &Level, links: &Links, children: &mut Children) -> V
     let mut gained = Vec::new();
     let inner = children.extent.shrunk(1);
     for j in inner.rows() {
-        for q in j * width + 1..(j + 1) * width - 1 {
-            let p = j / 2 * parents + q % width / 2;
+        for i in inner.columns() {
+            let (q, p) = (j * width + i, j / 2 * parents + i / 2);
             if parent.receiver[p] < NONE && held[q] == Held::Free && children.shore[q] < 0.0 {
                 let around = [q - 1, q + 1, q - width, q + width].map(|o| levels[o]);
                 gained.extend(around.into_iter().find(|&level| level < LAND).map(|level| (q, level)));
@@ -76,7 +76,7 @@ fn held(parent: &Level, links: &Links) -> Vec<Held> {
             continue;
         }
         (held[start], held[own(link.exit)]) = (Held::River, Held::River);
-        if let Some(via) = link.via {
+        if let Some(via) = links.via(parent, q) {
             held[via.index(parents)] = Held::River;
         }
         let target = links.target(parent, q);
