@@ -109,6 +109,24 @@ fn measure_border(water: &Water, network: &Network, border: Border) -> Borders {
         }
         let shrinks = crosses && receiver.is_some_and(|to| water.area(to) < water.area(cell));
         let begins = network.unexplained(cell) > 0.5 * water.area(cell);
+        if shrinks || network.ends(cell) || begins {
+            println!(
+                "cut {window:?} {border:?} {} {} area {} {shrinks} {} {begins} {} near {:?}",
+                cell % window.width,
+                cell / window.width,
+                water.area(cell),
+                network.ends(cell),
+                network.unexplained(cell),
+                neighbours(window, cell)
+                    .map(|(_, c)| (
+                        water.area(c),
+                        network.receiver(c) == Some(cell),
+                        receiver == Some(c),
+                        network.unexplained(c)
+                    ))
+                    .collect::<Vec<_>>()
+            );
+        }
         found.cut += usize::from(shrinks || network.ends(cell) || begins);
     }
     found

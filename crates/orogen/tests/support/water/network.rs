@@ -56,9 +56,13 @@ impl Network {
     /// The neighbour with a larger area of which the most has no donor yet; of equal ones the one with the largest area.
     fn roomiest(&self, water: &Water, cell: usize) -> Option<usize> {
         let larger = neighbours(water.window(), cell).map(|(_, to)| to).filter(|to| water.area(*to) > water.area(cell));
+        // Areas are rounded to f32.
+        let enough = |to: &usize| self.unexplained[*to] >= water.area(cell) * 0.999999;
         larger.max_by(|a, b| {
             let (left, right) = (self.unexplained[*a], self.unexplained[*b]);
-            left.total_cmp(&right).then(water.area(*a).total_cmp(&water.area(*b)))
+            let (fits_l, fits_r) = (enough(a), enough(b));
+            let by_spare = if fits_l && fits_r { right.total_cmp(&left) } else { left.total_cmp(&right) };
+            fits_l.cmp(&fits_r).then(by_spare).then(water.area(*a).total_cmp(&water.area(*b)))
         })
     }
 
