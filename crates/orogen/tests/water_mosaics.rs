@@ -110,7 +110,8 @@ fn rivers_continue_in_adjacent_windows() {
 /// The receivers found from areas alone are those of the world.
 fn compare_receivers(tiles: Tiles, window: &Window) {
     let water = tiles(window).unwrap();
-    let from_areas = Network::new(&Water { receiver: None, ..water.clone() });
+    let areas = Water { receiver: None, ..water.clone() };
+    let from_areas = Network::new(&areas);
     let known = Network::new(&water);
     let (mut rivers, mut differ) = (0, 0);
     for cell in (0..window.len()).filter(|cell| water.area(*cell) > 1e6 && cells_to_edge(window, *cell) > 1) {
@@ -202,7 +203,7 @@ fn one_cut_river_is_found() {
         for without in [cell, to] {
             let less = faults::with_cell(&tiles, at(without), |water, cell| water.flow.data_mut()[cell] = 3600.0);
             let water = MOSAIC.make(&less).unwrap();
-            let found = borders::measure(&water, &Network::new(&water), &MOSAIC);
+            let found = borders::measure(&Network::new(&water), &MOSAIC);
             assert!(found.cut > 0, "{:?} without area", at(without));
         }
         cut += 1;
@@ -250,4 +251,16 @@ fn water_holds_in_whole_presets() {
 
 fn full_window(recipe: &Recipe) -> Window {
     World::open(recipe.clone()).unwrap().full_window(recipe.world.cell).unwrap()
+}
+
+#[test]
+#[ignore = "long: x"]
+fn tmp_receivers() {
+    for name in ["rolling", "alpine"] {
+        let text = presets::find(name).unwrap().text;
+        let text =
+            text.replace("lakes = \"terrain.lake\"", "lakes = \"terrain.depth\"\nreceiver = \"rivers.receiver\"");
+        let recipe = Recipe::parse(&text, name).unwrap();
+        compare_receivers(&shared(&recipe), &full_window(&recipe));
+    }
 }

@@ -1,6 +1,6 @@
 //! Agreement of the heights with the drainage areas: whether D8 on the heights finds the rivers of `flow`.
 
-use super::layers::{Water, cells_to_edge, neighbours};
+use super::layers::{cells_to_edge, neighbours};
 use super::network::Network;
 use orogen::hydrology::accumulation::accumulate;
 use orogen::hydrology::drainage::route_carving;
@@ -29,7 +29,8 @@ pub struct Agreement {
 /// A catchment lies in the window if no water enters it from the edge, neither by D8 on the heights nor in rivers of
 /// `flow`. By D8, water enters wherever the catchment touches the row of cells beside the edge. Cells beside one with water
 /// from the edge are excluded, too. Cells in lakes and the sea are not compared.
-pub fn measure(water: &Water, network: &Network, ranges: &[[f64; 2]]) -> Vec<Agreement> {
+pub fn measure(network: &Network, ranges: &[[f64; 2]]) -> Vec<Agreement> {
+    let water = network.water;
     let window = water.window();
     let outlets = Outlets::new(&water.bed, Some(water.sea_level));
     let receivers = route_carving(&water.bed, &outlets, Descent::Steepest).receivers;

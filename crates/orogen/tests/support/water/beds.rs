@@ -1,6 +1,6 @@
 //! Beds of rivers: whether they descend.
 
-use super::layers::{Water, cells_to_edge, neighbours};
+use super::layers::{cells_to_edge, neighbours};
 use super::network::Network;
 use orogen::hydrology::direction::DISTANCES;
 
@@ -23,7 +23,8 @@ pub struct Beds {
 /// Compares the bed of every river cell with that of its receiver; in a receiver that is a lake or the sea, with the
 /// water surface. Cells in lakes and the sea have no link. A river that ends on land is linked to the neighbour in
 /// the direction of steepest descent.
-pub fn measure(water: &Water, network: &Network) -> Beds {
+pub fn measure(network: &Network) -> Beds {
+    let water = network.water;
     let (window, bed) = (water.window(), water.bed.data());
     let mut found = Beds::default();
     let rivers = (0..bed.len()).filter(|cell| water.area(*cell) > RIVER && !water.is_standing(*cell));

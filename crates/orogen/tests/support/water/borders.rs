@@ -1,6 +1,6 @@
 //! Borders of tiles: whether rivers continue on the other side.
 
-use super::layers::{Tiles, Water, cells_to_edge, neighbours};
+use super::layers::{Tiles, cells_to_edge, neighbours};
 use super::mosaic::{Mosaic, TILES, paste};
 use super::network::Network;
 use orogen::hydrology::direction::hashed;
@@ -19,8 +19,8 @@ pub struct Borders {
     pub borders: usize,
     /// Rivers that cross them.
     pub crossings: usize,
-    /// Rivers that end or begin at a border: the receiver has a smaller area, or the area of a cell is more than twice
-    /// the sum of its own and its donors' areas.
+    /// Cells at the borders where a river ends or begins: the receiver has a smaller area, or half of a cell's area goes
+    /// nowhere or comes from nowhere.
     pub cut: usize,
 }
 
@@ -62,11 +62,11 @@ impl Border {
 }
 
 /// The inner borders of a mosaic.
-pub fn measure(water: &Water, network: &Network, mosaic: &Mosaic) -> Borders {
+pub fn measure(network: &Network, mosaic: &Mosaic) -> Borders {
     let inner = (1..TILES).map(|k| k * mosaic.side);
     let mut found = Borders::default();
     for border in inner.flat_map(|k| [Border::Column(k), Border::Row(k)]) {
-        found += measure_border(water, network, border);
+        found += measure_border(network, border);
         // One for each pair of adjacent tiles.
         found.borders += TILES - 1;
     }
@@ -87,14 +87,15 @@ pub fn measure_pairs(tiles: Tiles, extent: &Window, side: usize, pairs: usize, s
         let window = shape.at(x, y);
         let water = paste(window, window.tiles(side), tiles)?;
         let border = if along == 1 { Border::Column(side) } else { Border::Row(side) };
-        found += measure_border(&water, &Network::new(&water), border);
+        found += measure_border(&Network::new(&water), border);
         found.borders += 1;
     }
     Ok(found)
 }
 
 /// Rivers at one border of a window, except near the ends of the border.
-fn measure_border(water: &Water, network: &Network, border: Border) -> Borders {
+fn measure_border(network: &Network, border: Border) -> Borders {
+    let water = network.water;
     let window = water.window();
     let mut found = Borders::default();
     let inner = border.cells(window).filter(|cell| cells_to_edge(window, *cell) >= MARGIN);
@@ -108,26 +109,7 @@ fn measure_border(water: &Water, network: &Network, border: Border) -> Borders {
             continue;
         }
         let shrinks = crosses && receiver.is_some_and(|to| water.area(to) < water.area(cell));
-        let begins = network.unexplained(cell) > 0.5 * water.area(cell);
-        if shrinks || network.ends(cell) || begins {
-            println!(
-                "cut {window:?} {border:?} {} {} area {} {shrinks} {} {begins} {} near {:?}",
-                cell % window.width,
-                cell / window.width,
-                water.area(cell),
-                network.ends(cell),
-                network.unexplained(cell),
-                neighbours(window, cell)
-                    .map(|(_, c)| (
-                        water.area(c),
-                        network.receiver(c) == Some(cell),
-                        receiver == Some(c),
-                        network.unexplained(c)
-                    ))
-                    .collect::<Vec<_>>()
-            );
-        }
-        found.cut += usize::from(shrinks || network.ends(cell) || begins);
+        found.cut += usize::from(shrinks || network.ends(cell) || network.begins(cell));
     }
     found
 }

@@ -63,20 +63,20 @@ pub fn measure(tiles: Tiles, mosaic: &Mosaic) -> Result<Vec<Figure>> {
     add("depressions, % of the land", share(found.cells, found.land), found.land, Target::AtMost(0.02));
     add("depressions, depth in m", found.deepest.into(), found.land, Target::AtMost(5.0));
 
-    let found = beds::measure(&water, &network);
+    let found = beds::measure(&network);
     add("beds that rise, % of links", share(found.rising, found.links), found.links, Target::AtMost(0.01));
     add("beds that rise, height in m", found.greatest.into(), found.links, Target::AtMost(1.0));
     add("rivers that end on land", found.ends as f64, found.links, Target::AtMost(0.0));
 
     let ranges = RANGES.map(|(range, _)| range);
-    for (found, (_, target)) in agreement::measure(&water, &network, &ranges).iter().zip(RANGES) {
+    for (found, (_, target)) in agreement::measure(&network, &ranges).iter().zip(RANGES) {
         let [from, below] = found.range.map(|area| area / 1e6);
         let name = if below.is_finite() { format!("{from} to {below} km²") } else { format!("above {from} km²") };
         let target = target.map_or(Target::None, Target::AtLeast);
         add(&format!("D8 agrees, {name}, % of cells"), share(found.agree, found.cells), found.cells, target);
     }
 
-    let found = borders::measure(&water, &network, mosaic);
+    let found = borders::measure(&network, mosaic);
     add("rivers cut at borders", found.cut as f64, found.crossings.max(found.cut), Target::AtMost(0.0));
 
     let found = lakes::measure(&water);
