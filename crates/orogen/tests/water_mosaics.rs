@@ -10,8 +10,8 @@ use orogen::hydrology::direction::NONE;
 use orogen::hydrology::drainage::route_carving;
 use orogen::hydrology::outlets::Outlets;
 use orogen::hydrology::steepest::Descent;
-use orogen::{Grid, Recipe, Window, World, presets};
-use water::layers::{Tiles, Water, cells_to_edge, tiles_of};
+use orogen::{Grid, Options, Recipe, Session, Window, World, presets};
+use water::layers::{Tiles, Water, cells_to_edge, neighbours, tiles_in, tiles_of};
 use water::mosaic::Mosaic;
 use water::network::Network;
 use water::report::{Figure, measure, of_pairs, table};
@@ -57,14 +57,6 @@ flow = "rivers.flow"
     Recipe::parse(&text, "water.toml").unwrap()
 }
 
-/// A preset with the depth of lakes as its output `lakes`, in place of their numbers.
-fn preset(name: &str) -> Recipe {
-    let text = presets::find(name).unwrap().text;
-    let labels = "lakes = \"terrain.lake\"";
-    assert!(text.contains(labels), "{name}");
-    Recipe::parse(&text.replace(labels, "lakes = \"terrain.depth\""), name).unwrap()
-}
-
 /// The mosaic in the middle of [`small`]; the rest of the world surrounds it.
 const MOSAIC: Mosaic = Mosaic { cell: 60.0, origin: [7, 11], side: 100 };
 
@@ -79,15 +71,9 @@ fn missed(figures: &[Figure]) -> Vec<String> {
     figures.iter().filter(|figure| !figure.holds()).map(|figure| figure.name.clone()).collect()
 }
 
-/// One world for all tiles: faster, for tests of the measurements themselves.
+/// Tiles from one session: faster, for tests of the measurements themselves.
 fn shared(recipe: &Recipe) -> impl Fn(&Window) -> orogen::Result<Water> + use<> {
-    let world = World::open(recipe.clone()).unwrap();
-    let whole = tiles_of(recipe, None)(&world.full_window(recipe.world.cell).unwrap()).unwrap();
-    move |window| {
-        let mut water = Water::like(&whole, *window);
-        water.paste(&whole);
-        Ok(water)
-    }
+    tiles_in(recipe, &Session::new(Options::default()).unwrap())
 }
 
 #[test]
@@ -139,7 +125,7 @@ fn river_cell(water: &Water, area: f64) -> [[i64; 2]; 2] {
         let inside = |k: usize| (10..90).contains(&(at(*cell)[k] - MOSAIC.origin[k]));
         inside(0) && inside(1)
     };
-    let dry = |cell: &usize| water::layers::neighbours(&window, *cell).all(|(_, near)| !water.is_standing(near));
+    let dry = |cell: &usize| neighbours(&window, *cell).all(|(_, near)| !water.is_standing(near));
     let mut rivers = (0..window.len()).filter(|cell| water.area(*cell) > area).filter(inner).filter(dry);
     let cell = rivers.next().expect("a river");
     [at(cell), at(network.receiver(cell).unwrap())]
@@ -179,36 +165,38 @@ fn faults_are_found() {
 fn lake_cell(water: &Water) -> [i64; 2] {
     let window = *water.window();
     let is_lake = |cell: usize| water.lakes.data()[cell] > 0.0;
-    let amid =
-        |cell: &usize| is_lake(*cell) && water::layers::neighbours(&window, *cell).all(|(_, near)| is_lake(near));
+    let amid = |cell: &usize| is_lake(*cell) && neighbours(&window, *cell).all(|(_, near)| is_lake(near));
     let cell = (0..window.len()).find(amid).expect("a lake");
     [window.x + (cell % window.width) as i64, window.y + (cell / window.width) as i64]
 }
 
-/// A single river cut in a single tile is found, whether the river comes from the tile or goes there.
+/// A single river is cut in a single tile, on either side of the border. With known receivers every cut is found; without,
+/// a tributary or a parallel river beside the border may explain the areas.
 #[test]
 fn one_cut_river_is_found() {
-    let tiles = shared(&small(320, false));
-    let water = MOSAIC.make(&tiles).unwrap();
-    let network = Network::new(&water);
-    let window = MOSAIC.window();
-    let at = |cell: usize| [window.x + (cell % window.width) as i64, window.y + (cell / window.width) as i64];
-    let tile = |cell: usize| (cell % window.width / MOSAIC.side, cell / window.width / MOSAIC.side);
-    let dry = |cell: usize| water::layers::neighbours(&window, cell).all(|(_, near)| !water.is_standing(near));
-    let mut cut = 0;
-    for cell in (0..window.len()).filter(|cell| water.area(*cell) > 2e6 && cells_to_edge(&window, *cell) > 2) {
-        let Some(to) = network.receiver(cell).filter(|to| tile(*to) != tile(cell) && dry(cell) && dry(*to)) else {
-            continue;
-        };
-        for without in [cell, to] {
-            let less = faults::with_cell(&tiles, at(without), |water, cell| water.flow.data_mut()[cell] = 3600.0);
-            let water = MOSAIC.make(&less).unwrap();
-            let found = borders::measure(&Network::new(&water), &MOSAIC);
-            assert!(found.cut > 0, "{:?} without area", at(without));
+    for directions in [false, true] {
+        let tiles = shared(&small(320, directions));
+        let water = MOSAIC.make(&tiles).unwrap();
+        let network = Network::new(&water);
+        let window = MOSAIC.window();
+        let at = |cell: usize| [window.x + (cell % window.width) as i64, window.y + (cell / window.width) as i64];
+        let tile = |cell: usize| (cell % window.width / MOSAIC.side, cell / window.width / MOSAIC.side);
+        let dry = |cell: usize| neighbours(&window, cell).all(|(_, near)| !water.is_standing(near));
+        let (mut cut, mut seen) = (0, 0);
+        for cell in (0..window.len()).filter(|cell| water.area(*cell) > 2e6 && cells_to_edge(&window, *cell) > 2) {
+            let Some(to) = network.receiver(cell).filter(|to| tile(*to) != tile(cell) && dry(cell) && dry(*to)) else {
+                continue;
+            };
+            for without in [cell, to] {
+                let less = faults::with_cell(&tiles, at(without), |water, cell| water.flow.data_mut()[cell] = 3600.0);
+                let water = MOSAIC.make(&less).unwrap();
+                cut += 1;
+                seen += usize::from(borders::measure(&Network::new(&water), &MOSAIC).cut > 0);
+            }
         }
-        cut += 1;
+        println!("{seen} of {cut} cut rivers are found");
+        assert!(cut >= 10 && seen * 10 >= cut * if directions { 10 } else { 9 }, "{seen} of {cut}");
     }
-    assert!(cut >= 3, "{cut} crossings");
 }
 
 /// The area of every tile alone, as if no water came from outside: rivers are cut at nearly every border.
@@ -242,7 +230,7 @@ fn check(recipe: &Recipe, mosaic: &Mosaic, pairs: usize) {
 #[ignore = "long: two presets whole, and 10 000 pairs of windows in each"]
 fn water_holds_in_whole_presets() {
     for name in ["rolling", "alpine"] {
-        let recipe = preset(name);
+        let recipe = presets::find(name).unwrap().recipe().unwrap();
         let cell = recipe.world.cell;
         let side = (recipe.world.size.unwrap()[0] / cell) as usize / 3;
         check(&recipe, &Mosaic { cell, origin: [0, 0], side }, 10_000);
@@ -251,16 +239,4 @@ fn water_holds_in_whole_presets() {
 
 fn full_window(recipe: &Recipe) -> Window {
     World::open(recipe.clone()).unwrap().full_window(recipe.world.cell).unwrap()
-}
-
-#[test]
-#[ignore = "long: x"]
-fn tmp_receivers() {
-    for name in ["rolling", "alpine"] {
-        let text = presets::find(name).unwrap().text;
-        let text =
-            text.replace("lakes = \"terrain.lake\"", "lakes = \"terrain.depth\"\nreceiver = \"rivers.receiver\"");
-        let recipe = Recipe::parse(&text, name).unwrap();
-        compare_receivers(&shared(&recipe), &full_window(&recipe));
-    }
 }

@@ -1,7 +1,8 @@
 //! The layers of water over one window.
 
 use orogen::hydrology::direction::STEPS;
-use orogen::{Grid, Options, Progress, Recipe, Result, Window, World};
+use orogen::layer::LayerKind;
+use orogen::{Grid, Options, Recipe, Result, Session, Window};
 
 /// Layers over one window.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,28 +70,38 @@ pub type Tiles<'a> = &'a dyn Fn(&Window) -> Result<Water>;
 /// Tiles of a recipe: each comes from a new world in a new session.
 pub fn tiles_of(recipe: &Recipe, threads: Option<usize>) -> impl Fn(&Window) -> Result<Water> + use<> {
     let recipe = recipe.clone();
-    move |window| {
-        let has = |layer: &str| recipe.outputs().any(|output| output == layer);
-        let optional = ["lakes", "receiver"].into_iter().filter(|layer| has(layer));
-        let layers: Vec<&str> = ["height", "flow"].into_iter().chain(optional).collect();
-        let world = World::with_options(recipe.clone(), Options { threads, ..Options::default() })?;
-        let mut water = Water {
-            bed: Grid::filled(*window, 0.0),
-            flow: Grid::filled(*window, 0.0),
-            lakes: Grid::filled(*window, 0.0),
-            receiver: None,
-            sea_level: recipe.world.sea_level as f32,
-        };
-        for (layer, grid) in layers.iter().zip(world.grids(&layers, window, &Progress::none())?) {
-            match *layer {
-                "height" => water.bed = grid,
-                "flow" => water.flow = grid,
-                "lakes" => water.lakes = grid,
-                _ => water.receiver = Some(grid),
-            }
-        }
-        Ok(water)
+    move |window| tile(&recipe, &Session::new(Options { threads, ..Options::default() })?, window)
+}
+
+/// Tiles of a recipe: each comes from a new world, and all worlds share the solutions of a session. A bounded world is
+/// solved once.
+pub fn tiles_in(recipe: &Recipe, session: &Session) -> impl Fn(&Window) -> Result<Water> + use<> {
+    let (recipe, session) = (recipe.clone(), session.clone());
+    move |window| tile(&recipe, &session, window)
+}
+
+fn tile(recipe: &Recipe, session: &Session, window: &Window) -> Result<Water> {
+    let world = session.open(recipe.clone())?;
+    let grid = |layer: &str| world.window(layer, window);
+    let has = |layer: &str| recipe.outputs().any(|output| output == layer);
+    let bed = grid("height")?;
+    let lakes = match has("lakes") {
+        true if world.kind("lakes")? == LayerKind::Label => depth(&grid("lakes")?, &grid("surface")?, &bed),
+        true => grid("lakes")?,
+        false => Grid::filled(*window, 0.0),
+    };
+    let receiver = if has("receiver") { Some(grid("receiver")?) } else { None };
+    Ok(Water { bed, flow: grid("flow")?, lakes, receiver, sea_level: recipe.world.sea_level as f32 })
+}
+
+/// The depth of lakes from their numbers and the water surface.
+fn depth(labels: &Grid, surface: &Grid, bed: &Grid) -> Grid {
+    let mut depth = labels.clone();
+    for (label, (surface, bed)) in depth.data_mut().iter_mut().zip(surface.data().iter().zip(bed.data())) {
+        // A lake is a lake even where rounding leaves no depth.
+        *label = if *label > 0.0 { (surface - bed).max(f32::MIN_POSITIVE) } else { 0.0 };
     }
+    depth
 }
 
 /// The neighbours of a cell inside the window: the code of the direction and the cell.
