@@ -16,7 +16,7 @@ pub struct Beds {
     pub rising: usize,
     /// The greatest rise, in m.
     pub greatest: f32,
-    /// Rivers that end on land: cells none of whose neighbours has a larger area or is in a lake or the sea.
+    /// Rivers that end on land: cells with no neighbour downstream, in a lake or in the sea.
     pub ends: usize,
 }
 
