@@ -33,7 +33,7 @@ impl Network<'_> {
     pub fn new(water: &Water) -> Network<'_> {
         let (window, flow) = (water.window(), water.flow.data());
         let mut order: Vec<u32> = (0..flow.len() as u32).collect();
-        order.sort_by(|a, b| compare(water, *a as usize, *b as usize).then(a.cmp(b)));
+        order.sort_unstable_by(|a, b| compare(water, *a as usize, *b as usize).then(a.cmp(b)));
         let mut network = Network {
             water,
             receivers: vec![MISSING; flow.len()],

@@ -80,8 +80,8 @@ pub fn measure(tiles: Tiles, mosaic: &Mosaic) -> Result<Vec<Figure>> {
     add("rivers cut at borders", found.cut as f64, found.crossings.max(found.cut), Target::AtMost(0.0));
 
     let found = lakes::measure(&water);
-    add("lakes, step of the surface in m", found.step.into(), found.cells, Target::None);
-    add("lakes, surface above the shore in m", found.above_shore.into(), found.cells, Target::None);
+    add("lakes, step of the surface in m", found.step.into(), found.cells, Target::AtMost(0.05));
+    add("lakes, surface above the shore in m", found.above_shore.into(), found.cells, Target::AtMost(1.0));
     Ok(figures)
 }
 
