@@ -1,7 +1,7 @@
 //! Benchmarks of Orogen against its peers and physical limits, measured in one run. `cargo xtask bench` is the front
 //! end.
 //!
-//! Prints one JSON object, {"area", "simd", "threads", "rows"}; progress goes to standard error.
+//! Prints one JSON object, {"area", "simd", "threads", "rows"}; area `water` prints a table. Progress goes to standard error.
 #![forbid(unsafe_code)]
 
 mod erosion;
@@ -14,6 +14,7 @@ mod outputs;
 mod resolution;
 mod rows;
 mod sizes;
+mod water;
 mod world;
 
 use std::process::ExitCode;
@@ -34,11 +35,17 @@ const AREAS: &[Area] = &[
 
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
-    match run(&args) {
-        Ok(report) => {
-            println!("{report:#}");
-            ExitCode::SUCCESS
-        }
+    if let [area, rest @ ..] = args.as_slice()
+        && area == "water"
+    {
+        return finished(water::run(rest));
+    }
+    finished(run(&args).map(|report| println!("{report:#}")))
+}
+
+fn finished(result: Result<(), String>) -> ExitCode {
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
         Err(message) => {
             eprintln!("error: {message}");
             ExitCode::FAILURE

@@ -16,6 +16,7 @@ pub const ABOUT: &str = "compare with other libraries and the machine's limits; 
 pub const HELP: &str = "
 Usage: cargo xtask bench [AREA] [--json FILE] [--case TEXT] [--quick]
        cargo xtask bench realism --score SCRIPT --dems DIR [--first SEED] [--case TEXT]
+       cargo xtask bench water RECIPE [--seed N] [--cell M] [--origin X,Y] [--side N] [--pairs N] [--pair-side N] [--fresh]
 
 Builds the benches at full optimisation, measures one area (or all in turn) and prints a table.
 
@@ -40,6 +41,18 @@ target is missed.
   --dems DIR      the real places, GeoTIFFs of 30 to 90 m
   --first SEED    the first of the seeds [default: from the clock]
 
+Area water, only if it is named: measures the water of a recipe on 3 x 3 tiles that are made apart: depressions, beds of rivers, agreement of D8 on
+the heights with `flow`, rivers at the borders of tiles; fails if a target is missed.
+
+  RECIPE         a preset or a recipe file with the outputs `height` and `flow`, and optionally `lakes` and `receiver`
+  --seed N       seed of the world [default: the recipe's]
+  --cell M       cell in metres [default: the recipe's]
+  --origin X,Y   column and row of the first cell [default: 0,0]
+  --side N       cells along the side of a tile [default: a third of the world; 512 if it is unbounded]
+  --pairs N      pairs of adjacent windows at random positions [default: 200]
+  --pair-side N  cells along the side of each of these windows [default: 64]
+  --fresh        makes every window of the pairs in a session of its own; each tile of the mosaic is always made so
+
 How to read the table: docs/benchmarks.md.
 ";
 
@@ -48,6 +61,9 @@ const AREAS: &[&str] = &["noise", "erosion", "generate", "world", "outputs"];
 
 /// Needs files that are not part of the project, so it is measured only if it is named.
 const REALISM: &str = "realism";
+
+/// Measures one recipe, so it runs only if it is named.
+const WATER: &str = "water";
 
 #[derive(Debug, Default, PartialEq, Eq)]
 struct Options {
@@ -61,6 +77,12 @@ struct Options {
 
 /// Runs the measurements.
 pub fn run(args: &[String]) -> Result {
+    if let [area, rest @ ..] = args
+        && area == WATER
+    {
+        let mut command = shell::cargo("run --quiet --release --package orogen-bench --");
+        return shell::run(command.arg(area).args(rest));
+    }
     let options = parse(args)?;
     let areas: Vec<&str> = options.area.as_deref().map_or_else(|| AREAS.to_vec(), |area| vec![area]);
     if areas.len() > 1 && options.json.is_some() {
@@ -114,7 +136,7 @@ fn parse(args: &[String]) -> Result<Options> {
             flag if flag.starts_with('-') => return Err(Failure::usage(format!("there is no option '{flag}'"))),
             other => {
                 return Err(Failure::usage(format!(
-                    "there is no area '{other}'; there are: {}, {REALISM}",
+                    "there is no area '{other}'; there are: {}, {REALISM}, {WATER}",
                     AREAS.join(", ")
                 )));
             }

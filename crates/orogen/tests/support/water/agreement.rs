@@ -1,0 +1,66 @@
+//! Agreement of the heights with the drainage areas: whether D8 on the heights finds the rivers of `flow`.
+
+use super::layers::{cells_to_edge, neighbours};
+use super::network::Network;
+use orogen::hydrology::accumulation::accumulate;
+use orogen::hydrology::drainage::route_carving;
+use orogen::hydrology::outlets::Outlets;
+use orogen::hydrology::steepest::Descent;
+
+/// Largest difference between the areas of a cell that agrees, relative to the area in `flow`.
+const TOLERANCE: f64 = 0.2;
+
+/// Drainage area from which on rivers that enter the window are followed, in m².
+const RIVER: f64 = 1e6;
+
+/// Cells of rivers with an area in one range.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Agreement {
+    /// Areas from and below, in m².
+    pub range: [f64; 2],
+    /// Cells whose catchment lies in the window.
+    pub cells: usize,
+    /// Of these, the cells with a D8 area within 20 % of that in `flow`, at most one cell away.
+    pub agree: usize,
+}
+
+/// Routes the bed by steepest descent, with depressions carved, and compares drainage areas in each range.
+///
+/// A catchment lies in the window if no water enters it from the edge, neither by D8 on the heights nor in rivers of
+/// `flow`. By D8, water enters wherever the catchment touches the row of cells beside the edge. Cells beside one with water
+/// from the edge are excluded, too. Cells in lakes and the sea are not compared.
+pub fn measure(network: &Network, ranges: &[[f64; 2]]) -> Vec<Agreement> {
+    let water = network.water;
+    let window = water.window();
+    let outlets = Outlets::new(&water.bed, Some(water.sea_level));
+    let receivers = route_carving(&water.bed, &outlets, Descent::Steepest).receivers;
+    let accumulation = accumulate(&receivers);
+    let near_edge = |cell: usize| cells_to_edge(window, cell) < 2;
+    let mut entered: Vec<bool> = (0..window.len()).map(near_edge).collect();
+    for cell in accumulation.upstream_first() {
+        let marked = entered[cell];
+        entered[receivers.of(cell)] |= marked;
+    }
+    let mut rivers_entered: Vec<bool> =
+        (0..window.len()).map(|cell| near_edge(cell) && water.area(cell) >= RIVER).collect();
+    network.spread_downstream(&mut rivers_entered);
+
+    let own = window.cell * window.cell;
+    let mut found: Vec<Agreement> =
+        ranges.iter().map(|range| Agreement { range: *range, cells: 0, agree: 0 }).collect();
+    for cell in (0..window.len()).filter(|cell| !water.is_standing(*cell) && !rivers_entered[*cell]) {
+        let area = water.area(cell);
+        let mut matching = found.iter_mut().filter(|part| part.range[0] <= area && area < part.range[1]).peekable();
+        let around = || neighbours(window, cell).map(|(_, near)| near).chain([cell]);
+        if matching.peek().is_none() || around().any(|near| entered[near]) {
+            continue;
+        }
+        let off = |near: usize| (f64::from(accumulation.area.data()[near]) * own - area).abs();
+        let agrees = around().any(|near| off(near) <= TOLERANCE * area);
+        matching.for_each(|part| {
+            part.cells += 1;
+            part.agree += usize::from(agrees);
+        });
+    }
+    found
+}

@@ -1,0 +1,44 @@
+//! Beds of rivers: whether they descend.
+
+use super::layers::{cells_to_edge, neighbours};
+use super::network::Network;
+use orogen::hydrology::direction::DISTANCES;
+
+/// Drainage area from which on a cell belongs to a river here, in m².
+const RIVER: f64 = 5e6;
+
+/// Links from a river's cell to its receiver.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Beds {
+    /// All links.
+    pub links: usize,
+    /// Links along which the bed rises.
+    pub rising: usize,
+    /// The greatest rise, in m.
+    pub greatest: f32,
+    /// Rivers that end on land: cells with no neighbour downstream, in a lake or in the sea.
+    pub ends: usize,
+}
+
+/// Compares the bed of every river cell with that of its receiver; in a receiver that is a lake or the sea, with the
+/// water surface. Cells in lakes and the sea have no link. A river that ends on land is linked to the neighbour in
+/// the direction of steepest descent.
+pub fn measure(network: &Network) -> Beds {
+    let water = network.water;
+    let (window, bed) = (water.window(), water.bed.data());
+    let mut found = Beds::default();
+    let rivers = (0..bed.len()).filter(|cell| water.area(*cell) > RIVER && !water.is_standing(*cell));
+    for cell in rivers.filter(|cell| cells_to_edge(window, *cell) > 0) {
+        let receiver = network.receiver(cell).or_else(|| {
+            found.ends += usize::from(neighbours(window, cell).all(|(_, to)| !water.is_standing(to)));
+            let drop = |(code, to): (usize, usize)| f64::from(bed[cell] - water.surface(to)) / DISTANCES[code];
+            neighbours(window, cell).max_by(|a, b| drop(*a).total_cmp(&drop(*b))).map(|(_, to)| to)
+        });
+        let Some(receiver) = receiver else { continue };
+        let rise = water.surface(receiver) - bed[cell];
+        found.links += 1;
+        found.rising += usize::from(rise > 0.0);
+        found.greatest = found.greatest.max(rise);
+    }
+    found
+}

@@ -1,0 +1,21 @@
+//! Faults for tests of the measurements: layers of some cells changed in every tile that has these cells.
+
+use super::layers::{Tiles, Water};
+use orogen::{Result, Window};
+
+/// Tiles in which `change` is applied to every cell that `chosen` selects by its column and row on the lattice.
+pub fn changed<'a>(
+    tiles: Tiles<'a>,
+    chosen: impl Fn([i64; 2]) -> bool + 'a,
+    change: impl Fn(&mut Water, usize) + 'a,
+) -> impl Fn(&Window) -> Result<Water> + 'a {
+    move |window| {
+        let mut water = tiles(window)?;
+        for cell in 0..window.len() {
+            if chosen([window.x + (cell % window.width) as i64, window.y + (cell / window.width) as i64]) {
+                change(&mut water, cell);
+            }
+        }
+        Ok(water)
+    }
+}

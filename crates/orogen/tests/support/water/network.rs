@@ -1,0 +1,135 @@
+//! The receiver of every cell, found from drainage areas.
+//!
+//! Drainage areas alone determine the network almost everywhere: the area of a cell is its own area plus the areas of its
+//! donors. From the largest area to the smallest, each cell therefore takes, of the neighbours downstream, the one
+//! whose area without its donors so far fits best. The neighbour with the largest area is often not the receiver: at a bend
+//! it is the cell after the receiver, and where two rivers run side by side, it may belong to the other river. One
+//! receiver of a river in some thousands is still another one than the world's.
+//!
+//! Of two neighbours with the same area, the one with the lower surface is downstream.
+
+use super::layers::{Water, neighbours};
+use orogen::hydrology::direction::NONE;
+use std::cmp::Ordering;
+
+/// A cell without a receiver in the window.
+const MISSING: u32 = u32::MAX;
+
+/// Receivers of the cells of a window.
+pub struct Network<'a> {
+    /// The layers.
+    pub water: &'a Water,
+    receivers: Vec<u32>,
+    /// Area of each cell without its own and its donors' areas, in m².
+    unexplained: Vec<f64>,
+    /// Whether a cell's receiver had less than half of the cell's area left.
+    starved: Vec<bool>,
+    /// All cells, each after those downstream of it.
+    order: Vec<u32>,
+}
+
+impl Network<'_> {
+    /// Reads `receiver` if the world has it, and finds the receivers from `flow` otherwise.
+    pub fn new(water: &Water) -> Network<'_> {
+        let (window, flow) = (water.window(), water.flow.data());
+        let mut order: Vec<u32> = (0..flow.len() as u32).collect();
+        order.sort_unstable_by(|a, b| compare(water, *a as usize, *b as usize).then(a.cmp(b)));
+        let mut network = Network {
+            water,
+            receivers: vec![MISSING; flow.len()],
+            unexplained: flow.iter().map(|area| f64::from(*area) - own_area(water)).collect(),
+            starved: vec![false; flow.len()],
+            order,
+        };
+        for k in 0..network.order.len() {
+            let cell = network.order[k] as usize;
+            let to = match &water.receiver {
+                Some(codes) => {
+                    let code = codes.data()[cell] as usize;
+                    neighbours(window, cell).find(|(k, _)| *k == code && code < usize::from(NONE)).map(|(_, to)| to)
+                }
+                None => network.best(cell),
+            };
+            if let Some(to) = to {
+                network.receivers[cell] = to as u32;
+                network.starved[cell] = network.unexplained[to] < 0.5 * water.area(cell);
+                network.unexplained[to] -= water.area(cell);
+            }
+        }
+        network
+    }
+
+    /// Of the neighbours downstream, the one whose unexplained area exceeds that of the cell by the least; if none
+    /// does, the one with the largest unexplained area.
+    fn best(&self, cell: usize) -> Option<usize> {
+        // Areas are rounded to f32.
+        let enough = |to: usize| self.unexplained[to] >= self.water.area(cell) * 0.999_999;
+        downstream(self.water, cell).max_by(|a, b| {
+            let (left, right) = (self.unexplained[*a], self.unexplained[*b]);
+            if enough(*a) && enough(*b) { right.total_cmp(&left) } else { left.total_cmp(&right) }
+        })
+    }
+
+    /// The receiver of a cell.
+    pub fn receiver(&self, cell: usize) -> Option<usize> {
+        Some(self.receivers[cell]).filter(|to| *to != MISSING).map(|to| to as usize)
+    }
+
+    /// Whether the area of a cell does not continue: the cell has no receiver, or no neighbour is large enough to hold half
+    /// of the area beside its other donors. Where the receivers are not known, those are the cells with no
+    /// other neighbour downstream.
+    pub fn ends(&self, cell: usize) -> bool {
+        let water = self.water;
+        if self.receivers[cell] == MISSING || water.receiver.is_some() {
+            return self.receivers[cell] == MISSING || self.starved[cell];
+        }
+        let holds = |to: usize| {
+            let sole = |from: usize| downstream(water, from).all(|other| other == to);
+            let donors = upstream(water, to).filter(|from| *from != cell && sole(*from));
+            let others: f64 = donors.map(|from| water.area(from)).sum();
+            water.area(to) - own_area(water) - others >= 0.5 * water.area(cell)
+        };
+        self.starved[cell] && !downstream(water, cell).any(holds)
+    }
+
+    /// Whether at least half of the area of a cell comes from nowhere: neither from the cell nor from its donors. Where the
+    /// receivers are not known, every neighbour upstream may be a donor.
+    pub fn begins(&self, cell: usize) -> bool {
+        let (water, half) = (self.water, 0.5 * self.water.area(cell));
+        let possible = || upstream(water, cell).map(|from| water.area(from)).sum::<f64>();
+        self.unexplained[cell] > half && (water.receiver.is_some() || possible() < half)
+    }
+
+    /// Marks everything downstream of the marked cells.
+    pub fn spread_downstream(&self, marks: &mut [bool]) {
+        for cell in self.order.iter().rev().map(|cell| *cell as usize).filter(|cell| self.receivers[*cell] != MISSING) {
+            let marked = marks[cell];
+            marks[self.receivers[cell] as usize] |= marked;
+        }
+    }
+}
+
+/// The area of one cell, in m².
+fn own_area(water: &Water) -> f64 {
+    water.window().cell * water.window().cell
+}
+
+/// Whether water may flow from one cell to the other: the area is larger there, or the same and the surface lower.
+fn is_downstream(water: &Water, from: usize, to: usize) -> bool {
+    compare(water, from, to).is_gt()
+}
+
+/// The order from downstream to upstream.
+fn compare(water: &Water, a: usize, b: usize) -> Ordering {
+    water.area(b).total_cmp(&water.area(a)).then_with(|| water.surface(a).total_cmp(&water.surface(b)))
+}
+
+/// The neighbours to which a cell may drain.
+fn downstream(water: &Water, cell: usize) -> impl Iterator<Item = usize> + '_ {
+    neighbours(water.window(), cell).map(|(_, to)| to).filter(move |to| is_downstream(water, cell, *to))
+}
+
+/// The neighbours that may drain to a cell.
+fn upstream(water: &Water, cell: usize) -> impl Iterator<Item = usize> + '_ {
+    neighbours(water.window(), cell).map(|(_, from)| from).filter(move |from| is_downstream(water, *from, cell))
+}
