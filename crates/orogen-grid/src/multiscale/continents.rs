@@ -29,7 +29,7 @@ pub struct Continents {
 
 impl Default for Continents {
     fn default() -> Continents {
-        Continents { seed: 0, cell: 60.0, levels: 11, land: 0.37, relief: 1.0, size: 1.0, basins: 0.8 }
+        Continents { seed: 0, cell: 60.0, levels: 11, land: 0.39, relief: 1.0, size: 1.0, basins: 0.8 }
     }
 }
 

@@ -15,6 +15,9 @@ const CHANNEL_AREA: f32 = 300.0;
 /// Fall to the receiver, in metres, that creep leaves.
 const LEFT: f32 = 0.02;
 
+/// Share of the fall to the receiver by which a node may fall in a pass.
+const LOWERED: f32 = 0.5;
+
 /// One pass of creep over the cells of `extent`.
 pub fn creep(extent: Extent, heights: &mut Vec<f32>, spare: &mut Vec<f32>, area: &[f32], receiver: &[f32]) {
     dispatch(Creep { extent, heights, area, receiver, out: spare });
@@ -43,7 +46,8 @@ impl Body for Creep<'_> {
     }
 }
 
-/// A node may move up to nearly half the way to its receiver, and up to nearly half the way to its lowest donor, so that donors stay above.
+/// A node falls by at most a share of the fall to its receiver, and rises by at most the rest of that from its lowest donor, so that donors stay
+/// above.
 #[inline(always)]
 fn smooth([height, area, receiver]: [&[f32]; 3], heights: [&[f32]; 8], receivers: [&[f32]; 8], out: &mut [f32]) {
     let n = out.len();
@@ -65,8 +69,9 @@ fn smooth([height, area, receiver]: [&[f32]; 3], heights: [&[f32]; 8], receivers
             let donor = receivers[code][i] == ((code + 4) & 7) as f32;
             up = if donor & (there - here < up) { there - here } else { up };
         }
-        let half = |fall: f32| if fall > LEFT { 0.5 * (fall - LEFT) } else { 0.0 };
-        let (lower, upper) = (-half(down), half(up));
+        let (down, up) = (down - LEFT, up - LEFT);
+        let lower = if down > 0.0 { -LOWERED * down } else { 0.0 };
+        let upper = if up > 0.0 { (1.0 - LOWERED) * up } else { 0.0 };
         let rate = RATE * CHANNEL_AREA / (CHANNEL_AREA + area[i]);
         let change = rate * ((4.0 * sides + corners) * (1.0 / 20.0) - here);
         let change = if change > lower { change } else { lower };

@@ -22,8 +22,8 @@ const PLACES: u64 = 64;
 const HOME_SHORE: std::ops::Range<f32> = 60.0..400.0;
 const HOME_UPLIFT: f32 = 0.3;
 
-/// The threshold of the coast by share of land, in steps of 0.1 from 0 to 1: quantiles of [`Site::coast`].
-const THRESHOLDS: [f64; 11] = [0.9, 0.5, 0.33, 0.2, 0.09, 0.0, -0.09, -0.2, -0.33, -0.5, -0.9];
+/// The threshold of the coast by share of land, in steps of 0.1 from 0 to 1: measured quantiles of [`Site::coast`] with its detail.
+const THRESHOLDS: [f64; 11] = [0.72, 0.46, 0.305, 0.19, 0.09, 0.0, -0.09, -0.19, -0.305, -0.46, -0.72];
 
 /// Kilometres of distance to the shore per unit of the coast's shape.
 const COAST: f64 = 1500.0;

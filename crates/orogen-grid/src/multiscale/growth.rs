@@ -4,16 +4,10 @@ use super::distances::Distances;
 use super::growth_row::{Around, Own, Row, Scale, grow};
 use super::law::Law;
 use super::stencil::Extent;
-use crate::erosion::power::power;
 use orogen_simd::{Body, Simd, dispatch};
 
 /// Drainage area, in km^2, from which rivers have floors.
 const FLOOR_AREA: f64 = 5.0;
-
-/// Drainage area, in km^2, from which a river of the finest level lies deeper than its banks, and its depth in metres at 5 km^2 more.
-const BANK_AREA: f64 = 0.5;
-const BANK_HEIGHT: f32 = 2.0;
-const BANK_EXPONENT: f32 = 0.2;
 
 /// The planes of a growing level.
 pub struct Growth {
@@ -24,8 +18,6 @@ pub struct Growth {
     pub fixed: Vec<f32>,
     /// Distance in metres over which the floor of a river downstream continues; empty without floors.
     floor: Vec<f32>,
-    /// Depth of the river below its banks; empty except on the finest level.
-    bank: Vec<f32>,
     next_height: Vec<f32>,
     next_floor: Vec<f32>,
     pub spare: Vec<f32>,
@@ -41,14 +33,7 @@ pub enum Spacing<'a> {
 
 impl Growth {
     /// The nodes before growth.
-    pub fn new(
-        height: Vec<f32>,
-        area: Vec<f32>,
-        receiver: Vec<f32>,
-        fixed: Vec<f32>,
-        floors: bool,
-        finest: bool,
-    ) -> Growth {
+    pub fn new(height: Vec<f32>, area: Vec<f32>, receiver: Vec<f32>, fixed: Vec<f32>, floors: bool) -> Growth {
         let cells = height.len();
         let plane = |wanted: bool| if wanted { vec![0.0; cells] } else { Vec::new() };
         Growth {
@@ -59,7 +44,6 @@ impl Growth {
             receiver,
             fixed,
             floor: plane(floors),
-            bank: plane(finest),
             next_floor: plane(floors),
         }
     }
@@ -68,36 +52,9 @@ impl Growth {
     pub fn pass(&mut self, extent: Extent, law: &Law, spacing: Spacing<'_>, cell: f64) {
         let square_kilometres = cell * cell * 1e-6;
         let scale = Scale { cell: cell as f32, floor_area: (square_kilometres / FLOOR_AREA) as f32 };
-        if !self.bank.is_empty() {
-            dispatch(Banks { area: &self.area, bank: &mut self.bank, factor: square_kilometres as f32 });
-        }
         dispatch(Pass { growth: self, extent, law, spacing, scale });
         std::mem::swap(&mut self.height, &mut self.next_height);
         std::mem::swap(&mut self.floor, &mut self.next_floor);
-    }
-}
-
-struct Banks<'a> {
-    area: &'a [f32],
-    bank: &'a mut [f32],
-    factor: f32,
-}
-
-impl Body for Banks<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<S: Simd>(self, _: S) {
-        depths(self.area, self.factor, self.bank);
-    }
-}
-
-#[inline(always)]
-fn depths(area: &[f32], factor: f32, bank: &mut [f32]) {
-    let area = &area[..bank.len()];
-    for i in 0..bank.len() {
-        let beyond = (area[i] * factor - BANK_AREA as f32) * (1.0 / FLOOR_AREA as f32);
-        bank[i] = if beyond > 0.0 { BANK_HEIGHT * power(beyond, BANK_EXPONENT) } else { 0.0 };
     }
 }
 
@@ -116,7 +73,7 @@ impl Body for Pass<'_> {
     fn run<S: Simd>(self, _: S) {
         let Pass { growth, extent, law, spacing, scale } = self;
         let nothing: [&[f32]; 8] = [&[]; 8];
-        let (floors, finest) = (!growth.floor.is_empty(), !growth.bank.is_empty());
+        let floors = !growth.floor.is_empty();
         let mut row = Row::default();
         for j in extent.rows() {
             let own = Own {
@@ -126,7 +83,6 @@ impl Body for Pass<'_> {
                 river: extent.row(&law.river, j),
                 stable: extent.row(&law.stable, j),
                 width: if floors { extent.row(&law.floor, j) } else { &[] },
-                bank: if finest { extent.row(&growth.bank, j) } else { &[] },
             };
             let around = Around {
                 height: extent.around(&growth.height, j),
@@ -135,32 +91,16 @@ impl Body for Pass<'_> {
                     Spacing::Regular => nothing,
                 },
                 floor: if floors { extent.around(&growth.floor, j) } else { nothing },
-                bank: if finest { extent.around(&growth.bank, j) } else { nothing },
             };
             let height = extent.row_mut(&mut growth.next_height, j);
             let receiver = extent.row_mut(&mut growth.receiver, j);
-            if finest {
-                grow::<true, true>(
-                    &mut row,
-                    &own,
-                    &around,
-                    scale,
-                    height,
-                    receiver,
-                    extent.row_mut(&mut growth.next_floor, j),
-                );
-            } else if floors {
-                grow::<true, false>(
-                    &mut row,
-                    &own,
-                    &around,
-                    scale,
-                    height,
-                    receiver,
-                    extent.row_mut(&mut growth.next_floor, j),
-                );
-            } else {
-                grow::<false, false>(&mut row, &own, &around, scale, height, receiver, &mut []);
+            let out_floor = if floors { extent.row_mut(&mut growth.next_floor, j) } else { &mut [] };
+            match (spacing, floors) {
+                (Spacing::Regular, _) => {
+                    grow::<true, true>(&mut row, &own, &around, scale, height, receiver, out_floor)
+                }
+                (_, true) => grow::<true, false>(&mut row, &own, &around, scale, height, receiver, out_floor),
+                (_, false) => grow::<false, false>(&mut row, &own, &around, scale, height, receiver, out_floor),
             }
         }
     }

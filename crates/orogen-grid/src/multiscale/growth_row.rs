@@ -35,8 +35,6 @@ pub struct Own<'a> {
     pub stable: &'a [f32],
     /// Factor of the floor's width; empty without floors.
     pub width: &'a [f32],
-    /// Depth of the river below its banks; empty except on the finest level.
-    pub bank: &'a [f32],
 }
 
 /// What a row of cells reads of its neighbours.
@@ -45,7 +43,6 @@ pub struct Around<'a> {
     /// Empty on the finest level, where nodes are on the lattice.
     pub distance: [&'a [f32]; 8],
     pub floor: [&'a [f32]; 8],
-    pub bank: [&'a [f32]; 8],
 }
 
 /// The results of a row so far.
@@ -73,7 +70,7 @@ impl Row {
 
 /// The new heights, receivers and floors of a row.
 #[inline(always)]
-pub fn grow<const FLOORS: bool, const FINEST: bool>(
+pub fn grow<const FLOORS: bool, const REGULAR: bool>(
     row: &mut Row,
     own: &Own<'_>,
     around: &Around<'_>,
@@ -93,10 +90,10 @@ pub fn grow<const FLOORS: bool, const FINEST: bool>(
     for code in 0..8 {
         let there =
             Neighbour { height: around.height[code], distance: around.distance[code], floor: around.floor[code] };
-        let there = Toward { there, code: code as f32, diagonal: code & 1 == 1, bank: (own.bank, around.bank[code]) };
-        offer::<FLOORS, FINEST>(&law, &there, &mut lowest[..n], &mut best[..n], &mut floor[..n]);
+        let there = Toward { there, code: code as f32, diagonal: code & 1 == 1 };
+        offer::<FLOORS, REGULAR>(&law, &there, &mut lowest[..n], &mut best[..n], &mut floor[..n]);
     }
-    if FINEST {
+    if REGULAR {
         for code in [0usize, 2, 4, 6] {
             for beside in [(code + 1) & 7, (code + 7) & 7] {
                 let heights = [own.height, own.area, around.height[code], around.height[beside]];
@@ -130,8 +127,6 @@ struct Toward<'a> {
     there: Neighbour<'a>,
     code: f32,
     diagonal: bool,
-    /// Banks of the row and of the neighbours.
-    bank: (&'a [f32], &'a [f32]),
 }
 
 #[inline(always)]
@@ -153,7 +148,7 @@ fn rises(own: &Own<'_>, scale: Scale, rise: &mut [f32], flat: &mut [f32], below:
 
 /// Takes the height over the neighbours in one direction where it is the lowest so far.
 #[inline(always)]
-fn offer<const FLOORS: bool, const FINEST: bool>(
+fn offer<const FLOORS: bool, const REGULAR: bool>(
     law: &Law<'_>,
     toward: &Toward<'_>,
     lowest: &mut [f32],
@@ -164,20 +159,14 @@ fn offer<const FLOORS: bool, const FINEST: bool>(
     let (best, floor) = (&mut best[..n], &mut floor[..n]);
     let (rise, flat, below, fixed) = (&law.rise[..n], &law.flat[..n], &law.below[..n], &law.fixed[..n]);
     let there = &toward.there.height[..n];
-    let distances = &toward.there.distance[..if FINEST { 0 } else { n }];
+    let distances = &toward.there.distance[..if REGULAR { 0 } else { n }];
     let floors = &toward.there.floor[..if FLOORS { n } else { 0 }];
-    let (bank, bank_there) =
-        (&toward.bank.0[..if FINEST { n } else { 0 }], &toward.bank.1[..if FINEST { n } else { 0 }]);
     let regular = if toward.diagonal { SQRT_2 } else { 1.0 };
     for i in 0..n {
-        let distance = if FINEST { regular } else { distances[i] };
+        let distance = if REGULAR { regular } else { distances[i] };
         let left = if FLOORS { floors[i] - distance * law.cell } else { 0.0 };
         let slope = if left > 0.0 { flat[i] } else { rise[i] };
-        let mut candidate = there[i] + distance * slope;
-        if FINEST {
-            let deeper = bank_there[i] - bank[i];
-            candidate += if deeper > 0.0 { deeper } else { 0.0 };
-        }
+        let candidate = there[i] + distance * slope;
         let possible = (there[i] < below[i]) | (fixed[i] == toward.code);
         let better = possible & (candidate < lowest[i]);
         lowest[i] = if better { candidate } else { lowest[i] };

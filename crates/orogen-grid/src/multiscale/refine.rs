@@ -119,7 +119,7 @@ impl Continents {
             None => Spacing::Regular,
         };
         let mut growth =
-            Growth::new(carved.height, carved.area, carved.receiver, carved.fixed, has_floors(self, depth), finest);
+            Growth::new(carved.height, carved.area, carved.receiver, carved.fixed, has_floors(self, depth));
         for pass in 0..FIRST_PASSES + ROUNDS {
             for _ in 0..if pass < FIRST_PASSES { 0 } else { AREA_PASSES } {
                 progress.check()?;
