@@ -26,9 +26,10 @@ const ROUNDS: usize = 5;
 /// Passes of areas in a round.
 const AREA_PASSES: usize = 2;
 
-/// Passes of creep on the finest level, and of areas after it.
+/// Passes of creep on the finest level, and of areas at the end of each level.
 const CREEP_PASSES: usize = 2;
 const LAST_AREA_PASSES: usize = 4;
+
 
 /// Drainage area, in cells, below which nodes of rivers of the level above choose their receivers again.
 const FREE_AREA: f32 = 64.0;
@@ -36,7 +37,8 @@ const FREE_AREA: f32 = 64.0;
 /// Cells at the edge of the children whose values are not exact.
 const fn inset(finest: bool) -> usize {
     let growth = CARVED + FIRST_PASSES + ROUNDS * (AREA_PASSES + 1);
-    if finest { growth + straighten::REACH + CREEP_PASSES + 1 + LAST_AREA_PASSES } else { growth }
+    let growth = growth + LAST_AREA_PASSES;
+    if finest { growth + straighten::REACH + CREEP_PASSES + 1 } else { growth }
 }
 
 impl Continents {
@@ -123,11 +125,11 @@ impl Continents {
             }
             extent = extent.shrunk(1);
             steepest(extent, &growth.height, &growth.fixed, &mut growth.receiver);
-            for _ in 0..LAST_AREA_PASSES {
-                progress.check()?;
-                extent = extent.shrunk(1);
-                drainage::step(extent, &growth.receiver, &mut growth.area, &mut growth.spare);
-            }
+        }
+        for _ in 0..LAST_AREA_PASSES {
+            progress.check()?;
+            extent = extent.shrunk(1);
+            drainage::step(extent, &growth.receiver, &mut growth.area, &mut growth.spare);
         }
         let offset = ((window.x - children.window.x) as usize, (window.y - children.window.y) as usize);
         let size = (window.width, window.height);
