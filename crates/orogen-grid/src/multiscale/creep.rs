@@ -9,11 +9,15 @@ use std::f32::consts::FRAC_1_SQRT_2;
 /// Share of the way to the mean of the neighbours.
 const RATE: f32 = 0.8;
 
-/// Drainage area in cells at which the rate is half: channels stay.
+/// Drainage area in cells at which the rate is half.
 const CHANNEL_AREA: f32 = 300.0;
 
 /// Fall to the receiver, in metres, that creep leaves.
 const LEFT: f32 = 0.02;
+
+/// Drainage area in cells from which rivers cut down instead, and the depth in metres in a pass, as far as heights still fall along them.
+const CUT_AREA: f32 = 1400.0;
+const CUT: f32 = 1.5;
 
 /// Share of the fall to the receiver by which a node may fall in a pass.
 const LOWERED: f32 = 0.5;
@@ -74,6 +78,7 @@ fn smooth([height, area, receiver]: [&[f32]; 3], heights: [&[f32]; 8], receivers
         let upper = if up > 0.0 { (1.0 - LOWERED) * up } else { 0.0 };
         let rate = RATE * CHANNEL_AREA / (CHANNEL_AREA + area[i]);
         let change = rate * ((4.0 * sides + corners) * (1.0 / 20.0) - here);
+        let change = if area[i] < CUT_AREA { change } else { -CUT };
         let change = if change > lower { change } else { lower };
         let change = if change < upper { change } else { upper };
         out[i] = if receiver[i] < f32::from(NONE) { here + change } else { here };
