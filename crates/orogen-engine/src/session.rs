@@ -77,7 +77,9 @@ impl Session {
             pool: Arc::new(pool),
             store: Arc::new(Store::new(options.store, options.scratch)),
             grids: Arc::new(GridStore::new(options.kept_grids.unwrap_or(most))),
-            level_tiles: Arc::new(GridStore::new(options.memory.limit().map_or(LEVEL_TILES, |limit| LEVEL_TILES.min(limit / 8)))),
+            level_tiles: Arc::new(GridStore::new(
+                options.memory.limit().map_or(LEVEL_TILES, |limit| LEVEL_TILES.min(limit / 8)),
+            )),
             budget: options.memory.clone(),
         })
     }

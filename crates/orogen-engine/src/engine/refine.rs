@@ -154,7 +154,12 @@ impl Refining<'_> {
     }
 
     /// Passes the op's inputs over exactly the samples that it may read.
-    fn with_inputs<T>(&self, level: usize, window: &Window, work: impl FnOnce(&[Option<&Grid>]) -> Result<T>) -> Result<T> {
+    fn with_inputs<T>(
+        &self,
+        level: usize,
+        window: &Window,
+        work: impl FnOnce(&[Option<&Grid>]) -> Result<T>,
+    ) -> Result<T> {
         let Some(inputs) = self.inputs.get(level) else { return work(&vec![None; self.op.spec().inputs.len()]) };
         let read = window.grown(self.op.source_halo(level));
         let crop = |grid: &Grid| grid.crop(&read).ok_or_else(|| internal("an input of a level is too small"));

@@ -110,15 +110,16 @@ impl<'a> Engine<'a> {
 
     /// The keys of a step's grids; `None` if they are not worth keeping.
     fn grid_keys(&self, step: &Step) -> Option<Vec<GridKey>> {
-        let (Step::Apply { node, window, out, .. } | Step::Refine { node, window, out, .. }) = step else { return None };
+        let (Step::Apply { node, window, out, .. } | Step::Refine { node, window, out, .. }) = step else {
+            return None;
+        };
         let is_expensive = match self.recipe.nodes().get(node.index())?.node.op() {
             Op::Filter(filter) => filter.cost(window.cell) >= EXPENSIVE,
             Op::Levelled(_) => true,
             _ => false,
         };
         let layers = out.iter().enumerate().filter_map(|(layer, slot)| slot.map(|_| layer));
-        is_expensive
-            .then(|| layers.map(|layer| GridKey::new(self.keys[*node], layer, window)).collect())
+        is_expensive.then(|| layers.map(|layer| GridKey::new(self.keys[*node], layer, window)).collect())
     }
 
     /// Computes the values of a scattered plan at points, one output after the other.

@@ -6,8 +6,8 @@
 //! distinguishes seconds from hours. On that machine it was within a third of the time of the presets at 4096 samples
 //! per side.
 
-use super::program::{Instruction, Program};
 use super::levels;
+use super::program::{Instruction, Program};
 use super::steps::{Plan, Solve, Step};
 use crate::ids::{CoordSetId, Id, IndexVec};
 use crate::op::Op;

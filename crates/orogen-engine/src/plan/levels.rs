@@ -200,7 +200,9 @@ mod tests {
 
     #[test]
     fn pieces_cover_a_window_once_and_are_no_slivers() {
-        for (width, height, threads) in [(1, 1, 8), (1024, 1024, 2), (3000, 10, 4), (5000, 2500, 3), (300, 300, 64), (0, 3, 2)] {
+        for (width, height, threads) in
+            [(1, 1, 8), (1024, 1024, 2), (3000, 10, 4), (5000, 2500, 3), (300, 300, 64), (0, 3, 2)]
+        {
             let samples = Window::new(width, height, 60.0).at(-7, 1000);
             let pieces = Serving { level: 0, samples }.pieces(threads);
             assert_eq!(pieces.iter().map(Window::len).sum::<usize>(), samples.len(), "{width} x {height}");

@@ -1,7 +1,7 @@
 //! Memory of a plan, known before the first sample.
 
-use super::program::{BLOCK_HEIGHT, BLOCK_WIDTH, Program};
 use super::levels;
+use super::program::{BLOCK_HEIGHT, BLOCK_WIDTH, Program};
 use super::steps::{Plan, Solve, Step};
 use crate::ids::{GridId, Id, IndexVec, StepId};
 use crate::op::Op;

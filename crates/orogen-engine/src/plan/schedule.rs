@@ -153,13 +153,7 @@ impl Scheduler<'_> {
         Ok(out)
     }
 
-    fn apply(
-        &mut self,
-        node: NodeId,
-        filter: &dyn Filter,
-        window: Window,
-        out: Vec<Option<GridId>>,
-    ) -> Result<()> {
+    fn apply(&mut self, node: NodeId, filter: &dyn Filter, window: Window, out: Vec<Option<GridId>>) -> Result<()> {
         let halo = filter.halo(window.cell);
         let (inputs, constants) = self.inputs(node, window.grown(halo));
         self.schedule.steps.push(Step::Apply { node, inputs, window, halo, out });
@@ -196,7 +190,8 @@ impl Scheduler<'_> {
                 }
                 Link::Node(target) => {
                     let source = &self.recipe.nodes()[target.node.index()].node;
-                    let raw = matches!(source.op(), Op::Filter(_) | Op::Levelled(_)) && graph.masks[target.node] == Link::None;
+                    let raw = matches!(source.op(), Op::Filter(_) | Op::Levelled(_))
+                        && graph.masks[target.node] == Link::None;
                     Some(self.schedule.requests.add(GridRequest { target: *target, raw, window }))
                 }
             });

@@ -132,14 +132,7 @@ impl Levelled for Narrow {
         0
     }
 
-    fn layers_of(
-        &self,
-        _: usize,
-        planes: &[Grid],
-        _: &Window,
-        out: &mut [Option<Grid>],
-        _: &Context,
-    ) -> Result<()> {
+    fn layers_of(&self, _: usize, planes: &[Grid], _: &Window, out: &mut [Option<Grid>], _: &Context) -> Result<()> {
         let ([plane], [Some(out)]) = (planes, out) else { return Ok(()) };
         *out = plane.clone();
         Ok(())

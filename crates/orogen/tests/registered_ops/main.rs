@@ -223,7 +223,10 @@ fn faults_are_told_where_they_are() {
     };
     for (line, said) in [
         ("op = \"mygame.riples\"", "unknown op `mygame.riples`; did you mean `mygame.ripples`?"),
-        ("op = \"mygame.xylophone\"", "available: `mygame.ripples`, `mygame.crests`, `mygame.midpoints` and `mygame.above`"),
+        (
+            "op = \"mygame.xylophone\"",
+            "available: `mygame.ripples`, `mygame.crests`, `mygame.midpoints` and `mygame.above`",
+        ),
         ("op = \"mygme.ripples\"", "no op of the namespace `mygme` is registered; did you mean `mygame.ripples`?"),
         ("op = \"elsewhere.hexagons\"", "no op of the namespace `elsewhere` is registered. Ops with a namespace"),
         ("op = \"ripples\"", "unknown op `ripples`; did you mean `mygame.ripples`?"),

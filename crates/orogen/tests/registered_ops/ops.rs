@@ -288,6 +288,14 @@ pub mod other {
 /// A registry of these ops.
 pub fn registry() -> Registry {
     let mut registry = Registry::new();
-    registry.register::<Ripples>().unwrap().register::<Crests>().unwrap().register::<Midpoints>().unwrap().register::<Above>().unwrap();
+    registry
+        .register::<Ripples>()
+        .unwrap()
+        .register::<Crests>()
+        .unwrap()
+        .register::<Midpoints>()
+        .unwrap()
+        .register::<Above>()
+        .unwrap();
     registry
 }
