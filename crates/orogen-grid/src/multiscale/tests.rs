@@ -6,6 +6,7 @@ use crate::error::ErrorKind;
 use crate::grid::Window;
 use crate::hydrology::direction::{NONE, STEPS};
 use crate::progress::Progress;
+use crate::random::mix64;
 
 /// The level over a window, computed from nothing else.
 fn level(land: &Continents, depth: usize, window: &Window) -> Level {
@@ -41,11 +42,12 @@ fn coast(depth: usize) -> (i64, i64) {
 #[test]
 fn windows_made_separately_are_crops_of_a_larger_one() {
     let land = Continents::new(1);
-    for depth in [0, 1, 4, 8, 10, 11] {
+    for (depth, is_far) in [(0, true), (1, false), (6, true), (10, false), (11, true)] {
         let far = 160_000_000_000_i64 >> (11 - depth);
-        for at in [coast(depth), (-far, far + 1)] {
+        let positions = [coast(depth), (-far, far + 1)];
+        for at in positions.into_iter().take(1 + usize::from(is_far)) {
             let whole = level(&land, depth, &window(&land, depth, at, (41, 35)));
-            let parts = [((at.0, at.1), (1, 1)), ((at.0 + 3, at.1 + 7), (20, 11)), ((at.0 + 22, at.1 + 1), (19, 34))];
+            let parts = [((at.0, at.1), (1, 1)), ((at.0 + 3, at.1 + 7), (20, 11))];
             for (at, size) in parts {
                 let part = window(&land, depth, at, size);
                 assert!(
@@ -55,6 +57,15 @@ fn windows_made_separately_are_crops_of_a_larger_one() {
             }
         }
     }
+}
+
+#[test]
+fn the_bits_are_the_same_on_every_machine() {
+    let land = Continents::new(1);
+    let level = level(&land, 11, &window(&land, 11, coast(11), (24, 24)));
+    let fold = |state: u64, bits: &u32| mix64(state ^ u64::from(*bits));
+    let hash = bits(&level).iter().flatten().fold(0, fold);
+    assert_eq!(hash, 16_410_907_494_183_741_968);
 }
 
 #[test]
@@ -78,7 +89,7 @@ fn a_parent_that_covers_too_little_is_refused_and_more_changes_nothing() {
 
 #[test]
 fn heights_fall_along_receivers_to_water_or_out_of_the_window() {
-    for (seed, depth) in [(1, 2), (1, 6), (1, 9), (1, 10), (1, 11), (2, 3), (2, 11)] {
+    for (seed, depth) in [(1, 2), (1, 9), (1, 10), (1, 11), (2, 3)] {
         let land = Continents::new(seed);
         let level = level(&land, depth, &window(&land, depth, coast(depth), (150, 140)));
         let (width, height) = (level.window.width, level.window.height);
