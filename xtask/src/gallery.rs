@@ -5,6 +5,7 @@ use crate::shell;
 
 mod base64;
 mod hillshades;
+mod levels;
 mod noises;
 mod views;
 mod water;
@@ -15,7 +16,7 @@ pub const HELP: &str = "
 Usage: cargo xtask gallery
 
 Rewrites docs/images/: one relief map of each preset, the views of docs/render.md and the README's first picture, a
-map sheet, water as vectors, all palettes, the page of noises side by side, and the chunks around a viewer. Then docs/gallery.md: a map
+map sheet, the zoom of docs/levels.md, water as vectors, all palettes, the page of noises side by side, and the chunks around a viewer. Then docs/gallery.md: a map
 of each preset, and the shaded relief of a part of it at one pixel per sample, which shows artefacts that colours hide. Then
 crates/orogen-noise/docs/gallery.md: the pictures at the top of the documentation of orogen-noise. They are embedded in the
 file, so that every renderer shows them.
@@ -47,6 +48,7 @@ pub fn run(args: &[String]) -> Result {
         shell::run(orogen.args(arguments).args(["--quiet", "-o"]).arg(&to))?;
         println!("{}", shell::relative(&to));
     }
+    levels::write(&images, &work)?;
     views::write(&images)?;
     water::write(&images, &work)?;
     hillshades::write(&presets, &images)?;

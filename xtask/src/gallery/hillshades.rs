@@ -6,7 +6,13 @@ use crate::failure::{Result, on_file};
 use crate::shell;
 
 /// The window that is shaded, at the world's cell.
-const PART: &str = "100,100,400,400";
+fn part(preset: &str) -> &'static str {
+    match preset {
+        // In its mountains.
+        "continent" => "16824,23480,400,400",
+        _ => "100,100,400,400",
+    }
+}
 
 /// The shaded relief of every preset, and the page with all of them.
 pub fn write(presets: &[(&str, &str)], images: &Path) -> Result {
@@ -18,7 +24,7 @@ pub fn write(presets: &[(&str, &str)], images: &Path) -> Result {
     for (name, about) in presets {
         let to = images.join(format!("{name}-hillshade.png"));
         let mut orogen = shell::cargo("run --quiet --release --package orogen-cli -- export --quiet --layer hillshade");
-        shell::run(orogen.args([name, "--bits", "8", "--range", "0,1", "--window", PART, "-o"]).arg(&to))?;
+        shell::run(orogen.args([name, "--bits", "8", "--range", "0,1", "--window", part(name), "-o"]).arg(&to))?;
         // The sidecar serves programs that read the samples; a picture of the docs needs none.
         let sidecar = to.with_extension("json");
         std::fs::remove_file(&sidecar).map_err(|e| on_file("delete", &sidecar, &e))?;

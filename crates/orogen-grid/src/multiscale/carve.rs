@@ -2,6 +2,7 @@
 
 use super::children::{Children, heir};
 use super::distances::Distances;
+use super::drainage::{FREE, WATER};
 use super::level::Level;
 use super::links::{Child, Links};
 use super::shores::LAND;
@@ -10,12 +11,6 @@ use crate::hydrology::direction::NONE;
 
 /// Height of nodes that have none yet.
 pub const UNKNOWN: f32 = 1e30;
-
-/// In [`Carved::fixed`]: a node that chooses its receiver.
-pub const FREE: f32 = -1.0;
-
-/// In [`Carved::fixed`]: water.
-pub const WATER: f32 = NONE as f32;
 
 /// Nodes with the rivers of the level above.
 pub struct Carved {

@@ -1,6 +1,6 @@
 //! Creep of soil on the finest level: slopes become smooth, and every node stays above its receiver.
 
-use super::carve::FREE;
+use super::drainage::FREE;
 use super::stencil::Extent;
 use crate::hydrology::direction::NONE;
 use orogen_simd::{Body, Simd, dispatch};

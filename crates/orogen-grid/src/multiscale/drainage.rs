@@ -1,7 +1,14 @@
 //! One step of drainage areas: each cell adds up what its donors had.
 
 use super::stencil::Extent;
+use crate::hydrology::direction::NONE;
 use orogen_simd::{Body, Simd, dispatch};
+
+/// In planes of fixed receivers: a node that chooses its receiver.
+pub const FREE: f32 = -1.0;
+
+/// In planes of fixed receivers: water.
+pub const WATER: f32 = NONE as f32;
 
 /// Replaces `area` by 1 plus the areas of the donors before, over `extent`; `spare` is scratch memory. Sums are in the order of directions, so
 /// they have the same bits in every window. Receivers are codes of directions.

@@ -1,6 +1,7 @@
 //! The growth of one row of nodes. Each step is a loop over a row that reads one neighbour, so that it vectorises.
 
-use super::carve::{FREE, UNKNOWN, WATER};
+use super::carve::UNKNOWN;
+use super::drainage::{FREE, WATER};
 use super::law::CONCAVITY;
 use crate::erosion::power::power;
 use std::f32::consts::{FRAC_1_SQRT_2, SQRT_2};

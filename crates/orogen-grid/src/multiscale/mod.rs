@@ -8,6 +8,7 @@
 //! Related work: J.-D. Génevaux et al., "Terrain generation using procedural models based on hydrology" (2013); M. Gaillard et al., "Dendry: a
 //! procedural model for dendritic patterns" (2019); H. Schott et al., "Terrain amplification using multi-scale erosion" (2024).
 
+mod banks;
 mod carve;
 mod children;
 mod coarsest;

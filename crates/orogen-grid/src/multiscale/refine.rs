@@ -1,10 +1,11 @@
 //! One level from the level above.
 
-use super::carve::{FREE, carve};
+use super::carve::carve;
 use super::children::Children;
 use super::continents::Continents;
+use super::banks::raise_banks;
 use super::creep::{creep, steepest};
-use super::drainage;
+use super::drainage::{self, FREE};
 use super::given::Given;
 use super::growth::{Growth, Spacing};
 use super::law::{Law, has_floors};
@@ -31,6 +32,9 @@ const AREA_PASSES: usize = 2;
 const CREEP_PASSES: usize = 2;
 const LAST_AREA_PASSES: usize = 4;
 
+/// Passes that raise banks on the finest level.
+const BANK_PASSES: usize = 3;
+
 /// Drainage area, in cells, below which nodes of rivers of the level above choose their receivers again.
 const FREE_AREA: f32 = 64.0;
 
@@ -38,7 +42,7 @@ const FREE_AREA: f32 = 64.0;
 const fn inset(finest: bool) -> usize {
     let growth = CARVED + FIRST_PASSES + ROUNDS * (AREA_PASSES + 1);
     let growth = growth + LAST_AREA_PASSES;
-    if finest { growth + straighten::REACH + CREEP_PASSES + 1 } else { growth }
+    if finest { growth + straighten::REACH + CREEP_PASSES + BANK_PASSES + 1 } else { growth }
 }
 
 impl Continents {
@@ -137,6 +141,11 @@ impl Continents {
                 progress.check()?;
                 extent = extent.shrunk(1);
                 creep(extent, &mut growth.height, &mut growth.spare, &growth.area, &growth.receiver);
+            }
+            for _ in 0..BANK_PASSES {
+                progress.check()?;
+                extent = extent.shrunk(1);
+                raise_banks(extent, &mut growth.height, &mut growth.spare, &growth.area, &growth.receiver);
             }
             extent = extent.shrunk(1);
             steepest(extent, &growth.height, &growth.fixed, &mut growth.receiver);

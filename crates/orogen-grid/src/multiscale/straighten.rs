@@ -1,6 +1,7 @@
 //! Shorter rivers on the finest level: where a river comes back to a cell beside itself, it goes there directly.
 
-use super::carve::{Carved, FREE, UNKNOWN};
+use super::carve::{Carved, UNKNOWN};
+use super::drainage::FREE;
 use super::stencil::{Extent, code};
 use crate::hydrology::direction::{NONE, STEPS};
 

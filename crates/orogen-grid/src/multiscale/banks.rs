@@ -1,0 +1,64 @@
+//! Banks of rivers on the finest level: the ground beside a river is higher than its bed, so that steepest descent stays in it.
+
+use super::drainage::WATER;
+use super::stencil::Extent;
+use orogen_simd::{Body, Simd, dispatch};
+
+/// Drainage area, in cells, from which a river has banks.
+const RIVER_AREA: f32 = 500.0;
+
+/// Height of a bank over the bed, in metres.
+const BANK: f32 = 0.3;
+
+/// Fall from a donor, in metres, that raising leaves.
+const LEFT: f32 = 0.01;
+
+/// One pass over the cells of `extent`: nodes beside rivers rise to the banks, as far as their donors stay above them.
+pub fn raise_banks(extent: Extent, heights: &mut Vec<f32>, spare: &mut Vec<f32>, area: &[f32], receiver: &[f32]) {
+    dispatch(Banks { extent, heights, area, receiver, out: spare });
+    std::mem::swap(heights, spare);
+}
+
+struct Banks<'a> {
+    extent: Extent,
+    heights: &'a [f32],
+    area: &'a [f32],
+    receiver: &'a [f32],
+    out: &'a mut [f32],
+}
+
+impl Body for Banks<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, _: S) {
+        let extent = self.extent;
+        for j in extent.rows() {
+            let around = [self.heights, self.area, self.receiver].map(|plane| extent.around(plane, j));
+            let own = [extent.row(self.heights, j), extent.row(self.area, j), extent.row(self.receiver, j)];
+            raise(own, around, extent.row_mut(self.out, j));
+        }
+    }
+}
+
+#[inline(always)]
+fn raise([height, area, receiver]: [&[f32]; 3], around: [[&[f32]; 8]; 3], out: &mut [f32]) {
+    let n = out.len();
+    let (height, area, receiver) = (&height[..n], &area[..n], &receiver[..n]);
+    let [heights, areas, receivers] = around.map(|planes| planes.map(|row| &row[..n]));
+    for i in 0..n {
+        let here = height[i];
+        let (mut bank, mut lowest_donor) = (here, f32::INFINITY);
+        for code in 0..8 {
+            let there = heights[code][i];
+            let river = (areas[code][i] >= RIVER_AREA) & (receivers[code][i] < WATER);
+            bank = if river & (there + BANK > bank) { there + BANK } else { bank };
+            let donor = receivers[code][i] == ((code + 4) & 7) as f32;
+            lowest_donor = if donor & (there < lowest_donor) { there } else { lowest_donor };
+        }
+        let limit = lowest_donor - LEFT;
+        let raised = if bank < limit { bank } else { limit };
+        let raised = if raised > here { raised } else { here };
+        out[i] = if (area[i] < RIVER_AREA) & (receiver[i] < WATER) { raised } else { here };
+    }
+}

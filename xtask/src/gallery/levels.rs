@@ -1,0 +1,24 @@
+//! The zoom from continents to valleys, in the README and in docs/levels.md.
+
+use std::path::Path;
+
+use crate::failure::{Result, on_file};
+use crate::shell;
+
+/// The cells of the pictures, in metres.
+const CELLS: [&str; 4] = ["7680", "960", "240", "60"];
+
+/// The window of each picture: the origin of the preset `endless` lies in its middle.
+const WINDOW: &str = "-256,-256,512,512";
+
+/// A map of `endless` at each cell.
+pub fn write(images: &Path, work: &Path) -> Result {
+    for cell in CELLS {
+        let mut orogen = shell::cargo("run --quiet --release --package orogen-cli -- generate endless --quiet");
+        shell::run(orogen.args(["--window", WINDOW, "--cell", cell, "-o"]).arg(work))?;
+        let to = images.join(format!("levels-{cell}.png"));
+        std::fs::copy(work.join("map.png"), &to).map_err(|e| on_file("write", &to, &e))?;
+        println!("{}", shell::relative(&to));
+    }
+    Ok(())
+}
