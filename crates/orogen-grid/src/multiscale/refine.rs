@@ -1,9 +1,9 @@
 //! One level from the level above.
 
+use super::banks::raise_banks;
 use super::carve::carve;
 use super::children::Children;
 use super::continents::Continents;
-use super::banks::raise_banks;
 use super::creep::{creep, steepest};
 use super::drainage::{self, FREE};
 use super::given::Given;
