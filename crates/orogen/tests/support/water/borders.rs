@@ -77,7 +77,7 @@ pub fn measure(network: &Network, mosaic: &Mosaic) -> Borders {
 pub fn measure_pairs(tiles: Tiles, extent: &Window, side: usize, pairs: usize, seed: i64) -> Result<Borders> {
     let mut found = Borders::default();
     for pair in 0..pairs as i64 {
-        let along = usize::from(hashed(pair, seed) % 2 == 0);
+        let along = usize::from(hashed(pair, seed).is_multiple_of(2));
         let shape = Window::new(side * (1 + along), side * (2 - along), extent.cell);
         let within = |from: i64, cells: usize, taken: usize, salt: i64| {
             from + (u64::from(hashed(pair, seed ^ salt)) % (cells.saturating_sub(taken) as u64 + 1)) as i64
