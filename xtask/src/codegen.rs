@@ -18,7 +18,7 @@ pub const ABOUT: &str = "rewrite the lists of modules, nodes and formats, the JS
 pub const HELP: &str = "
 Usage: cargo xtask codegen [--check]
 
-Reads the op! block of every file in crates/orogen-engine/src/{field,filter,solver} and rewrites
+Reads the op! block of every file in crates/orogen-engine/src/{field,filter,levelled,solver} and rewrites
   - the module lines at the end of each folder's mod.rs
   - crates/orogen-engine/src/node_list.rs
   - crates/orogen-output/src/export/format_list.rs, of the files in export/formats that declare a FORMAT
@@ -30,7 +30,7 @@ Reads the op! block of every file in crates/orogen-engine/src/{field,filter,solv
 ";
 
 /// The three localities: the folder and the word in an op! block.
-const LOCALITIES: [&str; 3] = ["field", "filter", "solver"];
+const LOCALITIES: [&str; 4] = ["field", "filter", "levelled", "solver"];
 
 const SCHEMA: &str = "crates/orogen-engine/recipes/orogen.schema.json";
 const REFERENCE: &str = "docs/ops.md";

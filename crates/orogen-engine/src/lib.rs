@@ -29,6 +29,7 @@ pub mod ids;
 pub mod large;
 pub mod laws;
 pub mod layer;
+pub mod levelled;
 pub mod node;
 pub mod op;
 pub mod plan;

@@ -2,10 +2,10 @@
 
 use crate::declare::{Declared, Input, InputName, Spec};
 use crate::layer::Layer;
-use crate::op::{Field, Filter, Op, OpType, Solver};
+use crate::op::{Field, Filter, Levelled, Op, OpType, Solver};
 use crate::registered::RegisteredOp;
 use crate::value::Value;
-use crate::{field, filter, solver};
+use crate::{field, filter, levelled, solver};
 use orogen_io::dem::file_ref::FileRef;
 use std::any::Any;
 use std::collections::BTreeMap;
@@ -15,6 +15,7 @@ macro_rules! nodes {
     (
         field { $( $field_mod:ident :: $field:ident, )* }
         filter { $( $filter_mod:ident :: $filter:ident, )* }
+        levelled { $( $levelled_mod:ident :: $levelled:ident, )* }
         solver { $( $solver_mod:ident :: $solver:ident, )* }
     ) => {
         /// One node of a recipe: an op with its inputs and parameters.
@@ -23,6 +24,7 @@ macro_rules! nodes {
         pub enum Node {
             $( $field(field::$field_mod::$field), )*
             $( $filter(filter::$filter_mod::$filter), )*
+            $( $levelled(levelled::$levelled_mod::$levelled), )*
             $( $solver(solver::$solver_mod::$solver), )*
             /// An op of the program that uses this crate.
             Registered(RegisteredOp),
@@ -42,6 +44,7 @@ macro_rules! nodes {
         fn built_in(op: &dyn Any) -> Option<Node> {
             $( if let Some(op) = op.downcast_ref::<field::$field_mod::$field>() { return Some(Node::$field(op.clone())); } )*
             $( if let Some(op) = op.downcast_ref::<filter::$filter_mod::$filter>() { return Some(Node::$filter(op.clone())); } )*
+            $( if let Some(op) = op.downcast_ref::<levelled::$levelled_mod::$levelled>() { return Some(Node::$levelled(op.clone())); } )*
             $( if let Some(op) = op.downcast_ref::<solver::$solver_mod::$solver>() { return Some(Node::$solver(op.clone())); } )*
             None
         }
@@ -52,6 +55,7 @@ macro_rules! nodes {
                 vec![
                     $( Node::$field(Default::default()), )*
                     $( Node::$filter(Default::default()), )*
+                    $( Node::$levelled(Default::default()), )*
                     $( Node::$solver(Default::default()), )*
                 ]
             }
@@ -60,6 +64,7 @@ macro_rules! nodes {
                 match self {
                     $( Node::$field(op) => op, )*
                     $( Node::$filter(op) => op, )*
+                    $( Node::$levelled(op) => op, )*
                     $( Node::$solver(op) => op, )*
                     Node::Registered(op) => op.declared(),
                 }
@@ -69,16 +74,18 @@ macro_rules! nodes {
                 match self {
                     $( Node::$field(op) => op, )*
                     $( Node::$filter(op) => op, )*
+                    $( Node::$levelled(op) => op, )*
                     $( Node::$solver(op) => op, )*
                     Node::Registered(op) => op.declared_mut(),
                 }
             }
 
-            /// The node as a field, a filter or a solver.
+            /// The node as what it is.
             pub fn op(&self) -> Op<'_> {
                 match self {
                     $( Node::$field(op) => Op::Field(op as &dyn Field), )*
                     $( Node::$filter(op) => Op::Filter(op as &dyn Filter), )*
+                    $( Node::$levelled(op) => Op::Levelled(op as &dyn Levelled), )*
                     $( Node::$solver(op) => Op::Solver(op as &dyn Solver), )*
                     Node::Registered(op) => op.op(),
                 }

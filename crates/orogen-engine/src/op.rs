@@ -1,4 +1,4 @@
-//! Traits of ops: fields, filters and solvers, and their inputs.
+//! Traits of ops: fields, filters, levelled ops and solvers, and their inputs.
 
 use crate::declare::Declared;
 use crate::expression::term::{self, Term};
@@ -254,6 +254,111 @@ pub trait Filter: Declared + Send + Sync {
     }
 }
 
+/// The lattices of a levelled op: each has half the cell of the one above it, and all have a sample at the origin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Levels {
+    /// The cell of the finest level, in metres.
+    pub finest: f64,
+    /// Number of levels, at least 1. Level 0 is the coarsest.
+    pub count: usize,
+}
+
+impl Levels {
+    /// The cell of a level, in metres: a power of two times the finest.
+    #[must_use]
+    pub fn cell(&self, level: usize) -> f64 {
+        let halvings = self.count.saturating_sub(1).saturating_sub(level).min(1000);
+        self.finest * 2f64.powi(halvings as i32)
+    }
+
+    /// The level that a window with this cell is read from: the coarsest with the same or a smaller cell, otherwise the finest.
+    #[must_use]
+    pub fn serving(&self, cell: f64) -> usize {
+        (0..self.count).find(|level| self.cell(*level) <= cell).unwrap_or(self.count.saturating_sub(1))
+    }
+}
+
+/// A levelled op is a pyramid of lattices. Each level over any window is a function of the coarser level over that window and a
+/// finite halo, so a coarse level is the preview of the finer ones, and no window depends on the extent of the world. Level 0
+/// depends on its inputs, positions and the seed alone.
+///
+/// The data of a level are *planes*: grids over its window whose meaning only the op knows. The layers are made from them last.
+pub trait Levelled: Declared + Send + Sync {
+    /// The lattices.
+    fn levels(&self) -> Levels;
+
+    /// Number of planes of each level.
+    fn planes(&self) -> usize;
+
+    /// Number of samples of the level above that [`Levelled::refine`] to `level` reads beyond the window, halved.
+    fn halo(&self, level: usize) -> usize;
+
+    /// Number of samples beyond the window that a level reads of the op's inputs.
+    fn source_halo(&self, level: usize) -> usize {
+        let _ = level;
+        0
+    }
+
+    /// The planes of level 0 over `window`. Each given input covers `window.grown(source_halo(0))`.
+    ///
+    /// # Errors
+    /// If the work was cancelled.
+    fn coarsest(&self, inputs: &[Option<&Grid>], window: &Window, context: &Context) -> Result<Vec<Grid>>;
+
+    /// The planes of `level`, at least 1, over `window`, from those of the level above over
+    /// [the window's parent](Levelled::parent). Each given input covers `window.grown(source_halo(level))` at the cell of the level.
+    ///
+    /// # Errors
+    /// If the work was cancelled.
+    fn refine(
+        &self,
+        level: usize,
+        parent: &[Grid],
+        inputs: &[Option<&Grid>],
+        window: &Window,
+        context: &Context,
+    ) -> Result<Vec<Grid>>;
+
+    /// Number of samples of a level that [`Levelled::layers_of`] reads beyond the window.
+    fn surface_halo(&self) -> usize;
+
+    /// Computes layers over `window` from the planes of `level` over `window.grown(surface_halo)`. `out` is that of
+    /// [`Filter::apply`].
+    ///
+    /// # Errors
+    /// If the work was cancelled.
+    fn layers_of(
+        &self,
+        level: usize,
+        planes: &[Grid],
+        window: &Window,
+        out: &mut [Option<Grid>],
+        context: &Context,
+    ) -> Result<()>;
+
+    /// Memory beside planes and layers for making a level over `window`, in bytes.
+    fn scratch(&self, level: usize, window: &Window) -> u64 {
+        let _ = (level, window);
+        0
+    }
+
+    /// Approximate nanoseconds per sample of a level.
+    fn cost(&self, level: usize) -> f64 {
+        let _ = level;
+        1000.0
+    }
+
+    /// The samples of the level above that `level` over `window` is made from: from half the first, rounded down, to half the last,
+    /// rounded up, and the halo around them.
+    fn parent(&self, level: usize, window: &Window) -> Window {
+        let halved = |first: i64, end: i64| (first.div_euclid(2), end.div_euclid(2) + 1);
+        let ((x, right), (y, bottom)) = (halved(window.x, window.right()), halved(window.y, window.bottom()));
+        let (width, height) = ((right - x).max(0) as usize, (bottom - y).max(0) as usize);
+        let cell = self.levels().cell(level.saturating_sub(1));
+        Window { x, y, width, height, cell }.grown(self.halo(level))
+    }
+}
+
 /// The solution of a solver, which is read like a field.
 #[derive(Debug)]
 pub struct Solution {
@@ -386,6 +491,8 @@ pub enum Op<'a> {
     Field(&'a dyn Field),
     /// Depends on a halo.
     Filter(&'a dyn Filter),
+    /// Depends on a halo of the next coarser level.
+    Levelled(&'a dyn Levelled),
     /// Depends on the whole world.
     Solver(&'a dyn Solver),
 }

@@ -55,11 +55,15 @@ pub struct Session {
     pub(crate) pool: Arc<Pool>,
     pub(crate) store: Arc<Store>,
     pub(crate) grids: Arc<GridStore>,
+    pub(crate) level_tiles: Arc<GridStore>,
     pub(crate) budget: Budget,
 }
 
 /// Default of [`Options::kept_grids`], in bytes.
 const KEPT_GRIDS: u64 = 256 << 20;
+
+/// Memory limit of tiles of levels, in bytes; with a memory limit, at most an eighth of it.
+const LEVEL_TILES: u64 = 128 << 20;
 
 impl Session {
     /// Starts the threads.
@@ -73,7 +77,10 @@ impl Session {
             pool: Arc::new(pool),
             store: Arc::new(Store::new(options.store, options.scratch)),
             grids: Arc::new(GridStore::new(options.kept_grids.unwrap_or(most))),
-            budget: options.memory,
+            level_tiles: Arc::new(GridStore::new(
+                options.memory.limit().map_or(LEVEL_TILES, |limit| LEVEL_TILES.min(limit / 8)),
+            )),
+            budget: options.memory.clone(),
         })
     }
 
@@ -111,7 +118,7 @@ impl Session {
     /// Memory of kept solutions and grids, in bytes, without that of running requests.
     #[must_use]
     pub fn kept_memory(&self) -> u64 {
-        self.store.memory().saturating_add(self.grids.memory())
+        self.store.memory().saturating_add(self.grids.memory()).saturating_add(self.level_tiles.memory())
     }
 
     /// The same threads and memory without any solutions and without a store for later runs.
@@ -134,7 +141,9 @@ impl Session {
     pub(crate) fn make_room(&self, needed: &[Key]) {
         if let Some(unused) = self.budget.unused() {
             self.store.make_room(unused, needed);
-            self.grids.make_room(unused.saturating_sub(self.store.memory()));
+            let left = unused.saturating_sub(self.store.memory());
+            self.grids.make_room(left);
+            self.level_tiles.make_room(left.saturating_sub(self.grids.memory()));
         }
     }
 }

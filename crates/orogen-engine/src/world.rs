@@ -476,6 +476,7 @@ impl World {
             keys: &self.keys,
             store: &self.session.store,
             grids: Some(&self.session.grids),
+            level_tiles: &self.session.level_tiles,
             budget: &self.session.budget,
             pool: &self.session.pool,
             progress,

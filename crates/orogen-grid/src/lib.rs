@@ -11,6 +11,7 @@
 //! | [`hydrology`] | depressions (filled, breached, carved), D8 and D-infinity receivers, drainage areas, lakes, watersheds, stream power |
 //! | [`hydrography`] | rivers, lakes, coasts and summits as points, lines and areas |
 //! | [`erosion`] | thermal erosion, virtual pipes, droplets, local stream power |
+//! | [`multiscale`] | eroded terrain without bounds, level by level: continents with rivers |
 //! | [`contour`] | contour lines, smoothed |
 //! | [`aggregate`] | diffusion-limited aggregation, and mountains from it |
 //! | [`resample`] | interpolation between samples |
@@ -59,6 +60,7 @@ pub mod hex;
 pub mod hydrography;
 pub mod hydrology;
 mod interop;
+pub mod multiscale;
 pub mod progress;
 #[doc(hidden)]
 pub mod random;

@@ -234,7 +234,7 @@ fn chunks_of_bounded_worlds_are_windows_too() {
         let bound = match node.op() {
             Op::Solver(_) => true,
             Op::Field(field) => field.needs_bounds(),
-            Op::Filter(_) => false,
+            Op::Filter(_) | Op::Levelled(_) => false,
         };
         if !bound {
             continue;

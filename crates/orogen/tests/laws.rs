@@ -165,7 +165,7 @@ fn dear_sources_of_a_filter_are_made_once() {
                 .iter()
                 .filter(|i| matches!(i, orogen::plan::program::Instruction::Field { node, .. } if node.index() == 0))
                 .count(),
-            Step::Apply { .. } => 0,
+            Step::Apply { .. } | Step::Refine { .. } => 0,
         })
         .sum();
     assert_eq!(fields, 1, "{}", world.explain(&plan).unwrap());

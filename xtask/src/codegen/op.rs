@@ -28,7 +28,7 @@ pub fn find(text: &str) -> Result<Option<Op>, String> {
             .find(|l| !(l.is_empty() || l.starts_with("//") || l.starts_with('#')))
             .ok_or("an op! block that never begins")?;
         found = Some(parse(declaration).ok_or_else(|| {
-            format!("expected `pub struct NAME = \"op_name\", field|filter|solver, revision N;`, found `{declaration}`")
+            format!("expected `pub struct NAME = \"op_name\", field|filter|levelled|solver, revision N;`, found `{declaration}`")
         })?);
     }
     Ok(found)

@@ -120,7 +120,7 @@ impl Diagram {
             }
             let kind = match spec.locality.name() {
                 "field" => Kind::Field,
-                "filter" => Kind::Filter,
+                "filter" | "levelled" => Kind::Filter,
                 _ => Kind::Solver,
             };
             diagram.blocks.push(Block { kind, name: cut(&named.name), op: spec.op, rows, used: false });

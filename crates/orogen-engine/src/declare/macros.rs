@@ -50,7 +50,7 @@ macro_rules! choice {
 }
 
 /// Declares an op: its struct, defaults, name in recipes, inputs, parameters and layers. The struct then implements [`Field`](crate::op::Field),
-/// [`Filter`](crate::op::Filter) or [`Solver`](crate::op::Solver), the locality that the declaration names.
+/// [`Filter`](crate::op::Filter), [`Levelled`](crate::op::Levelled) or [`Solver`](crate::op::Solver), the locality that the declaration names.
 ///
 /// The name of an op that is not part of this crate has a namespace: `"mygame.terraces"`. A [`Registry`](crate::registry::Registry) makes it known
 /// to recipes. The revision is part of the content key of every node of the op: raise it when the op comes to make other bits.
@@ -329,6 +329,7 @@ macro_rules! op {
     };
     (@as_op field $op:expr) => { $crate::op::Op::Field($op) };
     (@as_op filter $op:expr) => { $crate::op::Op::Filter($op) };
+    (@as_op levelled $op:expr) => { $crate::op::Op::Levelled($op) };
     (@as_op solver $op:expr) => { $crate::op::Op::Solver($op) };
     (@empty $given:tt) => { Vec::new() };
     (@given) => { false };
@@ -343,5 +344,6 @@ macro_rules! op {
     (@interpolation source) => { $crate::layer::Interpolation::AsSource };
     (@locality field) => { $crate::declare::Locality::Field };
     (@locality filter) => { $crate::declare::Locality::Filter };
+    (@locality levelled) => { $crate::declare::Locality::Levelled };
     (@locality solver) => { $crate::declare::Locality::Solver };
 }

@@ -9,6 +9,8 @@ pub enum Locality {
     Field,
     /// A finite halo.
     Filter,
+    /// A finite halo of the next coarser level, level by level.
+    Levelled,
     /// The whole bounded world.
     Solver,
 }
@@ -20,6 +22,7 @@ impl Locality {
         match self {
             Locality::Field => "field",
             Locality::Filter => "filter",
+            Locality::Levelled => "levelled",
             Locality::Solver => "solver",
         }
     }

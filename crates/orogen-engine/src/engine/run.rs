@@ -31,6 +31,8 @@ pub struct Engine<'a> {
     pub store: &'a Store,
     /// The store of expensive filters' grids, if there is one.
     pub grids: Option<&'a GridStore>,
+    /// The store of tiles of levels.
+    pub level_tiles: &'a GridStore,
     pub budget: &'a Budget,
     /// The thread pool. Waiting happens only on the calling thread.
     pub pool: &'a Pool,
@@ -108,11 +110,16 @@ impl<'a> Engine<'a> {
 
     /// The keys of a step's grids; `None` if they are not worth keeping.
     fn grid_keys(&self, step: &Step) -> Option<Vec<GridKey>> {
-        let Step::Apply { node, window, out, .. } = step else { return None };
-        let Op::Filter(filter) = self.recipe.nodes().get(node.index())?.node.op() else { return None };
+        let (Step::Apply { node, window, out, .. } | Step::Refine { node, window, out, .. }) = step else {
+            return None;
+        };
+        let is_expensive = match self.recipe.nodes().get(node.index())?.node.op() {
+            Op::Filter(filter) => filter.cost(window.cell) >= EXPENSIVE,
+            Op::Levelled(_) => true,
+            _ => false,
+        };
         let layers = out.iter().enumerate().filter_map(|(layer, slot)| slot.map(|_| layer));
-        (filter.cost(window.cell) >= EXPENSIVE)
-            .then(|| layers.map(|layer| GridKey::new(self.keys[*node], layer, window)).collect())
+        is_expensive.then(|| layers.map(|layer| GridKey::new(self.keys[*node], layer, window)).collect())
     }
 
     /// Computes the values of a scattered plan at points, one output after the other.
@@ -149,6 +156,18 @@ impl<'a> Engine<'a> {
             }
             Step::Apply { .. } => {
                 let made = self.apply(step, grids, progress)?;
+                self.keep_grids(step, &made);
+                made
+            }
+            Step::Refine { node, inputs, window, out } => {
+                let mut given = Vec::with_capacity(inputs.len());
+                for level in inputs {
+                    let grid = |slot: &GridId| grids[*slot].as_ref().ok_or_else(|| missing("an input of a level"));
+                    given.push(level.iter().map(|slot| slot.as_ref().map(grid).transpose()).collect::<Result<_>>()?);
+                }
+                let wanted: Vec<bool> = out.iter().map(Option::is_some).collect();
+                let made = self.refine(*node, given, &wanted, window, progress)?;
+                let made: Vec<Grid> = made.into_iter().flatten().collect();
                 self.keep_grids(step, &made);
                 made
             }

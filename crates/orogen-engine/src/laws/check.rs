@@ -195,7 +195,7 @@ impl<'a> Laws<'a> {
         match self.node.op() {
             Op::Solver(_) => true,
             Op::Field(field) => field.needs_bounds(),
-            Op::Filter(_) => false,
+            Op::Filter(_) | Op::Levelled(_) => false,
         }
     }
 

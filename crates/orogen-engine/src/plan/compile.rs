@@ -149,7 +149,7 @@ impl<'a> Compiler<'a> {
                 }
             },
             Op::Solver(solver) if solver.reads_inputs() => here.extend(links),
-            Op::Solver(_) | Op::Filter(_) => {}
+            Op::Solver(_) | Op::Filter(_) | Op::Levelled(_) => {}
         }
         if graph.masks[node] != Link::None {
             here.extend(self.masked_source(target));
@@ -237,7 +237,7 @@ impl<'a> Compiler<'a> {
                 self.instructions.push(Instruction::Solved { node, layer: target.layer, kind, coords, inputs, out });
                 out
             }
-            Op::Filter(_) => self.request(target, true, coords, kind),
+            Op::Filter(_) | Op::Levelled(_) => self.request(target, true, coords, kind),
         };
         let mask = graph.masks[node];
         let value = if mask == Link::None {

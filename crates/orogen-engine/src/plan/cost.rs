@@ -6,6 +6,7 @@
 //! distinguishes seconds from hours. On that machine it was within a third of the time of the presets at 4096 samples
 //! per side.
 
+use super::levels;
 use super::program::{Instruction, Program};
 use super::steps::{Plan, Solve, Step};
 use crate::ids::{CoordSetId, Id, IndexVec};
@@ -34,6 +35,10 @@ pub fn step(step: &Step, plan: &Plan, recipe: &Recipe) -> f64 {
         Step::Fill { program, out, .. } => program_cost(program, plan.scattered && out.is_empty(), recipe),
         Step::Apply { node, window, .. } => match recipe.nodes()[node.index()].node.op() {
             Op::Filter(filter) => filter.cost(window.cell),
+            _ => 0.0,
+        },
+        Step::Refine { node, window, .. } => match recipe.nodes()[node.index()].node.op() {
+            Op::Levelled(op) => return levels::cost(op, window),
             _ => 0.0,
         },
     };

@@ -1,9 +1,10 @@
 //! The description of a plan for users.
 
+use super::levels::Serving;
 use super::steps::{Plan, Step};
 use super::{cost, memory};
 use crate::declare::short;
-use crate::ids::{Id, NodeId};
+use crate::ids::{GridId, Id, NodeId};
 use crate::op::Op;
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::Graph;
@@ -32,6 +33,10 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
                 },
             },
             Op::Filter(filter) => format!("halo of {}", count(filter.halo(cell), "sample")),
+            Op::Levelled(op) => {
+                let levels = op.levels();
+                format!("{} to {} m", number(levels.cell(0)), number(levels.finest))
+            }
             Op::Solver(solver) => {
                 format!("world{} at {} m", beyond(solver.margin()), number(solver.cell(recipe.world.cell)))
             }
@@ -84,11 +89,20 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
                 )
             }
             Step::Apply { node, halo, out, .. } => {
-                let layers = recipe.nodes()[node.index()].node.layers();
-                let wanted: Vec<&str> =
-                    layers.iter().zip(out).filter(|(_, out)| out.is_some()).map(|(layer, _)| layer.name).collect();
-                let which = if layers.len() > 1 { format!(" ({})", wanted.join(", ")) } else { String::new() };
+                let which = layers_read(recipe, *node, out);
                 writeln!(text, "  apply `{}`{which} to {}, halo {halo}", name(*node), extent(window))
+            }
+            Step::Refine { node, out, .. } => {
+                let which = layers_read(recipe, *node, out);
+                let level = match named(*node).map(|named| named.node.op()) {
+                    Some(Op::Levelled(op)) => {
+                        let (levels, serving) = (op.levels(), Serving::of(&op.levels(), window));
+                        let cell = number(serving.samples.cell);
+                        format!(" from {}, the last of {cell} m", count(serving.level.min(levels.count) + 1, "level"))
+                    }
+                    _ => String::new(),
+                };
+                writeln!(text, "  refine `{}`{which} to {}{level}", name(*node), extent(window))
             }
         };
     }
@@ -120,6 +134,13 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
         }
     };
     text
+}
+
+/// The layers that a step makes, in brackets, if the node has several.
+fn layers_read(recipe: &Recipe, node: NodeId, out: &[Option<GridId>]) -> String {
+    let layers = recipe.nodes()[node.index()].node.layers();
+    let wanted = layers.iter().zip(out).filter(|(_, out)| out.is_some()).map(|(layer, _)| layer.name);
+    if layers.len() > 1 { format!(" ({})", wanted.collect::<Vec<_>>().join(", ")) } else { String::new() }
 }
 
 /// The margin of a solver, behind "world".

@@ -10,7 +10,8 @@ pub struct Cluster {
     pub serves: Vec<RequestId>,
 }
 
-/// Merges nearby windows: two become one if the union has at most a quarter more samples than both together.
+/// Merges nearby windows of the same cell: two become one if the union has at most a quarter more samples than both together. A
+/// levelled op requests its inputs at the cells of its levels.
 pub fn clusters(requests: &Requests, wanted: impl Iterator<Item = RequestId>) -> Vec<Cluster> {
     let mut clusters: Vec<Cluster> =
         wanted.map(|id| Cluster { window: requests.get(id).window, serves: vec![id] }).collect();
@@ -21,6 +22,10 @@ pub fn clusters(requests: &Requests, wanted: impl Iterator<Item = RequestId>) ->
         let mut j = i + 1;
         while j < clusters.len() {
             let (a, b) = (clusters[i].window, clusters[j].window);
+            if a.cell != b.cell {
+                j += 1;
+                continue;
+            }
             let union = a.union(&b);
             if samples(&union) <= 1.25 * (samples(&a) + samples(&b)) {
                 let other = clusters.swap_remove(j);

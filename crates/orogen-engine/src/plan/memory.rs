@@ -1,5 +1,6 @@
 //! Memory of a plan, known before the first sample.
 
+use super::levels;
 use super::program::{BLOCK_HEIGHT, BLOCK_WIDTH, Program};
 use super::steps::{Plan, Solve, Step};
 use crate::ids::{GridId, Id, IndexVec, StepId};
@@ -61,6 +62,10 @@ fn beside(plan: &Plan, recipe: &Recipe, threads: usize) -> u64 {
             };
             grid_bytes(&window.grown(*halo)).saturating_mul(cuts).saturating_add(own)
         }
+        Step::Refine { node, window, out, .. } => match recipe.nodes()[node.index()].node.op() {
+            Op::Levelled(op) => levels::memory(op, out.iter().flatten().count(), window, threads),
+            _ => 0,
+        },
     };
     plan.steps.iter().map(step).max().unwrap_or(0)
 }
@@ -94,7 +99,7 @@ pub fn needed(plan: &Plan, recipe: &Recipe, threads: usize) -> u64 {
 fn own_bytes(step: &Step) -> u64 {
     match step {
         Step::Fill { program, .. } => 128 * program.instructions.len() as u64,
-        Step::Apply { .. } => 128,
+        Step::Apply { .. } | Step::Refine { .. } => 128,
     }
 }
 

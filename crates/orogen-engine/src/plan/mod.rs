@@ -11,6 +11,7 @@ pub(crate) mod explain;
 mod grid_merge;
 mod keep;
 pub(crate) mod key;
+pub(crate) mod levels;
 pub(crate) mod memory;
 pub mod planner;
 pub mod program;

@@ -3,10 +3,11 @@
 use super::compile::{Scope, compile};
 use super::grid_merge::{Cluster, clusters};
 use super::keep::Evaluations;
+use super::levels;
 use super::request::{GridRequest, Requests};
 use super::steps::Step;
 use crate::ids::{GridId, Id, IndexVec, NodeId, RequestId};
-use crate::op::{Filter, Op};
+use crate::op::{Filter, Levelled, Op};
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::{Graph, LayerRef, Link};
 use orogen_grid::error::{Error, ErrorKind, Result};
@@ -117,23 +118,31 @@ impl Scheduler<'_> {
         Ok(())
     }
 
-    /// Serves the requests for a filter's own layers: one application for all of them.
+    /// Serves the requests for the own layers of a filter or a levelled op: one step for all of them.
     fn make_raw(&mut self, node: NodeId) -> Result<()> {
-        let Op::Filter(filter) = self.recipe.nodes()[node.index()].node.op() else { return Ok(()) };
+        let op = self.recipe.nodes()[node.index()].node.op();
         let requests = &self.schedule.requests;
         for cluster in clusters(requests, requests.of(node, true)) {
-            self.apply(node, filter, &cluster)?;
+            let window = cluster.window;
+            let out = self.layers(node, &cluster)?;
+            match op {
+                Op::Filter(filter) => self.apply(node, filter, window, out)?,
+                Op::Levelled(op) => self.refine(node, op, window, out)?,
+                Op::Field(_) | Op::Solver(_) => {}
+            }
         }
         Ok(())
     }
 
-    fn apply(&mut self, node: NodeId, filter: &dyn Filter, cluster: &Cluster) -> Result<()> {
+    /// The grids of the layers that requests read, which serve them.
+    fn layers(&mut self, node: NodeId, cluster: &Cluster) -> Result<Vec<Option<GridId>>> {
         let window = cluster.window;
         let mut out: Vec<Option<GridId>> = vec![None; self.recipe.nodes()[node.index()].node.layers().len()];
         for &id in &cluster.serves {
             let layer = self.schedule.requests.get(id).target.layer;
             let Some(slot) = out.get_mut(layer) else {
-                return Err(Error::new(ErrorKind::Internal, format!("a filter has no layer {layer}")));
+                let op = self.recipe.nodes()[node.index()].node.spec().locality.name();
+                return Err(Error::new(ErrorKind::Internal, format!("a {op} has no layer {layer}")));
             };
             let grid = match *slot {
                 Some(grid) => grid,
@@ -141,8 +150,32 @@ impl Scheduler<'_> {
             };
             self.schedule.requests.serve(id, grid);
         }
+        Ok(out)
+    }
+
+    fn apply(&mut self, node: NodeId, filter: &dyn Filter, window: Window, out: Vec<Option<GridId>>) -> Result<()> {
         let halo = filter.halo(window.cell);
-        let grown = window.grown(halo);
+        let (inputs, constants) = self.inputs(node, window.grown(halo));
+        self.schedule.steps.push(Step::Apply { node, inputs, window, halo, out });
+        constants.into_iter().try_for_each(|constant| self.fill_constant(constant))
+    }
+
+    /// A step that makes layers of a levelled op, with its inputs at each level.
+    fn refine(&mut self, node: NodeId, op: &dyn Levelled, window: Window, out: Vec<Option<GridId>>) -> Result<()> {
+        let (mut inputs, mut constants) = (Vec::new(), Vec::new());
+        if self.graph.links[node].iter().any(|link| *link != Link::None) {
+            for (level, window) in levels::covering(op, &window).into_iter().enumerate() {
+                let (given, more) = self.inputs(node, window.grown(op.source_halo(level)));
+                inputs.push(given);
+                constants.extend(more);
+            }
+        }
+        self.schedule.steps.push(Step::Refine { node, inputs, window, out });
+        constants.into_iter().try_for_each(|constant| self.fill_constant(constant))
+    }
+
+    /// The requests for a node's inputs over a window. A constant input becomes a grid with that value, filled by a step right before.
+    fn inputs(&mut self, node: NodeId, window: Window) -> (Vec<Option<RequestId>>, Vec<(Link, Window, GridId)>) {
         let graph = self.graph;
         let mut inputs: Vec<Option<RequestId>> = Vec::new();
         let mut constants = Vec::new();
@@ -150,30 +183,25 @@ impl Scheduler<'_> {
             inputs.push(match link {
                 Link::None => None,
                 Link::Value(_) => {
-                    constants.push((inputs.len(), *link));
-                    None
+                    let grid = self.grid(window, node);
+                    let request = GridRequest { target: LayerRef { node, layer: 0 }, raw: false, window };
+                    constants.push((*link, window, grid));
+                    Some(self.schedule.requests.add_served(request, grid))
                 }
                 Link::Node(target) => {
                     let source = &self.recipe.nodes()[target.node.index()].node;
-                    let raw = matches!(source.op(), Op::Filter(_)) && graph.masks[target.node] == Link::None;
-                    Some(self.schedule.requests.add(GridRequest { target: *target, raw, window: grown }))
+                    let raw = matches!(source.op(), Op::Filter(_) | Op::Levelled(_))
+                        && graph.masks[target.node] == Link::None;
+                    Some(self.schedule.requests.add(GridRequest { target: *target, raw, window }))
                 }
             });
         }
-        // A constant input becomes a grid with that value, filled by a step right before.
-        let mut fills = Vec::new();
-        for (input, link) in constants {
-            let grid = self.grid(grown, node);
-            let request = GridRequest { target: LayerRef { node, layer: 0 }, raw: false, window: grown };
-            inputs[input] = Some(self.schedule.requests.add_served(request, grid));
-            fills.push((link, grid));
-        }
-        self.schedule.steps.push(Step::Apply { node, inputs, window, halo, out });
+        (inputs, constants)
+    }
+
+    fn fill_constant(&mut self, (link, window, grid): (Link, Window, GridId)) -> Result<()> {
         let none = HashSet::new();
-        for (link, grid) in fills {
-            let scope = Scope { recipe: self.recipe, graph, kept: &none, own: None };
-            self.fill(scope, &[link], grown, vec![grid])?;
-        }
-        Ok(())
+        let scope = Scope { recipe: self.recipe, graph: self.graph, kept: &none, own: None };
+        self.fill(scope, &[link], window, vec![grid])
     }
 }

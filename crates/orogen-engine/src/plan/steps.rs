@@ -97,6 +97,17 @@ pub enum Step<G = GridId> {
         /// The grids for its layers; `None` for a layer that is not read.
         out: Vec<Option<GridId>>,
     },
+    /// Makes the layers of a levelled op, level by level.
+    Refine {
+        /// The node.
+        node: NodeId,
+        /// The grids of its inputs at each level from the coarsest, each covering at least what the level reads.
+        inputs: Vec<Vec<Option<G>>>,
+        /// The window.
+        window: Window,
+        /// The grids for its layers; `None` for a layer that is not read.
+        out: Vec<Option<GridId>>,
+    },
 }
 
 /// A grid of a plan.
@@ -116,11 +127,20 @@ impl<G> Step<G> {
         Ok(match self {
             Step::Fill { program, window, out } => Step::Fill { program: program.resolve(grid)?, window, out },
             Step::Apply { node, inputs, window, halo, out } => {
-                let inputs = inputs.into_iter().map(|input| input.map(&grid).transpose()).collect::<Result<_>>()?;
+                let inputs = resolved(inputs, &grid)?;
                 Step::Apply { node, inputs, window, halo, out }
+            }
+            Step::Refine { node, inputs, window, out } => {
+                let inputs = inputs.into_iter().map(|inputs| resolved(inputs, &grid)).collect::<Result<_>>()?;
+                Step::Refine { node, inputs, window, out }
             }
         })
     }
+}
+
+/// Inputs with other grids in place of those that they are.
+fn resolved<G, H>(inputs: Vec<Option<G>>, grid: &impl Fn(G) -> Result<H>) -> Result<Vec<Option<H>>> {
+    inputs.into_iter().map(|input| input.map(grid).transpose()).collect()
 }
 
 impl Step {
@@ -137,6 +157,7 @@ impl Step {
                 })
                 .collect(),
             Step::Apply { inputs, .. } => inputs.iter().flatten().copied().collect(),
+            Step::Refine { inputs, .. } => inputs.iter().flatten().flatten().copied().collect(),
         }
     }
 
@@ -145,7 +166,7 @@ impl Step {
     pub fn writes(&self) -> Vec<GridId> {
         match self {
             Step::Fill { out, .. } => out.clone(),
-            Step::Apply { out, .. } => out.iter().flatten().copied().collect(),
+            Step::Apply { out, .. } | Step::Refine { out, .. } => out.iter().flatten().copied().collect(),
         }
     }
 
@@ -153,7 +174,7 @@ impl Step {
     #[must_use]
     pub fn window(&self) -> &Window {
         match self {
-            Step::Fill { window, .. } | Step::Apply { window, .. } => window,
+            Step::Fill { window, .. } | Step::Apply { window, .. } | Step::Refine { window, .. } => window,
         }
     }
 }

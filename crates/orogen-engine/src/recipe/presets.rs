@@ -43,6 +43,7 @@ static PRESETS: &[Preset] = presets![
     "badlands",
     "canyon",
     "classic",
+    "continent",
     "dla-peaks",
     "endless",
     "fjords",

@@ -121,6 +121,7 @@ pub fn markdown_of(registry: &Registry) -> String {
     for (locality, about) in [
         ("field", "evaluated at each point independently, at any resolution"),
         ("filter", "each sample depends on a finite halo around it"),
+        ("levelled", "made level by level, each from a finite halo of the next coarser one"),
         ("solver", "solved once over the whole bounded world"),
     ] {
         let _ = write!(text, "\n## {}s: {about}\n", capital(locality));

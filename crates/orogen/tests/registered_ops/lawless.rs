@@ -1,7 +1,7 @@
 //! Ops that break laws.
 
 use orogen::laws::{Law, Laws};
-use orogen::op::{Context, Field, Filter, Inputs, Reading, Solution, Solver, Sources, WorldParams};
+use orogen::op::{Context, Field, Filter, Inputs, Levelled, Levels, Reading, Solution, Solver, Sources, WorldParams};
 use orogen::{Grid, Level, Points, Result, Window};
 use std::time::Duration;
 
@@ -82,6 +82,63 @@ impl Field for Celled {
     }
 }
 
+orogen::op! {
+    /// A mean of two samples of the level above, of which the halo holds one.
+    pub struct Narrow = "lawless.narrow", levelled, revision 1;
+}
+
+impl Levelled for Narrow {
+    fn levels(&self) -> Levels {
+        Levels { finest: 10.24, count: 6 }
+    }
+
+    fn planes(&self) -> usize {
+        1
+    }
+
+    fn halo(&self, _: usize) -> usize {
+        0
+    }
+
+    fn coarsest(&self, _: &[Option<&Grid>], window: &Window, _: &Context) -> Result<Vec<Grid>> {
+        let mut grid = Grid::filled(*window, 0.0f32);
+        let columns = (0..window.len()).map(|k| ((window.x + (k % window.width) as i64) % 7) as f32);
+        grid.data_mut().iter_mut().zip(columns).for_each(|(sample, column)| *sample = column);
+        Ok(vec![grid])
+    }
+
+    fn refine(
+        &self,
+        _: usize,
+        parent: &[Grid],
+        _: &[Option<&Grid>],
+        window: &Window,
+        _: &Context,
+    ) -> Result<Vec<Grid>> {
+        let mut grid = Grid::filled(*window, 0.0f32);
+        for (i, j) in (0..window.height).flat_map(|j| (0..window.width).map(move |i| (i, j))) {
+            let at = |x: i64, y: i64| {
+                let inside = |index: i64, first: i64, count: usize| (index - first).clamp(0, count as i64 - 1) as usize;
+                let over = parent[0].window();
+                parent[0][(inside(x, over.x, over.width), inside(y, over.y, over.height))]
+            };
+            let (x, y) = ((window.x + i as i64) >> 1, (window.y + j as i64) >> 1);
+            grid[(i, j)] = 0.5 * (at(x, y) + at(x + 1, y));
+        }
+        Ok(vec![grid])
+    }
+
+    fn surface_halo(&self) -> usize {
+        0
+    }
+
+    fn layers_of(&self, _: usize, planes: &[Grid], _: &Window, out: &mut [Option<Grid>], _: &Context) -> Result<()> {
+        let ([plane], [Some(out)]) = (planes, out) else { return Ok(()) };
+        *out = plane.clone();
+        Ok(())
+    }
+}
+
 #[test]
 fn broken_laws_are_found_and_name_the_op() {
     if Level::available().len() > 1 {
@@ -102,6 +159,8 @@ fn broken_laws_are_found_and_name_the_op() {
     let broken = Laws::of(|_| Deaf::default()).cancel(320).unwrap_err();
     assert!(broken.law == Law::Cancel && broken.message.contains("it went on for"), "{broken}");
     assert!(Laws::of(|_| Counted::default()).stored(1.0 / 3.0).is_err_and(|broken| broken.law == Law::Stored));
+    let broken = Laws::of(|_| Narrow::default()).tiles(10.24, false).unwrap_err();
+    assert_eq!((broken.law, broken.op.as_str()), (Law::TileEqualsCrop, "lawless.narrow"));
     let broken = Laws::of(|_| Celled::default()).resolutions(10.24).unwrap_err();
     assert_eq!(broken.law, Law::Resolutions, "{broken}");
 }

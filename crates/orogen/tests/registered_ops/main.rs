@@ -5,7 +5,7 @@ mod lawless;
 mod ops;
 mod refused;
 
-use ops::{Above, Crests, Ripples, Wave, other, registry};
+use ops::{Above, Crests, Midpoints, Ripples, Wave, other, registry};
 use orogen::laws::Laws;
 use orogen::node::Node;
 use orogen::plan::steps::Plan;
@@ -70,6 +70,10 @@ fn they_obey_the_laws() {
         Laws::of(|cell| Ripples { wavelength: 7.3 * cell, seed: 3, ..Ripples::default() }).check(),
         Laws::of(|cell| Ripples { wavelength: 7.3 * cell, wave: Wave::Square, ..Ripples::default() }).check(),
         Laws::of(|cell| Crests { reach: 2.5 * cell, ..Crests::default() }).check(),
+        Laws::of(|cell| Midpoints { cell, ..Midpoints::default() }).check(),
+        // Finer, coarser and between the levels.
+        Laws::of(|cell| Midpoints { cell: 2.7 * cell, seed: 5, levels: 9, ..Midpoints::default() }).check(),
+        Laws::of(|cell| Midpoints { cell: 0.31 * cell, levels: 2, ..Midpoints::default() }).check(),
         Laws::of(|_| Above::default()).check(),
     ]
     .concat();
@@ -219,7 +223,10 @@ fn faults_are_told_where_they_are() {
     };
     for (line, said) in [
         ("op = \"mygame.riples\"", "unknown op `mygame.riples`; did you mean `mygame.ripples`?"),
-        ("op = \"mygame.xylophone\"", "available: `mygame.ripples`, `mygame.crests` and `mygame.above`"),
+        (
+            "op = \"mygame.xylophone\"",
+            "available: `mygame.ripples`, `mygame.crests`, `mygame.midpoints` and `mygame.above`",
+        ),
         ("op = \"mygme.ripples\"", "no op of the namespace `mygme` is registered; did you mean `mygame.ripples`?"),
         ("op = \"elsewhere.hexagons\"", "no op of the namespace `elsewhere` is registered. Ops with a namespace"),
         ("op = \"ripples\"", "unknown op `ripples`; did you mean `mygame.ripples`?"),

@@ -1,6 +1,6 @@
-//! The ops of a program: a field, a filter and a solver.
+//! The ops of a program: a field, a filter, a levelled op and a solver.
 
-use orogen::op::{Context, Field, Filter, Inputs, Solution, Solver, Sources, WorldParams};
+use orogen::op::{Context, Field, Filter, Inputs, Levelled, Levels, Solution, Solver, Sources, WorldParams};
 use orogen::{Grid, Points, Registry, Result, Window};
 
 orogen::choice! {
@@ -118,6 +118,118 @@ orogen::op! {
     }
 }
 
+orogen::op! {
+    /// Midpoint displacement (Fournier, Fussell and Carpenter 1982): each level halves the one above it and is displaced by chance.
+    pub struct Midpoints = "mygame.midpoints", levelled, revision 1;
+    inputs {
+        /// Strength of the displacement.
+        roughness: optional,
+    }
+    params {
+        /// Seed of the displacement.
+        seed: u64 = 0;
+        /// Cell of the finest level.
+        cell: f64 = 10.0, unit "m", range 1e-3 to 1e6;
+        /// Number of levels.
+        levels: u32 = 5, range 1 to 20;
+    }
+    layers {
+        /// The heights.
+        height: height, unit "m";
+        /// Number of the level that made the sample.
+        level: label;
+    }
+}
+
+impl Midpoints {
+    fn chance(&self, level: usize, x: i64, y: i64, seed: u64) -> f32 {
+        let hash = [level as u64, x as u64, y as u64].iter().fold(seed, |hash, part| {
+            (hash ^ part).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(23).wrapping_mul(0xD1B5_4A32_D192_ED03)
+        });
+        (hash >> 40) as f32 / (1 << 23) as f32 - 1.0
+    }
+
+    fn displaced(
+        &self,
+        level: usize,
+        inputs: &[Option<&Grid>],
+        window: &Window,
+        context: &Context,
+        smooth: impl Fn(i64, i64) -> f32,
+    ) -> Grid {
+        let seed = context.world_params.seed_of(self.seed);
+        let mut grid = Grid::filled(*window, 0.0f32);
+        for (i, j) in (0..window.height).flat_map(|j| (0..window.width).map(move |i| (i, j))) {
+            let (x, y) = (window.x + i as i64, window.y + j as i64);
+            let roughness = inputs.first().copied().flatten().map_or(1.0, |input| input[(i, j)].abs());
+            grid[(i, j)] = smooth(x, y) + roughness * self.chance(level, x, y, seed) / (1 << level) as f32;
+        }
+        grid
+    }
+}
+
+impl Levelled for Midpoints {
+    fn levels(&self) -> Levels {
+        Levels { finest: self.cell, count: self.levels as usize }
+    }
+
+    fn planes(&self) -> usize {
+        1
+    }
+
+    fn halo(&self, _: usize) -> usize {
+        1
+    }
+
+    fn coarsest(&self, inputs: &[Option<&Grid>], window: &Window, context: &Context) -> Result<Vec<Grid>> {
+        Ok(vec![self.displaced(0, inputs, window, context, |_, _| 0.0)])
+    }
+
+    fn refine(
+        &self,
+        level: usize,
+        parent: &[Grid],
+        inputs: &[Option<&Grid>],
+        window: &Window,
+        context: &Context,
+    ) -> Result<Vec<Grid>> {
+        context.progress.check()?;
+        let [parent] = parent else { return Ok(Vec::new()) };
+        let at = |x: i64, y: i64| parent[((x - parent.window().x) as usize, (y - parent.window().y) as usize)];
+        let smooth = |x: i64, y: i64| {
+            let ((left, top), (right, bottom)) = ((x >> 1, y >> 1), ((x + 1) >> 1, (y + 1) >> 1));
+            0.25 * (at(left, top) + at(right, top) + at(left, bottom) + at(right, bottom))
+        };
+        Ok(vec![self.displaced(level, inputs, window, context, smooth)])
+    }
+
+    fn surface_halo(&self) -> usize {
+        0
+    }
+
+    fn layers_of(
+        &self,
+        level: usize,
+        planes: &[Grid],
+        window: &Window,
+        out: &mut [Option<Grid>],
+        _: &Context,
+    ) -> Result<()> {
+        let ([plane], [heights, levels]) = (planes, out) else { return Ok(()) };
+        if let Some(heights) = heights {
+            *heights = plane.clone();
+        }
+        if let Some(levels) = levels {
+            *levels = Grid::filled(*window, level as f32);
+        }
+        Ok(())
+    }
+
+    fn cost(&self, _: usize) -> f64 {
+        10.0
+    }
+}
+
 /// The solution of [`Above`] and of its other revision.
 fn above(sources: &dyn Sources, context: &Context, times: f32) -> Result<Solution> {
     let source = sources.whole(0, sources.padded())?;
@@ -176,6 +288,14 @@ pub mod other {
 /// A registry of these ops.
 pub fn registry() -> Registry {
     let mut registry = Registry::new();
-    registry.register::<Ripples>().unwrap().register::<Crests>().unwrap().register::<Above>().unwrap();
+    registry
+        .register::<Ripples>()
+        .unwrap()
+        .register::<Crests>()
+        .unwrap()
+        .register::<Midpoints>()
+        .unwrap()
+        .register::<Above>()
+        .unwrap();
     registry
 }

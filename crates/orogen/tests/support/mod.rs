@@ -44,6 +44,10 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
     for (i, param) in spec.params.iter().enumerate() {
         let pair = |a: f64, b: f64| Value::List([a, b].map(|n| Spanned::unplaced(Value::Number(n))).into());
         let fitted = match (spec.op, param.name) {
+            // Few levels, of which the finest is near the cell, and shores within the world.
+            ("continents", "cell") => Value::Number(1.7 * world.cell),
+            ("continents", "halvings") => Value::Integer(3),
+            ("continents", "size") => Value::Number(0.01),
             ("blur", "radius") => Value::Number(3.7 * world.cell),
             ("bake", "cell") => Value::Number(2.5 * world.cell),
             ("thermal", "talus_angle") => Value::Number(1.0),

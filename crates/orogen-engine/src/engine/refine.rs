@@ -1,0 +1,233 @@
+//! Making windows of levelled ops: tiles of the coarse levels, coarsest first, then each piece of the window from them.
+
+use super::run::Engine;
+use crate::ids::{Id, NodeId};
+use crate::op::{Context, Levelled, Op};
+use crate::plan::levels::{self, Serving};
+use crate::recipe::graph::LayerRef;
+use crate::store::grids::GridKey;
+use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::grid::{Grid, Window};
+use orogen_grid::progress::Progress;
+use orogen_grid::resample::{self, LayerKind};
+use orogen_noise::Points;
+use rayon::prelude::*;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// The planes of the tiles of one level, by column and row.
+type LevelTiles = BTreeMap<(i64, i64), Vec<Grid>>;
+
+/// A levelled op at work.
+struct Refining<'a> {
+    op: &'a dyn Levelled,
+    node: NodeId,
+    /// Its inputs at each level from the coarsest; empty if it has none.
+    inputs: Vec<Vec<Option<&'a Grid>>>,
+    /// Which layers are read.
+    wanted: &'a [bool],
+    context: Context<'a>,
+}
+
+impl Engine<'_> {
+    /// Computes the wanted layers of a levelled op over a window.
+    pub(super) fn refine(
+        &self,
+        node: NodeId,
+        inputs: Vec<Vec<Option<&Grid>>>,
+        wanted: &[bool],
+        window: &Window,
+        progress: &Progress,
+    ) -> Result<Vec<Option<Grid>>> {
+        let Op::Levelled(op) = self.recipe.nodes()[node.index()].node.op() else {
+            return Err(internal("a node that is not levelled was to be refined"));
+        };
+        let context = Context { world_params: self.world_params, progress, observer: None };
+        let refining = Refining { op, node, inputs, wanted, context };
+        let serving = Serving::of(&op.levels(), window);
+        let made = self.samples(&refining, &serving)?;
+        if serving.samples.cell == window.cell {
+            return Ok(made);
+        }
+        let between = |(layer, grid): (usize, Option<Grid>)| {
+            let kind = self.graph.layer_kind(self.recipe, LayerRef { node, layer });
+            grid.map(|grid| interpolated(&grid, kind, window, progress)).transpose()
+        };
+        made.into_iter().enumerate().map(between).collect()
+    }
+
+    /// The layers over samples of a level.
+    fn samples(&self, refining: &Refining, serving: &Serving) -> Result<Vec<Option<Grid>>> {
+        let Serving { level, samples } = *serving;
+        let mut layers = refining.layers(&samples);
+        if samples.is_empty() {
+            return Ok(layers);
+        }
+        let pieces = serving.pieces(rayon::current_num_threads());
+        let tiles = self.level_tiles(refining, level, &pieces)?;
+        let progress = refining.context.progress;
+        progress.expect(pieces.len() as f64);
+        let made: Vec<Vec<Option<Grid>>> = pieces
+            .par_iter()
+            .map(|piece| {
+                let made = refining.piece(level, piece, &tiles)?;
+                progress.step(1.0)?;
+                Ok(made)
+            })
+            .collect::<Result<_>>()?;
+        for piece in made {
+            for (layer, part) in layers.iter_mut().zip(piece) {
+                if let (Some(layer), Some(part)) = (layer, part) {
+                    layer.paste(&part);
+                }
+            }
+        }
+        Ok(layers)
+    }
+
+    /// The tiles that the pieces of `level` are made from. The tiles that are missing at each level tell which the level above must have.
+    fn level_tiles(&self, refining: &Refining, level: usize, pieces: &[Window]) -> Result<LevelTiles> {
+        let Refining { op, .. } = *refining;
+        let cell = |level: usize| op.levels().cell(level);
+        let last = levels::tiled(level);
+        let firsts = pieces.iter().filter_map(|piece| levels::windows(op, level, piece).first().copied());
+        let mut asked: BTreeSet<(i64, i64)> = firsts.flat_map(|window| levels::tiles(&window)).collect();
+        // Of each level from the last: the tiles that are kept, and those that are missing.
+        let mut found = Vec::with_capacity(last + 1);
+        for level in (0..=last).rev() {
+            let mut kept = LevelTiles::new();
+            let mut missing = Vec::new();
+            for at in asked {
+                match self.level_tiles.find(&self.tile_keys(refining, &levels::tile(at, cell(level)))) {
+                    Some(planes) => drop(kept.insert(at, planes)),
+                    None => missing.push(at),
+                }
+            }
+            let above = missing.iter().filter(|_| level > 0);
+            asked = above.flat_map(|at| levels::tiles(&op.parent(level, &levels::tile(*at, cell(level))))).collect();
+            found.push((level, kept, missing));
+        }
+        let mut above = LevelTiles::new();
+        for (level, mut tiles, missing) in found.into_iter().rev() {
+            let made: Vec<Vec<Grid>> = missing
+                .par_iter()
+                .map(|at| refining.planes(level, &levels::tile(*at, cell(level)), &above))
+                .collect::<Result<_>>()?;
+            for (at, planes) in missing.into_iter().zip(made) {
+                let allowed = self.budget.unused().map(|unused| unused.saturating_sub(self.store.memory()));
+                let keys = self.tile_keys(refining, &levels::tile(at, cell(level)));
+                keys.into_iter().zip(&planes).for_each(|(key, plane)| self.level_tiles.keep(key, plane, allowed));
+                tiles.insert(at, planes);
+            }
+            above = tiles;
+        }
+        Ok(above)
+    }
+
+    fn tile_keys(&self, refining: &Refining, tile: &Window) -> Vec<GridKey> {
+        (0..refining.op.planes()).map(|plane| GridKey::new(self.keys[refining.node], plane, tile)).collect()
+    }
+}
+
+impl Refining<'_> {
+    /// A grid of zeros per wanted layer.
+    fn layers(&self, window: &Window) -> Vec<Option<Grid>> {
+        self.wanted.iter().map(|wanted| wanted.then(|| Grid::filled(*window, 0.0))).collect()
+    }
+
+    /// The planes of a level over a window, from tiles of the level above.
+    fn planes(&self, level: usize, window: &Window, above: &LevelTiles) -> Result<Vec<Grid>> {
+        self.context.progress.check()?;
+        let planes = match level {
+            0 => self.with_inputs(0, window, |inputs| self.op.coarsest(inputs, window, &self.context))?,
+            _ => {
+                let parent = self.mosaic(&self.op.parent(level, window), above)?;
+                return self.refined(level, &parent, window);
+            }
+        };
+        self.checked(planes, window)
+    }
+
+    /// The planes of a level over a window, from exactly the samples of the level above that it may read.
+    fn refined(&self, level: usize, parent: &[Grid], window: &Window) -> Result<Vec<Grid>> {
+        let refine = |inputs: &[Option<&Grid>]| self.op.refine(level, parent, inputs, window, &self.context);
+        self.checked(self.with_inputs(level, window, refine)?, window)
+    }
+
+    /// Passes the op's inputs over exactly the samples that it may read.
+    fn with_inputs<T>(
+        &self,
+        level: usize,
+        window: &Window,
+        work: impl FnOnce(&[Option<&Grid>]) -> Result<T>,
+    ) -> Result<T> {
+        let Some(inputs) = self.inputs.get(level) else { return work(&vec![None; self.op.spec().inputs.len()]) };
+        let read = window.grown(self.op.source_halo(level));
+        let crop = |grid: &Grid| grid.crop(&read).ok_or_else(|| internal("an input of a level is too small"));
+        let cropped: Vec<Option<Grid>> =
+            inputs.iter().map(|input| input.map(crop).transpose()).collect::<Result<_>>()?;
+        work(&cropped.iter().map(Option::as_ref).collect::<Vec<_>>())
+    }
+
+    /// The layers of `level` over a piece, from the tiles of its tiled level.
+    fn piece(&self, level: usize, piece: &Window, tiles: &LevelTiles) -> Result<Vec<Option<Grid>>> {
+        let windows = levels::windows(self.op, level, piece);
+        let mut planes = match windows.first() {
+            Some(first) => self.mosaic(first, tiles)?,
+            None => Vec::new(),
+        };
+        for (level, window) in (levels::tiled(level)..=level).zip(&windows).skip(1) {
+            planes = self.refined(level, &planes, window)?;
+        }
+        let mut layers = self.layers(piece);
+        self.op.layers_of(level, &planes, piece, &mut layers, &self.context)?;
+        Ok(layers)
+    }
+
+    /// The planes over a window that tiles cover.
+    fn mosaic(&self, window: &Window, tiles: &LevelTiles) -> Result<Vec<Grid>> {
+        let mut planes: Vec<Grid> = (0..self.op.planes()).map(|_| Grid::filled(*window, 0.0)).collect();
+        for at in levels::tiles(window) {
+            let tile = tiles.get(&at).ok_or_else(|| internal("a tile of a level was not made"))?;
+            for (plane, part) in planes.iter_mut().zip(tile) {
+                plane.paste(part);
+            }
+        }
+        Ok(planes)
+    }
+
+    /// An op of another crate may return other grids than it was asked for.
+    fn checked(&self, planes: Vec<Grid>, window: &Window) -> Result<Vec<Grid>> {
+        let fits = planes.len() == self.op.planes() && planes.iter().all(|plane| plane.window() == window);
+        if fits {
+            return Ok(planes);
+        }
+        let message = format!(
+            "the op `{}` made {} planes where {} over {} x {} samples at ({}, {}) were to be made",
+            self.op.spec().op,
+            planes.len(),
+            self.op.planes(),
+            window.width,
+            window.height,
+            window.x,
+            window.y
+        );
+        Err(Error::new(ErrorKind::Internal, message))
+    }
+}
+
+/// A layer at the samples of a window with another cell.
+fn interpolated(grid: &Grid, kind: LayerKind, window: &Window, progress: &Progress) -> Result<Grid> {
+    let mut out = Grid::filled(*window, 0.0f32);
+    let (xs, ys) = (window.eastings(), window.southings());
+    const ROWS: usize = 16;
+    out.data_mut().par_chunks_mut(ROWS * window.width.max(1)).zip(ys.par_chunks(ROWS)).try_for_each(|(out, ys)| {
+        progress.check()?;
+        resample::read(grid, kind, &Points::Lattice { xs: &xs, ys }, out);
+        Ok::<(), Error>(())
+    })?;
+    Ok(out)
+}
+
+fn internal(message: &str) -> Error {
+    Error::new(ErrorKind::Internal, message)
+}

@@ -1,0 +1,4 @@
+//! Levelled ops: each level from a finite halo of the next coarser one.
+
+// The list below is written by `cargo xtask codegen`.
+pub mod continents;

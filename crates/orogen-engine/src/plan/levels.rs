@@ -1,0 +1,225 @@
+//! How a window of a levelled op is made: the level that serves it, the pieces that are made side by side, and the windows of the
+//! levels above each.
+//!
+//! Coarse levels are made in *tiles* of a fixed side, which neighbouring windows share. The last few levels are made over each piece itself:
+//! in tiles, their halos would cost more than sharing saves.
+
+use super::memory::grid_bytes;
+use crate::op::{Levelled, Levels};
+use orogen_grid::grid::Window;
+use orogen_grid::resample::split;
+
+/// Samples along the sides of the tiles of coarse levels.
+pub const TILE: usize = 64;
+
+/// Number of levels that are made over the piece itself.
+const DIRECT: usize = 3;
+
+/// Largest and smallest number of rows and columns of a piece, if the window has as many.
+const PIECE: [usize; 2] = [1024, 128];
+
+/// Samples that the interpolating cubic reads around a position.
+const MARGIN: i64 = 2;
+
+/// The samples of a level that a window is read from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Serving {
+    /// The level.
+    pub level: usize,
+    /// Its samples: the window itself if the cells are equal, otherwise those around it, to be interpolated.
+    pub samples: Window,
+}
+
+impl Serving {
+    /// The samples that serve a window.
+    #[must_use]
+    pub fn of(levels: &Levels, window: &Window) -> Serving {
+        let level = levels.serving(window.cell);
+        let cell = levels.cell(level);
+        if cell == window.cell || window.is_empty() {
+            return Serving { level, samples: Window { cell, ..*window } };
+        }
+        let span = |first: f64, last: f64| {
+            let start = split(first, cell).0 - MARGIN;
+            (start, (split(last, cell).0 + 1 + MARGIN - start + 1).max(0) as usize)
+        };
+        let (x, width) = span(window.east(0), window.east(window.width - 1));
+        let (y, height) = span(window.south(0), window.south(window.height - 1));
+        Serving { level, samples: Window { x, y, width, height, cell } }
+    }
+
+    /// Parts of the samples that are made side by side: at least one a thread, unless they would be slivers.
+    #[must_use]
+    pub fn pieces(&self, threads: usize) -> Vec<Window> {
+        let [most, least] = PIECE;
+        let Window { width, height, .. } = self.samples;
+        let columns = width.div_ceil(most).max(1);
+        let rows = height.div_ceil(most).max(threads.div_ceil(columns).min(height / least)).max(1);
+        let rows = height.div_ceil(rows).max(1);
+        let columns = width.div_ceil(columns).max(1);
+        let bands = (0..height.div_ceil(rows)).map(|band| Window {
+            y: self.samples.y + (band * rows) as i64,
+            height: rows.min(height - band * rows),
+            ..self.samples
+        });
+        let across = |band: Window| {
+            (0..width.div_ceil(columns)).map(move |piece| Window {
+                x: band.x + (piece * columns) as i64,
+                width: columns.min(width - piece * columns),
+                ..band
+            })
+        };
+        bands.flat_map(across).collect()
+    }
+}
+
+/// The level whose tiles the levels down to `level` are made from.
+#[must_use]
+pub fn tiled(level: usize) -> usize {
+    level.saturating_sub(DIRECT)
+}
+
+/// The windows from which a piece of `level` is made: that of the tiled level first, that of `level` last.
+#[must_use]
+pub fn windows(op: &dyn Levelled, level: usize, piece: &Window) -> Vec<Window> {
+    let mut windows = vec![piece.grown(op.surface_halo())];
+    for level in (tiled(level) + 1..=level).rev() {
+        let window = windows.last().map(|window| op.parent(level, window));
+        windows.extend(window);
+    }
+    windows.reverse();
+    windows
+}
+
+/// Windows of the levels from the coarsest that contain all that a window is made from: whole tiles of the tiled levels.
+#[must_use]
+pub fn covering(op: &dyn Levelled, window: &Window) -> Vec<Window> {
+    let Serving { level, samples } = Serving::of(&op.levels(), window);
+    let mut windows: Vec<Window> = windows(op, level, &samples).into_iter().rev().collect();
+    if let Some(first) = windows.last_mut() {
+        *first = of_tiles(first);
+    }
+    for level in (1..=tiled(level)).rev() {
+        let above = windows.last().map(|window| of_tiles(&op.parent(level, window)));
+        windows.extend(above);
+    }
+    windows.reverse();
+    windows
+}
+
+/// The window of all tiles that cover a window.
+fn of_tiles(window: &Window) -> Window {
+    let mut covering = tiles(window);
+    match (covering.next(), covering.last()) {
+        (Some(first), last) => tile(first, window.cell).union(&tile(last.unwrap_or(first), window.cell)),
+        (None, _) => *window,
+    }
+}
+
+/// The tiles that cover a window, by their column and row.
+pub fn tiles(window: &Window) -> impl Iterator<Item = (i64, i64)> + use<> {
+    let side = TILE as i64;
+    let columns = window.x.div_euclid(side)..(window.right() - 1).div_euclid(side) + 1;
+    let rows = window.y.div_euclid(side)..(window.bottom() - 1).div_euclid(side) + 1;
+    rows.flat_map(move |row| columns.clone().map(move |column| (column, row)))
+}
+
+/// The window of a tile.
+#[must_use]
+pub fn tile((column, row): (i64, i64), cell: f64) -> Window {
+    Window::new(TILE, TILE, cell).at(column * TILE as i64, row * TILE as i64)
+}
+
+/// Memory of making a window beside its layers, in bytes.
+#[must_use]
+pub fn memory(op: &dyn Levelled, layers: usize, window: &Window, threads: usize) -> u64 {
+    let Serving { level, samples } = Serving::of(&op.levels(), window);
+    let planes = op.planes() as u64;
+    let held = |window: &Window| grid_bytes(window).saturating_mul(planes);
+    // Whole tiles cover up to a tile more on each side; the level above them has a quarter as many, and its halo.
+    let of_tiles = |window: &Window| held(&window.grown(TILE)).saturating_mul(2);
+    let piece = |piece: &Window| {
+        let windows = windows(op, level, piece);
+        let levels = tiled(level)..=level;
+        let pair = windows.windows(2).map(|pair| held(&pair[0]).saturating_add(held(&pair[1]))).max();
+        let scratch = levels.zip(&windows).skip(1).map(|(level, window)| op.scratch(level, window)).max();
+        let made = grid_bytes(piece).saturating_mul(layers as u64);
+        pair.unwrap_or_else(|| windows.iter().map(held).sum()).saturating_add(scratch.unwrap_or(0)).saturating_add(made)
+    };
+    let pieces = Serving { level, samples }.pieces(threads);
+    let largest = pieces.iter().map(piece).max().unwrap_or(0);
+    let all = windows(op, level, &samples).first().map_or(0, of_tiles);
+    let one = |level: usize| {
+        let window = tile((0, 0), op.levels().cell(level));
+        held(&window).saturating_add(op.scratch(level, &window)).saturating_add(match level {
+            0 => 0,
+            level => held(&op.parent(level, &window)),
+        })
+    };
+    let tile = (0..=tiled(level)).map(one).max().unwrap_or(0);
+    let threads = threads as u64;
+    let apart = if samples.cell == window.cell { 0 } else { grid_bytes(&samples).saturating_mul(layers as u64) };
+    let working = largest.saturating_mul(threads.min(pieces.len() as u64)).max(tile.saturating_mul(threads));
+    all.saturating_add(working).saturating_add(apart)
+}
+
+/// Approximate time for making a window on one core, in nanoseconds, without tiles that are kept.
+#[must_use]
+pub fn cost(op: &dyn Levelled, window: &Window) -> f64 {
+    let Serving { level, samples } = Serving::of(&op.levels(), window);
+    let sum = |level: usize, window: &Window| op.cost(level) * window.width as f64 * window.height as f64;
+    let windows = windows(op, level, &samples);
+    let direct: f64 = (tiled(level)..=level).zip(&windows).skip(1).map(|(level, window)| sum(level, window)).sum();
+    let first = windows.first().map_or(0.0, |window| sum(tiled(level), &window.grown(TILE / 2)));
+    let above: f64 = (0..tiled(level)).map(|level| 2.0 * op.cost(level) * (TILE * TILE) as f64).sum();
+    direct + first + above
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_coarsest_level_that_is_fine_enough_serves_a_window() {
+        let levels = Levels { finest: 60.0, count: 4 };
+        assert_eq!([0, 1, 2, 3].map(|level| levels.cell(level)), [480.0, 240.0, 120.0, 60.0]);
+        let window = |cell: f64| Window::new(10, 7, cell).at(-33, 5);
+        for (cell, level) in [(1e9, 0), (480.0, 0), (479.0, 1), (240.0, 1), (61.0, 3), (60.0, 3), (7.0, 3)] {
+            let serving = Serving::of(&levels, &window(cell));
+            assert_eq!(serving.level, level, "{cell}");
+            if cell == levels.cell(level) {
+                assert_eq!(serving.samples, window(cell));
+            } else {
+                let (samples, window) = (serving.samples, window(cell));
+                assert!(samples.east(1) < window.east(0) && samples.east(samples.width - 2) > window.east(9), "{cell}");
+                assert!(samples.south(1) < window.south(0) && samples.south(samples.height - 2) > window.south(6));
+            }
+        }
+        assert!(Serving::of(&levels, &Window::new(0, 5, 7.0)).samples.is_empty());
+    }
+
+    #[test]
+    fn pieces_cover_a_window_once_and_are_no_slivers() {
+        for (width, height, threads) in
+            [(1, 1, 8), (1024, 1024, 2), (3000, 10, 4), (5000, 2500, 3), (300, 300, 64), (0, 3, 2)]
+        {
+            let samples = Window::new(width, height, 60.0).at(-7, 1000);
+            let pieces = Serving { level: 0, samples }.pieces(threads);
+            assert_eq!(pieces.iter().map(Window::len).sum::<usize>(), samples.len(), "{width} x {height}");
+            for (k, piece) in pieces.iter().enumerate() {
+                assert!(samples.contains(piece) && piece.width <= 1024 && piece.height <= 1024, "{piece:?}");
+                assert!(pieces.iter().skip(k + 1).all(|other| piece.intersection(other).is_empty()));
+            }
+            assert!(width < 1024 || height < 1024 || pieces.len() >= threads.min(2));
+        }
+    }
+
+    #[test]
+    fn tiles_cover_a_window() {
+        let window = Window::new(130, 3, 8.0).at(-65, 63);
+        let covering: Vec<_> = tiles(&window).collect();
+        assert_eq!(covering, [(-2, 0), (-1, 0), (0, 0), (1, 0), (-2, 1), (-1, 1), (0, 1), (1, 1)]);
+        assert_eq!(tile((-2, 1), 8.0), Window::new(64, 64, 8.0).at(-128, 64));
+        assert_eq!(tiles(&Window::new(0, 0, 8.0)).count(), 0);
+    }
+}

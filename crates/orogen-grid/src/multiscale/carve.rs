@@ -1,0 +1,139 @@
+//! Rivers of the level above, carved into a level: heights fall along them from parent to parent.
+
+use super::children::{Children, heir};
+use super::distances::Distances;
+use super::level::Level;
+use super::links::{Child, Links};
+use super::shores::LAND;
+use super::stencil::code;
+use crate::hydrology::direction::NONE;
+
+/// Height of nodes that have none yet.
+pub const UNKNOWN: f32 = 1e30;
+
+/// In [`Carved::fixed`]: a node that chooses its receiver.
+pub const FREE: f32 = -1.0;
+
+/// In [`Carved::fixed`]: water.
+pub const WATER: f32 = NONE as f32;
+
+/// Nodes with the rivers of the level above.
+pub struct Carved {
+    pub height: Vec<f32>,
+    pub area: Vec<f32>,
+    /// Code of the receiver's direction.
+    pub receiver: Vec<f32>,
+    /// The same where it must not change; otherwise [`FREE`] or [`WATER`].
+    pub fixed: Vec<f32>,
+    /// None on the finest level, where nodes are on the lattice.
+    pub distances: Option<Distances>,
+}
+
+/// The children with the kept links, some of them water at `levels`. Exact seven cells from the edge.
+pub fn carve(parent: &Level, links: &Links, children: &Children, levels: Vec<f32>) -> Carved {
+    let extent = children.extent;
+    let fixed = levels.iter().map(|&level| if level < LAND { WATER } else { FREE }).collect();
+    let mut height = levels;
+    for height in height.iter_mut().filter(|height| **height >= LAND) {
+        *height = UNKNOWN;
+    }
+    let mut carved = Carved {
+        height,
+        area: vec![1.0; extent.len()],
+        receiver: vec![f32::from(NONE); extent.len()],
+        fixed,
+        distances: children.is_irregular().then(|| Distances::new(extent, &children.east, &children.south)),
+    };
+    let mut arrivals = Vec::new();
+    for q in links.inner().filter(|&q| links.list[q].kept && parent.receiver[q] < NONE) {
+        arrivals.push(carved.leave(parent, links, children, q));
+    }
+    for arrival in &arrivals {
+        carved.arrive(parent, links, children, arrival);
+    }
+    carved
+}
+
+/// The end of a link that has left its parent's cell.
+struct Arrival {
+    target: usize,
+    entry: usize,
+    /// Height at the entry.
+    height: f32,
+    area: f32,
+}
+
+impl Carved {
+    /// Carves a link from its parent up to the entry.
+    fn leave(&mut self, parent: &Level, links: &Links, children: &Children, q: usize) -> Arrival {
+        let parents = links.size.0;
+        let (link, target) = (links.list[q], links.target(parent, q));
+        let start = Child { parent: q, corner: heir(parent, q) };
+        let exit = Child { parent: q, corner: link.exit };
+        let entry = Child { parent: target, corner: link.entry };
+        let end = Child { parent: target, corner: heir(parent, target) };
+        let length = |from, to| if from == to { 0.0 } else { children.distance(from, to, parents) };
+        let first = length(start, exit);
+        let via = links.via(parent, q);
+        let second = match via {
+            Some(via) => length(exit, via) + length(via, entry),
+            None => length(exit, entry),
+        };
+        let whole = (first + second + length(entry, end)).max(0.01);
+        let (to_exit, to_entry) = (first / whole, (first + second) / whole);
+        let (top, fall) = (parent.height[q], parent.height[target] - parent.height[q]);
+        let area = 4.0 * parent.area[q];
+        let [start, exit, entry] = [start, exit, entry].map(|child| child.index(parents));
+        self.set(start, top, area);
+        if exit != start {
+            self.set(exit, top + fall * to_exit, area);
+            self.connect(children, start, exit);
+        }
+        match via {
+            Some(via) => {
+                let via = via.index(parents);
+                self.set(via, top + fall * (0.5 * (to_exit + to_entry)), area);
+                self.connect(children, exit, via);
+                self.connect(children, via, entry);
+            }
+            None => self.connect(children, exit, entry),
+        }
+        Arrival { target, entry, height: top + fall * to_entry, area }
+    }
+
+    /// Carves the end of a link, from the entry to the receiver's heir.
+    fn arrive(&mut self, parent: &Level, links: &Links, children: &Children, arrival: &Arrival) {
+        let (target, entry) = (arrival.target, arrival.entry);
+        let own = |corner| Child { parent: target, corner }.index(links.size.0);
+        let end = own(heir(parent, target));
+        if entry == end || self.fixed[entry] == WATER {
+            return;
+        }
+        if parent.receiver[target] < NONE && own(links.list[target].exit) == entry {
+            // The link joins the river below its node.
+            self.area[end] -= arrival.area;
+            return;
+        }
+        let height = if arrival.height < self.height[entry] { arrival.height } else { self.height[entry] };
+        self.set(entry, height, arrival.area);
+        self.connect(children, entry, end);
+    }
+
+    fn set(&mut self, q: usize, height: f32, area: f32) {
+        self.height[q] = height;
+        self.area[q] += area;
+    }
+
+    /// Makes an adjacent cell the receiver.
+    fn connect(&mut self, children: &Children, from: usize, to: usize) {
+        let width = children.extent.width;
+        let east = (to % width) as isize - (from % width) as isize;
+        let south = (to / width) as isize - (from / width) as isize;
+        let code = code(east, south);
+        self.receiver[from] = f32::from(code);
+        self.fixed[from] = f32::from(code);
+        if let Some(distances) = &mut self.distances {
+            distances.open(from, code, width, &children.east, &children.south);
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! The nodes of a level before rivers: positions, rock and the shape of the shore, from the level above and from hashes.
+
+use super::coarsest::jittered;
+use super::continents::Continents;
+use super::geography::Geography;
+use super::given::Given;
+use super::hash;
+use super::level::Level;
+use super::stencil::Extent;
+use crate::error::Result;
+use crate::grid::Window;
+use crate::progress::Progress;
+use crate::random::mix64;
+
+/// Variation of the rock that each level adds, the last for all further levels.
+const VARIATION: [f32; 12] = [0.0, 0.3, 0.35, 0.45, 0.5, 0.5, 0.4, 0.4, 0.4, 0.3, 0.2, 0.2];
+
+/// The smallest cell, in km, at which geography is evaluated. Finer levels interpolate it.
+const FINEST_GEOGRAPHY: f64 = 3.0;
+
+/// Share of the way by which the node that a parent becomes moves to a random position in its cell.
+const WANDER: f32 = 0.5;
+
+/// The children of all nodes of a parent level: cell (i, j) of the parent has the children (2 i, 2 j) to (2 i + 1, 2 j + 1).
+pub struct Children {
+    pub depth: usize,
+    pub window: Window,
+    pub extent: Extent,
+    /// Positions in the cells; empty on the finest level, where all nodes are in the middle.
+    pub east: Vec<f32>,
+    pub south: Vec<f32>,
+    pub variation: Vec<f32>,
+    pub uplift: Vec<f32>,
+    pub shore: Vec<f32>,
+    /// Irregularity of the shore that this level adds, in km.
+    pub indent: f32,
+}
+
+/// Which of the four children of a cell its node becomes: bit 0 is set in the east, bit 1 in the south.
+#[inline(always)]
+pub fn heir(parent: &Level, q: usize) -> u8 {
+    u8::from(parent.east[q] >= 0.5) | u8::from(parent.south[q] >= 0.5) << 1
+}
+
+/// Irregularity of the shore that a level adds, in km: a fractal line of this roughness.
+fn indent(land: &Continents, depth: usize) -> f32 {
+    (0.5 * 61.44 * libm::pow(land.kilometres(depth) / 61.44, 0.92)) as f32
+}
+
+impl Children {
+    /// The children of `parent`; rock and shores are exact one parent away from its edge.
+    pub fn new(land: &Continents, parent: &Level, given: &Given, progress: &Progress) -> Result<Children> {
+        let (depth, from) = (parent.depth + 1, parent.window);
+        let (width, height) = (2 * from.width, 2 * from.height);
+        let window = Window { x: 2 * from.x, y: 2 * from.y, width, height, cell: land.cell_of(depth) };
+        let cells = width * height;
+        let mut children = Children {
+            depth,
+            window,
+            extent: Extent { width, height, inset: 0 },
+            east: vec![0.5; if land.is_finest(depth) { 0 } else { cells }],
+            south: vec![0.5; if land.is_finest(depth) { 0 } else { cells }],
+            variation: vec![0.0; cells],
+            uplift: vec![0.0; cells],
+            shore: vec![0.0; cells],
+            indent: indent(land, depth),
+        };
+        let geography = Geography::new(land);
+        let geography = (land.kilometres(depth) >= FINEST_GEOGRAPHY).then_some(&geography);
+        for j in 0..height {
+            if j % 32 == 0 || geography.is_some() {
+                progress.check()?;
+            }
+            if children.is_irregular() {
+                children.place_row(land, parent, j);
+            }
+            if (2..height - 2).contains(&j) {
+                children.inherit_row(land, parent, j, given, geography);
+            }
+        }
+        Ok(children)
+    }
+
+    /// Whether the nodes are elsewhere than in the middle of their cells.
+    pub fn is_irregular(&self) -> bool {
+        !self.east.is_empty()
+    }
+
+    /// The bits of all hashes of a node.
+    #[inline(always)]
+    fn bits(&self, land: &Continents, i: usize, j: usize) -> u64 {
+        hash::node(land.seed, self.depth, self.window.x + i as i64, self.window.y + j as i64, 0)
+    }
+
+    /// Positions of the nodes of row `j`. The node that a parent becomes stays near the parent's position.
+    fn place_row(&mut self, land: &Continents, parent: &Level, j: usize) {
+        let width = self.extent.width;
+        for i in 0..width {
+            let p = j / 2 * (width / 2) + i / 2;
+            let child = (i & 1) as u8 | ((j & 1) as u8) << 1;
+            let bits = self.bits(land, i, j);
+            let (draw_east, draw_south) = (hash::unit(bits), hash::unit(bits << 24));
+            let (east, south) = if heir(parent, p) == child {
+                let near = |share: f32, bit: usize, draw: f32| {
+                    let share = 2.0 * share - bit as f32;
+                    share + WANDER * (draw - share)
+                };
+                (near(parent.east[p], i & 1, draw_east), near(parent.south[p], j & 1, draw_south))
+            } else {
+                (jittered(draw_east), jittered(draw_south))
+            };
+            (self.east[j * width + i], self.south[j * width + i]) = (east, south);
+        }
+    }
+
+    /// Rock and shore of the inner nodes of row `j`, interpolated from the four nearest parents.
+    fn inherit_row(
+        &mut self,
+        land: &Continents,
+        parent: &Level,
+        j: usize,
+        given: &Given,
+        geography: Option<&Geography>,
+    ) {
+        let width = self.extent.width;
+        let parents = width / 2;
+        let near_row = j / 2 * parents;
+        let far_row = if j & 1 == 1 { near_row + parents } else { near_row - parents };
+        let amplitude = VARIATION[self.depth.min(VARIATION.len() - 1)];
+        for i in 2..width - 2 {
+            let near = i / 2;
+            let far = if i & 1 == 1 { near + 1 } else { near - 1 };
+            let blend = |plane: &[f32]| {
+                0.5625 * plane[near_row + near]
+                    + 0.1875 * plane[near_row + far]
+                    + 0.1875 * plane[far_row + near]
+                    + 0.0625 * plane[far_row + far]
+            };
+            let (q, bits) = (j * width + i, self.bits(land, i, j));
+            self.variation[q] = blend(&parent.variation) + amplitude * hash::normal(mix64(bits ^ 0x5555));
+            let (x, y) = (self.window.x + i as i64, self.window.y + j as i64);
+            self.uplift[q] = match (given.uplift(x, y), geography) {
+                (Some(uplift), _) => uplift,
+                (None, Some(geography)) => geography
+                    .uplift(land.metres(self.depth, x, self.east[q]), land.metres(self.depth, y, self.south[q])),
+                (None, None) => blend(&parent.uplift),
+            };
+            // Coasts of mountains are more indented than those of plains.
+            let rugged = 0.45 + 0.9 * ((self.uplift[q] + 3.0) / 3.2).clamp(0.0, 1.0);
+            let fractal = || blend(&parent.shore) + self.indent * rugged * hash::normal(mix64(bits ^ 0xAAAA));
+            self.shore[q] = given.shore(x, y).unwrap_or_else(fractal);
+        }
+    }
+}

@@ -1,0 +1,252 @@
+//! The coarsest level: geography at hashed nodes, and rivers by the cheapest way to the sea.
+
+use super::continents::Continents;
+use super::drainage;
+use super::geography::Geography;
+use super::given::Given;
+use super::hash;
+use super::law;
+use super::level::{Level, cropped};
+use super::routes::{self, UNREACHED};
+use super::stencil::Extent;
+use crate::erosion::power::power;
+use crate::error::Result;
+use crate::grid::Window;
+use crate::hydrology::direction::NONE;
+use crate::progress::Progress;
+
+/// Number of links over which heights and areas spread: a river of the coarsest level is at most this long.
+const LINKS: usize = 36;
+
+/// Cells beyond a window that its nodes depend on: two rounds of links, routing and areas, and the inner basins.
+const REACH: usize = 4 * LINKS + 4;
+
+/// Drainage area of the first round, in km^2.
+const TYPICAL_AREA: f64 = 2e4;
+
+/// Displacement of nodes: the share of a cell in which they are.
+pub const JITTER: f32 = 0.8;
+
+/// Uplift where no land is near.
+const OFFSHORE: f32 = -2.25;
+
+/// What a node's height starts from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Base {
+    None,
+    Basin,
+    Sea,
+}
+
+/// Working planes of the coarsest level.
+struct Coarsest<'a> {
+    land: &'a Continents,
+    window: Window,
+    extent: Extent,
+    east: Vec<f32>,
+    south: Vec<f32>,
+    shore: Vec<f32>,
+    uplift: Vec<f32>,
+    /// Factor of the cost of links to the node.
+    detour: Vec<f32>,
+    base: Vec<Base>,
+    /// Heights that bases start from; elsewhere [`UNREACHED`].
+    start: Vec<f32>,
+    area: Vec<f32>,
+    receiver: Vec<f32>,
+}
+
+impl Continents {
+    /// Samples of the coarsest level beyond a window that [`Continents::coarsest`] works on.
+    pub const COARSEST_REACH: usize = REACH;
+
+    /// The coarsest level over `window`. It holds about 60 bytes per sample of the window grown by 148.
+    ///
+    /// # Errors
+    /// If a parameter is out of range, the window is not one of the level, or the work is cancelled.
+    pub fn coarsest(&self, window: &Window, progress: &Progress) -> Result<Level> {
+        self.coarsest_with(&Given::default(), window, progress)
+    }
+
+    /// [`Continents::coarsest`] with shores and uplift that are given over the window grown by [`Continents::COARSEST_REACH`].
+    ///
+    /// # Errors
+    /// Those of [`Continents::coarsest`].
+    pub fn coarsest_with(&self, given: &Given, window: &Window, progress: &Progress) -> Result<Level> {
+        self.check(0, window)?;
+        let mut coarsest = Coarsest::new(self, given, window.grown(REACH), progress)?;
+        let first = coarsest.first_costs();
+        let heights = coarsest.drain(&first, progress)?;
+        coarsest.choose_basins(&heights);
+        let second = coarsest.second_costs();
+        let heights = coarsest.drain(&second, progress)?;
+        Ok(coarsest.finish(heights, window))
+    }
+}
+
+impl<'a> Coarsest<'a> {
+    /// The nodes with their geography.
+    fn new(land: &'a Continents, given: &Given, window: Window, progress: &Progress) -> Result<Coarsest<'a>> {
+        let extent = Extent { width: window.width, height: window.height, inset: 0 };
+        let cells = extent.len();
+        let mut made = Coarsest {
+            land,
+            window,
+            extent,
+            east: Vec::with_capacity(cells),
+            south: Vec::with_capacity(cells),
+            shore: Vec::with_capacity(cells),
+            uplift: vec![OFFSHORE; cells],
+            detour: Vec::with_capacity(cells),
+            base: vec![Base::None; cells],
+            start: vec![UNREACHED; cells],
+            area: vec![1.0; cells],
+            receiver: vec![f32::from(NONE); cells],
+        };
+        let geography = Geography::new(land);
+        for y in window.y..window.bottom() {
+            progress.check()?;
+            for x in window.x..window.right() {
+                let draw = |stream| hash::unit(hash::node(land.seed, 0, x, y, stream));
+                let (east, south) = (jittered(draw(0)), jittered(draw(1)));
+                let (metres_east, metres_south) = (land.metres(0, x, east), land.metres(0, y, south));
+                made.shore.push(given.shore_or((x, y), &geography, metres_east, metres_south));
+                made.east.push(east);
+                made.south.push(south);
+                made.detour.push(0.5 + draw(2));
+            }
+        }
+        // Only land and its neighbours read the uplift.
+        for j in extent.shrunk(1).rows() {
+            progress.check()?;
+            for i in extent.shrunk(1).columns() {
+                let q = j * extent.width + i;
+                let near = [q - extent.width, q, q + extent.width];
+                if near.iter().any(|&middle| made.shore[middle - 1..middle + 2].iter().any(|&shore| shore >= 0.0)) {
+                    let (x, y) = (window.x + i as i64, window.y + j as i64);
+                    let (east, south) = (land.metres(0, x, made.east[q]), land.metres(0, y, made.south[q]));
+                    made.uplift[q] = given.uplift_or((x, y), &geography, east, south);
+                }
+            }
+        }
+        for (q, &shore) in made.shore.iter().enumerate() {
+            if shore < 0.0 {
+                (made.base[q], made.start[q]) = (Base::Sea, 0.0);
+            }
+        }
+        made.extent.inset = 1;
+        Ok(made)
+    }
+
+    /// Rise per cell of distance, with the same drainage area everywhere.
+    fn first_costs(&self) -> Vec<f32> {
+        let rise = (law::river_slope(self.land, TYPICAL_AREA) * self.land.cell_of(0)) as f32;
+        self.uplift.iter().map(|&uplift| rise * power(std::f32::consts::E, uplift)).collect()
+    }
+
+    /// Rise per cell of distance with the drainage areas found.
+    fn second_costs(&self) -> Vec<f32> {
+        let kilometres = self.land.kilometres(0);
+        let rise = (law::river_slope(self.land, kilometres * kilometres) * self.land.cell_of(0)) as f32;
+        let cost =
+            |(&uplift, &area): (&f32, &f32)| rise * power(std::f32::consts::E, uplift) * power(area, -law::CONCAVITY);
+        self.uplift.iter().zip(&self.area).map(cost).collect()
+    }
+
+    /// Routes all land to the bases by the cheapest links, and adds up the areas. Returns the heights.
+    fn drain(&mut self, cost: &[f32], progress: &Progress) -> Result<Vec<f32>> {
+        let nodes = routes::Nodes { east: &self.east, south: &self.south, cost, detour: &self.detour };
+        let links = routes::links(self.extent, &nodes);
+        let mut heights = self.start.clone();
+        let mut spare = heights.clone();
+        for _ in 0..LINKS {
+            progress.check()?;
+            self.extent = self.extent.shrunk(1);
+            routes::relax(self.extent, &links, &mut heights, &mut spare);
+        }
+        self.extent = self.extent.shrunk(1);
+        routes::route(self.extent, &links, &heights, &self.start, &mut self.receiver);
+        for _ in 0..LINKS {
+            progress.check()?;
+            self.extent = self.extent.shrunk(1);
+            drainage::step(self.extent, &self.receiver, &mut self.area, &mut spare);
+        }
+        Ok(heights)
+    }
+
+    /// Inner basins: high and gentle land behind steep land, where the way out to the sea is kept from being cut; and places beyond the reach
+    /// of the sea.
+    fn choose_basins(&mut self, heights: &[f32]) {
+        let (relief, width) = (self.land.relief as f32, self.extent.width);
+        let score = |q: usize| match heights[q] {
+            height if self.base[q] == Base::Sea => height + UNREACHED,
+            height if height >= UNREACHED => 1000.0 + self.detour[q],
+            height => self.uplift[q] - 0.8 * logarithm(height.max(1.0)),
+        };
+        let scores: Vec<f32> = (0..heights.len()).map(score).collect();
+        let mut found = Vec::new();
+        for j in self.extent.rows() {
+            for i in self.extent.columns() {
+                let (q, height) = (j * width + i, heights[j * width + i]);
+                let unreached = height >= UNREACHED && self.base[q] == Base::None;
+                let suitable = self.shore[q] >= 200.0 && height >= 250.0 * relief && self.uplift[q] <= -0.9;
+                let bits = hash::node(self.land.seed, 0, self.window.x + i as i64, self.window.y + j as i64, 4);
+                let chosen = suitable && height < UNREACHED && f64::from(hash::unit(bits)) < self.land.basins;
+                if !(unreached || chosen) {
+                    continue;
+                }
+                let mut rows = (j - 2..=j + 2).map(|row| row * width + i - 2..row * width + i + 3);
+                let alone =
+                    rows.all(|row| row.into_iter().all(|o| o == q || (scores[o] > scores[q] && self.shore[o] >= 0.0)));
+                if alone {
+                    let height = if unreached { 1500.0 * relief } else { height };
+                    found.push((q, height * (0.08 + 0.3 * hash::unit(bits << 24))));
+                }
+            }
+        }
+        for (q, height) in found {
+            (self.base[q], self.start[q]) = (Base::Basin, height);
+        }
+    }
+
+    /// The level over `window`.
+    fn finish(mut self, mut heights: Vec<f32>, window: &Window) -> Level {
+        let width = self.window.width;
+        for (q, height) in heights.iter_mut().enumerate() {
+            let drains = self.receiver[q] < f32::from(NONE);
+            self.shore[q] = match self.base[q] {
+                Base::Sea => self.shore[q].min(-4.0),
+                _ if drains => self.shore[q].clamp(4.0, 100.0),
+                _ => {
+                    let (x, y) = (self.window.x + (q % width) as i64, self.window.y + (q / width) as i64);
+                    -15.0 - 60.0 * hash::unit(hash::node(self.land.seed, 0, x, y, 5))
+                }
+            };
+            if *height >= UNREACHED {
+                *height = 0.0;
+            }
+        }
+        let part = |plane: &[f32]| cropped(plane, width, (REACH, REACH), (window.width, window.height));
+        Level {
+            depth: 0,
+            window: *window,
+            east: part(&self.east),
+            south: part(&self.south),
+            height: part(&heights),
+            area: part(&self.area),
+            receiver: part(&self.receiver).into_iter().map(|code| code as u8).collect(),
+            variation: vec![0.0; window.len()],
+            uplift: part(&self.uplift),
+            shore: part(&self.shore),
+        }
+    }
+}
+
+/// A position in a cell from a number from 0 to 1.
+pub fn jittered(draw: f32) -> f32 {
+    0.5 + JITTER * (draw - 0.5)
+}
+
+fn logarithm(x: f32) -> f32 {
+    libm::log(f64::from(x)) as f32
+}

@@ -1,0 +1,129 @@
+//! Creep of soil on the finest level: slopes become smooth, and every node stays above its receiver.
+
+use super::carve::FREE;
+use super::stencil::Extent;
+use crate::hydrology::direction::NONE;
+use orogen_simd::{Body, Simd, dispatch};
+use std::f32::consts::FRAC_1_SQRT_2;
+
+/// Share of the way to the mean of the neighbours.
+const RATE: f32 = 0.8;
+
+/// Drainage area in cells at which the rate is half.
+const CHANNEL_AREA: f32 = 300.0;
+
+/// Fall to the receiver, in metres, that creep leaves.
+const LEFT: f32 = 0.02;
+
+/// Drainage area in cells from which rivers cut down instead, and the depth in metres in a pass, as far as heights still fall along them.
+const CUT_AREA: f32 = 1400.0;
+const CUT: f32 = 1.5;
+
+/// Share of the fall to the receiver by which a node may fall in a pass.
+const LOWERED: f32 = 0.5;
+
+/// One pass of creep over the cells of `extent`.
+pub fn creep(extent: Extent, heights: &mut Vec<f32>, spare: &mut Vec<f32>, area: &[f32], receiver: &[f32]) {
+    dispatch(Creep { extent, heights, area, receiver, out: spare });
+    std::mem::swap(heights, spare);
+}
+
+struct Creep<'a> {
+    extent: Extent,
+    heights: &'a [f32],
+    area: &'a [f32],
+    receiver: &'a [f32],
+    out: &'a mut [f32],
+}
+
+impl Body for Creep<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, _: S) {
+        let extent = self.extent;
+        for j in extent.rows() {
+            let (heights, receivers) = (extent.around(self.heights, j), extent.around(self.receiver, j));
+            let own = [extent.row(self.heights, j), extent.row(self.area, j), extent.row(self.receiver, j)];
+            smooth(own, heights, receivers, extent.row_mut(self.out, j));
+        }
+    }
+}
+
+/// A node falls by at most a share of the fall to its receiver, and rises by at most the rest of that from its lowest donor, so that donors stay
+/// above.
+#[inline(always)]
+fn smooth([height, area, receiver]: [&[f32]; 3], heights: [&[f32]; 8], receivers: [&[f32]; 8], out: &mut [f32]) {
+    let n = out.len();
+    let (height, area, receiver) = (&height[..n], &area[..n], &receiver[..n]);
+    let (heights, receivers) = (heights.map(|row| &row[..n]), receivers.map(|row| &row[..n]));
+    for i in 0..n {
+        let here = height[i];
+        let (mut sides, mut corners) = (0.0, 0.0);
+        let mut down = 0.0;
+        let mut up = f32::INFINITY;
+        for code in 0..8 {
+            let there = heights[code][i];
+            if code & 1 == 0 {
+                sides += there;
+            } else {
+                corners += there;
+            }
+            down = if receiver[i] == code as f32 { here - there } else { down };
+            let donor = receivers[code][i] == ((code + 4) & 7) as f32;
+            up = if donor & (there - here < up) { there - here } else { up };
+        }
+        let (down, up) = (down - LEFT, up - LEFT);
+        let lower = if down > 0.0 { -LOWERED * down } else { 0.0 };
+        let upper = if up > 0.0 { (1.0 - LOWERED) * up } else { 0.0 };
+        let rate = RATE * CHANNEL_AREA / (CHANNEL_AREA + area[i]);
+        let change = rate * ((4.0 * sides + corners) * (1.0 / 20.0) - here);
+        let change = if area[i] < CUT_AREA { change } else { -CUT };
+        let change = if change > lower { change } else { lower };
+        let change = if change < upper { change } else { upper };
+        out[i] = if receiver[i] < f32::from(NONE) { here + change } else { here };
+    }
+}
+
+/// Free nodes drain along the steepest descent.
+pub fn steepest(extent: Extent, heights: &[f32], fixed: &[f32], receiver: &mut [f32]) {
+    dispatch(Steepest { extent, heights, fixed, receiver });
+}
+
+struct Steepest<'a> {
+    extent: Extent,
+    heights: &'a [f32],
+    fixed: &'a [f32],
+    receiver: &'a mut [f32],
+}
+
+impl Body for Steepest<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, _: S) {
+        let extent = self.extent;
+        for j in extent.rows() {
+            let own = [extent.row(self.heights, j), extent.row(self.fixed, j)];
+            descend(own, extent.around(self.heights, j), extent.row_mut(self.receiver, j));
+        }
+    }
+}
+
+#[inline(always)]
+fn descend([height, fixed]: [&[f32]; 2], heights: [&[f32]; 8], receiver: &mut [f32]) {
+    let n = receiver.len();
+    let (height, fixed, heights) = (&height[..n], &fixed[..n], heights.map(|row| &row[..n]));
+    for i in 0..n {
+        let mut steepest = 0.0;
+        let mut best = receiver[i];
+        for (code, there) in heights.iter().enumerate() {
+            let fall = height[i] - there[i];
+            let fall = if code & 1 == 1 { fall * FRAC_1_SQRT_2 } else { fall };
+            let better = fall > steepest;
+            steepest = if better { fall } else { steepest };
+            best = if better { code as f32 } else { best };
+        }
+        receiver[i] = if fixed[i] == FREE { best } else { receiver[i] };
+    }
+}

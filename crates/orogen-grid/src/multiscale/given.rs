@@ -1,0 +1,47 @@
+//! What the caller knows of the land.
+
+use super::geography::Geography;
+use crate::grid::Grid;
+
+/// Shores and uplift in place of those of the land's own geography. Each grid is at the cell of the level and covers the samples that
+/// the level reads; where it has no value (NaN, or beyond its edge), geography decides.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Given<'a> {
+    /// Distance to the shore in metres, positive on land.
+    pub shore: Option<&'a Grid>,
+    /// Uplift over erodibility: 1 in mountains, 0.1 in plains.
+    pub uplift: Option<&'a Grid>,
+}
+
+/// The smallest uplift over erodibility, so that its logarithm is finite.
+const LEAST_UPLIFT: f32 = 1e-4;
+
+impl Given<'_> {
+    /// The distance to the shore in kilometres at a sample of the lattice, if it is given.
+    pub(super) fn shore(&self, x: i64, y: i64) -> Option<f32> {
+        self.shore.and_then(|grid| at(grid, x, y)).map(|metres| metres * 1e-3)
+    }
+
+    /// The logarithm of uplift over erodibility at a sample of the lattice, if it is given.
+    pub(super) fn uplift(&self, x: i64, y: i64) -> Option<f32> {
+        let uplift = self.uplift.and_then(|grid| at(grid, x, y))?;
+        Some(libm::log(f64::from(uplift.max(LEAST_UPLIFT))) as f32)
+    }
+
+    /// The distance to the shore in kilometres at a sample, otherwise that of geography at a position in metres.
+    pub(super) fn shore_or(&self, (x, y): (i64, i64), geography: &Geography, east: f64, south: f64) -> f32 {
+        self.shore(x, y).unwrap_or_else(|| geography.shore(east, south))
+    }
+
+    /// The logarithm of uplift over erodibility at a sample, otherwise that of geography at a position in metres.
+    pub(super) fn uplift_or(&self, (x, y): (i64, i64), geography: &Geography, east: f64, south: f64) -> f32 {
+        self.uplift(x, y).unwrap_or_else(|| geography.uplift(east, south))
+    }
+}
+
+/// The finite value of a sample of the lattice.
+fn at(grid: &Grid, x: i64, y: i64) -> Option<f32> {
+    let window = grid.window();
+    let (i, j) = (usize::try_from(x - window.x).ok()?, usize::try_from(y - window.y).ok()?);
+    grid.get(i, j).filter(|value| value.is_finite())
+}

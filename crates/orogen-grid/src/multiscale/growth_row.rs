@@ -1,0 +1,221 @@
+//! The growth of one row of nodes. Each step is a loop over a row that reads one neighbour, so that it vectorises.
+
+use super::carve::{FREE, UNKNOWN, WATER};
+use super::law::CONCAVITY;
+use crate::erosion::power::power;
+use std::f32::consts::{FRAC_1_SQRT_2, SQRT_2};
+
+/// Half-width of a floor, in metres, where rivers begin to have floors.
+const FLOOR_WIDTH: f32 = 100.0;
+
+/// Greatest slope of a floor.
+const FLOOR_SLOPE: f32 = 0.02;
+
+/// Smallest rise over one cell, in metres: heights fall strictly.
+const MIN_RISE: f32 = 0.012;
+
+/// Drainage area, in cells, below which slopes of the finest level rise in all directions alike.
+const SLOPE_AREA: f32 = 30.0;
+
+/// Numbers of a level.
+#[derive(Debug, Clone, Copy)]
+pub struct Scale {
+    /// The cell in metres.
+    pub cell: f32,
+    /// Inverse of the area of rivers with floors, in cells.
+    pub floor_area: f32,
+}
+
+/// What a row of cells reads of itself.
+pub struct Own<'a> {
+    pub height: &'a [f32],
+    pub area: &'a [f32],
+    pub fixed: &'a [f32],
+    pub river: &'a [f32],
+    pub stable: &'a [f32],
+    /// Factor of the floor's width; empty without floors.
+    pub width: &'a [f32],
+}
+
+/// What a row of cells reads of its neighbours.
+pub struct Around<'a> {
+    pub height: [&'a [f32]; 8],
+    /// Empty on the finest level, where nodes are on the lattice.
+    pub distance: [&'a [f32]; 8],
+    pub floor: [&'a [f32]; 8],
+}
+
+/// The results of a row so far.
+#[derive(Default)]
+pub struct Row {
+    /// Rise over one cell by the law, and on a floor.
+    rise: Vec<f32>,
+    flat: Vec<f32>,
+    /// Free nodes drain to neighbours below this height.
+    below: Vec<f32>,
+    lowest: Vec<f32>,
+    best: Vec<f32>,
+    floor: Vec<f32>,
+}
+
+impl Row {
+    fn resize(&mut self, cells: usize) {
+        for plane in
+            [&mut self.rise, &mut self.flat, &mut self.below, &mut self.lowest, &mut self.best, &mut self.floor]
+        {
+            plane.resize(cells, 0.0);
+        }
+    }
+}
+
+/// The new heights, receivers and floors of a row.
+#[inline(always)]
+pub fn grow<const FLOORS: bool, const REGULAR: bool>(
+    row: &mut Row,
+    own: &Own<'_>,
+    around: &Around<'_>,
+    scale: Scale,
+    out: &mut [f32],
+    receiver: &mut [f32],
+    out_floor: &mut [f32],
+) {
+    let n = out.len();
+    row.resize(n);
+    let Row { rise, flat, below, lowest, best, floor } = row;
+    rises(own, scale, &mut rise[..n], &mut flat[..n], &mut below[..n]);
+    lowest[..n].fill(UNKNOWN);
+    best[..n].fill(-1.0);
+    floor[..n].fill(0.0);
+    let law = Law { rise, flat, below, fixed: own.fixed, cell: scale.cell };
+    for code in 0..8 {
+        let there =
+            Neighbour { height: around.height[code], distance: around.distance[code], floor: around.floor[code] };
+        let there = Toward { there, code: code as f32, diagonal: code & 1 == 1 };
+        offer::<FLOORS, REGULAR>(&law, &there, &mut lowest[..n], &mut best[..n], &mut floor[..n]);
+    }
+    if REGULAR {
+        for code in [0usize, 2, 4, 6] {
+            for beside in [(code + 1) & 7, (code + 7) & 7] {
+                let heights = [own.height, own.area, around.height[code], around.height[beside]];
+                front(&law, heights, beside as f32, &mut lowest[..n], &mut best[..n], &mut floor[..n]);
+            }
+        }
+    }
+    finish(own.height, lowest, best, out, receiver);
+    if FLOORS {
+        floors([own.area, own.width, own.fixed], floor, scale.floor_area, out_floor);
+    }
+}
+
+/// What all neighbours of a row are measured by.
+struct Law<'a> {
+    rise: &'a [f32],
+    flat: &'a [f32],
+    below: &'a [f32],
+    fixed: &'a [f32],
+    cell: f32,
+}
+
+struct Neighbour<'a> {
+    height: &'a [f32],
+    distance: &'a [f32],
+    floor: &'a [f32],
+}
+
+/// The neighbours in one direction.
+struct Toward<'a> {
+    there: Neighbour<'a>,
+    code: f32,
+    diagonal: bool,
+}
+
+#[inline(always)]
+fn rises(own: &Own<'_>, scale: Scale, rise: &mut [f32], flat: &mut [f32], below: &mut [f32]) {
+    let n = rise.len();
+    let (flat, below) = (&mut flat[..n], &mut below[..n]);
+    let (height, area, fixed) = (&own.height[..n], &own.area[..n], &own.fixed[..n]);
+    let (river, stable) = (&own.river[..n], &own.stable[..n]);
+    for i in 0..n {
+        let slope = river[i] * power(area[i], -CONCAVITY);
+        let metres = slope * stable[i] / (slope + stable[i]) * scale.cell;
+        let metres = if metres > MIN_RISE { metres } else { MIN_RISE };
+        let on_floor = FLOOR_SLOPE * scale.cell;
+        rise[i] = metres;
+        flat[i] = if on_floor < metres { on_floor } else { metres };
+        below[i] = if fixed[i] == FREE { height[i] } else { -UNKNOWN };
+    }
+}
+
+/// Takes the height over the neighbours in one direction where it is the lowest so far.
+#[inline(always)]
+fn offer<const FLOORS: bool, const REGULAR: bool>(
+    law: &Law<'_>,
+    toward: &Toward<'_>,
+    lowest: &mut [f32],
+    best: &mut [f32],
+    floor: &mut [f32],
+) {
+    let n = lowest.len();
+    let (best, floor) = (&mut best[..n], &mut floor[..n]);
+    let (rise, flat, below, fixed) = (&law.rise[..n], &law.flat[..n], &law.below[..n], &law.fixed[..n]);
+    let there = &toward.there.height[..n];
+    let distances = &toward.there.distance[..if REGULAR { 0 } else { n }];
+    let floors = &toward.there.floor[..if FLOORS { n } else { 0 }];
+    let regular = if toward.diagonal { SQRT_2 } else { 1.0 };
+    for i in 0..n {
+        let distance = if REGULAR { regular } else { distances[i] };
+        let left = if FLOORS { floors[i] - distance * law.cell } else { 0.0 };
+        let slope = if left > 0.0 { flat[i] } else { rise[i] };
+        let candidate = there[i] + distance * slope;
+        let possible = (there[i] < below[i]) | (fixed[i] == toward.code);
+        let better = possible & (candidate < lowest[i]);
+        lowest[i] = if better { candidate } else { lowest[i] };
+        best[i] = if better { toward.code } else { best[i] };
+        if FLOORS {
+            floor[i] = if better { left } else { floor[i] };
+        }
+    }
+}
+
+/// Takes the height of a front that passes between a neighbour and the lower one `beside` it where it is the lowest so far.
+#[inline(always)]
+fn front(law: &Law<'_>, heights: [&[f32]; 4], beside: f32, lowest: &mut [f32], best: &mut [f32], floor: &mut [f32]) {
+    let n = lowest.len();
+    let (best, floor) = (&mut best[..n], &mut floor[..n]);
+    let (rise, fixed) = (&law.rise[..n], &law.fixed[..n]);
+    let [here, area, there, corner] = heights.map(|row| &row[..n]);
+    for i in 0..n {
+        let free = (fixed[i] == FREE) & (area[i] < SLOPE_AREA);
+        let near = if free { rise[i] * FRAC_1_SQRT_2 } else { 0.0 };
+        let fall = there[i] - corner[i];
+        let square = rise[i] * rise[i] - fall * fall;
+        let candidate = there[i] + (if square > 0.0 { square } else { 0.0 }).sqrt();
+        let better = (fall > 0.0) & (fall < near) & (corner[i] < here[i]) & (candidate < lowest[i]);
+        lowest[i] = if better { candidate } else { lowest[i] };
+        best[i] = if better { beside } else { best[i] };
+        floor[i] = if better { 0.0 } else { floor[i] };
+    }
+}
+
+#[inline(always)]
+fn finish(height: &[f32], lowest: &[f32], best: &[f32], out: &mut [f32], receiver: &mut [f32]) {
+    let n = out.len();
+    let (height, lowest, best, receiver) = (&height[..n], &lowest[..n], &best[..n], &mut receiver[..n]);
+    for i in 0..n {
+        out[i] = if lowest[i] < height[i] { lowest[i] } else { height[i] };
+        receiver[i] = if best[i] >= 0.0 { best[i] } else { receiver[i] };
+    }
+}
+
+/// The distance over which a river's floor continues, from its size or from downstream.
+#[inline(always)]
+fn floors([area, width, fixed]: [&[f32]; 3], floor: &[f32], floor_area: f32, out: &mut [f32]) {
+    let n = out.len();
+    let (area, width, fixed, floor) = (&area[..n], &width[..n], &fixed[..n], &floor[..n]);
+    for i in 0..n {
+        let share = area[i] * floor_area;
+        let own = FLOOR_WIDTH * share.sqrt() * width[i];
+        let own = if (share > 1.0) & (fixed[i] < WATER) { own } else { 0.0 };
+        out[i] = if floor[i] > own { floor[i] } else { own };
+    }
+}

@@ -1,0 +1,30 @@
+//! Random numbers of nodes: functions of the seed, the level, the position and a stream.
+
+use crate::random::{STEP, mix64};
+
+/// 64 random bits of the node at column `x` and row `y` of a level.
+#[inline(always)]
+pub fn node(seed: u64, depth: usize, x: i64, y: i64, stream: u64) -> u64 {
+    let start = seed.wrapping_add(((depth as u64) << 8 | stream).wrapping_mul(STEP));
+    let column = mix64(start ^ (x as u64).wrapping_mul(0xD6E8_FEB8_6659_FD93));
+    mix64(column.wrapping_add((y as u64).wrapping_mul(0xA076_1D64_78BD_642F)))
+}
+
+/// A number from 0 to 1, less than 1, from the upper 24 bits.
+#[inline(always)]
+pub fn unit(bits: u64) -> f32 {
+    (bits >> 40) as f32 * (1.0 / 16_777_216.0)
+}
+
+/// A number from 0 to 1, less than 1, from 16 of the bits: `part` is 0 to 3.
+#[inline(always)]
+pub fn unit16(bits: u64, part: usize) -> f32 {
+    (bits >> (16 * (part & 3)) & 0xFFFF) as f32 * (1.0 / 65_536.0)
+}
+
+/// A number of nearly normal distribution with unit variance: the sum of four uniform ones.
+#[inline(always)]
+pub fn normal(bits: u64) -> f32 {
+    let sum = (bits & 0xFFFF) + (bits >> 16 & 0xFFFF) + (bits >> 32 & 0xFFFF) + (bits >> 48);
+    (sum as f32 * (1.0 / 65_536.0) - 2.0) * 1.732_050_8
+}

@@ -1,0 +1,106 @@
+//! The law of slopes: rivers are the gentler the more land drains through them, and hillsides approach a stable slope.
+
+use super::continents::Continents;
+use crate::erosion::power::power;
+use orogen_simd::{Body, Simd, dispatch};
+
+/// Exponent of the drainage area.
+pub const CONCAVITY: f32 = 0.45;
+
+/// Slope of a river with a drainage area of 1 km^2 where uplift over erodibility is 1.
+const STEEPNESS: f64 = 0.25;
+
+/// Stable slope of hillsides where uplift over erodibility is 1.
+const STABLE: f32 = 0.8;
+
+/// Exponent of uplift over erodibility in the stable slope.
+const STABLE_EXPONENT: f32 = 0.3;
+
+/// Slope of a river of this drainage area, in km^2, where uplift over erodibility is 1.
+pub fn river_slope(land: &Continents, square_kilometres: f64) -> f64 {
+    land.relief * STEEPNESS * libm::pow(square_kilometres, -f64::from(CONCAVITY))
+}
+
+/// The law at the nodes of a level. The slope is s t / (s + t) with s = `river` A^-0.45, A in cells, and t = `stable`.
+pub struct Law {
+    pub river: Vec<f32>,
+    pub stable: Vec<f32>,
+    /// Factor of the width of valley floors, on levels that have them.
+    pub floor: Vec<f32>,
+}
+
+impl Law {
+    /// The law where the logarithm of uplift over erodibility is the sum of `variation` and `uplift`.
+    pub fn new(land: &Continents, depth: usize, variation: &[f32], uplift: &[f32]) -> Law {
+        let cells = variation.len().min(uplift.len());
+        let kilometres = land.kilometres(depth);
+        let river_factor = river_slope(land, kilometres * kilometres) as f32;
+        let stable_factor = STABLE * power(land.relief as f32, STABLE_EXPONENT);
+        let mut law = Law { river: vec![0.0; cells], stable: vec![0.0; cells], floor: Vec::new() };
+        if has_floors(land, depth) {
+            law.floor.resize(cells, 0.0);
+        }
+        dispatch(Fill { law: &mut law, variation, uplift, river_factor, stable_factor });
+        law
+    }
+}
+
+/// Whether valleys of a level have floors: the last three.
+pub fn has_floors(land: &Continents, depth: usize) -> bool {
+    depth + 2 >= land.levels
+}
+
+struct Fill<'a> {
+    law: &'a mut Law,
+    variation: &'a [f32],
+    uplift: &'a [f32],
+    river_factor: f32,
+    stable_factor: f32,
+}
+
+impl Body for Fill<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, _: S) {
+        let factors = (self.river_factor, self.stable_factor);
+        fill(self.variation, self.uplift, factors, &mut self.law.river, &mut self.law.stable);
+        floors(self.variation, self.uplift, &mut self.law.floor);
+    }
+}
+
+#[inline(always)]
+fn fill(
+    variation: &[f32],
+    uplift: &[f32],
+    (river_factor, stable_factor): (f32, f32),
+    river: &mut [f32],
+    stable: &mut [f32],
+) {
+    let n = river.len();
+    let (variation, uplift, stable) = (&variation[..n], &uplift[..n], &mut stable[..n]);
+    for i in 0..n {
+        let logarithm = variation[i] + uplift[i];
+        river[i] = river_factor * power(std::f32::consts::E, logarithm);
+        stable[i] = stable_factor * power(std::f32::consts::E, STABLE_EXPONENT * logarithm);
+    }
+}
+
+/// Floors are the wider the softer the rock.
+#[inline(always)]
+fn floors(variation: &[f32], uplift: &[f32], floor: &mut [f32]) {
+    let n = floor.len();
+    let (variation, uplift) = (&variation[..n], &uplift[..n]);
+    for i in 0..n {
+        let factor = power(std::f32::consts::E, -(variation[i] + uplift[i]));
+        floor[i] = if factor < 4.0 { factor } else { 4.0 };
+    }
+}
+
+/// The rise in metres from a node to its neighbour at the source of a river, where the logarithm of uplift over erodibility is `logarithm`.
+pub fn slope_of_one_cell(land: &Continents, depth: usize, logarithm: f32) -> f32 {
+    let kilometres = land.kilometres(depth);
+    let river = river_slope(land, kilometres * kilometres) as f32 * power(std::f32::consts::E, logarithm);
+    let stable = STABLE * power(land.relief as f32 * power(std::f32::consts::E, logarithm), STABLE_EXPONENT);
+    river * stable / (river + stable) * land.cell_of(depth) as f32
+}

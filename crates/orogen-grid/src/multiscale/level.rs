@@ -1,0 +1,105 @@
+//! The nodes of one level over a window.
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::grid::{Grid, Window};
+use crate::hydrology::direction::NONE;
+
+/// Nodes of one level over a window: one node per sample of the lattice.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Level {
+    /// The number of halvings from the coarsest level, which is 0.
+    pub depth: usize,
+    /// The window, in samples of this level.
+    pub window: Window,
+    /// Position of the node in its cell, 0 in the west to 1 in the east.
+    pub east: Vec<f32>,
+    /// Position of the node in its cell, 0 in the north to 1 in the south.
+    pub south: Vec<f32>,
+    /// Height in metres; the water level of water. The sea is at 0.
+    pub height: Vec<f32>,
+    /// Drainage area, in cells of this level.
+    pub area: Vec<f32>,
+    /// Code of the direction to the receiver (see [`crate::hydrology::direction`]); [`NONE`] for water.
+    pub receiver: Vec<u8>,
+    /// Local part of the logarithm of uplift over erodibility.
+    pub variation: Vec<f32>,
+    /// Regional part of the logarithm of uplift over erodibility.
+    pub uplift: Vec<f32>,
+    /// Approximate distance to the shore in kilometres, positive on land.
+    pub shore: Vec<f32>,
+}
+
+impl Level {
+    /// Number of planes.
+    pub const PLANES: usize = 8;
+
+    /// Each plane as a grid over the window, in the order of the fields.
+    #[must_use]
+    pub fn into_planes(self) -> Vec<Grid> {
+        let receiver = self.receiver.into_iter().map(f32::from).collect();
+        let planes = [self.east, self.south, self.height, self.area, receiver, self.variation, self.uplift, self.shore];
+        let no_data = || Grid::filled(self.window, f32::NAN);
+        planes.into_iter().map(|plane| Grid::from_data(self.window, plane).unwrap_or_else(no_data)).collect()
+    }
+
+    /// The level of these planes, the inverse of [`Level::into_planes`].
+    ///
+    /// # Errors
+    /// If the number of planes is wrong, their windows differ, or a receiver is not a code of a direction.
+    pub fn from_planes(depth: usize, planes: &[&Grid]) -> Result<Level> {
+        let &[east, south, height, area, receiver, variation, uplift, shore] = planes else {
+            return Err(invalid(format!("a level has {} planes, not {}", Level::PLANES, planes.len())));
+        };
+        let window = *east.window();
+        if planes.iter().any(|plane| *plane.window() != window) {
+            return Err(invalid("the planes of a level must have the same window"));
+        }
+        let code = |value: &f32| match *value {
+            value if (0.0..=f32::from(NONE)).contains(&value) && value.floor() == value => Ok(value as u8),
+            value => Err(invalid(format!("{value} is not a receiver"))),
+        };
+        let receiver = receiver.data().iter().map(code).collect::<Result<_>>()?;
+        let [east, south, height, area] = [east, south, height, area].map(|plane| plane.data().to_vec());
+        let [variation, uplift, shore] = [variation, uplift, shore].map(|plane| plane.data().to_vec());
+        Ok(Level { depth, window, east, south, height, area, receiver, variation, uplift, shore })
+    }
+
+    /// The nodes of `window`, which must lie within the level's.
+    ///
+    /// # Errors
+    /// If the window is not a part of the level's.
+    pub fn crop(&self, window: &Window) -> Result<Level> {
+        if !self.window.contains(window) {
+            return Err(invalid(format!("a level over {:?} does not contain {window:?}", self.window)));
+        }
+        let offset = ((window.x - self.window.x) as usize, (window.y - self.window.y) as usize);
+        let (from, size) = (self.window.width, (window.width, window.height));
+        let part = |plane: &[f32]| cropped(plane, from, offset, size);
+        Ok(Level {
+            depth: self.depth,
+            window: *window,
+            east: part(&self.east),
+            south: part(&self.south),
+            height: part(&self.height),
+            area: part(&self.area),
+            receiver: cropped(&self.receiver, from, offset, size),
+            variation: part(&self.variation),
+            uplift: part(&self.uplift),
+            shore: part(&self.shore),
+        })
+    }
+}
+
+/// A rectangle of a row-major plane of `width`: its first column and row, and its size.
+pub(super) fn cropped<T: Copy>(plane: &[T], width: usize, (left, top): (usize, usize), size: (usize, usize)) -> Vec<T> {
+    let mut part = Vec::with_capacity(size.0 * size.1);
+    for row in plane.chunks(width.max(1)).skip(top).take(size.1) {
+        part.extend_from_slice(&row[left..left + size.0]);
+    }
+    part
+}
+
+/// The error of a request that does not fit a level.
+pub(super) fn invalid(message: impl Into<String>) -> Error {
+    Error::new(ErrorKind::Request, message)
+}

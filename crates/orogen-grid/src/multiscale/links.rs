@@ -1,0 +1,227 @@
+//! The ways of rivers through the children of a level: which links of the parents are kept, and the children that they pass.
+
+use super::children::{Children, heir};
+use super::continents::Continents;
+use super::hash;
+use super::level::Level;
+use crate::error::Result;
+use crate::hydrology::direction::{NONE, STEPS};
+use crate::progress::Progress;
+
+/// Randomness of the choice between ways, relative to their lengths; that of the last three levels.
+const WANDER: f32 = 1.0;
+const FINE_WANDER: f32 = 0.3;
+
+/// Factor of the length of a detour around a corner: rivers that follow diagonals would be straight without detours.
+const DETOUR: f32 = 0.9;
+
+/// A child of a cell: its parent and which of the four it is, bit 0 for the east, bit 1 for the south.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Child {
+    pub parent: usize,
+    pub corner: u8,
+}
+
+impl Child {
+    /// The index of the child in planes of children, from the number of parents per row.
+    #[inline(always)]
+    pub fn index(self, parents: usize) -> usize {
+        let (i, j) = (self.parent % parents, self.parent / parents);
+        (2 * j + usize::from(self.corner >> 1)) * 2 * parents + 2 * i + usize::from(self.corner & 1)
+    }
+}
+
+/// The third cell that a link across a corner passes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Around {
+    /// None.
+    Nothing,
+    /// The cell in the east or west of the parent.
+    Side,
+    /// The cell in the north or south of the parent.
+    End,
+}
+
+/// The way of a parent's link: from the parent's heir to the exit, possibly around a corner, and from the entry to the receiver's heir.
+#[derive(Debug, Clone, Copy)]
+pub struct Link {
+    /// Whether the parent has a donor or is water: other parents are forgotten, and their nodes grow anew.
+    pub kept: bool,
+    /// Whether the parent has a donor.
+    pub fed: bool,
+    /// Child of the parent through which the river leaves.
+    pub exit: u8,
+    /// Child of the receiver through which the river arrives.
+    pub entry: u8,
+    /// Whether the river passes a child of a third cell between exit and entry.
+    pub around: Around,
+}
+
+/// The links of all parents. Those of parents at least three cells from the edge, and the children that they pass, are exact.
+pub struct Links {
+    pub list: Vec<Link>,
+    /// Parents per row, and rows.
+    pub size: (usize, usize),
+}
+
+impl Links {
+    pub fn new(land: &Continents, parent: &Level, children: &Children, progress: &Progress) -> Result<Links> {
+        let size = (parent.window.width, parent.window.height);
+        let nothing = Link { kept: false, fed: false, exit: 0, entry: 0, around: Around::Nothing };
+        let mut links = Links { list: vec![nothing; parent.window.len()], size };
+        links.keep(parent);
+        progress.check()?;
+        let wander = if children.depth + 2 >= land.levels { FINE_WANDER } else { WANDER };
+        for q in links.inner().filter(|&q| links.list[q].kept && parent.receiver[q] < NONE).collect::<Vec<_>>() {
+            links.cross(land, parent, children, q, wander);
+        }
+        progress.check()?;
+        if !land.is_finest(children.depth) {
+            links.go_around(land, parent, children, wander);
+        }
+        Ok(links)
+    }
+
+    /// The parents that are not at the edge, row by row.
+    pub fn inner(&self) -> impl Iterator<Item = usize> + use<> {
+        let (width, height) = self.size;
+        (1..height.saturating_sub(1)).flat_map(move |j| j * width + 1..(j + 1) * width - 1)
+    }
+
+    /// The receiver of an inner parent.
+    #[inline(always)]
+    pub fn target(&self, parent: &Level, q: usize) -> usize {
+        let (east, south) = step(parent.receiver[q]);
+        q.wrapping_add_signed(south * self.size.0 as isize + east)
+    }
+
+    /// The child of a third cell that the link of `q` passes.
+    #[inline(always)]
+    pub fn via(&self, parent: &Level, q: usize) -> Option<Child> {
+        self.passed(parent, q, self.list[q].around)
+    }
+
+    /// The child at the corner that the link of `q` crosses, in the third cell `around`.
+    fn passed(&self, parent: &Level, q: usize, around: Around) -> Option<Child> {
+        let (east, south) = step(parent.receiver[q]);
+        let link = self.list[q];
+        match around {
+            Around::Nothing => None,
+            Around::Side => Some(Child { parent: q.wrapping_add_signed(east), corner: link.entry & 1 | link.exit & 2 }),
+            Around::End => {
+                let parent = q.wrapping_add_signed(south * self.size.0 as isize);
+                Some(Child { parent, corner: link.exit & 1 | link.entry & 2 })
+            }
+        }
+    }
+
+    /// Marks the parents that are kept.
+    fn keep(&mut self, parent: &Level) {
+        for q in self.inner() {
+            if parent.receiver[q] < NONE {
+                let target = self.target(parent, q);
+                (self.list[target].kept, self.list[target].fed) = (true, true);
+            } else {
+                self.list[q].kept = true;
+            }
+        }
+    }
+
+    /// Chooses the exit and the entry of a link: across a side one of four pairs, by length and chance; across a corner there is only one.
+    fn cross(&mut self, land: &Continents, parent: &Level, children: &Children, q: usize, wander: f32) {
+        let (east, south) = step(parent.receiver[q]);
+        let target = self.target(parent, q);
+        let (start, end) =
+            (Child { parent: q, corner: heir(parent, q) }, Child { parent: target, corner: heir(parent, target) });
+        // The bit of the exit's side of the cell in the link's direction, and of the entry's.
+        let sides = |step: isize| (u8::from(step > 0), u8::from(step < 0));
+        let ((exit_east, entry_east), (exit_south, entry_south)) = (sides(east), sides(south));
+        if east != 0 && south != 0 {
+            let link = &mut self.list[q];
+            (link.exit, link.entry) = (exit_east | exit_south << 1, entry_east | entry_south << 1);
+            return;
+        }
+        let (width, window) = (self.size.0, parent.window);
+        let (x, y) = (window.x + (q % width) as i64, window.y + (q / width) as i64);
+        let bits = hash::node(land.seed, children.depth, x, y, 7);
+        let mut shortest = f32::INFINITY;
+        for choice in 0..4u8 {
+            let (a, b) = (choice & 1, choice >> 1);
+            let (exit, entry) = if east != 0 {
+                (exit_east | a << 1, entry_east | b << 1)
+            } else {
+                (a | exit_south << 1, b | entry_south << 1)
+            };
+            let (out, into) = (Child { parent: q, corner: exit }, Child { parent: target, corner: entry });
+            let length = children.distance(start, out, width)
+                + children.distance(out, into, width)
+                + children.distance(into, end, width);
+            let length = length * (1.0 + wander * hash::unit16(bits, usize::from(choice)));
+            if length < shortest {
+                shortest = length;
+                (self.list[q].exit, self.list[q].entry) = (exit, entry);
+            }
+        }
+    }
+
+    /// Leads some links across corners around them, through a child of one of the two other cells that no link uses.
+    fn go_around(&mut self, land: &Continents, parent: &Level, children: &Children, wander: f32) {
+        let width = self.size.0;
+        let mut used = vec![0u8; self.list.len()];
+        for q in self.inner() {
+            used[q] |= 1 << heir(parent, q);
+            let link = self.list[q];
+            if link.kept && parent.receiver[q] < NONE && parent.receiver[q] & 1 == 0 {
+                used[q] |= 1 << link.exit;
+                used[self.target(parent, q)] |= 1 << link.entry;
+            }
+        }
+        for q in self.inner() {
+            let link = self.list[q];
+            if !link.kept || parent.receiver[q] >= NONE || parent.receiver[q] & 1 == 0 {
+                continue;
+            }
+            let target = self.target(parent, q);
+            let (exit, entry) = (Child { parent: q, corner: link.exit }, Child { parent: target, corner: link.entry });
+            let window = parent.window;
+            let (x, y) = (window.x + (q % width) as i64, window.y + (q / width) as i64);
+            let bits = hash::node(land.seed, children.depth, x, y, 9);
+            let mut shortest = children.distance(exit, entry, width) * (1.0 + wander * hash::unit16(bits, 0));
+            for (choice, around) in [(1, Around::Side), (2, Around::End)] {
+                let Some(child) = self.passed(parent, q, around) else { continue };
+                if used[child.parent] >> child.corner & 1 == 1 {
+                    continue;
+                }
+                let length = children.distance(exit, child, width) + children.distance(child, entry, width);
+                let length = length * DETOUR * (1.0 + wander * hash::unit16(bits, choice));
+                if length < shortest {
+                    shortest = length;
+                    self.list[q].around = around;
+                }
+            }
+        }
+    }
+}
+
+/// The step of a receiver's direction.
+#[inline(always)]
+fn step(receiver: u8) -> (isize, isize) {
+    STEPS[usize::from(receiver & 7)]
+}
+
+impl Children {
+    /// The distance between two children, in cells.
+    #[inline(always)]
+    pub fn distance(&self, from: Child, to: Child, parents: usize) -> f32 {
+        let (a, b) = (from.index(parents), to.index(parents));
+        let width = 2 * parents;
+        // Differences of whole numbers are exact, wherever the window starts.
+        let columns = (b % width) as isize - (a % width) as isize;
+        let rows = (b / width) as isize - (a / width) as isize;
+        let (mut x, mut y) = (columns as f32, rows as f32);
+        if self.is_irregular() {
+            (x, y) = (self.east[b] - self.east[a] + x, self.south[b] - self.south[a] + y);
+        }
+        (x * x + y * y).sqrt()
+    }
+}

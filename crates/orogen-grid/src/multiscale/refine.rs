@@ -1,0 +1,166 @@
+//! One level from the level above.
+
+use super::carve::{FREE, carve};
+use super::children::Children;
+use super::continents::Continents;
+use super::creep::{creep, steepest};
+use super::drainage;
+use super::given::Given;
+use super::growth::{Growth, Spacing};
+use super::law::{Law, has_floors};
+use super::level::{Level, cropped, invalid};
+use super::links::Links;
+use super::shores::water_levels;
+use super::straighten::{self, straighten};
+use crate::error::Result;
+use crate::grid::Window;
+use crate::hydrology::direction::NONE;
+use crate::progress::Progress;
+
+/// Cells at the edge of the children whose rivers and shores are not exact.
+const CARVED: usize = 7;
+
+/// Passes of heights before drainage areas change, and rounds of areas and heights after.
+const FIRST_PASSES: usize = 3;
+const ROUNDS: usize = 5;
+
+/// Passes of areas in a round.
+const AREA_PASSES: usize = 2;
+
+/// Passes of creep on the finest level, and of areas at the end of each level.
+const CREEP_PASSES: usize = 2;
+const LAST_AREA_PASSES: usize = 4;
+
+/// Drainage area, in cells, below which nodes of rivers of the level above choose their receivers again.
+const FREE_AREA: f32 = 64.0;
+
+/// Cells at the edge of the children whose values are not exact.
+const fn inset(finest: bool) -> usize {
+    let growth = CARVED + FIRST_PASSES + ROUNDS * (AREA_PASSES + 1);
+    let growth = growth + LAST_AREA_PASSES;
+    if finest { growth + straighten::REACH + CREEP_PASSES + 1 } else { growth }
+}
+
+impl Continents {
+    /// Samples of level `depth - 1` that [`Continents::refine`] to `depth` reads beyond each side of the halved window, which extends from half the
+    /// first sample, rounded down, to half the last, rounded up.
+    #[must_use]
+    pub fn reach(&self, depth: usize) -> usize {
+        inset(self.is_finest(depth)).div_ceil(2)
+    }
+
+    /// Samples of level `depth` beyond a window that [`Continents::refine_with`] reads of what is given.
+    #[must_use]
+    pub fn given_reach(&self, depth: usize) -> usize {
+        if depth == 0 { Continents::COARSEST_REACH } else { 2 * self.reach(depth) + 1 }
+    }
+
+    /// The window of level `depth - 1` that [`Continents::refine`] needs for `window` of level `depth`.
+    #[must_use]
+    pub fn parent_window(&self, depth: usize, window: &Window) -> Window {
+        let (x, y) = (window.x >> 1, window.y >> 1);
+        let last = |end: i64| (end - 1) - ((end - 1) >> 1);
+        let (right, bottom) = (last(window.right()), last(window.bottom()));
+        let (width, height) = ((right - x + 1) as usize, (bottom - y + 1) as usize);
+        Window { x, y, width, height, cell: self.cell_of(depth.saturating_sub(1)) }.grown(self.reach(depth))
+    }
+
+    /// Bytes that [`Continents::refine`] holds at its peak per sample of the window grown by twice the [reach](Continents::reach), including the
+    /// result and without the parent.
+    #[must_use]
+    pub fn bytes_per_sample() -> u64 {
+        // Planes of 4 bytes: children 5, rivers 4, distances 4, the law 3, growth 4; the result 29 bytes, a quarter of the parent 8.
+        120
+    }
+
+    /// Exactly `window` of the level below `parent`, which must cover [`Continents::parent_window`]. Other nodes of the parent are not read.
+    ///
+    /// # Errors
+    /// If the parent covers too little, a parameter is out of range, the window is not one of the level, or the work is cancelled.
+    pub fn refine(&self, parent: &Level, window: &Window, progress: &Progress) -> Result<Level> {
+        self.refine_with(parent, &Given::default(), window, progress)
+    }
+
+    /// [`Continents::refine`] with shores and uplift that are given over the window grown by [`Continents::given_reach`].
+    ///
+    /// # Errors
+    /// Those of [`Continents::refine`].
+    pub fn refine_with(&self, parent: &Level, given: &Given, window: &Window, progress: &Progress) -> Result<Level> {
+        let depth = parent.depth + 1;
+        self.check(depth, window)?;
+        let needed = self.parent_window(depth, window);
+        if !parent.window.contains(&needed) {
+            return Err(invalid(format!(
+                "level {depth} over {window:?} needs its parent over {needed:?}, not {:?}",
+                parent.window
+            )));
+        }
+        let parent = &parent.crop(&needed)?;
+        let finest = self.is_finest(depth);
+        let mut children = Children::new(self, parent, given, progress)?;
+        let links = Links::new(self, parent, &children, progress)?;
+        let levels = water_levels(parent, &links, &mut children);
+        progress.check()?;
+        let mut carved = carve(parent, &links, &children, levels);
+        drop(links);
+        progress.check()?;
+        let mut extent = children.extent.shrunk(CARVED);
+        if finest {
+            extent = extent.shrunk(straighten::REACH);
+            straighten(extent, &mut carved);
+            progress.check()?;
+        }
+        for (fixed, &area) in carved.fixed.iter_mut().zip(&carved.area) {
+            if area < FREE_AREA && *fixed < f32::from(NONE) {
+                *fixed = FREE;
+            }
+        }
+        let law = Law::new(self, depth, &children.variation, &children.uplift);
+        let spacing = match &carved.distances {
+            Some(distances) => Spacing::Irregular(distances),
+            None => Spacing::Regular,
+        };
+        let mut growth =
+            Growth::new(carved.height, carved.area, carved.receiver, carved.fixed, has_floors(self, depth));
+        for pass in 0..FIRST_PASSES + ROUNDS {
+            for _ in 0..if pass < FIRST_PASSES { 0 } else { AREA_PASSES } {
+                progress.check()?;
+                extent = extent.shrunk(1);
+                drainage::step(extent, &growth.receiver, &mut growth.area, &mut growth.spare);
+            }
+            progress.check()?;
+            extent = extent.shrunk(1);
+            growth.pass(extent, &law, spacing, self.cell_of(depth));
+        }
+        if finest {
+            for _ in 0..CREEP_PASSES {
+                progress.check()?;
+                extent = extent.shrunk(1);
+                creep(extent, &mut growth.height, &mut growth.spare, &growth.area, &growth.receiver);
+            }
+            extent = extent.shrunk(1);
+            steepest(extent, &growth.height, &growth.fixed, &mut growth.receiver);
+        }
+        for _ in 0..LAST_AREA_PASSES {
+            progress.check()?;
+            extent = extent.shrunk(1);
+            drainage::step(extent, &growth.receiver, &mut growth.area, &mut growth.spare);
+        }
+        let offset = ((window.x - children.window.x) as usize, (window.y - children.window.y) as usize);
+        let size = (window.width, window.height);
+        let part = |plane: &[f32]| cropped(plane, children.extent.width, offset, size);
+        let position = |plane: &[f32]| if finest { vec![0.5; window.len()] } else { part(plane) };
+        Ok(Level {
+            depth,
+            window: *window,
+            east: position(&children.east),
+            south: position(&children.south),
+            height: part(&growth.height),
+            area: part(&growth.area),
+            receiver: part(&growth.receiver).into_iter().map(|code| code as u8).collect(),
+            variation: part(&children.variation),
+            uplift: part(&children.uplift),
+            shore: part(&children.shore),
+        })
+    }
+}

@@ -1,0 +1,197 @@
+//! Heights and water at the lattice points of a level.
+
+use super::continents::Continents;
+use super::law::slope_of_one_cell;
+use super::level::{Level, invalid};
+use crate::error::Result;
+use crate::grid::{Grid, Window};
+use crate::hydrology::direction::NONE;
+
+/// The terrain at the lattice points of a level.
+///
+/// Standing water is the sea and lakes. Elsewhere the water level is NaN.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Surface {
+    /// Height of the ground in metres, under water that of the bottom. The sea is at 0.
+    pub height: Grid,
+    /// Drainage area in m^2: exact on the finest level, that of the nearest node on coarser ones.
+    pub flow: Grid,
+    /// Depth of lakes in metres; 0 elsewhere, also in the sea.
+    pub lake_depth: Grid,
+    /// Height of the surface of standing water in metres: 0 in the sea. NaN on land.
+    pub water_level: Grid,
+    /// Code of the direction of flow (see [`crate::hydrology::direction`]): exact on the finest level, that of the nearest node on coarser ones.
+    pub receiver: Grid<u8>,
+}
+
+/// Square of the radius of the nodes that a point depends on, in cells.
+const RADIUS_SQUARED: f32 = 2.5;
+
+/// Least depth of standing water, in metres.
+const MIN_DEPTH: f32 = 0.5;
+
+/// Mean change of heights by the finer levels, by their number: a share of the rise from a node to the next one up at the source of a river.
+/// Measured in mountains.
+const MEAN_CHANGE: [f32; 7] = [0.0, -0.108, -0.083, -0.073, -0.025, 0.05, 0.05];
+
+/// One point of a surface.
+struct Point {
+    height: f32,
+    area: f32,
+    lake_depth: f32,
+    water_level: f32,
+    receiver: u8,
+}
+
+impl Continents {
+    /// Samples of the level beyond a window that [`Continents::surface`] reads.
+    pub const SURFACE_REACH: usize = 2;
+
+    /// The terrain at the lattice points of `window`, from a level that covers it grown by [`Continents::SURFACE_REACH`]. On coarser levels
+    /// heights are interpolated between nodes, and the mean change by finer levels is included.
+    ///
+    /// # Errors
+    /// If the level covers too little, or the window is not one of the level.
+    pub fn surface(&self, level: &Level, window: &Window) -> Result<Surface> {
+        self.check(level.depth, window)?;
+        if !level.window.contains(&window.grown(Continents::SURFACE_REACH)) {
+            return Err(invalid(format!(
+                "a surface over {window:?} needs its level over {} more samples",
+                Continents::SURFACE_REACH
+            )));
+        }
+        let square_metres = (self.cell_of(level.depth) * self.cell_of(level.depth)) as f32;
+        let mut surface = Surface {
+            height: Grid::filled(*window, 0.0),
+            flow: Grid::filled(*window, 0.0),
+            lake_depth: Grid::filled(*window, 0.0),
+            water_level: Grid::filled(*window, f32::NAN),
+            receiver: Grid::filled(*window, NONE),
+        };
+        let (left, top) = ((window.x - level.window.x) as usize, (window.y - level.window.y) as usize);
+        for j in 0..window.height {
+            for i in 0..window.width {
+                let q = (top + j) * level.window.width + left + i;
+                let point = if self.is_finest(level.depth) { node(level, q) } else { self.between(level, q) };
+                surface.height[(i, j)] = point.height;
+                surface.flow[(i, j)] = point.area * square_metres;
+                surface.lake_depth[(i, j)] = point.lake_depth;
+                surface.water_level[(i, j)] = point.water_level;
+                surface.receiver[(i, j)] = point.receiver;
+            }
+        }
+        Ok(surface)
+    }
+
+    /// The point at the north-western corner of cell `q`, half a finest cell inside, from the nodes of the 4 x 4 cells around the corner.
+    fn between(&self, level: &Level, q: usize) -> Point {
+        let width = level.window.width;
+        let inside = (0.5 * self.cell / self.cell_of(level.depth)) as f32;
+        let (mut land, mut water) = (Plane::default(), Plane::default());
+        let (mut shore, mut nearest, mut nearest_water) = (Plane::default(), (f32::INFINITY, q), (f32::INFINITY, q));
+        for (row, south) in (0..4).map(|row| (q + row * width - 2 * width - 2, row as f32 - 2.0)) {
+            for (o, east) in (0..4).map(|column| (row + column, column as f32 - 2.0)) {
+                let (x, y) = (level.east[o] + east - inside, level.south[o] + south - inside);
+                let square = x * x + y * y;
+                let is_water = level.receiver[o] >= NONE;
+                if square < nearest.0 {
+                    nearest = (square, o);
+                }
+                if is_water && square < nearest_water.0 {
+                    nearest_water = (square, o);
+                }
+                let weight = 1.0 - square / RADIUS_SQUARED;
+                if weight > 0.0 {
+                    let weight = weight * weight;
+                    shore.add(weight, x, y, level.shore[o]);
+                    land.add(weight, x, y, level.height[o]);
+                    if is_water {
+                        water.add(weight, x, y, bottom(level, o));
+                    }
+                }
+            }
+        }
+        let (area, receiver) = (level.area[nearest.1], level.receiver[nearest.1]);
+        if nearest_water.0 < f32::INFINITY && shore.mean() < 0.0 {
+            let surface = level.height[nearest_water.1];
+            let bed = if water.weight > 0.0 { water.mean() } else { bottom(level, nearest_water.1) };
+            let bed = bed.min(surface - MIN_DEPTH);
+            let lake_depth = if surface > 0.0 { surface - bed } else { 0.0 };
+            return Point { height: bed, area, lake_depth, water_level: surface, receiver: NONE };
+        }
+        let finer = (self.levels - level.depth).min(MEAN_CHANGE.len() - 1);
+        let change = MEAN_CHANGE[finer]
+            * slope_of_one_cell(self, level.depth, level.variation[nearest.1] + level.uplift[nearest.1]);
+        let height = land.at_origin() + change;
+        // Land at a shore is not lower than the water.
+        let height = if nearest_water.0 < f32::INFINITY { height.max(level.height[nearest_water.1]) } else { height };
+        Point { height, area, lake_depth: 0.0, water_level: f32::NAN, receiver: receiver.min(NONE) }
+    }
+}
+
+/// A node of the finest level, which is at a lattice point.
+fn node(level: &Level, q: usize) -> Point {
+    let (height, area, receiver) = (level.height[q], level.area[q], level.receiver[q]);
+    if receiver < NONE {
+        return Point { height, area, lake_depth: 0.0, water_level: f32::NAN, receiver };
+    }
+    let bed = bottom(level, q);
+    let lake_depth = if height > 0.0 { height - bed } else { 0.0 };
+    Point { height: bed, area, lake_depth, water_level: height, receiver }
+}
+
+/// Height of the bottom of standing water. Lakes fall by 8 m per km from the shore, to at most 120 m. The sea has a shelf of 80 km, a
+/// continental slope and a deep plain.
+fn bottom(level: &Level, q: usize) -> f32 {
+    let (height, distance) = (level.height[q], (-level.shore[q]).max(0.0));
+    if height > 0.0 {
+        return height - (8.0 * distance).min(120.0);
+    }
+    let t = ((distance - 80.0) / 200.0).clamp(0.0, 1.0);
+    let shelf = 1.8 * distance.min(80.0);
+    let rise = ((distance - 280.0).max(0.0) * 1.5).min(1400.0);
+    -(shelf + 3400.0 * t * t * (3.0 - 2.0 * t) + rise)
+}
+
+/// Weighted sums for the plane that fits values best.
+#[derive(Default)]
+struct Plane {
+    weight: f32,
+    /// Of x, y and the values.
+    first: [f32; 3],
+    /// Of x x, x y, y y, x value and y value.
+    second: [f32; 5],
+}
+
+impl Plane {
+    #[inline(always)]
+    fn add(&mut self, weight: f32, x: f32, y: f32, value: f32) {
+        self.weight += weight;
+        let (x_weight, y_weight) = (weight * x, weight * y);
+        for (sum, term) in self.first.iter_mut().zip([x_weight, y_weight, weight * value]) {
+            *sum += term;
+        }
+        let terms = [x_weight * x, x_weight * y, y_weight * y, x_weight * value, y_weight * value];
+        for (sum, term) in self.second.iter_mut().zip(terms) {
+            *sum += term;
+        }
+    }
+
+    /// The mean value.
+    fn mean(&self) -> f32 {
+        self.first[2] / self.weight.max(1e-6)
+    }
+
+    /// The value of the plane at (0, 0), between the values of the nodes if those lie on one side.
+    fn at_origin(&self) -> f32 {
+        let inverse = 1.0 / self.weight.max(1e-6);
+        let [x, y, value] = self.first.map(|sum| sum * inverse);
+        let [xx, xy, yy, x_value, y_value] = self.second.map(|sum| sum * inverse);
+        // The small term keeps the plane from tilting where nodes are on one line.
+        let (a, b, d) = (xx - x * x + 0.02, xy - x * y, yy - y * y + 0.02);
+        let (e, f) = (x_value - x * value, y_value - y * value);
+        let determinant = a * d - b * b;
+        value - (e * d - f * b) / determinant * x - (f * a - e * b) / determinant * y
+    }
+}
