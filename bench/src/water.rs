@@ -62,7 +62,7 @@ fn measure(request: &Request) -> Result<(), String> {
         let (shared, apart) = (tiles_in(&recipe, &session), tiles_of(&recipe, None));
         let tiles: Tiles = if request.fresh { &apart } else { &shared };
         let found = borders::measure_pairs(tiles, &extent, request.pair_side, request.pairs, 1).map_err(text)?;
-        figures.push(report::of_pairs(&found));
+        figures.extend(report::of_pairs(&found));
         eprintln!("{} pairs: {:.1} s", request.pairs, began.elapsed().as_secs_f64());
     }
     let [x, y] = mosaic.origin;

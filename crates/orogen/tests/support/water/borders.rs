@@ -19,9 +19,10 @@ pub struct Borders {
     pub borders: usize,
     /// Rivers that cross them.
     pub crossings: usize,
-    /// Cells at the borders where a river ends or begins: the receiver has a smaller area, or half of a cell's area goes
-    /// nowhere or comes from nowhere.
+    /// Cells at the borders where a river is cut: without a receiver, or with one across the border that has a smaller area.
     pub cut: usize,
+    /// Cells at the borders that are not cut, but half of whose area goes nowhere or comes from nowhere.
+    pub unbalanced: usize,
 }
 
 impl std::ops::AddAssign for Borders {
@@ -29,6 +30,7 @@ impl std::ops::AddAssign for Borders {
         self.borders += other.borders;
         self.crossings += other.crossings;
         self.cut += other.cut;
+        self.unbalanced += other.unbalanced;
     }
 }
 
@@ -63,12 +65,21 @@ impl Border {
 
 /// The inner borders of a mosaic.
 pub fn measure(network: &Network, mosaic: &Mosaic) -> Borders {
-    let inner = (1..TILES).map(|k| k * mosaic.side);
+    measure_lines(network, (1..TILES).map(|k| k * mosaic.side))
+}
+
+/// The middle lines of the tiles of a mosaic, as if they were borders, for comparison: what is found there is not due to tiles.
+pub fn measure_middles(network: &Network, mosaic: &Mosaic) -> Borders {
+    measure_lines(network, (0..TILES).map(|k| k * mosaic.side + mosaic.side / 2))
+}
+
+/// Borders before these columns and rows.
+fn measure_lines(network: &Network, lines: impl Iterator<Item = usize>) -> Borders {
     let mut found = Borders::default();
-    for border in inner.flat_map(|k| [Border::Column(k), Border::Row(k)]) {
+    for border in lines.flat_map(|k| [Border::Column(k), Border::Row(k)]) {
         found += measure_border(network, border);
-        // One for each pair of adjacent tiles.
-        found.borders += TILES - 1;
+        // One for each tile along it.
+        found.borders += TILES;
     }
     found
 }
@@ -77,7 +88,7 @@ pub fn measure(network: &Network, mosaic: &Mosaic) -> Borders {
 pub fn measure_pairs(tiles: Tiles, extent: &Window, side: usize, pairs: usize, seed: i64) -> Result<Borders> {
     let mut found = Borders::default();
     for pair in 0..pairs as i64 {
-        let along = usize::from(hashed(pair, seed) % 2 == 0);
+        let along = usize::from(hashed(pair, seed).is_multiple_of(2));
         let shape = Window::new(side * (1 + along), side * (2 - along), extent.cell);
         let within = |from: i64, cells: usize, taken: usize, salt: i64| {
             from + (u64::from(hashed(pair, seed ^ salt)) % (cells.saturating_sub(taken) as u64 + 1)) as i64
@@ -109,7 +120,11 @@ fn measure_border(network: &Network, border: Border) -> Borders {
             continue;
         }
         let shrinks = crosses && receiver.is_some_and(|to| water.area(to) < water.area(cell));
-        found.cut += usize::from(shrinks || network.ends(cell) || network.begins(cell));
+        if shrinks || receiver.is_none() {
+            found.cut += 1;
+        } else {
+            found.unbalanced += usize::from(network.ends(cell) || network.begins(cell));
+        }
     }
     found
 }

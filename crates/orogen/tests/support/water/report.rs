@@ -76,9 +76,12 @@ pub fn measure(tiles: Tiles, mosaic: &Mosaic) -> Result<Vec<Figure>> {
         add(&format!("D8 agrees, {name}, % of cells"), share(found.agree, found.cells), found.cells, target);
     }
 
-    let found = borders::measure(&network, mosaic);
-    add("rivers cut at borders", found.cut as f64, found.crossings.max(found.cut), Target::AtMost(0.0));
+    figures.extend(of_borders("borders of tiles", &borders::measure(&network, mosaic), true));
+    figures.extend(of_borders("middles of tiles", &borders::measure_middles(&network, mosaic), false));
 
+    let mut add = |name: &str, value: f64, of: usize, target: Target| {
+        figures.push(Figure::new(name, value, of, target));
+    };
     let found = lakes::measure(&water);
     add("lakes, step of the surface in m", found.step.into(), found.cells, Target::AtMost(0.05));
     add("lakes, surface above the shore in m", found.above_shore.into(), found.cells, Target::AtMost(1.0));
@@ -86,9 +89,17 @@ pub fn measure(tiles: Tiles, mosaic: &Mosaic) -> Result<Vec<Figure>> {
 }
 
 /// The figures of pairs of adjacent windows.
-pub fn of_pairs(found: &borders::Borders) -> Figure {
-    let name = format!("rivers cut at {} borders of pairs", found.borders);
-    Figure::new(name, found.cut as f64, found.crossings.max(found.cut), Target::AtMost(0.0))
+pub fn of_pairs(found: &borders::Borders) -> Vec<Figure> {
+    of_borders(&format!("borders of {} pairs", found.borders), found, true)
+}
+
+/// The figures of borders, with targets or for comparison.
+fn of_borders(place: &str, found: &borders::Borders, targets: bool) -> Vec<Figure> {
+    let target = if targets { Target::AtMost(0.0) } else { Target::None };
+    let figure = |name: &str, count: usize| {
+        Figure::new(format!("{name} at {place}"), count as f64, found.crossings.max(count), target)
+    };
+    vec![figure("rivers cut", found.cut), figure("areas unbalanced", found.unbalanced)]
 }
 
 /// A table of figures, one a line.
