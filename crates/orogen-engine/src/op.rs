@@ -259,7 +259,7 @@ pub trait Filter: Declared + Send + Sync {
 pub struct Levels {
     /// The cell of the finest level, in metres.
     pub finest: f64,
-    /// Number of levels, at least 1. Level 0 is the coarsest.
+    /// Number of levels, 1 to 64. Level 0 is the coarsest.
     pub count: usize,
 }
 
@@ -267,8 +267,8 @@ impl Levels {
     /// The cell of a level, in metres: a power of two times the finest.
     #[must_use]
     pub fn cell(&self, level: usize) -> f64 {
-        let halvings = self.count.saturating_sub(1).saturating_sub(level).min(1000);
-        self.finest * 2f64.powi(halvings as i32)
+        let halvings = self.count.saturating_sub(1).saturating_sub(level).min(63);
+        self.finest * (1u64 << halvings) as f64
     }
 
     /// The level that a window with this cell is read from: the coarsest with the same or a smaller cell, otherwise the finest.

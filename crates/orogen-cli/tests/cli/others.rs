@@ -12,6 +12,7 @@ fn presets_are_one_a_line() {
         "alpine",
         "badlands",
         "canyon",
+        "continent",
         "dla-peaks",
         "endless",
         "fjords",

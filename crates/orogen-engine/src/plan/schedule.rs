@@ -62,6 +62,13 @@ pub fn schedule(recipe: &Recipe, graph: &Graph, kept: &HashSet<NodeId>, asked: &
     Ok(scheduler.schedule)
 }
 
+/// A constant input, and the grid that is filled with it.
+struct Constant {
+    link: Link,
+    window: Window,
+    grid: GridId,
+}
+
 struct Scheduler<'a> {
     recipe: &'a Recipe,
     graph: &'a Graph,
@@ -175,7 +182,7 @@ impl Scheduler<'_> {
     }
 
     /// The requests for a node's inputs over a window. A constant input becomes a grid with that value, filled by a step right before.
-    fn inputs(&mut self, node: NodeId, window: Window) -> (Vec<Option<RequestId>>, Vec<(Link, Window, GridId)>) {
+    fn inputs(&mut self, node: NodeId, window: Window) -> (Vec<Option<RequestId>>, Vec<Constant>) {
         let graph = self.graph;
         let mut inputs: Vec<Option<RequestId>> = Vec::new();
         let mut constants = Vec::new();
@@ -185,7 +192,7 @@ impl Scheduler<'_> {
                 Link::Value(_) => {
                     let grid = self.grid(window, node);
                     let request = GridRequest { target: LayerRef { node, layer: 0 }, raw: false, window };
-                    constants.push((*link, window, grid));
+                    constants.push(Constant { link: *link, window, grid });
                     Some(self.schedule.requests.add_served(request, grid))
                 }
                 Link::Node(target) => {
@@ -199,7 +206,7 @@ impl Scheduler<'_> {
         (inputs, constants)
     }
 
-    fn fill_constant(&mut self, (link, window, grid): (Link, Window, GridId)) -> Result<()> {
+    fn fill_constant(&mut self, Constant { link, window, grid }: Constant) -> Result<()> {
         let none = HashSet::new();
         let scope = Scope { recipe: self.recipe, graph: self.graph, kept: &none, own: None };
         self.fill(scope, &[link], window, vec![grid])
