@@ -2,7 +2,7 @@
 
 use super::run::Engine;
 use crate::ids::{Id, NodeId};
-use crate::op::{Context, Levelled, Op};
+use crate::op::{Context, Levelled, Op, WorldParams};
 use crate::plan::levels::{self, Serving};
 use crate::recipe::graph::LayerRef;
 use crate::store::grids::GridKey;
@@ -17,6 +17,9 @@ use std::collections::{BTreeMap, BTreeSet};
 /// The planes of the tiles of one level, by column and row.
 type LevelTiles = BTreeMap<(i64, i64), Vec<Grid>>;
 
+/// Approximate time for making the layers of a sample, in nanoseconds.
+const LAYER_COST: f64 = 50.0;
+
 /// A levelled op at work.
 struct Refining<'a> {
     op: &'a dyn Levelled,
@@ -25,7 +28,8 @@ struct Refining<'a> {
     inputs: Vec<Vec<Option<&'a Grid>>>,
     /// Which layers are read.
     wanted: &'a [bool],
-    context: Context<'a>,
+    world_params: &'a WorldParams,
+    progress: &'a Progress,
 }
 
 impl Engine<'_> {
@@ -41,8 +45,7 @@ impl Engine<'_> {
         let Op::Levelled(op) = self.recipe.nodes()[node.index()].node.op() else {
             return Err(internal("a node that is not levelled was to be refined"));
         };
-        let context = Context { world_params: self.world_params, progress, observer: None };
-        let refining = Refining { op, node, inputs, wanted, context };
+        let refining = Refining { op, node, inputs, wanted, world_params: self.world_params, progress };
         let serving = Serving::of(&op.levels(), window);
         let made = self.samples(&refining, &serving)?;
         if serving.samples.cell == window.cell {
@@ -64,16 +67,8 @@ impl Engine<'_> {
         }
         let pieces = serving.pieces(rayon::current_num_threads());
         let tiles = self.level_tiles(refining, level, &pieces)?;
-        let progress = refining.context.progress;
-        progress.expect(pieces.len() as f64);
-        let made: Vec<Vec<Option<Grid>>> = pieces
-            .par_iter()
-            .map(|piece| {
-                let made = refining.piece(level, piece, &tiles)?;
-                progress.step(1.0)?;
-                Ok(made)
-            })
-            .collect::<Result<_>>()?;
+        let made: Vec<Vec<Option<Grid>>> =
+            pieces.par_iter().map(|piece| refining.piece(level, piece, &tiles)).collect::<Result<_>>()?;
         for piece in made {
             for (layer, part) in layers.iter_mut().zip(piece) {
                 if let (Some(layer), Some(part)) = (layer, part) {
@@ -106,6 +101,12 @@ impl Engine<'_> {
             asked = above.flat_map(|at| levels::tiles(&op.parent(level, &levels::tile(*at, cell(level))))).collect();
             found.push((level, kept, missing));
         }
+        let of_tiles = |(level, _, missing): &(usize, LevelTiles, Vec<_>)| {
+            missing.len() as f64 * refining.work(*level, &levels::tile((0, 0), cell(*level)))
+        };
+        let of_piece = |piece: &Window| refining.work_of_piece(level, piece);
+        let work = found.iter().map(of_tiles).sum::<f64>() + pieces.iter().map(of_piece).sum::<f64>();
+        refining.progress.expect(work);
         let mut above = LevelTiles::new();
         for (level, mut tiles, missing) in found.into_iter().rev() {
             let made: Vec<Vec<Grid>> = missing
@@ -136,21 +137,41 @@ impl Refining<'_> {
 
     /// The planes of a level over a window, from tiles of the level above.
     fn planes(&self, level: usize, window: &Window, above: &LevelTiles) -> Result<Vec<Grid>> {
-        self.context.progress.check()?;
-        let planes = match level {
-            0 => self.with_inputs(0, window, |inputs| self.op.coarsest(inputs, window, &self.context))?,
-            _ => {
-                let parent = self.mosaic(&self.op.parent(level, window), above)?;
-                return self.refined(level, &parent, window);
-            }
-        };
+        self.progress.check()?;
+        if level > 0 {
+            return self.refined(level, &self.mosaic(&self.op.parent(level, window), above)?, window);
+        }
+        let part = self.progress.part(self.work(level, window));
+        let context = self.context(&part);
+        let planes = self.with_inputs(level, window, |inputs| self.op.coarsest(inputs, window, &context))?;
+        part.finish();
         self.checked(planes, window)
+    }
+
+    fn context<'b>(&'b self, progress: &'b Progress) -> Context<'b> {
+        Context { world_params: self.world_params, progress, observer: None }
+    }
+
+    /// Approximate time for making a level over a window from the level above, in nanoseconds.
+    fn work(&self, level: usize, window: &Window) -> f64 {
+        self.op.cost(level) * window.len() as f64
+    }
+
+    /// Approximate time for making a piece from tiles, in nanoseconds.
+    fn work_of_piece(&self, level: usize, piece: &Window) -> f64 {
+        let windows = levels::windows(self.op, level, piece);
+        let made = (levels::tiled(level)..=level).zip(&windows).skip(1);
+        made.map(|(level, window)| self.work(level, window)).sum::<f64>() + LAYER_COST * piece.len() as f64
     }
 
     /// The planes of a level over a window, from exactly the samples of the level above that it may read.
     fn refined(&self, level: usize, parent: &[Grid], window: &Window) -> Result<Vec<Grid>> {
-        let refine = |inputs: &[Option<&Grid>]| self.op.refine(level, parent, inputs, window, &self.context);
-        self.checked(self.with_inputs(level, window, refine)?, window)
+        let part = self.progress.part(self.work(level, window));
+        let context = self.context(&part);
+        let refine = |inputs: &[Option<&Grid>]| self.op.refine(level, parent, inputs, window, &context);
+        let planes = self.with_inputs(level, window, refine)?;
+        part.finish();
+        self.checked(planes, window)
     }
 
     /// Passes the op's inputs over exactly the samples that it may read.
@@ -179,7 +200,9 @@ impl Refining<'_> {
             planes = self.refined(level, &planes, window)?;
         }
         let mut layers = self.layers(piece);
-        self.op.layers_of(level, &planes, piece, &mut layers, &self.context)?;
+        let part = self.progress.part(LAYER_COST * piece.len() as f64);
+        self.op.layers_of(level, &planes, piece, &mut layers, &self.context(&part))?;
+        part.finish();
         Ok(layers)
     }
 

@@ -141,6 +141,11 @@ impl Levelled for Continents {
         Ok(())
     }
 
+    fn cost(&self, level: usize) -> f64 {
+        // Tiles of the coarsest level work on a wide halo.
+        if level == 0 { 2e4 } else { 300.0 }
+    }
+
     fn scratch(&self, level: usize, window: &Window) -> u64 {
         let halo = if level == 0 { Land::COARSEST_REACH } else { 2 * self.halo(level) };
         let samples = window.grown(halo);

@@ -28,6 +28,9 @@ const ROUNDS: usize = 5;
 /// Passes of areas in a round.
 const AREA_PASSES: usize = 2;
 
+/// The work before and after growth, in passes of growth.
+const OTHER_WORK: f64 = 4.0;
+
 /// Passes of creep on the finest level, and of areas at the end of each level.
 const CREEP_PASSES: usize = 2;
 const LAST_AREA_PASSES: usize = 4;
@@ -126,7 +129,9 @@ impl Continents {
         };
         let mut growth =
             Growth::new(carved.height, carved.area, carved.receiver, carved.fixed, has_floors(self, depth));
+        progress.expect((FIRST_PASSES + ROUNDS) as f64 + OTHER_WORK);
         for pass in 0..FIRST_PASSES + ROUNDS {
+            progress.advance(1.0);
             for _ in 0..if pass < FIRST_PASSES { 0 } else { AREA_PASSES } {
                 progress.check()?;
                 extent = extent.shrunk(1);
