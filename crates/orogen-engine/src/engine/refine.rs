@@ -13,6 +13,7 @@ use orogen_grid::resample::{self, LayerKind};
 use orogen_noise::Points;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::RangeInclusive;
 
 /// The planes of the tiles of one level, by column and row.
 type LevelTiles = BTreeMap<(i64, i64), Vec<Grid>>;
@@ -66,9 +67,10 @@ impl Engine<'_> {
             return Ok(layers);
         }
         let pieces = serving.pieces(rayon::current_num_threads());
-        let tiles = self.level_tiles(refining, level, &pieces)?;
+        let tiled = levels::tiled(refining.op, serving);
+        let tiles = self.level_tiles(refining, tiled..=level, &pieces)?;
         let made: Vec<Vec<Option<Grid>>> =
-            pieces.par_iter().map(|piece| refining.piece(level, piece, &tiles)).collect::<Result<_>>()?;
+            pieces.par_iter().map(|piece| refining.piece(tiled..=level, piece, &tiles)).collect::<Result<_>>()?;
         for piece in made {
             for (layer, part) in layers.iter_mut().zip(piece) {
                 if let (Some(layer), Some(part)) = (layer, part) {
@@ -79,43 +81,45 @@ impl Engine<'_> {
         Ok(layers)
     }
 
-    /// The tiles that the pieces of `level` are made from. The tiles that are missing at each level tell which the level above must have.
-    fn level_tiles(&self, refining: &Refining, level: usize, pieces: &[Window]) -> Result<LevelTiles> {
+    /// The tiles of the first of the `direct` levels that pieces of the last are made from. The tiles that are missing at each level tell which the level above must have.
+    fn level_tiles(&self, refining: &Refining, direct: RangeInclusive<usize>, pieces: &[Window]) -> Result<LevelTiles> {
         let Refining { op, .. } = *refining;
         let cell = |level: usize| op.levels().cell(level);
-        let last = levels::tiled(level);
-        let firsts = pieces.iter().filter_map(|piece| levels::windows(op, level, piece).first().copied());
-        let mut asked: BTreeSet<(i64, i64)> = firsts.flat_map(|window| levels::tiles(&window)).collect();
+        let (last, level) = (*direct.start(), *direct.end());
+        let firsts = pieces.iter().filter_map(|piece| levels::windows(op, last, level, piece).first().copied());
+        let mut asked: BTreeSet<(i64, i64)> = firsts.flat_map(|window| levels::tiles(last, &window)).collect();
         // Of each level from the last: the tiles that are kept, and those that are missing.
         let mut found = Vec::with_capacity(last + 1);
         for level in (0..=last).rev() {
             let mut kept = LevelTiles::new();
             let mut missing = Vec::new();
             for at in asked {
-                match self.level_tiles.find(&self.tile_keys(refining, &levels::tile(at, cell(level)))) {
+                match self.level_tiles.find(&self.tile_keys(refining, &levels::tile(level, at, cell(level)))) {
                     Some(planes) => drop(kept.insert(at, planes)),
                     None => missing.push(at),
                 }
             }
             let above = missing.iter().filter(|_| level > 0);
-            asked = above.flat_map(|at| levels::tiles(&op.parent(level, &levels::tile(*at, cell(level))))).collect();
+            asked = above
+                .flat_map(|at| levels::tiles(level - 1, &op.parent(level, &levels::tile(level, *at, cell(level)))))
+                .collect();
             found.push((level, kept, missing));
         }
         let of_tiles = |(level, _, missing): &(usize, LevelTiles, Vec<_>)| {
-            missing.len() as f64 * refining.work(*level, &levels::tile((0, 0), cell(*level)))
+            missing.len() as f64 * refining.work(*level, &levels::tile(*level, (0, 0), cell(*level)))
         };
-        let of_piece = |piece: &Window| refining.work_of_piece(level, piece);
+        let of_piece = |piece: &Window| refining.work_of_piece(direct.clone(), piece);
         let work = found.iter().map(of_tiles).sum::<f64>() + pieces.iter().map(of_piece).sum::<f64>();
         refining.progress.expect(work);
         let mut above = LevelTiles::new();
         for (level, mut tiles, missing) in found.into_iter().rev() {
             let made: Vec<Vec<Grid>> = missing
                 .par_iter()
-                .map(|at| refining.planes(level, &levels::tile(*at, cell(level)), &above))
+                .map(|at| refining.planes(level, &levels::tile(level, *at, cell(level)), &above))
                 .collect::<Result<_>>()?;
             for (at, planes) in missing.into_iter().zip(made) {
                 let allowed = self.budget.unused().map(|unused| unused.saturating_sub(self.store.memory()));
-                let keys = self.tile_keys(refining, &levels::tile(at, cell(level)));
+                let keys = self.tile_keys(refining, &levels::tile(level, at, cell(level)));
                 keys.into_iter().zip(&planes).for_each(|(key, plane)| self.level_tiles.keep(key, plane, allowed));
                 tiles.insert(at, planes);
             }
@@ -139,7 +143,7 @@ impl Refining<'_> {
     fn planes(&self, level: usize, window: &Window, above: &LevelTiles) -> Result<Vec<Grid>> {
         self.progress.check()?;
         if level > 0 {
-            return self.refined(level, &self.mosaic(&self.op.parent(level, window), above)?, window);
+            return self.refined(level, &self.mosaic(level - 1, &self.op.parent(level, window), above)?, window);
         }
         let part = self.progress.part(self.work(level, window));
         let context = self.context(&part);
@@ -158,9 +162,9 @@ impl Refining<'_> {
     }
 
     /// Approximate time for making a piece from tiles, in nanoseconds.
-    fn work_of_piece(&self, level: usize, piece: &Window) -> f64 {
-        let windows = levels::windows(self.op, level, piece);
-        let made = (levels::tiled(level)..=level).zip(&windows).skip(1);
+    fn work_of_piece(&self, direct: RangeInclusive<usize>, piece: &Window) -> f64 {
+        let windows = levels::windows(self.op, *direct.start(), *direct.end(), piece);
+        let made = direct.zip(&windows).skip(1);
         made.map(|(level, window)| self.work(level, window)).sum::<f64>() + LAYER_COST * piece.len() as f64
     }
 
@@ -189,14 +193,15 @@ impl Refining<'_> {
         work(&cropped.iter().map(Option::as_ref).collect::<Vec<_>>())
     }
 
-    /// The layers of `level` over a piece, from the tiles of its tiled level.
-    fn piece(&self, level: usize, piece: &Window, tiles: &LevelTiles) -> Result<Vec<Option<Grid>>> {
-        let windows = levels::windows(self.op, level, piece);
+    /// The layers of the last of the `direct` levels over a piece, from tiles of the first.
+    fn piece(&self, direct: RangeInclusive<usize>, piece: &Window, tiles: &LevelTiles) -> Result<Vec<Option<Grid>>> {
+        let level = *direct.end();
+        let windows = levels::windows(self.op, *direct.start(), level, piece);
         let mut planes = match windows.first() {
-            Some(first) => self.mosaic(first, tiles)?,
+            Some(first) => self.mosaic(*direct.start(), first, tiles)?,
             None => Vec::new(),
         };
-        for (level, window) in (levels::tiled(level)..=level).zip(&windows).skip(1) {
+        for (level, window) in direct.zip(&windows).skip(1) {
             planes = self.refined(level, &planes, window)?;
         }
         let mut layers = self.layers(piece);
@@ -207,9 +212,9 @@ impl Refining<'_> {
     }
 
     /// The planes over a window that tiles cover.
-    fn mosaic(&self, window: &Window, tiles: &LevelTiles) -> Result<Vec<Grid>> {
+    fn mosaic(&self, level: usize, window: &Window, tiles: &LevelTiles) -> Result<Vec<Grid>> {
         let mut planes: Vec<Grid> = (0..self.op.planes()).map(|_| Grid::filled(*window, 0.0)).collect();
-        for at in levels::tiles(window) {
+        for at in levels::tiles(level, window) {
             let tile = tiles.get(&at).ok_or_else(|| internal("a tile of a level was not made"))?;
             for (plane, part) in planes.iter_mut().zip(tile) {
                 plane.paste(part);

@@ -1,8 +1,8 @@
 //! How a window of a levelled op is made: the level that serves it, the pieces that are made side by side, and the windows of the
 //! levels above each.
 //!
-//! Coarse levels are made in *tiles* of a fixed side, which neighbouring windows share. The last few levels are made over each piece itself:
-//! in tiles, their halos would cost more than sharing saves.
+//! Coarse levels are made in *tiles* of a fixed side, which neighbouring windows share. Levels of which a piece needs more than a few tiles are made
+//! over the piece itself: in tiles, their halos would cost more than sharing saves.
 
 use super::memory::grid_bytes;
 use crate::op::{Levelled, Levels};
@@ -10,10 +10,19 @@ use orogen_grid::grid::Window;
 use orogen_grid::resample::split;
 
 /// Samples along the sides of the tiles of coarse levels.
-pub const TILE: usize = 64;
+const TILE: usize = 64;
 
-/// Number of levels that are made over the piece itself.
-const DIRECT: usize = 3;
+/// The same of level 0, whose halo is usually wide.
+const COARSEST_TILE: usize = 128;
+
+/// Samples along the sides of the tiles of a level, and samples of tile (0, 0) before the origin. A tile of level 0 has the origin in its middle, because
+/// most people look there first.
+fn shape(level: usize) -> (usize, i64) {
+    if level == 0 { (COARSEST_TILE, COARSEST_TILE as i64 / 2) } else { (TILE, 0) }
+}
+
+/// Samples along the sides of a window up to which it is read from tiles.
+const FEW_TILES: usize = TILE + TILE / 2;
 
 /// Largest and smallest number of rows and columns of a piece, if the window has as many.
 const PIECE: [usize; 2] = [1024, 128];
@@ -73,17 +82,25 @@ impl Serving {
     }
 }
 
-/// The level whose tiles the levels down to `level` are made from.
+/// The level whose tiles the pieces of a window are made from. It does not depend on the number of threads, which decides about pieces.
 #[must_use]
-pub fn tiled(level: usize) -> usize {
-    level.saturating_sub(DIRECT)
+pub fn tiled(op: &dyn Levelled, serving: &Serving) -> usize {
+    let Serving { mut level, samples } = *serving;
+    let [most, _] = PIECE;
+    let largest = Window { width: samples.width.min(most), height: samples.height.min(most), ..samples };
+    let mut window = largest.grown(op.surface_halo());
+    while level > 0 && window.width.max(window.height) > FEW_TILES {
+        window = op.parent(level, &window);
+        level -= 1;
+    }
+    level
 }
 
-/// The windows from which a piece of `level` is made: that of the tiled level first, that of `level` last.
+/// The windows of the levels from `tiled` to `level` that a piece of `level` is made from.
 #[must_use]
-pub fn windows(op: &dyn Levelled, level: usize, piece: &Window) -> Vec<Window> {
+pub fn windows(op: &dyn Levelled, tiled: usize, level: usize, piece: &Window) -> Vec<Window> {
     let mut windows = vec![piece.grown(op.surface_halo())];
-    for level in (tiled(level) + 1..=level).rev() {
+    for level in (tiled + 1..=level).rev() {
         let window = windows.last().map(|window| op.parent(level, window));
         windows.extend(window);
     }
@@ -94,13 +111,14 @@ pub fn windows(op: &dyn Levelled, level: usize, piece: &Window) -> Vec<Window> {
 /// Windows of the levels from the coarsest that contain all that a window is made from: whole tiles of the tiled levels.
 #[must_use]
 pub fn covering(op: &dyn Levelled, window: &Window) -> Vec<Window> {
-    let Serving { level, samples } = Serving::of(&op.levels(), window);
-    let mut windows: Vec<Window> = windows(op, level, &samples).into_iter().rev().collect();
+    let serving = Serving::of(&op.levels(), window);
+    let tiled = tiled(op, &serving);
+    let mut windows: Vec<Window> = windows(op, tiled, serving.level, &serving.samples).into_iter().rev().collect();
     if let Some(first) = windows.last_mut() {
-        *first = of_tiles(first);
+        *first = of_tiles(tiled, first);
     }
-    for level in (1..=tiled(level)).rev() {
-        let above = windows.last().map(|window| of_tiles(&op.parent(level, window)));
+    for level in (1..=tiled).rev() {
+        let above = windows.last().map(|window| of_tiles(level - 1, &op.parent(level, window)));
         windows.extend(above);
     }
     windows.reverse();
@@ -108,55 +126,60 @@ pub fn covering(op: &dyn Levelled, window: &Window) -> Vec<Window> {
 }
 
 /// The window of all tiles that cover a window.
-fn of_tiles(window: &Window) -> Window {
-    let mut covering = tiles(window);
+fn of_tiles(level: usize, window: &Window) -> Window {
+    let mut covering = tiles(level, window);
+    let tile = |at| tile(level, at, window.cell);
     match (covering.next(), covering.last()) {
-        (Some(first), last) => tile(first, window.cell).union(&tile(last.unwrap_or(first), window.cell)),
+        (Some(first), last) => tile(first).union(&tile(last.unwrap_or(first))),
         (None, _) => *window,
     }
 }
 
 /// The tiles that cover a window, by their column and row.
-pub fn tiles(window: &Window) -> impl Iterator<Item = (i64, i64)> + use<> {
-    let side = TILE as i64;
-    let columns = window.x.div_euclid(side)..(window.right() - 1).div_euclid(side) + 1;
-    let rows = window.y.div_euclid(side)..(window.bottom() - 1).div_euclid(side) + 1;
+pub fn tiles(level: usize, window: &Window) -> impl Iterator<Item = (i64, i64)> + use<> {
+    let (side, start) = shape(level);
+    let index = |sample: i64| (sample + start).div_euclid(side as i64);
+    let columns = index(window.x)..index(window.right() - 1) + 1;
+    let rows = index(window.y)..index(window.bottom() - 1) + 1;
     rows.flat_map(move |row| columns.clone().map(move |column| (column, row)))
 }
 
 /// The window of a tile.
 #[must_use]
-pub fn tile((column, row): (i64, i64), cell: f64) -> Window {
-    Window::new(TILE, TILE, cell).at(column * TILE as i64, row * TILE as i64)
+pub fn tile(level: usize, (column, row): (i64, i64), cell: f64) -> Window {
+    let (side, start) = shape(level);
+    let first = |index: i64| index * side as i64 - start;
+    Window::new(side, side, cell).at(first(column), first(row))
 }
 
 /// Memory of making a window beside its layers, in bytes.
 #[must_use]
 pub fn memory(op: &dyn Levelled, layers: usize, window: &Window, threads: usize) -> u64 {
-    let Serving { level, samples } = Serving::of(&op.levels(), window);
+    let serving = Serving::of(&op.levels(), window);
+    let (Serving { level, samples }, tiled) = (serving, tiled(op, &serving));
     let planes = op.planes() as u64;
     let held = |window: &Window| grid_bytes(window).saturating_mul(planes);
     // Whole tiles cover up to a tile more on each side; the level above them has a quarter as many, and its halo.
-    let of_tiles = |window: &Window| held(&window.grown(TILE)).saturating_mul(2);
+    let of_tiles = |window: &Window| held(&window.grown(COARSEST_TILE)).saturating_mul(2);
     let piece = |piece: &Window| {
-        let windows = windows(op, level, piece);
-        let levels = tiled(level)..=level;
+        let windows = windows(op, tiled, level, piece);
+        let levels = tiled..=level;
         let pair = windows.windows(2).map(|pair| held(&pair[0]).saturating_add(held(&pair[1]))).max();
         let scratch = levels.zip(&windows).skip(1).map(|(level, window)| op.scratch(level, window)).max();
         let made = grid_bytes(piece).saturating_mul(layers as u64);
         pair.unwrap_or_else(|| windows.iter().map(held).sum()).saturating_add(scratch.unwrap_or(0)).saturating_add(made)
     };
-    let pieces = Serving { level, samples }.pieces(threads);
+    let pieces = serving.pieces(threads);
     let largest = pieces.iter().map(piece).max().unwrap_or(0);
-    let all = windows(op, level, &samples).first().map_or(0, of_tiles);
+    let all = windows(op, tiled, level, &samples).first().map_or(0, of_tiles);
     let one = |level: usize| {
-        let window = tile((0, 0), op.levels().cell(level));
+        let window = tile(level, (0, 0), op.levels().cell(level));
         held(&window).saturating_add(op.scratch(level, &window)).saturating_add(match level {
             0 => 0,
             level => held(&op.parent(level, &window)),
         })
     };
-    let tile = (0..=tiled(level)).map(one).max().unwrap_or(0);
+    let tile = (0..=tiled).map(one).max().unwrap_or(0);
     let threads = threads as u64;
     let apart = if samples.cell == window.cell { 0 } else { grid_bytes(&samples).saturating_mul(layers as u64) };
     let working = largest.saturating_mul(threads.min(pieces.len() as u64)).max(tile.saturating_mul(threads));
@@ -166,12 +189,13 @@ pub fn memory(op: &dyn Levelled, layers: usize, window: &Window, threads: usize)
 /// Approximate time for making a window on one core, in nanoseconds, without tiles that are kept.
 #[must_use]
 pub fn cost(op: &dyn Levelled, window: &Window) -> f64 {
-    let Serving { level, samples } = Serving::of(&op.levels(), window);
+    let serving = Serving::of(&op.levels(), window);
+    let (Serving { level, samples }, tiled) = (serving, tiled(op, &serving));
     let sum = |level: usize, window: &Window| op.cost(level) * window.width as f64 * window.height as f64;
-    let windows = windows(op, level, &samples);
-    let direct: f64 = (tiled(level)..=level).zip(&windows).skip(1).map(|(level, window)| sum(level, window)).sum();
-    let first = windows.first().map_or(0.0, |window| sum(tiled(level), &window.grown(TILE / 2)));
-    let above: f64 = (0..tiled(level)).map(|level| 2.0 * op.cost(level) * (TILE * TILE) as f64).sum();
+    let windows = windows(op, tiled, level, &samples);
+    let direct: f64 = (tiled..=level).zip(&windows).skip(1).map(|(level, window)| sum(level, window)).sum();
+    let first = windows.first().map_or(0.0, |window| sum(tiled, &window.grown(TILE / 2)));
+    let above: f64 = (0..tiled).map(|level| 4.0 * op.cost(level) * (TILE * TILE) as f64).sum();
     direct + first + above
 }
 
@@ -217,9 +241,12 @@ mod tests {
     #[test]
     fn tiles_cover_a_window() {
         let window = Window::new(130, 3, 8.0).at(-65, 63);
-        let covering: Vec<_> = tiles(&window).collect();
+        let covering: Vec<_> = tiles(5, &window).collect();
         assert_eq!(covering, [(-2, 0), (-1, 0), (0, 0), (1, 0), (-2, 1), (-1, 1), (0, 1), (1, 1)]);
-        assert_eq!(tile((-2, 1), 8.0), Window::new(64, 64, 8.0).at(-128, 64));
-        assert_eq!(tiles(&Window::new(0, 0, 8.0)).count(), 0);
+        assert_eq!(tile(5, (-2, 1), 8.0), Window::new(64, 64, 8.0).at(-128, 64));
+        let covering: Vec<_> = tiles(0, &window).collect();
+        assert_eq!(covering, [(-1, 0), (0, 0), (1, 0), (-1, 1), (0, 1), (1, 1)]);
+        assert_eq!(tile(0, (0, 1), 8.0), Window::new(128, 128, 8.0).at(-64, 64));
+        assert_eq!(tiles(5, &Window::new(0, 0, 8.0)).count(), 0);
     }
 }

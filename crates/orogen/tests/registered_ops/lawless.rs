@@ -83,7 +83,7 @@ impl Field for Celled {
 }
 
 orogen::op! {
-    /// A mean of two samples of the level above, of which the halo holds one.
+    /// A mean of two samples of the level above, of which one may lie beyond the halo.
     pub struct Narrow = "lawless.narrow", levelled, revision 1;
 }
 
@@ -123,7 +123,7 @@ impl Levelled for Narrow {
                 parent[0][(inside(x, over.x, over.width), inside(y, over.y, over.height))]
             };
             let (x, y) = ((window.x + i as i64) >> 1, (window.y + j as i64) >> 1);
-            grid[(i, j)] = 0.5 * (at(x, y) + at(x + 1, y));
+            grid[(i, j)] = 0.5 * (at(x, y) + at(x + 2, y));
         }
         Ok(vec![grid])
     }
