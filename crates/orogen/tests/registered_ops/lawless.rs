@@ -123,7 +123,7 @@ impl Levelled for Narrow {
                 parent[0][(inside(x, over.x, over.width), inside(y, over.y, over.height))]
             };
             let (x, y) = ((window.x + i as i64) >> 1, (window.y + j as i64) >> 1);
-            grid[(i, j)] = 0.5 * (at(x, y) + at(x + 2, y));
+            grid[(i, j)] = 0.5 * (at(x, y) + at(x + 9, y));
         }
         Ok(vec![grid])
     }
