@@ -12,6 +12,10 @@ const RATIOS: [usize; 3] = [2, 4, 8];
 /// Border in large cells that is excluded: the interpolation has no samples beyond it.
 const BORDER: usize = 2;
 
+/// Cells along a side from which on only a part of a world is compared, and those of the part.
+const LARGEST: usize = 8192;
+const PART: usize = 1024;
+
 /// Measures every preset, or those selected.
 pub fn run(options: &Options) -> Result<Value, String> {
     let mut rows = Vec::new();
@@ -27,10 +31,14 @@ fn measure(name: &str, world: &World) -> Result<Vec<Value>, String> {
     let spec = world.recipe().world;
     let coarsest = RATIOS.iter().copied().max().unwrap_or(1);
     let cells = |length: f64| (length / spec.cell).floor() as usize / coarsest * coarsest;
-    // Of an unbounded world, the default window.
-    let [width, height] = spec.size.map_or([1024; 2], |size| size.map(cells));
+    // Of an unbounded world, the default window; of a very large one, its middle.
+    let [width, height] = spec.size.map_or([PART; 2], |size| size.map(cells));
+    let part =
+        |cells: usize| if cells > LARGEST { ((cells - PART) / 2 / coarsest * coarsest, PART) } else { (0, cells) };
+    let ((x, width), (y, height)) = (part(width), part(height));
     let make = |ratio: usize| {
         let window = Window::new(width / ratio + 1, height / ratio + 1, spec.cell * ratio as f64);
+        let window = window.at((x / ratio) as i64, (y / ratio) as i64);
         world.window("height", &window).map_err(|e| e.to_string())
     };
     let fine = make(1)?;

@@ -24,6 +24,7 @@ The table compares each preset at its own cell with the same preset at cells 2, 
 
 - *Shared* compares the samples that both grids have: every 2nd, 4th or 8th of the finer grid. Fields and results of solvers are
   bit-equal there: 0. A filter is computed at the requested cell, so its results differ; `bake` it to fix it at one cell.
+  A levelled op (`continents`) answers with a coarser level, which has the same rivers and ranges without their finest valleys.
 - *Everywhere* compares all samples of the finer grid with the coarser grid, interpolated with the engine's interpolating
   cubic. The difference is mostly the detail smaller than two of the larger cells. A border of two large cells is excluded.
 - RMS is the root of the mean squared difference; worst is the largest absolute difference. Both are in metres and, in brackets, as a share of the
