@@ -124,7 +124,7 @@ impl Levelled for Continents {
         context: &Context,
     ) -> Result<()> {
         let level = Level::from_planes(level, &planes.iter().collect::<Vec<_>>())?;
-        let made = self.land(context).surface(&level, window)?;
+        let made = self.land(context).surface(&level, window, context.progress)?;
         let [height, flow, lake, surface, receiver] = out else { return Ok(()) };
         if let Some(surface) = surface {
             *surface = made.height.clone();

@@ -24,6 +24,9 @@ const REACH: usize = 4 * LINKS + 4;
 /// Drainage area of the first round, in km^2.
 const TYPICAL_AREA: f64 = 2e4;
 
+/// Approximate time for placing the nodes and for draining them once, in any unit.
+const TIMES: [f64; 3] = [3.0, 1.0, 1.0];
+
 /// Displacement of nodes: the share of a cell in which they are.
 pub const JITTER: f32 = 0.8;
 
@@ -74,12 +77,13 @@ impl Continents {
     /// Those of [`Continents::coarsest`].
     pub fn coarsest_with(&self, given: &Given, window: &Window, progress: &Progress) -> Result<Level> {
         self.check(0, window)?;
-        let mut coarsest = Coarsest::new(self, given, window.grown(REACH), progress)?;
-        let first = coarsest.first_costs();
-        let heights = coarsest.drain(&first, progress)?;
+        let [placing, first, second] = progress.parts(TIMES);
+        let mut coarsest = Coarsest::new(self, given, window.grown(REACH), &placing)?;
+        let costs = coarsest.first_costs();
+        let heights = coarsest.drain(&costs, &first)?;
         coarsest.choose_basins(&heights);
-        let second = coarsest.second_costs();
-        let heights = coarsest.drain(&second, progress)?;
+        let costs = coarsest.second_costs();
+        let heights = coarsest.drain(&costs, &second)?;
         Ok(coarsest.finish(heights, window))
     }
 }
@@ -104,8 +108,9 @@ impl<'a> Coarsest<'a> {
             receiver: vec![f32::from(NONE); cells],
         };
         let geography = Geography::new(land);
+        progress.expect(2.0 * window.height as f64);
         for y in window.y..window.bottom() {
-            progress.check()?;
+            progress.step(1.0)?;
             for x in window.x..window.right() {
                 let draw = |stream| hash::unit(hash::node(land.seed, 0, x, y, stream));
                 let (east, south) = (jittered(draw(0)), jittered(draw(1)));
@@ -118,7 +123,7 @@ impl<'a> Coarsest<'a> {
         }
         // Only land and its neighbours read the uplift.
         for j in extent.shrunk(1).rows() {
-            progress.check()?;
+            progress.step(1.0)?;
             for i in extent.shrunk(1).columns() {
                 let q = j * extent.width + i;
                 let near = [q - extent.width, q, q + extent.width];
@@ -159,15 +164,16 @@ impl<'a> Coarsest<'a> {
         let links = routes::links(self.extent, &nodes);
         let mut heights = self.start.clone();
         let mut spare = heights.clone();
+        progress.expect(2.0 * LINKS as f64);
         for _ in 0..LINKS {
-            progress.check()?;
+            progress.step(1.0)?;
             self.extent = self.extent.shrunk(1);
             routes::relax(self.extent, &links, &mut heights, &mut spare);
         }
         self.extent = self.extent.shrunk(1);
         routes::route(self.extent, &links, &heights, &self.start, &mut self.receiver);
         for _ in 0..LINKS {
-            progress.check()?;
+            progress.step(1.0)?;
             self.extent = self.extent.shrunk(1);
             drainage::step(self.extent, &self.receiver, &mut self.area, &mut spare);
         }

@@ -28,8 +28,9 @@ const ROUNDS: usize = 5;
 /// Passes of areas in a round.
 const AREA_PASSES: usize = 2;
 
-/// The work before and after growth, in passes of growth.
-const OTHER_WORK: f64 = 4.0;
+/// The work before growth and on banks and creep, in passes of growth.
+const CARVING_WORK: [f64; 4] = [1.0, 1.0, 0.5, 0.5];
+const FINEST_WORK: f64 = 2.0;
 
 /// Passes of creep on the finest level, and of areas at the end of each level.
 const CREEP_PASSES: usize = 2;
@@ -104,13 +105,17 @@ impl Continents {
         }
         let parent = &parent.crop(&needed)?;
         let finest = self.is_finest(depth);
+        let growing = (FIRST_PASSES + ROUNDS) as f64 + if finest { FINEST_WORK } else { 0.0 };
+        progress.expect(CARVING_WORK.iter().sum::<f64>() + growing);
         let mut children = Children::new(self, parent, given, progress)?;
+        progress.step(CARVING_WORK[0])?;
         let links = Links::new(self, parent, &children, progress)?;
+        progress.step(CARVING_WORK[1])?;
         let levels = water_levels(parent, &links, &mut children);
-        progress.check()?;
+        progress.step(CARVING_WORK[2])?;
         let mut carved = carve(parent, &links, &children, levels);
         drop(links);
-        progress.check()?;
+        progress.step(CARVING_WORK[3])?;
         let mut extent = children.extent.shrunk(CARVED);
         if finest {
             extent = extent.shrunk(straighten::REACH);
@@ -129,17 +134,15 @@ impl Continents {
         };
         let mut growth =
             Growth::new(carved.height, carved.area, carved.receiver, carved.fixed, has_floors(self, depth));
-        progress.expect((FIRST_PASSES + ROUNDS) as f64 + OTHER_WORK);
         for pass in 0..FIRST_PASSES + ROUNDS {
-            progress.advance(1.0);
             for _ in 0..if pass < FIRST_PASSES { 0 } else { AREA_PASSES } {
                 progress.check()?;
                 extent = extent.shrunk(1);
                 drainage::step(extent, &growth.receiver, &mut growth.area, &mut growth.spare);
             }
-            progress.check()?;
             extent = extent.shrunk(1);
             growth.pass(extent, &law, spacing, self.cell_of(depth));
+            progress.step(1.0)?;
         }
         if finest {
             for _ in 0..CREEP_PASSES {
@@ -154,6 +157,7 @@ impl Continents {
             }
             extent = extent.shrunk(1);
             steepest(extent, &growth.height, &growth.fixed, &mut growth.receiver);
+            progress.step(FINEST_WORK)?;
         }
         for _ in 0..LAST_AREA_PASSES {
             progress.check()?;

@@ -6,6 +6,7 @@ use super::level::{Level, invalid};
 use crate::error::Result;
 use crate::grid::{Grid, Window};
 use crate::hydrology::direction::NONE;
+use crate::progress::Progress;
 
 /// The terrain at the lattice points of a level.
 ///
@@ -52,8 +53,8 @@ impl Continents {
     /// heights are interpolated between nodes, and the mean change by finer levels is included.
     ///
     /// # Errors
-    /// If the level covers too little, or the window is not one of the level.
-    pub fn surface(&self, level: &Level, window: &Window) -> Result<Surface> {
+    /// If the level covers too little, the window is not one of the level, or the work is cancelled.
+    pub fn surface(&self, level: &Level, window: &Window, progress: &Progress) -> Result<Surface> {
         self.check(level.depth, window)?;
         if !level.window.contains(&window.grown(Continents::SURFACE_REACH)) {
             return Err(invalid(format!(
@@ -70,7 +71,9 @@ impl Continents {
             receiver: Grid::filled(*window, NONE),
         };
         let (left, top) = ((window.x - level.window.x) as usize, (window.y - level.window.y) as usize);
+        progress.expect(window.height as f64);
         for j in 0..window.height {
+            progress.step(1.0)?;
             for i in 0..window.width {
                 let q = (top + j) * level.window.width + left + i;
                 let point = if self.is_finest(level.depth) { node(level, q) } else { self.between(level, q) };

@@ -166,17 +166,19 @@ fn surfaces_are_finite_and_agree_between_windows() {
     for depth in [2, 9, 11] {
         let whole = window(&land, depth, coast(depth), (60, 50));
         let nodes = level(&land, depth, &whole.grown(Continents::SURFACE_REACH));
-        let surface = land.surface(&nodes, &whole).unwrap();
+        let surface = land.surface(&nodes, &whole, &Progress::none()).unwrap();
         let finite = [&surface.height, &surface.flow, &surface.lake_depth];
         assert!(finite.iter().all(|grid| grid.data().iter().all(|value| value.is_finite())));
         let part = window(&land, depth, (whole.x + 5, whole.y + 9), (17, 3));
-        let alone = land.surface(&level(&land, depth, &part.grown(Continents::SURFACE_REACH)), &part).unwrap();
+        let alone = land
+            .surface(&level(&land, depth, &part.grown(Continents::SURFACE_REACH)), &part, &Progress::none())
+            .unwrap();
         assert_eq!(surface.height.crop(&part).unwrap(), alone.height);
         assert_eq!(surface.flow.crop(&part).unwrap(), alone.flow);
         for (q, &level) in surface.water_level.data().iter().enumerate() {
             assert!(level.is_nan() || level > surface.height.data()[q]);
         }
-        assert!(land.surface(&nodes, &whole.grown(1)).is_err());
+        assert!(land.surface(&nodes, &whole.grown(1), &Progress::none()).is_err());
     }
 }
 
