@@ -59,6 +59,7 @@ nodes! {
         topographic_position::TopographicPosition,
     }
     levelled {
+        amplify::Amplify,
         continents::Continents,
     }
     solver {

@@ -1,11 +1,13 @@
 //! Continents with rivers, without bounds.
 
+use super::drained;
 use crate::op::{Context, Levelled, Levels};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
-use orogen_grid::multiscale::continents::{Continents as Land, MAX_LEVELS};
+use orogen_grid::multiscale::continents::Continents as Land;
 use orogen_grid::multiscale::given::Given;
 use orogen_grid::multiscale::level::Level;
+use orogen_grid::multiscale::refinement::{MAX_LEVELS, Refinement};
 
 op! {
     /// Eroded land without bounds: continents with ranges, plains and plateaus, coasts, inland basins with lakes, and rivers from their sources
@@ -26,6 +28,12 @@ op! {
         shore: optional,
         /// Uplift over erodibility in place of the op's own ranges and plains: about 1.5 in high mountains, 0.5 in hills, 0.1 in plains. Where it is NaN, the op's own is used.
         uplift: optional,
+        /// Factor of the stable slope of hillsides, greater where rock is harder. Default: 1.
+        stability_factor: optional,
+        /// Factor of the creep of soil, up to 1.25. Default: 1.
+        creep_factor: optional,
+        /// Factor of the width of valley floors. Default: 1.
+        floor_factor: optional,
     }
     params {
         /// Seed of the node, hashed with the world's seed.
@@ -38,6 +46,10 @@ op! {
         land: f64 = 0.37, range 0.05 to 0.95;
         /// Factor of the uplift, and so of heights and slopes.
         relief: f64 = 1.0, range 0.01 to 10.0;
+        /// Distance over which soil creep rounds hillsides at the finest level, in its cells.
+        creep: f64 = 1.0, range 0.0 to 5.0;
+        /// Factor of the variation of the rock, which each level adds to: 0 makes even slopes and straight side valleys.
+        variation: f64 = 1.0, range 0.0 to 4.0;
         /// Factor of the size of continents and ranges.
         size: f64 = 1.0, range 0.01 to 100.0;
         /// Share of the suitable inland basins that hold a lake without an outlet. All other land drains to the sea.
@@ -59,28 +71,36 @@ op! {
 
 impl Continents {
     fn land(&self, context: &Context) -> Land {
-        self.with_seed(context.world_params.seed_of(self.seed))
+        let refinement = self.refinement().with_seed(context.world_params.seed_of(self.seed));
+        Land::default().with_refinement(refinement).with_land(self.land).with_size(self.size).with_basins(self.basins)
     }
 
-    fn with_seed(&self, seed: u64) -> Land {
-        Land::new(seed)
+    /// The levels without the seed, on which neither cells nor reaches depend.
+    fn refinement(&self) -> Refinement {
+        Refinement::default()
             .with_cell(self.cell)
             .with_levels((self.halvings as usize).min(MAX_LEVELS))
-            .with_land(self.land)
             .with_relief(self.relief)
-            .with_size(self.size)
-            .with_basins(self.basins)
+            .with_creep(self.creep)
+            .with_variation(self.variation)
     }
 }
 
 fn given<'a>(inputs: &[Option<&'a Grid>]) -> Given<'a> {
     let input = |i: usize| inputs.get(i).copied().flatten();
-    Given { shore: input(0), uplift: input(1) }
+    Given {
+        shore: input(0),
+        uplift: input(1),
+        stability_factor: input(2),
+        creep_factor: input(3),
+        floor_factor: input(4),
+        continents: None,
+    }
 }
 
 impl Levelled for Continents {
     fn levels(&self) -> Levels {
-        Levels { finest: self.cell, count: self.halvings as usize + 1 }
+        drained::levels(&self.refinement())
     }
 
     fn planes(&self) -> usize {
@@ -88,15 +108,15 @@ impl Levelled for Continents {
     }
 
     fn halo(&self, level: usize) -> usize {
-        self.with_seed(0).reach(level)
+        self.refinement().reach(level)
     }
 
     fn source_halo(&self, level: usize) -> usize {
-        self.with_seed(0).given_reach(level)
+        if level == 0 { Land::COARSEST_REACH } else { self.refinement().given_reach(level) }
     }
 
     fn coarsest(&self, inputs: &[Option<&Grid>], window: &Window, context: &Context) -> Result<Vec<Grid>> {
-        Ok(self.land(context).coarsest_with(&given(inputs), window, context.progress)?.into_planes())
+        Ok(self.land(context).coarsest(&given(inputs), window, context.progress)?.into_planes())
     }
 
     fn refine(
@@ -107,12 +127,13 @@ impl Levelled for Continents {
         window: &Window,
         context: &Context,
     ) -> Result<Vec<Grid>> {
-        let parent = Level::from_planes(level - 1, &parent.iter().collect::<Vec<_>>())?;
-        Ok(self.land(context).refine_with(&parent, &given(inputs), window, context.progress)?.into_planes())
+        let land = self.land(context);
+        let given = Given { continents: Some(&land), ..given(inputs) };
+        drained::refine(&land.refinement, level, parent, &given, window, context)
     }
 
     fn surface_halo(&self) -> usize {
-        Land::SURFACE_REACH
+        Refinement::SURFACE_REACH
     }
 
     fn layers_of(
@@ -123,32 +144,15 @@ impl Levelled for Continents {
         out: &mut [Option<Grid>],
         context: &Context,
     ) -> Result<()> {
-        let level = Level::from_planes(level, &planes.iter().collect::<Vec<_>>())?;
-        let made = self.land(context).surface(&level, window, context.progress)?;
-        let [height, flow, lake, surface, receiver] = out else { return Ok(()) };
-        if let Some(surface) = surface {
-            *surface = made.height.clone();
-            for (surface, water) in surface.data_mut().iter_mut().zip(made.water_level.data()) {
-                *surface = if water.is_nan() { *surface } else { *water };
-            }
-        }
-        if let Some(receiver) = receiver {
-            let codes = receiver.data_mut().iter_mut().zip(made.receiver.data());
-            codes.for_each(|(out, code)| *out = f32::from(*code));
-        }
-        let layers = [(height, made.height), (flow, made.flow), (lake, made.lake_depth)];
-        layers.into_iter().for_each(|(out, made)| *out = out.take().map(|_| made));
-        Ok(())
+        drained::layers_of(&self.refinement(), level, planes, window, out, context)
     }
 
     fn cost(&self, level: usize) -> f64 {
         // Tiles of the coarsest level work on a wide halo.
-        if level == 0 { 2e4 } else { 300.0 }
+        if level == 0 { 2e4 } else { drained::COST }
     }
 
     fn scratch(&self, level: usize, window: &Window) -> u64 {
-        let halo = if level == 0 { Land::COARSEST_REACH } else { 2 * self.halo(level) };
-        let samples = window.grown(halo);
-        Land::bytes_per_sample().saturating_mul(samples.width as u64).saturating_mul(samples.height as u64)
+        drained::scratch(window, if level == 0 { Land::COARSEST_REACH } else { 2 * self.halo(level) })
     }
 }

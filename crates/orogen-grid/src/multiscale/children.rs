@@ -1,11 +1,11 @@
 //! The nodes of a level before rivers: positions, rock and the shape of the shore, from the level above and from hashes.
 
 use super::coarsest::jittered;
-use super::continents::Continents;
 use super::geography::Geography;
 use super::given::Given;
 use super::hash;
 use super::level::Level;
+use super::refinement::Refinement;
 use super::stencil::Extent;
 use crate::error::Result;
 use crate::grid::Window;
@@ -43,13 +43,13 @@ pub fn heir(parent: &Level, q: usize) -> u8 {
 }
 
 /// Irregularity of the shore that a level adds, in km: a fractal line of this roughness.
-fn indent(land: &Continents, depth: usize) -> f32 {
+fn indent(land: &Refinement, depth: usize) -> f32 {
     (0.5 * 61.44 * libm::pow(land.kilometres(depth) / 61.44, 0.92)) as f32
 }
 
 impl Children {
     /// The children of `parent`; rock and shores are exact one parent away from its edge.
-    pub fn new(land: &Continents, parent: &Level, given: &Given, progress: &Progress) -> Result<Children> {
+    pub fn new(land: &Refinement, parent: &Level, given: &Given, progress: &Progress) -> Result<Children> {
         let (depth, from) = (parent.depth + 1, parent.window);
         let (width, height) = (2 * from.width, 2 * from.height);
         let window = Window { x: 2 * from.x, y: 2 * from.y, width, height, cell: land.cell_of(depth) };
@@ -65,8 +65,9 @@ impl Children {
             shore: vec![0.0; cells],
             indent: indent(land, depth),
         };
-        let geography = Geography::new(land);
-        let geography = (land.kilometres(depth) >= FINEST_GEOGRAPHY).then_some(&geography);
+        let coarse = land.kilometres(depth) >= FINEST_GEOGRAPHY;
+        let geography = given.continents.filter(|_| coarse).map(Geography::new);
+        let geography = geography.as_ref();
         for j in 0..height {
             if j % 32 == 0 || geography.is_some() {
                 progress.check()?;
@@ -88,12 +89,12 @@ impl Children {
 
     /// The bits of all hashes of a node.
     #[inline(always)]
-    fn bits(&self, land: &Continents, i: usize, j: usize) -> u64 {
+    fn bits(&self, land: &Refinement, i: usize, j: usize) -> u64 {
         hash::node(land.seed, self.depth, self.window.x + i as i64, self.window.y + j as i64, 0)
     }
 
     /// Positions of the nodes of row `j`. The node that a parent becomes stays near the parent's position.
-    fn place_row(&mut self, land: &Continents, parent: &Level, j: usize) {
+    fn place_row(&mut self, land: &Refinement, parent: &Level, j: usize) {
         let width = self.extent.width;
         for i in 0..width {
             let p = j / 2 * (width / 2) + i / 2;
@@ -116,7 +117,7 @@ impl Children {
     /// Rock and shore of the inner nodes of row `j`, interpolated from the four nearest parents.
     fn inherit_row(
         &mut self,
-        land: &Continents,
+        land: &Refinement,
         parent: &Level,
         j: usize,
         given: &Given,
@@ -126,7 +127,7 @@ impl Children {
         let parents = width / 2;
         let near_row = j / 2 * parents;
         let far_row = if j & 1 == 1 { near_row + parents } else { near_row - parents };
-        let amplitude = VARIATION[self.depth.min(VARIATION.len() - 1)];
+        let amplitude = land.variation as f32 * VARIATION[self.depth.min(VARIATION.len() - 1)];
         for i in 2..width - 2 {
             let near = i / 2;
             let far = if i & 1 == 1 { near + 1 } else { near - 1 };

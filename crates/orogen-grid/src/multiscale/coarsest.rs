@@ -63,20 +63,14 @@ impl Continents {
     /// Samples of the coarsest level beyond a window that [`Continents::coarsest`] works on.
     pub const COARSEST_REACH: usize = REACH;
 
-    /// The coarsest level over `window`. It holds about 60 bytes per sample of the window grown by 148.
+    /// The coarsest level over `window`. It holds about 60 bytes per sample of the window grown by 148. What is given covers the window grown by
+    /// [`Continents::COARSEST_REACH`].
     ///
     /// # Errors
     /// If a parameter is out of range, the window is not one of the level, or the work is cancelled.
-    pub fn coarsest(&self, window: &Window, progress: &Progress) -> Result<Level> {
-        self.coarsest_with(&Given::default(), window, progress)
-    }
-
-    /// [`Continents::coarsest`] with shores and uplift that are given over the window grown by [`Continents::COARSEST_REACH`].
-    ///
-    /// # Errors
-    /// Those of [`Continents::coarsest`].
-    pub fn coarsest_with(&self, given: &Given, window: &Window, progress: &Progress) -> Result<Level> {
-        self.check(0, window)?;
+    pub fn coarsest(&self, given: &Given, window: &Window, progress: &Progress) -> Result<Level> {
+        self.check()?;
+        self.refinement.check(0, window)?;
         let [placing, first, second] = progress.parts(TIMES);
         let mut coarsest = Coarsest::new(self, given, window.grown(REACH), &placing)?;
         let costs = coarsest.first_costs();
@@ -112,9 +106,10 @@ impl<'a> Coarsest<'a> {
         for y in window.y..window.bottom() {
             progress.step(1.0)?;
             for x in window.x..window.right() {
-                let draw = |stream| hash::unit(hash::node(land.seed, 0, x, y, stream));
+                let draw = |stream| hash::unit(hash::node(land.refinement.seed, 0, x, y, stream));
                 let (east, south) = (jittered(draw(0)), jittered(draw(1)));
-                let (metres_east, metres_south) = (land.metres(0, x, east), land.metres(0, y, south));
+                let (metres_east, metres_south) =
+                    (land.refinement.metres(0, x, east), land.refinement.metres(0, y, south));
                 made.shore.push(given.shore_or((x, y), &geography, metres_east, metres_south));
                 made.east.push(east);
                 made.south.push(south);
@@ -129,7 +124,8 @@ impl<'a> Coarsest<'a> {
                 let near = [q - extent.width, q, q + extent.width];
                 if near.iter().any(|&middle| made.shore[middle - 1..middle + 2].iter().any(|&shore| shore >= 0.0)) {
                     let (x, y) = (window.x + i as i64, window.y + j as i64);
-                    let (east, south) = (land.metres(0, x, made.east[q]), land.metres(0, y, made.south[q]));
+                    let (east, south) =
+                        (land.refinement.metres(0, x, made.east[q]), land.refinement.metres(0, y, made.south[q]));
                     made.uplift[q] = given.uplift_or((x, y), &geography, east, south);
                 }
             }
@@ -145,14 +141,15 @@ impl<'a> Coarsest<'a> {
 
     /// Rise per cell of distance, with the same drainage area everywhere.
     fn first_costs(&self) -> Vec<f32> {
-        let rise = (law::river_slope(self.land, TYPICAL_AREA) * self.land.cell_of(0)) as f32;
+        let rise = (law::river_slope(&self.land.refinement, TYPICAL_AREA) * self.land.refinement.cell_of(0)) as f32;
         self.uplift.iter().map(|&uplift| rise * power(std::f32::consts::E, uplift)).collect()
     }
 
     /// Rise per cell of distance with the drainage areas found.
     fn second_costs(&self) -> Vec<f32> {
-        let kilometres = self.land.kilometres(0);
-        let rise = (law::river_slope(self.land, kilometres * kilometres) * self.land.cell_of(0)) as f32;
+        let kilometres = self.land.refinement.kilometres(0);
+        let rise =
+            (law::river_slope(&self.land.refinement, kilometres * kilometres) * self.land.refinement.cell_of(0)) as f32;
         let cost =
             |(&uplift, &area): (&f32, &f32)| rise * power(std::f32::consts::E, uplift) * power(area, -law::CONCAVITY);
         self.uplift.iter().zip(&self.area).map(cost).collect()
@@ -183,7 +180,7 @@ impl<'a> Coarsest<'a> {
     /// Inner basins: high and gentle land behind steep land, where the way out to the sea is kept from being cut; and places beyond the reach
     /// of the sea.
     fn choose_basins(&mut self, heights: &[f32]) {
-        let (relief, width) = (self.land.relief as f32, self.extent.width);
+        let (relief, width) = (self.land.refinement.relief as f32, self.extent.width);
         let score = |q: usize| match heights[q] {
             height if self.base[q] == Base::Sea => height + UNREACHED,
             height if height >= UNREACHED => 1000.0 + self.detour[q],
@@ -196,7 +193,8 @@ impl<'a> Coarsest<'a> {
                 let (q, height) = (j * width + i, heights[j * width + i]);
                 let unreached = height >= UNREACHED && self.base[q] == Base::None;
                 let suitable = self.shore[q] >= 200.0 && height >= 250.0 * relief && self.uplift[q] <= -0.9;
-                let bits = hash::node(self.land.seed, 0, self.window.x + i as i64, self.window.y + j as i64, 4);
+                let bits =
+                    hash::node(self.land.refinement.seed, 0, self.window.x + i as i64, self.window.y + j as i64, 4);
                 let chosen = suitable && height < UNREACHED && f64::from(hash::unit(bits)) < self.land.basins;
                 if !(unreached || chosen) {
                     continue;
@@ -225,7 +223,7 @@ impl<'a> Coarsest<'a> {
                 _ if drains => self.shore[q].clamp(4.0, 100.0),
                 _ => {
                     let (x, y) = (self.window.x + (q % width) as i64, self.window.y + (q / width) as i64);
-                    -15.0 - 60.0 * hash::unit(hash::node(self.land.seed, 0, x, y, 5))
+                    -15.0 - 60.0 * hash::unit(hash::node(self.land.refinement.seed, 0, x, y, 5))
                 }
             };
             if *height >= UNREACHED {

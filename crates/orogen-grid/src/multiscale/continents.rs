@@ -1,26 +1,20 @@
 //! The parameters of land without bounds.
 
-use super::level::invalid;
+use super::given::Given;
+use super::level::{Level, invalid};
+use super::refinement::Refinement;
 use crate::error::Result;
 use crate::grid::Window;
+use crate::progress::Progress;
 
 /// Land without bounds: continents with ranges, plains, coasts, inland basins and rivers to the sea.
-///
-/// The node (i, j) of the finest level is exactly at (i cell, j cell). On a coarser level with cell c, the node of sample (i, j) is at
-/// ((i + east) c - cell / 2, (j + south) c - cell / 2), where `cell` is that of the finest level.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Continents {
-    /// Seed of all random choices.
-    pub seed: u64,
-    /// Cell of the finest level, in metres.
-    pub cell: f64,
-    /// Number of halvings from the coarsest level to the finest.
-    pub levels: usize,
+    /// The levels. Their seed is that of geography, too.
+    pub refinement: Refinement,
     /// Share of land, 0.05 to 0.95.
     pub land: f64,
-    /// Factor of the uplift.
-    pub relief: f64,
     /// Factor of the size of continents and ranges.
     pub size: f64,
     /// Share of the suitable inner basins that keep a lake without an outlet, 0 to 1. Elsewhere all land drains to the sea.
@@ -29,72 +23,36 @@ pub struct Continents {
 
 impl Default for Continents {
     fn default() -> Continents {
-        Continents { seed: 0, cell: 60.0, levels: 11, land: 0.39, relief: 1.0, size: 1.0, basins: 0.8 }
+        Continents { refinement: Refinement::default(), land: 0.39, size: 1.0, basins: 0.8 }
     }
 }
 
-orogen_noise::builder!(Continents: with_seed(seed: u64), with_cell(cell: f64), with_levels(levels: usize), with_land(land: f64),
-    with_relief(relief: f64), with_size(size: f64), with_basins(basins: f64));
-
-/// The largest number of halvings.
-pub const MAX_LEVELS: usize = 24;
-
-/// The largest coordinate of a sample, either way, so that no sum overflows.
-const FURTHEST: i64 = 1 << 50;
-
-/// The largest number of samples of a side.
-const MAX_SIDE: usize = 1 << 24;
+orogen_noise::builder!(Continents: with_refinement(refinement: Refinement), with_land(land: f64), with_size(size: f64),
+    with_basins(basins: f64));
 
 impl Continents {
     /// Land with this seed and the defaults of the other parameters.
     #[must_use]
     pub fn new(seed: u64) -> Continents {
-        Continents { seed, ..Continents::default() }
+        Continents::default().with_refinement(Refinement::new(seed))
     }
 
-    /// The cell of a level, in metres.
-    #[must_use]
-    pub fn cell_of(&self, depth: usize) -> f64 {
-        let halvings = self.levels.min(MAX_LEVELS).saturating_sub(depth);
-        self.cell * (1u64 << halvings) as f64
+    /// [`Refinement::refine`], where the geography of this land decides what is not given.
+    ///
+    /// # Errors
+    /// Those of [`Refinement::refine`].
+    pub fn refine(&self, parent: &Level, given: &Given, window: &Window, progress: &Progress) -> Result<Level> {
+        self.check()?;
+        self.refinement.refine(parent, &Given { continents: Some(self), ..*given }, window, progress)
     }
 
-    /// The cell of a level, in kilometres.
-    pub(super) fn kilometres(&self, depth: usize) -> f64 {
-        self.cell_of(depth) / 1000.0
-    }
-
-    /// The coordinate, in metres, of a node of column or row `index` at `share` of its cell.
-    pub(super) fn metres(&self, depth: usize, index: i64, share: f32) -> f64 {
-        (index as f64 + f64::from(share)) * self.cell_of(depth) - 0.5 * self.cell
-    }
-
-    /// Whether a level is the finest.
-    pub(super) fn is_finest(&self, depth: usize) -> bool {
-        depth >= self.levels
-    }
-
-    /// Checks the parameters, and that `window` is one of level `depth`.
-    pub(super) fn check(&self, depth: usize, window: &Window) -> Result<()> {
-        let positive = |value: f64| value.is_finite() && value > 0.0;
-        if !(positive(self.cell) && positive(self.relief) && positive(self.size)) {
-            return Err(invalid("the cell, the relief and the size of continents must be above 0"));
+    /// Checks the parameters beside those of the levels.
+    pub(super) fn check(&self) -> Result<()> {
+        if !(self.size.is_finite() && self.size > 0.0) {
+            return Err(invalid("the size of continents must be above 0"));
         }
         if !(0.05..=0.95).contains(&self.land) || !(0.0..=1.0).contains(&self.basins) {
             return Err(invalid("the share of land must be 0.05 to 0.95, that of basins 0 to 1"));
-        }
-        if self.levels > MAX_LEVELS || depth > self.levels {
-            return Err(invalid(format!(
-                "level {depth} does not exist: the finest is {}, at most {MAX_LEVELS}",
-                self.levels
-            )));
-        }
-        if window.cell != self.cell_of(depth) {
-            return Err(invalid(format!("level {depth} has a cell of {} m, not {}", self.cell_of(depth), window.cell)));
-        }
-        let near = |x: i64| (-FURTHEST..=FURTHEST).contains(&x);
-        if window.is_empty() || window.width.max(window.height) > MAX_SIDE || !near(window.x) || !near(window.y) {
-            return Err(invalid("the window of a level is empty, too large or too far away"));
         }
         Ok(())
     }

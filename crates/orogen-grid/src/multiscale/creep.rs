@@ -9,6 +9,15 @@ use std::f32::consts::FRAC_1_SQRT_2;
 /// Share of the way to the mean of the neighbours.
 const RATE: f32 = 0.8;
 
+/// Variance of the average of the neighbours, in square cells.
+const SPREAD: f64 = 0.6;
+
+/// Number of passes that round land over a distance in cells.
+pub fn creep_passes(distance: f64) -> usize {
+    let variance = distance * distance;
+    (variance / (SPREAD * f64::from(RATE))).round() as usize
+}
+
 /// Drainage area in cells at which the rate is half.
 const CHANNEL_AREA: f32 = 300.0;
 
@@ -23,8 +32,15 @@ const CUT: f32 = 1.5;
 const LOWERED: f32 = 0.5;
 
 /// One pass of creep over the cells of `extent`.
-pub fn creep(extent: Extent, heights: &mut Vec<f32>, spare: &mut Vec<f32>, area: &[f32], receiver: &[f32]) {
-    dispatch(Creep { extent, heights, area, receiver, out: spare });
+pub fn creep(
+    extent: Extent,
+    heights: &mut Vec<f32>,
+    spare: &mut Vec<f32>,
+    area: &[f32],
+    receiver: &[f32],
+    factor: &[f32],
+) {
+    dispatch(Creep { extent, heights, area, receiver, factor, out: spare });
     std::mem::swap(heights, spare);
 }
 
@@ -33,6 +49,7 @@ struct Creep<'a> {
     heights: &'a [f32],
     area: &'a [f32],
     receiver: &'a [f32],
+    factor: &'a [f32],
     out: &'a mut [f32],
 }
 
@@ -44,7 +61,7 @@ impl Body for Creep<'_> {
         let extent = self.extent;
         for j in extent.rows() {
             let (heights, receivers) = (extent.around(self.heights, j), extent.around(self.receiver, j));
-            let own = [extent.row(self.heights, j), extent.row(self.area, j), extent.row(self.receiver, j)];
+            let own = [self.heights, self.area, self.receiver, self.factor].map(|plane| extent.row(plane, j));
             smooth(own, heights, receivers, extent.row_mut(self.out, j));
         }
     }
@@ -53,9 +70,14 @@ impl Body for Creep<'_> {
 /// A node falls by at most a share of the fall to its receiver, and rises by at most the rest of that from its lowest donor, so that donors stay
 /// above.
 #[inline(always)]
-fn smooth([height, area, receiver]: [&[f32]; 3], heights: [&[f32]; 8], receivers: [&[f32]; 8], out: &mut [f32]) {
+fn smooth(
+    [height, area, receiver, factor]: [&[f32]; 4],
+    heights: [&[f32]; 8],
+    receivers: [&[f32]; 8],
+    out: &mut [f32],
+) {
     let n = out.len();
-    let (height, area, receiver) = (&height[..n], &area[..n], &receiver[..n]);
+    let (height, area, receiver, factor) = (&height[..n], &area[..n], &receiver[..n], &factor[..n]);
     let (heights, receivers) = (heights.map(|row| &row[..n]), receivers.map(|row| &row[..n]));
     for i in 0..n {
         let here = height[i];
@@ -76,7 +98,7 @@ fn smooth([height, area, receiver]: [&[f32]; 3], heights: [&[f32]; 8], receivers
         let (down, up) = (down - LEFT, up - LEFT);
         let lower = if down > 0.0 { -LOWERED * down } else { 0.0 };
         let upper = if up > 0.0 { (1.0 - LOWERED) * up } else { 0.0 };
-        let rate = RATE * CHANNEL_AREA / (CHANNEL_AREA + area[i]);
+        let rate = RATE * factor[i] * CHANNEL_AREA / (CHANNEL_AREA + area[i]);
         let change = rate * ((4.0 * sides + corners) * (1.0 / 20.0) - here);
         let change = if area[i] < CUT_AREA { change } else { -CUT };
         let change = if change > lower { change } else { lower };

@@ -42,7 +42,7 @@ impl Geography {
         let below = (place as usize).min(9);
         let share = place - below as f64;
         let threshold = THRESHOLDS[below] * (1.0 - share) + THRESHOLDS[below + 1] * share;
-        let geography = Geography { seed: land.seed, threshold, scale: 0.001 / land.size, home: (0.0, 0.0) };
+        let geography = Geography { seed: land.refinement.seed, threshold, scale: 0.001 / land.size, home: (0.0, 0.0) };
         Geography { home: geography.found_home(), ..geography }
     }
 

@@ -1,16 +1,26 @@
 //! What the caller knows of the land.
 
+use super::continents::Continents;
 use super::geography::Geography;
-use crate::grid::Grid;
+use crate::grid::{Grid, Window};
+use std::ops::RangeInclusive;
 
-/// Shores and uplift in place of those of the land's own geography. Each grid is at the cell of the level and covers the samples that
-/// the level reads; where it has no value (NaN, or beyond its edge), geography decides.
+/// Shores, uplift and factors. Each grid is at the cell of the level and covers the samples that the level reads. A factor without a value (NaN, or
+/// beyond the grid's edge) is 1.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Given<'a> {
     /// Distance to the shore in metres, positive on land.
     pub shore: Option<&'a Grid>,
     /// Uplift over erodibility: 1 in mountains, 0.1 in plains.
     pub uplift: Option<&'a Grid>,
+    /// Factor of the stable slope of hillsides.
+    pub stability_factor: Option<&'a Grid>,
+    /// Factor of the creep of soil on the finest level.
+    pub creep_factor: Option<&'a Grid>,
+    /// Factor of the width of valley floors.
+    pub floor_factor: Option<&'a Grid>,
+    /// The land whose geography decides about shores and uplift without a value. Without it they are those of the level above.
+    pub continents: Option<&'a Continents>,
 }
 
 /// The smallest uplift over erodibility, so that its logarithm is finite.
@@ -37,6 +47,19 @@ impl Given<'_> {
     pub(super) fn uplift_or(&self, (x, y): (i64, i64), geography: &Geography, east: f64, south: f64) -> f32 {
         self.uplift(x, y).unwrap_or_else(|| geography.uplift(east, south))
     }
+}
+
+/// The values of a factor over a window, within `range`; 1 where it has none.
+pub(super) fn factor(grid: Option<&Grid>, window: &Window, range: RangeInclusive<f32>) -> Vec<f32> {
+    let mut factors = vec![1.0; window.len()];
+    if let Some(grid) = grid {
+        for (row, y) in factors.chunks_mut(window.width.max(1)).zip(window.y..) {
+            for (factor, x) in row.iter_mut().zip(window.x..) {
+                *factor = at(grid, x, y).map_or(1.0, |value| value.clamp(*range.start(), *range.end()));
+            }
+        }
+    }
+    factors
 }
 
 /// The finite value of a sample of the lattice.

@@ -1,8 +1,12 @@
 //! The law of slopes: rivers are the gentler the more land drains through them, and hillsides approach a stable slope.
 
-use super::continents::Continents;
+use super::children::Children;
+use super::given::{self, Given};
+use super::refinement::Refinement;
 use crate::erosion::power::power;
+use crate::grid::{Grid, Window};
 use orogen_simd::{Body, Simd, dispatch};
+use std::ops::RangeInclusive;
 
 /// Exponent of the drainage area.
 pub const CONCAVITY: f32 = 0.45;
@@ -13,11 +17,14 @@ const STEEPNESS: f64 = 0.25;
 /// Stable slope of hillsides where uplift over erodibility is 1.
 const STABLE: f32 = 0.8;
 
+/// Factors that are given: the smallest and the largest.
+const FACTORS: RangeInclusive<f32> = 0.01..=100.0;
+
 /// Exponent of uplift over erodibility in the stable slope.
 const STABLE_EXPONENT: f32 = 0.3;
 
 /// Slope of a river of this drainage area, in km^2, where uplift over erodibility is 1.
-pub fn river_slope(land: &Continents, square_kilometres: f64) -> f64 {
+pub fn river_slope(land: &Refinement, square_kilometres: f64) -> f64 {
     land.relief * STEEPNESS * libm::pow(square_kilometres, -f64::from(CONCAVITY))
 }
 
@@ -31,7 +38,8 @@ pub struct Law {
 
 impl Law {
     /// The law where the logarithm of uplift over erodibility is the sum of `variation` and `uplift`.
-    pub fn new(land: &Continents, depth: usize, variation: &[f32], uplift: &[f32]) -> Law {
+    pub fn new(land: &Refinement, children: &Children, given: &Given) -> Law {
+        let (depth, variation, uplift) = (children.depth, &children.variation, &children.uplift);
         let cells = variation.len().min(uplift.len());
         let kilometres = land.kilometres(depth);
         let river_factor = river_slope(land, kilometres * kilometres) as f32;
@@ -41,12 +49,20 @@ impl Law {
             law.floor.resize(cells, 0.0);
         }
         dispatch(Fill { law: &mut law, variation, uplift, river_factor, stable_factor });
+        multiply(&mut law.stable, given.stability_factor, &children.window);
+        multiply(&mut law.floor, given.floor_factor, &children.window);
         law
     }
 }
 
+fn multiply(plane: &mut [f32], factor: Option<&Grid>, window: &Window) {
+    if factor.is_some() {
+        plane.iter_mut().zip(given::factor(factor, window, FACTORS)).for_each(|(value, factor)| *value *= factor);
+    }
+}
+
 /// Whether valleys of a level have floors: the last three.
-pub fn has_floors(land: &Continents, depth: usize) -> bool {
+pub fn has_floors(land: &Refinement, depth: usize) -> bool {
     depth + 2 >= land.levels
 }
 
@@ -98,7 +114,7 @@ fn floors(variation: &[f32], uplift: &[f32], floor: &mut [f32]) {
 }
 
 /// The rise in metres from a node to its neighbour at the source of a river, where the logarithm of uplift over erodibility is `logarithm`.
-pub fn slope_of_one_cell(land: &Continents, depth: usize, logarithm: f32) -> f32 {
+pub fn slope_of_one_cell(land: &Refinement, depth: usize, logarithm: f32) -> f32 {
     let kilometres = land.kilometres(depth);
     let river = river_slope(land, kilometres * kilometres) as f32 * power(std::f32::consts::E, logarithm);
     let stable = STABLE * power(land.relief as f32 * power(std::f32::consts::E, logarithm), STABLE_EXPONENT);

@@ -1,9 +1,9 @@
 //! The ways of rivers through the children of a level: which links of the parents are kept, and the children that they pass.
 
 use super::children::{Children, heir};
-use super::continents::Continents;
 use super::hash;
 use super::level::Level;
+use super::refinement::Refinement;
 use crate::error::Result;
 use crate::hydrology::direction::{NONE, STEPS};
 use crate::progress::Progress;
@@ -65,7 +65,7 @@ pub struct Links {
 }
 
 impl Links {
-    pub fn new(land: &Continents, parent: &Level, children: &Children, progress: &Progress) -> Result<Links> {
+    pub fn new(land: &Refinement, parent: &Level, children: &Children, progress: &Progress) -> Result<Links> {
         let size = (parent.window.width, parent.window.height);
         let nothing = Link { kept: false, fed: false, exit: 0, entry: 0, around: Around::Nothing };
         let mut links = Links { list: vec![nothing; parent.window.len()], size };
@@ -128,7 +128,7 @@ impl Links {
     }
 
     /// Chooses the exit and the entry of a link: across a side one of four pairs, by length and chance; across a corner there is only one.
-    fn cross(&mut self, land: &Continents, parent: &Level, children: &Children, q: usize, wander: f32) {
+    fn cross(&mut self, land: &Refinement, parent: &Level, children: &Children, q: usize, wander: f32) {
         let (east, south) = step(parent.receiver[q]);
         let target = self.target(parent, q);
         let (start, end) =
@@ -165,7 +165,7 @@ impl Links {
     }
 
     /// Leads some links across corners around them, through a child of one of the two other cells that no link uses.
-    fn go_around(&mut self, land: &Continents, parent: &Level, children: &Children, wander: f32) {
+    fn go_around(&mut self, land: &Refinement, parent: &Level, children: &Children, wander: f32) {
         let width = self.size.0;
         let mut used = vec![0u8; self.list.len()];
         for q in self.inner() {

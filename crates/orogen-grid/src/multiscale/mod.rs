@@ -2,7 +2,7 @@
 //!
 //! The terrain is a pyramid of lattices. A node of a level has a position in its cell, a height, a drainage area and a receiver. The coarsest level
 //! is a function of hashes. Each finer level, at half the cell, is a function of the level above over the same area grown by a fixed
-//! [reach](continents::Continents::reach), and of hashes. Any window of any level therefore has the same bits, whichever windows were computed
+//! [reach](refinement::Refinement::reach), and of hashes. Any window of any level therefore has the same bits, whichever windows were computed
 //! before, and rivers keep their course, area and fall through all levels.
 //!
 //! Related work: J.-D. Génevaux et al., "Terrain generation using procedural models based on hydrology" (2013); M. Gaillard et al., "Dendry: a
@@ -11,6 +11,7 @@
 mod banks;
 mod carve;
 mod children;
+pub mod coarse;
 mod coarsest;
 pub mod continents;
 mod creep;
@@ -26,6 +27,7 @@ mod law;
 pub mod level;
 mod links;
 mod refine;
+pub mod refinement;
 mod routes;
 mod shores;
 mod stencil;

@@ -3,14 +3,14 @@
 use super::banks::raise_banks;
 use super::carve::carve;
 use super::children::Children;
-use super::continents::Continents;
-use super::creep::{creep, steepest};
+use super::creep::{creep, creep_passes, steepest};
 use super::drainage::{self, FREE};
-use super::given::Given;
+use super::given::{self, Given};
 use super::growth::{Growth, Spacing};
 use super::law::{Law, has_floors};
 use super::level::{Level, cropped, invalid};
 use super::links::Links;
+use super::refinement::Refinement;
 use super::shores::water_levels;
 use super::straighten::{self, straighten};
 use crate::error::Result;
@@ -32,8 +32,10 @@ const AREA_PASSES: usize = 2;
 const CARVING_WORK: [f64; 4] = [1.0, 1.0, 0.5, 0.5];
 const FINEST_WORK: f64 = 2.0;
 
-/// Passes of creep on the finest level, and of areas at the end of each level.
-const CREEP_PASSES: usize = 2;
+/// The largest factor of creep: the average of the neighbours takes the place of a height.
+const MAX_CREEP_FACTOR: f32 = 1.25;
+
+/// Passes of areas at the end of each level.
 const LAST_AREA_PASSES: usize = 4;
 
 /// Passes that raise banks on the finest level.
@@ -43,27 +45,27 @@ const BANK_PASSES: usize = 3;
 const FREE_AREA: f32 = 64.0;
 
 /// Cells at the edge of the children whose values are not exact.
-const fn inset(finest: bool) -> usize {
+fn inset(finest: bool, creep: usize) -> usize {
     let growth = CARVED + FIRST_PASSES + ROUNDS * (AREA_PASSES + 1);
     let growth = growth + LAST_AREA_PASSES;
-    if finest { growth + straighten::REACH + CREEP_PASSES + BANK_PASSES + 1 } else { growth }
+    if finest { growth + straighten::REACH + creep + BANK_PASSES + 1 } else { growth }
 }
 
-impl Continents {
-    /// Samples of level `depth - 1` that [`Continents::refine`] to `depth` reads beyond each side of the halved window, which extends from half the
+impl Refinement {
+    /// Samples of level `depth - 1` that [`Refinement::refine`] to `depth` reads beyond each side of the halved window, which extends from half the
     /// first sample, rounded down, to half the last, rounded up.
     #[must_use]
     pub fn reach(&self, depth: usize) -> usize {
-        inset(self.is_finest(depth)).div_ceil(2)
+        inset(self.is_finest(depth), creep_passes(self.creep)).div_ceil(2)
     }
 
-    /// Samples of level `depth` beyond a window that [`Continents::refine_with`] reads of what is given.
+    /// Samples of level `depth`, at least 1, beyond a window that [`Refinement::refine`] reads of what is given.
     #[must_use]
     pub fn given_reach(&self, depth: usize) -> usize {
-        if depth == 0 { Continents::COARSEST_REACH } else { 2 * self.reach(depth) + 1 }
+        2 * self.reach(depth) + 1
     }
 
-    /// The window of level `depth - 1` that [`Continents::refine`] needs for `window` of level `depth`.
+    /// The window of level `depth - 1` that [`Refinement::refine`] needs for `window` of level `depth`.
     #[must_use]
     pub fn parent_window(&self, depth: usize, window: &Window) -> Window {
         let (x, y) = (window.x >> 1, window.y >> 1);
@@ -73,7 +75,7 @@ impl Continents {
         Window { x, y, width, height, cell: self.cell_of(depth.saturating_sub(1)) }.grown(self.reach(depth))
     }
 
-    /// Bytes that [`Continents::refine`] holds at its peak per sample of the window grown by twice the [reach](Continents::reach), including the
+    /// Bytes that [`Refinement::refine`] holds at its peak per sample of the window grown by twice the [reach](Refinement::reach), including the
     /// result and without the parent.
     #[must_use]
     pub fn bytes_per_sample() -> u64 {
@@ -81,19 +83,12 @@ impl Continents {
         120
     }
 
-    /// Exactly `window` of the level below `parent`, which must cover [`Continents::parent_window`]. Other nodes of the parent are not read.
+    /// Exactly `window` of the level below `parent`, which must cover [`Refinement::parent_window`]. Other nodes of the parent are not read. What
+    /// is given covers the window grown by [`Refinement::given_reach`].
     ///
     /// # Errors
     /// If the parent covers too little, a parameter is out of range, the window is not one of the level, or the work is cancelled.
-    pub fn refine(&self, parent: &Level, window: &Window, progress: &Progress) -> Result<Level> {
-        self.refine_with(parent, &Given::default(), window, progress)
-    }
-
-    /// [`Continents::refine`] with shores and uplift that are given over the window grown by [`Continents::given_reach`].
-    ///
-    /// # Errors
-    /// Those of [`Continents::refine`].
-    pub fn refine_with(&self, parent: &Level, given: &Given, window: &Window, progress: &Progress) -> Result<Level> {
+    pub fn refine(&self, parent: &Level, given: &Given, window: &Window, progress: &Progress) -> Result<Level> {
         let depth = parent.depth + 1;
         self.check(depth, window)?;
         let needed = self.parent_window(depth, window);
@@ -127,7 +122,7 @@ impl Continents {
                 *fixed = FREE;
             }
         }
-        let law = Law::new(self, depth, &children.variation, &children.uplift);
+        let law = Law::new(self, &children, given);
         let spacing = match &carved.distances {
             Some(distances) => Spacing::Irregular(distances),
             None => Spacing::Regular,
@@ -145,10 +140,11 @@ impl Continents {
             progress.step(1.0)?;
         }
         if finest {
-            for _ in 0..CREEP_PASSES {
+            let factor = given::factor(given.creep_factor, &children.window, 0.0..=MAX_CREEP_FACTOR);
+            for _ in 0..creep_passes(self.creep) {
                 progress.check()?;
                 extent = extent.shrunk(1);
-                creep(extent, &mut growth.height, &mut growth.spare, &growth.area, &growth.receiver);
+                creep(extent, &mut growth.height, &mut growth.spare, &growth.area, &growth.receiver, &factor);
             }
             for _ in 0..BANK_PASSES {
                 progress.check()?;

@@ -1,8 +1,8 @@
 //! Heights and water at the lattice points of a level.
 
-use super::continents::Continents;
 use super::law::slope_of_one_cell;
 use super::level::{Level, invalid};
+use super::refinement::Refinement;
 use crate::error::Result;
 use crate::grid::{Grid, Window};
 use crate::hydrology::direction::NONE;
@@ -45,21 +45,21 @@ struct Point {
     receiver: u8,
 }
 
-impl Continents {
-    /// Samples of the level beyond a window that [`Continents::surface`] reads.
+impl Refinement {
+    /// Samples of the level beyond a window that [`Refinement::surface`] reads.
     pub const SURFACE_REACH: usize = 2;
 
-    /// The terrain at the lattice points of `window`, from a level that covers it grown by [`Continents::SURFACE_REACH`]. On coarser levels
+    /// The terrain at the lattice points of `window`, from a level that covers it grown by [`Refinement::SURFACE_REACH`]. On coarser levels
     /// heights are interpolated between nodes, and the mean change by finer levels is included.
     ///
     /// # Errors
     /// If the level covers too little, the window is not one of the level, or the work is cancelled.
     pub fn surface(&self, level: &Level, window: &Window, progress: &Progress) -> Result<Surface> {
         self.check(level.depth, window)?;
-        if !level.window.contains(&window.grown(Continents::SURFACE_REACH)) {
+        if !level.window.contains(&window.grown(Refinement::SURFACE_REACH)) {
             return Err(invalid(format!(
                 "a surface over {window:?} needs its level over {} more samples",
-                Continents::SURFACE_REACH
+                Refinement::SURFACE_REACH
             )));
         }
         let square_metres = (self.cell_of(level.depth) * self.cell_of(level.depth)) as f32;

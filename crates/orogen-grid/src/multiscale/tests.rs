@@ -1,7 +1,9 @@
 //! Properties of the levels as a whole: windows agree, water flows down.
 
 use super::continents::Continents;
+use super::given::Given;
 use super::level::Level;
+use super::refinement::Refinement;
 use crate::error::ErrorKind;
 use crate::grid::Window;
 use crate::hydrology::direction::{NONE, STEPS};
@@ -13,20 +15,20 @@ fn level(land: &Continents, depth: usize, window: &Window) -> Level {
     let windows: Vec<Window> = (0..depth)
         .rev()
         .scan(*window, |below, above| {
-            *below = land.parent_window(above + 1, below);
+            *below = land.refinement.parent_window(above + 1, below);
             Some(*below)
         })
         .collect();
     let coarsest = windows.last().unwrap_or(window);
-    let mut level = land.coarsest(coarsest, &Progress::none()).unwrap();
+    let mut level = land.coarsest(&Given::default(), coarsest, &Progress::none()).unwrap();
     for window in windows.iter().rev().skip(1).chain((depth > 0).then_some(window)) {
-        level = land.refine(&level, window, &Progress::none()).unwrap();
+        level = land.refine(&level, &Given::default(), window, &Progress::none()).unwrap();
     }
     level
 }
 
 fn window(land: &Continents, depth: usize, at: (i64, i64), size: (usize, usize)) -> Window {
-    Window::new(size.0, size.1, land.cell_of(depth)).at(at.0, at.1)
+    Window::new(size.0, size.1, land.refinement.cell_of(depth)).at(at.0, at.1)
 }
 
 /// The bits of all planes.
@@ -73,17 +75,20 @@ fn a_parent_that_covers_too_little_is_refused_and_more_changes_nothing() {
     let land = Continents::new(3);
     for depth in [5, 11] {
         let window = window(&land, depth, coast(depth), (9, 8));
-        let needed = land.parent_window(depth, &window);
+        let needed = land.refinement.parent_window(depth, &window);
         let parent = level(&land, depth - 1, &needed.grown(2));
-        let exact = land.refine(&parent.crop(&needed).unwrap(), &window, &Progress::none()).unwrap();
-        assert!(bits(&land.refine(&parent, &window, &Progress::none()).unwrap()) == bits(&exact));
+        let exact = land.refine(&parent.crop(&needed).unwrap(), &Given::default(), &window, &Progress::none()).unwrap();
+        assert!(bits(&land.refine(&parent, &Given::default(), &window, &Progress::none()).unwrap()) == bits(&exact));
         let less = parent.crop(&needed.shrunk(1)).unwrap();
-        assert_eq!(land.refine(&less, &window, &Progress::none()).unwrap_err().kind(), ErrorKind::Request);
+        assert_eq!(
+            land.refine(&less, &Given::default(), &window, &Progress::none()).unwrap_err().kind(),
+            ErrorKind::Request
+        );
         // What is further away than the reach does not matter.
         let mut changed = parent.clone();
         changed.height[0] += 100.0;
         changed.receiver[3] = NONE;
-        assert!(bits(&land.refine(&changed, &window, &Progress::none()).unwrap()) == bits(&exact));
+        assert!(bits(&land.refine(&changed, &Given::default(), &window, &Progress::none()).unwrap()) == bits(&exact));
     }
 }
 
@@ -139,25 +144,27 @@ fn parameters_out_of_range_and_wrong_windows_are_errors() {
     let land = Continents::new(1);
     let good = window(&land, 0, (0, 0), (2, 2));
     let none = Progress::none();
-    assert!(land.coarsest(&good, &none).is_ok());
+    assert!(land.coarsest(&Given::default(), &good, &none).is_ok());
     let empty = window(&land, 0, (0, 0), (0, 2));
     let far = window(&land, 0, (i64::MAX, 0), (2, 2));
     for wrong in [empty, far, Window { cell: 1.0, ..good }] {
-        assert_eq!(land.coarsest(&wrong, &none).unwrap_err().kind(), ErrorKind::Request);
+        assert_eq!(land.coarsest(&Given::default(), &wrong, &none).unwrap_err().kind(), ErrorKind::Request);
     }
     let wrong = [
         land.with_land(1.5),
-        land.with_cell(f64::NAN),
-        land.with_relief(0.0),
+        land.with_refinement(land.refinement.with_cell(f64::NAN)),
+        land.with_refinement(land.refinement.with_relief(0.0)),
         land.with_size(-1.0),
-        land.with_levels(99),
+        land.with_refinement(land.refinement.with_levels(99)),
+        land.with_refinement(land.refinement.with_creep(-1.0)),
+        land.with_refinement(land.refinement.with_variation(f64::NAN)),
     ];
     for land in wrong {
-        assert!(land.coarsest(&good, &none).is_err());
+        assert!(land.coarsest(&Given::default(), &good, &none).is_err());
     }
     let cancelled = Progress::none();
     cancelled.cancel();
-    assert_eq!(land.coarsest(&good, &cancelled).unwrap_err().kind(), ErrorKind::Cancelled);
+    assert_eq!(land.coarsest(&Given::default(), &good, &cancelled).unwrap_err().kind(), ErrorKind::Cancelled);
 }
 
 #[test]
@@ -165,20 +172,21 @@ fn surfaces_are_finite_and_agree_between_windows() {
     let land = Continents::new(1);
     for depth in [2, 9, 11] {
         let whole = window(&land, depth, coast(depth), (60, 50));
-        let nodes = level(&land, depth, &whole.grown(Continents::SURFACE_REACH));
-        let surface = land.surface(&nodes, &whole, &Progress::none()).unwrap();
+        let nodes = level(&land, depth, &whole.grown(Refinement::SURFACE_REACH));
+        let surface = land.refinement.surface(&nodes, &whole, &Progress::none()).unwrap();
         let finite = [&surface.height, &surface.flow, &surface.lake_depth];
         assert!(finite.iter().all(|grid| grid.data().iter().all(|value| value.is_finite())));
         let part = window(&land, depth, (whole.x + 5, whole.y + 9), (17, 3));
         let alone = land
-            .surface(&level(&land, depth, &part.grown(Continents::SURFACE_REACH)), &part, &Progress::none())
+            .refinement
+            .surface(&level(&land, depth, &part.grown(Refinement::SURFACE_REACH)), &part, &Progress::none())
             .unwrap();
         assert_eq!(surface.height.crop(&part).unwrap(), alone.height);
         assert_eq!(surface.flow.crop(&part).unwrap(), alone.flow);
         for (q, &level) in surface.water_level.data().iter().enumerate() {
             assert!(level.is_nan() || level > surface.height.data()[q]);
         }
-        assert!(land.surface(&nodes, &whole.grown(1), &Progress::none()).is_err());
+        assert!(land.refinement.surface(&nodes, &whole.grown(1), &Progress::none()).is_err());
     }
 }
 
@@ -192,6 +200,6 @@ fn more_relief_is_higher_and_more_land_is_land() {
     };
     let land = Continents::new(5);
     let (dry, sum) = count(land);
-    assert!(count(land.with_relief(2.0)).1 > 1.5 * sum);
+    assert!(count(land.with_refinement(land.refinement.with_relief(2.0))).1 > 1.5 * sum);
     assert!(count(land.with_land(0.6)).0 > dry && count(land.with_land(0.2)).0 < dry);
 }

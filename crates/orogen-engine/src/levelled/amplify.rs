@@ -1,0 +1,153 @@
+//! Coarse land with ever smaller valleys.
+
+use super::drained;
+use crate::op::{Context, Levelled, Levels};
+use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::grid::{Grid, Window};
+use orogen_grid::multiscale::coarse::{Coarse, REACH};
+use orogen_grid::multiscale::given::Given;
+use orogen_grid::multiscale::level::Level;
+use orogen_grid::multiscale::refinement::{MAX_LEVELS, Refinement};
+
+op! {
+    /// Coarse land refined level by level: its rivers keep their course, area and fall, and ever smaller valleys and slopes grow between them.
+    ///
+    /// The heights and drainage areas of the coarsest level are those of the source, usually a `stream-power` solved over the whole world at a cell
+    /// of about a kilometre, which takes a moment. Each finer level has half the cell. Rivers are led through it, branches grow up from them, and
+    /// slopes follow the steady state of the stream power law, S = (U/K) A^-m, limited on hillslopes. A window of a level depends on the coarser
+    /// level around it only, so any window is made by itself, and a larger cell shows the same land coarsely. Ground without a receiver is standing
+    /// water: at the border of the coarse land, and at or below sea level.
+    ///
+    /// Related: terrain amplification (Schott and others 2024), hydrology-based terrain (Génevaux and others 2013).
+    pub struct Amplify = "amplify", levelled, revision 1;
+    inputs {
+        /// Heights of the coarse land without depressions. It is read at the coarsest cell, `cell` times 2 to the power of `halvings`: solve it there.
+        source: required,
+        /// Drainage area of the coarse land in m^2.
+        flow: required,
+        /// Flow direction of the coarse land, clockwise from east (0) to north-east (7); 8 where it has no receiver. Default: the steepest descent.
+        receiver: optional,
+        /// Uplift over erodibility: about 1.5 in high mountains, 0.5 in hills, 0.1 in plains. Default: 1.
+        uplift: optional,
+        /// Factor of the stable slope of hillsides, greater where rock is harder. Default: 1.
+        stability_factor: optional,
+        /// Factor of the creep of soil, up to 1.25. Default: 1.
+        creep_factor: optional,
+        /// Factor of the width of valley floors. Default: 1.
+        floor_factor: optional,
+    }
+    params {
+        /// Seed of the node, hashed with the world's seed.
+        seed: u64 = 0;
+        /// Cell of the finest level. Finer samples are interpolated.
+        cell: f64 = 60.0, unit "m", range 1e-2 to 1e4;
+        /// Number of times the coarsest cell is halved.
+        halvings: u32 = 4, range 1 to 24;
+        /// Factor of the uplift, and so of the slopes that grow.
+        relief: f64 = 1.0, range 0.01 to 10.0;
+        /// Distance over which soil creep rounds hillsides at the finest level, in its cells.
+        creep: f64 = 1.0, range 0.0 to 5.0;
+        /// Factor of the variation of the rock, which each level adds to: 0 makes even slopes and straight side valleys.
+        variation: f64 = 1.0, range 0.0 to 4.0;
+    }
+    layers {
+        /// Height of the ground, and of the beds of lakes and the sea.
+        height: height, unit "m";
+        /// Drainage area, including the cell itself.
+        flow: flow, unit "m^2";
+        /// Depth of standing water in lakes, 0 elsewhere.
+        lake: height, unit "m";
+        /// Height of the ground or of the water above it.
+        surface: height, unit "m";
+        /// Flow direction, clockwise from east (0) to north-east (7); 8 in water.
+        receiver: label;
+    }
+}
+
+impl Amplify {
+    /// The levels without the seed, on which neither cells nor reaches depend.
+    fn refinement(&self) -> Refinement {
+        Refinement::default()
+            .with_cell(self.cell)
+            .with_levels((self.halvings as usize).min(MAX_LEVELS))
+            .with_relief(self.relief)
+            .with_creep(self.creep)
+            .with_variation(self.variation)
+    }
+
+    fn seeded(&self, context: &Context) -> Refinement {
+        self.refinement().with_seed(context.world_params.seed_of(self.seed))
+    }
+}
+
+fn given<'a>(inputs: &[Option<&'a Grid>]) -> Given<'a> {
+    let input = |i: usize| inputs.get(i).copied().flatten();
+    Given {
+        shore: None,
+        uplift: input(3),
+        stability_factor: input(4),
+        creep_factor: input(5),
+        floor_factor: input(6),
+        continents: None,
+    }
+}
+
+impl Levelled for Amplify {
+    fn levels(&self) -> Levels {
+        drained::levels(&self.refinement())
+    }
+
+    fn planes(&self) -> usize {
+        Level::PLANES
+    }
+
+    fn halo(&self, level: usize) -> usize {
+        self.refinement().reach(level)
+    }
+
+    fn source_halo(&self, level: usize) -> usize {
+        if level == 0 { REACH } else { self.refinement().given_reach(level) }
+    }
+
+    fn coarsest(&self, inputs: &[Option<&Grid>], window: &Window, context: &Context) -> Result<Vec<Grid>> {
+        let &[Some(height), Some(flow), receiver, ..] = inputs else {
+            return Err(Error::new(ErrorKind::Internal, "an input of `amplify` is missing"));
+        };
+        let coarse = Coarse { height, flow, receiver };
+        Ok(self.seeded(context).coarsest_of(&coarse, &given(inputs), window, context.progress)?.into_planes())
+    }
+
+    fn refine(
+        &self,
+        level: usize,
+        parent: &[Grid],
+        inputs: &[Option<&Grid>],
+        window: &Window,
+        context: &Context,
+    ) -> Result<Vec<Grid>> {
+        drained::refine(&self.seeded(context), level, parent, &given(inputs), window, context)
+    }
+
+    fn surface_halo(&self) -> usize {
+        Refinement::SURFACE_REACH
+    }
+
+    fn layers_of(
+        &self,
+        level: usize,
+        planes: &[Grid],
+        window: &Window,
+        out: &mut [Option<Grid>],
+        context: &Context,
+    ) -> Result<()> {
+        drained::layers_of(&self.seeded(context), level, planes, window, out, context)
+    }
+
+    fn cost(&self, level: usize) -> f64 {
+        if level == 0 { 50.0 } else { drained::COST }
+    }
+
+    fn scratch(&self, level: usize, window: &Window) -> u64 {
+        drained::scratch(window, if level == 0 { REACH } else { 2 * self.halo(level) })
+    }
+}

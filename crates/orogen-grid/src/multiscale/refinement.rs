@@ -1,0 +1,104 @@
+//! The parameters of all levels, however the coarsest is made.
+
+use super::level::invalid;
+use crate::error::Result;
+use crate::grid::Window;
+
+/// Levels of land, each made from the one above it: rivers keep their course, and branches and slopes grow between them.
+///
+/// The node (i, j) of the finest level is exactly at (i cell, j cell). On a coarser level with cell c, the node of sample (i, j) is at
+/// ((i + east) c - cell / 2, (j + south) c - cell / 2), where `cell` is that of the finest level.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Refinement {
+    /// Seed of all random choices.
+    pub seed: u64,
+    /// Cell of the finest level, in metres.
+    pub cell: f64,
+    /// Number of halvings from the coarsest level to the finest.
+    pub levels: usize,
+    /// Factor of the uplift.
+    pub relief: f64,
+    /// Distance over which creep rounds the finest level, in its cells: the standard deviation of the average.
+    pub creep: f64,
+    /// Factor of the variation of the rock that each level adds.
+    pub variation: f64,
+}
+
+impl Default for Refinement {
+    fn default() -> Refinement {
+        Refinement { seed: 0, cell: 60.0, levels: 11, relief: 1.0, creep: 1.0, variation: 1.0 }
+    }
+}
+
+orogen_noise::builder!(Refinement: with_seed(seed: u64), with_cell(cell: f64), with_levels(levels: usize), with_relief(relief: f64),
+    with_creep(creep: f64), with_variation(variation: f64));
+
+/// The largest number of halvings.
+pub const MAX_LEVELS: usize = 24;
+
+/// The largest distance of creep, in cells.
+pub const MAX_CREEP: f64 = 5.0;
+
+/// The largest coordinate of a sample, either way, so that no sum overflows.
+const FURTHEST: i64 = 1 << 50;
+
+/// The largest number of samples of a side.
+const MAX_SIDE: usize = 1 << 24;
+
+impl Refinement {
+    /// Levels with this seed and the defaults of the other parameters.
+    #[must_use]
+    pub fn new(seed: u64) -> Refinement {
+        Refinement { seed, ..Refinement::default() }
+    }
+
+    /// The cell of a level, in metres.
+    #[must_use]
+    pub fn cell_of(&self, depth: usize) -> f64 {
+        let halvings = self.levels.min(MAX_LEVELS).saturating_sub(depth);
+        self.cell * (1u64 << halvings) as f64
+    }
+
+    /// The cell of a level, in kilometres.
+    pub(super) fn kilometres(&self, depth: usize) -> f64 {
+        self.cell_of(depth) / 1000.0
+    }
+
+    /// The coordinate, in metres, of a node of column or row `index` at `share` of its cell.
+    pub(super) fn metres(&self, depth: usize, index: i64, share: f32) -> f64 {
+        (index as f64 + f64::from(share)) * self.cell_of(depth) - 0.5 * self.cell
+    }
+
+    /// Whether a level is the finest.
+    pub(super) fn is_finest(&self, depth: usize) -> bool {
+        depth >= self.levels
+    }
+
+    /// Checks the parameters, and that `window` is one of level `depth`.
+    pub(super) fn check(&self, depth: usize, window: &Window) -> Result<()> {
+        let positive = |value: f64| value.is_finite() && value > 0.0;
+        if !(positive(self.cell) && positive(self.relief)) {
+            return Err(invalid("the cell and the relief of levels must be above 0"));
+        }
+        if !(0.0..=MAX_CREEP).contains(&self.creep) || !(0.0..=10.0).contains(&self.variation) {
+            return Err(invalid(format!(
+                "the creep of levels must be 0 to {MAX_CREEP} cells, their variation 0 to 10"
+            )));
+        }
+        if self.levels > MAX_LEVELS || depth > self.levels {
+            return Err(invalid(format!(
+                "level {depth} does not exist: the finest is {}, at most {MAX_LEVELS}",
+                self.levels
+            )));
+        }
+        if window.cell != self.cell_of(depth) {
+            return Err(invalid(format!("level {depth} has a cell of {} m, not {}", self.cell_of(depth), window.cell)));
+        }
+        let near = |x: i64| (-FURTHEST..=FURTHEST).contains(&x);
+        if window.is_empty() || window.width.max(window.height) > MAX_SIDE || !near(window.x) || !near(window.y) {
+            return Err(invalid("the window of a level is empty, too large or too far away"));
+        }
+        Ok(())
+    }
+}
