@@ -1,13 +1,14 @@
-//! Files of stored solutions: any bytes are a solution or refused with a message.
+//! Files of stored solutions, and headers of stored tiles: any bytes are a solution or a tile, or refused with a message.
 //!
-//! The input is the header after the magic and the key; zeros up to the largest length that the target makes follow. Checksums are not verified.
+//! The input is the header after the magic and the key, which are those of a solution and then those of a tile; zeros up to the largest length that the target makes follow. Checksums are not verified.
 #![no_main]
 
 mod scratch;
 
 use libfuzzer_sys::fuzz_target;
 use orogen::read_at::PositionedFile;
-use orogen::store::fuzzing::{read, windows};
+use orogen::store::fuzzing::{read, tile_windows, windows};
+use orogen::store::solution_store::EntryKey;
 use std::fs::File;
 use std::io::{Seek, SeekFrom, Write};
 use std::path::Path;
@@ -27,6 +28,11 @@ static FILE: LazyLock<File> = LazyLock::new(|| {
 fuzz_target!(|bytes: &[u8]| {
     let Some((&pages, head)) = bytes.split_first() else { return };
     let key = [7; 32];
+    let mut tile = [&b"orogen planes 1\n"[..], &key[..], head].concat();
+    tile.resize(tile.len() + usize::from(pages) * 64, 0);
+    if let Ok((_, planes)) = tile_windows(&tile, Path::new("it"), &EntryKey(key)) {
+        assert!(planes.iter().map(|window| 4 * window.len()).sum::<usize>() < tile.len());
+    }
     let mut whole = b"orogen solved 1\n".to_vec();
     whole.extend(key);
     whole.extend(head);

@@ -21,10 +21,10 @@ pub struct Limits {
     /// Memory limit of the whole process, such as 512MiB or 2GiB [default: half of the free memory]
     #[arg(long, value_name = "BYTES")]
     pub memory: Option<Bytes>,
-    /// Folder of the cache, where slow solutions are stored for later runs [default: $OROGEN_CACHE, else the system's cache folder]
+    /// Folder of the cache, where slow solutions and tiles of levels are stored for later runs [default: $OROGEN_CACHE, else the system's cache folder]
     #[arg(long, value_name = "DIR")]
     pub cache: Option<PathBuf>,
-    /// Size limit of the cache; the least recently used solutions are removed first [default: 10GiB]
+    /// Size limit of the cache; what was not used for longest is removed first [default: 10GiB]
     #[arg(long, value_name = "BYTES")]
     pub cache_limit: Option<Bytes>,
     /// Do not read or write the cache

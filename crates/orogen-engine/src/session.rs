@@ -5,6 +5,7 @@ use crate::op::Solution;
 use crate::plan::key::Key;
 use crate::pool::Pool;
 use crate::store::grids::GridStore;
+use crate::store::level_tiles::LevelTiles;
 use crate::store::solution_store::SolutionStore;
 use crate::store::solutions::Store;
 use orogen_grid::error::{Error, Result};
@@ -19,7 +20,7 @@ pub struct Options {
     /// Memory limit, in bytes, for all concurrent requests and reservations of callers. Larger solutions are kept on
     /// disk.
     pub memory: Budget,
-    /// Where solutions are kept for later runs: a [`FolderStore`](crate::FolderStore), a
+    /// Where solutions and tiles of levels are kept for later runs: a [`FolderStore`](crate::FolderStore), a
     /// [`MemoryStore`](crate::MemoryStore), or a [store of your own](SolutionStore). `None` keeps them for this session only.
     pub store: Option<Arc<dyn SolutionStore>>,
     /// The folder for data that does not fit in memory; `None` uses that of the store, otherwise the system's temporary
@@ -37,6 +38,8 @@ pub struct Options {
 /// - A solution is computed once, even for concurrent requests, and is reused by every world with the same nodes: after
 ///   an edit of a recipe, only nodes that depend on the edited node are solved again.
 /// - Grids of expensive filters are kept as long as there is memory.
+/// - A tile of a coarse level of a levelled op is made once, even for concurrent requests, and kept as long as there is
+///   memory, and in the store.
 /// - Concurrent requests together never exceed the [budget](Options::memory): requests that do not fit wait for others.
 ///
 /// ```
@@ -55,7 +58,7 @@ pub struct Session {
     pub(crate) pool: Arc<Pool>,
     pub(crate) store: Arc<Store>,
     pub(crate) grids: Arc<GridStore>,
-    pub(crate) level_tiles: Arc<GridStore>,
+    pub(crate) level_tiles: Arc<LevelTiles>,
     pub(crate) budget: Budget,
 }
 
@@ -77,7 +80,7 @@ impl Session {
             pool: Arc::new(pool),
             store: Arc::new(Store::new(options.store, options.scratch)),
             grids: Arc::new(GridStore::new(options.kept_grids.unwrap_or(most))),
-            level_tiles: Arc::new(GridStore::new(
+            level_tiles: Arc::new(LevelTiles::new(
                 options.memory.limit().map_or(LEVEL_TILES, |limit| LEVEL_TILES.min(limit / 8)),
             )),
             budget: options.memory.clone(),
@@ -109,13 +112,19 @@ impl Session {
         self.store.failure()
     }
 
+    /// Number of tiles of the levels of [levelled ops](crate::op::Levelled) made so far, without reused ones.
+    #[must_use]
+    pub fn level_tiles_made(&self) -> u64 {
+        self.level_tiles.made()
+    }
+
     /// Number of filters that were not applied because their grids were kept from an earlier request.
     #[must_use]
     pub fn filters_found(&self) -> u64 {
         self.grids.found()
     }
 
-    /// Memory of kept solutions and grids, in bytes, without that of running requests.
+    /// Memory of kept solutions, grids and tiles, in bytes, without that of running requests.
     #[must_use]
     pub fn kept_memory(&self) -> u64 {
         self.store.memory().saturating_add(self.grids.memory()).saturating_add(self.level_tiles.memory())

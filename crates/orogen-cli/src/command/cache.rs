@@ -23,9 +23,9 @@ pub struct Args {
 
 #[derive(Debug, clap::Subcommand)]
 enum Action {
-    /// List the stored solutions: content, size and time of last use
+    /// List the stored solutions (content, size and time of last use) and the tiles of levels together
     List(List),
-    /// Remove stored solutions: all, those not used for a time, or the least recently used beyond a size
+    /// Remove stored solutions and tiles: all, those not used for a time, or the least recently used beyond a size
     Clear(Clear),
 }
 
@@ -46,10 +46,10 @@ struct Clear {
     /// The cache folder [default: $OROGEN_CACHE, else the system's cache folder]
     #[arg(long, value_name = "DIR")]
     cache: Option<PathBuf>,
-    /// Remove only solutions not used for this time, such as 30d, 12h or 90m
+    /// Remove only what was not used for this time, such as 30d, 12h or 90m
     #[arg(long, value_name = "AGE")]
     older_than: Option<Age>,
-    /// Keep this many bytes of the most recently used solutions
+    /// Keep this many bytes of what was used most recently
     #[arg(long, value_name = "BYTES")]
     keep: Option<Bytes>,
     /// Print no summary
@@ -74,9 +74,11 @@ fn cache(asked: Option<&PathBuf>) -> Result<FolderStore, Failure> {
 fn list(args: &List) -> Result<(), Failure> {
     let cache = cache(args.cache.as_ref())?;
     let stored = cache.stored()?;
-    let total: u64 = stored.iter().map(|stored| stored.bytes).sum();
+    let size = |stored: &[Stored]| stored.iter().map(|stored| stored.bytes).sum::<u64>();
+    let total = size(&stored);
+    let (tiles, solutions): (Vec<Stored>, Vec<Stored>) = stored.into_iter().partition(|stored| stored.level.is_some());
     if args.json {
-        let entries: Vec<serde_json::Value> = stored
+        let entries: Vec<serde_json::Value> = solutions
             .iter()
             .map(|stored| {
                 let layers = stored.layers.as_ref().map(|layers| {
@@ -91,12 +93,17 @@ fn list(args: &List) -> Result<(), Failure> {
                 })
             })
             .collect();
-        let whole = json!({ "folder": cache.folder.display().to_string(), "bytes": total, "solutions": entries });
+        let whole = json!({
+            "folder": cache.folder.display().to_string(),
+            "bytes": total,
+            "solutions": entries,
+            "tiles": { "count": tiles.len(), "bytes": size(&tiles) },
+        });
         // A tree of numbers and strings can always be serialised.
         return say::out(&(serde_json::to_string_pretty(&whole).unwrap_or_default() + "\n"));
     }
     let mut text = String::new();
-    for stored in &stored {
+    for stored in &solutions {
         let name = stored.path.file_stem().unwrap_or_default().to_string_lossy();
         text.push_str(&format!(
             "{:.12}  {:>9}  used {:>16}  {}\n",
@@ -106,7 +113,13 @@ fn list(args: &List) -> Result<(), Failure> {
             holds(stored)
         ));
     }
-    text.push_str(&format!("{}: {}, {}\n", cache.folder.display(), count(stored.len(), "solution"), bytes(total)));
+    if let Some(last) = tiles.last() {
+        let used = ago(age(last));
+        let (size, counted) = (bytes(size(&tiles)), count(tiles.len(), "tile"));
+        text.push_str(&format!("{:12}  {size:>9}  used {used:>16}  {counted} of levels\n", "tiles"));
+    }
+    let counted = counted(solutions.len(), tiles.len());
+    text.push_str(&format!("{}: {counted}, {}\n", cache.folder.display(), bytes(total)));
     say::out(&text)
 }
 
@@ -114,7 +127,7 @@ fn clear(args: &Clear) -> Result<(), Failure> {
     let cache = cache(args.cache.as_ref())?;
     let stored = cache.stored()?;
     let mut left: u64 = stored.iter().map(|stored| stored.bytes).sum();
-    let (mut removed, mut freed) = (0, 0);
+    let (mut removed, mut freed) = ([0, 0], 0);
     // The least recently used first.
     for stored in &stored {
         let is_old = args.older_than.is_none_or(|Age(limit)| age(stored) >= limit);
@@ -123,20 +136,27 @@ fn clear(args: &Clear) -> Result<(), Failure> {
             cache.remove(stored)?;
             left -= stored.bytes;
             freed += stored.bytes;
-            removed += 1;
+            removed[usize::from(stored.level.is_some())] += 1;
         }
     }
+    let tiles = stored.iter().filter(|stored| stored.level.is_some()).count();
+    let kept = counted(stored.len() - tiles - removed[0], tiles - removed[1]);
     match args.quiet {
         true => Ok(()),
         false => say::out(&format!(
-            "{}: {} removed, {}; {} kept, {}\n",
+            "{}: {} removed, {}; {kept} kept, {}\n",
             cache.folder.display(),
-            count(removed, "solution"),
+            counted(removed[0], removed[1]),
             bytes(freed),
-            count(stored.len() - removed, "solution"),
             bytes(left)
         )),
     }
+}
+
+/// Numbers of solutions and tiles; tiles only if there are any.
+fn counted(solutions: usize, tiles: usize) -> String {
+    let solutions = count(solutions, "solution");
+    if tiles == 0 { solutions } else { format!("{solutions} and {}", count(tiles, "tile")) }
 }
 
 /// The time since the last use.

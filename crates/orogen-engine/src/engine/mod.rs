@@ -2,6 +2,7 @@
 
 pub(crate) mod inline;
 pub(crate) mod interpreter;
+mod level_tiles;
 mod refine;
 pub(crate) mod run;
 mod solve;

@@ -5,36 +5,36 @@ use crate::ids::{Id, NodeId};
 use crate::op::{Context, Levelled, Op, WorldParams};
 use crate::plan::levels::{self, Serving};
 use crate::recipe::graph::LayerRef;
-use crate::store::grids::GridKey;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 use orogen_grid::resample::{self, LayerKind};
 use orogen_noise::Points;
 use rayon::prelude::*;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
 /// The planes of the tiles of one level, by column and row.
-type LevelTiles = BTreeMap<(i64, i64), Vec<Grid>>;
+pub(super) type Planes = BTreeMap<(i64, i64), Vec<Grid>>;
 
 /// Approximate time for making the layers of a sample, in nanoseconds.
 const LAYER_COST: f64 = 50.0;
 
 /// A levelled op at work.
-struct Refining<'a> {
-    op: &'a dyn Levelled,
-    node: NodeId,
+pub(super) struct Refining<'a> {
+    pub op: &'a dyn Levelled,
+    pub node: NodeId,
     /// Its inputs at each level from the coarsest; empty if it has none.
     inputs: Vec<Vec<Option<&'a Grid>>>,
     /// Which layers are read.
     wanted: &'a [bool],
     world_params: &'a WorldParams,
-    progress: &'a Progress,
+    pub progress: &'a Progress,
 }
 
 impl Engine<'_> {
-    /// Computes the wanted layers of a levelled op over a window.
+    /// Computes the wanted layers of a levelled op over a window. Work is done on the threads of the pool, and the calling thread waits for tiles that
+    /// other requests make.
     pub(super) fn refine(
         &self,
         node: NodeId,
@@ -56,7 +56,7 @@ impl Engine<'_> {
             let kind = self.graph.layer_kind(self.recipe, LayerRef { node, layer });
             grid.map(|grid| interpolated(&grid, kind, window, progress)).transpose()
         };
-        made.into_iter().enumerate().map(between).collect()
+        self.pool.install(|| made.into_iter().enumerate().map(between).collect())
     }
 
     /// The layers over samples of a level.
@@ -66,11 +66,11 @@ impl Engine<'_> {
         if samples.is_empty() {
             return Ok(layers);
         }
-        let pieces = serving.pieces(rayon::current_num_threads());
+        let pieces = serving.pieces(self.pool.threads());
         let tiled = levels::tiled(refining.op, serving);
         let tiles = self.level_tiles(refining, tiled..=level, &pieces)?;
-        let made: Vec<Vec<Option<Grid>>> =
-            pieces.par_iter().map(|piece| refining.piece(tiled..=level, piece, &tiles)).collect::<Result<_>>()?;
+        let make = |piece: &Window| refining.piece(tiled..=level, piece, &tiles);
+        let made: Vec<Vec<Option<Grid>>> = self.pool.install(|| pieces.par_iter().map(make).collect::<Result<_>>())?;
         for piece in made {
             for (layer, part) in layers.iter_mut().zip(piece) {
                 if let (Some(layer), Some(part)) = (layer, part) {
@@ -79,57 +79,6 @@ impl Engine<'_> {
             }
         }
         Ok(layers)
-    }
-
-    /// The tiles of the first of the `direct` levels that pieces of the last are made from. The tiles that are missing at each level tell which the level above must have.
-    fn level_tiles(&self, refining: &Refining, direct: RangeInclusive<usize>, pieces: &[Window]) -> Result<LevelTiles> {
-        let Refining { op, .. } = *refining;
-        let cell = |level: usize| op.levels().cell(level);
-        let (last, level) = (*direct.start(), *direct.end());
-        let firsts = pieces.iter().filter_map(|piece| levels::windows(op, last, level, piece).first().copied());
-        let mut asked: BTreeSet<(i64, i64)> = firsts.flat_map(|window| levels::tiles(last, &window)).collect();
-        // Of each level from the last: the tiles that are kept, and those that are missing.
-        let mut found = Vec::with_capacity(last + 1);
-        for level in (0..=last).rev() {
-            let mut kept = LevelTiles::new();
-            let mut missing = Vec::new();
-            for at in asked {
-                match self.level_tiles.find(&self.tile_keys(refining, &levels::tile(level, at, cell(level)))) {
-                    Some(planes) => drop(kept.insert(at, planes)),
-                    None => missing.push(at),
-                }
-            }
-            let above = missing.iter().filter(|_| level > 0);
-            asked = above
-                .flat_map(|at| levels::tiles(level - 1, &op.parent(level, &levels::tile(level, *at, cell(level)))))
-                .collect();
-            found.push((level, kept, missing));
-        }
-        let of_tiles = |(level, _, missing): &(usize, LevelTiles, Vec<_>)| {
-            missing.len() as f64 * refining.work(*level, &levels::tile(*level, (0, 0), cell(*level)))
-        };
-        let of_piece = |piece: &Window| refining.work_of_piece(direct.clone(), piece);
-        let work = found.iter().map(of_tiles).sum::<f64>() + pieces.iter().map(of_piece).sum::<f64>();
-        refining.progress.expect(work);
-        let mut above = LevelTiles::new();
-        for (level, mut tiles, missing) in found.into_iter().rev() {
-            let made: Vec<Vec<Grid>> = missing
-                .par_iter()
-                .map(|at| refining.planes(level, &levels::tile(level, *at, cell(level)), &above))
-                .collect::<Result<_>>()?;
-            for (at, planes) in missing.into_iter().zip(made) {
-                let allowed = self.budget.unused().map(|unused| unused.saturating_sub(self.store.memory()));
-                let keys = self.tile_keys(refining, &levels::tile(level, at, cell(level)));
-                keys.into_iter().zip(&planes).for_each(|(key, plane)| self.level_tiles.keep(key, plane, allowed));
-                tiles.insert(at, planes);
-            }
-            above = tiles;
-        }
-        Ok(above)
-    }
-
-    fn tile_keys(&self, refining: &Refining, tile: &Window) -> Vec<GridKey> {
-        (0..refining.op.planes()).map(|plane| GridKey::new(self.keys[refining.node], plane, tile)).collect()
     }
 }
 
@@ -140,7 +89,7 @@ impl Refining<'_> {
     }
 
     /// The planes of a level over a window, from tiles of the level above.
-    fn planes(&self, level: usize, window: &Window, above: &LevelTiles) -> Result<Vec<Grid>> {
+    pub fn planes(&self, level: usize, window: &Window, above: &Planes) -> Result<Vec<Grid>> {
         self.progress.check()?;
         if level > 0 {
             return self.refined(level, &self.mosaic(level - 1, &self.op.parent(level, window), above)?, window);
@@ -156,13 +105,23 @@ impl Refining<'_> {
         Context { world_params: self.world_params, progress, observer: None }
     }
 
+    /// The window of a tile.
+    pub fn tile(&self, level: usize, at: (i64, i64)) -> Window {
+        levels::tile(level, at, self.op.levels().cell(level))
+    }
+
+    /// Approximate time for making a tile from the level above, in nanoseconds.
+    pub fn work_of_tile(&self, level: usize) -> f64 {
+        self.work(level, &self.tile(level, (0, 0)))
+    }
+
     /// Approximate time for making a level over a window from the level above, in nanoseconds.
     fn work(&self, level: usize, window: &Window) -> f64 {
         self.op.cost(level) * window.len() as f64
     }
 
     /// Approximate time for making a piece from tiles, in nanoseconds.
-    fn work_of_piece(&self, direct: RangeInclusive<usize>, piece: &Window) -> f64 {
+    pub fn work_of_piece(&self, direct: RangeInclusive<usize>, piece: &Window) -> f64 {
         let windows = levels::windows(self.op, *direct.start(), *direct.end(), piece);
         let made = direct.zip(&windows).skip(1);
         made.map(|(level, window)| self.work(level, window)).sum::<f64>() + LAYER_COST * piece.len() as f64
@@ -194,7 +153,7 @@ impl Refining<'_> {
     }
 
     /// The layers of the last of the `direct` levels over a piece, from tiles of the first.
-    fn piece(&self, direct: RangeInclusive<usize>, piece: &Window, tiles: &LevelTiles) -> Result<Vec<Option<Grid>>> {
+    fn piece(&self, direct: RangeInclusive<usize>, piece: &Window, tiles: &Planes) -> Result<Vec<Option<Grid>>> {
         let level = *direct.end();
         let windows = levels::windows(self.op, *direct.start(), level, piece);
         let mut planes = match windows.first() {
@@ -212,7 +171,7 @@ impl Refining<'_> {
     }
 
     /// The planes over a window that tiles cover.
-    fn mosaic(&self, level: usize, window: &Window, tiles: &LevelTiles) -> Result<Vec<Grid>> {
+    fn mosaic(&self, level: usize, window: &Window, tiles: &Planes) -> Result<Vec<Grid>> {
         let mut planes: Vec<Grid> = (0..self.op.planes()).map(|_| Grid::filled(*window, 0.0)).collect();
         for at in levels::tiles(level, window) {
             let tile = tiles.get(&at).ok_or_else(|| internal("a tile of a level was not made"))?;

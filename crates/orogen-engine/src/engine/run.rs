@@ -12,6 +12,7 @@ use crate::pool::Pool;
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::Graph;
 use crate::store::grids::{EXPENSIVE, GridKey, GridStore};
+use crate::store::level_tiles::LevelTiles;
 use crate::store::solutions::Store;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
@@ -32,7 +33,7 @@ pub struct Engine<'a> {
     /// The store of expensive filters' grids, if there is one.
     pub grids: Option<&'a GridStore>,
     /// The store of tiles of levels.
-    pub level_tiles: &'a GridStore,
+    pub level_tiles: &'a LevelTiles,
     pub budget: &'a Budget,
     /// The thread pool. Waiting happens only on the calling thread.
     pub pool: &'a Pool,
@@ -58,7 +59,10 @@ impl<'a> Engine<'a> {
         self.progress.expect(work);
         let solutions = self.solve(plan)?;
         let part = self.progress.part(work);
-        let grids = self.pool.install(|| self.steps(plan, &solutions, &part))?;
+        let run = || self.steps(plan, &solutions, &part);
+        // The calling thread may wait for tiles of levels; without them it is quicker to enter the pool once.
+        let has_levels = plan.steps.iter().any(|step| matches!(step, Step::Refine { .. }));
+        let grids = if has_levels { run() } else { self.pool.install(run) }?;
         self.progress.finish();
         Ok(grids)
     }
@@ -136,12 +140,13 @@ impl<'a> Engine<'a> {
         for step in plan.steps.iter() {
             match step {
                 Step::Fill { out, .. } if out.is_empty() => {}
-                _ => self.pool.install(|| self.step(step, &solutions, &mut grids, self.progress))?,
+                _ => self.step(step, &solutions, &mut grids, self.progress)?,
             }
         }
         Ok((solutions, grids))
     }
 
+    /// Runs a step on the threads of the pool.
     fn step(
         &self,
         step: &Step,
@@ -152,10 +157,10 @@ impl<'a> Engine<'a> {
         let made = match step {
             Step::Fill { program, window, out } => {
                 let filling = Filling { program, window, outputs: out.len() };
-                self.fill(&filling, solutions, grids, progress)?
+                self.pool.install(|| self.fill(&filling, solutions, grids, progress))?
             }
             Step::Apply { .. } => {
-                let made = self.apply(step, grids, progress)?;
+                let made = self.pool.install(|| self.apply(step, grids, progress))?;
                 self.keep_grids(step, &made);
                 made
             }

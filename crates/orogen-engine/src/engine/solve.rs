@@ -56,9 +56,9 @@ impl Engine<'_> {
         Ok(there)
     }
 
-    /// Whether this thread may wait for a solution that another request is computing. A thread of the pool may not:
+    /// Whether this thread may wait for a solution or a tile that another request is computing. A thread of the pool may not:
     /// that request could be further down its own stack.
-    fn may_wait(&self) -> bool {
+    pub(super) fn may_wait(&self) -> bool {
         !self.pool.is_current()
     }
 

@@ -1,6 +1,6 @@
-//! A folder of solutions, shared by later runs and other processes.
+//! A folder of solutions and tiles of levels, shared by later runs and other processes.
 //!
-//! An entry is a file named by the hash of its key: the solver's content key and the version of this library. It is
+//! An entry is a file named by the hash of its key: the content key, for a tile the level and its window, and the version of this library. It is
 //! written atomically and verified completely when it is read; a damaged entry is computed again. Reading makes an
 //! entry the most recent one; if the folder exceeds its limit, the oldest entries are removed. Several processes may
 //! share a folder: a file that one of them removes stays readable for those that have it open.
@@ -13,14 +13,15 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-/// A folder of solutions: a store for later runs and other processes.
+/// A folder of solutions and tiles of levels: a store for later runs and other processes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FolderStore {
     /// The folder; created if it does not exist. Only the store's own files in it are changed.
     pub folder: PathBuf,
-    /// Maximum size of all entries, in bytes.
+    /// Maximum size of all entries, in bytes. While tiles of levels are stored, it may be exceeded by a few percent.
     pub limit: u64,
-    /// Solutions that took less time to compute are not stored.
+    /// Solutions that took less time to compute are not stored, nor tiles of levels if those of a request take less than a tenth
+    /// of it.
     pub slower_than: Duration,
 }
 
@@ -52,6 +53,13 @@ impl FolderStore {
     /// The key in the name of an entry; `None` for other names.
     pub(super) fn key_of(name: &str) -> Option<EntryKey> {
         name.strip_suffix(EXTENSION)?.parse().ok()
+    }
+
+    /// Whether the folder is tidied after a tile. Listing a folder takes longer than writing a tile, so only some of them do, chosen by their keys:
+    /// about one in each 64th of the limit.
+    fn is_tidied_by(&self, key: &EntryKey, bytes: u64) -> bool {
+        let chance = u64::from(u32::from_le_bytes([key.0[0], key.0[1], key.0[2], key.0[3]]));
+        u128::from(chance) * u128::from(self.limit / 64) < u128::from(bytes) << 32
     }
 
     /// Removes the oldest entries beyond the limit, but not `newest`, and incomplete files of killed processes.
@@ -99,9 +107,15 @@ impl SolutionStore for FolderStore {
         }
         fs::create_dir_all(&self.folder)?;
         let path = self.path(key);
-        let put = file::replace_whole(&path, |out| entry.write_to(out)).map_err(io::Error::from);
-        self.tidy(&path);
-        put
+        // A wait for the disk takes longer than a tile does to be made, and damage is found.
+        let put = match entry.is_tile() {
+            true => file::replace_unsynced(&path, |out| entry.write_to(out)),
+            false => file::replace_whole(&path, |out| entry.write_to(out)),
+        };
+        if !entry.is_tile() || self.is_tidied_by(key, entry.length()) {
+            self.tidy(&path);
+        }
+        put.map_err(io::Error::from)
     }
 
     fn contains(&self, key: &EntryKey) -> bool {
@@ -117,6 +131,10 @@ impl SolutionStore for FolderStore {
 
     fn slower_than(&self) -> Duration {
         self.slower_than
+    }
+
+    fn keeps_tiles(&self) -> bool {
+        true
     }
 
     fn scratch_folder(&self) -> Option<&Path> {

@@ -74,6 +74,12 @@ impl GridStore {
         keys.iter().map(grid).collect()
     }
 
+    /// Whether all these grids are present.
+    pub fn has(&self, keys: &[GridKey]) -> bool {
+        let held = self.lock();
+        keys.iter().all(|key| held.grids.contains_key(key))
+    }
+
     /// Keeps a copy of a grid, if it fits in the limit and in `allowed`, the bytes that all grids may take now (`None`
     /// for no such limit).
     pub fn keep(&self, key: GridKey, grid: &Grid, allowed: Option<u64>) {

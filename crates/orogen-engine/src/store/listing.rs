@@ -1,17 +1,17 @@
-//! The content of a folder of solutions, for listing and removing entries.
+//! The content of a folder of solutions and tiles, for listing and removing entries.
 
 use orogen_io::read_at::PositionedFile;
 use std::io;
 use std::path::PathBuf;
 use std::time::SystemTime;
 
-use super::entry;
 use super::folder::FolderStore;
+use super::{entry, tile_entry};
 use orogen_grid::error::{Error, Result};
 use orogen_grid::grid::Window;
 use orogen_io::fs::{self, File};
 
-/// A stored solution.
+/// A stored solution, or a stored tile of a level.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stored {
     /// The file.
@@ -20,12 +20,14 @@ pub struct Stored {
     pub bytes: u64,
     /// The time of its last use.
     pub used: SystemTime,
-    /// The windows of its layers; `None` if its header is damaged.
+    /// The windows of its layers or planes; `None` if its header is damaged.
     pub layers: Option<Vec<Window>>,
+    /// The level, if it is a tile of a levelled op; `None` for a solution.
+    pub level: Option<usize>,
 }
 
 impl FolderStore {
-    /// The stored solutions, the least recently used first. Other files in the folder are ignored.
+    /// The stored solutions and tiles, the least recently used first. Other files in the folder are ignored.
     ///
     /// # Errors
     /// If the folder exists and cannot be read.
@@ -43,18 +45,21 @@ impl FolderStore {
             let Ok(meta) = file.metadata() else { continue };
             if meta.is_file() {
                 let path = file.path();
-                let layers = File::open(&path)
-                    .ok()
-                    .and_then(|file| entry::windows(Box::new(PositionedFile::new(file)), &path, &key.0).ok());
+                let open = || File::open(&path).ok().map(PositionedFile::new);
+                let tile = open().and_then(|file| tile_entry::windows(&file, &path, &key).ok());
+                let (level, layers) = match tile {
+                    Some((level, planes)) => (Some(level), Some(planes)),
+                    None => (None, open().and_then(|file| entry::windows(Box::new(file), &path, &key.0).ok())),
+                };
                 let used = meta.modified().unwrap_or(SystemTime::UNIX_EPOCH);
-                stored.push(Stored { path, bytes: meta.len(), used, layers });
+                stored.push(Stored { path, bytes: meta.len(), used, layers, level });
             }
         }
         stored.sort_by(|a, b| (a.used, &a.path).cmp(&(b.used, &b.path)));
         Ok(stored)
     }
 
-    /// Removes a stored solution. It is not an error if the file no longer exists.
+    /// Removes a stored solution or tile. It is not an error if the file no longer exists.
     ///
     /// # Errors
     /// If the file cannot be removed.

@@ -97,6 +97,10 @@ impl SolutionStore for MemoryStore {
         self.lock().remove(key);
         Ok(())
     }
+
+    fn keeps_tiles(&self) -> bool {
+        true
+    }
 }
 
 #[cfg(test)]

@@ -1,8 +1,10 @@
-//! Stores: where solutions wait for later runs, as bytes under a key.
+//! Stores: where solutions and tiles of levels wait for later runs, as bytes under a key.
 
-use super::entry;
+use super::level_tiles::LevelTile;
+use super::{entry, tile_entry};
 use crate::op::Solution;
 use crate::plan::key::Key;
+use orogen_grid::grid::Grid;
 use orogen_io::read_at::ReadAt;
 use sha2::{Digest, Sha256};
 use std::fmt;
@@ -11,7 +13,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::time::Duration;
 
-/// Keeps solutions for later runs, and for other sessions: bytes under a key. [`FolderStore`](super::folder::FolderStore)
+/// Keeps solutions, and tiles of levels if it [wants](SolutionStore::keeps_tiles), for later runs and other sessions: bytes under a key. [`FolderStore`](super::folder::FolderStore)
 /// keeps them in a folder, [`MemoryStore`](super::memory::MemoryStore) in memory; a program may keep them anywhere else.
 ///
 /// A [`Session`](crate::Session) looks for a solution before it solves, and stores one after it has solved. A store may
@@ -100,9 +102,17 @@ pub trait SolutionStore: Send + Sync + fmt::Debug {
     /// If the store fails.
     fn remove(&self, key: &EntryKey) -> io::Result<()>;
 
-    /// Solutions that took less time to compute are not stored. By default all are stored.
+    /// Solutions that took less time to compute are not stored. By default all are stored. Tiles of levels are stored if those of
+    /// a request take about a tenth of this time or more.
     fn slower_than(&self) -> Duration {
         Duration::ZERO
+    }
+
+    /// Whether tiles of the levels of [levelled ops](crate::op::Levelled) are stored, too. A tile has some hundred KiB and takes
+    /// milliseconds to make, and a request looks for some ten of them, one after the other: a store that is slower than a disk
+    /// should not keep them. By default it does not.
+    fn keeps_tiles(&self) -> bool {
+        false
     }
 
     /// The folder for data that does not fit in memory, if the session's options name none. By default there is none.
@@ -116,13 +126,13 @@ pub trait SolutionStore: Send + Sync + fmt::Debug {
     }
 }
 
-/// The key of an entry: a hash of a solver's content key and the version of this library. It is displayed, and read
-/// back, as 64 hexadecimal digits.
+/// The key of an entry: a hash of the content key of a solver, or of a levelled op with the level and the tile, and of the
+/// version of this library. It is displayed, and read back, as 64 hexadecimal digits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct EntryKey(pub [u8; 32]);
 
 impl EntryKey {
-    /// The key under which the solution with a content key is stored.
+    /// The key under which the result with a content key is stored.
     pub(crate) fn of(key: &Key) -> EntryKey {
         let mut hash = Sha256::new();
         hash.update(key);
@@ -166,30 +176,52 @@ impl FromStr for EntryKey {
     }
 }
 
-/// A solution to be stored: bytes that contain its key and checksums.
+/// A solution or a tile of a level to be stored: bytes that contain its key and checksums.
 #[derive(Debug)]
 pub struct Entry<'a> {
     key: &'a EntryKey,
-    solution: &'a Solution,
+    content: Content<'a>,
+}
+
+#[derive(Debug)]
+enum Content<'a> {
+    Solution(&'a Solution),
+    Tile(&'a LevelTile, &'a [Grid]),
 }
 
 impl<'a> Entry<'a> {
     pub(crate) fn new(key: &'a EntryKey, solution: &'a Solution) -> Entry<'a> {
-        Entry { key, solution }
+        Entry { key, content: Content::Solution(solution) }
+    }
+
+    pub(crate) fn of_tile(key: &'a EntryKey, tile: &'a LevelTile, planes: &'a [Grid]) -> Entry<'a> {
+        Entry { key, content: Content::Tile(tile, planes) }
+    }
+
+    /// Whether it is a tile of a level: there are many of them, and each is made again in milliseconds.
+    #[must_use]
+    pub fn is_tile(&self) -> bool {
+        matches!(self.content, Content::Tile(..))
     }
 
     /// Its length in bytes.
     #[must_use]
     pub fn length(&self) -> u64 {
-        entry::length(self.solution)
+        match self.content {
+            Content::Solution(solution) => entry::length(solution),
+            Content::Tile(tile, _) => tile_entry::length(tile),
+        }
     }
 
-    /// Writes its bytes, a page of 256 KiB at a time.
+    /// Writes its bytes: those of a solution a page of 256 KiB at a time, those of a tile at once.
     ///
     /// # Errors
     /// If `out` fails, or a solution on disk cannot be read.
     pub fn write_to(&self, out: &mut dyn Write) -> io::Result<()> {
-        entry::write(out, &self.key.0, self.solution)
+        match self.content {
+            Content::Solution(solution) => entry::write(out, &self.key.0, solution),
+            Content::Tile(tile, planes) => tile_entry::write(out, self.key, tile, planes),
+        }
     }
 
     /// All of its bytes.

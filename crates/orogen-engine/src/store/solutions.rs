@@ -174,6 +174,16 @@ impl Store {
         Begun::Make(self.making(*key, false))
     }
 
+    /// The store behind this one.
+    pub(super) fn backing(&self) -> Option<&dyn SolutionStore> {
+        self.backing.as_deref()
+    }
+
+    /// Remembers a failure of the store behind this one.
+    pub(super) fn set_failure(&self, error: Error) {
+        self.lock().failure = Some(error);
+    }
+
     /// Number of solutions computed, without reused ones.
     pub fn made(&self) -> u64 {
         self.lock().made

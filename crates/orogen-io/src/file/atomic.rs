@@ -44,6 +44,12 @@ pub fn replace_whole<'a>(path: &Path, body: impl FnOnce(&mut dyn Write) -> io::R
     stage_through(path, None, |file| Box::new(file), Box::new(body))?.commit()
 }
 
+/// [`replace_whole`] without a wait for the disk: after a failure of the system the file may be damaged. For files that contain checksums and
+/// can be made again.
+pub fn replace_unsynced<'a>(path: &Path, body: impl FnOnce(&mut dyn Write) -> io::Result<()> + 'a) -> Result<()> {
+    stage_as(false, path, None, |file| Box::new(file), Box::new(body))?.commit()
+}
+
 /// Puts files that belong together in place; none of them if one may not be replaced.
 pub fn commit(files: Vec<Staged>) -> Result<()> {
     files.iter().try_for_each(Staged::check)?;
@@ -74,6 +80,8 @@ pub struct Staged {
     output: Option<Output>,
     /// The temporary file and the target's real path; `None` for a pipe or device, which was written directly.
     file: Option<(Temporary, PathBuf)>,
+    /// Whether the file survives a failure of the system.
+    synced: bool,
 }
 
 impl Staged {
@@ -89,7 +97,9 @@ impl Staged {
                 false => temporary.rename(&real),
             };
             put.map_err(|cause| Error::file("write", &self.path, &cause))?;
-            sync_folder(folder(&real));
+            if self.synced {
+                sync_folder(folder(&real));
+            }
         }
         Ok(())
     }
@@ -130,6 +140,17 @@ fn stage_through(
     wrap: impl for<'f> FnOnce(&'f File) -> Box<dyn Write + 'f>,
     body: Body,
 ) -> Result<Staged> {
+    stage_as(true, path, output, wrap, body)
+}
+
+/// [`stage_through`]; the file is synced if required.
+fn stage_as(
+    synced: bool,
+    path: &Path,
+    output: Option<&Output>,
+    wrap: impl for<'f> FnOnce(&'f File) -> Box<dyn Write + 'f>,
+    body: Body,
+) -> Result<Staged> {
     let failed = |cause: io::Error| Error::file("write", path, &cause);
     let file = match target(path)? {
         Destination::Stream => {
@@ -151,11 +172,13 @@ fn stage_through(
                 let _ = file.set_permissions(permissions);
             }
             fill(path, wrap(&file), body)?;
-            file.sync_all().map_err(failed)?;
+            if synced {
+                file.sync_all().map_err(failed)?;
+            }
             Some((temporary, real))
         }
     };
-    Ok(Staged { path: path.to_path_buf(), output: output.cloned(), file })
+    Ok(Staged { path: path.to_path_buf(), output: output.cloned(), file, synced })
 }
 
 /// Determines what `path` is, and rejects what cannot be written.

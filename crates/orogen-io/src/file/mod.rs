@@ -29,7 +29,7 @@ pub use atomic::{Staged, check_folder, commit, explain, stage, write_whole};
 pub use policy::{Existing, Output, OutputPolicy};
 
 #[doc(hidden)]
-pub use atomic::{folder, replace_whole, sync_folder};
+pub use atomic::{folder, replace_unsynced, replace_whole, sync_folder};
 pub(crate) use temporary::Temporary;
 #[doc(hidden)]
 pub use temporary::sweep;
