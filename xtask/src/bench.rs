@@ -28,7 +28,7 @@ Builds the benches at full optimisation, measures one area (or all in turn) and 
                outputs   contours compared with contourpy, meshes with pydelatin and OpenEXR files with its library (installed with pip; OROGEN_CONTOURPY,
                          OROGEN_PYDELATIN and OROGEN_OPENEXR name a Python that has them) and a Cloud-Optimised GeoTIFF with
                          gdal_translate, CPU time; maps of 4096 x 4096 and a rendered view, wall time
-               world     chunks, tiles with halos, threads and whole builds of the preset `hills`, animations of growing presets; the builds (--case build) take
+               world     chunks, tiles with halos, threads and whole builds of hills of noise, animations of growing presets; the builds (--case build) take
                          minutes and a dozen GiB of disk
   --json FILE  also write the rows as JSON; needs an AREA
   --case TEXT  only cases whose name contains TEXT

@@ -1,18 +1,18 @@
-//! The measured worlds, all based on the preset `hills`.
+//! The measured worlds, all based on hills of noise: the former preset `hills`, whose figures stay comparable.
 
 use orogen::filter::blur::Blur;
 use orogen::solver::normalise::Normalise;
-use orogen::{Options, Recipe, World, presets};
+use orogen::{Options, Recipe, World};
 
-/// The preset itself: fields only.
+/// The hills themselves: fields only.
 pub fn fields() -> Result<Recipe, String> {
-    presets::find("hills").ok_or("there is no preset `hills`")?.recipe().map_err(|e| e.to_string())
+    Recipe::parse(include_str!("hills.toml"), "hills.toml").map_err(|e| e.to_string())
 }
 
 /// The normalised layer of the recipes below.
 pub const STRETCHED: &str = "stretched";
 
-/// The preset with normalised heights.
+/// The hills with normalised heights.
 pub fn stretched() -> Result<Recipe, String> {
     let mut recipe = fields()?;
     recipe.add("stretched", Normalise { source: "terrain".into(), low: 40.0, high: 340.0, ..Normalise::default() });
@@ -20,7 +20,7 @@ pub fn stretched() -> Result<Recipe, String> {
     Ok(recipe)
 }
 
-/// The preset with heights blurred with a halo of 32 samples at `cell` and then normalised.
+/// The hills with heights blurred with a halo of 32 samples at `cell` and then normalised.
 pub fn with_halo(cell: f64) -> Result<Recipe, String> {
     let mut recipe = fields()?;
     // The kernel ends at three radii: 31.5 samples.

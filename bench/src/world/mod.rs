@@ -1,4 +1,4 @@
-//! Area `world`: the cost of windows, tiles, chunks and whole builds of the preset `hills`.
+//! Area `world`: the cost of windows, tiles, chunks and whole builds of hills of noise.
 
 mod build;
 mod chunk;

@@ -46,7 +46,7 @@ pub struct Options {
 /// use orogen_engine::{Options, Session, Window, presets};
 ///
 /// let session = Session::new(Options { threads: Some(2), ..Options::default() })?;
-/// let mut recipe = presets::find("hills").ok_or("no such preset")?.recipe()?;
+/// let mut recipe = presets::find("classic").ok_or("no such preset")?.recipe()?;
 /// let before = session.open(recipe.clone())?.window("height", &Window::new(64, 64, 30.0))?;
 /// // Nothing in this recipe reads the sea level.
 /// recipe.world.sea_level = 120.0;

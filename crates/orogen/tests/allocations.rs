@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
 use allocation_counter::measure;
-use orogen::{ChunkStep, Chunks, LodConfig, Sampler, Window, World, presets};
+use orogen::{ChunkStep, Chunks, LodConfig, Recipe, Sampler, Window, World, presets};
 
 /// Returns the number of allocations of `work`.
 fn allocations(work: impl FnMut()) -> u64 {
@@ -39,11 +39,23 @@ fn chunks_and_points_of_presets_allocate_nothing_once_warm() {
     assert!(seen > 3, "most presets end with fields or solvers");
 }
 
+/// Unbounded hills of fields only.
+const FIELDS: &str = "
+orogen = 1
+world.cell = 15
+nodes.east = { op = \"fbm\", seed = 1, wavelength = 3000, octaves = 2 }
+nodes.south = { op = \"fbm\", seed = 2, wavelength = 3000, octaves = 2 }
+nodes.knolls = { op = \"billow\", seed = 4, wavelength = 2400, octaves = 5 }
+nodes.high = { op = \"perlin\", seed = 3, wavelength = 4200 }
+nodes.rolling = { op = \"expr\", expr = \"(1 + knolls) * abs(high)\" }
+nodes.bent = { op = \"warp\", source = \"rolling\", x = \"east\", y = \"south\", strength = 800 }
+nodes.terrain = { op = \"expr\", expr = \"60 + 210 * bent\" }
+outputs.height = \"terrain\"
+";
+
 #[test]
 fn a_walk_through_chunks_allocates_nothing_once_warm() {
-    let mut recipe = presets::find("hills").unwrap().recipe().unwrap();
-    recipe.world.size = None;
-    let world = World::open(recipe).unwrap();
+    let world = World::open(Recipe::parse(FIELDS, "fields").unwrap()).unwrap();
     let sampler = Sampler::new(&world, "height").unwrap();
     let mut chunks = world.chunks(LodConfig::default().with_cells(32).with_cell(4.0).with_range(4000.0)).unwrap();
     let mut heights = vec![0.0; 33 * 33];
