@@ -52,12 +52,12 @@ const CASES: &[Case] = &[
         name: "alpine",
         land: Land::Any([0, 0]),
         targets: Targets {
-            median: 1.0,
-            p90: 1.3,
-            energy: 0.5,
+            median: 0.72,
+            p90: 0.90,
+            energy: 0.42,
             outliers: 0.0,
             bias: 0.010,
-            worst_bias: 0.033,
+            worst_bias: 0.020,
             judged: 0.9,
         },
     },
@@ -257,7 +257,7 @@ mod tests {
 
     const SAID: &str = "\
 windows    250  too flat 6
-score      median 0.97  p90 1.21   (real 1.00, 1.38)
+score      median 0.70  p90 0.85   (real 1.00, 1.38)
 energy     0.41 x a real region
 outliers   1  fill_asym -2.3
 grid bias  median 0.006  max 0.035   (real 0.006, 0.014)
@@ -269,8 +269,8 @@ grid bias  median 0.006  max 0.035   (real 0.006, 0.014)
         let expect = Score {
             judged: 250.0,
             dropped: 6.0,
-            median: 0.97,
-            p90: 1.21,
+            median: 0.70,
+            p90: 0.85,
             energy: 0.41,
             outliers: 1.0,
             bias: 0.006,
@@ -284,7 +284,7 @@ grid bias  median 0.006  max 0.035   (real 0.006, 0.014)
     fn what_misses_is_named() {
         let mut score = read(SAID).expect("well formed");
         let missed = misses(&CASES[0], &score);
-        assert_eq!(missed, ["alpine: outliers 1, more than 0", "alpine: worst grid bias 0.035, more than 0.033"]);
+        assert_eq!(missed, ["alpine: outliers 1, more than 0", "alpine: worst grid bias 0.035, more than 0.02"]);
         (score.outliers, score.worst_bias, score.judged, score.dropped) = (0.0, 0.01, 100.0, 50.0);
         assert_eq!(misses(&CASES[0], &score), ["alpine: 67 % judged, less than 90 %"]);
     }
