@@ -111,9 +111,128 @@ fn uncrossed(land: &Coarse, x: i64, y: i64) -> u8 {
         return code;
     };
     let height = |(x, y): (i64, i64)| at(land.height, x, y);
-    let own_end = height((x + east, y + south));
-    if own_end > height(end) || (own_end == height(end) && south > 0) {
-        return code_of((end.0 - x, end.1 - y));
+    if height((x + east, y + south)) < height(end) { code } else { code_of((end.0 - x, end.1 - y)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::ErrorKind;
+    use crate::hydrology::direction::{DISTANCES, strides};
+
+    /// Hills that fall to a valley along the middle row, which falls to the east; drainage areas by the steepest descent.
+    fn valley(window: Window) -> (Grid, Grid) {
+        let mut height = Grid::filled(window, 0.0f32);
+        for j in 0..window.height {
+            for i in 0..window.width {
+                let (x, y) = (window.x + i as i64, window.y + j as i64);
+                let rough = hash::unit(hash::node(5, 0, x, y, 77));
+                height[(i, j)] = 4000.0 - 25.0 * x as f32 + 40.0 * y.abs() as f32 + 20.0 * rough;
+            }
+        }
+        let mut flow = Grid::filled(window, 960.0 * 960.0f32);
+        let mut order: Vec<usize> = (0..window.len()).collect();
+        order.sort_by(|a, b| height.data()[*b].total_cmp(&height.data()[*a]));
+        let steps = strides(window.width);
+        for q in order {
+            let (i, j) = (q % window.width, q / window.width);
+            if (1..window.width - 1).contains(&i) && (1..window.height - 1).contains(&j) {
+                let land = Coarse { height: &height, flow: &flow, receiver: None };
+                let code = receiver(&land, window.x + i as i64, window.y + j as i64);
+                if code < NONE {
+                    let (to, area) = (q.wrapping_add_signed(steps[usize::from(code)]), flow.data()[q]);
+                    flow.data_mut()[to] += area;
+                }
+            }
+        }
+        (height, flow)
     }
-    code
+
+    fn refinement() -> Refinement {
+        Refinement::new(9).with_levels(4)
+    }
+
+    #[test]
+    fn rivers_keep_their_area_and_fall_through_all_levels() {
+        let land = refinement();
+        let window = Window::new(70, 70, land.cell_of(0)).at(-35, -35);
+        let (height, flow) = valley(window.grown(REACH));
+        let coarse = Coarse { height: &height, flow: &flow, receiver: None };
+        let mut level = land.coarsest_of(&coarse, &Given::default(), &window, &Progress::none()).unwrap();
+        assert_eq!(level.height, height.crop(&window).unwrap().data());
+        let mut inner = window;
+        for depth in 1..=4 {
+            let reach = land.reach(depth) as i64;
+            let (x, y) = (2 * (inner.x + reach), 2 * (inner.y + reach));
+            let side = 2 * (inner.width - 2 * reach as usize) - 2;
+            let next = Window::new(side, side, land.cell_of(depth)).at(x, y);
+            level = land.refine(&level, &Given::default(), &next, &Progress::none()).unwrap();
+            inner = next;
+            // The river along the middle of the land: the largest area of each column.
+            let cell = land.cell_of(depth);
+            let mut kept = 0;
+            for i in 0..side {
+                let column = (0..side).map(|j| j * side + i);
+                let river = column.max_by(|a, b| level.area[*a].total_cmp(&level.area[*b])).unwrap();
+                let x = (inner.x + i as i64) >> depth;
+                let given = (-4..=4).map(|y| at(&flow, x, y)).fold(0.0, f32::max);
+                let area = level.area[river] * (cell * cell) as f32;
+                kept += usize::from((0.5..2.0).contains(&(area / given)));
+            }
+            // Where shortcuts of a river overlap, a cell of it can miss water.
+            assert!(kept >= side - side / 50, "level {depth}: the area is kept in {kept} of {side} columns");
+            // Each node is above its receiver.
+            let steps = strides(side);
+            for j in 1..side - 1 {
+                for q in j * side + 1..(j + 1) * side - 1 {
+                    let code = usize::from(level.receiver[q]);
+                    assert!(code < 8, "level {depth}: a pit");
+                    let to = q.wrapping_add_signed(steps[code]);
+                    assert!(level.height[q] > level.height[to], "level {depth}: {} m", DISTANCES[code] * cell);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn flow_never_crosses() {
+        let window = Window::new(60, 60, 960.0);
+        let random = |factor: f32, stream: u64| {
+            let mut grid = Grid::filled(window.grown(REACH), 0.0f32);
+            for (q, value) in grid.data_mut().iter_mut().enumerate() {
+                *value = (factor * hash::unit(hash::node(1, 0, q as i64, 0, stream))).floor();
+            }
+            grid
+        };
+        // Few heights, so that some are equal; no flow to the north, so that no two cells drain to each other across a corner.
+        let (height, receivers) = (random(9.0, 3), random(5.0, 4));
+        let land = Coarse { height: &height, flow: &height, receiver: Some(&receivers) };
+        let crossings = |code: &dyn Fn(i64, i64) -> u8| {
+            let crosses = |x: i64, y: i64| {
+                let down = code(x, y) == 1 || code(x + 1, y + 1) == 5;
+                down && (code(x + 1, y) == 3 || code(x, y + 1) == 7)
+            };
+            (1..58).flat_map(|y| (1..58).map(move |x| (x, y))).filter(|(x, y)| crosses(*x, *y)).count()
+        };
+        assert!(crossings(&|x, y| receiver(&land, x, y)) > 50);
+        assert_eq!(crossings(&|x, y| uncrossed(&land, x, y)), 0);
+    }
+
+    #[test]
+    fn land_that_is_too_small_is_refused_and_any_values_are_taken() {
+        let land = refinement();
+        let window = Window::new(40, 40, land.cell_of(0));
+        let (height, flow) = valley(window.grown(REACH));
+        let none = Progress::none();
+        let coarse = Coarse { height: &height, flow: &flow, receiver: None };
+        assert!(land.coarsest_of(&coarse, &Given::default(), &window, &none).is_ok());
+        let error = land.coarsest_of(&coarse, &Given::default(), &window.grown(1), &none).unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::Request);
+        for value in [f32::NAN, f32::INFINITY, -1e30] {
+            let odd = Grid::filled(window.grown(REACH), value);
+            let coarse = Coarse { height: &odd, flow: &odd, receiver: Some(&odd) };
+            let level = land.coarsest_of(&coarse, &Given::default(), &window, &none).unwrap();
+            assert!(level.receiver.iter().all(|code| *code <= NONE) && level.area.iter().all(|area| *area >= 1.0));
+        }
+    }
 }
