@@ -216,7 +216,7 @@ if __name__ == "__main__":
         else:
             # GRASS needs a known coordinate system.
             map_options = ("--crs", "EPSG:32632", "--origin", "500000,5000000")
-            path = export(source, "preset.tif", "--window", "200,300,320,300", *map_options, "-q")
+            path = export(source, "preset.tif", "--window", "400,440,320,300", *map_options, "-q")
         with rasterio.open(path) as raster:
             place = Place(raster.read(1), raster.crs, raster.transform)
         found = neighbourhoods(source, place) | walked(place) | whitebox(place)

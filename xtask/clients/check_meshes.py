@@ -219,7 +219,7 @@ for report in validate(*paths):
 # Rivers, lakes and the sea are on the ground.
 wet = {
     "alpine": (120.0, ["rivers", "lakes"], None, ("--size", "512")),
-    "island": (40.0, ["rivers", "lakes", "sea"], 0.0, ("--size", "512")),
+    "fjords": (60.0, ["rivers", "lakes", "sea"], 0.0, ()),
 }
 for recipe, (cell, expected, sea, options) in wet.items():
     check_water(export(recipe, f"{recipe}-water.glb", "--water", *options), cell, expected, sea)
