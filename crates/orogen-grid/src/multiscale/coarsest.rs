@@ -80,6 +80,15 @@ impl Continents {
         let heights = coarsest.drain(&costs, &second)?;
         Ok(coarsest.finish(heights, window))
     }
+
+    /// [`Refinement::refine`](super::refinement::Refinement::refine), where the geography of this land decides what is not given.
+    ///
+    /// # Errors
+    /// Those of [`Refinement::refine`](super::refinement::Refinement::refine).
+    pub fn refine(&self, parent: &Level, given: &Given, window: &Window, progress: &Progress) -> Result<Level> {
+        self.check()?;
+        self.refinement.refine(parent, &Given { continents: Some(self), ..*given }, window, progress)
+    }
 }
 
 impl<'a> Coarsest<'a> {

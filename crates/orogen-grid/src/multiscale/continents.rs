@@ -1,11 +1,8 @@
 //! The parameters of land without bounds.
 
-use super::given::Given;
-use super::level::{Level, invalid};
+use super::level::invalid;
 use super::refinement::Refinement;
 use crate::error::Result;
-use crate::grid::Window;
-use crate::progress::Progress;
 
 /// Land without bounds: continents with ranges, plains, coasts, inland basins and rivers to the sea.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,15 +32,6 @@ impl Continents {
     #[must_use]
     pub fn new(seed: u64) -> Continents {
         Continents::default().with_refinement(Refinement::new(seed))
-    }
-
-    /// [`Refinement::refine`], where the geography of this land decides what is not given.
-    ///
-    /// # Errors
-    /// Those of [`Refinement::refine`].
-    pub fn refine(&self, parent: &Level, given: &Given, window: &Window, progress: &Progress) -> Result<Level> {
-        self.check()?;
-        self.refinement.refine(parent, &Given { continents: Some(self), ..*given }, window, progress)
     }
 
     /// Checks the parameters beside those of the levels.
