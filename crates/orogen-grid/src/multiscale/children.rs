@@ -1,9 +1,8 @@
 //! The nodes of a level before rivers: positions, rock and the shape of the shore, from the level above and from hashes.
 
-use super::coarsest::jittered;
 use super::geography::Geography;
 use super::given::Given;
-use super::hash;
+use super::hash::{self, jittered};
 use super::level::Level;
 use super::refinement::Refinement;
 use super::stencil::Extent;

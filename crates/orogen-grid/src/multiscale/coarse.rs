@@ -1,8 +1,7 @@
 //! The coarsest level of land that is given: heights and their drainage, from a solver or a real place.
 
-use super::coarsest::jittered;
 use super::given::Given;
-use super::hash;
+use super::hash::{self, jittered};
 use super::level::{Level, invalid};
 use super::refinement::Refinement;
 use crate::error::Result;

@@ -4,7 +4,7 @@ use super::continents::Continents;
 use super::drainage;
 use super::geography::Geography;
 use super::given::Given;
-use super::hash;
+use super::hash::{self, jittered};
 use super::law;
 use super::level::{Level, cropped};
 use super::routes::{self, UNREACHED};
@@ -26,9 +26,6 @@ const TYPICAL_AREA: f64 = 2e4;
 
 /// Approximate time for placing the nodes and for draining them once, in any unit.
 const TIMES: [f64; 3] = [3.0, 1.0, 1.0];
-
-/// Displacement of nodes: the share of a cell in which they are.
-pub const JITTER: f32 = 0.8;
 
 /// Uplift where no land is near.
 const OFFSHORE: f32 = -2.25;
@@ -253,11 +250,6 @@ impl<'a> Coarsest<'a> {
             shore: part(&self.shore),
         }
     }
-}
-
-/// A position in a cell from a number from 0 to 1.
-pub fn jittered(draw: f32) -> f32 {
-    0.5 + JITTER * (draw - 0.5)
 }
 
 fn logarithm(x: f32) -> f32 {

@@ -2,6 +2,9 @@
 
 use crate::random::{STEP, mix64};
 
+/// Displacement of nodes: the share of a cell in which they are.
+const JITTER: f32 = 0.8;
+
 /// 64 random bits of the node at column `x` and row `y` of a level.
 #[inline(always)]
 pub fn node(seed: u64, depth: usize, x: i64, y: i64, stream: u64) -> u64 {
@@ -27,4 +30,9 @@ pub fn unit16(bits: u64, part: usize) -> f32 {
 pub fn normal(bits: u64) -> f32 {
     let sum = (bits & 0xFFFF) + (bits >> 16 & 0xFFFF) + (bits >> 32 & 0xFFFF) + (bits >> 48);
     (sum as f32 * (1.0 / 65_536.0) - 2.0) * 1.732_050_8
+}
+
+/// A position in a cell from a number from 0 to 1.
+pub fn jittered(draw: f32) -> f32 {
+    0.5 + JITTER * (draw - 0.5)
 }
