@@ -104,12 +104,12 @@ step = 30 / 111_195
 with rasterio.open(DEGREES, "w", crs="EPSG:4326", transform=rasterio.transform.from_origin(11, 1, step, step), **profile) as out:
     out.write(heights, 1)
 
-# The last column is the minimum share of banks above their river. A part of alpine has wide and nearly level floors.
+# The last column is the minimum share of banks above their river.
 CASES = [
     ("alpine", "alpine", ["--cell", "120"], None, 0.95),
     ("alpine_part", "alpine", ["--window", "150,210,300,260"], None, 0.9),
-    ("island", "island", [], None, 0.75),
-    ("archipelago", "archipelago", ["--seed", "9"], None, 0.8),
+    ("island", "island", [], None, 0.95),
+    ("archipelago", "archipelago", ["--seed", "9"], None, 0.9),
     ("fjords", "fjords", ["--seed", "3"], None, 0.9),
     ("utm", UTM, ["--river-area", "300000"], "EPSG:32633", 0.9),
     ("degrees", DEGREES, ["--river-area", "300000"], "EPSG:4326", 0.9),

@@ -15,8 +15,9 @@ op! {
     /// The heights and drainage areas of the coarsest level are those of the source, usually a `stream-power` solved over the whole world at a cell
     /// of about a kilometre, which takes a moment. Each finer level has half the cell. Rivers are led through it, branches grow up from them, and
     /// slopes follow the steady state of the stream power law, S = (U/K) A^-m, limited on hillslopes. A window of a level depends on the coarser
-    /// level around it only, so any window is made by itself, and a larger cell shows the same land coarsely. Ground without a receiver is standing
-    /// water: at the border of the coarse land, and at or below sea level.
+    /// level around it only, so any window is made by itself, and a larger cell shows the same land coarsely. Where the coarse land has no receiver,
+    /// in depressions and beyond its border, there is standing water. Ground below sea level is refined like land: there is no sea. The refined land
+    /// lies about half a coarse cell south-east of its source.
     ///
     /// Related: terrain amplification (Schott and others 2024), hydrology-based terrain (Génevaux and others 2013).
     pub struct Amplify = "amplify", levelled, revision 1;
