@@ -4,7 +4,7 @@
 //! Coarse levels are made in *tiles* of a fixed side, which neighbouring windows share. Levels of which a piece needs more than a few tiles are made
 //! over the piece itself: in tiles, their halos would cost more than sharing saves.
 
-use super::memory::grid_bytes;
+use super::steps::grid_bytes;
 use crate::op::{Levelled, Levels};
 use orogen_grid::grid::Window;
 use orogen_grid::resample::split;

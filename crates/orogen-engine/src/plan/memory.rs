@@ -2,17 +2,11 @@
 
 use super::levels;
 use super::program::{BLOCK_HEIGHT, BLOCK_WIDTH, Program};
-use super::steps::{Plan, Solve, Step};
+use super::steps::{Plan, Solve, Step, grid_bytes};
 use crate::ids::{GridId, Id, IndexVec, StepId};
 use crate::op::Op;
 use crate::recipe::document::Recipe;
-use orogen_grid::grid::Window;
 use orogen_io::pages;
-
-/// Memory of a grid over a window, in bytes.
-pub fn grid_bytes(window: &Window) -> u64 {
-    (window.width as u64).saturating_mul(window.height as u64).saturating_mul(4)
-}
 
 /// Memory of the registers and coordinate sets of one thread.
 fn block_bytes(program: &Program) -> u64 {

@@ -241,3 +241,9 @@ impl Plan {
         self.steps.iter().fold(0u64, |sum, step| sum.saturating_add(step.window().len() as u64))
     }
 }
+
+/// Memory of a grid over a window, in bytes.
+#[must_use]
+pub fn grid_bytes(window: &Window) -> u64 {
+    (window.width as u64).saturating_mul(window.height as u64).saturating_mul(4)
+}

@@ -1,53 +1,14 @@
 //! Tiles of the levels of levelled ops, in memory, each made by one request at a time.
 
 use super::grids::{GridKey, GridStore};
-use super::solution_store::EntryKey;
-use crate::plan::key::Key;
+use super::level_tile::LevelTile;
 use orogen_grid::error::Result;
-use orogen_grid::grid::{Grid, Window};
+use orogen_grid::grid::Grid;
 use orogen_grid::progress::Progress;
-use sha2::{Digest, Sha256};
 use std::collections::HashSet;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
-
-/// Names a tile of a level.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LevelTile {
-    /// The content key of the levelled op.
-    pub node: Key,
-    /// The level.
-    pub level: usize,
-    /// Number of planes.
-    pub planes: usize,
-    /// Its samples.
-    pub window: Window,
-}
-
-impl LevelTile {
-    /// The key under which it is stored for later runs.
-    pub fn entry_key(&self) -> EntryKey {
-        let Window { x, y, width, height, cell } = self.window;
-        let mut hash = Sha256::new();
-        hash.update(b"tile of a level");
-        hash.update(self.node);
-        for number in [self.level as u64, x as u64, y as u64, width as u64, height as u64, cell.to_bits()] {
-            hash.update(number.to_le_bytes());
-        }
-        EntryKey::of(&hash.finalize().into())
-    }
-
-    /// The keys of its planes.
-    fn grids(&self) -> Vec<GridKey> {
-        (0..self.planes).map(|plane| GridKey::new(self.node, plane, &self.window)).collect()
-    }
-
-    /// The key of the tile while it is made.
-    fn mark(&self) -> GridKey {
-        GridKey::new(self.node, 0, &self.window)
-    }
-}
 
 /// Tiles in memory.
 ///
@@ -164,8 +125,10 @@ impl LevelTiles {
 
 #[cfg(test)]
 mod tests {
+    use super::super::entry_key::EntryKey;
     use super::*;
     use orogen_grid::error::ErrorKind;
+    use orogen_grid::grid::Window;
 
     fn tile(column: i64) -> LevelTile {
         LevelTile { node: [1; 32], level: 3, planes: 2, window: Window::new(8, 8, 1.0).at(8 * column, 0) }

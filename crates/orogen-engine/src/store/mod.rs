@@ -1,8 +1,10 @@
 //! Solutions and tiles of levels, in memory and in a store for later runs.
 
 mod entry;
+mod entry_key;
 pub mod folder;
 pub(crate) mod grids;
+pub(crate) mod level_tile;
 pub(crate) mod level_tiles;
 pub mod listing;
 pub mod memory;

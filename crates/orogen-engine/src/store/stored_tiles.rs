@@ -1,6 +1,6 @@
 //! Tiles of levels in the store for later runs.
 
-use super::level_tiles::LevelTile;
+use super::level_tile::LevelTile;
 use super::solution_store::{Entry, SolutionStore};
 use super::solutions::Store;
 use super::tile_entry;

@@ -3,8 +3,8 @@
 //! A header (magic, key, level, number of planes, window, a checksum), the samples of one plane after the other, and their
 //! checksum. Numbers are little-endian. The length follows from the header, so that a truncated file is detected at once.
 
-use super::level_tiles::LevelTile;
-use super::solution_store::EntryKey;
+use super::entry_key::EntryKey;
+use super::level_tile::LevelTile;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_io::pages::{checksum, has_checksum};
