@@ -21,7 +21,7 @@ op! {
     ///
     /// Related: hydrology-based terrain (Génevaux and others 2013), Dendry (Gaillard and others 2019), multi-scale terrain amplification
     /// (Schott and others 2024).
-    pub struct Continents = "continents", levelled, revision 1;
+    pub struct Continents = "continents", levelled, revision 2;
     inputs {
         /// Distance to the shore in metres, positive on land, in place of the op's own continents. Lakes and rivers keep what they need; where it is NaN, the op's own
         /// is used.

@@ -34,7 +34,7 @@ pub fn carve(parent: &Level, links: &Links, children: &Children, levels: Vec<f32
     }
     let mut carved = Carved {
         height,
-        area: vec![1.0; extent.len()],
+        area: vec![0.0; extent.len()],
         receiver: vec![f32::from(NONE); extent.len()],
         fixed,
         distances: children.is_irregular().then(|| Distances::new(extent, &children.east, &children.south)),
@@ -45,6 +45,12 @@ pub fn carve(parent: &Level, links: &Links, children: &Children, levels: Vec<f32
     }
     for arrival in &arrivals {
         carved.arrive(parent, links, children, arrival);
+    }
+    for arrival in &arrivals {
+        carved.bound_area(parent, links, arrival);
+    }
+    for area in carved.area.iter_mut().filter(|area| **area < 1.0) {
+        *area = 1.0;
     }
     carved
 }
@@ -112,6 +118,23 @@ impl Carved {
         let height = if arrival.height < self.height[entry] { arrival.height } else { self.height[entry] };
         self.set(entry, height, arrival.area);
         self.connect(children, entry, end);
+    }
+
+    /// Keeps the areas between the node of the target and its donors: those of the level above need not be their sums.
+    fn bound_area(&mut self, parent: &Level, links: &Links, arrival: &Arrival) {
+        let (target, entry) = (arrival.target, arrival.entry);
+        if parent.receiver[target] >= NONE {
+            return;
+        }
+        let own = |corner| Child { parent: target, corner }.index(links.size.0);
+        let end = own(heir(parent, target));
+        if entry != end && own(links.list[target].exit) == entry {
+            return;
+        }
+        if entry != end {
+            self.area[entry] = self.area[entry].min(4.0 * parent.area[target]);
+        }
+        self.area[end] = self.area[end].max(if entry == end { arrival.area } else { self.area[entry] });
     }
 
     fn set(&mut self, q: usize, height: f32, area: f32) {

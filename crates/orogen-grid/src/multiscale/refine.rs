@@ -35,8 +35,12 @@ const FINEST_WORK: f64 = 2.0;
 /// The largest factor of creep: the average of the neighbours takes the place of a height.
 const MAX_CREEP_FACTOR: f32 = 1.25;
 
-/// Passes of areas at the end of each level.
-const LAST_AREA_PASSES: usize = 4;
+/// Passes of areas at the end of each level, and on the finest level, where nodes have just chosen their receivers again.
+const LAST_AREA_PASSES: usize = 3;
+const FINEST_AREA_PASSES: usize = 6;
+
+/// Passes that keep areas from falling downstream.
+const LIMIT_PASSES: usize = 3;
 
 /// Passes that raise banks on the finest level.
 const BANK_PASSES: usize = 3;
@@ -47,8 +51,12 @@ const FREE_AREA: f32 = 64.0;
 /// Cells at the edge of the children whose values are not exact.
 fn inset(finest: bool, creep: usize) -> usize {
     let growth = CARVED + FIRST_PASSES + ROUNDS * (AREA_PASSES + 1);
-    let growth = growth + LAST_AREA_PASSES;
+    let growth = growth + last_area_passes(finest) + LIMIT_PASSES;
     if finest { growth + straighten::REACH + creep + BANK_PASSES + 1 } else { growth }
+}
+
+fn last_area_passes(finest: bool) -> usize {
+    if finest { FINEST_AREA_PASSES } else { LAST_AREA_PASSES }
 }
 
 impl Refinement {
@@ -114,7 +122,7 @@ impl Refinement {
         let mut extent = children.extent.shrunk(CARVED);
         if finest {
             extent = extent.shrunk(straighten::REACH);
-            straighten(extent, &mut carved);
+            straighten(extent, &children.window, &mut carved);
             progress.check()?;
         }
         for (fixed, &area) in carved.fixed.iter_mut().zip(&carved.area) {
@@ -133,7 +141,7 @@ impl Refinement {
             for _ in 0..if pass < FIRST_PASSES { 0 } else { AREA_PASSES } {
                 progress.check()?;
                 extent = extent.shrunk(1);
-                drainage::step(extent, &growth.receiver, &mut growth.area, &mut growth.spare);
+                drainage::step(extent, &growth.receiver, &growth.fixed, &mut growth.area, &mut growth.spare);
             }
             extent = extent.shrunk(1);
             growth.pass(extent, &law, spacing, self.cell_of(depth));
@@ -155,10 +163,15 @@ impl Refinement {
             steepest(extent, &growth.height, &growth.fixed, &mut growth.receiver);
             progress.step(FINEST_WORK)?;
         }
-        for _ in 0..LAST_AREA_PASSES {
+        for _ in 0..last_area_passes(finest) {
             progress.check()?;
             extent = extent.shrunk(1);
-            drainage::step(extent, &growth.receiver, &mut growth.area, &mut growth.spare);
+            drainage::step(extent, &growth.receiver, &growth.fixed, &mut growth.area, &mut growth.spare);
+        }
+        for _ in 0..LIMIT_PASSES {
+            progress.check()?;
+            extent = extent.shrunk(1);
+            drainage::limit(extent, &growth.receiver, &mut growth.area, &mut growth.spare);
         }
         let offset = ((window.x - children.window.x) as usize, (window.y - children.window.y) as usize);
         let size = (window.width, window.height);

@@ -3,72 +3,129 @@
 use super::carve::{Carved, UNKNOWN};
 use super::drainage::FREE;
 use super::stencil::{Extent, code};
+use crate::grid::Window;
 use crate::hydrology::direction::{NONE, STEPS};
+use crate::random::mix64;
 
 /// Number of links that are looked ahead.
 const AHEAD: usize = 5;
 
-/// Cells that the result of a cell depends on: a river that skips the cell starts at most 3 cells away, and looks at links up to 4 away.
-pub const REACH: usize = 7;
+/// Cells that a shortcut skips, at most, and their distance from its start.
+const SKIPPED: usize = AHEAD - 1;
+const NEAR: usize = 3;
 
-/// Replaces loops of rivers by direct links. Cells that are skipped lose their river.
-pub fn straighten(extent: Extent, carved: &mut Carved) {
+/// Cells that the result of a cell depends on: a shortcut over it starts at most `NEAR` cells away, those that compete with it as far from there,
+/// and each looks at links up to `SKIPPED` cells away.
+pub const REACH: usize = 2 * NEAR + SKIPPED + ROUNDS;
+
+/// Rounds in which areas grow along what is left of rivers.
+const ROUNDS: usize = 3;
+
+/// A river that can go to a cell directly.
+struct Shortcut {
+    from: usize,
+    code: u8,
+    /// The cells between, in the order of the river.
+    skipped: [usize; SKIPPED],
+    count: usize,
+    /// Of two shortcuts of which one skips the start of the other, that of the higher rank is taken.
+    rank: u64,
+}
+
+impl Shortcut {
+    fn skipped(&self) -> &[usize] {
+        &self.skipped[..self.count]
+    }
+}
+
+/// Replaces loops of rivers by direct links. Cells that are skipped lose the water that now passes beside them, and those without any become free.
+pub fn straighten(extent: Extent, window: &Window, carved: &mut Carved) {
+    let found = shortcuts(extent, window, carved);
+    let mut of_start = vec![u32::MAX; extent.len()];
+    for (k, shortcut) in (0..).zip(&found) {
+        of_start[shortcut.from] = k;
+    }
+    let mut beaten = vec![false; found.len()];
+    for (k, shortcut) in found.iter().enumerate() {
+        for other in shortcut.skipped().iter().map(|&q| of_start[q] as usize).filter(|&other| other < found.len()) {
+            let loser = if found[other].rank > shortcut.rank { k } else { other };
+            beaten[loser] = true;
+        }
+    }
+    let taken: Vec<&Shortcut> = found.iter().zip(&beaten).filter(|(_, beaten)| !**beaten).map(|(one, _)| one).collect();
+    // The starts keep their water, because nothing that is taken skips them: what the skipped cells lose is exact.
+    for shortcut in &taken {
+        for &q in shortcut.skipped() {
+            carved.area[q] -= carved.area[shortcut.from];
+        }
+    }
+    for shortcut in &taken {
+        let code = f32::from(shortcut.code);
+        (carved.fixed[shortcut.from], carved.receiver[shortcut.from]) = (code, code);
+    }
+    // A skipped cell is dry if no river is left that leads to it.
+    for _ in 0..SKIPPED {
+        for shortcut in &taken {
+            for &q in shortcut.skipped() {
+                if carved.fixed[q] > FREE && donors(extent, carved, q).next().is_none() {
+                    (carved.fixed[q], carved.receiver[q]) = (FREE, f32::from(NONE));
+                    (carved.height[q], carved.area[q]) = (UNKNOWN, 1.0);
+                }
+            }
+        }
+    }
+    // Areas need not be sums of those upstream: what is left is at least that of a river that still leads there.
+    for _ in 0..ROUNDS {
+        let least =
+            |&q: &usize| (q, donors(extent, carved, q).fold(1.0, |most: f32, donor| most.max(carved.area[donor])));
+        let wet = taken.iter().flat_map(|shortcut| shortcut.skipped()).filter(|&&q| carved.fixed[q] > FREE);
+        for (q, least) in wet.map(least).collect::<Vec<_>>() {
+            carved.area[q] = carved.area[q].max(least);
+        }
+    }
+}
+
+/// All shortcuts that start in the extent.
+fn shortcuts(extent: Extent, window: &Window, carved: &Carved) -> Vec<Shortcut> {
     let width = extent.width;
-    let margin = extent.shrunk(AHEAD.saturating_sub(extent.inset));
-    let cells = extent.len();
-    let (mut had, mut has) = (vec![false; cells], vec![false; cells]);
-    let mut skipped = vec![0.0f32; cells];
-    let mut changed = Vec::new();
+    let margin = extent.shrunk(SKIPPED.saturating_sub(extent.inset));
     let river = |q: usize| carved.fixed[q] > FREE && carved.fixed[q] < f32::from(NONE);
+    let mut found = Vec::new();
     for j in margin.rows() {
-        for q in margin.columns().map(|i| j * width + i).filter(|&q| river(q)) {
-            let next = |q: usize| {
-                let (east, south) = STEPS[carved.fixed[q] as usize & 7];
-                (q.wrapping_add_signed(south * width as isize + east), east, south)
-            };
-            let (first, mut east, mut south) = next(q);
-            had[first] = true;
-            let mut node = first;
-            let mut shortcut = None;
-            for link in 1..AHEAD {
+        for i in margin.columns() {
+            let from = j * width + i;
+            let (mut node, mut east, mut south) = (from, 0isize, 0isize);
+            let mut way = [0; AHEAD];
+            let mut best = None;
+            for (link, passed) in way.iter_mut().enumerate() {
                 if !river(node) {
                     break;
                 }
-                let (further, by_east, by_south) = next(node);
-                (node, east, south) = (further, east + by_east, south + by_south);
-                if east.abs() <= 1 && south.abs() <= 1 && (east, south) != (0, 0) {
-                    shortcut = Some((link, node, code(east, south)));
+                let (by_east, by_south) = STEPS[carved.fixed[node] as usize & 7];
+                *passed = node;
+                node = node.wrapping_add_signed(by_south * width as isize + by_east);
+                (east, south) = (east + by_east, south + by_south);
+                if link > 0 && east.abs() <= 1 && south.abs() <= 1 && (east, south) != (0, 0) {
+                    best = Some((link, code(east, south)));
                 }
             }
-            let Some((links, to, code)) = shortcut else {
-                has[first] = true;
-                continue;
-            };
-            has[to] = true;
-            changed.push((q, code));
-            let mut node = first;
-            for _ in 0..links {
-                skipped[node] += carved.area[q];
-                node = next(node).0;
-            }
+            let Some((count, code)) = best else { continue };
+            let mut skipped = [0; SKIPPED];
+            skipped[..count].copy_from_slice(&way[1..=count]);
+            let (x, y) = (window.x + i as i64, window.y + j as i64);
+            // Every second cell of a staircase goes first, so that all of it becomes a diagonal.
+            let even = u64::from((x ^ y) & 1 == 0);
+            let chance = mix64(mix64(x as u64) ^ y as u64) >> 8;
+            found.push(Shortcut { from, code, skipped, count, rank: (count as u64) << 60 | even << 57 | chance });
         }
     }
-    for j in extent.rows() {
-        for q in extent.columns().map(|i| j * width + i) {
-            if !(carved.fixed[q] > FREE && carved.fixed[q] < f32::from(NONE)) {
-                continue;
-            }
-            if had[q] && !has[q] {
-                (carved.fixed[q], carved.receiver[q]) = (FREE, f32::from(NONE));
-                (carved.height[q], carved.area[q]) = (UNKNOWN, 1.0);
-            } else {
-                carved.area[q] = (carved.area[q] - skipped[q]).max(1.0);
-            }
-        }
-    }
-    for (q, code) in changed {
-        if carved.fixed[q] > FREE {
-            (carved.fixed[q], carved.receiver[q]) = (f32::from(code), f32::from(code));
-        }
-    }
+    found
+}
+
+/// The cells whose river leads to a cell.
+fn donors(extent: Extent, carved: &Carved, q: usize) -> impl Iterator<Item = usize> {
+    STEPS.iter().enumerate().filter_map(move |(code, (east, south))| {
+        let donor = q.wrapping_add_signed(south * extent.width as isize + east);
+        (carved.fixed[donor] == ((code + 4) & 7) as f32).then_some(donor)
+    })
 }

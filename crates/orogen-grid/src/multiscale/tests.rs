@@ -67,7 +67,7 @@ fn the_bits_are_the_same_on_every_machine() {
     let level = level(&land, 11, &window(&land, 11, coast(11), (24, 24)));
     let fold = |state: u64, bits: &u32| mix64(state ^ u64::from(*bits));
     let hash = bits(&level).iter().flatten().fold(0, fold);
-    assert_eq!(hash, 11_812_159_253_507_412_417);
+    assert_eq!(hash, 10_028_627_952_991_743_425);
 }
 
 #[test]
@@ -202,4 +202,38 @@ fn more_relief_is_higher_and_more_land_is_land() {
     let (dry, sum) = count(land);
     assert!(count(land.with_refinement(land.refinement.with_relief(2.0))).1 > 1.5 * sum);
     assert!(count(land.with_land(0.6)).0 > dry && count(land.with_land(0.2)).0 < dry);
+}
+
+/// The number of links from nodes with more than `least` cells of drainage area, and the shares of the area that are lost where it falls.
+fn lost_areas(level: &Level, least: f32) -> (usize, Vec<f32>) {
+    let (width, height) = (level.window.width, level.window.height);
+    let (mut links, mut lost) = (0, Vec::new());
+    for (q, &receiver) in level.receiver.iter().enumerate() {
+        let Some((east, south)) = STEPS.get(usize::from(receiver)) else { continue };
+        let (i, j) = ((q % width).wrapping_add_signed(*east), (q / width).wrapping_add_signed(*south));
+        if i < width && j < height && level.area[q] > least && level.receiver[j * width + i] < NONE {
+            links += 1;
+            let share = 1.0 - level.area[j * width + i] / level.area[q];
+            lost.extend((share > 0.0).then_some(share));
+        }
+    }
+    (links, lost)
+}
+
+#[test]
+fn drainage_areas_grow_downstream() {
+    for (seed, depth) in [(1, 3), (1, 6), (1, 9), (1, 10), (1, 11), (2, 3), (2, 6)] {
+        let land = Continents::new(seed);
+        let level = level(&land, depth, &window(&land, depth, coast(depth), (300, 300)));
+        for (least, worst) in [(30.0, 1.0), (300.0, 0.5), (3000.0, 0.01)] {
+            let (links, lost) = lost_areas(&level, least);
+            let most = lost.iter().copied().fold(0.0, f32::max);
+            assert!(links > 500 || least > 30.0, "level {depth}: too few rivers to tell");
+            assert!(
+                lost.len() * 400 <= links && most <= worst,
+                "level {depth}, more than {least} cells: {} of {links} fall, by up to {most}",
+                lost.len()
+            );
+        }
+    }
 }
