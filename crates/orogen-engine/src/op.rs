@@ -351,12 +351,17 @@ pub trait Levelled: Declared + Send + Sync {
     /// The samples of the level above that `level` over `window` is made from: from half the first, rounded down, to half the last,
     /// rounded up, and the halo around them.
     fn parent(&self, level: usize, window: &Window) -> Window {
-        let halved = |first: i64, end: i64| (first.div_euclid(2), end.div_euclid(2) + 1);
-        let ((x, right), (y, bottom)) = (halved(window.x, window.right()), halved(window.y, window.bottom()));
-        let (width, height) = ((right - x).max(0) as usize, (bottom - y).max(0) as usize);
-        let cell = self.levels().cell(level.saturating_sub(1));
-        Window { x, y, width, height, cell }.grown(self.halo(level))
+        halved(window, self.levels().cell(level.saturating_sub(1))).grown(self.halo(level))
     }
+}
+
+/// The samples of the lattice with `cell`, twice that of the window, from half the window's first, rounded down, to half the last, rounded up.
+#[must_use]
+pub fn halved(window: &Window, cell: f64) -> Window {
+    let halved = |first: i64, end: i64| (first.div_euclid(2), end.div_euclid(2) + 1);
+    let ((x, right), (y, bottom)) = (halved(window.x, window.right()), halved(window.y, window.bottom()));
+    let (width, height) = ((right - x).max(0) as usize, (bottom - y).max(0) as usize);
+    Window { x, y, width, height, cell }
 }
 
 /// The solution of a solver, which is read like a field.

@@ -1,7 +1,8 @@
 //! Coarse land with ever smaller valleys.
 
 use super::drained;
-use crate::op::{Context, Levelled, Levels};
+use crate::declare::Declared;
+use crate::op::{Context, Levelled, Levels, halved};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::multiscale::coarse::{Coarse, REACH};
@@ -16,11 +17,10 @@ op! {
     /// of about a kilometre, which takes a moment. Each finer level has half the cell. Rivers are led through it, branches grow up from them, and
     /// slopes follow the steady state of the stream power law, S = (U/K) A^-m, limited on hillslopes. A window of a level depends on the coarser
     /// level around it only, so any window is made by itself, and a larger cell shows the same land coarsely. Where the coarse land has no receiver,
-    /// in depressions and beyond its border, there is standing water. Ground below sea level is refined like land: there is no sea. The refined land
-    /// lies about half a coarse cell south-east of its source.
+    /// in depressions and beyond its border, there is standing water. Ground below sea level is refined like land: there is no sea.
     ///
     /// Related: terrain amplification (Schott and others 2024), hydrology-based terrain (Génevaux and others 2013).
-    pub struct Amplify = "amplify", levelled, revision 1;
+    pub struct Amplify = "amplify", levelled, revision 2;
     inputs {
         /// Heights of the coarse land without depressions. It is read at the coarsest cell, `cell` times 2 to the power of `halvings`: solve it there.
         source: required,
@@ -81,6 +81,23 @@ impl Amplify {
     }
 }
 
+/// Number of samples that a level's lattice of nodes is ahead of the samples of windows. A sample of the source is in the middle of its coarsest cell,
+/// and the finer lattices begin at the corner of cell 0, half a coarsest cell before.
+fn ahead(level: usize) -> i64 {
+    if level == 0 { 0 } else { 1i64 << (level - 1).min(MAX_LEVELS) }
+}
+
+/// The nodes of a level at the samples of a window.
+fn nodes_at(level: usize, window: &Window) -> Window {
+    window.at(window.x + ahead(level), window.y + ahead(level))
+}
+
+/// An input of a level with the window of its nodes.
+fn input_at_nodes(level: usize, input: Option<&Grid>) -> Option<Grid> {
+    let input = input?;
+    Grid::from_data(nodes_at(level, input.window()), input.data().to_vec())
+}
+
 fn given<'a>(inputs: &[Option<&'a Grid>]) -> Given<'a> {
     let input = |i: usize| inputs.get(i).copied().flatten();
     Given {
@@ -126,7 +143,20 @@ impl Levelled for Amplify {
         window: &Window,
         context: &Context,
     ) -> Result<Vec<Grid>> {
-        drained::refine(&self.seeded(context), level, parent, &given(inputs), window, context)
+        let mut above = drained::level_of(level - 1, parent)?;
+        above.window = nodes_at(level - 1, &above.window);
+        let inputs: Vec<Option<Grid>> = inputs.iter().map(|input| input_at_nodes(level, *input)).collect();
+        let inputs: Vec<Option<&Grid>> = inputs.iter().map(Option::as_ref).collect();
+        let nodes = nodes_at(level, window);
+        let mut made = self.seeded(context).refine(&above, &given(&inputs), &nodes, context.progress)?;
+        made.window = *window;
+        Ok(made.into_planes())
+    }
+
+    fn parent(&self, level: usize, window: &Window) -> Window {
+        let above = halved(&nodes_at(level, window), self.levels().cell(level.saturating_sub(1)));
+        let ahead = ahead(level.saturating_sub(1));
+        above.at(above.x - ahead, above.y - ahead).grown(self.halo(level))
     }
 
     fn surface_halo(&self) -> usize {
@@ -141,7 +171,9 @@ impl Levelled for Amplify {
         out: &mut [Option<Grid>],
         context: &Context,
     ) -> Result<()> {
-        drained::layers_of(&self.seeded(context), level, planes, window, out, context)
+        // The samples of level 0 are those of the source, in the middles of its cells; those of finer levels are at the corners of theirs.
+        let share = if level == 0 { 0.5 } else { 0.0 };
+        drained::layers_of(&self.seeded(context), share, level, planes, window, out, context)
     }
 
     fn cost(&self, level: usize) -> f64 {
@@ -149,6 +181,11 @@ impl Levelled for Amplify {
     }
 
     fn scratch(&self, level: usize, window: &Window) -> u64 {
-        drained::scratch(window, if level == 0 { REACH } else { 2 * self.halo(level) })
+        let halo = if level == 0 { REACH } else { 2 * self.halo(level) };
+        // Inputs are copied to the windows of the nodes.
+        let copies = 4 * self.spec().inputs.len() as u64;
+        let samples = window.grown(halo + 1);
+        let copied = copies.saturating_mul(samples.width as u64).saturating_mul(samples.height as u64);
+        drained::scratch(window, halo).saturating_add(copied)
     }
 }

@@ -144,7 +144,7 @@ impl Levelled for Continents {
         out: &mut [Option<Grid>],
         context: &Context,
     ) -> Result<()> {
-        drained::layers_of(&self.refinement(), level, planes, window, out, context)
+        drained::layers_of(&self.refinement(), 0.0, level, planes, window, out, context)
     }
 
     fn cost(&self, level: usize) -> f64 {

@@ -31,19 +31,20 @@ pub fn refine(
     Ok(refinement.refine(&level_of(level - 1, parent)?, given, window, context.progress)?.into_planes())
 }
 
-/// The layers height, flow, lake, surface and receiver.
+/// The layers height, flow, lake, surface and receiver, on coarser levels at `share` of the sides of the cells.
 ///
 /// # Errors
 /// If the planes are not those of a level, or the work was cancelled.
 pub fn layers_of(
     refinement: &Refinement,
+    share: f32,
     level: usize,
     planes: &[Grid],
     window: &Window,
     out: &mut [Option<Grid>],
     context: &Context,
 ) -> Result<()> {
-    let made = refinement.surface(&level_of(level, planes)?, window, context.progress)?;
+    let made = refinement.surface_at(share, &level_of(level, planes)?, window, context.progress)?;
     let [height, flow, lake, surface, receiver] = out else { return Ok(()) };
     if let Some(surface) = surface {
         *surface = made.height.clone();
@@ -67,6 +68,10 @@ pub fn scratch(window: &Window, halo: usize) -> u64 {
     Refinement::bytes_per_sample().saturating_mul(samples.width as u64).saturating_mul(samples.height as u64)
 }
 
-fn level_of(depth: usize, planes: &[Grid]) -> Result<Level> {
+/// The level of these planes.
+///
+/// # Errors
+/// If the planes are not those of a level.
+pub fn level_of(depth: usize, planes: &[Grid]) -> Result<Level> {
     Level::from_planes(depth, &planes.iter().collect::<Vec<_>>())
 }

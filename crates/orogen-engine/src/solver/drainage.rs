@@ -40,6 +40,8 @@ op! {
         stream: f64 = 1e6, unit "m^2", range 0.0 to 1e15;
         /// Whether cells at or below sea level are outlets.
         sea: bool = true;
+        /// Cell size of the solution; 0 uses the world's cell.
+        cell: f64 = 0.0, unit "m", range 0.0 to 1e6;
     }
     layers {
         /// Drainage area, including the cell itself.
@@ -56,6 +58,10 @@ op! {
 }
 
 impl Solver for Drainage {
+    fn cell(&self, world_cell: f64) -> f64 {
+        if self.cell > 0.0 { self.cell } else { world_cell }
+    }
+
     fn rasters(&self) -> usize {
         6
     }

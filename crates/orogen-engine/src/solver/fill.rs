@@ -22,6 +22,8 @@ op! {
     params {
         /// Whether cells at or below sea level are outlets.
         sea: bool = true;
+        /// Cell size of the solution; 0 uses the world's cell.
+        cell: f64 = 0.0, unit "m", range 0.0 to 1e6;
     }
     layers {
         /// The filled heights.
@@ -32,6 +34,10 @@ op! {
 }
 
 impl Solver for Fill {
+    fn cell(&self, world_cell: f64) -> f64 {
+        if self.cell > 0.0 { self.cell } else { world_cell }
+    }
+
     fn rasters(&self) -> usize {
         3
     }

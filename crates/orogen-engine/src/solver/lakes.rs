@@ -23,6 +23,8 @@ op! {
         smallest: f64 = 20000.0, unit "m^2", range 0.0 to 1e15;
         /// Whether cells at or below sea level are outlets.
         sea: bool = true;
+        /// Cell size of the solution; 0 uses the world's cell.
+        cell: f64 = 0.0, unit "m", range 0.0 to 1e6;
     }
     layers {
         /// The ground: unchanged under lakes, raised in depressions too small for a lake.
@@ -37,6 +39,10 @@ op! {
 }
 
 impl Solver for Lakes {
+    fn cell(&self, world_cell: f64) -> f64 {
+        if self.cell > 0.0 { self.cell } else { world_cell }
+    }
+
     fn scratch(&self, padded: &Window) -> u64 {
         memory(padded, 35)
     }

@@ -33,6 +33,8 @@ op! {
         deepest: f64 = 50.0, unit "m", range 0.0 to 1e6;
         /// Whether cells at or below sea level are outlets.
         sea: bool = true;
+        /// Cell size of the solution; 0 uses the world's cell.
+        cell: f64 = 0.0, unit "m", range 0.0 to 1e6;
     }
     layers {
         /// The ground with river beds.
@@ -47,6 +49,10 @@ op! {
 }
 
 impl Solver for Rivers {
+    fn cell(&self, world_cell: f64) -> f64 {
+        if self.cell > 0.0 { self.cell } else { world_cell }
+    }
+
     fn scratch(&self, padded: &Window) -> u64 {
         memory(padded, 40)
     }

@@ -1,7 +1,7 @@
 //! The coarsest level of land that is given: heights and their drainage, from a solver or a real place.
 
 use super::given::Given;
-use super::hash::{self, jittered};
+use super::hash::{self, JITTER};
 use super::level::{Level, invalid};
 use super::refinement::Refinement;
 use crate::error::Result;
@@ -24,7 +24,7 @@ pub struct Coarse<'a> {
 }
 
 impl Refinement {
-    /// The coarsest level over `window` of given land.
+    /// The coarsest level over `window` of given land, whose samples are in the middles of the cells: the nodes lie around them.
     ///
     /// # Errors
     /// If a parameter is out of range, the window is not one of the level, a grid covers too little, or the work is cancelled.
@@ -53,8 +53,8 @@ impl Refinement {
             for x in window.x..window.right() {
                 let draw = |stream| hash::unit(hash::node(self.seed, 0, x, y, stream));
                 let code = uncrossed(land, x, y);
-                level.east.push(jittered(draw(0)));
-                level.south.push(jittered(draw(1)));
+                level.east.push(self.around_middle(draw(0)));
+                level.south.push(self.around_middle(draw(1)));
                 level.height.push(at(land.height, x, y));
                 level.area.push((at(land.flow, x, y) / (cell * cell) as f32).max(1.0));
                 level.receiver.push(code);
@@ -63,6 +63,16 @@ impl Refinement {
             }
         }
         Ok(level)
+    }
+}
+
+impl Refinement {
+    /// The share of a coarsest cell at which a node lies, from a number from 0 to 1: on average the middle of the cell, at most as far from it as nodes
+    /// of other levels, and within the cell.
+    fn around_middle(&self, draw: f32) -> f32 {
+        let middle = 0.5 + self.half_finest(0);
+        let width = JITTER.min(2.0 * (1.0 - middle));
+        middle + width * (draw - 0.5)
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::random::{STEP, mix64};
 
 /// Displacement of nodes: the share of a cell in which they are.
-const JITTER: f32 = 0.8;
+pub const JITTER: f32 = 0.8;
 
 /// 64 random bits of the node at column `x` and row `y` of a level.
 #[inline(always)]

@@ -7,7 +7,8 @@ use crate::grid::Window;
 /// Levels of land, each made from the one above it: rivers keep their course, and branches and slopes grow between them.
 ///
 /// The node (i, j) of the finest level is exactly at (i cell, j cell). On a coarser level with cell c, the node of sample (i, j) is at
-/// ((i + east) c - cell / 2, (j + south) c - cell / 2), where `cell` is that of the finest level.
+/// ((i + east) c - cell / 2, (j + south) c - cell / 2), where `cell` is that of the finest level. Given land has its samples (i, j) in the middles of
+/// the coarsest cells, at ((i + 0.5) c, (j + 0.5) c).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Refinement {
@@ -68,6 +69,12 @@ impl Refinement {
     /// The coordinate, in metres, of a node of column or row `index` at `share` of its cell.
     pub(super) fn metres(&self, depth: usize, index: i64, share: f32) -> f64 {
         (index as f64 + f64::from(share)) * self.cell_of(depth) - 0.5 * self.cell
+    }
+
+    /// Half a cell of the finest level, in cells of a level: nodes and points are that much further inside their cells, because the nodes of the finest
+    /// level are in the middles of its cells.
+    pub(super) fn half_finest(&self, depth: usize) -> f32 {
+        (0.5 * self.cell / self.cell_of(depth)) as f32
     }
 
     /// Whether a level is the finest.

@@ -55,6 +55,15 @@ impl Refinement {
     /// # Errors
     /// If the level covers too little, the window is not one of the level, or the work is cancelled.
     pub fn surface(&self, level: &Level, window: &Window, progress: &Progress) -> Result<Surface> {
+        self.surface_at(0.0, level, window, progress)
+    }
+
+    /// The same at a position within the cells of a coarser level: at `share` of their sides, 0 for the lattice points of [`Refinement::surface`],
+    /// 0.5 for the middles. On the finest level points are always at its nodes.
+    ///
+    /// # Errors
+    /// Those of [`Refinement::surface`].
+    pub fn surface_at(&self, share: f32, level: &Level, window: &Window, progress: &Progress) -> Result<Surface> {
         self.check(level.depth, window)?;
         if !level.window.contains(&window.grown(Refinement::SURFACE_REACH)) {
             return Err(invalid(format!(
@@ -76,7 +85,7 @@ impl Refinement {
             progress.step(1.0)?;
             for i in 0..window.width {
                 let q = (top + j) * level.window.width + left + i;
-                let point = if self.is_finest(level.depth) { node(level, q) } else { self.between(level, q) };
+                let point = if self.is_finest(level.depth) { node(level, q) } else { self.between(share, level, q) };
                 surface.height[(i, j)] = point.height;
                 surface.flow[(i, j)] = point.area * square_metres;
                 surface.lake_depth[(i, j)] = point.lake_depth;
@@ -87,10 +96,11 @@ impl Refinement {
         Ok(surface)
     }
 
-    /// The point at the north-western corner of cell `q`, half a finest cell inside, from the nodes of the 4 x 4 cells around the corner.
-    fn between(&self, level: &Level, q: usize) -> Point {
+    /// The point at a share of the sides of cell `q`, half a finest cell further inside, from the nodes of 4 x 4 cells. Around a corner these are all
+    /// that count; around a middle, of 3 x 3 cells.
+    fn between(&self, share: f32, level: &Level, q: usize) -> Point {
         let width = level.window.width;
-        let inside = (0.5 * self.cell / self.cell_of(level.depth)) as f32;
+        let inside = share + self.half_finest(level.depth);
         let (mut land, mut water) = (Plane::default(), Plane::default());
         let (mut shore, mut nearest, mut nearest_water) = (Plane::default(), (f32::INFINITY, q), (f32::INFINITY, q));
         for (row, south) in (0..4).map(|row| (q + row * width - 2 * width - 2, row as f32 - 2.0)) {

@@ -1,0 +1,94 @@
+//! Where the land that `amplify` makes lies.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
+
+use orogen_engine::{Grid, Progress, Recipe, Window, World};
+
+/// Mountains solved at 480 m and refined `halvings` times.
+fn ranges(halvings: u32) -> World {
+    let cell = 480.0 / f64::from(1 << halvings);
+    let text = format!(
+        r#"
+orogen = 1
+world = {{ seed = 3, size = 46080.0, cell = {cell} }}
+[nodes.lift]
+op = "fbm"
+wavelength = 20000.0
+octaves = 2
+[nodes.uplift]
+op = "expr"
+expr = "exp(lift * 2.0)"
+[nodes.ranges]
+op = "stream-power"
+source = 300.0
+uplift_factor = "uplift"
+cell = 480.0
+margin = 9600.0
+years = 5e6
+steps = 40
+erodibility = 6e-6
+uplift = 0.7
+talus_angle = 45.0
+jitter = 0.0
+[nodes.terrain]
+op = "amplify"
+source = "ranges"
+flow = "ranges.flow"
+uplift = "uplift"
+cell = {cell}
+halvings = {halvings}
+[outputs]
+height = "terrain"
+ranges = "ranges"
+"#
+    );
+    World::open(Recipe::parse(&text, "ranges").unwrap()).unwrap()
+}
+
+/// The shift of `land` against `reference`, in samples: the least squares fit of reference - shift * gradient, with a factor and an offset of heights.
+fn shift(land: &Grid, reference: &Grid) -> [f64; 2] {
+    let (width, height) = (land.width(), land.height());
+    // Sums for the normal equations of the unknowns shift east, shift south, factor and offset.
+    let mut sums = [[0.0f64; 5]; 4];
+    for j in 1..height - 1 {
+        for i in 1..width - 1 {
+            let at = |i: usize, j: usize| f64::from(reference[(i, j)]);
+            let east = (at(i + 1, j) - at(i - 1, j)) / 2.0;
+            let south = (at(i, j + 1) - at(i, j - 1)) / 2.0;
+            let row = [-east, -south, at(i, j), 1.0, f64::from(land[(i, j)])];
+            for (sums, left) in sums.iter_mut().zip(row) {
+                sums.iter_mut().zip(row).for_each(|(sum, right)| *sum += left * right);
+            }
+        }
+    }
+    for pivot in 0..4 {
+        let of = sums[pivot];
+        for row in sums.iter_mut().skip(pivot + 1) {
+            let factor = row[pivot] / of[pivot];
+            row.iter_mut().zip(of).for_each(|(sum, of)| *sum -= factor * of);
+        }
+    }
+    let mut solved = [0.0; 4];
+    for row in (0..4).rev() {
+        let known: f64 = (row + 1..4).map(|k| sums[row][k] * solved[k]).sum();
+        solved[row] = (sums[row][4] - known) / sums[row][row];
+    }
+    [solved[0], solved[1]]
+}
+
+#[test]
+fn every_level_lies_where_its_source_lies() {
+    for halvings in 1..=3u32 {
+        let world = ranges(halvings);
+        for level in 0..=halvings {
+            let cell = 480.0 / f64::from(1 << level);
+            let samples = 96 << level;
+            let window = Window::new(samples, samples, cell);
+            let grids = world.grids(&["height", "ranges"], &window, &Progress::none()).unwrap();
+            let [east, south] = shift(&grids[0], &grids[1]).map(|samples| samples * cell / 480.0);
+            assert!(
+                east.abs() < 0.06 && south.abs() < 0.06,
+                "{halvings} halvings, level {level}: {east:.3}, {south:.3}"
+            );
+        }
+    }
+}
