@@ -1,6 +1,6 @@
 //! Coarse land with ever smaller valleys.
 
-use super::drained;
+use super::drained::{self, Reading};
 use crate::declare::Declared;
 use crate::op::{Context, Levelled, Levels, halved};
 use orogen_grid::error::{Error, ErrorKind, Result};
@@ -50,6 +50,10 @@ op! {
         creep: f64 = 1.0, range 0.0 to 5.0;
         /// Factor of the variation of the rock, which each level adds to: 0 makes even slopes and straight side valleys.
         variation: f64 = 1.0, range 0.0 to 4.0;
+        /// Drainage area from which on there is a river, for `width` and `depth`.
+        stream: f64 = 1e6, unit "m^2", range 0.0 to 1e15;
+        /// Runoff from the ground: a river with discharge Q (m^3/s) is 5 Q^0.5 m wide and 0.3 Q^0.4 m deep (Leopold and Maddock 1953).
+        runoff: f64 = 0.5, unit "m/yr", range 0.0 to 1000.0;
     }
     layers {
         /// Height of the ground, and of the beds of lakes and the sea.
@@ -62,6 +66,10 @@ op! {
         surface: height, unit "m";
         /// Flow direction, clockwise from east (0) to north-east (7); 8 in water.
         receiver: label;
+        /// Width of the river; 0 outside rivers.
+        width: label, unit "m";
+        /// Depth of the river from bank to bed; 0 outside rivers.
+        depth: label, unit "m";
     }
 }
 
@@ -173,7 +181,8 @@ impl Levelled for Amplify {
     ) -> Result<()> {
         // The samples of level 0 are those of the source, in the middles of its cells; those of finer levels are at the corners of theirs.
         let share = if level == 0 { 0.5 } else { 0.0 };
-        drained::layers_of(&self.seeded(context), share, level, planes, window, out, context)
+        let reading = Reading { share, stream: self.stream, runoff: self.runoff };
+        drained::layers_of(&self.seeded(context), &reading, level, planes, window, out, context)
     }
 
     fn cost(&self, level: usize) -> f64 {

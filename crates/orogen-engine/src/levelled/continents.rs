@@ -1,6 +1,6 @@
 //! Continents with rivers, without bounds.
 
-use super::drained;
+use super::drained::{self, Reading};
 use crate::op::{Context, Levelled, Levels};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -54,6 +54,10 @@ op! {
         size: f64 = 1.0, range 0.01 to 100.0;
         /// Share of the suitable inland basins that hold a lake without an outlet. All other land drains to the sea.
         basins: f64 = 0.8, range 0.0 to 1.0;
+        /// Drainage area from which on there is a river, for `width` and `depth`.
+        stream: f64 = 1e6, unit "m^2", range 0.0 to 1e15;
+        /// Runoff from the ground: a river with discharge Q (m^3/s) is 5 Q^0.5 m wide and 0.3 Q^0.4 m deep (Leopold and Maddock 1953).
+        runoff: f64 = 0.5, unit "m/yr", range 0.0 to 1000.0;
     }
     layers {
         /// Height of the ground, and of the beds of lakes and the sea.
@@ -66,6 +70,10 @@ op! {
         surface: height, unit "m";
         /// Flow direction, clockwise from east (0) to north-east (7); 8 in water.
         receiver: label;
+        /// Width of the river; 0 outside rivers.
+        width: label, unit "m";
+        /// Depth of the river from bank to bed; 0 outside rivers.
+        depth: label, unit "m";
     }
 }
 
@@ -144,7 +152,8 @@ impl Levelled for Continents {
         out: &mut [Option<Grid>],
         context: &Context,
     ) -> Result<()> {
-        drained::layers_of(&self.refinement(), 0.0, level, planes, window, out, context)
+        let reading = Reading { share: 0.0, stream: self.stream, runoff: self.runoff };
+        drained::layers_of(&self.refinement(), &reading, level, planes, window, out, context)
     }
 
     fn cost(&self, level: usize) -> f64 {

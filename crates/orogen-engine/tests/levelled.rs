@@ -1,4 +1,4 @@
-//! Where the land that `amplify` makes lies.
+//! Where the land that levelled ops make lies, and its rivers.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
 use orogen_engine::{Grid, Progress, Recipe, Window, World};
@@ -91,4 +91,40 @@ fn every_level_lies_where_its_source_lies() {
             );
         }
     }
+}
+
+#[test]
+fn rivers_have_a_width_and_a_depth_that_follow_from_their_area() {
+    let text = r#"
+orogen = 1
+world = { seed = 3, cell = 240.0 }
+[nodes.land]
+op = "continents"
+cell = 240.0
+halvings = 9
+stream = 4e6
+runoff = 0.8
+[outputs]
+height = "land"
+flow = "land.flow"
+surface = "land.surface"
+width = "land.width"
+depth = "land.depth"
+"#;
+    let world = World::open(Recipe::parse(text, "rivers").unwrap()).unwrap();
+    let window = Window::new(200, 200, 240.0).at(-100, -100);
+    let names = ["height", "flow", "surface", "width", "depth"];
+    let grids = world.grids(&names, &window, &Progress::none()).unwrap();
+    let [height, flow, surface, width, depth] = [0, 1, 2, 3, 4].map(|k| grids[k].data());
+    let mut rivers = 0;
+    for q in 0..window.len() {
+        let discharge = f64::from(flow[q]) * 0.8 / 31_557_600.0;
+        let is_river = flow[q] >= 4e6 && surface[q] == height[q];
+        rivers += usize::from(is_river);
+        let wanted = if is_river { [5.0 * discharge.sqrt(), 0.3 * discharge.powf(0.4)] } else { [0.0; 2] };
+        for (value, wanted) in [(width[q], wanted[0]), (depth[q], wanted[1])] {
+            assert!((f64::from(value) - wanted).abs() <= 1e-5 * wanted, "{value} m, not {wanted}");
+        }
+    }
+    assert!((100..window.len() / 2).contains(&rivers), "{rivers} cells of rivers");
 }
