@@ -31,7 +31,7 @@ pub fn refine(
     Ok(refinement.refine(&level_of(level - 1, parent)?, given, window, context.progress)?.into_planes())
 }
 
-/// The layers height, flow, lake, surface and receiver.
+/// The layers height, flow, lake, surface and receiver, and those of the nodes, if the op has them: height, flow, receiver, east and south.
 ///
 /// # Errors
 /// If the planes are not those of a level, or the work was cancelled.
@@ -43,8 +43,13 @@ pub fn layers_of(
     out: &mut [Option<Grid>],
     context: &Context,
 ) -> Result<()> {
-    let made = refinement.surface(&level_of(level, planes)?, window, context.progress)?;
-    let [height, flow, lake, surface, receiver] = out else { return Ok(()) };
+    let level = level_of(level, planes)?;
+    let [height, flow, lake, surface, receiver, nodes @ ..] = out else { return Ok(()) };
+    nodes_of(refinement, &level, window, nodes);
+    if [&height, &flow, &lake, &surface, &receiver].iter().all(|layer| layer.is_none()) {
+        return Ok(());
+    }
+    let made = refinement.surface(&level, window, context.progress)?;
     if let Some(surface) = surface {
         *surface = made.height.clone();
         for (surface, water) in surface.data_mut().iter_mut().zip(made.water_level.data()) {
@@ -58,6 +63,27 @@ pub fn layers_of(
     let layers = [(height, made.height), (flow, made.flow), (lake, made.lake_depth)];
     layers.into_iter().for_each(|(out, made)| *out = out.take().map(|_| made));
     Ok(())
+}
+
+/// The nodes of a level's cells.
+fn nodes_of(refinement: &Refinement, level: &Level, window: &Window, out: &mut [Option<Grid>]) {
+    let cell = refinement.cell_of(level.depth);
+    // The nodes of the finest level are at the samples.
+    let metres = |share: f32| (f64::from(share) * cell - 0.5 * refinement.cell) as f32;
+    let (left, top) = ((window.x - level.window.x) as usize, (window.y - level.window.y) as usize);
+    let fill = |out: &mut Option<Grid>, value: &dyn Fn(usize) -> f32| {
+        for j in 0..out.as_ref().map_or(0, Grid::height) {
+            let first = (top + j) * level.window.width + left;
+            let row = out.as_mut().map(|out| out.row_mut(j)).into_iter().flatten();
+            row.enumerate().for_each(|(i, sample)| *sample = value(first + i));
+        }
+    };
+    let [height, flow, receiver, east, south] = out else { return };
+    fill(height, &|node| level.height[node]);
+    fill(flow, &|node| level.area[node] * (cell * cell) as f32);
+    fill(receiver, &|node| f32::from(level.receiver[node]));
+    fill(east, &|node| metres(level.east[node]));
+    fill(south, &|node| metres(level.south[node]));
 }
 
 /// Memory for making a level over a window whose children extend by `halo` beyond it, in bytes.
