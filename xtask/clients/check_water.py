@@ -1,4 +1,5 @@
-"""Checks water features with GDAL, SQLite and Shapely: equal in every format, valid areas without gaps, beds that never rise, joined reaches."""
+"""Checks water features with GDAL, SQLite and Shapely: equal in every format, valid areas without gaps, beds that never rise, joined reaches, and windows
+of an unbounded world that continue each other."""
 
 import json
 import sqlite3
@@ -63,6 +64,7 @@ def rivers_join(name, rivers, lines, lakes, areas, coasts):
             checks.that(f"{name}: reach {ids[k]} leaves its lake at the shore", shapely.distance(shore[k_lake], shapely.Point(part[0])) < 1e-6)
         if follows is not None:
             falls += part[-1, 2] < parts[follows][0, 2]
+            # Unknown orders are NaN, which no comparison holds for.
             grows += rivers["drainage_area"][follows] < rivers["drainage_area"][k] or rivers["strahler"][follows] < rivers["strahler"][k]
     checks.equal(f"{name}: every reach ends in a reach, a lake, the sea or at the border, and shares that point", joined, mouths)
     checks.equal(f"{name}: nowhere is the next reach higher, or smaller", (falls, grows), (0, 0))
@@ -103,6 +105,68 @@ DEGREES = WORK / "degrees.tif"
 step = 30 / 111_195
 with rasterio.open(DEGREES, "w", crs="EPSG:4326", transform=rasterio.transform.from_origin(11, 1, step, step), **profile) as out:
     out.write(heights, 1)
+
+
+
+def halves(name, x, y, side, cell):
+    """Checks that the water of two neighbouring windows of `endless` is that of both together."""
+    layers = ["rivers", "lakes", "coast", "watersheds"]
+
+    def water(part, window):
+        path = export("endless", f"{name}_{part}.gpkg", "--window", ",".join(map(str, window)), "--cell", str(cell), "--layer", ",".join(layers))
+        return {layer: read(path, layer) for layer in layers}
+
+    west, east = water("west", (x, y, side, side)), water("east", (x + side, y, side, side))
+    whole = water("whole", (x, y, 2 * side, side))
+    # The border is halfway between the last column and the first.
+    border = (x + side - 0.5) * cell
+    ends, areas = {}, {}
+    for part in (west, east):
+        rivers, lines, _ = part["rivers"]
+        for k, line in enumerate(lines):
+            points = shapely.get_coordinates(line, include_z=True)
+            for at, kind in ((points[0], "source"), (points[-1], "mouth")):
+                if at[0] == border:
+                    checks.equal(f"{name}: reach {rivers['id'][k]} knows the border", rivers[kind][k], "border")
+                    ends.setdefault(tuple(at), []).append(kind)
+                    areas.setdefault(tuple(at), []).append(rivers["drainage_area"][k])
+    checks.that(f"{name}: every reach at the border goes on at the same point", ends and all(sorted(kinds) == ["mouth", "source"] for kinds in ends.values()), ends)
+    kept = [dict(zip(ends[at], found)) for at, found in areas.items() if len(found) == 2]
+    checks.that(f"{name}: rivers bring their areas across the border", all(found["source"] >= 0.95 * found["mouth"] for found in kept), kept)
+    both = {layer: [part[layer][1] for part in (west, east)] for layer in layers}
+    for layer in ("rivers", "coast"):
+        lengths = [sum(shapely.length(part).sum() for part in both[layer]), shapely.length(whole[layer][1]).sum()]
+        checks.near(f"{name}: {layer} of both windows have the length of the whole", lengths[0], lengths[1], 1e-9 * max(lengths[1], 1))
+        parts = shapely.union_all([shapely.union_all(part) for part in both[layer]])
+        apart = shapely.hausdorff_distance(parts, shapely.union_all(whole[layer][1])) if lengths[1] > 0 else 0
+        checks.near(f"{name}: {layer} of both windows are those of the whole", apart, 0, 2e-6 * cell)
+    for layer in ("lakes", "watersheds"):
+        valid = all(shapely.is_valid(part).all() for part in both[layer])
+        checks.that(f"{name}: {layer} cut at the border are valid", valid)
+        sums = [sum(shapely.area(part).sum() for part in both[layer]), shapely.area(shapely.union_all([shapely.union_all(part) for part in both[layer]]))]
+        checks.near(f"{name}: {layer} of both windows do not overlap", sums[0], sums[1], 1e-9 * max(sums[0], 1))
+    lakes = [shapely.union_all([shapely.union_all(part) for part in both["lakes"]]), shapely.union_all(whole["lakes"][1])]
+    checks.near(f"{name}: lakes have no gap at the border", shapely.area(shapely.symmetric_difference(*lakes)), 0, 1e-9 * max(lakes[1].area, 1))
+    unknown = whole["rivers"][0]["strahler"].astype(float)
+    checks.that(f"{name}: orders are known where a river rises in the window only", numpy.isnan(unknown).any() and (unknown == 1).any())
+    for part, found in (("west", west), ("east", east), ("whole", whole)):
+        rivers_continue(f"{name} {part}", *found["rivers"][:2])
+    print(f"{name}: {len(ends)} crossings, {len(whole['rivers'][1])} reaches, {len(whole['lakes'][1])} lakes, {len(whole['coast'][1])} coasts")
+
+
+def rivers_continue(name, rivers, lines):
+    """Checks that reaches join, fall and end."""
+    at = {int(number): k for k, number in enumerate(rivers["id"])}
+    parts = [shapely.get_coordinates(line, include_z=True) for line in lines]
+    checks.that(f"{name}: beds never rise", all((numpy.diff(part[:, 2]) <= 0).all() for part in parts))
+    joined = [(parts[at[int(next)]][0] == parts[k][-1]).all() for k, next in enumerate(rivers["downstream"]) if not numpy.isnan(next)]
+    checks.that(f"{name}: reaches join", joined and all(joined))
+    checks.that(f"{name}: following the ids downstream ends", all(ends(k, rivers["downstream"], at) for k in range(len(parts))))
+
+
+# Mountains, a coast, the land around a large lake and large rivers.
+for case in [("mountains", 0, 0, 200, 60), ("coast", -200, -200, 200, 960), ("lake", 4670, 560, 240, 240), ("rivers", -150, -150, 150, 7680)]:
+    halves(*case)
 
 # The last column is the minimum share of banks above their river.
 CASES = [

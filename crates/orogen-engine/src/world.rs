@@ -374,10 +374,26 @@ impl World {
     /// The errors of [`World::plan`] and [`World::run`].
     #[doc(hidden)]
     pub fn grid_beside(&self, layer: &str, window: &Window, beside: u64, progress: &Progress) -> Result<Grid> {
-        let plan = self.planned(&[self.target(layer)?], *window, false)?;
-        self.session.budget.afford(self.memory_of(&plan)?.saturating_add(beside))?;
-        let mut grids = self.run(&plan, progress)?;
+        let mut grids = self.grids_beside(&[layer], window, beside, progress)?;
         grids.pop().ok_or_else(|| Error::new(ErrorKind::Request, "no layer was requested"))
+    }
+
+    /// [`World::grid_beside`] for several layers, made together.
+    ///
+    /// # Errors
+    /// The errors of [`World::plan`] and [`World::run`].
+    #[doc(hidden)]
+    pub fn grids_beside(
+        &self,
+        layers: &[&str],
+        window: &Window,
+        beside: u64,
+        progress: &Progress,
+    ) -> Result<Vec<Grid>> {
+        let targets = layers.iter().map(|layer| self.target(layer)).collect::<Result<Vec<_>>>()?;
+        let plan = self.planned(&targets, *window, false)?;
+        self.session.budget.afford(self.memory_of(&plan)?.saturating_add(beside))?;
+        self.run(&plan, progress)
     }
 
     /// Makes one layer over a window.

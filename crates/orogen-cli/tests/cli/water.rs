@@ -5,7 +5,7 @@ use crate::harness::Folder;
 #[test]
 fn water_goes_into_formats_of_features() {
     let folder = Folder::new();
-    let line = |args: &[&'static str]| [&["export", "archipelago", "--cell", "160"], args].concat();
+    let line = |args: &[&'static str]| [&["export", "fjords", "--seed", "3", "--cell", "240"], args].concat();
     let said = |args: &[&'static str]| folder.good(&line(args)).text().to_string();
     let all = "rivers,lakes,watersheds,summits,coast,contours";
     let told = said(&["-o", "w.gpkg", "--layer", all]);
@@ -27,7 +27,7 @@ fn water_goes_into_formats_of_features() {
 #[test]
 fn meshes_carry_water() {
     let folder = Folder::new();
-    let line = |args: &[&'static str]| [&["export", "archipelago", "--cell", "160"], args].concat();
+    let line = |args: &[&'static str]| [&["export", "fjords", "--seed", "3", "--cell", "240"], args].concat();
     let plain = folder.good(&line(&["-o", "plain.glb"])).text().to_string();
     let wet = folder.good(&line(&["-o", "wet.glb", "--water", "--max-error", "10"])).text().to_string();
     assert!(!plain.contains("sea") && wet.contains("rivers, lakes, sea"), "{wet}");
@@ -61,7 +61,7 @@ fn what_cannot_be_is_refused() {
         (&["-o", "x.glb", "--layer", "slope", "--water"], "--water applies to the layer `height`"),
         (&["-o", "x.gpkg", "--layer", "rivers", "--memory", "1MiB"], "memory"),
     ] {
-        let outcome = folder.run(&[&["export", "archipelago", "--cell", "160"], args].concat());
+        let outcome = folder.run(&[&["export", "fjords", "--seed", "3", "--cell", "240"], args].concat());
         assert!(outcome.code != 0 && outcome.err.contains(expect), "{args:?}: {}", outcome.err);
         assert!(folder.names("").is_empty(), "{args:?}");
     }

@@ -74,6 +74,17 @@ op! {
         width: label, unit "m";
         /// Depth of the river from bank to bed; 0 outside rivers.
         depth: label, unit "m";
+        /// Height of the node in the cell south-east of the sample; the water level of water. It falls from each node to its receiver. At the finest level
+        /// nodes are at the samples; on coarser levels the other layers are interpolated between them, or are those of the nearest one.
+        node_height: label, unit "m";
+        /// Drainage area of this node, including its cell.
+        node_flow: label, unit "m^2";
+        /// Flow direction of this node, to the node in the next cell; 8 in water.
+        node_receiver: label;
+        /// Distance of this node east of the sample.
+        node_east: label, unit "m";
+        /// Distance of this node south of the sample.
+        node_south: label, unit "m";
     }
 }
 

@@ -42,7 +42,7 @@ pub struct Reading {
     pub runoff: f64,
 }
 
-/// The layers height, flow, lake, surface, receiver, width and depth.
+/// The layers height, flow, lake, surface, receiver, width and depth, and those of the nodes, if the op has them: height, flow, receiver, east and south.
 ///
 /// # Errors
 /// If the planes are not those of a level, or the work was cancelled.
@@ -55,8 +55,13 @@ pub fn layers_of(
     out: &mut [Option<Grid>],
     context: &Context,
 ) -> Result<()> {
-    let made = refinement.surface_at(reading.share, &level_of(level, planes)?, window, context.progress)?;
-    let [height, flow, lake, surface, receiver, width, depth] = out else { return Ok(()) };
+    let level = level_of(level, planes)?;
+    let [height, flow, lake, surface, receiver, width, depth, nodes @ ..] = out else { return Ok(()) };
+    nodes_of(refinement, &level, window, nodes);
+    if [&height, &flow, &lake, &surface, &receiver, &width, &depth].iter().all(|layer| layer.is_none()) {
+        return Ok(());
+    }
+    let made = refinement.surface_at(reading.share, &level, window, context.progress)?;
     if let Some(surface) = surface {
         *surface = made.height.clone();
         for (surface, water) in surface.data_mut().iter_mut().zip(made.water_level.data()) {
@@ -68,18 +73,40 @@ pub fn layers_of(
         codes.for_each(|(out, code)| *out = f32::from(*code));
     }
     let channel = Channel::default().with_runoff(reading.runoff);
-    let sizes: [(_, fn(&Channel, f64) -> f64); 2] = [(width, Channel::width_of), (depth, Channel::depth_of)];
-    for (size, of) in sizes {
-        let Some(size) = size else { continue };
-        for ((size, area), water) in size.data_mut().iter_mut().zip(made.flow.data()).zip(made.water_level.data()) {
+    let write = |layer: &mut Option<Grid>, of: &dyn Fn(f64) -> f64| {
+        let Some(layer) = layer else { return };
+        for ((size, area), water) in layer.data_mut().iter_mut().zip(made.flow.data()).zip(made.water_level.data()) {
             let area = f64::from(*area);
-            let river = area >= reading.stream && water.is_nan();
-            *size = if river { of(&channel, channel.discharge(area)) as f32 } else { 0.0 };
+            let is_river = area >= reading.stream && water.is_nan();
+            *size = if is_river { of(channel.discharge(area)) as f32 } else { 0.0 };
         }
-    }
+    };
+    write(width, &|discharge| channel.width_of(discharge));
+    write(depth, &|discharge| channel.depth_of(discharge));
     let layers = [(height, made.height), (flow, made.flow), (lake, made.lake_depth)];
     layers.into_iter().for_each(|(out, made)| *out = out.take().map(|_| made));
     Ok(())
+}
+
+/// The nodes of a level's cells.
+fn nodes_of(refinement: &Refinement, level: &Level, window: &Window, out: &mut [Option<Grid>]) {
+    let cell = refinement.cell_of(level.depth);
+    // The nodes of the finest level are at the samples.
+    let metres = |share: f32| (f64::from(share) * cell - 0.5 * refinement.cell) as f32;
+    let (left, top) = ((window.x - level.window.x) as usize, (window.y - level.window.y) as usize);
+    let fill = |out: &mut Option<Grid>, value: &dyn Fn(usize) -> f32| {
+        for j in 0..out.as_ref().map_or(0, Grid::height) {
+            let first = (top + j) * level.window.width + left;
+            let row = out.as_mut().map(|out| out.row_mut(j)).into_iter().flatten();
+            row.enumerate().for_each(|(i, sample)| *sample = value(first + i));
+        }
+    };
+    let [height, flow, receiver, east, south] = out else { return };
+    fill(height, &|node| level.height[node]);
+    fill(flow, &|node| level.area[node] * (cell * cell) as f32);
+    fill(receiver, &|node| f32::from(level.receiver[node]));
+    fill(east, &|node| metres(level.east[node]));
+    fill(south, &|node| metres(level.south[node]));
 }
 
 /// Memory for making a level over a window whose children extend by `halo` beyond it, in bytes.

@@ -3,6 +3,7 @@
 pub mod document;
 pub mod graph;
 mod json;
+pub mod network;
 pub mod parameters;
 mod parse;
 pub mod presets;

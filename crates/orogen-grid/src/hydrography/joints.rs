@@ -2,6 +2,8 @@
 
 use std::collections::HashMap;
 
+use super::given::snapped;
+
 /// A shore: an open line or a ring, whose last point repeats its first.
 pub type Path = Vec<[f64; 2]>;
 
@@ -13,6 +15,8 @@ pub struct Joints<'a> {
     squares: HashMap<[i64; 2], Vec<(u32, u32)>>,
     /// Line, segment, position along it (0 to 1), and the point.
     found: Vec<(u32, u32, f64, [f64; 2])>,
+    /// Whether crossings are snapped.
+    is_snapped: bool,
 }
 
 impl<'a> Joints<'a> {
@@ -26,7 +30,13 @@ impl<'a> Joints<'a> {
                 touched(pair[0], pair[1], |square| squares.entry(square).or_default().push((k as u32, i as u32)));
             }
         }
-        Joints { lines, waters, squares, found: Vec::new() }
+        Joints { lines, waters, squares, found: Vec::new(), is_snapped: false }
+    }
+
+    /// The same with crossings that have the same bits in every window.
+    #[must_use]
+    pub fn snapped(self) -> Joints<'a> {
+        Joints { is_snapped: true, ..self }
     }
 
     /// The first crossing of a path with the shore of a water: the index of the path's segment, the position along it
@@ -57,6 +67,7 @@ impl<'a> Joints<'a> {
                     1.0 => ends[1],
                     other => {
                         let at = [0, 1].map(|c| ends[0][c] + (ends[1][c] - ends[0][c]) * other);
+                        let at = if self.is_snapped { at.map(snapped) } else { at };
                         if at != ends[0] && at != ends[1] {
                             self.found.push((line, segment, other, at));
                         }
@@ -74,7 +85,9 @@ impl<'a> Joints<'a> {
     pub fn nearest(&self, [x, y]: [f64; 2], water: u32) -> Option<[f64; 2]> {
         let (column, row) = (x.floor() as i64, y.floor() as i64);
         let mut best: Option<(f64, [f64; 2])> = None;
-        for square in (-3..=3).flat_map(|v| (-3..=3).map(move |u| [column + u, row + v])) {
+        // On coarse levels, inlets of a given network may be narrower than the samples show.
+        let reach = if self.is_snapped { 6 } else { 3 };
+        for square in (-reach..=reach).flat_map(|v| (-reach..=reach).map(move |u| [column + u, row + v])) {
             for (line, segment) in self.squares.get(&square).into_iter().flatten() {
                 let at = self.lines[*line as usize][*segment as usize];
                 let far = (at[0] - x) * (at[0] - x) + (at[1] - y) * (at[1] - y);

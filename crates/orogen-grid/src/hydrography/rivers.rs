@@ -6,6 +6,7 @@
 
 use std::collections::HashMap;
 
+use super::clip::{Piece, Rectangle};
 use super::joints::Joints;
 use super::shores::Shores;
 use super::water::{Cover, Frame, Water};
@@ -39,10 +40,10 @@ pub enum Mouth {
 pub struct River {
     /// Column, row and height of each point, downstream.
     pub points: Vec<[f64; 3]>,
-    /// Strahler order.
+    /// Strahler order; 0 if it is unknown, because water runs in from outside a given network.
     pub order: u8,
     /// Number of samples that drain to its end.
-    pub drained: u32,
+    pub drained: f64,
     /// The first land sample of the reach.
     pub start: u32,
     /// The last sample that belongs to this reach only; the next one belongs to another reach or to water.
@@ -78,6 +79,69 @@ const SEA: u32 = 0;
 
 /// The reaches within a frame, smoothed `rounds` times. Their crossings with the shores are inserted into `shores`.
 pub fn rivers(water: &Water, frame: &Frame, rounds: usize, shores: &mut Shores) -> Vec<River> {
+    traced(water, frame, rounds, shores).into_iter().map(|(river, _)| river).collect()
+}
+
+/// The reaches of a given network within a rectangle: lines of the whole grid, smoothed, ended at the shores of the whole grid and then cut. Where
+/// the rectangles of two windows have a common side, the parts of a reach meet in the same point, as long as both grids extend some samples
+/// beyond the side. A reach that leaves and comes back is several.
+pub fn rivers_within(
+    water: &Water,
+    frame: &Frame,
+    rectangle: &Rectangle,
+    rounds: usize,
+    shores: &mut Shores,
+) -> Vec<River> {
+    let all = traced(water, &Frame::whole(water), rounds, shores);
+    let mut parts: Vec<River> = Vec::new();
+    // The part with which each reach begins, if that is within the rectangle.
+    let mut first: Vec<Option<u32>> = vec![None; all.len()];
+    for (k, (river, cells)) in all.iter().enumerate() {
+        for piece in rectangle.pieces(&river.points).into_iter().filter(|piece| piece.points.len() > 1) {
+            if !piece.enters {
+                first[k] = Some(parts.len() as u32);
+            }
+            parts.push(part(water, frame, river, cells, piece));
+        }
+    }
+    for river in &mut parts {
+        if let Mouth::Reach(next) = river.mouth {
+            river.downstream = first[next as usize];
+            river.mouth = river.downstream.map_or(Mouth::Border, Mouth::Reach);
+        }
+    }
+    parts
+}
+
+/// A part of a reach.
+fn part(water: &Water, frame: &Frame, river: &River, cells: &[u32], piece: Piece) -> River {
+    // Points and nodes have the same indices, but the last points of a line may be cut off at a shore.
+    let at = |k: usize| cells[k.min(cells.len().saturating_sub(1))];
+    let own = cells.partition_point(|cell| *cell != river.end).min(cells.len().saturating_sub(1));
+    let inner = piece.inner.clone();
+    let start = if piece.enters { at(inner.start.saturating_sub(usize::from(inner.is_empty()))) } else { river.start };
+    let end = if !piece.leaves {
+        river.end
+    } else {
+        // A smoothed line may leave before or after its nodes do: watersheds need a node of the frame.
+        let last = inner.end.saturating_sub(1).min(own);
+        let nodes = cells[inner.start.min(last)..=last].iter().rev().copied();
+        nodes.into_iter().find(|cell| frame.holds(water, *cell as usize)).unwrap_or(cells[last])
+    };
+    River {
+        points: piece.points,
+        order: river.order,
+        drained: water.drained(end as usize),
+        start,
+        end,
+        source: if piece.enters { Source::Border } else { river.source },
+        mouth: if piece.leaves { Mouth::Border } else { river.mouth },
+        downstream: None,
+    }
+}
+
+/// The reaches within a frame, each with its nodes.
+fn traced(water: &Water, frame: &Frame, rounds: usize, shores: &mut Shores) -> Vec<(River, Vec<u32>)> {
     let mut stretches: Vec<Stretch> = Vec::new();
     // The first stretch of each reach of the network, and the stretch that leaves each lake.
     let mut of_network: HashMap<u32, u32> = HashMap::new();
@@ -98,8 +162,9 @@ pub fn rivers(water: &Water, frame: &Frame, rounds: usize, shores: &mut Shores) 
             stretches.push(stretch);
         }
     }
-    let mut joints = Joints::new(&shores.lines, &shores.waters);
-    let made: Vec<River> = (stretches.iter())
+    let joints = Joints::new(&shores.lines, &shores.waters);
+    let mut joints = if water.network.is_some() { joints.snapped() } else { joints };
+    let made: Vec<(River, Vec<u32>)> = (stretches.iter())
         .map(|stretch| {
             let mouth = match stretch.mouth {
                 End::Network(next) => of_network.get(&next).map_or(Mouth::Border, |next| Mouth::Reach(*next)),
@@ -114,11 +179,13 @@ pub fn rivers(water: &Water, frame: &Frame, rounds: usize, shores: &mut Shores) 
             };
             let points = line(water, stretch, mouth, rounds, &mut joints);
             let own = last_own(stretch);
-            let drained = water.area.data()[own];
+            let drained = water.drained(own);
             // Reaches that meet at the border end there together.
             let end = stretch.cells.last().copied().filter(|_| mouth == Mouth::Border).unwrap_or(own) as u32;
             let start = stretch.cells[usize::from(matches!(stretch.source, Source::Lake(_)))] as u32;
-            River { points, order: stretch.order, drained, start, end, source: stretch.source, mouth, downstream }
+            let river =
+                River { points, order: stretch.order, drained, start, end, source: stretch.source, mouth, downstream };
+            (river, stretch.cells.iter().map(|cell| *cell as u32).collect())
         })
         .collect();
     joints.into_points().insert(&mut shores.lines);
@@ -148,14 +215,14 @@ fn cut(water: &Water, frame: &Frame, cells: &[usize], order: u8, next: Option<u3
     };
     for (k, cell) in cells.iter().copied().enumerate() {
         let cover = match frame.holds(water, cell) {
-            true => water.cover(cell),
+            true => water.node_cover(cell),
             false => Cover::Missing,
         };
         let end = match cover {
             Cover::Land => {
                 if part.is_empty() {
                     let before = k.checked_sub(1).map(|k| cells[k]);
-                    source = match before.map(|before| (before, water.cover(before), frame.holds(water, before))) {
+                    source = match before.map(|before| (before, water.node_cover(before), frame.holds(water, before))) {
                         None => Source::Land,
                         Some((before, Cover::Lake(lake), true)) => {
                             part.push(before);
@@ -186,12 +253,16 @@ fn cut(water: &Water, frame: &Frame, cells: &[usize], order: u8, next: Option<u3
 /// The line of a stretch, from shore to shore.
 fn line(water: &Water, stretch: &Stretch, mouth: Mouth, rounds: usize, joints: &mut Joints) -> Vec<[f64; 3]> {
     let sea_level = f64::from(water.sea_level.unwrap_or_default());
-    let height = |cell: usize| match water.cover(cell) {
+    let level = |lake: u32| water.lakes.get((lake as usize).wrapping_sub(1)).map(|lake| f64::from(lake.level));
+    let height = |cell: usize| match water.node_cover(cell) {
         Cover::Sea => sea_level,
+        Cover::Lake(lake) if water.network.is_some() => {
+            level(lake).unwrap_or_else(|| f64::from(water.surface.data()[cell]))
+        }
         _ => f64::from(water.surface.data()[cell]),
     };
     let point = |cell: &usize| {
-        let [x, y] = water.place(*cell);
+        let [x, y] = water.node_place(*cell);
         [x, y, height(*cell)]
     };
     let raw: Vec<[f64; 3]> = stretch.cells.iter().map(point).collect();

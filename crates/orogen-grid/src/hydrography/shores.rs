@@ -2,10 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use super::clip::Rectangle;
+use super::given::snapped;
 use super::joints::Path;
 use super::water::{Frame, Water};
 use crate::contour::chaikin::smooth;
-use crate::contour::line::twice_area;
+use crate::contour::line::{Line, twice_area};
 use crate::contour::trace::contours;
 use crate::error::Result;
 use crate::grid::{Grid, Window};
@@ -34,16 +36,35 @@ impl Shores {
         let mut shores = Shores::default();
         for line in contours(&depths(water, frame), &[0.0])? {
             let Some(lake) = line.points.iter().find_map(|at| wet_beside(*at, &water.labels)) else { continue };
-            shores.lines.push(smooth(&line, rounds).path().collect());
+            shores.lines.push(smooth(&shared(line, water), rounds).path().collect());
             shores.waters.push(lake);
         }
         if let Some(rise) = water.sea_level.and_then(|sea| over_the_sea(water, frame, sea)) {
             for line in contours(&rise, &[0.0])? {
-                shores.lines.push(smooth(&line, rounds).path().collect());
+                shores.lines.push(smooth(&shared(line, water), rounds).path().collect());
                 shores.waters.push(0);
             }
         }
         Ok(shores)
+    }
+
+    /// The shores of the sea within a rectangle.
+    #[must_use]
+    pub fn coasts_within(&self, rectangle: &Rectangle) -> Shores {
+        let lines: Vec<Path> = self.coasts().flat_map(|line| rectangle.lines(line)).collect();
+        Shores { waters: vec![0; lines.len()], lines }
+    }
+
+    /// The lakes within a rectangle as polygons, in the order of their numbers, without those that are too small.
+    #[must_use]
+    pub fn areas_within(&self, water: &Water, rectangle: &Rectangle) -> Vec<LakeArea> {
+        let mut areas = self.areas();
+        areas.retain(|area| !water.is_small(area.lake));
+        for area in &mut areas {
+            area.parts = area.parts.iter().flat_map(|part| rectangle.polygons(part)).collect();
+        }
+        areas.retain(|area| !area.parts.is_empty());
+        areas
     }
 
     /// The coast of the sea.
@@ -73,6 +94,15 @@ pub struct LakeArea {
     pub lake: u32,
     /// The parts, the largest first.
     pub parts: Vec<Vec<Path>>,
+}
+
+/// A shore of a given network, with positions that have the same bits in every window.
+fn shared(mut line: Line, water: &Water) -> Line {
+    if water.network.is_some() {
+        line.points.iter_mut().for_each(|point| *point = point.map(snapped));
+        line.points.dedup();
+    }
+    line
 }
 
 /// Depth of the water in the lakes of a frame and one sample around it; negative values are the height of the adjacent
@@ -107,7 +137,14 @@ fn over_the_sea(water: &Water, frame: &Frame, sea: f32) -> Option<Grid> {
     let (columns, rows) = (&frame.columns, &frame.rows);
     let window = Window::new(columns.len(), rows.len(), 1.0).at(columns.start as i64, rows.start as i64);
     let rise = |height: f32| if height > sea { (height - sea).max(HARDLY) } else { (height - sea).min(-HARDLY) };
-    let of_row = |j: usize| water.heights.row(j)[columns.clone()].iter().map(move |height| rise(*height));
+    // A given lake is no sea, even if its bed is below the sea.
+    let lakes = if water.network.is_some() { water.lakes.as_slice() } else { &[] };
+    let level = |lake: u32| lakes.get((lake as usize).wrapping_sub(1)).map(|lake| lake.level);
+    let of_row = |j: usize| {
+        let labels = &water.labels.row(j)[columns.clone()];
+        let surface = move |(height, label): (&f32, &u32)| level(*label).map_or(*height, |level| level.max(*height));
+        water.heights.row(j)[columns.clone()].iter().zip(labels).map(surface).map(rise)
+    };
     Grid::from_data(window, rows.clone().flat_map(of_row).collect())
 }
 
@@ -144,7 +181,7 @@ pub fn nested(rings: Vec<&Path>) -> Vec<Vec<Path>> {
 }
 
 /// Whether a ring contains a point (even-odd rule).
-fn holds(ring: &Path, [x, y]: [f64; 2]) -> bool {
+pub(super) fn holds(ring: &Path, [x, y]: [f64; 2]) -> bool {
     let mut inside = false;
     for pair in ring.windows(2) {
         let ([ax, ay], [bx, by]) = (pair[0], pair[1]);

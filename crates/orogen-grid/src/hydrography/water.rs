@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::given::{AT_SEA, Network};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::hydrology::accumulation::accumulate;
@@ -65,11 +66,11 @@ pub struct Water {
     /// The heights.
     pub heights: Grid,
     /// Land: the heights, with depressions that are not lakes raised until they drain. Lakes: their level. The surface
-    /// never rises along the receivers.
+    /// never rises along the receivers. Of a given network: the heights of its nodes, which never rise along rivers.
     pub surface: Grid,
     /// The receiver of each sample.
     pub receivers: Receivers,
-    /// Number of samples that drain through each sample, including itself.
+    /// Number of samples that drain through each sample, including itself; empty if the network is given.
     pub area: Grid<u32>,
     /// The lake at each sample, from 1; 0 on land.
     pub labels: Grid<u32>,
@@ -79,6 +80,10 @@ pub struct Water {
     pub reaches: Vec<Reach>,
     /// The height of the sea.
     pub sea_level: Option<f32>,
+    /// The network, if it was [given](Water::given).
+    pub network: Option<Network>,
+    /// Whether each lake is too small to be shown.
+    pub(super) small: Vec<bool>,
 }
 
 /// A range of columns and rows of the grid.
@@ -144,6 +149,8 @@ impl Water {
             lakes: deep,
             reaches,
             sea_level,
+            network: None,
+            small: Vec::new(),
         })
     }
 
@@ -153,10 +160,68 @@ impl Water {
         let height = self.heights.data()[cell];
         match self.labels.data()[cell] {
             _ if !height.is_finite() => Cover::Missing,
+            // The bed of a given lake may be below the sea.
+            lake @ 1.. if self.network.is_some() => Cover::Lake(lake),
             _ if self.sea_level.is_some_and(|sea| height <= sea) => Cover::Sea,
             0 => Cover::Land,
             lake => Cover::Lake(lake),
         }
+    }
+
+    /// Number of samples that drain through a node, including its own; of a given network its area in samples.
+    #[must_use]
+    pub fn drained(&self, node: usize) -> f64 {
+        match &self.network {
+            None => f64::from(self.area.data()[node]),
+            Some(network) => {
+                let cell = network.flow.window().cell;
+                f64::from(network.flow.data()[node]) / (cell * cell)
+            }
+        }
+    }
+
+    /// Whether a lake is too small to be shown.
+    #[must_use]
+    pub fn is_small(&self, lake: u32) -> bool {
+        lake.checked_sub(1).and_then(|k| self.small.get(k as usize)).is_some_and(|small| *small)
+    }
+
+    /// The cover of a node.
+    #[must_use]
+    pub fn node_cover(&self, node: usize) -> Cover {
+        match self.network.as_ref().and_then(|network| network.covers.as_ref()).map(|covers| covers.data()[node]) {
+            None => self.cover(node),
+            Some(0) => Cover::Land,
+            Some(AT_SEA) => Cover::Sea,
+            Some(lake) => Cover::Lake(lake),
+        }
+    }
+
+    /// Column and row of a node.
+    #[must_use]
+    pub fn node_place(&self, node: usize) -> [f64; 2] {
+        let [x, y] = self.place(node);
+        match self.network.as_ref().and_then(|network| network.offset.as_ref()) {
+            None => [x, y],
+            Some([east, south]) => [x + f64::from(east.data()[node]), y + f64::from(south.data()[node])],
+        }
+    }
+
+    /// The node that is nearest to a sample.
+    #[must_use]
+    pub fn nearest_node(&self, sample: usize) -> usize {
+        if self.network.as_ref().is_none_or(|network| network.offset.is_none()) {
+            return sample;
+        }
+        let (width, height) = (self.heights.width(), self.heights.height());
+        let (i, j) = (sample % width, sample / width);
+        let far = |node: usize| {
+            let [x, y] = self.node_place(node);
+            (x - i as f64) * (x - i as f64) + (y - j as f64) * (y - j as f64)
+        };
+        let rows = j.saturating_sub(2)..(j + 2).min(height);
+        let near = rows.flat_map(|y| (i.saturating_sub(2)..(i + 2).min(width)).map(move |x| y * width + x));
+        near.min_by(|a, b| far(*a).total_cmp(&far(*b))).unwrap_or(sample)
     }
 
     /// Column and row of a sample.

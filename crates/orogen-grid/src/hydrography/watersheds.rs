@@ -15,15 +15,32 @@ pub struct Watersheds {
 
 const UNKNOWN: u32 = u32::MAX;
 
-/// The watersheds of all reaches that end in the sea or at the border of a frame, in the order of the reaches; then the
+/// The watersheds of all reaches that end in the sea or at the border of a frame, and in lakes of a given network, in the order of the reaches; then the
 /// remaining land, one label per part connected by the sides of samples. Costs O(samples).
 #[must_use]
 pub fn watersheds(water: &Water, frame: &Frame, reaches: &[River]) -> Watersheds {
     let width = water.heights.width();
     let mut labels = vec![UNKNOWN; water.heights.data().len()];
     let mut rivers = Vec::new();
-    for (k, reach) in reaches.iter().enumerate().filter(|(_, reach)| matches!(reach.mouth, Mouth::Sea | Mouth::Border))
-    {
+    // The watershed of each lake of a given network: water that runs into it stays.
+    let mut of_lake: Vec<Option<u32>> = vec![None; if water.network.is_some() { water.lakes.len() } else { 0 }];
+    for (k, reach) in reaches.iter().enumerate() {
+        match reach.mouth {
+            Mouth::Sea | Mouth::Border => {}
+            Mouth::Lake(lake) if water.network.is_some() => {
+                if let Some(of_lake) = of_lake.get_mut((lake as usize).wrapping_sub(1)) {
+                    let label = *of_lake.get_or_insert(rivers.len() as u32 + 1);
+                    let at = label as usize - 1;
+                    match rivers.get(at).copied().flatten() {
+                        None => rivers.push(Some(k as u32)),
+                        Some(other) if reach.drained > reaches[other as usize].drained => rivers[at] = Some(k as u32),
+                        Some(_) => {}
+                    }
+                    continue;
+                }
+            }
+            Mouth::Lake(_) | Mouth::Reach(_) => continue,
+        }
         rivers.push(Some(k as u32));
         // Another reach that joins at that sample shares its watershed.
         let label = &mut labels[reach.end as usize];
@@ -31,6 +48,15 @@ pub fn watersheds(water: &Water, frame: &Frame, reaches: &[River]) -> Watersheds
             *label = rivers.len() as u32;
         } else {
             rivers.pop();
+        }
+    }
+    if of_lake.iter().any(Option::is_some) {
+        for (node, label) in labels.iter_mut().enumerate() {
+            if let Cover::Lake(lake) = water.node_cover(node)
+                && let Some(of_lake) = of_lake.get((lake as usize).wrapping_sub(1)).copied().flatten()
+            {
+                *label = of_lake;
+            }
         }
     }
     // Follow the receivers to a known label, and assign it to the path.
@@ -57,7 +83,7 @@ pub fn watersheds(water: &Water, frame: &Frame, reaches: &[River]) -> Watersheds
     for j in 0..down {
         for i in 0..across {
             let cell = cell(i, j);
-            out[j * across + i] = match labels[cell] {
+            out[j * across + i] = match labels[water.nearest_node(cell)] {
                 _ if !is_land(cell) => 0,
                 0 => UNKNOWN,
                 label => label,

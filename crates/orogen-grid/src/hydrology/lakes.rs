@@ -23,6 +23,13 @@ pub struct Lake {
     pub cells: u32,
 }
 
+impl Lake {
+    /// A lake with this level, before its samples are counted.
+    pub(crate) fn at(level: f32, deepest: u32) -> Lake {
+        Lake { level, deepest, outlet: deepest, cells: 0 }
+    }
+}
+
 /// The lakes of a map.
 #[derive(Debug, Clone)]
 #[non_exhaustive]

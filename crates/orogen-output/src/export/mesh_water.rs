@@ -51,20 +51,22 @@ pub fn of(source: &LayerSource, mesh: &Prepared, options: &Options, reserved: u6
     let none = Options::default();
     let wanted = FeatureOptions::new(&none, source.world().recipe())?;
     let ground = FeatureSource::of(source.world(), source.window(), &wanted, reserved, source.progress())?;
-    let (left, top) = (ground.frame.columns.start, ground.frame.rows.start);
     let cell = ground.cell();
-    let width = |samples: u32| wanted.channel.width_of(wanted.channel.discharge(f64::from(samples) * cell * cell));
+    let width = |samples: f64| wanted.channel.width_of(wanted.channel.discharge(samples * cell * cell));
     let mut rivers = WaterMesh::new("rivers", RIVERS);
-    let lift = LIFT * cell + mesh.max_error().unwrap_or(0.0);
+    let lift = LIFT * source.window().cell + mesh.max_error().unwrap_or(0.0);
     for river in &ground.rivers {
         let mut heights: Vec<f32> = river.points.iter().map(|point| point[2] as f32).collect();
         mesh.bend(&mut heights);
         let points = river.points.iter().zip(heights);
-        let points = points.map(|([x, y, _], height)| [x - left as f64, y - top as f64, f64::from(height)]).collect();
-        let widths = [river.start, river.end].map(|cell| width(ground.water.area.data()[cell as usize]));
+        let points = points.map(|([x, y, _], height)| {
+            let [x, y] = ground.to_window([*x, *y]);
+            [x, y, f64::from(height)]
+        });
+        let points = points.collect();
+        let widths = [river.start, river.end].map(|node| width(ground.water.drained(node as usize)));
         rivers.lay(&Ribbon { points, widths }, &mesh.grid, lift);
     }
-    let across = ground.water.heights.width();
     let bent = |level: f32| {
         let mut level = [level];
         mesh.bend(&mut level);
@@ -72,7 +74,7 @@ pub fn of(source: &LayerSource, mesh: &Prepared, options: &Options, reserved: u6
     };
     let levels: Vec<f32> = ground.water.lakes.iter().map(|lake| bent(lake.level)).collect();
     let sea_level = ground.water.sea_level.map(bent);
-    let cover = |i: usize, j: usize| ground.water.cover((top + j) * across + left + i);
+    let cover = |i: usize, j: usize| ground.water.cover(ground.nearest(i, j));
     let mut lakes = WaterMesh::new("lakes", LAKES);
     lakes.cover(&mesh.grid, |i, j| match cover(i, j) {
         Cover::Lake(lake) => levels.get(lake as usize - 1).copied(),

@@ -47,9 +47,10 @@ pub fn find(heights: &Grid, sea_level: Option<f32>, least: Least) -> Result<Wate
     let found = water::Water::of(grid, sea_level, least, &Progress::none())?;
     let frame = Frame::whole(&found);
     let mut shores = Shores::of(&found, &frame, CUT)?;
-    let rivers = rivers(&found, &frame, EVEN, &mut shores)
-        .into_iter()
-        .map(|river| River { points: river.points.iter().map(|[x, y, _]| [*x, *y]).collect(), drained: river.drained });
+    let rivers = rivers(&found, &frame, EVEN, &mut shores).into_iter().map(|river| River {
+        points: river.points.iter().map(|[x, y, _]| [*x, *y]).collect(),
+        drained: river.drained as u32,
+    });
     let rivers = rivers.collect();
     let lakes =
         shores.lines.into_iter().zip(shores.waters).filter(|(_, lake)| *lake > 0).map(|(line, _)| line).collect();

@@ -2,8 +2,10 @@
 
 use crate::export::options::{OptionSpec, Options, ValueKind};
 use orogen_engine::declare::Input;
+use orogen_engine::field::expr::Expr;
 use orogen_engine::node::Node;
 use orogen_engine::recipe::document::Recipe;
+use orogen_engine::recipe::network::OwnNetwork;
 use orogen_engine::solver::drainage::Drainage;
 
 /// The option for the drainage area at which streams start.
@@ -56,6 +58,23 @@ impl<'a> Appended<'a> {
     pub fn drainage(&mut self) -> AppendedNode {
         let (source, stream) = (self.heights(), self.stream());
         self.add(Drainage { source, stream, ..Drainage::default() })
+    }
+
+    /// The drainage area: that of the recipe's own network, otherwise that of the heights.
+    pub fn flow(&mut self) -> Input {
+        match OwnNetwork::of(self.recipe) {
+            Some(network) => Input::Node(network.layer(network.flow())),
+            None => self.drainage().layer("flow"),
+        }
+    }
+
+    /// The flow direction, like [`Appended::flow`]. There is none in the sea.
+    pub fn receiver(&mut self) -> Input {
+        let Some(network) = OwnNetwork::of(self.recipe) else { return self.drainage().layer("receiver") };
+        let receiver = Input::Node(network.layer(network.receiver()));
+        let (heights, sea) = (self.heights(), self.recipe.world.sea_level);
+        let masked = Expr::new("mix(receiver, 8, height <= sea)");
+        self.add(masked.with("receiver", receiver).with("height", heights).with("sea", sea)).layer("height")
     }
 
     /// The drainage area at which streams start, in m^2.

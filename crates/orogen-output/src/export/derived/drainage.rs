@@ -16,10 +16,10 @@ const CODES: OptionSpec = OptionSpec {
 /// The layer `drainage-area`.
 pub static AREA: Derived = Derived {
     name: "drainage-area",
-    about: "flow accumulation: drainage area of each cell including itself, in m^2 (D8)",
+    about: "flow accumulation: drainage area of each cell including itself, in m^2 (D8; that of the levels where the recipe has its own network)",
     palette: "viridis",
     options: &[],
-    made: Made::Nodes(NodeLayer { bounded: true, append: |to| Ok(to.drainage().layer("flow")) }),
+    made: Made::Nodes(NodeLayer { bounded: true, network: true, append: |to| Ok(to.flow()) }),
 };
 
 /// The layer `flow-direction`.
@@ -30,6 +30,7 @@ pub static DIRECTION: Derived = Derived {
     options: &[CODES],
     made: Made::Nodes(NodeLayer {
         bounded: true,
+        network: true,
         append: |to| {
             let codes = match to.options().word(CODES.name) {
                 Some("grass") => Codes::Grass,
@@ -38,7 +39,7 @@ pub static DIRECTION: Derived = Derived {
                 Some("pcraster") => Codes::Pcraster,
                 _ => Codes::Esri,
             };
-            let source = to.drainage().layer("receiver");
+            let source = to.receiver();
             Ok(to.add(FlowDirection { source, codes }).layer("direction"))
         },
     }),
@@ -50,7 +51,7 @@ pub static STRAHLER: Derived = Derived {
     about: "Strahler order of streams; 0 elsewhere",
     palette: "viridis",
     options: &[STREAM],
-    made: Made::Nodes(NodeLayer { bounded: true, append: |to| Ok(to.drainage().layer("strahler")) }),
+    made: Made::Nodes(NodeLayer { bounded: true, network: false, append: |to| Ok(to.drainage().layer("strahler")) }),
 };
 
 /// The layer `watershed`.
@@ -59,5 +60,5 @@ pub static WATERSHED: Derived = Derived {
     about: "watersheds: the ground that drains to each outlet, numbered from 1; 0 in the sea",
     palette: "",
     options: &[],
-    made: Made::Nodes(NodeLayer { bounded: true, append: |to| Ok(to.drainage().layer("watershed")) }),
+    made: Made::Nodes(NodeLayer { bounded: true, network: false, append: |to| Ok(to.drainage().layer("watershed")) }),
 };

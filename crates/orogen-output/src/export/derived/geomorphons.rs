@@ -28,6 +28,7 @@ pub static LAYER: Derived = Derived {
     options: &[REACH, FLAT],
     made: Made::Nodes(NodeLayer {
         bounded: false,
+        network: false,
         append: |to| {
             let (options, defaults) = (to.options(), Geomorphons::default());
             let reach = options.number(REACH.name).unwrap_or(defaults.reach);

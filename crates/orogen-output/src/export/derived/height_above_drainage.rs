@@ -16,7 +16,7 @@ pub static HEIGHT_ABOVE: Derived = Derived {
     about: "height above nearest drainage (HAND) in m: above the stream that the ground drains to",
     palette: "batlow",
     options: &[STREAM],
-    made: Made::Nodes(NodeLayer { bounded: true, append: |to| Ok(append(to).layer("height")) }),
+    made: Made::Nodes(NodeLayer { bounded: true, network: false, append: |to| Ok(append(to).layer("height")) }),
 };
 
 /// The layer `flow-distance`.
@@ -25,7 +25,7 @@ pub static FLOW_DISTANCE: Derived = Derived {
     about: "length of the flow path to the stream that the ground drains to, in m",
     palette: "viridis",
     options: &[STREAM],
-    made: Made::Nodes(NodeLayer { bounded: true, append: |to| Ok(append(to).layer("flow_distance")) }),
+    made: Made::Nodes(NodeLayer { bounded: true, network: false, append: |to| Ok(append(to).layer("flow_distance")) }),
 };
 
 /// The layer `stream-distance`.
@@ -34,5 +34,5 @@ pub static STREAM_DISTANCE: Derived = Derived {
     about: "straight-line distance to the nearest stream, in m",
     palette: "viridis",
     options: &[STREAM],
-    made: Made::Nodes(NodeLayer { bounded: true, append: |to| Ok(append(to).layer("distance")) }),
+    made: Made::Nodes(NodeLayer { bounded: true, network: false, append: |to| Ok(append(to).layer("distance")) }),
 };

@@ -55,6 +55,7 @@ pub static LAYER: Derived = Derived {
     options: &[DAY, SEASON, LATITUDE, TURBIDITY],
     made: Made::Nodes(NodeLayer {
         bounded: true,
+        network: false,
         append: |to| {
             let (options, defaults) = (to.options(), Insolation::default());
             let latitude =

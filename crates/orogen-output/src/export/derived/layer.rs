@@ -58,6 +58,8 @@ pub enum Made {
 pub struct NodeLayer {
     /// Whether one of them is a solver, which needs a bounded world.
     pub bounded: bool,
+    /// Whether a world with [its own network](orogen_engine::recipe::network::OwnNetwork) needs no solver for it.
+    pub network: bool,
     /// Appends the nodes, and returns the input that the layer reads.
     ///
     /// Fails if an option is missing or invalid.

@@ -8,6 +8,7 @@ use super::{
 };
 use crate::export::options::{OptionSpec, Options, by_name};
 use orogen_engine::recipe::document::Recipe;
+use orogen_engine::recipe::network::OwnNetwork;
 use orogen_engine::world::HEIGHT;
 use orogen_grid::error::{Error, ErrorKind, Result};
 
@@ -83,8 +84,12 @@ pub fn prepare(recipe: &mut Recipe, layer: &str, options: &Options) -> Result<()
     let bounded = recipe.world.size.is_some();
     match &derived.made {
         Made::Rows(rows) => (rows.prepare)(recipe),
-        Made::Nodes(nodes) if nodes.bounded && !bounded => {
-            let message = format!("the layer {layer} needs a bounded world; set `size` in [world]");
+        Made::Nodes(nodes) if nodes.bounded && !bounded && !(nodes.network && OwnNetwork::of(recipe).is_some()) => {
+            let own = match nodes.network {
+                true => ", or the outputs `flow` and `receiver` of a node like `continents`",
+                false => "",
+            };
+            let message = format!("the layer {layer} needs a bounded world; set `size` in [world]{own}");
             return Err(Error::new(ErrorKind::Request, message));
         }
         Made::Nodes(nodes) => {

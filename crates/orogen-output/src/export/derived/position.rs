@@ -26,7 +26,7 @@ pub static POSITION: Derived = Derived {
     about: "topographic position index: height above the mean of a disc, in m (Weiss 2001)",
     palette: "oleron",
     options: &[RADIUS],
-    made: Made::Nodes(NodeLayer { bounded: false, append: |to| Ok(append(to).layer("position")) }),
+    made: Made::Nodes(NodeLayer { bounded: false, network: false, append: |to| Ok(append(to).layer("position")) }),
 };
 
 /// The layer `slope-position`.
@@ -35,5 +35,5 @@ pub static CLASS: Derived = Derived {
     about: "slope position (Weiss 2001): 1 ridge, 2 upper slope, 3 middle slope, 4 flat, 5 lower slope, 6 valley",
     palette: "turbo",
     options: &[RADIUS],
-    made: Made::Nodes(NodeLayer { bounded: false, append: |to| Ok(append(to).layer("class")) }),
+    made: Made::Nodes(NodeLayer { bounded: false, network: false, append: |to| Ok(append(to).layer("class")) }),
 };

@@ -11,6 +11,7 @@ pub static LAYER: Derived = Derived {
     options: &[],
     made: Made::Nodes(NodeLayer {
         bounded: false,
+        network: false,
         append: |to| Ok(to.add(Ruggedness { source: to.heights() }).layer("ruggedness")),
     }),
 };

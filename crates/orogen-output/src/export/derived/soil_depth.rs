@@ -11,6 +11,7 @@ pub static LAYER: Derived = Derived {
     options: &[],
     made: Made::Nodes(NodeLayer {
         bounded: false,
+        network: false,
         append: |to| {
             let source = to.heights();
             Ok(to.add(SoilDepth { source, ..SoilDepth::default() }).layer("depth"))

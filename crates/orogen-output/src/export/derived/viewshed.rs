@@ -53,6 +53,7 @@ pub static LAYER: Derived = Derived {
     options: &[OBSERVER, OBSERVER_HEIGHT, TARGET_HEIGHT, RADIUS, REFRACTION],
     made: Made::Nodes(NodeLayer {
         bounded: true,
+        network: false,
         append: |to| {
             let (options, defaults) = (to.options(), Viewshed::default());
             let number = |option: &OptionSpec, default: f64| options.number(option.name).unwrap_or(default);

@@ -16,7 +16,7 @@ pub static WETNESS: Derived = Derived {
     about: "topographic wetness index ln(a / tan b) (Beven and Kirkby 1979)",
     palette: "viridis",
     options: &[],
-    made: Made::Nodes(NodeLayer { bounded: true, append: |to| Ok(append(to).layer("wetness")) }),
+    made: Made::Nodes(NodeLayer { bounded: true, network: false, append: |to| Ok(append(to).layer("wetness")) }),
 };
 
 /// The layer `stream-power-index`.
@@ -25,7 +25,7 @@ pub static STREAM_POWER: Derived = Derived {
     about: "stream power index a tan b, in m (Moore, Grayson and Ladson 1991)",
     palette: "magma",
     options: &[],
-    made: Made::Nodes(NodeLayer { bounded: true, append: |to| Ok(append(to).layer("stream_power")) }),
+    made: Made::Nodes(NodeLayer { bounded: true, network: false, append: |to| Ok(append(to).layer("stream_power")) }),
 };
 
 /// The layer `ls-factor`.
@@ -34,5 +34,5 @@ pub static LS_FACTOR: Derived = Derived {
     about: "LS factor of soil erosion (Moore and Burch 1986)",
     palette: "magma",
     options: &[],
-    made: Made::Nodes(NodeLayer { bounded: true, append: |to| Ok(append(to).layer("ls_factor")) }),
+    made: Made::Nodes(NodeLayer { bounded: true, network: false, append: |to| Ok(append(to).layer("ls_factor")) }),
 };

@@ -23,7 +23,11 @@ const FIELDS: &[Field] = &[
         kind: FieldType::Integer,
         about: "id of the next reach downstream; if the reach ends in a lake, the reach that leaves the lake",
     },
-    Field { name: "strahler", kind: FieldType::Integer, about: "Strahler order" },
+    Field {
+        name: "strahler",
+        kind: FieldType::Integer,
+        about: "Strahler order; none if a part of the catchment lies beyond the window and was not computed",
+    },
     Field { name: "drainage_area", kind: FieldType::Real, about: "drainage area at the end of the reach, m^2" },
     Field { name: "discharge", kind: FieldType::Real, about: "mean discharge at the end of the reach, m^3/s" },
     Field { name: "width", kind: FieldType::Real, about: "width at the end of the reach, m" },
@@ -46,7 +50,7 @@ fn make(ground: &FeatureSource, options: &FeatureOptions) -> Result<FeatureLayer
                 [east, south, *z]
             })
             .collect();
-        let area = f64::from(river.drained) * cell_area;
+        let area = river.drained * cell_area;
         let discharge = options.channel.discharge(area);
         let (source, source_lake) = match river.source {
             Source::Land => ("land", None),
@@ -63,7 +67,7 @@ fn make(ground: &FeatureSource, options: &FeatureOptions) -> Result<FeatureLayer
         let values = vec![
             Value::Integer(id),
             Value::id(river.downstream.map(|next| next + 1)),
-            Value::Integer(i64::from(river.order)),
+            Value::id((river.order > 0).then_some(u32::from(river.order))),
             Value::Real(area),
             Value::Real(discharge),
             Value::Real(options.channel.width_of(discharge)),

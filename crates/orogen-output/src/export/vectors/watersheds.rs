@@ -27,7 +27,7 @@ const FIELDS: &[Field] = &[
         about: "id of the last reach of its river; none if no river drains it",
     },
     Field { name: "area", kind: FieldType::Real, about: "area of its samples, m^2" },
-    Field { name: "mouth", kind: FieldType::Text, about: "end of its river: sea or border" },
+    Field { name: "mouth", kind: FieldType::Text, about: "end of its river: sea, border, or a lake without an outlet" },
     Field { name: "lowest", kind: FieldType::Real, about: "lowest height, m" },
     Field { name: "highest", kind: FieldType::Real, about: "highest height, m" },
     Field { name: "mean", kind: FieldType::Real, about: "mean height, m" },
@@ -44,32 +44,51 @@ struct Measures {
 
 fn make(ground: &FeatureSource, options: &FeatureOptions) -> Result<FeatureLayer> {
     let found = watersheds(&ground.water, &ground.frame, &ground.rivers);
-    let window = Window::new(ground.frame.columns.len(), ground.frame.rows.len(), 1.0)
-        .at(ground.frame.columns.start as i64, ground.frame.rows.start as i64);
+    // Labels of the requested samples, which may be finer or coarser than those of the water.
+    let window = ground.requested;
+    let (across, frame) = (ground.water.heights.width(), &ground.frame);
+    let mut labels = Grid::filled(Window { cell: 1.0, ..window }, 0u32);
     let none = Measures { count: 0, low: f32::INFINITY, high: f32::NEG_INFINITY, sum: 0.0 };
     let mut measures = vec![none; found.rivers.len() + 1];
-    for (k, label) in found.labels.iter().enumerate().filter(|(_, label)| **label > 0) {
-        let (i, j) = (ground.frame.columns.start + k % window.width, ground.frame.rows.start + k / window.width);
-        let height = ground.water.heights[(i, j)];
-        let known = &mut measures[*label as usize];
-        known.count += 1;
-        known.sum += f64::from(height);
-        (known.low, known.high) = (known.low.min(height), known.high.max(height));
+    for j in 0..window.height {
+        for i in 0..window.width {
+            let at = ground.nearest(i, j);
+            let within = |at: usize, range: &std::ops::Range<usize>| at.clamp(range.start, range.end - 1);
+            let (x, y) = (within(at % across, &frame.columns), within(at / across, &frame.rows));
+            let label = found.labels[(y - frame.rows.start) * frame.columns.len() + x - frame.columns.start];
+            if label == 0 {
+                continue;
+            }
+            labels.row_mut(j)[i] = label;
+            let height = ground.water.heights[(x, y)];
+            let known = &mut measures[label as usize];
+            known.count += 1;
+            known.sum += f64::from(height);
+            (known.low, known.high) = (known.low.min(height), known.high.max(height));
+        }
     }
     let [_, cut] = options.rounds();
-    let labels = Grid::from_data(window, found.labels).unwrap_or_else(|| Grid::filled(window, 0));
     let areas = outlines(&labels, found.rivers.len(), cut);
-    let cell_area = ground.cell() * ground.cell();
+    let cell_area = window.cell * window.cell;
     let mut features = Vec::with_capacity(areas.len());
+    let metres = |parts: &[Vec<Vec<[f64; 2]>>]| -> Vec<Vec<Vec<[f64; 2]>>> {
+        let ring = |ring: &Vec<[f64; 2]>| ring.iter().map(|at| at.map(|at| at * window.cell)).collect();
+        parts.iter().map(|part| part.iter().map(ring).collect()).collect()
+    };
     for (k, parts) in areas.iter().enumerate() {
         let (river, known) = (found.rivers[k], measures[k + 1]);
+        if known.count == 0 {
+            // A river whose last sample is beyond the window.
+            continue;
+        }
         let mouth =
             river.and_then(|river| ground.rivers.get(river as usize)).map_or(Value::Null, |river| match river.mouth {
                 Mouth::Sea => Value::Text("sea"),
+                Mouth::Lake(_) => Value::Text("lake"),
                 _ => Value::Text("border"),
             });
         let values = vec![
-            Value::Integer(k as i64 + 1),
+            Value::Integer(features.len() as i64 + 1),
             Value::id(river.map(|river| river + 1)),
             Value::Real(known.count as f64 * cell_area),
             mouth,
@@ -77,7 +96,7 @@ fn make(ground: &FeatureSource, options: &FeatureOptions) -> Result<FeatureLayer
             Value::Real(f64::from(known.high)),
             Value::Real(known.sum / known.count as f64),
         ];
-        features.push(Feature { geometry: Geometry::MultiPolygon(ground.parts(parts)), values });
+        features.push(Feature { geometry: Geometry::MultiPolygon(metres(parts)), values });
     }
     Ok(FeatureLayer {
         name: LAYER.name,
