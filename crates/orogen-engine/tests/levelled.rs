@@ -121,7 +121,7 @@ depth = "land.depth"
         let discharge = f64::from(flow[q]) * 0.8 / 31_557_600.0;
         let is_river = flow[q] >= 4e6 && surface[q] == height[q];
         rivers += usize::from(is_river);
-        let wanted = if is_river { [5.0 * discharge.sqrt(), 0.3 * (0.4 * discharge.ln()).exp()] } else { [0.0; 2] };
+        let wanted = if is_river { [5.0 * discharge.sqrt(), 0.3 * libm::pow(discharge, 0.4)] } else { [0.0; 2] };
         for (value, wanted) in [(width[q], wanted[0]), (depth[q], wanted[1])] {
             assert!((f64::from(value) - wanted).abs() <= 1e-5 * wanted, "{value} m, not {wanted}");
         }
