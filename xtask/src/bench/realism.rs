@@ -40,6 +40,9 @@ struct Targets {
 /// No target.
 const ANY: f64 = f64::INFINITY;
 
+const MOUNTAINS: Targets =
+    Targets { median: 0.72, p90: 0.90, energy: 0.42, outliers: 0.0, bias: 0.010, worst_bias: 0.020, judged: 0.9 };
+
 const ENDLESS: Targets =
     Targets { median: 0.82, p90: 1.0, energy: 0.5, outliers: 0.0, bias: 0.010, worst_bias: 0.020, judged: 0.0 };
 
@@ -47,22 +50,12 @@ const TYPED: Targets =
     Targets { median: 0.90, p90: ANY, energy: 1.0, outliers: 1.0, bias: ANY, worst_bias: ANY, judged: 0.0 };
 
 const CASES: &[Case] = &[
-    Case {
-        preset: "alpine",
-        name: "alpine",
-        land: Land::Any([0, 0]),
-        targets: Targets {
-            median: 0.72,
-            p90: 0.90,
-            energy: 0.42,
-            outliers: 0.0,
-            bias: 0.010,
-            worst_bias: 0.020,
-            judged: 0.9,
-        },
-    },
+    Case { preset: "alpine", name: "alpine", land: Land::Any([0, 0]), targets: MOUNTAINS },
+    Case { preset: "himalaya", name: "himalaya", land: Land::Any([0, 0]), targets: MOUNTAINS },
     // The origin lies in mountains; land elsewhere may be sea or plain.
     Case { preset: "endless", name: "endless", land: Land::Any([-512, -512]), targets: ENDLESS },
+    // 10 000 km from the origin, across the borders of the tiles of all levels.
+    Case { preset: "endless", name: "endless, 10 000 km out", land: Land::Any([FAR - 512, -FAR - 512]), targets: ENDLESS },
     Case { preset: "rolling", name: "rolling", land: Land::Type("rolling_hills", 30), targets: TYPED },
     Case { preset: "hills", name: "hills", land: Land::Type("rolling_hills", 30), targets: TYPED },
     Case { preset: "island", name: "island", land: Land::Type("islands_coasts", 40), targets: TYPED },
@@ -73,6 +66,9 @@ const CASES: &[Case] = &[
 /// Samples per side, and the cell in metres, as the script expects.
 const SIDE: u32 = 1024;
 const CELL: u32 = 60;
+
+/// 10 066 km in samples, a border of the tiles of all levels: a coarsest tile has 128 x 2048 of them a side.
+const FAR: i64 = 640 << 18;
 
 /// Options of area `realism`.
 #[derive(Debug, Default, PartialEq, Eq)]
