@@ -61,7 +61,7 @@ fn what_cannot_be_is_refused() {
         (&["-o", "x.glb", "--layer", "slope", "--water"], "--water applies to the layer `height`"),
         (&["-o", "x.gpkg", "--layer", "rivers", "--memory", "1MiB"], "memory"),
     ] {
-        let outcome = folder.run(&[&["export", "fjords", "--seed", "3", "--cell", "240"], args].concat());
+        let outcome = folder.run(&[&["export", "archipelago", "--cell", "160"], args].concat());
         assert!(outcome.code != 0 && outcome.err.contains(expect), "{args:?}: {}", outcome.err);
         assert!(folder.names("").is_empty(), "{args:?}");
     }

@@ -1,7 +1,7 @@
 //! Lines and polygons cut at the sides of a rectangle, so that the parts in two rectangles with a common side meet in the same points.
 //!
 //! A point on the western or northern side is inside, one on the eastern or southern side outside. A cut depends on the segment and the side
-//! only: the neighbour's cut has the same bits if positions are [snapped](super::given::snapped).
+//! only: the neighbour's cut has the same bits if positions are [snapped].
 
 use super::given::snapped;
 use super::joints::Path;

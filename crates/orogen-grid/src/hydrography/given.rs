@@ -57,7 +57,7 @@ const ONE_LEVEL: f32 = 0.05;
 /// Positions are whole multiples of this part of a cell. Sums of them have no rounding, so they are the same in every window.
 const PARTS: f64 = (1 << 20) as f64;
 
-/// A coordinate in columns or rows as a whole number of [`PARTS`].
+/// A coordinate in columns or rows rounded to 2^-20 of a cell.
 #[must_use]
 pub fn snapped(coordinate: f64) -> f64 {
     (coordinate * PARTS).round() / PARTS
