@@ -50,6 +50,9 @@ op! {
         creep: f64 = 1.0, range 0.0 to 5.0;
         /// Factor of the variation of the rock, which each level adds to: 0 makes even slopes and straight side valleys.
         variation: f64 = 1.0, range 0.0 to 4.0;
+        /// How far the rivers of the source are displaced within its cells: 1 places them at random, so that the grid does not show; 0 places them in
+        /// the source's valleys, by 3 x 3 heights around each sample, which suits real land.
+        jitter: f64 = 1.0, range 0.0 to 1.0;
     }
     layers {
         /// Height of the ground, and of the beds of lakes and the sea.
@@ -74,6 +77,7 @@ impl Amplify {
             .with_relief(self.relief)
             .with_creep(self.creep)
             .with_variation(self.variation)
+            .with_jitter(self.jitter)
     }
 
     fn seeded(&self, context: &Context) -> Refinement {
