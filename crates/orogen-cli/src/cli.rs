@@ -7,7 +7,7 @@ use orogen::Level;
 use crate::bar::{Mode, set_mode};
 use crate::command::{
     analyze, build, cache, check, compare, completions, explain, export, fit, generate, graph, grow, map, new, noise,
-    ops, palettes, presets, render, schema, variants,
+    ops, palettes, presets, refine, render, schema, variants,
 };
 use crate::failure::Failure;
 
@@ -37,6 +37,8 @@ enum Command {
     Analyze(analyze::Args),
     /// Find a recipe whose terrain is statistically similar to a real place
     Fit(fit::Args),
+    /// Refine a file of heights to a smaller cell: its rivers stay, and valleys and slopes grow between them
+    Refine(refine::Args),
     /// Draw the growth of a terrain: frames of uplift and erosion as an animation
     Grow(grow::Args),
     /// Render a perspective view with sun, shadows, sky and water
@@ -83,6 +85,7 @@ impl Cli {
             Command::Build(args) => build::run(&args),
             Command::Analyze(args) => analyze::run(&args),
             Command::Fit(args) => fit::run(&args),
+            Command::Refine(args) => refine::run(&args),
             Command::Grow(args) => grow::run(&args),
             Command::Render(args) => render::run(&args),
             Command::Map(args) => map::run(&args),

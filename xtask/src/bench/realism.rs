@@ -55,7 +55,12 @@ const CASES: &[Case] = &[
     // The origin lies in mountains; land elsewhere may be sea or plain.
     Case { preset: "endless", name: "endless", land: Land::Any([-512, -512]), targets: ENDLESS },
     // 10 000 km from the origin, across the borders of the tiles of all levels.
-    Case { preset: "endless", name: "endless, 10 000 km out", land: Land::Any([FAR - 512, -FAR - 512]), targets: ENDLESS },
+    Case {
+        preset: "endless",
+        name: "endless, 10 000 km out",
+        land: Land::Any([FAR - 512, -FAR - 512]),
+        targets: ENDLESS,
+    },
     Case { preset: "rolling", name: "rolling", land: Land::Type("rolling_hills", 30), targets: TYPED },
     Case { preset: "hills", name: "hills", land: Land::Type("rolling_hills", 30), targets: TYPED },
     Case { preset: "island", name: "island", land: Land::Type("islands_coasts", 40), targets: TYPED },

@@ -18,6 +18,7 @@ pub mod noise;
 pub mod ops;
 pub mod palettes;
 pub mod presets;
+pub mod refine;
 pub mod render;
 pub mod schema;
 pub mod variants;

@@ -44,6 +44,8 @@ pub const WRITERS: &[Writer] = &[
     writer(&["build", "small.toml", "--force", "-o", "b.tif"], &["b.tif"]),
     writer(&["analyze", "small.toml", "--cell", "5", "-o", "page.png"], &["page.png"]),
     writer(&["fit", "place.tif", "--tries", "12", "--judges", "1", "-o", "like.toml"], &["like.toml"]),
+    writer(&["refine", "place.tif", "--cell", "15", "-o", "fine.tif"], &["fine.tif"]),
+    writer(&["refine", "place.tif", "--cell", "15", "-o", "fine.toml"], &["fine.toml"]),
     writer(&["grow", "rivers.toml", "--frames", "2", "-o", "grow.png"], &["grow.png"]),
     writer(&["grow", "rivers.toml", "--frames", "2", "-o", "grow.gif"], &["grow.gif"]),
     writer(&["grow", "rivers.toml", "--frames", "2", "-o", "grow-%d.png"], &["grow-0.png", "grow-1.png"]),

@@ -25,6 +25,7 @@ mod palettes;
 mod parameters;
 mod places;
 mod progress;
+mod refine;
 mod render;
 mod surfaces;
 mod view;

@@ -50,6 +50,8 @@ fn rows(side: usize) -> Vec<Vec<String>> {
         "grow rising.toml --frames 2 -q".into(),
         "grow rising.toml --frames 2 -o grow.gif -q".into(),
         "fit dem.tif -o fitted.toml --tries 12 --judges 1 -q".into(),
+        "refine dem.tif -o fine.tif --cell 5 -q".into(),
+        "refine dem.tif -o fine.toml -q".into(),
         format!("noise perlin --size {side} -q"),
         format!("noise perlin --size {side} -o noise.npy -q"),
         format!("noise perlin --size {side} --frames 2 -o frames.png -q"),
@@ -211,6 +213,7 @@ fn a_file_that_unpacks_to_more_than_is_allowed_is_refused() {
         &["render", "bomb.png"],
         &["analyze", "bomb.png"],
         &["fit", "bomb.png", "-o", "x.toml"],
+        &["refine", "bomb.png", "-o", "x.tif"],
         &["build", "bomb.png", "-o", "x.tif"],
     ] {
         let (code, said, peak) = measured(folder.command(&[command, &["--memory", "256MiB"]].concat()));
@@ -237,6 +240,7 @@ fn what_may_never_end_is_refused() {
         (&["generate", "pipe.toml"], "pipe.toml: it is a pipe or a device"),
         (&["explain", "/dev/zero"], "/dev/zero: it is a pipe or a device"),
         (&["fit", "pipe.tif", "-o", "a.toml"], "pipe.tif: it is a pipe or a device"),
+        (&["refine", "pipe.tif", "-o", "a.tif"], "pipe.tif: it is a pipe or a device"),
     ] {
         folder.bad(arguments, 1, expect);
     }

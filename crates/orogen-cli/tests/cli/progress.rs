@@ -33,7 +33,8 @@ fn shares(folder: &Folder, arguments: &[&str]) -> Vec<f64> {
 fn every_command_reports_one_share_that_only_grows_to_the_end() {
     let folder = Folder::new();
     folder.write("rivers.toml", RIVERS);
-    let commands: [&[&str]; 12] = [
+    folder.good(&["export", "rivers.toml", "-o", "place.tif"]);
+    let commands: [&[&str]; 13] = [
         &["generate", "rivers.toml", "-o", "out"],
         &["export", "rivers.toml", "-o", "land.tif"],
         &["export", "rivers.toml", "--layer", "normal", "-o", "normal.png"],
@@ -46,6 +47,7 @@ fn every_command_reports_one_share_that_only_grows_to_the_end() {
         &["build", "rivers.toml", "-o", "built.tif"],
         &["noise", "perlin", "--size", "64", "--frames", "8", "-o", "noise.png"],
         &["compare", "-o", "compare.png"],
+        &["refine", "place.tif", "--cell", "20", "-o", "fine.tif"],
     ];
     for command in commands {
         let shares = shares(&folder, command);

@@ -54,6 +54,9 @@ op! {
         stream: f64 = 1e6, unit "m^2", range 0.0 to 1e15;
         /// Runoff from the ground: a river with discharge Q (m^3/s) is 5 Q^0.5 m wide and 0.3 Q^0.4 m deep (Leopold and Maddock 1953).
         runoff: f64 = 0.5, unit "m/yr", range 0.0 to 1000.0;
+        /// How far the rivers of the source are displaced within its cells: 1 places them at random, so that the grid does not show; 0 places them in
+        /// the source's valleys, by 3 x 3 heights around each sample, which suits real land.
+        jitter: f64 = 1.0, range 0.0 to 1.0;
     }
     layers {
         /// Height of the ground, and of the beds of lakes and the sea.
@@ -82,6 +85,7 @@ impl Amplify {
             .with_relief(self.relief)
             .with_creep(self.creep)
             .with_variation(self.variation)
+            .with_jitter(self.jitter)
     }
 
     fn seeded(&self, context: &Context) -> Refinement {

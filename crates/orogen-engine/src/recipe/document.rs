@@ -172,6 +172,11 @@ impl Recipe {
         self
     }
 
+    /// Replaces the outputs.
+    pub(super) fn set_outputs(&mut self, outputs: Vec<(String, Input)>) {
+        self.outputs = outputs;
+    }
+
     /// Adds a surface on top of the existing ones. A recipe without surfaces has those of
     /// [`standard`](super::surface::standard).
     pub fn surface(&mut self, surface: Surface) -> &mut Recipe {

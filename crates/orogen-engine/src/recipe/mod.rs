@@ -8,6 +8,7 @@ pub mod parameters;
 mod parse;
 pub mod presets;
 pub mod reference;
+mod refined;
 pub mod schema;
 mod serialise;
 mod subgraph;

@@ -4,6 +4,7 @@ use super::given::Given;
 use super::hash::{self, JITTER};
 use super::level::{Level, invalid};
 use super::refinement::Refinement;
+use super::valley::valley;
 use crate::error::Result;
 use crate::grid::{Grid, Window};
 use crate::hydrology::direction::{NONE, STEPS};
@@ -53,8 +54,9 @@ impl Refinement {
             for x in window.x..window.right() {
                 let draw = |stream| hash::unit(hash::node(self.seed, 0, x, y, stream));
                 let code = uncrossed(land, x, y);
-                level.east.push(self.around_middle(draw(0)));
-                level.south.push(self.around_middle(draw(1)));
+                let (east, south) = valley(|east, south| at(land.height, x + east, y + south));
+                level.east.push(self.around_middle(east, draw(0)));
+                level.south.push(self.around_middle(south, draw(1)));
                 level.height.push(at(land.height, x, y));
                 level.area.push((at(land.flow, x, y) / (cell * cell) as f32).max(1.0));
                 level.receiver.push(code);
@@ -67,12 +69,13 @@ impl Refinement {
 }
 
 impl Refinement {
-    /// The share of a coarsest cell at which a node lies, from a number from 0 to 1: on average the middle of the cell, at most as far from it as nodes
-    /// of other levels, and within the cell.
-    fn around_middle(&self, draw: f32) -> f32 {
+    /// The share of a coarsest cell at which a node lies: between the place of its valley, from the middle of the cell, and one by a random number from
+    /// 0 to 1. It is at most as far from the middle as nodes of other levels, and within the cell.
+    fn around_middle(&self, valley: f32, draw: f32) -> f32 {
         let middle = 0.5 + self.half_finest(0);
         let width = JITTER.min(2.0 * (1.0 - middle));
-        middle + width * (draw - 0.5)
+        let valley = valley.clamp(-0.5 * width, 0.5 * width);
+        middle + valley + self.jitter as f32 * (width * (draw - 0.5) - valley)
     }
 }
 

@@ -33,6 +33,7 @@ mod shores;
 mod stencil;
 mod straighten;
 pub mod surface;
+mod valley;
 
 #[cfg(test)]
 mod tests;

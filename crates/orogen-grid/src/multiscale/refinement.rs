@@ -24,16 +24,18 @@ pub struct Refinement {
     pub creep: f64,
     /// Factor of the variation of the rock that each level adds.
     pub variation: f64,
+    /// How far the coarsest nodes of given land are from its valleys, 0 to 1: 0 is in the valley of the sample's cell, 1 at a random place of the cell.
+    pub jitter: f64,
 }
 
 impl Default for Refinement {
     fn default() -> Refinement {
-        Refinement { seed: 0, cell: 60.0, levels: 11, relief: 1.0, creep: 1.0, variation: 1.0 }
+        Refinement { seed: 0, cell: 60.0, levels: 11, relief: 1.0, creep: 1.0, variation: 1.0, jitter: 1.0 }
     }
 }
 
 orogen_noise::builder!(Refinement: with_seed(seed: u64), with_cell(cell: f64), with_levels(levels: usize), with_relief(relief: f64),
-    with_creep(creep: f64), with_variation(variation: f64));
+    with_creep(creep: f64), with_variation(variation: f64), with_jitter(jitter: f64));
 
 /// The largest number of halvings.
 pub const MAX_LEVELS: usize = 24;
@@ -92,6 +94,9 @@ impl Refinement {
             return Err(invalid(format!(
                 "the creep of levels must be 0 to {MAX_CREEP} cells, their variation 0 to 10"
             )));
+        }
+        if !(0.0..=1.0).contains(&self.jitter) {
+            return Err(invalid("the jitter of levels must be 0 to 1"));
         }
         if self.levels > MAX_LEVELS || depth > self.levels {
             return Err(invalid(format!(

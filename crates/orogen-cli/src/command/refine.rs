@@ -1,0 +1,100 @@
+//! `orogen refine`.
+
+use std::path::{Path, PathBuf};
+
+use orogen::Recipe;
+use orogen::export::job::{ExportJob, Written};
+use orogen::export::registry;
+use orogen::file::mark;
+use orogen::words::number;
+
+use crate::bar::Bar;
+use crate::export_options::FormatOptions;
+use crate::failure::Failure;
+use crate::options::RunOptions;
+use crate::sink::{Sink, is_stdout};
+use crate::source::Source;
+use crate::view::View;
+use crate::{finite, interrupt};
+
+/// Arguments of the command.
+#[derive(Debug, Clone, clap::Args)]
+pub struct Args {
+    /// A file of heights (GeoTIFF, .asc, .hgt, ...)
+    place: PathBuf,
+    /// Output file; its extension determines the format; - is standard output. With the extension .toml the recipe of the refined land is
+    /// written, for the other commands
+    #[arg(short, long, value_name = "FILE")]
+    out: PathBuf,
+    /// Layer to write: height, flow (drainage area), or a layer derived from the heights as in `export`
+    #[arg(long, value_name = "L", default_value = orogen::world::HEIGHT)]
+    layer: String,
+    #[command(flatten)]
+    samples: View,
+    #[command(flatten)]
+    run: RunOptions,
+    #[command(flatten)]
+    options: FormatOptions,
+}
+
+/// Number by which the cell is divided if none is given: the halvings up to which the result is about as realistic as real land.
+const FINER: f64 = 8.0;
+
+/// Refines the place.
+pub fn run(args: &Args) -> Result<(), Failure> {
+    args.samples.each_output(&args.out, |samples, out| refine(&Args { samples, out, ..args.clone() }))
+}
+
+fn refine(args: &Args) -> Result<(), Failure> {
+    let is_recipe = args.out.extension().is_some_and(|extension| extension == "toml");
+    let format = match is_stdout(&args.out) {
+        true => registry::named("npy"),
+        false if is_recipe => None,
+        false => Some(registry::of_path(&args.out).map_err(|why| Failure::Usage(why.to_string()))?),
+    };
+    let source = Source::find(&args.place)?;
+    if !matches!(source, Source::Dem(_)) {
+        return Err(Failure::Usage(format!(
+            "`refine` needs a file of heights, and {} is none; recipes are made at any cell by `orogen export RECIPE --cell`",
+            args.place.display()
+        )));
+    }
+    let budget = args.run.limits.budget();
+    let mut recipe = args.samples.recipe(&source, &budget)?;
+    let policy = args.run.replace.policy(source.inputs(&recipe));
+    let coarse = recipe.world.cell;
+    recipe.refine_place(args.samples.cell.unwrap_or(coarse / FINER))?;
+    let sink = Sink::new(&args.out, &policy)?;
+    let Some(format) = format else { return write_recipe(args, &recipe, &sink) };
+    let job = ExportJob::new(format).with_layer(&args.layer).with_options(args.options.read()?);
+    job.check()?;
+    job.prepare(&mut recipe)?;
+    let world = args.run.limits.open(recipe, &budget)?;
+    let window = args.samples.window(&world)?;
+    let job = job.with_window(window);
+    let (bar, progress) = Bar::new(args.run.quiet);
+    let Written { words, count, .. } = match &sink {
+        Sink::Stdout => sink.write(|out| job.to_stream(&world, out, &progress))?,
+        // Including sidecars.
+        Sink::File(output) => job
+            .to_file(&world, output, &progress)
+            .map_err(|error| interrupt::explain(error.into(), "nothing was written"))?,
+    };
+    progress.finish();
+    drop(bar);
+    finite::tell(&args.layer, count)?;
+    let size = format!("{} x {} samples of {} m", window.width, window.height, number(window.cell));
+    let text = format!("{}: {}, {size}, refined from {} m, {words}\n", name(&args.out), args.layer, number(coarse));
+    sink.tell(args.run.quiet, &text)
+}
+
+/// Writes the recipe itself.
+fn write_recipe(args: &Args, recipe: &Recipe, sink: &Sink) -> Result<(), Failure> {
+    sink.write(|out| out.write_all(mark::marked(&recipe.to_toml()).as_bytes()))?;
+    let name = name(&args.out);
+    sink.tell(args.run.quiet, &format!("wrote {name}; make it: orogen export {name} -o FILE.tif\n"))
+}
+
+fn name(path: &Path) -> String {
+    path.display().to_string()
+}
