@@ -21,6 +21,8 @@ struct Case {
 enum Land {
     /// With all places of the folder: [`SIDE`] x [`SIDE`] samples at [`CELL`] metres, from this sample east and south on.
     Any([i64; 2]),
+    /// The same around the highest place within 490 km of this sample: land elsewhere may be sea or plain.
+    Highest([i64; 2]),
     /// With land of this type: the whole world, at a cell in metres.
     Type(&'static str, u32),
 }
@@ -55,12 +57,7 @@ const CASES: &[Case] = &[
     // The origin lies in mountains; land elsewhere may be sea or plain.
     Case { preset: "endless", name: "endless", land: Land::Any([-512, -512]), targets: ENDLESS },
     // 10 000 km from the origin, across the borders of the tiles of all levels.
-    Case {
-        preset: "endless",
-        name: "endless, 10 000 km out",
-        land: Land::Any([FAR - 512, -FAR - 512]),
-        targets: ENDLESS,
-    },
+    Case { preset: "endless", name: "endless, 10 000 km out", land: Land::Highest([FAR, -FAR]), targets: ENDLESS },
     Case { preset: "rolling", name: "rolling", land: Land::Type("rolling_hills", 30), targets: TYPED },
     Case { preset: "hills", name: "hills", land: Land::Type("rolling_hills", 30), targets: TYPED },
     Case { preset: "island", name: "island", land: Land::Type("islands_coasts", 40), targets: TYPED },
@@ -74,6 +71,10 @@ const CELL: u32 = 60;
 
 /// 10 066 km in samples, a border of the tiles of all levels: a coarsest tile has 128 x 2048 of them a side.
 const FAR: i64 = 640 << 18;
+
+/// Cell in samples, and samples a side, in which the highest place is searched.
+const FAR_CELL: i64 = 128;
+const FAR_SIDE: i64 = 128;
 
 /// Options of area `realism`.
 #[derive(Debug, Default, PartialEq, Eq)]
@@ -126,7 +127,7 @@ pub fn run(options: &Options, program: &Path) -> Result {
         let mut compare = shell::program(&python);
         compare.arg(&score);
         match case.land {
-            Land::Any(_) => compare.arg("--real").arg(&real),
+            Land::Any(_) | Land::Highest(_) => compare.arg("--real").arg(&real),
             Land::Type(name, _) => compare.args(["--type", name]),
         };
         let said = shell::capture(compare.args(&files))?;
@@ -147,7 +148,7 @@ const HEAD: [&str; 9] = ["preset", "beside", "judged", "median", "p90", "energy"
 
 fn cells(case: &Case, score: &Score) -> Vec<String> {
     let beside = match case.land {
-        Land::Any(_) => format!("all, at {CELL} m"),
+        Land::Any(_) | Land::Highest(_) => format!("all, at {CELL} m"),
         Land::Type(name, cell) => format!("{}, at {cell} m", name.replace('_', " ")),
     };
     vec![
@@ -185,13 +186,40 @@ fn misses(case: &Case, score: &Score) -> Vec<String> {
 }
 
 fn make(program: &Path, case: &Case, seed: u64, file: &Path) -> Result {
+    let window = match case.land {
+        Land::Any(at) => Some(at),
+        Land::Highest(at) => Some(highest(program, case, seed, at)?.map(|index| index - i64::from(SIDE) / 2)),
+        Land::Type(..) => None,
+    };
     let mut command = shell::program(program);
     command.args(["export", case.preset, "--quiet", "--seed", &seed.to_string()]);
-    match case.land {
-        Land::Any([x, y]) => command.args(["--cell", &CELL.to_string(), "--window", &format!("{x},{y},{SIDE},{SIDE}")]),
-        Land::Type(_, cell) => command.args(["--cell", &cell.to_string()]),
+    match (window, &case.land) {
+        (Some([x, y]), _) => command.args(["--cell", &CELL.to_string(), "--window", &format!("{x},{y},{SIDE},{SIDE}")]),
+        (None, Land::Type(_, cell)) => command.args(["--cell", &cell.to_string()]),
+        (None, _) => &mut command,
     };
     shell::run(command.arg("-o").arg(file))
+}
+
+/// The sample at the highest place around another, found at a larger cell.
+fn highest(program: &Path, case: &Case, seed: u64, at: [i64; 2]) -> Result<[i64; 2]> {
+    let first = at.map(|index| index / FAR_CELL - FAR_SIDE / 2);
+    let window = format!("{},{},{FAR_SIDE},{FAR_SIDE}", first[0], first[1]);
+    let cell = (i64::from(CELL) * FAR_CELL).to_string();
+    let mut command = shell::program(program);
+    command.args(["export", case.preset, "--quiet", "--seed", &seed.to_string(), "--cell", &cell, "--window", &window]);
+    let text = shell::capture(command.args(["--format", "asc", "-o", "-"]))?;
+    // A header of lines that begin with a letter, then rows from north to south.
+    let rows = text.lines().filter(|line| !line.trim_start().starts_with(|first: char| first.is_ascii_alphabetic()));
+    let mut best = (f64::NEG_INFINITY, first);
+    for (row, y) in rows.zip(first[1]..) {
+        for (height, x) in row.split_whitespace().filter_map(|word| word.parse::<f64>().ok()).zip(first[0]..) {
+            if height > best.0 {
+                best = (height, [x, y].map(|index| index * FAR_CELL));
+            }
+        }
+    }
+    Ok(best.1)
 }
 
 /// The real places, sorted by name.
