@@ -83,16 +83,19 @@ impl Carved {
         let whole = (first + second + length(entry, end)).max(0.01);
         let (to_exit, to_entry) = (first / whole, (first + second) / whole);
         let (top, fall) = (parent.height[q], parent.height[target] - parent.height[q]);
-        let area = 4.0 * parent.area[q];
+        // The area grows by one cell at each step, so that it is never less than what flows in.
+        let mut area = 4.0 * parent.area[q];
         let [start, exit, entry] = [start, exit, entry].map(|child| child.index(parents));
         self.set(start, top, area);
         if exit != start {
+            area += 1.0;
             self.set(exit, top + fall * to_exit, area);
             self.connect(children, start, exit);
         }
         match via {
             Some(via) => {
                 let via = via.index(parents);
+                area += 1.0;
                 self.set(via, top + fall * (0.5 * (to_exit + to_entry)), area);
                 self.connect(children, exit, via);
                 self.connect(children, via, entry);
@@ -116,7 +119,8 @@ impl Carved {
             return;
         }
         let height = if arrival.height < self.height[entry] { arrival.height } else { self.height[entry] };
-        self.set(entry, height, arrival.area);
+        let own = if self.area[entry] > 0.0 { 0.0 } else { 1.0 };
+        self.set(entry, height, arrival.area + own);
         self.connect(children, entry, end);
     }
 

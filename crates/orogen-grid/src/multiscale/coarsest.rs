@@ -1,7 +1,7 @@
 //! The coarsest level: geography at hashed nodes, and rivers by the cheapest way to the sea.
 
 use super::continents::Continents;
-use super::drainage::{self, FREE};
+use super::drainage;
 use super::geography::Geography;
 use super::given::Given;
 use super::hash::{self, jittered};
@@ -60,7 +60,7 @@ impl Continents {
     /// Samples of the coarsest level beyond a window that [`Continents::coarsest`] works on.
     pub const COARSEST_REACH: usize = REACH;
 
-    /// The coarsest level over `window`. It holds about 64 bytes per sample of the window grown by 148. What is given covers the window grown by
+    /// The coarsest level over `window`. It holds about 60 bytes per sample of the window grown by 148. What is given covers the window grown by
     /// [`Continents::COARSEST_REACH`].
     ///
     /// # Errors
@@ -175,11 +175,10 @@ impl<'a> Coarsest<'a> {
         }
         self.extent = self.extent.shrunk(1);
         routes::route(self.extent, &links, &heights, &self.start, &mut self.receiver);
-        let free = vec![FREE; heights.len()];
         for _ in 0..LINKS {
             progress.step(1.0)?;
             self.extent = self.extent.shrunk(1);
-            drainage::step(self.extent, &self.receiver, &free, &mut self.area, &mut spare);
+            drainage::step(self.extent, &self.receiver, &mut self.area, &mut spare);
         }
         Ok(heights)
     }

@@ -10,17 +10,16 @@ pub const FREE: f32 = -1.0;
 /// In planes of fixed receivers: water.
 pub const WATER: f32 = NONE as f32;
 
-/// Replaces `area` by 1 plus the areas of the donors before, over `extent`, where the receiver is not `fixed`; `spare` is scratch memory. Sums are in
-/// the order of directions, so they have the same bits in every window. Receivers are codes of directions.
-pub fn step(extent: Extent, receiver: &[f32], fixed: &[f32], area: &mut Vec<f32>, spare: &mut Vec<f32>) {
-    dispatch(Step { extent, receiver, fixed, area, out: spare });
+/// Replaces `area` by 1 plus the areas of the donors before, over `extent`; `spare` is scratch memory. Sums are in the order of directions, so
+/// they have the same bits in every window. Receivers are codes of directions.
+pub fn step(extent: Extent, receiver: &[f32], area: &mut Vec<f32>, spare: &mut Vec<f32>) {
+    dispatch(Step { extent, receiver, area, out: spare });
     std::mem::swap(area, spare);
 }
 
 struct Step<'a> {
     extent: Extent,
     receiver: &'a [f32],
-    fixed: &'a [f32],
     area: &'a [f32],
     out: &'a mut [f32],
 }
@@ -32,16 +31,14 @@ impl Body for Step<'_> {
     fn run<S: Simd>(self, _: S) {
         for j in self.extent.rows() {
             let (receivers, areas) = (self.extent.around(self.receiver, j), self.extent.around(self.area, j));
-            let own = [self.extent.row(self.fixed, j), self.extent.row(self.area, j)];
-            sum(own, receivers, areas, self.extent.row_mut(self.out, j));
+            sum(receivers, areas, self.extent.row_mut(self.out, j));
         }
     }
 }
 
 #[inline(always)]
-fn sum([fixed, area]: [&[f32]; 2], receivers: [&[f32]; 8], areas: [&[f32]; 8], out: &mut [f32]) {
+fn sum(receivers: [&[f32]; 8], areas: [&[f32]; 8], out: &mut [f32]) {
     let n = out.len();
-    let (fixed, area) = (&fixed[..n], &area[..n]);
     let (receivers, areas) = (receivers.map(|row| &row[..n]), areas.map(|row| &row[..n]));
     for i in 0..n {
         let mut total = 1.0;
@@ -50,7 +47,7 @@ fn sum([fixed, area]: [&[f32]; 2], receivers: [&[f32]; 8], areas: [&[f32]; 8], o
             let back = ((code + 4) & 7) as f32;
             total += if receivers[code][i] == back { areas[code][i] } else { 0.0 };
         }
-        out[i] = if (fixed[i] > FREE) & (fixed[i] < WATER) { area[i] } else { total };
+        out[i] = total;
     }
 }
 
@@ -90,5 +87,46 @@ fn lower([receiver, area]: [&[f32]; 2], areas: [&[f32]; 8], out: &mut [f32]) {
             least = if lower { there[i] } else { least };
         }
         out[i] = least;
+    }
+}
+
+/// Areas become at least those of the donors before.
+pub fn raise(extent: Extent, receiver: &[f32], area: &mut Vec<f32>, spare: &mut Vec<f32>) {
+    dispatch(Raise { extent, receiver, area, out: spare });
+    std::mem::swap(area, spare);
+}
+
+struct Raise<'a> {
+    extent: Extent,
+    receiver: &'a [f32],
+    area: &'a [f32],
+    out: &'a mut [f32],
+}
+
+impl Body for Raise<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, _: S) {
+        for j in self.extent.rows() {
+            let (receivers, areas) = (self.extent.around(self.receiver, j), self.extent.around(self.area, j));
+            higher(self.extent.row(self.area, j), receivers, areas, self.extent.row_mut(self.out, j));
+        }
+    }
+}
+
+#[inline(always)]
+fn higher(area: &[f32], receivers: [&[f32]; 8], areas: [&[f32]; 8], out: &mut [f32]) {
+    let n = out.len();
+    let area = &area[..n];
+    let (receivers, areas) = (receivers.map(|row| &row[..n]), areas.map(|row| &row[..n]));
+    for i in 0..n {
+        let mut most = area[i];
+        for code in 0..8 {
+            let back = ((code + 4) & 7) as f32;
+            let higher = (receivers[code][i] == back) & (areas[code][i] > most);
+            most = if higher { areas[code][i] } else { most };
+        }
+        out[i] = most;
     }
 }

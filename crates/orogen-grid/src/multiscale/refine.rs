@@ -39,7 +39,8 @@ const MAX_CREEP_FACTOR: f32 = 1.25;
 const LAST_AREA_PASSES: usize = 3;
 const FINEST_AREA_PASSES: usize = 6;
 
-/// Passes that keep areas from falling downstream.
+/// Passes that keep areas from falling downstream: they rise along the receivers, then fall against them.
+const RAISE_PASSES: usize = 6;
 const LIMIT_PASSES: usize = 3;
 
 /// Passes that raise banks on the finest level.
@@ -51,7 +52,7 @@ const FREE_AREA: f32 = 64.0;
 /// Cells at the edge of the children whose values are not exact.
 fn inset(finest: bool, creep: usize) -> usize {
     let growth = CARVED + FIRST_PASSES + ROUNDS * (AREA_PASSES + 1);
-    let growth = growth + last_area_passes(finest) + LIMIT_PASSES;
+    let growth = growth + last_area_passes(finest) + RAISE_PASSES + LIMIT_PASSES;
     if finest { growth + straighten::REACH + creep + BANK_PASSES + 1 } else { growth }
 }
 
@@ -138,10 +139,14 @@ impl Refinement {
         let mut growth =
             Growth::new(carved.height, carved.area, carved.receiver, carved.fixed, has_floors(self, depth));
         for pass in 0..FIRST_PASSES + ROUNDS {
+            if pass == FIRST_PASSES {
+                // What is not a river yet has drained nothing: the areas of rivers contain it.
+                growth.area.iter_mut().filter(|area| **area <= 1.0).for_each(|area| *area = 0.0);
+            }
             for _ in 0..if pass < FIRST_PASSES { 0 } else { AREA_PASSES } {
                 progress.check()?;
                 extent = extent.shrunk(1);
-                drainage::step(extent, &growth.receiver, &growth.fixed, &mut growth.area, &mut growth.spare);
+                drainage::step(extent, &growth.receiver, &mut growth.area, &mut growth.spare);
             }
             extent = extent.shrunk(1);
             growth.pass(extent, &law, spacing, self.cell_of(depth));
@@ -166,7 +171,12 @@ impl Refinement {
         for _ in 0..last_area_passes(finest) {
             progress.check()?;
             extent = extent.shrunk(1);
-            drainage::step(extent, &growth.receiver, &growth.fixed, &mut growth.area, &mut growth.spare);
+            drainage::step(extent, &growth.receiver, &mut growth.area, &mut growth.spare);
+        }
+        for _ in 0..RAISE_PASSES {
+            progress.check()?;
+            extent = extent.shrunk(1);
+            drainage::raise(extent, &growth.receiver, &mut growth.area, &mut growth.spare);
         }
         for _ in 0..LIMIT_PASSES {
             progress.check()?;

@@ -16,10 +16,7 @@ const NEAR: usize = 3;
 
 /// Cells that the result of a cell depends on: a shortcut over it starts at most `NEAR` cells away, those that compete with it as far from there,
 /// and each looks at links up to `SKIPPED` cells away.
-pub const REACH: usize = 2 * NEAR + SKIPPED + ROUNDS;
-
-/// Rounds in which areas grow along what is left of rivers.
-const ROUNDS: usize = 3;
+pub const REACH: usize = 2 * NEAR + SKIPPED;
 
 /// A river that can go to a cell directly.
 struct Shortcut {
@@ -74,13 +71,9 @@ pub fn straighten(extent: Extent, window: &Window, carved: &mut Carved) {
             }
         }
     }
-    // Areas need not be sums of those upstream: what is left is at least that of a river that still leads there.
-    for _ in 0..ROUNDS {
-        let least =
-            |&q: &usize| (q, donors(extent, carved, q).fold(1.0, |most: f32, donor| most.max(carved.area[donor])));
-        let wet = taken.iter().flat_map(|shortcut| shortcut.skipped()).filter(|&&q| carved.fixed[q] > FREE);
-        for (q, least) in wet.map(least).collect::<Vec<_>>() {
-            carved.area[q] = carved.area[q].max(least);
+    for shortcut in &taken {
+        for &q in shortcut.skipped() {
+            carved.area[q] = carved.area[q].max(1.0);
         }
     }
 }
