@@ -5,7 +5,7 @@
 
 use super::given::snapped;
 use super::joints::Path;
-use super::shores::{holds, nested};
+use super::rings::{holds, nested};
 use crate::contour::line::twice_area;
 
 /// A rectangle in columns and rows.

@@ -11,6 +11,7 @@ use crate::hydrology::receivers::Receivers;
 use crate::hydrology::rivers::Streams;
 use crate::progress::Progress;
 
+use super::network::{AT_SEA, Network};
 use super::water::{Cover, Least, Water};
 
 /// Drainage that is known. All grids have one window.
@@ -36,20 +37,6 @@ pub struct Nodes {
     /// Columns and rows from the sample to its node; none if nodes are at their samples.
     pub offset: Option<[Grid; 2]>,
 }
-
-/// What [`Water`] keeps of a given network.
-#[derive(Debug, Clone)]
-pub struct Network {
-    /// Drainage area of each node in m^2.
-    pub flow: Grid,
-    /// Columns and rows from the sample to its node; none if nodes are at their samples.
-    pub offset: Option<[Grid; 2]>,
-    /// The standing water of each node that is not at its sample: the number of a lake, [`AT_SEA`] or 0.
-    pub covers: Option<Grid<u32>>,
-}
-
-/// The sea, where lakes are numbers.
-pub const AT_SEA: u32 = u32::MAX;
 
 /// Largest difference of two water levels of one lake, in metres: more than rounding, less than a step between lakes.
 const ONE_LEVEL: f32 = 0.05;

@@ -7,7 +7,9 @@
 pub mod clip;
 pub mod given;
 pub mod joints;
+pub mod network;
 pub mod outlines;
+pub mod rings;
 pub mod rivers;
 pub mod shores;
 pub mod summits;

@@ -5,7 +5,7 @@
 //! corner lies in a triangle of its own.
 
 use super::joints::Path;
-use super::shores::nested;
+use super::rings::nested;
 use crate::contour::chaikin::smooth;
 use crate::contour::line::Line;
 use crate::grid::Grid;

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::given::{AT_SEA, Network};
+use super::network::{AT_SEA, Network};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::hydrology::accumulation::accumulate;
