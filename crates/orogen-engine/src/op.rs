@@ -299,6 +299,11 @@ pub trait Levelled: Declared + Send + Sync {
         0
     }
 
+    /// Number of levels, from the coarsest, that read the op's inputs. Finer ones are given none.
+    fn levels_with_inputs(&self) -> usize {
+        self.levels().count
+    }
+
     /// The planes of level 0 over `window`. Each given input covers `window.grown(source_halo(0))`.
     ///
     /// # Errors
@@ -320,9 +325,9 @@ pub trait Levelled: Declared + Send + Sync {
     ) -> Result<Vec<Grid>>;
 
     /// Number of samples of a level that [`Levelled::layers_of`] reads beyond the window.
-    fn surface_halo(&self) -> usize;
+    fn surface_halo(&self, level: usize) -> usize;
 
-    /// Computes layers over `window` from the planes of `level` over `window.grown(surface_halo)`. `out` is that of
+    /// Computes layers over `window` from the planes of `level` over `window.grown(surface_halo(level))`. `out` is that of
     /// [`Filter::apply`].
     ///
     /// # Errors

@@ -106,7 +106,7 @@ impl Levelled for Sums {
         }))
     }
 
-    fn surface_halo(&self) -> usize {
+    fn surface_halo(&self, _: usize) -> usize {
         1
     }
 

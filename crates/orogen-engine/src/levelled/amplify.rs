@@ -1,8 +1,8 @@
 //! Coarse land with ever smaller valleys.
 
-use super::drained::{self, Reading};
+use super::drained::{self, Lattices, Reading};
 use crate::declare::Declared;
-use crate::op::{Context, Levelled, Levels, halved};
+use crate::op::{Context, Levelled, Levels};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::multiscale::coarse::{Coarse, REACH};
@@ -40,7 +40,7 @@ op! {
     params {
         /// Seed of the node, hashed with the world's seed.
         seed: u64 = 0;
-        /// Cell of the finest level. Finer samples are interpolated.
+        /// Cell of the finest level of valleys.
         cell: f64 = 60.0, unit "m", range 1e-2 to 1e4;
         /// Number of times the coarsest cell is halved.
         halvings: u32 = 4, range 1 to 24;
@@ -57,6 +57,9 @@ op! {
         /// How far the rivers of the source are displaced within its cells: 1 places them at random, so that the grid does not show; 0 places them in
         /// the source's valleys, by 3 x 3 heights around each sample, which suits real land.
         jitter: f64 = 1.0, range 0.0 to 1.0;
+        /// Number of further halvings, below `cell`. Their slopes are those of the finest valleys, with gullies on them, rough rock where they are steep,
+        /// and beds and banks of rivers that are wider than a sample. Finer samples are interpolated.
+        details: u32 = 0, range 0 to 10;
     }
     layers {
         /// Height of the ground, and of the beds of lakes and the sea.
@@ -86,6 +89,7 @@ impl Amplify {
             .with_creep(self.creep)
             .with_variation(self.variation)
             .with_jitter(self.jitter)
+            .with_details(self.details as usize)
     }
 
     fn seeded(&self, context: &Context) -> Refinement {
@@ -93,21 +97,10 @@ impl Amplify {
     }
 }
 
-/// Number of samples that a level's lattice of nodes is ahead of the samples of windows. A sample of the source is in the middle of its coarsest cell,
+/// Number of samples that the lattice of a level is ahead of the samples of windows. A sample of the source is in the middle of its coarsest cell,
 /// and the finer lattices begin at the corner of cell 0, half a coarsest cell before.
 fn ahead(level: usize) -> i64 {
     if level == 0 { 0 } else { 1i64 << (level - 1).min(MAX_LEVELS) }
-}
-
-/// The nodes of a level at the samples of a window.
-fn nodes_at(level: usize, window: &Window) -> Window {
-    window.at(window.x + ahead(level), window.y + ahead(level))
-}
-
-/// An input of a level with the window of its nodes.
-fn input_at_nodes(level: usize, input: Option<&Grid>) -> Option<Grid> {
-    let input = input?;
-    Grid::from_data(nodes_at(level, input.window()), input.data().to_vec())
 }
 
 fn given<'a>(inputs: &[Option<&'a Grid>]) -> Given<'a> {
@@ -139,6 +132,10 @@ impl Levelled for Amplify {
         if level == 0 { REACH } else { self.refinement().given_reach(level) }
     }
 
+    fn levels_with_inputs(&self) -> usize {
+        drained::levels_with_inputs(&self.refinement())
+    }
+
     fn coarsest(&self, inputs: &[Option<&Grid>], window: &Window, context: &Context) -> Result<Vec<Grid>> {
         let &[Some(height), Some(flow), receiver, ..] = inputs else {
             return Err(Error::new(ErrorKind::Internal, "an input of `amplify` is missing"));
@@ -155,24 +152,16 @@ impl Levelled for Amplify {
         window: &Window,
         context: &Context,
     ) -> Result<Vec<Grid>> {
-        let mut above = drained::level_of(level - 1, parent)?;
-        above.window = nodes_at(level - 1, &above.window);
-        let inputs: Vec<Option<Grid>> = inputs.iter().map(|input| input_at_nodes(level, *input)).collect();
-        let inputs: Vec<Option<&Grid>> = inputs.iter().map(Option::as_ref).collect();
-        let nodes = nodes_at(level, window);
-        let mut made = self.seeded(context).refine(&above, &given(&inputs), &nodes, context.progress)?;
-        made.window = *window;
-        Ok(made.into_planes())
+        let lattices = Lattices { refinement: self.seeded(context), ahead, continents: None };
+        lattices.refine(level, parent, inputs, given, window, context)
     }
 
     fn parent(&self, level: usize, window: &Window) -> Window {
-        let above = halved(&nodes_at(level, window), self.levels().cell(level.saturating_sub(1)));
-        let ahead = ahead(level.saturating_sub(1));
-        above.at(above.x - ahead, above.y - ahead).grown(self.halo(level))
+        Lattices { refinement: self.refinement(), ahead, continents: None }.parent(level, window)
     }
 
-    fn surface_halo(&self) -> usize {
-        Refinement::SURFACE_REACH
+    fn surface_halo(&self, level: usize) -> usize {
+        drained::surface_halo(&self.refinement(), level)
     }
 
     fn layers_of(
@@ -195,10 +184,6 @@ impl Levelled for Amplify {
 
     fn scratch(&self, level: usize, window: &Window) -> u64 {
         let halo = if level == 0 { REACH } else { 2 * self.halo(level) };
-        // Inputs are copied to the windows of the nodes.
-        let copies = 4 * self.spec().inputs.len() as u64;
-        let samples = window.grown(halo + 1);
-        let copied = copies.saturating_mul(samples.width as u64).saturating_mul(samples.height as u64);
-        drained::scratch(window, halo).saturating_add(copied)
+        drained::scratch(window, halo, self.spec().inputs.len())
     }
 }

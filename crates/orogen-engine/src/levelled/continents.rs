@@ -1,6 +1,7 @@
 //! Continents with rivers, without bounds.
 
-use super::drained::{self, Reading};
+use super::drained::{self, Lattices, Reading};
+use crate::declare::Declared;
 use crate::op::{Context, Levelled, Levels};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -38,7 +39,7 @@ op! {
     params {
         /// Seed of the node, hashed with the world's seed.
         seed: u64 = 0;
-        /// Cell of the finest level. Finer samples are interpolated.
+        /// Cell of the finest level of valleys.
         cell: f64 = 60.0, unit "m", range 1e-2 to 1e4;
         /// Number of times the coarsest cell is halved. Continents and ranges are placed at the coarsest cell: 122.88 km by default.
         halvings: u32 = 11, range 1 to 24;
@@ -58,6 +59,9 @@ op! {
         stream: f64 = 1e6, unit "m^2", range 0.0 to 1e15;
         /// Runoff from the ground: a river with discharge Q (m^3/s) is 5 Q^0.5 m wide and 0.3 Q^0.4 m deep (Leopold and Maddock 1953).
         runoff: f64 = 0.5, unit "m/yr", range 0.0 to 1000.0;
+        /// Number of further halvings, below `cell`: 6 make levels from 30 m to 0.94 m. Their slopes are those of the finest valleys, with gullies on them,
+        /// rough rock where they are steep, and beds and banks of rivers that are wider than a sample. Finer samples are interpolated.
+        details: u32 = 0, range 0 to 10;
     }
     layers {
         /// Height of the ground, and of the beds of lakes and the sea.
@@ -94,6 +98,10 @@ impl Continents {
         Land::default().with_refinement(refinement).with_land(self.land).with_size(self.size).with_basins(self.basins)
     }
 
+    fn lattices(refinement: Refinement, continents: Option<&Land>) -> Lattices<'_> {
+        Lattices { refinement, ahead: |_| 0, continents }
+    }
+
     /// The levels without the seed, on which neither cells nor reaches depend.
     fn refinement(&self) -> Refinement {
         Refinement::default()
@@ -102,6 +110,7 @@ impl Continents {
             .with_relief(self.relief)
             .with_creep(self.creep)
             .with_variation(self.variation)
+            .with_details(self.details as usize)
     }
 }
 
@@ -134,6 +143,10 @@ impl Levelled for Continents {
         if level == 0 { Land::COARSEST_REACH } else { self.refinement().given_reach(level) }
     }
 
+    fn levels_with_inputs(&self) -> usize {
+        drained::levels_with_inputs(&self.refinement())
+    }
+
     fn coarsest(&self, inputs: &[Option<&Grid>], window: &Window, context: &Context) -> Result<Vec<Grid>> {
         Ok(self.land(context).coarsest(&given(inputs), window, context.progress)?.into_planes())
     }
@@ -147,12 +160,15 @@ impl Levelled for Continents {
         context: &Context,
     ) -> Result<Vec<Grid>> {
         let land = self.land(context);
-        let given = Given { continents: Some(&land), ..given(inputs) };
-        drained::refine(&land.refinement, level, parent, &given, window, context)
+        Self::lattices(land.refinement, Some(&land)).refine(level, parent, inputs, given, window, context)
     }
 
-    fn surface_halo(&self) -> usize {
-        Refinement::SURFACE_REACH
+    fn parent(&self, level: usize, window: &Window) -> Window {
+        Self::lattices(self.refinement(), None).parent(level, window)
+    }
+
+    fn surface_halo(&self, level: usize) -> usize {
+        drained::surface_halo(&self.refinement(), level)
     }
 
     fn layers_of(
@@ -173,6 +189,7 @@ impl Levelled for Continents {
     }
 
     fn scratch(&self, level: usize, window: &Window) -> u64 {
-        drained::scratch(window, if level == 0 { Land::COARSEST_REACH } else { 2 * self.halo(level) })
+        let halo = if level == 0 { Land::COARSEST_REACH } else { 2 * self.halo(level) };
+        drained::scratch(window, halo, self.spec().inputs.len())
     }
 }

@@ -1,9 +1,10 @@
 //! What the levelled ops that make drained land have in common.
 
-use crate::op::{Context, Levels};
+use crate::op::{Context, Levels, halved};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::hydrology::rivers::Channel;
+use orogen_grid::multiscale::continents::Continents;
 use orogen_grid::multiscale::given::Given;
 use orogen_grid::multiscale::level::Level;
 use orogen_grid::multiscale::refinement::Refinement;
@@ -14,22 +15,78 @@ pub const COST: f64 = 300.0;
 /// The lattices of a refinement.
 #[must_use]
 pub fn levels(refinement: &Refinement) -> Levels {
-    Levels { finest: refinement.cell, count: refinement.levels + 1 }
+    Levels {
+        finest: refinement.cell_of(refinement.levels + refinement.details),
+        count: refinement.levels + refinement.details + 1,
+    }
 }
 
-/// The planes of a level from those of the level above.
-///
-/// # Errors
-/// If the planes are not those of a level, or the work was cancelled.
-pub fn refine(
-    refinement: &Refinement,
-    level: usize,
-    parent: &[Grid],
-    given: &Given,
-    window: &Window,
-    context: &Context,
-) -> Result<Vec<Grid>> {
-    Ok(refinement.refine(&level_of(level - 1, parent)?, given, window, context.progress)?.into_planes())
+/// Number of levels that read inputs: detail levels take over what the finest level of valleys has.
+#[must_use]
+pub fn levels_with_inputs(refinement: &Refinement) -> usize {
+    refinement.levels + 1
+}
+
+/// The levels of an op, and where their nodes are relative to the samples of windows.
+pub struct Lattices<'a> {
+    /// The levels.
+    pub refinement: Refinement,
+    /// Number of samples that the lattice of a level is ahead of those of windows.
+    pub ahead: fn(usize) -> i64,
+    /// The land whose geography decides where inputs have no value.
+    pub continents: Option<&'a Continents>,
+}
+
+impl Lattices<'_> {
+    /// The nodes of a level at the samples of a window.
+    #[must_use]
+    pub fn nodes_at(&self, level: usize, window: &Window) -> Window {
+        let ahead = (self.ahead)(level);
+        self.refinement.nodes_at(level, &window.at(window.x + ahead, window.y + ahead))
+    }
+
+    /// The inverse of [`Lattices::nodes_at`].
+    fn samples_at(&self, level: usize, nodes: &Window) -> Window {
+        let (window, ahead) = (self.refinement.samples_at(level, nodes), (self.ahead)(level));
+        window.at(window.x - ahead, window.y - ahead)
+    }
+
+    /// The window of the level above that a window is made from.
+    #[must_use]
+    pub fn parent(&self, level: usize, window: &Window) -> Window {
+        let above = level.saturating_sub(1);
+        let nodes = halved(&self.nodes_at(level, window), self.refinement.cell_of(above));
+        self.samples_at(above, &nodes).grown(self.refinement.reach(level))
+    }
+
+    /// The planes of a level from those of the level above. `given` names the inputs.
+    ///
+    /// # Errors
+    /// If the planes are not those of a level, or the work was cancelled.
+    pub fn refine(
+        &self,
+        level: usize,
+        parent: &[Grid],
+        inputs: &[Option<&Grid>],
+        given: impl for<'a> Fn(&[Option<&'a Grid>]) -> Given<'a>,
+        window: &Window,
+        context: &Context,
+    ) -> Result<Vec<Grid>> {
+        let mut above = level_of(level - 1, parent)?;
+        above.window = self.nodes_at(level - 1, &above.window);
+        let nodes = self.nodes_at(level, window);
+        let inputs: Vec<Option<Grid>> = inputs.iter().map(|input| self.input_at_nodes(level, (*input)?)).collect();
+        let inputs: Vec<Option<&Grid>> = inputs.iter().map(Option::as_ref).collect();
+        let given = Given { continents: self.continents, ..given(&inputs) };
+        let mut made = self.refinement.refine(&above, &given, &nodes, context.progress)?;
+        made.window = *window;
+        Ok(made.into_planes())
+    }
+
+    /// An input of a level with the window of its nodes.
+    fn input_at_nodes(&self, level: usize, input: &Grid) -> Option<Grid> {
+        Grid::from_data(self.nodes_at(level, input.window()), input.data().to_vec())
+    }
 }
 
 /// How layers are read from a level.
@@ -55,13 +112,16 @@ pub fn layers_of(
     out: &mut [Option<Grid>],
     context: &Context,
 ) -> Result<()> {
-    let level = level_of(level, planes)?;
+    let mut level = level_of(level, planes)?;
+    level.window = refinement.nodes_at(level.depth, &level.window);
     let [height, flow, lake, surface, receiver, width, depth, nodes @ ..] = out else { return Ok(()) };
     nodes_of(refinement, &level, window, nodes);
     if [&height, &flow, &lake, &surface, &receiver, &width, &depth].iter().all(|layer| layer.is_none()) {
         return Ok(());
     }
-    let made = refinement.surface_at(reading.share, &level, window, context.progress)?;
+    let channel = Channel::default().with_runoff(reading.runoff);
+    let mut made = refinement.surface_at(reading.share, &level, window, context.progress)?;
+    refinement.cut_rivers(&level, &mut made, reading.stream, &channel, context.progress)?;
     if let Some(surface) = surface {
         *surface = made.height.clone();
         for (surface, water) in surface.data_mut().iter_mut().zip(made.water_level.data()) {
@@ -72,7 +132,6 @@ pub fn layers_of(
         let codes = receiver.data_mut().iter_mut().zip(made.receiver.data());
         codes.for_each(|(out, code)| *out = f32::from(*code));
     }
-    let channel = Channel::default().with_runoff(reading.runoff);
     let write = |layer: &mut Option<Grid>, of: &dyn Fn(f64) -> f64| {
         let Some(layer) = layer else { return };
         for ((size, area), water) in layer.data_mut().iter_mut().zip(made.flow.data()).zip(made.water_level.data()) {
@@ -92,8 +151,11 @@ pub fn layers_of(
 fn nodes_of(refinement: &Refinement, level: &Level, window: &Window, out: &mut [Option<Grid>]) {
     let cell = refinement.cell_of(level.depth);
     // The nodes of the finest level are at the samples.
-    let metres = |share: f32| (f64::from(share) * cell - 0.5 * refinement.cell) as f32;
-    let (left, top) = ((window.x - level.window.x) as usize, (window.y - level.window.y) as usize);
+    // Cells of detail levels begin at the samples.
+    let first = if level.depth > refinement.levels { 0.0 } else { -0.5 * refinement.cell };
+    let metres = |share: f32| (f64::from(share) * cell + first) as f32;
+    let nodes = refinement.nodes_at(level.depth, window);
+    let (left, top) = ((nodes.x - level.window.x) as usize, (nodes.y - level.window.y) as usize);
     let fill = |out: &mut Option<Grid>, value: &dyn Fn(usize) -> f32| {
         for j in 0..out.as_ref().map_or(0, Grid::height) {
             let first = (top + j) * level.window.width + left;
@@ -109,11 +171,19 @@ fn nodes_of(refinement: &Refinement, level: &Level, window: &Window, out: &mut [
     fill(south, &|node| metres(level.south[node]));
 }
 
+/// Samples of a level beyond a window that its layers read.
+#[must_use]
+pub fn surface_halo(refinement: &Refinement, level: usize) -> usize {
+    Refinement::SURFACE_REACH.max(refinement.rivers_reach(level))
+}
+
 /// Memory for making a level over a window whose children extend by `halo` beyond it, in bytes.
 #[must_use]
-pub fn scratch(window: &Window, halo: usize) -> u64 {
-    let samples = window.grown(halo);
-    Refinement::bytes_per_sample().saturating_mul(samples.width as u64).saturating_mul(samples.height as u64)
+pub fn scratch(window: &Window, halo: usize, inputs: usize) -> u64 {
+    let samples = window.grown(halo + 1);
+    // Inputs are copied to the windows of the nodes.
+    let bytes = Refinement::bytes_per_sample().saturating_add(4 * inputs as u64);
+    bytes.saturating_mul(samples.width as u64).saturating_mul(samples.height as u64)
 }
 
 /// The level of these planes.

@@ -88,7 +88,7 @@ pub fn tiled(op: &dyn Levelled, serving: &Serving) -> usize {
     let Serving { mut level, samples } = *serving;
     let [most, _] = PIECE;
     let largest = Window { width: samples.width.min(most), height: samples.height.min(most), ..samples };
-    let mut window = largest.grown(op.surface_halo());
+    let mut window = largest.grown(op.surface_halo(level));
     while level > 0 && window.width.max(window.height) > FEW_TILES {
         window = op.parent(level, &window);
         level -= 1;
@@ -99,7 +99,7 @@ pub fn tiled(op: &dyn Levelled, serving: &Serving) -> usize {
 /// The windows of the levels from `tiled` to `level` that a piece of `level` is made from.
 #[must_use]
 pub fn windows(op: &dyn Levelled, tiled: usize, level: usize, piece: &Window) -> Vec<Window> {
-    let mut windows = vec![piece.grown(op.surface_halo())];
+    let mut windows = vec![piece.grown(op.surface_halo(level))];
     for level in (tiled + 1..=level).rev() {
         let window = windows.last().map(|window| op.parent(level, window));
         windows.extend(window);

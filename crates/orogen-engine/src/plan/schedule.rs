@@ -171,7 +171,7 @@ impl Scheduler<'_> {
     fn refine(&mut self, node: NodeId, op: &dyn Levelled, window: Window, out: Vec<Option<GridId>>) -> Result<()> {
         let (mut inputs, mut constants) = (Vec::new(), Vec::new());
         if self.graph.links[node].iter().any(|link| *link != Link::None) {
-            for (level, window) in levels::covering(op, &window).into_iter().enumerate() {
+            for (level, window) in levels::covering(op, &window).into_iter().enumerate().take(op.levels_with_inputs()) {
                 let (given, more) = self.inputs(node, window.grown(op.source_halo(level)));
                 inputs.push(given);
                 constants.extend(more);

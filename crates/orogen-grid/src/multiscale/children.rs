@@ -1,5 +1,6 @@
 //! The nodes of a level before rivers: positions, rock and the shape of the shore, from the level above and from hashes.
 
+use super::detail;
 use super::geography::Geography;
 use super::given::Given;
 use super::hash::{self, jittered};
@@ -140,6 +141,10 @@ impl Children {
             self.variation[q] = blend(&parent.variation) + amplitude * hash::normal(mix64(bits ^ 0x5555));
             let (x, y) = (self.window.x + i as i64, self.window.y + j as i64);
             self.uplift[q] = match (given.uplift(x, y), geography) {
+                _ if land.is_detail(self.depth) => {
+                    let uplift = blend(&parent.uplift);
+                    uplift + amplitude * detail::roughness(uplift) * hash::normal(mix64(bits ^ 0x3333))
+                }
                 (Some(uplift), _) => uplift,
                 (None, Some(geography)) => geography
                     .uplift(land.metres(self.depth, x, self.east[q]), land.metres(self.depth, y, self.south[q])),

@@ -21,11 +21,26 @@ pub fn creep_passes(distance: f64) -> usize {
 /// Drainage area in cells at which the rate is half.
 const CHANNEL_AREA: f32 = 300.0;
 
-/// Fall to the receiver, in metres, that creep leaves.
-const LEFT: f32 = 0.02;
+/// What creep leaves as it is.
+#[derive(Debug, Clone, Copy)]
+pub struct Kept {
+    /// Fall to the receiver, in metres.
+    pub fall: f32,
+    /// Drainage area in cells from which rivers cut down instead.
+    pub cut_area: f32,
+}
 
-/// Drainage area in cells from which rivers cut down instead, and the depth in metres in a pass, as far as heights still fall along them.
-const CUT_AREA: f32 = 1400.0;
+impl Kept {
+    /// On the finest level of valleys.
+    pub const VALLEYS: Kept = Kept { fall: 0.02, cut_area: 1400.0 };
+
+    /// On a detail level with this smallest rise over one cell: rivers are there already.
+    pub fn details(least_rise: f32) -> Kept {
+        Kept { fall: least_rise, cut_area: f32::INFINITY }
+    }
+}
+
+/// The depth in metres that rivers cut in a pass, as far as heights still fall along them.
 const CUT: f32 = 1.5;
 
 /// Share of the fall to the receiver by which a node may fall in a pass.
@@ -39,8 +54,9 @@ pub fn creep(
     area: &[f32],
     receiver: &[f32],
     factor: &[f32],
+    kept: Kept,
 ) {
-    dispatch(Creep { extent, heights, area, receiver, factor, out: spare });
+    dispatch(Creep { extent, heights, area, receiver, factor, kept, out: spare });
     std::mem::swap(heights, spare);
 }
 
@@ -50,6 +66,7 @@ struct Creep<'a> {
     area: &'a [f32],
     receiver: &'a [f32],
     factor: &'a [f32],
+    kept: Kept,
     out: &'a mut [f32],
 }
 
@@ -62,7 +79,7 @@ impl Body for Creep<'_> {
         for j in extent.rows() {
             let (heights, receivers) = (extent.around(self.heights, j), extent.around(self.receiver, j));
             let own = [self.heights, self.area, self.receiver, self.factor].map(|plane| extent.row(plane, j));
-            smooth(own, heights, receivers, extent.row_mut(self.out, j));
+            smooth(own, heights, receivers, self.kept, extent.row_mut(self.out, j));
         }
     }
 }
@@ -74,6 +91,7 @@ fn smooth(
     [height, area, receiver, factor]: [&[f32]; 4],
     heights: [&[f32]; 8],
     receivers: [&[f32]; 8],
+    kept: Kept,
     out: &mut [f32],
 ) {
     let n = out.len();
@@ -95,12 +113,12 @@ fn smooth(
             let donor = receivers[code][i] == ((code + 4) & 7) as f32;
             up = if donor & (there - here < up) { there - here } else { up };
         }
-        let (down, up) = (down - LEFT, up - LEFT);
+        let (down, up) = (down - kept.fall, up - kept.fall);
         let lower = if down > 0.0 { -LOWERED * down } else { 0.0 };
         let upper = if up > 0.0 { (1.0 - LOWERED) * up } else { 0.0 };
         let rate = RATE * factor[i] * CHANNEL_AREA / (CHANNEL_AREA + area[i]);
         let change = rate * ((4.0 * sides + corners) * (1.0 / 20.0) - here);
-        let change = if area[i] < CUT_AREA { change } else { -CUT };
+        let change = if area[i] < kept.cut_area { change } else { -CUT };
         let change = if change > lower { change } else { lower };
         let change = if change < upper { change } else { upper };
         out[i] = if receiver[i] < f32::from(NONE) { here + change } else { here };

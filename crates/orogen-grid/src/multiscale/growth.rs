@@ -3,11 +3,17 @@
 use super::distances::Distances;
 use super::growth_row::{Around, Own, Row, Scale, grow};
 use super::law::Law;
+use super::refinement::Refinement;
 use super::stencil::Extent;
 use orogen_simd::{Body, Simd, dispatch};
 
 /// Drainage area, in km^2, from which rivers have floors.
 const FLOOR_AREA: f64 = 5.0;
+
+/// Smallest rise over one cell, in metres: heights fall strictly. On detail levels it shrinks with the cell, so that floors stay flat, as far as
+/// heights of a few kilometres have the digits.
+const LEAST_RISE: f32 = 0.012;
+const LEAST_DETAIL_RISE: f32 = 0.001;
 
 /// The planes of a growing level.
 pub struct Growth {
@@ -48,13 +54,27 @@ impl Growth {
         }
     }
 
-    /// One pass over the cells of `extent`, with nodes `cell` metres apart.
-    pub fn pass(&mut self, extent: Extent, law: &Law, spacing: Spacing<'_>, cell: f64) {
+    /// One pass over the cells of `extent`, of level `depth`.
+    pub fn pass(&mut self, extent: Extent, law: &Law, spacing: Spacing<'_>, land: &Refinement, depth: usize) {
+        let cell = land.cell_of(depth);
         let square_kilometres = cell * cell * 1e-6;
-        let scale = Scale { cell: cell as f32, floor_area: (square_kilometres / FLOOR_AREA) as f32 };
+        let scale = Scale {
+            cell: cell as f32,
+            least_rise: least_rise(land, depth),
+            floor_area: (square_kilometres / FLOOR_AREA) as f32,
+        };
         dispatch(Pass { growth: self, extent, law, spacing, scale });
         std::mem::swap(&mut self.height, &mut self.next_height);
         std::mem::swap(&mut self.floor, &mut self.next_floor);
+    }
+}
+
+/// The smallest rise over one cell of a level, in metres.
+pub fn least_rise(land: &Refinement, depth: usize) -> f32 {
+    if land.is_detail(depth) {
+        (LEAST_RISE * (land.cell_of(depth) / land.cell) as f32).max(LEAST_DETAIL_RISE)
+    } else {
+        LEAST_RISE
     }
 }
 

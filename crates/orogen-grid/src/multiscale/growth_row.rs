@@ -12,9 +12,6 @@ const FLOOR_WIDTH: f32 = 100.0;
 /// Greatest slope of a floor.
 const FLOOR_SLOPE: f32 = 0.02;
 
-/// Smallest rise over one cell, in metres: heights fall strictly.
-const MIN_RISE: f32 = 0.012;
-
 /// Drainage area, in cells, below which slopes of the finest level rise in all directions alike.
 const SLOPE_AREA: f32 = 30.0;
 
@@ -23,6 +20,8 @@ const SLOPE_AREA: f32 = 30.0;
 pub struct Scale {
     /// The cell in metres.
     pub cell: f32,
+    /// Smallest rise over one cell, in metres: heights fall strictly.
+    pub least_rise: f32,
     /// Inverse of the area of rivers with floors, in cells.
     pub floor_area: f32,
 }
@@ -139,7 +138,7 @@ fn rises(own: &Own<'_>, scale: Scale, rise: &mut [f32], flat: &mut [f32], below:
     for i in 0..n {
         let slope = river[i] * power(area[i], -CONCAVITY);
         let metres = slope * stable[i] / (slope + stable[i]) * scale.cell;
-        let metres = if metres > MIN_RISE { metres } else { MIN_RISE };
+        let metres = if metres > scale.least_rise { metres } else { scale.least_rise };
         let on_floor = FLOOR_SLOPE * scale.cell;
         rise[i] = metres;
         flat[i] = if on_floor < metres { on_floor } else { metres };

@@ -1,6 +1,7 @@
 //! The law of slopes: rivers are the gentler the more land drains through them, and hillsides approach a stable slope.
 
 use super::children::Children;
+use super::detail;
 use super::given::{self, Given};
 use super::refinement::Refinement;
 use crate::erosion::power::power;
@@ -15,13 +16,13 @@ pub const CONCAVITY: f32 = 0.45;
 const STEEPNESS: f64 = 0.25;
 
 /// Stable slope of hillsides where uplift over erodibility is 1.
-const STABLE: f32 = 0.8;
+pub const STABLE: f32 = 0.8;
 
 /// Factors that are given: the smallest and the largest.
 const FACTORS: RangeInclusive<f32> = 0.01..=100.0;
 
 /// Exponent of uplift over erodibility in the stable slope.
-const STABLE_EXPONENT: f32 = 0.3;
+pub const STABLE_EXPONENT: f32 = 0.3;
 
 /// Slope of a river of this drainage area, in km^2, where uplift over erodibility is 1.
 pub fn river_slope(land: &Refinement, square_kilometres: f64) -> f64 {
@@ -48,7 +49,11 @@ impl Law {
         if has_floors(land, depth) {
             law.floor.resize(cells, 0.0);
         }
-        dispatch(Fill { law: &mut law, variation, uplift, river_factor, stable_factor });
+        if land.is_detail(depth) {
+            detail::fill(&mut law, variation, uplift, river_factor);
+        } else {
+            dispatch(Fill { law: &mut law, variation, uplift, river_factor, stable_factor });
+        }
         multiply(&mut law.stable, given.stability_factor, &children.window);
         multiply(&mut law.floor, given.floor_factor, &children.window);
         law
@@ -61,9 +66,9 @@ fn multiply(plane: &mut [f32], factor: Option<&Grid>, window: &Window) {
     }
 }
 
-/// Whether valleys of a level have floors: the last three.
+/// Whether valleys of a level have floors: the last three levels of valleys.
 pub fn has_floors(land: &Refinement, depth: usize) -> bool {
-    depth + 2 >= land.levels
+    depth + 2 >= land.levels && !land.is_detail(depth)
 }
 
 struct Fill<'a> {

@@ -21,9 +21,9 @@ pub struct Level {
     pub area: Vec<f32>,
     /// Code of the direction to the receiver (see [`crate::hydrology::direction`]); [`NONE`] for water.
     pub receiver: Vec<u8>,
-    /// Local part of the logarithm of uplift over erodibility.
+    /// Local part of the logarithm of uplift over erodibility; on detail levels all of it.
     pub variation: Vec<f32>,
-    /// Regional part of the logarithm of uplift over erodibility.
+    /// Regional part of the logarithm of uplift over erodibility; on detail levels the logarithm of the stable slope.
     pub uplift: Vec<f32>,
     /// Approximate distance to the shore in kilometres, positive on land.
     pub shore: Vec<f32>,

@@ -10,11 +10,13 @@
 
 mod banks;
 mod carve;
+mod channels;
 mod children;
 pub mod coarse;
 mod coarsest;
 pub mod continents;
 mod creep;
+mod detail;
 mod distances;
 mod drainage;
 mod geography;

@@ -3,10 +3,11 @@
 use super::banks::raise_banks;
 use super::carve::carve;
 use super::children::Children;
-use super::creep::{creep, creep_passes, steepest};
+use super::creep::{Kept, creep, creep_passes, steepest};
+use super::detail;
 use super::drainage::{self, FREE};
 use super::given::{self, Given};
-use super::growth::{Growth, Spacing};
+use super::growth::{Growth, Spacing, least_rise};
 use super::law::{Law, has_floors};
 use super::level::{Level, cropped, invalid};
 use super::links::Links;
@@ -49,13 +50,6 @@ const BANK_PASSES: usize = 3;
 /// Drainage area, in cells, below which nodes of rivers of the level above choose their receivers again.
 const FREE_AREA: f32 = 64.0;
 
-/// Cells at the edge of the children whose values are not exact.
-fn inset(finest: bool, creep: usize) -> usize {
-    let growth = CARVED + FIRST_PASSES + ROUNDS * (AREA_PASSES + 1);
-    let growth = growth + last_area_passes(finest) + RAISE_PASSES + LIMIT_PASSES;
-    if finest { growth + straighten::REACH + creep + BANK_PASSES + 1 } else { growth }
-}
-
 fn last_area_passes(finest: bool) -> usize {
     if finest { FINEST_AREA_PASSES } else { LAST_AREA_PASSES }
 }
@@ -65,7 +59,21 @@ impl Refinement {
     /// first sample, rounded down, to half the last, rounded up.
     #[must_use]
     pub fn reach(&self, depth: usize) -> usize {
-        inset(self.is_finest(depth), creep_passes(self.creep)).div_ceil(2)
+        self.inset(depth).div_ceil(2)
+    }
+
+    /// Cells at the edge of the children whose values are not exact.
+    fn inset(&self, depth: usize) -> usize {
+        let finest = self.is_finest(depth);
+        let growth = CARVED + FIRST_PASSES + ROUNDS * (AREA_PASSES + 1);
+        let growth = growth + last_area_passes(finest) + RAISE_PASSES + LIMIT_PASSES;
+        if finest {
+            growth + straighten::REACH + creep_passes(self.creep) + BANK_PASSES + 1
+        } else if self.is_detail(depth) {
+            growth + detail::creep_passes(self)
+        } else {
+            growth
+        }
     }
 
     /// Samples of level `depth`, at least 1, beyond a window that [`Refinement::refine`] reads of what is given.
@@ -93,12 +101,13 @@ impl Refinement {
     }
 
     /// Exactly `window` of the level below `parent`, which must cover [`Refinement::parent_window`]. Other nodes of the parent are not read. What
-    /// is given covers the window grown by [`Refinement::given_reach`].
+    /// is given covers the window grown by [`Refinement::given_reach`]; detail levels read nothing of it.
     ///
     /// # Errors
     /// If the parent covers too little, a parameter is out of range, the window is not one of the level, or the work is cancelled.
     pub fn refine(&self, parent: &Level, given: &Given, window: &Window, progress: &Progress) -> Result<Level> {
         let depth = parent.depth + 1;
+        let given = if self.is_detail(depth) { &Given::default() } else { given };
         self.check(depth, window)?;
         let needed = self.parent_window(depth, window);
         if !parent.window.contains(&needed) {
@@ -107,7 +116,11 @@ impl Refinement {
                 parent.window
             )));
         }
-        let parent = &parent.crop(&needed)?;
+        let mut parent = parent.crop(&needed)?;
+        if self.is_finest(parent.depth) {
+            detail::begin(self, &mut parent);
+        }
+        let parent = &parent;
         let finest = self.is_finest(depth);
         let growing = (FIRST_PASSES + ROUNDS) as f64 + if finest { FINEST_WORK } else { 0.0 };
         progress.expect(CARVING_WORK.iter().sum::<f64>() + growing);
@@ -126,12 +139,17 @@ impl Refinement {
             straighten(extent, &children.window, &mut carved);
             progress.check()?;
         }
+        let mut law = Law::new(self, &children, given);
+        let mut free_area = FREE_AREA;
+        if self.is_detail(depth) {
+            free_area = detail::free_area(self, depth);
+            detail::keep_slopes(&carved, free_area, self.cell_of(depth) as f32, children.extent, &mut law);
+        }
         for (fixed, &area) in carved.fixed.iter_mut().zip(&carved.area) {
-            if area < FREE_AREA && *fixed < f32::from(NONE) {
+            if area < free_area && *fixed < f32::from(NONE) {
                 *fixed = FREE;
             }
         }
-        let law = Law::new(self, &children, given);
         let spacing = match &carved.distances {
             Some(distances) => Spacing::Irregular(distances),
             None => Spacing::Regular,
@@ -149,7 +167,7 @@ impl Refinement {
                 drainage::step(extent, &growth.receiver, &mut growth.area, &mut growth.spare);
             }
             extent = extent.shrunk(1);
-            growth.pass(extent, &law, spacing, self.cell_of(depth));
+            growth.pass(extent, &law, spacing, self, depth);
             progress.step(1.0)?;
         }
         if finest {
@@ -157,7 +175,15 @@ impl Refinement {
             for _ in 0..creep_passes(self.creep) {
                 progress.check()?;
                 extent = extent.shrunk(1);
-                creep(extent, &mut growth.height, &mut growth.spare, &growth.area, &growth.receiver, &factor);
+                creep(
+                    extent,
+                    &mut growth.height,
+                    &mut growth.spare,
+                    &growth.area,
+                    &growth.receiver,
+                    &factor,
+                    Kept::VALLEYS,
+                );
             }
             for _ in 0..BANK_PASSES {
                 progress.check()?;
@@ -167,6 +193,15 @@ impl Refinement {
             extent = extent.shrunk(1);
             steepest(extent, &growth.height, &growth.fixed, &mut growth.receiver);
             progress.step(FINEST_WORK)?;
+        }
+        if self.is_detail(depth) {
+            let kept = Kept::details(least_rise(self, depth));
+            let factor = detail::creep_factors(&law);
+            for _ in 0..detail::creep_passes(self) {
+                progress.check()?;
+                extent = extent.shrunk(1);
+                creep(extent, &mut growth.height, &mut growth.spare, &growth.area, &growth.receiver, &factor, kept);
+            }
         }
         for _ in 0..last_area_passes(finest) {
             progress.check()?;

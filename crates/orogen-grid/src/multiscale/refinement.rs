@@ -14,9 +14,9 @@ use crate::grid::Window;
 pub struct Refinement {
     /// Seed of all random choices.
     pub seed: u64,
-    /// Cell of the finest level, in metres.
+    /// Cell of the finest level of valleys, in metres.
     pub cell: f64,
-    /// Number of halvings from the coarsest level to the finest.
+    /// Number of halvings from the coarsest level to that.
     pub levels: usize,
     /// Factor of the uplift.
     pub relief: f64,
@@ -26,19 +26,24 @@ pub struct Refinement {
     pub variation: f64,
     /// How far the coarsest nodes of given land are from its valleys, 0 to 1: 0 is in the valley of the sample's cell, 1 at a random place of the cell.
     pub jitter: f64,
+    /// Number of further halvings, below `cell`: detail levels, with the slopes of the finest level of valleys, gullies, and beds and banks of rivers.
+    pub details: usize,
 }
 
 impl Default for Refinement {
     fn default() -> Refinement {
-        Refinement { seed: 0, cell: 60.0, levels: 11, relief: 1.0, creep: 1.0, variation: 1.0, jitter: 1.0 }
+        Refinement { seed: 0, cell: 60.0, levels: 11, relief: 1.0, creep: 1.0, variation: 1.0, jitter: 1.0, details: 0 }
     }
 }
 
 orogen_noise::builder!(Refinement: with_seed(seed: u64), with_cell(cell: f64), with_levels(levels: usize), with_relief(relief: f64),
-    with_creep(creep: f64), with_variation(variation: f64), with_jitter(jitter: f64));
+    with_creep(creep: f64), with_variation(variation: f64), with_jitter(jitter: f64), with_details(details: usize));
 
 /// The largest number of halvings.
 pub const MAX_LEVELS: usize = 24;
+
+/// The largest number of halvings to detail levels.
+pub const MAX_DETAILS: usize = 10;
 
 /// The largest distance of creep, in cells.
 pub const MAX_CREEP: f64 = 5.0;
@@ -59,8 +64,9 @@ impl Refinement {
     /// The cell of a level, in metres.
     #[must_use]
     pub fn cell_of(&self, depth: usize) -> f64 {
-        let halvings = self.levels.min(MAX_LEVELS).saturating_sub(depth);
-        self.cell * (1u64 << halvings) as f64
+        let doublings = self.levels.min(MAX_LEVELS).saturating_sub(depth);
+        let halvings = depth.saturating_sub(self.levels).min(MAX_DETAILS);
+        self.cell * (1u64 << doublings) as f64 / (1u64 << halvings) as f64
     }
 
     /// The cell of a level, in kilometres.
@@ -79,9 +85,33 @@ impl Refinement {
         (0.5 * self.cell / self.cell_of(depth)) as f32
     }
 
-    /// Whether a level is the finest.
+    /// Whether a level is the finest of valleys, whose nodes are on the lattice.
     pub(super) fn is_finest(&self, depth: usize) -> bool {
-        depth >= self.levels
+        depth == self.levels
+    }
+
+    /// Whether a level is finer than that.
+    pub(super) fn is_detail(&self, depth: usize) -> bool {
+        depth > self.levels
+    }
+
+    /// Number of cells that the nodes of a level are ahead of its samples: the node of a cell south-east of sample (i, j) is (i + ahead, j + ahead).
+    pub(super) fn ahead(&self, depth: usize) -> i64 {
+        if self.is_detail(depth) { 1i64 << (depth - self.levels - 1).min(MAX_DETAILS) } else { 0 }
+    }
+
+    /// The cells of a level whose nodes are south-east of the samples of a window.
+    #[must_use]
+    pub fn nodes_at(&self, depth: usize, window: &Window) -> Window {
+        let ahead = self.ahead(depth);
+        window.at(window.x + ahead, window.y + ahead)
+    }
+
+    /// The inverse of [`Refinement::nodes_at`].
+    #[must_use]
+    pub fn samples_at(&self, depth: usize, nodes: &Window) -> Window {
+        let ahead = self.ahead(depth);
+        nodes.at(nodes.x - ahead, nodes.y - ahead)
     }
 
     /// Checks the parameters, and that `window` is one of level `depth`.
@@ -98,11 +128,11 @@ impl Refinement {
         if !(0.0..=1.0).contains(&self.jitter) {
             return Err(invalid("the jitter of levels must be 0 to 1"));
         }
-        if self.levels > MAX_LEVELS || depth > self.levels {
-            return Err(invalid(format!(
-                "level {depth} does not exist: the finest is {}, at most {MAX_LEVELS}",
-                self.levels
-            )));
+        if self.levels > MAX_LEVELS || self.details > MAX_DETAILS {
+            return Err(invalid(format!("levels are at most {MAX_LEVELS}, and {MAX_DETAILS} of details")));
+        }
+        if depth > self.levels + self.details {
+            return Err(invalid(format!("level {depth} does not exist: the finest is {}", self.levels + self.details)));
         }
         if window.cell != self.cell_of(depth) {
             return Err(invalid(format!("level {depth} has a cell of {} m, not {}", self.cell_of(depth), window.cell)));

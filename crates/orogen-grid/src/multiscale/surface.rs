@@ -65,7 +65,8 @@ impl Refinement {
     /// Those of [`Refinement::surface`].
     pub fn surface_at(&self, share: f32, level: &Level, window: &Window, progress: &Progress) -> Result<Surface> {
         self.check(level.depth, window)?;
-        if !level.window.contains(&window.grown(Refinement::SURFACE_REACH)) {
+        let nodes = self.nodes_at(level.depth, window);
+        if !level.window.contains(&nodes.grown(Refinement::SURFACE_REACH)) {
             return Err(invalid(format!(
                 "a surface over {window:?} needs its level over {} more samples",
                 Refinement::SURFACE_REACH
@@ -79,7 +80,7 @@ impl Refinement {
             water_level: Grid::filled(*window, f32::NAN),
             receiver: Grid::filled(*window, NONE),
         };
-        let (left, top) = ((window.x - level.window.x) as usize, (window.y - level.window.y) as usize);
+        let (left, top) = ((nodes.x - level.window.x) as usize, (nodes.y - level.window.y) as usize);
         progress.expect(window.height as f64);
         for j in 0..window.height {
             progress.step(1.0)?;
@@ -100,7 +101,7 @@ impl Refinement {
     /// that count; around a middle, of 3 x 3 cells.
     fn between(&self, share: f32, level: &Level, q: usize) -> Point {
         let width = level.window.width;
-        let inside = share + self.half_finest(level.depth);
+        let inside = share + self.half_finest(level.depth) - self.ahead(level.depth) as f32;
         let (mut land, mut water) = (Plane::default(), Plane::default());
         let (mut shore, mut nearest, mut nearest_water) = (Plane::default(), (f32::INFINITY, q), (f32::INFINITY, q));
         for (row, south) in (0..4).map(|row| (q + row * width - 2 * width - 2, row as f32 - 2.0)) {
@@ -133,7 +134,7 @@ impl Refinement {
             let lake_depth = if surface > 0.0 { surface - bed } else { 0.0 };
             return Point { height: bed, area, lake_depth, water_level: surface, receiver: NONE };
         }
-        let finer = (self.levels - level.depth).min(MEAN_CHANGE.len() - 1);
+        let finer = self.levels.saturating_sub(level.depth).min(MEAN_CHANGE.len() - 1);
         let change = MEAN_CHANGE[finer]
             * slope_of_one_cell(self, level.depth, level.variation[nearest.1] + level.uplift[nearest.1]);
         let height = land.at_origin() + change;

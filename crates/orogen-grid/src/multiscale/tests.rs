@@ -1,5 +1,7 @@
 //! Properties of the levels as a whole: windows agree, water flows down.
 
+mod details;
+
 use super::continents::Continents;
 use super::given::Given;
 use super::level::Level;
@@ -38,7 +40,8 @@ fn bits(level: &Level) -> Vec<Vec<u32>> {
 
 /// A place on land, in samples of a level: one with relief, rivers and a shore within reach.
 fn coast(depth: usize) -> (i64, i64) {
-    (45_312 >> (11 - depth), -43_264 >> (11 - depth))
+    let at = |finest: i64| (finest << depth) >> 11;
+    (at(45_312), at(-43_264))
 }
 
 #[test]

@@ -128,7 +128,7 @@ impl Levelled for Narrow {
         Ok(vec![grid])
     }
 
-    fn surface_halo(&self) -> usize {
+    fn surface_halo(&self, _: usize) -> usize {
         0
     }
 

@@ -203,7 +203,7 @@ impl Levelled for Midpoints {
         Ok(vec![self.displaced(level, inputs, window, context, smooth)])
     }
 
-    fn surface_halo(&self) -> usize {
+    fn surface_halo(&self, _: usize) -> usize {
         0
     }
 

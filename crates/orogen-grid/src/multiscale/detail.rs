@@ -1,0 +1,158 @@
+//! Detail levels, below the finest level of valleys. Their hillsides are as steep as those of that level, soil smooths gentle ones, steep ones are rough
+//! rock, and only gullies are new: valleys that grew further by the law of slopes would make all land as steep as rock can stand.
+
+use super::carve::Carved;
+use super::creep;
+use super::hash;
+use super::law::{CONCAVITY, Law, STABLE, STABLE_EXPONENT, river_slope};
+use super::level::Level;
+use super::refinement::Refinement;
+use super::stencil::Extent;
+use crate::erosion::power::power;
+use crate::hydrology::direction::{NONE, STEPS};
+use std::f32::consts::{E, SQRT_2};
+
+/// The part of its cell in which a node of the finest level of valleys is displaced from the lattice.
+const DISPLACED: f32 = 0.5;
+
+/// Drainage area in cells up to which the slope to the receiver is that of a hillside. Beyond it a node counts the less, the larger its area.
+const HILLSIDE_AREA: f32 = 8.0;
+
+/// Weights of nodes in the middle of rivers and of water among those of hillsides.
+const RIVER_WEIGHT: f32 = 0.01;
+const WATER_WEIGHT: f32 = 0.001;
+
+/// The smallest stable slope, and the largest relative to that of the law of slopes.
+const LEAST_STABLE: f32 = 1e-3;
+const MOST_STABLE: f32 = 1.5;
+
+/// Drainage area in m^2 below which rivers of detail levels choose their receivers again: two that run side by side at different heights would
+/// have a wall between them.
+const FREE_AREA: f64 = 1e6;
+
+/// Passes of creep, at most.
+const CREEP_PASSES: usize = 2;
+
+/// Stable slopes between which soil becomes rock, and the factor of creep of rock.
+const SOIL_SLOPE: f32 = 0.5;
+const ROCK_SLOPE: f32 = 1.0;
+const ROCK_CREEP: f32 = 0.1;
+
+/// Variation of the logarithm of the stable slope that a level adds, relative to that of uplift over erodibility: of soil, and what rock adds to it.
+const SOIL_VARIATION: f32 = 0.3;
+const ROCK_VARIATION: f32 = 0.9;
+
+/// Turns nodes of the finest level of valleys into those that detail levels begin with: off the lattice, with uplift over erodibility in `variation` and the
+/// logarithm of the stable slope in `uplift`. Values two nodes away from the edge are exact.
+pub fn begin(land: &Refinement, level: &mut Level) {
+    let width = level.window.width;
+    let stable = stable_slopes(land, level);
+    for (q, stable) in stable.into_iter().enumerate() {
+        let (x, y) = (level.window.x + (q % width) as i64, level.window.y + (q / width) as i64);
+        let bits = hash::node(land.seed, level.depth, x, y, 11);
+        level.east[q] = 0.5 + DISPLACED * (hash::unit(bits) - 0.5);
+        level.south[q] = 0.5 + DISPLACED * (hash::unit(bits << 24) - 0.5);
+        level.variation[q] += level.uplift[q];
+        level.uplift[q] = libm::log(f64::from(stable)) as f32;
+    }
+}
+
+/// The stable slope t with which the law gives the slope from each node to its receiver, averaged over 3 x 3 nodes.
+fn stable_slopes(land: &Refinement, level: &Level) -> Vec<f32> {
+    let (width, height) = (level.window.width, level.window.height);
+    let kilometres = land.kilometres(level.depth);
+    let river_factor = river_slope(land, kilometres * kilometres) as f32;
+    let cell = land.cell_of(level.depth) as f32;
+    let by_law = STABLE * power(land.relief as f32, STABLE_EXPONENT);
+    // Each value with its weight.
+    let mut own = vec![(0.0, 0.0); level.window.len()];
+    for q in (1..height - 1).flat_map(|j| j * width + 1..(j + 1) * width - 1) {
+        let logarithm = level.variation[q] + level.uplift[q];
+        let law = by_law * power(E, STABLE_EXPONENT * logarithm);
+        let (area, receiver) = (level.area[q].max(1.0), level.receiver[q]);
+        own[q] = (law, WATER_WEIGHT);
+        if receiver < NONE {
+            let (east, south) = STEPS[usize::from(receiver)];
+            let to = q.wrapping_add_signed(south * width as isize + east);
+            let distance = if receiver & 1 == 1 { SQRT_2 } else { 1.0 };
+            let slope = (level.height[q] - level.height[to]) / (distance * cell);
+            let river = river_factor * power(E, logarithm) * power(area, -CONCAVITY);
+            // 1 / slope = 1 / river + 1 / stable.
+            let stable = slope * river / (river - slope).max(0.05 * river);
+            let (stable, most) = if area > HILLSIDE_AREA { (slope, law) } else { (stable, MOST_STABLE * law) };
+            let share = area / HILLSIDE_AREA;
+            own[q] = (stable.clamp(LEAST_STABLE, most.max(LEAST_STABLE)), RIVER_WEIGHT + 1.0 / (1.0 + share * share));
+        }
+    }
+    let mut stable = vec![STABLE; level.window.len()];
+    for q in (2..height - 2).flat_map(|j| j * width + 2..(j + 1) * width - 2) {
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for (row, south) in [(q - width, 1.0), (q, 2.0), (q + width, 1.0)] {
+            for (o, east) in [(row - 1, 1.0), (row, 2.0), (row + 1, 1.0)] {
+                let (value, weight) = own[o];
+                sum += south * east * weight * value;
+                weights += south * east * weight;
+            }
+        }
+        stable[q] = sum / weights;
+    }
+    stable
+}
+
+/// What a detail level adds to the logarithm of the stable slope, relative to the variation of uplift over erodibility: rock is rougher than soil.
+pub fn roughness(logarithm: f32) -> f32 {
+    // From 0.6, where the logarithm is -0.5, to 1.
+    SOIL_VARIATION + ROCK_VARIATION * ((logarithm + 0.5) * 2.0).clamp(0.0, 1.0)
+}
+
+/// The law at the nodes of a detail level, from uplift over erodibility in `variation` and the logarithms of stable slopes in `uplift`. There are no floors:
+/// stable slopes contain them.
+pub fn fill(law: &mut Law, variation: &[f32], uplift: &[f32], river_factor: f32) {
+    for (river, variation) in law.river.iter_mut().zip(variation) {
+        *river = river_factor * power(E, *variation);
+    }
+    for (stable, uplift) in law.stable.iter_mut().zip(uplift) {
+        *stable = power(E, *uplift);
+    }
+}
+
+/// Drainage area in cells below which rivers of a detail level choose their receivers again.
+pub fn free_area(land: &Refinement, depth: usize) -> f32 {
+    (FREE_AREA / (land.cell_of(depth) * land.cell_of(depth))) as f32
+}
+
+/// Rivers that choose their receivers again keep their slopes where those are steeper than the law: they fell by less than the level above
+/// otherwise, and a fall that moves upstream by a few cells on each level would leave steps.
+pub fn keep_slopes(carved: &Carved, free_area: f32, cell: f32, extent: Extent, law: &mut Law) {
+    let Some(distances) = &carved.distances else { return };
+    let inner = extent.shrunk(1);
+    for j in inner.rows() {
+        let around = distances.around(inner, j);
+        for (k, i) in inner.columns().enumerate() {
+            let q = j * extent.width + i;
+            let code = carved.fixed[q];
+            if !(0.0..f32::from(NONE)).contains(&code) || carved.area[q] >= free_area {
+                continue;
+            }
+            let (east, south) = STEPS[code as usize];
+            let to = q.wrapping_add_signed(south * extent.width as isize + east);
+            let slope = (carved.height[q] - carved.height[to]) / (around[code as usize][k] * cell);
+            let river = law.river[q] * power(carved.area[q], -CONCAVITY);
+            if slope > river * law.stable[q] / (river + law.stable[q]) {
+                // A river this steep is limited by the stable slope alone.
+                (law.river[q], law.stable[q]) = (1e12, slope);
+            }
+        }
+    }
+}
+
+/// Number of passes of creep on detail levels.
+pub fn creep_passes(land: &Refinement) -> usize {
+    creep::creep_passes(land.creep).min(CREEP_PASSES)
+}
+
+/// Factors of creep: 1 for soil, less where slopes are of rock.
+pub fn creep_factors(law: &Law) -> Vec<f32> {
+    let rock = |stable: &f32| ((stable - SOIL_SLOPE) / (ROCK_SLOPE - SOIL_SLOPE)).clamp(0.0, 1.0);
+    law.stable.iter().map(|stable| 1.0 - (1.0 - ROCK_CREEP) * rock(stable)).collect()
+}
