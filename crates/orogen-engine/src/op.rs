@@ -299,6 +299,11 @@ pub trait Levelled: Declared + Send + Sync {
         0
     }
 
+    /// The level whose data are at the samples of its lattice; those of other levels may lie between.
+    fn level_at_samples(&self) -> usize {
+        self.levels().count.saturating_sub(1)
+    }
+
     /// Number of levels, from the coarsest, that read the op's inputs. Finer ones are given none.
     fn levels_with_inputs(&self) -> usize {
         self.levels().count

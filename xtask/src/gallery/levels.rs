@@ -1,4 +1,4 @@
-//! The zoom from continents to valleys, in the README and in docs/levels.md.
+//! The zoom from continents to gullies, in the README and in docs/levels.md.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use crate::failure::{Result, on_file};
 use crate::shell;
 
 /// The cells of the pictures, in metres.
-const CELLS: [&str; 4] = ["7680", "960", "240", "60"];
+const CELLS: [&str; 6] = ["7680", "960", "240", "60", "7.5", "0.9375"];
 
 /// The window of each picture: the origin of the preset `endless` lies in its middle.
 const WINDOW: &str = "-256,-256,512,512";

@@ -132,6 +132,10 @@ impl Levelled for Amplify {
         if level == 0 { REACH } else { self.refinement().given_reach(level) }
     }
 
+    fn level_at_samples(&self) -> usize {
+        self.refinement().levels
+    }
+
     fn levels_with_inputs(&self) -> usize {
         drained::levels_with_inputs(&self.refinement())
     }

@@ -143,6 +143,10 @@ impl Levelled for Continents {
         if level == 0 { Land::COARSEST_REACH } else { self.refinement().given_reach(level) }
     }
 
+    fn level_at_samples(&self) -> usize {
+        self.refinement().levels
+    }
+
     fn levels_with_inputs(&self) -> usize {
         drained::levels_with_inputs(&self.refinement())
     }

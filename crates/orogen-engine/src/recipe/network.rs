@@ -16,6 +16,8 @@ use crate::op::{Levels, Op};
 pub struct OwnNetwork {
     node: String,
     levels: Levels,
+    /// The level whose nodes are at the samples.
+    at_samples: usize,
     has_nodes: bool,
     is_height: bool,
 }
@@ -47,6 +49,7 @@ impl OwnNetwork {
         Some(OwnNetwork {
             node: node_of(flow).name.clone(),
             levels: op.levels(),
+            at_samples: op.level_at_samples(),
             has_nodes: NODES.into_iter().all(has),
             is_height: height.is_some_and(|height| height.node == flow.node && name_of(height) == "height"),
         })
@@ -70,10 +73,10 @@ impl OwnNetwork {
         if self.has_nodes { "node_receiver" } else { "receiver" }
     }
 
-    /// Whether the nodes of a level are at the samples of its lattice: those of the finest are.
+    /// Whether the nodes of a level are at the samples of its lattice: those of the finest level of valleys are.
     #[must_use]
     pub fn is_at_samples(&self, cell: f64) -> bool {
-        cell == self.levels.finest
+        cell == self.levels.cell(self.at_samples)
     }
 
     /// Whether the recipe's heights are those of the node.
@@ -82,7 +85,7 @@ impl OwnNetwork {
         self.is_height
     }
 
-    /// The cell of the level whose rivers a window with this cell shows; none if the node has only those of a finer level.
+    /// The cell of the level whose rivers a window with this cell shows; none if the node has only those of another level.
     #[must_use]
     pub fn cell_for(&self, cell: f64) -> Option<f64> {
         let serving = self.levels.cell(self.levels.serving(cell));
@@ -123,12 +126,17 @@ mod tests {
 
     #[test]
     fn presets_without_solvers_have_one() {
-        for (name, cell, is_height) in
-            [("endless", 60.0, true), ("continent", 60.0, true), ("island", 20.0, false), ("archipelago", 40.0, false)]
-        {
+        for (name, cell, finest, is_height) in [
+            ("endless", 60.0, 0.9375, true),
+            ("continent", 60.0, 0.9375, true),
+            ("island", 20.0, 1.25, false),
+            ("archipelago", 40.0, 1.25, false),
+        ] {
             let network = of(name).unwrap();
             assert!(network.is_at_samples(cell) && network.is_height() == is_height, "{name}");
-            assert_eq!((network.cell_for(cell * 5.0), network.cell_for(1.0)), (Some(cell * 4.0), Some(cell)));
+            assert!(!network.is_at_samples(cell * 2.0) && !network.is_at_samples(cell / 2.0), "{name}");
+            let rivers = [cell * 5.0, cell * 0.7, 1e-3].map(|requested| network.cell_for(requested));
+            assert_eq!(rivers, [Some(cell * 4.0), Some(cell * 0.5), Some(finest)], "{name}");
             assert_eq!(network.layer("flow"), "land.flow");
         }
         for name in presets::all().iter().map(|preset| preset.name) {

@@ -141,6 +141,15 @@ impl Carved {
         self.area[end] = self.area[end].max(if entry == end { arrival.area } else { self.area[entry] });
     }
 
+    /// Rivers of a smaller area than `least`, in cells, choose their receivers again.
+    pub fn free(&mut self, least: f32) {
+        for (fixed, &area) in self.fixed.iter_mut().zip(&self.area) {
+            if area < least && *fixed < f32::from(NONE) {
+                *fixed = FREE;
+            }
+        }
+    }
+
     fn set(&mut self, q: usize, height: f32, area: f32) {
         self.height[q] = height;
         self.area[q] += area;

@@ -15,8 +15,8 @@ const WIDEST: f32 = 20.0;
 /// Links up and down a river over which its course is averaged, for one half of its width in cells, at least and at most. Without it banks would be
 /// as angular as the links of cells.
 const SMOOTHED: f32 = 3.0;
-const LEAST_SMOOTHED: f32 = 8.0;
-const MOST_SMOOTHED: f32 = 24.0;
+const MIN_SMOOTHED: f32 = 8.0;
+const MAX_SMOOTHED: f32 = 24.0;
 
 /// Widths in cells at which beds begin to be cut, and have their whole depth: a river narrower than a cell has no bed of its own.
 const NARROW: [f32; 2] = [1.0, 2.0];
@@ -45,7 +45,7 @@ impl Refinement {
     /// Samples of a level beyond a window that [`Refinement::cut_rivers`] reads.
     #[must_use]
     pub fn rivers_reach(&self, depth: usize) -> usize {
-        if self.is_detail(depth) { (WIDEST + MOST_SMOOTHED) as usize + 2 } else { 0 }
+        if self.is_detail(depth) { (WIDEST + MAX_SMOOTHED) as usize + 2 } else { 0 }
     }
 
     /// Lowers the ground to the beds of rivers with at least this drainage area in m^2, if the level is one of details: between flat beds and the
@@ -117,7 +117,7 @@ impl Rivers<'_> {
     /// The river at a node whose cell is `east` and `south` of another: the average over links up and down the river.
     fn node(&self, q: usize, east: f32, south: f32) -> Node {
         let width = self.width(q);
-        let reach = (SMOOTHED * 0.5 * width).clamp(LEAST_SMOOTHED, MOST_SMOOTHED) as usize;
+        let reach = (SMOOTHED * 0.5 * width).clamp(MIN_SMOOTHED, MAX_SMOOTHED) as usize;
         let mut sums = Sums::default();
         sums.add(self.level, q, (east, south), (reach + 1) as f32);
         for towards in [Rivers::receiver, Rivers::main_donor] {

@@ -23,8 +23,8 @@ const RIVER_WEIGHT: f32 = 0.01;
 const WATER_WEIGHT: f32 = 0.001;
 
 /// The smallest stable slope, and the largest relative to that of the law of slopes.
-const LEAST_STABLE: f32 = 1e-3;
-const MOST_STABLE: f32 = 1.5;
+const MIN_STABLE: f32 = 1e-3;
+const MAX_STABLE: f32 = 1.5;
 
 /// Drainage area in m^2 below which rivers of detail levels choose their receivers again: two that run side by side at different heights would
 /// have a wall between them.
@@ -79,9 +79,9 @@ fn stable_slopes(land: &Refinement, level: &Level) -> Vec<f32> {
             let river = river_factor * power(E, logarithm) * power(area, -CONCAVITY);
             // 1 / slope = 1 / river + 1 / stable.
             let stable = slope * river / (river - slope).max(0.05 * river);
-            let (stable, most) = if area > HILLSIDE_AREA { (slope, law) } else { (stable, MOST_STABLE * law) };
+            let (stable, most) = if area > HILLSIDE_AREA { (slope, law) } else { (stable, MAX_STABLE * law) };
             let share = area / HILLSIDE_AREA;
-            own[q] = (stable.clamp(LEAST_STABLE, most.max(LEAST_STABLE)), RIVER_WEIGHT + 1.0 / (1.0 + share * share));
+            own[q] = (stable.clamp(MIN_STABLE, most.max(MIN_STABLE)), RIVER_WEIGHT + 1.0 / (1.0 + share * share));
         }
     }
     let mut stable = vec![STABLE; level.window.len()];
@@ -116,34 +116,37 @@ pub fn fill(law: &mut Law, variation: &[f32], uplift: &[f32], river_factor: f32)
     }
 }
 
-/// Drainage area in cells below which rivers of a detail level choose their receivers again.
-pub fn free_area(land: &Refinement, depth: usize) -> f32 {
-    (FREE_AREA / (land.cell_of(depth) * land.cell_of(depth))) as f32
-}
-
-/// Rivers that choose their receivers again keep their slopes where those are steeper than the law: they fell by less than the level above
-/// otherwise, and a fall that moves upstream by a few cells on each level would leave steps.
-pub fn keep_slopes(carved: &Carved, free_area: f32, cell: f32, extent: Extent, law: &mut Law) {
-    let Some(distances) = &carved.distances else { return };
-    let inner = extent.shrunk(1);
-    for j in inner.rows() {
-        let around = distances.around(inner, j);
-        for (k, i) in inner.columns().enumerate() {
-            let q = j * extent.width + i;
-            let code = carved.fixed[q];
-            if !(0.0..f32::from(NONE)).contains(&code) || carved.area[q] >= free_area {
-                continue;
-            }
-            let (east, south) = STEPS[code as usize];
-            let to = q.wrapping_add_signed(south * extent.width as isize + east);
-            let slope = (carved.height[q] - carved.height[to]) / (around[code as usize][k] * cell);
-            let river = law.river[q] * power(carved.area[q], -CONCAVITY);
-            if slope > river * law.stable[q] / (river + law.stable[q]) {
-                // A river this steep is limited by the stable slope alone.
-                (law.river[q], law.stable[q]) = (1e12, slope);
+/// Rivers of small area choose their receivers again. They keep their slopes where those are steeper than the law: they fell by less than the level
+/// above otherwise, and a fall that moves upstream by a few cells on each level would leave steps.
+pub fn free_rivers(land: &Refinement, depth: usize, carved: &mut Carved, extent: Extent, law: &mut Law) {
+    let cell = land.cell_of(depth);
+    let free_area = (FREE_AREA / (cell * cell)) as f32;
+    let (inner, width) = (extent.shrunk(1), extent.width);
+    if let Some(distances) = &carved.distances {
+        for j in inner.rows() {
+            let around = distances.around(inner, j);
+            for (k, q) in
+                inner.columns().map(|i| j * width + i).enumerate().filter(|(_, q)| carved.area[*q] < free_area)
+            {
+                let Some(to) = downstream(carved, extent, q) else { continue };
+                let distance = around[carved.fixed[q] as usize][k] * cell as f32;
+                let slope = (carved.height[q] - carved.height[to]) / distance;
+                let river = law.river[q] * power(carved.area[q], -CONCAVITY);
+                if slope > river * law.stable[q] / (river + law.stable[q]) {
+                    // A river this steep is limited by the stable slope alone.
+                    (law.river[q], law.stable[q]) = (1e12, slope);
+                }
             }
         }
     }
+    carved.free(free_area);
+}
+
+/// The cell that the river of a cell leads to.
+fn downstream(carved: &Carved, extent: Extent, q: usize) -> Option<usize> {
+    let code = carved.fixed[q];
+    let (east, south) = *STEPS.get(if code >= 0.0 { code as usize } else { usize::MAX })?;
+    Some(q.wrapping_add_signed(south * extent.width as isize + east))
 }
 
 /// Number of passes of creep on detail levels.

@@ -5,7 +5,7 @@ use super::carve::carve;
 use super::children::Children;
 use super::creep::{Kept, creep, creep_passes, steepest};
 use super::detail;
-use super::drainage::{self, FREE};
+use super::drainage;
 use super::given::{self, Given};
 use super::growth::{Growth, Spacing, least_rise};
 use super::law::{Law, has_floors};
@@ -16,7 +16,6 @@ use super::shores::water_levels;
 use super::straighten::{self, straighten};
 use crate::error::Result;
 use crate::grid::Window;
-use crate::hydrology::direction::NONE;
 use crate::progress::Progress;
 
 /// Cells at the edge of the children whose rivers and shores are not exact.
@@ -140,15 +139,10 @@ impl Refinement {
             progress.check()?;
         }
         let mut law = Law::new(self, &children, given);
-        let mut free_area = FREE_AREA;
         if self.is_detail(depth) {
-            free_area = detail::free_area(self, depth);
-            detail::keep_slopes(&carved, free_area, self.cell_of(depth) as f32, children.extent, &mut law);
-        }
-        for (fixed, &area) in carved.fixed.iter_mut().zip(&carved.area) {
-            if area < free_area && *fixed < f32::from(NONE) {
-                *fixed = FREE;
-            }
+            detail::free_rivers(self, depth, &mut carved, children.extent, &mut law);
+        } else {
+            carved.free(FREE_AREA);
         }
         let spacing = match &carved.distances {
             Some(distances) => Spacing::Irregular(distances),
