@@ -8,9 +8,10 @@ use std::path::Path;
 use std::time::Instant;
 
 use orogen::{Options, Recipe, Session, Window, World, presets};
+use support::borders::{self, Places};
 use support::layers::{Tiles, tiles_in, tiles_of};
 use support::mosaic::{Mosaic, TILES};
-use support::{borders, report};
+use support::report;
 
 /// Cells along the side of a tile of an unbounded world.
 const SIDE: usize = 512;
@@ -28,6 +29,7 @@ struct Request {
     side: Option<usize>,
     pairs: usize,
     pair_side: usize,
+    near: usize,
     fresh: bool,
 }
 
@@ -58,12 +60,17 @@ fn measure(request: &Request) -> Result<(), String> {
     eprintln!("mosaic: {:.1} s", began.elapsed().as_secs_f64());
     if request.pairs > 0 {
         let began = Instant::now();
-        let session = Session::new(Options::default()).map_err(text)?;
-        let (shared, apart) = (tiles_in(&recipe, &session), tiles_of(&recipe, None));
-        let tiles: Tiles = if request.fresh { &apart } else { &shared };
-        let found = borders::measure_pairs(tiles, &extent, request.pair_side, request.pairs, 1).map_err(text)?;
+        let session = || Session::new(Options::default()).map_err(text);
+        let sessions = [session()?, session()?];
+        let (shared, apart) =
+            (sessions.each_ref().map(|session| tiles_in(&recipe, session)), tiles_of(&recipe, Some(1)));
+        let tiles: [Tiles; 2] = if request.fresh { [&apart, &apart] } else { [&shared[0], &shared[1]] };
+        let Request { pair_side: side, pairs, near, .. } = *request;
+        let threads = std::thread::available_parallelism().map_or(1, usize::from);
+        let places = Places { extent, side, pairs, near, seed: 1 };
+        let found = borders::measure_pairs(tiles, &places, threads).map_err(text)?;
         figures.extend(report::of_pairs(&found));
-        eprintln!("{} pairs: {:.1} s", request.pairs, began.elapsed().as_secs_f64());
+        eprintln!("{pairs} pairs: {:.1} s", began.elapsed().as_secs_f64());
     }
     let [x, y] = mosaic.origin;
     println!(
@@ -89,6 +96,7 @@ fn parse(args: &[String]) -> Result<Request, String> {
         side: None,
         pairs: 200,
         pair_side: 64,
+        near: 1,
         fresh: false,
     };
     let mut args = args.iter();
@@ -100,6 +108,7 @@ fn parse(args: &[String]) -> Result<Request, String> {
             "--side" => request.side = Some(number(arg, value()?)?),
             "--pairs" => request.pairs = number(arg, value()?)?,
             "--pair-side" => request.pair_side = number(arg, value()?)?,
+            "--near" => request.near = number(arg, value()?)?,
             "--fresh" => request.fresh = true,
             "--origin" => {
                 let (x, y) = value()?.split_once(',').ok_or("--origin needs a column and a row: X,Y")?;
@@ -132,9 +141,9 @@ mod tests {
 
     #[test]
     fn options() {
-        let request = parsed("alpine --origin -5,7 --side 100 --pairs 10 --fresh").expect("well formed");
+        let request = parsed("alpine --origin -5,7 --side 100 --pairs 10 --near 5 --fresh").expect("well formed");
         assert_eq!((request.recipe.as_str(), request.origin, request.side), ("alpine", [-5, 7], Some(100)));
-        assert_eq!((request.pairs, request.fresh, request.cell), (10, true, None));
+        assert_eq!((request.pairs, request.near, request.fresh, request.cell), (10, 5, true, None));
         for (line, expect) in [
             ("", "expected a preset"),
             ("alpine hills", "not also 'hills'"),

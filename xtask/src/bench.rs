@@ -16,7 +16,7 @@ pub const ABOUT: &str = "compare with other libraries and the machine's limits; 
 pub const HELP: &str = "
 Usage: cargo xtask bench [AREA] [--json FILE] [--case TEXT] [--quick]
        cargo xtask bench realism --score SCRIPT --dems DIR [--first SEED] [--case TEXT]
-       cargo xtask bench water RECIPE [--seed N] [--cell M] [--origin X,Y] [--side N] [--pairs N] [--pair-side N] [--fresh]
+       cargo xtask bench water RECIPE [--seed N] [--cell M] [--origin X,Y] [--side N] [--pairs N] [--pair-side N] [--near N] [--fresh]
 
 Builds the benches at full optimisation, measures one area (or all in turn) and prints a table.
 
@@ -51,7 +51,9 @@ the heights with `flow`, rivers at the borders of tiles; fails if a target is mi
   --side N       cells along the side of a tile [default: a third of the world; 512 if it is unbounded]
   --pairs N      pairs of adjacent windows at random positions [default: 200]
   --pair-side N  cells along the side of each of these windows [default: 64]
-  --fresh        makes every window of the pairs in a session of its own; each tile of the mosaic is always made so
+  --near N       pairs in the same region of 1024 x 1024 cells: more are faster, because they are made from the same coarse tiles [default: 1]
+  --fresh        makes every window of the pairs in a session of its own, not the first windows of all pairs in one and the second in another; each tile
+                 of the mosaic is always made so
 
 How to read the table: docs/benchmarks.md.
 ";

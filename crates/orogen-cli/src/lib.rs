@@ -19,6 +19,7 @@ mod folder;
 mod format;
 mod graph;
 mod interrupt;
+mod layer_file;
 mod memory;
 mod moving;
 mod options;

@@ -27,6 +27,7 @@ nodes! {
         radial::Radial,
         ramp::Ramp,
         remap::Remap,
+        resample::Resample,
         ridged::Ridged,
         select_flow::SelectFlow,
         select_height::SelectHeight,

@@ -87,6 +87,13 @@ pub trait Field: Send + Sync {
         None
     }
 
+    /// The cell at which the first input of a field is computed that interpolates between samples of a cell of its own, for a requested cell and that of
+    /// the world, all in metres. [`Field::eval`] of such a field is never called: the engine makes those samples and interpolates them.
+    fn source_cell(&self, requested: f64, world_cell: f64) -> Option<f64> {
+        let _ = (requested, world_cell);
+        None
+    }
+
     /// Whether the field needs a bounded world.
     fn needs_bounds(&self) -> bool {
         false

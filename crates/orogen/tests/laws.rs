@@ -28,6 +28,13 @@ fn tile_equals_crop_for_every_node() {
 }
 
 #[test]
+fn large_windows_of_levelled_ops_agree() {
+    for node in Node::all() {
+        holds(laws_of(&node).pieces());
+    }
+}
+
+#[test]
 fn every_node_has_the_same_bits_at_every_level() {
     for node in Node::all() {
         holds(laws_of(&node).levels());

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use orogen::World;
 use orogen::export::derived::list;
 use orogen::export::format::Format;
-use orogen::export::job::{ExportJob, Written};
+use orogen::export::job::ExportJob;
 use orogen::export::targets::frame::FrameSpec;
 use orogen::export::targets::job::EngineJob;
 use orogen::export::targets::target::EngineTarget;
@@ -22,7 +22,7 @@ use crate::source::Source;
 use crate::values::name_of::NameOf;
 use crate::values::size::Size;
 use crate::view::SizedView;
-use crate::{finite, interrupt, say};
+use crate::{finite, interrupt, layer_file, say};
 
 /// Arguments of the command.
 #[derive(Debug, Clone, clap::Args)]
@@ -106,21 +106,8 @@ fn export(args: &Args) -> Result<(), Failure> {
         return for_engine(args, &engine_job(args, target, &job, &world)?, &world, &policy);
     }
     let window = args.samples.window(&world)?;
-    let job = job.with_window(window);
     let sink = Sink::new(&args.out, &policy)?;
-    let (bar, progress) = Bar::new(args.run.quiet);
-    let Written { words, count, .. } = match &sink {
-        Sink::Stdout => sink.write(|out| job.to_stream(&world, out, &progress))?,
-        // Including sidecars.
-        Sink::File(output) => job
-            .to_file(&world, output, &progress)
-            .map_err(|error| interrupt::explain(error.into(), "nothing was written"))?,
-    };
-    progress.finish();
-    drop(bar);
-    finite::tell(&args.layer, count)?;
-    let size = format!("{} x {} samples of {} m", window.width, window.height, number(window.cell));
-    sink.tell(args.run.quiet, &format!("{}: {}, {size}, {words}\n", args.out.display(), args.layer))
+    layer_file::write(job, &world, window, (&args.out, &sink), "", args.run.quiet)
 }
 
 /// The same layer for an engine.

@@ -3,19 +3,18 @@
 use std::path::{Path, PathBuf};
 
 use orogen::Recipe;
-use orogen::export::job::{ExportJob, Written};
+use orogen::export::job::ExportJob;
 use orogen::export::registry;
 use orogen::file::mark;
 use orogen::words::number;
 
-use crate::bar::Bar;
 use crate::export_options::FormatOptions;
 use crate::failure::Failure;
+use crate::layer_file;
 use crate::options::RunOptions;
 use crate::sink::{Sink, is_stdout};
 use crate::source::Source;
 use crate::view::View;
-use crate::{finite, interrupt};
 
 /// Arguments of the command.
 #[derive(Debug, Clone, clap::Args)]
@@ -71,21 +70,8 @@ fn refine(args: &Args) -> Result<(), Failure> {
     job.prepare(&mut recipe)?;
     let world = args.run.limits.open(recipe, &budget)?;
     let window = args.samples.window(&world)?;
-    let job = job.with_window(window);
-    let (bar, progress) = Bar::new(args.run.quiet);
-    let Written { words, count, .. } = match &sink {
-        Sink::Stdout => sink.write(|out| job.to_stream(&world, out, &progress))?,
-        // Including sidecars.
-        Sink::File(output) => job
-            .to_file(&world, output, &progress)
-            .map_err(|error| interrupt::explain(error.into(), "nothing was written"))?,
-    };
-    progress.finish();
-    drop(bar);
-    finite::tell(&args.layer, count)?;
-    let size = format!("{} x {} samples of {} m", window.width, window.height, number(window.cell));
-    let text = format!("{}: {}, {size}, refined from {} m, {words}\n", name(&args.out), args.layer, number(coarse));
-    sink.tell(args.run.quiet, &text)
+    let origin = format!(", refined from {} m", number(coarse));
+    layer_file::write(job, &world, window, (&args.out, &sink), &origin, args.run.quiet)
 }
 
 /// Writes the recipe itself.

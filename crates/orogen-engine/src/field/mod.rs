@@ -30,6 +30,7 @@ pub mod powers;
 pub mod radial;
 pub mod ramp;
 pub mod remap;
+pub mod resample;
 pub mod ridged;
 pub mod select_flow;
 pub mod select_height;

@@ -46,6 +46,7 @@ impl<'a> Laws<'a> {
             .into_iter()
             .flat_map(|cell| [self.tiles(cell, false), self.tiles(cell, true), self.resolutions(cell)]);
         let others = [
+            self.pieces(),
             self.levels(),
             self.stored(CELLS[2]),
             self.warped(30.0),
@@ -74,6 +75,32 @@ impl<'a> Laws<'a> {
             if let Some(k) = grid.data().iter().position(|sample| !sample.is_finite()) {
                 let (i, j) = (k % grid.width(), k / grid.width());
                 return case.breaks(format!("{what}layer `{layer}`: {} at ({i}, {j})", grid[(i, j)]));
+            }
+        }
+        Ok(())
+    }
+
+    /// [`Law::TileEqualsCrop`] for windows of a levelled op that are too large for tiles of their last levels: those levels are made over the window itself,
+    /// so a halo that is too small shows at its edges.
+    ///
+    /// # Errors
+    /// The first difference.
+    pub fn pieces(&self) -> Verdict {
+        let recipe = (self.recipe)(WorldSpec { seed: 3, size: None, cell: CELLS[0], ..WorldSpec::default() }, false);
+        let node = recipe.nodes().iter().find(|named| named.name == NODE);
+        let Some(Op::Levelled(op)) = node.map(|named| named.node.op()) else { return Ok(()) };
+        let finest = op.levels().finest;
+        let layers: Vec<&str> = recipe.outputs().collect();
+        for cell in [finest, 2.0 * finest] {
+            let whole = Window::new(301, 230, cell).at(-77, 1003);
+            let wholes = self.case(Law::TileEqualsCrop).in_window(whole).layers(&recipe, &whole)?;
+            for part in
+                [Window::new(133, 101, cell).at(-77 + 42, 1003 + 52), Window::new(100, 157, cell).at(5, 1003 + 37)]
+            {
+                let case = self.case(Law::TileEqualsCrop).in_window(part);
+                for ((layer, whole), made) in layers.iter().zip(&wholes).zip(&case.layers(&recipe, &part)?) {
+                    case.same(&format!("layer `{layer}`, a larger window and this one"), whole, made)?;
+                }
             }
         }
         Ok(())

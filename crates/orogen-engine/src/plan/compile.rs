@@ -5,6 +5,7 @@
 //! uses an explicit stack, so chains of any length need no recursion.
 
 use super::allocate::allocate;
+use super::around::samples_around;
 use super::coord_sets::CoordSets;
 use super::program::{Instruction, Program};
 use super::request::{GridRequest, Requests};
@@ -135,6 +136,7 @@ impl<'a> Compiler<'a> {
         let links = &graph.links[node];
         let mut here: Vec<Link> = Vec::new();
         match self.op(node)? {
+            Op::Field(field) if self.source_cell(field, coords).is_some() => {}
             Op::Field(field) => match field.coord_map() {
                 Some(CoordMap::Displaced { east, south, .. }) => {
                     stack.push(Work::Enter(target, coords));
@@ -223,13 +225,17 @@ impl<'a> Compiler<'a> {
         let node = target.node;
         let kind = graph.layer_kind(recipe, target);
         if self.is_kept(node, coords) {
-            let out = self.request(target, false, coords, kind);
+            let out =
+                self.request(GridRequest { target, raw: false, window: self.coord_sets.window(coords) }, coords, kind);
             self.made.insert((target, coords), out);
             return Ok(());
         }
         let links = &graph.links[node];
         let result = match self.op(node)? {
-            Op::Field(field) => self.emit_field(field, node, links, coords)?,
+            Op::Field(field) => match self.source_cell(field, coords) {
+                Some(cell) => self.interpolate(&input(links, 0)?, cell, coords, kind)?,
+                None => self.emit_field(field, node, links, coords)?,
+            },
             Op::Solver(solver) => {
                 self.note(node, coords);
                 let inputs = if solver.reads_inputs() { self.values(links, coords)? } else { Vec::new() };
@@ -237,7 +243,9 @@ impl<'a> Compiler<'a> {
                 self.instructions.push(Instruction::Solved { node, layer: target.layer, kind, coords, inputs, out });
                 out
             }
-            Op::Filter(_) | Op::Levelled(_) => self.request(target, true, coords, kind),
+            Op::Filter(_) | Op::Levelled(_) => {
+                self.request(GridRequest { target, raw: true, window: self.coord_sets.window(coords) }, coords, kind)
+            }
         };
         let mask = graph.masks[node];
         let value = if mask == Link::None {
@@ -280,8 +288,20 @@ impl<'a> Compiler<'a> {
         Ok(out)
     }
 
-    fn request(&mut self, target: LayerRef, raw: bool, coords: CoordSetId, kind: LayerKind) -> RegisterId {
-        let grid = self.requests.add(GridRequest { target, raw, window: self.coord_sets.window(coords) });
+    /// The cell at which the source of a field is computed that interpolates it, for the coordinates.
+    fn source_cell(&self, field: &dyn Field, coords: CoordSetId) -> Option<f64> {
+        field.source_cell(self.coord_sets.window(coords).cell, self.scope.recipe.world.cell)
+    }
+
+    /// Interpolates a source between its samples with this cell.
+    fn interpolate(&mut self, source: &Link, cell: f64, coords: CoordSetId, kind: LayerKind) -> Result<RegisterId> {
+        let Link::Node(target) = source else { return self.value(source, coords) };
+        let window = samples_around(&self.coord_sets.window(coords), cell);
+        Ok(self.request(GridRequest::of(self.scope.recipe, self.scope.graph, *target, window), coords, kind))
+    }
+
+    fn request(&mut self, request: GridRequest, coords: CoordSetId, kind: LayerKind) -> RegisterId {
+        let grid = self.requests.add(request);
         let out = self.fresh();
         self.instructions.push(Instruction::Grid { grid, kind, coords, out });
         out

@@ -9,7 +9,7 @@
 use super::levels;
 use super::program::{Instruction, Program};
 use super::steps::{Plan, Solve, Step};
-use crate::ids::{CoordSetId, Id, IndexVec};
+use crate::ids::{CoordSetId, GridId, Id, IndexVec};
 use crate::op::Op;
 use crate::recipe::document::Recipe;
 
@@ -32,7 +32,10 @@ pub fn steps(plan: &Plan, recipe: &Recipe) -> f64 {
 /// Time of a step on one core, in nanoseconds.
 pub fn step(step: &Step, plan: &Plan, recipe: &Recipe) -> f64 {
     let sample = match step {
-        Step::Fill { program, out, .. } => program_cost(program, plan.scattered && out.is_empty(), recipe),
+        Step::Fill { program, window, out } => {
+            let on_lattice = |grid: &GridId| plan.grids[*grid].window.cell == window.cell;
+            program_cost(program, plan.scattered && out.is_empty(), recipe, &on_lattice)
+        }
         Step::Apply { node, window, .. } => match recipe.nodes()[node.index()].node.op() {
             Op::Filter(filter) => filter.cost(window.cell),
             _ => 0.0,
@@ -51,7 +54,7 @@ pub fn needed(plan: &Plan, recipe: &Recipe) -> f64 {
 }
 
 /// Nanoseconds per sample.
-fn program_cost(program: &Program, scattered: bool, recipe: &Recipe) -> f64 {
+fn program_cost(program: &Program, scattered: bool, recipe: &Recipe, on_lattice: &dyn Fn(&GridId) -> bool) -> f64 {
     let mut moved: IndexVec<CoordSetId, bool> = vec![false; program.coord_sets.max(1)].into();
     moved[CoordSetId::BLOCK] = scattered;
     let mut sum = STORED * program.outputs.len() as f64;
@@ -69,7 +72,8 @@ fn program_cost(program: &Program, scattered: bool, recipe: &Recipe) -> f64 {
                 _ if moved[*coords] => BETWEEN,
                 _ => BETWEEN / 4.0,
             },
-            Instruction::Grid { coords: CoordSetId::BLOCK, .. } if !scattered => COPIED,
+            Instruction::Grid { grid, coords: CoordSetId::BLOCK, .. } if !scattered && on_lattice(grid) => COPIED,
+            Instruction::Grid { coords, .. } if !moved[*coords] => BETWEEN / 4.0,
             Instruction::Grid { .. } => BETWEEN,
             Instruction::Mask { .. } => MASKED,
             Instruction::Displace { to, .. } => {

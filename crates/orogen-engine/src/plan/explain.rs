@@ -24,6 +24,9 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
         let named = &recipe.nodes()[index.index()];
         let spec = named.node.spec();
         let reach = match named.node.op() {
+            Op::Field(field) if let Some(source) = field.source_cell(cell, recipe.world.cell) => {
+                format!("samples at {} m", number(source))
+            }
             Op::Field(field) => match field.coord_map() {
                 Some(crate::op::CoordMap::Displaced { reach, .. }) => format!("within {} m", number(reach)),
                 Some(crate::op::CoordMap::Mapped { .. }) => "elsewhere".to_string(),

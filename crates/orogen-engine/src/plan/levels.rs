@@ -4,10 +4,10 @@
 //! Coarse levels are made in *tiles* of a fixed side, which neighbouring windows share. Levels of which a piece needs more than a few tiles are made
 //! over the piece itself: in tiles, their halos would cost more than sharing saves.
 
+use super::around::samples_around;
 use super::steps::grid_bytes;
 use crate::op::{Levelled, Levels};
 use orogen_grid::grid::Window;
-use orogen_grid::resample::split;
 
 /// Samples along the sides of the tiles of coarse levels.
 const TILE: usize = 64;
@@ -27,9 +27,6 @@ const FEW_TILES: usize = TILE + TILE / 2;
 /// Largest and smallest number of rows and columns of a piece, if the window has as many.
 const PIECE: [usize; 2] = [1024, 128];
 
-/// Samples that the interpolating cubic reads around a position.
-const MARGIN: i64 = 2;
-
 /// The samples of a level that a window is read from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Serving {
@@ -44,17 +41,7 @@ impl Serving {
     #[must_use]
     pub fn of(levels: &Levels, window: &Window) -> Serving {
         let level = levels.serving(window.cell);
-        let cell = levels.cell(level);
-        if cell == window.cell || window.is_empty() {
-            return Serving { level, samples: Window { cell, ..*window } };
-        }
-        let span = |first: f64, last: f64| {
-            let start = split(first, cell).0 - MARGIN;
-            (start, (split(last, cell).0 + 1 + MARGIN - start + 1).max(0) as usize)
-        };
-        let (x, width) = span(window.east(0), window.east(window.width - 1));
-        let (y, height) = span(window.south(0), window.south(window.height - 1));
-        Serving { level, samples: Window { x, y, width, height, cell } }
+        Serving { level, samples: samples_around(window, levels.cell(level)) }
     }
 
     /// Parts of the samples that are made side by side: at least one a thread, unless they would be slivers.

@@ -2,6 +2,7 @@
 
 mod allocate;
 mod arithmetic;
+mod around;
 mod assemble;
 mod compile;
 mod coord_sets;

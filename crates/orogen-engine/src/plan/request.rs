@@ -1,7 +1,9 @@
 //! What programs and filters ask for: grids that earlier steps must make.
 
-use crate::ids::{GridId, IndexVec, NodeId, RequestId};
-use crate::recipe::graph::LayerRef;
+use crate::ids::{GridId, Id, IndexVec, NodeId, RequestId};
+use crate::op::Op;
+use crate::recipe::document::Recipe;
+use crate::recipe::graph::{Graph, LayerRef, Link};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
 use std::collections::HashMap;
@@ -15,6 +17,15 @@ pub struct GridRequest {
     pub raw: bool,
     /// The window.
     pub window: Window,
+}
+
+impl GridRequest {
+    /// A request for a layer as others read it: a filter or a levelled op without a mask makes that itself.
+    pub fn of(recipe: &Recipe, graph: &Graph, target: LayerRef, window: Window) -> GridRequest {
+        let op = recipe.nodes()[target.node.index()].node.op();
+        let raw = matches!(op, Op::Filter(_) | Op::Levelled(_)) && graph.masks[target.node] == Link::None;
+        GridRequest { target, raw, window }
+    }
 }
 
 /// All requests of a plan, and the grids that serve them.

@@ -196,10 +196,7 @@ impl Scheduler<'_> {
                     Some(self.schedule.requests.add_served(request, grid))
                 }
                 Link::Node(target) => {
-                    let source = &self.recipe.nodes()[target.node.index()].node;
-                    let raw = matches!(source.op(), Op::Filter(_) | Op::Levelled(_))
-                        && graph.masks[target.node] == Link::None;
-                    Some(self.schedule.requests.add(GridRequest { target: *target, raw, window }))
+                    Some(self.schedule.requests.add(GridRequest::of(self.recipe, graph, *target, window)))
                 }
             });
         }

@@ -8,7 +8,8 @@ op! {
     ///
     /// Bake what is expensive, what must not change with the requested resolution (a filter gives different results at different cell
     /// sizes), or what would need a halo larger than a tile. Values between samples are interpolated as the source's layer is (heights by a
-    /// cubic). At the samples themselves readers get the stored values bit for bit. Detail finer than the cell is lost.
+    /// cubic). At the samples themselves readers get the stored values bit for bit. Detail finer than the cell is lost. `resample` computes only what a
+    /// window needs, also in unbounded worlds.
     pub struct Bake = "bake", solver, revision 1;
     margin;
     inputs {

@@ -12,6 +12,9 @@ use crate::hydrology::direction::{NONE, STEPS};
 use crate::progress::Progress;
 use crate::random::mix64;
 
+#[path = "tests_reach.rs"]
+mod reach;
+
 /// The level over a window, computed from nothing else.
 fn level(land: &Continents, depth: usize, window: &Window) -> Level {
     let windows: Vec<Window> = (0..depth)

@@ -43,6 +43,35 @@ filter! {
 }
 
 orogen::op! {
+    /// A mean of two samples of its source, nine samples north and south, which may lie beyond the halo.
+    pub struct Wide = "lawless.wide", filter, revision 1;
+    inputs {
+        /// What it reads.
+        source: required,
+    }
+    params {
+        /// The declared halo.
+        halo: u32 = 0;
+    }
+}
+
+impl Filter for Wide {
+    fn halo(&self, _: f64) -> usize {
+        self.halo as usize
+    }
+
+    fn apply(&self, inputs: &[Option<&Grid>], window: &Window, out: &mut [Option<Grid>], _: &Context) -> Result<()> {
+        let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
+        let halo = self.halo as usize;
+        for (i, j) in (0..window.height).flat_map(|j| (0..window.width).map(move |i| (i, j))) {
+            let at = |row: usize| source[(i + halo, row.min(source.height() - 1))];
+            out[(i, j)] = 0.5 * (at((j + halo).saturating_sub(9)) + at(j + halo + 9));
+        }
+        Ok(())
+    }
+}
+
+orogen::op! {
     /// Depends on the tiles of its sources.
     pub struct Counted = "lawless.counted", solver, revision 1;
     inputs {
@@ -83,8 +112,12 @@ impl Field for Celled {
 }
 
 orogen::op! {
-    /// A mean of two samples of the level above, of which one may lie beyond the halo.
+    /// A mean of two samples of the level above, nine samples west and east, which may lie beyond the halo.
     pub struct Narrow = "lawless.narrow", levelled, revision 1;
+    params {
+        /// The declared halo.
+        halo: u32 = 0;
+    }
 }
 
 impl Levelled for Narrow {
@@ -97,7 +130,7 @@ impl Levelled for Narrow {
     }
 
     fn halo(&self, _: usize) -> usize {
-        0
+        self.halo as usize
     }
 
     fn coarsest(&self, _: &[Option<&Grid>], window: &Window, _: &Context) -> Result<Vec<Grid>> {
@@ -123,7 +156,7 @@ impl Levelled for Narrow {
                 parent[0][(inside(x, over.x, over.width), inside(y, over.y, over.height))]
             };
             let (x, y) = ((window.x + i as i64) >> 1, (window.y + j as i64) >> 1);
-            grid[(i, j)] = 0.5 * (at(x, y) + at(x + 9, y));
+            grid[(i, j)] = 0.5 * (at(x - 9, y) + at(x + 9, y));
         }
         Ok(vec![grid])
     }
@@ -159,8 +192,21 @@ fn broken_laws_are_found_and_name_the_op() {
     let broken = Laws::of(|_| Deaf::default()).cancel(320).unwrap_err();
     assert!(broken.law == Law::Cancel && broken.message.contains("it went on for"), "{broken}");
     assert!(Laws::of(|_| Counted::default()).stored(1.0 / 3.0).is_err_and(|broken| broken.law == Law::Stored));
-    let broken = Laws::of(|_| Narrow::default()).tiles(10.24, false).unwrap_err();
-    assert_eq!((broken.law, broken.op.as_str()), (Law::TileEqualsCrop, "lawless.narrow"));
     let broken = Laws::of(|_| Celled::default()).resolutions(10.24).unwrap_err();
     assert_eq!(broken.law, Law::Resolutions, "{broken}");
+}
+
+/// A halo that is one sample too small is found, for a filter and for a levelled op; one that is just enough breaks no law.
+#[test]
+fn a_halo_one_sample_too_small_breaks_a_law() {
+    for (halo, holds) in [(0, false), (8, false), (9, true), (10, true)] {
+        let levelled = Laws::of(move |_| Narrow { halo });
+        let filter = Laws::of(move |_| Wide { halo, ..Wide::default() });
+        for (laws, op) in [(levelled, "lawless.narrow"), (filter, "lawless.wide")] {
+            let found: Vec<_> =
+                [laws.tiles(10.24, false), laws.pieces()].into_iter().filter_map(|verdict| verdict.err()).collect();
+            assert_eq!(found.is_empty(), holds, "{op} with a halo of {halo}: {found:?}");
+            assert!(found.iter().all(|broken| broken.law == Law::TileEqualsCrop && broken.op == op), "{found:?}");
+        }
+    }
 }

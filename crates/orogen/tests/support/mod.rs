@@ -50,6 +50,7 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
             ("continents", "size") => Value::Number(0.01),
             ("blur", "radius") => Value::Number(3.7 * world.cell),
             ("bake", "cell") => Value::Number(2.5 * world.cell),
+            ("resample", "cell") => Value::Number(1.7 * world.cell),
             ("thermal", "talus_angle") => Value::Number(1.0),
             (_, "iterations") => Value::Integer(3),
             ("droplets", "batches") => Value::Integer(2),

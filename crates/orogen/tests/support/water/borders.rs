@@ -1,10 +1,12 @@
 //! Borders of tiles: whether rivers continue on the other side.
 
-use super::layers::{Tiles, cells_to_edge, neighbours};
-use super::mosaic::{Mosaic, TILES, paste};
+use super::layers::{Tiles, Water, cells_to_edge, neighbours};
+use super::mosaic::{Mosaic, TILES};
 use super::network::Network;
 use orogen::hydrology::direction::hashed;
-use orogen::{Result, Window};
+use orogen::{Error, ErrorKind, Result, Window};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
 
 /// Drainage area from which on a cell belongs to a river here, in m².
 const RIVER: f64 = 1e6;
@@ -19,8 +21,10 @@ pub struct Borders {
     pub borders: usize,
     /// Rivers that cross them.
     pub crossings: usize,
-    /// Cells at the borders where a river is cut: without a receiver, or with one across the border that has a smaller area.
+    /// Cells at the borders where a river is cut: without a receiver, or with one across the border that has less than half of the area.
     pub cut: usize,
+    /// Cells at the borders that are not cut, but whose receiver across the border has a smaller area.
+    pub falling: usize,
     /// Cells at the borders that are not cut, but half of whose area goes nowhere or comes from nowhere.
     pub unbalanced: usize,
 }
@@ -30,6 +34,7 @@ impl std::ops::AddAssign for Borders {
         self.borders += other.borders;
         self.crossings += other.crossings;
         self.cut += other.cut;
+        self.falling += other.falling;
         self.unbalanced += other.unbalanced;
     }
 }
@@ -84,24 +89,123 @@ fn measure_lines(network: &Network, lines: impl Iterator<Item = usize>) -> Borde
     found
 }
 
-/// Pairs of adjacent windows of `side` x `side` cells, each made apart. The pairs lie inside `extent`; `seed` chooses where.
-pub fn measure_pairs(tiles: Tiles, extent: &Window, side: usize, pairs: usize, seed: i64) -> Result<Borders> {
-    let mut found = Borders::default();
-    for pair in 0..pairs as i64 {
-        let along = usize::from(hashed(pair, seed).is_multiple_of(2));
-        let shape = Window::new(side * (1 + along), side * (2 - along), extent.cell);
-        let within = |from: i64, cells: usize, taken: usize, salt: i64| {
-            from + (u64::from(hashed(pair, seed ^ salt)) % (cells.saturating_sub(taken) as u64 + 1)) as i64
-        };
-        let x = within(extent.x, extent.width, shape.width, 1 << 40);
-        let y = within(extent.y, extent.height, shape.height, 1 << 41);
-        let window = shape.at(x, y);
-        let water = paste(window, window.tiles(side), tiles)?;
-        let border = if along == 1 { Border::Column(side) } else { Border::Row(side) };
-        found += measure_border(&Network::new(&water), border);
-        found.borders += 1;
+/// Pairs of adjacent windows of `side` x `side` cells: the first of each is made by one of `tiles`, the second by the other. Pairs are made side by
+/// side, on `threads` threads. They lie inside `extent`; `seed` chooses where.
+pub fn measure_pairs(tiles: [Tiles; 2], places: &Places, threads: usize) -> Result<Pairs> {
+    let next = AtomicUsize::new(0);
+    let work = || {
+        let mut found = Pairs::default();
+        loop {
+            let pair = next.fetch_add(1, Ordering::Relaxed);
+            if pair >= places.pairs {
+                return Ok(found);
+            }
+            found += measure_pair(tiles, places, pair as i64)
+                .inspect_err(|_| next.store(places.pairs, Ordering::Relaxed))?;
+        }
+    };
+    let parts: Vec<Result<Pairs>> = thread::scope(|scope| {
+        let workers: Vec<_> = (0..threads.max(1)).map(|_| scope.spawn(work)).collect();
+        let panicked = |_| Err(Error::new(ErrorKind::Internal, "a thread panicked"));
+        workers.into_iter().map(|worker| worker.join().unwrap_or_else(panicked)).collect()
+    });
+    let mut found = Pairs::default();
+    for part in parts {
+        found += part?;
     }
     Ok(found)
+}
+
+/// What pairs of windows have.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Pairs {
+    /// Between the two windows.
+    pub borders: Borders,
+    /// Along the middle of the first windows, for comparison.
+    pub middles: Borders,
+}
+
+impl std::ops::AddAssign for Pairs {
+    fn add_assign(&mut self, other: Pairs) {
+        self.borders += other.borders;
+        self.middles += other.middles;
+    }
+}
+
+/// Where pairs of windows lie.
+#[derive(Debug, Clone, Copy)]
+pub struct Places {
+    /// All pairs are inside it.
+    pub extent: Window,
+    /// Cells along the sides of a window.
+    pub side: usize,
+    /// Number of pairs.
+    pub pairs: usize,
+    /// Number of pairs in the same region, which are made from the same coarse tiles. The regions are at random positions, too.
+    pub near: usize,
+    /// Chooses the positions.
+    pub seed: i64,
+}
+
+/// Cells along the sides of the square in which pairs are near each other.
+const REGION: usize = 1024;
+
+impl Places {
+    /// The window of a pair, and whether one is beside the other instead of below it.
+    fn pair(&self, pair: i64) -> (Window, bool) {
+        let Places { extent, side, seed, .. } = *self;
+        let beside = hashed(pair, seed).is_multiple_of(2);
+        let along = usize::from(beside);
+        let region = match self.near {
+            0 | 1 => extent,
+            near => {
+                let square = [extent.width, extent.height].map(|cells| cells.min(REGION.max(2 * side)));
+                placed(square, &extent, pair / near as i64, seed ^ (1 << 42))
+            }
+        };
+        (placed([side * (1 + along), side * (2 - along)], &region, pair, seed), beside)
+    }
+}
+
+/// A window of this size at a position inside another one that hashes of `index` choose.
+fn placed([width, height]: [usize; 2], within: &Window, index: i64, seed: i64) -> Window {
+    let at = |from: i64, cells: usize, taken: usize, salt: i64| {
+        from + (u64::from(hashed(index, seed ^ salt)) % (cells.saturating_sub(taken) as u64 + 1)) as i64
+    };
+    let x = at(within.x, within.width, width, 1 << 40);
+    let y = at(within.y, within.height, height, 1 << 41);
+    Window::new(width, height, within.cell).at(x, y)
+}
+
+fn measure_pair(tiles: [Tiles; 2], places: &Places, pair: i64) -> Result<Pairs> {
+    let (window, beside) = places.pair(pair);
+    let water = paste_pair(tiles, places, &window)?;
+    let network = Network::new(&water);
+    let line = |at: usize| {
+        let border = if beside { Border::Column(at) } else { Border::Row(at) };
+        Borders { borders: 1, ..measure_border(&network, border) }
+    };
+    Ok(Pairs { borders: line(places.side), middles: line(places.side / 2) })
+}
+
+/// The window of a pair, pasted of its two windows.
+fn paste_pair(tiles: [Tiles; 2], places: &Places, window: &Window) -> Result<Water> {
+    let mut water: Option<Water> = None;
+    for (part, tiles) in window.tiles(places.side).zip(tiles) {
+        let tile = tiles(&part)?;
+        water.get_or_insert_with(|| Water::like(&tile, *window)).paste(&tile);
+    }
+    water.ok_or_else(|| Error::new(ErrorKind::Internal, "a pair has no windows"))
+}
+
+/// The number of the first `count` pairs that differ from the same window made at once.
+pub fn count_different(tiles: [Tiles; 2], places: &Places, count: usize) -> Result<usize> {
+    let mut different = 0;
+    for pair in 0..count.min(places.pairs) as i64 {
+        let (window, _) = places.pair(pair);
+        different += usize::from(paste_pair(tiles, places, &window)? != tiles[0](&window)?);
+    }
+    Ok(different)
 }
 
 /// Rivers at one border of a window, except near the ends of the border.
@@ -119,10 +223,11 @@ fn measure_border(network: &Network, border: Border) -> Borders {
         if neighbours(window, cell).any(|(_, to)| water.is_standing(to)) {
             continue;
         }
-        let shrinks = crosses && receiver.is_some_and(|to| water.area(to) < water.area(cell));
-        if shrinks || receiver.is_none() {
+        let holds = |share: f64| !crosses || receiver.is_some_and(|to| water.area(to) >= share * water.area(cell));
+        if receiver.is_none() || !holds(0.5) {
             found.cut += 1;
         } else {
+            found.falling += usize::from(!holds(1.0));
             found.unbalanced += usize::from(network.ends(cell) || network.begins(cell));
         }
     }

@@ -2,7 +2,8 @@
 
 use orogen::hydrology::direction::STEPS;
 use orogen::layer::LayerKind;
-use orogen::{Grid, Options, Recipe, Result, Session, Window};
+use orogen::{Error, ErrorKind, Grid, Options, Progress, Recipe, Result, Session, Window};
+use std::collections::HashMap;
 
 /// Layers over one window.
 #[derive(Debug, Clone, PartialEq)]
@@ -65,7 +66,7 @@ impl Water {
 }
 
 /// Makes one tile. No tile may depend on another one.
-pub type Tiles<'a> = &'a dyn Fn(&Window) -> Result<Water>;
+pub type Tiles<'a> = &'a (dyn Fn(&Window) -> Result<Water> + Sync);
 
 /// Tiles of a recipe: each comes from a new world in a new session.
 pub fn tiles_of(recipe: &Recipe, threads: Option<usize>) -> impl Fn(&Window) -> Result<Water> + use<> {
@@ -82,16 +83,23 @@ pub fn tiles_in(recipe: &Recipe, session: &Session) -> impl Fn(&Window) -> Resul
 
 fn tile(recipe: &Recipe, session: &Session, window: &Window) -> Result<Water> {
     let world = session.open(recipe.clone())?;
-    let grid = |layer: &str| world.window(layer, window);
-    let has = |layer: &str| recipe.outputs().any(|output| output == layer);
-    let bed = grid("height")?;
-    let lakes = match has("lakes") {
-        true if world.kind("lakes")? == LayerKind::Label => depth(&grid("lakes")?, &grid("surface")?, &bed),
-        true => grid("lakes")?,
-        false => Grid::filled(*window, 0.0),
+    let has = |layer: &&str| recipe.outputs().any(|output| output == *layer);
+    let numbered = has(&"lakes") && world.kind("lakes")? == LayerKind::Label;
+    let layers: Vec<&str> = ["height", "flow", "lakes", "receiver"].into_iter().filter(has).collect();
+    let layers: Vec<&str> = layers.into_iter().chain(numbered.then_some("surface")).collect();
+    // All layers at once: the levels that they are made of are made once.
+    let mut made: HashMap<&str, Grid> =
+        layers.iter().copied().zip(world.grids(&layers, window, &Progress::none())?).collect();
+    let missing = |layer: &str| Error::new(ErrorKind::Recipe, format!("the recipe has no output `{layer}`"));
+    let bed = made.remove("height").ok_or_else(|| missing("height"))?;
+    let flow = made.remove("flow").ok_or_else(|| missing("flow"))?;
+    let lakes = match (made.remove("lakes"), made.remove("surface")) {
+        (Some(lakes), Some(surface)) => depth(&lakes, &surface, &bed),
+        (Some(lakes), None) => lakes,
+        (None, _) => Grid::filled(*window, 0.0),
     };
-    let receiver = if has("receiver") { Some(grid("receiver")?) } else { None };
-    Ok(Water { bed, flow: grid("flow")?, lakes, receiver, sea_level: recipe.world.sea_level as f32 })
+    let sea_level = recipe.world.sea_level as f32;
+    Ok(Water { bed, flow, lakes, receiver: made.remove("receiver"), sea_level })
 }
 
 /// The depth of lakes from their numbers and the water surface.

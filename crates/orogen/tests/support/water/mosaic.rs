@@ -26,16 +26,11 @@ impl Mosaic {
 
     /// Makes every tile and pastes them.
     pub fn make(&self, tiles: Tiles) -> Result<Water> {
-        paste(self.window(), self.window().tiles(self.side), tiles)
+        let mut whole: Option<Water> = None;
+        for part in self.window().tiles(self.side) {
+            let tile = tiles(&part)?;
+            whole.get_or_insert_with(|| Water::like(&tile, self.window())).paste(&tile);
+        }
+        whole.ok_or_else(|| Error::new(ErrorKind::Request, "a mosaic needs at least one tile"))
     }
-}
-
-/// Makes tiles that cover a window, one after the other, and pastes them.
-pub fn paste(window: Window, parts: impl Iterator<Item = Window>, tiles: Tiles) -> Result<Water> {
-    let mut whole: Option<Water> = None;
-    for part in parts {
-        let tile = tiles(&part)?;
-        whole.get_or_insert_with(|| Water::like(&tile, window)).paste(&tile);
-    }
-    whole.ok_or_else(|| Error::new(ErrorKind::Request, "a mosaic needs at least one tile"))
 }

@@ -89,17 +89,25 @@ pub fn measure(tiles: Tiles, mosaic: &Mosaic) -> Result<Vec<Figure>> {
 }
 
 /// The figures of pairs of adjacent windows.
-pub fn of_pairs(found: &borders::Borders) -> Vec<Figure> {
-    of_borders(&format!("borders of {} pairs", found.borders), found, true)
+pub fn of_pairs(found: &borders::Pairs) -> Vec<Figure> {
+    let borders::Pairs { borders, middles } = found;
+    let mut figures = of_borders(&format!("borders of {} pairs", borders.borders), borders, true);
+    figures.extend(of_borders(&format!("middles of {} windows", middles.borders), middles, false));
+    figures
 }
 
 /// The figures of borders, with targets or for comparison.
 fn of_borders(place: &str, found: &borders::Borders, targets: bool) -> Vec<Figure> {
     let target = if targets { Target::AtMost(0.0) } else { Target::None };
-    let figure = |name: &str, count: usize| {
+    let figure = |name: &str, count: usize, target: Target| {
         Figure::new(format!("{name} at {place}"), count as f64, found.crossings.max(count), target)
     };
-    vec![figure("rivers cut", found.cut), figure("areas unbalanced", found.unbalanced)]
+    vec![
+        figure("rivers cut", found.cut, target),
+        figure("areas unbalanced", found.unbalanced, target),
+        // Drainage areas of levels are carried down with a small error, in the middle of tiles, too.
+        figure("areas that fall", found.falling, Target::None),
+    ]
 }
 
 /// A table of figures, one a line.

@@ -1,0 +1,23 @@
+//! The samples of one lattice around those of another.
+
+use orogen_grid::grid::Window;
+use orogen_grid::resample::split;
+
+/// Samples that the interpolating cubic reads around a position.
+const MARGIN: i64 = 2;
+
+/// The samples with another cell that a window is read from: the window itself if the cells are equal, otherwise those around it, to be interpolated.
+#[must_use]
+pub fn samples_around(window: &Window, cell: f64) -> Window {
+    if cell == window.cell || window.is_empty() {
+        return Window { cell, ..*window };
+    }
+    let span = |first: f64, last: f64| {
+        let start = split(first, cell).0.saturating_sub(MARGIN);
+        let end = split(last, cell).0.saturating_add(1 + MARGIN);
+        (start, end.saturating_sub(start).saturating_add(1).max(0) as usize)
+    };
+    let (x, width) = span(window.east(0), window.east(window.width - 1));
+    let (y, height) = span(window.south(0), window.south(window.height - 1));
+    Window { x, y, width, height, cell }
+}
