@@ -9,7 +9,7 @@ use crate::shell;
 const VIEWS: [(&str, &str); 5] = [
     (
         "hero",
-        "fjords --edge haze --size 1280x640 --samples 9 --camera 24500,29500,3000 --look 33000,13500 --fov 48 --sun 280,16",
+        "fjords --edge haze --size 1280x640 --samples 9 --camera 13000,5500,2400 --look 27000,6500 --fov 48 --sun 250,20",
     ),
     ("view-alpine", "alpine --size 1120x630 --samples 9"),
     ("view-island", "island --size 1120x630 --samples 9 --camera 215,16"),
