@@ -1,10 +1,10 @@
 //! Where the land that levelled ops make lies, and its rivers.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
-use orogen_engine::{Grid, Progress, Recipe, Window, World};
+use orogen_engine::{Grid, Options, Progress, Recipe, Window, World};
 
-/// Mountains solved at 480 m and refined `halvings` times.
-fn ranges(halvings: u32) -> World {
+/// Mountains solved at 480 m and refined `halvings` times, and `details` times further.
+fn ranges(halvings: u32, details: u32) -> World {
     let cell = 480.0 / f64::from(1 << halvings);
     let text = format!(
         r#"
@@ -36,6 +36,7 @@ flow = "ranges.flow"
 uplift = "uplift"
 cell = {cell}
 halvings = {halvings}
+details = {details}
 [outputs]
 height = "terrain"
 ranges = "ranges"
@@ -77,9 +78,9 @@ fn shift(land: &Grid, reference: &Grid) -> [f64; 2] {
 
 #[test]
 fn every_level_lies_where_its_source_lies() {
-    for halvings in 1..=3u32 {
-        let world = ranges(halvings);
-        for level in 0..=halvings {
+    for (halvings, details) in [(1u32, 0u32), (2, 1), (3, 0), (1, 2)] {
+        let world = ranges(halvings, details);
+        for level in 0..=halvings + details {
             let cell = 480.0 / f64::from(1 << level);
             let samples = 96 << level;
             let window = Window::new(samples, samples, cell);
@@ -87,7 +88,7 @@ fn every_level_lies_where_its_source_lies() {
             let [east, south] = shift(&grids[0], &grids[1]).map(|samples| samples * cell / 480.0);
             assert!(
                 east.abs() < 0.06 && south.abs() < 0.06,
-                "{halvings} halvings, level {level}: {east:.3}, {south:.3}"
+                "{halvings} halvings, {details} details, level {level}: {east:.3}, {south:.3}"
             );
         }
     }
@@ -127,4 +128,45 @@ depth = "land.depth"
         }
     }
     assert!((100..window.len() / 2).contains(&rivers), "{rivers} cells of rivers");
+}
+
+#[test]
+fn windows_of_detail_levels_are_crops_of_larger_ones_with_inputs_read_down_to_the_cell_of_valleys() {
+    let text = r#"
+orogen = 1
+world = { seed = 3, cell = 60.0 }
+[nodes.swells]
+op = "fbm"
+wavelength = 90000.0
+octaves = 3
+[nodes.shore]
+op = "expr"
+expr = "swells * 20000 + 30000"
+[nodes.land]
+op = "continents"
+shore = "shore"
+uplift = 1.5
+halvings = 8
+details = 5
+[outputs]
+height = "land"
+flow = "land.flow"
+receiver = "land.receiver"
+"#;
+    let names = ["height", "flow", "receiver"];
+    let open = |threads: usize| {
+        let options = Options { threads: Some(threads), ..Options::default() };
+        World::with_options(Recipe::parse(text, "details").unwrap(), options).unwrap()
+    };
+    // A cell of a level, and one between two levels; beside the origin and far away, with an odd size.
+    for (cell, at) in [(3.75, (-91, 33)), (2.0, (1_000_000_007, -2_000_000_011))] {
+        let whole = Window::new(153, 131, cell).at(at.0, at.1);
+        let grids = open(2).grids(&names, &whole, &Progress::none()).unwrap();
+        let part = Window::new(40, 37, cell).at(at.0 + 101, at.1 + 60);
+        let alone = open(1).grids(&names, &part, &Progress::none()).unwrap();
+        for (grid, alone) in grids.iter().zip(&alone) {
+            assert_eq!(grid.crop(&part).unwrap(), *alone, "{cell} m");
+        }
+        assert!(grids[0].data().iter().all(|height| height.is_finite()));
+    }
 }
