@@ -1,11 +1,11 @@
 //! The nodes of a level before rivers: positions, rock and the shape of the shore, from the level above and from hashes.
 
-use super::detail;
 use super::geography::Geography;
 use super::given::Given;
 use super::hash::{self, jittered};
 use super::level::Level;
 use super::refinement::Refinement;
+use super::rock;
 use super::stencil::Extent;
 use crate::error::Result;
 use crate::grid::Window;
@@ -143,7 +143,7 @@ impl Children {
             self.uplift[q] = match (given.uplift(x, y), geography) {
                 _ if land.is_detail(self.depth) => {
                     let uplift = blend(&parent.uplift);
-                    uplift + amplitude * detail::roughness(uplift) * hash::normal(mix64(bits ^ 0x3333))
+                    uplift + amplitude * rock::roughness(uplift) * hash::normal(mix64(bits ^ 0x3333))
                 }
                 (Some(uplift), _) => uplift,
                 (None, Some(geography)) => geography

@@ -7,6 +7,7 @@ use super::hash;
 use super::law::{CONCAVITY, Law, STABLE, STABLE_EXPONENT, river_slope};
 use super::level::Level;
 use super::refinement::Refinement;
+use super::rock;
 use super::stencil::Extent;
 use crate::erosion::power::power;
 use crate::hydrology::direction::{NONE, STEPS};
@@ -32,15 +33,6 @@ const FREE_AREA: f64 = 1e6;
 
 /// Passes of creep, at most.
 const CREEP_PASSES: usize = 2;
-
-/// Stable slopes between which soil becomes rock, and the factor of creep of rock.
-const SOIL_SLOPE: f32 = 0.5;
-const ROCK_SLOPE: f32 = 1.0;
-const ROCK_CREEP: f32 = 0.1;
-
-/// Variation of the logarithm of the stable slope that a level adds, relative to that of uplift over erodibility: of soil, and what rock adds to it.
-const SOIL_VARIATION: f32 = 0.3;
-const ROCK_VARIATION: f32 = 0.9;
 
 /// Turns nodes of the finest level of valleys into those that detail levels begin with: off the lattice, with uplift over erodibility in `variation` and the
 /// logarithm of the stable slope in `uplift`. Values two nodes away from the edge are exact.
@@ -99,23 +91,6 @@ fn stable_slopes(land: &Refinement, level: &Level) -> Vec<f32> {
     stable
 }
 
-/// What a detail level adds to the logarithm of the stable slope, relative to the variation of uplift over erodibility: rock is rougher than soil.
-pub fn roughness(logarithm: f32) -> f32 {
-    // From 0.6, where the logarithm is -0.5, to 1.
-    SOIL_VARIATION + ROCK_VARIATION * ((logarithm + 0.5) * 2.0).clamp(0.0, 1.0)
-}
-
-/// The law at the nodes of a detail level, from uplift over erodibility in `variation` and the logarithms of stable slopes in `uplift`. There are no floors:
-/// stable slopes contain them.
-pub fn fill(law: &mut Law, variation: &[f32], uplift: &[f32], river_factor: f32) {
-    for (river, variation) in law.river.iter_mut().zip(variation) {
-        *river = river_factor * power(E, *variation);
-    }
-    for (stable, uplift) in law.stable.iter_mut().zip(uplift) {
-        *stable = power(E, *uplift);
-    }
-}
-
 /// Rivers of small area choose their receivers again. They keep their slopes where those are steeper than the law: they fell by less than the level
 /// above otherwise, and a fall that moves upstream by a few cells on each level would leave steps.
 pub fn free_rivers(land: &Refinement, depth: usize, carved: &mut Carved, extent: Extent, law: &mut Law) {
@@ -156,6 +131,5 @@ pub fn creep_passes(land: &Refinement) -> usize {
 
 /// Factors of creep: 1 for soil, less where slopes are of rock.
 pub fn creep_factors(law: &Law) -> Vec<f32> {
-    let rock = |stable: &f32| ((stable - SOIL_SLOPE) / (ROCK_SLOPE - SOIL_SLOPE)).clamp(0.0, 1.0);
-    law.stable.iter().map(|stable| 1.0 - (1.0 - ROCK_CREEP) * rock(stable)).collect()
+    law.stable.iter().map(|stable| rock::creep_factor(*stable)).collect()
 }

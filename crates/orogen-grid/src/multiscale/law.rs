@@ -1,7 +1,6 @@
 //! The law of slopes: rivers are the gentler the more land drains through them, and hillsides approach a stable slope.
 
 use super::children::Children;
-use super::detail;
 use super::given::{self, Given};
 use super::refinement::Refinement;
 use crate::erosion::power::power;
@@ -50,13 +49,26 @@ impl Law {
             law.floor.resize(cells, 0.0);
         }
         if land.is_detail(depth) {
-            detail::fill(&mut law, variation, uplift, river_factor);
+            law.fill_detail(variation, uplift, river_factor);
         } else {
             dispatch(Fill { law: &mut law, variation, uplift, river_factor, stable_factor });
         }
         multiply(&mut law.stable, given.stability_factor, &children.window);
         multiply(&mut law.floor, given.floor_factor, &children.window);
         law
+    }
+}
+
+impl Law {
+    /// The law at the nodes of a detail level, from uplift over erodibility in `variation` and the logarithms of stable slopes in `uplift`. There are no
+    /// floors: stable slopes contain them.
+    fn fill_detail(&mut self, variation: &[f32], uplift: &[f32], river_factor: f32) {
+        for (river, variation) in self.river.iter_mut().zip(variation) {
+            *river = river_factor * power(std::f32::consts::E, *variation);
+        }
+        for (stable, uplift) in self.stable.iter_mut().zip(uplift) {
+            *stable = power(std::f32::consts::E, *uplift);
+        }
     }
 }
 

@@ -30,6 +30,7 @@ pub mod level;
 mod links;
 mod refine;
 pub mod refinement;
+mod rock;
 mod routes;
 mod shores;
 mod stencil;

@@ -1,0 +1,36 @@
+//! Soil and rock of detail levels: gentle slopes are of soil, which creeps, and steep ones of rock, which is rough.
+
+/// Stable slopes between which soil becomes rock, and the factor of creep of rock.
+const SOIL_SLOPE: f32 = 0.5;
+const ROCK_SLOPE: f32 = 1.0;
+const ROCK_CREEP: f32 = 0.1;
+
+/// Variation of the logarithm of the stable slope that a level adds, relative to that of uplift over erodibility: of soil, and what rock adds to it.
+const SOIL_VARIATION: f32 = 0.3;
+const ROCK_VARIATION: f32 = 0.9;
+
+/// What a detail level adds to the logarithm of the stable slope, relative to the variation of uplift over erodibility: rock is rougher than soil.
+pub fn roughness(logarithm: f32) -> f32 {
+    // From 0.6, where the logarithm is -0.5, to 1.
+    SOIL_VARIATION + ROCK_VARIATION * ((logarithm + 0.5) * 2.0).clamp(0.0, 1.0)
+}
+
+/// The factor of creep where slopes are stable up to this one: 1 for soil.
+pub fn creep_factor(stable: f32) -> f32 {
+    let rock = ((stable - SOIL_SLOPE) / (ROCK_SLOPE - SOIL_SLOPE)).clamp(0.0, 1.0);
+    1.0 - (1.0 - ROCK_CREEP) * rock
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steep_slopes_are_rough_and_keep_their_shape() {
+        assert_eq!((creep_factor(0.2), creep_factor(0.5)), (1.0, 1.0));
+        assert!(creep_factor(0.8) < 0.5 && (creep_factor(3.0) - ROCK_CREEP).abs() < 1e-6);
+        // Slopes of 0.3, 0.7 and 1.2.
+        let [gentle, steep, steepest] = [-1.2, -0.36, 0.18].map(roughness);
+        assert!(gentle == SOIL_VARIATION && steep > gentle && steepest == SOIL_VARIATION + ROCK_VARIATION);
+    }
+}
