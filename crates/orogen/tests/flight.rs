@@ -136,15 +136,17 @@ fn a_thousand_kilometres_without_a_pop() {
     zoom_without_a_pop(40, 128);
 }
 
-/// Between two levels a zoom shows the finer one, interpolated.
+/// Between two levels a zoom shows the finer one, and below the finest that one, interpolated.
 #[test]
 fn views_between_two_levels_show_the_finer() {
     let world = endless();
-    let level = world.window("height", &Window::new(120, 120, 60.0).at(-20, 300)).unwrap();
-    for cell in [7.3, 30.0, 61.0, 85.0, 119.0] {
-        let count = (40.0 * 60.0 / cell) as usize;
+    for (cell, finer) in [(0.7, 0.9375), (7.3, 3.75), (29.0, 15.0), (61.0, 60.0), (85.0, 60.0), (119.0, 60.0)] {
         let first = |metres: f64| (metres / cell) as i64 + 1;
-        let view = Window::new(count, count, cell).at(first(10.0 * 60.0), first(330.0 * 60.0));
+        let view = Window::new(40, 35, cell).at(first(10.0 * 60.0), first(330.0 * 60.0));
+        let start = |metres: f64| (metres / finer) as i64 - 4;
+        let side = (40.0 * cell / finer) as usize + 10;
+        let around = Window::new(side, side, finer).at(start(view.east(0)), start(view.south(0)));
+        let level = world.window("height", &around).unwrap();
         let mut expect = vec![0.0; view.len()];
         let (xs, ys) = (view.eastings(), view.southings());
         resample::read(&level, LayerKind::Height, &Points::Lattice { xs: &xs, ys: &ys }, &mut expect);
