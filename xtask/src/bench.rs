@@ -34,7 +34,7 @@ Builds the benches at full optimisation, measures one area (or all in turn) and 
   --case TEXT  only cases whose name contains TEXT
   --quick      few repetitions: only to check that it runs
 
-Area realism, only if it is named: compares alpine and endless with real places, and five presets with land of their type, 16 seeds each; fails if a
+Area realism, only if it is named: compares alpine, himalaya and endless with real places, and five presets with land of their type, 16 seeds each; fails if a
 target is missed.
 
   --score SCRIPT  the script that compares rasters, with its list of types beside it (Python; OROGEN_REALISM names one that has numpy, scipy, rasterio and numba)

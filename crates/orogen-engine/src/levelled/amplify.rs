@@ -46,7 +46,7 @@ op! {
         halvings: u32 = 4, range 1 to 24;
         /// Factor of the uplift, and so of the slopes that grow.
         relief: f64 = 1.0, range 0.01 to 10.0;
-        /// Distance over which soil creep rounds hillsides at the finest level, in its cells.
+        /// Distance over which soil creep rounds hillsides at `cell`, in cells. Detail levels have creep, too, unless it is 0.
         creep: f64 = 1.0, range 0.0 to 5.0;
         /// Factor of the variation of the rock, which each level adds to: 0 makes even slopes and straight side valleys.
         variation: f64 = 1.0, range 0.0 to 4.0;

@@ -47,7 +47,7 @@ op! {
         land: f64 = 0.37, range 0.05 to 0.95;
         /// Factor of the uplift, and so of heights and slopes.
         relief: f64 = 1.0, range 0.01 to 10.0;
-        /// Distance over which soil creep rounds hillsides at the finest level, in its cells.
+        /// Distance over which soil creep rounds hillsides at `cell`, in cells. Detail levels have creep, too, unless it is 0.
         creep: f64 = 1.0, range 0.0 to 5.0;
         /// Factor of the variation of the rock, which each level adds to: 0 makes even slopes and straight side valleys.
         variation: f64 = 1.0, range 0.0 to 4.0;
@@ -78,8 +78,8 @@ op! {
         width: label, unit "m";
         /// Depth of the river from bank to bed; 0 outside rivers.
         depth: label, unit "m";
-        /// Height of the node in the cell south-east of the sample; the water level of water. It falls from each node to its receiver. At the finest level
-        /// nodes are at the samples; on coarser levels the other layers are interpolated between them, or are those of the nearest one.
+        /// Height of the node in the cell south-east of the sample; the water level of water. It falls from each node to its receiver. At `cell`
+        /// nodes are at the samples; on other levels the other layers are interpolated between them, or are those of the nearest one.
         node_height: label, unit "m";
         /// Drainage area of this node, including its cell.
         node_flow: label, unit "m^2";

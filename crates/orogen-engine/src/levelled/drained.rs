@@ -150,8 +150,7 @@ pub fn layers_of(
 /// The nodes of a level's cells.
 fn nodes_of(refinement: &Refinement, level: &Level, window: &Window, out: &mut [Option<Grid>]) {
     let cell = refinement.cell_of(level.depth);
-    // The nodes of the finest level are at the samples.
-    // Cells of detail levels begin at the samples.
+    // The nodes of the finest level of valleys are at the samples; cells of detail levels begin at theirs.
     let first = if level.depth > refinement.levels { 0.0 } else { -0.5 * refinement.cell };
     let metres = |share: f32| (f64::from(share) * cell + first) as f32;
     let nodes = refinement.nodes_at(level.depth, window);

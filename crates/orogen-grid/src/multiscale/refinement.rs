@@ -6,8 +6,9 @@ use crate::grid::Window;
 
 /// Levels of land, each made from the one above it: rivers keep their course, and branches and slopes grow between them.
 ///
-/// The node (i, j) of the finest level is exactly at (i cell, j cell). On a coarser level with cell c, the node of sample (i, j) is at
-/// ((i + east) c - cell / 2, (j + south) c - cell / 2), where `cell` is that of the finest level. Given land has its samples (i, j) in the middles of
+/// The node (i, j) of the finest level of valleys is exactly at (i cell, j cell). On a coarser level with cell c, the node of sample (i, j) is at
+/// ((i + east) c - cell / 2, (j + south) c - cell / 2), where `cell` is that of the finest level of valleys; on a detail
+/// level it is at ((i + east) c, (j + south) c). Given land has its samples (i, j) in the middles of
 /// the coarsest cells, at ((i + 0.5) c, (j + 0.5) c).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -20,7 +21,7 @@ pub struct Refinement {
     pub levels: usize,
     /// Factor of the uplift.
     pub relief: f64,
-    /// Distance over which creep rounds the finest level, in its cells: the standard deviation of the average.
+    /// Distance over which creep rounds the finest level of valleys, in its cells: the standard deviation of the average.
     pub creep: f64,
     /// Factor of the variation of the rock that each level adds.
     pub variation: f64,
@@ -79,7 +80,7 @@ impl Refinement {
         (index as f64 + f64::from(share)) * self.cell_of(depth) - 0.5 * self.cell
     }
 
-    /// Half a cell of the finest level, in cells of a level: nodes and points are that much further inside their cells, because the nodes of the finest
+    /// Half a cell of the finest level of valleys, in cells of a level: nodes and points are that much further inside their cells, because the nodes of the finest
     /// level are in the middles of its cells.
     pub(super) fn half_finest(&self, depth: usize) -> f32 {
         (0.5 * self.cell / self.cell_of(depth)) as f32

@@ -16,13 +16,13 @@ use crate::progress::Progress;
 pub struct Surface {
     /// Height of the ground in metres, under water that of the bottom. The sea is at 0.
     pub height: Grid,
-    /// Drainage area in m^2: exact on the finest level, that of the nearest node on coarser ones.
+    /// Drainage area in m^2: exact on the finest level of valleys, that of the nearest node on others.
     pub flow: Grid,
     /// Depth of lakes in metres; 0 elsewhere, also in the sea.
     pub lake_depth: Grid,
     /// Height of the surface of standing water in metres: 0 in the sea. NaN on land.
     pub water_level: Grid,
-    /// Code of the direction of flow (see [`crate::hydrology::direction`]): exact on the finest level, that of the nearest node on coarser ones.
+    /// Code of the direction of flow (see [`crate::hydrology::direction`]): exact on the finest level of valleys, that of the nearest node on others.
     pub receiver: Grid<u8>,
 }
 
@@ -59,7 +59,7 @@ impl Refinement {
     }
 
     /// The same at a position within the cells of a coarser level: at `share` of their sides, 0 for the lattice points of [`Refinement::surface`],
-    /// 0.5 for the middles. On the finest level points are always at its nodes.
+    /// 0.5 for the middles. On the finest level of valleys points are always at its nodes.
     ///
     /// # Errors
     /// Those of [`Refinement::surface`].
@@ -144,7 +144,7 @@ impl Refinement {
     }
 }
 
-/// A node of the finest level, which is at a lattice point.
+/// A node of the finest level of valleys, which is at a lattice point.
 fn node(level: &Level, q: usize) -> Point {
     let (height, area, receiver) = (level.height[q], level.area[q], level.receiver[q]);
     if receiver < NONE {

@@ -1,6 +1,7 @@
 //! Properties of the levels as a whole: windows agree, water flows down.
 
 mod details;
+mod reach;
 
 use super::continents::Continents;
 use super::given::Given;
@@ -11,9 +12,6 @@ use crate::grid::Window;
 use crate::hydrology::direction::{NONE, STEPS};
 use crate::progress::Progress;
 use crate::random::mix64;
-
-#[path = "tests_reach.rs"]
-mod reach;
 
 /// The level over a window, computed from nothing else.
 fn level(land: &Continents, depth: usize, window: &Window) -> Level {
