@@ -60,6 +60,9 @@ op! {
         /// Number of further halvings, below `cell`. Their slopes are those of the finest valleys, with gullies on them, rough rock where they are steep,
         /// and beds and banks of rivers that are wider than a sample. Finer samples are interpolated.
         details: u32 = 0, range 0 to 10;
+        /// How frequent lakes with an outlet are along rivers, from none to many. Their regions are about 100 km wide; there are few in plains. They
+        /// begin at cells of 5 km to 400 m: levels that begin with a smaller cell have none.
+        lakes: f64 = 0.0, range 0.0 to 1.0;
     }
     layers {
         /// Height of the ground, and of the beds of lakes and the sea.
@@ -70,7 +73,7 @@ op! {
         lake: height, unit "m";
         /// Height of the ground or of the water above it.
         surface: height, unit "m";
-        /// Flow direction, clockwise from east (0) to north-east (7); 8 in water.
+        /// Flow direction, clockwise from east (0) to north-east (7), also in lakes with an outlet; 8 in other water.
         receiver: label;
         /// Width of the river; 0 outside rivers.
         width: label, unit "m";
@@ -90,6 +93,7 @@ impl Amplify {
             .with_variation(self.variation)
             .with_jitter(self.jitter)
             .with_details(self.details as usize)
+            .with_lakes(self.lakes)
     }
 
     fn seeded(&self, context: &Context) -> Refinement {

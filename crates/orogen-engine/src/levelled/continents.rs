@@ -62,6 +62,9 @@ op! {
         /// Number of further halvings, below `cell`: 6 make levels from 30 m to 0.94 m. Their slopes are those of the finest valleys, with gullies on them,
         /// rough rock where they are steep, and beds and banks of rivers that are wider than a sample. Finer samples are interpolated.
         details: u32 = 0, range 0 to 10;
+        /// How frequent lakes with an outlet are along rivers, from none to many. Their regions are about 100 km wide; there are few in plains. They
+        /// begin at cells of 5 km to 400 m: levels that begin with a smaller cell have none.
+        lakes: f64 = 0.0, range 0.0 to 1.0;
     }
     layers {
         /// Height of the ground, and of the beds of lakes and the sea.
@@ -72,7 +75,7 @@ op! {
         lake: height, unit "m";
         /// Height of the ground or of the water above it.
         surface: height, unit "m";
-        /// Flow direction, clockwise from east (0) to north-east (7); 8 in water.
+        /// Flow direction, clockwise from east (0) to north-east (7), also in lakes with an outlet; 8 in other water.
         receiver: label;
         /// Width of the river; 0 outside rivers.
         width: label, unit "m";
@@ -83,7 +86,7 @@ op! {
         node_height: label, unit "m";
         /// Drainage area of this node, including its cell.
         node_flow: label, unit "m^2";
-        /// Flow direction of this node, to the node in the next cell; 8 in water.
+        /// Flow direction of this node, to the node in the next cell; 8 in water, 16 more than the direction in lakes with an outlet.
         node_receiver: label;
         /// Distance of this node east of the sample.
         node_east: label, unit "m";
@@ -111,6 +114,7 @@ impl Continents {
             .with_creep(self.creep)
             .with_variation(self.variation)
             .with_details(self.details as usize)
+            .with_lakes(self.lakes)
     }
 }
 

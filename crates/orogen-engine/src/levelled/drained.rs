@@ -6,7 +6,7 @@ use orogen_grid::grid::{Grid, Window};
 use orogen_grid::hydrology::rivers::Channel;
 use orogen_grid::multiscale::continents::Continents;
 use orogen_grid::multiscale::given::Given;
-use orogen_grid::multiscale::level::Level;
+use orogen_grid::multiscale::level::{Level, direction};
 use orogen_grid::multiscale::refinement::Refinement;
 
 /// Approximate time for a sample of a level below the coarsest, in nanoseconds.
@@ -130,7 +130,7 @@ pub fn layers_of(
     }
     if let Some(receiver) = receiver {
         let codes = receiver.data_mut().iter_mut().zip(made.receiver.data());
-        codes.for_each(|(out, code)| *out = f32::from(*code));
+        codes.for_each(|(out, code)| *out = f32::from(direction(*code)));
     }
     let write = |layer: &mut Option<Grid>, of: &dyn Fn(f64) -> f64| {
         let Some(layer) = layer else { return };

@@ -9,6 +9,7 @@ use crate::hydrology::direction::{NONE, STEPS};
 use crate::hydrology::lakes::Lake;
 use crate::hydrology::receivers::Receivers;
 use crate::hydrology::rivers::Streams;
+use crate::multiscale::level::{LAKE, direction};
 use crate::progress::Progress;
 
 use super::network::{AT_SEA, Network};
@@ -32,7 +33,8 @@ pub struct Nodes {
     pub height: Grid,
     /// Drainage area of each node in m^2.
     pub flow: Grid,
-    /// Code of the direction of each node's receiver; 8 in standing water.
+    /// Code of the direction of each node's receiver; 8 in standing water. Water of a lake with an outlet has receivers, too; where nodes are not at their
+    /// samples, 16 is added to its codes.
     pub receiver: Grid,
     /// Columns and rows from the sample to its node; none if nodes are at their samples.
     pub offset: Option<[Grid; 2]>,
@@ -70,6 +72,7 @@ impl Water {
         }
         let (labels, lakes) = lakes_of(&heights, &standing, sea_level, progress)?;
         drop(standing);
+        let in_lake: Vec<bool> = receiver.data().iter().map(|code| *code >= f32::from(LAKE)).collect();
         let mut receivers = inside(&receiver);
         drop(receiver);
         if let Some(sea) = sea_level {
@@ -120,7 +123,7 @@ impl Water {
         drop(river);
         let reaches = streams.network();
         progress.check()?;
-        let covers = offset.is_some().then(|| covers_of(&receivers, &bed, &labels, sea_level));
+        let covers = offset.is_some().then(|| covers_of(&receivers, &in_lake, &bed, &labels, sea_level));
         let mut water = Water {
             heights,
             surface: bed,
@@ -179,11 +182,12 @@ fn inside(codes: &Grid) -> Receivers {
     let mut receivers = Receivers::none(window);
     let out = receivers.codes_mut();
     for (k, code) in codes.data().iter().enumerate() {
-        let Some((east, south)) = STEPS.get(*code as usize).filter(|_| *code >= 0.0) else { continue };
+        let code = if *code >= 0.0 { direction(*code as u8) } else { NONE };
+        let Some((east, south)) = STEPS.get(usize::from(code)) else { continue };
         let (i, j) = (k % window.width, k / window.width);
         let there = |at: usize, step: isize, count: usize| at.checked_add_signed(step).is_some_and(|at| at < count);
         if there(i, *east, window.width) && there(j, *south, window.height) {
-            out[k] = *code as u8;
+            out[k] = code;
         }
     }
     receivers
@@ -239,7 +243,13 @@ fn lakes_of(
 }
 
 /// The standing water of each node: the sea, a lake next to it, or 0 on land. A lake that no sample shows has the number after the last.
-fn covers_of(receivers: &Receivers, bed: &Grid, labels: &Grid<u32>, sea_level: Option<f32>) -> Grid<u32> {
+fn covers_of(
+    receivers: &Receivers,
+    in_lake: &[bool],
+    bed: &Grid,
+    labels: &Grid<u32>,
+    sea_level: Option<f32>,
+) -> Grid<u32> {
     let window = *bed.window();
     let unseen = AT_SEA - 1;
     let mut covers = Grid::filled(window, 0u32);
@@ -247,7 +257,7 @@ fn covers_of(receivers: &Receivers, bed: &Grid, labels: &Grid<u32>, sea_level: O
         let (i, j) = (k % window.width, k / window.width);
         if sea_level.is_some_and(|sea| bed.data()[k] <= sea) {
             covers.data_mut()[k] = AT_SEA;
-        } else if receivers.code(k) == NONE && !is_border(&window, k) {
+        } else if (in_lake[k] || receivers.code(k) == NONE) && !is_border(&window, k) {
             // The corners of the node's cell first, then the samples around them.
             let near = |reach: usize| {
                 let rows = j.saturating_sub(reach)..(j + 2 + reach).min(window.height);

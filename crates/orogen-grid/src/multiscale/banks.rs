@@ -14,8 +14,15 @@ const BANK: f32 = 0.3;
 const LEFT: f32 = 0.01;
 
 /// One pass over the cells of `extent`: nodes beside rivers rise to the banks, as far as their donors stay above them.
-pub fn raise_banks(extent: Extent, heights: &mut Vec<f32>, spare: &mut Vec<f32>, area: &[f32], receiver: &[f32]) {
-    dispatch(Banks { extent, heights, area, receiver, out: spare });
+pub fn raise_banks(
+    extent: Extent,
+    heights: &mut Vec<f32>,
+    spare: &mut Vec<f32>,
+    area: &[f32],
+    receiver: &[f32],
+    fixed: &[f32],
+) {
+    dispatch(Banks { extent, heights, area, receiver, fixed, out: spare });
     std::mem::swap(heights, spare);
 }
 
@@ -24,6 +31,7 @@ struct Banks<'a> {
     heights: &'a [f32],
     area: &'a [f32],
     receiver: &'a [f32],
+    fixed: &'a [f32],
     out: &'a mut [f32],
 }
 
@@ -35,16 +43,16 @@ impl Body for Banks<'_> {
         let extent = self.extent;
         for j in extent.rows() {
             let around = [self.heights, self.area, self.receiver].map(|plane| extent.around(plane, j));
-            let own = [extent.row(self.heights, j), extent.row(self.area, j), extent.row(self.receiver, j)];
+            let own = [self.heights, self.area, self.receiver, self.fixed].map(|plane| extent.row(plane, j));
             raise(own, around, extent.row_mut(self.out, j));
         }
     }
 }
 
 #[inline(always)]
-fn raise([height, area, receiver]: [&[f32]; 3], around: [[&[f32]; 8]; 3], out: &mut [f32]) {
+fn raise([height, area, receiver, fixed]: [&[f32]; 4], around: [[&[f32]; 8]; 3], out: &mut [f32]) {
     let n = out.len();
-    let (height, area, receiver) = (&height[..n], &area[..n], &receiver[..n]);
+    let (height, area, receiver, fixed) = (&height[..n], &area[..n], &receiver[..n], &fixed[..n]);
     let [heights, areas, receivers] = around.map(|planes| planes.map(|row| &row[..n]));
     for i in 0..n {
         let here = height[i];
@@ -59,6 +67,7 @@ fn raise([height, area, receiver]: [&[f32]; 3], around: [[&[f32]; 8]; 3], out: &
         let limit = lowest_donor - LEFT;
         let raised = if bank < limit { bank } else { limit };
         let raised = if raised > here { raised } else { here };
-        out[i] = if (area[i] < RIVER_AREA) & (receiver[i] < WATER) { raised } else { here };
+        let is_land = (receiver[i] < WATER) & (fixed[i] < WATER);
+        out[i] = if (area[i] < RIVER_AREA) & is_land { raised } else { here };
     }
 }

@@ -3,9 +3,10 @@
 use super::children::{Children, heir};
 use super::distances::Distances;
 use super::drainage::{FREE, WATER};
+use super::lakes::{drains, is_lake};
 use super::level::Level;
 use super::links::{Child, Links};
-use super::shores::LAND;
+use super::shores::{LAND, Water};
 use super::stencil::code;
 use crate::hydrology::direction::NONE;
 
@@ -25,7 +26,8 @@ pub struct Carved {
 }
 
 /// The children with the kept links, some of them water at `levels`. Exact seven cells from the edge.
-pub fn carve(parent: &Level, links: &Links, children: &Children, levels: Vec<f32>) -> Carved {
+pub fn carve(parent: &Level, links: &Links, children: &Children, water: Water) -> Carved {
+    let Water { levels, gained } = water;
     let extent = children.extent;
     let fixed = levels.iter().map(|&level| if level < LAND { WATER } else { FREE }).collect();
     let mut height = levels;
@@ -39,8 +41,9 @@ pub fn carve(parent: &Level, links: &Links, children: &Children, levels: Vec<f32
         fixed,
         distances: children.is_irregular().then(|| Distances::new(extent, &children.east, &children.south)),
     };
+    carved.lead_lakes(parent, links, children);
     let mut arrivals = Vec::new();
-    for q in links.inner().filter(|&q| links.list[q].kept && parent.receiver[q] < NONE) {
+    for q in links.inner().filter(|&q| links.list[q].kept && drains(parent.receiver[q])) {
         arrivals.push(carved.leave(parent, links, children, q));
     }
     for arrival in &arrivals {
@@ -51,6 +54,11 @@ pub fn carve(parent: &Level, links: &Links, children: &Children, levels: Vec<f32
     }
     for area in carved.area.iter_mut().filter(|area| **area < 1.0) {
         *area = 1.0;
+    }
+    for (q, beside) in gained {
+        if carved.receiver[beside] < WATER {
+            carved.receiver[q] = f32::from(code_between(children, q, beside));
+        }
     }
     carved
 }
@@ -65,6 +73,17 @@ struct Arrival {
 }
 
 impl Carved {
+    /// Water of lakes with an outlet flows to the child that the lake's node becomes, if no link passes.
+    fn lead_lakes(&mut self, parent: &Level, links: &Links, children: &Children) {
+        for q in links.inner().filter(|&q| is_lake(parent.receiver[q])) {
+            let own = |corner| Child { parent: q, corner }.index(links.size.0);
+            let end = heir(parent, q);
+            for corner in (0..4).filter(|corner| *corner != end && self.fixed[own(*corner)] == WATER) {
+                self.receiver[own(corner)] = f32::from(code_between(children, own(corner), own(end)));
+            }
+        }
+    }
+
     /// Carves a link from its parent up to the entry.
     fn leave(&mut self, parent: &Level, links: &Links, children: &Children, q: usize) -> Arrival {
         let parents = links.size.0;
@@ -150,21 +169,29 @@ impl Carved {
         }
     }
 
+    /// Standing water keeps its level.
     fn set(&mut self, q: usize, height: f32, area: f32) {
-        self.height[q] = height;
+        if self.fixed[q] != WATER {
+            self.height[q] = height;
+        }
         self.area[q] += area;
     }
 
     /// Makes an adjacent cell the receiver.
     fn connect(&mut self, children: &Children, from: usize, to: usize) {
-        let width = children.extent.width;
-        let east = (to % width) as isize - (from % width) as isize;
-        let south = (to / width) as isize - (from / width) as isize;
-        let code = code(east, south);
+        let (width, code) = (children.extent.width, code_between(children, from, to));
         self.receiver[from] = f32::from(code);
-        self.fixed[from] = f32::from(code);
+        if self.fixed[from] != WATER {
+            self.fixed[from] = f32::from(code);
+        }
         if let Some(distances) = &mut self.distances {
             distances.open(from, code, width, &children.east, &children.south);
         }
     }
+}
+
+/// The direction from a cell to an adjacent one.
+fn code_between(children: &Children, from: usize, to: usize) -> u8 {
+    let width = children.extent.width;
+    code((to % width) as isize - (from % width) as isize, (to / width) as isize - (from / width) as isize)
 }

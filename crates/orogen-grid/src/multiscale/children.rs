@@ -3,6 +3,7 @@
 use super::geography::Geography;
 use super::given::Given;
 use super::hash::{self, jittered};
+use super::lakes;
 use super::level::Level;
 use super::refinement::Refinement;
 use super::rock;
@@ -127,6 +128,7 @@ impl Children {
         let parents = width / 2;
         let near_row = j / 2 * parents;
         let far_row = if j & 1 == 1 { near_row + parents } else { near_row - parents };
+        let (has_lakes, beside) = (land.lakes > 0.0, lakes::beside(land, parent.depth));
         let amplitude = land.variation as f32 * VARIATION[self.depth.min(VARIATION.len() - 1)];
         for i in 2..width - 2 {
             let near = i / 2;
@@ -150,10 +152,20 @@ impl Children {
                     .uplift(land.metres(self.depth, x, self.east[q]), land.metres(self.depth, y, self.south[q])),
                 (None, None) => blend(&parent.uplift),
             };
+            let parents = [near_row + near, near_row + far, far_row + near, far_row + far];
+            let beside_lake = has_lakes && parents.into_iter().any(|p| lakes::is_lake(parent.receiver[p]));
             // Coasts of mountains are more indented than those of plains.
             let rugged = 0.45 + 0.9 * ((self.uplift[q] + 3.0) / 3.2).clamp(0.0, 1.0);
-            let fractal = || blend(&parent.shore) + self.indent * rugged * hash::normal(mix64(bits ^ 0xAAAA));
-            self.shore[q] = given.shore(x, y).unwrap_or_else(fractal);
+            let irregular = self.indent * rugged * hash::normal(mix64(bits ^ 0xAAAA));
+            self.shore[q] = match given.shore(x, y) {
+                _ if beside_lake => {
+                    let shares = [0.5625, 0.1875, 0.1875, 0.0625].into_iter().zip(parents);
+                    shares.map(|(share, p)| share * parent.shore[p].min(beside)).sum::<f32>()
+                        + lakes::SHORE_IRREGULARITY * irregular
+                }
+                Some(shore) => shore,
+                None => blend(&parent.shore) + irregular,
+            };
         }
     }
 }

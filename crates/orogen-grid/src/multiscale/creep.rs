@@ -1,8 +1,7 @@
 //! Creep of soil on the finest level: slopes become smooth, and every node stays above its receiver.
 
-use super::drainage::FREE;
+use super::drainage::{FREE, WATER};
 use super::stencil::Extent;
-use crate::hydrology::direction::NONE;
 use orogen_simd::{Body, Simd, dispatch};
 use std::f32::consts::FRAC_1_SQRT_2;
 
@@ -46,26 +45,27 @@ const CUT: f32 = 1.5;
 /// Share of the fall to the receiver by which a node may fall in a pass.
 const LOWERED: f32 = 0.5;
 
+/// The planes of a level that creep reads beside the heights.
+#[derive(Clone, Copy)]
+pub struct Slopes<'a> {
+    pub area: &'a [f32],
+    pub receiver: &'a [f32],
+    /// Receivers that stay (see [`super::carve::Carved::fixed`]): water stays as it is.
+    pub fixed: &'a [f32],
+    /// Factor of the rate.
+    pub factor: &'a [f32],
+}
+
 /// One pass of creep over the cells of `extent`.
-pub fn creep(
-    extent: Extent,
-    heights: &mut Vec<f32>,
-    spare: &mut Vec<f32>,
-    area: &[f32],
-    receiver: &[f32],
-    factor: &[f32],
-    kept: Kept,
-) {
-    dispatch(Creep { extent, heights, area, receiver, factor, kept, out: spare });
+pub fn creep(extent: Extent, heights: &mut Vec<f32>, spare: &mut Vec<f32>, slopes: Slopes, kept: Kept) {
+    dispatch(Creep { extent, heights, slopes, kept, out: spare });
     std::mem::swap(heights, spare);
 }
 
 struct Creep<'a> {
     extent: Extent,
     heights: &'a [f32],
-    area: &'a [f32],
-    receiver: &'a [f32],
-    factor: &'a [f32],
+    slopes: Slopes<'a>,
     kept: Kept,
     out: &'a mut [f32],
 }
@@ -77,8 +77,9 @@ impl Body for Creep<'_> {
     fn run<S: Simd>(self, _: S) {
         let extent = self.extent;
         for j in extent.rows() {
-            let (heights, receivers) = (extent.around(self.heights, j), extent.around(self.receiver, j));
-            let own = [self.heights, self.area, self.receiver, self.factor].map(|plane| extent.row(plane, j));
+            let Slopes { area, receiver, fixed, factor } = self.slopes;
+            let (heights, receivers) = (extent.around(self.heights, j), extent.around(receiver, j));
+            let own = [self.heights, area, receiver, fixed, factor].map(|plane| extent.row(plane, j));
             smooth(own, heights, receivers, self.kept, extent.row_mut(self.out, j));
         }
     }
@@ -88,14 +89,15 @@ impl Body for Creep<'_> {
 /// above.
 #[inline(always)]
 fn smooth(
-    [height, area, receiver, factor]: [&[f32]; 4],
+    [height, area, receiver, fixed, factor]: [&[f32]; 5],
     heights: [&[f32]; 8],
     receivers: [&[f32]; 8],
     kept: Kept,
     out: &mut [f32],
 ) {
     let n = out.len();
-    let (height, area, receiver, factor) = (&height[..n], &area[..n], &receiver[..n], &factor[..n]);
+    let (height, area, receiver) = (&height[..n], &area[..n], &receiver[..n]);
+    let (fixed, factor) = (&fixed[..n], &factor[..n]);
     let (heights, receivers) = (heights.map(|row| &row[..n]), receivers.map(|row| &row[..n]));
     for i in 0..n {
         let here = height[i];
@@ -121,7 +123,8 @@ fn smooth(
         let change = if area[i] < kept.cut_area { change } else { -CUT };
         let change = if change > lower { change } else { lower };
         let change = if change < upper { change } else { upper };
-        out[i] = if receiver[i] < f32::from(NONE) { here + change } else { here };
+        let is_land = (receiver[i] < WATER) & (fixed[i] < WATER);
+        out[i] = if is_land { here + change } else { here };
     }
 }
 

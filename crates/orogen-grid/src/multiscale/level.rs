@@ -4,6 +4,15 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::grid::{Grid, Window};
 use crate::hydrology::direction::NONE;
 
+/// What is added to the code of the direction to the receiver of a node in a lake with an outlet.
+pub const LAKE: u8 = 16;
+
+/// The code of the direction of a receiver, also in lakes with an outlet; [`NONE`] for other water.
+#[must_use]
+pub fn direction(receiver: u8) -> u8 {
+    if receiver >= LAKE { receiver & 7 } else { receiver.min(NONE) }
+}
+
 /// Nodes of one level over a window: one node per sample of the lattice.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Level {
@@ -19,7 +28,8 @@ pub struct Level {
     pub height: Vec<f32>,
     /// Drainage area, in cells of this level.
     pub area: Vec<f32>,
-    /// Code of the direction to the receiver (see [`crate::hydrology::direction`]); [`NONE`] for water.
+    /// Code of the direction to the receiver (see [`crate::hydrology::direction`]); [`NONE`] for the sea and lakes without an outlet. Nodes of lakes
+    /// with one have [`LAKE`] added.
     pub receiver: Vec<u8>,
     /// Local part of the logarithm of uplift over erodibility; on detail levels all of it.
     pub variation: Vec<f32>,
@@ -55,7 +65,7 @@ impl Level {
             return Err(invalid("the planes of a level must have the same window"));
         }
         let code = |value: &f32| match *value {
-            value if (0.0..=f32::from(NONE)).contains(&value) && value.floor() == value => Ok(value as u8),
+            value if value.floor() == value && is_code(value) => Ok(value as u8),
             value => Err(invalid(format!("{value} is not a receiver"))),
         };
         let receiver = receiver.data().iter().map(code).collect::<Result<_>>()?;
@@ -88,6 +98,12 @@ impl Level {
             shore: part(&self.shore),
         })
     }
+}
+
+/// Whether a number is the code of a receiver.
+fn is_code(value: f32) -> bool {
+    let lake = f32::from(LAKE);
+    (0.0..=f32::from(NONE)).contains(&value) || (lake..lake + f32::from(NONE)).contains(&value)
 }
 
 /// A rectangle of a row-major plane of `width`: its first column and row, and its size.

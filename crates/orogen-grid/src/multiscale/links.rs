@@ -2,6 +2,7 @@
 
 use super::children::{Children, heir};
 use super::hash;
+use super::lakes::drains;
 use super::level::Level;
 use super::refinement::Refinement;
 use crate::error::Result;
@@ -72,7 +73,7 @@ impl Links {
         links.keep(parent);
         progress.check()?;
         let wander = if children.depth + 2 >= land.levels { FINE_WANDER } else { WANDER };
-        for q in links.inner().filter(|&q| links.list[q].kept && parent.receiver[q] < NONE).collect::<Vec<_>>() {
+        for q in links.inner().filter(|&q| links.list[q].kept && drains(parent.receiver[q])).collect::<Vec<_>>() {
             links.cross(land, parent, children, q, wander);
         }
         progress.check()?;
@@ -118,12 +119,11 @@ impl Links {
     /// Marks the parents that are kept.
     fn keep(&mut self, parent: &Level) {
         for q in self.inner() {
-            if parent.receiver[q] < NONE {
+            if drains(parent.receiver[q]) {
                 let target = self.target(parent, q);
                 (self.list[target].kept, self.list[target].fed) = (true, true);
-            } else {
-                self.list[q].kept = true;
             }
+            self.list[q].kept |= parent.receiver[q] >= NONE;
         }
     }
 
@@ -171,14 +171,14 @@ impl Links {
         for q in self.inner() {
             used[q] |= 1 << heir(parent, q);
             let link = self.list[q];
-            if link.kept && parent.receiver[q] < NONE && parent.receiver[q] & 1 == 0 {
+            if link.kept && drains(parent.receiver[q]) && parent.receiver[q] & 1 == 0 {
                 used[q] |= 1 << link.exit;
                 used[self.target(parent, q)] |= 1 << link.entry;
             }
         }
         for q in self.inner() {
             let link = self.list[q];
-            if !link.kept || parent.receiver[q] >= NONE || parent.receiver[q] & 1 == 0 {
+            if !link.kept || !drains(parent.receiver[q]) || parent.receiver[q] & 1 == 0 {
                 continue;
             }
             let target = self.target(parent, q);
@@ -203,7 +203,7 @@ impl Links {
     }
 }
 
-/// The step of a receiver's direction.
+/// The step of a receiver's direction, on land and in lakes.
 #[inline(always)]
 fn step(receiver: u8) -> (isize, isize) {
     STEPS[usize::from(receiver & 7)]

@@ -3,16 +3,17 @@
 use super::banks::raise_banks;
 use super::carve::carve;
 use super::children::Children;
-use super::creep::{Kept, creep, creep_passes, steepest};
+use super::creep::{Kept, Slopes, creep, creep_passes, steepest};
 use super::detail;
-use super::drainage;
+use super::drainage::{self, WATER};
 use super::given::{self, Given};
 use super::growth::{Growth, Spacing, least_rise};
+use super::lakes;
 use super::law::{Law, has_floors};
-use super::level::{Level, cropped, invalid};
+use super::level::{LAKE, Level, cropped, invalid};
 use super::links::Links;
 use super::refinement::Refinement;
-use super::shores::water_levels;
+use super::shores::standing_water;
 use super::straighten::{self, straighten};
 use crate::error::Result;
 use crate::grid::Window;
@@ -66,6 +67,8 @@ impl Refinement {
         let finest = self.is_finest(depth);
         let growth = CARVED + FIRST_PASSES + ROUNDS * (AREA_PASSES + 1);
         let growth = growth + last_area_passes(finest) + RAISE_PASSES + LIMIT_PASSES;
+        let above = depth.saturating_sub(1);
+        let growth = growth + if lakes::begin_at(self, above) { 2 * lakes::REACH } else { 0 };
         if finest {
             growth + straighten::REACH + creep_passes(self.creep) + BANK_PASSES + 1
         } else if self.is_detail(depth) {
@@ -119,6 +122,10 @@ impl Refinement {
         if self.is_finest(parent.depth) {
             detail::begin(self, &mut parent);
         }
+        let new_lakes = lakes::begin_at(self, parent.depth);
+        if new_lakes {
+            lakes::begin(self, &mut parent);
+        }
         let parent = &parent;
         let finest = self.is_finest(depth);
         let growing = (FIRST_PASSES + ROUNDS) as f64 + if finest { FINEST_WORK } else { 0.0 };
@@ -127,9 +134,12 @@ impl Refinement {
         progress.step(CARVING_WORK[0])?;
         let links = Links::new(self, parent, &children, progress)?;
         progress.step(CARVING_WORK[1])?;
-        let levels = water_levels(parent, &links, &mut children);
+        let water = standing_water(parent, &links, &mut children);
         progress.step(CARVING_WORK[2])?;
-        let mut carved = carve(parent, &links, &children, levels);
+        if new_lakes {
+            children.extent = children.extent.shrunk(2 * lakes::REACH);
+        }
+        let mut carved = carve(parent, &links, &children, water);
         drop(links);
         progress.step(CARVING_WORK[3])?;
         let mut extent = children.extent.shrunk(CARVED);
@@ -169,20 +179,15 @@ impl Refinement {
             for _ in 0..creep_passes(self.creep) {
                 progress.check()?;
                 extent = extent.shrunk(1);
-                creep(
-                    extent,
-                    &mut growth.height,
-                    &mut growth.spare,
-                    &growth.area,
-                    &growth.receiver,
-                    &factor,
-                    Kept::VALLEYS,
-                );
+                let slopes =
+                    Slopes { area: &growth.area, receiver: &growth.receiver, fixed: &growth.fixed, factor: &factor };
+                creep(extent, &mut growth.height, &mut growth.spare, slopes, Kept::VALLEYS);
             }
             for _ in 0..BANK_PASSES {
                 progress.check()?;
                 extent = extent.shrunk(1);
-                raise_banks(extent, &mut growth.height, &mut growth.spare, &growth.area, &growth.receiver);
+                let Growth { height, spare, area, receiver, fixed, .. } = &mut growth;
+                raise_banks(extent, height, spare, area, receiver, fixed);
             }
             extent = extent.shrunk(1);
             steepest(extent, &growth.height, &growth.fixed, &mut growth.receiver);
@@ -194,7 +199,9 @@ impl Refinement {
             for _ in 0..detail::creep_passes(self) {
                 progress.check()?;
                 extent = extent.shrunk(1);
-                creep(extent, &mut growth.height, &mut growth.spare, &growth.area, &growth.receiver, &factor, kept);
+                let slopes =
+                    Slopes { area: &growth.area, receiver: &growth.receiver, fixed: &growth.fixed, factor: &factor };
+                creep(extent, &mut growth.height, &mut growth.spare, slopes, kept);
             }
         }
         for _ in 0..last_area_passes(finest) {
@@ -215,6 +222,9 @@ impl Refinement {
         let offset = ((window.x - children.window.x) as usize, (window.y - children.window.y) as usize);
         let size = (window.width, window.height);
         let part = |plane: &[f32]| cropped(plane, children.extent.width, offset, size);
+        let lake = |fixed: f32, code: f32| if fixed == WATER && code < WATER { LAKE } else { 0 };
+        let codes = part(&growth.receiver).into_iter().zip(part(&growth.fixed));
+        let receiver = codes.map(|(code, fixed)| code as u8 + lake(fixed, code)).collect();
         let position = |plane: &[f32]| if finest { vec![0.5; window.len()] } else { part(plane) };
         Ok(Level {
             depth,
@@ -223,7 +233,7 @@ impl Refinement {
             south: position(&children.south),
             height: part(&growth.height),
             area: part(&growth.area),
-            receiver: part(&growth.receiver).into_iter().map(|code| code as u8).collect(),
+            receiver,
             variation: part(&children.variation),
             uplift: part(&children.uplift),
             shore: part(&children.shore),

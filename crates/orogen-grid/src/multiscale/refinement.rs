@@ -29,16 +29,29 @@ pub struct Refinement {
     pub jitter: f64,
     /// Number of further halvings, below `cell`: detail levels, with the slopes of the finest level of valleys, gullies, and beds and banks of rivers.
     pub details: usize,
+    /// How frequent lakes with an outlet are along rivers, 0 to 1.
+    pub lakes: f64,
 }
 
 impl Default for Refinement {
     fn default() -> Refinement {
-        Refinement { seed: 0, cell: 60.0, levels: 11, relief: 1.0, creep: 1.0, variation: 1.0, jitter: 1.0, details: 0 }
+        Refinement {
+            seed: 0,
+            cell: 60.0,
+            levels: 11,
+            relief: 1.0,
+            creep: 1.0,
+            variation: 1.0,
+            jitter: 1.0,
+            details: 0,
+            lakes: 0.0,
+        }
     }
 }
 
 orogen_noise::builder!(Refinement: with_seed(seed: u64), with_cell(cell: f64), with_levels(levels: usize), with_relief(relief: f64),
-    with_creep(creep: f64), with_variation(variation: f64), with_jitter(jitter: f64), with_details(details: usize));
+    with_creep(creep: f64), with_variation(variation: f64), with_jitter(jitter: f64), with_details(details: usize),
+    with_lakes(lakes: f64));
 
 /// The largest number of halvings.
 pub const MAX_LEVELS: usize = 24;
@@ -126,8 +139,8 @@ impl Refinement {
                 "the creep of levels must be 0 to {MAX_CREEP} cells, their variation 0 to 10"
             )));
         }
-        if !(0.0..=1.0).contains(&self.jitter) {
-            return Err(invalid("the jitter of levels must be 0 to 1"));
+        if !(0.0..=1.0).contains(&self.jitter) || !(0.0..=1.0).contains(&self.lakes) {
+            return Err(invalid("the jitter of levels and the frequency of their lakes must be 0 to 1"));
         }
         if self.levels > MAX_LEVELS || self.details > MAX_DETAILS {
             return Err(invalid(format!("levels are at most {MAX_LEVELS}, and {MAX_DETAILS} of details")));

@@ -1,12 +1,13 @@
 //! Water of a level: seas and lakes inherit their place from the level above, and their shores gain detail.
 
 use super::children::{Children, heir};
+use super::lakes::{drains, is_lake};
 use super::level::Level;
 use super::links::{Child, Links};
 use crate::hydrology::direction::NONE;
 
 /// What links say about a child.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 enum Held {
     /// Nothing.
     Free,
@@ -14,13 +15,23 @@ enum Held {
     River,
     /// A river ends here: water.
     Mouth,
+    /// A river passes through a lake with this level.
+    Lake(f32),
 }
 
-/// Cells without water in [`water_levels`].
+/// Standing water of children.
+pub struct Water {
+    /// The water level of each child, in metres; [`LAND`] on land.
+    pub levels: Vec<f32>,
+    /// Children that water has spread to, each with the one beside it that was water before.
+    pub gained: Vec<(usize, usize)>,
+}
+
+/// The level of children without water.
 pub const LAND: f32 = f32::INFINITY;
 
-/// The water level of each child, in metres; [`LAND`] on land. Updates the children's distances to the shore.
-pub fn water_levels(parent: &Level, links: &Links, children: &mut Children) -> Vec<f32> {
+/// The standing water of the children. Updates their distances to the shore.
+pub fn standing_water(parent: &Level, links: &Links, children: &mut Children) -> Water {
     let held = held(parent, links);
     let (width, parents) = (children.extent.width, links.size.0);
     let mut levels = vec![LAND; held.len()];
@@ -28,8 +39,10 @@ pub fn water_levels(parent: &Level, links: &Links, children: &mut Children) -> V
         for (i, level) in row.iter_mut().enumerate() {
             let (q, p) = (j * width + i, j / 2 * parents + i / 2);
             let flooded = held[q] == Held::Mouth || (held[q] == Held::Free && children.shore[q] < 0.0);
-            if parent.receiver[p] >= NONE && flooded {
-                *level = parent.height[p];
+            match held[q] {
+                Held::Lake(own) => *level = own,
+                _ if parent.receiver[p] >= NONE && flooded => *level = parent.height[p],
+                _ => {}
             }
         }
     }
@@ -40,12 +53,13 @@ pub fn water_levels(parent: &Level, links: &Links, children: &mut Children) -> V
         for i in inner.columns() {
             let (q, p) = (j * width + i, j / 2 * parents + i / 2);
             if parent.receiver[p] < NONE && held[q] == Held::Free && children.shore[q] < 0.0 {
-                let around = [q - 1, q + 1, q - width, q + width].map(|o| levels[o]);
-                gained.extend(around.into_iter().find(|&level| level < LAND).map(|level| (q, level)));
+                let around = [q - 1, q + 1, q - width, q + width];
+                gained.extend(around.into_iter().find(|&beside| levels[beside] < LAND).map(|beside| (q, beside)));
             }
         }
     }
-    for (q, level) in gained {
+    let spread: Vec<f32> = gained.iter().map(|&(_, beside)| levels[beside]).collect();
+    for (&(q, _), level) in gained.iter().zip(spread) {
         levels[q] = level;
     }
     for ((shore, &level), &held) in children.shore.iter_mut().zip(&levels).zip(&held) {
@@ -55,7 +69,7 @@ pub fn water_levels(parent: &Level, links: &Links, children: &mut Children) -> V
             _ => shore.max(0.3 * children.indent),
         };
     }
-    levels
+    Water { levels, gained }
 }
 
 /// What the kept links say about each child.
@@ -69,19 +83,24 @@ fn held(parent: &Level, links: &Links) -> Vec<Held> {
         if !link.kept {
             continue;
         }
-        if parent.receiver[q] >= NONE {
+        let code = parent.receiver[q];
+        if !drains(code) {
             if link.fed && held[start] == Held::Free {
                 held[start] = Held::Mouth;
             }
             continue;
         }
-        (held[start], held[own(link.exit)]) = (Held::River, Held::River);
+        let passed = if is_lake(code) { Held::Lake(parent.height[q]) } else { Held::River };
+        (held[start], held[own(link.exit)]) = (passed, passed);
         if let Some(via) = links.via(parent, q) {
-            held[via.index(parents)] = Held::River;
+            held[via.index(parents)] = passed;
         }
         let target = links.target(parent, q);
-        if parent.receiver[target] < NONE {
-            held[Child { parent: target, corner: link.entry }.index(parents)] = Held::River;
+        let entry = Child { parent: target, corner: link.entry }.index(parents);
+        if is_lake(code) && is_lake(parent.receiver[target]) {
+            held[entry] = Held::Lake(parent.height[target]);
+        } else if parent.receiver[target] < NONE {
+            held[entry] = Held::River;
         }
     }
     held

@@ -119,6 +119,8 @@ fn shortcuts(extent: Extent, window: &Window, carved: &Carved) -> Vec<Shortcut> 
 fn donors(extent: Extent, carved: &Carved, q: usize) -> impl Iterator<Item = usize> {
     STEPS.iter().enumerate().filter_map(move |(code, (east, south))| {
         let donor = q.wrapping_add_signed(south * extent.width as isize + east);
-        (carved.fixed[donor] == ((code + 4) & 7) as f32).then_some(donor)
+        // Water of lakes has receivers, too.
+        let is_river = carved.fixed[donor] > FREE && carved.receiver[donor] == ((code + 4) & 7) as f32;
+        is_river.then_some(donor)
     })
 }

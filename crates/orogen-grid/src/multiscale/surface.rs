@@ -1,5 +1,6 @@
 //! Heights and water at the lattice points of a level.
 
+use super::lakes::is_lake;
 use super::law::slope_of_one_cell;
 use super::level::{Level, invalid};
 use super::refinement::Refinement;
@@ -22,7 +23,7 @@ pub struct Surface {
     pub lake_depth: Grid,
     /// Height of the surface of standing water in metres: 0 in the sea. NaN on land.
     pub water_level: Grid,
-    /// Code of the direction of flow (see [`crate::hydrology::direction`]): exact on the finest level of valleys, that of the nearest node on others.
+    /// Receiver as in [`Level`]: exact on the finest level of valleys, that of the nearest node on others.
     pub receiver: Grid<u8>,
 }
 
@@ -132,7 +133,8 @@ impl Refinement {
             let bed = if water.weight > 0.0 { water.mean() } else { bottom(level, nearest_water.1) };
             let bed = bed.min(surface - MIN_DEPTH);
             let lake_depth = if surface > 0.0 { surface - bed } else { 0.0 };
-            return Point { height: bed, area, lake_depth, water_level: surface, receiver: NONE };
+            let receiver = level.receiver[nearest_water.1];
+            return Point { height: bed, area, lake_depth, water_level: surface, receiver };
         }
         let finer = self.levels.saturating_sub(level.depth).min(MEAN_CHANGE.len() - 1);
         let change = MEAN_CHANGE[finer]
@@ -155,12 +157,19 @@ fn node(level: &Level, q: usize) -> Point {
     Point { height: bed, area, lake_depth, water_level: height, receiver }
 }
 
-/// Height of the bottom of standing water. Lakes fall by 8 m per km from the shore, to at most 120 m. The sea has a shelf of 80 km, a
+/// Fall of the bottom of lakes with an outlet from the shore, in metres per km, and their greatest depth.
+const VALLEY_LAKE: (f32, f32) = (80.0, 300.0);
+
+/// The same of lakes without one.
+const BASIN_LAKE: (f32, f32) = (8.0, 120.0);
+
+/// Height of the bottom of standing water. Lakes fall from the shore to their greatest depth. The sea has a shelf of 80 km, a
 /// continental slope and a deep plain.
 fn bottom(level: &Level, q: usize) -> f32 {
     let (height, distance) = (level.height[q], (-level.shore[q]).max(0.0));
     if height > 0.0 {
-        return height - (8.0 * distance).min(120.0);
+        let (fall, most) = if is_lake(level.receiver[q]) { VALLEY_LAKE } else { BASIN_LAKE };
+        return height - (fall * distance).min(most);
     }
     let t = ((distance - 80.0) / 200.0).clamp(0.0, 1.0);
     let shelf = 1.8 * distance.min(80.0);

@@ -1,0 +1,174 @@
+//! Lakes with an outlet: on some levels parts of rivers become standing water, whose surface is as high as its outlet. Water in such a lake has receivers
+//! that lead to the outlet, so that the river runs on below it, and finer levels keep the lake.
+
+use super::gradient_noise::{noise, smooth_step};
+use super::hash;
+use super::level::{LAKE, Level};
+use super::refinement::Refinement;
+use crate::hydrology::direction::{NONE, STEPS};
+
+/// The cells in km of the levels whose rivers become lakes.
+const CELLS: std::ops::RangeInclusive<f64> = 0.4..=5.0;
+
+/// Drainage areas of these rivers, in cells.
+const AREAS: std::ops::Range<f32> = 16.0..3000.0;
+
+/// Share of their nodes that hold back a lake, where lakes are most frequent.
+const MAX_CHANCE: f64 = 0.16;
+
+/// Wavelength, in km, and values of the noise between which lakes are absent and frequent.
+const DISTRICTS: f64 = 160.0;
+const SPARSE: f64 = -0.35;
+const FREQUENT: f64 = 0.45;
+
+/// Logarithms of uplift over erodibility between which lakes are rare, in plains, and frequent, in hills and mountains.
+const PLAINS: f64 = -2.5;
+const HILLS: f64 = -0.5;
+const CHANCE_IN_PLAINS: f64 = 0.1;
+
+/// Links from the outlet to the upper end of a lake, at most.
+const MAX_LINKS: usize = 3;
+
+/// Drainage area of a river in the lake, relative to that of the outlet, at least.
+const MAIN_SHARE: f32 = 0.35;
+
+/// Slope of the river before it became a lake, at most.
+const MAX_SLOPE: f64 = 0.03;
+
+/// Distance from the shore of a new lake's nodes, and that of land beside lakes, at most, in cells.
+const INSIDE: f64 = 0.5;
+const BESIDE: f64 = 0.5;
+
+/// Irregularity of the shores of lakes, relative to that of coasts.
+pub const SHORE_IRREGULARITY: f32 = 0.55;
+
+/// Nodes that the lakes of a node depend on: along a lake to its outlet, further down to the next one, and one beside.
+pub const REACH: usize = 2 * MAX_LINKS + 2;
+
+/// Whether the code of a receiver is that of a lake with an outlet.
+#[inline(always)]
+pub fn is_lake(code: u8) -> bool {
+    code >= LAKE
+}
+
+/// Whether a node has a receiver: land, and lakes with an outlet.
+#[inline(always)]
+pub fn drains(code: u8) -> bool {
+    code < NONE || is_lake(code)
+}
+
+/// Whether rivers of a level become lakes on the level below.
+pub fn begin_at(land: &Refinement, depth: usize) -> bool {
+    land.lakes > 0.0 && depth < land.levels && CELLS.contains(&land.kilometres(depth))
+}
+
+/// The largest distance to the shore that land beside a lake has, in km, so that lakes can be wider than their rivers.
+pub fn beside(land: &Refinement, depth: usize) -> f32 {
+    (BESIDE * land.kilometres(depth)) as f32
+}
+
+/// Turns nodes of rivers into lakes. Nodes [`REACH`] away from the edge are exact.
+pub fn begin(land: &Refinement, level: &mut Level) {
+    let found = Outlets::new(land, level);
+    let shore = (-INSIDE * land.kilometres(level.depth)) as f32;
+    let least_fall = (MAX_SLOPE * land.cell_of(level.depth)) as f32;
+    let outlets: Vec<usize> = found.candidates.iter().copied().filter(|&q| found.is_last(level, q)).collect();
+    for outlet in outlets {
+        let (top, least_area) = (level.height[outlet], MAIN_SHARE * level.area[outlet]);
+        let links = (hash::unit(found.bits(land, level, outlet) << 24) * (MAX_LINKS + 1) as f32) as usize;
+        let mut lake = vec![outlet];
+        let mut from = 0;
+        for link in 1..=links {
+            let until = lake.len();
+            let highest = top + link as f32 * least_fall;
+            for at in from..until {
+                let near = donors(level, lake[at]);
+                lake.extend(near.filter(|&q| level.area[q] >= least_area && level.height[q] <= highest));
+            }
+            from = until;
+        }
+        for q in lake {
+            level.height[q] = top;
+            level.receiver[q] += LAKE;
+            level.shore[q] = shore;
+        }
+    }
+}
+
+/// Nodes of rivers that may become the outlets of lakes.
+struct Outlets {
+    candidates: Vec<usize>,
+    is_candidate: Vec<bool>,
+}
+
+impl Outlets {
+    fn new(land: &Refinement, level: &Level) -> Outlets {
+        let mut outlets = Outlets { candidates: Vec::new(), is_candidate: vec![false; level.window.len()] };
+        for q in 0..level.window.len() {
+            if level.receiver[q] < NONE && AREAS.contains(&level.area[q]) {
+                let draw = f64::from(hash::unit(outlets.bits(land, level, q)));
+                let most = land.lakes * MAX_CHANCE;
+                if draw < most && draw < most * frequency(land, level, q) {
+                    outlets.candidates.push(q);
+                    outlets.is_candidate[q] = true;
+                }
+            }
+        }
+        outlets
+    }
+
+    fn bits(&self, land: &Refinement, level: &Level, q: usize) -> u64 {
+        let (x, y) = place(level, q);
+        hash::node(land.seed, level.depth, x, y, 13)
+    }
+
+    /// Whether no other candidate is so near downstream that its lake may reach this one, and the river runs on over land.
+    fn is_last(&self, level: &Level, q: usize) -> bool {
+        let mut at = q;
+        for link in 0..=MAX_LINKS {
+            at = match downstream(level, at) {
+                Some(next) if level.receiver[next] < NONE => next,
+                _ => return link > 0,
+            };
+            if self.is_candidate[at] {
+                return false;
+            }
+        }
+        true
+    }
+}
+
+/// How frequent lakes are around a node, 0 to 1.
+fn frequency(land: &Refinement, level: &Level, q: usize) -> f64 {
+    let (x, y) = place(level, q);
+    let kilometres = |index: i64, share: f32| land.metres(level.depth, index, share) * 1e-3;
+    let (east, south) = (kilometres(x, level.east[q]), kilometres(y, level.south[q]));
+    let district = smooth_step(SPARSE, FREQUENT, noise(land.seed, 8, east / DISTRICTS, south / DISTRICTS));
+    let relief = smooth_step(PLAINS, HILLS, f64::from(level.uplift[q]));
+    district * (CHANCE_IN_PLAINS + (1.0 - CHANCE_IN_PLAINS) * relief)
+}
+
+/// Column and row of the cell of a node.
+fn place(level: &Level, q: usize) -> (i64, i64) {
+    (level.window.x + (q % level.window.width) as i64, level.window.y + (q / level.window.width) as i64)
+}
+
+/// The neighbour in a direction, if it is within the window.
+fn neighbour(level: &Level, q: usize, (east, south): (isize, isize)) -> Option<usize> {
+    let (width, height) = (level.window.width, level.window.height);
+    let (i, j) = ((q % width).checked_add_signed(east)?, (q / width).checked_add_signed(south)?);
+    (i < width && j < height).then_some(j * width + i)
+}
+
+/// The receiver of a node on land.
+fn downstream(level: &Level, q: usize) -> Option<usize> {
+    neighbour(level, q, *STEPS.get(usize::from(level.receiver[q]))?)
+}
+
+/// The nodes on land whose receiver is a node.
+fn donors(level: &Level, q: usize) -> impl Iterator<Item = usize> {
+    STEPS.iter().enumerate().filter_map(move |(code, step)| {
+        let donor = neighbour(level, q, *step)?;
+        (usize::from(level.receiver[donor]) == (code + 4) & 7).then_some(donor)
+    })
+}
