@@ -1,6 +1,7 @@
 //! Lakes with an outlet: on some levels parts of rivers become standing water, whose surface is as high as its outlet. Water in such a lake has receivers
 //! that lead to the outlet, so that the river runs on below it, and finer levels keep the lake.
 
+use super::children::Children;
 use super::gradient_noise::{noise, smooth_step};
 use super::hash;
 use super::level::{LAKE, Level};
@@ -35,15 +36,20 @@ const MAIN_SHARE: f32 = 0.35;
 /// Slope of the river before it became a lake, at most.
 const MAX_SLOPE: f64 = 0.03;
 
-/// Distance from the shore of a new lake's nodes, and that of land beside lakes, at most, in cells.
-const INSIDE: f64 = 0.5;
-const BESIDE: f64 = 0.5;
+/// Half of the width of a new lake around its river, at least and at most, in cells.
+const HALF_WIDTH: [f32; 2] = [0.3, 0.75];
+
+/// The largest distance to the shore that land beside lakes has, in cells.
+const BESIDE: f32 = 0.5;
 
 /// Irregularity of the shores of lakes, relative to that of coasts.
 pub const SHORE_IRREGULARITY: f32 = 0.55;
 
-/// Nodes that the lakes of a node depend on: along a lake to its outlet, further down to the next one, and one beside.
-pub const REACH: usize = 2 * MAX_LINKS + 2;
+/// Cells from a node of a lake to those whose distances to the shore it changes.
+const WIDEST: usize = 2;
+
+/// Cells that the lakes of a cell depend on: to a node of a lake, along the lake to its outlet, and down to the next one.
+pub const REACH: usize = WIDEST + 2 * MAX_LINKS + 1;
 
 /// Whether the code of a receiver is that of a lake with an outlet.
 #[inline(always)]
@@ -64,35 +70,92 @@ pub fn begin_at(land: &Refinement, depth: usize) -> bool {
 
 /// The largest distance to the shore that land beside a lake has, in km, so that lakes can be wider than their rivers.
 pub fn beside(land: &Refinement, depth: usize) -> f32 {
-    (BESIDE * land.kilometres(depth)) as f32
+    BESIDE * land.kilometres(depth) as f32
+}
+
+/// A node of a new lake.
+pub struct Part {
+    node: usize,
+    /// Half of the width of the lake around the river, in cells.
+    half_width: f32,
 }
 
 /// Turns nodes of rivers into lakes. Nodes [`REACH`] away from the edge are exact.
-pub fn begin(land: &Refinement, level: &mut Level) {
+pub fn begin(land: &Refinement, level: &mut Level) -> Vec<Part> {
     let found = Outlets::new(land, level);
-    let shore = (-INSIDE * land.kilometres(level.depth)) as f32;
-    let least_fall = (MAX_SLOPE * land.cell_of(level.depth)) as f32;
+    let highest_rise = (MAX_SLOPE * land.cell_of(level.depth)) as f32;
     let outlets: Vec<usize> = found.candidates.iter().copied().filter(|&q| found.is_last(level, q)).collect();
+    let mut parts = Vec::new();
     for outlet in outlets {
         let (top, least_area) = (level.height[outlet], MAIN_SHARE * level.area[outlet]);
-        let links = (hash::unit(found.bits(land, level, outlet) << 24) * (MAX_LINKS + 1) as f32) as usize;
-        let mut lake = vec![outlet];
-        let mut from = 0;
+        let bits = found.bits(land, level, outlet);
+        let links = (hash::unit(bits << 24) * (MAX_LINKS + 1) as f32) as usize;
+        let half_width = HALF_WIDTH[0] + (HALF_WIDTH[1] - HALF_WIDTH[0]) * hash::unit16(bits, 0);
+        let (mut lake, mut from) = (vec![outlet], 0);
         for link in 1..=links {
             let until = lake.len();
-            let highest = top + link as f32 * least_fall;
+            let highest = top + link as f32 * highest_rise;
             for at in from..until {
                 let near = donors(level, lake[at]);
                 lake.extend(near.filter(|&q| level.area[q] >= least_area && level.height[q] <= highest));
             }
             from = until;
         }
-        for q in lake {
-            level.height[q] = top;
-            level.receiver[q] += LAKE;
-            level.shore[q] = shore;
+        for node in lake {
+            level.height[node] = top;
+            level.receiver[node] += LAKE;
+            parts.push(Part { node, half_width });
         }
     }
+    parts
+}
+
+/// Places the shores of new lakes: at a distance from the links between their nodes.
+pub fn shape(parts: &[Part], level: &Level, children: &mut Children) {
+    if parts.is_empty() {
+        return;
+    }
+    let (kilometres, width) = (level.window.cell as f32 * 1e-3, level.window.width);
+    let mut lowered = vec![0.0f32; children.shore.len()];
+    for part in parts {
+        let (i, j) = (part.node % width, part.node / width);
+        let from = [level.east[part.node], level.south[part.node]];
+        let to = link(level, part.node).unwrap_or(from);
+        let rows = 2 * j.saturating_sub(WIDEST)..(2 * (j + WIDEST + 1)).min(children.extent.height);
+        for y in rows {
+            for x in 2 * i.saturating_sub(WIDEST)..(2 * (i + WIDEST + 1)).min(children.extent.width) {
+                let q = y * children.extent.width + x;
+                let share = |plane: &[f32]| if children.is_irregular() { plane[q] } else { 0.5 };
+                let at = [
+                    0.5 * (x as f32 - 2.0 * i as f32 + share(&children.east)),
+                    0.5 * (y as f32 - 2.0 * j as f32 + share(&children.south)),
+                ];
+                let over = distance(at, from, to) - part.half_width - BESIDE;
+                lowered[q] = lowered[q].min(over);
+            }
+        }
+    }
+    for (shore, lowered) in children.shore.iter_mut().zip(lowered) {
+        *shore += lowered * kilometres;
+    }
+}
+
+/// The position of the receiver of a lake's node in the same lake, from the corner of the node's cell, in cells.
+fn link(level: &Level, q: usize) -> Option<[f32; 2]> {
+    let step = STEPS[usize::from(level.receiver[q] & 7)];
+    let to = neighbour(level, q, step)?;
+    let is_same = is_lake(level.receiver[to]) && level.height[to] == level.height[q];
+    is_same.then(|| [level.east[to] + step.0 as f32, level.south[to] + step.1 as f32])
+}
+
+/// The distance of a point from a line between two others.
+fn distance(at: [f32; 2], from: [f32; 2], to: [f32; 2]) -> f32 {
+    let (along, away) = ([to[0] - from[0], to[1] - from[1]], [at[0] - from[0], at[1] - from[1]]);
+    let square = along[0] * along[0] + along[1] * along[1];
+    let share = (along[0] * away[0] + along[1] * away[1]) / square.max(1e-6);
+    let share = share.clamp(0.0, 1.0);
+    let (x, y) = (away[0] - share * along[0], away[1] - share * along[1]);
+    (x * x + y * y).sqrt()
 }
 
 /// Nodes of rivers that may become the outlets of lakes.

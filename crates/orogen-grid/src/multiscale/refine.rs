@@ -122,21 +122,20 @@ impl Refinement {
         if self.is_finest(parent.depth) {
             detail::begin(self, &mut parent);
         }
-        let new_lakes = lakes::begin_at(self, parent.depth);
-        if new_lakes {
-            lakes::begin(self, &mut parent);
-        }
+        let may_begin = lakes::begin_at(self, parent.depth);
+        let new_lakes = if may_begin { lakes::begin(self, &mut parent) } else { Vec::new() };
         let parent = &parent;
         let finest = self.is_finest(depth);
         let growing = (FIRST_PASSES + ROUNDS) as f64 + if finest { FINEST_WORK } else { 0.0 };
         progress.expect(CARVING_WORK.iter().sum::<f64>() + growing);
         let mut children = Children::new(self, parent, given, progress)?;
+        lakes::shape(&new_lakes, parent, &mut children);
         progress.step(CARVING_WORK[0])?;
         let links = Links::new(self, parent, &children, progress)?;
         progress.step(CARVING_WORK[1])?;
         let water = standing_water(parent, &links, &mut children);
         progress.step(CARVING_WORK[2])?;
-        if new_lakes {
+        if may_begin {
             children.extent = children.extent.shrunk(2 * lakes::REACH);
         }
         let mut carved = carve(parent, &links, &children, water);
