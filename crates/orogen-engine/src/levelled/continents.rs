@@ -35,6 +35,8 @@ op! {
         creep_factor: optional,
         /// Factor of the width of valley floors. Default: 1.
         floor_factor: optional,
+        /// Factor of the rain: `flow` and the slopes of rivers follow the discharge, which is that of a larger drainage area where more rain falls. Default: 1.
+        rain: optional,
     }
     params {
         /// Seed of the node, hashed with the world's seed.
@@ -69,7 +71,7 @@ op! {
     layers {
         /// Height of the ground, and of the beds of lakes and the sea.
         height: height, unit "m";
-        /// Drainage area, including the cell itself.
+        /// Drainage area, including the cell itself; weighted by `rain` if it is given.
         flow: flow, unit "m^2";
         /// Depth of standing water in lakes, 0 elsewhere.
         lake: height, unit "m";
@@ -126,6 +128,7 @@ fn given<'a>(inputs: &[Option<&'a Grid>]) -> Given<'a> {
         stability_factor: input(2),
         creep_factor: input(3),
         floor_factor: input(4),
+        rain: input(5),
         continents: None,
     }
 }

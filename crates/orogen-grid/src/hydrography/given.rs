@@ -242,7 +242,8 @@ fn lakes_of(
     Ok((labels, lakes))
 }
 
-/// The standing water of each node: the sea, a lake next to it, or 0 on land. A lake that no sample shows has the number after the last.
+/// The standing water of each node: the sea, a lake next to it, or 0 on land. A lake without an outlet that no sample shows has the number
+/// after the last.
 fn covers_of(
     receivers: &Receivers,
     in_lake: &[bool],
@@ -266,7 +267,9 @@ fn covers_of(
                     .map(|at| labels[at])
                     .find(|label| *label > 0)
             };
-            covers.data_mut()[k] = near(0).or_else(|| near(1)).unwrap_or(unseen);
+            // A river runs on through a lake with an outlet that no sample shows.
+            let hidden = if in_lake[k] { 0 } else { unseen };
+            covers.data_mut()[k] = near(0).or_else(|| near(1)).unwrap_or(hidden);
         }
     }
     covers

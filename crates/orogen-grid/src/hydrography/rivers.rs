@@ -209,7 +209,9 @@ fn cut(water: &Water, frame: &Frame, cells: &[usize], order: u8, next: Option<u3
     let mut source = Source::Land;
     let mut finish = |part: &mut Vec<usize>, source: Source, mouth: End| {
         let cells = std::mem::take(part);
-        if cells.len() > 1 {
+        // Nodes in a lake may be far from the samples that show it.
+        let in_lake = matches!((source, mouth), (Source::Lake(from), End::Lake(to)) if from == to);
+        if cells.len() > 1 && !in_lake {
             stretches.push(Stretch { cells, order, source, mouth });
         }
     };

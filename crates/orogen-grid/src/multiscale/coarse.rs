@@ -38,6 +38,7 @@ impl Refinement {
         }
         progress.check()?;
         let (cell, cells) = (self.cell_of(0), window.len());
+        let rain = given.rain(window);
         let mut level = Level {
             depth: 0,
             window: *window,
@@ -58,7 +59,8 @@ impl Refinement {
                 level.east.push(self.around_middle(east, draw(0)));
                 level.south.push(self.around_middle(south, draw(1)));
                 level.height.push(at(land.height, x, y));
-                level.area.push((at(land.flow, x, y) / (cell * cell) as f32).max(1.0));
+                let own = rain.as_ref().map_or(1.0, |rain| rain[level.area.len()]);
+                level.area.push((at(land.flow, x, y) / (cell * cell) as f32).max(own));
                 level.receiver.push(code);
                 level.uplift.push(given.uplift(x, y).unwrap_or(0.0));
                 level.shore.push((if code < NONE { 0.5 } else { -0.5 } * cell * 1e-3) as f32);

@@ -53,6 +53,7 @@ struct Coarsest<'a> {
     /// Heights that bases start from; elsewhere [`UNREACHED`].
     start: Vec<f32>,
     area: Vec<f32>,
+    rain: Option<Vec<f32>>,
     receiver: Vec<f32>,
 }
 
@@ -105,6 +106,7 @@ impl<'a> Coarsest<'a> {
             base: vec![Base::None; cells],
             start: vec![UNREACHED; cells],
             area: vec![1.0; cells],
+            rain: given.rain(&window),
             receiver: vec![f32::from(NONE); cells],
         };
         let geography = Geography::new(land);
@@ -178,7 +180,7 @@ impl<'a> Coarsest<'a> {
         for _ in 0..LINKS {
             progress.step(1.0)?;
             self.extent = self.extent.shrunk(1);
-            drainage::step(self.extent, &self.receiver, &mut self.area, &mut spare);
+            drainage::step(self.extent, self.rain.as_deref(), &self.receiver, &mut self.area, &mut spare);
         }
         Ok(heights)
     }

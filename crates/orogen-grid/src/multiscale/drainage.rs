@@ -10,15 +10,16 @@ pub const FREE: f32 = -1.0;
 /// In planes of fixed receivers: water.
 pub const WATER: f32 = NONE as f32;
 
-/// Replaces `area` by 1 plus the areas of the donors before, over `extent`; `spare` is scratch memory. Sums are in the order of directions, so
-/// they have the same bits in every window. Receivers are codes of directions.
-pub fn step(extent: Extent, receiver: &[f32], area: &mut Vec<f32>, spare: &mut Vec<f32>) {
-    dispatch(Step { extent, receiver, area, out: spare });
+/// Replaces `area` by 1, or the rain of the cell, plus the areas of the donors before, over `extent`; `spare` is scratch memory. Sums are in the order of
+/// directions, so they have the same bits in every window. Receivers are codes of directions.
+pub fn step(extent: Extent, rain: Option<&[f32]>, receiver: &[f32], area: &mut Vec<f32>, spare: &mut Vec<f32>) {
+    dispatch(Step { extent, rain, receiver, area, out: spare });
     std::mem::swap(area, spare);
 }
 
 struct Step<'a> {
     extent: Extent,
+    rain: Option<&'a [f32]>,
     receiver: &'a [f32],
     area: &'a [f32],
     out: &'a mut [f32],
@@ -31,7 +32,12 @@ impl Body for Step<'_> {
     fn run<S: Simd>(self, _: S) {
         for j in self.extent.rows() {
             let (receivers, areas) = (self.extent.around(self.receiver, j), self.extent.around(self.area, j));
-            sum(receivers, areas, self.extent.row_mut(self.out, j));
+            let out = self.extent.row_mut(self.out, j);
+            match self.rain {
+                None => out.fill(1.0),
+                Some(rain) => out.copy_from_slice(self.extent.row(rain, j)),
+            }
+            sum(receivers, areas, out);
         }
     }
 }
@@ -41,7 +47,7 @@ fn sum(receivers: [&[f32]; 8], areas: [&[f32]; 8], out: &mut [f32]) {
     let n = out.len();
     let (receivers, areas) = (receivers.map(|row| &row[..n]), areas.map(|row| &row[..n]));
     for i in 0..n {
-        let mut total = 1.0;
+        let mut total = out[i];
         for code in 0..8 {
             // The neighbour drains here if its receiver is in the opposite direction.
             let back = ((code + 4) & 7) as f32;

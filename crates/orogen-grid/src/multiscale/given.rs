@@ -19,6 +19,8 @@ pub struct Given<'a> {
     pub creep_factor: Option<&'a Grid>,
     /// Factor of the width of valley floors.
     pub floor_factor: Option<&'a Grid>,
+    /// Factor of the rain, and so of the discharge from each cell. Detail levels take the rain of their streams from above.
+    pub rain: Option<&'a Grid>,
     /// The land whose geography decides about shores and uplift without a value. Without it they are those of the level above.
     pub continents: Option<&'a Continents>,
 }
@@ -38,6 +40,11 @@ impl Given<'_> {
         Some(libm::log(f64::from(uplift.max(LEAST_UPLIFT))) as f32)
     }
 
+    /// The factors of the rain over a window, if they are given.
+    pub(super) fn rain(&self, window: &Window) -> Option<Vec<f32>> {
+        self.rain.map(|_| factor(self.rain, window, RAIN))
+    }
+
     /// The distance to the shore in kilometres at a sample, otherwise that of geography at a position in metres.
     pub(super) fn shore_or(&self, (x, y): (i64, i64), geography: &Geography, east: f64, south: f64) -> f32 {
         self.shore(x, y).unwrap_or_else(|| geography.shore(east, south))
@@ -48,6 +55,9 @@ impl Given<'_> {
         self.uplift(x, y).unwrap_or_else(|| geography.uplift(east, south))
     }
 }
+
+/// Factors of the rain.
+const RAIN: RangeInclusive<f32> = 0.01..=100.0;
 
 /// The values of a factor over a window, within `range`; 1 where it has none.
 pub(super) fn factor(grid: Option<&Grid>, window: &Window, range: RangeInclusive<f32>) -> Vec<f32> {

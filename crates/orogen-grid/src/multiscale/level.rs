@@ -26,7 +26,7 @@ pub struct Level {
     pub south: Vec<f32>,
     /// Height in metres; the water level of water. The sea is at 0.
     pub height: Vec<f32>,
-    /// Drainage area, in cells of this level.
+    /// Drainage area, in cells of this level, weighted by the rain if that is given.
     pub area: Vec<f32>,
     /// Code of the direction to the receiver (see [`crate::hydrology::direction`]); [`NONE`] for the sea and lakes without an outlet. Nodes of lakes
     /// with one have [`LAKE`] added.

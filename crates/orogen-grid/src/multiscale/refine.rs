@@ -147,6 +147,7 @@ impl Refinement {
             straighten(extent, &children.window, &mut carved);
             progress.check()?;
         }
+        let rain = given.rain(&children.window);
         let mut law = Law::new(self, &children, given);
         if self.is_detail(depth) {
             detail::free_rivers(self, depth, &mut carved, children.extent, &mut law);
@@ -167,7 +168,7 @@ impl Refinement {
             for _ in 0..if pass < FIRST_PASSES { 0 } else { AREA_PASSES } {
                 progress.check()?;
                 extent = extent.shrunk(1);
-                drainage::step(extent, &growth.receiver, &mut growth.area, &mut growth.spare);
+                drainage::step(extent, rain.as_deref(), &growth.receiver, &mut growth.area, &mut growth.spare);
             }
             extent = extent.shrunk(1);
             growth.pass(extent, &law, spacing, self, depth);
@@ -206,7 +207,7 @@ impl Refinement {
         for _ in 0..last_area_passes(finest) {
             progress.check()?;
             extent = extent.shrunk(1);
-            drainage::step(extent, &growth.receiver, &mut growth.area, &mut growth.spare);
+            drainage::step(extent, rain.as_deref(), &growth.receiver, &mut growth.area, &mut growth.spare);
         }
         for _ in 0..RAISE_PASSES {
             progress.check()?;

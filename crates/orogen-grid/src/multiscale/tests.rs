@@ -2,6 +2,7 @@
 
 mod details;
 mod lakes;
+mod rain;
 mod reach;
 
 use super::continents::Continents;

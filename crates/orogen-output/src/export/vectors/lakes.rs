@@ -44,8 +44,11 @@ fn make(ground: &FeatureSource, _: &FeatureOptions) -> Result<FeatureLayer> {
     }
     let mut outlets = vec![None; water.lakes.len() + 1];
     for (id, river) in (1..).zip(&ground.rivers) {
-        if let Source::Lake(lake) = river.source {
-            outlets[lake as usize] = Some(id);
+        // A lake that no sample shows has no number.
+        if let Source::Lake(lake) = river.source
+            && let Some(outlet) = outlets.get_mut(lake as usize)
+        {
+            *outlet = Some(id);
         }
     }
     let mut features = Vec::with_capacity(ground.lakes.len());
