@@ -196,6 +196,10 @@ fn make(program: &Path, case: &Case, seed: u64, file: &Path) -> Result {
     };
     let mut command = shell::program(program);
     command.args(["export", case.preset, "--quiet", "--seed", &seed.to_string()]);
+    // Models of real heights have the surface of lakes, not their beds.
+    if !matches!(case.land, Land::Type(..)) {
+        command.args(["--layer", "surface"]);
+    }
     match (window, &case.land) {
         (Some([x, y]), _) => command.args(["--cell", &CELL.to_string(), "--window", &format!("{x},{y},{SIDE},{SIDE}")]),
         (None, Land::Whole(cell) | Land::Type(_, cell)) => command.args(["--cell", &cell.to_string()]),

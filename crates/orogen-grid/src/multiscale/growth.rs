@@ -54,8 +54,16 @@ impl Growth {
         }
     }
 
-    /// One pass over the cells of `extent`, of level `depth`.
-    pub fn pass(&mut self, extent: Extent, law: &Law, spacing: Spacing<'_>, land: &Refinement, depth: usize) {
+    /// One pass over the cells of `extent`, of level `depth`. Heights stay at or above `least`, if it is not empty.
+    pub fn pass(
+        &mut self,
+        extent: Extent,
+        law: &Law,
+        spacing: Spacing<'_>,
+        least: &[f32],
+        land: &Refinement,
+        depth: usize,
+    ) {
         let cell = land.cell_of(depth);
         let square_kilometres = cell * cell * 1e-6;
         let scale = Scale {
@@ -63,7 +71,7 @@ impl Growth {
             least_rise: least_rise(land, depth),
             floor_area: (square_kilometres / FLOOR_AREA) as f32,
         };
-        dispatch(Pass { growth: self, extent, law, spacing, scale });
+        dispatch(Pass { growth: self, extent, law, spacing, least, scale });
         std::mem::swap(&mut self.height, &mut self.next_height);
         std::mem::swap(&mut self.floor, &mut self.next_floor);
     }
@@ -83,6 +91,7 @@ struct Pass<'a> {
     extent: Extent,
     law: &'a Law,
     spacing: Spacing<'a>,
+    least: &'a [f32],
     scale: Scale,
 }
 
@@ -91,7 +100,7 @@ impl Body for Pass<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, _: S) {
-        let Pass { growth, extent, law, spacing, scale } = self;
+        let Pass { growth, extent, law, spacing, least, scale } = self;
         let nothing: [&[f32]; 8] = [&[]; 8];
         let floors = !growth.floor.is_empty();
         let mut row = Row::default();
@@ -103,6 +112,7 @@ impl Body for Pass<'_> {
                 river: extent.row(&law.river, j),
                 stable: extent.row(&law.stable, j),
                 width: if floors { extent.row(&law.floor, j) } else { &[] },
+                least: if least.is_empty() { &[] } else { extent.row(least, j) },
             };
             let around = Around {
                 height: extent.around(&growth.height, j),

@@ -35,6 +35,8 @@ pub struct Own<'a> {
     pub stable: &'a [f32],
     /// Factor of the floor's width; empty without floors.
     pub width: &'a [f32],
+    /// The smallest height; empty without lakes.
+    pub least: &'a [f32],
 }
 
 /// What a row of cells reads of its neighbours.
@@ -100,6 +102,9 @@ pub fn grow<const FLOORS: bool, const REGULAR: bool>(
                 front(&law, heights, beside as f32, &mut lowest[..n], &mut best[..n], &mut floor[..n]);
             }
         }
+    }
+    for (lowest, least) in lowest[..n].iter_mut().zip(own.least) {
+        *lowest = if *least > *lowest { *least } else { *lowest };
     }
     finish(own.height, lowest, best, out, receiver);
     if FLOORS {

@@ -1,12 +1,16 @@
 //! Lakes with an outlet: on some levels parts of rivers become standing water, whose surface is as high as its outlet. Water in such a lake has receivers
 //! that lead to the outlet, so that the river runs on below it, and finer levels keep the lake.
 
+use super::carve::Carved;
 use super::children::Children;
+use super::drainage::{FREE, WATER};
 use super::gradient_noise::{noise, smooth_step};
 use super::hash;
 use super::level::{LAKE, Level};
 use super::refinement::Refinement;
+use super::stencil::Extent;
 use crate::hydrology::direction::{NONE, STEPS};
+use std::f32::consts::SQRT_2;
 
 /// The cells in km of the levels whose rivers become lakes.
 const CELLS: std::ops::RangeInclusive<f64> = 0.4..=5.0;
@@ -45,11 +49,24 @@ const BESIDE: f32 = 0.5;
 /// Irregularity of the shores of lakes, relative to that of coasts.
 pub const SHORE_IRREGULARITY: f32 = 0.55;
 
-/// Cells from a node of a lake to those whose distances to the shore it changes.
+/// Cells from a node of a lake to those whose distances to the shore it changes, and to the rivers that keep it away.
 const WIDEST: usize = 2;
+
+/// A lake is nearer to its own river than to a lower one by this factor of the distances, so that there is a ridge between them.
+const NEARER: f32 = 0.6;
 
 /// Cells that the lakes of a cell depend on: to a node of a lake, along the lake to its outlet, and down to the next one.
 pub const REACH: usize = WIDEST + 2 * MAX_LINKS + 1;
+
+/// Cells around a lake whose land is not much lower than the lake, so that it does not stand behind a wall.
+pub const RIM: usize = 3;
+
+/// Slope of this land away from the lake, and its height over the lake at the shore, in metres.
+const RIM_SLOPE: f32 = 0.2;
+const RIM_HEIGHT: f32 = 0.1;
+
+/// No smallest height.
+pub const ANYTHING: f32 = -1e30;
 
 /// Whether the code of a receiver is that of a lake with an outlet.
 #[inline(always)]
@@ -121,6 +138,7 @@ pub fn shape(parts: &[Part], level: &Level, children: &mut Children) {
         let (i, j) = (part.node % width, part.node / width);
         let from = [level.east[part.node], level.south[part.node]];
         let to = link(level, part.node).unwrap_or(from);
+        let lower = lower_rivers(level, part.node);
         let rows = 2 * j.saturating_sub(WIDEST)..(2 * (j + WIDEST + 1)).min(children.extent.height);
         for y in rows {
             for x in 2 * i.saturating_sub(WIDEST)..(2 * (i + WIDEST + 1)).min(children.extent.width) {
@@ -130,8 +148,10 @@ pub fn shape(parts: &[Part], level: &Level, children: &mut Children) {
                     0.5 * (x as f32 - 2.0 * i as f32 + share(&children.east)),
                     0.5 * (y as f32 - 2.0 * j as f32 + share(&children.south)),
                 ];
-                let over = distance(at, from, to) - part.half_width - BESIDE;
-                lowered[q] = lowered[q].min(over);
+                let own = distance(at, from, to);
+                let other = lower.iter().map(|[from, to]| distance(at, *from, *to)).fold(f32::INFINITY, f32::min);
+                let over = own - part.half_width.min(NEARER * other);
+                lowered[q] = lowered[q].min(over - BESIDE);
             }
         }
     }
@@ -146,6 +166,54 @@ fn link(level: &Level, q: usize) -> Option<[f32; 2]> {
     let to = neighbour(level, q, step)?;
     let is_same = is_lake(level.receiver[to]) && level.height[to] == level.height[q];
     is_same.then(|| [level.east[to] + step.0 as f32, level.south[to] + step.1 as f32])
+}
+
+/// The links of rivers near a lake's node that are lower than the lake: positions from the corner of the node's cell, in cells.
+fn lower_rivers(level: &Level, q: usize) -> Vec<[[f32; 2]; 2]> {
+    let reach = WIDEST as isize;
+    let around = (-reach..=reach).flat_map(|south| (-reach..=reach).map(move |east| (east, south)));
+    let mut found = Vec::new();
+    for (east, south) in around {
+        let Some(near) = neighbour(level, q, (east, south)) else { continue };
+        let is_lower = level.receiver[near] < NONE && level.height[near] < level.height[q];
+        let Some(to) = downstream(level, near).filter(|_| is_lower && level.area[near] > 1.5) else { continue };
+        let step = STEPS[usize::from(level.receiver[near])];
+        let place =
+            |node: usize, east: isize, south: isize| [level.east[node] + east as f32, level.south[node] + south as f32];
+        found.push([place(near, east, south), place(to, east + step.0, south + step.1)]);
+    }
+    found
+}
+
+/// The smallest heights of land around lakes with an outlet, [`RIM`] cells away from the edge; elsewhere [`ANYTHING`]. Nothing if there is no lake.
+pub fn rims(land: &Refinement, depth: usize, extent: Extent, carved: &Carved) -> Vec<f32> {
+    let is_lake = |q: usize| carved.fixed[q] == WATER && carved.receiver[q] < WATER;
+    if land.lakes == 0.0 || !(0..extent.len()).any(is_lake) {
+        return Vec::new();
+    }
+    let fall = RIM_SLOPE * land.cell_of(depth) as f32;
+    let mut least: Vec<f32> =
+        (0..extent.len()).map(|q| if is_lake(q) { carved.height[q] + RIM_HEIGHT + fall } else { ANYTHING }).collect();
+    let mut next = least.clone();
+    let mut inner = extent;
+    for _ in 0..RIM {
+        inner = inner.shrunk(1);
+        for j in inner.rows() {
+            let around = inner.around(&least, j);
+            for (k, out) in inner.row_mut(&mut next, j).iter_mut().enumerate() {
+                for (code, there) in around.iter().enumerate() {
+                    let distance = if code & 1 == 1 { SQRT_2 } else { 1.0 };
+                    *out = out.max(there[k] - fall * distance);
+                }
+            }
+        }
+        least.copy_from_slice(&next);
+    }
+    // Rivers and water keep their heights.
+    for (least, fixed) in least.iter_mut().zip(&carved.fixed) {
+        *least = if *fixed == FREE { *least } else { ANYTHING };
+    }
+    least
 }
 
 /// The distance of a point from a line between two others.

@@ -69,6 +69,7 @@ impl Refinement {
         let growth = growth + last_area_passes(finest) + RAISE_PASSES + LIMIT_PASSES;
         let above = depth.saturating_sub(1);
         let growth = growth + if lakes::begin_at(self, above) { 2 * lakes::REACH } else { 0 };
+        let growth = growth + if self.lakes > 0.0 { lakes::RIM } else { 0 };
         if finest {
             growth + straighten::REACH + creep_passes(self.creep) + BANK_PASSES + 1
         } else if self.is_detail(depth) {
@@ -154,6 +155,10 @@ impl Refinement {
         } else {
             carved.free(FREE_AREA);
         }
+        let rims = lakes::rims(self, depth, extent, &carved);
+        if self.lakes > 0.0 {
+            extent = extent.shrunk(lakes::RIM);
+        }
         let spacing = match &carved.distances {
             Some(distances) => Spacing::Irregular(distances),
             None => Spacing::Regular,
@@ -171,7 +176,7 @@ impl Refinement {
                 drainage::step(extent, rain.as_deref(), &growth.receiver, &mut growth.area, &mut growth.spare);
             }
             extent = extent.shrunk(1);
-            growth.pass(extent, &law, spacing, self, depth);
+            growth.pass(extent, &law, spacing, &rims, self, depth);
             progress.step(1.0)?;
         }
         if finest {

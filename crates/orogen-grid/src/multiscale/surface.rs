@@ -132,6 +132,7 @@ impl Refinement {
             let surface = level.height[nearest_water.1];
             let bed = if water.weight > 0.0 { water.mean() } else { bottom(level, nearest_water.1) };
             let bed = bed.min(surface - MIN_DEPTH);
+            let bed = if is_lake(level.receiver[nearest_water.1]) { above_the_sea(bed, surface) } else { bed };
             let lake_depth = if surface > 0.0 { surface - bed } else { 0.0 };
             let receiver = level.receiver[nearest_water.1];
             return Point { height: bed, area, lake_depth, water_level: surface, receiver };
@@ -168,13 +169,20 @@ const BASIN_LAKE: (f32, f32) = (8.0, 120.0);
 fn bottom(level: &Level, q: usize) -> f32 {
     let (height, distance) = (level.height[q], (-level.shore[q]).max(0.0));
     if height > 0.0 {
-        let (fall, most) = if is_lake(level.receiver[q]) { VALLEY_LAKE } else { BASIN_LAKE };
-        return height - (fall * distance).min(most);
+        if is_lake(level.receiver[q]) {
+            return above_the_sea(height - (VALLEY_LAKE.0 * distance).min(VALLEY_LAKE.1), height);
+        }
+        return height - (BASIN_LAKE.0 * distance).min(BASIN_LAKE.1);
     }
     let t = ((distance - 80.0) / 200.0).clamp(0.0, 1.0);
     let shelf = 1.8 * distance.min(80.0);
     let rise = ((distance - 280.0).max(0.0) * 1.5).min(1400.0);
     -(shelf + 3400.0 * t * t * (3.0 - 2.0 * t) + rise)
+}
+
+/// The bed of a lake with this surface that is not below the sea: a recipe's sea is where the ground is at or below sea level.
+fn above_the_sea(bed: f32, surface: f32) -> f32 {
+    bed.max(0.5 * surface.min(1.0))
 }
 
 /// Weighted sums for the plane that fits values best.
