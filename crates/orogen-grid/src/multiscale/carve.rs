@@ -93,13 +93,18 @@ impl Carved {
         let entry = Child { parent: target, corner: link.entry };
         let end = Child { parent: target, corner: heir(parent, target) };
         let length = |from, to| if from == to { 0.0 } else { children.distance(from, to, parents) };
-        let first = length(start, exit);
+        // Water of lakes with an outlet does not fall: from a lake only beyond the exit, to a lake only up to the entry.
+        let (from_lake, to_lake) = (is_lake(parent.receiver[q]), is_lake(parent.receiver[target]));
+        let first = if from_lake { 0.0 } else { length(start, exit) };
         let via = links.via(parent, q);
         let second = match via {
+            Some(via) if from_lake => length(via, entry),
             Some(via) => length(exit, via) + length(via, entry),
             None => length(exit, entry),
         };
-        let whole = (first + second + length(entry, end)).max(0.01);
+        let is_reached = to_lake && self.fixed[entry.index(parents)] == WATER;
+        let third = if is_reached { 0.0 } else { length(entry, end) };
+        let whole = (first + second + third).max(0.01);
         let (to_exit, to_entry) = (first / whole, (first + second) / whole);
         let (top, fall) = (parent.height[q], parent.height[target] - parent.height[q]);
         // The area grows by one cell at each step, so that it is never less than what flows in.

@@ -37,8 +37,12 @@ const MAX_LINKS: usize = 3;
 /// Drainage area of a river in the lake, relative to that of the outlet, at least.
 const MAIN_SHARE: f32 = 0.35;
 
-/// Slope of the river before it became a lake, at most.
+/// Slope of the river before it became a lake, and below its outlet, at most.
 const MAX_SLOPE: f64 = 0.03;
+
+/// Fall from a lake to the river below: the smallest in metres, if the river fell by as much, and as a share of the river's fall. What is left of the fall is
+/// above the lake. Water reaches the end of the link on finer levels, so the fall becomes a step.
+const OUTLET_FALL: (f32, f32) = (1.0, 0.1);
 
 /// Half of the width of a new lake around its river, at least and at most, in cells.
 const HALF_WIDTH: [f32; 2] = [0.3, 0.75];
@@ -100,18 +104,25 @@ pub struct Part {
 /// Turns nodes of rivers into lakes. Nodes [`REACH`] away from the edge are exact.
 pub fn begin(land: &Refinement, level: &mut Level) -> Vec<Part> {
     let found = Outlets::new(land, level);
-    let highest_rise = (MAX_SLOPE * land.cell_of(level.depth)) as f32;
+    let steepest = (MAX_SLOPE * land.cell_of(level.depth)) as f32;
     let outlets: Vec<usize> = found.candidates.iter().copied().filter(|&q| found.is_last(level, q)).collect();
     let mut parts = Vec::new();
     for outlet in outlets {
+        let Some(below) = downstream(level, outlet) else { continue };
         let (top, least_area) = (level.height[outlet], MAIN_SHARE * level.area[outlet]);
+        let fall = top - level.height[below];
+        let further = downstream(level, below).map_or(0.0, |next| level.height[below] - level.height[next]);
+        if fall.max(further) > steepest {
+            continue;
+        }
+        let surface = level.height[below] + fall.min(OUTLET_FALL.0.max(OUTLET_FALL.1 * fall));
         let bits = found.bits(land, level, outlet);
         let links = (hash::unit(bits << 24) * (MAX_LINKS + 1) as f32) as usize;
         let half_width = HALF_WIDTH[0] + (HALF_WIDTH[1] - HALF_WIDTH[0]) * hash::unit16(bits, 0);
         let (mut lake, mut from) = (vec![outlet], 0);
         for link in 1..=links {
             let until = lake.len();
-            let highest = top + link as f32 * highest_rise;
+            let highest = top + link as f32 * steepest;
             for at in from..until {
                 let near = donors(level, lake[at]);
                 lake.extend(near.filter(|&q| level.area[q] >= least_area && level.height[q] <= highest));
@@ -119,7 +130,7 @@ pub fn begin(land: &Refinement, level: &mut Level) -> Vec<Part> {
             from = until;
         }
         for node in lake {
-            level.height[node] = top;
+            level.height[node] = surface;
             level.receiver[node] += LAKE;
             parts.push(Part { node, half_width });
         }
