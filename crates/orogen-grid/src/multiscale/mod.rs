@@ -25,6 +25,7 @@ mod gradient_noise;
 mod growth;
 mod growth_row;
 mod hash;
+mod lake_shores;
 mod lakes;
 mod law;
 pub mod level;

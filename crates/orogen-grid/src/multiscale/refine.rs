@@ -8,6 +8,7 @@ use super::detail;
 use super::drainage::{self, WATER};
 use super::given::{self, Given};
 use super::growth::{Growth, Spacing, least_rise};
+use super::lake_shores;
 use super::lakes;
 use super::law::{Law, has_floors};
 use super::level::{LAKE, Level, cropped, invalid};
@@ -69,7 +70,7 @@ impl Refinement {
         let growth = growth + last_area_passes(finest) + RAISE_PASSES + LIMIT_PASSES;
         let above = depth.saturating_sub(1);
         let growth = growth + if lakes::begin_at(self, above) { 2 * lakes::REACH } else { 0 };
-        let growth = growth + if self.lakes > 0.0 { lakes::RIM } else { 0 };
+        let growth = growth + if self.lakes > 0.0 { lake_shores::RIM } else { 0 };
         if finest {
             growth + straighten::REACH + creep_passes(self.creep) + BANK_PASSES + 1
         } else if self.is_detail(depth) {
@@ -130,7 +131,7 @@ impl Refinement {
         let growing = (FIRST_PASSES + ROUNDS) as f64 + if finest { FINEST_WORK } else { 0.0 };
         progress.expect(CARVING_WORK.iter().sum::<f64>() + growing);
         let mut children = Children::new(self, parent, given, progress)?;
-        lakes::shape(&new_lakes, parent, &mut children);
+        lake_shores::shape(&new_lakes, parent, &mut children);
         progress.step(CARVING_WORK[0])?;
         let links = Links::new(self, parent, &children, progress)?;
         progress.step(CARVING_WORK[1])?;
@@ -155,9 +156,9 @@ impl Refinement {
         } else {
             carved.free(FREE_AREA);
         }
-        let rims = lakes::rims(self, depth, extent, &carved);
+        let rims = lake_shores::rims(self, depth, extent, &carved);
         if self.lakes > 0.0 {
-            extent = extent.shrunk(lakes::RIM);
+            extent = extent.shrunk(lake_shores::RIM);
         }
         let spacing = match &carved.distances {
             Some(distances) => Spacing::Irregular(distances),
