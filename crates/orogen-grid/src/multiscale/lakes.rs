@@ -77,10 +77,11 @@ pub struct Part {
 pub fn begin(land: &Refinement, level: &mut Level) -> Vec<Part> {
     let found = Outlets::new(land, level);
     let steepest = (MAX_SLOPE * land.cell_of(level.depth)) as f32;
-    let outlets: Vec<usize> = found.candidates.iter().copied().filter(|&q| found.is_last(level, q)).collect();
+    // No lake depends on what another one does.
+    let (heights, receivers) = (level.height.clone(), level.receiver.clone());
+    let suits = |q: usize| found.is_last(level, q) && is_dry(level, &receivers, q);
+    let outlets: Vec<usize> = found.candidates.iter().copied().filter(|&q| suits(q)).collect();
     let mut parts = Vec::new();
-    // No lake depends on what another one does to the heights.
-    let heights = level.height.clone();
     for outlet in outlets {
         let Some(below) = downstream(level, outlet) else { continue };
         let (top, least_area) = (heights[outlet], MAIN_SHARE * level.area[outlet]);
@@ -98,8 +99,8 @@ pub fn begin(land: &Refinement, level: &mut Level) -> Vec<Part> {
             let until = lake.len();
             let highest = top + link as f32 * steepest;
             for at in from..until {
-                let near = donors(level, lake[at]);
-                lake.extend(near.filter(|&q| level.area[q] >= least_area && heights[q] <= highest));
+                let near = donors(level, lake[at]).filter(|&q| level.area[q] >= least_area && heights[q] <= highest);
+                lake.extend(near.filter(|&q| is_dry(level, &receivers, q)));
             }
             from = until;
         }
@@ -110,6 +111,11 @@ pub fn begin(land: &Refinement, level: &mut Level) -> Vec<Part> {
         }
     }
     parts
+}
+
+/// Whether no node around a node is water.
+fn is_dry(level: &Level, receivers: &[u8], q: usize) -> bool {
+    STEPS.into_iter().all(|step| neighbour(level, q, step).is_none_or(|near| receivers[near] < NONE))
 }
 
 /// Nodes of rivers that may become the outlets of lakes.
@@ -139,19 +145,16 @@ impl Outlets {
         hash::node(land.seed, level.depth, x, y, 13)
     }
 
-    /// Whether no other candidate is so near downstream that its lake may reach this one, and the river runs on over land.
+    /// Whether neither standing water nor another candidate, whose lake may reach this one, is near downstream.
     fn is_last(&self, level: &Level, q: usize) -> bool {
         let mut at = q;
-        for link in 0..=MAX_LINKS {
-            at = match downstream(level, at) {
-                Some(next) if level.receiver[next] < NONE => next,
-                _ => return link > 0,
-            };
-            if self.is_candidate[at] {
-                return false;
+        (0..=MAX_LINKS).all(|_| match downstream(level, at) {
+            Some(next) if level.receiver[next] < NONE && !self.is_candidate[next] => {
+                at = next;
+                true
             }
-        }
-        true
+            _ => false,
+        })
     }
 }
 

@@ -70,7 +70,7 @@ impl Refinement {
         let growth = growth + last_area_passes(finest) + RAISE_PASSES + LIMIT_PASSES;
         let above = depth.saturating_sub(1);
         let growth = growth + if lakes::begin_at(self, above) { 2 * lakes::REACH } else { 0 };
-        let growth = growth + if self.lakes > 0.0 { lake_shores::RIM } else { 0 };
+        let growth = growth + if self.lakes > 0.0 { lake_shores::RIM + 1 } else { 0 };
         if finest {
             growth + straighten::REACH + creep_passes(self.creep) + BANK_PASSES + 1
         } else if self.is_detail(depth) {
@@ -155,6 +155,10 @@ impl Refinement {
             detail::free_rivers(self, depth, &mut carved, children.extent, &mut law);
         } else {
             carved.free(FREE_AREA);
+        }
+        if self.lakes > 0.0 {
+            // Water that keeps apart depends on one more cell.
+            extent = extent.shrunk(1);
         }
         let rims = lake_shores::rims(self, depth, extent, &carved);
         if self.lakes > 0.0 {

@@ -4,7 +4,8 @@ use super::children::{Children, heir};
 use super::lakes::{drains, is_lake};
 use super::level::Level;
 use super::links::{Child, Links};
-use crate::hydrology::direction::NONE;
+use super::stencil::Extent;
+use crate::hydrology::direction::{NONE, STEPS};
 
 /// What links say about a child.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,6 +47,7 @@ pub fn standing_water(parent: &Level, links: &Links, children: &mut Children) ->
             }
         }
     }
+    dry_between(parent, &held, children.extent.shrunk(1), &mut levels);
     // Water spreads by one cell into low land.
     let mut gained = Vec::new();
     let inner = children.extent.shrunk(1);
@@ -54,6 +56,10 @@ pub fn standing_water(parent: &Level, links: &Links, children: &mut Children) ->
             let (q, p) = (j * width + i, j / 2 * parents + i / 2);
             if parent.receiver[p] < NONE && held[q] == Held::Free && children.shore[q] < 0.0 {
                 let around = [q - 1, q + 1, q - width, q + width];
+                let wet = around.into_iter().filter(|&beside| levels[beside] < LAND);
+                if wet.clone().any(|one| wet.clone().any(|other| levels[one] != levels[other])) {
+                    continue;
+                }
                 gained.extend(around.into_iter().find(|&beside| levels[beside] < LAND).map(|beside| (q, beside)));
             }
         }
@@ -70,6 +76,29 @@ pub fn standing_water(parent: &Level, links: &Links, children: &mut Children) ->
         };
     }
     Water { levels, gained }
+}
+
+/// Lakes with an outlet stay apart from other water: where two levels meet, children that no link holds become land.
+fn dry_between(parent: &Level, held: &[Held], extent: Extent, levels: &mut [f32]) {
+    if !parent.receiver.iter().any(|code| is_lake(*code)) {
+        return;
+    }
+    let (width, parents) = (extent.width, extent.width / 2);
+    let in_lake = |q: usize| {
+        let p = q / width / 2 * parents + q % width / 2;
+        matches!(held[q], Held::Lake(_)) || is_lake(parent.receiver[p])
+    };
+    let mut dry = Vec::new();
+    for j in extent.rows() {
+        for q in extent.columns().map(|i| j * width + i).filter(|q| levels[*q] < LAND && held[*q] == Held::Free) {
+            let around = STEPS.map(|(east, south)| q.wrapping_add_signed(south * width as isize + east));
+            let meets = |o: usize| levels[o] < LAND && levels[o] != levels[q] && (in_lake(q) || in_lake(o));
+            if around.into_iter().any(meets) {
+                dry.push(q);
+            }
+        }
+    }
+    dry.into_iter().for_each(|q| levels[q] = LAND);
 }
 
 /// What the kept links say about each child.
