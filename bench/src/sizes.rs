@@ -1,4 +1,4 @@
-//! Part of area `erosion`: the preset `himalaya` in worlds of several sizes, from the recipe to its heights. CPU time of
+//! Part of area `erosion`: the preset `volcano` in worlds of several sizes, from the recipe to its heights. CPU time of
 //! one thread.
 
 use cpu_time::ProcessTime;
@@ -14,7 +14,7 @@ const SIDES: [usize; 4] = [512, 1024, 2048, 4096];
 /// Maximum ratio of the cost of a cell between the most and the least expensive world.
 const SPREAD: f64 = 1.2;
 
-const NAME: &str = "himalaya by world size";
+const NAME: &str = "volcano by world size";
 
 /// The cost of a cell in each world, and the ratio of maximum to minimum.
 pub fn figures(options: &Options) -> Result<Vec<Figure>, String> {
@@ -49,7 +49,7 @@ pub fn figures(options: &Options) -> Result<Vec<Figure>, String> {
 
 /// Nanoseconds per cell of a world with this many cells per side.
 fn cost(side: usize) -> Result<f64, String> {
-    let recipe = presets::find("himalaya").ok_or("there is no preset `himalaya`")?.recipe();
+    let recipe = presets::find("volcano").ok_or("there is no preset `volcano`")?.recipe();
     let mut recipe = recipe.map_err(|e| e.to_string())?;
     let length = side as f64 * recipe.world.cell;
     recipe.world.size = Some([length; 2]);
