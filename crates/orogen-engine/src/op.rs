@@ -336,11 +336,12 @@ pub trait Levelled: Declared + Send + Sync {
         context: &Context,
     ) -> Result<Vec<Grid>>;
 
-    /// Number of samples of a level that [`Levelled::layers_of`] reads beyond the window.
-    fn surface_halo(&self, level: usize) -> usize;
+    /// Number of samples of a level that [`Levelled::layers_of`] reads beyond the window. `wanted` says of each declared layer whether it is
+    /// requested.
+    fn surface_halo(&self, level: usize, wanted: &[bool]) -> usize;
 
-    /// Computes layers over `window` from the planes of `level` over `window.grown(surface_halo(level))`. `out` is that of
-    /// [`Filter::apply`].
+    /// Computes layers over `window` from the planes of `level` over `window` grown by the [halo of the wanted layers](Levelled::surface_halo). `out` is
+    /// that of [`Filter::apply`].
     ///
     /// # Errors
     /// If the work was cancelled.

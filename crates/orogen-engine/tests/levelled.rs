@@ -170,3 +170,50 @@ receiver = "land.receiver"
         assert!(grids[0].data().iter().all(|height| height.is_finite()));
     }
 }
+
+#[test]
+fn floods_and_sediment_are_along_rivers_and_not_in_standing_water() {
+    let text = r#"
+orogen = 1
+world = { seed = 3, cell = 60.0 }
+[nodes.land]
+op = "continents"
+details = 3
+[outputs]
+height = "land"
+flow = "land.flow"
+surface = "land.surface"
+depth = "land.depth"
+floodplain = "land.floodplain"
+sediment = "land.sediment"
+"#;
+    let world = World::open(Recipe::parse(text, "floods").unwrap()).unwrap();
+    let names = ["height", "flow", "surface", "depth", "floodplain", "sediment"];
+    // At the sea, at a coarse cell, at that of valleys and at a fine one.
+    for (cell, x, y) in [(960.0, -400, -300), (60.0, 10, -40), (7.5, 80, -320)] {
+        let window = Window::new(300, 300, cell).at(x, y);
+        let grids = world.grids(&names, &window, &Progress::none()).unwrap();
+        let [height, flow, surface, depth, flood, sediment] = [0, 1, 2, 3, 4, 5].map(|k| grids[k].data());
+        let (mut flooded, mut water) = (0, 0);
+        for q in 0..window.len() {
+            assert!(
+                flood[q] >= 4.0 * depth[q] * 0.999 && flood[q] < 80.0,
+                "{} m of flood at {} m",
+                flood[q],
+                height[q]
+            );
+            assert!((0.0..100.0).contains(&sediment[q]), "{} m of sediment", sediment[q]);
+            flooded += usize::from(flood[q] > 0.0 && flow[q] < 1e6);
+            if surface[q] > height[q] || height[q] < 0.0 {
+                water += 1;
+                assert_eq!([flood[q], sediment[q]], [0.0; 2], "floods or sediment in water at {cell} m");
+            }
+        }
+        assert!(flooded > 0 || cell > 60.0, "{flooded} samples beside rivers are flooded, {water} are water");
+        // A window by itself.
+        let part = Window::new(70, 50, cell).at(x + 111, y + 90);
+        for (whole, part) in grids.iter().zip(world.grids(&names, &part, &Progress::none()).unwrap()) {
+            assert!(whole.crop(part.window()).unwrap() == part, "a crop differs at {cell} m");
+        }
+    }
+}

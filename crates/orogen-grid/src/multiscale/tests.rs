@@ -1,6 +1,7 @@
 //! Properties of the levels as a whole: windows agree, water flows down.
 
 mod details;
+mod floors;
 mod reach;
 
 use super::continents::Continents;
