@@ -366,6 +366,12 @@ pub trait Levelled: Declared + Send + Sync {
         1000.0
     }
 
+    /// Whether the result depends on the world's sea level. An op that returns false must not read it, because the
+    /// content key would be wrong.
+    fn reads_sea_level(&self) -> bool {
+        false
+    }
+
     /// The samples of the level above that `level` over `window` is made from: from half the first, rounded down, to half the last,
     /// rounded up, and the halo around them.
     fn parent(&self, level: usize, window: &Window) -> Window {

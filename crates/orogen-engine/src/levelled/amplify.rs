@@ -17,7 +17,7 @@ op! {
     /// of about a kilometre, which takes a moment. Each finer level has half the cell. Rivers are led through it, branches grow up from them, and
     /// slopes follow the steady state of the stream power law, S = (U/K) A^-m, limited on hillslopes. A window of a level depends on the coarser
     /// level around it only, so any window is made by itself, and a larger cell shows the same land coarsely. Where the coarse land has no receiver,
-    /// in depressions and beyond its border, there is standing water. Ground below sea level is refined like land: there is no sea.
+    /// in depressions and beyond its border, there is standing water. Ground below sea level is refined like land, unless `sea` is set.
     ///
     /// Related: terrain amplification (Schott and others 2024), hydrology-based terrain (Génevaux and others 2013).
     pub struct Amplify = "amplify", levelled, revision 2;
@@ -60,6 +60,8 @@ op! {
         /// Number of further halvings, below `cell`. Their slopes are those of the finest valleys, with gullies on them, rough rock where they are steep,
         /// and beds and banks of rivers that are wider than a sample. Finer samples are interpolated.
         details: u32 = 0, range 0 to 10;
+        /// Whether there is a sea where the source is at or below the world's sea level. It is as deep as the source, up to 4944 m, and rivers end at its shore.
+        sea: bool = false;
     }
     layers {
         /// Height of the ground, and of the beds of lakes and the sea.
@@ -98,6 +100,7 @@ impl Amplify {
             .with_variation(self.variation)
             .with_jitter(self.jitter)
             .with_details(self.details as usize)
+            .with_sea(self.sea)
     }
 
     fn seeded(&self, context: &Context) -> Refinement {
@@ -153,7 +156,11 @@ impl Levelled for Amplify {
             return Err(Error::new(ErrorKind::Internal, "an input of `amplify` is missing"));
         };
         let coarse = Coarse { height, flow, receiver };
-        Ok(self.seeded(context).coarsest_of(&coarse, &given(inputs), window, context.progress)?.into_planes())
+        let mut level = self.seeded(context).coarsest_of(&coarse, &given(inputs), window, context.progress)?;
+        if self.sea {
+            level.drown(height, context.world_params.sea_level as f32);
+        }
+        Ok(level.into_planes())
     }
 
     fn refine(
@@ -186,8 +193,14 @@ impl Levelled for Amplify {
     ) -> Result<()> {
         // The samples of level 0 are those of the source, in the middles of its cells; those of finer levels are at the corners of theirs.
         let share = if level == 0 { 0.5 } else { 0.0 };
-        let reading = Reading { share, stream: self.stream, runoff: self.runoff };
+        // Levels with a sea have it at 0.
+        let sea_level = if self.sea { context.world_params.sea_level as f32 } else { 0.0 };
+        let reading = Reading { share, stream: self.stream, runoff: self.runoff, sea_level };
         drained::layers_of(&self.seeded(context), &reading, level, planes, window, out, context)
+    }
+
+    fn reads_sea_level(&self) -> bool {
+        self.sea
     }
 
     fn cost(&self, level: usize) -> f64 {

@@ -191,7 +191,7 @@ impl Levelled for Continents {
         out: &mut [Option<Grid>],
         context: &Context,
     ) -> Result<()> {
-        let reading = Reading { share: 0.0, stream: self.stream, runoff: self.runoff };
+        let reading = Reading { share: 0.0, stream: self.stream, runoff: self.runoff, sea_level: 0.0 };
         drained::layers_of(&self.refinement(), &reading, level, planes, window, out, context)
     }
 

@@ -97,6 +97,8 @@ pub struct Reading {
     pub stream: f64,
     /// Runoff in metres per year.
     pub runoff: f64,
+    /// Height of the sea, above which the heights of the levels are.
+    pub sea_level: f32,
 }
 
 /// The layers height, flow, lake, surface, receiver, width, depth, floodplain and sediment, and those of the nodes, if the op has them: height, flow, receiver, east and south.
@@ -136,6 +138,11 @@ pub fn layers_of(
         *surface = made.height.clone();
         for (surface, water) in surface.data_mut().iter_mut().zip(made.water_level.data()) {
             *surface = if water.is_nan() { *surface } else { *water };
+        }
+    }
+    if reading.sea_level != 0.0 {
+        for grid in [Some(&mut made.height), surface.as_mut()].into_iter().flatten() {
+            grid.data_mut().iter_mut().for_each(|height| *height += reading.sea_level);
         }
     }
     if let Some(receiver) = receiver {

@@ -20,6 +20,7 @@ mod creep;
 mod detail;
 mod distances;
 mod drainage;
+mod drowned;
 mod floods;
 mod geography;
 pub mod given;

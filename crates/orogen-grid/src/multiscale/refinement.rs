@@ -29,16 +29,29 @@ pub struct Refinement {
     pub jitter: f64,
     /// Number of further halvings, below `cell`: detail levels, with the slopes of the finest level of valleys, gullies, and beds and banks of rivers.
     pub details: usize,
+    /// Whether given land has a [sea](super::level::Level::drown), whose depth tells how far the shore is: near steep coasts that distance changes by more than a
+    /// kilometre along a kilometre.
+    pub sea: bool,
 }
 
 impl Default for Refinement {
     fn default() -> Refinement {
-        Refinement { seed: 0, cell: 60.0, levels: 11, relief: 1.0, creep: 1.0, variation: 1.0, jitter: 1.0, details: 0 }
+        Refinement {
+            seed: 0,
+            cell: 60.0,
+            levels: 11,
+            relief: 1.0,
+            creep: 1.0,
+            variation: 1.0,
+            jitter: 1.0,
+            details: 0,
+            sea: false,
+        }
     }
 }
 
 orogen_noise::builder!(Refinement: with_seed(seed: u64), with_cell(cell: f64), with_levels(levels: usize), with_relief(relief: f64),
-    with_creep(creep: f64), with_variation(variation: f64), with_jitter(jitter: f64), with_details(details: usize));
+    with_creep(creep: f64), with_variation(variation: f64), with_jitter(jitter: f64), with_details(details: usize), with_sea(sea: bool));
 
 /// The largest number of halvings.
 pub const MAX_LEVELS: usize = 24;
