@@ -336,11 +336,12 @@ pub trait Levelled: Declared + Send + Sync {
         context: &Context,
     ) -> Result<Vec<Grid>>;
 
-    /// Number of samples of a level that [`Levelled::layers_of`] reads beyond the window.
-    fn surface_halo(&self, level: usize) -> usize;
+    /// Number of samples of a level that [`Levelled::layers_of`] reads beyond the window. `wanted` says of each declared layer whether it is
+    /// requested.
+    fn surface_halo(&self, level: usize, wanted: &[bool]) -> usize;
 
-    /// Computes layers over `window` from the planes of `level` over `window.grown(surface_halo(level))`. `out` is that of
-    /// [`Filter::apply`].
+    /// Computes layers over `window` from the planes of `level` over `window` grown by the [halo of the wanted layers](Levelled::surface_halo). `out` is
+    /// that of [`Filter::apply`].
     ///
     /// # Errors
     /// If the work was cancelled.
@@ -363,6 +364,12 @@ pub trait Levelled: Declared + Send + Sync {
     fn cost(&self, level: usize) -> f64 {
         let _ = level;
         1000.0
+    }
+
+    /// Whether the result depends on the world's sea level. An op that returns false must not read it, because the
+    /// content key would be wrong.
+    fn reads_sea_level(&self) -> bool {
+        false
     }
 
     /// The samples of the level above that `level` over `window` is made from: from half the first, rounded down, to half the last,

@@ -170,3 +170,166 @@ receiver = "land.receiver"
         assert!(grids[0].data().iter().all(|height| height.is_finite()));
     }
 }
+
+#[test]
+fn floods_and_sediment_are_along_rivers_and_not_in_standing_water() {
+    let text = r#"
+orogen = 1
+world = { seed = 3, cell = 60.0 }
+[nodes.land]
+op = "continents"
+details = 3
+[outputs]
+height = "land"
+flow = "land.flow"
+surface = "land.surface"
+depth = "land.depth"
+floodplain = "land.floodplain"
+sediment = "land.sediment"
+"#;
+    let world = World::open(Recipe::parse(text, "floods").unwrap()).unwrap();
+    let names = ["height", "flow", "surface", "depth", "floodplain", "sediment"];
+    // At the sea, at a coarse cell, at that of valleys and at a fine one.
+    for (cell, x, y) in [(960.0, -400, -300), (60.0, 10, -40), (7.5, 80, -320)] {
+        let window = Window::new(300, 300, cell).at(x, y);
+        let grids = world.grids(&names, &window, &Progress::none()).unwrap();
+        let [height, flow, surface, depth, flood, sediment] = [0, 1, 2, 3, 4, 5].map(|k| grids[k].data());
+        let (mut flooded, mut water) = (0, 0);
+        for q in 0..window.len() {
+            assert!(
+                flood[q] >= 4.0 * depth[q] * 0.999 && flood[q] < 80.0,
+                "{} m of flood at {} m",
+                flood[q],
+                height[q]
+            );
+            assert!((0.0..100.0).contains(&sediment[q]), "{} m of sediment", sediment[q]);
+            flooded += usize::from(flood[q] > 0.0 && flow[q] < 1e6);
+            if surface[q] > height[q] || height[q] < 0.0 {
+                water += 1;
+                assert_eq!([flood[q], sediment[q]], [0.0; 2], "floods or sediment in water at {cell} m");
+            }
+        }
+        assert!(flooded > 0 || cell > 60.0, "{flooded} samples beside rivers are flooded, {water} are water");
+        // A window by itself.
+        let part = Window::new(70, 50, cell).at(x + 111, y + 90);
+        for (whole, part) in grids.iter().zip(world.grids(&names, &part, &Progress::none()).unwrap()) {
+            assert!(whole.crop(part.window()).unwrap() == part, "a crop differs at {cell} m");
+        }
+    }
+}
+
+/// An island by `stream-power` at 480 m, refined to 60 m with a sea, at a sea level of 120 m.
+fn island(details: u32) -> World {
+    let text = format!(
+        r#"
+orogen = 1
+world = {{ seed = 5, size = 61440.0, cell = 60.0, sea_level = 120.0 }}
+[nodes.dome]
+op = "radial"
+center = [30720.0, 30720.0]
+radius = 30000.0
+[nodes.ragged]
+op = "fbm"
+wavelength = 24000.0
+octaves = 7
+[nodes.lift]
+op = "expr"
+expr = "clamp(dome * 1.6 - 0.5 + 0.5 * ragged, 0.02, 1)"
+[nodes.start]
+op = "expr"
+expr = "900 * dome - 250 + 300 * ragged"
+[nodes.ranges]
+op = "stream-power"
+source = "start"
+uplift_factor = "lift"
+cell = 480.0
+years = 4e6
+steps = 60
+erodibility = 6e-6
+uplift = 0.7
+talus_angle = 45.0
+jitter = 0.0
+[nodes.terrain]
+op = "amplify"
+source = "ranges"
+flow = "ranges.flow"
+uplift = "lift"
+cell = 60.0
+halvings = 3
+details = {details}
+sea = true
+[outputs]
+height = "terrain"
+surface = "terrain.surface"
+receiver = "terrain.receiver"
+lake = "terrain.lake"
+flow = "terrain.flow"
+ranges = "ranges"
+"#
+    );
+    World::open(Recipe::parse(&text, "island").unwrap()).unwrap()
+}
+
+#[test]
+fn rivers_of_amplified_land_end_at_the_shore_of_its_sea() {
+    const SIDE: usize = 1000;
+    let window = Window::new(SIDE, SIDE, 60.0).at(12, 12);
+    let names = ["height", "surface", "receiver", "lake", "ranges"];
+    let grids = island(0).grids(&names, &window, &Progress::none()).unwrap();
+    let [height, surface, receiver, lake, ranges] = [0, 1, 2, 3, 4].map(|k| grids[k].data());
+    let is_water = |q: usize| surface[q] > height[q];
+    let (mut land, mut sea) = (0, 0);
+    for q in 0..window.len() {
+        if is_water(q) {
+            assert_eq!(receiver[q], 8.0);
+            sea += usize::from(lake[q] == 0.0);
+            assert!(lake[q] > 0.0 || surface[q] == 120.0, "a sea at {} m", surface[q]);
+            continue;
+        }
+        land += 1;
+        assert!(height[q] >= 120.0, "land at {} m", height[q]);
+        let (mut at, mut links) = (q, 0);
+        while !is_water(at) {
+            let code = receiver[at] as usize;
+            assert!(code < 8 && links < 20_000, "a pit at {} m", height[at]);
+            let (x, y) = ((at % SIDE) as i64, (at / SIDE) as i64);
+            let [east, south] = [[1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1], [0, -1], [1, -1]][code];
+            let (x, y) = (x + east, y + south);
+            if !(0..SIDE as i64).contains(&x) || !(0..SIDE as i64).contains(&y) {
+                break;
+            }
+            (at, links) = (y as usize * SIDE + x as usize, links + 1);
+        }
+    }
+    assert!(land > 200_000 && sea > 200_000, "{land} samples of land, {sea} of sea");
+
+    // The shore is that of the source within a coarse cell, and the sea is as deep.
+    let (mut far, mut deep, mut error) = (0, 0.0f64, 0.0f64);
+    for j in (8..SIDE - 8).step_by(3) {
+        for i in (8..SIDE - 8).step_by(3) {
+            let q = j * SIDE + i;
+            let sea = is_water(q) && lake[q] == 0.0;
+            let mut around = (j - 8..=j + 8).flat_map(|j| (i - 8..=i + 8).map(move |i| j * SIDE + i));
+            far += usize::from(!around.any(|q| (ranges[q] <= 120.0) == sea));
+            if ranges[q] < 80.0 {
+                deep += 1.0;
+                error += f64::from(height[q] - ranges[q]).abs() / f64::from(120.0 - ranges[q]);
+            }
+        }
+    }
+    assert!(far < 100, "{far} samples are further than a cell of the source from its shore");
+    assert!(error < 0.1 * deep, "the sea differs by {} of its depth", error / deep);
+}
+
+#[test]
+fn windows_of_amplified_land_with_a_sea_are_crops_of_larger_ones() {
+    let names = ["height", "surface", "flow", "receiver"];
+    for (cell, x, y) in [(240.0, 15, 20), (60.0, 100, 300), (15.0, 600, 1500)] {
+        let whole = Window::new(220, 230, cell).at(x, y);
+        let part = Window::new(80, 60, cell).at(x + 91, y + 120);
+        let [whole, part] = [whole, part].map(|window| island(2).grids(&names, &window, &Progress::none()).unwrap());
+        for (whole, part) in whole.iter().zip(&part) {
+            assert!(whole.crop(part.window()).as_ref() == Some(part), "a crop differs at {cell} m");
+        }
+    }
+}

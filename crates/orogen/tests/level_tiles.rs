@@ -106,7 +106,7 @@ impl Levelled for Sums {
         }))
     }
 
-    fn surface_halo(&self, _: usize) -> usize {
+    fn surface_halo(&self, _: usize, _: &[bool]) -> usize {
         1
     }
 

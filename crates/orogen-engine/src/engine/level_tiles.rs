@@ -36,7 +36,8 @@ impl Engine<'_> {
     ) -> Result<Planes> {
         let Refining { op, .. } = *refining;
         let (last, level) = (*direct.start(), *direct.end());
-        let firsts = pieces.iter().filter_map(|piece| levels::windows(op, last, level, piece).first().copied());
+        let firsts =
+            pieces.iter().filter_map(|piece| levels::windows(op, refining.wanted, last, level, piece).first().copied());
         let first: BTreeSet<At> = firsts.flat_map(|window| levels::tiles(last, &window)).collect();
         let mut tiles = Vec::new();
         let claims = loop {

@@ -27,7 +27,7 @@ pub(super) struct Refining<'a> {
     /// Its inputs at each level from the coarsest; empty if it has none.
     inputs: Vec<Vec<Option<&'a Grid>>>,
     /// Which layers are read.
-    wanted: &'a [bool],
+    pub wanted: &'a [bool],
     world_params: &'a WorldParams,
     pub progress: &'a Progress,
 }
@@ -67,7 +67,7 @@ impl Engine<'_> {
             return Ok(layers);
         }
         let pieces = serving.pieces(self.pool.threads());
-        let tiled = levels::tiled(refining.op, serving);
+        let tiled = levels::tiled(refining.op, refining.wanted, serving);
         let tiles = self.level_tiles(refining, tiled..=level, &pieces)?;
         let make = |piece: &Window| refining.piece(tiled..=level, piece, &tiles);
         let made: Vec<Vec<Option<Grid>>> = self.pool.install(|| pieces.par_iter().map(make).collect::<Result<_>>())?;
@@ -122,7 +122,7 @@ impl Refining<'_> {
 
     /// Approximate time for making a piece from tiles, in nanoseconds.
     pub fn work_of_piece(&self, direct: RangeInclusive<usize>, piece: &Window) -> f64 {
-        let windows = levels::windows(self.op, *direct.start(), *direct.end(), piece);
+        let windows = levels::windows(self.op, self.wanted, *direct.start(), *direct.end(), piece);
         let made = direct.zip(&windows).skip(1);
         made.map(|(level, window)| self.work(level, window)).sum::<f64>() + LAYER_COST * piece.len() as f64
     }
@@ -155,7 +155,7 @@ impl Refining<'_> {
     /// The layers of the last of the `direct` levels over a piece, from tiles of the first.
     fn piece(&self, direct: RangeInclusive<usize>, piece: &Window, tiles: &Planes) -> Result<Vec<Option<Grid>>> {
         let level = *direct.end();
-        let windows = levels::windows(self.op, *direct.start(), level, piece);
+        let windows = levels::windows(self.op, self.wanted, *direct.start(), level, piece);
         let mut planes = match windows.first() {
             Some(first) => self.mosaic(*direct.start(), first, tiles)?,
             None => Vec::new(),

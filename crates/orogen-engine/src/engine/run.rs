@@ -7,7 +7,7 @@ use crate::op::{Context, Field, Op, Solution, Solver, StepObserver, WorldParams}
 use crate::plan::cost;
 use crate::plan::key::Key;
 use crate::plan::program::{BLOCK_HEIGHT, BLOCK_WIDTH, Program};
-use crate::plan::steps::{Plan, Step};
+use crate::plan::steps::{Plan, Step, wanted};
 use crate::pool::Pool;
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::Graph;
@@ -170,8 +170,7 @@ impl<'a> Engine<'a> {
                     let grid = |slot: &GridId| grids[*slot].as_ref().ok_or_else(|| missing("an input of a level"));
                     given.push(level.iter().map(|slot| slot.as_ref().map(grid).transpose()).collect::<Result<_>>()?);
                 }
-                let wanted: Vec<bool> = out.iter().map(Option::is_some).collect();
-                let made = self.refine(*node, given, &wanted, window, progress)?;
+                let made = self.refine(*node, given, &wanted(out), window, progress)?;
                 let made: Vec<Grid> = made.into_iter().flatten().collect();
                 self.keep_grids(step, &made);
                 made

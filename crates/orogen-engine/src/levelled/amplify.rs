@@ -17,7 +17,7 @@ op! {
     /// of about a kilometre, which takes a moment. Each finer level has half the cell. Rivers are led through it, branches grow up from them, and
     /// slopes follow the steady state of the stream power law, S = (U/K) A^-m, limited on hillslopes. A window of a level depends on the coarser
     /// level around it only, so any window is made by itself, and a larger cell shows the same land coarsely. Where the coarse land has no receiver,
-    /// in depressions and beyond its border, there is standing water. Ground below sea level is refined like land: there is no sea.
+    /// in depressions and beyond its border, there is standing water. Ground below sea level is refined like land, unless `sea` is set.
     ///
     /// Related: terrain amplification (Schott and others 2024), hydrology-based terrain (Génevaux and others 2013).
     pub struct Amplify = "amplify", levelled, revision 2;
@@ -66,6 +66,8 @@ op! {
         /// How frequent lakes with an outlet are along rivers, from none to many. Their regions are about 100 km wide; there are few in plains. They
         /// begin at cells of 5 km to 400 m: levels that begin with a smaller cell have none.
         lakes: f64 = 0.0, range 0.0 to 1.0;
+        /// Whether there is a sea where the source is at or below the world's sea level. It is as deep as the source, up to 4944 m, and rivers end at its shore.
+        sea: bool = false;
     }
     layers {
         /// Height of the ground, and of the beds of lakes and the sea.
@@ -82,6 +84,14 @@ op! {
         width: label, unit "m";
         /// Depth of the river from bank to bed; 0 outside rivers.
         depth: label, unit "m";
+        /// Depth of the water over the ground in a flood; 0 where there is none. It is max(0, b + 3 d - z) over ground of height z, with the height b of the banks and the
+        /// `depth` d of the first river downstream (height above the nearest drainage; Rennó and others 2008, Nobre and others 2011), and 4 d in rivers: about
+        /// twice as deep as between full banks (Rosgen 1994). It reaches at most 4000 m or 96 samples from a river.
+        floodplain: height, unit "m";
+        /// Thickness of the sediment of rivers on valley floors; 0 on hillsides and in standing water. It is 100 f / (100 + f) m for f = 0.25 min(e, w - r): below the
+        /// floor the sides of the valley go on with a slope of 0.25 (Jaboyedoff and Derron 2005). e is the distance to the foot of the hillside, r that from the
+        /// river, and w half the width of the river's floor, at most 4000 m or 128 samples.
+        sediment: height, unit "m";
     }
 }
 
@@ -97,6 +107,7 @@ impl Amplify {
             .with_jitter(self.jitter)
             .with_details(self.details as usize)
             .with_lakes(self.lakes)
+            .with_sea(self.sea)
     }
 
     fn seeded(&self, context: &Context) -> Refinement {
@@ -153,7 +164,11 @@ impl Levelled for Amplify {
             return Err(Error::new(ErrorKind::Internal, "an input of `amplify` is missing"));
         };
         let coarse = Coarse { height, flow, receiver };
-        Ok(self.seeded(context).coarsest_of(&coarse, &given(inputs), window, context.progress)?.into_planes())
+        let mut level = self.seeded(context).coarsest_of(&coarse, &given(inputs), window, context.progress)?;
+        if self.sea {
+            level.drown(height, context.world_params.sea_level as f32);
+        }
+        Ok(level.into_planes())
     }
 
     fn refine(
@@ -172,8 +187,8 @@ impl Levelled for Amplify {
         Lattices { refinement: self.refinement(), ahead, continents: None }.parent(level, window)
     }
 
-    fn surface_halo(&self, level: usize) -> usize {
-        drained::surface_halo(&self.refinement(), level)
+    fn surface_halo(&self, level: usize, wanted: &[bool]) -> usize {
+        drained::surface_halo(&self.refinement(), level, wanted)
     }
 
     fn layers_of(
@@ -186,8 +201,14 @@ impl Levelled for Amplify {
     ) -> Result<()> {
         // The samples of level 0 are those of the source, in the middles of its cells; those of finer levels are at the corners of theirs.
         let share = if level == 0 { 0.5 } else { 0.0 };
-        let reading = Reading { share, stream: self.stream, runoff: self.runoff };
+        // Levels with a sea have it at 0.
+        let sea_level = if self.sea { context.world_params.sea_level as f32 } else { 0.0 };
+        let reading = Reading { share, stream: self.stream, runoff: self.runoff, sea_level };
         drained::layers_of(&self.seeded(context), &reading, level, planes, window, out, context)
+    }
+
+    fn reads_sea_level(&self) -> bool {
+        self.sea
     }
 
     fn cost(&self, level: usize) -> f64 {

@@ -83,6 +83,14 @@ op! {
         width: label, unit "m";
         /// Depth of the river from bank to bed; 0 outside rivers.
         depth: label, unit "m";
+        /// Depth of the water over the ground in a flood; 0 where there is none. It is max(0, b + 3 d - z) over ground of height z, with the height b of the banks and the
+        /// `depth` d of the first river downstream (height above the nearest drainage; Rennó and others 2008, Nobre and others 2011), and 4 d in rivers: about
+        /// twice as deep as between full banks (Rosgen 1994). It reaches at most 4000 m or 96 samples from a river.
+        floodplain: height, unit "m";
+        /// Thickness of the sediment of rivers on valley floors; 0 on hillsides and in standing water. It is 100 f / (100 + f) m for f = 0.25 min(e, w - r): below the
+        /// floor the sides of the valley go on with a slope of 0.25 (Jaboyedoff and Derron 2005). e is the distance to the foot of the hillside, r that from the
+        /// river, and w half the width of the river's floor, at most 4000 m or 128 samples.
+        sediment: height, unit "m";
         /// Height of the node in the cell south-east of the sample; the water level of water. It falls from each node to its receiver. At `cell`
         /// nodes are at the samples; on other levels the other layers are interpolated between them, or are those of the nearest one.
         node_height: label, unit "m";
@@ -178,8 +186,8 @@ impl Levelled for Continents {
         Self::lattices(self.refinement(), None).parent(level, window)
     }
 
-    fn surface_halo(&self, level: usize) -> usize {
-        drained::surface_halo(&self.refinement(), level)
+    fn surface_halo(&self, level: usize, wanted: &[bool]) -> usize {
+        drained::surface_halo(&self.refinement(), level, wanted)
     }
 
     fn layers_of(
@@ -190,7 +198,7 @@ impl Levelled for Continents {
         out: &mut [Option<Grid>],
         context: &Context,
     ) -> Result<()> {
-        let reading = Reading { share: 0.0, stream: self.stream, runoff: self.runoff };
+        let reading = Reading { share: 0.0, stream: self.stream, runoff: self.runoff, sea_level: 0.0 };
         drained::layers_of(&self.refinement(), &reading, level, planes, window, out, context)
     }
 

@@ -97,9 +97,11 @@ pub struct Reading {
     pub stream: f64,
     /// Runoff in metres per year.
     pub runoff: f64,
+    /// Height of the sea, above which the heights of the levels are.
+    pub sea_level: f32,
 }
 
-/// The layers height, flow, lake, surface, receiver, width and depth, and those of the nodes, if the op has them: height, flow, receiver, east and south.
+/// The layers height, flow, lake, surface, receiver, width, depth, floodplain and sediment, and those of the nodes, if the op has them: height, flow, receiver, east and south.
 ///
 /// # Errors
 /// If the planes are not those of a level, or the work was cancelled.
@@ -114,18 +116,33 @@ pub fn layers_of(
 ) -> Result<()> {
     let mut level = level_of(level, planes)?;
     level.window = refinement.nodes_at(level.depth, &level.window);
-    let [height, flow, lake, surface, receiver, width, depth, nodes @ ..] = out else { return Ok(()) };
+    let [height, flow, lake, surface, receiver, width, depth, floodplain, sediment, nodes @ ..] = out else {
+        return Ok(());
+    };
     nodes_of(refinement, &level, window, nodes);
-    if [&height, &flow, &lake, &surface, &receiver, &width, &depth].iter().all(|layer| layer.is_none()) {
+    let of_samples = [&height, &flow, &lake, &surface, &receiver, &width, &depth, &floodplain, &sediment];
+    if of_samples.iter().all(|layer| layer.is_none()) {
         return Ok(());
     }
     let channel = Channel::default().with_runoff(reading.runoff);
     let mut made = refinement.surface_at(reading.share, &level, window, context.progress)?;
     refinement.cut_rivers(&level, &mut made, reading.stream, &channel, context.progress)?;
+    if let Some(floodplain) = floodplain {
+        let (share, stream) = (reading.share, reading.stream);
+        *floodplain = refinement.floodplain(share, &level, &made, stream, &channel, context.progress)?;
+    }
+    if let Some(sediment) = sediment {
+        *sediment = refinement.sediment(reading.share, &level, &made, context.progress)?;
+    }
     if let Some(surface) = surface {
         *surface = made.height.clone();
         for (surface, water) in surface.data_mut().iter_mut().zip(made.water_level.data()) {
             *surface = if water.is_nan() { *surface } else { *water };
+        }
+    }
+    if reading.sea_level != 0.0 {
+        for grid in [Some(&mut made.height), surface.as_mut()].into_iter().flatten() {
+            grid.data_mut().iter_mut().for_each(|height| *height += reading.sea_level);
         }
     }
     if let Some(receiver) = receiver {
@@ -170,10 +187,18 @@ fn nodes_of(refinement: &Refinement, level: &Level, window: &Window, out: &mut [
     fill(south, &|node| metres(level.south[node]));
 }
 
-/// Samples of a level beyond a window that its layers read.
+/// Index of the layer of floods among the layers, and of sediment. They read more of a level than others.
+const FLOODPLAIN: usize = 7;
+const SEDIMENT: usize = 8;
+
+/// Samples of a level beyond a window that the wanted layers read.
 #[must_use]
-pub fn surface_halo(refinement: &Refinement, level: usize) -> usize {
-    Refinement::SURFACE_REACH.max(refinement.rivers_reach(level))
+pub fn surface_halo(refinement: &Refinement, level: usize, wanted: &[bool]) -> usize {
+    let reach = |layer: usize, reach: usize| if wanted.get(layer) == Some(&true) { reach } else { 0 };
+    Refinement::SURFACE_REACH
+        .max(refinement.rivers_reach(level))
+        .max(reach(FLOODPLAIN, refinement.floods_reach(level)))
+        .max(reach(SEDIMENT, refinement.sediment_reach(level)))
 }
 
 /// Memory for making a level over a window whose children extend by `halo` beyond it, in bytes.

@@ -8,7 +8,7 @@
 
 use super::levels;
 use super::program::{Instruction, Program};
-use super::steps::{Plan, Solve, Step};
+use super::steps::{Plan, Solve, Step, wanted};
 use crate::ids::{CoordSetId, GridId, Id, IndexVec};
 use crate::op::Op;
 use crate::recipe::document::Recipe;
@@ -40,8 +40,8 @@ pub fn step(step: &Step, plan: &Plan, recipe: &Recipe) -> f64 {
             Op::Filter(filter) => filter.cost(window.cell),
             _ => 0.0,
         },
-        Step::Refine { node, window, .. } => match recipe.nodes()[node.index()].node.op() {
-            Op::Levelled(op) => return levels::cost(op, window),
+        Step::Refine { node, window, out, .. } => match recipe.nodes()[node.index()].node.op() {
+            Op::Levelled(op) => return levels::cost(op, &wanted(out), window),
             _ => 0.0,
         },
     };

@@ -75,7 +75,7 @@ fn put_world(hash: &mut Sha256, node: &Node, world: &WorldParams) {
     let (size, cell, sea) = match node.op() {
         Op::Field(field) => (field.needs_bounds(), field.source_cell(world.cell, world.cell), false),
         Op::Filter(filter) => (false, None, filter.reads_sea_level()),
-        Op::Levelled(_) => (false, None, false),
+        Op::Levelled(levelled) => (false, None, levelled.reads_sea_level()),
         Op::Solver(solver) => (true, Some(solver.cell(world.cell)), solver.reads_sea_level()),
     };
     put(is_seeded.then_some(world.seed));

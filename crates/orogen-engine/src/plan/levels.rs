@@ -69,13 +69,14 @@ impl Serving {
     }
 }
 
-/// The level whose tiles the pieces of a window are made from. It does not depend on the number of threads, which decides about pieces.
+/// The level whose tiles the pieces of a window are made from. It does not depend on the number of threads, which decides about pieces. `wanted` says
+/// of each layer of the op whether it is requested, here and in the functions below.
 #[must_use]
-pub fn tiled(op: &dyn Levelled, serving: &Serving) -> usize {
+pub fn tiled(op: &dyn Levelled, wanted: &[bool], serving: &Serving) -> usize {
     let Serving { mut level, samples } = *serving;
     let [most, _] = PIECE;
     let largest = Window { width: samples.width.min(most), height: samples.height.min(most), ..samples };
-    let mut window = largest.grown(op.surface_halo(level));
+    let mut window = largest.grown(op.surface_halo(level, wanted));
     while level > 0 && window.width.max(window.height) > FEW_TILES {
         window = op.parent(level, &window);
         level -= 1;
@@ -85,8 +86,8 @@ pub fn tiled(op: &dyn Levelled, serving: &Serving) -> usize {
 
 /// The windows of the levels from `tiled` to `level` that a piece of `level` is made from.
 #[must_use]
-pub fn windows(op: &dyn Levelled, tiled: usize, level: usize, piece: &Window) -> Vec<Window> {
-    let mut windows = vec![piece.grown(op.surface_halo(level))];
+pub fn windows(op: &dyn Levelled, wanted: &[bool], tiled: usize, level: usize, piece: &Window) -> Vec<Window> {
+    let mut windows = vec![piece.grown(op.surface_halo(level, wanted))];
     for level in (tiled + 1..=level).rev() {
         let window = windows.last().map(|window| op.parent(level, window));
         windows.extend(window);
@@ -97,10 +98,11 @@ pub fn windows(op: &dyn Levelled, tiled: usize, level: usize, piece: &Window) ->
 
 /// Windows of the levels from the coarsest that contain all that a window is made from: whole tiles of the tiled levels.
 #[must_use]
-pub fn covering(op: &dyn Levelled, window: &Window) -> Vec<Window> {
+pub fn covering(op: &dyn Levelled, wanted: &[bool], window: &Window) -> Vec<Window> {
     let serving = Serving::of(&op.levels(), window);
-    let tiled = tiled(op, &serving);
-    let mut windows: Vec<Window> = windows(op, tiled, serving.level, &serving.samples).into_iter().rev().collect();
+    let tiled = tiled(op, wanted, &serving);
+    let mut windows: Vec<Window> =
+        windows(op, wanted, tiled, serving.level, &serving.samples).into_iter().rev().collect();
     if let Some(first) = windows.last_mut() {
         *first = of_tiles(tiled, first);
     }
@@ -141,24 +143,25 @@ pub fn tile(level: usize, (column, row): (i64, i64), cell: f64) -> Window {
 
 /// Memory of making a window beside its layers, in bytes.
 #[must_use]
-pub fn memory(op: &dyn Levelled, layers: usize, window: &Window, threads: usize) -> u64 {
+pub fn memory(op: &dyn Levelled, wanted: &[bool], window: &Window, threads: usize) -> u64 {
     let serving = Serving::of(&op.levels(), window);
-    let (Serving { level, samples }, tiled) = (serving, tiled(op, &serving));
+    let (Serving { level, samples }, tiled) = (serving, tiled(op, wanted, &serving));
     let planes = op.planes() as u64;
+    let layers = wanted.iter().filter(|wanted| **wanted).count() as u64;
     let held = |window: &Window| grid_bytes(window).saturating_mul(planes);
     // Whole tiles cover up to a tile more on each side; the level above them has a quarter as many, and its halo.
     let of_tiles = |window: &Window| held(&window.grown(COARSEST_TILE)).saturating_mul(2);
     let piece = |piece: &Window| {
-        let windows = windows(op, tiled, level, piece);
+        let windows = windows(op, wanted, tiled, level, piece);
         let levels = tiled..=level;
         let pair = windows.windows(2).map(|pair| held(&pair[0]).saturating_add(held(&pair[1]))).max();
         let scratch = levels.zip(&windows).skip(1).map(|(level, window)| op.scratch(level, window)).max();
-        let made = grid_bytes(piece).saturating_mul(layers as u64);
+        let made = grid_bytes(piece).saturating_mul(layers);
         pair.unwrap_or_else(|| windows.iter().map(held).sum()).saturating_add(scratch.unwrap_or(0)).saturating_add(made)
     };
     let pieces = serving.pieces(threads);
     let largest = pieces.iter().map(piece).max().unwrap_or(0);
-    let all = windows(op, tiled, level, &samples).first().map_or(0, of_tiles);
+    let all = windows(op, wanted, tiled, level, &samples).first().map_or(0, of_tiles);
     let one = |level: usize| {
         let window = tile(level, (0, 0), op.levels().cell(level));
         held(&window).saturating_add(op.scratch(level, &window)).saturating_add(match level {
@@ -168,18 +171,18 @@ pub fn memory(op: &dyn Levelled, layers: usize, window: &Window, threads: usize)
     };
     let tile = (0..=tiled).map(one).max().unwrap_or(0);
     let threads = threads as u64;
-    let apart = if samples.cell == window.cell { 0 } else { grid_bytes(&samples).saturating_mul(layers as u64) };
+    let apart = if samples.cell == window.cell { 0 } else { grid_bytes(&samples).saturating_mul(layers) };
     let working = largest.saturating_mul(threads.min(pieces.len() as u64)).max(tile.saturating_mul(threads));
     all.saturating_add(working).saturating_add(apart)
 }
 
 /// Approximate time for making a window on one core, in nanoseconds, without tiles that are kept.
 #[must_use]
-pub fn cost(op: &dyn Levelled, window: &Window) -> f64 {
+pub fn cost(op: &dyn Levelled, wanted: &[bool], window: &Window) -> f64 {
     let serving = Serving::of(&op.levels(), window);
-    let (Serving { level, samples }, tiled) = (serving, tiled(op, &serving));
+    let (Serving { level, samples }, tiled) = (serving, tiled(op, wanted, &serving));
     let sum = |level: usize, window: &Window| op.cost(level) * window.width as f64 * window.height as f64;
-    let windows = windows(op, tiled, level, &samples);
+    let windows = windows(op, wanted, tiled, level, &samples);
     let direct: f64 = (tiled..=level).zip(&windows).skip(1).map(|(level, window)| sum(level, window)).sum();
     let first = windows.first().map_or(0.0, |window| sum(tiled, &window.grown(TILE / 2)));
     let above: f64 = (0..tiled).map(|level| 4.0 * op.cost(level) * (TILE * TILE) as f64).sum();

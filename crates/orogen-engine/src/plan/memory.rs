@@ -2,7 +2,7 @@
 
 use super::levels;
 use super::program::{BLOCK_HEIGHT, BLOCK_WIDTH, Program};
-use super::steps::{Plan, Solve, Step, grid_bytes};
+use super::steps::{Plan, Solve, Step, grid_bytes, wanted};
 use crate::ids::{GridId, Id, IndexVec, StepId};
 use crate::op::Op;
 use crate::recipe::document::Recipe;
@@ -57,7 +57,7 @@ fn beside(plan: &Plan, recipe: &Recipe, threads: usize) -> u64 {
             grid_bytes(&window.grown(*halo)).saturating_mul(cuts).saturating_add(own)
         }
         Step::Refine { node, window, out, .. } => match recipe.nodes()[node.index()].node.op() {
-            Op::Levelled(op) => levels::memory(op, out.iter().flatten().count(), window, threads),
+            Op::Levelled(op) => levels::memory(op, &wanted(out), window, threads),
             _ => 0,
         },
     };

@@ -5,7 +5,7 @@ use super::grid_merge::{Cluster, clusters};
 use super::keep::Evaluations;
 use super::levels;
 use super::request::{GridRequest, Requests};
-use super::steps::Step;
+use super::steps::{Step, wanted};
 use crate::ids::{GridId, Id, IndexVec, NodeId, RequestId};
 use crate::op::{Filter, Levelled, Op};
 use crate::recipe::document::Recipe;
@@ -171,7 +171,8 @@ impl Scheduler<'_> {
     fn refine(&mut self, node: NodeId, op: &dyn Levelled, window: Window, out: Vec<Option<GridId>>) -> Result<()> {
         let (mut inputs, mut constants) = (Vec::new(), Vec::new());
         if self.graph.links[node].iter().any(|link| *link != Link::None) {
-            for (level, window) in levels::covering(op, &window).into_iter().enumerate().take(op.levels_with_inputs()) {
+            let windows = levels::covering(op, &wanted(&out), &window);
+            for (level, window) in windows.into_iter().enumerate().take(op.levels_with_inputs()) {
                 let (given, more) = self.inputs(node, window.grown(op.source_halo(level)));
                 inputs.push(given);
                 constants.extend(more);

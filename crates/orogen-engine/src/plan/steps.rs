@@ -110,6 +110,12 @@ pub enum Step<G = GridId> {
     },
 }
 
+/// Which layers of a node have a grid.
+#[must_use]
+pub fn wanted(out: &[Option<GridId>]) -> Vec<bool> {
+    out.iter().map(Option::is_some).collect()
+}
+
 /// A grid of a plan.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GridSlot {

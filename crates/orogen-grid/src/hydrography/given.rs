@@ -254,11 +254,11 @@ fn covers_of(
     let window = *bed.window();
     let unseen = AT_SEA - 1;
     let mut covers = Grid::filled(window, 0u32);
-    for k in 0..window.len() {
+    for (k, &in_lake) in in_lake.iter().enumerate() {
         let (i, j) = (k % window.width, k / window.width);
         if sea_level.is_some_and(|sea| bed.data()[k] <= sea) {
             covers.data_mut()[k] = AT_SEA;
-        } else if (in_lake[k] || receivers.code(k) == NONE) && !is_border(&window, k) {
+        } else if (in_lake || receivers.code(k) == NONE) && !is_border(&window, k) {
             // The corners of the node's cell first, then the samples around them.
             let near = |reach: usize| {
                 let rows = j.saturating_sub(reach)..(j + 2 + reach).min(window.height);
@@ -268,7 +268,7 @@ fn covers_of(
                     .find(|label| *label > 0)
             };
             // A river runs on through a lake with an outlet that no sample shows.
-            let hidden = if in_lake[k] { 0 } else { unseen };
+            let hidden = if in_lake { 0 } else { unseen };
             covers.data_mut()[k] = near(0).or_else(|| near(1)).unwrap_or(hidden);
         }
     }

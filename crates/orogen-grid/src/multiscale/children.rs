@@ -49,6 +49,17 @@ fn indent(land: &Refinement, depth: usize) -> f32 {
     (0.5 * 61.44 * libm::pow(land.kilometres(depth) / 61.44, 0.92)) as f32
 }
 
+/// Share of the change over a cell that is the slope of the shore: the irregularities of coarser levels are the rest.
+const SHORE_SLOPE: f32 = 0.5;
+
+/// By how much the distance to the shore changes along a kilometre near the shore, at least 1; `falls` are the changes over a cell to the east and to the
+/// south. Irregularities are multiplied by it, so that they move any shore equally far.
+fn steepness(shore: f32, falls: [f32; 2], cell: f32) -> f32 {
+    let steep = SHORE_SLOPE * (falls[0] * falls[0] + falls[1] * falls[1]).sqrt() / cell;
+    let near = (2.0 - shore.abs() / (3.0 * cell * steep.max(1.0))).clamp(0.0, 1.0);
+    1.0 + near * (steep - 1.0).max(0.0)
+}
+
 impl Children {
     /// The children of `parent`; rock and shores are exact one parent away from its edge.
     pub fn new(land: &Refinement, parent: &Level, given: &Given, progress: &Progress) -> Result<Children> {
@@ -130,6 +141,7 @@ impl Children {
         let near_row = j / 2 * parents;
         let far_row = if j & 1 == 1 { near_row + parents } else { near_row - parents };
         let (has_lakes, beside) = (land.lakes > 0.0, lake_shores::beside(land, parent.depth));
+        let kilometres = land.kilometres(self.depth) as f32;
         let amplitude = land.variation as f32 * VARIATION[self.depth.min(VARIATION.len() - 1)];
         for i in 2..width - 2 {
             let near = i / 2;
@@ -157,7 +169,13 @@ impl Children {
             let beside_lake = has_lakes && parents.into_iter().any(|p| lakes::is_lake(parent.receiver[p]));
             // Coasts of mountains are more indented than those of plains.
             let rugged = 0.45 + 0.9 * ((self.uplift[q] + 3.0) / 3.2).clamp(0.0, 1.0);
-            let irregular = self.indent * rugged * hash::normal(mix64(bits ^ 0xAAAA));
+            let steepness = || {
+                let here = parent.shore[near_row + near];
+                let falls = [here - parent.shore[near_row + far], here - parent.shore[far_row + near]];
+                steepness(blend(&parent.shore), falls, 2.0 * kilometres)
+            };
+            let irregular = self.indent * rugged * if land.sea { steepness() } else { 1.0 };
+            let irregular = irregular * hash::normal(mix64(bits ^ 0xAAAA));
             self.shore[q] = match given.shore(x, y) {
                 _ if beside_lake => {
                     let shares = [0.5625, 0.1875, 0.1875, 0.0625].into_iter().zip(parents);

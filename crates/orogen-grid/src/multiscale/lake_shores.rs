@@ -3,7 +3,7 @@
 use super::carve::Carved;
 use super::children::Children;
 use super::drainage::{FREE, WATER};
-use super::lakes::{Part, WIDEST, downstream, is_lake, neighbour};
+use super::lakes::{Part, WIDEST, is_lake};
 use super::level::Level;
 use super::refinement::Refinement;
 use super::stencil::Extent;
@@ -70,7 +70,7 @@ pub fn shape(parts: &[Part], level: &Level, children: &mut Children) {
 /// The position of the receiver of a lake's node in the same lake, from the corner of the node's cell, in cells.
 fn link(level: &Level, q: usize) -> Option<[f32; 2]> {
     let step = STEPS[usize::from(level.receiver[q] & 7)];
-    let to = neighbour(level, q, step)?;
+    let to = level.neighbour(q, step)?;
     let is_same = is_lake(level.receiver[to]) && level.height[to] == level.height[q];
     is_same.then(|| [level.east[to] + step.0 as f32, level.south[to] + step.1 as f32])
 }
@@ -81,9 +81,9 @@ fn lower_rivers(level: &Level, q: usize) -> Vec<[[f32; 2]; 2]> {
     let around = (-reach..=reach).flat_map(|south| (-reach..=reach).map(move |east| (east, south)));
     let mut found = Vec::new();
     for (east, south) in around {
-        let Some(near) = neighbour(level, q, (east, south)) else { continue };
+        let Some(near) = level.neighbour(q, (east, south)) else { continue };
         let is_lower = level.receiver[near] < NONE && level.height[near] < level.height[q];
-        let Some(to) = downstream(level, near).filter(|_| is_lower && level.area[near] > 1.5) else { continue };
+        let Some(to) = level.downstream(near).filter(|_| is_lower && level.area[near] > 1.5) else { continue };
         let step = STEPS[usize::from(level.receiver[near])];
         let place =
             |node: usize, east: isize, south: isize| [level.east[node] + east as f32, level.south[node] + south as f32];

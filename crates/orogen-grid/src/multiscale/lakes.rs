@@ -83,10 +83,10 @@ pub fn begin(land: &Refinement, level: &mut Level) -> Vec<Part> {
     let outlets: Vec<usize> = found.candidates.iter().copied().filter(|&q| suits(q)).collect();
     let mut parts = Vec::new();
     for outlet in outlets {
-        let Some(below) = downstream(level, outlet) else { continue };
+        let Some(below) = level.downstream(outlet) else { continue };
         let (top, least_area) = (heights[outlet], MAIN_SHARE * level.area[outlet]);
         let fall = top - heights[below];
-        let further = downstream(level, below).map_or(0.0, |next| heights[below] - heights[next]);
+        let further = level.downstream(below).map_or(0.0, |next| heights[below] - heights[next]);
         if fall.max(further) > steepest {
             continue;
         }
@@ -115,7 +115,7 @@ pub fn begin(land: &Refinement, level: &mut Level) -> Vec<Part> {
 
 /// Whether no node around a node is water.
 fn is_dry(level: &Level, receivers: &[u8], q: usize) -> bool {
-    STEPS.into_iter().all(|step| neighbour(level, q, step).is_none_or(|near| receivers[near] < NONE))
+    STEPS.into_iter().all(|step| level.neighbour(q, step).is_none_or(|near| receivers[near] < NONE))
 }
 
 /// Nodes of rivers that may become the outlets of lakes.
@@ -148,7 +148,7 @@ impl Outlets {
     /// Whether neither standing water nor another candidate, whose lake may reach this one, is near downstream.
     fn is_last(&self, level: &Level, q: usize) -> bool {
         let mut at = q;
-        (0..=MAX_LINKS).all(|_| match downstream(level, at) {
+        (0..=MAX_LINKS).all(|_| match level.downstream(at) {
             Some(next) if level.receiver[next] < NONE && !self.is_candidate[next] => {
                 at = next;
                 true
@@ -173,22 +173,10 @@ fn place(level: &Level, q: usize) -> (i64, i64) {
     (level.window.x + (q % level.window.width) as i64, level.window.y + (q / level.window.width) as i64)
 }
 
-/// The neighbour in a direction, if it is within the window.
-pub fn neighbour(level: &Level, q: usize, (east, south): (isize, isize)) -> Option<usize> {
-    let (width, height) = (level.window.width, level.window.height);
-    let (i, j) = ((q % width).checked_add_signed(east)?, (q / width).checked_add_signed(south)?);
-    (i < width && j < height).then_some(j * width + i)
-}
-
-/// The receiver of a node on land.
-pub fn downstream(level: &Level, q: usize) -> Option<usize> {
-    neighbour(level, q, *STEPS.get(usize::from(level.receiver[q]))?)
-}
-
 /// The nodes on land whose receiver is a node.
 fn donors(level: &Level, q: usize) -> impl Iterator<Item = usize> {
     STEPS.iter().enumerate().filter_map(move |(code, step)| {
-        let donor = neighbour(level, q, *step)?;
+        let donor = level.neighbour(q, *step)?;
         (usize::from(level.receiver[donor]) == (code + 4) & 7).then_some(donor)
     })
 }

@@ -8,6 +8,7 @@
 //! Related work: J.-D. Génevaux et al., "Terrain generation using procedural models based on hydrology" (2013); M. Gaillard et al., "Dendry: a
 //! procedural model for dendritic patterns" (2019); H. Schott et al., "Terrain amplification using multi-scale erosion" (2024).
 
+mod alluvium;
 mod banks;
 mod carve;
 mod channels;
@@ -19,6 +20,8 @@ mod creep;
 mod detail;
 mod distances;
 mod drainage;
+mod drowned;
+mod floods;
 mod geography;
 pub mod given;
 mod gradient_noise;
@@ -30,6 +33,7 @@ mod lakes;
 mod law;
 pub mod level;
 mod links;
+mod nearest;
 mod refine;
 pub mod refinement;
 mod rock;

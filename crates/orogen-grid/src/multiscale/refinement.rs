@@ -31,6 +31,9 @@ pub struct Refinement {
     pub details: usize,
     /// How frequent lakes with an outlet are along rivers, 0 to 1.
     pub lakes: f64,
+    /// Whether given land has a [sea](super::level::Level::drown), whose depth tells how far the shore is: near steep coasts that distance changes by more than a
+    /// kilometre along a kilometre.
+    pub sea: bool,
 }
 
 impl Default for Refinement {
@@ -45,13 +48,14 @@ impl Default for Refinement {
             jitter: 1.0,
             details: 0,
             lakes: 0.0,
+            sea: false,
         }
     }
 }
 
 orogen_noise::builder!(Refinement: with_seed(seed: u64), with_cell(cell: f64), with_levels(levels: usize), with_relief(relief: f64),
     with_creep(creep: f64), with_variation(variation: f64), with_jitter(jitter: f64), with_details(details: usize),
-    with_lakes(lakes: f64));
+    with_lakes(lakes: f64), with_sea(sea: bool));
 
 /// The largest number of halvings.
 pub const MAX_LEVELS: usize = 24;

@@ -174,6 +174,11 @@ fn bottom(level: &Level, q: usize) -> f32 {
         }
         return height - (BASIN_LAKE.0 * distance).min(BASIN_LAKE.1);
     }
+    sea_bottom(distance)
+}
+
+/// Height of the bottom of the sea at this distance from the shore, in km.
+pub(super) fn sea_bottom(distance: f32) -> f32 {
     let t = ((distance - 80.0) / 200.0).clamp(0.0, 1.0);
     let shelf = 1.8 * distance.min(80.0);
     let rise = ((distance - 280.0).max(0.0) * 1.5).min(1400.0);

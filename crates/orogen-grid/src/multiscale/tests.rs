@@ -1,6 +1,7 @@
 //! Properties of the levels as a whole: windows agree, water flows down.
 
 mod details;
+mod floors;
 mod lakes;
 mod rain;
 mod reach;

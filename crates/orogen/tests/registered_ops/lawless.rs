@@ -161,7 +161,7 @@ impl Levelled for Narrow {
         Ok(vec![grid])
     }
 
-    fn surface_halo(&self, _: usize) -> usize {
+    fn surface_halo(&self, _: usize, _: &[bool]) -> usize {
         0
     }
 

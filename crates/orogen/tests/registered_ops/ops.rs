@@ -203,7 +203,7 @@ impl Levelled for Midpoints {
         Ok(vec![self.displaced(level, inputs, window, context, smooth)])
     }
 
-    fn surface_halo(&self, _: usize) -> usize {
+    fn surface_halo(&self, _: usize, _: &[bool]) -> usize {
         0
     }
 

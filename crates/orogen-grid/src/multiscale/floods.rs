@@ -1,0 +1,201 @@
+//! Flood plains: land that lies less above the river that it drains to than a flood rises there (the height above the nearest drainage; Rennó and
+//! others 2008, Nobre and others 2011).
+
+use super::level::{Level, invalid};
+use super::refinement::Refinement;
+use super::surface::Surface;
+use crate::error::Result;
+use crate::grid::Grid;
+use crate::hydrology::rivers::Channel;
+use crate::progress::Progress;
+
+/// Height of a flood over the bed, as a multiple of the depth of the river by its mean discharge. Banks are full at about five times that discharge, and then the
+/// river is 5^0.4 = 1.9 times as deep; land that is prone to floods lies up to twice as high (Rosgen 1994).
+const STAGE: f64 = 4.0;
+
+/// Longest way from the land to its river, in metres and in links between nodes.
+const FURTHEST: f64 = 4000.0;
+const MAX_LINKS: usize = 96;
+
+/// The share of the longest way at the end of which floods thin out, so that a flood plain does not end in a step.
+const THINNING: f32 = 0.25;
+
+/// Without a river on the way.
+const NOWHERE: usize = usize::MAX;
+
+/// Not known yet.
+const UNKNOWN: usize = usize::MAX - 1;
+
+/// The rivers of a level and their floods.
+struct Floods<'a> {
+    level: &'a Level,
+    square_metres: f32,
+    least_area: f64,
+    channel: &'a Channel,
+    links: usize,
+    backwater: usize,
+    /// The first node of a river on the way down from each node, and the number of links to it.
+    river: Vec<usize>,
+    way: Vec<u16>,
+    /// The height of the flood at nodes of rivers; NaN before it is asked for.
+    height: Vec<f32>,
+    path: Vec<usize>,
+}
+
+impl Refinement {
+    /// Samples of a level beyond a window that [`Refinement::floodplain`] reads.
+    #[must_use]
+    pub fn floods_reach(&self, depth: usize) -> usize {
+        let links = self.flood_links(depth);
+        Refinement::SURFACE_REACH + links + backwater_links(links) + 1
+    }
+
+    fn flood_links(&self, depth: usize) -> usize {
+        self.cells_in(depth, FURTHEST, MAX_LINKS)
+    }
+
+    /// Depth in metres of the flood at the points of a surface of this level, made at `share`; 0 where there is none. Rivers have at least this drainage
+    /// area in m^2. In a river the flood is four times as
+    /// deep as the river. It reaches all land that drains to the river within 4000 m or 96
+    /// links, along the receivers, and lies below the flood; in the last quarter of that way the flood thins out. Rivers that join another rise by its flood, too.
+    ///
+    /// # Errors
+    /// If the level does not cover the surface's window grown by [`Refinement::floods_reach`], or the work is cancelled.
+    pub fn floodplain(
+        &self,
+        share: f32,
+        level: &Level,
+        surface: &Surface,
+        least_area: f64,
+        channel: &Channel,
+        progress: &Progress,
+    ) -> Result<Grid> {
+        let window = surface.height.window();
+        let nodes = self.nodes_at(level.depth, window);
+        let needed = nodes.grown(self.floods_reach(level.depth));
+        if !level.window.contains(&needed) {
+            return Err(invalid(format!("floods over {nodes:?} need their level over {needed:?}")));
+        }
+        let cell = self.cell_of(level.depth);
+        let links = self.flood_links(level.depth);
+        let mut floods = Floods {
+            level,
+            square_metres: (cell * cell) as f32,
+            least_area,
+            channel,
+            links,
+            backwater: backwater_links(links),
+            river: vec![UNKNOWN; level.window.len()],
+            way: vec![0; level.window.len()],
+            height: vec![f32::NAN; level.window.len()],
+            path: Vec::new(),
+        };
+        let mut depth = Grid::filled(*window, 0.0f32);
+        let (left, top) = ((nodes.x - level.window.x) as usize, (nodes.y - level.window.y) as usize);
+        for j in 0..window.height {
+            progress.check()?;
+            for i in 0..window.width {
+                if !surface.water_level[(i, j)].is_nan() {
+                    continue;
+                }
+                let q = self.nearest_node(share, level, (top + j) * level.window.width + left + i);
+                // On detail levels points lie on the smooth ground between nodes; on coarse ones that is smoother than the valleys.
+                let ground = if self.is_detail(level.depth) { surface.height[(i, j)] } else { level.height[q] };
+                depth[(i, j)] = floods.depth(q, ground);
+            }
+        }
+        Ok(depth)
+    }
+}
+
+/// Number of links down a river from which a flood backs up.
+fn backwater_links(links: usize) -> usize {
+    links.div_ceil(3)
+}
+
+impl Floods<'_> {
+    /// Depth of the flood at a node, over the ground there.
+    fn depth(&mut self, q: usize, ground: f32) -> f32 {
+        if self.is_large(q) {
+            // Points of land may be nearest to a node in the water that a river enters.
+            let own = (STAGE * self.depth_of(q)) as f32;
+            return if self.level.is_water(q) { own } else { own.max(self.height_at(q) - ground) };
+        }
+        self.find_river(q);
+        let (river, way) = (self.river[q], self.way[q]);
+        if river == NOWHERE {
+            return 0.0;
+        }
+        let left = (self.links - usize::from(way)) as f32 / (THINNING * self.links as f32);
+        let bed = self.level.height[river];
+        (bed + (self.height_at(river) - bed) * left.min(1.0) - ground).max(0.0)
+    }
+
+    fn is_river(&self, q: usize) -> bool {
+        self.is_large(q) && !self.level.is_water(q)
+    }
+
+    /// Whether the drainage area is that of a river.
+    fn is_large(&self, q: usize) -> bool {
+        f64::from(self.level.area[q] * self.square_metres) >= self.least_area
+    }
+
+    /// Depth of the river at a node, from bank to bed.
+    fn depth_of(&self, q: usize) -> f64 {
+        self.channel.depth_of(self.channel.discharge(f64::from(self.level.area[q] * self.square_metres)))
+    }
+
+    /// Finds the first river on the way down from a node and from all nodes on that way.
+    fn find_river(&mut self, start: usize) {
+        self.path.clear();
+        let mut at = start;
+        let (mut river, mut way) = (NOWHERE, 0);
+        loop {
+            if self.river[at] != UNKNOWN {
+                (river, way) = (self.river[at], self.way[at]);
+                break;
+            }
+            if self.is_river(at) {
+                river = at;
+                break;
+            }
+            self.path.push(at);
+            // Given receivers may lead back to where they come from: there is no river on such a way.
+            self.river[at] = NOWHERE;
+            match self.level.downstream(at) {
+                Some(to) => at = to,
+                None => break,
+            }
+        }
+        for &at in self.path.iter().rev() {
+            way += 1;
+            if usize::from(way) > self.links {
+                river = NOWHERE;
+            }
+            if river == NOWHERE {
+                break;
+            }
+            (self.river[at], self.way[at]) = (river, way);
+        }
+    }
+
+    /// Height of the flood at a node of a river: that of its own, or of the river downstream, which backs up the less, the further away it is. Nodes are as high
+    /// as the banks, which are above the bed by the depth of the river.
+    fn height_at(&mut self, river: usize) -> f32 {
+        if self.height[river].is_nan() {
+            let rise = |at: usize| ((STAGE - 1.0) * self.depth_of(at)) as f32;
+            let mut flood = self.level.height[river] + rise(river);
+            let mut at = river;
+            for link in 1..self.backwater {
+                match self.level.downstream(at) {
+                    Some(to) if self.is_river(to) => at = to,
+                    _ => break,
+                }
+                let share = 1.0 - link as f32 / self.backwater as f32;
+                flood = flood.max(self.level.height[at] + rise(at) * share);
+            }
+            self.height[river] = flood;
+        }
+        self.height[river]
+    }
+}
