@@ -185,14 +185,20 @@ fn drained_areas_are_those_of_the_layer_and_include_the_land_outside() {
             let expect = f64::from(flow[(i, j)]);
             let area = river.drained * window.cell * window.cell;
             assert!((area / expect - 1.0).abs() < 1e-12, "{area} {expect}");
-            assert!((0.0..8.0).contains(&receiver[(i, j)]));
+            // A river runs on through a small lake with an outlet.
+            assert!((0.0..8.0).contains(&(receiver[(i, j)] % 16.0)));
             found += 1;
         }
         assert!(found * 20 > ground.rivers.len() * 19, "{found} of {}", ground.rivers.len());
         if window.cell == 60.0 {
             // At the finest level these are the layers of the samples.
             let outputs = ["flow", "receiver"].map(|layer| world.window(layer, &window).unwrap());
-            assert!(outputs == [flow, receiver]);
+            // In lakes with an outlet 16 is added to the directions of nodes.
+            let mut directions = receiver;
+            for code in directions.data_mut() {
+                *code -= if *code >= 16.0 { 16.0 } else { 0.0 };
+            }
+            assert!(outputs == [flow, directions]);
         }
     }
     // A small window at a large river: nearly all of the area lies outside of it.

@@ -7,10 +7,17 @@ use crate::hydrology::direction::NONE;
 /// What is added to the code of the direction to the receiver of a node in a lake with an outlet.
 pub const LAKE: u8 = 16;
 
+/// The first code after those of lakes with an outlet.
+const LAKES_END: u8 = LAKE + NONE;
+
 /// The code of the direction of a receiver, also in lakes with an outlet; [`NONE`] for other water.
 #[must_use]
 pub fn direction(receiver: u8) -> u8 {
-    if receiver >= LAKE { receiver & 7 } else { receiver.min(NONE) }
+    match receiver {
+        0..NONE => receiver,
+        LAKE..LAKES_END => receiver - LAKE,
+        _ => NONE,
+    }
 }
 
 /// Nodes of one level over a window: one node per sample of the lattice.
