@@ -11,21 +11,22 @@ const CELLS: [&str; 6] = ["7680", "960", "240", "60", "7.5", "0.9375"];
 /// The window of each picture: the origin of the preset `endless` lies in its middle.
 const WINDOW: &str = "-256,-256,512,512";
 
-/// The window of the picture of lakes, at 60 m.
-const LAKES: &str = "-1850,-1750,900,900";
+/// A map sheet of a region with lakes.
+const LAKES: &str =
+    "--window=-1850,-1750,640,640 --cell 60 --no-contours --no-summits --no-title --size 900 --no-sidecar";
 
-/// A map of `endless` at each cell, and one of a region with lakes.
+/// A map of `endless` at each cell, and a map sheet with lakes.
 pub fn write(images: &Path, work: &Path) -> Result {
-    let picture = |window: &str, cell: &str, name: &str| {
+    for cell in CELLS {
         let mut orogen = shell::cargo("run --quiet --release --package orogen-cli -- generate endless --quiet");
-        shell::run(orogen.args([&format!("--window={window}"), "--cell", cell, "-o"]).arg(work))?;
-        let to = images.join(name);
+        shell::run(orogen.args(["--window", WINDOW, "--cell", cell, "-o"]).arg(work))?;
+        let to = images.join(format!("levels-{cell}.png"));
         std::fs::copy(work.join("map.png"), &to).map_err(|e| on_file("write", &to, &e))?;
         println!("{}", shell::relative(&to));
-        Ok(())
-    };
-    for cell in CELLS {
-        picture(WINDOW, cell, &format!("levels-{cell}.png"))?;
     }
-    picture(LAKES, "60", "lakes.png")
+    let to = images.join("lakes.png");
+    let mut orogen = shell::cargo("run --quiet --release --package orogen-cli -- map endless --quiet --force");
+    shell::run(orogen.args(LAKES.split(' ')).arg("-o").arg(&to))?;
+    println!("{}", shell::relative(&to));
+    Ok(())
 }
