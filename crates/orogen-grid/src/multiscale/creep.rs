@@ -47,7 +47,7 @@ const LOWERED: f32 = 0.5;
 
 /// The planes of a level that creep reads beside the heights.
 #[derive(Clone, Copy)]
-pub struct Slopes<'a> {
+pub struct Hillsides<'a> {
     pub area: &'a [f32],
     pub receiver: &'a [f32],
     /// Receivers that stay (see [`super::carve::Carved::fixed`]): water stays as it is.
@@ -57,7 +57,7 @@ pub struct Slopes<'a> {
 }
 
 /// One pass of creep over the cells of `extent`.
-pub fn creep(extent: Extent, heights: &mut Vec<f32>, spare: &mut Vec<f32>, slopes: Slopes, kept: Kept) {
+pub fn creep(extent: Extent, heights: &mut Vec<f32>, spare: &mut Vec<f32>, slopes: Hillsides, kept: Kept) {
     dispatch(Creep { extent, heights, slopes, kept, out: spare });
     std::mem::swap(heights, spare);
 }
@@ -65,7 +65,7 @@ pub fn creep(extent: Extent, heights: &mut Vec<f32>, spare: &mut Vec<f32>, slope
 struct Creep<'a> {
     extent: Extent,
     heights: &'a [f32],
-    slopes: Slopes<'a>,
+    slopes: Hillsides<'a>,
     kept: Kept,
     out: &'a mut [f32],
 }
@@ -77,7 +77,7 @@ impl Body for Creep<'_> {
     fn run<S: Simd>(self, _: S) {
         let extent = self.extent;
         for j in extent.rows() {
-            let Slopes { area, receiver, fixed, factor } = self.slopes;
+            let Hillsides { area, receiver, fixed, factor } = self.slopes;
             let (heights, receivers) = (extent.around(self.heights, j), extent.around(receiver, j));
             let own = [self.heights, area, receiver, fixed, factor].map(|plane| extent.row(plane, j));
             smooth(own, heights, receivers, self.kept, extent.row_mut(self.out, j));

@@ -3,7 +3,7 @@
 use super::banks::raise_banks;
 use super::carve::carve;
 use super::children::Children;
-use super::creep::{Kept, Slopes, creep, creep_passes, steepest};
+use super::creep::{Hillsides, Kept, creep, creep_passes, steepest};
 use super::detail;
 use super::drainage::{self, WATER};
 use super::given::{self, Given};
@@ -190,7 +190,7 @@ impl Refinement {
                 progress.check()?;
                 extent = extent.shrunk(1);
                 let slopes =
-                    Slopes { area: &growth.area, receiver: &growth.receiver, fixed: &growth.fixed, factor: &factor };
+                    Hillsides { area: &growth.area, receiver: &growth.receiver, fixed: &growth.fixed, factor: &factor };
                 creep(extent, &mut growth.height, &mut growth.spare, slopes, Kept::VALLEYS);
             }
             for _ in 0..BANK_PASSES {
@@ -210,7 +210,7 @@ impl Refinement {
                 progress.check()?;
                 extent = extent.shrunk(1);
                 let slopes =
-                    Slopes { area: &growth.area, receiver: &growth.receiver, fixed: &growth.fixed, factor: &factor };
+                    Hillsides { area: &growth.area, receiver: &growth.receiver, fixed: &growth.fixed, factor: &factor };
                 creep(extent, &mut growth.height, &mut growth.spare, slopes, kept);
             }
         }
