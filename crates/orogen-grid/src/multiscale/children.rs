@@ -3,7 +3,6 @@
 use super::geography::Geography;
 use super::given::Given;
 use super::hash::{self, jittered};
-use super::lake_shores;
 use super::lakes;
 use super::level::Level;
 use super::refinement::Refinement;
@@ -140,7 +139,7 @@ impl Children {
         let parents = width / 2;
         let near_row = j / 2 * parents;
         let far_row = if j & 1 == 1 { near_row + parents } else { near_row - parents };
-        let (has_lakes, beside) = (land.lakes > 0.0, lake_shores::beside(land, parent.depth));
+        let (has_lakes, beside) = (land.lakes > 0.0, lakes::beside(land, parent.depth));
         let kilometres = land.kilometres(self.depth) as f32;
         let amplitude = land.variation as f32 * VARIATION[self.depth.min(VARIATION.len() - 1)];
         for i in 2..width - 2 {
@@ -180,7 +179,7 @@ impl Children {
                 _ if beside_lake => {
                     let shares = [0.5625, 0.1875, 0.1875, 0.0625].into_iter().zip(parents);
                     shares.map(|(share, p)| share * parent.shore[p].min(beside)).sum::<f32>()
-                        + lake_shores::SHORE_IRREGULARITY * irregular
+                        + lakes::SHORE_IRREGULARITY * irregular
                 }
                 Some(shore) => shore,
                 None => blend(&parent.shore) + irregular,

@@ -55,9 +55,8 @@ impl Refinement {
     }
 
     /// Depth in metres of the flood at the points of a surface of this level, made at `share`; 0 where there is none. Rivers have at least this drainage
-    /// area in m^2. In a river the flood is four times as
-    /// deep as the river. It reaches all land that drains to the river within 4000 m or 96
-    /// links, along the receivers, and lies below the flood; in the last quarter of that way the flood thins out. Rivers that join another rise by its flood, too.
+    /// area in m^2. In a river the flood is four times as deep as the river. It reaches all land that drains to the river within 4000 m or 96 links, along
+    /// the receivers, and lies below the flood; in the last quarter of that way the flood thins out. Rivers that join another rise by its flood, too.
     ///
     /// # Errors
     /// If the level does not cover the surface's window grown by [`Refinement::floods_reach`], or the work is cancelled.

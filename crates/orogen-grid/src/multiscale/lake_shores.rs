@@ -3,18 +3,12 @@
 use super::carve::Carved;
 use super::children::Children;
 use super::drainage::{FREE, WATER};
-use super::lakes::{Part, WIDEST, is_lake};
+use super::lakes::{BESIDE, Part, WIDEST, is_lake};
 use super::level::Level;
 use super::refinement::Refinement;
 use super::stencil::Extent;
 use crate::hydrology::direction::{NONE, STEPS};
 use std::f32::consts::SQRT_2;
-
-/// The largest distance to the shore that land beside lakes has, in cells.
-const BESIDE: f32 = 0.5;
-
-/// Irregularity of the shores of lakes, relative to that of coasts.
-pub const SHORE_IRREGULARITY: f32 = 0.55;
 
 /// A lake is nearer to its own river than to a lower one by this factor of the distances, so that there is a ridge between them.
 const NEARER: f32 = 0.6;
@@ -28,11 +22,6 @@ const RIM_HEIGHT: f32 = 0.1;
 
 /// No smallest height.
 pub const ANYTHING: f32 = -1e30;
-
-/// The largest distance to the shore that land beside a lake has, in km, so that lakes can be wider than their rivers.
-pub fn beside(land: &Refinement, depth: usize) -> f32 {
-    BESIDE * land.kilometres(depth) as f32
-}
 
 /// Places the shores of new lakes: at a distance from the links between their nodes.
 pub fn shape(parts: &[Part], level: &Level, children: &mut Children) {

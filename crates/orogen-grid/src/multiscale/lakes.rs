@@ -43,6 +43,12 @@ const OUTLET_SHARE: f32 = 0.1;
 /// Half of the width of a new lake around its river, at least and at most, in cells.
 const HALF_WIDTH: [f32; 2] = [0.3, 0.75];
 
+/// The largest distance to the shore that land beside lakes has, in cells.
+pub const BESIDE: f32 = 0.5;
+
+/// Irregularity of the shores of lakes, relative to that of coasts.
+pub const SHORE_IRREGULARITY: f32 = 0.55;
+
 /// Cells from a node of a lake to those whose distances to the shore it changes, and to the rivers that keep it away.
 pub const WIDEST: usize = 2;
 
@@ -64,6 +70,11 @@ pub fn drains(code: u8) -> bool {
 /// Whether rivers of a level become lakes on the level below.
 pub fn begin_at(land: &Refinement, depth: usize) -> bool {
     land.lakes > 0.0 && depth < land.levels && CELLS.contains(&land.kilometres(depth))
+}
+
+/// The largest distance to the shore that land beside a lake has, in km, so that lakes can be wider than their rivers.
+pub fn beside(land: &Refinement, depth: usize) -> f32 {
+    BESIDE * land.kilometres(depth) as f32
 }
 
 /// A node of a new lake.
