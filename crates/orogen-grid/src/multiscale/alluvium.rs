@@ -1,5 +1,8 @@
 //! Sediment of rivers on valley floors.
 
+use super::growth::FLOOR_AREA;
+use super::growth_row::FLOOR_WIDTH;
+use super::law::MAX_FLOOR_FACTOR;
 use super::level::{Level, invalid};
 use super::refinement::Refinement;
 use super::surface::Surface;
@@ -10,13 +13,6 @@ use crate::hydrology::direction::{DISTANCES, STEPS};
 use crate::progress::Progress;
 use std::collections::BinaryHeap;
 use std::f32::consts::E;
-
-/// Drainage area, in km^2, from which rivers have floors, and half the width of a floor there, in metres.
-const FLOOR_AREA: f64 = 5.0;
-const FLOOR_WIDTH: f32 = 100.0;
-
-/// The largest factor of the width where the rock is soft.
-const MAX_FACTOR: f32 = 4.0;
 
 /// Slope of the rock below a floor, to which the sides of the valley continue.
 const ROCK_SLOPE: f32 = 0.25;
@@ -96,7 +92,7 @@ impl Refinement {
             }
             // On detail levels all of the logarithm is in `variation`.
             let logarithm = level.variation[q] + if self.is_detail(level.depth) { 0.0 } else { level.uplift[q] };
-            let factor = power(E, -logarithm).min(MAX_FACTOR) * (share - 1.0).min(1.0);
+            let factor = power(E, -logarithm).min(MAX_FLOOR_FACTOR) * (share - 1.0).min(1.0);
             let half = (FLOOR_WIDTH * share.sqrt() * factor).min(widest);
             ROCK_SLOPE * half * flatness(level, cell as f32, q)
         };

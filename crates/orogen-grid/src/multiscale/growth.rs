@@ -8,7 +8,7 @@ use super::stencil::Extent;
 use orogen_simd::{Body, Simd, dispatch};
 
 /// Drainage area, in km^2, from which rivers have floors.
-const FLOOR_AREA: f64 = 5.0;
+pub const FLOOR_AREA: f64 = 5.0;
 
 /// Smallest rise over one cell, in metres: heights fall strictly. On detail levels it shrinks with the cell, so that floors stay flat, as far as
 /// heights of a few kilometres have the digits.

@@ -20,6 +20,9 @@ pub const STABLE: f32 = 0.8;
 /// Factors that are given: the smallest and the largest.
 const FACTORS: RangeInclusive<f32> = 0.01..=100.0;
 
+/// The largest factor of the width of floors where the rock is soft.
+pub const MAX_FLOOR_FACTOR: f32 = 4.0;
+
 /// Exponent of uplift over erodibility in the stable slope.
 pub const STABLE_EXPONENT: f32 = 0.3;
 
@@ -126,7 +129,7 @@ fn floors(variation: &[f32], uplift: &[f32], floor: &mut [f32]) {
     let (variation, uplift) = (&variation[..n], &uplift[..n]);
     for i in 0..n {
         let factor = power(std::f32::consts::E, -(variation[i] + uplift[i]));
-        floor[i] = if factor < 4.0 { factor } else { 4.0 };
+        floor[i] = if factor < MAX_FLOOR_FACTOR { factor } else { MAX_FLOOR_FACTOR };
     }
 }
 
