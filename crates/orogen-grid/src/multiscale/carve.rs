@@ -93,16 +93,17 @@ impl Carved {
         let entry = Child { parent: target, corner: link.entry };
         let end = Child { parent: target, corner: heir(parent, target) };
         let length = |from, to| if from == to { 0.0 } else { children.distance(from, to, parents) };
-        // Water of lakes with an outlet does not fall: from a lake only beyond the exit, to a lake only up to the entry.
+        // Water of lakes with an outlet does not fall: from a lake only beyond the last child in it, to a lake only up to the entry.
         let (from_lake, to_lake) = (is_lake(parent.receiver[q]), is_lake(parent.receiver[target]));
-        let first = if from_lake { 0.0 } else { length(start, exit) };
+        let is_water = |child: Child| self.fixed[child.index(parents)] == WATER;
+        let first = if from_lake && is_water(exit) { 0.0 } else { length(start, exit) };
         let via = links.via(parent, q);
         let second = match via {
-            Some(via) if from_lake => length(via, entry),
+            Some(via) if from_lake && is_water(via) => length(via, entry),
             Some(via) => length(exit, via) + length(via, entry),
             None => length(exit, entry),
         };
-        let is_reached = to_lake && self.fixed[entry.index(parents)] == WATER;
+        let is_reached = to_lake && is_water(entry);
         let third = if is_reached { 0.0 } else { length(entry, end) };
         let whole = (first + second + third).max(0.01);
         let (to_exit, to_entry) = (first / whole, (first + second) / whole);
@@ -134,10 +135,11 @@ impl Carved {
         let (target, entry) = (arrival.target, arrival.entry);
         let own = |corner| Child { parent: target, corner }.index(links.size.0);
         let end = own(heir(parent, target));
-        if entry == end || self.fixed[entry] == WATER {
+        let drains = drains(parent.receiver[target]);
+        if entry == end || (self.fixed[entry] == WATER && !drains) {
             return;
         }
-        if parent.receiver[target] < NONE && own(links.list[target].exit) == entry {
+        if drains && own(links.list[target].exit) == entry {
             // The link joins the river below its node.
             self.area[end] -= arrival.area;
             return;
@@ -151,7 +153,7 @@ impl Carved {
     /// Keeps the areas between the node of the target and its donors: those of the level above need not be their sums.
     fn bound_area(&mut self, parent: &Level, links: &Links, arrival: &Arrival) {
         let (target, entry) = (arrival.target, arrival.entry);
-        if parent.receiver[target] >= NONE {
+        if !drains(parent.receiver[target]) {
             return;
         }
         let own = |corner| Child { parent: target, corner }.index(links.size.0);

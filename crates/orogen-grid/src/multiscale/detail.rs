@@ -8,6 +8,7 @@ use super::law::{CONCAVITY, Law, STABLE, STABLE_EXPONENT, river_slope};
 use super::level::Level;
 use super::refinement::Refinement;
 use super::rock;
+use super::scree;
 use super::stencil::Extent;
 use crate::erosion::power::power;
 use crate::hydrology::direction::{NONE, STEPS};
@@ -35,10 +36,13 @@ const FREE_AREA: f64 = 1e6;
 const CREEP_PASSES: usize = 2;
 
 /// Turns nodes of the finest level of valleys into those that detail levels begin with: off the lattice, with uplift over erodibility in `variation` and the
-/// logarithm of the stable slope in `uplift`. Values two nodes away from the edge are exact.
+/// logarithm of the stable slope in `uplift`. Values [`scree::REACH`] nodes away from the edge are exact.
 pub fn begin(land: &Refinement, level: &mut Level) {
     let width = level.window.width;
-    let stable = stable_slopes(land, level);
+    let mut stable = stable_slopes(land, level);
+    let mut variation = std::mem::take(&mut level.variation);
+    scree::lay(level, &mut stable, &mut variation);
+    level.variation = variation;
     for (q, stable) in stable.into_iter().enumerate() {
         let (x, y) = (level.window.x + (q % width) as i64, level.window.y + (q / width) as i64);
         let bits = hash::node(land.seed, level.depth, x, y, 11);

@@ -116,6 +116,7 @@ impl Body for Pass<'_> {
             };
             let around = Around {
                 height: extent.around(&growth.height, j),
+                fixed: extent.around(&growth.fixed, j),
                 distance: match spacing {
                     Spacing::Irregular(distances) => distances.around(extent, j),
                     Spacing::Regular => nothing,

@@ -42,6 +42,7 @@ pub struct Own<'a> {
 /// What a row of cells reads of its neighbours.
 pub struct Around<'a> {
     pub height: [&'a [f32]; 8],
+    pub fixed: [&'a [f32]; 8],
     /// Empty on the finest level, where nodes are on the lattice.
     pub distance: [&'a [f32]; 8],
     pub floor: [&'a [f32]; 8],
@@ -92,8 +93,14 @@ pub fn grow<const FLOORS: bool, const REGULAR: bool>(
     for code in 0..8 {
         let there =
             Neighbour { height: around.height[code], distance: around.distance[code], floor: around.floor[code] };
-        let there = Toward { there, code: code as f32, diagonal: code & 1 == 1 };
-        offer::<FLOORS, REGULAR>(&law, &there, &mut lowest[..n], &mut best[..n], &mut floor[..n]);
+        let there = Toward { there, code };
+        let [lowest, best, floor] = [&mut lowest[..n], &mut best[..n], &mut floor[..n]];
+        if code & 1 == 0 {
+            offer::<FLOORS, REGULAR, false>(&law, &there, [&[]; 2], lowest, best, floor);
+        } else {
+            let beside = [around.fixed[code - 1], around.fixed[(code + 1) & 7]];
+            offer::<FLOORS, REGULAR, true>(&law, &there, beside, lowest, best, floor);
+        }
     }
     if REGULAR {
         for code in [0usize, 2, 4, 6] {
@@ -130,8 +137,7 @@ struct Neighbour<'a> {
 /// The neighbours in one direction.
 struct Toward<'a> {
     there: Neighbour<'a>,
-    code: f32,
-    diagonal: bool,
+    code: usize,
 }
 
 #[inline(always)]
@@ -151,11 +157,13 @@ fn rises(own: &Own<'_>, scale: Scale, rise: &mut [f32], flat: &mut [f32], below:
     }
 }
 
-/// Takes the height over the neighbours in one direction where it is the lowest so far.
+/// Takes the height over the neighbours in one direction where it is the lowest so far. No link crosses a river that leads from one of the two cells
+/// `beside` a diagonal to the other: it would pass under that river.
 #[inline(always)]
-fn offer<const FLOORS: bool, const REGULAR: bool>(
+fn offer<const FLOORS: bool, const REGULAR: bool, const DIAGONAL: bool>(
     law: &Law<'_>,
     toward: &Toward<'_>,
+    beside: [&[f32]; 2],
     lowest: &mut [f32],
     best: &mut [f32],
     floor: &mut [f32],
@@ -166,16 +174,21 @@ fn offer<const FLOORS: bool, const REGULAR: bool>(
     let there = &toward.there.height[..n];
     let distances = &toward.there.distance[..if REGULAR { 0 } else { n }];
     let floors = &toward.there.floor[..if FLOORS { n } else { 0 }];
-    let regular = if toward.diagonal { SQRT_2 } else { 1.0 };
+    let regular = if DIAGONAL { SQRT_2 } else { 1.0 };
+    let direct = toward.code as f32;
+    let beside = beside.map(|row| &row[..if DIAGONAL { n } else { 0 }]);
+    // The directions from each of the cells beside to the other.
+    let across = [((toward.code + 2) & 7) as f32, ((toward.code + 6) & 7) as f32];
     for i in 0..n {
         let distance = if REGULAR { regular } else { distances[i] };
         let left = if FLOORS { floors[i] - distance * law.cell } else { 0.0 };
         let slope = if left > 0.0 { flat[i] } else { rise[i] };
         let candidate = there[i] + distance * slope;
-        let possible = (there[i] < below[i]) | (fixed[i] == toward.code);
+        let crosses = DIAGONAL && (beside[0][i] == across[0]) | (beside[1][i] == across[1]);
+        let possible = ((there[i] < below[i]) & !crosses) | (fixed[i] == direct);
         let better = possible & (candidate < lowest[i]);
         lowest[i] = if better { candidate } else { lowest[i] };
-        best[i] = if better { toward.code } else { best[i] };
+        best[i] = if better { direct } else { best[i] };
         if FLOORS {
             floor[i] = if better { left } else { floor[i] };
         }
@@ -222,5 +235,42 @@ fn floors([area, width, fixed]: [&[f32]; 3], floor: &[f32], floor_area: f32, out
         let own = FLOOR_WIDTH * share.sqrt() * width[i];
         let own = if (share > 1.0) & (fixed[i] < WATER) { own } else { 0.0 };
         out[i] = if floor[i] > own { floor[i] } else { own };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The direction that a free node takes whose lowest neighbour is in the south-east, beside a river at the east with this fixed receiver.
+    fn receiver(river: f32) -> f32 {
+        let heights = [[30.0], [5.0], [31.0], [40.0], [20.0], [40.0], [40.0], [40.0]];
+        let fixed = [[river], [FREE], [FREE], [FREE], [FREE], [FREE], [FREE], [FREE]];
+        let own = Own {
+            height: &[100.0],
+            area: &[1.0],
+            fixed: &[FREE],
+            river: &[1.0],
+            stable: &[0.5],
+            width: &[],
+            least: &[],
+        };
+        let around = Around {
+            height: heights.each_ref().map(|row| &row[..]),
+            fixed: fixed.each_ref().map(|row| &row[..]),
+            distance: [&[1.0]; 8],
+            floor: [&[]; 8],
+        };
+        let (mut height, mut receiver) = ([0.0], [8.0]);
+        let scale = Scale { cell: 60.0, least_rise: 0.01, floor_area: 0.0 };
+        grow::<false, false>(&mut Row::default(), &own, &around, scale, &mut height, &mut receiver, &mut []);
+        receiver[0]
+    }
+
+    #[test]
+    fn streams_do_not_pass_under_rivers() {
+        // A river to the south stays away, one to the south-west crosses the way to the south-east.
+        assert_eq!((receiver(2.0), receiver(FREE)), (1.0, 1.0));
+        assert_eq!(receiver(3.0), 4.0);
     }
 }

@@ -93,13 +93,14 @@ pub fn rims(land: &Refinement, depth: usize, extent: Extent, carved: &Carved) ->
         .collect();
     let mut next = least.clone();
     let mut inner = extent;
-    for _ in 0..RIM {
+    for step in 0..RIM {
         inner = inner.shrunk(1);
         for j in inner.rows() {
             let around = inner.around(&least, j);
             for (k, out) in inner.row_mut(&mut next, j).iter_mut().enumerate() {
                 for (code, there) in around.iter().enumerate() {
-                    let distance = if code & 1 == 1 { SQRT_2 } else { 1.0 };
+                    // All cells at the shore are as high: none of them lets water out.
+                    let distance = if step > 0 && code & 1 == 1 { SQRT_2 } else { 1.0 };
                     *out = out.max(there[k] - fall * distance);
                 }
             }
@@ -111,6 +112,13 @@ pub fn rims(land: &Refinement, depth: usize, extent: Extent, carved: &Carved) ->
         *least = if *fixed == FREE { *least } else { ANYTHING };
     }
     least
+}
+
+/// Land around lakes has not fallen below its smallest height since `before`.
+pub fn hold(rims: &[f32], before: &[f32], heights: &mut [f32]) {
+    for ((height, &before), &least) in heights.iter_mut().zip(before).zip(rims) {
+        *height = height.max(before.min(least));
+    }
 }
 
 /// The distance of a point from a line between two others.

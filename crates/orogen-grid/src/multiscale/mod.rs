@@ -38,6 +38,7 @@ mod refine;
 pub mod refinement;
 mod rock;
 mod routes;
+mod scree;
 mod shores;
 mod stencil;
 mod straighten;

@@ -45,8 +45,9 @@ const FINEST_AREA_PASSES: usize = 6;
 const RAISE_PASSES: usize = 6;
 const LIMIT_PASSES: usize = 3;
 
-/// Passes that raise banks on the finest level.
+/// Passes that raise banks on the finest level, and rounds of them: nodes that drained to a bank choose their receivers again after each.
 const BANK_PASSES: usize = 3;
+const BANK_ROUNDS: usize = 2;
 
 /// Drainage area, in cells, below which nodes of rivers of the level above choose their receivers again.
 const FREE_AREA: f32 = 64.0;
@@ -72,7 +73,7 @@ impl Refinement {
         let growth = growth + if lakes::begin_at(self, above) { 2 * lakes::REACH } else { 0 };
         let growth = growth + if self.lakes > 0.0 { lake_shores::RIM + 1 } else { 0 };
         if finest {
-            growth + straighten::REACH + creep_passes(self.creep) + BANK_PASSES + 1
+            growth + straighten::REACH + creep_passes(self.creep) + BANK_ROUNDS * (BANK_PASSES + 1)
         } else if self.is_detail(depth) {
             growth + detail::creep_passes(self)
         } else {
@@ -192,15 +193,18 @@ impl Refinement {
                 let slopes =
                     Hillsides { area: &growth.area, receiver: &growth.receiver, fixed: &growth.fixed, factor: &factor };
                 creep(extent, &mut growth.height, &mut growth.spare, slopes, Kept::VALLEYS);
+                lake_shores::hold(&rims, &growth.spare, &mut growth.height);
             }
-            for _ in 0..BANK_PASSES {
-                progress.check()?;
+            for _ in 0..BANK_ROUNDS {
+                for _ in 0..BANK_PASSES {
+                    progress.check()?;
+                    extent = extent.shrunk(1);
+                    let Growth { height, spare, area, receiver, fixed, .. } = &mut growth;
+                    raise_banks(extent, height, spare, area, receiver, fixed);
+                }
                 extent = extent.shrunk(1);
-                let Growth { height, spare, area, receiver, fixed, .. } = &mut growth;
-                raise_banks(extent, height, spare, area, receiver, fixed);
+                steepest(extent, &growth.height, &growth.fixed, &mut growth.receiver);
             }
-            extent = extent.shrunk(1);
-            steepest(extent, &growth.height, &growth.fixed, &mut growth.receiver);
             progress.step(FINEST_WORK)?;
         }
         if self.is_detail(depth) {
@@ -212,6 +216,7 @@ impl Refinement {
                 let slopes =
                     Hillsides { area: &growth.area, receiver: &growth.receiver, fixed: &growth.fixed, factor: &factor };
                 creep(extent, &mut growth.height, &mut growth.spare, slopes, kept);
+                lake_shores::hold(&rims, &growth.spare, &mut growth.height);
             }
         }
         for _ in 0..last_area_passes(finest) {

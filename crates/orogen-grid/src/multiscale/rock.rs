@@ -11,14 +11,18 @@ const ROCK_VARIATION: f32 = 0.9;
 
 /// What a detail level adds to the logarithm of the stable slope, relative to the variation of uplift over erodibility: rock is rougher than soil.
 pub fn roughness(logarithm: f32) -> f32 {
-    // From 0.6, where the logarithm is -0.5, to 1.
-    SOIL_VARIATION + ROCK_VARIATION * ((logarithm + 0.5) * 2.0).clamp(0.0, 1.0)
+    // Slopes from 0.7 to 1.1.
+    SOIL_VARIATION + ROCK_VARIATION * share(logarithm, [-0.35, 0.1])
 }
 
 /// The factor of creep where slopes are stable up to this one: 1 for soil.
 pub fn creep_factor(stable: f32) -> f32 {
-    let rock = ((stable - SOIL_SLOPE) / (ROCK_SLOPE - SOIL_SLOPE)).clamp(0.0, 1.0);
-    1.0 - (1.0 - ROCK_CREEP) * rock
+    1.0 - (1.0 - ROCK_CREEP) * share(stable, [SOIL_SLOPE, ROCK_SLOPE])
+}
+
+/// The share of the way from the first to the second value, 0 before and 1 after.
+pub fn share(value: f32, [first, second]: [f32; 2]) -> f32 {
+    ((value - first) / (second - first)).clamp(0.0, 1.0)
 }
 
 #[cfg(test)]
@@ -29,8 +33,8 @@ mod tests {
     fn steep_slopes_are_rough_and_keep_their_shape() {
         assert_eq!((creep_factor(0.2), creep_factor(0.5)), (1.0, 1.0));
         assert!(creep_factor(0.8) < 0.5 && (creep_factor(3.0) - ROCK_CREEP).abs() < 1e-6);
-        // Slopes of 0.3, 0.7 and 1.2.
-        let [gentle, steep, steepest] = [-1.2, -0.36, 0.18].map(roughness);
+        // Slopes of 0.3, 0.8 and 1.2.
+        let [gentle, steep, steepest] = [-1.2, -0.2, 0.18].map(roughness);
         assert!(gentle == SOIL_VARIATION && steep > gentle && steepest == SOIL_VARIATION + ROCK_VARIATION);
     }
 }

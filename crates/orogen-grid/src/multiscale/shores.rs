@@ -12,8 +12,8 @@ use crate::hydrology::direction::{NONE, STEPS};
 enum Held {
     /// Nothing.
     Free,
-    /// A river passes: land.
-    River,
+    /// A river passes, on links whose lowest end is at this height: land.
+    River(f32),
     /// A river ends here: water.
     Mouth,
     /// A river passes through a lake with this level.
@@ -57,10 +57,12 @@ pub fn standing_water(parent: &Level, links: &Links, children: &mut Children) ->
             if parent.receiver[p] < NONE && held[q] == Held::Free && children.shore[q] < 0.0 {
                 let around = [q - 1, q + 1, q - width, q + width];
                 let wet = around.into_iter().filter(|&beside| levels[beside] < LAND);
-                if wet.clone().any(|one| wet.clone().any(|other| levels[one] != levels[other])) {
-                    continue;
+                let Some(beside) = wet.clone().next() else { continue };
+                if wet.clone().all(|other| levels[other] == levels[beside])
+                    && !is_beside_lower(&held, width, q, levels[beside])
+                {
+                    gained.push((q, beside));
                 }
-                gained.extend(around.into_iter().find(|&beside| levels[beside] < LAND).map(|beside| (q, beside)));
             }
         }
     }
@@ -71,14 +73,14 @@ pub fn standing_water(parent: &Level, links: &Links, children: &mut Children) ->
     for ((shore, &level), &held) in children.shore.iter_mut().zip(&levels).zip(&held) {
         *shore = match held {
             _ if level < LAND => shore.min(-0.5 * children.indent),
-            Held::River => shore.max(0.8 * children.indent),
+            Held::River(_) => shore.max(0.8 * children.indent),
             _ => shore.max(0.3 * children.indent),
         };
     }
     Water { levels, gained }
 }
 
-/// Lakes with an outlet stay apart from other water: where two levels meet, children that no link holds become land.
+/// Lakes with an outlet stay apart from other water and from lower rivers: where they meet, children that no link holds become land.
 fn dry_between(parent: &Level, held: &[Held], extent: Extent, levels: &mut [f32]) {
     if !parent.receiver.iter().any(|code| is_lake(*code)) {
         return;
@@ -93,7 +95,7 @@ fn dry_between(parent: &Level, held: &[Held], extent: Extent, levels: &mut [f32]
         for q in extent.columns().map(|i| j * width + i).filter(|q| levels[*q] < LAND && held[*q] == Held::Free) {
             let around = STEPS.map(|(east, south)| q.wrapping_add_signed(south * width as isize + east));
             let meets = |o: usize| levels[o] < LAND && levels[o] != levels[q] && (in_lake(q) || in_lake(o));
-            if around.into_iter().any(meets) {
+            if around.into_iter().any(meets) || (in_lake(q) && is_beside_lower(held, width, q, levels[q])) {
                 dry.push(q);
             }
         }
@@ -101,17 +103,28 @@ fn dry_between(parent: &Level, held: &[Held], extent: Extent, levels: &mut [f32]
     dry.into_iter().for_each(|q| levels[q] = LAND);
 }
 
+/// Whether a river that is, or soon will be, lower than a water level passes beside a child.
+fn is_beside_lower(held: &[Held], width: usize, q: usize, level: f32) -> bool {
+    STEPS.into_iter().any(|(east, south)| {
+        let near = q.wrapping_add_signed(south * width as isize + east);
+        matches!(held[near], Held::River(lowest) if lowest < level)
+    })
+}
+
 /// What the kept links say about each child.
 fn held(parent: &Level, links: &Links) -> Vec<Held> {
     let parents = links.size.0;
+    let inner = || links.inner().filter(|q| links.list[*q].kept);
+    // Nodes of lakes with water from the same lake.
+    let mut fed = vec![false; links.list.len()];
+    for q in inner().filter(|q| is_lake(parent.receiver[*q])) {
+        fed[links.target(parent, q)] = true;
+    }
     let mut held = vec![Held::Free; 4 * links.list.len()];
-    for q in links.inner() {
+    for q in inner() {
         let link = links.list[q];
         let own = |corner| Child { parent: q, corner }.index(parents);
         let start = own(heir(parent, q));
-        if !link.kept {
-            continue;
-        }
         let code = parent.receiver[q];
         if !drains(code) {
             if link.fed && held[start] == Held::Free {
@@ -119,18 +132,33 @@ fn held(parent: &Level, links: &Links) -> Vec<Held> {
             }
             continue;
         }
-        let passed = if is_lake(code) { Held::Lake(parent.height[q]) } else { Held::River };
-        (held[start], held[own(link.exit)]) = (passed, passed);
-        if let Some(via) = links.via(parent, q) {
-            held[via.index(parents)] = passed;
-        }
         let target = links.target(parent, q);
         let entry = Child { parent: target, corner: link.entry }.index(parents);
-        if is_lake(code) && is_lake(parent.receiver[target]) {
-            held[entry] = Held::Lake(parent.height[target]);
+        let (lake, river) = (Held::Lake(parent.height[q]), Held::River(parent.height[target]));
+        let is_outlet = is_lake(code) && !is_lake(parent.receiver[target]);
+        held[start].gain(if is_lake(code) { lake } else { river });
+        // A lake ends at the start of its outlet's link, so that the river falls along all of it, or behind it if there is nothing else of the lake.
+        let passed = if is_lake(code) && !(is_outlet && fed[q]) { lake } else { river };
+        held[own(link.exit)].gain(passed);
+        if let Some(via) = links.via(parent, q) {
+            held[via.index(parents)].gain(passed);
+        }
+        if is_lake(code) && !is_outlet {
+            held[entry].gain(Held::Lake(parent.height[target]));
         } else if parent.receiver[target] < NONE {
-            held[entry] = Held::River;
+            held[entry].gain(river);
         }
     }
     held
+}
+
+impl Held {
+    /// What two links say: lakes rather than rivers, and of rivers the lowest.
+    fn gain(&mut self, other: Held) {
+        *self = match (*self, other) {
+            (Held::Lake(level), Held::River(_)) => Held::Lake(level),
+            (Held::River(one), Held::River(other)) => Held::River(one.min(other)),
+            (_, other) => other,
+        };
+    }
 }

@@ -62,6 +62,27 @@ fn every_lake_drains_to_its_outlet_and_holds_the_water_of_its_rivers() {
 }
 
 #[test]
+fn water_leaves_lakes_only_along_rivers() {
+    let land = land();
+    for depth in [8, 10, 11, 12] {
+        let level = level(&land, depth, &window(&land, depth, district(depth), (200, 200)));
+        let (mut shores, mut lower) = (0, 0);
+        for q in (0..level.window.len()).filter(|q| level.receiver[*q] >= LAKE) {
+            let around = STEPS.into_iter().filter_map(|step| level.neighbour(q, step));
+            for near in around.filter(|near| level.receiver[*near] < NONE) {
+                shores += 1;
+                let is_river = level.area[near] >= 64.0;
+                assert!(is_river || level.height[near] > level.height[q], "level {depth}: the shore is lower");
+                lower += usize::from(level.height[near] < level.height[q] - 1.0);
+            }
+        }
+        assert!(shores > 40, "level {depth}: {shores}");
+        // Outlets, and other rivers that come near.
+        assert!(lower * 50 < shores, "level {depth}: {lower} of {shores} links across the shore fall by more than 1 m");
+    }
+}
+
+#[test]
 fn windows_with_lakes_are_crops_of_a_larger_one() {
     let land = land();
     for depth in [6, 7, 8, 9, 11, 12] {

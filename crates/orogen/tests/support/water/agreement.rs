@@ -28,7 +28,7 @@ pub struct Agreement {
 ///
 /// A catchment lies in the window if no water enters it from the edge, neither by D8 on the heights nor in rivers of
 /// `flow`. By D8, water enters wherever the catchment touches the row of cells beside the edge. Cells beside one with water
-/// from the edge are excluded, too. Cells in lakes and the sea are not compared.
+/// from the edge are excluded, too, and rivers below a lake that crosses the edge: its water leaves there. Cells in lakes and the sea are not compared.
 pub fn measure(network: &Network, ranges: &[[f64; 2]]) -> Vec<Agreement> {
     let water = network.water;
     let window = water.window();
@@ -41,8 +41,18 @@ pub fn measure(network: &Network, ranges: &[[f64; 2]]) -> Vec<Agreement> {
         let marked = entered[cell];
         entered[receivers.of(cell)] |= marked;
     }
-    let mut rivers_entered: Vec<bool> =
-        (0..window.len()).map(|cell| near_edge(cell) && water.area(cell) >= RIVER).collect();
+    let mut rivers_entered: Vec<bool> = (0..window.len())
+        .map(|cell| near_edge(cell) && (water.area(cell) >= RIVER || water.is_standing(cell)))
+        .collect();
+    let mut crossing: Vec<usize> =
+        (0..window.len()).filter(|cell| rivers_entered[*cell] && water.is_standing(*cell)).collect();
+    while let Some(cell) = crossing.pop() {
+        for (_, near) in neighbours(window, cell).filter(|(_, near)| water.is_standing(*near)) {
+            if !std::mem::replace(&mut rivers_entered[near], true) {
+                crossing.push(near);
+            }
+        }
+    }
     network.spread_downstream(&mut rivers_entered);
 
     let own = window.cell * window.cell;
