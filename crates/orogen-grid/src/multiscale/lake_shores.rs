@@ -130,3 +130,29 @@ fn distance(at: [f32; 2], from: [f32; 2], to: [f32; 2]) -> f32 {
     let (x, y) = (away[0] - share * along[0], away[1] - share * along[1]);
     (x * x + y * y).sqrt()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_land_at_the_shore_is_above_the_lake() {
+        let extent = Extent { width: 9, height: 9, inset: 0 };
+        let lake = 4 * 9 + 4;
+        let plane = |value: f32| vec![value; extent.len()];
+        let (mut height, mut receiver, mut fixed) = (plane(50.0), plane(0.0), plane(FREE));
+        (height[lake], receiver[lake], fixed[lake]) = (100.0, 2.0, WATER);
+        // The outlet keeps its height.
+        fixed[lake + 9] = 2.0;
+        let carved = Carved { height, area: plane(1.0), receiver, fixed, distances: None };
+        let land = Refinement { lakes: 1.0, ..Refinement::default() };
+        let least = rims(&land, land.levels, extent, &carved);
+        for (east, south) in STEPS.into_iter().filter(|step| *step != (0, 1)) {
+            let near = lake.wrapping_add_signed(9 * south + east);
+            assert!(least[near] > 100.0, "{} m at {east}, {south}", least[near]);
+        }
+        assert!(least[lake + 9] == ANYTHING && least[lake] == ANYTHING);
+        assert!(least[lake + 2] < 100.0 && least[lake + 2] > 50.0 && least[lake + 4] == ANYTHING);
+        assert!(rims(&Refinement::default(), 11, extent, &carved).is_empty());
+    }
+}

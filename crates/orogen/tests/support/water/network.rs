@@ -24,14 +24,13 @@ pub struct Network<'a> {
     unexplained: Vec<f64>,
     /// Whether a cell's receiver had less than half of the cell's area left.
     starved: Vec<bool>,
-    /// All cells, each after those downstream of it.
-    order: Vec<u32>,
 }
 
 impl Network<'_> {
     /// Reads `receiver` if the world has it, and finds the receivers from `flow` otherwise.
     pub fn new(water: &Water) -> Network<'_> {
         let (window, flow) = (water.window(), water.flow.data());
+        // Each cell after those downstream of it.
         let mut order: Vec<u32> = (0..flow.len() as u32).collect();
         order.sort_unstable_by(|a, b| compare(water, *a as usize, *b as usize).then(a.cmp(b)));
         let mut network = Network {
@@ -39,10 +38,8 @@ impl Network<'_> {
             receivers: vec![MISSING; flow.len()],
             unexplained: flow.iter().map(|area| f64::from(*area) - own_area(water)).collect(),
             starved: vec![false; flow.len()],
-            order,
         };
-        for k in 0..network.order.len() {
-            let cell = network.order[k] as usize;
+        for cell in order.into_iter().map(|cell| cell as usize) {
             let to = match &water.receiver {
                 Some(codes) => {
                     let code = codes.data()[cell] as usize;
@@ -100,11 +97,14 @@ impl Network<'_> {
         self.unexplained[cell] > half && (water.receiver.is_some() || possible() < half)
     }
 
-    /// Marks everything downstream of the marked cells.
+    /// Marks everything downstream of the marked cells, also where areas fall.
     pub fn spread_downstream(&self, marks: &mut [bool]) {
-        for cell in self.order.iter().rev().map(|cell| *cell as usize).filter(|cell| self.receivers[*cell] != MISSING) {
-            let marked = marks[cell];
-            marks[self.receivers[cell] as usize] |= marked;
+        for cell in (0..marks.len()).filter(|cell| marks[*cell]).collect::<Vec<_>>() {
+            let mut at = cell;
+            while let Some(to) = self.receiver(at).filter(|to| !marks[*to]) {
+                marks[to] = true;
+                at = to;
+            }
         }
     }
 }

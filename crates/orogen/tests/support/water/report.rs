@@ -82,7 +82,7 @@ pub fn measure(tiles: Tiles, mosaic: &Mosaic) -> Result<Vec<Figure>> {
     let mut add = |name: &str, value: f64, of: usize, target: Target| {
         figures.push(Figure::new(name, value, of, target));
     };
-    let found = lakes::measure(&water);
+    let found = lakes::measure(&network);
     add("lakes, step of the surface in m", found.step.into(), found.cells, Target::AtMost(0.05));
     add("lakes, surface above the shore in m", found.above_shore.into(), found.cells, Target::AtMost(1.0));
     Ok(figures)
