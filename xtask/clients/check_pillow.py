@@ -44,8 +44,10 @@ for preset in ("alpine", "island"):
 
     # Water is where blue is above red. Up to 2 % of the pixels may differ at the shore.
     blue = colours[..., 2] > colours[..., 0]
-    sea = float(blue.mean())
+    lakes = numpy.load(export(preset, f"{preset}-lakes.npy", "--layer", "lakes", *options)) > 0.0
+    sea = float((blue & ~lakes).mean())
     checks.near(f"{preset} map.png: sea and land are told apart", 1.0 - sea, summary["land_share"], 0.02)
+    checks.that(f"{preset} map.png: lakes are blue", bool(blue[lakes].all()))
 
     exported = pixels(export(preset, f"{preset}-export.png", *options), "I;16", shape).astype("f8")
     likeness = float(numpy.corrcoef(exported.ravel(), heights.ravel())[0, 1])

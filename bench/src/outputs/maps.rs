@@ -40,7 +40,7 @@ pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
     };
     Ok(vec![
         figure(format!("hillshaded map of {SIDE} x {SIDE}, tint and shading, a pixel a sample, as PNG"), &|ground| {
-            Painter::fit(ground, 0.0).write_png(&mut Counted(0), ground, &[]).map_err(|e| e.to_string())
+            Painter::fit(ground, 0.0).write_png(&mut Counted(0), ground, None, &[]).map_err(|e| e.to_string())
         })?,
         figure(
             format!("map sheet of {SIDE} x {SIDE} heights, contours, labels, rivers, at 150 dpi, as PNG"),

@@ -82,7 +82,7 @@ fn full_grid(grid: &Grid, options: &Options) -> Result<Figure, String> {
         bytes.0 = 0;
         let shape = Shape::lattice(black_box(grid), 1).map_err(|e| e.to_string())?;
         let mut texture = Vec::new();
-        let drawn = painter.write_png(&mut texture, grid, &[]);
+        let drawn = painter.write_png(&mut texture, grid, None, &[]);
         let halo = Halo::default();
         let levels = [Surface { grid, halo: &halo, shape: &shape, exaggeration: 1.0, painter: None, progress: None }];
         let model = Model {

@@ -71,9 +71,15 @@ pub fn outputs(folder: &Path, policy: &OutputPolicy) -> Result<Vec<Output>> {
     FILES.iter().map(|name| policy.output(folder.join(name))).collect()
 }
 
-/// Writes all files to their `outputs`, or none: they are put in place only after all are written to disk. `seconds`
-/// returns the duration of the command.
-pub fn write(outputs: &[Output], recipe: &Recipe, grid: &Grid, seconds: impl FnOnce() -> f64) -> Result<Report> {
+/// Writes all files to their `outputs`, or none: they are put in place only after all are written to disk. The map shows `lakes`, their depth in
+/// metres. `seconds` returns the duration of the command.
+pub fn write(
+    outputs: &[Output],
+    recipe: &Recipe,
+    grid: &Grid,
+    lakes: Option<&Grid>,
+    seconds: impl FnOnce() -> f64,
+) -> Result<Report> {
     let levels = Levels::of(grid);
     let notes = notes::of_heights(grid.window().cell, &levels);
     let notes: Vec<(&str, &str)> = notes.iter().map(|(keyword, text)| (*keyword, text.as_str())).collect();
@@ -83,7 +89,7 @@ pub fn write(outputs: &[Output], recipe: &Recipe, grid: &Grid, seconds: impl FnO
     let (pictures, summary) = rayon::join(
         || {
             rayon::join(
-                || stage(2, &|out| Painter::fit(grid, recipe.world.sea_level).write_png(out, grid, &notes[..1])),
+                || stage(2, &|out| Painter::fit(grid, recipe.world.sea_level).write_png(out, grid, lakes, &notes[..1])),
                 || {
                     let grey16 = stage(0, &|out| png::write_grey16(out, grid, &levels, &notes))?;
                     let grey8 = stage(1, &|out| png::write_grey8(out, grid, &levels, &notes))?;

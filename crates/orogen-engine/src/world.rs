@@ -74,6 +74,9 @@ impl Session {
 /// The output from which maps and meshes are made.
 pub const HEIGHT: &str = "height";
 
+/// The output with the depth of lakes, in metres, where a recipe has one.
+pub const LAKES: &str = "lakes";
+
 impl World {
     /// Opens a recipe.
     ///

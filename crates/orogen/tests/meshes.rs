@@ -268,7 +268,7 @@ fn levels_of_detail_and_pictures_are_in_one_file() {
     let grid = land(64, 48);
     let painter = Painter::fit(&grid, 0.0);
     let mut picture = Vec::new();
-    painter.write_png(&mut picture, &grid, &[]).unwrap();
+    painter.write_png(&mut picture, &grid, None, &[]).unwrap();
     let shapes: Vec<Shape> = [2.0, 8.0, 32.0].iter().map(|error| adaptive(&grid, *error).unwrap()).collect();
     let levels: Vec<Surface> = shapes.iter().map(|shape| surface(&grid, shape)).collect();
     let glb = Glb::read(&glb_bytes(&levels, Some(&picture)));
@@ -291,7 +291,7 @@ fn a_level_with_a_normal_map_has_tangents_and_a_material_of_its_own() {
     let grid = land(64, 48);
     let painter = Painter::fit(&grid, 0.0);
     let mut picture = Vec::new();
-    painter.write_png(&mut picture, &grid, &[]).unwrap();
+    painter.write_png(&mut picture, &grid, None, &[]).unwrap();
     let shapes: Vec<Shape> = [1, 4, 8].iter().map(|step| Shape::lattice(&grid, *step).unwrap()).collect();
     for colors in [false, true] {
         let painter = colors.then_some(&painter);

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use orogen::Progress;
 use orogen::words::number;
+use orogen::world::{HEIGHT, LAKES};
 
 use crate::bar::Bar;
 use crate::failure::Failure;
@@ -87,17 +88,19 @@ fn make(source: &Source, args: &Args, progress: &Progress) -> Result<String, Fai
     let world = args.run.limits.open(recipe, &budget)?;
     let window = args.samples.window(&world)?;
     let outputs = pictures::outputs(&args.out, &policy)?;
-    let plan = world.plan(&[orogen::world::HEIGHT], &window)?;
+    let mut layers = vec![HEIGHT];
+    layers.extend(world.recipe().outputs().find(|name| *name == LAKES));
+    let plan = world.plan(&layers, &window)?;
     let folder = Folder::ready(&args.out)?;
     // The pictures are encoded in parallel, in bands of rows.
     let _pictures = budget.reserve(ENCODERS)?;
     let [making, writing] = progress.parts([world.work(&plan)?, WRITING * window.len() as f64]);
-    let mut grids = world.run(&plan, &making)?;
-    let Some(grid) = grids.pop() else {
+    let mut grids = world.run(&plan, &making)?.into_iter();
+    let (Some(grid), lakes) = (grids.next(), grids.next()) else {
         return Ok(String::new());
     };
-    finite::check(orogen::world::HEIGHT, &grid)?;
-    let report = pictures::write(&outputs, world.recipe(), &grid, || begun.elapsed().as_secs_f64())?;
+    finite::check(HEIGHT, &grid)?;
+    let report = pictures::write(&outputs, world.recipe(), &grid, lakes.as_ref(), || begun.elapsed().as_secs_f64())?;
     writing.finish();
     folder.keep();
     Ok(match (args.json, args.run.quiet) {

@@ -49,6 +49,23 @@ fn it_writes_its_files_and_they_agree() {
 }
 
 #[test]
+fn lakes_are_blue_on_the_map() {
+    let folder = Folder::new();
+    let head =
+        "orogen = 1\n[world]\nsize = [640.0, 480.0]\ncell = 10.0\n[nodes.ground]\nop = \"fbm\"\nwavelength = 200.0\n";
+    let nodes = "[nodes.land]\nop = \"expr\"\nexpr = \"500 + ground * 100\"\n[nodes.lakes]\nop = \"lakes\"\nsource = \"land\"\n";
+    folder.write("land.toml", format!("{head}{nodes}[outputs]\nheight = \"lakes\"\nlakes = \"lakes.lake\"\n"));
+    folder.good(&["generate", "land.toml", "-o", "a"]);
+    folder.good(&["export", "land.toml", "--layer", "lakes", "-o", "lakes.npy", "-q"]);
+    let (map, lakes) = (png(&folder.read("a/map.png")), npy(&folder.read("lakes.npy")));
+    let wet = lakes.data().iter().filter(|depth| **depth > 0.0).count();
+    assert!(wet > 20 && wet < 2000, "{wet} samples in lakes");
+    for (pixel, &depth) in map.data.chunks_exact(3).zip(lakes.data()) {
+        assert_eq!(pixel[2] > pixel[1], depth > 0.0, "{pixel:?} at a depth of {depth} m");
+    }
+}
+
+#[test]
 fn the_recipe_it_writes_makes_the_same_terrain() {
     let folder = Folder::with_small();
     folder.good(&["generate", "small.toml", "-o", "a", "--seed", "9223372036854775807"]);

@@ -171,7 +171,7 @@ impl Prepared {
     ///
     /// Fails if `out` fails, or if the work is cancelled.
     pub fn picture(&self, out: &mut dyn io::Write) -> io::Result<()> {
-        self.painter.write_png(&mut Stopping { out, progress: &self.painting }, &self.grid, &[])?;
+        self.painter.write_png(&mut Stopping { out, progress: &self.painting }, &self.grid, None, &[])?;
         self.painting.finish();
         Ok(())
     }

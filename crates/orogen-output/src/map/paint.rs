@@ -9,11 +9,18 @@ use super::shade::Shade;
 use orogen_grid::analysis::slope::{beyond, extend_row, gradients_between};
 use orogen_grid::grid::Grid;
 use orogen_io::format::png::{self, Picture, Pixel};
-use orogen_io::palette::color::Encoder;
+use orogen_io::palette::color::{Encoder, Rgb, decode};
 use orogen_io::palette::tint::Tint;
 
 /// Strength of the shading of the sea floor relative to land.
 const UNDER_WATER: f32 = 0.35;
+
+/// Colour of lakes at the shore, and in deep water.
+pub const LAKES: Rgb = [170, 211, 233];
+const DEEP_LAKES: Rgb = [92, 152, 200];
+
+/// Depth in metres at which the colour is half of both.
+const HALF_DEPTH: f32 = 60.0;
 
 /// The style of a relief map: fitted to a world once, then the same for every window of it.
 #[derive(Debug, Clone)]
@@ -59,15 +66,37 @@ impl Painter {
         });
     }
 
-    /// Writes the map of a whole grid as an RGB PNG, one pixel per sample. Beyond its edges heights are extrapolated
-    /// linearly.
-    pub fn write_png(&self, out: &mut dyn Write, grid: &Grid, notes: &[(&str, &str)]) -> io::Result<()> {
+    /// Writes the map of a whole grid as an RGB PNG, one pixel per sample, with lakes where `lakes`, their depth in metres over the same
+    /// window, is above 0. Beyond its edges heights are extrapolated linearly.
+    pub fn write_png(
+        &self,
+        out: &mut dyn Write,
+        grid: &Grid,
+        lakes: Option<&Grid>,
+        notes: &[(&str, &str)],
+    ) -> io::Result<()> {
         let (width, height) = (grid.width(), grid.height());
         let picture = Picture::new(width, height, Pixel::Rgb8).with_notes(notes);
         png::write(out, &picture, |rows, bytes| {
-            self.paint(grid, rows, bytes);
+            self.paint(grid, rows.clone(), bytes);
+            if let Some(lakes) = lakes {
+                self.paint_lakes(lakes, rows, bytes);
+            }
             Ok(())
         })
+    }
+
+    /// Paints lakes over some painted rows, from their depth in metres.
+    fn paint_lakes(&self, lakes: &Grid, rows: Range<usize>, bytes: &mut [u8]) {
+        let [shallow, deep] = [LAKES, DEEP_LAKES].map(|color| color.map(decode));
+        for (row, bytes) in rows.zip(bytes.chunks_exact_mut(3 * lakes.width())) {
+            for (&depth, pixel) in lakes.row(row).iter().zip(bytes.as_chunks_mut::<3>().0) {
+                if depth > 0.0 {
+                    let share = depth.min(1e6) / (depth.min(1e6) + HALF_DEPTH);
+                    *pixel = self.encoder.bytes(std::array::from_fn(|c| shallow[c] + share * (deep[c] - shallow[c])));
+                }
+            }
+        }
     }
 
     /// Paints some rows of a whole grid in sRGB bytes, three per sample. Beyond its edges heights are extrapolated
@@ -135,7 +164,7 @@ mod tests {
             let grid = hill(width, height);
             let painter = Painter::fit(&grid, 200.0);
             let mut bytes = Vec::new();
-            painter.write_png(&mut bytes, &grid, &[]).unwrap();
+            painter.write_png(&mut bytes, &grid, None, &[]).unwrap();
             let wide = extended(&grid);
             let mut expect = vec![0; 3 * width * height];
             for (j, row) in expect.chunks_exact_mut(3 * width).enumerate() {
@@ -149,7 +178,7 @@ mod tests {
     fn land_is_lit_from_the_north_west_and_the_sea_is_blue() {
         let grid = hill(101, 101);
         let mut bytes = Vec::new();
-        Painter::fit(&grid, 200.0).write_png(&mut bytes, &grid, &[]).unwrap();
+        Painter::fit(&grid, 200.0).write_png(&mut bytes, &grid, None, &[]).unwrap();
         let data = decode(&bytes);
         let pixel = |i: usize, j: usize| [0, 1, 2].map(|c| u32::from(data[3 * (j * 101 + i) + c]));
         let light = |[r, g, b]: [u32; 3]| r + g + b;
@@ -157,6 +186,24 @@ mod tests {
         assert!(light(pixel(30, 50)) > light(pixel(50, 70)) + 30);
         let [r, _, b] = pixel(100, 0);
         assert!(b > r + 30);
+    }
+
+    #[test]
+    fn lakes_are_blue_and_darker_where_they_are_deep() {
+        let grid = hill(20, 20);
+        let mut lakes = Grid::filled(*grid.window(), 0.0);
+        lakes.row_mut(3)[4..7].copy_from_slice(&[1e-3, 200.0, f32::NAN]);
+        let paint = |lakes: Option<&Grid>| {
+            let mut bytes = Vec::new();
+            Painter::fit(&grid, 200.0).write_png(&mut bytes, &grid, lakes, &[]).unwrap();
+            decode(&bytes)
+        };
+        let (with, without) = (paint(Some(&lakes)), paint(None));
+        let pixel = |picture: &[u8], i: usize| -> [u8; 3] { std::array::from_fn(|c| picture[3 * (3 * 20 + i) + c]) };
+        assert_eq!(pixel(&with, 4), LAKES);
+        assert!(pixel(&with, 5) < pixel(&with, 4) && pixel(&with, 5)[2] > 150);
+        let differ = with.chunks(3).zip(without.chunks(3)).filter(|(a, b)| a != b).count();
+        assert_eq!(differ, 2);
     }
 
     #[test]
@@ -168,7 +215,7 @@ mod tests {
         }
         for sea_level in [0.0, 500.0] {
             let mut bytes = Vec::new();
-            Painter::fit(&grid, sea_level).write_png(&mut bytes, &grid, &[]).unwrap();
+            Painter::fit(&grid, sea_level).write_png(&mut bytes, &grid, None, &[]).unwrap();
             let bytes = decode(&bytes);
             let is_grey: Vec<bool> = bytes.chunks_exact(3).map(|pixel| *pixel == NO_DATA).collect();
             let expect: Vec<bool> = (0..400).map(|at| holes.iter().any(|hole| hole.0 + 20 * hole.1 == at)).collect();

@@ -2,6 +2,8 @@
 
 use orogen_io::palette::color::{Light, Rgb};
 
+pub use crate::map::paint::LAKES;
+
 const BROWN: Rgb = [126, 82, 42];
 const DARK_BROWN: Rgb = [92, 56, 26];
 const ISOBATH: Rgb = [58, 112, 166];
@@ -9,8 +11,6 @@ const ISOBATH: Rgb = [58, 112, 166];
 pub const BLUE: Rgb = [34, 92, 156];
 /// Ink of the shores of lakes and of the sea.
 pub const SHORE: Rgb = [40, 96, 152];
-/// Colour of lakes.
-pub const LAKES: Rgb = [170, 211, 233];
 
 /// Relative luminance of the ground below which inks are bright.
 const DARK: f32 = 0.14;
