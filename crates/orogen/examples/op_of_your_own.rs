@@ -75,7 +75,7 @@ fn main() -> std::result::Result<(), Box<dyn std::error::Error>> {
     let grid = world.window("height", &window)?;
     let painter = Painter::fit(&grid, world.recipe().world.sea_level);
     write_whole(&OutputPolicy::default().output(Path::new("terraces.png"))?, |out| {
-        painter.write_png(out, &grid, &[("Title", "Terraces")])
+        painter.write_png(out, &grid, None, &[("Title", "Terraces")])
     })?;
     let level = grid.data().iter().filter(|height| (*height / 75.0).fract() < 0.02).count();
     println!(

@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let path = Path::new("window.png");
     let painter = Painter::fit(&grid, sea_level);
     write_whole(&OutputPolicy::default().output(path)?, |out| {
-        painter.write_png(out, &grid, &[("Title", "A window of alpine")])
+        painter.write_png(out, &grid, None, &[("Title", "A window of alpine")])
     })?;
     println!("{} holds {} x {} samples", path.display(), grid.width(), grid.height());
     Ok(())
