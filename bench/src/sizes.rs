@@ -1,8 +1,8 @@
-//! Part of area `erosion`: the preset `volcano` in worlds of several sizes, from the recipe to its heights. CPU time of
-//! one thread.
+//! Part of area `erosion`: a stream power solution at the world's cell in worlds of several sizes, from the recipe to its
+//! heights. CPU time of one thread.
 
 use cpu_time::ProcessTime;
-use orogen::{Options as Limits, Progress, World, presets};
+use orogen::{Options as Limits, Progress, Recipe, World};
 
 use crate::measure::median;
 use crate::options::Options;
@@ -14,7 +14,17 @@ const SIDES: [usize; 4] = [512, 1024, 2048, 4096];
 /// Maximum ratio of the cost of a cell between the most and the least expensive world.
 const SPREAD: f64 = 1.2;
 
-const NAME: &str = "volcano by world size";
+const NAME: &str = "stream power by world size";
+
+/// A young range: uplifted noise, cut by rivers.
+const RECIPE: &str = r#"
+    orogen = 1
+    world = { seed = 1, size = 20480, cell = 20 }
+    outputs = { height = "range" }
+    nodes.noise = { op = "fbm", wavelength = 5200, octaves = 7, gain = 0.55 }
+    nodes.young = { op = "normalise", source = "noise", low = 0, high = 900 }
+    nodes.range = { op = "stream-power", source = "young", years = 45000, steps = 12, erodibility = 1.6e-5 }
+"#;
 
 /// The cost of a cell in each world, and the ratio of maximum to minimum.
 pub fn figures(options: &Options) -> Result<Vec<Figure>, String> {
@@ -49,8 +59,7 @@ pub fn figures(options: &Options) -> Result<Vec<Figure>, String> {
 
 /// Nanoseconds per cell of a world with this many cells per side.
 fn cost(side: usize) -> Result<f64, String> {
-    let recipe = presets::find("volcano").ok_or("there is no preset `volcano`")?.recipe();
-    let mut recipe = recipe.map_err(|e| e.to_string())?;
+    let mut recipe = Recipe::parse(RECIPE, NAME).map_err(|e| e.to_string())?;
     let length = side as f64 * recipe.world.cell;
     recipe.world.size = Some([length; 2]);
     let start = ProcessTime::now();
