@@ -50,6 +50,7 @@
 
 pub mod aggregate;
 pub mod analysis;
+pub mod autotile;
 mod checks;
 pub mod contour;
 pub mod erosion;
