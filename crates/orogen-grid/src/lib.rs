@@ -13,6 +13,7 @@
 //! | [`erosion`] | thermal erosion, virtual pipes, droplets, local stream power |
 //! | [`multiscale`] | eroded terrain without bounds, level by level: continents with rivers |
 //! | [`contour`] | contour lines, smoothed |
+//! | [`autotile`] | tilemaps: terrain classes, tiles that fit their neighbors, clean-up |
 //! | [`aggregate`] | diffusion-limited aggregation, and mountains from it |
 //! | [`resample`] | interpolation between samples |
 //!

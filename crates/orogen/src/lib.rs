@@ -45,14 +45,14 @@ pub use orogen_engine::{
 };
 #[doc(inline)]
 pub use orogen_grid::{
-    aggregate, analysis, contour, erosion, error, grid, hydrography, hydrology, progress, resample, words,
+    aggregate, analysis, autotile, contour, erosion, error, grid, hydrography, hydrology, progress, resample, words,
 };
 #[doc(hidden)]
 pub use orogen_io::test_folder;
 #[doc(inline)]
 pub use orogen_io::{dem, file, format, open, palette, raster, read_at, spool};
 #[doc(inline)]
-pub use orogen_output::{builder, export, fit, map, mesh, render, sheet, survey};
+pub use orogen_output::{builder, export, fit, map, mesh, render, sheet, survey, tilemap};
 
 pub use budget::Budget;
 pub use chunks::id::ChunkId;

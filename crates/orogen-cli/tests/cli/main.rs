@@ -28,6 +28,7 @@ mod progress;
 mod refine;
 mod render;
 mod surfaces;
+mod tilemap;
 mod view;
 mod watch;
 mod water;

@@ -125,8 +125,37 @@ fn changes(classes: &Classes, drawable: &Drawable, gaps: &[Gap]) -> Vec<(i64, i6
     done
 }
 
+/// How far the choice of a change looks from a place without a tile, in cells.
+const SIGHT: i64 = 3;
+
 /// The change of one cell after which the fewest tiles around it are missing, if that is fewer than now.
 fn propose(classes: &Classes, drawable: &Drawable, gap: &Gap) -> Option<((i64, i64), Proposal)> {
+    let [width, height] = [classes.width() as i64, classes.height() as i64];
+    let is_inside = |at: i64, side: i64| (SIGHT..side - SIGHT).contains(&at);
+    if !is_inside(gap.x, width) || !is_inside(gap.y, height) {
+        // Cells beyond the sides are the nearest in the window.
+        let inside = |(x, y): (i64, i64)| (x.clamp(0, width - 1), y.clamp(0, height - 1));
+        return best_change(classes, drawable, gap, |x, y| classes.at(x, y), inside);
+    }
+    // The classes in sight are read many times.
+    const SIDE: usize = 2 * SIGHT as usize + 1;
+    let mut seen = [[0; SIDE]; SIDE];
+    for (row, y) in seen.iter_mut().zip(gap.y - SIGHT..) {
+        row.copy_from_slice(&classes.row(y)[(gap.x - SIGHT) as usize..][..SIDE]);
+    }
+    let at = |x: i64, y: i64| seen[(y - gap.y + SIGHT) as usize][(x - gap.x + SIGHT) as usize];
+    best_change(classes, drawable, gap, at, |place| place)
+}
+
+/// [`propose`] with a function that reads classes, and one that tells which cell of the window counts at a position.
+#[inline(always)]
+fn best_change(
+    classes: &Classes,
+    drawable: &Drawable,
+    gap: &Gap,
+    at: impl Fn(i64, i64) -> u8,
+    inside: impl Fn((i64, i64)) -> (i64, i64),
+) -> Option<((i64, i64), Proposal)> {
     let [width, height] = [classes.width() as i64, classes.height() as i64];
     let [columns, rows] = drawable.tiles(classes).map(|side| side as i64);
     let mut best: Option<((i64, i64), Proposal)> = None;
@@ -134,28 +163,28 @@ fn propose(classes: &Classes, drawable: &Drawable, gap: &Gap) -> Option<((i64, i
         if !(0..width).contains(&x) || !(0..height).contains(&y) {
             continue;
         }
-        let own = classes.at(x, y);
+        let own = at(x, y);
         let missing = |class: u8| {
-            let at = |column: i64, row: i64| {
-                // Cells beyond the sides are the nearest in the window.
-                let inside = (column.clamp(0, width - 1), row.clamp(0, height - 1));
-                if inside == (x, y) { class } else { classes.at(column, row) }
+            let changed = |column: i64, row: i64| {
+                if inside((column, row)) == (x, y) { class } else { at(column, row) }
             };
             let tiles = affected(drawable, x, y);
             let tiles = tiles.filter(|(column, row)| (0..columns).contains(column) && (0..rows).contains(row));
-            tiles.filter(|(column, row)| drawable.missing(at, *column, *row).is_some()).count() as i32
+            tiles.filter(|(column, row)| drawable.missing(changed, *column, *row).is_some()).count() as i32
         };
         let now = missing(own);
-        let mut tried = [false; 256];
-        tried[usize::from(own)] = true;
+        let mut tried = [u8::MAX; 10];
+        tried[0] = own;
+        let mut count = 1;
         for (column, row) in (y - 1..=y + 1).flat_map(|row| (x - 1..=x + 1).map(move |column| (column, row))) {
-            let class = classes.at(column, row);
-            if std::mem::replace(&mut tried[usize::from(class)], true) {
+            let class = at(column, row);
+            if tried[..count].contains(&class) {
                 continue;
             }
+            tried[count] = class;
+            count += 1;
             let gained = missing(class) - now;
-            let hash = hash(classes.x + x, classes.y + y, class);
-            let rank = (gained, own.abs_diff(class), hash);
+            let rank = (gained, own.abs_diff(class), hash(classes.x + x, classes.y + y, class));
             if gained < 0 && best.is_none_or(|(_, best)| rank < best.rank) {
                 best = Some(((x, y), Proposal { rank, class }));
             }

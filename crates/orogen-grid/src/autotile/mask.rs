@@ -62,6 +62,17 @@ impl Layout {
         }
     }
 
+    /// What it is for, in a line.
+    #[must_use]
+    pub fn about(self) -> &'static str {
+        match self {
+            Layout::Blob => "47 tiles a class: by the sides of a cell, and its corners between two sides",
+            Layout::Edge => "16 tiles a class: by the sides of a cell",
+            Layout::Corner => "15 tiles a class: by the classes at the corners of a tile",
+            Layout::Dual => "15 tiles a class: shifted by half a tile, so that each cell is where four tiles meet",
+        }
+    }
+
     /// Whether classes are at the corners of tiles, so that a tile sees four of them. Otherwise they are those of cells, and a tile sees
     /// its own and eight neighbors.
     #[must_use]

@@ -78,7 +78,14 @@ const KINDS: &[Kind] = &[
 ];
 
 /// Kinds of text that people also write by hand, with the name of Orogen's own files.
-const SIGNED: &[(&str, &str)] = &[("json", "JSON of Orogen"), ("obj", "an Orogen mesh")];
+const SIGNED: &[(&str, &str)] = &[
+    ("json", "JSON of Orogen"),
+    ("obj", "an Orogen mesh"),
+    // The mark is one that Tiled removes when it saves: maps that were edited are kept.
+    ("tmx", "a map of Orogen"),
+    ("tmj", "a map of Orogen"),
+    ("tsx", "a tileset of Orogen"),
+];
 
 /// Kinds without a signature, which contain only numbers.
 const HEADERLESS: &[&str] = &["r16", "r32", "raw", "hgt"];
