@@ -161,8 +161,8 @@ impl PoissonDiscs {
 /// The rank below which candidates take part at a density.
 fn limit(density: f64) -> f64 {
     let steps = (LIMITS.len() - 1) as f64;
-    // Not a number is 0.
-    let at = density.max(0.0).min(1.0) * steps;
+    // Not a number is 0, too.
+    let at = if density > 0.0 { density.min(1.0) * steps } else { 0.0 };
     let k = (at as usize).min(LIMITS.len() - 2);
     LIMITS[k] + (LIMITS[k + 1] - LIMITS[k]) * (at - k as f64)
 }
