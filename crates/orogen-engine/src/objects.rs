@@ -122,12 +122,11 @@ impl World {
         // All points around the bounds, which are more than those within.
         let area = window.len() as f64 * window.cell * window.cell;
         let count = area / (entry.spacing * entry.spacing) * POINTS * mean(density).min(1.0) * 1.02 + 1000.0;
-        let bytes = (count * POINT_MEMORY) as u64;
-        let held = self.budget().reserve(bytes.saturating_add(PoissonDiscs::memory(self.threads())))?;
-        let near: Vec<Near> = match entry.clearance > 0.0 {
-            true => before.iter().map(|placed| Near::new(&placed.points, entry.clearance)).collect(),
-            false => Vec::new(),
-        };
+        let held = self.budget().reserve((count * POINT_MEMORY) as u64)?;
+        let before = if entry.clearance > 0.0 { before } else { &[] };
+        let searched: u64 = before.iter().map(|placed| Near::memory(placed.points.len())).sum();
+        let _search = self.budget().reserve(searched.saturating_add(PoissonDiscs::memory(self.threads())))?;
+        let near: Vec<Near> = before.iter().map(|placed| Near::new(&placed.points, entry.clearance)).collect();
         let sea_level = recipe.world.sea_level;
         let is_wet = |position: [f64; 2]| match water {
             [height] => Some(wet(height, None, sea_level, position)),
@@ -244,9 +243,15 @@ struct Near {
 }
 
 /// Maximum number of buckets along a side.
-const MAX_BUCKETS: f64 = 2048.0;
+const MAX_BUCKETS: f64 = 1024.0;
 
 impl Near {
+    /// Memory in bytes for a number of points.
+    fn memory(points: usize) -> u64 {
+        let buckets = (MAX_BUCKETS + 2.0) * (MAX_BUCKETS + 2.0);
+        (points * size_of::<[f64; 2]>()) as u64 + buckets as u64 * size_of::<usize>() as u64
+    }
+
     fn new(points: &[([f64; 2], u64)], distance: f64) -> Near {
         let ends = |axis: usize| {
             let start = points.iter().map(|(at, _)| at[axis]).fold(f64::INFINITY, f64::min);
