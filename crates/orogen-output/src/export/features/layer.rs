@@ -22,6 +22,17 @@ pub struct VectorLayer {
     pub make: Maker,
 }
 
+impl VectorLayer {
+    /// Its features from the heights and the water of a window; `None` if it is not made of these.
+    #[must_use]
+    pub fn of_ground(&self, ground: &FeatureSource, options: &FeatureOptions) -> Option<Result<FeatureLayer>> {
+        match self.make {
+            Maker::Ground(make) => Some(make(ground, options)),
+            Maker::World(_) => None,
+        }
+    }
+}
+
 /// What features are computed from.
 pub enum Maker {
     /// The heights and the water of a window.
