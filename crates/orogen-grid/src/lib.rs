@@ -16,6 +16,8 @@
 //! | [`autotile`] | tilemaps: terrain classes, tiles that fit their neighbors, clean-up |
 //! | [`aggregate`] | diffusion-limited aggregation, and mountains from it |
 //! | [`resample`] | interpolation between samples |
+//! | [`triangles`] | heights on the triangles of a full mesh |
+//! | [`poisson_discs`] | points that keep a distance, of which any window is made by itself |
 //!
 //! ```
 //! use orogen_grid::hydrology::{accumulation::accumulate, drainage::route_carving, fill::fill, outlets::Outlets, steepest::Descent};
@@ -63,10 +65,12 @@ pub mod hydrography;
 pub mod hydrology;
 mod interop;
 pub mod multiscale;
+pub mod poisson_discs;
 pub mod progress;
 #[doc(hidden)]
 pub mod random;
 pub mod resample;
+pub mod triangles;
 pub mod words;
 
 pub use error::{Error, ErrorKind, Result};

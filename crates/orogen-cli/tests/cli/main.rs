@@ -27,6 +27,7 @@ mod places;
 mod progress;
 mod refine;
 mod render;
+mod scatter;
 mod surfaces;
 mod tilemap;
 mod view;

@@ -69,6 +69,8 @@ const KINDS: &[Kind] = &[
     Kind { name: "an HTML page", extensions: &["html", "htm"], begins: |head| is_markup(head) && holds(head, "<html") },
     Kind { name: "a Graphviz graph", extensions: &["dot", "gv"], begins: |head| head.starts_with(b"digraph ") },
     Kind { name: "a Wavefront material", extensions: &["mtl"], begins: |head| head.starts_with(b"newmtl") },
+    Kind { name: "a table of points", extensions: &["csv"], begins: |head| head.starts_with(b"x,y,") },
+    Kind { name: "a Godot resource", extensions: &["tres"], begins: |head| head.starts_with(b"[gd_resource") },
     Kind { name: "an ASCII grid", extensions: &["asc"], begins: |head| starts_with_word(head, "ncols") },
     Kind {
         name: "GeoJSON",
@@ -242,7 +244,7 @@ mod tests {
 
     #[test]
     fn every_kind_takes_its_own_place_and_no_other() {
-        let samples: [(&str, &[u8]); 16] = [
+        let samples: [(&str, &[u8]); 18] = [
             ("png", b"\x89PNG\r\n\x1a\n...."),
             ("gif", b"GIF89a...."),
             ("tif", b"II*\0...."),
@@ -255,6 +257,8 @@ mod tests {
             ("gpkg", b"SQLite format 3\0"),
             ("fgb", b"fgb\x03fgb\x00"),
             ("svg", b"<?xml version=\"1.0\"?>\n<svg xmlns=\"\">"),
+            ("csv", b"x,y,z,kind\n1,2,3,tree\n"),
+            ("tres", b"[gd_resource type=\"MultiMesh\" format=3]\n"),
             ("asc", b"NCOLS 4\nNROWS 4\n"),
             ("geojson", b"{\"type\": \"FeatureCollection\"}"),
             ("json", b"{\"made_by\": \"Orogen 0.1.0\"}"),
