@@ -160,7 +160,7 @@ impl TilemapJob {
         let changed = before.data().iter().zip(classes.data()).filter(|(before, after)| before != after).count();
         Ok(Tilemap {
             tileset: self.tileset.clone(),
-            window: window.clone(),
+            window: *window,
             classes,
             width: columns,
             height: rows,

@@ -19,7 +19,7 @@ impl Tilemap {
         let size = self.tileset.size;
         let side = self.width.max(self.height) * size;
         // A whole number of pixels for each tile.
-        (1..=size).find(|by| size % by == 0 && side / by <= MAX_SIDE).unwrap_or(size)
+        (1..=size).find(|by| size.is_multiple_of(*by) && side / by <= MAX_SIDE).unwrap_or(size)
     }
 
     /// Writes the picture of the map as a PNG: all pixels of its tiles, or of a large map every [`Tilemap::reduction`]th.

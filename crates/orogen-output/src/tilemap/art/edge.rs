@@ -45,7 +45,7 @@ impl Border {
         match goes_on {
             [false, false, _] if across < RADIUS && beside < RADIUS => {
                 let (a, b) = (RADIUS - across, RADIUS - beside);
-                let far = a.hypot(b);
+                let far = libm::hypot(a, b);
                 Place { inside: RADIUS - far, south: down * a / far.max(1e-9) }
             }
             [false, false, _] if across < beside => Place { inside: across, south: down },
@@ -53,7 +53,7 @@ impl Border {
             [false, true, _] => Place { inside: across, south: down },
             [true, false, _] => Place { inside: beside, south: 0.0 },
             [true, true, false] => {
-                let far = side.hypot(end);
+                let far = libm::hypot(side, end);
                 Place { inside: far - self.inset, south: down * side / far.max(1e-9) }
             }
             [true, true, true] => DEEP,

@@ -160,7 +160,7 @@ impl Texture {
         let mut taken: Vec<[i64; 4]> = Vec::new();
         // Larger tiles have the same number of marks on a length, not on an area: they look calmer.
         let more = (side / 16).max(1);
-        let rare = (variant + 1 == VARIANTS.len()).then_some(ground.rare).unwrap_or_default();
+        let rare = if variant + 1 == VARIANTS.len() { ground.rare } else { Default::default() };
         let common =
             ground.marks.iter().flat_map(|(mark, count)| std::iter::repeat_n(*mark, usize::from(*count) * more));
         for mark in rare.iter().copied().chain(common) {
@@ -208,7 +208,7 @@ impl Texture {
         for y in 0..self.side {
             for x in 0..self.side {
                 let (dx, dy) = (x as f64 + 0.5 - cx, y as f64 + 0.5 - cy);
-                let far = dx.hypot(dy);
+                let far = libm::hypot(dx, dy);
                 if far > radius {
                     continue;
                 }
