@@ -11,8 +11,9 @@ const WINDOW: &str = "48,30,56,38";
 /// Writes it to a folder; `work` is for temporary files.
 pub fn write(images: &Path, work: &Path) -> Result {
     let folder = work.join("tilemap");
-    let mut orogen =
-        shell::cargo("run --quiet --release --package orogen-cli -- tilemap tile-island --seed 6 --quiet --force");
+    let mut orogen = shell::cargo(
+        "run --quiet --release --package orogen-cli -- tilemap tile-island --seed 6 --cell 16 --quiet --force",
+    );
     shell::run(orogen.args(["--window", WINDOW, "-o"]).arg(&folder))?;
     let to = images.join("tilemap.png");
     std::fs::copy(folder.join("preview.png"), &to).map_err(|e| on_file("write", &to, &e))?;

@@ -10,3 +10,6 @@ pub mod standard;
 pub mod table;
 pub mod tiled;
 pub mod tileset;
+
+#[cfg(test)]
+mod tests;

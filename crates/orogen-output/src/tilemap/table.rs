@@ -35,7 +35,7 @@ pub struct Summary {
     /// Cells that the clean-up changed.
     pub changed: usize,
     /// Places without a tile in the map, up to 1000 of them.
-    pub without_tile: Vec<Place>,
+    pub without_tile: Vec<MissingTile>,
 }
 
 /// How much of a map a class is.
@@ -51,7 +51,7 @@ pub struct ClassCount {
 /// A place without a tile.
 #[derive(Debug, Clone, Serialize)]
 #[non_exhaustive]
-pub struct Place {
+pub struct MissingTile {
     /// Column of the tile.
     pub x: i64,
     /// Row of the tile.
@@ -91,7 +91,7 @@ impl Tilemap {
             without_tile_before: self.gaps_before,
             changed: self.changed,
             without_tile: (self.gaps.iter().take(MAX_PLACES))
-                .map(|gap| Place { x: gap.x, y: gap.y, class: name(gap.class), mask: gap.mask })
+                .map(|gap| MissingTile { x: gap.x, y: gap.y, class: name(gap.class), mask: gap.mask })
                 .collect(),
         }
     }

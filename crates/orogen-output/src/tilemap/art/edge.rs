@@ -7,7 +7,7 @@ use orogen_grid::autotile::mask::{E, Layout, N, NE, NW, S, SE, SW, W};
 
 /// Where a pixel is, compared with the border of its layer.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Place {
+pub struct BorderPoint {
     /// Distance to the border in pixels of a tile of 16: above 0 inside of the layer.
     pub inside: f64,
     /// How much the border faces south: -1 (north) to 1.
@@ -15,7 +15,7 @@ pub struct Place {
 }
 
 /// Deep inside.
-const DEEP: Place = Place { inside: 16.0, south: 0.0 };
+const DEEP: BorderPoint = BorderPoint { inside: 16.0, south: 0.0 };
 
 /// Radius of outer corners.
 const RADIUS: f64 = 5.0;
@@ -40,21 +40,21 @@ impl Border {
     /// The place of a pixel in a quadrant of a covered cell. `side` and `end` are the distances to the quadrant's horizontal and vertical side;
     /// `goes_on` tells whether the layer goes on across the horizontal side, the vertical side and the corner between. `down` is 1 if the horizontal side is the southern one, else -1. `along` is the pixel's
     /// column and row, for the waves.
-    fn quadrant(&self, [side, end]: [f64; 2], goes_on: [bool; 3], down: f64, [column, row]: [f64; 2]) -> Place {
+    fn quadrant(&self, [side, end]: [f64; 2], goes_on: [bool; 3], down: f64, [column, row]: [f64; 2]) -> BorderPoint {
         let (across, beside) = (side - self.at(column), end - self.at(row));
         match goes_on {
             [false, false, _] if across < RADIUS && beside < RADIUS => {
                 let (a, b) = (RADIUS - across, RADIUS - beside);
                 let far = libm::hypot(a, b);
-                Place { inside: RADIUS - far, south: down * a / far.max(1e-9) }
+                BorderPoint { inside: RADIUS - far, south: down * a / far.max(1e-9) }
             }
-            [false, false, _] if across < beside => Place { inside: across, south: down },
-            [false, false, _] => Place { inside: beside, south: 0.0 },
-            [false, true, _] => Place { inside: across, south: down },
-            [true, false, _] => Place { inside: beside, south: 0.0 },
+            [false, false, _] if across < beside => BorderPoint { inside: across, south: down },
+            [false, false, _] => BorderPoint { inside: beside, south: 0.0 },
+            [false, true, _] => BorderPoint { inside: across, south: down },
+            [true, false, _] => BorderPoint { inside: beside, south: 0.0 },
             [true, true, false] => {
                 let far = libm::hypot(side, end);
-                Place { inside: far - self.inset, south: down * side / far.max(1e-9) }
+                BorderPoint { inside: far - self.inset, south: down * side / far.max(1e-9) }
             }
             [true, true, true] => DEEP,
         }
@@ -62,7 +62,7 @@ impl Border {
 
     /// The place of the pixel at (x, y), in pixels of a tile of 16, of the tile for a mask; `None` where its layer has no cell.
     #[must_use]
-    pub fn place(&self, layout: Layout, mask: u8, [x, y]: [f64; 2]) -> Option<Place> {
+    pub fn place(&self, layout: Layout, mask: u8, [x, y]: [f64; 2]) -> Option<BorderPoint> {
         let has = |bit: u8| mask & bit != 0;
         let (is_south, is_east) = (y >= 8.0, x >= 8.0);
         if !layout.is_on_corners() {

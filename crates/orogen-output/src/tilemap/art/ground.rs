@@ -2,7 +2,7 @@
 
 use orogen_grid::random::Random;
 
-use super::edge::{Border, Place};
+use super::edge::{Border, BorderPoint};
 
 type Ink = [u8; 3];
 
@@ -243,8 +243,8 @@ impl Ground {
 
     /// The ink of a pixel at a place; `None` outside, where the ground below is seen. `column` is the pixel's column.
     #[must_use]
-    pub fn ink(&self, place: Place, texture: Ink, column: usize) -> Option<Ink> {
-        let Place { inside, south } = place;
+    pub fn ink(&self, place: BorderPoint, texture: Ink, column: usize) -> Option<Ink> {
+        let BorderPoint { inside, south } = place;
         if inside < 0.0 {
             let (ink, width) = self.halo?;
             return (inside >= -width).then_some(ink);

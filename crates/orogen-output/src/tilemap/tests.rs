@@ -1,0 +1,123 @@
+//! Laws of the tilesets that the program draws, and of the files of a map.
+
+use orogen_engine::{Recipe, World};
+use orogen_grid::autotile::classes::Classes;
+use orogen_grid::autotile::mask::{CORNERS, Layout, OFFSETS};
+use orogen_grid::grid::Window;
+use orogen_grid::progress::Progress;
+use orogen_grid::random::Random;
+
+use super::art::set::SETS;
+use super::job::{Tilemap, TilemapJob};
+use super::tileset::Tileset;
+
+/// Whether a pixel of the tile for a class and a mask is opaque.
+fn covers(tileset: &Tileset, class: u8, mask: u8, [x, y]: [usize; 2]) -> bool {
+    if mask == 0 && tileset.layout.is_on_corners() {
+        return false;
+    }
+    let tile = tileset.tiles.iter().position(|tile| tile.class == class && tile.mask == mask).unwrap();
+    tileset.row(tile, y)[x][3] > 0
+}
+
+/// A border has the same shape whether it is drawn by tiles of cells or by tiles on corners, so tiles join: in one of the two layouts
+/// every pixel beside a side is in the middle of a tile of the other.
+#[test]
+fn borders_are_the_same_in_all_layouts() {
+    for set in SETS {
+        let [blob, dual] = [Layout::Blob, Layout::Dual].map(|layout| set.draw(layout));
+        let size = set.size;
+        let mut random = Random::new(5, size as u64);
+        let classes = Classes::new([0, 0], 12, 12, (0..144).map(|_| random.below(3) as u8).collect());
+        for class in 1..3 {
+            for y in size..11 * size {
+                for x in size..11 * size {
+                    let (column, row) = ((x / size) as i64, (y / size) as i64);
+                    let bits = OFFSETS
+                        .iter()
+                        .enumerate()
+                        .map(|(bit, [dx, dy])| u8::from(classes.at(column + dx, row + dy) >= class) << bit);
+                    let mask = Layout::Blob.reduced(bits.sum());
+                    let of_cells = classes.at(column, row) >= class && covers(&blob, class, mask, [x % size, y % size]);
+                    // The tile on corners that shows this pixel begins in the middle of a cell.
+                    let (from_x, from_y) = (x - size / 2, y - size / 2);
+                    let (column, row) = ((from_x / size) as i64, (from_y / size) as i64);
+                    let corners = [[0, 0, 128], [1, 0, 2], [0, 1, 32], [1, 1, 8]];
+                    let bits = corners.iter().map(|[dx, dy, bit]| match classes.at(column + dx, row + dy) >= class {
+                        true => *bit as u8,
+                        false => 0,
+                    });
+                    let mask: u8 = bits.sum::<u8>() & CORNERS;
+                    let on_corners = covers(&dual, class, mask, [from_x % size, from_y % size]);
+                    assert_eq!(of_cells, on_corners, "{} class {class}, pixel {x}, {y}", set.name);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_tilesets_have_a_tile_for_everything() {
+    for set in SETS {
+        for layout in Layout::ALL {
+            let tileset = set.draw(layout);
+            assert!(tileset.drawable().is_complete(), "{}, {}", set.name, layout.name());
+            assert_eq!(tileset.pixels.len(), tileset.width() * tileset.height());
+            assert!(tileset.pixels.iter().all(|pixel| [0, 255].contains(&pixel[3])), "crisp");
+            for (n, tile) in tileset.tiles.iter().enumerate().filter(|(_, tile)| tile.mask == layout.full()) {
+                let rows = (0..set.size).flat_map(|y| tileset.row(n, y));
+                assert!(rows.clone().all(|pixel| pixel[3] == 255), "a full tile of {} covers its cell", tile.class);
+            }
+        }
+    }
+}
+
+fn map(layout: Layout, window: &Window) -> Tilemap {
+    let recipe = r#"
+        orogen = 1
+        world = { seed = 3, cell = 10 }
+        outputs = { class = "class" }
+        nodes.land = { op = "fbm", wavelength = 120, octaves = 4 }
+        nodes.class = { op = "expr", expr = "min(5, max(0, floor(land * 8 + 3)))" }
+    "#;
+    let job = TilemapJob::new(SETS[0].draw(layout));
+    let mut recipe = Recipe::parse(recipe, "test").unwrap();
+    job.prepare(&mut recipe, window.cell).unwrap();
+    job.make(&World::open(recipe).unwrap(), window, &Progress::none()).unwrap()
+}
+
+#[test]
+fn parts_of_an_unbounded_map_join() {
+    for layout in Layout::ALL {
+        let whole = map(layout, &Window::new(50, 40, 10.0).at(-30, 1000));
+        let part = map(layout, &Window::new(21, 9, 10.0).at(-12, 1007));
+        for (whole_layer, layer) in whole.layers.iter().zip(&part.layers) {
+            for (y, row) in layer.chunks(part.width).enumerate() {
+                assert_eq!(row, &whole_layer[(y + 7) * whole.width + 18..][..part.width], "{}", layout.name());
+            }
+        }
+        assert_eq!((whole.gaps_before, whole.gaps.len(), whole.changed), (0, 0, 0));
+    }
+}
+
+/// What an engine reads from the map is what the library says.
+#[test]
+fn the_files_hold_the_map() {
+    let map = map(Layout::Blob, &Window::new(7, 5, 10.0));
+    let mut json = Vec::new();
+    map.write_tmj(&mut json, "tiles.png", "test").unwrap();
+    let json: serde_json::Value = serde_json::from_slice(&json).unwrap();
+    let named = |name: &str| map.tileset.terrains.iter().position(|terrain| terrain.name == name).unwrap();
+    for layer in json["layers"].as_array().unwrap() {
+        let tiles = &map.layers[named(layer["name"].as_str().unwrap())];
+        let data: Vec<u32> =
+            layer["data"].as_array().unwrap().iter().map(|tile| tile.as_u64().unwrap() as u32).collect();
+        assert_eq!(data, tiles.iter().map(|tile| tile.wrapping_add(1)).collect::<Vec<_>>());
+    }
+    let mut text = Vec::new();
+    map.write_tmx(&mut text, "a \"b\" & <c>.tsx", "test -- 1").unwrap();
+    let text = String::from_utf8(text).unwrap();
+    assert!(
+        text.contains("source=\"a &quot;b&quot; &amp; &lt;c&gt;.tsx\"") && text.contains("<!-- made by test - - 1 -->")
+    );
+}
