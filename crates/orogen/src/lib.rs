@@ -45,7 +45,7 @@ pub use orogen_engine::{
 };
 #[doc(inline)]
 pub use orogen_grid::{
-    aggregate, analysis, contour, erosion, error, grid, hydrography, hydrology, progress, resample, words,
+    aggregate, analysis, climate, contour, erosion, error, grid, hydrography, hydrology, progress, resample, words,
 };
 #[doc(hidden)]
 pub use orogen_io::test_folder;
