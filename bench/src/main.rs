@@ -14,6 +14,7 @@ mod outputs;
 mod resolution;
 mod rows;
 mod sizes;
+mod tiles;
 mod water;
 mod world;
 
@@ -30,6 +31,7 @@ const AREAS: &[Area] = &[
     ("generate", generate::run),
     ("world", world::run),
     ("outputs", outputs::run),
+    ("tiles", tiles::run),
     ("resolution", resolution::run),
 ];
 

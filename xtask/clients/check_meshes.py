@@ -68,6 +68,43 @@ def height_at(heights, east, south):
     return numpy.minimum(falling, rising), numpy.maximum(falling, rising)
 
 
+def check_objects(path, table, heights, cell):
+    """Checks that instances are the objects of a table, stand on the ground, and keep the distances of scatter.toml."""
+    data = path.read_bytes()
+    length = int.from_bytes(data[12:16], "little")
+    document, binary = json.loads(data[20:20 + length]), data[28 + length:]
+    rows = [line.split(",") for line in table.read_text().splitlines()[1:]]
+    for node in document["nodes"][1:]:
+        kind = node["name"]
+        attributes = node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]
+
+        def read(name, parts):
+            accessor = document["accessors"][attributes[name]]
+            view = document["bufferViews"][accessor["bufferView"]]
+            numbers = numpy.frombuffer(binary, "<f4", accessor["count"] * parts, view["byteOffset"])
+            return numbers.reshape(-1, parts).astype("f8")
+
+        place, turn, size = read("TRANSLATION", 3), read("ROTATION", 4), read("SCALE", 3)
+        wanted = numpy.array([[float(row[k]) for k in (0, 1, 2, 4, 5)] for row in rows if row[3] == kind])
+        # The mesh ends at the last samples, the table one cell further.
+        ends = [(samples - 1) * cell for samples in heights.shape[::-1]]
+        wanted = wanted[(wanted[:, 0] < ends[0]) & (-wanted[:, 1] < ends[1])]
+        checks.equal(f"{path.name}: number of {kind}", len(place), len(wanted))
+        found = numpy.stack([place[:, 0], -place[:, 2], place[:, 1], size[:, 0]], axis=1)
+        off = float(numpy.abs(found - wanted[:, :4]).max())
+        checks.that(f"{path.name}: each {kind} is that of the table", off < 2e-3, f"(off by {off})")
+        angle = numpy.degrees(-2 * numpy.arctan2(turn[:, 1], turn[:, 3]))
+        off = float(numpy.abs((angle - wanted[:, 4] + 180) % 360 - 180).max())
+        checks.that(f"{path.name}: turns of {kind}", off < 0.01, f"(off by {off})")
+        low, high = height_at(heights, place[:, 0] / cell, place[:, 2] / cell)
+        off = float(numpy.maximum(low - place[:, 1], place[:, 1] - high).max())
+        checks.that(f"{path.name}: each {kind} is on the ground", off < 1e-3, f"(off by {off})")
+        apart = numpy.hypot(*(place[:, None, k] - place[None, :, k] for k in (0, 2)))
+        numpy.fill_diagonal(apart, numpy.inf)
+        spacing = {"house": 90.0, "tree": 9.0}[kind]
+        checks.that(f"{path.name}: the spacing of {kind}", apart.min() >= spacing - 1e-3, f"({apart.min()})")
+
+
 def check_water(path, cell, expected, whole):
     """Checks that rivers are on the ground, lakes and the sea are level and above their bed, and all faces point up."""
     name = path.name
@@ -228,6 +265,16 @@ bends = ("--exaggeration", "2.5", "--height-curve", "0:0,0.5:0.2,1:1")
 watery += [export("alpine", f"alpine-water-{kind}.glb", "--water", *ALPINE, *options) for kind, options in
            {"adaptive": ADAPTIVE, "lods": ("--lods", "3"), "exaggerated": bends, "vertex": ("--color", "vertex")}.items()]
 for report in validate(*watery):
+    name = report["file"].rsplit("/")[-1]
+    checks.equal(f"{name}: errors and warnings", (report["numErrors"], report["numWarnings"]), (0, 0))
+    if report["numErrors"] or report["numWarnings"]:
+        print(json.dumps(report["messages"], indent=1))
+# Objects are instances on the ground.
+SCATTER = ROOT / "xtask/clients/scatter.toml"
+table, ground_of = export(SCATTER, "objects.csv", "--layer", "scatter"), export(SCATTER, "objects.npy")
+objects = [export(SCATTER, "objects.glb", "--objects"), export(SCATTER, "objects-adaptive.glb", "--objects", "--water", *ADAPTIVE)]
+check_objects(objects[0], table, numpy.load(ground_of), 10.0)
+for report in validate(*objects):
     name = report["file"].rsplit("/")[-1]
     checks.equal(f"{name}: errors and warnings", (report["numErrors"], report["numWarnings"]), (0, 0))
     if report["numErrors"] or report["numWarnings"]:

@@ -89,6 +89,12 @@ const CLIENTS: &[Client] = &[
         pip: &[NUMPY, PILLOW, "trimesh==5.2.0", "meshio==5.3.5"],
         npm: &["gltf-validator@2.0.0-dev.3.10"],
     },
+    Client {
+        name: "tilemaps",
+        apt: &[("tiled", "tiled"), ("tmxrasterizer", "tiled")],
+        pip: &[NUMPY, PILLOW, "pytmx==3.32"],
+        npm: &[],
+    },
     Client { name: "contours", apt: &[("gdal_contour", "gdal-bin")], pip: &[NUMPY], npm: &[] },
     Client {
         name: "water",
@@ -152,6 +158,7 @@ const STEPS: &[&Step] = &[
         about: "the glTF validator, trimesh, meshio and admesh read meshes",
         run: || script("meshes"),
     },
+    &Step { name: "tilemaps", about: "Tiled and PyTMX read tilemaps", run: || script("tilemaps") },
     &Step { name: "contours", about: "gdal_contour draws the same contours", run: || script("contours") },
     &Step {
         name: "water",

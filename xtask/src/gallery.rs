@@ -7,6 +7,7 @@ mod base64;
 mod hillshades;
 mod levels;
 mod noises;
+mod tilemap;
 mod views;
 mod water;
 
@@ -16,7 +17,7 @@ pub const HELP: &str = "
 Usage: cargo xtask gallery
 
 Rewrites docs/images/: one relief map of each preset, the views of docs/render.md and the README's first picture, a
-map sheet, the zoom of docs/levels.md, water as vectors, all palettes, the page of noises side by side, and the chunks around a viewer. Then docs/gallery.md: a map
+map sheet, the zoom of docs/levels.md, water as vectors, a tilemap, all palettes, the page of noises side by side, and the chunks around a viewer. Then docs/gallery.md: a map
 of each preset, and the shaded relief of a part of it at one pixel per sample, which shows artefacts that colours hide. Then
 crates/orogen-noise/docs/gallery.md: the pictures at the top of the documentation of orogen-noise. They are embedded in the
 file, so that every renderer shows them.
@@ -51,6 +52,7 @@ pub fn run(args: &[String]) -> Result {
     levels::write(&images, &work)?;
     views::write(&images)?;
     water::write(&images, &work)?;
+    tilemap::write(&images, &work)?;
     hillshades::write(&presets, &images)?;
     let page = images.join("compare.png");
     let mut orogen = shell::cargo("run --quiet --release --package orogen-cli -- compare --quiet -o");

@@ -91,6 +91,7 @@ fn full_grid(grid: &Grid, options: &Options) -> Result<Figure, String> {
             normal_maps: &[],
             material: None,
             water: &[],
+            objects: &[],
             extras: serde_json::Map::new(),
         };
         drawn.and_then(|()| write_glb(&mut bytes, &model)).map_err(|e| e.to_string())

@@ -7,7 +7,7 @@ use orogen::Level;
 use crate::bar::{Mode, set_mode};
 use crate::command::{
     analyze, build, cache, check, compare, completions, explain, export, fit, generate, graph, grow, map, new, noise,
-    ops, palettes, presets, refine, render, schema, variants,
+    ops, palettes, presets, refine, render, schema, tilemap, variants,
 };
 use crate::failure::Failure;
 
@@ -45,6 +45,8 @@ enum Command {
     Render(render::Args),
     /// Draw a map sheet with relief, contours, rivers, lakes, scale and legend, as PNG, SVG or PDF
     Map(map::Args),
+    /// Make a map of tiles for a 2D game: terrain classes drawn with a tileset, for Tiled and for programs
+    Tilemap(tilemap::Args),
     /// Draw variants of a recipe side by side: several seeds, or a range of values of a parameter
     Variants(variants::Args),
     /// Write a new recipe as a starting point
@@ -89,6 +91,7 @@ impl Cli {
             Command::Grow(args) => grow::run(&args),
             Command::Render(args) => render::run(&args),
             Command::Map(args) => map::run(&args),
+            Command::Tilemap(args) => tilemap::run(&args),
             Command::Variants(args) => variants::run(&args),
             Command::New(args) => new::run(&args),
             Command::Presets => presets::run(),

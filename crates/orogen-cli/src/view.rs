@@ -72,6 +72,11 @@ impl SizedView {
         self.view.sized(world, self.size)
     }
 
+    /// Whether a part of the world is requested.
+    pub fn has_part(&self) -> bool {
+        self.view.window.is_some() || self.view.bounds.is_some() || self.view.projwin.is_some()
+    }
+
     /// See [`View::each_seed`].
     pub fn each_seed(
         &self,

@@ -15,6 +15,7 @@ use crate::plan::planner::Planner;
 use crate::plan::steps::Plan;
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::{Graph, LayerRef, Link, MAX_SAMPLES};
+use crate::recipe::scatter;
 use crate::session::{Options, Session};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
@@ -96,6 +97,7 @@ impl World {
 
     /// Opens a recipe in a shared session.
     fn in_session(mut recipe: Recipe, session: Session) -> Result<World> {
+        scatter::expand::expand(&mut recipe);
         let graph = Graph::resolve(&recipe).map_err(Graph::error)?;
         recipe.load(session.budget.left().unwrap_or(DEFAULT_MEMORY))?;
         if recipe.outputs().next().is_none() {

@@ -14,8 +14,11 @@
 //! | [`multiscale`] | eroded terrain without bounds, level by level: continents with rivers |
 //! | [`climate`] | temperature, orographic rain, evapotranspiration, classes of climates and biomes |
 //! | [`contour`] | contour lines, smoothed |
+//! | [`autotile`] | tilemaps: terrain classes, tiles that fit their neighbors, clean-up |
 //! | [`aggregate`] | diffusion-limited aggregation, and mountains from it |
 //! | [`resample`] | interpolation between samples |
+//! | [`triangles`] | heights on the triangles of a full mesh |
+//! | [`poisson_discs`] | points that keep a distance, of which any window is made by itself |
 //!
 //! ```
 //! use orogen_grid::hydrology::{accumulation::accumulate, drainage::route_carving, fill::fill, outlets::Outlets, steepest::Descent};
@@ -51,6 +54,7 @@
 
 pub mod aggregate;
 pub mod analysis;
+pub mod autotile;
 mod checks;
 pub mod climate;
 pub mod contour;
@@ -63,10 +67,12 @@ pub mod hydrography;
 pub mod hydrology;
 mod interop;
 pub mod multiscale;
+pub mod poisson_discs;
 pub mod progress;
 #[doc(hidden)]
 pub mod random;
 pub mod resample;
+pub mod triangles;
 pub mod words;
 
 pub use error::{Error, ErrorKind, Result};

@@ -8,13 +8,16 @@
 //! - [`builder`]: worlds of any size into files, with resume.
 //! - [`survey`]: a terrain in numbers, beside what real land is like.
 //! - [`fit`]: recipes like a real place.
+//! - [`tilemap`]: terrain classes drawn with tiles.
 #![forbid(unsafe_code)]
 
 pub mod builder;
 pub mod export;
 pub mod fit;
 pub mod map;
+mod markup;
 pub mod mesh;
 pub mod render;
 pub mod sheet;
 pub mod survey;
+pub mod tilemap;

@@ -28,6 +28,7 @@
 //! | start from a recipe of the library | [`presets`] |
 //! | many points or small windows | [`Sampler`] |
 //! | terrain around a moving viewer | [`Chunks`], [`LodConfig`] |
+//! | trees, rocks and other objects | [`World::objects`] |
 //! | a large area in tiles or rows | [`World::tiles`], [`bands`] |
 //! | several worlds with shared threads, memory and solutions | [`Session`] |
 //! | ops of your own | [`op!`], [`Registry`], and [`laws`], which tests them |
@@ -40,19 +41,20 @@
 
 #[doc(inline)]
 pub use orogen_engine::{
-    bands, budget, choice, chunks, declare, expression, field, filter, growth, ids, laws, layer, node, op, plan,
-    recipe, registered, registry, sampler, session, solver, store, tiles, value, world,
+    bands, budget, choice, chunks, declare, expression, field, filter, growth, ids, laws, layer, node, objects, op,
+    plan, recipe, registered, registry, sampler, session, solver, store, tiles, value, world,
 };
 #[doc(inline)]
 pub use orogen_grid::{
-    aggregate, analysis, climate, contour, erosion, error, grid, hydrography, hydrology, progress, resample, words,
+    aggregate, analysis, autotile, climate, contour, erosion, error, grid, hydrography, hydrology, poisson_discs,
+    progress, resample, triangles, words,
 };
 #[doc(hidden)]
 pub use orogen_io::test_folder;
 #[doc(inline)]
 pub use orogen_io::{dem, file, format, open, palette, raster, read_at, spool};
 #[doc(inline)]
-pub use orogen_output::{builder, export, fit, map, mesh, render, sheet, survey};
+pub use orogen_output::{builder, export, fit, map, mesh, render, sheet, survey, tilemap};
 
 pub use budget::Budget;
 pub use chunks::id::ChunkId;
@@ -60,6 +62,7 @@ pub use chunks::lod::LodConfig;
 pub use chunks::stream::{ChunkStep, Chunks};
 pub use error::{Error, ErrorKind, Result};
 pub use grid::{Grid, Window};
+pub use objects::Object;
 /// The SIMD level that computes noise, and how to select one. The results are bit-identical at all levels.
 pub use orogen_noise::Level;
 /// The positions where a field is evaluated.

@@ -220,7 +220,15 @@ fn glb_bytes(levels: &[Surface], texture: Option<&[u8]>) -> Vec<u8> {
     let mut bytes = Vec::new();
     glb::write(
         &mut bytes,
-        &Model { levels, texture, material: None, normal_maps: &[], water: &[], extras: serde_json::Map::new() },
+        &Model {
+            levels,
+            texture,
+            material: None,
+            normal_maps: &[],
+            water: &[],
+            objects: &[],
+            extras: serde_json::Map::new(),
+        },
     )
     .unwrap();
     bytes
@@ -303,6 +311,7 @@ fn a_level_with_a_normal_map_has_tangents_and_a_material_of_its_own() {
             material: Some(&picture),
             normal_maps: &[None, Some(picture.clone()), Some(picture.clone())],
             water: &[],
+            objects: &[],
             extras: serde_json::Map::new(),
         };
         glb::write(&mut bytes, &model).unwrap();
@@ -463,6 +472,7 @@ fn a_writer_that_fails_is_an_error_wherever_it_fails() {
                     material: None,
                     normal_maps: &[],
                     water: &[],
+                    objects: &[],
                     extras: serde_json::Map::new(),
                 },
             )

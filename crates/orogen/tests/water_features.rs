@@ -89,7 +89,8 @@ fn every_layer_has_its_fields_and_lies_in_the_window() {
     let options = FeatureOptions::new(&none, world.recipe()).unwrap();
     let ground = FeatureSource::of(&world, &window, &options, 0, &Progress::none()).unwrap();
     for layer in list::all() {
-        let made = (layer.make)(&ground, &options).unwrap();
+        let Some(made) = layer.of_ground(&ground, &options) else { continue };
+        let made = made.unwrap();
         assert!(!made.features.is_empty(), "{}", layer.name);
         let [west, north, east, south] = made.bounds().unwrap();
         // Squares around samples extend half a cell beyond them.
@@ -110,14 +111,14 @@ fn every_layer_has_its_fields_and_lies_in_the_window() {
     }
     assert!(list::listed("rivers,nothing").is_none());
     // Ids refer to existing features.
-    let rivers = (list::named("rivers").unwrap().make)(&ground, &options).unwrap();
+    let rivers = list::named("rivers").unwrap().of_ground(&ground, &options).unwrap().unwrap();
     let column = |name: &str| rivers.fields.iter().position(|field| field.name == name).unwrap();
     let lakes = ground.lakes.len() as i64;
     for feature in &rivers.features {
         if let Value::Integer(id) = feature.values[column("downstream")] {
             assert!((1..=rivers.features.len() as i64).contains(&id));
         }
-        if feature.values[column("mouth")] == Value::Text("lake") {
+        if feature.values[column("mouth")] == Value::text("lake") {
             assert!(matches!(feature.values[column("mouth_lake")], Value::Integer(id) if (1..=lakes).contains(&id)));
         }
     }

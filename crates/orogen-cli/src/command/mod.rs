@@ -21,4 +21,5 @@ pub mod presets;
 pub mod refine;
 pub mod render;
 pub mod schema;
+pub mod tilemap;
 pub mod variants;

@@ -1,9 +1,11 @@
-//! Values that are names of formats or engines.
+//! Values that are names of formats, engines, tilesets or layouts.
 
 use clap::builder::PossibleValue;
+use orogen::autotile::mask::Layout;
 use orogen::export::format::Format;
 use orogen::export::targets::target::EngineTarget;
 use orogen::export::{registry, targets};
+use orogen::tilemap::art::set::{SETS, Set};
 
 /// The parser of a value that is one of several names, with a line of help for each.
 #[derive(Clone)]
@@ -30,6 +32,19 @@ impl NameOf {
             all: targets::list::all().iter().map(value).collect(),
             declared: |name| targets::list::named(name).map(|target| target.name),
         }
+    }
+
+    /// The tilesets of the program.
+    pub fn tileset() -> NameOf {
+        let value = |set: &Set| PossibleValue::new(set.name).help(set.about);
+        NameOf { all: SETS.iter().map(value).collect(), declared: |name| Set::named(name).map(|set| set.name) }
+    }
+
+    /// The layouts of tilesets.
+    pub fn layout() -> NameOf {
+        let value = |layout: Layout| PossibleValue::new(layout.name()).help(layout.about());
+        let named = |name: &str| Layout::ALL.into_iter().map(Layout::name).find(|known| *known == name);
+        NameOf { all: Layout::ALL.into_iter().map(value).collect(), declared: named }
     }
 }
 

@@ -57,6 +57,18 @@ pub const WRITERS: &[Writer] = &[
     writer(&["map", "small.toml", "--dpi", "30", "-o", "map.png"], &["map.png"]),
     writer(&["map", "small.toml", "--dpi", "30", "-o", "map.svg"], &["map.svg"]),
     writer(&["map", "small.toml", "--dpi", "30", "-o", "map.pdf"], &["map.pdf"]),
+    writer(
+        &["tilemap", "small.toml", "--size", "32x24", "-o", "tiles"],
+        &[
+            "tiles/tiles.png",
+            "tiles/tiles.tsx",
+            "tiles/map.tmx",
+            "tiles/map.tmj",
+            "tiles/classes.csv",
+            "tiles/preview.png",
+            "tiles/tilemap.json",
+        ],
+    ),
     writer(&["variants", "small.toml", "--seeds", "2", "--size", "64", "-o", "variants.png"], &["variants.png"]),
     writer(&["noise", "perlin", "--size", "32", "-o", "noise.png"], &["noise.png"]),
     writer(&["noise", "perlin", "--size", "32", "-o", "noise.npy"], &["noise.npy"]),

@@ -117,6 +117,7 @@ fn cancel(writer: &Writer) -> bool {
         "15" if writer.arguments[0] == "refine" => "0.25",
         "32" if writer.arguments[0] == "noise" => "1024",
         "64x36" => "4000x3000",
+        "32x24" => "6000x4000",
         "30" if writer.arguments[0] == "map" => "300",
         "64" if writer.arguments[0] == "variants" => "2000",
         "2" if writer.arguments[0] == "variants" => "60",

@@ -63,14 +63,16 @@ fn rows(side: usize) -> Vec<Vec<String>> {
     rows.push("export land.toml --surfaces --max-error 20 -o ground.glb -q".into());
     // Few pixels, but many samples for the lines.
     rows.push("map land.toml --dpi 40 -o small.png -q".into());
-    // SRTM has fixed sizes.
-    let formats = registry::all().iter().filter(|format| format.name != "hgt");
+    // SRTM has fixed sizes, and .tres holds only objects.
+    let formats = registry::all().iter().filter(|format| !matches!(format.name, "hgt" | "tres"));
     for format in formats {
         rows.push(format!("export land.toml -o out.{} -q", format.name));
         if format.knows("max-error") {
             rows.push(format!("export land.toml -o few.{} --max-error 3 -q", format.name));
         }
     }
+    rows.extend(["csv", "tres", "gpkg"].map(|kind| format!("export trees.toml -o trees.{kind} --layer scatter -q")));
+    rows.push("export trees.toml -o trees.glb --objects -q".into());
     for layer in derived::all() {
         let kind = match &layer.made {
             Made::Rows(rows) if rows.nature != Nature::Numbers => "png",
@@ -128,6 +130,8 @@ fn every_command_keeps_its_memory_at_large_sizes() {
 fn measure_every(side: usize, limits: &[u32]) {
     let folder = Folder::new();
     folder.write("land.toml", recipe(side, "[outputs]\nheight = \"land\"\n"));
+    let trees = "[outputs]\nheight = \"land\"\n[[scatter]]\nname = \"tree\"\nspacing = 20\nslope = [0, 20]\n";
+    folder.write("trees.toml", recipe(side, trees));
     let rising =
         "[nodes.up]\nop = \"stream-power\"\nsource = \"land\"\nyears = 20000\nsteps = 2\n[outputs]\nheight = \"up\"\n";
     folder.write("rising.toml", recipe(side, rising));

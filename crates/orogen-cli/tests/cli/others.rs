@@ -20,6 +20,7 @@ fn presets_are_one_a_line() {
         "himalaya",
         "island",
         "rolling",
+        "tile-island",
         "volcano",
     ] {
         assert!(names.contains(&name), "{name}");

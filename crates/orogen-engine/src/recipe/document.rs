@@ -7,6 +7,7 @@ use crate::field::dem::Dem;
 use crate::node::Node;
 use crate::op::{Op, WorldParams};
 use crate::recipe::parameters::{Formula, Parameter, Parameters};
+use crate::recipe::scatter::document::{ExpandedScatter, Scatter};
 use crate::recipe::surface::document::{Expanded, RAMP, Surface};
 use crate::value::{toml_key, toml_string};
 use orogen_grid::error::{Diagnostic, Error, ErrorKind, Result};
@@ -122,6 +123,8 @@ pub struct Recipe {
     outputs: Vec<(String, Input)>,
     surfaces: Vec<Surface>,
     expanded: Vec<Expanded>,
+    scatter: Vec<Scatter>,
+    expanded_scatter: Vec<ExpandedScatter>,
     held: u64,
 }
 
@@ -135,6 +138,8 @@ impl PartialEq for Recipe {
             && self.outputs == other.outputs
             && self.surfaces == other.surfaces
             && self.expanded == other.expanded
+            && self.scatter == other.scatter
+            && self.expanded_scatter == other.expanded_scatter
     }
 }
 
@@ -151,6 +156,8 @@ impl Recipe {
             outputs: Vec::new(),
             surfaces: Vec::new(),
             expanded: Vec::new(),
+            scatter: Vec::new(),
+            expanded_scatter: Vec::new(),
             held: 0,
         }
     }
@@ -201,6 +208,29 @@ impl Recipe {
         self.expanded = expanded;
     }
 
+    /// Adds a kind of objects after the existing ones.
+    pub fn add_scatter(&mut self, scatter: Scatter) -> &mut Recipe {
+        self.scatter.push(scatter);
+        self
+    }
+
+    /// Its kinds of objects, in the order in which they are placed.
+    #[must_use]
+    pub fn scatter(&self) -> &[Scatter] {
+        &self.scatter
+    }
+
+    /// The nodes that compute the densities of its objects, after [`expand`](super::scatter::expand::expand).
+    #[must_use]
+    pub fn expanded_scatter(&self) -> &[ExpandedScatter] {
+        &self.expanded_scatter
+    }
+
+    /// Sets the nodes that compute densities. These are not written with the recipe.
+    pub(super) fn set_expanded_scatter(&mut self, expanded: Vec<ExpandedScatter>) {
+        self.expanded_scatter = expanded;
+    }
+
     /// Its parameters, with their values. [`Recipe::read_with`] and [`Recipe::parse_with`] read a recipe with other
     /// values.
     #[must_use]
@@ -229,7 +259,7 @@ impl Recipe {
         self.used = used;
     }
 
-    /// Renames the inputs of its nodes, outputs and surfaces.
+    /// Renames the inputs of its nodes, outputs, surfaces and scatter.
     pub(super) fn rename_inputs(&mut self, of: impl Fn(&str) -> Option<Input>) {
         let other = |input: &Input| match input {
             Input::Node(name) => of(name),
@@ -251,6 +281,7 @@ impl Recipe {
             }
         }
         self.surfaces.iter_mut().for_each(|surface| surface.rename_inputs(&of));
+        self.scatter.iter_mut().for_each(|scatter| scatter.rename_inputs(&of));
     }
 
     /// The nodes in the order of the text.
@@ -437,7 +468,9 @@ impl Recipe {
             let _ = writeln!(text, "origin = [{east:?}, {north:?}]");
         }
         let bound = self.parameters.bound();
-        let added = |at: &usize| self.expanded.iter().any(|surface| surface.nodes.contains(at));
+        let surfaces = self.expanded.iter().map(|surface| &surface.nodes);
+        let expanded = surfaces.chain(self.expanded_scatter.iter().map(|scatter| &scatter.nodes));
+        let added = |at: &usize| expanded.clone().any(|nodes| nodes.contains(at));
         for (_, NamedNode { name, node, mask }) in self.nodes.iter().enumerate().filter(|(at, _)| !added(at)) {
             let spec = node.spec();
             let _ = writeln!(text, "\n[nodes.{}]\nop = {:?}", toml_key(name), spec.op);
@@ -468,6 +501,7 @@ impl Recipe {
             write_input(&mut text, &toml_key(layer), input);
         }
         self.surfaces.iter().for_each(|surface| surface.write_toml(&mut text));
+        self.scatter.iter().for_each(|scatter| scatter.write_toml(&mut text));
         let specs = self.nodes.iter().map(|named| named.node.spec());
         self.parameters.restore(text, |op| specs.clone().find(|spec| spec.op == op))
     }

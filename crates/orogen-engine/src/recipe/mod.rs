@@ -1,5 +1,6 @@
 //! Recipes: documents that describe a world.
 
+pub mod condition;
 pub mod document;
 pub mod graph;
 mod json;
@@ -9,6 +10,7 @@ mod parse;
 pub mod presets;
 pub mod reference;
 mod refined;
+pub mod scatter;
 pub mod schema;
 mod serialise;
 mod subgraph;

@@ -5,7 +5,7 @@ use super::graph::{At, Graph, MAX_FAULTS};
 use super::parameters::{Formula, Parameters, Step, resolve};
 use super::subgraph::{Origin, Shared, UseDiagnostic, Uses, take_in};
 use super::text::{LONGEST_TEXT, Text, text_of, too_long};
-use super::{json, surface, toml};
+use super::{json, scatter, surface, toml};
 use crate::declare::{Input, Shape};
 use crate::expression::formula::place_of;
 use crate::expression::text::Expression;
@@ -16,6 +16,7 @@ use orogen_grid::error::{Diagnostic, Error, ErrorKind, Result};
 use orogen_grid::words::{list, respelled, suggestion};
 use orogen_io::open;
 use std::collections::{HashMap, HashSet};
+use std::ops::Range;
 use std::path::Path;
 
 /// Terms of other programs for keys that have another name here.
@@ -215,11 +216,12 @@ impl Walk<'_> {
                 "world" => recipe.world = self.world(value),
                 "nodes" => self.nodes(value, &mut recipe)?,
                 "outputs" => self.outputs(value, &mut recipe),
-                // Read last: surfaces depend on whether the world is bounded, and nodes of used recipes follow its own
+                // Read last: conditions depend on whether the world is bounded, and nodes of used recipes follow its own
                 // nodes.
-                "surface" | "use" => {}
+                "surface" | "scatter" | "use" => {}
                 unknown => {
-                    let known = ["orogen", "about", "parameters", "world", "nodes", "use", "outputs", "surface"];
+                    let known =
+                        ["orogen", "about", "parameters", "world", "nodes", "use", "outputs", "surface", "scatter"];
                     let hint = suggestion(unknown, known);
                     self.complain(&key.span, format!("unknown key `{unknown}` in a recipe; {hint}"));
                 }
@@ -227,6 +229,10 @@ impl Walk<'_> {
         }
         let places = match top.iter().find(|(key, _)| key.value == "surface") {
             Some((_, value)) => self.surfaces(value, &mut recipe),
+            None => Vec::new(),
+        };
+        let scattered = match top.iter().find(|(key, _)| key.value == "scatter") {
+            Some((_, value)) => self.scatter(value, &mut recipe),
             None => Vec::new(),
         };
         if let Some(folder) = &origin.folder {
@@ -262,6 +268,9 @@ impl Walk<'_> {
         }
         if self.is_sound() && !places.is_empty() {
             self.check_surfaces(&recipe, &places);
+        }
+        if self.is_sound() && !scattered.is_empty() {
+            self.check_scatter(&recipe, &scattered);
         }
         match self.is_sound() {
             true => {
@@ -304,19 +313,49 @@ impl Walk<'_> {
         read.places
     }
 
+    /// Reads the kinds of objects, and returns their positions.
+    fn scatter(&mut self, value: &Spanned<Value>, recipe: &mut Recipe) -> Vec<Span> {
+        let read = scatter::read::read(value, recipe.world.size.is_some());
+        read.diagnostics.into_iter().for_each(|(span, message)| self.complain(&span, message));
+        read.entries.into_iter().for_each(|entry| {
+            recipe.add_scatter(entry);
+        });
+        read.places
+    }
+
+    /// Problems of scatter appear in the nodes that compute its densities.
+    fn check_scatter(&mut self, recipe: &Recipe, places: &[Span]) {
+        let mut whole = recipe.clone();
+        scatter::expand::expand(&mut whole);
+        let nodes: Vec<Range<usize>> = whole.expanded_scatter().iter().map(|entry| entry.nodes.clone()).collect();
+        self.check_expanded(&whole, &nodes, |at| format!("scatter `{}`", recipe.scatter()[at].name), places);
+    }
+
     /// Problems of surfaces appear in the nodes that compute them.
     fn check_surfaces(&mut self, recipe: &Recipe, places: &[Span]) {
         let mut whole = recipe.clone();
         surface::expand::expand(&mut whole);
-        for diagnostic in Graph::resolve(&whole).err().unwrap_or_default() {
+        let nodes: Vec<Range<usize>> = whole.expanded().iter().map(|surface| surface.nodes.clone()).collect();
+        self.check_expanded(&whole, &nodes, |at| format!("surface `{}`", recipe.surfaces()[at].name), places);
+    }
+
+    /// Reports problems of generated nodes: `nodes` are those of each table, `name` describes it, `places` are the positions.
+    fn check_expanded(
+        &mut self,
+        whole: &Recipe,
+        nodes: &[Range<usize>],
+        name: impl Fn(usize) -> String,
+        places: &[Span],
+    ) {
+        for diagnostic in Graph::resolve(whole).err().unwrap_or_default() {
             let at = match diagnostic.at {
-                At::Node(node, _) => whole.expanded().iter().position(|surface| surface.nodes.contains(&node)),
+                At::Node(node, _) => nodes.iter().position(|nodes| nodes.contains(&node)),
                 _ => None,
             };
             let span = at.and_then(|at| places.get(at)).cloned().unwrap_or(0..0);
             // Names of generated nodes would not help the user.
-            let message = match (at.map(|at| &recipe.surfaces()[at].name), diagnostic.message.split_once("`: ")) {
-                (Some(name), Some((_, what))) => format!("surface `{name}`: {what}"),
+            let message = match (at, diagnostic.message.split_once("`: ")) {
+                (Some(at), Some((_, what))) => format!("{}: {what}", name(at)),
                 _ => diagnostic.message,
             };
             self.complain(&span, message);

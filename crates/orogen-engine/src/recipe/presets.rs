@@ -52,6 +52,7 @@ static PRESETS: &[Preset] = presets![
     "island",
     "mesa",
     "rolling",
+    "tile-island",
     "volcano",
 ];
 

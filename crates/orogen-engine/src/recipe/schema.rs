@@ -144,6 +144,7 @@ pub fn json_schema_of(registry: &Registry) -> Json {
                 "additionalProperties": { "$ref": "#/definitions/input" },
             },
             "surface": super::surface::schema::list(),
+            "scatter": super::scatter::schema::list(),
         },
         "definitions": {
             "input": {

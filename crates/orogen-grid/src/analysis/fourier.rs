@@ -60,6 +60,7 @@ pub fn transform(values: &mut [[f64; 2]]) {
 }
 
 /// The power |X|^2 of a square of `side` x `side` real samples, row-major. The first value is that of frequency (0, 0).
+#[must_use]
 pub fn power(samples: &[f64], side: usize) -> Vec<f64> {
     let mut values: Vec<[f64; 2]> = samples.iter().map(|sample| [*sample, 0.0]).collect();
     let Some(fourier) = Fourier::new(side) else { return vec![0.0; values.len()] };

@@ -153,7 +153,7 @@ impl Lattice {
         let [east, south] = [columns, rows].map(|side| std::f64::consts::TAU / (side as f64 * cell));
         move |k, l| {
             let l_signed = if l < rows / 2 { l as f64 } else { l as f64 - rows as f64 };
-            (k != columns / 2 && l != rows / 2).then(|| [k as f64 * east, l_signed * south])
+            (k != columns / 2 && l != rows / 2).then_some([k as f64 * east, l_signed * south])
         }
     }
 

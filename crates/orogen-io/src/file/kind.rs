@@ -69,6 +69,8 @@ const KINDS: &[Kind] = &[
     Kind { name: "an HTML page", extensions: &["html", "htm"], begins: |head| is_markup(head) && holds(head, "<html") },
     Kind { name: "a Graphviz graph", extensions: &["dot", "gv"], begins: |head| head.starts_with(b"digraph ") },
     Kind { name: "a Wavefront material", extensions: &["mtl"], begins: |head| head.starts_with(b"newmtl") },
+    Kind { name: "a table of points", extensions: &["csv"], begins: |head| head.starts_with(b"x,y,") },
+    Kind { name: "a Godot resource", extensions: &["tres"], begins: |head| head.starts_with(b"[gd_resource") },
     Kind { name: "an ASCII grid", extensions: &["asc"], begins: |head| starts_with_word(head, "ncols") },
     Kind {
         name: "GeoJSON",
@@ -78,7 +80,14 @@ const KINDS: &[Kind] = &[
 ];
 
 /// Kinds of text that people also write by hand, with the name of Orogen's own files.
-const SIGNED: &[(&str, &str)] = &[("json", "JSON of Orogen"), ("obj", "an Orogen mesh")];
+const SIGNED: &[(&str, &str)] = &[
+    ("json", "JSON of Orogen"),
+    ("obj", "an Orogen mesh"),
+    // The mark is one that Tiled removes when it saves: maps that were edited are kept.
+    ("tmx", "a map of Orogen"),
+    ("tmj", "a map of Orogen"),
+    ("tsx", "a tileset of Orogen"),
+];
 
 /// Kinds without a signature, which contain only numbers.
 const HEADERLESS: &[&str] = &["r16", "r32", "raw", "hgt"];
@@ -235,7 +244,7 @@ mod tests {
 
     #[test]
     fn every_kind_takes_its_own_place_and_no_other() {
-        let samples: [(&str, &[u8]); 16] = [
+        let samples: [(&str, &[u8]); 18] = [
             ("png", b"\x89PNG\r\n\x1a\n...."),
             ("gif", b"GIF89a...."),
             ("tif", b"II*\0...."),
@@ -248,6 +257,8 @@ mod tests {
             ("gpkg", b"SQLite format 3\0"),
             ("fgb", b"fgb\x03fgb\x00"),
             ("svg", b"<?xml version=\"1.0\"?>\n<svg xmlns=\"\">"),
+            ("csv", b"x,y,z,kind\n1,2,3,tree\n"),
+            ("tres", b"[gd_resource type=\"MultiMesh\" format=3]\n"),
             ("asc", b"NCOLS 4\nNROWS 4\n"),
             ("geojson", b"{\"type\": \"FeatureCollection\"}"),
             ("json", b"{\"made_by\": \"Orogen 0.1.0\"}"),

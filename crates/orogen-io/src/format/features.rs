@@ -1,6 +1,7 @@
 //! Vector features as GIS formats store them: points, lines and polygons with attributes.
 
 use super::dem::Georeference;
+use std::borrow::Cow;
 
 /// The type of a layer's geometries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -66,7 +67,7 @@ pub enum Value {
     /// A boolean.
     Boolean(bool),
     /// A text.
-    Text(&'static str),
+    Text(Cow<'static, str>),
 }
 
 /// A feature: a geometry, and one value per field. Features are numbered from 1 in the order of their layer.
@@ -135,6 +136,12 @@ impl Crs<'_> {
 }
 
 impl Value {
+    /// A text that is known in advance.
+    #[must_use]
+    pub fn text(text: &'static str) -> Value {
+        Value::Text(Cow::Borrowed(text))
+    }
+
     /// An optional integer.
     #[must_use]
     pub fn id(number: Option<u32>) -> Value {
@@ -258,7 +265,7 @@ pub mod samples {
                     Value::Integer(k as i64 + 1),
                     if k.is_multiple_of(5) { Value::Real(f64::NAN) } else { Value::Real(k as f64 * 1.5) },
                     Value::Boolean(k.is_multiple_of(2)),
-                    if k.is_multiple_of(3) { Value::Null } else { Value::Text("sea") },
+                    if k.is_multiple_of(3) { Value::Null } else { Value::text("sea") },
                 ],
             }
         };

@@ -209,17 +209,21 @@ fn features(database: &mut Database, layer: &FeatureLayer, srs: i64) -> io::Resu
     let blobs: Vec<Vec<u8>> =
         layer.features.iter().map(|feature| blob(&feature.geometry, layer.geometry, srs)).collect();
     let rows = layer.features.iter().zip(&blobs).enumerate().map(|(k, (feature, blob))| {
-        let value = |value: &Value| match value {
-            Value::Integer(number) => Column::Integer(*number),
-            Value::Real(number) if number.is_finite() => Column::Real(*number),
-            Value::Boolean(is) => Column::Integer(i64::from(*is)),
-            Value::Text(text) => Column::Text(text),
-            Value::Null | Value::Real(_) => Column::Null,
-        };
-        let columns = [Column::Null, Column::Blob(blob)].into_iter().chain(feature.values.iter().map(value));
+        let columns = [Column::Null, Column::Blob(blob)].into_iter().chain(feature.values.iter().map(column));
         (k as i64 + 1, columns.collect())
     });
     database.table(layer.name, &sql, rows)
+}
+
+/// The column of an attribute.
+fn column(value: &Value) -> Column<'_> {
+    match value {
+        Value::Integer(number) => Column::Integer(*number),
+        Value::Real(number) if number.is_finite() => Column::Real(*number),
+        Value::Boolean(is) => Column::Integer(i64::from(*is)),
+        Value::Text(text) => Column::Text(text),
+        Value::Null | Value::Real(_) => Column::Null,
+    }
 }
 
 /// A geometry in GeoPackage binary: its header with the bounds, then ISO WKB, little-endian.

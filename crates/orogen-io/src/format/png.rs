@@ -24,6 +24,8 @@ pub enum Pixel {
     Grey16,
     /// Three bytes: red, green, blue, as sRGB.
     Rgb8,
+    /// Four bytes: red, green, blue, as sRGB, and opacity.
+    Rgba8,
     /// Three bytes of data that are not a colour, such as the components of a normal.
     Data8,
     /// Three 16-bit numbers, big-endian, that are not a colour.
@@ -41,7 +43,7 @@ impl Pixel {
             Pixel::Grey16 => 2,
             Pixel::Rgb8 | Pixel::Data8 => 3,
             Pixel::Data16 => 6,
-            Pixel::Weights8 => 4,
+            Pixel::Rgba8 | Pixel::Weights8 => 4,
         }
     }
 }
@@ -160,12 +162,12 @@ fn encoder<'a>(out: &'a mut dyn Write, picture: &Picture) -> io::Result<Encoder<
         Pixel::Grey16 => (ColorType::Grayscale, BitDepth::Sixteen),
         Pixel::Rgb8 | Pixel::Data8 => (ColorType::Rgb, BitDepth::Eight),
         Pixel::Data16 => (ColorType::Rgb, BitDepth::Sixteen),
-        Pixel::Weights8 => (ColorType::Rgba, BitDepth::Eight),
+        Pixel::Rgba8 | Pixel::Weights8 => (ColorType::Rgba, BitDepth::Eight),
     };
     encoder.set_color(color);
     encoder.set_depth(depth);
     encoder.set_compression(Compression::Fast);
-    if picture.pixel == Pixel::Rgb8 {
+    if matches!(picture.pixel, Pixel::Rgb8 | Pixel::Rgba8) {
         encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
     }
     for (keyword, text) in picture.notes {

@@ -32,6 +32,7 @@ pub mod layer_source;
 pub(crate) mod memory;
 pub mod mesh;
 pub mod mesh_cover;
+pub(crate) mod mesh_objects;
 pub mod mesh_tint;
 pub(crate) mod mesh_water;
 pub mod notes;

@@ -4,6 +4,7 @@
     &vectors::contours::LAYER,
     &vectors::lakes::LAYER,
     &vectors::rivers::LAYER,
+    &vectors::scatter::LAYER,
     &vectors::summits::LAYER,
     &vectors::watersheds::LAYER,
 ]

@@ -3,7 +3,8 @@
 //! The Khronos Group's specification, 2.0.1. Metres; X east, Y up, Z south, with the first sample of the grid at the
 //! node's origin; the node's translation is the position of that sample in its world. Vertices are interleaved:
 //! position, normal, texture coordinate and, on request, colour (linear, four u16) and tangent (eastward along the
-//! ground). Indices have two bytes if they fit. Levels of detail use MSFT_lod: a reader without support for it shows
+//! ground). Indices have two bytes if they fit. Objects are instances by EXT_mesh_gpu_instancing: a reader without support
+//! for it shows one placeholder of each kind. Levels of detail use MSFT_lod: a reader without support for it shows
 //! the first level.
 
 use std::io::{self, Write};
@@ -11,6 +12,7 @@ use std::io::{self, Write};
 use serde_json::{Map, Value, json};
 
 use super::normal_map::tangent;
+use super::objects::{CORNERS, ObjectMesh};
 use super::surface::{Corner, Surface, Wanted, push};
 use super::water::WaterMesh;
 use orogen_grid::error::{Error, ErrorKind};
@@ -27,6 +29,8 @@ pub struct Model<'a> {
     pub normal_maps: &'a [Option<Vec<u8>>],
     /// Water: a node and a translucent material each.
     pub water: &'a [WaterMesh],
+    /// Objects: for each kind a node, a placeholder mesh and instances of it.
+    pub objects: &'a [ObjectMesh],
     /// Additional properties of the node (`extras`).
     pub extras: Map<String, Value>,
 }
@@ -104,6 +108,14 @@ pub fn write(out: &mut dyn Write, model: &Model) -> io::Result<()> {
         out.write_all(&bytes)?;
         bytes.clear();
         bytes.extend(water.triangles.iter().flatten().flat_map(|corner| corner.to_le_bytes()));
+        out.write_all(&bytes)?;
+    }
+    for kind in model.objects {
+        let mut bytes = Vec::new();
+        kind.placeholder().iter().flatten().for_each(|numbers| push(numbers, &mut bytes));
+        kind.instances.iter().for_each(|instance| push(&instance.position, &mut bytes));
+        kind.instances.iter().for_each(|instance| push(&instance.rotation(), &mut bytes));
+        kind.instances.iter().for_each(|instance| push(&[instance.size; 3], &mut bytes));
         out.write_all(&bytes)?;
     }
     Ok(())
@@ -278,6 +290,46 @@ impl Document {
                 "pbrMetallicRoughness": {"baseColorFactor": color, "metallicFactor": 0.0, "roughnessFactor": 0.1}
             }));
         }
+        let mut instanced = Vec::new();
+        for kind in model.objects {
+            let corners = view(CORNERS as u64 * 24, json!({"byteStride": 24, "target": ARRAY_BUFFER}));
+            let attribute = |offset: u32| json!({"bufferView": corners, "byteOffset": offset, "componentType": F32, "count": CORNERS, "type": "VEC3"});
+            let placeholder = kind.placeholder();
+            let bound = |pick: fn(f32, f32) -> f32| {
+                placeholder
+                    .iter()
+                    .map(|[position, _]| *position)
+                    .reduce(|a, b| std::array::from_fn(|i| pick(a[i], b[i])))
+            };
+            let [least, greatest] = [bound(f32::min), bound(f32::max)].map(|ends| ends.map(|ends| ends.map(f64::from)));
+            let mut place = attribute(0);
+            place["min"] = json!(least);
+            place["max"] = json!(greatest);
+            let first = accessors.len();
+            accessors.extend([place, attribute(12)]);
+            let attributes = json!({"POSITION": first, "NORMAL": first + 1});
+            meshes.push(
+                json!({"name": kind.name, "primitives": [{"attributes": attributes, "material": materials.len()}]}),
+            );
+            let [red, green, blue] = kind.color.map(f64::from);
+            materials.push(json!({
+                "name": kind.name,
+                "pbrMetallicRoughness": {"baseColorFactor": [red, green, blue, 1.0], "metallicFactor": 0.0, "roughnessFactor": 1.0}
+            }));
+            let count = kind.instances.len() as u64;
+            let mut each = |parts: u64, kind: &str| {
+                let view = view(count * parts * 4, json!({}));
+                accessors.push(json!({"bufferView": view, "componentType": F32, "count": count, "type": kind}));
+                accessors.len() - 1
+            };
+            let attributes =
+                json!({"TRANSLATION": each(3, "VEC3"), "ROTATION": each(4, "VEC4"), "SCALE": each(3, "VEC3")});
+            instanced.push(json!({
+                "name": kind.name,
+                "mesh": meshes.len() - 1,
+                "extensions": {"EXT_mesh_gpu_instancing": {"attributes": attributes}}
+            }));
+        }
         let levels = model.levels.len();
         let mut nodes: Vec<Value> = (0..levels).map(|level| node(model, level)).collect();
         let mut shown = vec![0];
@@ -285,8 +337,15 @@ impl Document {
             shown.push(nodes.len());
             nodes.push(placed(model, json!({"name": water.name, "mesh": levels + k})));
         }
-        if levels > 1 {
-            json["extensionsUsed"] = json!(["MSFT_lod"]);
+        for node in instanced {
+            shown.push(nodes.len());
+            nodes.push(placed(model, node));
+        }
+        let lod = (levels > 1).then_some("MSFT_lod");
+        let instancing = (!model.objects.is_empty()).then_some("EXT_mesh_gpu_instancing");
+        let extensions: Vec<&str> = lod.into_iter().chain(instancing).collect();
+        if !extensions.is_empty() {
+            json["extensionsUsed"] = json!(extensions);
         }
         json["scene"] = json!(0);
         json["scenes"] = json!([{"nodes": shown}]);

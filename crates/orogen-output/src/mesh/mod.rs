@@ -19,6 +19,7 @@ mod border;
 pub mod glb;
 pub(crate) mod normal_map;
 pub mod obj;
+pub(crate) mod objects;
 mod packed;
 pub mod ply;
 pub(crate) mod relief;

@@ -8,6 +8,7 @@ use super::packed::{PIECE, PackedTriangles};
 use super::sample_set::{SampleSet, Word, columns, count};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Grid;
+use orogen_grid::triangles::falls;
 
 /// Triangles over the samples of a grid.
 ///
@@ -271,13 +272,7 @@ fn steps(samples: usize, step: usize) -> Vec<u32> {
 fn cell(grid: &Grid, columns: &[u32], rows: &[u32], [c, r]: [usize; 2]) -> [Option<[[usize; 2]; 3]>; 2] {
     let height = |[c, r]: [usize; 2]| grid[(columns[c] as usize, rows[r] as usize)];
     let [nw, ne, sw, se] = [[c, r], [c + 1, r], [c, r + 1], [c + 1, r + 1]];
-    let holes = [nw, ne, sw, se].map(|corner| !height(corner).is_finite());
-    let falling = match holes {
-        // The diagonal that keeps the triangle of the other three.
-        [false, false, true, false] | [false, true, false, false] => true,
-        [true, false, false, false] | [false, false, false, true] => false,
-        _ => (height(nw) - height(se)).abs() <= (height(ne) - height(sw)).abs(),
-    };
+    let falling = falls([nw, ne, sw, se].map(height));
     let pair = if falling { [[nw, sw, se], [nw, se, ne]] } else { [[nw, sw, ne], [ne, sw, se]] };
     pair.map(|triangle| triangle.iter().all(|&corner| height(corner).is_finite()).then_some(triangle))
 }

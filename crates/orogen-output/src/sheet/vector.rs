@@ -5,6 +5,7 @@ use std::io::{self, Write};
 
 use super::geometry::{Point, Rect, Size};
 use super::scene::{Item, Scene, Step};
+use crate::markup::{base64, escaped};
 use orogen_io::format::png::{self, Picture, Pixel};
 use orogen_io::format::svg::{self, MAX_PATH};
 use orogen_io::palette::color::hex;
@@ -171,43 +172,10 @@ fn spot(text: &mut String, Point { x, y }: Point) {
     let _ = write!(text, "{} {}", (x * 1000.0).round() / 1000.0, (y * 1000.0).round() / 1000.0);
 }
 
-fn escaped(text: &str) -> String {
-    let text: String = text.chars().filter(|letter| !letter.is_control()).collect();
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
-}
-
-/// Writes bytes as base64 (RFC 4648).
-fn base64(out: &mut dyn Write, bytes: &[u8]) -> io::Result<()> {
-    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = Vec::with_capacity(4096);
-    for chunk in bytes.chunks(3 * 1024) {
-        text.clear();
-        for three in chunk.chunks(3) {
-            let at = |k: usize| u32::from(three.get(k).copied().unwrap_or(0));
-            let bits = at(0) << 16 | at(1) << 8 | at(2);
-            for k in 0..4 {
-                let letter = LETTERS[(bits >> (18 - 6 * k)) as usize & 63];
-                text.push(if k > three.len() { b'=' } else { letter });
-            }
-        }
-        out.write_all(&text)?;
-    }
-    Ok(())
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::scene::line;
     use super::*;
-
-    #[test]
-    fn base64_is_the_standards() {
-        for (bytes, expect) in [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")] {
-            let mut out = Vec::new();
-            base64(&mut out, bytes.as_bytes()).unwrap();
-            assert_eq!(String::from_utf8(out).unwrap(), expect);
-        }
-    }
 
     #[test]
     fn lines_stay_lines() {

@@ -1,7 +1,9 @@
 //! A surface in memory.
 
 use crate::declare::Input;
-use crate::value::{toml_key, toml_string};
+pub use crate::recipe::condition::document::{Condition, Noise, Quantity};
+use crate::recipe::condition::document::{rename_layers, rename_mask, write_toml};
+use crate::value::toml_string;
 use orogen_io::dem::file_ref::FileRef;
 use orogen_io::palette::color::{Light, Rgb, decode, hex, linear, mix, oklab};
 use std::fmt::Write as _;
@@ -11,9 +13,6 @@ pub const RAMP: usize = 128;
 
 /// Maximum number of surfaces of a recipe.
 pub const MAX_SURFACES: usize = 64;
-
-/// Maximum number of alternatives in a surface's `any`.
-pub const MAX_ALTERNATIVES: usize = 16;
 
 /// Maximum number of colors in a gradient.
 pub const MAX_COLORS: usize = 256;
@@ -73,58 +72,6 @@ pub struct Expanded {
     pub nodes: std::ops::Range<usize>,
     /// Its colors in linear light, from the first of the gradient to the last; empty until its picture is read.
     pub colors: Vec<Light>,
-}
-
-/// A range of a quantity with smooth ends: the share is 1 inside and decreases to 0 outside.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Condition {
-    /// The quantity.
-    pub of: Quantity,
-    /// Lower end; `None` for no bound.
-    pub min: Option<f64>,
-    /// Upper end; `None` for no bound.
-    pub max: Option<f64>,
-    /// Widths of the transitions below and above the range, in the quantity's unit (for flow: in powers of ten).
-    pub fade: [f64; 2],
-}
-
-impl Condition {
-    /// A condition on a range of a quantity, with transitions of these widths below and above.
-    #[must_use]
-    pub fn new(of: Quantity, min: Option<f64>, max: Option<f64>, fade: [f64; 2]) -> Condition {
-        Condition { of, min, max, fade }
-    }
-}
-
-/// The quantity of a condition.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Quantity {
-    /// Height above sea level, in metres.
-    Height,
-    /// Slope in degrees.
-    Slope,
-    /// Total curvature in 1/m, positive where the ground is convex, from heights at distances of `scale`.
-    Curvature {
-        /// Distance of the heights, in metres.
-        scale: f64,
-    },
-    /// Drainage area in m^2.
-    Flow,
-    /// Fractal noise, -1 to 1.
-    Noise(Noise),
-    /// A node or layer of the recipe, in its own unit.
-    Layer(String),
-}
-
-/// The noise of a condition: fBm of Perlin noise.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Noise {
-    /// Wavelength in metres.
-    pub wavelength: f64,
-    /// Number of octaves.
-    pub octaves: u32,
-    /// Seed, hashed with the world's.
-    pub seed: u64,
 }
 
 /// The coloring of a surface.
@@ -189,25 +136,13 @@ impl Surface {
 
     /// Renames the nodes and layers that it reads.
     pub(in crate::recipe) fn rename_inputs(&mut self, of: &impl Fn(&str) -> Option<Input>) {
-        let renamed = |layer: &mut String| {
-            if let Some(Input::Node(name)) = of(layer) {
-                *layer = name;
-            }
-        };
-        if let Input::Node(name) = &self.mask
-            && let Some(input) = of(name)
-        {
-            self.mask = input;
-        }
-        for condition in self.all.iter_mut().chain(self.any.iter_mut().flatten()) {
-            if let Quantity::Layer(layer) = &mut condition.of {
-                renamed(layer);
-            }
-        }
+        rename_mask(&mut self.mask, of);
+        rename_layers(self.all.iter_mut().chain(self.any.iter_mut().flatten()), of);
         if let Coloring::Gradient(_, Along::Layer(layer, _)) | Coloring::Picture(_, Along::Layer(layer, _)) =
             &mut self.color
+            && let Some(Input::Node(name)) = of(layer)
         {
-            renamed(layer);
+            *layer = name;
         }
     }
 
@@ -249,59 +184,6 @@ impl Surface {
         if self.opacity != 1.0 {
             let _ = writeln!(text, "opacity = {:?}", self.opacity);
         }
-        for entry in entries(&self.all) {
-            let _ = writeln!(text, "{entry}");
-        }
-        if !self.any.is_empty() {
-            text.push_str("any = [\n");
-            for alternative in &self.any {
-                let _ = writeln!(text, "  {{ {} }},", entries(alternative).join(", "));
-            }
-            text.push_str("]\n");
-        }
-        let _ = match &self.mask {
-            Input::None => Ok(()),
-            Input::Node(name) => writeln!(text, "mask = {}", toml_string(name)),
-            Input::Value(value) => writeln!(text, "mask = {value:?}"),
-        };
+        write_toml(text, &self.all, &self.any, &self.mask);
     }
-}
-
-/// Conditions as TOML entries on one line each.
-fn entries(conditions: &[Condition]) -> Vec<String> {
-    let (layers, others): (Vec<&Condition>, Vec<&Condition>) =
-        conditions.iter().partition(|condition| matches!(condition.of, Quantity::Layer(_)));
-    let mut out: Vec<String> = (others.iter())
-        .map(|condition| {
-            let (key, more) = match &condition.of {
-                Quantity::Height => ("height", String::new()),
-                Quantity::Slope => ("slope", String::new()),
-                Quantity::Curvature { scale } => ("curvature", format!(", scale = {scale:?}")),
-                Quantity::Flow => ("flow", String::new()),
-                Quantity::Noise(Noise { wavelength, octaves, seed }) => {
-                    ("noise", format!(", wavelength = {wavelength:?}, octaves = {octaves}, seed = {seed}"))
-                }
-                Quantity::Layer(_) => ("layers", String::new()),
-            };
-            format!("{key} = {{ {}{more} }}", range(condition))
-        })
-        .collect();
-    if !layers.is_empty() {
-        let layers: Vec<String> = (layers.iter())
-            .filter_map(|condition| match &condition.of {
-                Quantity::Layer(name) => Some(format!("{} = {{ {} }}", toml_key(name), range(condition))),
-                _ => None,
-            })
-            .collect();
-        out.push(format!("layers = {{ {} }}", layers.join(", ")));
-    }
-    out
-}
-
-fn range(condition: &Condition) -> String {
-    let bounds = [("min", condition.min), ("max", condition.max)];
-    let mut parts: Vec<String> =
-        bounds.iter().filter_map(|(key, bound)| bound.map(|bound| format!("{key} = {bound:?}"))).collect();
-    parts.push(format!("fade = {:?}", condition.fade));
-    parts.join(", ")
 }

@@ -1,31 +1,18 @@
 //! Expansion of surfaces to nodes: the share of each, and the position in its gradient, are computed by ordinary ops.
 //! They are therefore the same for any tile, and their halos and memory are planned like those of any other layer.
 
-use std::collections::HashSet;
-
-use super::document::{Along, Coloring, Condition, Expanded, Noise, Quantity, Surface};
+use super::document::{Along, Coloring, Expanded, Surface};
 use super::standard;
 use crate::declare::Input;
-use crate::field::constant::Constant;
 use crate::field::curve::Curve;
 use crate::field::fbm::Fbm;
-use crate::field::max::Max;
-use crate::field::multiply::Multiply;
 use crate::field::remap::Remap;
-use crate::field::select_flow::SelectFlow;
-use crate::field::select_height::SelectHeight;
-use crate::filter::select_curvature::SelectCurvature;
-use crate::filter::select_slope::SelectSlope;
 use crate::filter::slope::Slope;
-use crate::node::Node;
+use crate::recipe::condition::expand::ShareNodes;
 use crate::recipe::document::Recipe;
-use crate::solver::drainage::Drainage;
 
 /// The output with the heights.
 const HEIGHT: &str = "height";
-
-/// The output with drainage areas, if a recipe has one.
-const FLOW: &str = "flow";
 
 /// Quantiles of fBm of Perlin noise with four octaves and a gain of 0.5 (from 2^24 samples), with which every color of
 /// a gradient covers the same area.
@@ -52,12 +39,6 @@ const QUANTILES: [[f64; 2]; 17] = [
 /// Octaves of the noise of gradients.
 const OCTAVES: u32 = 4;
 
-/// Bounds of the ops' parameters.
-const HEIGHTS: [f64; 2] = [-1e9, 1e9];
-const SLOPES: [f64; 2] = [0.0, 90.0];
-const CURVATURES: [f64; 2] = [-1e3, 1e3];
-const FLOWS: [f64; 2] = [0.0, 1e18];
-
 /// Adds the nodes to a recipe that compute its surfaces, or those of [`standard`] if it has none, unless they exist. A
 /// recipe without a layer `height` has no surfaces.
 pub fn expand(recipe: &mut Recipe) {
@@ -70,48 +51,18 @@ pub fn expand(recipe: &mut Recipe) {
         [] => standard::surfaces(),
         own => own.to_vec(),
     };
-    let flow = recipe.output_inputs().iter().find(|(name, _)| name == FLOW).map(|(_, flow)| flow.clone());
-    let names = recipe.nodes().iter().map(|named| named.name.clone()).collect();
-    let mut nodes = Nodes { recipe, names, height, flow };
+    let mut nodes = ShareNodes::new(recipe, height);
     let expanded = surfaces.into_iter().enumerate().map(|(k, surface)| nodes.surface(k, surface)).collect();
     recipe.set_expanded(expanded);
 }
 
-/// Adds nodes with unused names.
-struct Nodes<'r> {
-    recipe: &'r mut Recipe,
-    names: HashSet<String>,
-    height: Input,
-    flow: Option<Input>,
-}
-
-impl Nodes<'_> {
-    fn add(&mut self, name: &str, node: impl Into<Node>) -> Input {
-        let mut free = name.to_string();
-        while !self.names.insert(free.clone()) {
-            free.push('_');
-        }
-        self.recipe.add(&free, node);
-        Input::Node(free)
-    }
-
+impl ShareNodes<'_> {
     fn surface(&mut self, k: usize, surface: Surface) -> Expanded {
         let first = self.recipe.nodes().len();
         let name = |part: &str| format!("surface-{}-{part}", k + 1);
         let share = (k > 0).then(|| {
-            let mut factors: Vec<Input> =
-                surface.all.iter().map(|condition| self.condition(&name("condition"), condition)).collect();
-            let alternatives: Vec<Input> = (surface.any.iter())
-                .map(|conditions| {
-                    let factors = conditions.iter().map(|one| self.condition(&name("condition"), one)).collect();
-                    self.product(&name("alternative"), factors)
-                })
-                .collect();
-            let best = alternatives.into_iter().reduce(|a, b| self.add(&name("any"), Max { a, b, ..Max::default() }));
-            factors.extend(best);
-            factors.extend((surface.mask != Input::None).then(|| surface.mask.clone()));
-            factors.push(Input::Value(surface.opacity));
-            self.product(&name("share"), factors)
+            let more = [surface.mask.clone(), Input::Value(surface.opacity)];
+            self.share(&format!("surface-{}", k + 1), &surface.all, &surface.any, more)
         });
         let position = match &surface.color {
             Coloring::Plain(_) => None,
@@ -126,71 +77,6 @@ impl Nodes<'_> {
         let nodes = first..self.recipe.nodes().len();
         let colors = surface.color.ramp();
         Expanded { surface, share: share.map(layer), position: position.map(layer), nodes, colors }
-    }
-
-    /// The product of shares, always a node.
-    fn product(&mut self, name: &str, factors: Vec<Input>) -> Input {
-        let product = factors.into_iter().reduce(|a, b| match (a, b) {
-            (a, Input::Value(1.0)) => a,
-            (a, b) => self.add(name, Multiply { a, b }),
-        });
-        match product {
-            Some(Input::Node(node)) => Input::Node(node),
-            Some(Input::Value(value)) => self.add(name, Constant { value }),
-            _ => self.add(name, Constant { value: 1.0 }),
-        }
-    }
-
-    /// A node that is 1 where the condition holds and 0 where it does not.
-    fn condition(&mut self, name: &str, condition: &Condition) -> Input {
-        let Condition { of, min, max, fade } = condition;
-        let within = |[low, high]: [f64; 2]| [min.unwrap_or(low).max(low), max.unwrap_or(high).min(high)];
-        let falloff = *fade;
-        match of {
-            Quantity::Height => {
-                let sea = self.recipe.world.sea_level;
-                let range =
-                    within(HEIGHTS.map(|bound| bound - sea)).map(|bound| (bound + sea).clamp(HEIGHTS[0], HEIGHTS[1]));
-                let source = self.height.clone();
-                self.add(name, SelectHeight { source, range, falloff })
-            }
-            Quantity::Slope => {
-                let source = self.height.clone();
-                self.add(
-                    name,
-                    SelectSlope { source, range: within(SLOPES), falloff: falloff.map(|fade| fade.min(90.0)) },
-                )
-            }
-            Quantity::Curvature { scale } => {
-                let source = self.height.clone();
-                let node =
-                    SelectCurvature { source, scale: *scale, range: within(CURVATURES), falloff, ..Default::default() };
-                self.add(name, node)
-            }
-            Quantity::Flow => match self.flow() {
-                Some(source) => self.add(name, SelectFlow { source, range: within(FLOWS), falloff }),
-                // The drainage area is unknown in unbounded worlds.
-                None => self.add(name, Constant { value: if min.unwrap_or(0.0) > 0.0 { 0.0 } else { 1.0 } }),
-            },
-            Quantity::Noise(Noise { wavelength, octaves, seed }) => {
-                let source =
-                    self.add(name, Fbm { wavelength: *wavelength, octaves: *octaves, seed: *seed, ..Fbm::default() });
-                self.add(name, SelectHeight { source, range: within(HEIGHTS), falloff })
-            }
-            Quantity::Layer(layer) => {
-                let source = Input::Node(layer.clone());
-                self.add(name, SelectHeight { source, range: within(HEIGHTS), falloff })
-            }
-        }
-    }
-
-    /// Drainage areas: the recipe's own, or those of its heights.
-    fn flow(&mut self) -> Option<Input> {
-        if self.flow.is_none() && self.recipe.world.size.is_some() {
-            let source = self.height.clone();
-            self.flow = Some(self.add("surface-drainage", Drainage { source, ..Drainage::default() }));
-        }
-        self.flow.clone()
     }
 
     /// The position in a gradient, 0 to 1.

@@ -2,7 +2,8 @@
 
 use serde_json::{Value as Json, json};
 
-use super::document::{DEFAULT_GRAIN, DEFAULT_ROUGHNESS, MAX_ALTERNATIVES, MAX_COLORS, MAX_SURFACES};
+use super::document::{DEFAULT_GRAIN, DEFAULT_ROUGHNESS, MAX_COLORS, MAX_SURFACES};
+use crate::recipe::condition::schema::{any, conditions};
 
 /// The schema of the list.
 pub fn list() -> Json {
@@ -28,11 +29,7 @@ pub fn list() -> Json {
         "grain": { "type": "number", "minimum": 1e-3, "maximum": 1e9, "default": DEFAULT_GRAIN, "description": "Wavelength of the gradient's noise. Unit: m." },
         "roughness": { "type": "number", "minimum": 0, "maximum": 1, "default": DEFAULT_ROUGHNESS, "description": "0 is a mirror, 1 is matt." },
         "opacity": { "type": "number", "minimum": 0, "maximum": 1, "default": 1, "description": "Maximum share of the surface." },
-        "any": {
-            "type": "array", "minItems": 1, "maxItems": MAX_ALTERNATIVES,
-            "items": { "type": "object", "additionalProperties": false, "minProperties": 1, "properties": conditions() },
-            "description": "Alternatives: the largest share of them is used.",
-        },
+        "any": any(),
         "mask": { "description": "A node, a layer or a number that multiplies the share.", "allOf": [{ "$ref": "#/definitions/input" }] },
     });
     if let (Some(all), Some(own)) = (properties.as_object_mut(), own.as_object()) {
@@ -47,42 +44,6 @@ pub fn list() -> Json {
             "required": ["name"],
             "additionalProperties": false,
             "properties": properties,
-        },
-    })
-}
-
-/// The schema of conditions.
-fn conditions() -> Json {
-    let range = |about: &str, more: Json| {
-        let number = json!({ "type": "number" });
-        let pair = json!({ "type": "array", "minItems": 2, "maxItems": 2, "items": number });
-        let mut properties = json!({
-            "min": { "type": "number", "description": "Lower bound." },
-            "max": { "type": "number", "description": "Upper bound." },
-            "fade": { "anyOf": [number, pair], "description": "Width of the transition outside the range: one number, or [below, above]." },
-        });
-        if let (Some(all), Some(more)) = (properties.as_object_mut(), more.as_object()) {
-            all.extend(more.clone());
-        }
-        let table = json!({ "type": "object", "additionalProperties": false, "properties": properties });
-        json!({ "anyOf": [pair, table], "description": about })
-    };
-    let noise = json!({
-        "wavelength": { "type": "number", "minimum": 1e-3, "maximum": 1e9, "description": "Unit: m." },
-        "octaves": { "type": "integer", "minimum": 1, "maximum": 32, "default": 4 },
-        "seed": { "type": "integer", "minimum": 0, "default": 0, "description": "Hashed with the world's seed." },
-    });
-    let scale = json!({ "scale": { "type": "number", "minimum": 0, "maximum": 1e6, "default": 50, "description": "Distance between the heights that the curvature is computed from. Unit: m." } });
-    json!({
-        "height": range("Height above the sea. Unit: m.", json!({})),
-        "slope": range("Slope. Unit: degrees.", json!({})),
-        "curvature": range("Total curvature, positive where the ground is convex. Unit: 1/m.", scale),
-        "flow": range("Drainage area. `fade` is in powers of ten. Unit: m^2.", json!({})),
-        "noise": range("Fractal noise, -1 to 1.", noise),
-        "layers": {
-            "type": "object",
-            "additionalProperties": range("A node or layer, in its own unit.", json!({})),
-            "description": "Conditions on nodes or layers of the recipe, by name.",
         },
     })
 }

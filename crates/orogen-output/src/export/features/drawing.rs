@@ -2,7 +2,7 @@
 
 use std::io;
 
-use super::layer::{Style, VectorLayer};
+use super::layer::{Maker, Style, VectorLayer};
 use super::options::{FeatureOptions, OPTIONS};
 use super::source::FeatureSource;
 use crate::export::contour_options;
@@ -21,6 +21,7 @@ pub struct Drawing {
     /// The layers, each with its style.
     pub layers: Vec<(FeatureLayer, Style)>,
     map: Option<Georeference>,
+    /// Distance between samples, or less for features that are not made of samples, in metres.
     cell: f64,
     /// The summary of the contours of a layer of samples.
     contours: Option<String>,
@@ -44,7 +45,7 @@ impl Drawing {
     ///
     /// Fails if the source fails, or an option belongs to none of the layers.
     pub fn of(source: &mut LayerSource, options: &Options) -> io::Result<Drawing> {
-        let (map, cell) = (source.map(), source.window().cell);
+        let (map, mut cell) = (source.map(), source.window().cell);
         let asked = source.vectors().to_vec();
         let mut words = None;
         let layers = match asked.as_slice() {
@@ -56,12 +57,26 @@ impl Drawing {
             asked => {
                 check(asked, options)?;
                 let wanted = FeatureOptions::new(options, source.world().recipe())?;
-                let ground = FeatureSource::of(source.world(), source.window(), &wanted, 0, source.progress())?;
-                source.made_of(
-                    ground.heights().map_or(FiniteCount::default(), |heights| FiniteCount::of(heights.data())),
-                );
-                let make = |layer: &&VectorLayer| Ok(((layer.make)(&ground, &wanted)?, layer.style));
-                asked.iter().map(make).collect::<Result<Vec<_>>>()?
+                let (world, window, progress) = (source.world(), *source.window(), source.progress().clone());
+                let ground = match asked.iter().any(|layer| matches!(layer.make, Maker::Ground(_))) {
+                    true => Some(FeatureSource::of(world, &window, &wanted, 0, &progress)?),
+                    false => None,
+                };
+                let heights = ground.as_ref().and_then(FeatureSource::heights);
+                source.made_of(heights.map_or(FiniteCount::default(), |heights| FiniteCount::of(heights.data())));
+                let mut layers = Vec::with_capacity(asked.len());
+                for layer in asked {
+                    match (&layer.make, &ground) {
+                        (Maker::Ground(make), Some(ground)) => layers.push((make(ground, &wanted)?, layer.style)),
+                        (Maker::Ground(_), None) => {}
+                        (Maker::World(make), _) => {
+                            // Objects are closer to each other than samples.
+                            cell = cell.min(1.0);
+                            layers.push((make(world, &window, &progress)?, layer.style));
+                        }
+                    }
+                }
+                layers
             }
         };
         Ok(Drawing { layers, map, cell, contours: words })
@@ -77,7 +92,7 @@ impl Drawing {
         self.map.as_ref().map_or(Crs::Local, Crs::Map)
     }
 
-    /// Distance between samples, in map units.
+    /// Distance between samples, or less, in map units: that which coordinates must resolve.
     pub fn step(&self) -> f64 {
         self.map.as_ref().map_or(self.cell, |map| self.cell * map.per_metre[0].min(map.per_metre[1]))
     }

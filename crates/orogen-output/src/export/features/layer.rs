@@ -2,7 +2,10 @@
 
 use super::options::FeatureOptions;
 use super::source::FeatureSource;
+use orogen_engine::world::World;
 use orogen_grid::error::Result;
+use orogen_grid::grid::Window;
+use orogen_grid::progress::Progress;
 use orogen_io::format::features::FeatureLayer;
 
 /// A layer of vector features, declared in its own file in `vectors/`.
@@ -16,7 +19,26 @@ pub struct VectorLayer {
     /// The style in drawings.
     pub style: Style,
     /// Computes its features, in metres east and south of the world's origin.
-    pub make: fn(&FeatureSource, &FeatureOptions) -> Result<FeatureLayer>,
+    pub make: Maker,
+}
+
+impl VectorLayer {
+    /// Its features from the heights and the water of a window; `None` if it is not made of these.
+    #[must_use]
+    pub fn of_ground(&self, ground: &FeatureSource, options: &FeatureOptions) -> Option<Result<FeatureLayer>> {
+        match self.make {
+            Maker::Ground(make) => Some(make(ground, options)),
+            Maker::World(_) => None,
+        }
+    }
+}
+
+/// What features are computed from.
+pub enum Maker {
+    /// The heights and the water of a window.
+    Ground(fn(&FeatureSource, &FeatureOptions) -> Result<FeatureLayer>),
+    /// A world and a window of it.
+    World(fn(&World, &Window, &Progress) -> Result<FeatureLayer>),
 }
 
 /// The style of features in a drawing.

@@ -10,6 +10,7 @@ use crate::export::layer_source::LayerSource;
 use crate::export::memory::whole;
 use crate::export::mesh::{COLOR, EXAGGERATION, HEIGHT_CURVE, MAX_ERROR, Prepared, color, memory};
 use crate::export::mesh_cover::{self, SURFACES};
+use crate::export::mesh_objects::{self, OBJECTS};
 use crate::export::mesh_tint::COLOR_RANGE;
 use crate::export::mesh_water::{self, WATER, memory as water_memory};
 use crate::export::options::{OptionSpec, Options, ValueKind};
@@ -29,7 +30,7 @@ pub static FORMAT: Format = Format {
     name: "glb",
     aliases: &[],
     about: "glTF 2.0 mesh in one binary file: metres, Y up, normals, texture",
-    options: &[MAX_ERROR, LODS, COLOR, COLOR_RANGE, EXAGGERATION, HEIGHT_CURVE, WATER, SURFACES],
+    options: &[MAX_ERROR, LODS, COLOR, COLOR_RANGE, EXAGGERATION, HEIGHT_CURVE, WATER, OBJECTS, SURFACES],
     channels: 1,
     features: false,
     // Including the picture, which must be compressed before its size is known.
@@ -71,12 +72,21 @@ fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::
     .collect();
     let [texture, material] = [&texture, &material].map(|picture| (!picture.is_empty()).then_some(picture.as_slice()));
     let water = mesh_water::of(source, &mesh, options, reserved(source.window(), options))?;
+    let objects = mesh_objects::of(source, &mesh, options)?;
     files.write(|out| {
         write_model(
             out,
-            &Model { levels: &levels, texture, material, normal_maps: &normal_maps, water: &water, extras },
+            &Model {
+                levels: &levels,
+                texture,
+                material,
+                normal_maps: &normal_maps,
+                water: &water,
+                objects: &objects,
+                extras,
+            },
         )
     })?;
     let also: String = water.iter().map(|water| format!(", {}", water.name)).collect();
-    Ok(mesh.words() + &also)
+    Ok(mesh.words() + &also + &mesh_objects::words(&objects))
 }

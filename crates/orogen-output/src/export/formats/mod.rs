@@ -2,6 +2,7 @@
 
 // The list below is written by `cargo xtask codegen`.
 pub mod asc;
+pub mod csv;
 pub mod exr;
 pub mod fgb;
 pub mod geojson;
@@ -18,3 +19,4 @@ pub mod r32;
 pub mod stl;
 pub mod svg;
 pub mod tif;
+pub mod tres;

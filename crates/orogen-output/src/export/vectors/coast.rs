@@ -1,7 +1,7 @@
 //! The coast.
 
 use crate::export::contour_options;
-use crate::export::features::layer::{Style, VectorLayer};
+use crate::export::features::layer::{Maker, Style, VectorLayer};
 use crate::export::features::options::FeatureOptions;
 use crate::export::features::source::FeatureSource;
 use orogen_grid::error::Result;
@@ -13,7 +13,7 @@ pub static LAYER: VectorLayer = VectorLayer {
     about: "the coast of the sea, land to its left",
     options: &[contour_options::SMOOTH.name],
     style: Style { stroke: "#1f4e79", width: 1.0, by: None, fill: "none" },
-    make,
+    make: Maker::Ground(make),
 };
 
 const FIELDS: &[Field] = &[

@@ -2,7 +2,7 @@
 
 use crate::export::contour_options;
 use crate::export::contours::{self, Contours};
-use crate::export::features::layer::{Style, VectorLayer};
+use crate::export::features::layer::{Maker, Style, VectorLayer};
 use crate::export::features::options::FeatureOptions;
 use crate::export::features::source::FeatureSource;
 use orogen_grid::contour::levels::is_index;
@@ -15,7 +15,7 @@ pub static LAYER: VectorLayer = VectorLayer {
     about: "contour lines of the heights, higher ground to their left",
     options: &[contour_options::INTERVAL.name, contour_options::LEVELS.name, contour_options::SMOOTH.name],
     style: Style { stroke: "#8a5a2b", width: 0.4, by: None, fill: "none" },
-    make,
+    make: Maker::Ground(make),
 };
 
 const FIELDS: &[Field] = &[

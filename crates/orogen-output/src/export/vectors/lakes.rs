@@ -1,6 +1,6 @@
 //! Lakes.
 
-use crate::export::features::layer::{Style, VectorLayer};
+use crate::export::features::layer::{Maker, Style, VectorLayer};
 use crate::export::features::options::{FeatureOptions, WATER};
 use crate::export::features::source::FeatureSource;
 use orogen_grid::contour::line::twice_area;
@@ -14,7 +14,7 @@ pub static LAYER: VectorLayer = VectorLayer {
     about: "lakes, with islands as holes",
     options: WATER,
     style: Style { stroke: "#2f6a9e", width: 0.5, by: None, fill: "#9fc8e4" },
-    make,
+    make: Maker::Ground(make),
 };
 
 const FIELDS: &[Field] = &[

@@ -6,5 +6,6 @@ pub mod coast;
 pub mod contours;
 pub mod lakes;
 pub mod rivers;
+pub mod scatter;
 pub mod summits;
 pub mod watersheds;

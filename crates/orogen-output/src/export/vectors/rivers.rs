@@ -1,6 +1,6 @@
 //! Rivers.
 
-use crate::export::features::layer::{Style, VectorLayer};
+use crate::export::features::layer::{Maker, Style, VectorLayer};
 use crate::export::features::options::{FeatureOptions, WATER};
 use crate::export::features::source::FeatureSource;
 use orogen_grid::error::Result;
@@ -13,7 +13,7 @@ pub static LAYER: VectorLayer = VectorLayer {
     about: "river reaches, from spring, confluence or lake to confluence, lake, sea or border",
     options: WATER,
     style: Style { stroke: "#3f7fb5", width: 1.0, by: Some("discharge"), fill: "none" },
-    make,
+    make: Maker::Ground(make),
 };
 
 const FIELDS: &[Field] = &[
@@ -74,9 +74,9 @@ fn make(ground: &FeatureSource, options: &FeatureOptions) -> Result<FeatureLayer
             Value::Real(length(&points)),
             end(points.first()),
             end(points.last()),
-            Value::Text(source),
+            Value::text(source),
             Value::id(source_lake),
-            Value::Text(mouth),
+            Value::text(mouth),
             Value::id(mouth_lake),
         ];
         features.push(Feature { geometry: Geometry::Line(points), values });

@@ -1,6 +1,6 @@
 //! Summits.
 
-use crate::export::features::layer::{Style, VectorLayer};
+use crate::export::features::layer::{Maker, Style, VectorLayer};
 use crate::export::features::options::{FeatureOptions, PROMINENCE};
 use crate::export::features::source::FeatureSource;
 use orogen_grid::error::Result;
@@ -13,7 +13,7 @@ pub static LAYER: VectorLayer = VectorLayer {
     about: "summits with height and prominence, the most prominent first",
     options: &[PROMINENCE.name],
     style: Style { stroke: "#222222", width: 0.5, by: None, fill: "#222222" },
-    make,
+    make: Maker::Ground(make),
 };
 
 const FIELDS: &[Field] = &[

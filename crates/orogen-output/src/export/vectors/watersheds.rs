@@ -1,6 +1,6 @@
 //! Watersheds.
 
-use crate::export::features::layer::{Style, VectorLayer};
+use crate::export::features::layer::{Maker, Style, VectorLayer};
 use crate::export::features::options::{FeatureOptions, WATER};
 use crate::export::features::source::FeatureSource;
 use orogen_grid::error::Result;
@@ -16,7 +16,7 @@ pub static LAYER: VectorLayer = VectorLayer {
     about: "watersheds: the land that drains to each river mouth, and the land between them; they cover all land without overlaps",
     options: WATER,
     style: Style { stroke: "#b0413e", width: 0.8, by: None, fill: "none" },
-    make,
+    make: Maker::Ground(make),
 };
 
 const FIELDS: &[Field] = &[
@@ -83,9 +83,9 @@ fn make(ground: &FeatureSource, options: &FeatureOptions) -> Result<FeatureLayer
         }
         let mouth =
             river.and_then(|river| ground.rivers.get(river as usize)).map_or(Value::Null, |river| match river.mouth {
-                Mouth::Sea => Value::Text("sea"),
-                Mouth::Lake(_) => Value::Text("lake"),
-                _ => Value::Text("border"),
+                Mouth::Sea => Value::text("sea"),
+                Mouth::Lake(_) => Value::text("lake"),
+                _ => Value::text("border"),
             });
         let values = vec![
             Value::Integer(features.len() as i64 + 1),

@@ -1,0 +1,120 @@
+//! `orogen tilemap`.
+
+use crate::harness::{Folder, png};
+
+const FILES: [&str; 7] = ["classes.csv", "map.tmj", "map.tmx", "preview.png", "tilemap.json", "tiles.png", "tiles.tsx"];
+
+/// A world of 40 x 30 cells whose classes are 0 to 5 from west to east, with single cells of water.
+const CLASSES: &str = r#"
+orogen = 1
+world = { size = [400, 300], cell = 10 }
+outputs = { class = "class" }
+nodes.east = { op = "ramp", origin = [0, 0], length = 400, azimuth = 90 }
+nodes.spots = { op = "white", seed = 3 }
+nodes.class = { op = "expr", expr = "min(5, floor(east * 6)) * (spots < 0.9)" }
+"#;
+
+/// The rows of `classes.csv`.
+fn classes(folder: &Folder, name: &str) -> Vec<Vec<u8>> {
+    let text = folder.text(name);
+    text.lines().map(|line| line.split(',').map(|class| class.parse().unwrap()).collect()).collect()
+}
+
+#[test]
+fn it_writes_its_files_and_they_agree() {
+    let folder = Folder::new();
+    folder.write("land.toml", CLASSES);
+    for (layout, tiles, cells) in [
+        ("blob", [40, 30], [40, 30]),
+        ("edge", [40, 30], [40, 30]),
+        ("corner", [40, 30], [41, 31]),
+        ("dual", [41, 31], [40, 30]),
+    ] {
+        let outcome = folder.good(&["tilemap", "land.toml", "--cell", "10", "--layout", layout, "-o", layout]);
+        assert_eq!(folder.names(layout), FILES);
+        let text = outcome.text();
+        assert!(text.contains(&format!("{} x {} tiles of fields-16 ({layout})", tiles[0], tiles[1])), "{text}");
+        assert!(text.contains("every place has a tile"), "{text}");
+        let summary = folder.json(&format!("{layout}/tilemap.json"));
+        assert_eq!((&summary["width"], &summary["height"]), (&tiles[0].into(), &tiles[1].into()));
+        let table = classes(&folder, &format!("{layout}/classes.csv"));
+        assert_eq!([table[0].len(), table.len()], cells);
+        for (class, counted) in summary["classes"].as_array().unwrap().iter().enumerate() {
+            let cells = table.iter().flatten().filter(|of| usize::from(**of) == class).count();
+            assert_eq!(counted["cells"], cells, "{counted}");
+        }
+        let picture = png(&folder.read(&format!("{layout}/preview.png")));
+        assert_eq!([picture.width, picture.height], tiles.map(|side| side * 16));
+        // Every tile number of the map is one of the tileset.
+        let map = folder.json(&format!("{layout}/map.tmj"));
+        let count = map["tilesets"][0]["tilecount"].as_u64().unwrap();
+        for layer in map["layers"].as_array().unwrap() {
+            let data = layer["data"].as_array().unwrap();
+            assert_eq!(data.len(), tiles[0] * tiles[1]);
+            assert!(data.iter().all(|tile| tile.as_u64().unwrap() <= count));
+        }
+    }
+}
+
+#[test]
+fn a_part_of_a_map_is_the_map_there() {
+    let folder = Folder::new();
+    folder.write("land.toml", CLASSES);
+    folder.good(&["tilemap", "land.toml", "--cell", "10", "-o", "whole", "-q"]);
+    folder.good(&["tilemap", "land.toml", "--window", "7,5,20,11", "-o", "part", "-q"]);
+    let [whole, part] = ["whole", "part"].map(|name| folder.json(&format!("{name}/map.tmj")));
+    let layer = |map: &serde_json::Value, name: &str| -> Vec<u64> {
+        let layers = map["layers"].as_array().unwrap();
+        let found = layers.iter().find(|layer| layer["name"] == name);
+        found.map_or(Vec::new(), |layer| {
+            layer["data"].as_array().unwrap().iter().map(|tile| tile.as_u64().unwrap()).collect()
+        })
+    };
+    for name in ["water", "sand", "grass", "forest", "rock"] {
+        let [whole, part] = [layer(&whole, name), layer(&part, name)];
+        assert!(!whole.is_empty(), "{name}");
+        for (y, row) in part.chunks(20).enumerate() {
+            assert_eq!(row, &whole[(y + 5) * 40 + 7..][..20], "{name}, row {y}");
+        }
+    }
+}
+
+#[test]
+fn another_seed_is_another_map_of_the_same_look() {
+    let folder = Folder::with_small();
+    folder.good(&["tilemap", "small.toml", "--size", "32x24", "--seed", "1..2", "-o", "map", "-q"]);
+    let [one, two] = ["map-1", "map-2"].map(|name| folder.read(&format!("{name}/classes.csv")));
+    assert_ne!(one, two);
+    assert_eq!(folder.read("map-1/tiles.png"), folder.read("map-2/tiles.png"));
+}
+
+#[test]
+fn wrong_classes_and_sizes_are_explained() {
+    let folder = Folder::new();
+    folder.write("wrong.toml", CLASSES.replace("min(5,", "min(7,").replace("east * 6", "east * 8"));
+    let outcome =
+        folder.bad(&["tilemap", "wrong.toml", "--cell", "10", "-o", "x"], 2, "the output `class` is 6 in column");
+    assert!(outcome.err.contains("0 water, 1 sand, 2 grass, 3 forest, 4 rock, 5 snow"), "{}", outcome.err);
+    folder.write("half.toml", CLASSES.replace("* (spots", "+ 0.5 * (spots"));
+    folder.bad(&["tilemap", "half.toml", "--cell", "10", "-o", "x"], 2, "is 0.5 in column 0, row");
+    folder.write("none.toml", CLASSES.replace("class = \"class\" }", "other = \"class\" }"));
+    folder.bad(&["tilemap", "none.toml", "--cell", "10", "-o", "x"], 1, "no output `height` and no output `class`");
+    folder.write("land.toml", CLASSES);
+    folder.bad(&["tilemap", "land.toml", "--size", "0", "-o", "x"], 2, "--size");
+    folder.bad(&["tilemap", "land.toml", "--tileset", "none", "-o", "x"], 2, "fields-16");
+    assert!(!folder.path("x").exists(), "nothing is left behind");
+}
+
+#[test]
+fn a_map_that_was_edited_is_kept() {
+    let folder = Folder::with_small();
+    let arguments = ["tilemap", "small.toml", "--size", "32x24", "-o", "map", "-q"];
+    folder.good(&arguments);
+    folder.good(&arguments);
+    // An editor writes the file anew, without the comment at its beginning.
+    let edited = folder.text("map/map.tmx");
+    let edited: String = edited.lines().filter(|line| !line.contains("<!--")).map(|line| format!("{line}\n")).collect();
+    folder.write("map/map.tmx", &edited);
+    folder.bad(&arguments, 1, "map.tmx");
+    assert_eq!(folder.read("map/map.tmx"), edited.as_bytes());
+}

@@ -1,0 +1,290 @@
+//! Scattered objects over a window: trees, rocks, houses.
+
+use std::ops::Range;
+
+use crate::budget::Reservation;
+use crate::recipe::scatter::document::{ExpandedScatter, InWater, Scatter, Turn};
+use crate::world::{HEIGHT, LAKES, World};
+use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::grid::{Grid, Window};
+use orogen_grid::poisson_discs::{POINTS, PoissonDiscs, square};
+use orogen_grid::progress::Progress;
+use orogen_grid::random::Random;
+use orogen_grid::triangles;
+
+/// An object on the ground.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Object {
+    /// The index of its entry in [`Recipe::scatter`](crate::Recipe::scatter).
+    pub entry: usize,
+    /// Metres east and south of the world's origin.
+    pub position: [f64; 2],
+    /// Height of the ground in metres: that of the full mesh of the window's samples.
+    pub height: f64,
+    /// Scale factor.
+    pub size: f64,
+    /// Turn about the vertical axis in degrees, clockwise seen from above, 0 to less than 360.
+    pub turn: f64,
+}
+
+impl World {
+    /// The recipe's [scatter](crate::recipe::scatter::document::Scatter) over a window: the objects from its first sample
+    /// up to, but not including, one cell beyond its last one. Windows side by side therefore have each object once. They are
+    /// ordered by entry, and then row by row of a lattice.
+    ///
+    /// Which objects there are, and where, does not depend on the window and its cell: conditions are computed at the
+    /// world's cell, or at that of the entry. Heights are those of the window's samples.
+    ///
+    /// # Errors
+    /// If the recipe has no scatter or no layer `height`, the window is not valid for this world, memory does not
+    /// suffice, or the work was cancelled.
+    pub fn objects(&self, window: &Window, progress: &Progress) -> Result<Vec<Object>> {
+        self.check(window)?;
+        self.unit(HEIGHT)?;
+        let recipe = self.recipe();
+        let entries: Vec<(&Scatter, &ExpandedScatter)> =
+            recipe.scatter().iter().zip(recipe.expanded_scatter()).collect();
+        if entries.is_empty() {
+            let message = "the recipe has no objects; add a table `[[scatter]]` with `name` and `spacing`";
+            return Err(Error::new(ErrorKind::Request, message));
+        }
+        let side = |first: i64, samples: usize, most: Option<f64>| {
+            let ends = [first, first + samples as i64].map(|sample| sample as f64 * window.cell);
+            let most = most.unwrap_or(f64::INFINITY);
+            let least = if most.is_finite() { 0.0 } else { f64::NEG_INFINITY };
+            ends[0].max(least)..ends[1].min(most)
+        };
+        let size = recipe.world.size;
+        let bounds = [
+            side(window.x, window.width, size.map(|size| size[0])),
+            side(window.y, window.height, size.map(|size| size[1])),
+        ];
+        if bounds.iter().any(|side| side.is_empty()) {
+            return Ok(Vec::new());
+        }
+        progress.expect(2.0 * entries.len() as f64 + 1.0);
+        let beyond = beyond(&entries);
+        let mut placed: Vec<Placed> = Vec::new();
+        for ((entry, expanded), beyond) in entries.iter().zip(beyond) {
+            let points = self.placed(entry, expanded, &grown(&bounds, beyond), &placed, progress)?;
+            placed.push(points);
+        }
+        let ground = samples(&bounds, window.cell);
+        let heights = self.grids_beside(&[HEIGHT], &ground, 0, &progress.part(1.0))?;
+        let Some(heights) = heights.first() else { return Ok(Vec::new()) };
+        let mut objects = Vec::new();
+        for (entry, (placed, (scatter, _))) in placed.iter().zip(&entries).enumerate() {
+            for (position, bits) in placed.points.iter().copied() {
+                let height = height(heights, position);
+                if bounds.iter().zip(position).all(|(side, at)| side.contains(&at)) && height.is_finite() {
+                    let mut random = Random::of_state(bits);
+                    let [low, high] = scatter.size;
+                    let size = (low + random.share() * (high - low)).clamp(low, high);
+                    let turn = match scatter.turn {
+                        Turn::Random => random.share() * 360.0,
+                        Turn::Fixed(degrees) => degrees,
+                    };
+                    objects.push(Object { entry, position, height, size, turn });
+                }
+            }
+        }
+        Ok(objects)
+    }
+
+    /// The points of an entry within bounds, clear of those `placed` before.
+    fn placed(
+        &self,
+        entry: &Scatter,
+        expanded: &ExpandedScatter,
+        bounds: &[Range<f64>; 2],
+        before: &[Placed],
+        progress: &Progress,
+    ) -> Result<Placed> {
+        let recipe = self.recipe();
+        let discs = PoissonDiscs::new(entry.spacing, recipe.world.world_params().seed_of(entry.seed));
+        let mut around = grown(bounds, discs.reach());
+        if let Some(size) = recipe.world.size {
+            let clipped = |side: &Range<f64>, most: f64| side.start.max(0.0)..side.end.min(most);
+            around = [clipped(&around[0], size[0]), clipped(&around[1], size[1])];
+        }
+        let mut layers = vec![expanded.density.as_str()];
+        if entry.water != InWater::Any {
+            layers.push(HEIGHT);
+            layers.extend(recipe.outputs().any(|output| output == LAKES).then_some(LAKES));
+        }
+        let window = samples(&around, entry.cell.unwrap_or(recipe.world.cell));
+        if recipe.world.size.is_none() {
+            self.check(&window)?;
+        }
+        let grids = self.grids_beside(&layers, &window, 0, &progress.part(1.0))?;
+        let _grids = self.budget().reserve((window.len() * layers.len() * size_of::<f32>()) as u64)?;
+        let Some((density, water)) = grids.split_first() else { return Err(missing()) };
+        // All points around the bounds, which are more than those within.
+        let area = window.len() as f64 * window.cell * window.cell;
+        let count = area / (entry.spacing * entry.spacing) * POINTS * mean(density).min(1.0) * 1.02 + 1000.0;
+        let held = self.budget().reserve((count * POINT_MEMORY) as u64)?;
+        let before = if entry.clearance > 0.0 { before } else { &[] };
+        let searched: u64 = before.iter().map(|placed| Near::memory(placed.points.len())).sum();
+        let _search = self.budget().reserve(searched.saturating_add(PoissonDiscs::memory(self.threads())))?;
+        let near: Vec<Near> = before.iter().map(|placed| Near::new(&placed.points, entry.clearance)).collect();
+        let sea_level = recipe.world.sea_level;
+        let is_wet = |position: [f64; 2]| match water {
+            [height] => Some(wet(height, None, sea_level, position)),
+            [height, lakes] => Some(wet(height, Some(lakes), sea_level, position)),
+            _ => None,
+        };
+        let at = |position: [f64; 2]| {
+            let is_within = around.iter().zip(position).all(|(side, at)| (side.start..=side.end).contains(&at));
+            // Not a number is less than nothing, too.
+            let density = if is_within { interpolated(density, position) } else { 0.0 };
+            let is_free = density > 0.0
+                && match entry.water {
+                    InWater::Any => true,
+                    InWater::Avoid => is_wet(position) == Some(false),
+                    InWater::Only => is_wet(position) == Some(true),
+                }
+                && !near.iter().any(|near| near.is_within(position));
+            if is_free { density } else { 0.0 }
+        };
+        let points = self.install(|| discs.within(bounds, at, &progress.part(1.0)))?;
+        let points = points.into_iter().map(|point| (point.position, point.bits)).collect();
+        Ok(Placed { points, _held: held })
+    }
+}
+
+/// Bytes for a point, in the list of its entry, in the search and among those of all entries.
+const POINT_MEMORY: f64 = 144.0;
+
+/// The points of an entry, with their random bits.
+struct Placed {
+    points: Vec<([f64; 2], u64)>,
+    _held: Reservation,
+}
+
+/// How far beyond the window the points of each entry are needed, in metres, because those of later entries depend on them.
+fn beyond(entries: &[(&Scatter, &ExpandedScatter)]) -> Vec<f64> {
+    let mut beyond = vec![0.0; entries.len()];
+    let mut furthest: f64 = 0.0;
+    for (k, (entry, _)) in entries.iter().enumerate().rev() {
+        beyond[k] = furthest;
+        if entry.clearance > 0.0 {
+            let reach = PoissonDiscs::new(entry.spacing, 0).reach();
+            furthest = furthest.max(beyond[k] + reach + entry.clearance);
+        }
+    }
+    beyond
+}
+
+fn grown(bounds: &[Range<f64>; 2], by: f64) -> [Range<f64>; 2] {
+    bounds.clone().map(|side| side.start - by..side.end + by)
+}
+
+/// The samples around all positions within bounds.
+fn samples(bounds: &[Range<f64>; 2], cell: f64) -> Window {
+    let [columns, rows] = bounds.clone().map(|side| {
+        let [first, last] = [side.start, side.end].map(|at| (at / cell).floor() as i64);
+        (first, last.saturating_sub(first).saturating_add(2).max(1) as usize)
+    });
+    Window { x: columns.0, y: rows.0, width: columns.1, height: rows.1, cell }
+}
+
+/// The corners of the cell around a position, and the position in it: 0 to 1 along each side.
+fn cell(grid: &Grid, position: [f64; 2]) -> Option<([f32; 4], [f64; 2])> {
+    let window = grid.window();
+    // The same for any window.
+    let [east, south] = position.map(|at| at / window.cell);
+    let [column, row] = [east.floor(), south.floor()];
+    let i = usize::try_from(column as i64 - window.x).ok()?;
+    let j = usize::try_from(row as i64 - window.y).ok()?;
+    let corner = |i, j| grid.get(i, j);
+    let corners = [corner(i, j)?, corner(i + 1, j)?, corner(i, j + 1)?, corner(i + 1, j + 1)?];
+    Some((corners, [east - column, south - row]))
+}
+
+/// Bilinear interpolation; NaN outside the grid.
+fn interpolated(grid: &Grid, position: [f64; 2]) -> f64 {
+    let Some((corners, [u, v])) = cell(grid, position) else { return f64::NAN };
+    let [nw, ne, sw, se] = corners.map(f64::from);
+    let [north, south] = [nw + u * (ne - nw), sw + u * (se - sw)];
+    north + v * (south - north)
+}
+
+/// The height of the mesh; NaN outside the grid.
+fn height(heights: &Grid, position: [f64; 2]) -> f64 {
+    cell(heights, position).map_or(f64::NAN, |(corners, at)| triangles::height(corners, at))
+}
+
+/// Whether a position is in the sea or in a lake. Beside the shore of a lake, the depth between samples counts.
+fn wet(heights: &Grid, lakes: Option<&Grid>, sea_level: f64, position: [f64; 2]) -> bool {
+    let is_above = height(heights, position) > sea_level;
+    !is_above || lakes.is_some_and(|lakes| interpolated(lakes, position) > 0.0)
+}
+
+/// The mean of all positive samples and zeros for the others.
+fn mean(grid: &Grid) -> f64 {
+    let sum: f64 = grid.data().iter().filter(|value| **value > 0.0).map(|value| f64::from(*value)).sum();
+    sum / grid.data().len().max(1) as f64
+}
+
+fn missing() -> Error {
+    Error::new(ErrorKind::Internal, "the density of an entry of `scatter` was not computed")
+}
+
+/// Points in buckets, to find those near a position.
+struct Near {
+    distance: f64,
+    bucket: f64,
+    first: [i64; 2],
+    columns: i64,
+    rows: i64,
+    /// The first point of each bucket, and the number of all.
+    starts: Vec<usize>,
+    points: Vec<[f64; 2]>,
+}
+
+/// Maximum number of buckets along a side.
+const MAX_BUCKETS: f64 = 1024.0;
+
+impl Near {
+    /// Memory in bytes for a number of points.
+    fn memory(points: usize) -> u64 {
+        let buckets = (MAX_BUCKETS + 2.0) * (MAX_BUCKETS + 2.0);
+        (points * size_of::<[f64; 2]>()) as u64 + buckets as u64 * size_of::<usize>() as u64
+    }
+
+    fn new(points: &[([f64; 2], u64)], distance: f64) -> Near {
+        let ends = |axis: usize| {
+            let start = points.iter().map(|(at, _)| at[axis]).fold(f64::INFINITY, f64::min);
+            let end = points.iter().map(|(at, _)| at[axis]).fold(f64::NEG_INFINITY, f64::max);
+            start..end.max(start)
+        };
+        if points.is_empty() {
+            let starts = vec![0];
+            return Near { distance, bucket: distance, first: [0; 2], columns: 0, rows: 0, starts, points: Vec::new() };
+        }
+        let [across, down] = [ends(0), ends(1)];
+        let bucket = distance.max((across.end - across.start).max(down.end - down.start) / MAX_BUCKETS);
+        let number = |at: f64| (at / bucket).floor() as i64;
+        let first = [number(across.start), number(down.start)];
+        let (columns, rows) = (number(across.end) - first[0] + 1, number(down.end) - first[1] + 1);
+        let of = |[x, y]: [f64; 2]| ((number(y) - first[1]) * columns + number(x) - first[0]) as usize;
+        let mut points: Vec<[f64; 2]> = points.iter().map(|(at, _)| *at).collect();
+        points.sort_by_key(|at| of(*at));
+        let mut starts = vec![0; (columns * rows) as usize + 1];
+        points.iter().for_each(|at| starts[of(*at) + 1] += 1);
+        (1..starts.len()).for_each(|k| starts[k] += starts[k - 1]);
+        Near { distance, bucket, first, columns, rows, starts, points }
+    }
+
+    /// Whether one of the points is nearer than the distance.
+    fn is_within(&self, position: [f64; 2]) -> bool {
+        let [column, row] = [0, 1].map(|axis| (position[axis] / self.bucket).floor() as i64 - self.first[axis]);
+        let rows = (row - 1).max(0)..(row + 2).min(self.rows);
+        let (from, to) = ((column - 1).max(0), (column + 2).min(self.columns));
+        from < to
+            && rows.into_iter().any(|row| {
+                let [start, end] = [from, to].map(|column| self.starts[(row * self.columns + column) as usize]);
+                self.points[start..end].iter().any(|at| square(*at, position) < self.distance * self.distance)
+            })
+    }
+}

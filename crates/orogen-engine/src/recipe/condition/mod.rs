@@ -1,0 +1,11 @@
+//! Conditions on height, slope, curvature, flow, noise and layers, for surfaces and for scattered objects.
+//!
+//! - [`document`]: conditions in memory, and as TOML
+//! - `read`: conversion of keys to conditions, with diagnostics
+//! - `expand`: expansion of conditions to nodes that compute their share
+//! - `schema`: their part of the JSON Schema
+
+pub mod document;
+pub(crate) mod expand;
+pub(crate) mod read;
+pub(crate) mod schema;

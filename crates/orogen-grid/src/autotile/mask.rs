@@ -1,0 +1,141 @@
+//! Masks of neighbors, and the masks that each layout of tiles tells apart.
+//!
+//! A mask has a bit for each of the eight directions, clockwise from the north: N 1, NE 2, E 4, SE 8, S 16, SW 32, W 64, NW 128. These are the
+//! weights of the common "blob" tilesets, and the order of Tiled's wang ids. A bit is set where the layer goes on.
+
+/// North.
+pub const N: u8 = 1;
+/// North-east.
+pub const NE: u8 = 2;
+/// East.
+pub const E: u8 = 4;
+/// South-east.
+pub const SE: u8 = 8;
+/// South.
+pub const S: u8 = 16;
+/// South-west.
+pub const SW: u8 = 32;
+/// West.
+pub const W: u8 = 64;
+/// North-west.
+pub const NW: u8 = 128;
+
+/// The four sides.
+pub const SIDES: u8 = N | E | S | W;
+
+/// The four corners.
+pub const CORNERS: u8 = NE | SE | SW | NW;
+
+/// Column and row of each direction, in the order of the bits.
+pub const OFFSETS: [[i64; 2]; 8] = [[0, -1], [1, -1], [1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1]];
+
+/// Each corner with the sides beside it.
+const BESIDE: [(u8, u8); 4] = [(NE, N | E), (SE, S | E), (SW, S | W), (NW, N | W)];
+
+/// How tiles follow their surroundings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Layout {
+    /// 47 tiles: sides, and corners between two covered sides.
+    Blob,
+    /// 16 tiles: sides only, for paths, fences and walls.
+    Edge,
+    /// 16 tiles, one of them empty: a class at each corner of a tile. A map of W x H tiles has (W + 1) x (H + 1) classes.
+    Corner,
+    /// The tiles of [`Layout::Corner`], shifted by half a tile so that each class is in the middle of a cell: a map of W x H cells has
+    /// (W + 1) x (H + 1) tiles.
+    Dual,
+}
+
+impl Layout {
+    /// All layouts.
+    pub const ALL: [Layout; 4] = [Layout::Blob, Layout::Edge, Layout::Corner, Layout::Dual];
+
+    /// Its name, as on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Layout::Blob => "blob",
+            Layout::Edge => "edge",
+            Layout::Corner => "corner",
+            Layout::Dual => "dual",
+        }
+    }
+
+    /// What it is for, in a line.
+    #[must_use]
+    pub fn about(self) -> &'static str {
+        match self {
+            Layout::Blob => "47 tiles a class: by the sides of a cell, and its corners between two sides",
+            Layout::Edge => "16 tiles a class: by the sides of a cell",
+            Layout::Corner => "15 tiles a class: by the classes at the corners of a tile",
+            Layout::Dual => "15 tiles a class: shifted by half a tile, so that each cell is where four tiles meet",
+        }
+    }
+
+    /// Whether classes are at the corners of tiles, so that a tile sees four of them. Otherwise they are those of cells, and a tile sees
+    /// its own and eight neighbors.
+    #[must_use]
+    pub fn is_on_corners(self) -> bool {
+        matches!(self, Layout::Corner | Layout::Dual)
+    }
+
+    /// The mask without the bits that make no difference to the tile.
+    #[must_use]
+    pub fn reduced(self, mask: u8) -> u8 {
+        match self {
+            Layout::Edge => mask & SIDES,
+            Layout::Corner | Layout::Dual => mask & CORNERS,
+            Layout::Blob => BESIDE.iter().fold(mask, |mask, (corner, sides)| match mask & sides == *sides {
+                true => mask,
+                false => mask & !corner,
+            }),
+        }
+    }
+
+    /// The mask of a tile that is covered as a whole.
+    #[must_use]
+    pub fn full(self) -> u8 {
+        self.reduced(255)
+    }
+
+    /// All reduced masks, in ascending order. An empty tile of [`Layout::Corner`] and [`Layout::Dual`], mask 0, is not drawn and is no part
+    /// of it.
+    #[must_use]
+    pub fn masks(self) -> Vec<u8> {
+        let first = u8::from(self.is_on_corners());
+        (first..=255).filter(|mask| self.reduced(*mask) == *mask).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn layouts_have_the_usual_numbers_of_tiles() {
+        assert_eq!(Layout::ALL.map(|layout| layout.masks().len()), [47, 16, 15, 15]);
+        assert_eq!(Layout::Blob.full(), 255);
+    }
+
+    /// The list of the 47 masks that blob tilesets are usually published with.
+    #[test]
+    fn the_blob_masks_are_the_published_ones() {
+        let published = [
+            0, 1, 4, 5, 7, 16, 17, 20, 21, 23, 28, 29, 31, 64, 65, 68, 69, 71, 80, 81, 84, 85, 87, 92, 93, 95, 112,
+            113, 116, 117, 119, 124, 125, 127, 193, 197, 199, 209, 213, 215, 221, 223, 241, 245, 247, 253, 255,
+        ];
+        assert_eq!(Layout::Blob.masks(), published);
+    }
+
+    #[test]
+    fn reducing_again_changes_nothing() {
+        for layout in Layout::ALL {
+            for mask in 0..=255 {
+                let once = layout.reduced(mask);
+                assert_eq!(layout.reduced(once), once);
+                assert_eq!(once & !mask, 0, "reducing only clears bits");
+            }
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! The shape of a layer within a tile: how far a pixel is from its border.
+//!
+//! A tile is drawn in quadrants. A quadrant belongs to one cell, and its shape follows from whether the layer goes on across its two sides and its corner. In tiles of
+//! cells all four quadrants are those of one cell; tiles on corners have one quadrant of each of four cells. So all layouts show the same borders.
+
+use orogen_grid::autotile::mask::{E, Layout, N, NE, NW, S, SE, SW, W};
+
+/// Where a pixel is, compared with the border of its layer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Place {
+    /// Distance to the border in pixels of a tile of 16: above 0 inside of the layer.
+    pub inside: f64,
+    /// How much the border faces south: -1 (north) to 1.
+    pub south: f64,
+}
+
+/// Deep inside.
+const DEEP: Place = Place { inside: 16.0, south: 0.0 };
+
+/// Radius of outer corners.
+const RADIUS: f64 = 5.0;
+
+/// A side of the border: its distance from the sides of its cells, and how much it waves.
+#[derive(Debug, Clone, Copy)]
+pub struct Border {
+    /// Distance of the border from the side of its cell, in pixels of a tile of 16.
+    pub inset: f64,
+    /// Offsets along a side in its middle, in the same pixels; the ends of a side have none, so that sides join.
+    pub wave: [f64; 8],
+}
+
+impl Border {
+    /// Distance from the side at a position along it, in pixels of a tile of 16.
+    fn at(&self, along: f64) -> f64 {
+        let nth = along.rem_euclid(16.0) - 4.0;
+        let wave = if (0.0..8.0).contains(&nth) { self.wave[nth as usize] } else { 0.0 };
+        self.inset + wave
+    }
+
+    /// The place of a pixel in a quadrant of a covered cell. `side` and `end` are the distances to the quadrant's horizontal and vertical side;
+    /// `goes_on` tells whether the layer goes on across the horizontal side, the vertical side and the corner between. `down` is 1 if the horizontal side is the southern one, else -1. `along` is the pixel's
+    /// column and row, for the waves.
+    fn quadrant(&self, [side, end]: [f64; 2], goes_on: [bool; 3], down: f64, [column, row]: [f64; 2]) -> Place {
+        let (across, beside) = (side - self.at(column), end - self.at(row));
+        match goes_on {
+            [false, false, _] if across < RADIUS && beside < RADIUS => {
+                let (a, b) = (RADIUS - across, RADIUS - beside);
+                let far = libm::hypot(a, b);
+                Place { inside: RADIUS - far, south: down * a / far.max(1e-9) }
+            }
+            [false, false, _] if across < beside => Place { inside: across, south: down },
+            [false, false, _] => Place { inside: beside, south: 0.0 },
+            [false, true, _] => Place { inside: across, south: down },
+            [true, false, _] => Place { inside: beside, south: 0.0 },
+            [true, true, false] => {
+                let far = libm::hypot(side, end);
+                Place { inside: far - self.inset, south: down * side / far.max(1e-9) }
+            }
+            [true, true, true] => DEEP,
+        }
+    }
+
+    /// The place of the pixel at (x, y), in pixels of a tile of 16, of the tile for a mask; `None` where its layer has no cell.
+    #[must_use]
+    pub fn place(&self, layout: Layout, mask: u8, [x, y]: [f64; 2]) -> Option<Place> {
+        let has = |bit: u8| mask & bit != 0;
+        let (is_south, is_east) = (y >= 8.0, x >= 8.0);
+        if !layout.is_on_corners() {
+            // The quadrant's distances are those to the cell's own sides.
+            let (horizontal, vertical) = (if is_south { S } else { N }, if is_east { E } else { W });
+            let corner = match (is_south, is_east) {
+                (false, false) => NW,
+                (false, true) => NE,
+                (true, false) => SW,
+                (true, true) => SE,
+            };
+            let corner = if layout == Layout::Edge { true } else { has(corner) };
+            let distances = [if is_south { 16.0 - y } else { y }, if is_east { 16.0 - x } else { x }];
+            let down = if is_south { 1.0 } else { -1.0 };
+            return Some(self.quadrant(distances, [has(horizontal), has(vertical), corner], down, [x, y]));
+        }
+        // The cell of a quadrant has its middle at the tile's corner, and its sides in the tile's middle.
+        let (own, across, beside, corner) = match (is_south, is_east) {
+            (false, false) => (NW, SW, NE, SE),
+            (false, true) => (NE, SE, NW, SW),
+            (true, false) => (SW, NW, SE, NE),
+            (true, true) => (SE, NE, SW, NW),
+        };
+        let distances = [(8.0 - y).abs(), (8.0 - x).abs()];
+        let down = if is_south { -1.0 } else { 1.0 };
+        // Along a side the position within the cell counts, which begins in the middle of the tile.
+        let place = self.quadrant(distances, [has(across), has(beside), has(corner)], down, [x + 8.0, y + 8.0]);
+        has(own).then_some(place)
+    }
+}

@@ -1,0 +1,5 @@
+//! The tilesets that the program draws: water, sand, grass, forest, rock and snow.
+
+pub mod edge;
+pub mod ground;
+pub mod set;

@@ -1,0 +1,200 @@
+//! From a world to a tilemap.
+
+use orogen_engine::{Recipe, World};
+use orogen_grid::autotile::choose::layers;
+use orogen_grid::autotile::classes::Classes;
+use orogen_grid::autotile::clean::{HALO, clean};
+use orogen_grid::autotile::drawable::Gap;
+use orogen_grid::autotile::mask::Layout;
+use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::grid::{Grid, Window};
+use orogen_grid::progress::Progress;
+
+use super::standard::{CLASS, classify};
+use super::tileset::Tileset;
+
+/// Memory for each cell of a map beside the layer of its classes, in bytes: classes twice, and a tile number in every layer.
+const CELL_BYTES: u64 = 2 + 4;
+
+/// How far a class may be from a whole number, because classes of a cell between two samples would be no class.
+const WHOLE: f32 = 1e-3;
+
+/// What a map is made with.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct TilemapJob {
+    /// The tiles.
+    pub tileset: Tileset,
+    /// Whether classes are changed where the tileset has no tile.
+    pub cleans: bool,
+}
+
+/// A map of tiles.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct Tilemap {
+    /// The tiles.
+    pub tileset: Tileset,
+    /// The cells of the map: a class each. Their size is in metres.
+    pub window: Window,
+    /// The class of each cell; of a corner layout the class at each corner of a tile.
+    pub classes: Classes,
+    /// Tiles per row.
+    pub width: usize,
+    /// Rows of tiles.
+    pub height: usize,
+    /// For each class the tiles of its layer, row-major, bottom to top; [`orogen_grid::autotile::choose::NONE`] where it has none.
+    pub layers: Vec<Vec<u32>>,
+    /// Places without a tile before the clean-up.
+    pub gaps_before: usize,
+    /// Places without a tile in the map.
+    pub gaps: Vec<Gap>,
+    /// Cells whose class the clean-up changed.
+    pub changed: usize,
+    /// The seed by which variants of tiles are chosen: that of the world.
+    pub seed: u64,
+}
+
+impl TilemapJob {
+    /// A map with these tiles, cleaned.
+    #[must_use]
+    pub fn new(tileset: Tileset) -> TilemapJob {
+        TilemapJob { tileset, cleans: true }
+    }
+
+    /// Sets whether classes are changed where the tileset has no tile.
+    #[must_use]
+    pub fn with_cleans(self, cleans: bool) -> TilemapJob {
+        TilemapJob { cleans, ..self }
+    }
+
+    /// Adds what the map needs to a recipe: the [standard classes](super::standard), if it has no output `class`. `cell` is the map's cell in
+    /// metres.
+    ///
+    /// # Errors
+    /// If the recipe has neither classes nor heights.
+    pub fn prepare(&self, recipe: &mut Recipe, cell: f64) -> Result<()> {
+        classify(recipe, cell)
+    }
+
+    /// The memory of a map of this window beside that of the engine, in bytes.
+    #[must_use]
+    pub fn memory(&self, window: &Window) -> u64 {
+        let around = window.grown(self.halo());
+        around.len() as u64 * CELL_BYTES + 4 * (self.tileset.terrains.len() * window.len()) as u64
+    }
+
+    /// How many cells around a map are computed.
+    fn halo(&self) -> usize {
+        let is_complete = !self.cleans || self.tileset.drawable().is_complete();
+        // Tiles see one cell around them.
+        1 + if is_complete { 0 } else { HALO }
+    }
+
+    /// The samples that a map of this window is made from. Those beyond the sides of a bounded world have the class of the nearest in it.
+    fn around(&self, world: &World, window: &Window) -> Result<Window> {
+        let around = window.grown(self.halo());
+        if world.recipe().world.size.is_none() {
+            return Ok(around);
+        }
+        let full = world.full_window(window.cell)?;
+        let cut = |start: i64, length: usize, side: usize| {
+            let [from, to] = [start, start + length as i64].map(|at| at.clamp(0, side as i64));
+            (from, (to - from) as usize)
+        };
+        let ((x, width), (y, height)) =
+            (cut(around.x, around.width, full.width), cut(around.y, around.height, full.height));
+        Ok(Window { x, y, width, height, cell: window.cell })
+    }
+
+    /// Makes the map of the cells of a window. `world` is of a [prepared](TilemapJob::prepare) recipe.
+    ///
+    /// Any part of a map has the same tiles as the whole.
+    ///
+    /// # Errors
+    /// If the window is not in the world, if a class is none of the tileset's, or if `progress` is cancelled.
+    pub fn make(&self, world: &World, window: &Window, progress: &Progress) -> Result<Tilemap> {
+        let plan = world.plan(&[CLASS], &self.around(world, window)?)?;
+        let [computing, cleaning] = progress.parts([world.work(&plan)?, 20.0 * window.len() as f64]);
+        let mut grids = world.run(&plan, &computing)?;
+        let Some(grid) = grids.pop() else {
+            return Err(Error::new(ErrorKind::Request, "the recipe has no output `class`"));
+        };
+        let before = self.classes(&grid)?;
+        drop(grid);
+        let mut cleaned = before.clone();
+        let drawable = self.tileset.drawable();
+        match self.cleans {
+            true => clean(&mut cleaned, &drawable, &cleaning)?,
+            false => cleaning.finish(),
+        }
+        // The classes that the tiles of the map see, which of some layouts are more than one for a tile.
+        let layout = self.tileset.layout;
+        let (start, [width, height]) = match layout {
+            Layout::Corner => ([window.x, window.y], [window.width + 1, window.height + 1]),
+            _ => ([window.x - 1, window.y - 1], [window.width + 2, window.height + 2]),
+        };
+        let [before, around] = [&before, &cleaned].map(|classes| classes.part(start, width, height));
+        let seed = world.recipe().world.seed;
+        let mut tiles = layers(&around, &drawable, &self.tileset.class_tiles(), seed);
+        let [mut columns, mut rows] = drawable.tiles(&around);
+        let gaps = |classes: &Classes| drawable.gaps(classes);
+        let (mut gaps_before, mut left) = (gaps(&before), gaps(&around));
+        if !layout.is_on_corners() {
+            // Tiles of cells see one cell around the map.
+            for layer in &mut tiles {
+                let inner = (1..rows - 1).flat_map(|y| (1..columns - 1).map(move |x| y * columns + x));
+                *layer = inner.map(|at| layer[at]).collect();
+            }
+            (columns, rows) = (columns - 2, rows - 2);
+            for gaps in [&mut gaps_before, &mut left] {
+                gaps.iter_mut().for_each(|gap| (gap.x, gap.y) = (gap.x - 1, gap.y - 1));
+                gaps.retain(|gap| (0..columns as i64).contains(&gap.x) && (0..rows as i64).contains(&gap.y));
+            }
+        }
+        let own = match layout {
+            Layout::Corner => [window.width + 1, window.height + 1],
+            _ => [window.width, window.height],
+        };
+        let [before, classes] = [&before, &around].map(|classes| classes.part([window.x, window.y], own[0], own[1]));
+        let changed = before.data().iter().zip(classes.data()).filter(|(before, after)| before != after).count();
+        Ok(Tilemap {
+            tileset: self.tileset.clone(),
+            window: *window,
+            classes,
+            width: columns,
+            height: rows,
+            layers: tiles,
+            gaps_before: gaps_before.len(),
+            gaps: left,
+            changed,
+            seed,
+        })
+    }
+
+    /// The classes of a layer of numbers.
+    fn classes(&self, grid: &Grid) -> Result<Classes> {
+        let terrains = &self.tileset.terrains;
+        let mut classes = Vec::with_capacity(grid.data().len());
+        for (at, value) in grid.data().iter().enumerate() {
+            let class = value.round();
+            if (value - class).abs() > WHOLE || !(0.0..terrains.len() as f32).contains(&class) {
+                let [x, y] = [at % grid.width(), at / grid.width()];
+                let names: Vec<String> =
+                    terrains.iter().enumerate().map(|(n, terrain)| format!("{n} {}", terrain.name)).collect();
+                return Err(Error::new(
+                    ErrorKind::Request,
+                    format!(
+                        "the output `class` is {value} in column {}, row {}; it must be a class of the tileset `{}`: {}",
+                        grid.window().x + x as i64,
+                        grid.window().y + y as i64,
+                        self.tileset.name,
+                        names.join(", ")
+                    ),
+                ));
+            }
+            classes.push(class as u8);
+        }
+        Ok(Classes::new([grid.window().x, grid.window().y], grid.width(), grid.height(), classes))
+    }
+}
