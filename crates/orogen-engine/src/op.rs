@@ -70,6 +70,12 @@ pub trait Field: Send + Sync {
         term::evaluate(&self.terms().unwrap_or_default(), |input| inputs.get(input), out);
     }
 
+    /// Computes one value of a layer per point. A field that declares several layers implements it; others have [`Field::eval`] alone.
+    fn eval_layer(&self, layer: usize, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+        let _ = layer;
+        self.eval(at, inputs, world_params, out);
+    }
+
     /// The field as a function of its inputs, if it is only that: each input is named by its index. The engine then
     /// evaluates these terms, and never calls [`Field::eval`].
     fn terms(&self) -> Option<Vec<Term>> {
@@ -96,6 +102,12 @@ pub trait Field: Send + Sync {
 
     /// Whether the field needs a bounded world.
     fn needs_bounds(&self) -> bool {
+        false
+    }
+
+    /// Whether the result depends on the world's sea level. A field that returns false must not read it, because the
+    /// content key would be wrong.
+    fn reads_sea_level(&self) -> bool {
         false
     }
 

@@ -12,6 +12,7 @@
 //! | [`hydrography`] | rivers, lakes, coasts and summits as points, lines and areas |
 //! | [`erosion`] | thermal erosion, virtual pipes, droplets, local stream power |
 //! | [`multiscale`] | eroded terrain without bounds, level by level: continents with rivers |
+//! | [`climate`] | temperature, orographic rain, evapotranspiration, classes of climates and biomes |
 //! | [`contour`] | contour lines, smoothed |
 //! | [`autotile`] | tilemaps: terrain classes, tiles that fit their neighbors, clean-up |
 //! | [`aggregate`] | diffusion-limited aggregation, and mountains from it |
@@ -55,6 +56,7 @@ pub mod aggregate;
 pub mod analysis;
 pub mod autotile;
 mod checks;
+pub mod climate;
 pub mod contour;
 pub mod erosion;
 pub mod error;

@@ -46,8 +46,8 @@ pub use orogen_engine::{
 };
 #[doc(inline)]
 pub use orogen_grid::{
-    aggregate, analysis, autotile, contour, erosion, error, grid, hydrography, hydrology, poisson_discs, progress,
-    resample, triangles, words,
+    aggregate, analysis, autotile, climate, contour, erosion, error, grid, hydrography, hydrology, poisson_discs,
+    progress, resample, triangles, words,
 };
 #[doc(hidden)]
 pub use orogen_io::test_folder;

@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use orogen::export::derived::list;
 use orogen::export::layer_source::LayerSource;
 use orogen::export::place;
-use orogen::export::sheet_cover;
+use orogen::export::{biome_cover, sheet_cover};
 use orogen::format::affine::Affine;
 use orogen::layer::LayerKind;
 use orogen::palette::named;
@@ -46,7 +46,7 @@ pub struct Args {
     /// Layer to colour: an output, `node.layer`, or a layer derived from the heights (`orogen export --help` lists them)
     #[arg(long, value_name = "L", default_value = HEIGHT)]
     layer: String,
-    /// What the colours show: a layer with a palette, or the surfaces of the ground
+    /// What the colours show: a layer with a palette, the surfaces of the ground, or the biomes
     #[arg(long, value_name = "WHAT", default_value = "palette", aliases = ["colors", "colour", "colours"])]
     color: ColorOf,
     /// How values are mapped to colours [default: log for drainage areas and similar, labels for numbered areas, else linear]
@@ -130,7 +130,7 @@ struct Without {
     /// Legend
     #[arg(long)]
     no_legend: bool,
-    /// Colour bar, or the list of surfaces
+    /// Colour bar, or the list of surfaces or biomes
     #[arg(long, aliases = ["no-colors", "no-colour", "no-colours"])]
     no_color: bool,
     /// Scale bar
@@ -164,6 +164,8 @@ enum ColorOf {
     Palette,
     /// The recipe's surfaces, or the standard ones: grass, sand, scree, rock, snow, river beds
     Surfaces,
+    /// The classes of an output that is the layer of a `biome`, with their names
+    Biomes,
 }
 
 /// How values are mapped to colours.
@@ -225,16 +227,17 @@ fn map(args: &Args) -> Result<(), Failure> {
         }
     };
     let range = range(args)?;
-    let is_covered = args.color == ColorOf::Surfaces;
+    let is_covered = args.color != ColorOf::Palette;
     if is_covered && (args.layer != HEIGHT || args.palette.is_some() || range.is_some()) {
-        return Err(Failure::Usage("--color surfaces cannot be combined with --layer, --palette or --range".into()));
+        let color = if args.color == ColorOf::Biomes { "biomes" } else { "surfaces" };
+        return Err(Failure::Usage(format!("--color {color} cannot be combined with --layer, --palette or --range")));
     }
     let source = Source::find(&args.recipe)?;
     let budget = args.limits.budget();
     let mut recipe = args.view.recipe(&source, &budget)?;
     let sink = Sink::new(&args.out, &args.replace.policy(source.inputs(&recipe)).protecting(&args.palette))?;
     list::prepare(&mut recipe, &args.layer, &args.layer_options.read()?)?;
-    if is_covered {
+    if args.color == ColorOf::Surfaces {
         sheet_cover::prepare(&mut recipe);
     }
     let world = args.limits.open(recipe, &budget)?;
@@ -258,8 +261,11 @@ fn map(args: &Args) -> Result<(), Failure> {
         options.coloring = Coloring::Layer(layer(args, &world, &window, range, &layering).map_err(explained)?);
     }
     if is_covered {
-        let made = sheet_cover::of(&world, &heights, options.sea_level, &layering)
-            .map_err(|cause| explained(file::explain("make the surfaces of", &args.out, &cause).into()))?;
+        let (made, doing) = match args.color {
+            ColorOf::Biomes => (biome_cover::of(&world, &heights, options.sea_level, &layering), "make the biomes of"),
+            _ => (sheet_cover::of(&world, &heights, options.sea_level, &layering), "make the surfaces of"),
+        };
+        let made = made.map_err(|cause| explained(file::explain(doing, &args.out, &cause).into()))?;
         options.coloring = Coloring::Surfaces(made);
     }
     let sheet = draw(&heights, &options, &drawing).map_err(stopped)?;
@@ -307,6 +313,7 @@ fn map(args: &Args) -> Result<(), Failure> {
     let contours = sheet.interval.map_or(String::new(), |interval| format!(", contours {} m apart", number(interval)));
     let layer = match (args.color, args.layer.as_str()) {
         (ColorOf::Surfaces, _) => "surfaces, ".to_string(),
+        (ColorOf::Biomes, _) => "biomes, ".to_string(),
         (ColorOf::Palette, HEIGHT) => String::new(),
         (ColorOf::Palette, layer) => format!("{layer}, "),
     };
@@ -461,6 +468,7 @@ fn drawing(options: &SheetOptions, window: &Window, args: &Args) -> Result<u64, 
     let cover = match args.color {
         ColorOf::Palette => 0.0,
         ColorOf::Surfaces => sheet_cover::memory(window) as f64 + 12.0 * side * side,
+        ColorOf::Biomes => biome_cover::memory(window) as f64 + 12.0 * side * side,
     };
     Ok((page + layer + cover) as u64)
 }

@@ -107,6 +107,7 @@ fn any_layer_colours_a_map() {
         (&["--layer", "slope", "--range", "5"], "--range must be LOW,HIGH"),
         (&["--layer", "slope", "--range", "9,5"], "the lower value first"),
         (&["--color", "surfaces", "--layer", "slope"], "cannot be combined with --layer, --palette or --range"),
+        (&["--color", "biomes", "--layer", "slope"], "cannot be combined with --layer, --palette or --range"),
         (&["--color", "surfaces", "--palette", "viridis"], "cannot be combined with --layer, --palette or --range"),
         (&["--color", "surfaces", "--range", "0,5"], "cannot be combined with --layer, --palette or --range"),
         (&["--ramp", "log"], "needs a --layer other than height"),
@@ -147,6 +148,38 @@ fn surfaces_color_a_map() {
     }
     for out in ["a.svg", "a.pdf"] {
         folder.good(&["map", "own.toml", "-o", out, "--size", "400", "--color", "surfaces", "--paper", "a4", "-q"]);
+    }
+}
+
+#[test]
+fn biomes_color_a_map() {
+    let folder = Folder::with_small();
+    let climate = "\n[nodes.warm]\nop = \"temperature\"\nsource = \"land\"\n[nodes.wet]\nop = \"orographic-rain\"\nsource = \"land\"\n\
+        [nodes.cover]\nop = \"biome\"\nscheme = \"holdridge\"\ntemperature = \"warm\"\nrain = \"wet\"\n";
+    let biomes = |output: &str| crate::harness::SMALL.replace("[outputs]", &format!("{climate}[outputs]\n{output}"));
+    folder.write("biomes.toml", biomes("cover = \"cover\""));
+    let told = folder.good(&["map", "biomes.toml", "-o", "a.png", "--size", "400", "--color", "biomes"]);
+    assert!(told.text().starts_with("a.png: biomes, "), "{}", told.text());
+    folder.good(&["map", "biomes.toml", "-o", "b.png", "--size", "400", "--color", "biomes", "--threads", "1", "-q"]);
+    assert_eq!(folder.read("a.png"), folder.read("b.png"));
+    folder.write("none.toml", biomes(""));
+    folder.bad(
+        &["map", "none.toml", "-o", "c.png", "--size", "400", "--color", "biomes"],
+        1,
+        "no output of this recipe is the layer of a `biome`",
+    );
+}
+
+#[test]
+fn the_docs_list_all_classes() {
+    use orogen::climate::biomes::scheme::Scheme;
+    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/climate.md")).unwrap();
+    for scheme in [Scheme::Whittaker, Scheme::Holdridge, Scheme::KoppenGeiger] {
+        for class in scheme.classes() {
+            let [red, green, blue] = class.color;
+            let row = format!("| {} | {} | `#{red:02x}{green:02x}{blue:02x}` |", class.code, class.name);
+            assert!(text.contains(&row), "{row} in {scheme:?}");
+        }
     }
 }
 

@@ -59,6 +59,7 @@ fn rows(side: usize) -> Vec<Vec<String>> {
     ];
     rows.extend(["png", "svg", "pdf"].map(|kind| format!("map land.toml -o map.{kind} -q")));
     rows.push("map land.toml --color surfaces -o ground.png -q".into());
+    rows.push("map climate.toml --color biomes -o biomes.png -q".into());
     rows.push("export land.toml --surfaces --max-error 20 -o ground.glb -q".into());
     // Few pixels, but many samples for the lines.
     rows.push("map land.toml --dpi 40 -o small.png -q".into());
@@ -134,6 +135,10 @@ fn measure_every(side: usize, limits: &[u32]) {
     let rising =
         "[nodes.up]\nop = \"stream-power\"\nsource = \"land\"\nyears = 20000\nsteps = 2\n[outputs]\nheight = \"up\"\n";
     folder.write("rising.toml", recipe(side, rising));
+    let climate = "[nodes.warm]\nop = \"temperature\"\nsource = \"land\"\n[nodes.rain]\nop = \"orographic-rain\"\nsource = \"land\"\n\
+                   [nodes.biome]\nop = \"biome\"\ntemperature = \"warm\"\nrain = \"rain\"\n\
+                   [outputs]\nheight = \"land\"\nbiome = \"biome\"\n";
+    folder.write("climate.toml", recipe(side, climate));
     folder.good(&["export", "land.toml", "-o", "dem.tif", "-q"]);
     let mut worst = Vec::new();
     for row in rows(side) {

@@ -123,10 +123,10 @@ impl<'p> Interpreter<'p> {
     ) -> Result<()> {
         match instruction {
             Instruction::Constant { value, out } => self.registers[*out].fill(*value),
-            Instruction::Field { node, coords, inputs, out } => {
+            Instruction::Field { node, layer, coords, inputs, out } => {
                 let field = (bindings.fields)(*node).ok_or_else(|| internal("a node to evaluate is not a field"))?;
                 self.with_inputs(*coords, inputs, *out, |points, slots, out| {
-                    field.eval(points, slots, bindings.world_params, out);
+                    field.eval_layer(*layer, points, slots, bindings.world_params, out);
                 });
             }
             Instruction::Apply { function, arguments, out } => {

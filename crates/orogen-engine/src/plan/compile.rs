@@ -234,7 +234,7 @@ impl<'a> Compiler<'a> {
         let result = match self.op(node)? {
             Op::Field(field) => match self.source_cell(field, coords) {
                 Some(cell) => self.interpolate(&input(links, 0)?, cell, coords, kind)?,
-                None => self.emit_field(field, node, links, coords)?,
+                None => self.emit_field(field, target, links, coords)?,
             },
             Op::Solver(solver) => {
                 self.note(node, coords);
@@ -264,10 +264,11 @@ impl<'a> Compiler<'a> {
     fn emit_field(
         &mut self,
         field: &dyn Field,
-        node: NodeId,
+        target: LayerRef,
         links: &[Link],
         coords: CoordSetId,
     ) -> Result<RegisterId> {
+        let LayerRef { node, layer } = target;
         if let Some(CoordMap::Displaced { source, .. } | CoordMap::Mapped { source, .. }) = field.coord_map() {
             let to = self.coord_sets.entered(node, coords);
             return self.value(&input(links, source)?, to.ok_or_else(|| internal("a coordinate map was not planned"))?);
@@ -284,7 +285,7 @@ impl<'a> Compiler<'a> {
             }
         }
         let out = self.fresh();
-        self.instructions.push(Instruction::Field { node, coords, inputs, out });
+        self.instructions.push(Instruction::Field { node, layer, coords, inputs, out });
         Ok(out)
     }
 

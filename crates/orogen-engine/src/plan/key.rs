@@ -73,7 +73,7 @@ fn put_world(hash: &mut Sha256, node: &Node, world: &WorldParams) {
     };
     let is_seeded = node.spec().params.iter().any(|param| matches!(param.shape, Shape::Seed));
     let (size, cell, sea) = match node.op() {
-        Op::Field(field) => (field.needs_bounds(), field.source_cell(world.cell, world.cell), false),
+        Op::Field(field) => (field.needs_bounds(), field.source_cell(world.cell, world.cell), field.reads_sea_level()),
         Op::Filter(filter) => (false, None, filter.reads_sea_level()),
         Op::Levelled(levelled) => (false, None, levelled.reads_sea_level()),
         Op::Solver(solver) => (true, Some(solver.cell(world.cell)), solver.reads_sea_level()),

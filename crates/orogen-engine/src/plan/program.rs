@@ -47,6 +47,8 @@ pub enum Instruction<G = GridId> {
     Field {
         /// The node.
         node: NodeId,
+        /// Index of the layer.
+        layer: usize,
         /// The coordinate set.
         coords: CoordSetId,
         /// Its inputs at that coordinate set.
@@ -156,7 +158,9 @@ impl<G> Instruction<G> {
                 Instruction::Grid { grid: resolved(grid)?, kind, coords, out }
             }
             Instruction::Constant { value, out } => Instruction::Constant { value, out },
-            Instruction::Field { node, coords, inputs, out } => Instruction::Field { node, coords, inputs, out },
+            Instruction::Field { node, layer, coords, inputs, out } => {
+                Instruction::Field { node, layer, coords, inputs, out }
+            }
             Instruction::Apply { function, arguments, out } => Instruction::Apply { function, arguments, out },
             Instruction::Solved { node, layer, kind, coords, inputs, out } => {
                 Instruction::Solved { node, layer, kind, coords, inputs, out }

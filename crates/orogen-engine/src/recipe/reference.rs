@@ -81,7 +81,7 @@ pub fn describe(node: &Node) -> String {
     text
 }
 
-/// Whether an op lists its layers; fields do not, because they have only one.
+/// Whether an op lists its layers; most fields do not, because they have only one.
 fn names_layers(spec: &Spec) -> bool {
     spec.layers.iter().map(|layer| layer.name).ne(ONE_LAYER.iter().map(|layer| layer.name))
 }

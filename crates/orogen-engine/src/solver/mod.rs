@@ -10,6 +10,7 @@ pub mod height_above_drainage;
 pub mod insolation;
 pub mod lakes;
 pub mod normalise;
+pub mod orographic_rain;
 pub mod rivers;
 pub mod stream_power;
 pub mod terrain;

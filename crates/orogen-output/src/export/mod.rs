@@ -18,6 +18,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod biome_cover;
 pub mod channels;
 pub mod contour_options;
 pub(crate) mod contours;

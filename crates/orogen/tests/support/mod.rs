@@ -99,6 +99,17 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
         node.set_param(i, &fitted).unwrap();
     }
     let mut recipe = laws::recipe_of(&node, world, masked);
+    if spec.op == "biome" {
+        // It reads temperatures and rain.
+        recipe.add("warm", Remap { source: Input::from("in0"), to: [-20.0, 30.0], ..Remap::default() });
+        recipe.add("wet", Remap { source: Input::from("in1"), to: [0.0, 3000.0], ..Remap::default() });
+        recipe.change(|node| {
+            if node.spec().op == spec.op {
+                node.set_input(0, Input::from("warm"));
+                node.set_input(1, Input::from("wet"));
+            }
+        });
+    }
     if spec.op == "flow-direction" {
         // It reads codes of directions, 0 to 8.
         let (from, to) = ([-0.5, 0.5], [0.0, 8.5]);

@@ -1,0 +1,58 @@
+//! Potential evapotranspiration.
+
+use crate::op::{Field, Inputs, WorldParams};
+use orogen_grid::climate::evapotranspiration::{humidity, potential};
+use orogen_grid::climate::year::Year;
+use orogen_noise::Points;
+
+op! {
+    /// Potential evapotranspiration: water that plants and soil would evaporate in a year if it were there.
+    ///
+    /// It is 58.93 mm for each degree of biotemperature, the mean over the months of temperatures limited to 0 to 30 degrees C (Holdridge 1967). The
+    /// months are those of a sinusoidal year.
+    pub struct Evapotranspiration = "evapotranspiration", field, revision 1;
+    inputs {
+        /// Mean temperature in degrees C, for example that of `temperature`.
+        temperature: required,
+        /// Half the difference between the warmest and the coldest month in K. Default: 10.
+        range: optional,
+        /// Rain in mm per year, for the layer `humidity`. Default: 1000.
+        rain: optional,
+    }
+    layers {
+        /// Potential evapotranspiration.
+        potential: height, unit "mm/yr";
+        /// Rain over potential evapotranspiration, at most 100 (aridity index of UNEP 1992): below 0.05 hyperarid, 0.2 arid, 0.5 semi-arid, 0.65 dry subhumid.
+        humidity: height;
+    }
+}
+
+/// Half the difference between the warmest and the coldest month, in K, and the rain in mm per year, where they are not given.
+pub(super) const DEFAULT_RANGE: f32 = 10.0;
+pub(super) const DEFAULT_RAIN: f32 = 1000.0;
+
+/// The sample of an input, or its default.
+pub(super) fn sample_or(input: Option<&[f32]>, k: usize, default: f32) -> f64 {
+    f64::from(input.and_then(|input| input.get(k)).copied().unwrap_or(default))
+}
+
+impl Field for Evapotranspiration {
+    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+        self.eval_layer(0, at, inputs, world_params, out);
+    }
+
+    fn eval_layer(&self, layer: usize, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
+        for (k, (sample, mean)) in out.iter_mut().zip(inputs.required(0)).enumerate() {
+            let range = sample_or(inputs.get(1), k, DEFAULT_RANGE).max(0.0);
+            let potential = potential(&Year { mean: f64::from(*mean), range });
+            *sample = match layer {
+                0 => potential as f32,
+                _ => humidity(sample_or(inputs.get(2), k, DEFAULT_RAIN), potential) as f32,
+            };
+        }
+    }
+
+    fn cost(&self) -> f64 {
+        12.0
+    }
+}

@@ -1,0 +1,77 @@
+//! The biomes of a recipe as the colors of a map sheet.
+
+use std::io;
+
+use super::format::refuse;
+use crate::sheet::options::{SurfaceCover, SurfaceEntry};
+use orogen_engine::declare::Input;
+use orogen_engine::ids::Id;
+use orogen_engine::node::Node;
+use orogen_engine::recipe::document::Recipe;
+use orogen_engine::recipe::graph::Graph;
+use orogen_engine::world::World;
+use orogen_grid::climate::biomes::class::WATER;
+use orogen_grid::climate::biomes::scheme::Scheme;
+use orogen_grid::grid::{Grid, Window};
+use orogen_grid::progress::Progress;
+use orogen_io::palette::color::decode;
+
+/// Maximum number of classes in a legend.
+const MAX_ENTRIES: usize = 12;
+
+/// Memory of the colors of a window, including their computation, in bytes.
+#[must_use]
+pub fn memory(window: &Window) -> u64 {
+    (window.width as u64).saturating_mul(window.height as u64).saturating_mul(20)
+}
+
+/// The output that is the layer of a `biome`, and its classes: the output `biome`, or the first such output.
+fn output(recipe: &Recipe) -> Option<(&str, Scheme)> {
+    let scheme_of = |input: &Input| {
+        let Input::Node(text) = input else { return None };
+        let target = Graph::find(recipe, text).ok()?;
+        match &recipe.nodes().get(target.node.index())?.node {
+            Node::Biome(biome) => Some(Scheme::from(biome.scheme)),
+            _ => None,
+        }
+    };
+    let mut outputs: Vec<&(String, Input)> = recipe.output_inputs().iter().collect();
+    outputs.sort_by_key(|(name, _)| name != "biome");
+    outputs.into_iter().find_map(|(name, input)| Some((name.as_str(), scheme_of(input)?)))
+}
+
+/// The colors of the biomes over the window of these heights, and the most frequent ones on land, in this order.
+///
+/// Fails if the world fails, or no output of the recipe is the layer of a `biome`.
+pub fn of(world: &World, heights: &Grid, sea_level: Option<f64>, progress: &Progress) -> io::Result<SurfaceCover> {
+    let Some((output, scheme)) = output(world.recipe()) else {
+        return refuse(
+            "no output of this recipe is the layer of a `biome`; add such a node, and for example biome = \"NODE\" to its outputs".into(),
+        );
+    };
+    let window = *heights.window();
+    let codes = world.grids(&[output], &window, progress)?.pop();
+    let Some(codes) = codes else { return refuse(format!("the output `{output}` was not computed")) };
+    let sea_level = sea_level.map_or(f32::NEG_INFINITY, |sea_level| sea_level as f32);
+    let classes = scheme.classes();
+    let mut counts = vec![0u64; classes.len()];
+    let mut albedo = [(); 3].map(|()| Grid::filled(window, 0.0f32));
+    let lights: Vec<[f32; 3]> = classes.iter().map(|class| class.color.map(decode)).collect();
+    for (k, (code, height)) in codes.data().iter().zip(heights.data()).enumerate() {
+        let code = (*code as usize).min(classes.len() - 1);
+        albedo.iter_mut().zip(lights[code]).for_each(|(grid, light)| grid.data_mut()[k] = light);
+        if *height > sea_level && code != usize::from(WATER) {
+            counts[code] += 1;
+        }
+    }
+    let total: u64 = counts.iter().sum();
+    let mut order: Vec<usize> = (0..classes.len()).filter(|code| counts[*code] > 0).collect();
+    order.sort_by_key(|code| std::cmp::Reverse(counts[*code]));
+    order.truncate(MAX_ENTRIES);
+    let entry = |code: usize| SurfaceEntry {
+        name: classes[code].name.to_string(),
+        colors: vec![classes[code].color],
+        share: counts[code] as f64 / total as f64,
+    };
+    Ok(SurfaceCover { albedo, entries: order.into_iter().map(entry).collect() })
+}
