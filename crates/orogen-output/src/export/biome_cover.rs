@@ -4,6 +4,7 @@ use std::io;
 
 use super::format::refuse;
 use crate::sheet::options::{SurfaceCover, SurfaceEntry};
+use crate::sheet::relief::PRINTED;
 use orogen_engine::declare::Input;
 use orogen_engine::ids::Id;
 use orogen_engine::node::Node;
@@ -56,7 +57,8 @@ pub fn of(world: &World, heights: &Grid, sea_level: Option<f64>, progress: &Prog
     let classes = scheme.classes();
     let mut counts = vec![0u64; classes.len()];
     let mut albedo = [(); 3].map(|()| Grid::filled(window, 0.0f32));
-    let lights: Vec<[f32; 3]> = classes.iter().map(|class| class.color.map(decode)).collect();
+    // Level ground is printed in the color of its class, as in the legend.
+    let lights: Vec<[f32; 3]> = classes.iter().map(|class| class.color.map(|byte| decode(byte) / PRINTED)).collect();
     for (k, (code, height)) in codes.data().iter().zip(heights.data()).enumerate() {
         let code = (*code as usize).min(classes.len() - 1);
         albedo.iter_mut().zip(lights[code]).for_each(|(grid, light)| grid.data_mut()[k] = light);

@@ -43,7 +43,7 @@ enum Painted<'a> {
 }
 
 /// Brightness of the printed ground relative to its albedo: paper is viewed in less light than land.
-const PRINTED: f32 = 1.8;
+pub(crate) const PRINTED: f32 = 1.8;
 
 /// The relief of heights at pixels, in sRGB bytes.
 pub fn paint(
