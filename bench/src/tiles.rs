@@ -6,7 +6,7 @@ use orogen::autotile::choose::{ClassTiles, Variant, layers};
 use orogen::autotile::classes::Classes;
 use orogen::autotile::clean::clean;
 use orogen::autotile::drawable::Drawable;
-use orogen::autotile::mask::{E, Layout, N, NE, NW, S, SE, SW, W};
+use orogen::autotile::mask::{Layout, SIMPLE_BLOB};
 use orogen::{Progress, Recipe, Window, World};
 use rayon::prelude::*;
 use serde_json::{Value, json};
@@ -24,23 +24,6 @@ const THRESHOLDS: [f32; 5] = [-0.1, -0.05, 0.1, 0.25, 0.35];
 /// Maximum time in seconds.
 const SECONDS: f64 = 1.0;
 
-/// A full tile, four sides, four outer and four inner corners.
-const SIMPLE: [u8; 13] = [
-    255,
-    !(NW | N | NE),
-    !(NE | E | SE),
-    !(SE | S | SW),
-    !(SW | W | NW),
-    E | SE | S,
-    S | SW | W,
-    W | NW | N,
-    N | NE | E,
-    !NE,
-    !SE,
-    !SW,
-    !NW,
-];
-
 /// Land whose classes are about ten cells wide.
 const RECIPE: &str = r#"
     orogen = 1
@@ -54,7 +37,7 @@ pub fn run(options: &Options) -> Result<Value, String> {
     let world = World::open(Recipe::parse(RECIPE, "tiles").map_err(|e| e.to_string())?).map_err(|e| e.to_string())?;
     let grid = world.window("height", &Window::new(SIDE, SIDE, 1.0)).map_err(|e| e.to_string())?;
     let mut rows = Vec::new();
-    let sets = [("47 tiles a class", Layout::Blob.masks()), ("13 tiles a class", SIMPLE.to_vec())];
+    let sets = [("47 tiles a class", Layout::Blob.masks()), ("13 tiles a class", SIMPLE_BLOB.to_vec())];
     for (name, masks) in sets.into_iter().filter(|(name, _)| name.contains(&options.case)) {
         let drawable = Drawable::new(Layout::Blob, THRESHOLDS.iter().map(|_| masks.as_slice()));
         let tile = |(n, mask): (usize, &u8)| (*mask, Variant { tile: n as u32, weight: 1.0 });

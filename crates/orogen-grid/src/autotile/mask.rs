@@ -32,6 +32,24 @@ pub const OFFSETS: [[i64; 2]; 8] = [[0, -1], [1, -1], [1, 0], [1, 1], [0, 1], [-
 /// Each corner with the sides beside it.
 const BESIDE: [(u8, u8); 4] = [(NE, N | E), (SE, S | E), (SW, S | W), (NW, N | W)];
 
+/// The masks of the smallest common blob tilesets: a full tile, four sides, four outer and four inner corners. They have no tile for necks of
+/// one cell, nor for areas that touch at a corner.
+pub const SIMPLE_BLOB: [u8; 13] = [
+    255,
+    !(NW | N | NE),
+    !(NE | E | SE),
+    !(SE | S | SW),
+    !(SW | W | NW),
+    E | SE | S,
+    S | SW | W,
+    W | NW | N,
+    N | NE | E,
+    !NE,
+    !SE,
+    !SW,
+    !NW,
+];
+
 /// How tiles follow their surroundings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]

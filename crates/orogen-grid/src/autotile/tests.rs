@@ -4,26 +4,9 @@ use super::choose::{ClassTiles, NONE, Variant, layers};
 use super::classes::Classes;
 use super::clean::{HALO, clean};
 use super::drawable::Drawable;
-use super::mask::{CORNERS, E, Layout, N, NE, NW, S, SE, SW, W};
+use super::mask::{CORNERS, E, Layout, N, NE, NW, S, SE, SIMPLE_BLOB, SW, W};
 use crate::progress::Progress;
 use crate::random::Random;
-
-/// The smallest common blob set: a full tile, four sides, four outer and four inner corners.
-const SIMPLE: [u8; 13] = [
-    255,
-    !(NW | N | NE),
-    !(NE | E | SE),
-    !(SE | S | SW),
-    !(SW | W | NW),
-    E | SE | S,
-    S | SW | W,
-    W | NW | N,
-    N | NE | E,
-    !NE,
-    !SE,
-    !SW,
-    !NW,
-];
 
 /// Corner tiles without the two whose covered corners are opposite.
 fn without_saddles() -> Vec<u8> {
@@ -46,7 +29,7 @@ fn random(seed: u64, grain: i64, count: u64, side: usize) -> Classes {
 
 fn sets() -> Vec<(&'static str, Layout, Vec<u8>)> {
     let mut sets: Vec<_> = Layout::ALL.into_iter().map(|layout| (layout.name(), layout, layout.masks())).collect();
-    sets.push(("blob of 13", Layout::Blob, SIMPLE.to_vec()));
+    sets.push(("blob of 13", Layout::Blob, SIMPLE_BLOB.to_vec()));
     let without = |removed: &[u8]| Layout::Blob.masks().into_iter().filter(|mask| !removed.contains(mask)).collect();
     sets.push(("blob without islets and necks", Layout::Blob, without(&[0, N | S, E | W, N, E, S, W])));
     sets.push(("corners without saddles", Layout::Corner, without_saddles()));
