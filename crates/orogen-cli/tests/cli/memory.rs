@@ -52,6 +52,7 @@ fn rows(side: usize) -> Vec<Vec<String>> {
         "fit dem.tif -o fitted.toml --tries 12 --judges 1 -q".into(),
         "refine dem.tif -o fine.tif --cell 5 -q".into(),
         "refine dem.tif -o fine.toml -q".into(),
+        format!("tilemap land.toml --size {side} -o tiles -q"),
         format!("noise perlin --size {side} -q"),
         format!("noise perlin --size {side} -o noise.npy -q"),
         format!("noise perlin --size {side} --frames 2 -o frames.png -q"),

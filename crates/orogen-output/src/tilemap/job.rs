@@ -13,8 +13,9 @@ use orogen_grid::progress::Progress;
 use super::standard::{CLASS, classify};
 use super::tileset::Tileset;
 
-/// Memory for each cell of a map beside the layer of its classes, in bytes: classes twice, and a tile number in every layer.
-const CELL_BYTES: u64 = 2 + 4;
+/// Memory for each cell of a map beside the numbers of its tiles, in bytes: its class before and after the clean-up, each with what is around the map, and the
+/// layer that is cut or written.
+const CELL_BYTES: u64 = 4 + 4;
 
 /// How far a class may be from a whole number, because classes of a cell between two samples would be no class.
 const WHOLE: f32 = 1e-3;
