@@ -34,7 +34,7 @@ fn every_command_reports_one_share_that_only_grows_to_the_end() {
     let folder = Folder::new();
     folder.write("rivers.toml", RIVERS);
     folder.good(&["export", "rivers.toml", "-o", "place.tif"]);
-    let commands: [&[&str]; 13] = [
+    let commands: [&[&str]; 14] = [
         &["generate", "rivers.toml", "-o", "out"],
         &["export", "rivers.toml", "-o", "land.tif"],
         &["export", "rivers.toml", "--layer", "normal", "-o", "normal.png"],
@@ -47,6 +47,7 @@ fn every_command_reports_one_share_that_only_grows_to_the_end() {
         &["build", "rivers.toml", "-o", "built.tif"],
         &["noise", "perlin", "--size", "64", "--frames", "8", "-o", "noise.png"],
         &["compare", "-o", "compare.png"],
+        &["tilemap", "rivers.toml", "-o", "tiles"],
         &["refine", "place.tif", "--cell", "20", "-o", "fine.tif"],
     ];
     for command in commands {
