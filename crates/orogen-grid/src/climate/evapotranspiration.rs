@@ -18,8 +18,9 @@ pub fn potential(year: &Year) -> f64 {
 /// below 0.65 dry subhumid, and humid from there.
 #[must_use]
 pub fn humidity(rain: f64, potential: f64) -> f64 {
+    let rain = rain.max(0.0);
     // Also where nothing evaporates; 0 / 0 counts as humid, because no water leaves.
-    if rain >= MAX_HUMIDITY * potential { MAX_HUMIDITY } else { rain.max(0.0) / potential }
+    if rain >= MAX_HUMIDITY * potential { MAX_HUMIDITY } else { rain / potential }
 }
 
 #[cfg(test)]
@@ -33,6 +34,6 @@ mod tests {
         assert_eq!(potential(&year(-9.0)), 0.0);
         assert!(potential(&year(20.0)) < potential(&year(24.0)));
         assert_eq!([humidity(500.0, 1000.0), humidity(500.0, 0.0), humidity(0.0, 0.0)], [0.5, 100.0, 100.0]);
-        assert_eq!(humidity(-3.0, 800.0), 0.0);
+        assert_eq!([humidity(-3.0, 800.0), humidity(-3.0, 0.0)], [0.0, 100.0]);
     }
 }
