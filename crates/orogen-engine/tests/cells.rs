@@ -55,5 +55,5 @@ fn a_solver_at_its_own_cell_is_that_of_a_coarser_world() {
         }
         checked.push(op);
     }
-    assert_eq!(checked, ["bake", "breach", "drainage", "fill", "lakes", "rivers", "stream-power"]);
+    assert_eq!(checked, ["bake", "breach", "drainage", "fill", "lakes", "orographic-rain", "rivers", "stream-power"]);
 }

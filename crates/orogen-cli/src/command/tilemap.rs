@@ -6,11 +6,14 @@ use orogen::autotile::mask::Layout;
 use orogen::file::{self, Output};
 use orogen::tilemap::art::set::{SETS, Set};
 use orogen::tilemap::job::{Tilemap, TilemapJob};
+use orogen::tilemap::standard::CLASS;
 use orogen::words::{count, number};
+use orogen::world::HEIGHT;
 use orogen::{Error, ErrorKind};
 
 use crate::bar::Bar;
 use crate::failure::Failure;
+use crate::finite;
 use crate::folder::Folder;
 use crate::interrupt::{self, Stoppable};
 use crate::options::RunOptions;
@@ -92,6 +95,7 @@ fn make(args: &Args, progress: &orogen::Progress) -> Result<String, Failure> {
         )));
     };
     let job = TilemapJob::new(set.draw(layout)).with_cleans(!args.no_clean);
+    let source_layer = if recipe.outputs().any(|name| name == CLASS) { CLASS } else { HEIGHT };
     job.prepare(&mut recipe, window.cell)?;
     let world = args.run.limits.open(recipe, &budget)?;
     let outputs: Vec<Output> =
@@ -100,6 +104,7 @@ fn make(args: &Args, progress: &orogen::Progress) -> Result<String, Failure> {
     let _map = budget.reserve(job.memory(&window) + ENCODERS)?;
     let [making, writing] = progress.parts([9.0, 1.0]);
     let map = job.make(&world, &window, &making)?;
+    finite::tell(source_layer, map.finite)?;
     write(&map, &outputs)?;
     writing.finish();
     folder.keep();

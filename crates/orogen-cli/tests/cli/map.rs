@@ -165,7 +165,7 @@ fn biomes_color_a_map() {
     folder.write("none.toml", biomes(""));
     folder.bad(
         &["map", "none.toml", "-o", "c.png", "--size", "400", "--color", "biomes"],
-        1,
+        2,
         "no output of this recipe is the layer of a `biome`",
     );
 }

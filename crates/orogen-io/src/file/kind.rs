@@ -69,7 +69,7 @@ const KINDS: &[Kind] = &[
     Kind { name: "an HTML page", extensions: &["html", "htm"], begins: |head| is_markup(head) && holds(head, "<html") },
     Kind { name: "a Graphviz graph", extensions: &["dot", "gv"], begins: |head| head.starts_with(b"digraph ") },
     Kind { name: "a Wavefront material", extensions: &["mtl"], begins: |head| head.starts_with(b"newmtl") },
-    Kind { name: "a table of points", extensions: &["csv"], begins: |head| head.starts_with(b"x,y,") },
+    Kind { name: "a table of points or classes", extensions: &["csv"], begins: is_table },
     Kind { name: "a Godot resource", extensions: &["tres"], begins: |head| head.starts_with(b"[gd_resource") },
     Kind { name: "an ASCII grid", extensions: &["asc"], begins: |head| starts_with_word(head, "ncols") },
     Kind {
@@ -195,6 +195,13 @@ fn trimmed(head: &[u8]) -> &[u8] {
     head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head).trim_ascii_start()
 }
 
+/// Whether the first line is that of a table of points, or numbers of classes.
+fn is_table(head: &[u8]) -> bool {
+    let line = head.split(|byte| *byte == b'\n').next().unwrap_or_default();
+    let is_number = |byte: &u8| byte.is_ascii_digit() || *byte == b',';
+    head.starts_with(b"x,y,") || line.contains(&b',') && line.iter().all(is_number)
+}
+
 fn is_markup(head: &[u8]) -> bool {
     trimmed(head).starts_with(b"<")
 }
@@ -258,6 +265,7 @@ mod tests {
             ("fgb", b"fgb\x03fgb\x00"),
             ("svg", b"<?xml version=\"1.0\"?>\n<svg xmlns=\"\">"),
             ("csv", b"x,y,z,kind\n1,2,3,tree\n"),
+            ("csv", b"0,0,1,12\n0,1,1,2\n"),
             ("tres", b"[gd_resource type=\"MultiMesh\" format=3]\n"),
             ("asc", b"NCOLS 4\nNROWS 4\n"),
             ("geojson", b"{\"type\": \"FeatureCollection\"}"),

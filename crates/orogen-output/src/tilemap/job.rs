@@ -1,6 +1,7 @@
 //! From a world to a tilemap.
 
 use orogen_engine::{Recipe, World};
+use orogen_grid::analysis::finite::FiniteCount;
 use orogen_grid::autotile::choose::layers;
 use orogen_grid::autotile::classes::Classes;
 use orogen_grid::autotile::clean::{HALO, clean};
@@ -52,6 +53,8 @@ pub struct Tilemap {
     pub gaps: Vec<Gap>,
     /// Cells whose class the clean-up changed.
     pub changed: usize,
+    /// How many of the classes it was made from are numbers. Cells without a class have the first one.
+    pub finite: FiniteCount,
     /// The seed by which variants of tiles are chosen: that of the world.
     pub seed: u64,
 }
@@ -122,6 +125,7 @@ impl TilemapJob {
             return Err(Error::new(ErrorKind::Request, "the recipe has no output `class`"));
         };
         let before = self.classes(&grid)?;
+        let finite = FiniteCount::of(grid.data());
         drop(grid);
         let mut cleaned = before.clone();
         let drawable = self.tileset.drawable();
@@ -169,15 +173,20 @@ impl TilemapJob {
             gaps_before: gaps_before.len(),
             gaps: left,
             changed,
+            finite,
             seed,
         })
     }
 
-    /// The classes of a layer of numbers.
+    /// The classes of a layer of numbers; the first one where it has none.
     fn classes(&self, grid: &Grid) -> Result<Classes> {
         let terrains = &self.tileset.terrains;
         let mut classes = Vec::with_capacity(grid.data().len());
         for (at, value) in grid.data().iter().enumerate() {
+            if value.is_nan() {
+                classes.push(0);
+                continue;
+            }
             let class = value.round();
             if (value - class).abs() > WHOLE || !(0.0..terrains.len() as f32).contains(&class) {
                 let [x, y] = [at % grid.width(), at / grid.width()];

@@ -71,7 +71,8 @@ pub fn classify(recipe: &mut Recipe, cell: f64) -> Result<()> {
     );
     let beach = format!("(shore < {}) * (slope < 15)", BEACH * cell);
     // Of land and beach one counts: a beach is class 1.
-    let expr = format!("(1 - water) * (({beach}) + (1 - ({beach})) * ({land}))");
+    // Where the height is not a number, neither is the class.
+    let expr = format!("(1 - water) * (({beach}) + (1 - ({beach})) * ({land})) + 0 * height");
     let node = Expr::new(&expr)
         .with("height", height)
         .with("water", water.as_str())
