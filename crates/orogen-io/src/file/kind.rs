@@ -250,6 +250,15 @@ mod tests {
     use super::*;
 
     #[test]
+    fn tables_are_of_points_or_of_classes() {
+        for (head, is_ours) in
+            [("0,0,1,12\n0,1,1,2\n", true), ("x,y,z\n", true), ("12\n", false), ("name,age\n", false)]
+        {
+            assert_eq!(is_table(head.as_bytes()), is_ours, "{head}");
+        }
+    }
+
+    #[test]
     fn every_kind_takes_its_own_place_and_no_other() {
         let samples: [(&str, &[u8]); 18] = [
             ("png", b"\x89PNG\r\n\x1a\n...."),
@@ -265,7 +274,6 @@ mod tests {
             ("fgb", b"fgb\x03fgb\x00"),
             ("svg", b"<?xml version=\"1.0\"?>\n<svg xmlns=\"\">"),
             ("csv", b"x,y,z,kind\n1,2,3,tree\n"),
-            ("csv", b"0,0,1,12\n0,1,1,2\n"),
             ("tres", b"[gd_resource type=\"MultiMesh\" format=3]\n"),
             ("asc", b"NCOLS 4\nNROWS 4\n"),
             ("geojson", b"{\"type\": \"FeatureCollection\"}"),
