@@ -11,7 +11,9 @@ use rayon::prelude::*;
 /// Air that is lifted by the ground condenses water, which drifts with the wind while it turns into rain and falls. With the Fourier transform h of the heights and the intrinsic
 /// frequency sigma = U k + V l, the transform of the rain is (their equation 49)
 ///
-///     P = Cw i sigma h / ((1 - i m Hw) (1 + i sigma tau_c) (1 + i sigma tau_f)),    m^2 = (Nm^2 - sigma^2) / sigma^2 (k^2 + l^2)
+/// ```text
+/// P = Cw i sigma h / ((1 - i m Hw) (1 + i sigma tau_c) (1 + i sigma tau_f)),    m^2 = (Nm^2 - sigma^2) / sigma^2 (k^2 + l^2)
+/// ```
 ///
 /// where m has the sign of sigma if it is real, and is positive imaginary otherwise. Coriolis force is neglected.
 #[derive(Debug, Clone, Copy, PartialEq)]
