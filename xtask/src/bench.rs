@@ -30,7 +30,8 @@ Builds the benches at full optimisation, measures one area (or all in turn) and 
                          gdal_translate, CPU time; maps of 4096 x 4096 and a rendered view, wall time
                world     chunks, tiles with halos, threads and whole builds of hills of noise, animations of growing presets; the builds (--case build) take
                          minutes and a dozen GiB of disk
-               tiles     terrain classes, clean-up and tiles of a map of 4096 x 4096 cells, all cores, wall time
+                tiles     terrain classes, clean-up and tiles of a map of 4096 x 4096 cells, climate and biomes of 2048 x 2048 samples; chunks of
+                         blocks; all cores, wall time
   --json FILE  also write the rows as JSON; needs an AREA
   --case TEXT  only cases whose name contains TEXT
   --quick      few repetitions: only to check that it runs

@@ -37,6 +37,7 @@ Builds `orogen` in release mode, installs missing clients and runs every step, o
   tiles     NumPy and Pillow read tiles: shared edges, one scale; Terrarium heights at the right map positions
   dems      orogen reads heights in every kind that rasterio writes: bit-equal samples, the same coordinates
   meshes    the glTF validator, trimesh, meshio and admesh read GLB, OBJ, PLY and STL: samples, orientation, closed solids
+  blocks    nbtlib, midvoxio and trimesh read blocks, and a Luanti server opens them: the same blocks, no cracks in the mesh
   contours  gdal_contour of the same heights gives the same lines; GDAL reads our files
   water     GDAL, SQLite and Shapely read rivers, lakes and watersheds: valid, connected, never rising, at the coordinates of the GeoTIFF
   maps      Poppler and librsvg draw map sheets: they look like the .png
@@ -92,8 +93,14 @@ const CLIENTS: &[Client] = &[
     Client {
         name: "tilemaps",
         apt: &[("tiled", "tiled"), ("tmxrasterizer", "tiled")],
-        pip: &[NUMPY, PILLOW, "pytmx==3.32"],
+        pip: &[NUMPY, PILLOW, "pytmx==3.32", "ldtkpy==1.4.1", "godot_parser==0.1.7"],
         npm: &[],
+    },
+    Client {
+        name: "blocks",
+        apt: &[("node", "nodejs"), ("npm", "npm"), ("/usr/games/minetestserver", "minetest-server")],
+        pip: &[NUMPY, "nbtlib==2.0.4", "midvoxio==0.1.6", "matplotlib==3.11.2", "trimesh==5.2.0"],
+        npm: &["gltf-validator@2.0.0-dev.3.10"],
     },
     Client { name: "contours", apt: &[("gdal_contour", "gdal-bin")], pip: &[NUMPY], npm: &[] },
     Client {
@@ -158,7 +165,16 @@ const STEPS: &[&Step] = &[
         about: "the glTF validator, trimesh, meshio and admesh read meshes",
         run: || script("meshes"),
     },
-    &Step { name: "tilemaps", about: "Tiled and PyTMX read tilemaps", run: || script("tilemaps") },
+    &Step {
+        name: "tilemaps",
+        about: "Tiled, PyTMX, ldtkpy and godot_parser read tilemaps",
+        run: || script("tilemaps"),
+    },
+    &Step {
+        name: "blocks",
+        about: "nbtlib, midvoxio, trimesh and a Luanti server read worlds of blocks",
+        run: || script("blocks"),
+    },
     &Step { name: "contours", about: "gdal_contour draws the same contours", run: || script("contours") },
     &Step {
         name: "water",

@@ -4,6 +4,7 @@ use crate::failure::{Failure, Result, on_file};
 use crate::shell;
 
 mod base64;
+mod blocks;
 mod hillshades;
 mod levels;
 mod noises;
@@ -17,7 +18,7 @@ pub const HELP: &str = "
 Usage: cargo xtask gallery
 
 Rewrites docs/images/: one relief map of each preset, the views of docs/render.md and the README's first picture, a
-map sheet, the zoom of docs/levels.md, water as vectors, a tilemap, all palettes, the page of noises side by side, and the chunks around a viewer. Then docs/gallery.md: a map
+map sheet, the zoom of docs/levels.md, water as vectors, a tilemap, blocks, all palettes, the page of noises side by side, and the chunks around a viewer. Then docs/gallery.md: a map
 of each preset, and the shaded relief of a part of it at one pixel per sample, which shows artefacts that colours hide. Then
 crates/orogen-noise/docs/gallery.md: the pictures at the top of the documentation of orogen-noise. They are embedded in the
 file, so that every renderer shows them.
@@ -43,7 +44,12 @@ pub fn run(args: &[String]) -> Result {
         std::fs::copy(work.join("map.png"), &to).map_err(|e| on_file("write", &to, &e))?;
         println!("{}", shell::relative(&to));
     }
-    for (arguments, name) in [(&["map", "alpine", "--size", "1400"][..], "map.png"), (&["palettes"], "palettes.png")] {
+    for (arguments, name) in [
+        (&["map", "alpine", "--size", "1400"][..], "map.png"),
+        (&["map", "tile-continent", "--color", "classes", "--size", "900"], "classes.png"),
+        (&["map", "biomes", "--color", "biomes", "--size", "900"], "biome-map.png"),
+        (&["palettes"], "palettes.png"),
+    ] {
         let to = images.join(name);
         let mut orogen = shell::cargo("run --quiet --release --package orogen-cli --");
         shell::run(orogen.args(arguments).args(["--quiet", "-o"]).arg(&to))?;
@@ -53,6 +59,7 @@ pub fn run(args: &[String]) -> Result {
     views::write(&images)?;
     water::write(&images, &work)?;
     tilemap::write(&images, &work)?;
+    blocks::write(&images)?;
     hillshades::write(&presets, &images)?;
     let page = images.join("compare.png");
     let mut orogen = shell::cargo("run --quiet --release --package orogen-cli -- compare --quiet -o");

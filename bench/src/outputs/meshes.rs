@@ -90,6 +90,7 @@ fn full_grid(grid: &Grid, options: &Options) -> Result<Figure, String> {
             texture: Some(&texture),
             normal_maps: &[],
             material: None,
+            bodies: &[],
             water: &[],
             objects: &[],
             extras: serde_json::Map::new(),

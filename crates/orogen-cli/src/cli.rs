@@ -6,8 +6,8 @@ use orogen::Level;
 
 use crate::bar::{Mode, set_mode};
 use crate::command::{
-    analyze, build, cache, check, compare, completions, explain, export, fit, generate, graph, grow, map, new, noise,
-    ops, palettes, presets, refine, render, schema, tilemap, variants,
+    analyze, blocks, build, cache, check, compare, completions, explain, export, fit, generate, graph, grow, map, new,
+    noise, ops, palettes, presets, refine, render, schema, tilemap, variants,
 };
 use crate::failure::Failure;
 
@@ -47,6 +47,8 @@ enum Command {
     Map(map::Args),
     /// Make a map of tiles for a 2D game: terrain classes drawn with a tileset, for Tiled and for programs
     Tilemap(tilemap::Args),
+    /// Make a world of blocks: a MagicaVoxel scene, a Minecraft schematic, a Luanti world, or a smooth mesh of it
+    Blocks(blocks::Args),
     /// Draw variants of a recipe side by side: several seeds, or a range of values of a parameter
     Variants(variants::Args),
     /// Write a new recipe as a starting point
@@ -92,6 +94,7 @@ impl Cli {
             Command::Render(args) => render::run(&args),
             Command::Map(args) => map::run(&args),
             Command::Tilemap(args) => tilemap::run(&args),
+            Command::Blocks(args) => blocks::run(&args),
             Command::Variants(args) => variants::run(&args),
             Command::New(args) => new::run(&args),
             Command::Presets => presets::run(),

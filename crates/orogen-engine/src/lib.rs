@@ -44,6 +44,7 @@ pub mod solver;
 pub mod store;
 pub mod tiles;
 pub mod value;
+pub mod volume;
 pub mod world;
 
 pub use budget::Budget;
@@ -62,4 +63,5 @@ pub use session::{Options, Session};
 pub use store::folder::FolderStore;
 pub use store::memory::MemoryStore;
 pub use store::solution_store::SolutionStore;
+pub use volume::Volume;
 pub use world::World;

@@ -150,6 +150,15 @@ impl Node {
         self.declared().margin()
     }
 
+    /// Whether its result depends on the altitude at which it is sampled, other than through its inputs.
+    #[must_use]
+    pub fn reads_altitude(&self) -> bool {
+        match self.op() {
+            Op::Field(field) => field.reads_altitude() || self.declared().vertical() > 0.0,
+            Op::Filter(_) | Op::Levelled(_) | Op::Solver(_) => false,
+        }
+    }
+
     /// The files that its parameters name.
     pub fn files(&mut self) -> Vec<&mut FileRef> {
         self.declared_mut().files()

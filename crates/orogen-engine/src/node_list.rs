@@ -2,6 +2,7 @@
 nodes! {
     field {
         add::Add,
+        altitude::Altitude,
         billow::Billow,
         biome::Biome,
         clamp::Clamp,
@@ -19,6 +20,7 @@ nodes! {
         hybrid::Hybrid,
         image::Image,
         jordan::Jordan,
+        label::Label,
         max::Max,
         min::Min,
         mix::Mix,
@@ -78,6 +80,7 @@ nodes! {
         normalise::Normalise,
         orographic_rain::OrographicRain,
         rivers::Rivers,
+        select_share::SelectShare,
         stream_power::StreamPower,
         viewshed::Viewshed,
     }

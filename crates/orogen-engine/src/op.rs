@@ -36,16 +36,29 @@ impl WorldParams {
     }
 }
 
-/// A node's inputs evaluated at the requested points: one block of samples each.
+/// A node's inputs evaluated at the requested points: one block of samples each. All points have the same altitude.
 pub struct Inputs<'a> {
     slots: &'a [Option<&'a [f32]>],
+    altitude: f64,
 }
 
 impl<'a> Inputs<'a> {
-    /// Inputs in the order of their declaration.
+    /// Inputs in the order of their declaration, in the plane: at altitude 0.
     #[must_use]
     pub fn new(slots: &'a [Option<&'a [f32]>]) -> Inputs<'a> {
-        Inputs { slots }
+        Inputs { slots, altitude: 0.0 }
+    }
+
+    /// The same inputs at an altitude in metres.
+    #[must_use]
+    pub fn with_altitude(self, altitude: f64) -> Inputs<'a> {
+        Inputs { altitude, ..self }
+    }
+
+    /// The altitude of the points in metres: 0 in the plane. Only a field that [reads the altitude](Field::reads_altitude) may use it.
+    #[must_use]
+    pub fn altitude(&self) -> f64 {
+        self.altitude
     }
 
     /// Input `i`, if it is given.
@@ -108,6 +121,12 @@ pub trait Field: Send + Sync {
     /// Whether the result depends on the world's sea level. A field that returns false must not read it, because the
     /// content key would be wrong.
     fn reads_sea_level(&self) -> bool {
+        false
+    }
+
+    /// Whether the result depends on the [altitude](Inputs::altitude) at which the field is evaluated, other than through its inputs. The engine
+    /// evaluates a field that returns false once for all altitudes. An op with `space;` in its declaration need not implement it.
+    fn reads_altitude(&self) -> bool {
         false
     }
 

@@ -2,6 +2,7 @@
 
 use crate::engine::inline::PreparedProgram;
 use crate::engine::interpreter::Buffers;
+use crate::volume::{self, Volume};
 use crate::world::World;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
@@ -175,6 +176,49 @@ impl<W: Borrow<World>> Sampler<W> {
             }
             None => {
                 out.copy_from_slice(self.world().window(&self.layer, window)?.data());
+                Ok(())
+            }
+        }
+    }
+
+    /// Makes the samples of a window at each of the altitudes, in metres: those of [`World::volume`].
+    ///
+    /// # Errors
+    /// The errors of [`World::volume`].
+    pub fn volume(&self, window: &Window, altitudes: &[f64]) -> Result<Volume> {
+        if self.everywhere.is_none() {
+            return self.world().volume(&self.layer, window, altitudes);
+        }
+        self.world().check_volume(window, altitudes)?;
+        self.world().budget().afford(volume::bytes(window, altitudes))?;
+        let mut data = vec![0.0; window.len() * altitudes.len()];
+        self.fill_volume(window, altitudes, &mut data)?;
+        Ok(Volume::new(*window, altitudes, data))
+    }
+
+    /// Writes the samples of a window at each of the altitudes, in metres, to `out`: slice by slice in the order of the altitudes, each row-major from
+    /// the north-west. Like [`Sampler::fill`], it works on the calling thread without allocation once warm, if the layer has no filters.
+    ///
+    /// # Errors
+    /// The errors of [`World::volume`], or `out` has another length.
+    pub fn fill_volume(&self, window: &Window, altitudes: &[f64], out: &mut [f32]) -> Result<()> {
+        self.world().check_volume(window, altitudes)?;
+        if Some(out.len()) != window.len().checked_mul(altitudes.len()) {
+            let message = format!(
+                "a window of {} x {} samples at {} altitudes does not fit a buffer of {}",
+                window.width,
+                window.height,
+                altitudes.len(),
+                out.len()
+            );
+            return Err(Error::new(ErrorKind::Request, message));
+        }
+        match &self.everywhere {
+            Some(ready) => self.with_buffers(|buffers| {
+                self.world().engine(&self.silence).volume_inline(ready, (window, altitudes), buffers, out)
+            }),
+            None => {
+                out.copy_from_slice(self.world().volume(&self.layer, window, altitudes)?.data());
                 Ok(())
             }
         }

@@ -15,7 +15,7 @@ use crate::plan::planner::Planner;
 use crate::plan::steps::Plan;
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::{Graph, LayerRef, Link, MAX_SAMPLES};
-use crate::recipe::scatter;
+use crate::recipe::{class, scatter};
 use crate::session::{Options, Session};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
@@ -98,6 +98,7 @@ impl World {
     /// Opens a recipe in a shared session.
     fn in_session(mut recipe: Recipe, session: Session) -> Result<World> {
         scatter::expand::expand(&mut recipe);
+        class::expand::expand(&mut recipe)?;
         let graph = Graph::resolve(&recipe).map_err(Graph::error)?;
         recipe.load(session.budget.left().unwrap_or(DEFAULT_MEMORY))?;
         if recipe.outputs().next().is_none() {
@@ -489,6 +490,20 @@ impl World {
         Window { x, y, width, height, cell }
     }
 
+    /// Whether the target of a layer depends on the altitude.
+    pub(crate) fn depends_on_altitude(&self, target: &Link) -> bool {
+        matches!(target, Link::Node(target) if self.graph.in_space[target.node])
+    }
+
+    /// The samples of a target over a window at each altitude, slice by slice, which take `bytes` of memory.
+    pub(crate) fn in_space(&self, target: Link, window: &Window, altitudes: &[f64], bytes: u64) -> Result<Vec<f32>> {
+        let progress = Progress::none();
+        let plan = self.planned(&[target], *window, true)?;
+        self.session.budget.afford(self.memory_of(&plan)?.saturating_add(bytes))?;
+        let _running = self.admit(&plan, &progress)?;
+        self.engine(&progress).volume(&plan, altitudes)
+    }
+
     pub(crate) fn engine<'a>(&'a self, progress: &'a Progress) -> Engine<'a> {
         Engine {
             recipe: &self.recipe,
@@ -506,7 +521,7 @@ impl World {
     }
 
     /// The target of a layer's name: an output, otherwise a node or `node.layer`.
-    fn target(&self, layer: &str) -> Result<Link> {
+    pub(crate) fn target(&self, layer: &str) -> Result<Link> {
         if let Some(index) = self.recipe.outputs().position(|name| name == layer) {
             return Ok(self.graph.outputs[index]);
         }

@@ -72,6 +72,7 @@ pub mod progress;
 #[doc(hidden)]
 pub mod random;
 pub mod resample;
+pub mod surface_nets;
 pub mod triangles;
 pub mod words;
 

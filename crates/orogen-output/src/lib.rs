@@ -9,8 +9,10 @@
 //! - [`survey`]: a terrain in numbers, beside what real land is like.
 //! - [`fit`]: recipes like a real place.
 //! - [`tilemap`]: terrain classes drawn with tiles.
+//! - [`blocks`]: worlds of blocks, for block games and voxel editors.
 #![forbid(unsafe_code)]
 
+pub mod blocks;
 pub mod builder;
 pub mod export;
 pub mod fit;

@@ -27,8 +27,10 @@
 //! | build a recipe in code | [`Recipe`], [`WorldSpec`], and the ops in [`field`], [`filter`] and [`solver`] ([`node::Node::all`] lists them) |
 //! | start from a recipe of the library | [`presets`] |
 //! | many points or small windows | [`Sampler`] |
+//! | a layer in space, such as caves | [`World::volume`], [`Sampler::fill_volume`] |
 //! | terrain around a moving viewer | [`Chunks`], [`LodConfig`] |
 //! | trees, rocks and other objects | [`World::objects`] |
+//! | chunks of blocks, with caves and overhangs | [`blocks::land::Land`] |
 //! | a large area in tiles or rows | [`World::tiles`], [`bands`] |
 //! | several worlds with shared threads, memory and solutions | [`Session`] |
 //! | ops of your own | [`op!`], [`Registry`], and [`laws`], which tests them |
@@ -42,19 +44,19 @@
 #[doc(inline)]
 pub use orogen_engine::{
     bands, budget, choice, chunks, declare, expression, field, filter, growth, ids, laws, layer, node, objects, op,
-    plan, recipe, registered, registry, sampler, session, solver, store, tiles, value, world,
+    plan, recipe, registered, registry, sampler, session, solver, store, tiles, value, volume, world,
 };
 #[doc(inline)]
 pub use orogen_grid::{
     aggregate, analysis, autotile, climate, contour, erosion, error, grid, hydrography, hydrology, poisson_discs,
-    progress, resample, triangles, words,
+    progress, resample, surface_nets, triangles, words,
 };
 #[doc(hidden)]
 pub use orogen_io::test_folder;
 #[doc(inline)]
 pub use orogen_io::{dem, file, format, open, palette, raster, read_at, spool};
 #[doc(inline)]
-pub use orogen_output::{builder, export, fit, map, mesh, render, sheet, survey, tilemap};
+pub use orogen_output::{blocks, builder, export, fit, map, mesh, render, sheet, survey, tilemap};
 
 pub use budget::Budget;
 pub use chunks::id::ChunkId;
@@ -76,5 +78,6 @@ pub use session::{Options, Session};
 pub use store::folder::FolderStore;
 pub use store::memory::MemoryStore;
 pub use store::solution_store::SolutionStore;
+pub use volume::Volume;
 pub use words::nearest;
 pub use world::World;

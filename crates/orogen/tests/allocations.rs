@@ -32,7 +32,8 @@ fn chunks_and_points_of_presets_allocate_nothing_once_warm() {
             let count = allocations(|| (1..6).for_each(|i| made(i * 300, 1000)));
             assert_eq!(count, 0, "{}: chunks of {cells} cells", preset.name);
         }
-        let at = |i: i32| sampler.at(f64::from(i) * 3.3, 1234.5).unwrap();
+        // In the smallest world, too.
+        let at = |i: i32| sampler.at(f64::from(i) * 3.3, 123.5).unwrap();
         at(0);
         assert_eq!(allocations(|| (1..20).for_each(|i| assert!(at(i).is_finite()))), 0, "{}: points", preset.name);
     }
@@ -52,6 +53,24 @@ nodes.bent = { op = \"warp\", source = \"rolling\", x = \"east\", y = \"south\",
 nodes.terrain = { op = \"expr\", expr = \"60 + 210 * bent\" }
 outputs.height = \"terrain\"
 ";
+
+#[test]
+fn volumes_of_fields_allocate_nothing_once_warm() {
+    let text = FIELDS
+        .replace("op = \"billow\",", "op = \"billow\", vertical = 0.5,")
+        .replace("expr = \"60 + 210 * bent\"", "expr = \"60 + 210 * bent - altitude\"")
+        + "nodes.altitude = { op = \"altitude\" }\n";
+    let world = World::open(Recipe::parse(&text, "fields").unwrap()).unwrap();
+    let sampler = Sampler::new(&world, "height").unwrap();
+    let altitudes: Vec<f64> = (-20..20).map(f64::from).collect();
+    let chunk = Window::new(16, 16, 1.0);
+    let mut samples = vec![0.0; chunk.len() * altitudes.len()];
+    let mut made = |x, y| sampler.fill_volume(&chunk.at(x, y), &altitudes, &mut samples).unwrap();
+    assert!(allocations(|| made(0, 0)) > 0, "the count works: the first chunk needs buffers");
+    assert_eq!(allocations(|| (1..6).for_each(|i| made(i * 300, -1000))), 0);
+    // The density falls by a metre per metre, and noise is added to that.
+    assert!(samples[0] > samples[samples.len() - 1]);
+}
 
 #[test]
 fn a_walk_through_chunks_allocates_nothing_once_warm() {

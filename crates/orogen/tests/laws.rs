@@ -66,7 +66,7 @@ fn unbounded_worlds_agree_far_out_and_below_zero() {
 fn every_solver_obeys_the_laws_with_a_margin() {
     let solvers = Node::all().into_iter().filter(|node| node.margin().is_some());
     let checked = solvers.map(|node| holds(laws_of(&node).margin(10.24))).count();
-    assert_eq!(checked, 13);
+    assert_eq!(checked, 14);
 }
 
 #[test]
@@ -75,6 +75,13 @@ fn fields_agree_where_two_resolutions_share_samples() {
         for cell in [8.0, 10.24, 0.1, 1.0 / 3.0] {
             holds(laws_of(&node).resolutions(cell));
         }
+    }
+}
+
+#[test]
+fn every_field_obeys_the_laws_in_space() {
+    for node in Node::all() {
+        holds(laws_of(&node).altitudes(10.24));
     }
 }
 
@@ -234,7 +241,7 @@ fn a_plan_is_a_value_that_can_be_sent() {
     let version = format!("\"orogen\":\"{}\"", env!("CARGO_PKG_VERSION"));
     assert!(damaged(&version, "\"orogen\":\"0.0.9\"").contains("made by Orogen 0.0.9"));
     // The format of plans from before they had a number.
-    assert!(damaged("\"format\":3,", "").contains("has format 1, this version reads format 3"));
+    assert!(damaged("\"format\":4,", "").contains("has format 1, this version reads format 4"));
     // A plan of another recipe, or of this one before it was edited.
     let edited = World::open(Recipe::parse(&text.replace("\"blur\"", "\"blur\"\nradius = 35"), "t").unwrap()).unwrap();
     // Of no node at all: a plan's nodes are not those of another recipe.

@@ -123,7 +123,7 @@ fn warp_reads_the_source_where_it_is_sent() {
 
 #[test]
 fn blur_is_the_gaussian_mean() {
-    let noise = orogen::field::white::White { seed: 3, wavelength: 10.0 };
+    let noise = orogen::field::white::White { seed: 3, wavelength: 10.0, ..Default::default() };
     let sharp = of(vec![("n", noise.clone().into())]);
     let radius = 23.0;
     let soft = of(vec![("n", noise.into()), ("b", Blur { source: "n".into(), radius }.into())]);

@@ -10,6 +10,8 @@ fn part(preset: &str) -> &'static str {
     match preset {
         // In its mountains.
         "continent" => "16824,23480,400,400",
+        // All of it.
+        "caves" => "0,0,384,384",
         _ => "100,100,400,400",
     }
 }

@@ -46,7 +46,7 @@ pub struct Args {
     /// Layer to colour: an output, `node.layer`, or a layer derived from the heights (`orogen export --help` lists them)
     #[arg(long, value_name = "L", default_value = HEIGHT)]
     layer: String,
-    /// What the colours show: a layer with a palette, the surfaces of the ground, or the biomes
+    /// What the colours show: a layer with a palette, the surfaces of the ground, the biomes, or the terrain classes
     #[arg(long, value_name = "WHAT", default_value = "palette", aliases = ["colors", "colour", "colours"])]
     color: ColorOf,
     /// How values are mapped to colours [default: log for drainage areas and similar, labels for numbered areas, else linear]
@@ -130,7 +130,7 @@ struct Without {
     /// Legend
     #[arg(long)]
     no_legend: bool,
-    /// Colour bar, or the list of surfaces or biomes
+    /// Colour bar, or the list of surfaces, biomes or classes
     #[arg(long, aliases = ["no-colors", "no-colour", "no-colours"])]
     no_color: bool,
     /// Scale bar
@@ -166,6 +166,20 @@ enum ColorOf {
     Surfaces,
     /// The classes of an output that is the layer of a `biome`, with their names
     Biomes,
+    /// The recipe's terrain classes, `[[class]]`, with their names
+    Classes,
+}
+
+impl ColorOf {
+    /// What the legend lists.
+    fn plural(self) -> &'static str {
+        match self {
+            ColorOf::Palette => "values",
+            ColorOf::Surfaces => "surfaces",
+            ColorOf::Biomes => "biomes",
+            ColorOf::Classes => "classes",
+        }
+    }
 }
 
 /// How values are mapped to colours.
@@ -229,7 +243,7 @@ fn map(args: &Args) -> Result<(), Failure> {
     let range = range(args)?;
     let is_covered = args.color != ColorOf::Palette;
     if is_covered && (args.layer != HEIGHT || args.palette.is_some() || range.is_some()) {
-        let color = if args.color == ColorOf::Biomes { "biomes" } else { "surfaces" };
+        let color = args.color.plural();
         return Err(Failure::Usage(format!("--color {color} cannot be combined with --layer, --palette or --range")));
     }
     let source = Source::find(&args.recipe)?;
@@ -263,6 +277,9 @@ fn map(args: &Args) -> Result<(), Failure> {
     if is_covered {
         let (made, doing) = match args.color {
             ColorOf::Biomes => (biome_cover::of(&world, &heights, options.sea_level, &layering), "make the biomes of"),
+            ColorOf::Classes => {
+                (biome_cover::of_terrain(&world, &heights, options.sea_level, &layering), "make the classes of")
+            }
             _ => (sheet_cover::of(&world, &heights, options.sea_level, &layering), "make the surfaces of"),
         };
         let made = made.map_err(|cause| explained(file::explain(doing, &args.out, &cause).into()))?;
@@ -312,10 +329,9 @@ fn map(args: &Args) -> Result<(), Failure> {
     };
     let contours = sheet.interval.map_or(String::new(), |interval| format!(", contours {} m apart", number(interval)));
     let layer = match (args.color, args.layer.as_str()) {
-        (ColorOf::Surfaces, _) => "surfaces, ".to_string(),
-        (ColorOf::Biomes, _) => "biomes, ".to_string(),
         (ColorOf::Palette, HEIGHT) => String::new(),
         (ColorOf::Palette, layer) => format!("{layer}, "),
+        (color, _) => format!("{}, ", color.plural()),
     };
     let words = format!(
         "{}: {layer}{size}, {} x {} samples of {} m{contours}\n",
@@ -468,7 +484,7 @@ fn drawing(options: &SheetOptions, window: &Window, args: &Args) -> Result<u64, 
     let cover = match args.color {
         ColorOf::Palette => 0.0,
         ColorOf::Surfaces => sheet_cover::memory(window) as f64 + 12.0 * side * side,
-        ColorOf::Biomes => biome_cover::memory(window) as f64 + 12.0 * side * side,
+        ColorOf::Biomes | ColorOf::Classes => biome_cover::memory(window) as f64 + 12.0 * side * side,
     };
     Ok((page + layer + cover) as u64)
 }

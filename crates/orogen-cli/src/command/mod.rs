@@ -1,6 +1,7 @@
 //! The commands, one per file.
 
 pub mod analyze;
+pub mod blocks;
 pub mod build;
 pub mod cache;
 pub mod check;

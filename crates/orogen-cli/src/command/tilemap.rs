@@ -1,12 +1,16 @@
 //! `orogen tilemap`.
 
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use orogen::autotile::mask::Layout;
 use orogen::file::{self, Output};
+use orogen::recipe::class::document::CLASS;
 use orogen::tilemap::art::set::{SETS, Set};
 use orogen::tilemap::job::{Tilemap, TilemapJob};
-use orogen::tilemap::standard::CLASS;
+use orogen::tilemap::load::any as load;
+use orogen::tilemap::load::loaded::Loaded;
+use orogen::tilemap::tileset::Tileset;
 use orogen::words::{count, number};
 use orogen::world::HEIGHT;
 use orogen::{Error, ErrorKind};
@@ -32,15 +36,18 @@ pub struct Args {
     recipe: PathBuf,
     #[command(flatten)]
     samples: SizedView,
-    /// Tileset to draw with
-    #[arg(long, value_name = "T", value_parser = NameOf::tileset(), default_value = SETS[0].name)]
-    tileset: &'static str,
-    /// How the tiles follow their surroundings
-    #[arg(long, value_name = "L", value_parser = NameOf::layout(), default_value = Layout::Blob.name())]
-    layout: &'static str,
-    /// Keep the terrain classes as they are, also where the tileset has no tile
+    /// Tileset to draw with: `fields-16` or `fields-32`, or a file: a tileset of Tiled (.tsx) with a wang set, or a description (.toml)
+    #[arg(long, value_name = "T", default_value = SETS[0].name)]
+    tileset: String,
+    /// Wang set to use of a .tsx that has several
+    #[arg(long, value_name = "NAME")]
+    wang_set: Option<String>,
+    /// How the tiles follow their surroundings [default: that of the tileset, `blob`]
+    #[arg(long, value_name = "L", value_parser = NameOf::layout())]
+    layout: Option<&'static str>,
+    /// Make the maps for Tiled infinite: chunks of 16 x 16 tiles at the positions of the world's cells, so that maps of parts join
     #[arg(long)]
-    no_clean: bool,
+    infinite: bool,
     /// Output folder; it is created if needed
     #[arg(short, long, value_name = "DIR", default_value = "tilemap")]
     out: PathBuf,
@@ -49,7 +56,22 @@ pub struct Args {
 }
 
 /// The files, in the order in which they are put in place: the summary is last, so its presence means that all files are complete.
-const FILES: [&str; 7] = ["tiles.png", "tiles.tsx", "map.tmx", "map.tmj", "classes.csv", "preview.png", "tilemap.json"];
+const FILES: [&str; 10] = [
+    "tiles.png",
+    "tiles.tsx",
+    "map.tmx",
+    "map.tmj",
+    LDTK,
+    "tiles.tres",
+    GODOT,
+    "classes.csv",
+    "preview.png",
+    "tilemap.json",
+];
+
+/// The files that some maps do not have.
+const LDTK: &str = "map.ldtk";
+const GODOT: &str = "map.tscn";
 
 /// Cells along the longer side of a map without --size and --cell.
 const SIDE: usize = 128;
@@ -76,7 +98,9 @@ fn make(args: &Args, progress: &orogen::Progress) -> Result<String, Failure> {
     let source = Source::find(&args.recipe)?;
     let budget = args.run.limits.budget();
     let mut recipe = args.samples.recipe(&source, &budget)?;
-    let policy = args.run.replace.policy(source.inputs(&recipe));
+    let tileset = tileset(args)?;
+    let inputs = source.inputs(&recipe).into_iter().chain(tileset.files);
+    let policy = args.run.replace.policy(inputs);
     let samples = SizedView {
         size: args
             .samples
@@ -86,15 +110,7 @@ fn make(args: &Args, progress: &orogen::Progress) -> Result<String, Failure> {
     };
     // The classes of a recipe without any depend on the cell of the map.
     let window = samples.window(&args.run.limits.open(recipe.clone(), &budget)?)?;
-    let (Some(set), Some(layout)) =
-        (Set::named(args.tileset), Layout::ALL.into_iter().find(|layout| layout.name() == args.layout))
-    else {
-        return Err(Failure::Usage(format!(
-            "there is no tileset `{}` with the layout `{}`",
-            args.tileset, args.layout
-        )));
-    };
-    let job = TilemapJob::new(set.draw(layout)).with_cleans(!args.no_clean);
+    let job = TilemapJob::new(tileset.tileset).with_infinite(args.infinite);
     let source_layer = if recipe.outputs().any(|name| name == CLASS) { CLASS } else { HEIGHT };
     job.prepare(&mut recipe, window.cell)?;
     let world = args.run.limits.open(recipe, &budget)?;
@@ -105,60 +121,99 @@ fn make(args: &Args, progress: &orogen::Progress) -> Result<String, Failure> {
     let [making, writing] = progress.parts([9.0, 1.0]);
     let map = job.make(&world, &window, &making)?;
     finite::tell(source_layer, map.finite)?;
-    write(&map, &outputs)?;
+    let missing = write(&map, &outputs)?;
     writing.finish();
     folder.keep();
-    Ok(if args.run.quiet { String::new() } else { words(&map, &args.out) })
+    Ok(if args.run.quiet { String::new() } else { words(&map, &args.out, &missing) })
 }
 
-/// Writes all files, or none.
-fn write(map: &Tilemap, outputs: &[Output]) -> Result<(), Failure> {
+/// A tileset, and the files that it was read from.
+struct Drawn {
+    tileset: Tileset,
+    files: Vec<PathBuf>,
+}
+
+/// The tileset of the arguments.
+fn tileset(args: &Args) -> Result<Drawn, Failure> {
+    let layout = args.layout.and_then(Layout::named);
+    if load::is_file(&args.tileset) {
+        let path = PathBuf::from(&args.tileset);
+        let Loaded { tileset, picture } = load::load(&path, layout, args.wang_set.as_deref())?;
+        return Ok(Drawn { tileset, files: vec![path, picture] });
+    }
+    let Some(set) = Set::named(&args.tileset) else {
+        let names: Vec<&str> = SETS.iter().map(|set| set.name).collect();
+        return Err(Failure::Usage(format!(
+            "there is no tileset `{}`; the tilesets of the program are {}, and files of others end in .tsx or .toml",
+            args.tileset,
+            names.join(" and ")
+        )));
+    };
+    if args.wang_set.is_some() {
+        return Err(Failure::Usage(format!(
+            "--wang-set chooses one of a .tsx; `{}` is a tileset of the program",
+            set.name
+        )));
+    }
+    Ok(Drawn { tileset: set.draw(layout.unwrap_or(Layout::Blob)), files: Vec::new() })
+}
+
+/// Writes all files, or none. Returns the names of those that the map does not have.
+fn write(map: &Tilemap, outputs: &[Output]) -> Result<Vec<&'static str>, Failure> {
     let notes = [("Software", SOFTWARE)];
     let json = serde_json::to_string_pretty(&map.summary(SOFTWARE))
         .map_err(|e| Error::new(ErrorKind::Internal, e.to_string()))?;
-    let staged = [
-        file::stage(&outputs[0], |out| map.tileset.write_png(&mut Stoppable(out), &notes))?,
-        file::stage(&outputs[1], |out| map.tileset.write_tsx(&mut Stoppable(out), FILES[0], SOFTWARE))?,
-        file::stage(&outputs[2], |out| map.write_tmx(&mut Stoppable(out), FILES[1], SOFTWARE))?,
-        file::stage(&outputs[3], |out| map.write_tmj(&mut Stoppable(out), FILES[0], SOFTWARE))?,
-        file::stage(&outputs[4], |out| map.write_csv(&mut Stoppable(out)))?,
-        file::stage(&outputs[5], |out| map.write_png(&mut Stoppable(out), &notes))?,
-        file::stage(&outputs[6], |out| writeln!(out, "{json}"))?,
-    ];
-    Ok(file::commit(staged.into())?)
+    let [image, tsx, tres] = [FILES[0], FILES[1], FILES[5]];
+    let (mut staged, mut missing) = (Vec::new(), Vec::new());
+    for (name, output) in FILES.into_iter().zip(outputs) {
+        if name == LDTK && !map.fits_ldtk() || name == GODOT && !map.fits_godot() {
+            missing.push(name);
+            continue;
+        }
+        staged.push(file::stage(output, |out| {
+            let mut out = Stoppable(out);
+            match name {
+                "tiles.png" => map.tileset.write_png(&mut out, &notes),
+                "tiles.tsx" => map.tileset.write_tsx(&mut out, image, SOFTWARE),
+                "map.tmx" => map.write_tmx(&mut out, tsx, SOFTWARE),
+                "map.tmj" => map.write_tmj(&mut out, image, SOFTWARE),
+                LDTK => map.write_ldtk(&mut out, image, SOFTWARE),
+                "tiles.tres" => map.tileset.write_tileset_tres(&mut out, image, SOFTWARE),
+                GODOT => map.write_tscn(&mut out, tres, SOFTWARE),
+                "classes.csv" => map.write_csv(&mut out),
+                "preview.png" => map.write_png(&mut out, &notes),
+                _ => writeln!(out, "{json}"),
+            }
+        })?);
+    }
+    file::commit(staged)?;
+    Ok(missing)
 }
 
 /// The final message.
-fn words(map: &Tilemap, folder: &Path) -> String {
+fn words(map: &Tilemap, folder: &Path, missing: &[&str]) -> String {
     let cells = map.classes.data().len().max(1) as f64;
     let counts = map.classes.counts();
     let shares = map.tileset.terrains.iter().zip(counts).filter(|(_, cells)| *cells > 0);
     let shares: Vec<String> =
         shares.map(|(terrain, of)| format!("{:.0} % {}", 100.0 * of as f64 / cells, terrain.name)).collect();
-    let gaps = match (map.gaps_before, map.gaps.as_slice()) {
-        (0, []) => "every place has a tile".to_string(),
-        (before, []) => {
-            format!(
-                "every place has a tile; {} had none before {} changed",
-                count(before, "place"),
-                count(map.changed, "cell")
-            )
-        }
-        (_, [first, ..]) => {
-            let layer = map.tileset.terrains.get(usize::from(first.class)).map_or("", |terrain| terrain.name.as_str());
-            format!(
-                "{} without a tile, the first in column {}, row {}: {layer} with mask {}; tilemap.json lists them",
-                count(map.gaps.len(), "place"),
-                first.x,
-                first.y,
-                first.mask
-            )
-        }
+    let gaps = match map.gaps.len() {
+        0 => "every place has a tile".to_string(),
+        gaps => format!("{} without a tile; tilemap.json lists them", count(gaps, "place")),
+    };
+    let written: Vec<&str> = FILES.into_iter().filter(|name| !missing.contains(name)).collect();
+    let why = missing.iter().map(|name| match *name {
+        LDTK => "\nno map.ldtk: LDtk has no quarter turns, and a project lists each of up to 2^20 tiles",
+        _ => "\nno map.tscn: Godot has maps of up to 32767 tiles along a side",
+    });
+    let objects = match map.objects.len() {
+        0 => String::new(),
+        objects => format!(", {}", count(objects, "object")),
     };
     format!(
-        "{}: {}\n{} x {} tiles of {} ({}), {} m a cell, seed {}\n{}\n{gaps}\n",
+        "{}: {}\n{} x {} tiles of {} ({}), {} m a cell, seed {}\n{}{objects}\n{gaps}{}\n",
         folder.display(),
-        FILES.join("  "),
+        written.join("  "),
         map.width,
         map.height,
         map.tileset.name,
@@ -166,5 +221,6 @@ fn words(map: &Tilemap, folder: &Path) -> String {
         number(map.window.cell),
         map.seed,
         shares.join(", "),
+        why.collect::<String>(),
     )
 }

@@ -1,11 +1,10 @@
-//! Values that are names of formats, engines, tilesets or layouts.
+//! Values that are names of formats, engines or layouts.
 
 use clap::builder::PossibleValue;
 use orogen::autotile::mask::Layout;
 use orogen::export::format::Format;
 use orogen::export::targets::target::EngineTarget;
 use orogen::export::{registry, targets};
-use orogen::tilemap::art::set::{SETS, Set};
 
 /// The parser of a value that is one of several names, with a line of help for each.
 #[derive(Clone)]
@@ -34,17 +33,13 @@ impl NameOf {
         }
     }
 
-    /// The tilesets of the program.
-    pub fn tileset() -> NameOf {
-        let value = |set: &Set| PossibleValue::new(set.name).help(set.about);
-        NameOf { all: SETS.iter().map(value).collect(), declared: |name| Set::named(name).map(|set| set.name) }
-    }
-
     /// The layouts of tilesets.
     pub fn layout() -> NameOf {
         let value = |layout: Layout| PossibleValue::new(layout.name()).help(layout.about());
-        let named = |name: &str| Layout::ALL.into_iter().map(Layout::name).find(|known| *known == name);
-        NameOf { all: Layout::ALL.into_iter().map(value).collect(), declared: named }
+        NameOf {
+            all: Layout::ALL.into_iter().map(value).collect(),
+            declared: |name| Layout::named(name).map(Layout::name),
+        }
     }
 }
 

@@ -91,7 +91,18 @@ fn threads_and_memory_change_nothing() {
 fn every_preset_is_made() {
     let folder = Folder::new();
     // Presets with river erosion take longer: tests/golden.rs of the library makes all presets.
-    for name in ["archipelago", "classic", "endless", "hills", "island", "mesa", "rolling", "tile-island"] {
+    for name in [
+        "archipelago",
+        "caves",
+        "classic",
+        "endless",
+        "hills",
+        "island",
+        "mesa",
+        "rolling",
+        "tile-continent",
+        "tile-island",
+    ] {
         folder.good(&["generate", name, "--size", "32", "-o", name, "-q"]);
         assert_eq!(folder.names(name), FILES);
     }

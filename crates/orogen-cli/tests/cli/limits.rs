@@ -117,6 +117,7 @@ fn cancel(writer: &Writer) -> bool {
         "15" if writer.arguments[0] == "refine" => "0.25",
         "32" if writer.arguments[0] == "noise" => "1024",
         "64x36" => "4000x3000",
+        "32x24" if writer.arguments[0] == "blocks" => "3000x2000",
         "32x24" => "6000x4000",
         "30" if writer.arguments[0] == "map" => "300",
         "64" if writer.arguments[0] == "variants" => "2000",
@@ -130,6 +131,8 @@ fn cancel(writer: &Writer) -> bool {
         "refine" if arguments.contains(&"fine.toml") => return false,
         // One variant of export represents all.
         "export" if !arguments.contains(&"a.tif") => return false,
+        // A picture of so many blocks is too large.
+        "blocks" if arguments.contains(&"b.png") => return false,
         "noise" if !arguments.contains(&"block.npy") => return false,
         "noise" => arguments.iter_mut().filter(|argument| **argument == "3").for_each(|argument| *argument = "1000"),
         _ => {}

@@ -4,6 +4,7 @@
 
 mod bad_places;
 mod bad_recipes;
+mod blocks;
 mod build;
 mod cache;
 mod check;

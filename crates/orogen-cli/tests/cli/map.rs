@@ -171,6 +171,23 @@ fn biomes_color_a_map() {
 }
 
 #[test]
+fn terrain_classes_color_a_map_and_are_exported() {
+    let folder = Folder::with_small();
+    let classes = "[[class]]\nname = \"meadow\"\n[[class]]\nname = \"lava\"\ncolor = \"red\"\nshare = { of = \"noise\", highest = 0.25 }\n";
+    folder.write("classes.toml", format!("{}{classes}", crate::harness::SMALL));
+    let told = folder.good(&["map", "classes.toml", "-o", "a.png", "--size", "400", "--color", "classes"]);
+    assert!(told.text().starts_with("a.png: classes, "), "{}", told.text());
+    folder.write("other.toml", folder.text("classes.toml").replace("red", "blue"));
+    folder.good(&["map", "other.toml", "-o", "b.png", "--size", "400", "--color", "classes", "-q"]);
+    assert_ne!(folder.read("a.png"), folder.read("b.png"), "the color of a class is its own");
+    folder.bad(&["map", "small.toml", "-o", "c.png", "--color", "classes"], 2, "this recipe has no terrain classes");
+    folder.good(&["export", "classes.toml", "-o", "class.csv", "--layer", "class", "--size", "64", "-q"]);
+    let text = folder.text("class.csv");
+    let count = |code: &str| text.lines().filter(|line| line.ends_with(code)).count();
+    assert_eq!((count(",1"), count(",0")), (768, 2304), "64 x 48 samples");
+}
+
+#[test]
 fn the_docs_list_all_classes() {
     use orogen::climate::biomes::scheme::Scheme;
     let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/climate.md")).unwrap();

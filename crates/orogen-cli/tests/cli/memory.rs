@@ -58,9 +58,16 @@ fn rows(side: usize) -> Vec<Vec<String>> {
         format!("noise perlin --size {side} --frames 2 -o frames.png -q"),
         format!("compare --size {} -q", (side / 8).max(120)),
     ];
+    rows.extend(["vox", "schem", "glb", "png", "world"].map(|out| {
+        let out = if out == "world" { "world".to_string() } else { format!("blocks.{out}") };
+        format!("blocks land.toml --size {} -o {out} -q", side / 8)
+    }));
+    rows.push(format!("blocks land.toml --size {side} -o large.vox -q"));
     rows.extend(["png", "svg", "pdf"].map(|kind| format!("map land.toml -o map.{kind} -q")));
     rows.push("map land.toml --color surfaces -o ground.png -q".into());
     rows.push("map climate.toml --color biomes -o biomes.png -q".into());
+    rows.push("map classes.toml --color classes -o classes.png -q".into());
+    rows.push(format!("tilemap classes.toml --size {side} -o tiles -q"));
     rows.push("export land.toml --surfaces --max-error 20 -o ground.glb -q".into());
     // Few pixels, but many samples for the lines.
     rows.push("map land.toml --dpi 40 -o small.png -q".into());
@@ -140,6 +147,9 @@ fn measure_every(side: usize, limits: &[u32]) {
                    [nodes.biome]\nop = \"biome\"\ntemperature = \"warm\"\nrain = \"rain\"\n\
                    [outputs]\nheight = \"land\"\nbiome = \"biome\"\n";
     folder.write("climate.toml", recipe(side, climate));
+    let classes = "[outputs]\nheight = \"land\"\n[[class]]\nname = \"grass\"\n[[class]]\nname = \"rock\"\nslope = { min = 30 }\n\
+                   [[class]]\nname = \"water\"\nshare = { of = \"height\", lowest = 0.3 }\n";
+    folder.write("classes.toml", recipe(side, classes));
     folder.good(&["export", "land.toml", "-o", "dem.tif", "-q"]);
     let mut worst = Vec::new();
     for row in rows(side) {

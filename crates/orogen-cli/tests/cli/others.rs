@@ -12,6 +12,8 @@ fn presets_are_one_a_line() {
         "alpine",
         "badlands",
         "canyon",
+        "biomes",
+        "caves",
         "continent",
         "dla-peaks",
         "endless",
@@ -20,6 +22,7 @@ fn presets_are_one_a_line() {
         "himalaya",
         "island",
         "rolling",
+        "tile-continent",
         "tile-island",
         "volcano",
     ] {

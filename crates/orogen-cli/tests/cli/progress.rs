@@ -34,7 +34,7 @@ fn every_command_reports_one_share_that_only_grows_to_the_end() {
     let folder = Folder::new();
     folder.write("rivers.toml", RIVERS);
     folder.good(&["export", "rivers.toml", "-o", "place.tif"]);
-    let commands: [&[&str]; 14] = [
+    let commands: [&[&str]; 16] = [
         &["generate", "rivers.toml", "-o", "out"],
         &["export", "rivers.toml", "-o", "land.tif"],
         &["export", "rivers.toml", "--layer", "normal", "-o", "normal.png"],
@@ -48,6 +48,8 @@ fn every_command_reports_one_share_that_only_grows_to_the_end() {
         &["noise", "perlin", "--size", "64", "--frames", "8", "-o", "noise.png"],
         &["compare", "-o", "compare.png"],
         &["tilemap", "rivers.toml", "-o", "tiles"],
+        &["blocks", "rivers.toml", "-o", "world"],
+        &["blocks", "rivers.toml", "-o", "blocks.glb"],
         &["refine", "place.tif", "--cell", "20", "-o", "fine.tif"],
     ];
     for command in commands {

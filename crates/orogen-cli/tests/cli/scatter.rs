@@ -106,7 +106,7 @@ fn meshes_carry_objects_that_stand_on_them() {
         assert!(turns.iter().all(|q| (q.iter().map(|part| part * part).sum::<f32>() - 1.0).abs() < 1e-5));
         // The transforms for Godot are the same.
         let text = folder.text(&format!("all_{kind}.tres"));
-        assert!(text.starts_with("[gd_resource type=\"MultiMesh\" format=3]"));
+        assert!(text.starts_with("[gd_resource type=\"MultiMesh\" format=3]\n"));
         assert!(text.contains(&format!("instance_count = {}\n", places.len())));
         let list = text.split_once("PackedFloat32Array(").unwrap().1.trim_end().trim_end_matches(')');
         let transforms: Vec<f32> = list.split(", ").map(|number| number.parse().unwrap()).collect();

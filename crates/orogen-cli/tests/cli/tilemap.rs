@@ -2,7 +2,18 @@
 
 use crate::harness::{Folder, png};
 
-const FILES: [&str; 7] = ["classes.csv", "map.tmj", "map.tmx", "preview.png", "tilemap.json", "tiles.png", "tiles.tsx"];
+const FILES: [&str; 10] = [
+    "classes.csv",
+    "map.ldtk",
+    "map.tmj",
+    "map.tmx",
+    "map.tscn",
+    "preview.png",
+    "tilemap.json",
+    "tiles.png",
+    "tiles.tres",
+    "tiles.tsx",
+];
 
 /// A world of 40 x 30 cells whose classes are 0 to 5 from west to east, with single cells of water.
 const CLASSES: &str = r#"
@@ -88,6 +99,49 @@ fn another_seed_is_another_map_of_the_same_look() {
     assert_eq!(folder.read("map-1/tiles.png"), folder.read("map-2/tiles.png"));
 }
 
+/// Grass with sand at its lower end, and exactly a third of water, in another order than that of the tileset.
+const SHARES: &str = r#"
+[[class]]
+name = "grass"
+[[class]]
+name = "sand"
+height = { max = 60 }
+[[class]]
+name = "water"
+share = { of = "height", lowest = 0.3333 }
+"#;
+
+#[test]
+fn classes_of_a_recipe_are_terrains_by_name_and_shares_are_exact() {
+    let folder = Folder::new();
+    let recipe = format!("{}{SHARES}", crate::harness::SMALL);
+    folder.write("land.toml", &recipe);
+    for (cell, cells) in [("10", 64 * 48), ("20", 32 * 24), ("5", 128 * 96), ("13", 49 * 37)] {
+        for seed in ["1", "2"] {
+            folder.good(&["tilemap", "land.toml", "--cell", cell, "--seed", seed, "-o", "map", "-q", "--force"]);
+            let table = classes(&folder, "map/classes.csv");
+            let count = |class: u8| table.iter().flatten().filter(|of| **of == class).count();
+            assert_eq!(count(0), (0.3333 * f64::from(cells)).round() as usize, "{cell} m, seed {seed}");
+            assert_eq!(count(0) + count(1) + count(2), cells as usize);
+        }
+    }
+    folder.good(&["tilemap", "land.toml", "--cell", "10", "-o", "whole", "-q"]);
+    folder.good(&["tilemap", "land.toml", "--cell", "10", "--window", "11,7,30,20", "-o", "part", "-q"]);
+    let [whole, part] = ["whole", "part"].map(|name| classes(&folder, &format!("{name}/classes.csv")));
+    for (row, cells) in part.iter().enumerate() {
+        assert_eq!(cells, &whole[row + 7][11..41]);
+    }
+    folder.write("lava.toml", recipe.replace("\"sand\"", "\"lava\""));
+    let outcome = folder.bad(
+        &["tilemap", "lava.toml", "-o", "x"],
+        2,
+        "the class `lava` is no terrain of the tileset `fields-16`",
+    );
+    assert!(outcome.err.contains("water, sand, grass, forest, rock, snow"), "{}", outcome.err);
+    folder.write("both.toml", recipe.replace("noise = \"noise\"", "class = \"noise\""));
+    folder.bad(&["tilemap", "both.toml", "-o", "x"], 1, "tables `[[class]]` and an output `class`");
+}
+
 #[test]
 fn wrong_classes_and_sizes_are_explained() {
     let folder = Folder::new();
@@ -117,4 +171,56 @@ fn a_map_that_was_edited_is_kept() {
     folder.write("map/map.tmx", &edited);
     folder.bad(&arguments, 1, "map.tmx");
     assert_eq!(folder.read("map/map.tmx"), edited.as_bytes());
+}
+
+#[test]
+fn tilesets_from_files_are_used_and_kept() {
+    let folder = Folder::new();
+    // Single cells of land, for which the file has no tile: no wang set can have one.
+    folder.write("land.toml", CLASSES.replace("spots < 0.9", "spots > 0.9"));
+    let arguments = |tileset: &'static str, out: &'static str| {
+        ["tilemap", "land.toml", "--cell", "10", "--tileset", tileset, "-o", out]
+    };
+    folder.good(&arguments("fields-16", "own"));
+    let outcome = folder.good(&arguments("own/tiles.tsx", "again"));
+    assert!(outcome.text().contains("of fields-16 (blob)"), "{}", outcome.text());
+    assert_eq!(folder.read("again/tiles.png"), folder.read("own/tiles.png"));
+    assert!(folder.json("again/tilemap.json")["changed"].as_u64().unwrap() > 0);
+
+    folder.bad(&arguments("own/tiles.tsx", "own"), 1, "tiles.png: this command reads that file");
+    folder.bad(&arguments("none.tsx", "x"), 1, "none.tsx");
+    let one = ["tilemap", "land.toml", "--tileset", "own/tiles.tsx", "--wang-set", "lava", "-o", "x"];
+    folder.bad(&one, 1, "no wang set `lava`; it has `water`, `sand`");
+    let program = ["tilemap", "land.toml", "--wang-set", "sand", "-o", "x"];
+    folder.bad(&program, 2, "--wang-set chooses one of a .tsx");
+    folder.write("rows.toml", "picture = \"own/tiles.png\"\nsize = 16\nlayout = \"rule\"\n[[class]]\nname = \"a\"\nfull = [0]\n[[class.rule]]\npattern = [\"##\"]\ntiles = [1]");
+    folder.bad(&arguments("rows.toml", "x"), 1, "needs three rows of three characters");
+    assert!(!folder.path("x").exists(), "nothing is left behind");
+}
+
+#[test]
+fn infinite_maps_have_chunks_at_the_cells_of_the_world() {
+    let folder = Folder::new();
+    folder.write("land.toml", CLASSES);
+    folder.good(&["tilemap", "land.toml", "--window", "7,5,20,11", "--infinite", "-o", "part", "-q"]);
+    folder.good(&["tilemap", "land.toml", "--cell", "10", "-o", "whole", "-q"]);
+    let [whole, part] = ["whole", "part"].map(|name| folder.json(&format!("{name}/map.tmj")));
+    assert_eq!((&whole["infinite"], &part["infinite"]), (&false.into(), &true.into()));
+    let water = |map: &serde_json::Value| {
+        let layers = map["layers"].as_array().unwrap();
+        layers.iter().find(|layer| layer["name"] == "water").unwrap().clone()
+    };
+    let (whole, part) = (water(&whole), water(&part));
+    let chunks = part["chunks"].as_array().unwrap();
+    let places: Vec<_> =
+        chunks.iter().map(|chunk| (chunk["x"].as_i64().unwrap(), chunk["y"].as_i64().unwrap())).collect();
+    assert_eq!(places, [(0, 0), (16, 0)]);
+    for (chunk, (left, top)) in chunks.iter().zip(places) {
+        for (place, tile) in chunk["data"].as_array().unwrap().iter().enumerate() {
+            let [x, y] = [left as usize + place % 16, top as usize + place / 16];
+            let is_inside = (7..27).contains(&x) && (5..16).contains(&y);
+            let expected = if is_inside { whole["data"][y * 40 + x].clone() } else { 0.into() };
+            assert_eq!(*tile, expected, "{x}, {y}");
+        }
+    }
 }

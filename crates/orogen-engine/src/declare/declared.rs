@@ -27,6 +27,10 @@ pub trait Declared {
     fn margin(&self) -> Option<f64> {
         None
     }
+    /// The parameter [`VERTICAL`](super::spec::VERTICAL) of a noise that may be one of space; 0 if the op has none.
+    fn vertical(&self) -> f64 {
+        0.0
+    }
     /// The files that parameters name.
     fn files(&mut self) -> Vec<&mut FileRef>;
     /// Checks that parameters do not contradict each other; the error has a key and a message.

@@ -69,6 +69,8 @@ macro_rules! choice {
 /// After an input's need, or at the end of a parameter, `alias "former"` names a former key. With `octaves;` after its name the op is a fractal: it
 /// gets the parameters all fractals share, beside its own. With `margin;` after its name the op is a solver with the parameter `margin`: its domain
 /// extends beyond the world by that length on each side, and it need not know it ([`Sources::domain`](crate::op::Sources::domain) is the domain).
+/// With `space;` (`octaves in space;` for a fractal) the op is a noise with the parameter `vertical` and a method `depth`: the third coordinate of the
+/// noise, or `None` if it is one of the plane.
 ///
 /// ```
 /// use orogen_engine::op::{Context, Filter};
@@ -108,12 +110,13 @@ macro_rules! op {
     (
         $(#[doc = $doc:literal])+
         $visibility:vis struct $name:ident = $op:literal, $locality:ident, revision $revision:literal;
-        octaves;
+        octaves $(in $space:ident)?;
         $(params { $($params:tt)* })?
     ) => {
         $crate::op! {
             $(#[doc = $doc])+
             $visibility struct $name = $op, $locality, revision $revision;
+            $($space;)?
             params {
                 /// Noise basis of the octaves.
                 basis: $crate::declare::noise::Basis = $crate::declare::noise::Basis::Perlin;
@@ -145,6 +148,31 @@ macro_rules! op {
     };
     (
         $(#[doc = $doc:literal])+
+        $visibility:vis struct $name:ident = $op:literal, $locality:ident, revision $revision:literal;
+        space;
+        params { $($params:tt)* }
+    ) => {
+        $crate::op! {
+            $(#[doc = $doc])+
+            $visibility struct $name = $op, $locality, revision $revision;
+            space in vertical;
+            params {
+                $($params)*
+                /// Wavelength along the altitude, as a multiple of `wavelength`: the noise is one of space, and depends on the altitude at which
+                /// the layer is sampled. 0: the noise is one of the plane, the same at every altitude.
+                vertical: f64 = 0.0, range 0.0 to 1e3;
+            }
+        }
+
+        impl $name {
+            /// The third coordinate of a noise of space, in metres; `None` for a noise of the plane.
+            fn depth(&self, inputs: &$crate::op::Inputs) -> Option<f64> {
+                (self.vertical > 0.0).then(|| inputs.altitude() / self.vertical)
+            }
+        }
+    };
+    (
+        $(#[doc = $doc:literal])+
         $visibility:vis struct $name:ident = $op:literal, solver, revision $revision:literal;
         margin;
         $(inputs { $($inputs:tt)* })?
@@ -171,6 +199,7 @@ macro_rules! op {
         $(#[doc = $doc:literal])+
         $visibility:vis struct $name:ident = $op:literal, $locality:ident, revision $revision:literal;
         $(margin in $margin:ident;)?
+        $(space in $vertical:ident;)?
         $(inputs of $expression:ident;)?
         $(inputs { $( $(#[doc = $idoc:literal])+ $input:ident: $need:ident $(, alias $ialias:literal)?, )* })?
         $(params { $(
@@ -312,6 +341,12 @@ macro_rules! op {
             $(
                 fn margin(&self) -> Option<f64> {
                     Some(self.$margin)
+                }
+            )?
+
+            $(
+                fn vertical(&self) -> f64 {
+                    self.$vertical
                 }
             )?
 

@@ -24,4 +24,4 @@ pub use orogen_io::dem::file_ref::FileRef;
 #[doc(hidden)]
 pub use orogen_noise as noise;
 pub use param::{Param, read_param};
-pub use spec::{InputSpec, Locality, MARGIN, ParamSpec, Shape, Spec, short};
+pub use spec::{InputSpec, Locality, MARGIN, ParamSpec, Shape, Spec, VERTICAL, short};

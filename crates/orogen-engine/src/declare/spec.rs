@@ -31,6 +31,9 @@ impl Locality {
 /// The name of the parameter by which a solver's domain extends beyond the world.
 pub const MARGIN: &str = "margin";
 
+/// The name of the parameter by which a noise is one of space.
+pub const VERTICAL: &str = "vertical";
+
 /// The declaration of an op.
 #[derive(Debug)]
 pub struct Spec {

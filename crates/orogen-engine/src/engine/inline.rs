@@ -42,24 +42,30 @@ impl Engine<'_> {
         out: &mut [f32],
     ) -> Result<Buffers> {
         self.inline(ready, buffers, |interpreter, bindings| {
-            let (columns, rows) = block(window.width);
-            for top in (0..window.height).step_by(rows) {
-                for left in (0..window.width).step_by(columns) {
-                    let block = Window {
-                        x: window.x + left as i64,
-                        y: window.y + top as i64,
-                        width: columns.min(window.width - left),
-                        height: rows.min(window.height - top),
-                        cell: window.cell,
-                    };
-                    interpreter.run_block(&block, bindings)?;
-                    let made = interpreter.output(0).chunks(block.width);
-                    for (row, made) in out.chunks_mut(window.width).skip(top).zip(made) {
-                        row[left..left + block.width].copy_from_slice(made);
-                    }
-                }
-            }
-            Ok(())
+            each_block(window, |left, top, block| {
+                interpreter.run_block(block, bindings)?;
+                put(interpreter.output(0), block, out, window.width, (left, top));
+                Ok(())
+            })
+        })
+    }
+
+    /// Computes the samples of a window at each altitude into `out`, slice by slice, each row-major; returns the buffers. `out` must have their number.
+    /// The program must be valid for the window.
+    pub fn volume_inline(
+        &self,
+        ready: &PreparedProgram,
+        (window, altitudes): (&Window, &[f64]),
+        buffers: Buffers,
+        out: &mut [f32],
+    ) -> Result<Buffers> {
+        self.inline(ready, buffers, |interpreter, bindings| {
+            each_block(window, |left, top, block| {
+                interpreter.run_block_at(block, altitudes, bindings, |k, made| {
+                    let slice = &mut out[k * window.len()..(k + 1) * window.len()];
+                    put(made, block, slice, window.width, (left, top));
+                })
+            })
         })
     }
 
@@ -94,6 +100,31 @@ impl Engine<'_> {
         let mut interpreter = Interpreter::with(&ready.program, buffers);
         work(&mut interpreter, &bindings)?;
         Ok(interpreter.into_buffers())
+    }
+}
+
+/// Visits the blocks of a window, each with its first column and row in the window.
+fn each_block(window: &Window, mut visit: impl FnMut(usize, usize, &Window) -> Result<()>) -> Result<()> {
+    let (columns, rows) = block(window.width);
+    for top in (0..window.height).step_by(rows) {
+        for left in (0..window.width).step_by(columns) {
+            let block = Window {
+                x: window.x + left as i64,
+                y: window.y + top as i64,
+                width: columns.min(window.width - left),
+                height: rows.min(window.height - top),
+                cell: window.cell,
+            };
+            visit(left, top, &block)?;
+        }
+    }
+    Ok(())
+}
+
+/// Copies the samples of a block into rows of `width` samples, from a column and a row on.
+pub(super) fn put(made: &[f32], block: &Window, out: &mut [f32], width: usize, (left, top): (usize, usize)) {
+    for (row, made) in out.chunks_mut(width).skip(top).zip(made.chunks(block.width)) {
+        row[left..left + block.width].copy_from_slice(made);
     }
 }
 

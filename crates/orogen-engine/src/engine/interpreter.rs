@@ -59,6 +59,8 @@ pub struct Interpreter<'p> {
     program: &'p Program,
     registers: IndexVec<RegisterId, Vec<f32>>,
     coord_sets: IndexVec<CoordSetId, CoordSet>,
+    /// The altitude of the samples, in metres.
+    altitude: f64,
 }
 
 impl<'p> Interpreter<'p> {
@@ -72,7 +74,7 @@ impl<'p> Interpreter<'p> {
         let Buffers { mut registers, mut coord_sets } = buffers;
         registers.resize_with(program.registers, Vec::new);
         coord_sets.resize_with(program.coord_sets.max(1), CoordSet::default);
-        Interpreter { program, registers, coord_sets }
+        Interpreter { program, registers, coord_sets, altitude: 0.0 }
     }
 
     /// The buffers, for the next interpreter.
@@ -80,18 +82,44 @@ impl<'p> Interpreter<'p> {
         Buffers { registers: self.registers, coord_sets: self.coord_sets }
     }
 
-    /// Runs the program over a block of the lattice.
+    /// Runs the program over a block of the lattice, in the plane.
     pub fn run_block(&mut self, block: &Window, bindings: &Bindings) -> Result<()> {
+        self.enter_block(block);
+        self.run(Some(block), block.len(), bindings)
+    }
+
+    /// Runs the program over a block of the lattice at each altitude, and passes the first output to `visit` with the altitude's index. What does not
+    /// depend on the altitude is computed once.
+    pub fn run_block_at(
+        &mut self,
+        block: &Window,
+        altitudes: &[f64],
+        bindings: &Bindings,
+        mut visit: impl FnMut(usize, &[f32]),
+    ) -> Result<()> {
+        self.enter_block(block);
+        let (once, repeated) = self.program.instructions.split_at(self.program.once);
+        self.prepare(block.len());
+        self.steps(once, Some(block), block.len(), bindings)?;
+        for (k, altitude) in altitudes.iter().enumerate() {
+            self.altitude = *altitude;
+            self.steps(repeated, Some(block), block.len(), bindings)?;
+            visit(k, self.output(0));
+        }
+        Ok(())
+    }
+
+    /// Makes the block's coordinate set.
+    fn enter_block(&mut self, block: &Window) {
         let coords = &mut self.coord_sets[CoordSetId::BLOCK];
         coords.shape = Shape::Lattice;
         coords.x.clear();
         coords.x.extend((0..block.width).map(|i| block.east(i)));
         coords.y.clear();
         coords.y.extend((0..block.height).map(|j| block.south(j)));
-        self.run(Some(block), block.len(), bindings)
     }
 
-    /// Runs the program at arbitrary points.
+    /// Runs the program at arbitrary points, in the plane.
     pub fn run_points(&mut self, x: &[f64], y: &[f64], bindings: &Bindings) -> Result<()> {
         let coords = &mut self.coord_sets[CoordSetId::BLOCK];
         coords.shape = Shape::Scattered;
@@ -108,10 +136,26 @@ impl<'p> Interpreter<'p> {
     }
 
     fn run(&mut self, block: Option<&Window>, count: usize, bindings: &Bindings) -> Result<()> {
+        self.altitude = 0.0;
+        self.prepare(count);
+        self.steps(&self.program.instructions, block, count, bindings)
+    }
+
+    /// Gives the registers their length.
+    fn prepare(&mut self, count: usize) {
         for register in self.registers.iter_mut() {
             register.resize(count, 0.0);
         }
-        self.program.instructions.iter().try_for_each(|instruction| self.step(instruction, block, count, bindings))
+    }
+
+    fn steps(
+        &mut self,
+        instructions: &[Instruction],
+        block: Option<&Window>,
+        count: usize,
+        bindings: &Bindings,
+    ) -> Result<()> {
+        instructions.iter().try_for_each(|instruction| self.step(instruction, block, count, bindings))
     }
 
     fn step(
@@ -125,8 +169,9 @@ impl<'p> Interpreter<'p> {
             Instruction::Constant { value, out } => self.registers[*out].fill(*value),
             Instruction::Field { node, layer, coords, inputs, out } => {
                 let field = (bindings.fields)(*node).ok_or_else(|| internal("a node to evaluate is not a field"))?;
+                let altitude = self.altitude;
                 self.with_inputs(*coords, inputs, *out, |points, slots, out| {
-                    field.eval_layer(*layer, points, slots, bindings.world_params, out);
+                    field.eval_layer(*layer, points, &slots.with_altitude(altitude), bindings.world_params, out);
                 });
             }
             Instruction::Apply { function, arguments, out } => {
@@ -145,7 +190,7 @@ impl<'p> Interpreter<'p> {
                 let solved = (bindings.solvers)(*node);
                 let (solver, solution) = solved.ok_or_else(|| internal("a solver was read before it was solved"))?;
                 self.with_inputs(*coords, inputs, *out, |at, inputs, out| {
-                    solver.read(&solution, &Reading { layer: *layer, kind: *kind, at, inputs }, out)
+                    solver.read(&solution, &Reading { layer: *layer, kind: *kind, at, inputs: &inputs }, out)
                 })?;
             }
             Instruction::Grid { grid, kind, coords, out } => {
@@ -217,7 +262,7 @@ impl<'p> Interpreter<'p> {
         coords: CoordSetId,
         inputs: &[Option<RegisterId>],
         out: RegisterId,
-        work: impl FnOnce(&Points, &Inputs, &mut [f32]) -> T,
+        work: impl FnOnce(&Points, Inputs, &mut [f32]) -> T,
     ) -> T {
         let mut samples = std::mem::take(&mut self.registers[out]);
         const FEW: usize = 8;
@@ -232,7 +277,7 @@ impl<'p> Interpreter<'p> {
             many = inputs.iter().map(|input| input.map(|register| self.registers[register].as_slice())).collect();
             &many
         };
-        let done = work(&self.coord_sets[coords].points(), &Inputs::new(slots), &mut samples);
+        let done = work(&self.coord_sets[coords].points(), Inputs::new(slots), &mut samples);
         self.registers[out] = samples;
         done
     }

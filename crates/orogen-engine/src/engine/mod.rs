@@ -7,3 +7,4 @@ mod refine;
 pub(crate) mod run;
 mod solve;
 mod tiles;
+mod volume;

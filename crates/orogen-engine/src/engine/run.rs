@@ -137,10 +137,17 @@ impl<'a> Engine<'a> {
     pub fn before_points(&self, plan: &Plan) -> Result<(Solutions, IndexVec<GridId, Option<Grid>>)> {
         let solutions = self.solve(plan)?;
         let mut grids: IndexVec<GridId, Option<Grid>> = plan.grids.iter().map(|_| None).collect();
-        for step in plan.steps.iter() {
+        let needed = self.kept_grids(plan, &mut grids);
+        for (at, step) in plan.steps.entries() {
             match step {
-                Step::Fill { out, .. } if out.is_empty() => {}
+                Step::Fill { out, .. } if out.is_empty() => continue,
+                _ if !needed[at] => continue,
                 _ => self.step(step, &solutions, &mut grids, self.progress)?,
+            }
+            for (grid, slot) in grids.iter_mut().zip(&plan.grids) {
+                if slot.last_use.is_some_and(|last| last <= at) {
+                    *grid = None;
+                }
             }
         }
         Ok((solutions, grids))

@@ -2,7 +2,10 @@
 
 use crate::declare::{Param, Shape};
 use crate::value::Value;
-use orogen_noise::{Basis, LengthMismatch};
+use orogen_noise::{
+    Basis, Classic, Depth, Fractal, LengthMismatch, OpenSimplex2, Perlin, Points, Simplex, Value as ValueNoise, White,
+    Worley,
+};
 
 impl Param for Basis {
     const SHAPE: Shape = Shape::Choice(|| Basis::all().iter().map(|basis| (basis.name(), about(*basis))).collect());
@@ -45,6 +48,37 @@ pub(super) fn fill(out: &mut [f32], noise: impl FnOnce(&mut [f32]) -> Result<(),
     if noise(out).is_err() {
         out.fill(f32::NAN);
     }
+}
+
+/// A noise of the plane and of space.
+pub(super) trait Noise {
+    /// The values at points of the plane.
+    fn in_plane(&self, at: &Points, out: &mut [f32]) -> Result<(), LengthMismatch>;
+    /// The values at points that have the same third coordinate, in metres.
+    fn in_space(&self, at: &Points, depth: f64, out: &mut [f32]) -> Result<(), LengthMismatch>;
+}
+
+macro_rules! noises {
+    ($($noise:ident),*) => { $(
+        impl Noise for $noise {
+            fn in_plane(&self, at: &Points, out: &mut [f32]) -> Result<(), LengthMismatch> {
+                self.fill(at, out)
+            }
+
+            fn in_space(&self, at: &Points, depth: f64, out: &mut [f32]) -> Result<(), LengthMismatch> {
+                self.fill3(at, &Depth::Slice(depth), out)
+            }
+        }
+    )* };
+}
+noises!(Classic, Fractal, OpenSimplex2, Perlin, Simplex, ValueNoise, White, Worley);
+
+/// A block of a noise: of the plane, or with a third coordinate of space.
+pub(super) fn sample(noise: &impl Noise, at: &Points, depth: Option<f64>, out: &mut [f32]) {
+    fill(out, |out| match depth {
+        Some(depth) => noise.in_space(at, depth, out),
+        None => noise.in_plane(at, out),
+    });
 }
 
 /// Nanoseconds per sample.

@@ -1,19 +1,19 @@
 //! Billowing fractal noise.
 
-use super::basis::{cost, fill};
+use super::basis::{cost, sample};
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::{Kind, Points};
 
 op! {
     /// Billow noise: the sum of octaves of 2 |noise| - 1, in -1 ..= 1. It gives round hills with sharp valleys between them.
     pub struct Billow = "billow", field, revision 1;
-    octaves;
+    octaves in space;
 }
 
 impl Field for Billow {
-    fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
         let noise = self.fractal(world_params, Kind::Billow);
-        fill(out, |out| noise.fill(at, out));
+        sample(&noise, at, self.depth(inputs), out);
     }
 
     fn cost(&self) -> f64 {

@@ -1,6 +1,6 @@
 //! Classic Perlin noise, as in textbooks.
 
-use super::basis::fill;
+use super::basis::sample;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
@@ -29,6 +29,7 @@ impl Variant {
 op! {
     /// Perlin's improved noise with the permutation table of his 2002 reference implementation. It repeats every 256 lattice points.
     pub struct Classic = "classic", field, revision 1;
+    space;
     params {
         /// Seed of the node, hashed with the world's seed. If both are 0, the permutation table is used as published.
         seed: u64 = 0;
@@ -40,10 +41,10 @@ op! {
 }
 
 impl Field for Classic {
-    fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
         let seed = if world_params.seed == 0 && self.seed == 0 { 0 } else { world_params.seed_of(self.seed) };
         let noise = orogen_noise::Classic::new(seed, self.wavelength).with_variant(self.variant.noise());
-        fill(out, |out| noise.fill(at, out));
+        sample(&noise, at, self.depth(inputs), out);
     }
 
     fn cost(&self) -> f64 {

@@ -1,6 +1,6 @@
 //! Fractional Brownian motion.
 
-use super::basis::{cost, fill};
+use super::basis::{cost, sample};
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::{Kind, Points};
 
@@ -10,13 +10,13 @@ op! {
     /// The sum of gain^i n_i(p lacunarity^i / wavelength), divided by the sum of the amplitudes. Each octave has its own seed and offset.
     /// Mandelbrot and Van Ness 1968; Musgrave 1989.
     pub struct Fbm = "fbm", field, revision 1;
-    octaves;
+    octaves in space;
 }
 
 impl Field for Fbm {
-    fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
         let noise = self.fractal(world_params, Kind::Fbm);
-        fill(out, |out| noise.fill(at, out));
+        sample(&noise, at, self.depth(inputs), out);
     }
 
     fn cost(&self) -> f64 {

@@ -1,6 +1,6 @@
 //! Musgrave's heterogeneous terrain.
 
-use super::basis::{cost, fill};
+use super::basis::{cost, sample};
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::{Kind, Points};
 
@@ -10,7 +10,7 @@ op! {
     /// h = n_0 + offset; h += h gain^i (n_i + offset). The result is divided by the largest possible product, which is rarely approached:
     /// use `normalise` or `remap` after it. Musgrave in Ebert et al., "Texturing and Modeling" (1994).
     pub struct Hetero = "hetero", field, revision 1;
-    octaves;
+    octaves in space;
     params {
         /// Value added to the noise. Ground is smooth where the sum of both is small.
         offset: f64 = 0.7, range -4.0 to 4.0;
@@ -18,9 +18,9 @@ op! {
 }
 
 impl Field for Hetero {
-    fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
         let noise = self.fractal(world_params, Kind::Hetero { offset: self.offset });
-        fill(out, |out| noise.fill(at, out));
+        sample(&noise, at, self.depth(inputs), out);
     }
 
     fn cost(&self) -> f64 {

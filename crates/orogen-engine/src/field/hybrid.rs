@@ -1,6 +1,6 @@
 //! Musgrave's hybrid multifractal.
 
-use super::basis::{cost, fill};
+use super::basis::{cost, sample};
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::{Kind, Points};
 
@@ -11,7 +11,7 @@ op! {
     /// s_i = gain^i (n_i + offset); height += w s_i; w = clamp(w s_i, 0, 1), starting at 1. The result is divided by the largest possible
     /// sum, which is rarely approached: use `normalise` or `remap` after it. Musgrave in Ebert et al., "Texturing and Modeling" (1994).
     pub struct Hybrid = "hybrid", field, revision 1;
-    octaves;
+    octaves in space;
     params {
         /// Value added to the noise. With 0.7 lowlands are plains; with higher values detail is everywhere.
         offset: f64 = 0.7, range -4.0 to 4.0;
@@ -19,9 +19,9 @@ op! {
 }
 
 impl Field for Hybrid {
-    fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
         let noise = self.fractal(world_params, Kind::Hybrid { offset: self.offset });
-        fill(out, |out| noise.fill(at, out));
+        sample(&noise, at, self.depth(inputs), out);
     }
 
     fn cost(&self) -> f64 {

@@ -1,6 +1,6 @@
 //! Jordan turbulence.
 
-use super::basis::{cost, fill};
+use super::basis::{cost, sample};
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::{Kind, Points};
 
@@ -12,7 +12,7 @@ op! {
     /// Over `white` and the `worley` bases, which have no slope, only the first octave remains. De Carpentier, "Scape: procedural basics"
     /// (2011).
     pub struct Jordan = "jordan", field, revision 1;
-    octaves;
+    octaves in space;
     params {
         /// How far slopes displace the later octaves, in cells of those octaves: 0 is none, 0.35 is typical.
         warp: f64 = 0.35, range -4.0 to 4.0;
@@ -22,9 +22,9 @@ op! {
 }
 
 impl Field for Jordan {
-    fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
         let noise = self.fractal(world_params, Kind::Jordan { warp: self.warp, damp: self.damp });
-        fill(out, |out| noise.fill(at, out));
+        sample(&noise, at, self.depth(inputs), out);
     }
 
     fn cost(&self) -> f64 {

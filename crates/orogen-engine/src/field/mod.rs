@@ -2,6 +2,7 @@
 
 // The list below is written by `cargo xtask codegen`.
 pub mod add;
+pub mod altitude;
 pub mod basis;
 pub mod billow;
 pub mod biome;
@@ -20,6 +21,7 @@ pub mod hetero;
 pub mod hybrid;
 pub mod image;
 pub mod jordan;
+pub mod label;
 pub mod max;
 pub mod min;
 pub mod mix;

@@ -1,6 +1,6 @@
 //! OpenSimplex2 noise.
 
-use super::basis::{cost, fill};
+use super::basis::{cost, sample};
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::{Basis, Points};
 
@@ -28,6 +28,7 @@ op! {
     ///
     /// Lattice, gradients and wide kernels by K. Spencer, with the engine's own hash.
     pub struct OpenSimplex2 = "opensimplex2", field, revision 1;
+    space;
     params {
         /// Seed of the node, hashed with the world's seed. Two nodes with equal seeds make the same noise.
         seed: u64 = 0;
@@ -39,14 +40,14 @@ op! {
 }
 
 impl Field for OpenSimplex2 {
-    fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
         let noise = orogen_noise::OpenSimplex2::new(world_params.seed_of(self.seed), self.wavelength).with_smoothness(
             match self.smoothness {
                 Smoothness::Fast => orogen_noise::Smoothness::Fast,
                 Smoothness::Smooth => orogen_noise::Smoothness::Smooth,
             },
         );
-        fill(out, |out| noise.fill(at, out));
+        sample(&noise, at, self.depth(inputs), out);
     }
 
     fn cost(&self) -> f64 {

@@ -1,12 +1,13 @@
 //! Perlin noise.
 
-use super::basis::fill;
+use super::basis::sample;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 op! {
     /// Perlin's gradient noise (2002) on a hashed lattice, in -1 ..= 1. It is smooth and has no period.
     pub struct Perlin = "perlin", field, revision 1;
+    space;
     params {
         /// Seed of the node, hashed with the world's seed. Two nodes with equal seeds make the same noise.
         seed: u64 = 0;
@@ -16,9 +17,9 @@ op! {
 }
 
 impl Field for Perlin {
-    fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
         let noise = orogen_noise::Perlin::new(world_params.seed_of(self.seed), self.wavelength);
-        fill(out, |out| noise.fill(at, out));
+        sample(&noise, at, self.depth(inputs), out);
     }
 
     fn cost(&self) -> f64 {

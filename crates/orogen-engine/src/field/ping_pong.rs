@@ -1,6 +1,6 @@
 //! Folded fractal noise.
 
-use super::basis::{cost, fill};
+use super::basis::{cost, sample};
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::{Kind, Points};
 
@@ -10,7 +10,7 @@ op! {
     /// t = strength (n_i + 1) is folded into 0 ..= 1 as a triangle wave. The result is the sum of gain^i (2 t - 1), divided by the sum of
     /// the amplitudes.
     pub struct PingPong = "ping-pong", field, revision 1;
-    octaves;
+    octaves in space;
     params {
         /// How often the noise's range is folded (2 strength - 1 times): 0.5 gives plain fBm, 1 gives `ridged`, 2 is typical, 4 gives many
         /// bands.
@@ -19,9 +19,9 @@ op! {
 }
 
 impl Field for PingPong {
-    fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
         let noise = self.fractal(world_params, Kind::PingPong { strength: self.strength });
-        fill(out, |out| noise.fill(at, out));
+        sample(&noise, at, self.depth(inputs), out);
     }
 
     fn cost(&self) -> f64 {

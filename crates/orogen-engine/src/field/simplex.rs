@@ -1,6 +1,6 @@
 //! Simplex noise.
 
-use super::basis::{cost, fill};
+use super::basis::{cost, sample};
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::{Basis, Points};
 
@@ -10,6 +10,7 @@ op! {
     /// Features are about 0.7 times as wide as those of `perlin` at the same wavelength. Gustavson, "Simplex noise demystified"
     /// (2005).
     pub struct Simplex = "simplex", field, revision 1;
+    space;
     params {
         /// Seed of the node, hashed with the world's seed. Two nodes with equal seeds make the same noise.
         seed: u64 = 0;
@@ -19,9 +20,9 @@ op! {
 }
 
 impl Field for Simplex {
-    fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
         let noise = orogen_noise::Simplex::new(world_params.seed_of(self.seed), self.wavelength);
-        fill(out, |out| noise.fill(at, out));
+        sample(&noise, at, self.depth(inputs), out);
     }
 
     fn cost(&self) -> f64 {

@@ -1,6 +1,6 @@
 //! Swiss turbulence.
 
-use super::basis::{cost, fill};
+use super::basis::{cost, sample};
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::{Kind, Points};
 
@@ -10,7 +10,7 @@ op! {
     /// n_i at p + warp d; height += a_i (1 - |n_i|); d -= a_i n_i grad n_i; a_i+1 = a_i gain clamp(height, 0, 1). Over `white` and the
     /// `worley` bases, which have no slope, nothing is displaced. De Carpentier, "Scape: procedural basics" (2011).
     pub struct Swiss = "swiss", field, revision 1;
-    octaves;
+    octaves in space;
     params {
         /// How far slopes displace the later octaves, in wavelengths of the first octave: 0 is none, 0.15 is typical.
         warp: f64 = 0.15, range -4.0 to 4.0;
@@ -18,9 +18,9 @@ op! {
 }
 
 impl Field for Swiss {
-    fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
         let noise = self.fractal(world_params, Kind::Swiss { warp: self.warp });
-        fill(out, |out| noise.fill(at, out));
+        sample(&noise, at, self.depth(inputs), out);
     }
 
     fn cost(&self) -> f64 {

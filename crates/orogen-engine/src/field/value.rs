@@ -1,6 +1,6 @@
 //! Value noise.
 
-use super::basis::fill;
+use super::basis::sample;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
@@ -29,6 +29,7 @@ impl Fade {
 op! {
     /// Value noise: random values in -1 ..= 1 on a square lattice, interpolated between the lattice points.
     pub struct Value = "value", field, revision 1;
+    space;
     params {
         /// Seed of the node, hashed with the world's seed. Two nodes with equal seeds make the same noise.
         seed: u64 = 0;
@@ -40,10 +41,10 @@ op! {
 }
 
 impl Field for Value {
-    fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
         let noise =
             orogen_noise::Value::new(world_params.seed_of(self.seed), self.wavelength).with_fade(self.fade.noise());
-        fill(out, |out| noise.fill(at, out));
+        sample(&noise, at, self.depth(inputs), out);
     }
 
     fn cost(&self) -> f64 {

@@ -1,6 +1,6 @@
 //! Gradient-weighted fractal noise.
 
-use super::basis::{cost, fill};
+use super::basis::{cost, sample};
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::{Kind, Points};
 
@@ -36,7 +36,7 @@ op! {
     /// d += (gain lacunarity)^i grad n_i; height += gain^i n_i falloff(k |d|^2), divided by the sum of the amplitudes. Quilez, "Value noise
     /// derivatives" (2008).
     pub struct WeightedFbm = "weighted-fbm", field, revision 1;
-    octaves;
+    octaves in space;
     params {
         /// How strongly slope damps later octaves: 0 gives plain fBm, 1 is typical, 10 leaves bare pyramids.
         k: f64 = 1.0, range 0.0 to 1e6;
@@ -46,9 +46,9 @@ op! {
 }
 
 impl Field for WeightedFbm {
-    fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
         let noise = self.fractal(world_params, Kind::Weighted { k: self.k, falloff: self.falloff.noise() });
-        fill(out, |out| noise.fill(at, out));
+        sample(&noise, at, self.depth(inputs), out);
     }
 
     fn cost(&self) -> f64 {

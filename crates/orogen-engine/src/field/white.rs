@@ -1,12 +1,13 @@
 //! White noise.
 
-use super::basis::fill;
+use super::basis::sample;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 op! {
     /// White noise: an independent value in -1 ..= 1 for each square of side `wavelength`.
     pub struct White = "white", field, revision 1;
+    space;
     params {
         /// Seed of the node, hashed with the world's seed. Two nodes with equal seeds make the same noise.
         seed: u64 = 0;
@@ -16,9 +17,9 @@ op! {
 }
 
 impl Field for White {
-    fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
         let noise = orogen_noise::White::new(world_params.seed_of(self.seed), self.wavelength);
-        fill(out, |out| noise.fill(at, out));
+        sample(&noise, at, self.depth(inputs), out);
     }
 
     fn cost(&self) -> f64 {

@@ -1,6 +1,6 @@
 //! Worley's cellular noise.
 
-use super::basis::fill;
+use super::basis::sample;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
@@ -65,6 +65,7 @@ op! {
     /// `edge` is -1 on the edges between cells. The search covers all cells that can hold a nearest point, so the noise has no
     /// discontinuities from missed points. Worley, "A cellular texture basis function" (1996).
     pub struct Worley = "worley", field, revision 1;
+    space;
     params {
         /// Seed of the node, hashed with the world's seed. Two nodes with equal seeds make the same noise.
         seed: u64 = 0;
@@ -81,12 +82,12 @@ op! {
 }
 
 impl Field for Worley {
-    fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
         let noise = orogen_noise::Worley::new(world_params.seed_of(self.seed), self.wavelength)
             .with_distance(self.distance.noise())
             .with_feature(self.feature.noise())
             .with_jitter(self.jitter);
-        fill(out, |out| noise.fill(at, out));
+        sample(&noise, at, self.depth(inputs), out);
     }
 
     // One octave of a wavelength looks at fewer cells than the finer ones of a fractal.

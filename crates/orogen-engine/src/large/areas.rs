@@ -7,6 +7,7 @@
 use super::tiling::{Border, Queue, Tiling, border};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
+use orogen_grid::hydrology::accumulation::{UNIT_WEIGHT, weight};
 use orogen_grid::hydrology::direction::{NONE, STEPS};
 use orogen_grid::progress::Progress;
 use orogen_io::raster::Raster;
@@ -22,7 +23,7 @@ pub struct Layers<'a> {
     pub watershed: &'a mut Raster,
     /// Strahler orders.
     pub strahler: &'a mut Raster,
-    /// Minimum number of cells that a stream drains.
+    /// Minimum number of cells that a stream drains, weighted by the rain if it is given.
     pub threshold: u64,
 }
 
@@ -33,7 +34,7 @@ pub(super) struct Exit {
     pub index: u32,
     /// The cell of another tile that it drains to.
     pub to: u64,
-    /// Number of cells that drain through it.
+    /// Number of cells that drain through it, or the sum of their weights.
     area: u64,
     /// Its watershed.
     watershed: u32,
@@ -57,34 +58,37 @@ impl Inflow {
     }
 }
 
-/// Computes the layers from complete receivers: every cell leads to an outlet, which has the code [`NONE`].
+/// Computes the layers from complete receivers: every cell leads to an outlet, which has the code [`NONE`]. Areas are weighted by the factors of the
+/// `rain`, if they are given.
 ///
 /// # Errors
 /// If the disk fails, or the work is cancelled.
-pub fn make(codes: &Raster, tiling: &Tiling, layers: Layers, progress: &Progress) -> Result<()> {
-    let mut areas = Areas::new(codes, tiling, progress)?;
-    let cell_area = tiling.whole.cell * tiling.whole.cell;
+pub fn make(codes: &Raster, rain: Option<&Raster>, tiling: &Tiling, layers: Layers, progress: &Progress) -> Result<()> {
+    let mut areas = Areas::new(codes, rain, tiling, progress)?;
+    let unit = rain.map_or(1, |_| UNIT_WEIGHT);
+    let unit_area = tiling.whole.cell * tiling.whole.cell / f64::from(unit);
+    let threshold = layers.threshold * u64::from(unit);
     // Outlets with their own watershed, by row and column of tiles.
     let mut outlets = vec![0u32; tiling.whole.height * tiling.columns()];
     for t in 0..tiling.count() {
         let tile = areas.tile(t)?;
         let area = tile.areas(&areas.inflows(t));
         tile.count_outlets(&area, |row, count| outlets[areas.segment(t, row)] = count);
-        layers.flow.put(&tile.grid(|c| (area[c] as f64 * cell_area) as f32))?;
+        layers.flow.put(&tile.grid(|c| (area[c] as f64 * unit_area) as f32))?;
     }
     let mut before = 0u32;
     for count in &mut outlets {
         before += std::mem::replace(count, before);
     }
     areas.name_outlets(&outlets)?;
-    areas.order_streams(layers.threshold)?;
+    areas.order_streams(threshold)?;
     for t in 0..tiling.count() {
         let tile = areas.tile(t)?;
         let inflows = areas.inflows(t);
         let area = tile.areas(&inflows);
         let labels = tile.watersheds(&area, &areas.exits[t], |row| outlets[areas.segment(t, row)]);
         layers.watershed.put(&tile.grid(|c| labels[c] as f32))?;
-        let orders = tile.orders(&area, &inflows, layers.threshold);
+        let orders = tile.orders(&area, &inflows, threshold);
         layers.strahler.put(&tile.grid(|c| f32::from(orders[c])))?;
     }
     Ok(())
@@ -92,6 +96,7 @@ pub fn make(codes: &Raster, tiling: &Tiling, layers: Layers, progress: &Progress
 
 pub(super) struct Areas<'a> {
     codes: &'a Raster,
+    rain: Option<&'a Raster>,
     pub tiling: &'a Tiling,
     progress: &'a Progress,
     /// The exits of each tile.
@@ -111,8 +116,13 @@ pub(super) enum End {
 
 impl<'a> Areas<'a> {
     /// The graph, with the areas of all exits.
-    pub(super) fn new(codes: &'a Raster, tiling: &'a Tiling, progress: &'a Progress) -> Result<Areas<'a>> {
-        let mut areas = Areas { codes, tiling, progress, exits: Vec::new(), ends: Vec::new() };
+    pub(super) fn new(
+        codes: &'a Raster,
+        rain: Option<&'a Raster>,
+        tiling: &'a Tiling,
+        progress: &'a Progress,
+    ) -> Result<Areas<'a>> {
+        let mut areas = Areas { codes, rain, tiling, progress, exits: Vec::new(), ends: Vec::new() };
         for t in 0..tiling.count() {
             let tile = areas.tile(t)?;
             let (exits, ends) = tile.exits();
@@ -126,7 +136,10 @@ impl<'a> Areas<'a> {
     pub(super) fn tile(&self, t: usize) -> Result<Tile> {
         self.progress.check()?;
         self.progress.advance(1.0);
-        Ok(Tile::new(&self.codes.get(&self.tiling.tile(t))?, self.tiling))
+        let window = self.tiling.tile(t);
+        let rain = self.rain.map(|rain| rain.get(&window)).transpose()?;
+        let weights = rain.map(|rain| rain.data().iter().map(|factor| weight(*factor)).collect());
+        Ok(Tile { weights, ..Tile::new(&self.codes.get(&window)?, self.tiling) })
     }
 
     /// The index of the first outlet in a row of a tile.
@@ -268,6 +281,8 @@ pub(super) struct Tile {
     pub order: Vec<u32>,
     /// The direction codes of the receivers.
     pub codes: Vec<u8>,
+    /// The weights of the cells; `None` if each counts as 1.
+    weights: Option<Vec<u32>>,
 }
 
 impl Tile {
@@ -301,7 +316,7 @@ impl Tile {
                 cell = receiver;
             }
         }
-        Tile { window, receivers, leaving, order, codes }
+        Tile { window, receivers, leaving, order, codes, weights: None }
     }
 
     fn grid(&self, value: impl Fn(usize) -> f32) -> Grid {
@@ -311,7 +326,10 @@ impl Tile {
 
     /// The areas from the sources downstream; `inflows` come from other tiles.
     pub(super) fn areas(&self, inflows: &Border<Inflow>) -> Vec<u64> {
-        let mut area = vec![1u64; self.window.len()];
+        let mut area = match &self.weights {
+            Some(weights) => weights.iter().map(|weight| u64::from(*weight)).collect(),
+            None => vec![1u64; self.window.len()],
+        };
         for index in border(&self.window) {
             area[index] += inflows.get(index).map_or(0, |inflow| inflow.area);
         }
@@ -347,6 +365,11 @@ impl Tile {
         (exits, along)
     }
 
+    /// Whether other cells drain through a cell with this area.
+    fn drains_others(&self, cell: usize, area: u64) -> bool {
+        area > self.weights.as_ref().map_or(1, |weights| u64::from(weights[cell]))
+    }
+
     fn is_outlet(&self, cell: usize, exits: &[bool]) -> bool {
         self.receivers[cell] as usize == cell && !exits[cell]
     }
@@ -362,7 +385,7 @@ impl Tile {
         let exits = self.exit_marks();
         for j in 0..self.window.height {
             let cells = j * self.window.width..(j + 1) * self.window.width;
-            row(j, cells.filter(|c| area[*c] > 1 && self.is_outlet(*c, &exits)).count() as u32);
+            row(j, cells.filter(|c| self.drains_others(*c, area[*c]) && self.is_outlet(*c, &exits)).count() as u32);
         }
     }
 
@@ -373,7 +396,7 @@ impl Tile {
         for j in 0..self.window.height {
             let mut last = before(j);
             for c in j * self.window.width..(j + 1) * self.window.width {
-                if area[c] > 1 && self.is_outlet(c, &exits) {
+                if self.drains_others(c, area[c]) && self.is_outlet(c, &exits) {
                     last += 1;
                     labels[c] = last;
                 }

@@ -62,13 +62,14 @@ impl Water<'_> {
         flats::resolve(self.heights, &self.tiling, self.sea, codes, self.progress)
     }
 
-    /// Computes areas, watersheds and orders from complete receivers.
+    /// Computes areas, watersheds and orders from complete receivers. Areas are weighted by the factors of the `rain`, if they are given: the same as
+    /// [`hydrology::accumulation::accumulate_rain_with`](crate::hydrology::accumulation::accumulate_rain_with).
     ///
     /// # Errors
     /// If the disk fails, or the work is cancelled.
-    pub fn areas(&self, codes: &Raster, layers: Layers) -> Result<()> {
+    pub fn areas(&self, codes: &Raster, rain: Option<&Raster>, layers: Layers) -> Result<()> {
         self.progress.expect(AREA_PASSES * self.tiling.count() as f64);
-        areas::make(codes, &self.tiling, layers, self.progress)
+        areas::make(codes, rain, &self.tiling, layers, self.progress)
     }
 }
 
@@ -81,7 +82,7 @@ const AREA_PASSES: f64 = 4.0;
 mod tests {
     use super::*;
     use orogen_grid::grid::{Grid, Window};
-    use orogen_grid::hydrology::accumulation::accumulate;
+    use orogen_grid::hydrology::accumulation::{UNIT_WEIGHT, accumulate_rain_with};
     use orogen_grid::hydrology::direction::hashed;
     use orogen_grid::hydrology::outlets::Outlets;
     use orogen_grid::hydrology::steepest::Descent;
@@ -105,6 +106,12 @@ mod tests {
         }
     }
 
+    /// Factors of the rain, of which some are too large or too small.
+    fn rain(window: &Window) -> Grid {
+        let factors = (0..window.len()).map(|cell| hashed(cell as i64, 5) % 1000).map(|k| k as f32 / 400.0 - 0.2);
+        Grid::from_data(*window, factors.map(|factor| if factor > 2.2 { 1e3 } else { factor }).collect()).unwrap()
+    }
+
     fn check(heights: &Grid, side: usize, sea: Option<f32>, surface: bool) {
         let window = *heights.window();
         let outlets = Outlets::new(heights, sea);
@@ -122,14 +129,24 @@ mod tests {
             Water { heights: &filled, ..water }.over_surface(&mut codes).unwrap();
         }
         same(&codes, |c| f32::from(receivers.code(c)), "receivers");
-        let drained = accumulate(&receivers);
+        let rain = surface.then(|| rain(&window));
+        let drained = accumulate_rain_with(&receivers, rain.as_ref(), &progress).unwrap();
         let (labels, orders) =
             (watersheds::watersheds(&receivers, &outlets, &drained), strahler::orders(&receivers, &drained, 5));
         let [mut flow, mut watershed, mut strahler] = [0; 3].map(|_| raster(&window));
         let layers = Layers { flow: &mut flow, watershed: &mut watershed, strahler: &mut strahler, threshold: 5 };
         let water = Water { heights: &source, sea, tiling: Tiling::new(window, side), progress: &progress };
-        water.areas(&codes, layers).unwrap();
-        same(&flow, |c| (f64::from(drained.area.data()[c]) * window.cell * window.cell) as f32, "flow");
+        let rain = rain.map(Raster::in_memory);
+        water.areas(&codes, rain.as_ref(), layers).unwrap();
+        let cell_area = window.cell * window.cell;
+        same(
+            &flow,
+            |c| match &drained.discharge {
+                Some(discharge) => (discharge.data()[c] as f64 * (cell_area / f64::from(UNIT_WEIGHT))) as f32,
+                None => (f64::from(drained.area.data()[c]) * cell_area) as f32,
+            },
+            "flow",
+        );
         same(&watershed, |c| labels.data()[c] as f32, "watershed");
         same(&strahler, |c| f32::from(orders.data()[c]), "strahler");
     }

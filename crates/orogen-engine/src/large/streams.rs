@@ -43,7 +43,7 @@ impl<'a> Streams<'a> {
     /// # Errors
     /// If the disk fails, or the work is cancelled.
     pub fn new(codes: &'a Raster, tiling: &'a Tiling, threshold: u32, progress: &'a Progress) -> Result<Streams<'a>> {
-        let mut areas = Areas::new(codes, tiling, progress)?;
+        let mut areas = Areas::new(codes, None, tiling, progress)?;
         areas.order_streams(u64::from(threshold))?;
         let (mut ways, mut through) = (Vec::new(), Vec::new());
         for t in 0..tiling.count() {

@@ -24,6 +24,8 @@ pub enum Law {
     Unbounded,
     /// A field has the same bits where the samples of two cells coincide.
     Resolutions,
+    /// A part of a volume has the bits of the whole, and the slice at altitude 0 is the plane.
+    Altitudes,
     /// Every change of the world that changes samples changes the content key.
     ContentKeys,
     /// A solver with a margin has these properties, too.

@@ -9,6 +9,7 @@
 //! | [`Law::Warped`] | a tile equals the crop if a warp and a rotation read the op, and a warp by 0 changes no bit |
 //! | [`Law::Unbounded`] | a tile equals the crop at large and at negative positions |
 //! | [`Law::Resolutions`] | a field has the same bits where the samples of two cells coincide |
+//! | [`Law::Altitudes`] | in space a part of a volume has the bits of the whole, at every SIMD level, and the slice at altitude 0 is the plane, if the inputs of a field depend on the altitude |
 //! | [`Law::ContentKeys`] | every change of the world that changes samples changes the content key |
 //! | [`Law::Margin`] | a solver's margin obeys tile == crop, also beyond the world, changes no bit on disk, and is part of the content key |
 //! | [`Law::Cancel`] | work stops within [`LONGEST_CANCEL`] after a request to cancel |
@@ -21,6 +22,7 @@
 //! assert!(violations.is_empty(), "{violations:#?}");
 //! ```
 
+mod altitudes;
 mod case;
 mod check;
 mod law;

@@ -72,7 +72,7 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
     }
     let layers = node.layers();
     if masked {
-        recipe.add("mask", Perlin { seed: 99, wavelength: 7.0 * world.cell });
+        recipe.add("mask", Perlin { seed: 99, wavelength: 7.0 * world.cell, ..Default::default() });
         recipe.add_masked(NODE, node, "mask");
     } else {
         recipe.add(NODE, node);

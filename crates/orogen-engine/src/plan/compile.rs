@@ -9,6 +9,7 @@ use super::around::samples_around;
 use super::coord_sets::CoordSets;
 use super::program::{Instruction, Program};
 use super::request::{GridRequest, Requests};
+use super::space::in_two_parts;
 use crate::ids::{CoordSetId, Id, NodeId, RegisterId, RequestId};
 use crate::layer::LayerKind;
 use crate::op::{CoordMap, Field, Op, Stencil};
@@ -64,7 +65,9 @@ pub fn compile(scope: Scope, targets: &[Link], window: Window, requests: &mut Re
         outputs.push(compiler.value(link, CoordSetId::BLOCK)?);
     }
     let Compiler { instructions, values, coord_sets, evaluated, .. } = compiler;
-    let program = allocate(instructions, values, coord_sets.count(), outputs)?;
+    let reads_altitude = |node: NodeId| scope.recipe.nodes()[node.index()].node.reads_altitude();
+    let (instructions, once) = in_two_parts(instructions, values, coord_sets.count(), reads_altitude);
+    let program = allocate(instructions, once, values, coord_sets.count(), outputs)?;
     Ok(Draft { program, evaluated })
 }
 

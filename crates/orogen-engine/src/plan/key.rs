@@ -1,11 +1,12 @@
 //! Content keys: hashes of everything that a node's result depends on.
 
-use crate::declare::{MARGIN, Shape, Spec};
+use crate::declare::{MARGIN, Shape, Spec, VERTICAL};
 use crate::ids::{Id, IndexVec, NodeId};
 use crate::node::Node;
 use crate::op::{Op, WorldParams};
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::{Graph, Link};
+use crate::value::Value;
 use sha2::{Digest, Sha256};
 
 /// A hash of everything that a node's result depends on: the op, its revision, its parameters, the keys of its sources,
@@ -25,8 +26,8 @@ pub fn keys(recipe: &Recipe, graph: &Graph) -> IndexVec<NodeId, Key> {
         hash.update(spec.revision.to_le_bytes());
         put_world(&mut hash, node, &world_params);
         for (i, param) in spec.params.iter().enumerate() {
-            // Solutions that were stored before solvers had margins stay valid.
-            if param.name == MARGIN && node.margin() == Some(0.0) {
+            // Solutions that were stored before ops had these parameters stay valid.
+            if [MARGIN, VERTICAL].contains(&param.name) && node.param(i) == Value::Number(0.0) {
                 continue;
             }
             hash.update(param.name.as_bytes());

@@ -19,5 +19,6 @@ pub mod program;
 mod request;
 mod schedule;
 mod solves;
+mod space;
 pub mod steps;
 mod stored;

@@ -133,6 +133,8 @@ pub enum Instruction<G = GridId> {
 pub struct Program<G = GridId> {
     /// The instructions in the order of execution.
     pub instructions: Vec<Instruction<G>>,
+    /// Number of instructions that do not depend on the altitude: they come first, and run once for all altitudes.
+    pub once: usize,
     /// Number of registers.
     pub registers: usize,
     /// Number of coordinate sets.
@@ -144,10 +146,10 @@ pub struct Program<G = GridId> {
 impl<G> Program<G> {
     /// The program with other grids in place of its own.
     pub(super) fn resolve<H>(self, grid: impl Fn(G) -> Result<H>) -> Result<Program<H>> {
-        let Program { instructions, registers, coord_sets, outputs } = self;
+        let Program { instructions, once, registers, coord_sets, outputs } = self;
         let instructions =
             instructions.into_iter().map(|instruction| instruction.resolve(&grid)).collect::<Result<_>>()?;
-        Ok(Program { instructions, registers, coord_sets, outputs })
+        Ok(Program { instructions, once, registers, coord_sets, outputs })
     }
 }
 

@@ -9,7 +9,7 @@ use sha2::{Digest, Sha256};
 use std::fmt::{self, Write};
 
 /// The format of stored plans. It is raised when a plan means something else than before.
-const FORMAT: u32 = 3;
+const FORMAT: u32 = 4;
 
 fn first_format() -> u32 {
     1

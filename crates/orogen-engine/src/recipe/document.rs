@@ -6,6 +6,7 @@ use crate::declare::Input;
 use crate::field::dem::Dem;
 use crate::node::Node;
 use crate::op::{Op, WorldParams};
+use crate::recipe::class::document::{CLASS, ExpandedClass, TerrainClass};
 use crate::recipe::parameters::{Formula, Parameter, Parameters};
 use crate::recipe::scatter::document::{ExpandedScatter, Scatter};
 use crate::recipe::surface::document::{Expanded, RAMP, Surface};
@@ -125,6 +126,8 @@ pub struct Recipe {
     expanded: Vec<Expanded>,
     scatter: Vec<Scatter>,
     expanded_scatter: Vec<ExpandedScatter>,
+    classes: Vec<TerrainClass>,
+    expanded_classes: Vec<ExpandedClass>,
     held: u64,
 }
 
@@ -140,6 +143,8 @@ impl PartialEq for Recipe {
             && self.expanded == other.expanded
             && self.scatter == other.scatter
             && self.expanded_scatter == other.expanded_scatter
+            && self.classes == other.classes
+            && self.expanded_classes == other.expanded_classes
     }
 }
 
@@ -158,6 +163,8 @@ impl Recipe {
             expanded: Vec::new(),
             scatter: Vec::new(),
             expanded_scatter: Vec::new(),
+            classes: Vec::new(),
+            expanded_classes: Vec::new(),
             held: 0,
         }
     }
@@ -231,6 +238,29 @@ impl Recipe {
         self.expanded_scatter = expanded;
     }
 
+    /// Adds a terrain class, which covers those before it where its conditions hold.
+    pub fn add_class(&mut self, class: TerrainClass) -> &mut Recipe {
+        self.classes.push(class);
+        self
+    }
+
+    /// Its terrain classes. The output `class` of its world has their numbers.
+    #[must_use]
+    pub fn classes(&self) -> &[TerrainClass] {
+        &self.classes
+    }
+
+    /// The nodes that compute its terrain classes, after [`expand`](super::class::expand::expand).
+    #[must_use]
+    pub fn expanded_classes(&self) -> &[ExpandedClass] {
+        &self.expanded_classes
+    }
+
+    /// Sets the nodes that compute terrain classes. These and the output that they make are not written with the recipe.
+    pub(super) fn set_expanded_classes(&mut self, expanded: Vec<ExpandedClass>) {
+        self.expanded_classes = expanded;
+    }
+
     /// Its parameters, with their values. [`Recipe::read_with`] and [`Recipe::parse_with`] read a recipe with other
     /// values.
     #[must_use]
@@ -259,7 +289,7 @@ impl Recipe {
         self.used = used;
     }
 
-    /// Renames the inputs of its nodes, outputs, surfaces and scatter.
+    /// Renames the inputs of its nodes, outputs, surfaces, scatter and classes.
     pub(super) fn rename_inputs(&mut self, of: impl Fn(&str) -> Option<Input>) {
         let other = |input: &Input| match input {
             Input::Node(name) => of(name),
@@ -282,6 +312,7 @@ impl Recipe {
         }
         self.surfaces.iter_mut().for_each(|surface| surface.rename_inputs(&of));
         self.scatter.iter_mut().for_each(|scatter| scatter.rename_inputs(&of));
+        self.classes.iter_mut().for_each(|class| class.rename_inputs(&of));
     }
 
     /// The nodes in the order of the text.
@@ -469,7 +500,8 @@ impl Recipe {
         }
         let bound = self.parameters.bound();
         let surfaces = self.expanded.iter().map(|surface| &surface.nodes);
-        let expanded = surfaces.chain(self.expanded_scatter.iter().map(|scatter| &scatter.nodes));
+        let scatter = self.expanded_scatter.iter().map(|scatter| &scatter.nodes);
+        let expanded = surfaces.chain(scatter).chain(self.expanded_classes.iter().map(|class| &class.nodes));
         let added = |at: &usize| expanded.clone().any(|nodes| nodes.contains(at));
         for (_, NamedNode { name, node, mask }) in self.nodes.iter().enumerate().filter(|(at, _)| !added(at)) {
             let spec = node.spec();
@@ -497,11 +529,13 @@ impl Recipe {
             write_input(&mut text, "mask", mask);
         }
         text.push_str("\n[outputs]\n");
-        for (layer, input) in &self.outputs {
+        let has_classes = !self.expanded_classes.is_empty();
+        for (layer, input) in self.outputs.iter().filter(|(layer, _)| !(has_classes && layer == CLASS)) {
             write_input(&mut text, &toml_key(layer), input);
         }
         self.surfaces.iter().for_each(|surface| surface.write_toml(&mut text));
         self.scatter.iter().for_each(|scatter| scatter.write_toml(&mut text));
+        self.classes.iter().for_each(|class| class.write_toml(&mut text));
         let specs = self.nodes.iter().map(|named| named.node.spec());
         self.parameters.restore(text, |op| specs.clone().find(|spec| spec.op == op))
     }

@@ -51,6 +51,8 @@ pub struct Graph {
     pub order: Vec<NodeId>,
     /// The targets of the outputs, in the recipe's order.
     pub outputs: Vec<Link>,
+    /// Whether each node's result depends on the altitude at which it is sampled.
+    pub in_space: IndexVec<NodeId, bool>,
 }
 
 /// The position of a problem in a recipe.
@@ -106,9 +108,35 @@ impl Graph {
             return Err(resolver.diagnostics);
         }
         let (links, masks): (Vec<Vec<Link>>, Vec<Link>) = linked.into_iter().unzip();
-        let mut graph = Graph { links: links.into(), masks: masks.into(), order: Vec::new(), outputs };
+        let in_space = vec![false; nodes.len()].into();
+        let mut graph = Graph { links: links.into(), masks: masks.into(), order: Vec::new(), outputs, in_space };
         graph.order = graph.sort().map_err(|cycle| vec![graph.cycle_fault(&cycle, recipe)])?;
+        graph.find_altitude(recipe)?;
         Ok(graph)
+    }
+
+    /// Finds the nodes that depend on the altitude. Only fields may read them: what is computed on a grid has one result for all altitudes.
+    fn find_altitude(&mut self, recipe: &Recipe) -> Result<(), Vec<GraphDiagnostic>> {
+        let mut diagnostics = Vec::new();
+        for &id in &self.order {
+            let named = &recipe.nodes()[id.index()];
+            let on_grids = match named.node.op() {
+                Op::Field(field) => field.source_cell(recipe.world.cell, recipe.world.cell).is_some(),
+                Op::Filter(_) | Op::Levelled(_) | Op::Solver(_) => true,
+            };
+            let in_space = |link: &Link| matches!(link, Link::Node(target) if self.in_space[target.node]);
+            for (link, input) in self.links[id].iter().zip(named.node.inputs()) {
+                if let (true, true, Link::Node(source)) = (on_grids, in_space(link), link) {
+                    diagnostics.push(altitude_fault(recipe, id, input.name, source.node));
+                    if diagnostics.len() >= MAX_FAULTS {
+                        return Err(diagnostics);
+                    }
+                }
+            }
+            let from_inputs = !on_grids && self.links[id].iter().any(in_space);
+            self.in_space[id] = named.node.reads_altitude() || from_inputs || in_space(&self.masks[id]);
+        }
+        if diagnostics.is_empty() { Ok(()) } else { Err(diagnostics) }
     }
 
     /// The nodes that a node reads, including its mask.
@@ -216,6 +244,19 @@ impl Graph {
     pub fn find(recipe: &Recipe, text: &str) -> Result<LayerRef, String> {
         named(recipe, text, |name| recipe.nodes().iter().position(|node| node.name == name))
     }
+}
+
+/// An op that is computed on grids reads a node that depends on the altitude.
+fn altitude_fault(recipe: &Recipe, reader: NodeId, key: &str, source: NodeId) -> GraphDiagnostic {
+    let (reading, source) = (&recipe.nodes()[reader.index()], &recipe.nodes()[source.index()]);
+    let message = format!(
+        "node `{}`, `{key}`: `{}` depends on the altitude, and the op `{}` is computed in the plane, for all altitudes at once. Let it read a node without \
+         `altitude` and without noise with `vertical`, and add what depends on the altitude after it, with fields",
+        reading.name,
+        source.name,
+        reading.node.spec().op
+    );
+    GraphDiagnostic { at: At::Node(reader.index(), key.to_string()), message }
 }
 
 /// The target of `node` or `node.layer`, with the node's index from `find`.

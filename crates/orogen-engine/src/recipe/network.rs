@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn presets_without_solvers_have_one() {
+    fn presets_of_levels_have_one() {
         for (name, cell, finest, is_height) in [
             ("endless", 60.0, 0.9375, true),
             ("continent", 60.0, 0.9375, true),
@@ -140,7 +140,7 @@ mod tests {
             assert_eq!(network.layer("flow"), "land.flow");
         }
         for name in presets::all().iter().map(|preset| preset.name) {
-            let known = ["endless", "continent", "island", "archipelago"].contains(&name);
+            let known = ["archipelago", "biomes", "continent", "endless", "island", "tile-continent"].contains(&name);
             assert_eq!(of(name).is_some(), known, "{name}");
         }
     }

@@ -5,7 +5,7 @@ use super::graph::{At, Graph, MAX_FAULTS};
 use super::parameters::{Formula, Parameters, Step, resolve};
 use super::subgraph::{Origin, Shared, UseDiagnostic, Uses, take_in};
 use super::text::{LONGEST_TEXT, Text, text_of, too_long};
-use super::{json, scatter, surface, toml};
+use super::{class, json, scatter, surface, toml};
 use crate::declare::{Input, Shape};
 use crate::expression::formula::place_of;
 use crate::expression::text::Expression;
@@ -218,10 +218,20 @@ impl Walk<'_> {
                 "outputs" => self.outputs(value, &mut recipe),
                 // Read last: conditions depend on whether the world is bounded, and nodes of used recipes follow its own
                 // nodes.
-                "surface" | "scatter" | "use" => {}
+                "surface" | "scatter" | "class" | "use" => {}
                 unknown => {
-                    let known =
-                        ["orogen", "about", "parameters", "world", "nodes", "use", "outputs", "surface", "scatter"];
+                    let known = [
+                        "orogen",
+                        "about",
+                        "parameters",
+                        "world",
+                        "nodes",
+                        "use",
+                        "outputs",
+                        "surface",
+                        "scatter",
+                        "class",
+                    ];
                     let hint = suggestion(unknown, known);
                     self.complain(&key.span, format!("unknown key `{unknown}` in a recipe; {hint}"));
                 }
@@ -233,6 +243,10 @@ impl Walk<'_> {
         };
         let scattered = match top.iter().find(|(key, _)| key.value == "scatter") {
             Some((_, value)) => self.scatter(value, &mut recipe),
+            None => Vec::new(),
+        };
+        let classes = match top.iter().find(|(key, _)| key.value == "class") {
+            Some((key, value)) => self.classes(&key.span, value, &mut recipe),
             None => Vec::new(),
         };
         if let Some(folder) = &origin.folder {
@@ -271,6 +285,9 @@ impl Walk<'_> {
         }
         if self.is_sound() && !scattered.is_empty() {
             self.check_scatter(&recipe, &scattered);
+        }
+        if self.is_sound() && !classes.is_empty() {
+            self.check_classes(&recipe, &classes);
         }
         match self.is_sound() {
             true => {
@@ -321,6 +338,31 @@ impl Walk<'_> {
             recipe.add_scatter(entry);
         });
         read.places
+    }
+
+    /// Reads the terrain classes, and returns their positions.
+    fn classes(&mut self, key: &Span, value: &Spanned<Value>, recipe: &mut Recipe) -> Vec<Span> {
+        let read = class::read::read(value, recipe.world.size.is_some());
+        read.diagnostics.into_iter().for_each(|(span, message)| self.complain(&span, message));
+        let output = |name: &str| recipe.outputs().any(|output| output == name);
+        if output(class::document::CLASS) {
+            self.complain(key, class::expand::BOTH);
+        } else if !output(class::document::HEIGHT) {
+            self.complain(key, class::expand::NO_HEIGHT);
+        }
+        read.classes.into_iter().for_each(|class| {
+            recipe.add_class(class);
+        });
+        read.places
+    }
+
+    /// Problems of classes appear in the nodes that compute them.
+    fn check_classes(&mut self, recipe: &Recipe, places: &[Span]) {
+        let mut whole = recipe.clone();
+        if class::expand::expand(&mut whole).is_ok() {
+            let nodes: Vec<Range<usize>> = whole.expanded_classes().iter().map(|class| class.nodes.clone()).collect();
+            self.check_expanded(&whole, &nodes, |at| format!("class `{}`", recipe.classes()[at].name), places);
+        }
     }
 
     /// Problems of scatter appear in the nodes that compute its densities.

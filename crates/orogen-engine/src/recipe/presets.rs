@@ -41,7 +41,9 @@ static PRESETS: &[Preset] = presets![
     "alpine",
     "archipelago",
     "badlands",
+    "biomes",
     "canyon",
+    "caves",
     "classic",
     "continent",
     "dla-peaks",
@@ -52,6 +54,7 @@ static PRESETS: &[Preset] = presets![
     "island",
     "mesa",
     "rolling",
+    "tile-continent",
     "tile-island",
     "volcano",
 ];

@@ -145,6 +145,7 @@ pub fn json_schema_of(registry: &Registry) -> Json {
             },
             "surface": super::surface::schema::list(),
             "scatter": super::scatter::schema::list(),
+            "class": super::class::schema::list(),
         },
         "definitions": {
             "input": {

@@ -1,11 +1,12 @@
 //! Drainage: flow directions, drainage areas, watersheds and stream order.
 
-use super::terrain::{Terrain, TiledTerrain, cells_of, layer_of, memory};
+use super::terrain::{Terrain, TiledTerrain, cells_of, flow_layer, layer_of, memory};
+use crate::declare::Input;
 use crate::large::areas::Layers;
 use crate::op::{Context, Solution, Solver, Sources};
 use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
-use orogen_grid::hydrology::accumulation::accumulate_with;
+use orogen_grid::hydrology::accumulation::accumulate_rain_with;
 use orogen_grid::hydrology::steepest::Descent;
 use orogen_grid::hydrology::{drainage, fill, strahler, watersheds};
 
@@ -25,13 +26,16 @@ op! {
     /// Drainage of the source by steepest descent (D8): each cell drains to its steepest lower neighbour (O'Callaghan and Mark 1984).
     ///
     /// Every cell drains to the sea or to the world's border. Ties are broken by a hash of the cell's position. Areas are counted in whole
-    /// cells, so they are exact. Time and memory grow with the world, 54 bytes per cell; with less memory available, flow is routed tile by
+    /// cells, so they are exact; with `rain` in 65536ths of a cell. Time and memory grow with the world, 54 bytes per cell; with less memory available, flow is routed tile by
     /// tile on disk (Barnes 2016).
     pub struct Drainage = "drainage", solver, revision 1;
     margin;
     inputs {
         /// The heights.
         source: required,
+        /// Factor of the rain, 0.01 to 100: `flow` is the drainage area with the same discharge where the factor is 1, and `stream` is compared with
+        /// that. Default: 1.
+        rain: optional,
     }
     params {
         /// Flow routing through depressions: carving (`bed`) or filling (`surface`).
@@ -44,7 +48,7 @@ op! {
         cell: f64 = 0.0, unit "m", range 0.0 to 1e6;
     }
     layers {
-        /// Drainage area, including the cell itself.
+        /// Drainage area, including the cell itself; weighted by `rain` if it is given.
         flow: flow, unit "m^2";
         /// Flow direction, clockwise from east (0) to north-east (7); 8 at outlets.
         receiver: label;
@@ -63,12 +67,12 @@ impl Solver for Drainage {
     }
 
     fn rasters(&self) -> usize {
-        6
+        6 + usize::from(self.has_rain())
     }
 
     fn scratch(&self, padded: &Window) -> u64 {
         // In memory there is one raster less than on disk.
-        memory(padded, 30)
+        memory(padded, if self.has_rain() { 40 } else { 30 })
     }
 
     fn scratch_on_disk(&self, padded: &Window) -> u64 {
@@ -96,12 +100,13 @@ impl Solver for Drainage {
         };
         let filled = sources.keep(filled)?;
         surface.finish();
-        let accumulation = accumulate_with(&receivers, &counting)?;
+        let rain = sources.given(1).then(|| sources.whole(1, sources.padded())).transpose()?;
+        let accumulation = accumulate_rain_with(&receivers, rain.as_ref(), &counting)?;
+        drop(rain);
         counting.finish();
         context.progress.check()?;
-        let cell_area = receivers.window().cell * receivers.window().cell;
         let threshold = cells_of(self.stream, receivers.window(), 0);
-        let flow = layer_of(&accumulation.area, |cells| (f64::from(cells) * cell_area) as f32);
+        let flow = flow_layer(&accumulation);
         let [labelling, ordering] = naming.parts([1.0, 1.0]);
         let watersheds = watersheds::watersheds_with(&receivers, &outlets, &accumulation, &labelling)?;
         labelling.finish();
@@ -125,6 +130,10 @@ impl Solver for Drainage {
 }
 
 impl Drainage {
+    fn has_rain(&self) -> bool {
+        self.rain != Input::None
+    }
+
     /// Tile by tile.
     fn solve_on_disk(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
         let land = TiledTerrain::read(sources, self.sea, context)?;
@@ -137,7 +146,14 @@ impl Drainage {
         let threshold = u64::from(cells_of(self.stream, sources.padded(), 0));
         let [mut flow, mut watershed, mut strahler] = [sources.raster()?, sources.raster()?, sources.raster()?];
         let layers = Layers { flow: &mut flow, watershed: &mut watershed, strahler: &mut strahler, threshold };
-        water.areas(&codes, layers)?;
+        let rain = if sources.given(1) {
+            let mut rain = sources.raster()?;
+            sources.each_tile(1, sources.padded(), &mut |tile| rain.put(tile))?;
+            Some(rain)
+        } else {
+            None
+        };
+        water.areas(&codes, rain.as_ref(), layers)?;
         Ok(Solution { layers: vec![flow, codes, watershed, strahler, filled], scalars: Vec::new() })
     }
 }

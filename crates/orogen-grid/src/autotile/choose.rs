@@ -1,29 +1,23 @@
-//! The choice of tiles: one layer of tiles for each class.
+//! The choice of tiles: one layer of tiles for each class, or one layer of wang tiles.
+
+use std::collections::HashMap;
 
 use rayon::prelude::*;
 
 use super::classes::Classes;
 use super::drawable::{Drawable, varied};
 use super::mask::Layout;
+use super::variants::{Group, Variants};
 use crate::random::{STEP, mix64};
 
-/// A tile that may be drawn.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Variant {
-    /// Its number in the tileset.
-    pub tile: u32,
-    /// How often it is drawn, compared with the others for the same mask: above 0.
-    pub weight: f32,
-}
+pub use super::variants::Variant;
 
 /// The tiles of a class.
 #[derive(Debug, Clone, Default)]
 pub struct ClassTiles {
-    // For each of the 256 masks where its variants begin, and how many they are.
-    places: Vec<[u32; 2]>,
-    variants: Vec<Variant>,
-    // The part of the draw below which each variant is chosen.
-    bounds: Vec<f32>,
+    // For each of the 256 masks its tiles.
+    groups: Vec<Group>,
+    variants: Variants,
 }
 
 impl ClassTiles {
@@ -32,46 +26,76 @@ impl ClassTiles {
     pub fn new(layout: Layout, tiles: &[(u8, Variant)]) -> ClassTiles {
         let mut made = ClassTiles::default();
         for mask in 0..=255 {
-            let first = made.variants.len();
             let reduced = layout.reduced(mask);
-            made.variants.extend(tiles.iter().filter(|(of, _)| *of == reduced).map(|(_, variant)| *variant));
-            let added = &made.variants[first..];
-            let all: f32 = added.iter().map(|variant| variant.weight).sum();
-            let mut sum = 0.0;
-            made.bounds.extend(added.iter().map(|variant| {
-                sum += variant.weight;
-                sum / all
-            }));
-            made.places.push([first as u32, added.len() as u32]);
+            let group = tiles.iter().filter(|(of, _)| *of == reduced).map(|(_, variant)| *variant);
+            made.groups.push(made.variants.add(group));
         }
         made
     }
 
-    /// The tile for a mask at the position (x, y) of the plane; `None` if there is no tile.
+    /// The tile for a mask at the position `place` of the plane, column and row; `None` if there is no tile.
     #[inline]
     #[must_use]
-    pub fn choose(&self, mask: u8, [x, y]: [i64; 2], seed: u64) -> Option<u32> {
-        let [first, count] = (*self.places.get(usize::from(mask))?).map(|at| at as usize);
-        if count < 2 {
-            return self.variants[first..].first().filter(|_| count == 1).map(|variant| variant.tile);
-        }
-        let hash = mix64(mix64(seed ^ (x as u64).wrapping_mul(STEP)) ^ (y as u64).wrapping_mul(0xD1B5_4A32_D192_ED03));
-        let draw = (hash >> 40) as f32 / (1u64 << 24) as f32;
-        let bounds = &self.bounds[first..first + count];
-        let nth = bounds.iter().position(|bound| draw < *bound).unwrap_or(count - 1);
-        Some(self.variants[first + nth].tile)
+    pub fn choose(&self, mask: u8, place: [i64; 2], seed: u64) -> Option<u32> {
+        self.variants.choose(*self.groups.get(usize::from(mask))?, place, seed)
     }
+}
+
+/// Wang tiles: each has a class along its sides, at its corners or both, so one tile shows several classes.
+#[derive(Debug, Clone, Default)]
+pub struct WangTiles {
+    groups: HashMap<[u8; 8], Group>,
+    variants: Variants,
+}
+
+impl WangTiles {
+    /// Tiles by their wang id: see [`Layout::wang_id`]. Variants are tiles with the same one.
+    #[must_use]
+    pub fn new(tiles: &[([u8; 8], Variant)]) -> WangTiles {
+        let mut made = WangTiles::default();
+        for (id, _) in tiles {
+            if !made.groups.contains_key(id) {
+                let group = tiles.iter().filter(|(of, _)| of == id).map(|(_, variant)| *variant);
+                let group = made.variants.add(group);
+                made.groups.insert(*id, group);
+            }
+        }
+        made
+    }
+
+    /// The tile with a wang id at the position `place` of the plane, column and row; `None` if there is no tile.
+    #[inline]
+    #[must_use]
+    pub fn choose(&self, id: &[u8; 8], place: [i64; 2], seed: u64) -> Option<u32> {
+        self.variants.choose(*self.groups.get(id)?, place, seed)
+    }
+}
+
+/// The tiles of a tileset.
+#[derive(Debug, Clone)]
+pub enum Tiles {
+    /// Tiles for the layers of the classes, in order; of the first class only the full tile is drawn.
+    Layers(Vec<ClassTiles>),
+    /// Tiles that show all classes of their place, for a single layer.
+    Wang(WangTiles),
 }
 
 /// The number of a place without a tile in a layer of tiles.
 pub const NONE: u32 = u32::MAX;
 
-/// Draws classes with tiles: for each class a layer of tile numbers, row-major, bottom to top; [`NONE`] where a layer has no tile. Tiles below a full
-/// tile are left out. The same tiles at the same positions of the plane for any window, except beside sides at which the plane goes on.
+/// Draws classes with tiles: for each class a layer of tile numbers, row-major, bottom to top, or one layer of wang tiles; [`NONE`] where a layer has no tile. Tiles
+/// below a full tile are left out. The same tiles at the same positions of the plane for any window, except beside sides at which the plane goes on.
 ///
-/// `tiles` are those of all classes; of the first only the full tile is drawn. Masks without a tile are left out: see [`Drawable::gaps`].
+/// Places for which there is no tile are left out: see [`Drawable::gaps`].
 #[must_use]
-pub fn layers(classes: &Classes, drawable: &Drawable, tiles: &[ClassTiles], seed: u64) -> Vec<Vec<u32>> {
+pub fn layers(classes: &Classes, drawable: &Drawable, tiles: &Tiles, seed: u64) -> Vec<Vec<u32>> {
+    match tiles {
+        Tiles::Layers(tiles) => class_layers(classes, drawable, tiles, seed),
+        Tiles::Wang(tiles) => vec![wang_layer(classes, drawable, tiles, seed)],
+    }
+}
+
+fn class_layers(classes: &Classes, drawable: &Drawable, tiles: &[ClassTiles], seed: u64) -> Vec<Vec<u32>> {
     let [width, height] = drawable.tiles(classes);
     let mut layers = vec![vec![NONE; width * height]; tiles.len()];
     let mut rows: Vec<Vec<&mut [u32]>> = (0..height).map(|_| Vec::with_capacity(tiles.len())).collect();
@@ -80,8 +104,9 @@ pub fn layers(classes: &Classes, drawable: &Drawable, tiles: &[ClassTiles], seed
     }
     let seeds: Vec<u64> =
         (0..tiles.len() as u64).map(|class| mix64(seed.wrapping_add(class.wrapping_mul(STEP)))).collect();
+    let layout = drawable.layout();
     rows.par_iter_mut().enumerate().for_each(|(y, layers)| {
-        let varied = varied(classes, y as i64, drawable.layout().is_on_corners());
+        let varied = varied(classes, y as i64, layout.is_on_corners());
         let own = classes.row(y as i64);
         for x in 0..width {
             let (column, row) = (x as i64, y as i64);
@@ -101,7 +126,7 @@ pub fn layers(classes: &Classes, drawable: &Drawable, tiles: &[ClassTiles], seed
             for class in (1..=top).rev() {
                 let mask = drawable.mask(&seen, class);
                 draw(class, mask);
-                is_covered = drawable.is_full(mask);
+                is_covered = layout.is_full(mask);
                 if is_covered {
                     break;
                 }
@@ -112,4 +137,18 @@ pub fn layers(classes: &Classes, drawable: &Drawable, tiles: &[ClassTiles], seed
         }
     });
     layers
+}
+
+fn wang_layer(classes: &Classes, drawable: &Drawable, tiles: &WangTiles, seed: u64) -> Vec<u32> {
+    let [width, height] = drawable.tiles(classes);
+    let mut layer = vec![NONE; width * height];
+    let seed = mix64(seed);
+    layer.par_chunks_mut(width.max(1)).enumerate().for_each(|(y, row)| {
+        for (x, tile) in row.iter_mut().enumerate() {
+            let id = drawable.wang_id(|x, y| classes.at(x, y), x as i64, y as i64);
+            let place = [classes.x + x as i64, classes.y + y as i64];
+            *tile = tiles.choose(&id, place, seed).unwrap_or(NONE);
+        }
+    });
+    layer
 }

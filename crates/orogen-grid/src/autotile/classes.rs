@@ -1,5 +1,13 @@
 //! Terrain classes of the cells of a window.
 
+use crate::random::{STEP, mix64};
+
+/// Random bits of the cell (x, y) of the plane, the same for any window.
+#[inline]
+pub(super) fn hash([x, y]: [i64; 2], seed: u64) -> u64 {
+    mix64(mix64(seed ^ (x as u64).wrapping_mul(STEP)) ^ (y as u64).wrapping_mul(0xD1B5_4A32_D192_ED03))
+}
+
 /// Terrain classes, row-major, with the position of the first in the plane, so that parts of a map are cleaned and drawn as the whole is.
 /// Beyond the sides of the window the nearest cell counts.
 #[derive(Debug, Clone, PartialEq, Eq)]

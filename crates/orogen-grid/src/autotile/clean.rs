@@ -5,23 +5,29 @@
 //! with every change. What is left after these rounds, in the middle of dense noise, is filled: for tiles of cells by blocks of 2 x 2 cells of one
 //! class, which the smallest common tilesets can draw; for tiles on corners by raising all corners of the tile to the class that lacks one.
 //!
+//! Wang tiles usually show some pairs of classes only. There, before all else and between the fills, a class that joins both is put between two that no tile
+//! shows together. Their fills give the corners or cells that a missing tile sees the class that most of them have.
+//!
 //! A round looks at a fixed distance, so a part of a map that is cleaned with its surroundings ([`HALO`]) is the part of the cleaned map.
 
 use std::collections::HashMap;
 
 use rayon::prelude::*;
 
-use super::classes::Classes;
-use super::drawable::{Drawable, Gap};
+use super::classes::{Classes, hash};
+use super::drawable::{Drawable, Gap, MissingTile};
 use crate::error::Result;
 use crate::progress::Progress;
-use crate::random::{STEP, mix64};
+
+/// Rounds in which classes are put between others, for wang tiles.
+const BRIDGE_ROUNDS: usize = 6;
 
 /// Rounds of single changes.
 const ROUNDS: usize = 8;
 
-/// Rounds in which what is left is filled.
-const FILL_ROUNDS: usize = 6;
+/// Rounds in which what is left is filled. In white noise each leaves a quarter of the places without a tile that there were before it, so that no place is
+/// left in millions of cells.
+const FILL_ROUNDS: usize = 14;
 
 /// Proposals within this distance, in cells along either axis, exclude each other: a change affects tiles one cell away, which see one cell
 /// further.
@@ -34,8 +40,11 @@ const ROUND_HALO: usize = APART as usize + 4;
 /// How far a round of fills looks: to a tile that sees the block, and what it sees.
 const FILL_HALO: usize = 4;
 
+/// How far a round looks that puts classes between others: to the tiles that see a cell, and what they see.
+const BRIDGE_HALO: usize = 2;
+
 /// How far the clean-up looks, in cells: a part grown by this much on all sides and cleaned is the part of the whole.
-pub const HALO: usize = ROUNDS * ROUND_HALO + FILL_ROUNDS * FILL_HALO;
+pub const HALO: usize = BRIDGE_ROUNDS * BRIDGE_HALO + ROUNDS * ROUND_HALO + FILL_ROUNDS * FILL_HALO;
 
 /// The best change for a place without a tile.
 #[derive(Debug, Clone, Copy)]
@@ -51,16 +60,21 @@ struct Proposal {
 /// # Errors
 /// If `progress` is cancelled.
 pub fn clean(classes: &mut Classes, drawable: &Drawable, progress: &Progress) -> Result<()> {
-    progress.expect((ROUNDS + FILL_ROUNDS) as f64);
+    progress.expect((BRIDGE_ROUNDS + ROUNDS + FILL_ROUNDS) as f64);
     if drawable.is_complete() {
         progress.finish();
         return Ok(());
     }
     let mut gaps = drawable.gaps(classes);
-    for round in 0..ROUNDS + FILL_ROUNDS {
-        if !gaps.is_empty() {
+    const FIRST: usize = BRIDGE_ROUNDS;
+    const LAST: usize = BRIDGE_ROUNDS + ROUNDS;
+    for round in 0..BRIDGE_ROUNDS + ROUNDS + FILL_ROUNDS {
+        if !gaps.is_empty() && (round >= FIRST || drawable.is_wang()) {
             let changes = match round {
-                0..ROUNDS => changes(classes, drawable, &gaps),
+                0..FIRST => bridges(classes, drawable, &gaps),
+                FIRST..LAST => changes(classes, drawable, &gaps),
+                _ if drawable.is_wang() && round % 2 == 1 => bridges(classes, drawable, &gaps),
+                _ if drawable.is_wang() => majorities(classes, drawable, &gaps),
                 _ if drawable.layout().is_on_corners() => raised(classes, drawable, &gaps),
                 _ => blocks(classes, drawable, &gaps),
             };
@@ -84,8 +98,8 @@ fn gaps_again(classes: &Classes, drawable: &Drawable, gaps: &[Gap], changes: &[(
     places.dedup();
     let at = |x: i64, y: i64| classes.at(x, y);
     let gap = |(y, x): &(i64, i64)| {
-        let (class, mask) = drawable.missing(at, *x, *y)?;
-        Some(Gap { x: *x, y: *y, class, mask })
+        let tile = drawable.missing(at, *x, *y)?;
+        Some(Gap { x: *x, y: *y, tile })
     };
     places.retain(|(y, x)| (0..width).contains(x) && (0..height).contains(y));
     places.par_iter().filter_map(gap).collect()
@@ -184,22 +198,13 @@ fn best_change(
             tried[count] = class;
             count += 1;
             let gained = missing(class) - now;
-            let rank = (gained, own.abs_diff(class), hash(classes.x + x, classes.y + y, class));
+            let rank = (gained, own.abs_diff(class), hash([classes.x + x, classes.y + y], u64::from(class)));
             if gained < 0 && best.is_none_or(|(_, best)| rank < best.rank) {
                 best = Some(((x, y), Proposal { rank, class }));
             }
         }
     }
     best
-}
-
-/// A number that no two cells near each other share, the same for any window.
-fn hash(x: i64, y: i64, class: u8) -> u64 {
-    mix64(
-        mix64((x as u64).wrapping_mul(STEP))
-            ^ (y as u64).wrapping_mul(0xD1B5_4A32_D192_ED03)
-            ^ (u64::from(class) << 56),
-    )
 }
 
 /// The blocks of 2 x 2 cells, at even positions of the plane, that a place without a tile sees: all cells get the most frequent class of the block, or the lowest of
@@ -215,18 +220,58 @@ fn blocks(classes: &Classes, drawable: &Drawable, gaps: &[Gap]) -> Vec<(i64, i64
     let block = |(x, y): (i64, i64)| {
         let cells = [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)];
         let found = cells.map(|(x, y)| classes.at(x, y));
-        let often = |class: u8| found.iter().filter(|other| **other == class).count();
-        let class =
-            found.into_iter().max_by_key(|class| (often(*class), std::cmp::Reverse(*class))).unwrap_or_default();
+        let class = majority(&found);
         cells.map(|(x, y)| (x, y, class))
     };
     corners.into_iter().flat_map(block).collect()
 }
 
+/// The most frequent class, or the lowest of those.
+fn majority(found: &[u8]) -> u8 {
+    let often = |class: u8| found.iter().filter(|other| **other == class).count();
+    found.iter().copied().max_by_key(|class| (often(*class), std::cmp::Reverse(*class))).unwrap_or_default()
+}
+
+/// What missing tiles see gets the most frequent class of it. Of several classes for a cell the lowest counts.
+fn majorities(classes: &Classes, drawable: &Drawable, gaps: &[Gap]) -> Vec<(i64, i64, u8)> {
+    let cells = gaps.iter().flat_map(|gap| {
+        let found: Vec<u8> = seen(drawable, gap.x, gap.y).map(|(x, y)| classes.at(x, y)).collect();
+        let class = majority(&found);
+        seen(drawable, gap.x, gap.y).map(move |(x, y)| (x, y, class))
+    });
+    lowest(cells.collect())
+}
+
+/// Cells beside a lower class that no tile shows with theirs, with a class for them that joins both.
+fn bridges(classes: &Classes, drawable: &Drawable, gaps: &[Gap]) -> Vec<(i64, i64, u8)> {
+    let cells = gaps.iter().flat_map(|gap| {
+        let found: Vec<u8> = seen(drawable, gap.x, gap.y).map(|(x, y)| classes.at(x, y)).collect();
+        let bridge = move |(x, y): (i64, i64)| {
+            let own = classes.at(x, y);
+            let lower = found.iter().filter(|other| **other < own);
+            let between = lower.filter_map(|other| drawable.between(own, *other)).min()?;
+            Some((x, y, between))
+        };
+        seen(drawable, gap.x, gap.y).filter_map(bridge)
+    });
+    lowest(cells.collect())
+}
+
+/// One change for each cell: that to the lowest class.
+fn lowest(mut changes: Vec<(i64, i64, u8)>) -> Vec<(i64, i64, u8)> {
+    changes.sort_unstable();
+    changes.dedup_by_key(|(x, y, _)| (*x, *y));
+    changes
+}
+
 /// The corners of tiles that are missing, raised to the class whose layer lacks them. Layers only grow by this, so that it ends.
 fn raised(classes: &Classes, drawable: &Drawable, gaps: &[Gap]) -> Vec<(i64, i64, u8)> {
     let corners = gaps.iter().flat_map(|gap| {
-        let raised = move |(x, y)| (x, y, classes.at(x, y).max(gap.class));
+        let least = match gap.tile {
+            MissingTile::Layer { class, .. } => class,
+            MissingTile::Wang(_) => 0,
+        };
+        let raised = move |(x, y)| (x, y, classes.at(x, y).max(least));
         seen(drawable, gap.x, gap.y).map(raised)
     });
     // A corner that several tiles raise gets the highest class, which is the last.

@@ -1,16 +1,33 @@
 //! Which cells a tileset can draw.
 
+use std::collections::HashSet;
+
 use super::classes::Classes;
 use super::mask::{CORNERS, Layout, OFFSETS};
 
-/// The tiles of a tileset, as masks: which surroundings of each class can be drawn.
+/// The tiles of a tileset: which surroundings of each class can be drawn.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Drawable {
     layout: Layout,
-    // The bits of a tile that is covered as a whole.
-    full: u8,
-    // For each class from the second on, whether there is a tile for a mask. All 256, so that masks need not be reduced.
-    present: Vec<[bool; 256]>,
+    tiles: Present,
+}
+
+/// Which tiles there are.
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum Present {
+    /// For each class from the second on, whether there is a tile for a mask. All 256, so that masks need not be reduced.
+    Layers(Vec<[bool; 256]>),
+    /// Tiles that show all classes of their place.
+    Wang(Wang),
+}
+
+/// Which wang tiles there are.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Wang {
+    classes: usize,
+    ids: HashSet<[u8; 8]>,
+    /// For each pair of classes the class after the first on the shortest way from the first to the second through classes that some tile shows together.
+    next: Vec<Vec<u8>>,
 }
 
 /// A place that a tileset has no tile for.
@@ -20,14 +37,26 @@ pub struct Gap {
     pub x: i64,
     /// Row of the tile.
     pub y: i64,
-    /// The class whose layer lacks a tile.
-    pub class: u8,
-    /// The reduced mask that it lacks.
-    pub mask: u8,
+    /// The tile that is missing.
+    pub tile: MissingTile,
+}
+
+/// A tile that a tileset lacks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MissingTile {
+    /// The tile of a class for a reduced mask.
+    Layer {
+        /// The class whose layer lacks it.
+        class: u8,
+        /// The reduced mask.
+        mask: u8,
+    },
+    /// The tile with a wang id.
+    Wang([u8; 8]),
 }
 
 impl Drawable {
-    /// Tiles of a layout: for each class from the second on, the masks that there are tiles for. Masks are reduced. The first class covers everything
+    /// Tiles of a layout for layers: for each class from the second on, the masks that there are tiles for. Masks are reduced. The first class covers everything
     /// and needs no other tile than a full one.
     #[must_use]
     pub fn new<'m>(layout: Layout, masks: impl IntoIterator<Item = &'m [u8]>) -> Drawable {
@@ -39,7 +68,27 @@ impl Drawable {
             });
             present
         });
-        Drawable { layout, full: layout.full(), present: present.collect() }
+        Drawable { layout, tiles: Present::Layers(present.collect()) }
+    }
+
+    /// Wang tiles of a layout with this number of classes: the [ids](Layout::wang_id) that there are tiles for.
+    #[must_use]
+    pub fn wang(layout: Layout, classes: usize, ids: impl IntoIterator<Item = [u8; 8]>) -> Drawable {
+        let ids: HashSet<[u8; 8]> = ids.into_iter().collect();
+        let mut meet = vec![vec![false; classes]; classes];
+        for id in &ids {
+            let seen = id.iter().enumerate().filter(|(bit, _)| layout.directions() >> bit & 1 == 1);
+            let seen: Vec<usize> = seen.map(|(_, class)| usize::from(*class)).filter(|of| *of < classes).collect();
+            seen.iter().for_each(|a| seen.iter().for_each(|b| meet[*a][*b] = true));
+        }
+        // From each class, how far the others are; the next class on the way to `to` is the first of those that are nearest to it.
+        let distances: Vec<Vec<usize>> = (0..classes).map(|from| distances(from, &meet)).collect();
+        let next = |from: usize, to: usize| {
+            let nearer = (0..classes).filter(|class| meet[from][*class]);
+            nearer.min_by_key(|class| distances[to][*class]).unwrap_or(to) as u8
+        };
+        let next = (0..classes).map(|from| (0..classes).map(|to| next(from, to)).collect()).collect();
+        Drawable { layout, tiles: Present::Wang(Wang { classes, ids, next }) }
     }
 
     /// All tiles of a layout for this number of classes.
@@ -55,16 +104,42 @@ impl Drawable {
         self.layout
     }
 
-    /// Whether every surroundings of every class can be drawn.
+    /// Whether every surroundings of every class can be drawn. False of wang tiles, of which there are too many to count.
     #[must_use]
     pub fn is_complete(&self) -> bool {
-        self.present.iter().all(|masks| masks.iter().all(|present| *present))
+        match &self.tiles {
+            Present::Layers(layers) => layers.iter().all(|masks| masks.iter().all(|present| *present)),
+            Present::Wang(_) => false,
+        }
     }
 
     /// The number of classes.
     #[must_use]
     pub fn classes(&self) -> usize {
-        self.present.len() + 1
+        match &self.tiles {
+            Present::Layers(layers) => layers.len() + 1,
+            Present::Wang(wang) => wang.classes,
+        }
+    }
+
+    /// Whether the tiles are wang tiles.
+    pub(super) fn is_wang(&self) -> bool {
+        matches!(self.tiles, Present::Wang(_))
+    }
+
+    /// The class to put between two classes beside each other that no tile shows together; `None` if there is such a tile, or no way from one to the other.
+    #[inline]
+    pub(super) fn between(&self, from: u8, to: u8) -> Option<u8> {
+        let Present::Wang(wang) = &self.tiles else { return None };
+        let next = *wang.next.get(usize::from(from))?.get(usize::from(to))?;
+        (next != to && next != from).then_some(next)
+    }
+
+    /// The wang id of the tile in column `x` and row `y`.
+    #[inline]
+    pub(super) fn wang_id(&self, at: impl Fn(i64, i64) -> u8, x: i64, y: i64) -> [u8; 8] {
+        let (seen, own) = self.seen(at, x, y);
+        self.layout.wang_id(seen, own)
     }
 
     /// The classes that a tile sees, clockwise from the north as the bits of masks, and the class of its cell. Tiles on corners have the
@@ -84,23 +159,24 @@ impl Drawable {
         seen.iter().enumerate().fold(0, |mask, (bit, other)| mask | (u8::from(*other >= class) << bit))
     }
 
-    /// The mask that all layers below have, too: nothing of them is seen.
+    /// The tile that is missing: of layers that of the uppermost that lacks one.
     #[inline]
-    pub(super) fn is_full(&self, mask: u8) -> bool {
-        mask & self.full == self.full
-    }
-
-    /// The uppermost layer for which the tile lacks, with its mask.
-    #[inline]
-    pub(super) fn missing(&self, at: impl Fn(i64, i64) -> u8, x: i64, y: i64) -> Option<(u8, u8)> {
+    pub(super) fn missing(&self, at: impl Fn(i64, i64) -> u8, x: i64, y: i64) -> Option<MissingTile> {
+        let layers = match &self.tiles {
+            Present::Layers(layers) => layers,
+            Present::Wang(wang) => {
+                let id = self.wang_id(at, x, y);
+                return (!wang.ids.contains(&id)).then_some(MissingTile::Wang(id));
+            }
+        };
         let (seen, own) = self.seen(at, x, y);
         for class in (1..=own).rev() {
             let mask = self.mask(&seen, class);
-            let present = self.present.get(usize::from(class) - 1).is_some_and(|masks| masks[usize::from(mask)]);
+            let present = layers.get(usize::from(class) - 1).is_some_and(|masks| masks[usize::from(mask)]);
             if !present {
-                return Some((class, self.layout.reduced(mask)));
+                return Some(MissingTile::Layer { class, mask: self.layout.reduced(mask) });
             }
-            if self.is_full(mask) {
+            if self.layout.is_full(mask) {
                 break;
             }
         }
@@ -119,31 +195,35 @@ impl Drawable {
     pub fn gaps(&self, classes: &Classes) -> Vec<Gap> {
         use rayon::prelude::*;
         let [width, height] = self.tiles(classes);
+        // A tile in the middle of one class needs only a full tile, but that may be missing, too.
+        let lacks_full = match &self.tiles {
+            Present::Layers(layers) => layers.iter().any(|masks| !masks[255]),
+            Present::Wang(_) => true,
+        };
         let row = |y: usize| {
             let varied = varied(classes, y as i64, self.layout.is_on_corners());
             let gap = |x: usize| {
                 let (x, y) = (x as i64, y as i64);
-                let (class, mask) = self.missing(|x, y| classes.at(x, y), x, y)?;
-                Some(Gap { x, y, class, mask })
+                let tile = self.missing(|x, y| classes.at(x, y), x, y)?;
+                Some(Gap { x, y, tile })
             };
-            (0..width).filter(|x| varied[*x]).filter_map(gap).collect::<Vec<_>>()
+            (0..width).filter(|x| lacks_full || varied[*x]).filter_map(gap).collect::<Vec<_>>()
         };
-        // A tile in the middle of one class needs only a full tile, but that may be missing, too.
-        let lacks_full = self.present.iter().any(|masks| !masks[255]);
-        match lacks_full {
-            false => (0..height).into_par_iter().flat_map_iter(row).collect(),
-            true => (0..height as i64)
-                .into_par_iter()
-                .flat_map_iter(|y| {
-                    let gap = move |x: i64| {
-                        let (class, mask) = self.missing(|x, y| classes.at(x, y), x, y)?;
-                        Some(Gap { x, y, class, mask })
-                    };
-                    (0..width as i64).filter_map(gap)
-                })
-                .collect(),
-        }
+        (0..height).into_par_iter().flat_map_iter(row).collect()
     }
+}
+
+/// The number of steps from a class to each other through classes that meet; the number of classes where there is no way.
+fn distances(from: usize, meet: &[Vec<bool>]) -> Vec<usize> {
+    let mut distances = vec![meet.len(); meet.len()];
+    distances[from] = 0;
+    let mut reached = vec![from];
+    for step in 1..meet.len() {
+        let is_new = |class: &usize| distances[*class] == meet.len() && reached.iter().any(|of| meet[*of][*class]);
+        reached = (0..meet.len()).filter(is_new).collect();
+        reached.iter().for_each(|class| distances[*class] = step);
+    }
+    distances
 }
 
 /// For each tile of a row, whether it may see two classes. False only where it sees one.

@@ -63,10 +63,12 @@ pub enum Layout {
     /// The tiles of [`Layout::Corner`], shifted by half a tile so that each class is in the middle of a cell: a map of W x H cells has
     /// (W + 1) x (H + 1) tiles.
     Dual,
+    /// Any of the 256 surroundings, for tiles that are chosen by rules: see [`super::rule`].
+    Rule,
 }
 
 impl Layout {
-    /// All layouts.
+    /// The layouts of which complete sets of tiles are drawn.
     pub const ALL: [Layout; 4] = [Layout::Blob, Layout::Edge, Layout::Corner, Layout::Dual];
 
     /// Its name, as on the command line.
@@ -77,7 +79,14 @@ impl Layout {
             Layout::Edge => "edge",
             Layout::Corner => "corner",
             Layout::Dual => "dual",
+            Layout::Rule => "rule",
         }
+    }
+
+    /// The layout of this name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Layout> {
+        Layout::ALL.into_iter().chain([Layout::Rule]).find(|layout| layout.name() == name)
     }
 
     /// What it is for, in a line.
@@ -88,6 +97,7 @@ impl Layout {
             Layout::Edge => "16 tiles a class: by the sides of a cell",
             Layout::Corner => "15 tiles a class: by the classes at the corners of a tile",
             Layout::Dual => "15 tiles a class: shifted by half a tile, so that each cell is where four tiles meet",
+            Layout::Rule => "tiles chosen by rules for the eight cells around",
         }
     }
 
@@ -104,6 +114,7 @@ impl Layout {
         match self {
             Layout::Edge => mask & SIDES,
             Layout::Corner | Layout::Dual => mask & CORNERS,
+            Layout::Rule => mask,
             Layout::Blob => BESIDE.iter().fold(mask, |mask, (corner, sides)| match mask & sides == *sides {
                 true => mask,
                 false => mask & !corner,
@@ -115,6 +126,45 @@ impl Layout {
     #[must_use]
     pub fn full(self) -> u8 {
         self.reduced(255)
+    }
+
+    /// The classes along the sides and at the corners of a tile, clockwise from the north, for the classes around it and its own: those of the directions that the
+    /// layout tells apart, the others 0. On a side of a cell the lower class of the two cells counts, and at a corner the lowest of the four, so neighbors agree.
+    /// Tiles on corners have the class of each corner.
+    #[inline]
+    #[must_use]
+    pub fn wang_id(self, around: [u8; 8], own: u8) -> [u8; 8] {
+        if self.is_on_corners() {
+            return around;
+        }
+        let mut id = [0; 8];
+        for side in [0, 2, 4, 6] {
+            id[side] = own.min(around[side]);
+        }
+        if self != Layout::Edge {
+            for corner in [1, 3, 5, 7] {
+                id[corner] = id[corner - 1].min(id[(corner + 1) % 8]).min(around[corner]);
+            }
+        }
+        id
+    }
+
+    /// The directions that a wang id of the layout has, as a mask.
+    #[must_use]
+    pub fn directions(self) -> u8 {
+        match self {
+            Layout::Edge => SIDES,
+            Layout::Corner | Layout::Dual => CORNERS,
+            Layout::Blob | Layout::Rule => 255,
+        }
+    }
+
+    /// Whether a tile with this mask covers its place as a whole, so that nothing below it is seen.
+    #[inline]
+    #[must_use]
+    pub fn is_full(self, mask: u8) -> bool {
+        let full = self.full();
+        mask & full == full
     }
 
     /// All reduced masks, in ascending order. An empty tile of [`Layout::Corner`] and [`Layout::Dual`], mask 0, is not drawn and is no part

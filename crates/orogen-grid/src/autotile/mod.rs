@@ -22,7 +22,10 @@ pub mod choose;
 pub mod classes;
 pub mod clean;
 pub mod drawable;
+pub mod flip;
 pub mod mask;
+pub mod rule;
+mod variants;
 
 #[cfg(test)]
 mod tests;

@@ -1,6 +1,6 @@
 //! Laws of tilemaps over random classes.
 
-use super::choose::{ClassTiles, NONE, Variant, layers};
+use super::choose::{ClassTiles, NONE, Tiles, Variant, WangTiles, layers};
 use super::classes::Classes;
 use super::clean::{HALO, clean};
 use super::drawable::Drawable;
@@ -67,7 +67,7 @@ fn numbered(layout: Layout, masks: &[u8]) -> ClassTiles {
 fn a_part_is_cleaned_and_drawn_as_the_whole_is() {
     for (name, layout, masks) in sets() {
         let drawable = Drawable::new(layout, (1..4).map(|_| masks.as_slice()));
-        let tiles: Vec<ClassTiles> = (0..4).map(|_| numbered(layout, &masks)).collect();
+        let tiles = Tiles::Layers((0..4).map(|_| numbered(layout, &masks)).collect());
         let whole = random(9, 2, 4, 330);
         let mut cleaned = whole.clone();
         clean(&mut cleaned, &drawable, &Progress::none()).unwrap();
@@ -140,7 +140,7 @@ fn neighbors_match_along_edges_and_corners() {
 
 #[test]
 fn layers_hide_what_is_below_a_full_tile() {
-    let tiles: Vec<ClassTiles> = (0..3).map(|_| numbered(Layout::Blob, &Layout::Blob.masks())).collect();
+    let tiles = Tiles::Layers((0..3).map(|_| numbered(Layout::Blob, &Layout::Blob.masks())).collect());
     let drawable = Drawable::complete(Layout::Blob, 3);
     let map = random(1, 8, 3, 60);
     let drawn = layers(&map, &drawable, &tiles, 0);
@@ -164,4 +164,82 @@ fn variants_are_drawn_by_their_weights() {
         assert!((f64::from(count) / 1e5 - share).abs() < 0.01, "{counts:?}");
     }
     assert_eq!(tiles.choose(7, [0, 0], 11), None);
+}
+
+/// Wang tiles with every way in which two classes of a pair meet.
+fn of_pairs(layout: Layout, pairs: &[[u8; 2]], is_removed: impl Fn(u8) -> bool) -> Vec<[u8; 8]> {
+    let tiles = pairs.iter().flat_map(|[low, high]| {
+        let masks = (0..=255).filter(|mask| mask & !layout.directions() == 0 && !is_removed(*mask));
+        masks.map(move |mask: u8| {
+            let class = |bit: usize| match (layout.directions() >> bit & 1, mask >> bit & 1) {
+                (0, _) => 0,
+                (_, 0) => *low,
+                _ => *high,
+            };
+            std::array::from_fn(class)
+        })
+    });
+    tiles.collect()
+}
+
+/// Sets of wang tiles as they are published: no tile shows three classes, and only some pairs meet.
+fn wang_sets() -> Vec<(&'static str, Drawable)> {
+    let (hub, chain) = ([[0, 1], [0, 2], [0, 3]], [[0, 1], [1, 2], [2, 3]]);
+    let all = |_| false;
+    let is_saddle = |mask: u8| mask == NW | SE || mask == NE | SW;
+    let set = |layout, ids: Vec<[u8; 8]>| Drawable::wang(layout, 4, ids);
+    vec![
+        ("corners, all with the first", set(Layout::Corner, of_pairs(Layout::Corner, &hub, all))),
+        ("corners, a chain", set(Layout::Corner, of_pairs(Layout::Corner, &chain, all))),
+        ("corners, a chain without saddles", set(Layout::Corner, of_pairs(Layout::Corner, &chain, is_saddle))),
+        ("dual, a chain", set(Layout::Dual, of_pairs(Layout::Dual, &chain, all))),
+        ("sides, a chain", set(Layout::Edge, of_pairs(Layout::Edge, &chain, all))),
+        ("sides and corners, a chain", set(Layout::Blob, of_pairs(Layout::Blob, &chain, all))),
+        ("sides and corners, all with the first", set(Layout::Blob, of_pairs(Layout::Blob, &hub, all))),
+    ]
+}
+
+#[test]
+fn wang_tiles_are_cleaned_too() {
+    for (name, drawable) in wang_sets() {
+        for (seed, grain) in [(1, 1), (2, 2), (3, 3), (4, 5), (5, 13)] {
+            let mut map = random(seed, grain, 4, 120);
+            clean(&mut map, &drawable, &Progress::none()).unwrap();
+            assert_eq!(drawable.gaps(&map), [], "{name}, grain {grain}");
+            assert!(map.counts().len() > 1, "{name}, grain {grain}: not all is one class");
+        }
+    }
+}
+
+#[test]
+fn wang_tiles_join_and_parts_are_the_whole() {
+    for (name, drawable) in wang_sets() {
+        let whole = random(9, 4, 4, 340);
+        let mut cleaned = whole.clone();
+        clean(&mut cleaned, &drawable, &Progress::none()).unwrap();
+        let (at, [width, height]) = ([HALO + 5, HALO + 9], [60, 41]);
+        let start = [whole.x + at[0] as i64, whole.y + at[1] as i64];
+        let halo = HALO as i64;
+        let mut part = whole.part([start[0] - halo, start[1] - halo], width + 2 * HALO, height + 2 * HALO);
+        clean(&mut part, &drawable, &Progress::none()).unwrap();
+        assert_eq!(part.part(start, width, height), cleaned.part(start, width, height), "{name}");
+
+        // Each tile shows what the tiles beside it show along their common side, and at its ends.
+        let id = |x: i64, y: i64| drawable.wang_id(|x, y| cleaned.at(x, y), x, y);
+        let [columns, rows] = drawable.tiles(&cleaned).map(|side| side as i64);
+        for (x, y) in (0..rows - 1).flat_map(|y| (0..columns - 1).map(move |x| (x, y))) {
+            let [own, east, south] = [id(x, y), id(x + 1, y), id(x, y + 1)];
+            assert_eq!([own[1], own[2], own[3]], [east[7], east[6], east[5]], "{name}");
+            assert_eq!([own[5], own[4], own[3]], [south[7], south[0], south[1]], "{name}");
+        }
+        let ids: Vec<([u8; 8], Variant)> = (0..rows)
+            .flat_map(|y| (0..columns).map(move |x| (x, y)))
+            .map(|(x, y)| (id(x, y), Variant { tile: 7, weight: 1.0 }))
+            .collect();
+        let drawn = layers(&cleaned, &drawable, &Tiles::Wang(WangTiles::new(&ids[..1])), 1);
+        assert_eq!(drawn.len(), 1);
+        for ((id, _), tile) in ids.iter().zip(&drawn[0]) {
+            assert_eq!(*tile, if *id == ids[0].0 { 7 } else { NONE });
+        }
+    }
 }

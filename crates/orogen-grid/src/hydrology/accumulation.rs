@@ -8,12 +8,24 @@ use crate::grid::Grid;
 use crate::progress::Progress;
 use rayon::prelude::*;
 
+/// The weight of a cell where the factor of the rain is 1. Weights are integers, so that their sums do not depend on the order of addition.
+pub const UNIT_WEIGHT: u32 = 1 << 16;
+
+/// The weight of a cell by its factor of the rain, which is clamped to 0.01 ..= 100; NaN counts as 1.
+#[must_use]
+pub fn weight(rain: f32) -> u32 {
+    let rain = if rain.is_nan() { 1.0 } else { rain.clamp(0.01, 100.0) };
+    (f64::from(rain) * f64::from(UNIT_WEIGHT) + 0.5) as u32
+}
+
 /// The drainage area of each cell, and orders for walking the cells.
 #[derive(Debug, Clone)]
 pub struct Accumulation {
     /// Number of cells that drain through each cell, including itself. Integers, so the result does not depend on the
     /// order of addition.
     pub area: Grid<u32>,
+    /// The same with every cell weighted by the rain, in units of 1 / [`UNIT_WEIGHT`] of a cell; `None` if the rain is the same everywhere.
+    pub discharge: Option<Grid<u64>>,
     /// Cells that receive water from other bands, each after its receiver. Their receivers are included too.
     trunk: Vec<u32>,
     bands: Vec<Band>,
@@ -109,6 +121,58 @@ pub fn accumulate_with(receivers: &Receivers, progress: &Progress) -> error::Res
     accumulate_in(receivers, band_rows(receivers), &steps(progress, checks(receivers.window().len())))
 }
 
+/// [`accumulate_with`], and the sum of the weights of the cells that drain through each cell, if the factors of the rain are given, on the grid of the
+/// receivers: the [discharge](Accumulation::discharge), as a drainage area.
+///
+/// # Errors
+/// If the work is cancelled.
+pub fn accumulate_rain_with(
+    receivers: &Receivers,
+    rain: Option<&Grid>,
+    progress: &Progress,
+) -> error::Result<Accumulation> {
+    let accumulation = accumulate_with(receivers, progress)?;
+    let Some(rain) = rain else { return Ok(accumulation) };
+    progress.check()?;
+    let discharge = discharge(receivers, &accumulation, rain);
+    Ok(Accumulation { discharge: Some(discharge), ..accumulation })
+}
+
+/// The sum of the weights of the cells that drain through each cell.
+fn discharge(receivers: &Receivers, accumulation: &Accumulation, rain: &Grid) -> Grid<u64> {
+    let weights = |cell: usize| u64::from(weight(rain.data().get(cell).copied().unwrap_or(1.0)));
+    let mut sums = Grid::filled(*receivers.window(), 0u64);
+    let mut rest = sums.data_mut();
+    let mut shares = Vec::with_capacity(accumulation.bands.len());
+    for band in &accumulation.bands {
+        let (own, after) = std::mem::take(&mut rest).split_at_mut(band.cells.len());
+        shares.push((band, own));
+        rest = after;
+    }
+    shares.into_par_iter().for_each(|(band, own)| {
+        let start = band.cells.start;
+        own.iter_mut().enumerate().for_each(|(cell, sum)| *sum = weights(start + cell));
+        for cell in band.order.iter().rev().map(|cell| *cell as usize - start) {
+            // A receiver above the band wraps around to beyond the band's end.
+            let receiver = receivers.of(start + cell).wrapping_sub(start);
+            if receiver != cell && receiver < own.len() {
+                own[receiver] += own[cell];
+            }
+        }
+    });
+    if accumulation.trunk.is_empty() {
+        return sums;
+    }
+    let (donors, strides) = (receivers.donors(), strides(receivers.window().width));
+    let sums_of = sums.data_mut();
+    for cell in accumulation.trunk.iter().rev().map(|cell| *cell as usize) {
+        let flows_in = |k: &usize| donors[cell] & 1 << k != 0;
+        sums_of[cell] =
+            weights(cell) + (0..8).filter(flows_in).map(|k| sums_of[neighbour(cell, strides[k])]).sum::<u64>();
+    }
+    sums
+}
+
 /// Rows of a band.
 fn band_rows(receivers: &Receivers) -> usize {
     let threads = rayon::current_num_threads();
@@ -129,7 +193,12 @@ fn accumulate_in<E: Send>(
     let window = *receivers.window();
     let mut area = vec![1u32; window.len()];
     if window.is_empty() {
-        return Ok(Accumulation { area: Grid::filled(window, 1), trunk: Vec::new(), bands: Vec::new() });
+        return Ok(Accumulation {
+            area: Grid::filled(window, 1),
+            discharge: None,
+            trunk: Vec::new(),
+            bands: Vec::new(),
+        });
     }
     let size = rows * window.width;
     let donors = receivers.donors();
@@ -147,7 +216,7 @@ fn accumulate_in<E: Send>(
         area[cell] = 1 + (0..8).filter(flows_in).map(|k| area[neighbour(cell, strides[k])]).sum::<u32>();
     }
     let area = Grid::from_data(window, area).unwrap_or_else(|| Grid::filled(window, 0));
-    Ok(Accumulation { area, trunk: trunk.order, bands })
+    Ok(Accumulation { area, discharge: None, trunk: trunk.order, bands })
 }
 
 /// Cells that receive water from other bands.
@@ -194,6 +263,30 @@ mod tests {
     use crate::hydrology::steepest::Descent;
     use crate::hydrology::{flats, samples, steepest};
 
+    /// The sum of the weights by walking from every cell.
+    fn discharges(receivers: &Receivers, rain: &Grid) -> Vec<u64> {
+        let mut sums = vec![0u64; rain.data().len()];
+        for start in 0..sums.len() {
+            let (own, mut at) = (u64::from(weight(rain.data()[start])), start);
+            loop {
+                sums[at] += own;
+                let next = receivers.of(at);
+                if next == at {
+                    break;
+                }
+                at = next;
+            }
+        }
+        sums
+    }
+
+    #[test]
+    fn weights_are_whole_and_limited() {
+        let factors = [1.0, 0.5, 0.0, -3.0, 0.01, 100.0, 1e9, f32::NAN, f32::INFINITY];
+        let weights = [65_536, 32_768, 655, 655, 655, 6_553_600, 6_553_600, 65_536, 6_553_600];
+        assert_eq!(factors.map(weight), weights);
+    }
+
     #[test]
     fn areas_are_those_of_walking_from_every_cell() {
         for heights in samples::grids() {
@@ -215,6 +308,9 @@ mod tests {
             for rows in [1, 2, 7, 1000] {
                 let Ok(got) = accumulate_in(&receivers, rows, &never);
                 assert_eq!(got.area.data(), expect);
+                let even = discharge(&receivers, &got, &Grid::filled(*heights.window(), 1.0));
+                assert!(even.data().iter().zip(&expect).all(|(sum, cells)| *sum == u64::from(cells * UNIT_WEIGHT)));
+                assert_eq!(discharge(&receivers, &got, &heights).data(), discharges(&receivers, &heights));
                 let mut place = vec![usize::MAX; expect.len()];
                 for (k, c) in got.upstream_first().enumerate() {
                     place[c] = k;

@@ -1,6 +1,6 @@
 //! Landscape evolution: uplift and stream-power erosion in time steps.
 
-use super::accumulation::{Accumulation, accumulate_with};
+use super::accumulation::{Accumulation, accumulate_rain_with};
 use super::creep::{creep_again, creep_stages};
 use super::drainage;
 use super::outlets::Outlets;
@@ -92,7 +92,7 @@ impl Erosion {
         let receivers = drainage::route_carving_with(heights, outlets, descent, &routing)?.receivers;
         routing.finish();
         let [counting, solving] = cutting.parts([1.0, 1.0]);
-        let drained = accumulate_with(&receivers, &counting)?;
+        let drained = accumulate_rain_with(&receivers, ground.rain, &counting)?;
         counting.finish();
         progress.check()?;
         self.law.step_with(heights, &receivers, &drained, ground, years, &solving)?;
@@ -176,7 +176,7 @@ impl<'a> ErosionRun<'a> {
         let receivers = drainage::over_surface_with(heights, &self.outlets, Descent::Steepest, &routing)?;
         routing.finish();
         progress.check()?;
-        let drained = accumulate_with(&receivers, &counting)?;
+        let drained = accumulate_rain_with(&receivers, self.ground.rain, &counting)?;
         counting.finish();
         Ok(drained)
     }
@@ -223,6 +223,36 @@ mod tests {
         };
         let one = run(1);
         assert!(one[0] != heights && one[0] != one[1] && [2, 3, 8].map(run).iter().all(|other| *other == one));
+    }
+
+    #[test]
+    fn rain_weights_areas_and_even_rain_changes_nothing() {
+        let heights = samples::hills(150, 130, 3);
+        let run = |rain: Option<&Grid>, erodibility: f64, threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let mut out = heights.clone();
+            let law = StreamPower { area_exponent: 0.5, erodibility, ..StreamPower::default() };
+            let erosion = Erosion { law, jitter: 1.0, ..erosion() };
+            let substrate = Substrate::default().with_rain(rain);
+            let drained = pool.install(|| erosion.run(&mut out, &substrate, Some(100.0), &Progress::none())).unwrap();
+            (out, drained.area, drained.discharge)
+        };
+        let filled = |factor: f32| Grid::filled(*heights.window(), factor);
+        let (dry, area, none) = run(None, 2e-5, 1);
+        let (even, _, discharge) = run(Some(&filled(1.0)), 2e-5, 3);
+        assert!(dry == even && none.is_none());
+        let unit = u64::from(super::super::accumulation::UNIT_WEIGHT);
+        let discharge = discharge.unwrap();
+        assert!(discharge.data().iter().zip(area.data()).all(|(sum, cells)| *sum == u64::from(*cells) * unit));
+        // Four times the discharge to the power of a half is twice the erodibility.
+        assert_eq!(run(Some(&filled(4.0)), 2e-5, 1).0, run(None, 4e-5, 1).0);
+        let mut uneven = filled(1.0);
+        uneven.data_mut().iter_mut().step_by(3).for_each(|factor| *factor = 0.2);
+        let one = run(Some(&uneven), 2e-5, 1);
+        assert!(
+            one.0 != dry
+                && [2, 3, 8].map(|threads| run(Some(&uneven), 2e-5, threads)).iter().all(|other| *other == one)
+        );
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Strahler order of streams.
 
-use super::accumulation::Accumulation;
+use super::accumulation::{Accumulation, UNIT_WEIGHT};
 use super::receivers::Receivers;
 use crate::checks::{checks, never, now_and_then, steps};
 use crate::error;
@@ -8,7 +8,8 @@ use crate::grid::Grid;
 use crate::progress::Progress;
 
 /// The order of the stream through each cell (Strahler 1957). A source has order 1; the order increases by 1 where at
-/// least two inflows have the highest order. A cell that drains fewer than `threshold` cells is not a stream and has 0.
+/// least two inflows have the highest order. A cell that drains fewer than `threshold` cells, weighted by the rain if the
+/// accumulation has a discharge, is not a stream and has 0.
 ///
 /// Costs O(cells).
 #[must_use]
@@ -37,12 +38,18 @@ fn ordered<E>(
     check: &impl Fn() -> Result<(), E>,
 ) -> Result<Grid<u8>, E> {
     let area = accumulation.area.data();
+    let discharge = accumulation.discharge.as_ref().map(Grid::data);
+    let least_discharge = u64::from(threshold) * u64::from(UNIT_WEIGHT);
+    let is_stream = |cell: usize| match discharge {
+        Some(discharge) => discharge[cell] >= least_discharge,
+        None => area[cell] >= threshold,
+    };
     let mut orders = Grid::filled(*receivers.window(), 0u8);
     // Whether the highest order so far has flowed in more than once.
     let mut met = vec![false; area.len()];
     for (k, cell) in accumulation.upstream_first().enumerate() {
         now_and_then(k, check)?;
-        if area[cell] < threshold {
+        if !is_stream(cell) {
             continue;
         }
         let out = orders.data_mut();

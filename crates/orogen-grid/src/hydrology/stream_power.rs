@@ -17,7 +17,7 @@
 //! receiver than the landslide limit, nor less steep than the minimum slope. Where the path out of a depression leads
 //! uphill, the ground is raised with sediment until water drains.
 
-use super::accumulation::Accumulation;
+use super::accumulation::{Accumulation, UNIT_WEIGHT};
 use super::direction::{DISTANCES, strides};
 use super::points::Points;
 use super::receivers::Receivers;
@@ -78,6 +78,9 @@ pub struct Substrate<'a> {
     pub erodibility_factor: Option<&'a Grid>,
     /// Factor of the uplift; `None` means 1 everywhere.
     pub uplift_factor: Option<&'a Grid>,
+    /// Factor of the rain, 0.01 to 100: a run of the law weights drainage areas by it; `None` means 1 everywhere. A single step takes the
+    /// [discharge](Accumulation::discharge) that it is given instead.
+    pub rain: Option<&'a Grid>,
     /// Positions of the cells, which determine the distances to receivers; `None` means the lattice.
     pub points: Option<&'a Points>,
 }
@@ -95,6 +98,12 @@ impl<'a> Substrate<'a> {
         Substrate { uplift_factor: factor, ..self }
     }
 
+    /// Sets the factor of the rain.
+    #[must_use]
+    pub const fn with_rain(self, factor: Option<&'a Grid>) -> Substrate<'a> {
+        Substrate { rain: factor, ..self }
+    }
+
     /// Sets the positions of the cells.
     #[must_use]
     pub const fn with_points(self, points: Option<&'a Points>) -> Substrate<'a> {
@@ -105,7 +114,7 @@ impl<'a> Substrate<'a> {
 impl StreamPower {
     /// Advances by `years`. Cells without a receiver (outlets) keep their heights.
     ///
-    /// Every other cell is then higher than its receiver, so the result has no depressions and no flats. Costs
+    /// The drainage area is the discharge, if `drained` has one. Every other cell is then higher than its receiver, so the result has no depressions and no flats. Costs
     /// O(cells), on as many threads as `drained` was computed with.
     pub fn step(
         &self,
@@ -189,6 +198,7 @@ impl StreamPower {
 struct Step<'a> {
     codes: &'a [u8],
     area: &'a [u32],
+    discharge: Option<&'a [u64]>,
     erodibility_factor: Option<&'a [f32]>,
     uplift_factor: Option<&'a [f32]>,
     powers: Powers,
@@ -223,6 +233,7 @@ impl<'a> Step<'a> {
         Step {
             codes: receivers.codes(),
             area: drained.area.data(),
+            discharge: drained.discharge.as_ref().map(Grid::data),
             erodibility_factor: ground.erodibility_factor.map(Grid::data),
             uplift_factor: ground.uplift_factor.map(Grid::data),
             powers: Powers::new(law.area_exponent, cell * cell),
@@ -252,7 +263,11 @@ impl<'a> Step<'a> {
         let uplift_factor = self.uplift_factor.map_or(1.0, |factors| f64::from(factors[c]));
         let below = f64::from(receiver);
         let above = f64::from(before) + self.risen * uplift_factor - below;
-        let cut = factor * erodibility_factor * self.powers.of(self.area[c]);
+        let power = match self.discharge {
+            Some(discharge) => self.powers.of_discharge(discharge[c]),
+            None => self.powers.of(self.area[c]),
+        };
+        let cut = factor * erodibility_factor * power;
         let left = if self.slope_exponent == 1.0 {
             above / (1.0 + cut)
         } else {
@@ -308,6 +323,12 @@ impl Powers {
             Some(power) => *power,
             None => libm::pow(f64::from(cells) * self.cell_area, self.exponent),
         }
+    }
+
+    /// The same for a sum of weights: that of whole cells where the factor of the rain is 1.
+    #[inline(never)]
+    fn of_discharge(&self, weight: u64) -> f64 {
+        libm::pow(weight as f64 * (self.cell_area / f64::from(UNIT_WEIGHT)), self.exponent)
     }
 }
 
@@ -384,7 +405,7 @@ mod tests {
             &Substrate {
                 erodibility_factor: Some(&erodibility_factor),
                 uplift_factor: Some(&uplift_factor),
-                points: None,
+                ..Substrate::default()
             },
             100.0,
         );

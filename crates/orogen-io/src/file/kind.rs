@@ -59,7 +59,12 @@ const KINDS: &[Kind] = &[
     },
     Kind { name: "a FlatGeobuf file", extensions: &["fgb"], begins: |head| head.starts_with(b"fgb") },
     Kind { name: "a ZIP archive", extensions: &["zip", "npz", "kmz"], begins: |head| head.starts_with(b"PK\x03\x04") },
-    Kind { name: "a gzip archive", extensions: &["gz", "tgz"], begins: |head| head.starts_with(b"\x1f\x8b\x08") },
+    Kind {
+        name: "a gzip archive, such as a schematic",
+        extensions: &["gz", "tgz", "schem"],
+        begins: |head| head.starts_with(b"\x1f\x8b\x08"),
+    },
+    Kind { name: "a MagicaVoxel model", extensions: &["vox"], begins: |head| head.starts_with(b"VOX \x96\0\0\0") },
     Kind {
         name: "a program",
         extensions: &[],
@@ -70,7 +75,6 @@ const KINDS: &[Kind] = &[
     Kind { name: "a Graphviz graph", extensions: &["dot", "gv"], begins: |head| head.starts_with(b"digraph ") },
     Kind { name: "a Wavefront material", extensions: &["mtl"], begins: |head| head.starts_with(b"newmtl") },
     Kind { name: "a table of points or classes", extensions: &["csv"], begins: is_table },
-    Kind { name: "a Godot resource", extensions: &["tres"], begins: |head| head.starts_with(b"[gd_resource") },
     Kind { name: "an ASCII grid", extensions: &["asc"], begins: |head| starts_with_word(head, "ncols") },
     Kind {
         name: "GeoJSON",
@@ -87,6 +91,14 @@ const SIGNED: &[(&str, &str)] = &[
     ("tmx", "a map of Orogen"),
     ("tmj", "a map of Orogen"),
     ("tsx", "a tileset of Orogen"),
+    // LDtk and Godot remove it, too.
+    ("ldtk", "a project of Orogen"),
+    ("tres", "a resource of Orogen"),
+    ("tscn", "a scene of Orogen"),
+    ("txt", "the settings of a map of Orogen"),
+    ("mt", "a Luanti world of Orogen"),
+    ("lua", "a Luanti mod of Orogen"),
+    ("conf", "a Luanti mod of Orogen"),
 ];
 
 /// Kinds without a signature, which contain only numbers.
@@ -260,7 +272,7 @@ mod tests {
 
     #[test]
     fn every_kind_takes_its_own_place_and_no_other() {
-        let samples: [(&str, &[u8]); 18] = [
+        let samples: [(&str, &[u8]); 19] = [
             ("png", b"\x89PNG\r\n\x1a\n...."),
             ("gif", b"GIF89a...."),
             ("tif", b"II*\0...."),
@@ -273,8 +285,9 @@ mod tests {
             ("gpkg", b"SQLite format 3\0"),
             ("fgb", b"fgb\x03fgb\x00"),
             ("svg", b"<?xml version=\"1.0\"?>\n<svg xmlns=\"\">"),
+            ("schem", b"\x1f\x8b\x08\0"),
+            ("vox", b"VOX \x96\0\0\0MAIN"),
             ("csv", b"x,y,z,kind\n1,2,3,tree\n"),
-            ("tres", b"[gd_resource type=\"MultiMesh\" format=3]\n"),
             ("asc", b"NCOLS 4\nNROWS 4\n"),
             ("geojson", b"{\"type\": \"FeatureCollection\"}"),
             ("json", b"{\"made_by\": \"Orogen 0.1.0\"}"),
@@ -291,7 +304,7 @@ mod tests {
             }
         }
         let notes = b"My notes on the walk to the lake\n";
-        for extension in ["png", "TIF", "r16", "hgt", "json", "toml", "obj", "svg", "stl"] {
+        for extension in ["png", "TIF", "r16", "hgt", "json", "toml", "obj", "svg", "stl", "tres", "ldtk"] {
             assert!(Found::of(notes).differs(Path::new(&format!("a.{extension}")), None).is_some(), "{extension}");
             assert!(Found::of(b"").differs(Path::new(&format!("a.{extension}")), None).is_none(), "{extension}");
         }

@@ -8,7 +8,8 @@ use std::io::{self, Write};
 ///
 /// Fails if `out` fails.
 pub fn write_multimesh(out: &mut dyn Write, transforms: impl ExactSizeIterator<Item = [f32; 12]>) -> io::Result<()> {
-    writeln!(out, "[gd_resource type=\"MultiMesh\" format=3]\n\n[resource]")?;
+    // The comment tells that the file was made by a program: Godot removes it when it saves.
+    writeln!(out, "[gd_resource type=\"MultiMesh\" format=3]\n; made by Orogen\n\n[resource]")?;
     // 1 is TRANSFORM_3D. It must precede the number of instances.
     writeln!(out, "transform_format = 1\ninstance_count = {}", transforms.len())?;
     write!(out, "buffer = PackedFloat32Array(")?;
@@ -34,7 +35,7 @@ mod tests {
         let moved = |east: f32| [1.0, 0.0, 0.0, east, 0.0, 1.0, 0.0, 0.5, 0.0, 0.0, 1.0, -3.0];
         write_multimesh(&mut bytes, [moved(1e7), moved(2.25)].into_iter()).unwrap();
         let text = String::from_utf8(bytes).unwrap();
-        let expect = "[gd_resource type=\"MultiMesh\" format=3]\n\n[resource]\ntransform_format = 1\ninstance_count = 2\n\
+        let expect = "[gd_resource type=\"MultiMesh\" format=3]\n; made by Orogen\n\n[resource]\ntransform_format = 1\ninstance_count = 2\n\
                       buffer = PackedFloat32Array(1, 0, 0, 10000000, 0, 1, 0, 0.5, 0, 0, 1, -3, 1, 0, 0, 2.25, 0, 1, 0, 0.5, 0, 0, 1, -3)\n";
         assert_eq!(text, expect);
     }

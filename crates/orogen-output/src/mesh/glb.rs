@@ -11,6 +11,7 @@ use std::io::{self, Write};
 
 use serde_json::{Map, Value, json};
 
+use super::body::BodyMesh;
 use super::normal_map::tangent;
 use super::objects::{CORNERS, ObjectMesh};
 use super::surface::{Corner, Surface, Wanted, push};
@@ -19,7 +20,7 @@ use orogen_grid::error::{Error, ErrorKind};
 
 /// A surface in one or several levels of detail, the finest first, over the same grid.
 pub struct Model<'a> {
-    /// The levels; at least one.
+    /// The levels; none if there are bodies instead.
     pub levels: &'a [Surface<'a>],
     /// A PNG picture of the grid with one pixel per sample.
     pub texture: Option<&'a [u8]>,
@@ -27,6 +28,8 @@ pub struct Model<'a> {
     pub material: Option<&'a [u8]>,
     /// A PNG normal map per level, where it has one; empty if no level has one.
     pub normal_maps: &'a [Option<Vec<u8>>],
+    /// Bodies that are not made of a grid: a node each, of one material with colors by vertices.
+    pub bodies: &'a [BodyMesh],
     /// Water: a node and a translucent material each.
     pub water: &'a [WaterMesh],
     /// Objects: for each kind a node, a placeholder mesh and instances of it.
@@ -98,6 +101,19 @@ pub fn write(out: &mut dyn Write, model: &Model) -> io::Result<()> {
     for picture in pictures(model) {
         out.write_all(picture)?;
         pad(out, picture.len() as u64)?;
+    }
+    for body in model.bodies {
+        let mut bytes = Vec::new();
+        for ((corner, normal), color) in body.corners.iter().zip(&body.normals).zip(&body.colors) {
+            push(corner, &mut bytes);
+            push(normal, &mut bytes);
+            let [r, g, b] = color.map(|part| light[usize::from(part)]);
+            [r, g, b, u16::MAX].iter().for_each(|part| bytes.extend_from_slice(&part.to_le_bytes()));
+        }
+        out.write_all(&bytes)?;
+        bytes.clear();
+        bytes.extend(body.triangles.iter().flatten().flat_map(|corner| corner.to_le_bytes()));
+        out.write_all(&bytes)?;
     }
     for water in model.water {
         let mut bytes = Vec::new();
@@ -262,6 +278,30 @@ impl Document {
             material["normalTexture"] = json!({"index": base + nth});
             materials.push(material);
         }
+        if !model.bodies.is_empty() {
+            material["name"] = json!("blocks");
+            materials.push(material);
+        }
+        for body in model.bodies {
+            let corners = body.corners.len();
+            let corner_view = view(corners as u64 * 32, json!({"byteStride": 32, "target": ARRAY_BUFFER}));
+            let index_view = view(12 * body.triangles.len() as u64, json!({"target": ELEMENT_ARRAY_BUFFER}));
+            let [least, greatest] = body.bounds().map(|ends| ends.map(f64::from));
+            let attribute = |offset: u32, kind: &str| json!({"bufferView": corner_view, "byteOffset": offset, "componentType": F32, "count": corners, "type": kind});
+            let mut place = attribute(0, "VEC3");
+            place["min"] = json!(least);
+            place["max"] = json!(greatest);
+            let mut color = attribute(24, "VEC4");
+            color["componentType"] = json!(U16);
+            color["normalized"] = json!(true);
+            let first = accessors.len();
+            let count = 3 * body.triangles.len();
+            let indices = json!({"bufferView": index_view, "componentType": U32, "count": count, "type": "SCALAR"});
+            accessors.extend([place, attribute(12, "VEC3"), color, indices]);
+            let attributes = json!({"POSITION": first, "NORMAL": first + 1, "COLOR_0": first + 2});
+            let primitive = json!({"attributes": attributes, "indices": first + 3, "material": materials.len() - 1});
+            meshes.push(json!({"name": body.name, "primitives": [primitive]}));
+        }
         for water in model.water {
             let corners = water.corners.len();
             let stride = 24;
@@ -332,10 +372,12 @@ impl Document {
         }
         let levels = model.levels.len();
         let mut nodes: Vec<Value> = (0..levels).map(|level| node(model, level)).collect();
-        let mut shown = vec![0];
-        for (k, water) in model.water.iter().enumerate() {
+        let mut shown: Vec<usize> = (0..levels.min(1)).collect();
+        let names =
+            model.bodies.iter().map(|body| body.name.as_str()).chain(model.water.iter().map(|water| water.name));
+        for (k, name) in names.enumerate() {
             shown.push(nodes.len());
-            nodes.push(placed(model, json!({"name": water.name, "mesh": levels + k})));
+            nodes.push(placed(model, json!({"name": name, "mesh": levels + k})));
         }
         for node in instanced {
             shown.push(nodes.len());
@@ -359,10 +401,11 @@ impl Document {
     }
 }
 
-/// A node translated to the position of the grid in its world.
+/// A node translated to the position of the grid, or of the bodies, in the world.
 fn placed(model: &Model, mut node: Value) -> Value {
-    let Some(window) = model.levels.first().map(|level| level.grid.window()) else { return node };
-    let [east, south] = [window.east(0), window.south(0)];
+    let of_grid = model.levels.first().map(|level| level.grid.window());
+    let origin = of_grid.map(|window| [window.east(0), window.south(0)]);
+    let Some([east, south]) = origin.or(model.bodies.first().map(|body| body.origin)) else { return node };
     if east != 0.0 || south != 0.0 {
         node["translation"] = json!([east, 0.0, south]);
     }

@@ -15,6 +15,7 @@
 //! ```
 
 pub mod adaptive;
+pub mod body;
 mod border;
 pub mod glb;
 pub(crate) mod normal_map;

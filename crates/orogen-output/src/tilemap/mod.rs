@@ -1,10 +1,14 @@
-//! Tilemaps: terrain classes of a world drawn with tiles, as files for Tiled and for programs.
+//! Tilemaps: terrain classes of a world drawn with tiles, as files for map editors, engines and programs.
 //!
-//! [`job::TilemapJob`] makes a [`job::Tilemap`] from a world; [`art`] draws the tilesets of the program; [`tiled`], [`preview`] and [`table`]
-//! write the map.
+//! [`job::TilemapJob`] makes a [`job::Tilemap`] from a world; [`art`] draws the tilesets of the program, and [`load`] reads those of others; [`tiled`], [`ldtk`],
+//! [`godot`], [`preview`] and [`table`] write the map.
 
 pub mod art;
+pub mod godot;
 pub mod job;
+pub mod ldtk;
+pub mod load;
+pub(crate) mod named;
 pub mod preview;
 pub mod standard;
 pub mod table;

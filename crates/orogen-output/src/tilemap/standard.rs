@@ -14,11 +14,12 @@ use orogen_engine::field::expr::Expr;
 use orogen_engine::field::fbm::Fbm;
 use orogen_engine::filter::distance::Distance;
 use orogen_engine::filter::slope::Slope;
+use orogen_engine::recipe::class::document::CLASS;
 use orogen_engine::world::{HEIGHT, LAKES};
 use orogen_grid::error::{Error, ErrorKind, Result};
 
-/// The output with the number of each sample's class, from 0.
-pub const CLASS: &str = "class";
+/// The names of the classes, by their numbers.
+pub const NAMES: [&str; 6] = ["water", "sand", "grass", "forest", "rock", "snow"];
 
 /// Depth from which a lake is drawn, in metres.
 const DEPTH: f64 = 0.01;

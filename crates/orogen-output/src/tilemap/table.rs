@@ -2,6 +2,7 @@
 
 use std::io::{self, Write};
 
+use orogen_grid::autotile::drawable::MissingTile as Missing;
 use serde::Serialize;
 
 use super::job::Tilemap;
@@ -57,9 +58,14 @@ pub struct MissingTile {
     /// Row of the tile.
     pub y: i64,
     /// The class whose layer has no tile there.
-    pub class: String,
-    /// The missing mask: N 1, NE 2, E 4, SE 8, S 16, SW 32, W 64, NW 128.
-    pub mask: u8,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub class: Option<String>,
+    /// Its missing mask: N 1, NE 2, E 4, SE 8, S 16, SW 32, W 64, NW 128.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mask: Option<u8>,
+    /// The classes along the sides and at the corners of the missing wang tile, clockwise from the north; those that its layout does not tell apart are 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wang: Option<[u8; 8]>,
 }
 
 /// Maximum number of places in a summary.
@@ -91,7 +97,13 @@ impl Tilemap {
             without_tile_before: self.gaps_before,
             changed: self.changed,
             without_tile: (self.gaps.iter().take(MAX_PLACES))
-                .map(|gap| MissingTile { x: gap.x, y: gap.y, class: name(gap.class), mask: gap.mask })
+                .map(|gap| {
+                    let (class, mask, wang) = match gap.tile {
+                        Missing::Layer { class, mask } => (Some(name(class)), Some(mask), None),
+                        Missing::Wang(id) => (None, None, Some(id)),
+                    };
+                    MissingTile { x: gap.x, y: gap.y, class, mask, wang }
+                })
                 .collect(),
         }
     }

@@ -1,7 +1,8 @@
 //! Tilesets: the picture of the tiles, and what each tile is for.
 
-use orogen_grid::autotile::choose::{ClassTiles, Variant};
+use orogen_grid::autotile::choose::{ClassTiles, Tiles, Variant, WangTiles};
 use orogen_grid::autotile::drawable::Drawable;
+use orogen_grid::autotile::flip::{Flip, Flips};
 use orogen_grid::autotile::mask::Layout;
 
 /// A colour in sRGB bytes: red, green, blue, opacity (0 or 255).
@@ -19,15 +20,64 @@ pub struct Terrain {
 /// A tile.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tile {
-    /// The class whose layer it is for.
-    pub class: u8,
-    /// The reduced mask of where the layer goes on: see [`orogen_grid::autotile::mask`].
-    pub mask: u8,
-    /// How often it is drawn, compared with the other tiles for the same class and mask.
+    /// Its number in the picture.
+    pub picture: u32,
+    /// How it is turned.
+    pub flip: Flip,
+    /// Where it fits.
+    pub fit: Fit,
+    /// How often it is drawn, compared with the other tiles that fit the same places.
     pub weight: f32,
 }
 
-/// A tileset. Tile n is in column n % `columns` and row n / `columns` of the picture.
+/// The surroundings that a tile is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Fit {
+    /// A tile of the layer of a class.
+    Layer {
+        /// The class.
+        class: u8,
+        /// The reduced mask of where the layer goes on: see [`orogen_grid::autotile::mask`].
+        mask: u8,
+    },
+    /// A tile that shows all classes of its place, by its [wang id](Layout::wang_id).
+    Wang([u8; 8]),
+}
+
+impl Fit {
+    /// What the tile fits when it is turned.
+    #[must_use]
+    pub fn turned(self, flip: Flip) -> Fit {
+        match self {
+            Fit::Layer { class, mask } => Fit::Layer { class, mask: flip.mask(mask) },
+            Fit::Wang(id) => Fit::Wang(flip.turned(id)),
+        }
+    }
+}
+
+/// The bit of a flip in the number of a tile, as in the maps of Tiled.
+const DIAGONAL: u32 = 1 << 29;
+const UPSIDE_DOWN: u32 = 1 << 30;
+const MIRRORED: u32 = 1 << 31;
+
+/// Tiles of a picture from this number on have no number in a map.
+pub const MAX_TILES: usize = DIAGONAL as usize;
+
+/// The number of a tile in a map: that in the picture, with the flips in the upper bits.
+#[must_use]
+pub fn number(picture: u32, flip: Flip) -> u32 {
+    let bit = |is_set: bool, bit: u32| if is_set { bit } else { 0 };
+    picture | bit(flip.diagonal, DIAGONAL) | bit(flip.y, UPSIDE_DOWN) | bit(flip.x, MIRRORED)
+}
+
+/// The number in the picture and the flips of a tile of a map.
+#[must_use]
+pub fn parts(number: u32) -> (u32, Flip) {
+    let has = |bit: u32| number & bit != 0;
+    (number & (DIAGONAL - 1), Flip { diagonal: has(DIAGONAL), x: has(MIRRORED), y: has(UPSIDE_DOWN) })
+}
+
+/// A tileset. Tile n of the picture is in column n % `columns` and row n / `columns`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tileset {
     /// Its name.
@@ -36,10 +86,18 @@ pub struct Tileset {
     pub size: usize,
     /// How its tiles follow their surroundings.
     pub layout: Layout,
+    /// Whether its tiles show all classes of their place, so that a map has one layer.
+    pub is_wang: bool,
     /// The terrain classes, bottom to top.
     pub terrains: Vec<Terrain>,
-    /// The tiles.
+    /// The tiles, each as often as there are places that it fits.
     pub tiles: Vec<Tile>,
+    /// Which flips and turns are allowed. [`Tileset::tiles`] holds them.
+    pub flips: Flips,
+    /// Whether turned tiles are drawn only where no other tile fits.
+    pub prefers_unturned: bool,
+    /// Number of tiles in the picture.
+    pub count: usize,
     /// Tiles per row of the picture.
     pub columns: usize,
     /// The pixels of the picture, row-major.
@@ -56,34 +114,89 @@ impl Tileset {
     /// Height of the picture in pixels.
     #[must_use]
     pub fn height(&self) -> usize {
-        self.tiles.len().div_ceil(self.columns.max(1)) * self.size
+        self.count.div_ceil(self.columns.max(1)) * self.size
     }
 
-    /// A row of pixels of a tile.
+    /// The pixel of a tile of a map, by its [number].
+    #[inline]
+    #[must_use]
+    pub fn pixel(&self, tile: u32, at: [usize; 2]) -> Rgba {
+        let (picture, flip) = parts(tile);
+        let [x, y] = flip.pixel(at, self.size);
+        self.row(picture as usize, y)[x]
+    }
+
+    /// A row of pixels of a tile of the picture.
     #[must_use]
     pub fn row(&self, tile: usize, y: usize) -> &[Rgba] {
         let start = ((tile / self.columns) * self.size + y) * self.width() + (tile % self.columns) * self.size;
         &self.pixels[start..start + self.size]
     }
 
-    /// The tiles of each class, for [`orogen_grid::autotile::choose::layers`].
+    /// Its tiles, for [`orogen_grid::autotile::choose::layers`].
     #[must_use]
-    pub fn class_tiles(&self) -> Vec<ClassTiles> {
+    pub fn choices(&self) -> Tiles {
+        let variant = |tile: &Tile| Variant { tile: number(tile.picture, tile.flip), weight: tile.weight };
+        if self.is_wang {
+            let tiles = self.tiles.iter().filter_map(|tile| match tile.fit {
+                Fit::Wang(id) => Some((id, variant(tile))),
+                Fit::Layer { .. } => None,
+            });
+            return Tiles::Wang(WangTiles::new(&tiles.collect::<Vec<_>>()));
+        }
         let of = |class: usize| {
-            let tiles = self.tiles.iter().enumerate().filter(|(_, tile)| usize::from(tile.class) == class);
-            let variants = tiles.map(|(n, tile)| (tile.mask, Variant { tile: n as u32, weight: tile.weight }));
-            ClassTiles::new(self.layout, &variants.collect::<Vec<_>>())
+            let tiles = self.tiles.iter().filter_map(|tile| match tile.fit {
+                Fit::Layer { class: of, mask } if usize::from(of) == class => Some((mask, variant(tile))),
+                _ => None,
+            });
+            ClassTiles::new(self.layout, &tiles.collect::<Vec<_>>())
         };
-        (0..self.terrains.len()).map(of).collect()
+        Tiles::Layers((0..self.terrains.len()).map(of).collect())
     }
 
     /// What it can draw.
     #[must_use]
     pub fn drawable(&self) -> Drawable {
-        let of = |class: usize| -> Vec<u8> {
-            self.tiles.iter().filter(|tile| usize::from(tile.class) == class).map(|tile| tile.mask).collect()
-        };
-        let masks: Vec<Vec<u8>> = (1..self.terrains.len()).map(of).collect();
-        Drawable::new(self.layout, masks.iter().map(Vec::as_slice))
+        if self.is_wang {
+            let ids = self.tiles.iter().filter_map(|tile| match tile.fit {
+                Fit::Wang(id) => Some(id),
+                Fit::Layer { .. } => None,
+            });
+            return Drawable::wang(self.layout, self.terrains.len(), ids);
+        }
+        let mut masks = vec![Vec::new(); self.terrains.len()];
+        for tile in &self.tiles {
+            if let Fit::Layer { class, mask } = tile.fit {
+                masks[usize::from(class)].push(mask);
+            }
+        }
+        Drawable::new(self.layout, masks.iter().skip(1).map(Vec::as_slice))
+    }
+
+    /// Adds the turned tiles that `flips` allows. If `prefers_unturned`, only those that fit where no other tile does.
+    #[must_use]
+    pub fn with_flips(mut self, flips: Flips, prefers_unturned: bool) -> Tileset {
+        let own = self.tiles.clone();
+        for tile in &own {
+            for flip in flips.all().into_iter().filter(|flip| *flip != Flip::NONE) {
+                let fit = match tile.fit.turned(flip) {
+                    Fit::Layer { class, mask } => Fit::Layer { class, mask: self.layout.reduced(mask) },
+                    fit => fit,
+                };
+                if !(prefers_unturned && own.iter().any(|other| other.fit == fit)) {
+                    self.tiles.push(Tile { flip, fit, ..*tile });
+                }
+            }
+        }
+        Tileset { flips, prefers_unturned, ..self }
+    }
+
+    /// The names of the layers of a map, bottom to top.
+    #[must_use]
+    pub fn layer_names(&self) -> Vec<&str> {
+        match self.is_wang {
+            true => vec!["terrain"],
+            false => self.terrains.iter().map(|terrain| terrain.name.as_str()).collect(),
+        }
     }
 }

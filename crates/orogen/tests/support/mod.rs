@@ -48,6 +48,8 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
             ("continents", "cell") => Value::Number(1.7 * world.cell),
             ("continents", "halvings") => Value::Integer(3),
             ("continents", "size") => Value::Number(0.01),
+            // Fewer than the candidates.
+            ("select-share", "share") => Value::Number(0.05),
             ("blur", "radius") => Value::Number(3.7 * world.cell),
             ("bake", "cell") => Value::Number(2.5 * world.cell),
             ("resample", "cell") => Value::Number(1.7 * world.cell),

@@ -1,4 +1,4 @@
-//! Conditions on height, slope, curvature, flow, noise and layers, for surfaces and for scattered objects.
+//! Conditions on height, slope, curvature, flow, noise and layers, for surfaces, scattered objects and terrain classes.
 //!
 //! - [`document`]: conditions in memory, and as TOML
 //! - `read`: conversion of keys to conditions, with diagnostics

@@ -6,6 +6,8 @@ use super::document::{Condition, MAX_ALTERNATIVES, Noise, Quantity};
 use crate::declare::Input;
 use crate::value::{Span, Spanned, Value};
 use orogen_grid::words::suggestion;
+use orogen_io::palette::color::Rgb;
+use orogen_io::palette::names;
 
 /// A key with its value.
 pub type Entry = (Spanned<String>, Spanned<Value>);
@@ -245,6 +247,20 @@ impl ValueReader {
     /// A number from 0 to 1.
     pub fn share(&mut self, key: &str, value: &Spanned<Value>) -> f64 {
         self.number(key, value, [0.0, 1.0]).unwrap_or(1.0)
+    }
+
+    /// A color: `#rrggbb`, `#rgb` or a name.
+    pub fn color(&mut self, value: &Spanned<Value>) -> Option<Rgb> {
+        let color = match &value.value {
+            Value::Text(text) => names::hexadecimal(text).or_else(|| names::named(text)),
+            _ => None,
+        };
+        if color.is_none() {
+            let message =
+                format!("a color must be \"#rrggbb\" or a name such as \"khaki\", not {}", value.value.describe());
+            self.diagnostic(&value.span, message);
+        }
+        color
     }
 
     /// A node, a layer or a number.

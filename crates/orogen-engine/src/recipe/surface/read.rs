@@ -5,8 +5,6 @@ use crate::recipe::condition::read::{CONDITIONS, Entry, ValueReader};
 use crate::value::{Span, Spanned, Value};
 use orogen_grid::words::suggestion;
 use orogen_io::dem::file_ref::FileRef;
-use orogen_io::palette::color::Rgb;
-use orogen_io::palette::names;
 
 /// The other keys of a surface.
 pub const KEYS: [&str; 11] =
@@ -98,7 +96,7 @@ impl Reader {
                         format!("`{}` applies to a `gradient` or a `picture`, not to a `color`", key.value),
                     );
                 }
-                Coloring::Plain(self.color(value).unwrap_or([128; 3]))
+                Coloring::Plain(self.values.color(value).unwrap_or([128; 3]))
             }
             [(key, value)] if key.value == "picture" => match &value.value {
                 Value::Text(path) if !path.is_empty() => Coloring::Picture(FileRef::from(path.as_str()), along),
@@ -112,7 +110,7 @@ impl Reader {
             },
             [(_, value)] => match &value.value {
                 Value::List(items) if (2..=MAX_COLORS).contains(&items.len()) => {
-                    Coloring::Gradient(items.iter().filter_map(|item| self.color(item)).collect(), along)
+                    Coloring::Gradient(items.iter().filter_map(|item| self.values.color(item)).collect(), along)
                 }
                 other => {
                     let message =
@@ -136,19 +134,6 @@ impl Reader {
                 Coloring::Plain([128; 3])
             }
         }
-    }
-
-    fn color(&mut self, value: &Spanned<Value>) -> Option<Rgb> {
-        let color = match &value.value {
-            Value::Text(text) => names::hexadecimal(text).or_else(|| names::named(text)),
-            _ => None,
-        };
-        if color.is_none() {
-            let message =
-                format!("a color must be \"#rrggbb\" or a name such as \"khaki\", not {}", value.value.describe());
-            self.values.diagnostic(&value.span, message);
-        }
-        color
     }
 
     fn along(&mut self, entries: &[Entry]) -> Along {

@@ -81,6 +81,7 @@ fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::
                 texture,
                 material,
                 normal_maps: &normal_maps,
+                bodies: &[],
                 water: &water,
                 objects: &objects,
                 extras,

@@ -1,9 +1,10 @@
 //! The tilesets of the program, drawn at any layout.
 
+use orogen_grid::autotile::flip::{Flip, Flips};
 use orogen_grid::autotile::mask::Layout;
 
 use super::ground::{GROUNDS, Texture, VARIANTS};
-use crate::tilemap::tileset::{Rgba, Terrain, Tile, Tileset};
+use crate::tilemap::tileset::{Fit, Rgba, Terrain, Tile, Tileset};
 
 /// A tileset that the program draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,17 +38,20 @@ impl Set {
     pub fn draw(&self, layout: Layout) -> Tileset {
         let size = self.size;
         let mut tiles = Vec::new();
+        let mut add = |fit: Fit, weight: f32| {
+            tiles.push(Tile { picture: tiles.len() as u32, flip: Flip::NONE, fit, weight });
+        };
         let mut drawn: Vec<Vec<Rgba>> = Vec::new();
         for (class, ground) in GROUNDS.iter().enumerate() {
             let textures: Vec<Texture> =
                 (0..VARIANTS.len()).map(|variant| Texture::new(ground, size, variant)).collect();
             for (texture, weight) in textures.iter().zip(VARIANTS) {
-                tiles.push(Tile { class: class as u8, mask: layout.full(), weight });
+                add(Fit::Layer { class: class as u8, mask: layout.full() }, weight);
                 drawn.push(pixels(size, |x, y| Some(texture.at(x, y))));
             }
             let borders = if class == 0 { Vec::new() } else { layout.masks() };
             for mask in borders.into_iter().filter(|mask| *mask != layout.full()) {
-                tiles.push(Tile { class: class as u8, mask, weight: 1.0 });
+                add(Fit::Layer { class: class as u8, mask }, 1.0);
                 drawn.push(pixels(size, |x, y| {
                     let scale = 16.0 / size as f64;
                     let middle = [x, y].map(|at| (at as f64 + 0.5) * scale);
@@ -56,7 +60,7 @@ impl Set {
                 }));
             }
         }
-        let rows = tiles.len().div_ceil(COLUMNS);
+        let rows = drawn.len().div_ceil(COLUMNS);
         let mut picture = vec![[0; 4]; rows * COLUMNS * size * size];
         for (n, tile) in drawn.iter().enumerate() {
             for (y, row) in tile.chunks(size).enumerate() {
@@ -69,8 +73,12 @@ impl Set {
             name: self.name.into(),
             size,
             layout,
+            is_wang: false,
             terrains: GROUNDS.iter().map(terrain).collect(),
+            count: tiles.len(),
             tiles,
+            flips: Flips::default(),
+            prefers_unturned: false,
             columns: COLUMNS,
             pixels: picture,
         }

@@ -1,0 +1,84 @@
+//! `orogen blocks`.
+
+use crate::harness::{Folder, png};
+
+/// A world of 60 x 40 blocks with sea, beach, hills and rock.
+const HILLS: &str = r#"
+orogen = 1
+world = { size = [60, 40], cell = 1 }
+outputs = { height = "height" }
+nodes.noise = { op = "fbm", wavelength = 30, seed = 4 }
+nodes.height = { op = "expr", expr = "noise * 24 + 2" }
+"#;
+
+/// The size and the number of voxels of the first model of a .vox file.
+fn vox(file: &[u8]) -> ([u32; 3], u32) {
+    let four = |at: usize| u32::from_le_bytes(file[at..at + 4].try_into().unwrap());
+    assert_eq!((&file[20..24], &file[44..48]), (&b"SIZE"[..], &b"XYZI"[..]));
+    ([four(32), four(36), four(40)], four(56))
+}
+
+#[test]
+fn a_small_world_has_a_block_for_each_cell() {
+    let folder = Folder::new();
+    folder.write("hills.toml", HILLS);
+    let outcome = folder.good(&["blocks", "hills.toml"]);
+    assert!(outcome.text().contains("60 x 40 columns") && outcome.text().contains("1 m a block"), "{}", outcome.text());
+    let file = folder.read("blocks.vox");
+    let ([east, north, up], voxels) = vox(&file);
+    assert_eq!([east, north], [60, 40]);
+    assert!(up > 20 && voxels > 60 * 40 * 16, "{up} {voxels}");
+    // More levels below the ground are more blocks, and the same ones above.
+    folder.good(&["blocks", "hills.toml", "--below", "20", "-o", "deep.vox", "-q"]);
+    let (size, more) = vox(&folder.read("deep.vox"));
+    assert_eq!((size, more), ([60, 40, up + 4], voxels + 4 * 60 * 40));
+    let picture = folder.good(&["blocks", "hills.toml", "--format", "png", "-o", "-"]);
+    assert_eq!(png(&picture.out).width, 100 * 8);
+}
+
+#[test]
+fn every_format_tells_what_it_made_and_another_seed_is_another_map() {
+    let folder = Folder::new();
+    folder.write("hills.toml", HILLS);
+    for out in ["b.schem", "b.vox", "b.png", "b"] {
+        let text = folder.good(&["blocks", "hills.toml", "-o", out]).text().to_string();
+        assert!(text.contains("% stone") && text.contains("% water") && text.contains("% sand,"), "{text}");
+    }
+    assert!(folder.good(&["blocks", "hills.toml", "-o", "b.glb"]).text().contains(" triangles in 1 part"));
+    folder.good(&["blocks", "hills.toml", "--seed", "1..2", "-o", "b.schem", "-q"]);
+    assert_ne!(folder.read("b-1.schem"), folder.read("b-2.schem"));
+}
+
+#[test]
+fn a_world_that_was_opened_is_kept() {
+    let folder = Folder::new();
+    folder.write("hills.toml", HILLS);
+    folder.good(&["blocks", "hills.toml", "-o", "world", "-q"]);
+    folder.good(&["blocks", "hills.toml", "-o", "world", "-q"]);
+    folder.write("world/env_meta.txt", "game_time = 12\n");
+    folder.bad(&["blocks", "hills.toml", "-o", "world", "-q"], 1, "Luanti has opened this world");
+    folder.good(&["blocks", "hills.toml", "-o", "world", "-q", "--force"]);
+}
+
+#[test]
+fn what_cannot_be_made_is_explained() {
+    let folder = Folder::new();
+    folder.write("hills.toml", HILLS);
+    folder.bad(&["blocks", "hills.toml", "-o", "b.obj"], 2, "blocks are a .vox, .schem, .glb or .png, or a folder");
+    folder.bad(&["blocks", "hills.toml", "--format", "vox", "-o", "b.schem"], 2, "--format does not match");
+    folder.bad(&["blocks", "hills.toml", "--format", "luanti", "-o", "-"], 2, "name a folder");
+    folder.bad(&["blocks", "hills.toml", "--below", "9999", "-o", "b.vox"], 2, "--below");
+    folder.write("flat.toml", HILLS.replace("height = \"height\"", "class = \"height\""));
+    folder.bad(&["blocks", "flat.toml", "-o", "b.vox"], 1, "no output `height`");
+    folder.write("class.toml", HILLS.replace("height = \"height\" }", "height = \"height\", class = \"height\" }"));
+    folder.bad(&["blocks", "class.toml", "-o", "b.vox"], 2, "it must be one of 0 water, 1 sand");
+    folder.write("high.toml", HILLS.replace("* 24", "* 240000"));
+    folder.bad(
+        &["blocks", "high.toml", "-o", "b.schem", "--memory", "20GiB"],
+        2,
+        "at most 65535 blocks along each side",
+    );
+    folder.bad(&["blocks", "high.toml", "-o", "b", "--memory", "20GiB"], 2, "a world of Luanti ends 30911 blocks");
+    folder.bad(&["blocks", "high.toml", "-o", "b.png", "--memory", "20GiB"], 2, "at most 8192 pixels along a side");
+    assert_eq!(folder.names("").iter().filter(|name| !name.ends_with(".toml")).count(), 0);
+}

@@ -1,0 +1,23 @@
+//! The altitude at which a layer is sampled.
+
+use crate::op::{Field, Inputs, WorldParams};
+use orogen_noise::Points;
+
+op! {
+    /// The altitude at which the layer is sampled, in metres: 0 in the plane, where maps, meshes and points are made.
+    ///
+    /// With it a layer is a density in space: `height - altitude` is positive in the ground and negative in the air, and noise with `vertical`
+    /// makes caves and overhangs. Programs sample such a layer at any altitude (`World::volume`). Filters, levelled ops and solvers cannot read
+    /// it.
+    pub struct Altitude = "altitude", field, revision 1;
+}
+
+impl Field for Altitude {
+    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
+        out.fill(inputs.altitude() as f32);
+    }
+
+    fn reads_altitude(&self) -> bool {
+        true
+    }
+}

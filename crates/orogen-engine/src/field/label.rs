@@ -1,0 +1,32 @@
+//! Whole numbers as labels.
+
+use crate::op::{Field, Inputs, WorldParams};
+use orogen_noise::Points;
+
+op! {
+    /// The source as labels: rounded to whole numbers, and read at the nearest sample instead of interpolated.
+    ///
+    /// Numbers of classes that other ops compute, such as `expr`, are exported as they are once they are labels: a .png has the number in each pixel, and between stored samples
+    /// there are no classes that the source does not have.
+    pub struct Label = "label", field, revision 1;
+    inputs {
+        /// The numbers.
+        source: required,
+    }
+    layers {
+        /// The rounded source; halves are rounded away from zero.
+        label: label;
+    }
+}
+
+impl Field for Label {
+    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
+        for (sample, source) in out.iter_mut().zip(inputs.required(0)) {
+            *sample = source.round();
+        }
+    }
+
+    fn cost(&self) -> f64 {
+        0.5
+    }
+}

@@ -1,0 +1,88 @@
+//! Named binary tags (NBT) of Minecraft: Java Edition, as they are written to files: big-endian, strings in modified UTF-8.
+//!
+//! Only the tags that other formats here need. Texts are ASCII, which modified UTF-8 writes as it is.
+
+use std::io::{self, Write};
+
+/// The numbers of the types of tags.
+const END: u8 = 0;
+const SHORT: u8 = 2;
+const INT: u8 = 3;
+const BYTE_ARRAY: u8 = 7;
+const STRING: u8 = 8;
+const LIST: u8 = 9;
+const COMPOUND: u8 = 10;
+const INT_ARRAY: u8 = 11;
+
+/// Writes the tags of compounds, one after the other.
+pub struct Tags<'a> {
+    out: &'a mut dyn Write,
+}
+
+impl<'a> Tags<'a> {
+    /// Tags to `out`.
+    pub fn new(out: &'a mut dyn Write) -> Tags<'a> {
+        Tags { out }
+    }
+
+    fn head(&mut self, kind: u8, name: &str) -> io::Result<()> {
+        self.out.write_all(&[kind])?;
+        self.text(name)
+    }
+
+    fn text(&mut self, text: &str) -> io::Result<()> {
+        let length =
+            u16::try_from(text.len()).map_err(|_| io::Error::other("a text of NBT has more than 65535 bytes"))?;
+        self.out.write_all(&length.to_be_bytes())?;
+        self.out.write_all(text.as_bytes())
+    }
+
+    /// Begins a compound; its tags follow, until [`Tags::end`].
+    pub fn compound(&mut self, name: &str) -> io::Result<()> {
+        self.head(COMPOUND, name)
+    }
+
+    /// Ends a compound.
+    pub fn end(&mut self) -> io::Result<()> {
+        self.out.write_all(&[END])
+    }
+
+    /// A number of 16 bits; formats with unsigned ones use the same bits.
+    pub fn short(&mut self, name: &str, number: u16) -> io::Result<()> {
+        self.head(SHORT, name)?;
+        self.out.write_all(&number.to_be_bytes())
+    }
+
+    /// A number of 32 bits.
+    pub fn int(&mut self, name: &str, number: i32) -> io::Result<()> {
+        self.head(INT, name)?;
+        self.out.write_all(&number.to_be_bytes())
+    }
+
+    /// Numbers of 32 bits.
+    pub fn ints(&mut self, name: &str, numbers: &[i32]) -> io::Result<()> {
+        self.head(INT_ARRAY, name)?;
+        self.out.write_all(&(numbers.len() as i32).to_be_bytes())?;
+        numbers.iter().try_for_each(|number| self.out.write_all(&number.to_be_bytes()))
+    }
+
+    /// A text of ASCII characters.
+    pub fn string(&mut self, name: &str, text: &str) -> io::Result<()> {
+        self.head(STRING, name)?;
+        self.text(text)
+    }
+
+    /// A list of compounds without any.
+    pub fn empty_list(&mut self, name: &str) -> io::Result<()> {
+        self.head(LIST, name)?;
+        self.out.write_all(&[COMPOUND, 0, 0, 0, 0])
+    }
+
+    /// Bytes.
+    pub fn bytes(&mut self, name: &str, bytes: &[u8]) -> io::Result<()> {
+        let length = i32::try_from(bytes.len()).map_err(|_| io::Error::other("an array of NBT has more than 2 GiB"))?;
+        self.head(BYTE_ARRAY, name)?;
+        self.out.write_all(&length.to_be_bytes())?;
+        self.out.write_all(bytes)
+    }
+}

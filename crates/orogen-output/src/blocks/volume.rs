@@ -1,0 +1,100 @@
+//! All blocks of a window.
+
+use rayon::prelude::*;
+
+use super::chunk::SIDE;
+use super::kind::{Block, KINDS};
+use super::land::Land;
+use super::levels::Levels;
+use orogen_grid::error::Result;
+use orogen_grid::grid::Window;
+use orogen_grid::progress::Progress;
+
+/// The blocks of a window.
+#[derive(Debug, Clone)]
+pub struct BlockVolume {
+    /// The window: a column of blocks each.
+    pub window: Window,
+    /// The levels.
+    pub levels: Levels,
+    /// Numbers of kinds: level by level from the bottom, in each row by row from the north.
+    pub blocks: Vec<u8>,
+    /// The world's sea level, in metres.
+    pub sea_level: f64,
+    /// The world's seed.
+    pub seed: u64,
+}
+
+impl BlockVolume {
+    /// Memory of the blocks of a window, in bytes.
+    #[must_use]
+    pub fn memory(window: &Window, levels: Levels) -> u64 {
+        let rows = (window.width as u64).saturating_mul(levels.count as u64);
+        // The blocks, and those of the chunks of a row.
+        rows.saturating_mul(window.height as u64).saturating_add(rows.saturating_mul(2 * SIDE as u64))
+    }
+
+    /// The blocks of a land. Levels at the top that hold only air are left out.
+    ///
+    /// # Errors
+    /// If `progress` is cancelled.
+    pub fn of(land: &Land, progress: &Progress) -> Result<BlockVolume> {
+        let (window, levels) = (land.window, land.levels);
+        let layer = window.len();
+        let mut blocks = vec![Block::Air as u8; layer * levels.count];
+        progress.expect(window.height as f64);
+        // Chunks lie on a grid of the world, but any division gives the same blocks.
+        for top in (0..window.height).step_by(SIDE) {
+            progress.check()?;
+            let height = SIDE.min(window.height - top);
+            let part = |left: usize| {
+                let width = SIDE.min(window.width - left);
+                Window { x: window.x + left as i64, y: window.y + top as i64, width, height, cell: window.cell }
+            };
+            let lefts: Vec<usize> = (0..window.width).step_by(SIDE).collect();
+            let chunks: Vec<Vec<u8>> = lefts.par_iter().map(|left| land.blocks(&part(*left))).collect::<Result<_>>()?;
+            for (left, chunk) in lefts.iter().zip(&chunks) {
+                let width = part(*left).width;
+                for (k, row) in chunk.chunks(width).enumerate() {
+                    let start = k / height * layer + (top + k % height) * window.width + left;
+                    blocks[start..start + width].copy_from_slice(row);
+                }
+            }
+            progress.advance(height as f64);
+        }
+        let used = blocks.iter().rposition(|block| *block != Block::Air as u8).map_or(0, |last| last / layer + 1);
+        blocks.truncate(used * layer);
+        let levels = Levels { count: used, ..levels };
+        Ok(BlockVolume { window, levels, blocks, sea_level: land.sea_level, seed: land.seed })
+    }
+
+    /// Blocks to the east, up and to the south.
+    #[must_use]
+    pub fn size(&self) -> [usize; 3] {
+        [self.window.width, self.levels.count, self.window.height]
+    }
+
+    /// The block of a column and a row of the window, and of a level above the bottom; air beyond the ends.
+    #[inline]
+    #[must_use]
+    pub fn block(&self, [column, row, level]: [i64; 3]) -> Block {
+        let [width, count, height] = self.size();
+        let is_inside = (0..width as i64).contains(&column)
+            && (0..height as i64).contains(&row)
+            && (0..count as i64).contains(&level);
+        if !is_inside {
+            return Block::Air;
+        }
+        Block::of(self.blocks[(level as usize * height + row as usize) * width + column as usize])
+    }
+
+    /// How many blocks of each kind there are.
+    #[must_use]
+    pub fn counts(&self) -> [u64; KINDS.len()] {
+        let mut counts = [0; KINDS.len()];
+        for block in &self.blocks {
+            counts[Block::of(*block) as usize] += 1;
+        }
+        counts
+    }
+}

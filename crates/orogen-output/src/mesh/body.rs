@@ -1,0 +1,37 @@
+//! Surfaces in space that are not made of a grid of heights.
+
+/// A part of a surface, with a color for each vertex.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BodyMesh {
+    /// The name.
+    pub name: String,
+    /// Where positions are counted from: metres east and south of the world's origin.
+    pub origin: [f64; 2],
+    /// The vertices in metres: east, height, south.
+    pub corners: Vec<[f32; 3]>,
+    /// The unit normal of each vertex.
+    pub normals: Vec<[f32; 3]>,
+    /// The color of each vertex, sRGB.
+    pub colors: Vec<[u8; 3]>,
+    /// Triangles, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+impl BodyMesh {
+    /// Memory of the mesh, in bytes.
+    #[must_use]
+    pub fn memory(&self) -> u64 {
+        27 * self.corners.len() as u64 + 12 * self.triangles.len() as u64
+    }
+
+    /// The least and the greatest of each coordinate.
+    #[must_use]
+    pub fn bounds(&self) -> [[f32; 3]; 2] {
+        let bound = |pick: fn(f32, f32) -> f32, start: f32| {
+            self.corners
+                .iter()
+                .fold([start; 3], |all, corner| std::array::from_fn(|axis| pick(all[axis], corner[axis])))
+        };
+        [bound(f32::min, f32::INFINITY), bound(f32::max, f32::NEG_INFINITY)]
+    }
+}

@@ -1,0 +1,32 @@
+//! What the readers of tilesets share.
+
+use std::path::{Path, PathBuf};
+
+use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_io::open;
+
+use crate::tilemap::tileset::Tileset;
+
+/// Maximum length of the text of a tileset, in bytes.
+const MAX_TEXT: u64 = 16 << 20;
+
+/// A tileset from a file.
+#[derive(Debug)]
+pub struct Loaded {
+    /// The tileset.
+    pub tileset: Tileset,
+    /// The picture of its tiles.
+    pub picture: PathBuf,
+}
+
+/// The error of a tileset that cannot be used, with the reason.
+pub(super) fn unusable(path: &Path, why: &str) -> Error {
+    Error::new(ErrorKind::File, format!("cannot use the tileset {}: {why}", path.display()))
+}
+
+/// The text of a file.
+pub(super) fn text(path: &Path) -> Result<String> {
+    let bytes = open::bytes(path, "read the tileset", MAX_TEXT)?
+        .ok_or_else(|| unusable(path, &format!("it is larger than {} MB", MAX_TEXT >> 20)))?;
+    String::from_utf8(bytes).map_err(|_| unusable(path, "it is no text in UTF-8"))
+}
