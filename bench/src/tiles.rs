@@ -1,4 +1,7 @@
-//! Area `tiles`: terrain classes, clean-up and tiles of a large map, climate and biomes, and chunks of blocks at random places. Wall time of all cores.
+//! Area `tiles`: terrain classes, clean-up and tiles of a large map, climate and biomes, chunks of blocks at random places, and maps larger than memory. Wall time
+//! of all cores.
+
+mod streamed;
 
 use std::time::Instant;
 
@@ -149,6 +152,7 @@ pub fn run(options: &Options) -> Result<Value, String> {
     }
     rows.extend(chunks(options)?);
     rows.extend(climate(options)?);
+    rows.extend(streamed::measure(options)?.iter().map(Figure::json));
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     Ok(json!({ "area": "tiles", "simd": orogen_simd::Level::current().name(), "threads": threads, "rows": rows }))
 }

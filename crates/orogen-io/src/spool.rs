@@ -42,6 +42,18 @@ impl Spool {
         Spool { folder: Some(folder_of(path)), most: IN_MEMORY, ..Spool::default() }
     }
 
+    /// Keeps at most this many bytes in memory.
+    #[must_use]
+    pub fn with_most(self, most: usize) -> Spool {
+        Spool { most, ..self }
+    }
+
+    /// Number of stored bytes.
+    #[must_use]
+    pub fn length(&self) -> u64 {
+        self.length
+    }
+
     /// Stores bytes; returns the position for [`Spool::read`].
     pub fn push(&mut self, bytes: &[u8]) -> io::Result<u64> {
         let at = self.length;

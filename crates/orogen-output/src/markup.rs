@@ -8,23 +8,76 @@ pub(crate) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-/// Writes bytes as base64 (RFC 4648).
-pub(crate) fn base64(out: &mut dyn Write, bytes: &[u8]) -> io::Result<()> {
-    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = Vec::with_capacity(4096);
-    for chunk in bytes.chunks(3 * 1024) {
-        text.clear();
-        for three in chunk.chunks(3) {
-            let at = |k: usize| u32::from(three.get(k).copied().unwrap_or(0));
-            let bits = at(0) << 16 | at(1) << 8 | at(2);
-            for k in 0..4 {
-                let letter = LETTERS[(bits >> (18 - 6 * k)) as usize & 63];
-                text.push(if k > three.len() { b'=' } else { letter });
+/// Writes what is written to it as base64 (RFC 4648).
+pub(crate) struct Base64<'a> {
+    out: &'a mut dyn Write,
+    /// Up to two bytes that wait for a third.
+    rest: [u8; 3],
+    waiting: usize,
+    text: Vec<u8>,
+}
+
+impl<'a> Base64<'a> {
+    pub fn new(out: &'a mut dyn Write) -> Base64<'a> {
+        Base64 { out, rest: [0; 3], waiting: 0, text: Vec::new() }
+    }
+
+    /// Writes the bytes that wait, and the padding.
+    pub fn finish(mut self) -> io::Result<()> {
+        if self.waiting > 0 {
+            let mut letters = letters(self.rest);
+            letters[self.waiting + 1..].fill(b'=');
+            self.out.write_all(&letters)?;
+            self.waiting = 0;
+        }
+        Ok(())
+    }
+}
+
+impl Write for Base64<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let mut left = &bytes[..bytes.len().min(48 << 10)];
+        let taken = left.len();
+        self.text.clear();
+        if self.waiting > 0 {
+            let more = left.len().min(3 - self.waiting);
+            self.rest[self.waiting..self.waiting + more].copy_from_slice(&left[..more]);
+            self.waiting += more;
+            left = &left[more..];
+            if self.waiting == 3 {
+                self.text.extend(letters(self.rest));
+                self.waiting = 0;
             }
         }
-        out.write_all(&text)?;
+        let threes = left.chunks_exact(3);
+        let rest = threes.remainder();
+        self.text.extend(threes.flat_map(|three| letters([three[0], three[1], three[2]])));
+        if !rest.is_empty() {
+            self.rest = [0; 3];
+            self.rest[..rest.len()].copy_from_slice(rest);
+            self.waiting = rest.len();
+        }
+        self.out.write_all(&self.text)?;
+        Ok(taken)
     }
-    Ok(())
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
+/// The four letters of three bytes.
+fn letters([a, b, c]: [u8; 3]) -> [u8; 4] {
+    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let bits = u32::from(a) << 16 | u32::from(b) << 8 | u32::from(c);
+    [18, 12, 6, 0].map(|shift| LETTERS[(bits >> shift) as usize & 63])
+}
+
+/// Writes bytes as base64 (RFC 4648).
+pub(crate) fn base64(out: &mut dyn Write, bytes: &[u8]) -> io::Result<()> {
+    let mut base64 = Base64::new(out);
+    base64.write_all(bytes)?;
+    base64.finish()
 }
 
 #[cfg(test)]
@@ -37,6 +90,16 @@ mod tests {
             let mut out = Vec::new();
             base64(&mut out, bytes.as_bytes()).unwrap();
             assert_eq!(String::from_utf8(out).unwrap(), expect);
+        }
+        let bytes: Vec<u8> = (0..100_000u32).map(|k| (k * k >> 7) as u8).collect();
+        let mut whole = Vec::new();
+        base64(&mut whole, &bytes).unwrap();
+        for piece in [1, 2, 4, 1000] {
+            let mut parts = Vec::new();
+            let mut stream = Base64::new(&mut parts);
+            bytes.chunks(piece).for_each(|piece| stream.write_all(piece).unwrap());
+            stream.finish().unwrap();
+            assert!(parts == whole, "pieces of {piece}");
         }
     }
 }

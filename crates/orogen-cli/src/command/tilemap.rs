@@ -1,10 +1,10 @@
 //! `orogen tilemap`.
 
-use std::io::Write as _;
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use orogen::autotile::mask::Layout;
-use orogen::file::{self, Output};
+use orogen::file::{self, Output, Staged};
 use orogen::recipe::class::document::CLASS;
 use orogen::tilemap::art::set::{SETS, Set};
 use orogen::tilemap::job::{Tilemap, TilemapJob};
@@ -13,7 +13,8 @@ use orogen::tilemap::load::loaded::Loaded;
 use orogen::tilemap::tileset::Tileset;
 use orogen::words::{count, number};
 use orogen::world::HEIGHT;
-use orogen::{Error, ErrorKind};
+use orogen::{Error, ErrorKind, Progress};
+use rayon::prelude::*;
 
 use crate::bar::Bar;
 use crate::failure::Failure;
@@ -56,18 +57,10 @@ pub struct Args {
 }
 
 /// The files, in the order in which they are put in place: the summary is last, so its presence means that all files are complete.
-const FILES: [&str; 10] = [
-    "tiles.png",
-    "tiles.tsx",
-    "map.tmx",
-    "map.tmj",
-    LDTK,
-    "tiles.tres",
-    GODOT,
-    "classes.csv",
-    "preview.png",
-    "tilemap.json",
-];
+const FILES: [&str; 10] =
+    ["tiles.png", "tiles.tsx", "map.tmx", "map.tmj", LDTK, "tiles.tres", GODOT, "classes.csv", "preview.png", SUMMARY];
+
+const SUMMARY: &str = "tilemap.json";
 
 /// The files that some maps do not have.
 const LDTK: &str = "map.ldtk";
@@ -77,7 +70,7 @@ const GODOT: &str = "map.tscn";
 const SIDE: usize = 128;
 
 /// Memory for writing the files, in bytes.
-const ENCODERS: u64 = 4 << 20;
+const ENCODERS: u64 = 16 << 20;
 
 /// Makes the map.
 pub fn run(args: &Args) -> Result<(), Failure> {
@@ -94,7 +87,7 @@ fn tilemap(args: &Args) -> Result<(), Failure> {
     made.and_then(|text| say::out(&text)).map_err(|failure| interrupt::explain(failure, "nothing was written"))
 }
 
-fn make(args: &Args, progress: &orogen::Progress) -> Result<String, Failure> {
+fn make(args: &Args, progress: &Progress) -> Result<String, Failure> {
     let source = Source::find(&args.recipe)?;
     let budget = args.run.limits.budget();
     let mut recipe = args.samples.recipe(&source, &budget)?;
@@ -117,12 +110,11 @@ fn make(args: &Args, progress: &orogen::Progress) -> Result<String, Failure> {
     let outputs: Vec<Output> =
         FILES.iter().map(|name| policy.output(args.out.join(name))).collect::<orogen::Result<_>>()?;
     let folder = Folder::ready(&args.out)?;
-    let _map = budget.reserve(job.memory(&window) + ENCODERS)?;
-    let [making, writing] = progress.parts([9.0, 1.0]);
-    let map = job.make(&world, &window, &making)?;
+    let _writing = budget.reserve(ENCODERS)?;
+    let [making, writing] = progress.parts([3.0, 1.0]);
+    let map = job.stream(&world, &window, &args.out.join(SUMMARY), &making)?;
     finite::tell(source_layer, map.finite)?;
-    let missing = write(&map, &outputs)?;
-    writing.finish();
+    let missing = world.install(|| write(&map, &outputs, &writing))?;
     folder.keep();
     Ok(if args.run.quiet { String::new() } else { words(&map, &args.out, &missing) })
 }
@@ -159,56 +151,68 @@ fn tileset(args: &Args) -> Result<Drawn, Failure> {
 }
 
 /// Writes all files, or none. Returns the names of those that the map does not have.
-fn write(map: &Tilemap, outputs: &[Output]) -> Result<Vec<&'static str>, Failure> {
-    let notes = [("Software", SOFTWARE)];
+fn write(map: &Tilemap, outputs: &[Output], progress: &Progress) -> Result<Vec<&'static str>, Failure> {
     let json = serde_json::to_string_pretty(&map.summary(SOFTWARE))
         .map_err(|e| Error::new(ErrorKind::Internal, e.to_string()))?;
-    let [image, tsx, tres] = [FILES[0], FILES[1], FILES[5]];
-    let (mut staged, mut missing) = (Vec::new(), Vec::new());
-    for (name, output) in FILES.into_iter().zip(outputs) {
-        if name == LDTK && !map.fits_ldtk() || name == GODOT && !map.fits_godot() {
-            missing.push(name);
-            continue;
+    progress.expect(FILES.len() as f64);
+    let is_missing = |name: &str| name == LDTK && !map.fits_ldtk() || name == GODOT && !map.fits_godot();
+    let stage = |(name, output): (&&str, &Output)| {
+        progress.step(1.0)?;
+        match is_missing(name) {
+            true => Ok(None),
+            false => file::stage(output, |out| write_file(map, name, &json, &mut Stoppable(out))).map(Some),
         }
-        staged.push(file::stage(output, |out| {
-            let mut out = Stoppable(out);
-            match name {
-                "tiles.png" => map.tileset.write_png(&mut out, &notes),
-                "tiles.tsx" => map.tileset.write_tsx(&mut out, image, SOFTWARE),
-                "map.tmx" => map.write_tmx(&mut out, tsx, SOFTWARE),
-                "map.tmj" => map.write_tmj(&mut out, image, SOFTWARE),
-                LDTK => map.write_ldtk(&mut out, image, SOFTWARE),
-                "tiles.tres" => map.tileset.write_tileset_tres(&mut out, image, SOFTWARE),
-                GODOT => map.write_tscn(&mut out, tres, SOFTWARE),
-                "classes.csv" => map.write_csv(&mut out),
-                "preview.png" => map.write_png(&mut out, &notes),
-                _ => writeln!(out, "{json}"),
-            }
-        })?);
+    };
+    let staged: Vec<orogen::Result<Option<Staged>>> = FILES.par_iter().zip(outputs).map(stage).collect();
+    let staged: Vec<Option<Staged>> = staged.into_iter().collect::<orogen::Result<_>>()?;
+    file::commit(staged.into_iter().flatten().collect())?;
+    Ok(FILES.into_iter().filter(|name| is_missing(name)).collect())
+}
+
+/// Writes the file of this name.
+fn write_file(map: &Tilemap, name: &str, json: &str, out: &mut Stoppable) -> io::Result<()> {
+    let notes = [("Software", SOFTWARE)];
+    let [image, tsx, tres] = [FILES[0], FILES[1], FILES[5]];
+    match name {
+        "tiles.png" => map.tileset.write_png(out, &notes),
+        "tiles.tsx" => map.tileset.write_tsx(out, image, SOFTWARE),
+        "map.tmx" => map.write_tmx(out, tsx, SOFTWARE),
+        "map.tmj" => map.write_tmj(out, image, SOFTWARE),
+        LDTK => map.write_ldtk(out, image, SOFTWARE),
+        "tiles.tres" => map.tileset.write_tileset_tres(out, image, SOFTWARE),
+        GODOT => map.write_tscn(out, tres, SOFTWARE),
+        "classes.csv" => map.write_csv(out),
+        "preview.png" => map.write_png(out, &notes),
+        _ => writeln!(out, "{json}"),
     }
-    file::commit(staged)?;
-    Ok(missing)
+}
+
+/// Which places without a tile the summary lists.
+fn listed(map: &Tilemap) -> String {
+    match map.gaps.len() as u64 == map.gap_count {
+        true => "them".into(),
+        false => format!("the first {}", map.gaps.len()),
+    }
 }
 
 /// The final message.
 fn words(map: &Tilemap, folder: &Path, missing: &[&str]) -> String {
-    let cells = map.classes.data().len().max(1) as f64;
-    let counts = map.classes.counts();
-    let shares = map.tileset.terrains.iter().zip(counts).filter(|(_, cells)| *cells > 0);
+    let cells = map.classes.len().max(1) as f64;
+    let shares = map.tileset.terrains.iter().zip(&map.class_counts).filter(|(_, cells)| **cells > 0);
     let shares: Vec<String> =
-        shares.map(|(terrain, of)| format!("{:.0} % {}", 100.0 * of as f64 / cells, terrain.name)).collect();
-    let gaps = match map.gaps.len() {
+        shares.map(|(terrain, of)| format!("{:.0} % {}", 100.0 * *of as f64 / cells, terrain.name)).collect();
+    let gaps = match map.gap_count {
         0 => "every place has a tile".to_string(),
-        gaps => format!("{} without a tile; tilemap.json lists them", count(gaps, "place")),
+        gaps => format!("{} without a tile; tilemap.json lists {}", count(gaps as usize, "place"), listed(map)),
     };
     let written: Vec<&str> = FILES.into_iter().filter(|name| !missing.contains(name)).collect();
     let why = missing.iter().map(|name| match *name {
         LDTK => "\nno map.ldtk: LDtk has no quarter turns, and a project lists each of up to 2^20 tiles",
-        _ => "\nno map.tscn: Godot has maps of up to 32767 tiles along a side",
+        _ => "\nno map.tscn: a scene lists each of up to 2^24 tiles, and up to 32767 along a side",
     });
     let objects = match map.objects.len() {
         0 => String::new(),
-        objects => format!(", {}", count(objects, "object")),
+        objects => format!(", {}", count(objects as usize, "object")),
     };
     format!(
         "{}: {}\n{} x {} tiles of {} ({}), {} m a cell, seed {}\n{}{objects}\n{gaps}{}\n",

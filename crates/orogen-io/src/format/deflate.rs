@@ -11,6 +11,7 @@
 //! compressor handles those.
 
 mod matches;
+pub(crate) mod stream;
 
 use matches::Matches;
 use miniz_oxide::deflate::compress_to_vec_zlib;

@@ -7,7 +7,7 @@ pub mod aux_xml;
 pub mod contour_svg;
 pub mod crs;
 pub mod csv;
-mod deflate;
+pub(crate) mod deflate;
 pub mod dem;
 pub mod encoding;
 pub mod exr;

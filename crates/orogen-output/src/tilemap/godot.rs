@@ -5,16 +5,19 @@
 
 use std::io::{self, Write};
 
-use orogen_grid::autotile::choose::NONE;
 use orogen_grid::autotile::flip::Flip;
 use orogen_grid::autotile::mask::Layout;
+use orogen_io::records::Records;
 
 use super::job::Tilemap;
-use super::tileset::{Fit, Tile, Tileset, parts};
-use crate::markup::base64;
+use super::tileset::{Fit, Tile, Tileset, shown};
+use crate::markup::Base64;
 
 /// The largest column and row of a cell, which has 16 bits.
 const MAX_PLACE: usize = 32_767;
+
+/// Maximum number of tiles of a layer: a scene has 16 letters for each.
+const MAX_TILES: usize = 1 << 24;
 
 /// The flips of a tile in a cell.
 const FLIP_X: u16 = 1 << 12;
@@ -99,10 +102,10 @@ impl Tileset {
 }
 
 impl Tilemap {
-    /// Whether the map can be a scene of Godot: it has at most 32767 tiles along a side.
+    /// Whether the map can be a scene of Godot: it has at most 32767 tiles along a side, and 2^24 tiles, because a scene lists each.
     #[must_use]
     pub fn fits_godot(&self) -> bool {
-        self.width.max(self.height) <= MAX_PLACE
+        self.width.max(self.height) <= MAX_PLACE && self.width * self.height <= MAX_TILES
     }
 
     /// Writes the map as a scene. `tileset` is the name of the TileSet beside the file, and `made_by` the program.
@@ -114,11 +117,12 @@ impl Tilemap {
         writeln!(out, "[ext_resource type=\"TileSet\" path={} id=\"1\"]\n", text(tileset))?;
         // Crisp pixels.
         writeln!(out, "[node name=\"Map\" type=\"Node2D\"]\ntexture_filter = 1")?;
-        let layers = self.tileset.layer_names().into_iter().zip(&self.layers);
-        for (name, tiles) in layers.filter(|(_, tiles)| tiles.iter().any(|tile| *tile != NONE)) {
+        for (name, tiles) in self.used() {
             writeln!(out, "\n[node name={} type=\"TileMapLayer\" parent=\".\"]", text(&node_name(name)))?;
             write!(out, "tile_map_data = PackedByteArray(\"")?;
-            base64(out, &self.cells(tiles))?;
+            let mut cells = Base64::new(out);
+            self.write_cells(&mut cells, tiles)?;
+            cells.finish()?;
             writeln!(out, "\")\ntile_set = ExtResource(\"1\")")?;
         }
         if self.objects.is_empty() {
@@ -126,32 +130,37 @@ impl Tilemap {
         }
         writeln!(out, "\n[node name=\"objects\" type=\"Node2D\" parent=\".\"]")?;
         let size = self.tileset.size as f64;
-        for (nth, object) in self.objects.iter().enumerate() {
+        self.each_object(|nth, object| {
             let kind = &self.kinds[object.kind];
             let name = text(&node_name(&format!("{kind} {}", nth + 1)));
             writeln!(out, "\n[node name={name} type=\"Marker2D\" parent=\"objects\" groups=[{}]]", text(kind))?;
             let [x, y] = object.position.map(|at| at * size);
             writeln!(out, "position = Vector2({x:.2}, {y:.2})\nrotation = {:.5}", object.turn.to_radians())?;
-            writeln!(out, "scale = Vector2({size:.4}, {size:.4})", size = object.size)?;
-        }
-        Ok(())
+            writeln!(out, "scale = Vector2({size:.4}, {size:.4})", size = object.size)
+        })
     }
 
-    /// The cells of a layer as Godot stores them.
-    fn cells(&self, tiles: &[u32]) -> Vec<u8> {
-        let mut cells = vec![0; 2];
-        for (place, tile) in tiles.iter().enumerate().filter(|(_, tile)| **tile != NONE) {
-            let (picture, flip) = parts(*tile);
-            let picture = picture as usize;
-            let bit = |is_set: bool, bit: u16| if is_set { bit } else { 0 };
-            let flips = bit(flip.x, FLIP_X) | bit(flip.y, FLIP_Y) | bit(flip.diagonal, TRANSPOSE);
-            let [column, row] = [place % self.width, place / self.width].map(|at| at as u16);
-            let [left, top] = [picture % self.tileset.columns, picture / self.tileset.columns].map(|at| at as u16);
-            for number in [column, row, 0, left, top, flips] {
-                cells.extend(number.to_le_bytes());
+    /// Writes the cells of a layer as Godot stores them.
+    fn write_cells(&self, out: &mut dyn Write, tiles: &Records<u32>) -> io::Result<()> {
+        out.write_all(&[0; 2])?;
+        let bit = |is_set: bool, bit: u16| if is_set { bit } else { 0 };
+        let (mut reader, mut tiles, mut cells) = (tiles.reader(), Vec::new(), Vec::new());
+        for row in 0..self.height {
+            reader.read(self.width, &mut tiles)?;
+            cells.clear();
+            for (column, tile) in tiles.iter().enumerate() {
+                let Some((picture, flip)) = shown(*tile) else { continue };
+                let picture = picture as usize;
+                let flips = bit(flip.x, FLIP_X) | bit(flip.y, FLIP_Y) | bit(flip.diagonal, TRANSPOSE);
+                let [column, row] = [column, row].map(|at| at as u16);
+                let [left, top] = [picture % self.tileset.columns, picture / self.tileset.columns].map(|at| at as u16);
+                for number in [column, row, 0, left, top, flips] {
+                    cells.extend(number.to_le_bytes());
+                }
             }
+            out.write_all(&cells)?;
         }
-        cells
+        Ok(())
     }
 }
 

@@ -5,12 +5,13 @@
 
 use std::io::{self, Write};
 
-use orogen_grid::autotile::choose::NONE;
 use orogen_grid::random::mix64;
+use orogen_io::records::Records;
 use serde_json::{Value, json};
 
 use super::job::Tilemap;
-use super::tileset::parts;
+use super::map_objects::MapObject;
+use super::tileset::shown;
 
 /// The version of the format.
 const VERSION: &str = "1.5.3";
@@ -41,9 +42,9 @@ impl Tilemap {
     /// Whether the map can be a project of LDtk: it has at most 2^20 tiles, because a project lists each, and no quarter turns, which LDtk does not know.
     #[must_use]
     pub fn fits_ldtk(&self) -> bool {
-        self.width * self.height <= MAX_TILES
+        self.width.saturating_mul(self.height) <= MAX_TILES
             && !self.tileset.flips.turns
-            && !self.layers.iter().flatten().any(|tile| *tile != NONE && parts(*tile).1.diagonal)
+            && !self.layers.iter().any(|layer| layer.is_turned)
     }
 
     fn ldtk_layers(&self) -> Vec<Layer<'_>> {
@@ -55,7 +56,7 @@ impl Tilemap {
             layers.push(Layer::Classes);
         }
         let names = self.tileset.layer_names().into_iter().enumerate().rev();
-        let used = names.filter(|(nth, _)| self.layers[*nth].iter().any(|tile| *tile != NONE));
+        let used = names.filter(|(nth, _)| self.layers[*nth].is_used);
         layers.extend(used.map(|(nth, name)| Layer::Tiles(nth, name)));
         layers
     }
@@ -91,13 +92,21 @@ impl Tilemap {
         for (nth, layer) in layers.iter().enumerate() {
             let instance = self.ldtk_layer(layer, nth, image);
             write!(out, "{}\n{}", if nth > 0 { "," } else { "" }, open(&instance))?;
-            write!(out, ",\"gridTiles\":[")?;
+            write!(out, ",\"entityInstances\":[")?;
+            if matches!(layer, Layer::Objects) {
+                self.each_object(|nth, object| {
+                    write!(out, "{}{}", if nth > 0 { ",\n" } else { "" }, self.ldtk_entity(nth, object))
+                })?;
+            }
+            write!(out, "],\"gridTiles\":[")?;
             if let Layer::Tiles(layer, _) = layer {
-                self.write_grid_tiles(out, &self.layers[*layer])?;
+                self.write_grid_tiles(out, &self.layers[*layer].tiles)?;
             }
             write!(out, "],\"intGridCsv\":[")?;
             if matches!(layer, Layer::Classes) {
-                for (row, classes) in self.classes.data().chunks(self.classes.width().max(1)).enumerate() {
+                let (mut reader, mut classes) = (self.classes.reader(), Vec::new());
+                for row in 0..self.height {
+                    reader.read(self.class_columns(), &mut classes)?;
                     let values: Vec<String> = classes.iter().map(|class| (u32::from(*class) + 1).to_string()).collect();
                     write!(out, "{}{}", if row > 0 { ",\n" } else { "" }, values.join(","))?;
                 }
@@ -107,19 +116,22 @@ impl Tilemap {
         writeln!(out, "]}}]}}")
     }
 
-    fn write_grid_tiles(&self, out: &mut dyn Write, tiles: &[u32]) -> io::Result<()> {
+    fn write_grid_tiles(&self, out: &mut dyn Write, tiles: &Records<u32>) -> io::Result<()> {
         let (size, columns) = (self.tileset.size, self.tileset.columns);
-        let shown = tiles.iter().enumerate().filter(|(_, tile)| **tile != NONE);
-        for (nth, (place, tile)) in shown.enumerate() {
-            let (picture, flip) = parts(*tile);
-            let [x, y] = [place % self.width * size, place / self.width * size];
-            let [left, top] = [picture as usize % columns * size, picture as usize / columns * size];
-            let flips = u8::from(flip.x) + 2 * u8::from(flip.y);
-            let comma = if nth > 0 { ",\n" } else { "" };
-            write!(
-                out,
-                "{comma}{{\"px\":[{x},{y}],\"src\":[{left},{top}],\"f\":{flips},\"t\":{picture},\"d\":[{place}],\"a\":1}}"
-            )?;
+        let (mut reader, mut tiles, mut comma) = (tiles.reader(), Vec::new(), "");
+        for row in 0..self.height {
+            reader.read(self.width, &mut tiles)?;
+            for (column, tile) in tiles.iter().enumerate() {
+                let Some((picture, flip)) = shown(*tile) else { continue };
+                let [x, y] = [column * size, row * size];
+                let [left, top] = [picture as usize % columns * size, picture as usize / columns * size];
+                let (flips, place) = (u8::from(flip.x) + 2 * u8::from(flip.y), row * self.width + column);
+                write!(
+                    out,
+                    "{comma}{{\"px\":[{x},{y}],\"src\":[{left},{top}],\"f\":{flips},\"t\":{picture},\"d\":[{place}],\"a\":1}}"
+                )?;
+                comma = ",\n";
+            }
         }
         Ok(())
     }
@@ -200,7 +212,7 @@ impl Tilemap {
         })
     }
 
-    /// A layer without its tiles and classes.
+    /// A layer without its tiles, classes and entities.
     fn ldtk_layer(&self, layer: &Layer, nth: usize, image: &str) -> Value {
         let size = self.tileset.size;
         let (kind, name) = match layer {
@@ -210,21 +222,16 @@ impl Tilemap {
         };
         let opacity = if matches!(layer, Layer::Classes) { CLASSES_OPACITY } else { 1.0 };
         let has_tiles = matches!(layer, Layer::Tiles(..));
-        let entities: Vec<Value> = match layer {
-            Layer::Objects => (0..self.objects.len()).map(|nth| self.ldtk_entity(nth)).collect(),
-            _ => Vec::new(),
-        };
         json!({
             "__identifier": name, "__type": kind, "__cWid": self.width, "__cHei": self.height, "__gridSize": size, "__opacity": opacity,
             "__pxTotalOffsetX": 0, "__pxTotalOffsetY": 0, "__tilesetDefUid": has_tiles.then_some(TILESET),
             "__tilesetRelPath": has_tiles.then_some(image), "iid": self.iid(16 + nth as u64), "levelId": LEVEL,
             "layerDefUid": layer_uid(layer, nth), "pxOffsetX": 0, "pxOffsetY": 0, "visible": !matches!(layer, Layer::Classes),
-            "optionalRules": [], "autoLayerTiles": [], "seed": self.seed % (1 << 31), "overrideTilesetUid": null, "entityInstances": entities,
+            "optionalRules": [], "autoLayerTiles": [], "seed": self.seed % (1 << 31), "overrideTilesetUid": null,
         })
     }
 
-    fn ldtk_entity(&self, nth: usize) -> Value {
-        let object = &self.objects[nth];
+    fn ldtk_entity(&self, nth: u64, object: MapObject) -> Value {
         let size = self.tileset.size;
         let px = object.position.map(|at| (at * size as f64).round() as i64);
         let grid = object.position.map(|at| at.floor() as i64);
@@ -236,7 +243,7 @@ impl Tilemap {
         };
         json!({
             "__identifier": identifier(&self.kinds[object.kind]), "__grid": grid, "__pivot": [0.5, 0.5], "__tags": [], "__tile": null,
-            "__smartColor": entity_color(object.kind), "iid": self.iid(1 << 32 | nth as u64), "width": size, "height": size,
+            "__smartColor": entity_color(object.kind), "iid": self.iid(1 << 32 | nth), "width": size, "height": size,
             "defUid": entity_uid(object.kind), "px": px, "__worldX": px[0], "__worldY": px[1],
             "fieldInstances": [field("size", SIZE_FIELD, object.size), field("turn", TURN_FIELD, object.turn)],
         })

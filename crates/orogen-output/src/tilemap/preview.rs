@@ -1,25 +1,30 @@
 //! The picture of a tilemap.
 
 use std::io::{self, Write};
+use std::sync::Arc;
 
-use orogen_grid::autotile::choose::NONE;
 use orogen_io::format::png::{self, Picture, Pixel};
+use orogen_io::records::Reader;
 use rayon::prelude::*;
 
 use super::job::Tilemap;
-use super::tileset::{Fit, Rgba, Tile, Tileset};
+use super::tileset::{Fit, Rgba, Tile, Tileset, shown};
 
 /// Maximum side of a picture in pixels.
 const MAX_SIDE: usize = 8192;
 
+/// Memory for the tiles of the rows of a picture that are drawn at once, in bytes.
+const BAND: usize = 4 << 20;
+
 impl Tilemap {
-    /// How many pixels of the map are one of its picture along either side: 1 up to 8192 pixels.
+    /// How many pixels of the map are one of its picture along either side: 1 up to 8192 pixels, and otherwise a divisor or a multiple of the side of a tile.
     #[must_use]
     pub fn reduction(&self) -> usize {
         let size = self.tileset.size;
-        let side = self.width.max(self.height) * size;
+        let side = self.width.max(self.height);
         // A whole number of pixels for each tile.
-        (1..=size).find(|by| size.is_multiple_of(*by) && side / by <= MAX_SIDE).unwrap_or(size)
+        let within = (1..=size).find(|by| size.is_multiple_of(*by) && side * (size / by) <= MAX_SIDE);
+        within.unwrap_or_else(|| size * side.div_ceil(MAX_SIDE))
     }
 
     /// Whether every pixel of the map is opaque.
@@ -34,7 +39,7 @@ impl Tilemap {
             let mut pixels = (0..self.tileset.size).flat_map(|y| self.tileset.row(tile.picture as usize, y));
             pixels.all(|pixel| pixel[3] == 255)
         };
-        self.gaps.is_empty() && base.peek().is_some() && base.all(is_opaque)
+        self.gap_count == 0 && base.peek().is_some() && base.all(is_opaque)
     }
 
     /// Writes the picture of the map as a PNG: all pixels of its tiles, or of a large map every [`Tilemap::reduction`]th. It is transparent where nothing is drawn.
@@ -42,26 +47,71 @@ impl Tilemap {
     /// # Errors
     /// If `out` fails.
     pub fn write_png(&self, out: &mut dyn Write, notes: &[(&str, &str)]) -> io::Result<()> {
-        let by = self.reduction();
-        let side = self.tileset.size / by;
+        let (by, size) = (self.reduction(), self.tileset.size);
+        let [width, height] = [self.width, self.height].map(|side| (side * size).div_ceil(by));
         let pixel = if self.is_opaque() { Pixel::Rgb8 } else { Pixel::Rgba8 };
-        let picture = Picture::new(self.width * side, self.height * side, pixel).with_notes(notes);
+        let picture = Picture::new(width, height, pixel).with_notes(notes);
         let depth = pixel.bytes();
+        // Pixels of the picture for each tile, and tiles of the map for each of the picture.
+        let [side, step] = [(size / by).max(1), (by / size).max(1)];
+        let mut tile_rows = TileRows::new(self);
         png::write(out, &picture, |rows, bytes| {
             bytes.fill(0);
-            bytes.par_chunks_mut(picture.width * depth).zip(rows.into_par_iter()).for_each(|(line, y)| {
-                let tiles = (y / side) * self.width..(y / side + 1) * self.width;
-                for layer in &self.layers {
-                    for (column, tile) in layer[tiles.clone()].iter().enumerate().filter(|(_, tile)| **tile != NONE) {
-                        let place = &mut line[column * side * depth..(column + 1) * side * depth];
-                        for (x, pixel) in place.chunks_exact_mut(depth).enumerate() {
-                            blend(pixel, self.tileset.pixel(*tile, [x * by, (y % side) * by]));
+            let mut rows = rows.zip(bytes.chunks_mut(width * depth)).peekable();
+            while rows.peek().is_some() {
+                // The tiles of as many rows as memory is meant for.
+                let (mut lines, mut tiles) = (Vec::new(), Vec::new());
+                while let Some((y, line)) = rows.next_if(|_| lines.len() * self.width * 4 * self.layers.len() <= BAND) {
+                    lines.push((y * by % size, line));
+                    tiles.push(tile_rows.row(y * by / size)?);
+                }
+                lines.into_par_iter().zip(&tiles).for_each(|((y, line), layers)| {
+                    for layer in layers.iter() {
+                        for (tile, place) in layer.iter().step_by(step).zip(line.chunks_exact_mut(side * depth)) {
+                            let Some(tile) = shown(*tile) else { continue };
+                            for (x, pixel) in place.chunks_exact_mut(depth).enumerate() {
+                                blend(pixel, self.tileset.pixel(tile, [x * by, y]));
+                            }
                         }
                     }
-                }
-            });
+                });
+            }
             Ok(())
         })
+    }
+}
+
+/// Rows of tiles of all layers, from the first to the last.
+struct TileRows<'m> {
+    map: &'m Tilemap,
+    readers: Vec<Reader<'m, u32>>,
+    /// The last row that was read, and the next one.
+    row: Arc<Vec<Vec<u32>>>,
+    next: usize,
+}
+
+impl<'m> TileRows<'m> {
+    fn new(map: &'m Tilemap) -> TileRows<'m> {
+        let used = map.layers.iter().filter(|layer| layer.is_used);
+        TileRows { map, readers: used.map(|layer| layer.tiles.reader()).collect(), row: Arc::default(), next: 0 }
+    }
+
+    /// The tiles of a row in each layer that has any; no row before the last one that was asked for.
+    fn row(&mut self, row: usize) -> io::Result<Arc<Vec<Vec<u32>>>> {
+        if row >= self.next {
+            let skipped = ((row - self.next) * self.map.width) as u64;
+            self.next = row + 1;
+            let layers: Vec<Vec<u32>> = (self.readers.par_iter_mut())
+                .map(|reader| {
+                    let mut tiles = Vec::new();
+                    reader.skip(skipped)?;
+                    reader.read(self.map.width, &mut tiles)?;
+                    Ok(tiles)
+                })
+                .collect::<io::Result<_>>()?;
+            self.row = Arc::new(layers);
+        }
+        Ok(self.row.clone())
     }
 }
 

@@ -1,5 +1,6 @@
 //! The classes of a tilemap as numbers, and a summary of the map.
 
+use std::fmt::Write as _;
 use std::io::{self, Write};
 
 use orogen_grid::autotile::drawable::MissingTile as Missing;
@@ -32,9 +33,9 @@ pub struct Summary {
     /// The classes, bottom to top.
     pub classes: Vec<ClassCount>,
     /// Places without a tile before the clean-up.
-    pub without_tile_before: usize,
+    pub without_tile_before: u64,
     /// Cells that the clean-up changed.
-    pub changed: usize,
+    pub changed: u64,
     /// Places without a tile in the map, up to 1000 of them.
     pub without_tile: Vec<MissingTile>,
 }
@@ -46,7 +47,7 @@ pub struct ClassCount {
     /// Its name.
     pub name: String,
     /// Its cells.
-    pub cells: usize,
+    pub cells: u64,
 }
 
 /// A place without a tile.
@@ -68,14 +69,10 @@ pub struct MissingTile {
     pub wang: Option<[u8; 8]>,
 }
 
-/// Maximum number of places in a summary.
-const MAX_PLACES: usize = 1000;
-
 impl Tilemap {
     /// The summary of the map.
     #[must_use]
     pub fn summary(&self, made_by: &str) -> Summary {
-        let counts = self.classes.counts();
         let terrains = &self.tileset.terrains;
         let name = |class: u8| terrains.get(usize::from(class)).map_or(String::new(), |terrain| terrain.name.clone());
         Summary {
@@ -91,12 +88,12 @@ impl Tilemap {
             classes: (terrains.iter().enumerate())
                 .map(|(n, terrain)| ClassCount {
                     name: terrain.name.clone(),
-                    cells: counts.get(n).copied().unwrap_or_default(),
+                    cells: self.class_counts.get(n).copied().unwrap_or_default(),
                 })
                 .collect(),
             without_tile_before: self.gaps_before,
             changed: self.changed,
-            without_tile: (self.gaps.iter().take(MAX_PLACES))
+            without_tile: (self.gaps.iter())
                 .map(|gap| {
                     let (class, mask, wang) = match gap.tile {
                         Missing::Layer { class, mask } => (Some(name(class)), Some(mask), None),
@@ -113,10 +110,19 @@ impl Tilemap {
     /// # Errors
     /// If `out` fails.
     pub fn write_csv(&self, out: &mut dyn Write) -> io::Result<()> {
-        for row in self.classes.data().chunks(self.classes.width().max(1)) {
-            let cells: Vec<String> = row.iter().map(u8::to_string).collect();
-            writeln!(out, "{}", cells.join(","))?;
+        let (mut reader, mut row, mut text) = (self.classes.reader(), Vec::new(), String::new());
+        loop {
+            reader.read(self.class_columns(), &mut row)?;
+            if row.is_empty() {
+                return Ok(());
+            }
+            text.clear();
+            for class in &row {
+                let _ = write!(text, "{class},");
+            }
+            text.pop();
+            text.push('\n');
+            out.write_all(text.as_bytes())?;
         }
-        Ok(())
     }
 }

@@ -2,13 +2,13 @@
 
 use orogen_engine::{Recipe, World};
 use orogen_grid::autotile::classes::Classes;
-use orogen_grid::autotile::mask::{CORNERS, Layout, OFFSETS};
+use orogen_grid::autotile::mask::{CORNERS, Layout, OFFSETS, SIMPLE_BLOB};
 use orogen_grid::grid::Window;
 use orogen_grid::progress::Progress;
 use orogen_grid::random::Random;
 
 use super::art::set::SETS;
-use super::job::{Tilemap, TilemapJob};
+use super::job::{AtOnce, Tilemap, TilemapJob};
 use super::tileset::{Fit, Tileset};
 
 /// Whether a pixel of the tile for a class and a mask is opaque.
@@ -76,16 +76,17 @@ fn the_tilesets_have_a_tile_for_everything() {
     }
 }
 
-fn map(layout: Layout, window: &Window) -> Tilemap {
-    let recipe = r#"
+const RECIPE: &str = r#"
         orogen = 1
         world = { seed = 3, cell = 10 }
         outputs = { class = "class" }
         nodes.land = { op = "fbm", wavelength = 120, octaves = 4 }
         nodes.class = { op = "expr", expr = "min(5, max(0, floor(land * 8 + 3)))" }
     "#;
+
+fn map(layout: Layout, window: &Window) -> Tilemap {
     let job = TilemapJob::new(SETS[0].draw(layout));
-    let mut recipe = Recipe::parse(recipe, "test").unwrap();
+    let mut recipe = Recipe::parse(RECIPE, "test").unwrap();
     job.prepare(&mut recipe, window.cell).unwrap();
     job.make(&World::open(recipe).unwrap(), window, &Progress::none()).unwrap()
 }
@@ -96,11 +97,12 @@ fn parts_of_an_unbounded_map_join() {
         let whole = map(layout, &Window::new(50, 40, 10.0).at(-30, 1000));
         let part = map(layout, &Window::new(21, 9, 10.0).at(-12, 1007));
         for (whole_layer, layer) in whole.layers.iter().zip(&part.layers) {
+            let [whole_layer, layer] = [whole_layer, layer].map(|layer| layer.tiles.in_memory().unwrap());
             for (y, row) in layer.chunks(part.width).enumerate() {
                 assert_eq!(row, &whole_layer[(y + 7) * whole.width + 18..][..part.width], "{}", layout.name());
             }
         }
-        assert_eq!((whole.gaps_before, whole.gaps.len(), whole.changed), (0, 0, 0));
+        assert_eq!((whole.gaps_before, whole.gap_count, whole.changed), (0, 0, 0));
     }
 }
 
@@ -116,7 +118,7 @@ fn the_files_hold_the_map() {
         let tiles = &map.layers[named(layer["name"].as_str().unwrap())];
         let data: Vec<u32> =
             layer["data"].as_array().unwrap().iter().map(|tile| tile.as_u64().unwrap() as u32).collect();
-        assert_eq!(data, tiles.iter().map(|tile| tile.wrapping_add(1)).collect::<Vec<_>>());
+        assert_eq!(data, tiles.tiles.to_vec().unwrap());
     }
     let mut text = Vec::new();
     map.write_tmx(&mut text, "a \"b\" & <c>.tsx", "test -- 1").unwrap();
@@ -124,4 +126,85 @@ fn the_files_hold_the_map() {
     assert!(
         text.contains("source=\"a &quot;b&quot; &amp; &lt;c&gt;.tsx\"") && text.contains("<!-- made by test - - 1 -->")
     );
+}
+
+/// Scattered objects, and terrains wide enough for the simplest tiles only here and there.
+const ROUGH: &str = r#"
+    orogen = 1
+    world = { seed = 7, size = [3000, 4000], cell = 10 }
+    outputs = { height = "land", class = "class" }
+    nodes.land = { op = "fbm", wavelength = 90, octaves = 5 }
+    nodes.class = { op = "expr", expr = "min(5, max(0, floor(land * 8 + 3)))" }
+    scatter = [{ name = "tree", spacing = 40 }, { name = "rock", spacing = 60 }]
+"#;
+
+/// The tileset with 13 tiles a class.
+fn simple() -> Tileset {
+    let mut tileset = SETS[0].draw(Layout::Blob);
+    tileset.tiles.retain(|tile| match tile.fit {
+        Fit::Layer { mask, .. } => SIMPLE_BLOB.contains(&mask),
+        Fit::Wang(_) => false,
+    });
+    tileset
+}
+
+/// All files of a map.
+fn files(map: &Tilemap) -> Vec<Vec<u8>> {
+    let mut files = vec![serde_json::to_vec(&map.summary("test")).unwrap()];
+    let mut file = |write: &dyn Fn(&mut Vec<u8>) -> std::io::Result<()>| {
+        let mut bytes = Vec::new();
+        write(&mut bytes).unwrap();
+        files.push(bytes);
+    };
+    file(&|out| map.write_tmx(out, "tiles.tsx", "test"));
+    file(&|out| map.write_tmj(out, "tiles.png", "test"));
+    file(&|out| map.write_tscn(out, "tiles.tres", "test"));
+    file(&|out| map.write_csv(out));
+    file(&|out| map.write_png(out, &[]));
+    if map.fits_ldtk() {
+        file(&|out| map.write_ldtk(out, "tiles.png", "test"));
+    }
+    files
+}
+
+/// The bits of all files of a map are the same, wherever its tiles are, and in however many pieces they were drawn.
+#[test]
+fn a_streamed_map_is_the_map_in_memory() {
+    let path = std::env::temp_dir().join("map.tmx");
+    let unbounded = Window::new(400, 500, 10.0).at(-300, 5);
+    let bounded = Window::new(301, 401, 10.0);
+    let cases = [
+        (RECIPE, SETS[0].draw(Layout::Blob), unbounded),
+        (RECIPE, simple(), unbounded),
+        (ROUGH, simple(), bounded),
+        (ROUGH, SETS[0].draw(Layout::Dual), bounded),
+        (ROUGH, SETS[1].draw(Layout::Corner), bounded),
+        // A picture with a pixel for some tiles, and packed layers.
+        (RECIPE, SETS[0].draw(Layout::Edge), Window { width: 8500, height: 130, ..unbounded }),
+    ];
+    for (recipe, tileset, window) in cases {
+        let (name, layout) = (tileset.name.clone(), tileset.layout.name());
+        let mut recipe = Recipe::parse(recipe, "test").unwrap();
+        let mut job = TilemapJob::new(tileset).with_infinite(layout == "corner");
+        job.prepare(&mut recipe, window.cell).unwrap();
+        let world = World::open(recipe).unwrap();
+        let whole = job.make(&world, &window, &Progress::none()).unwrap();
+        job.at_once = AtOnce { cleaned: 0, cleaned_rows: 100, drawn: 10_000 };
+        let streamed = job.stream(&world, &window, &path, &Progress::none()).unwrap();
+        assert!(streamed.layers.iter().all(|layer| layer.tiles.in_memory().is_none()));
+        for (nth, (streamed, whole)) in files(&streamed).iter().zip(files(&whole)).enumerate() {
+            assert!(*streamed == whole, "{name} {layout}: file {nth}");
+        }
+        let cells: u64 = whole.class_counts.iter().sum();
+        assert_eq!(cells, whole.classes.len());
+        // A part that is cleaned by itself.
+        let part = Window::new(90, 30, 10.0).at(window.x + 150, window.y + 95);
+        let part = job.make(&world, &part, &Progress::none()).unwrap();
+        for (whole_layer, layer) in whole.layers.iter().zip(&part.layers) {
+            let [whole_layer, layer] = [whole_layer, layer].map(|layer| layer.tiles.in_memory().unwrap());
+            for (y, row) in layer.chunks(part.width).enumerate() {
+                assert_eq!(row, &whole_layer[(y + 95) * whole.width + 150..][..part.width], "{name} {layout}");
+            }
+        }
+    }
 }

@@ -6,14 +6,14 @@
 
 use std::io::{self, Write};
 
-use orogen_grid::autotile::choose::NONE;
 use orogen_grid::autotile::flip::{Flip, Flips};
 use orogen_grid::autotile::mask::Layout;
+use orogen_io::records::Records;
 use serde_json::{Value, json};
 
 use super::job::Tilemap;
 use super::tileset::{Fit, Tileset};
-use crate::markup::{base64, escaped};
+use crate::markup::{Base64, escaped};
 
 /// The version of the formats.
 const VERSION: &str = "1.8";
@@ -185,31 +185,50 @@ impl Tileset {
 /// Tiles along a side of a chunk of an infinite map.
 const CHUNK: usize = 16;
 
-/// A chunk of a layer of an infinite map: where it begins, and its tiles.
-struct Chunk {
-    x: i64,
-    y: i64,
-    tiles: Vec<u32>,
-}
-
 impl Tilemap {
-    /// The chunks of a layer that have a tile, at the positions of the world's cells.
-    fn chunks(&self, tiles: &[u32]) -> Vec<Chunk> {
+    /// Gives the chunks of a layer that have a tile, at the positions of the world's cells: where each begins, and its tiles.
+    fn each_chunk(
+        &self,
+        tiles: &Records<u32>,
+        mut of_chunk: impl FnMut([i64; 2], &[u32]) -> io::Result<()>,
+    ) -> io::Result<()> {
         let side = CHUNK as i64;
         let ends = |from: i64, length: usize| from.div_euclid(side)..(from + length as i64 + side - 1).div_euclid(side);
         let (columns, rows) = (ends(self.window.x, self.width), ends(self.window.y, self.height));
-        let places = rows.flat_map(|row| columns.clone().map(move |column| [column * side, row * side]));
-        let chunk = |[x, y]: [i64; 2]| {
-            let at = |place: usize| {
-                let [column, row] =
-                    [x - self.window.x + (place % CHUNK) as i64, y - self.window.y + (place / CHUNK) as i64];
-                let is_inside = (0..self.width as i64).contains(&column) && (0..self.height as i64).contains(&row);
-                if is_inside { tiles[row as usize * self.width + column as usize] } else { NONE }
-            };
-            let tiles: Vec<u32> = (0..CHUNK * CHUNK).map(at).collect();
-            tiles.iter().any(|tile| *tile != NONE).then_some(Chunk { x, y, tiles })
-        };
-        places.filter_map(chunk).collect()
+        let (mut reader, mut band, mut chunk) = (tiles.reader(), Vec::new(), Vec::new());
+        let mut next = 0;
+        for y in rows.map(|row| row * side) {
+            // The rows of the map in these chunks.
+            let (first, last) = (next, ((y + side - self.window.y) as usize).min(self.height));
+            reader.read((last - first) * self.width, &mut band)?;
+            next = last;
+            for x in columns.clone().map(|column| column * side) {
+                let at = |place: usize| {
+                    let column = x - self.window.x + (place % CHUNK) as i64;
+                    let row = y - self.window.y + (place / CHUNK) as i64 - first as i64;
+                    let is_inside =
+                        (0..self.width as i64).contains(&column) && (0..(last - first) as i64).contains(&row);
+                    if is_inside { band[row as usize * self.width + column as usize] } else { 0 }
+                };
+                chunk.clear();
+                chunk.extend((0..CHUNK * CHUNK).map(at));
+                if chunk.iter().any(|tile| *tile != 0) {
+                    of_chunk([x, y], &chunk)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes the numbers of the tiles of a layer row by row, separated by commas.
+    fn write_listed(&self, out: &mut dyn Write, tiles: &Records<u32>) -> io::Result<()> {
+        let (mut reader, mut row) = (tiles.reader(), Vec::new());
+        for nth in 1..=self.height {
+            reader.read(self.width, &mut row)?;
+            write_numbers(out, &row)?;
+            writeln!(out, "{}", if nth < self.height { "," } else { "" })?;
+        }
+        Ok(())
     }
 
     /// Tiles from the origin of the map in a file to the upper left tile.
@@ -224,9 +243,9 @@ impl Tilemap {
     }
 
     /// The layers with a tile, with their names.
-    fn used(&self) -> impl Iterator<Item = (&str, &[u32])> {
+    pub(super) fn used(&self) -> impl Iterator<Item = (&str, &Records<u32>)> {
         let named = self.tileset.layer_names().into_iter().zip(&self.layers);
-        named.map(|(name, tiles)| (name, tiles.as_slice())).filter(|(_, tiles)| tiles.iter().any(|tile| *tile != NONE))
+        named.filter(|(_, layer)| layer.is_used).map(|(name, layer)| (name, &layer.tiles))
     }
 
     fn is_listed(&self) -> bool {
@@ -257,23 +276,23 @@ impl Tilemap {
             writeln!(out, " <layer id=\"{}\" name=\"{}\" width=\"{width}\" height=\"{height}\">", n + 1, quoted(name))?;
             if self.is_infinite {
                 writeln!(out, "  <data encoding=\"csv\">")?;
-                for Chunk { x, y, tiles } in self.chunks(tiles) {
+                self.each_chunk(tiles, |[x, y], tiles| {
                     writeln!(out, "   <chunk x=\"{x}\" y=\"{y}\" width=\"{CHUNK}\" height=\"{CHUNK}\">")?;
-                    listed(out, &tiles, CHUNK)?;
-                    writeln!(out, "</chunk>")?;
-                }
+                    write_chunk(out, tiles)?;
+                    writeln!(out, "</chunk>")
+                })?;
             } else if self.is_listed() {
                 writeln!(out, "  <data encoding=\"csv\">")?;
-                listed(out, tiles, width)?;
+                self.write_listed(out, tiles)?;
             } else {
                 write!(out, "  <data encoding=\"base64\" compression=\"zlib\">")?;
-                base64(out, &packed(tiles))?;
+                write_packed(out, tiles)?;
             }
             writeln!(out, "</data>\n </layer>")?;
         }
         if !self.objects.is_empty() {
             writeln!(out, " <objectgroup id=\"{objects}\" name=\"objects\">")?;
-            for (nth, object) in self.objects.iter().enumerate() {
+            self.each_object(|nth, object| {
                 let [x, y] = self.pixel(object.position);
                 let kind = quoted(&self.kinds[object.kind]);
                 writeln!(
@@ -284,8 +303,8 @@ impl Tilemap {
                 )?;
                 let size = object.size;
                 writeln!(out, "   <properties>\n    <property name=\"size\" type=\"float\" value=\"{size:.4}\"/>")?;
-                writeln!(out, "   </properties>\n   <point/>\n  </object>")?;
-            }
+                writeln!(out, "   </properties>\n   <point/>\n  </object>")
+            })?;
             writeln!(out, " </objectgroup>")?;
         }
         writeln!(out, "</map>")
@@ -325,23 +344,24 @@ impl Tilemap {
             if self.is_infinite {
                 let [x, y] = self.place();
                 write!(out, "\"startx\": {x}, \"starty\": {y}, \"chunks\": [")?;
-                for (nth, Chunk { x, y, tiles }) in self.chunks(tiles).into_iter().enumerate() {
-                    let comma = if nth > 0 { "," } else { "" };
-                    write!(
+                let mut comma = "";
+                self.each_chunk(tiles, |[x, y], tiles| {
+                    writeln!(
                         out,
-                        "{comma}\n{{\"x\": {x}, \"y\": {y}, \"width\": {CHUNK}, \"height\": {CHUNK}, \"data\": [\n"
+                        "{comma}\n{{\"x\": {x}, \"y\": {y}, \"width\": {CHUNK}, \"height\": {CHUNK}, \"data\": ["
                     )?;
-                    listed(out, &tiles, CHUNK)?;
-                    write!(out, "]}}")?;
-                }
+                    comma = ",";
+                    write_chunk(out, tiles)?;
+                    write!(out, "]}}")
+                })?;
                 write!(out, "]")?;
             } else if self.is_listed() {
                 writeln!(out, "\"data\": [")?;
-                listed(out, tiles, width)?;
+                self.write_listed(out, tiles)?;
                 write!(out, "]")?;
             } else {
                 write!(out, "\"encoding\": \"base64\", \"compression\": \"zlib\", \"data\": \"")?;
-                base64(out, &packed(tiles))?;
+                write_packed(out, tiles)?;
                 write!(out, "\"")?;
             }
             writeln!(out, "}}{}", if n + 1 < layers.len() { "," } else { "" })?;
@@ -354,7 +374,7 @@ impl Tilemap {
                  \"opacity\": 1, \"visible\": true, \"objects\": [",
                 layers.len() + 1
             )?;
-            for (nth, object) in self.objects.iter().enumerate() {
+            self.each_object(|nth, object| {
                 let [x, y] = self.pixel(object.position).map(|at| (at * 100.0).round() / 100.0);
                 let rotation = (object.turn * 100.0).round() / 100.0;
                 let own = json!({
@@ -362,33 +382,35 @@ impl Tilemap {
                     "visible": true, "point": true,
                     "properties": [{ "name": "size", "type": "float", "value": (object.size * 1e4).round() / 1e4 }],
                 });
-                writeln!(out, "{own}{}", if nth + 1 < self.objects.len() { "," } else { "" })?;
-            }
+                writeln!(out, "{own}{}", if nth + 1 < self.objects.len() { "," } else { "" })
+            })?;
             writeln!(out, "]}}")?;
         }
         writeln!(out, "],\n\"tilesets\": [{}]\n}}", self.tileset.json(image))
     }
 }
 
-/// Writes the numbers of tiles row by row, separated by commas.
-fn listed(out: &mut dyn Write, tiles: &[u32], width: usize) -> io::Result<()> {
-    let mut rows = tiles.chunks(width.max(1)).peekable();
+/// Writes the tiles of a chunk row by row, separated by commas.
+fn write_chunk(out: &mut dyn Write, tiles: &[u32]) -> io::Result<()> {
+    let mut rows = tiles.chunks(CHUNK).peekable();
     while let Some(row) = rows.next() {
-        let numbers: Vec<String> = row.iter().map(|tile| number(*tile).to_string()).collect();
-        writeln!(out, "{}{}", numbers.join(","), if rows.peek().is_some() { "," } else { "" })?;
+        write_numbers(out, row)?;
+        writeln!(out, "{}", if rows.peek().is_some() { "," } else { "" })?;
     }
     Ok(())
 }
 
-/// The number of a tile in a map.
-fn number(tile: u32) -> u32 {
-    if tile == NONE { 0 } else { tile + FIRST }
+/// Writes numbers separated by commas.
+fn write_numbers(out: &mut dyn Write, numbers: &[u32]) -> io::Result<()> {
+    let numbers: Vec<String> = numbers.iter().map(u32::to_string).collect();
+    out.write_all(numbers.join(",").as_bytes())
 }
 
-/// The numbers of tiles as 32-bit little-endian, compressed.
-fn packed(tiles: &[u32]) -> Vec<u8> {
-    let bytes: Vec<u8> = tiles.iter().flat_map(|tile| number(*tile).to_le_bytes()).collect();
-    miniz_oxide::deflate::compress_to_vec_zlib(&bytes, 6)
+/// Writes tiles as 32-bit little-endian, compressed, as base64.
+fn write_packed(out: &mut dyn Write, tiles: &Records<u32>) -> io::Result<()> {
+    let mut base64 = Base64::new(out);
+    tiles.write_packed(&mut base64)?;
+    base64.finish()
 }
 
 /// Text for an attribute of XML.

@@ -77,6 +77,12 @@ pub fn parts(number: u32) -> (u32, Flip) {
     (number & (DIAGONAL - 1), Flip { diagonal: has(DIAGONAL), x: has(MIRRORED), y: has(UPSIDE_DOWN) })
 }
 
+/// The number in the picture and the flips of a tile in the files of a map, which has 0 where there is no tile, and otherwise 1 more than its [number].
+#[must_use]
+pub fn shown(tile: u32) -> Option<(u32, Flip)> {
+    tile.checked_sub(1).map(parts)
+}
+
 /// A tileset. Tile n of the picture is in column n % `columns` and row n / `columns`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tileset {
@@ -117,11 +123,10 @@ impl Tileset {
         self.count.div_ceil(self.columns.max(1)) * self.size
     }
 
-    /// The pixel of a tile of a map, by its [number].
+    /// The pixel of a turned tile.
     #[inline]
     #[must_use]
-    pub fn pixel(&self, tile: u32, at: [usize; 2]) -> Rgba {
-        let (picture, flip) = parts(tile);
+    pub fn pixel(&self, (picture, flip): (u32, Flip), at: [usize; 2]) -> Rgba {
         let [x, y] = flip.pixel(at, self.size);
         self.row(picture as usize, y)[x]
     }
