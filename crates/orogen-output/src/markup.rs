@@ -91,7 +91,7 @@ mod tests {
             base64(&mut out, bytes.as_bytes()).unwrap();
             assert_eq!(String::from_utf8(out).unwrap(), expect);
         }
-        let bytes: Vec<u8> = (0..100_000u32).map(|k| (k * k >> 7) as u8).collect();
+        let bytes: Vec<u8> = (0..100_000u32).map(|k| (k.wrapping_mul(k) >> 7) as u8).collect();
         let mut whole = Vec::new();
         base64(&mut whole, &bytes).unwrap();
         for piece in [1, 2, 4, 1000] {

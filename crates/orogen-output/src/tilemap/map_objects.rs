@@ -6,11 +6,12 @@ use orogen_engine::World;
 use orogen_engine::recipe::scatter::document::Scatter;
 use orogen_engine::world::HEIGHT;
 use orogen_grid::autotile::mask::Layout;
-use orogen_grid::error::{Error, Result};
+use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
 use orogen_grid::progress::Progress;
-use orogen_io::records::{Record, Recorder, Records};
+use orogen_io::records::{Record, Records};
 
+use super::drawing::Stores;
 use super::job::{Tilemap, TilemapJob};
 
 /// The least spacing, in cells, of scattered objects that are on a map: a cell holds few of them.
@@ -67,12 +68,12 @@ impl TilemapJob {
         &self,
         world: &World,
         window: &Window,
-        mut recorder: Recorder<MapObject>,
-        failed: &dyn Fn(io::Error) -> Error,
+        stores: &Stores,
         progress: &Progress,
     ) -> Result<(Vec<String>, Records<MapObject>)> {
         let scatter = world.recipe().scatter();
         let mut kinds: Vec<String> = Vec::new();
+        let mut recorder = stores.recorder();
         if has_objects(world, window.cell) {
             for entry in scatter.iter().filter(|entry| is_drawn(entry, window.cell)) {
                 if !kinds.contains(&entry.name) {
@@ -86,11 +87,11 @@ impl TilemapJob {
                 let bottom = (top + rows).min(height);
                 let part = progress.part((bottom - top) as f64);
                 let objects = self.objects_of_rows(world, window, [top, bottom], &kinds, &part)?;
-                recorder.push(&objects).map_err(failed)?;
+                recorder.push(&objects).map_err(|cause| stores.failed(&cause))?;
             }
         }
         progress.finish();
-        Ok((kinds, recorder.finish().map_err(failed)?))
+        Ok((kinds, stores.finished(recorder)?))
     }
 
     /// The objects on some rows of tiles, ordered from back to front.

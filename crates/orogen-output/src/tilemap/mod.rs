@@ -5,6 +5,7 @@
 
 pub mod art;
 mod class_rows;
+mod drawing;
 pub mod godot;
 pub mod job;
 pub mod ldtk;
