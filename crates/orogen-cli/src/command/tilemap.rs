@@ -70,7 +70,7 @@ const GODOT: &str = "map.tscn";
 const SIDE: usize = 128;
 
 /// Memory for writing the files, in bytes.
-const ENCODERS: u64 = 16 << 20;
+const ENCODERS: u64 = 12 << 20;
 
 /// Makes the map.
 pub fn run(args: &Args) -> Result<(), Failure> {

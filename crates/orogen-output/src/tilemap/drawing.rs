@@ -23,7 +23,7 @@ use super::tileset::parts;
 const MAX_GAPS: usize = 1000;
 
 /// Bytes of tiles, classes or objects that stay in memory when they are packed.
-pub(super) const IN_MEMORY: usize = 1 << 20;
+pub(super) const IN_MEMORY: usize = 1 << 19;
 
 /// Where the tiles, classes and objects of a map are until it is written.
 pub(super) struct Stores<'a> {

@@ -30,7 +30,7 @@ pub(super) struct AtOnce {
     pub drawn: usize,
 }
 
-const AT_ONCE: AtOnce = AtOnce { cleaned: 1 << 22, cleaned_rows: 256, drawn: 1 << 19 };
+const AT_ONCE: AtOnce = AtOnce { cleaned: 1 << 22, cleaned_rows: 256, drawn: 1 << 17 };
 
 /// What a map is made with.
 #[derive(Debug, Clone)]

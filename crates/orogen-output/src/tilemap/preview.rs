@@ -14,7 +14,7 @@ use super::tileset::{Fit, Rgba, Tile, Tileset, shown};
 const MAX_SIDE: usize = 8192;
 
 /// Memory for the tiles of the rows of a picture that are drawn at once, in bytes.
-const BAND: usize = 4 << 20;
+const BAND: usize = 2 << 20;
 
 impl Tilemap {
     /// How many pixels of the map are one of its picture along either side: 1 up to 8192 pixels, and otherwise a divisor or a multiple of the side of a tile.
