@@ -68,6 +68,7 @@ fn rows(side: usize) -> Vec<Vec<String>> {
     rows.push("map climate.toml --color biomes -o biomes.png -q".into());
     rows.push("map classes.toml --color classes -o classes.png -q".into());
     rows.push(format!("tilemap classes.toml --size {side} -o tiles -q"));
+    rows.push(format!("tilemap trees.toml --size {side} --layout dual -o tiles -q"));
     rows.push("export land.toml --surfaces --max-error 20 -o ground.glb -q".into());
     // Few pixels, but many samples for the lines.
     rows.push("map land.toml --dpi 40 -o small.png -q".into());

@@ -16,14 +16,30 @@ use orogen_io::records::{Record, Recorder, Records};
 use orogen_io::spool::Spool;
 use rayon::prelude::*;
 
-use super::job::{TileLayer, TilemapJob};
-use super::tileset::parts;
+use super::map::TileLayer;
+use super::tileset::{Tileset, parts};
 
 /// Maximum number of places without a tile that a map lists.
 const MAX_GAPS: usize = 1000;
 
 /// Bytes of tiles, classes or objects that stay in memory when they are packed.
 pub(super) const IN_MEMORY: usize = 1 << 19;
+
+/// Tiles per row, and rows of tiles, of the map of a window.
+pub(super) fn sides(layout: Layout, window: &Window) -> [usize; 2] {
+    let more = usize::from(layout == Layout::Dual);
+    [window.width + more, window.height + more]
+}
+
+/// The rows of cells that rows of tiles see, from the first to, but not including, the last.
+pub(super) fn seen(layout: Layout, rows: [usize; 2]) -> [i64; 2] {
+    let [top, bottom] = rows.map(|row| row as i64);
+    match layout {
+        Layout::Corner => [top, bottom + 1],
+        Layout::Dual => [top - 1, bottom],
+        _ => [top - 1, bottom + 1],
+    }
+}
 
 /// Where the tiles, classes and objects of a map are until it is written.
 pub(super) struct Stores<'a> {
@@ -58,9 +74,11 @@ struct Layer {
 
 /// A map whose rows are drawn from the first to the last.
 pub(super) struct Drawing<'a> {
-    job: &'a TilemapJob,
+    tileset: &'a Tileset,
     window: &'a Window,
     seed: u64,
+    /// Rows that are drawn at once.
+    at_once: usize,
     pub drawable: Drawable,
     choices: Tiles,
     stores: &'a Stores<'a>,
@@ -75,18 +93,25 @@ pub(super) struct Drawing<'a> {
 
 impl<'a> Drawing<'a> {
     /// A map without rows.
-    pub fn new(job: &'a TilemapJob, window: &'a Window, seed: u64, stores: &'a Stores<'a>) -> Drawing<'a> {
-        let layers = job.tileset.layer_names().into_iter();
+    pub fn new(
+        tileset: &'a Tileset,
+        window: &'a Window,
+        seed: u64,
+        at_once: usize,
+        stores: &'a Stores<'a>,
+    ) -> Drawing<'a> {
+        let layers = tileset.layer_names().into_iter();
         Drawing {
-            job,
+            tileset,
             window,
             seed,
-            drawable: job.tileset.drawable(),
-            choices: job.tileset.choices(),
+            at_once,
+            drawable: tileset.drawable(),
+            choices: tileset.choices(),
             stores,
             classes: stores.recorder(),
             layers: layers.map(|_| Layer { tiles: stores.recorder(), is_used: false, is_turned: false }).collect(),
-            class_counts: vec![0; job.tileset.terrains.len()],
+            class_counts: vec![0; tileset.terrains.len()],
             gaps_before: 0,
             gap_count: 0,
             gaps: Vec::new(),
@@ -110,10 +135,9 @@ impl<'a> Drawing<'a> {
             clean(&mut classes, &self.drawable, &progress.part(rows))?;
             cleaned = Some(classes);
         }
-        let at_once = self.job.drawn_rows(self.window);
-        for first in (top..bottom).step_by(at_once) {
+        for first in (top..bottom).step_by(self.at_once) {
             progress.check()?;
-            let last = (first + at_once).min(bottom);
+            let last = (first + self.at_once).min(bottom);
             self.count_gaps(&before, cleaned.as_ref(), [first, last]);
             self.add_classes(&before, cleaned.as_ref(), [first, last])?;
             self.add_tiles(cleaned.as_ref().unwrap_or(&before), [first, last])?;
@@ -124,17 +148,17 @@ impl<'a> Drawing<'a> {
 
     /// The classes that rows of tiles see.
     fn around(&self, classes: &Classes, [first, last]: [usize; 2]) -> Classes {
-        let (x, width) = match self.job.tileset.layout {
+        let (x, width) = match self.tileset.layout {
             Layout::Corner => (self.window.x, self.window.width + 1),
             _ => (self.window.x - 1, self.window.width + 2),
         };
-        let [from, to] = self.job.seen(first, last);
+        let [from, to] = seen(self.tileset.layout, [first, last]);
         classes.part([x, self.window.y + from], width, (to - from) as usize)
     }
 
     /// How many tiles are drawn beside the map on each side: those of tiles of cells, which see one cell around them.
     fn beside(&self) -> usize {
-        usize::from(!self.job.tileset.layout.is_on_corners())
+        usize::from(!self.tileset.layout.is_on_corners())
     }
 
     /// Counts the places without a tile, before and after the clean-up.
@@ -142,7 +166,7 @@ impl<'a> Drawing<'a> {
         if self.drawable.is_complete() {
             return;
         }
-        let columns = 0..self.job.sides(self.window)[0] as i64;
+        let columns = 0..sides(self.tileset.layout, self.window)[0] as i64;
         let rows = 0..(last - first) as i64;
         let beside = self.beside() as i64;
         let gaps = |classes: &Classes| -> Vec<Gap> {
@@ -162,9 +186,9 @@ impl<'a> Drawing<'a> {
 
     /// Adds the rows of classes that belong to rows of tiles.
     fn add_classes(&mut self, before: &Classes, cleaned: Option<&Classes>, [first, last]: [usize; 2]) -> Result<()> {
-        let more = usize::from(self.job.tileset.layout == Layout::Corner);
+        let more = usize::from(self.tileset.layout == Layout::Corner);
         let [columns, rows] = [self.window.width + more, self.window.height + more];
-        let last = if last == self.job.sides(self.window)[1] { rows } else { last.min(rows) };
+        let last = if last == sides(self.tileset.layout, self.window)[1] { rows } else { last.min(rows) };
         for row in first..last {
             let own = |classes: &Classes| classes.part([self.window.x, self.window.y + row as i64], columns, 1);
             let now = own(cleaned.unwrap_or(before));
@@ -183,7 +207,7 @@ impl<'a> Drawing<'a> {
     /// Adds rows of tiles to each layer.
     fn add_tiles(&mut self, classes: &Classes, [first, last]: [usize; 2]) -> Result<()> {
         let tiles = layers(&self.around(classes, [first, last]), &self.drawable, &self.choices, self.seed);
-        let columns = self.job.sides(self.window)[0];
+        let columns = sides(self.tileset.layout, self.window)[0];
         let beside = self.beside();
         let add = |(layer, tiles): (&mut Layer, Vec<u32>)| {
             let rows = tiles.chunks(columns + 2 * beside).skip(beside).take(last - first);

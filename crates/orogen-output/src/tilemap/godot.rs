@@ -9,7 +9,7 @@ use orogen_grid::autotile::flip::Flip;
 use orogen_grid::autotile::mask::Layout;
 use orogen_io::records::Records;
 
-use super::job::Tilemap;
+use super::map::Tilemap;
 use super::tileset::{Fit, Tile, Tileset, shown};
 use crate::markup::Base64;
 

@@ -4,18 +4,17 @@ use std::path::Path;
 
 use orogen_engine::recipe::class::document::CLASS;
 use orogen_engine::{Recipe, World};
-use orogen_grid::analysis::finite::FiniteCount;
 use orogen_grid::autotile::clean::HALO;
-use orogen_grid::autotile::drawable::{Drawable, Gap};
-use orogen_grid::autotile::mask::Layout;
+use orogen_grid::autotile::drawable::Drawable;
 use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
 use orogen_grid::progress::Progress;
-use orogen_io::records::{MEMORY as RECORDS, Records};
+use orogen_io::records::MEMORY as RECORDS;
 
 use super::class_rows::ClassRows;
-use super::drawing::{Drawing, IN_MEMORY, Stores};
-use super::map_objects::{MapObject, has_objects};
+use super::drawing::{Drawing, IN_MEMORY, Stores, seen, sides};
+use super::map::Tilemap;
+use super::map_objects::{has_objects, objects};
 use super::named::number;
 use super::standard::classify;
 use super::tileset::Tileset;
@@ -43,64 +42,6 @@ pub struct TilemapJob {
     /// Whether maps of Tiled are infinite: chunks of tiles at the positions of the world's cells.
     pub is_infinite: bool,
     pub(super) at_once: AtOnce,
-}
-
-/// A layer of tiles.
-#[derive(Debug)]
-#[non_exhaustive]
-pub struct TileLayer {
-    /// The tiles, row-major, as the files of a map have them: 0 where there is none, and otherwise 1 more than the [number](super::tileset::number) of the tile.
-    pub tiles: Records<u32>,
-    /// Whether it has any tile.
-    pub is_used: bool,
-    /// Whether any tile is turned by a quarter.
-    pub is_turned: bool,
-}
-
-/// A map of tiles.
-#[derive(Debug)]
-#[non_exhaustive]
-pub struct Tilemap {
-    /// The tiles.
-    pub tileset: Tileset,
-    /// The cells of the map: a class each. Their size is in metres.
-    pub window: Window,
-    /// The class of each cell, row-major; of a corner layout the class at each corner of a tile.
-    pub classes: Records<u8>,
-    /// How many cells have each class of the tileset.
-    pub class_counts: Vec<u64>,
-    /// Tiles per row.
-    pub width: usize,
-    /// Rows of tiles.
-    pub height: usize,
-    /// A layer for each class, bottom to top, or one for all of a wang tileset.
-    pub layers: Vec<TileLayer>,
-    /// Places without a tile before the clean-up.
-    pub gaps_before: u64,
-    /// Places without a tile in the map.
-    pub gap_count: u64,
-    /// The first of them, up to 1000.
-    pub gaps: Vec<Gap>,
-    /// Cells whose class the clean-up changed.
-    pub changed: u64,
-    /// How many of the classes it was made from are numbers. Cells without a class have the first one.
-    pub finite: FiniteCount,
-    /// The names of the kinds of scattered objects.
-    pub kinds: Vec<String>,
-    /// The scattered objects on the map, from back to front.
-    pub objects: Records<MapObject>,
-    /// Whether maps of Tiled are infinite.
-    pub is_infinite: bool,
-    /// The seed by which variants of tiles are chosen: that of the world.
-    pub seed: u64,
-}
-
-impl Tilemap {
-    /// Cells per row of [`Tilemap::classes`].
-    #[must_use]
-    pub fn class_columns(&self) -> usize {
-        self.window.width + usize::from(self.tileset.layout == Layout::Corner)
-    }
 }
 
 impl TilemapJob {
@@ -161,19 +102,27 @@ impl TilemapJob {
     }
 
     /// Rows of tiles that are drawn at once.
-    pub(super) fn drawn_rows(&self, window: &Window) -> usize {
+    fn drawn_rows(&self, window: &Window) -> usize {
         (self.at_once.drawn / window.width.max(1)).max(1)
-    }
-
-    /// Tiles per row, and rows of tiles, of the map of a window.
-    pub(super) fn sides(&self, window: &Window) -> [usize; 2] {
-        let more = usize::from(self.tileset.layout == Layout::Dual);
-        [window.width + more, window.height + more]
     }
 
     /// Makes the map of the cells of a window in memory. `world` is of a [prepared](TilemapJob::prepare) recipe.
     ///
     /// Any part of a map has the same tiles as the whole.
+    ///
+    /// ```
+    /// use orogen_engine::{Progress, Window, World, presets};
+    /// use orogen_grid::autotile::mask::Layout;
+    /// use orogen_output::tilemap::{art::set::SETS, job::TilemapJob};
+    ///
+    /// let job = TilemapJob::new(SETS[0].draw(Layout::Blob));
+    /// let mut recipe = presets::find("hills").ok_or("no such preset")?.recipe()?;
+    /// job.prepare(&mut recipe, 20.0)?;
+    /// let map = job.make(&World::open(recipe)?, &Window::new(24, 16, 20.0), &Progress::none())?;
+    /// let water = map.layers[0].tiles.in_memory().ok_or("it is in memory")?;
+    /// assert_eq!((water.len(), map.class_counts.iter().sum::<u64>(), map.gap_count), (24 * 16, 24 * 16, 0));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// If the window is not in the world, if a class is none of the tileset's, or if `progress` is cancelled.
@@ -194,7 +143,8 @@ impl TilemapJob {
     fn draw(&self, world: &World, window: &Window, path: Option<&Path>, progress: &Progress) -> Result<Tilemap> {
         world.check(window)?;
         let stores = Stores { path };
-        let mut drawing = Drawing::new(self, window, world.recipe().world.seed, &stores);
+        let mut drawing =
+            Drawing::new(&self.tileset, window, world.recipe().world.seed, self.drawn_rows(window), &stores);
         let is_cleaned = self.is_cleaned(&drawing.drawable);
         let halo = cleaning_halo(is_cleaned);
         // Tiles see one cell around them.
@@ -208,19 +158,20 @@ impl TilemapJob {
             cells * if has_objects(world, window.cell) { 20.0 } else { 1.0 },
         ]);
         let mut rows = ClassRows::new(world, &self.tileset, &around, &computing)?;
-        let [width, height] = self.sides(window);
+        let layout = self.tileset.layout;
+        let [width, height] = sides(layout, window);
         cleaning.expect(height as f64);
         let at_once = self.cleaned_rows(window, is_cleaned);
         for top in (0..height).step_by(at_once) {
             let bottom = (top + at_once).min(height);
-            let [from, to] = self.seen(top, bottom).map(|row| row + window.y);
+            let [from, to] = seen(layout, [top, bottom]).map(|row| row + window.y);
             let before = rows.rows(from - halo as i64, to + halo as i64)?;
             let part = cleaning.part((bottom - top) as f64);
             world.install(|| drawing.add(before, is_cleaned, [top, bottom], &part))?;
         }
         let finite = rows.finite();
         drop(rows);
-        let (kinds, objects) = self.objects(world, window, &stores, &placing)?;
+        let (kinds, objects) = objects(world, layout, window, &stores, &placing)?;
         let drawn = drawing.finish()?;
         Ok(Tilemap {
             tileset: self.tileset.clone(),
@@ -240,16 +191,6 @@ impl TilemapJob {
             gaps: drawn.gaps,
             changed: drawn.changed,
         })
-    }
-
-    /// The rows of cells that rows of tiles see, from the first to, but not including, the last.
-    pub(super) fn seen(&self, top: usize, bottom: usize) -> [i64; 2] {
-        let [top, bottom] = [top, bottom].map(|row| row as i64);
-        match self.tileset.layout {
-            Layout::Corner => [top, bottom + 1],
-            Layout::Dual => [top - 1, bottom],
-            _ => [top - 1, bottom + 1],
-        }
     }
 }
 

@@ -9,8 +9,7 @@ use orogen_grid::random::mix64;
 use orogen_io::records::Records;
 use serde_json::{Value, json};
 
-use super::job::Tilemap;
-use super::map_objects::MapObject;
+use super::map::{MapObject, Tilemap};
 use super::tileset::shown;
 
 /// The version of the format.

@@ -1,6 +1,6 @@
 //! Tilemaps: terrain classes of a world drawn with tiles, as files for map editors, engines and programs.
 //!
-//! [`job::TilemapJob`] makes a [`job::Tilemap`] from a world, in memory or in bounded memory; [`art`] draws the tilesets of the program, and [`load`] reads those of others; [`tiled`], [`ldtk`],
+//! [`job::TilemapJob`] makes a [`map::Tilemap`] from a world, in memory or in bounded memory; [`art`] draws the tilesets of the program, and [`load`] reads those of others; [`tiled`], [`ldtk`],
 //! [`godot`], [`preview`] and [`table`] write the map.
 
 pub mod art;
@@ -10,7 +10,8 @@ pub mod godot;
 pub mod job;
 pub mod ldtk;
 pub mod load;
-pub mod map_objects;
+pub mod map;
+mod map_objects;
 pub(crate) mod named;
 pub mod preview;
 pub mod standard;

@@ -7,7 +7,7 @@ use orogen_io::format::png::{self, Picture, Pixel};
 use orogen_io::records::Reader;
 use rayon::prelude::*;
 
-use super::job::Tilemap;
+use super::map::Tilemap;
 use super::tileset::{Fit, Rgba, Tile, Tileset, shown};
 
 /// Maximum side of a picture in pixels.

@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use orogen_grid::autotile::drawable::MissingTile as Missing;
 use serde::Serialize;
 
-use super::job::Tilemap;
+use super::map::Tilemap;
 
 /// `tilemap.json`. Keys have the order of the fields.
 #[derive(Debug, Clone, Serialize)]

@@ -8,7 +8,8 @@ use orogen_grid::progress::Progress;
 use orogen_grid::random::Random;
 
 use super::art::set::SETS;
-use super::job::{AtOnce, Tilemap, TilemapJob};
+use super::job::{AtOnce, TilemapJob};
+use super::map::Tilemap;
 use super::tileset::{Fit, Tileset};
 
 /// Whether a pixel of the tile for a class and a mask is opaque.

@@ -11,7 +11,7 @@ use orogen_grid::autotile::mask::Layout;
 use orogen_io::records::Records;
 use serde_json::{Value, json};
 
-use super::job::Tilemap;
+use super::map::Tilemap;
 use super::tileset::{Fit, Tileset};
 use crate::markup::{Base64, escaped};
 
