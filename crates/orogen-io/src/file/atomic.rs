@@ -196,7 +196,8 @@ fn target(path: &Path) -> Result<Destination> {
         }
         Ok(_) => Ok(Destination::Stream),
         Err(cause) if cause.kind() == io::ErrorKind::NotFound => {
-            if fs::symlink_metadata(path).is_ok() {
+            // Another file may have appeared there since.
+            if fs::symlink_metadata(path).is_ok_and(|there| there.is_symlink()) {
                 return Err(refuse("it is a link to something that does not exist"));
             }
             if path.file_name().is_none() || ends_in_separator {
