@@ -171,6 +171,11 @@ impl Metadata {
     }
 
     #[must_use]
+    pub fn is_symlink(&self) -> bool {
+        match self.0 {}
+    }
+
+    #[must_use]
     pub fn len(&self) -> u64 {
         match self.0 {}
     }
