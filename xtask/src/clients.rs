@@ -37,6 +37,7 @@ Builds `orogen` in release mode, installs missing clients and runs every step, o
   tiles     NumPy and Pillow read tiles: shared edges, one scale; Terrarium heights at the right map positions
   dems      orogen reads heights in every kind that rasterio writes: bit-equal samples, the same coordinates
   meshes    the glTF validator, trimesh, meshio and admesh read GLB, OBJ, PLY and STL: samples, orientation, closed solids
+  tilemaps  Tiled, PyTMX, ldtkpy and godot_parser read tilemaps: the same tiles, wang sets and pictures
   blocks    nbtlib, midvoxio and trimesh read blocks, and a Luanti server opens them: the same blocks, no cracks in the mesh
   contours  gdal_contour of the same heights gives the same lines; GDAL reads our files
   water     GDAL, SQLite and Shapely read rivers, lakes and watersheds: valid, connected, never rising, at the coordinates of the GeoTIFF

@@ -32,9 +32,11 @@ pub struct Border {
 impl Border {
     /// Distance from the side at a position along it, in pixels of a tile of 16.
     fn at(&self, along: f64) -> f64 {
-        let nth = along.rem_euclid(16.0) - 4.0;
-        let wave = if (0.0..8.0).contains(&nth) { self.wave[nth as usize] } else { 0.0 };
-        self.inset + wave
+        // Offsets are those of the middles of pixels of a tile of 16, and linear between them.
+        let nth = along.rem_euclid(16.0) - 4.5;
+        let offset = |n: f64| if (0.0..8.0).contains(&n) { self.wave[n as usize] } else { 0.0 };
+        let (before, part) = (nth.floor(), nth - nth.floor());
+        self.inset + offset(before) * (1.0 - part) + offset(before + 1.0) * part
     }
 
     /// The place of a pixel in a quadrant of a covered cell. `side` and `end` are the distances to the quadrant's horizontal and vertical side;

@@ -32,8 +32,8 @@ pub struct Ground {
     rim: Ink,
     /// A wall where the border faces south: its inks, and its height in pixels of a tile of 16.
     wall: Option<([Ink; 2], f64)>,
-    /// What is drawn outside of the border, on the ground below, and how wide.
-    halo: Option<(Ink, f64)>,
+    /// Bands that are drawn outside of the border, on the ground below, from the border outward: the ink and the outer side of each in pixels of a tile of 16.
+    halo: &'static [(Ink, f64)],
     /// Its border.
     pub border: Border,
 }
@@ -67,7 +67,7 @@ pub const GROUNDS: [Ground; 6] = [
         outline: ink(0x38_79b0),
         rim: ink(0x62_a3d3),
         wall: None,
-        halo: None,
+        halo: &[],
         border: Border { inset: 0.0, wave: STILL },
     },
     Ground {
@@ -79,8 +79,8 @@ pub const GROUNDS: [Ground; 6] = [
         outline: ink(0xcf_b67c),
         rim: ink(0xf5_eac6),
         wall: None,
-        halo: Some((ink(0xb7_deee), 1.0)),
-        border: Border { inset: 2.0, wave: [0.0, 1.0, 1.0, 0.0, 0.0, -1.0, -1.0, 0.0] },
+        halo: &[(ink(0xe4_f4f8), 1.0), (ink(0x8c_c8e4), 2.0), (ink(0x5b_a0d2), 4.0)],
+        border: Border { inset: 3.5, wave: [0.0, 1.0, 1.0, 0.0, 0.0, -1.0, -1.0, 0.0] },
     },
     Ground {
         name: "grass",
@@ -91,7 +91,7 @@ pub const GROUNDS: [Ground; 6] = [
         outline: ink(0x55_8c3c),
         rim: ink(0x95_cb6c),
         wall: None,
-        halo: None,
+        halo: &[],
         border: Border { inset: 3.0, wave: [0.0, -1.0, 0.0, 1.0, 0.0, 0.0, -1.0, 0.0] },
     },
     Ground {
@@ -103,7 +103,7 @@ pub const GROUNDS: [Ground; 6] = [
         outline: ink(0x1f_4a2d),
         rim: ink(0x5f_a157),
         wall: Some(([ink(0x25_5833), ink(0x1b_4128)], 2.5)),
-        halo: Some((ink(0x5f_9a45), 1.0)),
+        halo: &[(ink(0x5f_9a45), 1.0)],
         border: Border { inset: 3.0, wave: [0.0, 1.0, 0.0, -1.0, -1.0, 0.0, 1.0, 0.0] },
     },
     Ground {
@@ -115,7 +115,7 @@ pub const GROUNDS: [Ground; 6] = [
         outline: ink(0x5c_554f),
         rim: ink(0xc4_beb6),
         wall: Some(([ink(0x7a_726b), ink(0x69_615b)], 4.0)),
-        halo: None,
+        halo: &[],
         border: Border { inset: 3.0, wave: [0.0, 0.0, 1.0, 1.0, 0.0, 0.0, -1.0, 0.0] },
     },
     Ground {
@@ -127,7 +127,7 @@ pub const GROUNDS: [Ground; 6] = [
         outline: ink(0xa9_bfd3),
         rim: ink(0xff_ffff),
         wall: Some(([ink(0xd0_deea), ink(0xc2_d3e2)], 2.0)),
-        halo: None,
+        halo: &[],
         border: Border { inset: 3.5, wave: [0.0, 1.0, 0.0, 0.0, 1.0, 0.0, -1.0, 0.0] },
     },
 ];
@@ -246,8 +246,7 @@ impl Ground {
     pub fn ink(&self, place: BorderPoint, texture: Ink, column: usize) -> Option<Ink> {
         let BorderPoint { inside, south } = place;
         if inside < 0.0 {
-            let (ink, width) = self.halo?;
-            return (inside >= -width).then_some(ink);
+            return self.halo.iter().find(|(_, end)| inside >= -end).map(|(ink, _)| *ink);
         }
         if inside < 1.0 {
             return Some(self.outline);
