@@ -49,6 +49,21 @@ const TUFT: Mark = &[(0, 0, 1), (2, 0, 1), (1, 1, 1), (0, 1, 1)];
 const BLADES: Mark = &[(0, 0, 2), (2, 0, 2), (1, 1, 2)];
 const FLOWER: Mark = &[(1, 0, 3), (0, 1, 3), (2, 1, 3), (1, 2, 3), (1, 1, 2)];
 const CRACK: Mark = &[(0, 0, 1), (1, 1, 1), (2, 1, 1), (3, 2, 1), (2, 0, 2), (3, 1, 2), (4, 2, 2)];
+const LEDGE: Mark = &[
+    (0, 1, 2),
+    (1, 0, 3),
+    (2, 0, 3),
+    (3, 0, 2),
+    (4, 1, 2),
+    (5, 1, 2),
+    (0, 2, 1),
+    (1, 1, 1),
+    (2, 1, 1),
+    (3, 1, 1),
+    (4, 2, 1),
+    (5, 2, 1),
+    (2, 2, 1),
+];
 const STONE: Mark = &[(0, 1, 2), (1, 0, 2), (2, 0, 2), (3, 1, 1), (1, 1, 3), (2, 1, 1), (1, 2, 1), (2, 2, 1)];
 const DRIFT: Mark = &[(0, 0, 1), (1, 1, 1), (2, 1, 1), (3, 1, 1), (4, 0, 1)];
 const SPARKLE: Mark = &[(0, 0, 2)];
@@ -108,9 +123,9 @@ pub const GROUNDS: [Ground; 6] = [
     },
     Ground {
         name: "rock",
-        inks: [ink(0x9b_948c), ink(0x82_7a73), ink(0xb1_aaa1), ink(0xc4_beb6)],
-        marks: &[(CRACK, 2), (DOT, 3), (SPECK, 3)],
-        rare: &[STONE, CRACK],
+        inks: [ink(0x98_9088), ink(0x7a_726b), ink(0xb3_aca3), ink(0xc8_c2ba)],
+        marks: &[(LEDGE, 2), (CRACK, 1), (DOT, 2), (SPECK, 2)],
+        rare: &[STONE, STONE, LEDGE],
         is_forest: false,
         outline: ink(0x5c_554f),
         rim: ink(0xc4_beb6),
