@@ -85,32 +85,42 @@ fn resolved(folder: &Path, path: &str) -> PathBuf {
 fn without_code(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut fence: Option<&str> = None;
+    // Lines that inline code can span.
+    let mut block = String::new();
     for line in text.split_inclusive('\n') {
         let start = line.trim_start();
         let mark = ["```", "~~~"].into_iter().find(|mark| start.starts_with(mark));
+        if fence.is_some() || mark.is_some() || start.is_empty() || start.starts_with(['|', '#', '-', '>']) {
+            out.push_str(&without_inline_code(&block));
+            block.clear();
+        }
         match (fence, mark) {
             (None, Some(mark)) => fence = Some(mark),
             (Some(open), Some(mark)) if open == mark => fence = None,
             (None, None) => {
-                // Inline code: every other part between backticks. An odd backtick is text.
-                let parts: Vec<&str> = line.split('`').collect();
-                for (i, part) in parts.iter().enumerate() {
-                    match i % 2 == 1 && i + 1 < parts.len() {
-                        true => out.extend(part.chars().map(|_| ' ')),
-                        false => out.push_str(part),
-                    }
-                }
+                block.push_str(line);
                 continue;
             }
             _ => {}
         }
         out.push('\n');
     }
-    out
+    out + &without_inline_code(&block)
+}
+
+/// The text with every other part between backticks replaced by blanks. An odd backtick is text.
+fn without_inline_code(text: &str) -> String {
+    let parts: Vec<&str> = text.split('`').collect();
+    let blank = |c| if c == '\n' { '\n' } else { ' ' };
+    let part = |(i, part): (usize, &&str)| match i % 2 == 1 && i + 1 < parts.len() {
+        true => part.chars().map(blank).collect(),
+        false => (*part).to_owned(),
+    };
+    parts.iter().enumerate().map(part).collect()
 }
 
 /// The targets of all links and pictures, each with its line.
-fn links(text: &str) -> Vec<(usize, String)> {
+pub fn links(text: &str) -> Vec<(usize, String)> {
     let text = without_code(text);
     let mut found = Vec::new();
     let mut add = |at: usize, target: &str| {
@@ -220,6 +230,10 @@ mod tests {
         for expected in expected {
             assert!(dead.iter().any(|dead| dead.contains(expected)), "{expected}: {dead:?}");
         }
+        // Inline code over two lines, and an odd backtick.
+        let text = "`a\n[b](b.md)` [c](c.md)\nd` [e](e.md)\n- f` [g](g.md)\n\n`[h](h.md)`\n";
+        let expected = [(2, "c.md"), (3, "e.md"), (4, "g.md")].map(|(line, target)| (line, target.to_owned()));
+        assert_eq!(links(text), expected);
         // Out of a folder, and back.
         std::fs::write(root.join("docs/d.md"), "[a](../a.md) [b](../docs/b.md#one-title) [c](./e.md)\n")
             .expect("a file");

@@ -15,6 +15,7 @@ mod shell;
 mod steps;
 mod table;
 mod test;
+mod translations;
 mod words;
 
 use std::process::ExitCode;

@@ -3,7 +3,7 @@
 use crate::failure::{Failure, Result};
 use crate::shell::{self, cargo, run as sh};
 use crate::steps::{self, Step};
-use crate::{codegen, licences, links, words};
+use crate::{codegen, licences, links, translations, words};
 use std::path::{Path, PathBuf};
 
 pub const ABOUT: &str = "run all tests that need only Rust";
@@ -14,17 +14,18 @@ Usage: cargo xtask test [STEP...]
 
 Runs the steps in this order, or only those named, and stops at the first failure:
 
-  fmt       every file is formatted
-  lists     the generated module and node lists are up to date
-  words     names and texts use the field's terms
-  links     relative links in Markdown files lead to files, and their anchors to headings
-  clippy    no warning in any target
-  tests     unit tests, integration tests, doctests, examples build
-  features  what is off by default: no warning, unit tests and doctests; the libraries without files and threads
-  schema    crates/orogen-engine/recipes/orogen.schema.json is what `orogen schema` prints
-  docs      the libraries' documentation builds without a warning
-  licences  every dependency has a licence we accept
-  package   every crate builds from its own published archive
+  fmt           every file is formatted
+  lists         the generated module and node lists are up to date
+  words         names and texts use the field's terms
+  links         relative links in Markdown files lead to files, and their anchors to headings
+  translations  translated files have the headings, tables, code and links of their originals
+  clippy        no warning in any target
+  tests         unit tests, integration tests, doctests, examples build
+  features      what is off by default: no warning, unit tests and doctests; the libraries without files and threads
+  schema        crates/orogen-engine/recipes/orogen.schema.json is what `orogen schema` prints
+  docs          the libraries' documentation builds without a warning
+  licences      every dependency has a licence we accept
+  package       every crate builds from its own published archive
 
 With --long, it runs the long tests instead, one at a time: all tests of the workspace that are marked as ignored, with a reason
 that begins with `long: `, or those whose name contains NAME. All together take hours.
@@ -37,6 +38,11 @@ const STEPS: &[&Step] = &[
     &Step { name: "lists", about: "the generated module and node lists are up to date", run: || codegen::lists(true) },
     &Step { name: "words", about: "names and texts use the field's terms", run: words::check },
     &Step { name: "links", about: "relative links in Markdown files lead to files and headings", run: links::check },
+    &Step {
+        name: "translations",
+        about: "translated files have the headings, tables, code and links of their originals",
+        run: translations::check,
+    },
     &Step {
         name: "clippy",
         about: "cargo clippy --workspace --all-targets -- -D warnings",
