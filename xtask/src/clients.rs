@@ -8,6 +8,7 @@ mod blender;
 mod install;
 mod neon;
 mod presets;
+mod studio;
 mod wasm;
 
 use std::path::{Path, PathBuf};
@@ -45,6 +46,7 @@ Builds `orogen` in release mode, installs missing clients and runs every step, o
   formats   OpenEXR, GDAL, rasterio, Pillow and Godot read exported heights of every format, not mirrored, rotated or shifted
   relief    gdaldem computes the same hillshade, slope and aspect
   layers    GRASS, WhiteboxTools and gdaldem compute the same derived layers: wetness, HAND, insolation, viewshed, landforms ...
+  studio    the studio's tests with Mesa's software Vulkan, and its window under Xvfb in both languages
   fuzz      libFuzzer on the readers of foreign files, 15 s each
   taplo     taplo validates every recipe against the JSON Schema, and rejects broken ones
 
@@ -129,6 +131,18 @@ const CLIENTS: &[Client] = &[
         pip: &[NUMPY, RASTERIO, "whitebox-workflows==2.0.6"],
         npm: &[],
     },
+    Client {
+        name: "studio",
+        apt: &[
+            ("/usr/share/vulkan/icd.d", "mesa-vulkan-drivers"),
+            ("/usr/lib/x86_64-linux-gnu/libvulkan.so.1", "libvulkan1"),
+            ("/usr/lib/x86_64-linux-gnu/libxkbcommon-x11.so.0", "libxkbcommon-x11-0"),
+            ("/usr/share/fonts/truetype/wqy/wqy-microhei.ttc", "fonts-wqy-microhei"),
+            ("Xvfb", "xvfb"),
+        ],
+        pip: &[NUMPY, PILLOW],
+        npm: &[],
+    },
     Client { name: "fuzz", apt: &[("g++", "g++")], pip: &[], npm: &[] },
     Client { name: "taplo", apt: &[("node", "nodejs"), ("npm", "npm")], pip: &[], npm: &["@taplo/cli@0.7.0"] },
 ];
@@ -194,6 +208,7 @@ const STEPS: &[&Step] = &[
         about: "GRASS, WhiteboxTools and gdaldem compute the same derived layers",
         run: || script("layers"),
     },
+    &Step { name: "studio", about: "the studio with software Vulkan, and its window under Xvfb", run: studio::check },
     &Step { name: "fuzz", about: "libFuzzer on the readers of foreign files", run: fuzz },
     &Step { name: "taplo", about: "taplo checks the recipes against the schema", run: || script("taplo") },
 ];

@@ -5,7 +5,7 @@ use serde_json::Value;
 use crate::failure::{Failure, Result};
 use crate::shell;
 
-/// Accepted licences: permissive ones, and MPL-2.0, which binds only its own files.
+/// Accepted licences: permissive ones, MPL-2.0, which binds only its own files, and those of fonts that programs may contain.
 const ACCEPTED: &[&str] = &[
     "0BSD",
     "Apache-2.0",
@@ -17,6 +17,9 @@ const ACCEPTED: &[&str] = &[
     "MIT",
     "MIT-0",
     "MPL-2.0",
+    // Fonts.
+    "OFL-1.1",
+    "Ubuntu-font-1.0",
     "Unicode-3.0",
     "Unlicense",
     "Zlib",

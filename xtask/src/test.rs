@@ -20,7 +20,7 @@ Runs the steps in this order, or only those named, and stops at the first failur
   links         relative links in Markdown files lead to files, and their anchors to headings
   translations  translated files have the headings, tables, code and links of their originals
   clippy        no warning in any target
-  tests         unit tests, integration tests, doctests, examples build
+  tests         unit tests, integration tests, doctests, examples build; of the studio what needs no window
   features      what is off by default: no warning, unit tests and doctests; the libraries without files and threads
   schema        crates/orogen-engine/recipes/orogen.schema.json is what `orogen schema` prints
   docs          the libraries' documentation builds without a warning
@@ -45,10 +45,21 @@ const STEPS: &[&Step] = &[
     },
     &Step {
         name: "clippy",
-        about: "cargo clippy --workspace --all-targets -- -D warnings",
-        run: || sh(&mut cargo("clippy --quiet --workspace --all-targets --features orogen-bench/peers -- -D warnings")),
+        about: "cargo clippy --all-targets -- -D warnings, the studio without its window",
+        run: || {
+            let flags = "--all-targets --features orogen-bench/peers -- -D warnings";
+            sh(&mut cargo(&format!("clippy --quiet --workspace --exclude orogen-studio {flags}")))?;
+            sh(&mut cargo("clippy --quiet --package orogen-studio --no-default-features --lib -- -D warnings"))
+        },
     },
-    &Step { name: "tests", about: "cargo test --workspace", run: || sh(&mut cargo("test --workspace")) },
+    &Step {
+        name: "tests",
+        about: "cargo test, the studio without its window",
+        run: || {
+            sh(&mut cargo("test --workspace --exclude orogen-studio"))?;
+            sh(&mut cargo("test --package orogen-studio --no-default-features --lib"))
+        },
+    },
     &Step {
         name: "features",
         about: "orogen-grid with ndarray, image and mint; orogen without files and threads",
@@ -81,7 +92,7 @@ pub fn run(args: &[String]) -> Result {
 /// All ignored tests. Without doctests, where `ignore` marks code that is not meant to run.
 fn long(name: Option<&str>) -> Result {
     reasons()?;
-    const TARGETS: &str = "test --workspace --lib --bins --tests --examples";
+    const TARGETS: &str = "test --workspace --exclude orogen-studio --lib --bins --tests --examples";
     let with = |more: &[&str]| {
         let mut command = cargo(TARGETS);
         command.arg("--").args(name).arg("--ignored").args(more);
@@ -131,19 +142,22 @@ fn without_files() -> Result {
     sh(&mut cargo("run --quiet --package orogen-engine --example without_files --no-default-features"))
 }
 
-/// Without the binary `orogen`, whose pages would overwrite those of the library of the same name.
+/// Without the binary `orogen`, whose pages would overwrite those of the library of the same name, and without the studio.
 fn docs() -> Result {
-    let mut command =
-        cargo("doc --quiet --workspace --no-deps --exclude orogen-cli --exclude orogen-bench --exclude xtask");
+    let mut command = cargo(
+        "doc --quiet --workspace --no-deps --exclude orogen-cli --exclude orogen-studio --exclude orogen-bench --exclude xtask",
+    );
     sh(command.env("RUSTDOCFLAGS", "-D warnings"))
 }
 
 /// Packs every crate as it would be published and builds it from that archive alone, without optimisation: paths that lead out of a
-/// crate's folder, and files that are missing in it, fail here.
+/// crate's folder, and files that are missing in it, fail here. Of the studio only the archive is made: building its window takes as long as all others.
 fn package() -> Result {
     let folder = shell::target_dir().join("packages");
     forget_archives(&folder);
-    let mut command = cargo("package --quiet --workspace --exclude xtask --exclude orogen-bench --allow-dirty");
+    let flags = "package --quiet --workspace --exclude xtask --exclude orogen-bench --allow-dirty";
+    sh(cargo(&format!("{flags} --no-verify")).arg("--target-dir").arg(&folder))?;
+    let mut command = cargo(&format!("{flags} --exclude orogen-studio"));
     command.arg("--target-dir").arg(folder);
     sh(command.env("CARGO_PROFILE_DEV_OPT_LEVEL", "0").env("CARGO_PROFILE_DEV_DEBUG", "false"))
 }

@@ -7,7 +7,7 @@ use orogen::Level;
 use crate::bar::{Mode, set_mode};
 use crate::command::{
     analyze, blocks, build, cache, check, compare, completions, explain, export, fit, generate, graph, grow, map, new,
-    noise, ops, palettes, presets, refine, render, schema, tilemap, variants,
+    noise, ops, palettes, presets, refine, render, schema, studio, tilemap, variants,
 };
 use crate::failure::Failure;
 
@@ -51,6 +51,8 @@ enum Command {
     Blocks(blocks::Args),
     /// Draw variants of a recipe side by side: several seeds, or a range of values of a parameter
     Variants(variants::Args),
+    /// Open the studio: a window with live preview, parameters, graph and text of a recipe
+    Studio(studio::Args),
     /// Write a new recipe as a starting point
     New(new::Args),
     /// List the built-in presets
@@ -96,6 +98,7 @@ impl Cli {
             Command::Tilemap(args) => tilemap::run(&args),
             Command::Blocks(args) => blocks::run(&args),
             Command::Variants(args) => variants::run(&args),
+            Command::Studio(args) => studio::run(&args),
             Command::New(args) => new::run(&args),
             Command::Presets => presets::run(),
             Command::Ops(args) => ops::run(&args),

@@ -37,6 +37,16 @@ impl Pool {
         self.threads.current_num_threads()
     }
 
+    /// Runs work on a new thread that is not one of the pool, so it may wait.
+    ///
+    /// # Errors
+    /// If the system cannot start it.
+    pub fn start(work: impl FnOnce() + Send + 'static) -> Result<()> {
+        let started = std::thread::Builder::new().name("orogen-request".into()).spawn(work);
+        let refused = |cause| Error::new(ErrorKind::Request, format!("cannot start a thread: {cause}"));
+        started.map(drop).map_err(refused)
+    }
+
     /// Whether the calling thread belongs to the pool.
     pub fn is_current(&self) -> bool {
         self.threads.current_thread_index().is_some()
@@ -61,6 +71,15 @@ impl Pool {
     /// Number of threads.
     pub fn threads(&self) -> usize {
         1
+    }
+
+    /// Runs work before it returns.
+    ///
+    /// # Errors
+    /// Never.
+    pub fn start(work: impl FnOnce() + Send + 'static) -> Result<()> {
+        work();
+        Ok(())
     }
 
     /// Whether the calling thread belongs to the pool: always, because there is no other.

@@ -93,6 +93,32 @@ impl Session {
         &self.budget
     }
 
+    /// Runs work on a thread of its own, for callers that must not wait, such as a user interface. Cancel it with the
+    /// [`Progress`](orogen_grid::progress::Progress) that it uses. Without threads the work is done before this returns.
+    ///
+    /// ```
+    /// use orogen_engine::{Options, Session, Window, presets};
+    /// use std::sync::mpsc;
+    ///
+    /// let session = Session::new(Options::default())?;
+    /// let recipe = presets::find("classic").ok_or("no such preset")?.recipe()?;
+    /// let (sender, receiver) = mpsc::channel();
+    /// session.start(move |session| {
+    ///     let heights = session.open(recipe).and_then(|world| world.window("height", &Window::new(64, 64, 30.0)));
+    ///     // The receiver may be gone.
+    ///     sender.send(heights).ok();
+    /// })?;
+    /// assert_eq!(receiver.recv()??.data().len(), 64 * 64);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If the system cannot start a thread.
+    pub fn start(&self, work: impl FnOnce(&Session) + Send + 'static) -> Result<()> {
+        let session = self.clone();
+        Pool::start(move || work(&session))
+    }
+
     /// Number of threads.
     #[must_use]
     pub fn threads(&self) -> usize {

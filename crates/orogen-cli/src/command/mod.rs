@@ -22,5 +22,6 @@ pub mod presets;
 pub mod refine;
 pub mod render;
 pub mod schema;
+pub mod studio;
 pub mod tilemap;
 pub mod variants;

@@ -255,3 +255,10 @@ steps = 4
 [outputs]
 height = "terrain"
 "#;
+
+#[test]
+fn the_studio_is_found_or_it_is_said_how_to_get_it() {
+    let folder = Folder::new();
+    folder.bad(&["studio", "messa"], 2, "did you mean `mesa`?");
+    folder.bad(&["studio", "-"], 2, "not standard input");
+}

@@ -3,6 +3,7 @@
 pub mod class;
 pub mod condition;
 pub mod document;
+mod draft;
 pub mod graph;
 mod json;
 pub mod network;

@@ -66,6 +66,16 @@ impl Registry {
         parse(&text_of(bytes, path)?, &path.display().to_string(), set, &Origin::file(path, &shared))
     }
 
+    /// Reads a recipe of these ops from a text in place of the content of a file, such as one that is being edited: relative paths in it start at the
+    /// file's folder, and diagnostics name the file, which need not exist.
+    ///
+    /// # Errors
+    /// As [`Registry::parse`].
+    pub fn parse_as(&self, text: &str, path: &Path) -> Result<Recipe> {
+        let shared = Shared::new(self, parse);
+        parse(text, &path.display().to_string(), &[], &Origin::file(path, &shared))
+    }
+
     /// Reads a recipe of these ops from a text, TOML or (if it begins with a brace) JSON; `name` is what diagnostics call it.
     ///
     /// # Errors

@@ -42,6 +42,14 @@ pub(crate) fn output(recipe: &Recipe) -> Option<(&str, Scheme)> {
     outputs.into_iter().find_map(|(name, input)| Some((name.as_str(), scheme_of(input)?)))
 }
 
+/// The output that is the layer of a `biome`, and the names and colors of its classes in the order of their codes; `None` if the recipe has no such
+/// output.
+#[must_use]
+pub fn classes(recipe: &Recipe) -> Option<(&str, Vec<(&'static str, Rgb)>)> {
+    let (output, scheme) = output(recipe)?;
+    Some((output, scheme.classes().iter().map(|class| (class.name, class.color)).collect()))
+}
+
 /// The colors of the biomes over the window of these heights, and the most frequent ones on land, in this order.
 ///
 /// Fails if the world fails, or no output of the recipe is the layer of a `biome`.

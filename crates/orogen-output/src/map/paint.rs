@@ -44,6 +44,43 @@ impl Painter {
         Painter::new(Tint::fit(grid, sea_level), Shade::fit(grid, sea_level))
     }
 
+    /// A painter with this tint and shading that is fitted to the heights of `grid`, in metres.
+    #[must_use]
+    pub fn with_tint(tint: Tint, grid: &Grid, sea_level: f64) -> Painter {
+        Painter::new(tint, Shade::fit(grid, sea_level as f32))
+    }
+
+    /// Shades colors that were made apart: four sRGB bytes for each sample of a whole grid of heights, of which the first three change. Where the
+    /// tint shows water, the shading is weak.
+    pub fn shade(&self, grid: &Grid, bytes: &mut [u8]) {
+        let width = grid.width();
+        let table: Vec<f32> = (0..=u8::MAX).map(decode).collect();
+        bytes.par_chunks_exact_mut(4 * width).enumerate().for_each_init(
+            || vec![0.0; 3 * (width + 2)],
+            |wide, (j, bytes)| {
+                gradients_between(around(grid, j, wide), grid.window().cell, |i, gradient| {
+                    let shade = self.shade.on(gradient);
+                    let strength = self.strength(grid.row(j)[i]);
+                    if strength > 0.0 {
+                        let pixel = &mut bytes[4 * i..4 * i + 3];
+                        let lit =
+                            std::array::from_fn(|c| table[usize::from(pixel[c])] * (1.0 + (shade[c] - 1.0) * strength));
+                        pixel.copy_from_slice(&self.encoder.bytes(lit));
+                    }
+                });
+            },
+        );
+    }
+
+    /// Strength of the shading at a height. Samples that are not finite are not shaded; their gradient may be NaN.
+    fn strength(&self, height: f32) -> f32 {
+        match height.is_finite() {
+            true if self.tint.is_sea(height) => UNDER_WATER,
+            true => 1.0,
+            false => 0.0,
+        }
+    }
+
     /// Paints a row in sRGB bytes. `rows` are the heights of the row above, the row itself and the row below, each
     /// extended by one sample at both ends.
     pub fn row(&self, rows: [&[f32]; 3], cell: f64, out: &mut [u8]) {
@@ -52,12 +89,7 @@ impl Painter {
             let height = here[i + 1];
             let color = self.tint.at(height);
             let shade = self.shade.on(gradient);
-            let strength = match height.is_finite() {
-                true if self.tint.is_sea(height) => UNDER_WATER,
-                true => 1.0,
-                false => 0.0,
-            };
-            // Samples that are not finite are not shaded; their gradient may be NaN.
+            let strength = self.strength(height);
             let lit = match strength {
                 0.0 => color,
                 _ => std::array::from_fn(|c| color[c] * (1.0 + (shade[c] - 1.0) * strength)),
@@ -102,19 +134,23 @@ impl Painter {
     /// Paints some rows of a whole grid in sRGB bytes, three per sample. Beyond its edges heights are extrapolated
     /// linearly.
     pub fn paint(&self, grid: &Grid, rows: Range<usize>, bytes: &mut [u8]) {
-        let (width, height) = (grid.width(), grid.height());
+        let width = grid.width();
         bytes.par_chunks_exact_mut(3 * width).zip(rows).for_each_init(
             || vec![0.0; 3 * (width + 2)],
-            |wide, (bytes, j)| {
-                let (above, rest) = wide.split_at_mut(width + 2);
-                let (here, below) = rest.split_at_mut(width + 2);
-                extend_row(grid.row(j), here);
-                neighbour(grid, j, j.checked_sub(1), here, above);
-                neighbour(grid, j, (j + 1 < height).then_some(j + 1), here, below);
-                self.row([above, here, below], grid.window().cell, bytes);
-            },
+            |wide, (bytes, j)| self.row(around(grid, j, wide), grid.window().cell, bytes),
         );
     }
+}
+
+/// Row `j` of a grid between its neighbours, each extended by one sample at both ends, in `wide`.
+fn around<'a>(grid: &Grid, j: usize, wide: &'a mut [f32]) -> [&'a [f32]; 3] {
+    let width = grid.width();
+    let (above, rest) = wide.split_at_mut(width + 2);
+    let (here, below) = rest.split_at_mut(width + 2);
+    extend_row(grid.row(j), here);
+    neighbour(grid, j, j.checked_sub(1), here, above);
+    neighbour(grid, j, (j + 1 < grid.height()).then_some(j + 1), here, below);
+    [above, here, below]
 }
 
 /// Row `there` of the grid, extended; if there is none, extrapolated from row `j` (extended in `here`) and its other
@@ -171,6 +207,26 @@ mod tests {
                 painter.row([wide.row(j), wide.row(j + 1), wide.row(j + 2)], 30.0, row);
             }
             assert!(decode(&bytes) == expect, "{width} x {height}");
+        }
+    }
+
+    #[test]
+    fn shaded_colors_are_those_of_the_map() {
+        let grid = hill(40, 30);
+        let tint = Tint::fit(&grid, 200.0);
+        let painter = Painter::with_tint(tint.clone(), &grid, 200.0);
+        let encoder = Encoder::new();
+        let mut shaded: Vec<u8> = Vec::new();
+        for height in grid.data() {
+            shaded.extend(encoder.bytes(tint.at(*height)));
+            shaded.push(7);
+        }
+        painter.shade(&grid, &mut shaded);
+        let mut map = vec![0; 3 * grid.data().len()];
+        painter.paint(&grid, 0..30, &mut map);
+        for (own, map) in shaded.chunks(4).zip(map.chunks(3)) {
+            // Colors were rounded before.
+            assert!((0..3).all(|c| own[c].abs_diff(map[c]) <= 1) && own[3] == 7, "{own:?} {map:?}");
         }
     }
 

@@ -1,0 +1,164 @@
+//! The texts of the interface, in one catalogue file a language: `locales/`.
+
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+use serde::{Deserialize, Serialize};
+
+/// A language of the interface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+pub enum Language {
+    /// English.
+    #[default]
+    #[serde(rename = "en")]
+    English,
+    /// Simplified Chinese.
+    #[serde(rename = "zh-CN")]
+    Chinese,
+}
+
+/// Texts by their keys.
+type Texts = BTreeMap<String, String>;
+
+static ENGLISH: LazyLock<Texts> = LazyLock::new(|| read(include_str!("../locales/en.toml")));
+static CHINESE: LazyLock<Texts> = LazyLock::new(|| read(include_str!("../locales/zh-CN.toml")));
+
+/// Reads a catalogue: tables of texts, whose keys are joined by dots.
+fn read(file: &str) -> Texts {
+    let mut texts = Texts::new();
+    // A test reads every catalogue.
+    let table: toml::Table = file.parse().unwrap_or_default();
+    let mut waiting: Vec<(String, toml::Value)> = table.into_iter().collect();
+    while let Some((key, value)) = waiting.pop() {
+        match value {
+            toml::Value::Table(table) => {
+                waiting.extend(table.into_iter().map(|(inner, value)| (format!("{key}.{inner}"), value)));
+            }
+            toml::Value::String(text) => drop(texts.insert(key, text)),
+            _ => {}
+        }
+    }
+    texts
+}
+
+impl Language {
+    /// All languages.
+    pub const ALL: [Language; 2] = [Language::English, Language::Chinese];
+
+    /// Its own name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Language::English => "English",
+            Language::Chinese => "简体中文",
+        }
+    }
+
+    /// The language of the system, by its variables of the environment.
+    #[must_use]
+    pub fn of_system() -> Language {
+        let set = ["LC_ALL", "LC_MESSAGES", "LANG"]
+            .into_iter()
+            .find_map(|name| std::env::var(name).ok().filter(|v| !v.is_empty()));
+        match set {
+            Some(locale) if locale.starts_with("zh") => Language::Chinese,
+            _ => Language::English,
+        }
+    }
+
+    fn texts(self) -> &'static Texts {
+        match self {
+            Language::English => &ENGLISH,
+            Language::Chinese => &CHINESE,
+        }
+    }
+
+    /// The text of a key; in English if this language lacks it, and the key itself if English does, too.
+    #[must_use]
+    pub fn text(self, key: &'static str) -> &'static str {
+        self.texts().get(key).or_else(|| ENGLISH.get(key)).map_or(key, String::as_str)
+    }
+
+    /// The text of a key with values in place of `{name}`.
+    #[must_use]
+    pub fn fill(self, key: &'static str, values: &[(&str, &str)]) -> String {
+        let mut text = self.text(key).to_string();
+        for (name, value) in values {
+            text = text.replace(&format!("{{{name}}}"), value);
+        }
+        text
+    }
+
+    /// The keys of its catalogue.
+    pub fn keys(self) -> impl Iterator<Item = &'static str> {
+        self.texts().keys().map(String::as_str)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    /// The names in braces in a text.
+    fn placeholders(text: &str) -> BTreeSet<&str> {
+        text.split('{').skip(1).filter_map(|part| part.split_once('}')).map(|(name, _)| name).collect()
+    }
+
+    #[test]
+    fn both_languages_have_all_keys_and_the_same_placeholders() {
+        for file in [include_str!("../locales/en.toml"), include_str!("../locales/zh-CN.toml")] {
+            file.parse::<toml::Table>().unwrap();
+        }
+        let [english, chinese] = Language::ALL.map(|language| language.keys().collect::<BTreeSet<_>>());
+        assert_eq!(english.difference(&chinese).collect::<Vec<_>>(), Vec::<&&str>::new(), "missing in zh-CN.toml");
+        assert_eq!(chinese.difference(&english).collect::<Vec<_>>(), Vec::<&&str>::new(), "missing in en.toml");
+        for key in english {
+            let texts = Language::ALL.map(|language| language.text(key));
+            assert!(texts.iter().all(|text| !text.trim().is_empty()), "{key}");
+            assert_eq!(placeholders(texts[0]), placeholders(texts[1]), "{key}");
+        }
+    }
+
+    /// Every `"a.b"` in the sources whose first part is a table of the catalogue.
+    #[test]
+    fn every_key_in_the_sources_is_there_and_every_key_is_used() {
+        let tables: BTreeSet<&str> =
+            Language::English.keys().filter_map(|key| key.split_once('.')).map(|(table, _)| table).collect();
+        let keys: BTreeSet<&str> = Language::English.keys().collect();
+        let mut used = BTreeSet::new();
+        let mut folders = vec![std::path::PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("src")];
+        while let Some(folder) = folders.pop() {
+            for entry in std::fs::read_dir(folder).unwrap() {
+                let path = entry.unwrap().path();
+                if path.is_dir() {
+                    folders.push(path);
+                    continue;
+                }
+                let text = std::fs::read_to_string(&path).unwrap();
+                for literal in text.split('"').skip(1) {
+                    let is_key = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || matches!(c, '.' | '_');
+                    let Some((table, _)) = literal.split_once('.') else { continue };
+                    // Names of files are no keys.
+                    if [".rs", ".wgsl", ".toml", ".json", ".png"].iter().any(|end| literal.ends_with(end)) {
+                        continue;
+                    }
+                    if literal.chars().all(is_key) && tables.contains(table) && !literal.ends_with('.') {
+                        assert!(keys.contains(literal), "{}: there is no text `{literal}`", path.display());
+                        used.insert(literal.to_string());
+                    }
+                }
+            }
+        }
+        let unused: Vec<&&str> = keys.iter().filter(|key| !used.contains(**key)).collect();
+        assert!(unused.is_empty(), "no code uses {unused:?}");
+    }
+
+    #[test]
+    fn values_are_filled_in() {
+        assert_eq!(Language::English.text("no such key"), "no such key");
+        for language in Language::ALL {
+            assert!(language.fill("status.made", &[("samples", "256"), ("seconds", "0.1")]).contains("256"));
+        }
+    }
+}

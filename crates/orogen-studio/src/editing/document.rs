@@ -1,0 +1,260 @@
+//! A document: a recipe's text with its history, what it means, and the file it belongs to.
+
+use std::path::{Path, PathBuf};
+
+use orogen::error::Diagnostic;
+use orogen::recipe::document::Recipe;
+use orogen::recipe::presets::Preset;
+use orogen::{Error, ErrorKind, Registry, Result};
+
+use super::edit::{self, Edit};
+use super::history::History;
+
+/// A recipe that is being edited.
+#[derive(Debug, Clone)]
+pub struct Document {
+    /// Its title: the name of its file, or of what it was made from.
+    title: String,
+    path: Option<PathBuf>,
+    /// The folder of relative paths while it has no file.
+    folder: Option<PathBuf>,
+    history: History,
+    /// The text in its file; `None` if it has none.
+    saved: Option<String>,
+    recipe: Recipe,
+    diagnostics: Vec<Diagnostic>,
+    revision: u64,
+}
+
+impl Document {
+    /// A document of a text that has no file yet.
+    ///
+    /// # Errors
+    /// If the text is no valid recipe.
+    pub fn new(title: &str, text: String) -> Result<Document> {
+        let recipe = Registry::new().parse(&text, title)?;
+        Ok(Document {
+            title: title.to_string(),
+            path: None,
+            folder: None,
+            history: History::new(text),
+            saved: None,
+            recipe,
+            diagnostics: Vec::new(),
+            revision: 0,
+        })
+    }
+
+    /// A copy of a preset.
+    ///
+    /// # Errors
+    /// None in a release: a test opens every preset.
+    pub fn of_preset(preset: &Preset) -> Result<Document> {
+        // The schema is that of the repository.
+        let text = preset.text.trim_start_matches("#:schema orogen.schema.json").trim_start().to_string();
+        Document::new(preset.name, text)
+    }
+
+    /// A recipe that consists of a file of heights.
+    ///
+    /// # Errors
+    /// If the path is not UTF-8.
+    pub fn of_dem(path: &Path, recipe: &Recipe) -> Result<Document> {
+        let title = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
+        let text = recipe.to_toml();
+        let mut document = Document { folder: Some(PathBuf::new()), ..Document::new(&title, text)? };
+        document.read();
+        Ok(document)
+    }
+
+    /// The document of a file with this text. A recipe that is not valid opens, too: its errors are shown, and its recipe is empty until they are mended.
+    #[must_use]
+    pub fn of_file(path: &Path, text: String) -> Document {
+        let title = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+        let mut document = Document {
+            title,
+            path: Some(path.to_path_buf()),
+            folder: None,
+            // JSON is edited as TOML.
+            history: History::new(text.clone()),
+            saved: Some(text),
+            recipe: Recipe::new(orogen::WorldSpec::default()),
+            diagnostics: Vec::new(),
+            revision: 0,
+        };
+        document.read();
+        document
+    }
+
+    /// A text that was not saved: it has no file yet, and is changed.
+    #[must_use]
+    pub fn recovered(name: &Path, text: String) -> Document {
+        Document { path: None, saved: Some(String::new()), ..Document::of_file(name, text) }
+    }
+
+    /// Its title.
+    #[must_use]
+    pub fn title(&self) -> &str {
+        &self.title
+    }
+
+    /// Its file.
+    #[must_use]
+    pub fn path(&self) -> Option<&Path> {
+        self.path.as_deref()
+    }
+
+    /// Its text.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        self.history.text()
+    }
+
+    /// What its text means, or what it meant when it was last valid.
+    #[must_use]
+    pub fn recipe(&self) -> &Recipe {
+        &self.recipe
+    }
+
+    /// What is wrong with its text; nothing if it is valid.
+    #[must_use]
+    pub fn diagnostics(&self) -> &[Diagnostic] {
+        &self.diagnostics
+    }
+
+    /// Whether the text is a valid recipe.
+    #[must_use]
+    pub fn is_valid(&self) -> bool {
+        self.diagnostics.is_empty()
+    }
+
+    /// Increases with each change of the text.
+    #[must_use]
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// Whether the text differs from that in its file.
+    #[must_use]
+    pub fn is_changed(&self) -> bool {
+        match &self.saved {
+            Some(saved) => saved != self.text(),
+            None => self.history.undo_label().is_some(),
+        }
+    }
+
+    /// Its undo and redo, for labels.
+    #[must_use]
+    pub fn history(&self) -> &History {
+        &self.history
+    }
+
+    /// Sets the text, as typed. Typing on is one step.
+    pub fn type_text(&mut self, text: String) {
+        self.set(text, "edit.text", Some("text"));
+    }
+
+    /// Applies an edit.
+    ///
+    /// # Errors
+    /// If the text is not valid, or the edit does not lead to a valid recipe; then nothing changes.
+    pub fn apply(&mut self, edit: &Edit) -> Result<()> {
+        let fault = |message: String| Error::new(ErrorKind::Recipe, message);
+        if !self.is_valid() {
+            return Err(fault("the recipe's text has errors; mend them first".into()));
+        }
+        let text = edit::apply(self.text(), &self.recipe, edit).map_err(fault)?;
+        let recipe = self.parse(&text)?;
+        let gesture = edit.gesture();
+        let before = self.text().len();
+        let unchanged = before == text.len() && self.text() == text;
+        self.history.push(text, edit.label(), gesture.as_deref());
+        if !unchanged {
+            self.revision += 1;
+            self.recipe = recipe;
+        }
+        Ok(())
+    }
+
+    /// Ends the current gesture, such as the drag of a slider.
+    pub fn end_gesture(&mut self) {
+        self.history.end_gesture();
+    }
+
+    /// Goes back by a step; false if there is none.
+    pub fn undo(&mut self) -> bool {
+        let went = self.history.undo();
+        self.went(went)
+    }
+
+    /// Goes forward by a step; false if there is none.
+    pub fn redo(&mut self) -> bool {
+        let went = self.history.redo();
+        self.went(went)
+    }
+
+    fn went(&mut self, went: bool) -> bool {
+        if went {
+            self.revision += 1;
+            self.read();
+        }
+        went
+    }
+
+    /// Notes that the text is in this file now.
+    pub fn saved_to(&mut self, path: &Path) {
+        self.title = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+        let moved = self.path.as_deref() != Some(path);
+        self.path = Some(path.to_path_buf());
+        self.saved = Some(self.text().to_string());
+        if moved {
+            // Relative paths start elsewhere.
+            self.read();
+        }
+    }
+
+    /// Takes over a text that another program wrote to its file. It can be undone.
+    pub fn reload(&mut self, text: String) {
+        self.set(text.clone(), "edit.reload", None);
+        self.saved = Some(text);
+    }
+
+    /// The text that its file had when it was read or written.
+    #[must_use]
+    pub fn saved(&self) -> Option<&str> {
+        self.saved.as_deref()
+    }
+
+    fn set(&mut self, text: String, label: &'static str, gesture: Option<&str>) {
+        if text == self.text() {
+            return;
+        }
+        self.history.push(text, label, gesture);
+        self.revision += 1;
+        self.read();
+    }
+
+    /// Reads the text.
+    fn read(&mut self) {
+        match self.parse(self.text()) {
+            Ok(recipe) => {
+                self.recipe = recipe;
+                self.diagnostics.clear();
+            }
+            Err(error) => self.diagnostics = error.diagnostics().to_vec(),
+        }
+    }
+
+    fn parse(&self, text: &str) -> Result<Recipe> {
+        let registry = Registry::new();
+        match (&self.path, &self.folder) {
+            (Some(path), _) => registry.parse_as(text, path),
+            (None, Some(folder)) => {
+                let mut recipe = registry.parse(text, &self.title)?;
+                recipe.set_base_dir(folder);
+                Ok(recipe)
+            }
+            (None, None) => registry.parse(text, &self.title),
+        }
+    }
+}

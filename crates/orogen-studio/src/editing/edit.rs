@@ -1,0 +1,316 @@
+//! Edits of a recipe's text. Comments, order and all that is not edited stay.
+
+use std::collections::{HashMap, HashSet};
+
+use orogen::declare::Input;
+use orogen::node::Node;
+use orogen::recipe::document::Recipe;
+use orogen::value::Value;
+use toml_edit::{DocumentMut, Item, Table};
+
+use super::names;
+use super::references::{Change, Site, change};
+use super::tables::{node, set, top, value_of};
+
+/// An edit.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs, reason = "the names of fields say what they are")]
+pub enum Edit {
+    /// The seed of the world.
+    Seed(u64),
+    /// A number of the world: `cell`, `sea_level`.
+    World(&'static str, f64),
+    /// The default of a parameter of the recipe.
+    Default { parameter: String, value: f64 },
+    /// A parameter of a node.
+    Param { node: String, key: String, value: Value },
+    /// A parameter of a node gets its default.
+    Reset { node: String, key: String },
+    /// An input of a node, or its `mask`: another node or layer, a number, or nothing.
+    Connect { node: String, input: String, source: Input },
+    /// An output: a node or layer, or nothing.
+    Output { name: String, source: Input },
+    /// A new node. Required inputs that `inputs` lacks are 0.
+    Add { name: String, op: String, inputs: Vec<(String, String)> },
+    /// Nodes are removed; what read one reads its first input.
+    Delete(Vec<String>),
+    /// Copies of nodes; connections among them are those of the copies.
+    Duplicate(Vec<String>),
+    /// Another name; what refers to the node does so by the new name.
+    Rename { from: String, to: String },
+}
+
+impl Edit {
+    /// What it does, as a key of the catalogue of texts.
+    #[must_use]
+    pub fn label(&self) -> &'static str {
+        match self {
+            Edit::Seed(_) => "edit.seed",
+            Edit::World(..) => "edit.world",
+            Edit::Default { .. } | Edit::Param { .. } => "edit.value",
+            Edit::Reset { .. } => "edit.reset",
+            Edit::Connect { .. } | Edit::Output { .. } => "edit.connect",
+            Edit::Add { .. } => "edit.add",
+            Edit::Delete(_) => "edit.delete",
+            Edit::Duplicate(_) => "edit.duplicate",
+            Edit::Rename { .. } => "edit.rename",
+        }
+    }
+
+    /// The name of the gesture that it is part of: edits of one value, one after the other, are undone together.
+    #[must_use]
+    pub fn gesture(&self) -> Option<String> {
+        match self {
+            Edit::Seed(_) => Some("seed".into()),
+            Edit::World(key, _) => Some(format!("world/{key}")),
+            Edit::Default { parameter, .. } => Some(format!("parameter/{parameter}")),
+            Edit::Param { node, key, .. } => Some(format!("node/{node}/{key}")),
+            _ => None,
+        }
+    }
+}
+
+/// Applies an edit to the text of a recipe; `recipe` is what the text means.
+///
+/// # Errors
+/// If the text is no TOML, or has no such node, parameter or key: the message says which.
+pub fn apply(text: &str, recipe: &Recipe, edit: &Edit) -> Result<String, String> {
+    let mut document: DocumentMut = text.parse().map_err(|error| format!("{error}"))?;
+    let known = |name: &str| match recipe.nodes().iter().any(|named| named.name == name) {
+        true => Ok(()),
+        false => Err(format!("there is no node `{name}`")),
+    };
+    let missing = |what: &str| format!("the text has no {what}");
+    match edit {
+        Edit::Seed(seed) => {
+            let seed = i64::try_from(*seed).map_err(|_| format!("a seed must be at most {}, not {seed}", i64::MAX))?;
+            set(top(&mut document, "world").ok_or_else(|| missing("[world]"))?, "seed", seed.into());
+        }
+        Edit::World(key, value) => {
+            set(top(&mut document, "world").ok_or_else(|| missing("[world]"))?, key, (*value).into());
+        }
+        Edit::Default { parameter, value } => {
+            let parameters = document.get_mut("parameters").and_then(Item::as_table_like_mut);
+            let own = parameters.and_then(|parameters| parameters.get_mut(parameter));
+            match own {
+                // `relief = 2000` is short for a table with a default.
+                Some(Item::Value(old)) if !old.is_inline_table() => {
+                    let decor = old.decor().clone();
+                    *old = (*value).into();
+                    *old.decor_mut() = decor;
+                }
+                Some(item) => {
+                    let own = item.as_table_like_mut().ok_or_else(|| missing(&format!("parameter `{parameter}`")))?;
+                    set(own, "default", (*value).into());
+                }
+                None => return Err(missing(&format!("parameter `{parameter}`"))),
+            }
+        }
+        Edit::Param { node: name, key, value } => {
+            known(name)?;
+            let value = value_of(value).ok_or_else(|| format!("`{key}` cannot be {}", value.describe()))?;
+            let own = node(&mut document, name).ok_or_else(|| missing(&format!("node `{name}`")))?;
+            let key = written_key(own.get("op").and_then(Item::as_str), key, |key| own.contains_key(key));
+            set(own, &key, value);
+        }
+        Edit::Reset { node: name, key } => {
+            let own = node(&mut document, name).ok_or_else(|| missing(&format!("node `{name}`")))?;
+            let key = written_key(own.get("op").and_then(Item::as_str), key, |key| own.contains_key(key));
+            own.remove(&key);
+        }
+        Edit::Connect { node: name, input, source } => {
+            known(name)?;
+            let own = node(&mut document, name).ok_or_else(|| missing(&format!("node `{name}`")))?;
+            let key = written_key(own.get("op").and_then(Item::as_str), input, |key| own.contains_key(key));
+            match source {
+                Input::None => drop(own.remove(&key)),
+                Input::Node(source) => set(own, &key, source.as_str().into()),
+                Input::Value(value) => set(own, &key, (*value).into()),
+            }
+        }
+        Edit::Output { name, source } => {
+            let outputs = top(&mut document, "outputs").ok_or_else(|| missing("[outputs]"))?;
+            match source {
+                Input::None => drop(outputs.remove(name)),
+                Input::Node(source) => set(outputs, name, source.as_str().into()),
+                Input::Value(value) => set(outputs, name, (*value).into()),
+            }
+        }
+        Edit::Add { name, op, inputs } => add(&mut document, name, op, inputs)?,
+        Edit::Delete(names) => delete(&mut document, recipe, names)?,
+        Edit::Duplicate(names) => duplicate(&mut document, recipe, names)?,
+        Edit::Rename { from, to } => {
+            known(from)?;
+            rename(&mut document, recipe, from, to)?;
+        }
+    }
+    Ok(document.to_string())
+}
+
+/// The key under which a node has an input or parameter: a former key if that is written.
+fn written_key(op: Option<&str>, key: &str, has: impl Fn(&str) -> bool) -> String {
+    let spec = op.and_then(Node::named).map(|node| node.spec());
+    let alias = spec.and_then(|spec| spec.aliases().find(|(alias, name)| *name == key && has(alias)));
+    alias.map_or(key, |(alias, _)| alias).to_string()
+}
+
+fn add(document: &mut DocumentMut, name: &str, op: &str, inputs: &[(String, String)]) -> Result<(), String> {
+    let spec = Node::named(op).ok_or_else(|| format!("there is no op `{op}`"))?.spec();
+    let mut own = Table::new();
+    own.insert("op", toml_edit::value(op));
+    for input in spec.inputs {
+        match inputs.iter().find(|(key, _)| key == input.name) {
+            Some((_, source)) => drop(own.insert(input.name, toml_edit::value(source.as_str()))),
+            None if input.required => drop(own.insert(input.name, toml_edit::value(0))),
+            None => {}
+        }
+    }
+    if spec.named_inputs {
+        // An expression without names; a source is its first one.
+        match inputs.first() {
+            Some((_, source)) => {
+                own.insert("expr", toml_edit::value("a"));
+                own.insert("a", toml_edit::value(source.as_str()));
+            }
+            None => drop(own.insert("expr", toml_edit::value("0"))),
+        }
+    }
+    own.decor_mut().set_prefix("\n");
+    let nodes = top(document, "nodes").ok_or("`nodes` is no table")?;
+    match nodes.contains_key(name) {
+        true => Err(format!("there is a node `{name}` already")),
+        false => {
+            nodes.insert(name, Item::Table(own));
+            Ok(())
+        }
+    }
+}
+
+/// The node of a reference, without its layer.
+fn node_of(reference: &str) -> &str {
+    reference.split_once('.').map_or(reference, |(name, _)| name)
+}
+
+fn delete(document: &mut DocumentMut, recipe: &Recipe, names: &[String]) -> Result<(), String> {
+    let gone: HashSet<&str> = names.iter().map(String::as_str).collect();
+    // What remains of a node for those that read it: its first input.
+    let first: HashMap<&str, Input> = recipe
+        .nodes()
+        .iter()
+        .filter(|named| gone.contains(named.name.as_str()))
+        .map(|named| {
+            let first = if named.node.inputs().is_empty() { Input::None } else { named.node.input(0).clone() };
+            (named.name.as_str(), first)
+        })
+        .collect();
+    let nodes = top(document, "nodes").ok_or("`nodes` is no table")?;
+    for name in names {
+        nodes.remove(name).ok_or_else(|| format!("there is no node `{name}`"))?;
+    }
+    change(document, &mut |site, reference| {
+        if !gone.contains(node_of(reference)) {
+            return Change::Keep;
+        }
+        // A layer other than the first is nothing that the input has.
+        let mut left = if reference.contains('.') { Input::None } else { Input::Node(reference.to_string()) };
+        for _ in 0..=names.len() {
+            match &left {
+                Input::Node(name) if gone.contains(node_of(name)) => {
+                    left = first.get(node_of(name)).cloned().unwrap_or_default();
+                }
+                _ => break,
+            }
+        }
+        match (left, site) {
+            (Input::Node(name), _) if !gone.contains(node_of(&name)) => Change::Name(name),
+            (Input::Value(value), Site::Required | Site::Output) => Change::Number(value),
+            (_, Site::Required) => Change::Number(0.0),
+            _ => Change::Remove,
+        }
+    });
+    // Names in expressions that referred to a removed node by its own name.
+    for named in recipe.nodes().iter().filter(|named| !gone.contains(named.name.as_str())) {
+        if !named.node.spec().named_inputs {
+            continue;
+        }
+        let lost: Vec<String> = named.node.inputs().iter().map(|input| input.name.to_owned()).collect();
+        for name in lost.into_iter().filter(|name| gone.contains(node_of(name))) {
+            let Some(own) = node(document, &named.name).filter(|own| !own.contains_key(&name)) else { continue };
+            match first.get(name.as_str()) {
+                Some(Input::Node(source)) if !gone.contains(node_of(source)) => set(own, &name, source.as_str().into()),
+                Some(Input::Value(value)) => set(own, &name, (*value).into()),
+                _ => set(own, &name, 0.0.into()),
+            }
+        }
+    }
+    Ok(())
+}
+
+fn duplicate(document: &mut DocumentMut, recipe: &Recipe, names: &[String]) -> Result<(), String> {
+    let mut taken: HashSet<String> = recipe.nodes().iter().map(|named| named.name.clone()).collect();
+    let mut copies = HashMap::new();
+    for name in names {
+        let free = names::free(name, &taken.iter().map(String::as_str).collect());
+        taken.insert(free.clone());
+        copies.insert(name.as_str(), free);
+    }
+    let nodes = top(document, "nodes").ok_or("`nodes` is no table")?;
+    for name in names {
+        let mut copy = nodes.get(name).cloned().ok_or_else(|| format!("there is no node `{name}`"))?;
+        if let Some(own) = copy.as_table_like_mut() {
+            let inputs: Vec<String> = own.iter().map(|(key, _)| key.to_owned()).collect();
+            for key in inputs.iter().filter(|key| *key != "op") {
+                let Some(reference) = own.get(key).and_then(Item::as_str).map(str::to_owned) else { continue };
+                if let Some(new) = copies.get(node_of(&reference)) {
+                    let layer = reference.strip_prefix(node_of(&reference)).unwrap_or_default();
+                    set(own, key, format!("{new}{layer}").into());
+                }
+            }
+        }
+        if let Item::Table(copy) = &mut copy {
+            copy.set_position(None);
+        }
+        if let Some(new) = copies.get(name.as_str()) {
+            nodes.insert(new, copy);
+        }
+    }
+    Ok(())
+}
+
+fn rename(document: &mut DocumentMut, recipe: &Recipe, from: &str, to: &str) -> Result<(), String> {
+    if recipe.nodes().iter().any(|named| named.name == to) {
+        return Err(format!("there is a node `{to}` already"));
+    }
+    // Expressions keep their names: those that meant the node get a key that says so.
+    for named in recipe.nodes().iter().filter(|named| named.node.spec().named_inputs) {
+        for (i, input) in named.node.inputs().iter().enumerate() {
+            let is_meant = node_of(input.name) == from && *named.node.input(i) == Input::Node(input.name.to_string());
+            if is_meant && let Some(own) = node(document, &named.name).filter(|own| !own.contains_key(input.name)) {
+                set(own, input.name, input.name.into());
+            }
+        }
+    }
+    let nodes = top(document, "nodes").ok_or("`nodes` is no table")?;
+    rename_key(nodes, from, to);
+    change(document, &mut |_, reference| match node_of(reference) == from {
+        true => Change::Name(format!("{to}{}", reference.strip_prefix(from).unwrap_or_default())),
+        false => Change::Keep,
+    });
+    Ok(())
+}
+
+/// Renames a key; its place in the text stays.
+fn rename_key(nodes: &mut dyn toml_edit::TableLike, from: &str, to: &str) {
+    // Tables are written by their position in the text, which the item keeps.
+    let keys: Vec<String> = nodes.iter().map(|(key, _)| key.to_owned()).collect();
+    for key in keys {
+        let Some((old, item)) = nodes.get_key_value(&key).map(|(old, item)| (old.clone(), item.clone())) else {
+            continue;
+        };
+        nodes.remove(&key);
+        match key == from {
+            true => drop(nodes.insert(to, item)),
+            false => drop(nodes.entry_format(&old).or_insert(item)),
+        }
+    }
+}

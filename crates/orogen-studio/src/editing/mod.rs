@@ -1,0 +1,11 @@
+//! The recipe that is edited: its text, what the text means, edits that keep comments, and undo.
+
+pub mod document;
+pub mod edit;
+pub mod history;
+pub mod names;
+mod references;
+mod tables;
+
+#[cfg(test)]
+mod tests;

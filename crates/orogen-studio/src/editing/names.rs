@@ -1,0 +1,66 @@
+//! Names of nodes.
+
+use std::collections::HashSet;
+
+/// A name that is not taken: `name` itself, otherwise with a number from 2 on.
+#[must_use]
+pub fn free(name: &str, taken: &HashSet<&str>) -> String {
+    if !taken.contains(name) {
+        return name.to_string();
+    }
+    // "hills2" continues as "hills3".
+    let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
+    let stem = if stem.is_empty() { name } else { stem };
+    let mut n = 2_u64;
+    loop {
+        let candidate = format!("{stem}{n}");
+        if !taken.contains(candidate.as_str()) {
+            return candidate;
+        }
+        n += 1;
+    }
+}
+
+/// The name of a new node of an op: that of the op, which is a valid name in expressions.
+#[must_use]
+pub fn of_op(op: &str) -> String {
+    op.rsplit('.').next().unwrap_or(op).replace('-', "_")
+}
+
+/// Why a node cannot have a name, as a key of the catalogue of texts.
+#[must_use]
+pub fn fault(name: &str) -> Option<&'static str> {
+    let is_word = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-');
+    match name {
+        "" => Some("name.empty"),
+        _ if name.chars().count() > 64 => Some("name.long"),
+        _ if !name.chars().all(is_word) => Some("name.characters"),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_free() {
+        let taken = HashSet::from(["hills", "hills2", "7"]);
+        for (name, expect) in [("ridges", "ridges"), ("hills", "hills3"), ("hills2", "hills3"), ("7", "72")] {
+            assert_eq!(free(name, &taken), expect);
+        }
+    }
+
+    #[test]
+    fn names_of_ops() {
+        assert_eq!(of_op("stream-power"), "stream_power");
+        assert_eq!(of_op("mygame.terraces"), "terraces");
+    }
+
+    #[test]
+    fn faults() {
+        for (name, is_good) in [("a", true), ("ridge-2_b", true), ("", false), ("a.b", false), ("a b", false)] {
+            assert_eq!(fault(name).is_none(), is_good, "{name}");
+        }
+    }
+}

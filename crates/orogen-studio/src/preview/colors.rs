@@ -1,0 +1,149 @@
+//! Colors of samples.
+
+use orogen::Grid;
+use orogen::export::derived::list;
+use orogen::layer::LayerKind;
+use orogen::map::paint::Painter;
+use orogen::palette::color::{Encoder, Rgb};
+use orogen::palette::named;
+use orogen::palette::tint::Tint;
+use orogen::recipe::class::document::CLASS;
+use orogen::recipe::document::Recipe;
+use orogen::world::HEIGHT;
+
+/// How values become colors.
+#[derive(Debug, Clone)]
+pub enum Colors {
+    /// By a tint.
+    Tint {
+        /// The tint.
+        tint: Tint,
+        /// Whether it is of the logarithms of the values.
+        log: bool,
+    },
+    /// A color for each number.
+    Numbers(Vec<Rgb>),
+}
+
+/// The palette of layers without one of their own.
+const LAYERS: &str = "viridis";
+
+/// Colors of numbers that have none of their own: hues apart from each other.
+const HUES: usize = 24;
+
+impl Colors {
+    /// The colors of a layer over a range of its values. `palette` is a name; the palette of the layer if there is none.
+    #[must_use]
+    pub fn of(recipe: &Recipe, layer: &str, kind: LayerKind, palette: Option<&str>, values: &Grid) -> Colors {
+        if layer == CLASS && !recipe.classes().is_empty() {
+            let classes = recipe.classes().iter().enumerate();
+            return Colors::Numbers(classes.map(|(k, class)| class.color(k)).collect());
+        }
+        if let Some((_, classes)) = orogen::export::biome_cover::classes(recipe).filter(|(output, _)| *output == layer)
+        {
+            return Colors::Numbers(classes.into_iter().map(|(_, color)| color).collect());
+        }
+        if kind == LayerKind::Label {
+            return Colors::Numbers((0..HUES).map(|k| hue(k as f32 * 0.618_034)).collect());
+        }
+        let sea_level = recipe.world.sea_level as f32;
+        let own = list::named(layer).map(|derived| derived.palette).filter(|name| !name.is_empty());
+        let name = palette.or(own).unwrap_or(if layer == HEIGHT { named::DEFAULT } else { LAYERS });
+        let log = kind == LayerKind::Flow;
+        let tint = match named::find(name).or(named::find(LAYERS)) {
+            Some(named) if log => {
+                let logs: Vec<f32> = values.data().iter().map(|value| logarithm(*value)).collect();
+                match Grid::from_data(*values.window(), logs) {
+                    Some(logs) => Tint::of(&named.palette(), &logs, f32::NEG_INFINITY),
+                    None => Tint::fit(values, sea_level),
+                }
+            }
+            Some(named) => Tint::of(&named.palette(), values, sea_level),
+            None => Tint::fit(values, sea_level),
+        };
+        Colors::Tint { tint, log }
+    }
+
+    /// Colors without light, four bytes for each sample.
+    #[must_use]
+    pub fn paint(&self, values: &Grid) -> Vec<u8> {
+        let mut bytes = Vec::with_capacity(4 * values.data().len());
+        match self {
+            Colors::Tint { tint, log } => {
+                let encoder = Encoder::new();
+                for value in values.data() {
+                    let value = if *log { logarithm(*value) } else { *value };
+                    let [red, green, blue] = encoder.bytes(tint.at(value));
+                    bytes.extend_from_slice(&[red, green, blue, 255]);
+                }
+            }
+            Colors::Numbers(colors) => {
+                for value in values.data() {
+                    let [red, green, blue] = number(colors, *value);
+                    bytes.extend_from_slice(&[red, green, blue, 255]);
+                }
+            }
+        }
+        bytes
+    }
+
+    /// Colors with the relief of `heights`. `albedo` are those without.
+    #[must_use]
+    pub fn shade(&self, albedo: &[u8], heights: &Grid, sea_level: f64) -> Vec<u8> {
+        let mut shaded = albedo.to_vec();
+        self.painter(heights, sea_level).shade(heights, &mut shaded);
+        shaded
+    }
+
+    /// The painter of relief for these colors, fitted to heights.
+    #[must_use]
+    pub fn painter(&self, heights: &Grid, sea_level: f64) -> Painter {
+        // Other layers show no water of their own.
+        let tint = match self {
+            Colors::Tint { tint, log: false } => tint.clone(),
+            _ => Tint::fit(heights, f32::NEG_INFINITY),
+        };
+        Painter::with_tint(tint, heights, sea_level)
+    }
+}
+
+/// The logarithm of a value that spans orders of magnitude; that of what is not above 0 is none.
+fn logarithm(value: f32) -> f32 {
+    if value > 0.0 { libm::log10f(value) } else { f32::NAN }
+}
+
+/// The color of a number.
+fn number(colors: &[Rgb], value: f32) -> Rgb {
+    match value.is_finite() && value >= 0.0 && !colors.is_empty() {
+        true => colors[(value + 0.5) as usize % colors.len()],
+        false => [128; 3],
+    }
+}
+
+/// A color of a hue from 0 to 1.
+fn hue(at: f32) -> Rgb {
+    orogen::palette::fitted::of_hsv([at.fract(), 0.55, 0.85]).map(|c| (c * 255.0) as u8)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use orogen::{Recipe, Window, presets};
+
+    #[test]
+    fn heights_classes_and_numbers_have_colors() {
+        let grid = Grid::from_data(Window::new(4, 1, 10.0), vec![-50.0, 0.0, 100.0, f32::NAN]).unwrap();
+        let recipe = presets::find("tile-continent").unwrap().recipe().unwrap();
+        let heights = Colors::of(&recipe, HEIGHT, LayerKind::Height, None, &grid).paint(&grid);
+        assert!(heights[2] > heights[0], "the sea is blue: {heights:?}");
+        let classes = Grid::from_data(Window::new(2, 1, 10.0), vec![0.0, 1.0]).unwrap();
+        let colors = Colors::of(&recipe, CLASS, LayerKind::Label, None, &classes).paint(&classes);
+        let expect = [recipe.classes()[0].color(0), recipe.classes()[1].color(1)];
+        assert_eq!([&colors[..3], &colors[4..7]], [&expect[0][..], &expect[1][..]]);
+        let plain = Recipe::new(orogen::WorldSpec::default());
+        let numbers = Colors::of(&plain, "basins", LayerKind::Label, None, &classes).paint(&classes);
+        assert_ne!(numbers[..3], numbers[4..7]);
+        let flow = Colors::of(&plain, "flow", LayerKind::Flow, None, &grid).paint(&grid);
+        assert_eq!(flow.len(), 16);
+    }
+}

@@ -1,0 +1,69 @@
+//! A picture of a part of a world.
+
+use orogen::{Grid, Window};
+
+use super::statistics::Statistics;
+
+/// How good a picture is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quality {
+    /// Of a draft of the recipe: the land differs in detail.
+    Draft,
+    /// Exact samples, and finer pictures follow.
+    Coarse,
+    /// The finest that was asked for.
+    Fine,
+}
+
+/// A picture of a part of a world.
+#[derive(Debug, Clone)]
+pub struct Frame {
+    /// The number of the request.
+    pub request: u64,
+    /// How good it is.
+    pub quality: Quality,
+    /// The heights of the surface, in metres.
+    pub heights: Grid,
+    /// The layer that is coloured, unless it is the surface.
+    pub values: Option<Grid>,
+    /// The unit of the coloured layer, or empty.
+    pub unit: &'static str,
+    /// Colors without light: red, green, blue and 255 for each sample, sRGB.
+    pub albedo: Vec<u8>,
+    /// Colors with relief shading, as maps have them.
+    pub shaded: Vec<u8>,
+    /// How much of the sun each sample sees, 0 to 255.
+    pub light: Vec<u8>,
+    /// The height of the sea.
+    pub sea_level: f64,
+    /// Figures of the coloured layer.
+    pub statistics: Statistics,
+    /// The seconds since the request.
+    pub seconds: f64,
+}
+
+impl Frame {
+    /// Its window.
+    #[must_use]
+    pub fn window(&self) -> &Window {
+        self.heights.window()
+    }
+
+    /// The layer that is coloured.
+    #[must_use]
+    pub fn shown(&self) -> &Grid {
+        self.values.as_ref().unwrap_or(&self.heights)
+    }
+
+    /// The value of the coloured layer and the height at a position in metres; `None` outside.
+    #[must_use]
+    pub fn at(&self, [east, south]: [f64; 2]) -> Option<[f32; 2]> {
+        let window = self.window();
+        let place = |metres: f64, first: i64, count: usize| {
+            let at = (metres / window.cell).round() as i64 - first;
+            (0..count as i64).contains(&at).then_some(at as usize)
+        };
+        let (i, j) = (place(east, window.x, window.width)?, place(south, window.y, window.height)?);
+        Some([self.shown().get(i, j)?, self.heights.get(i, j)?])
+    }
+}

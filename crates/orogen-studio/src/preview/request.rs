@@ -1,0 +1,42 @@
+//! What is to be shown.
+
+use orogen::recipe::document::Recipe;
+use orogen::world::HEIGHT;
+
+use super::region::Region;
+
+/// A request for pictures.
+#[derive(Debug, Clone)]
+pub struct Request {
+    /// The recipe.
+    pub recipe: Recipe,
+    /// What is coloured: an output, `node`, `node.layer`, or a layer derived from the heights.
+    pub layer: String,
+    /// The layer that gives the surface its heights.
+    pub surface: String,
+    /// The part of the world.
+    pub region: Region,
+    /// A palette by name; that of the layer if `None`.
+    pub palette: Option<String>,
+    /// Direction to the sun: azimuth clockwise from north and altitude, in degrees.
+    pub sun: [f64; 2],
+    /// Samples along the longer side of the finest picture.
+    pub finest: usize,
+}
+
+impl Request {
+    /// The heights of a recipe with the standard colors and light.
+    #[must_use]
+    pub fn new(recipe: Recipe) -> Request {
+        let region = Region::of(recipe.world.size, recipe.world.cell);
+        Request {
+            recipe,
+            layer: HEIGHT.into(),
+            surface: HEIGHT.into(),
+            region,
+            palette: None,
+            sun: [315.0, 40.0],
+            finest: 1024,
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! The work behind the pictures: one request at a time, on a thread of the session, cancelled by the next.
+
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::Instant;
+
+use orogen::analysis::shadow::Shadows;
+use orogen::export::derived::list;
+use orogen::export::layer_source::LayerSource;
+use orogen::export::options::Options as LayerOptions;
+use orogen::{Error, ErrorKind, Progress, Result, Session, World};
+
+use super::colors::Colors;
+use super::frame::{Frame, Quality};
+use super::request::Request;
+use super::stages::{self, Stage};
+use super::statistics::Statistics;
+use crate::view::sun;
+
+/// What the work tells.
+#[derive(Debug)]
+pub enum Event {
+    /// A picture.
+    Frame(Box<Frame>),
+    /// All pictures are made.
+    Done,
+    /// The request failed.
+    Failed(Error),
+}
+
+/// Called from any thread when there is something new to show.
+pub type Wake = Arc<dyn Fn() + Send + Sync>;
+
+/// Makes pictures.
+pub struct Worker {
+    session: Session,
+    wake: Wake,
+    sender: Sender<(u64, Event)>,
+    receiver: Receiver<(u64, Event)>,
+    /// The number of the last request.
+    request: u64,
+    running: Option<Progress>,
+}
+
+impl Worker {
+    /// A worker in a session, with whose threads and memory it works.
+    #[must_use]
+    pub fn new(session: Session, wake: Wake) -> Worker {
+        let (sender, receiver) = channel();
+        Worker { session, wake, sender, receiver, request: 0, running: None }
+    }
+
+    /// Asks for pictures. An earlier request is cancelled. Returns the number of the request.
+    pub fn ask(&mut self, request: Request) -> u64 {
+        self.cancel();
+        self.request += 1;
+        let number = self.request;
+        let (sender, wake) = (self.sender.clone(), Arc::clone(&self.wake));
+        let progress = Progress::none();
+        self.running = Some(progress.clone());
+        let begun = Instant::now();
+        let work = move |session: &Session| {
+            // The window may be closed.
+            let tell = |event: Event| {
+                let _ = sender.send((number, event));
+                wake();
+            };
+            match make(session, &request, (number, begun), &progress, &tell) {
+                Ok(()) => tell(Event::Done),
+                Err(error) if error.kind() == ErrorKind::Cancelled => {}
+                Err(error) => tell(Event::Failed(error)),
+            }
+        };
+        if let Err(error) = self.session.start(work) {
+            let _ = self.sender.send((number, Event::Failed(error)));
+        }
+        number
+    }
+
+    /// Cancels the current request.
+    pub fn cancel(&mut self) {
+        if let Some(running) = self.running.take() {
+            running.cancel();
+        }
+    }
+
+    /// What the current request has told since the last call. Earlier requests are not heard any more.
+    pub fn events(&mut self) -> Vec<Event> {
+        let events: Vec<Event> = std::iter::from_fn(|| self.receiver.try_recv().ok())
+            .filter(|(request, _)| *request == self.request)
+            .map(|(_, event)| event)
+            .collect();
+        if events.iter().any(|event| matches!(event, Event::Done | Event::Failed(_))) {
+            self.running = None;
+        }
+        events
+    }
+
+    /// Whether a request is being worked on.
+    #[must_use]
+    pub fn is_busy(&self) -> bool {
+        self.running.is_some()
+    }
+
+    /// The session.
+    #[must_use]
+    pub fn session(&self) -> &Session {
+        &self.session
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        self.cancel();
+    }
+}
+
+/// Makes the pictures of a request.
+fn make(
+    session: &Session,
+    request: &Request,
+    (number, begun): (u64, Instant),
+    progress: &Progress,
+    tell: &(impl Fn(Event) + Clone + Send + Sync),
+) -> Result<()> {
+    let world = open(session, request, 1)?;
+    let stages = stages::of(&world, request)?;
+    for stage in stages {
+        progress.check()?;
+        let draft = if stage.coarser > 1 { Some(open(session, request, stage.coarser)?) } else { None };
+        let made = frame(draft.as_ref().unwrap_or(&world), request, stage, progress);
+        let frame = match made {
+            Ok(frame) => frame,
+            // A draft that does not work out is left out.
+            Err(error) if stage.quality == Quality::Draft && error.kind() != ErrorKind::Cancelled => continue,
+            Err(error) => return Err(error),
+        };
+        tell(Event::Frame(Box::new(Frame { request: number, seconds: begun.elapsed().as_secs_f64(), ..frame })));
+    }
+    Ok(())
+}
+
+/// Opens the recipe of a request, or a draft of it.
+fn open(session: &Session, request: &Request, coarser: u32) -> Result<World> {
+    let mut recipe = request.recipe.draft(coarser);
+    list::prepare(&mut recipe, &request.layer, &LayerOptions::default())?;
+    session.open(recipe)
+}
+
+/// Makes a picture.
+fn frame(world: &World, request: &Request, stage: Stage, progress: &Progress) -> Result<Frame> {
+    let window = request.region.window(world, stage.samples)?;
+    let heights = world.grids(&[&request.surface], &window, progress)?.pop().ok_or_else(nothing)?;
+    let mut unit = world.unit(&request.surface)?;
+    let mut kind = world.kind(&request.surface)?;
+    let values = match request.layer == request.surface {
+        true => None,
+        false => {
+            let mut source = LayerSource::new(world, &request.layer, window, progress)?;
+            (unit, kind) = (source.unit(), source.kind());
+            Some(source.whole().map_err(error_of)?.into_iter().next().ok_or_else(nothing)?)
+        }
+    };
+    let sea_level = world.recipe().world.sea_level;
+    let shown = values.as_ref().unwrap_or(&heights);
+    let colors = Colors::of(world.recipe(), &request.layer, kind, request.palette.as_deref(), shown);
+    let albedo = colors.paint(shown);
+    progress.check()?;
+    let shaded = world.install(|| colors.shade(&albedo, &heights, sea_level));
+    progress.check()?;
+    let lit = Shadows::new(heights.data(), heights.width(), window.cell).lit(sun::towards(request.sun));
+    let light = lit.into_iter().map(|lit| if lit { 255 } else { 0 }).collect();
+    Ok(Frame {
+        request: 0,
+        quality: stage.quality,
+        unit,
+        statistics: Statistics::of(shown, sea_level),
+        albedo,
+        shaded,
+        light,
+        sea_level,
+        seconds: 0.0,
+        heights,
+        values,
+    })
+}
+
+fn nothing() -> Error {
+    Error::new(ErrorKind::Internal, "no layer was computed")
+}
+
+/// The error that an error of a stream stands for.
+fn error_of(cause: std::io::Error) -> Error {
+    let own = cause.get_ref().and_then(|inner| inner.downcast_ref::<Error>()).cloned();
+    own.unwrap_or_else(|| Error::new(ErrorKind::File, cause.to_string()))
+}
+
+#[cfg(test)]
+mod tests;

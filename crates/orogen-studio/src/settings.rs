@@ -1,0 +1,117 @@
+//! What is remembered between runs.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::catalogue::Language;
+use crate::files;
+
+/// Files that are remembered.
+const RECENT: usize = 12;
+
+/// Dark, light, or as the system.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Theme {
+    /// Dark.
+    Dark,
+    /// Light.
+    Light,
+    /// As the system.
+    #[default]
+    System,
+}
+
+/// What is remembered between runs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Settings {
+    /// The language of the interface; that of the system if it was never chosen.
+    pub language: Option<Language>,
+    /// Its colors.
+    pub theme: Theme,
+    /// The files opened last, the latest first.
+    pub recent: Vec<PathBuf>,
+    /// The size of the window, in points.
+    pub window: Option<[f32; 2]>,
+    /// Size of the interface; 1 is normal.
+    pub scale: f32,
+    /// Memory limit in bytes.
+    pub memory: u64,
+}
+
+/// The default of [`Settings::memory`].
+const MEMORY: u64 = 2 << 30;
+
+impl Default for Settings {
+    fn default() -> Settings {
+        Settings { language: None, theme: Theme::System, recent: Vec::new(), window: None, scale: 1.0, memory: MEMORY }
+    }
+}
+
+const FILE: &str = "studio.json";
+
+impl Settings {
+    /// The settings in a folder; the defaults if there are none, or none that can be read.
+    #[must_use]
+    pub fn read(folder: Option<&Path>) -> Settings {
+        let text = folder.and_then(|folder| files::read(&folder.join(FILE)).ok());
+        let mut settings: Settings = text.and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default();
+        settings.recent.truncate(RECENT);
+        settings.scale = if settings.scale.is_finite() { settings.scale.clamp(0.5, 3.0) } else { 1.0 };
+        settings.memory = settings.memory.max(256 << 20);
+        settings
+    }
+
+    /// Writes them. Settings that cannot be written are lost; nothing else depends on them.
+    pub fn write(&self, folder: Option<&Path>) {
+        if let (Some(folder), Ok(text)) = (folder, serde_json::to_string_pretty(self)) {
+            let _ = files::write(&folder.join(FILE), &text);
+        }
+    }
+
+    /// The language.
+    #[must_use]
+    pub fn language(&self) -> Language {
+        self.language.unwrap_or_else(Language::of_system)
+    }
+
+    /// Notes that a file was opened or saved.
+    pub fn opened(&mut self, path: &Path) {
+        self.recent.retain(|other| other != path);
+        self.recent.insert(0, path.to_path_buf());
+        self.recent.truncate(RECENT);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use orogen::test_folder::TestFolder;
+
+    #[test]
+    fn settings_are_read_as_they_were_written() {
+        let folder = TestFolder::new("studio-settings").unwrap();
+        let mut settings =
+            Settings { language: Some(Language::Chinese), theme: Theme::Dark, scale: 1.5, ..Settings::default() };
+        (0..20).for_each(|n| settings.opened(Path::new(&format!("{n}.toml"))));
+        settings.opened(Path::new("12.toml"));
+        settings.write(Some(&folder));
+        let read = Settings::read(Some(&folder));
+        assert_eq!(read, settings);
+        assert_eq!((read.recent.len(), read.recent[0].as_path()), (RECENT, Path::new("12.toml")));
+    }
+
+    #[test]
+    fn broken_settings_are_defaults() {
+        let folder = TestFolder::new("studio-broken-settings").unwrap();
+        assert_eq!(Settings::read(None), Settings::default());
+        for text in ["", "{", "[]", r#"{"scale": "x"}"#] {
+            files::write(&folder.join(FILE), text).unwrap();
+            assert_eq!(Settings::read(Some(&folder)), Settings::default(), "{text}");
+        }
+        files::write(&folder.join(FILE), r#"{"scale": 100, "later": 1}"#).unwrap();
+        assert_eq!(Settings::read(Some(&folder)).scale, 3.0);
+    }
+}

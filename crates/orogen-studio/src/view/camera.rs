@@ -1,0 +1,141 @@
+//! The camera of the view in space.
+//!
+//! Lengths are in units of half the longer side of what is shown, whose middle is the origin: x points east, y up and z south.
+
+use glam::{Mat4, Vec3, Vec4};
+
+/// The camera looks at a point from a distance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Camera {
+    /// What it looks at.
+    pub target: Vec3,
+    /// Direction from the target to the camera, clockwise from south, in radians.
+    pub yaw: f32,
+    /// Elevation of the camera over the target, in radians.
+    pub pitch: f32,
+    /// Distance from the target.
+    pub distance: f32,
+}
+
+/// Vertical field of view, in radians.
+const FIELD: f32 = 0.7;
+
+/// Elevations from nearly level to nearly from above.
+const PITCHES: [f32; 2] = [-0.2, 1.55];
+
+/// Distances.
+const DISTANCES: [f32; 2] = [0.02, 12.0];
+
+/// How far from the middle a target can be.
+const REACH: f32 = 2.0;
+
+impl Default for Camera {
+    fn default() -> Camera {
+        Camera { target: Vec3::ZERO, yaw: 0.55, pitch: 0.6, distance: 3.5 }
+    }
+}
+
+impl Camera {
+    /// Its position.
+    #[must_use]
+    pub fn position(&self) -> Vec3 {
+        self.target - self.forward() * self.distance
+    }
+
+    /// The direction in which it looks.
+    #[must_use]
+    pub fn forward(&self) -> Vec3 {
+        let level = libm::cosf(self.pitch);
+        -Vec3::new(libm::sinf(self.yaw) * level, libm::sinf(self.pitch), libm::cosf(self.yaw) * level)
+    }
+
+    fn right(&self) -> Vec3 {
+        Vec3::new(libm::cosf(self.yaw), 0.0, -libm::sinf(self.yaw))
+    }
+
+    /// The matrix from the view's space to clip space, for a picture of this width over height. Depths are reversed: 1 is near, 0 is far.
+    #[must_use]
+    pub fn matrix(&self, aspect: f32) -> Mat4 {
+        let near = (self.distance * 0.01).max(1e-3);
+        let projection = Mat4::perspective_infinite_reverse_rh(FIELD, aspect.max(1e-3), near);
+        projection * Mat4::look_at_rh(self.position(), self.target, Vec3::Y)
+    }
+
+    /// Turns around the target by parts of the view's height.
+    pub fn orbit(&mut self, [right, down]: [f32; 2]) {
+        self.yaw = (self.yaw - right * 3.0).rem_euclid(std::f32::consts::TAU);
+        self.pitch = (self.pitch + down * 3.0).clamp(PITCHES[0], PITCHES[1]);
+    }
+
+    /// Moves the target over level ground, so that what is under the pointer follows it; by parts of the view's height.
+    pub fn pan(&mut self, [right, down]: [f32; 2]) {
+        let scale = 2.0 * self.distance * libm::tanf(FIELD / 2.0);
+        let ahead = Vec3::new(-libm::sinf(self.yaw), 0.0, -libm::cosf(self.yaw));
+        let steep = libm::sinf(self.pitch.abs()).max(0.25);
+        self.go(self.right() * (-right * scale) + ahead * (down * scale / steep));
+    }
+
+    /// Moves closer by a factor above 1, or away.
+    pub fn zoom(&mut self, factor: f32) {
+        self.distance = (self.distance / factor.clamp(0.1, 10.0)).clamp(DISTANCES[0], DISTANCES[1]);
+    }
+
+    /// Flies: moves the camera with its target, by parts of the distance to the right, up and ahead.
+    pub fn fly(&mut self, [right, up, ahead]: [f32; 3]) {
+        let step = self.right() * right + Vec3::Y * up + self.forward() * ahead;
+        self.go(step * self.distance);
+    }
+
+    fn go(&mut self, step: Vec3) {
+        self.target = (self.target + step).clamp(Vec3::splat(-REACH), Vec3::splat(REACH));
+    }
+
+    /// The ray through a position of the picture, from its upper left corner at 0, 0 to its lower right one at 1, 1: its start and its unit vector.
+    #[must_use]
+    pub fn ray(&self, [right, down]: [f32; 2], aspect: f32) -> [Vec3; 2] {
+        let inverse = self.matrix(aspect).inverse();
+        let through = inverse * Vec4::new(2.0 * right - 1.0, 1.0 - 2.0 * down, 0.5, 1.0);
+        let start = self.position();
+        [start, (through.truncate() / through.w - start).normalize_or_zero()]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_target_is_in_the_middle_of_the_picture() {
+        let mut camera = Camera { target: Vec3::new(0.3, 0.1, -0.2), ..Camera::default() };
+        for step in [[0.1, 0.0], [0.4, -0.3], [-2.0, 5.0]] {
+            camera.orbit(step);
+            let clip = camera.matrix(1.6) * camera.target.extend(1.0);
+            assert!((clip.x / clip.w).abs() < 1e-4 && (clip.y / clip.w).abs() < 1e-4, "{camera:?}");
+            let [start, ray] = camera.ray([0.5, 0.5], 1.6);
+            assert!((start + ray * camera.distance - camera.target).length() < 1e-3);
+            assert!(camera.pitch >= PITCHES[0] && camera.pitch <= PITCHES[1]);
+        }
+    }
+
+    #[test]
+    fn panning_moves_the_ground_with_the_pointer() {
+        let mut camera = Camera { yaw: 0.0, pitch: 1.5, ..Camera::default() };
+        let before = camera.matrix(1.0) * Vec4::new(0.0, 0.0, 0.0, 1.0);
+        camera.pan([0.1, 0.05]);
+        let after = camera.matrix(1.0) * Vec4::new(0.0, 0.0, 0.0, 1.0);
+        let moved = [after.x / after.w - before.x / before.w, after.y / after.w - before.y / before.w];
+        // Clip space is two heights high, and y points up.
+        assert!((moved[0] - 0.2).abs() < 0.02 && (moved[1] + 0.1).abs() < 0.02, "{moved:?}");
+    }
+
+    #[test]
+    fn distances_are_bounded() {
+        let mut camera = Camera::default();
+        (0..100).for_each(|_| camera.zoom(2.0));
+        assert_eq!(camera.distance, DISTANCES[0]);
+        (0..100).for_each(|_| camera.zoom(0.5));
+        assert_eq!(camera.distance, DISTANCES[1]);
+        camera.fly([1e9, 0.0, 0.0]);
+        assert!(camera.target.x.abs() <= REACH && camera.matrix(0.0).is_finite());
+    }
+}

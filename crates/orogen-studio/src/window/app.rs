@@ -1,0 +1,578 @@
+//! The application: lays out the panels, and carries out what they ask for.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use eframe::egui::{self, CentralPanel, Context, Panel, Ui};
+use orogen::{Budget, Options, Result, Session};
+
+use super::action::Action;
+use super::command::{self, Command};
+use super::dialogs::{self, CommandPalette, FileDialog, Purpose, Unsaved};
+use super::export_dialog::ExportDialog;
+use super::graph_panel::Graph;
+use super::inspector::Inspector;
+use super::map_panel::MapPanel;
+use super::relief::Ability;
+use super::relief_panel::ReliefPanel;
+use super::start_page::StartPage;
+use super::text_panel::TextPanel;
+use super::{analysis_panel, fonts, menu, run};
+use crate::catalogue::Language;
+use crate::editing::document::Document;
+use crate::editing::edit::Edit;
+use crate::preview::frame::Quality;
+use crate::preview::worker::Wake;
+use crate::recovery::Recovery;
+use crate::settings::Settings;
+use crate::studio::{self, Studio};
+
+/// What the middle shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum View {
+    Relief,
+    Map,
+}
+
+/// What is below the view.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Below {
+    Graph,
+    Text,
+    Analysis,
+}
+
+/// What waits for the answer about changes that are not saved.
+#[derive(Debug, Clone)]
+enum Pending {
+    Open(PathBuf),
+    Preset(&'static str),
+    StartPage,
+    Quit,
+}
+
+/// The application.
+pub struct App {
+    session: Session,
+    wake: Wake,
+    settings: Settings,
+    /// The folder of settings.
+    folder: Option<PathBuf>,
+    language: Language,
+    ability: Option<Ability>,
+    studio: Option<Studio>,
+    view: View,
+    below: Below,
+    relief: ReliefPanel,
+    map: MapPanel,
+    graph: Graph,
+    text: TextPanel,
+    inspector: Inspector,
+    start: StartPage,
+    files: Option<FileDialog>,
+    export: Option<ExportDialog>,
+    palette: Option<CommandPalette>,
+    has_shortcuts: bool,
+    message: Option<(String, String)>,
+    pending: Option<Pending>,
+    recovery: Recovery,
+    /// The text that a crash left behind.
+    recovered: Option<(String, String)>,
+    /// When the file of the document was looked at last.
+    watched: f64,
+    may_close: bool,
+}
+
+/// The seconds between two looks at the file of the document.
+const WATCH: f64 = 0.5;
+
+impl App {
+    /// The application with a document, or with the start page.
+    ///
+    /// # Errors
+    /// If no threads can be started.
+    pub fn new(
+        context: &eframe::CreationContext<'_>,
+        settings: Settings,
+        folder: Option<PathBuf>,
+        document: Option<Document>,
+    ) -> Result<App> {
+        let session = Session::new(Options { memory: Budget::of(settings.memory), ..Options::default() })?;
+        let repaint = context.egui_ctx.clone();
+        let wake: Wake = Arc::new(move || repaint.request_repaint());
+        let language = settings.language();
+        run::set_theme(&context.egui_ctx, settings.theme);
+        context.egui_ctx.set_zoom_factor(settings.scale);
+        let ability = context.wgpu_render_state.as_ref().map(Ability::of);
+        let (recovery, recovered) = Recovery::new(folder.as_deref());
+        let mut app = App {
+            session,
+            wake,
+            settings,
+            folder,
+            language,
+            ability,
+            studio: None,
+            view: View::Relief,
+            below: Below::Graph,
+            relief: ReliefPanel::default(),
+            map: MapPanel::default(),
+            graph: Graph::default(),
+            text: TextPanel::default(),
+            inspector: Inspector::default(),
+            start: StartPage::default(),
+            files: None,
+            export: None,
+            palette: None,
+            has_shortcuts: false,
+            message: None,
+            pending: None,
+            recovery,
+            recovered,
+            watched: 0.0,
+            may_close: false,
+        };
+        app.use_language(&context.egui_ctx);
+        if let Some(document) = document {
+            app.open(document);
+        }
+        Ok(app)
+    }
+
+    /// The state of the document; `None` on the start page.
+    #[must_use]
+    pub fn studio(&self) -> Option<&Studio> {
+        self.studio.as_ref()
+    }
+
+    fn use_language(&mut self, context: &Context) {
+        if self.language == Language::Chinese && fonts::add_chinese(context).is_none() {
+            // Boxes in place of letters help nobody.
+            self.language = Language::English;
+            self.message = Some((self.text("font.title").into(), self.text("font.missing").into()));
+        }
+    }
+
+    fn text(&self, key: &'static str) -> &'static str {
+        self.language.text(key)
+    }
+
+    fn open(&mut self, document: Document) {
+        if let Some(path) = document.path() {
+            self.settings.opened(path);
+            self.settings.write(self.folder.as_deref());
+        }
+        match &mut self.studio {
+            Some(studio) => studio.open(document),
+            None => self.studio = Some(Studio::new(self.session.clone(), Arc::clone(&self.wake), document)),
+        }
+        (self.graph, self.text, self.map) = (Graph::default(), TextPanel::default(), MapPanel::default());
+        self.relief.show_whole();
+        self.export = None;
+    }
+
+    fn open_path(&mut self, path: &Path) {
+        match studio::open(path) {
+            Ok(document) => self.open(document),
+            Err(error) => self.say(&error.to_string()),
+        }
+    }
+
+    fn say(&mut self, text: &str) {
+        self.message = Some((self.text("message.title").into(), text.into()));
+    }
+
+    /// Does what waits for an answer, or asks first if changes are not saved.
+    fn leave(&mut self, pending: Pending, context: &Context) {
+        match self.studio.as_ref().is_some_and(|studio| studio.document.is_changed()) {
+            true => self.pending = Some(pending),
+            false => self.go(pending, context),
+        }
+    }
+
+    fn go(&mut self, pending: Pending, context: &Context) {
+        self.recovery.forget();
+        match pending {
+            Pending::Open(path) => self.open_path(&path),
+            Pending::Preset(name) => match orogen::presets::find(name).map(Document::of_preset) {
+                Some(Ok(document)) => self.open(document),
+                Some(Err(error)) => self.say(&error.to_string()),
+                None => {}
+            },
+            Pending::StartPage => self.studio = None,
+            Pending::Quit => {
+                self.may_close = true;
+                context.send_viewport_cmd(egui::ViewportCommand::Close);
+            }
+        }
+    }
+
+    /// Carries out an action.
+    fn act(&mut self, action: Action, context: &Context) {
+        match action {
+            Action::Command(command) => self.command(command, context),
+            Action::OpenPreset(name) => self.leave(Pending::Preset(name), context),
+            Action::Open(path) => self.leave(Pending::Open(path), context),
+            Action::Save(path) => self.save(&path),
+            Action::Language(language) => {
+                self.language = language;
+                self.settings.language = Some(language);
+                self.use_language(context);
+                self.settings.write(self.folder.as_deref());
+            }
+            Action::Theme(theme) => {
+                self.settings.theme = theme;
+                run::set_theme(context, theme);
+                self.settings.write(self.folder.as_deref());
+            }
+            Action::Copy(text) => context.copy_text(text),
+            Action::GoToLine(line) => {
+                self.below = Below::Text;
+                self.text.go_to(line);
+            }
+            other => {
+                let Some(studio) = &mut self.studio else { return };
+                match other {
+                    Action::Edit(edit) => {
+                        if let Err(error) = studio.edit(&edit) {
+                            self.say(&error.to_string());
+                        }
+                    }
+                    Action::Type(text) => studio.document.type_text(text),
+                    Action::EndGesture => studio.document.end_gesture(),
+                    Action::Select(names) => studio.selected = names,
+                    Action::Show(layer) => studio.look.layer = layer,
+                    Action::Palette(palette) => studio.look.palette = palette,
+                    Action::Sun(sun) => studio.look.sun = sun,
+                    Action::Finest(finest) => studio.look.finest = finest,
+                    Action::Region(region) => studio.look.region = region,
+                    _ => {}
+                }
+            }
+        }
+    }
+
+    fn save(&mut self, path: &Path) {
+        let Some(studio) = &mut self.studio else { return };
+        match studio.save(path) {
+            Ok(()) => {
+                self.recovery.forget();
+                self.settings.opened(path);
+                self.settings.write(self.folder.as_deref());
+            }
+            Err(error) => self.say(&error.to_string()),
+        }
+    }
+
+    fn command(&mut self, command: Command, context: &Context) {
+        if !menu::is_enabled(command, self.studio.as_ref()) {
+            return;
+        }
+        match command {
+            Command::New => self.leave(Pending::StartPage, context),
+            Command::Open => {
+                let at = self.studio.as_ref().and_then(|studio| studio.document.path());
+                self.files = Some(FileDialog::new(Purpose::Open, at));
+            }
+            Command::Quit => self.leave(Pending::Quit, context),
+            Command::CommandPalette => self.palette = Some(CommandPalette::default()),
+            Command::Shortcuts => self.has_shortcuts = true,
+            Command::About => {
+                let text = self.language.fill("about.text", &[("version", env!("CARGO_PKG_VERSION"))]);
+                self.message = Some((self.text("command.about").into(), text));
+            }
+            Command::ShowRelief => self.view = View::Relief,
+            Command::ShowMap => self.view = View::Map,
+            Command::ShowGraph => self.below = Below::Graph,
+            Command::ShowText => self.below = Below::Text,
+            Command::ShowAnalysis => self.below = Below::Analysis,
+            Command::WholeView => {
+                self.relief.show_whole();
+                self.map.show_whole();
+                self.graph.show_whole();
+            }
+            other => self.document_command(other),
+        }
+    }
+
+    fn document_command(&mut self, command: Command) {
+        let Some(studio) = &mut self.studio else { return };
+        let selected = studio.selected.clone();
+        match command {
+            Command::Save => match studio.document.path().map(Path::to_path_buf) {
+                Some(path) => self.save(&path),
+                None => self.save_as(),
+            },
+            Command::SaveAs => self.save_as(),
+            Command::Export => self.export = ExportDialog::new(studio),
+            Command::Undo => drop(studio.document.undo()),
+            Command::Redo => drop(studio.document.redo()),
+            Command::NextSeed => {
+                let seed = studio.document.recipe().world.seed;
+                let next = Edit::Seed(if seed >= i64::MAX as u64 { 0 } else { seed + 1 });
+                let edited = studio.edit(&next);
+                // Each throw is a step of its own.
+                studio.document.end_gesture();
+                if let Err(error) = edited {
+                    self.say(&error.to_string());
+                }
+            }
+            Command::AddNode => {
+                self.below = Below::Graph;
+                self.graph.open_search();
+            }
+            Command::Rename => {
+                if let Some(name) = selected.first() {
+                    self.inspector.rename(name);
+                }
+            }
+            Command::Delete | Command::Duplicate => {
+                let edit = if command == Command::Delete { Edit::Delete(selected) } else { Edit::Duplicate(selected) };
+                if let Err(error) = studio.edit(&edit) {
+                    self.say(&error.to_string());
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn save_as(&mut self) {
+        let Some(studio) = &self.studio else { return };
+        let name = PathBuf::from(format!("{}.toml", studio.document.title()));
+        self.files = Some(FileDialog::new(Purpose::Save, studio.document.path().or(Some(&name))));
+    }
+
+    /// What the keyboard asks for.
+    fn keys(context: &Context, actions: &mut Vec<Action>) {
+        // Longer combinations first: Ctrl+Shift+Z is no Ctrl+Z.
+        let mut entries: Vec<&command::Entry> = command::ALL.iter().filter(|entry| entry.keys.is_some()).collect();
+        entries.sort_by_key(|entry| !entry.keys.is_some_and(|keys| keys.modifiers.shift));
+        for entry in entries {
+            if let Some(keys) = entry.keys
+                && context.input_mut(|input| input.consume_shortcut(&keys))
+            {
+                actions.push(Action::Command(entry.command));
+            }
+        }
+    }
+
+    /// Files dropped onto the window.
+    fn dropped(context: &Context, actions: &mut Vec<Action>) {
+        let paths: Vec<PathBuf> =
+            context.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_path_buf()).collect());
+        actions.extend(paths.into_iter().take(1).map(Action::Open));
+    }
+
+    fn panels(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+        let Some(studio) = &self.studio else {
+            CentralPanel::default().show(ui, |ui| self.start.show(ui, &self.settings, self.language, actions));
+            return;
+        };
+        let language = self.language;
+        Panel::bottom("status").show(ui, |ui| status(ui, studio, language));
+        Panel::right("inspector").default_size(300.0).size_range(220.0..=520.0).show(ui, |ui| {
+            egui::ScrollArea::vertical()
+                .auto_shrink(false)
+                .show(ui, |ui| self.inspector.show(ui, studio, language, actions));
+        });
+        let available = ui.available_height();
+        Panel::bottom("below").resizable(true).default_size(available * 0.36).size_range(60.0..=available * 0.8).show(
+            ui,
+            |ui| {
+                ui.horizontal(|ui| {
+                    for (below, name) in [
+                        (Below::Graph, "below.graph"),
+                        (Below::Text, "below.text"),
+                        (Below::Analysis, "below.analysis"),
+                    ] {
+                        let label = if below == Below::Text && !studio.document.is_valid() {
+                            egui::RichText::new(format!("! {}", language.text(name))).color(ui.visuals().error_fg_color)
+                        } else {
+                            egui::RichText::new(language.text(name))
+                        };
+                        if ui.selectable_label(self.below == below, label).clicked() {
+                            self.below = below;
+                        }
+                    }
+                });
+                match self.below {
+                    Below::Graph => self.graph.show(ui, studio, language, actions),
+                    Below::Text => self.text.show(ui, studio, language, actions),
+                    Below::Analysis => analysis_panel::show(ui, studio, language),
+                }
+            },
+        );
+        CentralPanel::default().show(ui, |ui| {
+            ui.horizontal(|ui| {
+                for (view, name) in [(View::Relief, "view.relief"), (View::Map, "view.map")] {
+                    if ui.selectable_label(self.view == view, language.text(name)).clicked() {
+                        self.view = view;
+                    }
+                }
+            });
+            match self.view {
+                View::Relief => self.relief.show(ui, studio, self.ability, language, actions),
+                View::Map => self.map.show(ui, studio, language, actions),
+            }
+        });
+    }
+
+    fn dialogs(&mut self, context: &Context, actions: &mut Vec<Action>) {
+        let language = self.language;
+        if let Some(files) = &mut self.files
+            && !files.show(context, language, actions)
+        {
+            self.files = None;
+        }
+        if let (Some(export), Some(studio)) = (&mut self.export, &self.studio)
+            && !export.show(context, studio, &self.wake, language, actions)
+        {
+            self.export = None;
+        }
+        if let Some(palette) = &mut self.palette
+            && !palette.show(context, self.studio.as_ref(), language, actions)
+        {
+            self.palette = None;
+        }
+        if self.has_shortcuts {
+            self.has_shortcuts = dialogs::shortcuts(context, language);
+        }
+        if let Some((title, text)) = &self.message
+            && !dialogs::message(context, title, text)
+        {
+            self.message = None;
+        }
+        self.recover(context);
+        self.ask(context);
+    }
+
+    /// Offers the text that a crash left behind.
+    fn recover(&mut self, context: &Context) {
+        let Some((title, text)) = &self.recovered else { return };
+        let language = self.language;
+        let mut answer = None;
+        let mut is_open = true;
+        dialogs::window(context, language.text("recovery.title"), &mut is_open, egui::vec2(380.0, 90.0), |ui| {
+            ui.label(language.fill("recovery.text", &[("name", title)]));
+            ui.horizontal(|ui| {
+                if ui.button(language.text("recovery.open")).clicked() {
+                    answer = Some(true);
+                }
+                if ui.button(language.text("recovery.drop")).clicked() {
+                    answer = Some(false);
+                }
+            });
+        });
+        match answer.or((!is_open).then_some(false)) {
+            Some(true) => {
+                let path = PathBuf::from(format!("{title}.toml"));
+                // It has no file: saving asks for one.
+                let document = Document::recovered(&path, text.clone());
+                self.open(document);
+                self.recovered = None;
+            }
+            Some(false) => {
+                self.recovered = None;
+                self.recovery.forget();
+            }
+            None => {}
+        }
+    }
+
+    /// Asks what to do with changes that are not saved.
+    fn ask(&mut self, context: &Context) {
+        let (Some(pending), Some(studio)) = (self.pending.clone(), &self.studio) else { return };
+        match dialogs::unsaved(context, studio.document.title(), self.language) {
+            Some(Unsaved::Save) => {
+                self.pending = None;
+                match studio.document.path().map(Path::to_path_buf) {
+                    Some(path) => {
+                        self.save(&path);
+                        if self.studio.as_ref().is_some_and(|studio| !studio.document.is_changed()) {
+                            self.go(pending, context);
+                        }
+                    }
+                    None => self.save_as(),
+                }
+            }
+            Some(Unsaved::Drop) => {
+                self.pending = None;
+                self.go(pending, context);
+            }
+            Some(Unsaved::Cancel) => self.pending = None,
+            None => {}
+        }
+    }
+}
+
+/// The line at the bottom.
+fn status(ui: &mut Ui, studio: &Studio, language: Language) {
+    ui.horizontal(|ui| {
+        if studio.is_busy() {
+            ui.spinner();
+        }
+        if let Some(failure) = &studio.failure {
+            ui.colored_label(ui.visuals().error_fg_color, failure.to_string());
+            return;
+        }
+        if !studio.document.is_valid() {
+            ui.colored_label(ui.visuals().error_fg_color, language.text("status.invalid"));
+            return;
+        }
+        if let Some(frame) = &studio.frame {
+            let samples = frame.window().width.max(frame.window().height).to_string();
+            let seconds = format!("{:.2}", frame.seconds);
+            ui.weak(language.fill("status.made", &[("samples", &samples), ("seconds", &seconds)]));
+            if frame.quality == Quality::Draft {
+                ui.weak(language.text("analysis.draft"));
+            }
+        }
+        ui.weak(orogen::words::bytes(studio.session().kept_memory()));
+    });
+}
+
+impl eframe::App for App {
+    fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
+        let context = ui.ctx().clone();
+        let mut actions = Vec::new();
+        if let Some(studio) = &mut self.studio {
+            studio.poll();
+            let now = context.input(|input| input.time);
+            if now - self.watched > WATCH {
+                self.watched = now;
+                studio.watch();
+            }
+        }
+        Self::keys(&context, &mut actions);
+        Self::dropped(&context, &mut actions);
+        Panel::top("menu")
+            .show(ui, |ui| menu::show(ui, self.studio.as_ref(), &self.settings, self.language, &mut actions));
+        self.panels(ui, &mut actions);
+        self.dialogs(&context, &mut actions);
+        for action in actions {
+            self.act(action, &context);
+        }
+        if let Some(studio) = &mut self.studio {
+            studio.refresh();
+            self.recovery.keep(&studio.document);
+            let mark = if studio.document.is_changed() { "*" } else { "" };
+            let title = format!("{mark}{} – Orogen", studio.document.title());
+            if context.input(|input| input.viewport().title.as_deref() != Some(title.as_str())) {
+                context.send_viewport_cmd(egui::ViewportCommand::Title(title));
+            }
+            // The file may change while nothing else happens.
+            context.request_repaint_after(std::time::Duration::from_secs_f64(WATCH));
+        }
+        if context.input(|input| input.viewport().close_requested()) {
+            if !self.may_close && self.studio.as_ref().is_some_and(|studio| studio.document.is_changed()) {
+                context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+                self.pending = Some(Pending::Quit);
+            } else {
+                self.recovery.forget();
+                self.settings.window =
+                    context.input(|input| input.viewport().inner_rect).map(|rect| [rect.width(), rect.height()]);
+                self.settings.write(self.folder.as_deref());
+            }
+        }
+    }
+}

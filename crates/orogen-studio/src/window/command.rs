@@ -1,0 +1,139 @@
+//! The commands of the menus, the command palette and the keyboard: each is declared here once.
+
+use eframe::egui::{Key, KeyboardShortcut, Modifiers};
+
+/// A command.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[allow(missing_docs, reason = "the list below tells what each is called")]
+pub enum Command {
+    New,
+    Open,
+    Save,
+    SaveAs,
+    Export,
+    Quit,
+    Undo,
+    Redo,
+    NextSeed,
+    AddNode,
+    Duplicate,
+    Delete,
+    Rename,
+    ShowRelief,
+    ShowMap,
+    ShowGraph,
+    ShowText,
+    ShowAnalysis,
+    WholeView,
+    CommandPalette,
+    Shortcuts,
+    About,
+}
+
+/// A menu.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(missing_docs, reason = "its name says it")]
+pub enum Menu {
+    File,
+    Edit,
+    View,
+    Help,
+}
+
+impl Menu {
+    /// All menus, in their order.
+    pub const ALL: [Menu; 4] = [Menu::File, Menu::Edit, Menu::View, Menu::Help];
+
+    /// The key of its name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Menu::File => "menu.file",
+            Menu::Edit => "menu.edit",
+            Menu::View => "menu.view",
+            Menu::Help => "menu.help",
+        }
+    }
+}
+
+/// The declaration of a command.
+#[derive(Debug)]
+pub struct Entry {
+    /// The command.
+    pub command: Command,
+    /// The key of its name.
+    pub name: &'static str,
+    /// Its menu.
+    pub menu: Menu,
+    /// Its keys.
+    pub keys: Option<KeyboardShortcut>,
+    /// Whether it needs a document.
+    pub needs_document: bool,
+}
+
+const fn entry(command: Command, name: &'static str, menu: Menu, needs_document: bool) -> Entry {
+    Entry { command, name, menu, keys: None, needs_document }
+}
+
+const fn with_keys(
+    command: Command,
+    name: &'static str,
+    menu: Menu,
+    needs_document: bool,
+    modifiers: Modifiers,
+    key: Key,
+) -> Entry {
+    Entry { command, name, menu, keys: Some(KeyboardShortcut::new(modifiers, key)), needs_document }
+}
+
+const CTRL: Modifiers = Modifiers::COMMAND;
+const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
+
+/// All commands, in the order of their menus.
+pub static ALL: [Entry; 22] = [
+    with_keys(Command::New, "command.new", Menu::File, false, CTRL, Key::N),
+    with_keys(Command::Open, "command.open", Menu::File, false, CTRL, Key::O),
+    with_keys(Command::Save, "command.save", Menu::File, true, CTRL, Key::S),
+    with_keys(Command::SaveAs, "command.save_as", Menu::File, true, CTRL_SHIFT, Key::S),
+    with_keys(Command::Export, "command.export", Menu::File, true, CTRL, Key::E),
+    with_keys(Command::Quit, "command.quit", Menu::File, false, CTRL, Key::Q),
+    with_keys(Command::Undo, "command.undo", Menu::Edit, true, CTRL, Key::Z),
+    with_keys(Command::Redo, "command.redo", Menu::Edit, true, CTRL_SHIFT, Key::Z),
+    with_keys(Command::NextSeed, "command.next_seed", Menu::Edit, true, CTRL, Key::R),
+    with_keys(Command::AddNode, "command.add_node", Menu::Edit, true, CTRL, Key::Space),
+    with_keys(Command::Duplicate, "command.duplicate", Menu::Edit, true, CTRL, Key::D),
+    with_keys(Command::Rename, "command.rename", Menu::Edit, true, Modifiers::NONE, Key::F2),
+    entry(Command::Delete, "command.delete", Menu::Edit, true),
+    with_keys(Command::ShowRelief, "command.show_relief", Menu::View, true, CTRL, Key::Num1),
+    with_keys(Command::ShowMap, "command.show_map", Menu::View, true, CTRL, Key::Num2),
+    with_keys(Command::ShowGraph, "command.show_graph", Menu::View, true, CTRL, Key::Num3),
+    with_keys(Command::ShowText, "command.show_text", Menu::View, true, CTRL, Key::Num4),
+    with_keys(Command::ShowAnalysis, "command.show_analysis", Menu::View, true, CTRL, Key::Num5),
+    with_keys(Command::WholeView, "command.whole_view", Menu::View, true, Modifiers::NONE, Key::Home),
+    with_keys(Command::CommandPalette, "command.command_palette", Menu::Help, false, CTRL_SHIFT, Key::P),
+    with_keys(Command::Shortcuts, "command.shortcuts", Menu::Help, false, Modifiers::NONE, Key::F1),
+    entry(Command::About, "command.about", Menu::Help, false),
+];
+
+impl Command {
+    /// Its declaration.
+    #[must_use]
+    pub fn entry(self) -> Option<&'static Entry> {
+        ALL.iter().find(|entry| entry.command == self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_and_commands_are_there_once() {
+        for (n, entry) in ALL.iter().enumerate() {
+            for other in &ALL[..n] {
+                assert_ne!(entry.command, other.command);
+                assert!(entry.keys.is_none() || entry.keys != other.keys, "{} and {}", entry.name, other.name);
+            }
+        }
+    }
+}

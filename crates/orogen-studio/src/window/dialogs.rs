@@ -1,0 +1,303 @@
+//! Dialogs: choosing a file, the command palette, the list of shortcuts, unsaved changes, messages.
+
+use std::path::{Path, PathBuf};
+
+use eframe::egui::{self, Align2, Context, Key, RichText, ScrollArea, TextEdit, Vec2, vec2};
+
+use super::action::Action;
+use super::command::{self, Command};
+use super::menu::is_enabled;
+use crate::catalogue::Language;
+use crate::files;
+use crate::studio::Studio;
+
+/// What a file is chosen for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Purpose {
+    /// To be opened.
+    Open,
+    /// To be saved to.
+    Save,
+}
+
+/// A dialog that chooses a file.
+#[derive(Debug)]
+pub struct FileDialog {
+    purpose: Purpose,
+    folder: PathBuf,
+    name: String,
+    entries: Vec<files::Entry>,
+    failure: Option<String>,
+    is_new: bool,
+}
+
+/// Extensions of recipes and of the most common files of heights.
+const SHOWN: [&str; 9] = ["toml", "json", "tif", "tiff", "asc", "hgt", "npy", "exr", "zarr"];
+
+impl FileDialog {
+    /// A dialog that begins at a file.
+    #[must_use]
+    pub fn new(purpose: Purpose, at: Option<&Path>) -> FileDialog {
+        let folder = at.and_then(Path::parent).filter(|folder| !folder.as_os_str().is_empty());
+        let name = at.and_then(Path::file_name).map(|name| name.to_string_lossy().into_owned());
+        let mut dialog = FileDialog {
+            purpose,
+            folder: folder.map_or_else(files::working_folder, Path::to_path_buf),
+            name: if purpose == Purpose::Save { name.unwrap_or_else(|| "untitled.toml".into()) } else { String::new() },
+            entries: Vec::new(),
+            failure: None,
+            is_new: true,
+        };
+        dialog.look();
+        dialog
+    }
+
+    fn look(&mut self) {
+        match files::list(&self.folder) {
+            Ok(entries) => {
+                let is_shown = |entry: &files::Entry| {
+                    let extension = entry.path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+                    entry.is_folder || extension.is_some_and(|extension| SHOWN.contains(&extension.as_str()))
+                };
+                self.entries = entries.into_iter().filter(is_shown).collect();
+                self.failure = None;
+            }
+            Err(error) => {
+                self.entries.clear();
+                self.failure = Some(error.to_string());
+            }
+        }
+    }
+
+    fn enter(&mut self, folder: PathBuf) {
+        self.folder = folder;
+        self.look();
+    }
+
+    /// Shows the dialog; false once it is closed.
+    pub fn show(&mut self, context: &Context, language: Language, actions: &mut Vec<Action>) -> bool {
+        let mut is_open = true;
+        let mut chosen = None;
+        let title = match self.purpose {
+            Purpose::Open => "command.open",
+            Purpose::Save => "command.save_as",
+        };
+        window(context, language.text(title), &mut is_open, vec2(520.0, 400.0), |ui| {
+            ui.horizontal(|ui| {
+                let parent = self.folder.parent().map(Path::to_path_buf);
+                if ui.add_enabled(parent.is_some(), egui::Button::new("..")).clicked()
+                    && let Some(parent) = parent
+                {
+                    self.enter(parent);
+                }
+                ui.label(self.folder.display().to_string());
+            });
+            if let Some(failure) = &self.failure {
+                ui.colored_label(ui.visuals().error_fg_color, failure);
+            }
+            let mut entered = None;
+            ScrollArea::vertical().max_height(270.0).auto_shrink(false).show(ui, |ui| {
+                for entry in &self.entries {
+                    let name = entry.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+                    let row = ui.selectable_label(
+                        name == self.name,
+                        if entry.is_folder { format!("{name}/") } else { name.clone() },
+                    );
+                    match (entry.is_folder, row.clicked(), row.double_clicked()) {
+                        (true, true, _) => entered = Some(entry.path.clone()),
+                        (false, _, true) => chosen = Some(entry.path.clone()),
+                        (false, true, _) => self.name = name,
+                        _ => {}
+                    }
+                }
+            });
+            if let Some(folder) = entered {
+                self.enter(folder);
+            }
+            ui.horizontal(|ui| {
+                let field = ui.add(
+                    TextEdit::singleline(&mut self.name).desired_width(360.0).hint_text(language.text("file.name")),
+                );
+                field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "file name"));
+                if std::mem::take(&mut self.is_new) {
+                    field.request_focus();
+                }
+                let confirmed = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+                let button =
+                    ui.add_enabled(!self.name.trim().is_empty(), egui::Button::new(language.text("file.choose")));
+                if (confirmed || button.clicked()) && !self.name.trim().is_empty() {
+                    // A whole path in place of a name is fine, too.
+                    chosen = Some(self.folder.join(self.name.trim()));
+                }
+            });
+        });
+        if let Some(mut path) = chosen {
+            if path.is_dir() && path.extension().is_none() {
+                self.enter(path);
+                return true;
+            }
+            if self.purpose == Purpose::Save && path.extension().is_none() {
+                path.set_extension("toml");
+            }
+            actions.push(match self.purpose {
+                Purpose::Open => Action::Open(path),
+                Purpose::Save => Action::Save(path),
+            });
+            return false;
+        }
+        is_open && !context.input(|input| input.key_pressed(Key::Escape))
+    }
+}
+
+/// The command palette.
+#[derive(Debug, Default)]
+pub struct CommandPalette {
+    text: String,
+    is_old: bool,
+}
+
+impl CommandPalette {
+    /// Shows the palette; false once it is closed.
+    pub fn show(
+        &mut self,
+        context: &Context,
+        studio: Option<&Studio>,
+        language: Language,
+        actions: &mut Vec<Action>,
+    ) -> bool {
+        let mut is_open = true;
+        let mut chosen: Option<Command> = None;
+        window(context, language.text("command.command_palette"), &mut is_open, vec2(380.0, 320.0), |ui| {
+            let field = ui.add(
+                TextEdit::singleline(&mut self.text)
+                    .desired_width(f32::INFINITY)
+                    .hint_text(language.text("palette.search")),
+            );
+            if !std::mem::replace(&mut self.is_old, true) {
+                field.request_focus();
+            }
+            let words = self.text.to_lowercase();
+            let is_found = |entry: &&command::Entry| {
+                let english = Language::English.text(entry.name).to_lowercase();
+                let own = language.text(entry.name).to_lowercase();
+                words.split_whitespace().all(|word| own.contains(word) || english.contains(word))
+            };
+            let found: Vec<&command::Entry> =
+                command::ALL.iter().filter(is_found).filter(|entry| is_enabled(entry.command, studio)).collect();
+            if field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter)) {
+                chosen = found.first().map(|entry| entry.command);
+            }
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                for entry in found {
+                    let keys = entry.keys.map(|keys| ui.ctx().format_shortcut(&keys)).unwrap_or_default();
+                    let mut button = egui::Button::new(language.text(entry.name)).frame(false);
+                    if !keys.is_empty() {
+                        button = button.shortcut_text(keys);
+                    }
+                    if ui.add_sized([ui.available_width(), 20.0], button).clicked() {
+                        chosen = Some(entry.command);
+                    }
+                }
+            });
+        });
+        if let Some(command) = chosen {
+            actions.push(Action::Command(command));
+            return false;
+        }
+        is_open && !context.input(|input| input.key_pressed(Key::Escape))
+    }
+}
+
+/// The list of shortcuts; false once it is closed.
+#[must_use]
+pub fn shortcuts(context: &Context, language: Language) -> bool {
+    let mut is_open = true;
+    window(context, language.text("command.shortcuts"), &mut is_open, vec2(420.0, 460.0), |ui| {
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            egui::Grid::new("shortcuts").num_columns(2).striped(true).spacing([24.0, 4.0]).show(ui, |ui| {
+                for entry in command::ALL.iter().filter(|entry| entry.keys.is_some()) {
+                    ui.label(language.text(entry.name));
+                    ui.monospace(entry.keys.map(|keys| ui.ctx().format_shortcut(&keys)).unwrap_or_default());
+                    ui.end_row();
+                }
+                for (name, keys) in [
+                    ("keys.orbit", "keys.orbit_keys"),
+                    ("keys.pan", "keys.pan_keys"),
+                    ("keys.zoom", "keys.zoom_keys"),
+                    ("keys.fly", "keys.fly_keys"),
+                    ("keys.preview", "keys.preview_keys"),
+                    ("keys.connect", "keys.connect_keys"),
+                    ("keys.delete", "keys.delete_keys"),
+                    ("keys.complete", "keys.complete_keys"),
+                ] {
+                    ui.label(language.text(name));
+                    ui.label(language.text(keys));
+                    ui.end_row();
+                }
+            });
+        });
+    });
+    is_open && !context.input(|input| input.key_pressed(Key::Escape))
+}
+
+/// What is done with changes that are not saved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Unsaved {
+    /// They are saved.
+    Save,
+    /// They are dropped.
+    Drop,
+    /// What was asked for is not done.
+    Cancel,
+}
+
+/// Asks what to do with changes that are not saved.
+#[must_use]
+pub fn unsaved(context: &Context, title: &str, language: Language) -> Option<Unsaved> {
+    let mut answer = None;
+    let mut is_open = true;
+    window(context, language.text("unsaved.title"), &mut is_open, vec2(360.0, 90.0), |ui| {
+        ui.label(language.fill("unsaved.text", &[("name", title)]));
+        ui.add_space(8.0);
+        ui.horizontal(|ui| {
+            for (name, choice) in
+                [("unsaved.save", Unsaved::Save), ("unsaved.drop", Unsaved::Drop), ("unsaved.cancel", Unsaved::Cancel)]
+            {
+                if ui.button(language.text(name)).clicked() {
+                    answer = Some(choice);
+                }
+            }
+        });
+    });
+    if !is_open || context.input(|input| input.key_pressed(Key::Escape)) {
+        answer = Some(Unsaved::Cancel);
+    }
+    answer
+}
+
+/// Shows a message of several lines; false once it is closed.
+#[must_use]
+pub fn message(context: &Context, title: &str, text: &str) -> bool {
+    let mut is_open = true;
+    let mut stays = true;
+    window(context, title, &mut is_open, vec2(460.0, 160.0), |ui| {
+        ScrollArea::vertical().max_height(240.0).show(ui, |ui| ui.label(text));
+        ui.add_space(6.0);
+        stays = !ui.button(RichText::new("OK")).clicked();
+    });
+    is_open && stays && !context.input(|input| input.key_pressed(Key::Escape))
+}
+
+/// A window in the middle.
+pub fn window(context: &Context, title: &str, is_open: &mut bool, size: Vec2, add: impl FnOnce(&mut egui::Ui)) {
+    egui::Window::new(title)
+        .open(is_open)
+        .collapsible(false)
+        .resizable(false)
+        .anchor(Align2::CENTER_CENTER, Vec2::ZERO)
+        .default_size(size)
+        .show(context, |ui| {
+            ui.set_min_width(size.x);
+            add(ui);
+        });
+}

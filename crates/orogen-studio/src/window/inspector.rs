@@ -1,0 +1,244 @@
+//! The panel beside the view: the world, the recipe's own parameters, and the selected node.
+
+use eframe::egui::{self, CollapsingHeader, ComboBox, DragValue, RichText, TextEdit, Ui};
+use orogen::declare::Input;
+use orogen::node::Node;
+use orogen::recipe::document::NamedNode;
+
+use super::action::Action;
+use super::command::Command;
+use super::fields::{self, Number};
+use crate::catalogue::Language;
+use crate::editing::edit::Edit;
+use crate::editing::names;
+use crate::studio::Studio;
+
+/// State of the panel.
+#[derive(Debug, Default)]
+pub struct Inspector {
+    /// The name that is being typed for a node.
+    renaming: Option<(String, String)>,
+    /// Whether the field of the name gets the keyboard.
+    wants_focus: bool,
+}
+
+impl Inspector {
+    /// Begins to rename a node.
+    pub fn rename(&mut self, node: &str) {
+        self.renaming = Some((node.to_owned(), node.to_owned()));
+        self.wants_focus = true;
+    }
+
+    /// Shows the panel.
+    pub fn show(&mut self, ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
+        ui.add_enabled_ui(studio.document.is_valid(), |ui| {
+            world(ui, studio, language, actions);
+            parameters(ui, studio, language, actions);
+            ui.separator();
+            let recipe = studio.document.recipe();
+            let selected =
+                studio.selected.first().and_then(|name| recipe.nodes().iter().find(|named| named.name == *name));
+            match selected {
+                Some(named) => self.node(ui, named, studio, language, actions),
+                None => drop(ui.weak(language.text("inspector.none"))),
+            }
+        });
+    }
+
+    fn node(&mut self, ui: &mut Ui, named: &NamedNode, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
+        let NamedNode { name, node, mask } = named;
+        let spec = node.spec();
+        ui.horizontal(|ui| {
+            match &mut self.renaming {
+                Some((of, typed)) if of == name => {
+                    let field = ui.add(TextEdit::singleline(typed).desired_width(140.0));
+                    if std::mem::take(&mut self.wants_focus) {
+                        field.request_focus();
+                    }
+                    if let Some(why) = names::fault(typed) {
+                        ui.colored_label(ui.visuals().error_fg_color, language.text(why));
+                    } else if field.lost_focus() {
+                        if ui.input(|input| input.key_pressed(egui::Key::Enter)) && typed != name {
+                            actions.push(Action::Edit(Edit::Rename { from: name.clone(), to: typed.clone() }));
+                        }
+                        self.renaming = None;
+                    }
+                }
+                _ => {
+                    let title =
+                        ui.add(egui::Label::new(RichText::new(name).strong().size(15.0)).sense(egui::Sense::click()));
+                    if title.on_hover_text(language.text("inspector.rename")).double_clicked() {
+                        self.rename(name);
+                    }
+                }
+            }
+            ui.weak(spec.op).on_hover_text(spec.doc.trim());
+        });
+        ui.horizontal(|ui| {
+            let is_shown = studio.look.layer == *name;
+            if ui.selectable_label(is_shown, language.text("inspector.show")).clicked() {
+                let layer = if is_shown { orogen::world::HEIGHT.to_owned() } else { name.clone() };
+                actions.push(Action::Show(layer));
+            }
+            if ui.button(language.text("command.duplicate")).clicked() {
+                actions.push(Action::Command(Command::Duplicate));
+            }
+            if ui.button(language.text("command.delete")).clicked() {
+                actions.push(Action::Command(Command::Delete));
+            }
+        });
+        ui.label(RichText::new(orogen::declare::short(spec.doc)).weak().small());
+        ui.add_space(4.0);
+        let inputs = node.inputs();
+        for (i, input) in inputs.iter().enumerate() {
+            let declared = spec.input_named(input.name).map(|at| &spec.inputs[at]);
+            let about = declared.map_or("", |declared| declared.doc.trim());
+            let is_required = declared.is_none_or(|declared| declared.required);
+            source(ui, (name, input.name, about, is_required), node.input(i), studio, language, actions);
+        }
+        source(ui, (name, "mask", language.text("inspector.mask"), false), mask, studio, language, actions);
+        ui.add_space(4.0);
+        // A node with the defaults, for `reset`.
+        let default = Node::named(spec.op);
+        for (i, param) in spec.params.iter().enumerate() {
+            let (value, default) = (node.param(i), default.as_ref().map(|node| node.param(i)));
+            let is_default = default.as_ref() == Some(&value);
+            ui.horizontal(|ui| {
+                let label =
+                    ui.label(if is_default { RichText::new(param.name) } else { RichText::new(param.name).strong() });
+                label.on_hover_text(format!("{}\n\n{}", param.doc.trim(), param.expected()));
+                let reset = ui.add_visible(!is_default, egui::Button::new(language.text("inspector.reset")).small());
+                if reset.clicked() {
+                    actions.push(Action::Edit(Edit::Reset { node: name.clone(), key: param.name.into() }));
+                }
+            });
+            let number = Number {
+                range: param.range,
+                default: default.as_ref().and_then(orogen::value::Value::number).unwrap_or(0.0),
+                unit: param.unit,
+                is_whole: false,
+            };
+            let input = fields::value(ui, &format!("{name}.{}", param.name), param.shape, &value, &number);
+            if let Some(value) = input.value {
+                actions.push(Action::Edit(Edit::Param { node: name.clone(), key: param.name.into(), value }));
+            }
+            if input.ended {
+                actions.push(Action::EndGesture);
+            }
+        }
+    }
+}
+
+fn world(ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
+    let world = studio.document.recipe().world;
+    CollapsingHeader::new(language.text("inspector.world")).default_open(true).show(ui, |ui| {
+        ui.horizontal(|ui| {
+            ui.label(language.text("inspector.seed"));
+            let mut seed = world.seed;
+            let field = ui.add(DragValue::new(&mut seed).range(0..=i64::MAX as u64).speed(0.2));
+            if field.changed() {
+                actions.push(Action::Edit(Edit::Seed(seed)));
+            }
+            if field.drag_stopped() || field.lost_focus() {
+                actions.push(Action::EndGesture);
+            }
+            if ui.button(language.text("command.next_seed")).clicked() {
+                actions.push(Action::Command(Command::NextSeed));
+            }
+        });
+        ui.horizontal(|ui| {
+            ui.label(language.text("inspector.sea_level"));
+            let mut level = world.sea_level;
+            let field = ui.add(DragValue::new(&mut level).speed(2.0).suffix(" m").max_decimals(3));
+            if field.changed() {
+                actions.push(Action::Edit(Edit::World("sea_level", fields::rounded(level))));
+            }
+            if field.drag_stopped() || field.lost_focus() {
+                actions.push(Action::EndGesture);
+            }
+        });
+        let extent = match world.size {
+            Some([width, height]) => format!("{} × {} km", kilometres(width), kilometres(height)),
+            None => language.text("inspector.unbounded").to_owned(),
+        };
+        ui.weak(format!("{extent}, {} {} m", language.text("inspector.cell"), orogen::words::number(world.cell)));
+    });
+}
+
+fn kilometres(metres: f64) -> String {
+    orogen::words::number((metres / 10.0).round() / 100.0)
+}
+
+fn parameters(ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
+    let parameters = studio.document.recipe().parameters();
+    if parameters.is_empty() {
+        return;
+    }
+    CollapsingHeader::new(language.text("inspector.parameters")).default_open(true).show(ui, |ui| {
+        for parameter in parameters {
+            ui.label(&parameter.name).on_hover_text(format!("{}\n\n{}", parameter.help, parameter.expected()));
+            let number =
+                Number { range: parameter.range, default: parameter.value, unit: &parameter.unit, is_whole: false };
+            let input = fields::number(ui, &parameter.name, parameter.value, &number);
+            if let Some(value) = input.value {
+                actions.push(Action::Edit(Edit::Default { parameter: parameter.name.clone(), value }));
+            }
+            if input.ended {
+                actions.push(Action::EndGesture);
+            }
+        }
+    });
+}
+
+/// A field for what an input reads: a node, or a number.
+fn source(
+    ui: &mut Ui,
+    (node, key, about, is_required): (&str, &str, &str, bool),
+    input: &Input,
+    studio: &Studio,
+    language: Language,
+    actions: &mut Vec<Action>,
+) {
+    ui.horizontal(|ui| {
+        ui.label(key).on_hover_text(about);
+        let connect =
+            |source: Input| Action::Edit(Edit::Connect { node: node.to_owned(), input: key.to_owned(), source });
+        let shown = match input {
+            Input::None => language.text("inspector.nothing").to_owned(),
+            Input::Node(name) => name.clone(),
+            Input::Value(_) => language.text("inspector.number").to_owned(),
+        };
+        ComboBox::from_id_salt((node, key)).selected_text(shown).show_ui(ui, |ui| {
+            if !is_required && ui.selectable_label(*input == Input::None, language.text("inspector.nothing")).clicked()
+            {
+                actions.push(connect(Input::None));
+            }
+            if ui.selectable_label(matches!(input, Input::Value(_)), language.text("inspector.number")).clicked() {
+                actions.push(connect(Input::Value(0.0)));
+            }
+            for other in studio.document.recipe().nodes().iter().filter(|other| other.name != node) {
+                let layers = other.node.layers();
+                let names = layers.iter().enumerate().map(|(k, layer)| match k {
+                    0 => other.name.clone(),
+                    _ => format!("{}.{}", other.name, layer.name),
+                });
+                for name in names {
+                    let is_own = matches!(input, Input::Node(own) if *own == name);
+                    if ui.selectable_label(is_own, &name).clicked() {
+                        actions.push(connect(Input::Node(name)));
+                    }
+                }
+            }
+        });
+        if let Input::Value(value) = input {
+            let mut number = *value;
+            let field = ui.add(DragValue::new(&mut number).speed((value.abs() * 0.01).max(0.01)).max_decimals(6));
+            if field.changed() {
+                actions.push(connect(Input::Value(fields::rounded(number))));
+            }
+            if field.drag_stopped() || field.lost_focus() {
+                actions.push(Action::EndGesture);
+            }
+        }
+    });
+}

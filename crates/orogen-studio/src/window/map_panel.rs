@@ -1,0 +1,239 @@
+//! The map: pan and zoom, values under the pointer, a profile along a line.
+
+use std::sync::Arc;
+
+use eframe::egui::{
+    self, Align2, Color32, ColorImage, FontId, PointerButton, Rect, Sense, Stroke, TextureHandle, TextureOptions, Ui,
+    Vec2, pos2,
+};
+
+use super::action::Action;
+use super::relief_panel::readout;
+use crate::catalogue::Language;
+use crate::preview::frame::Frame;
+use crate::preview::region::Region;
+use crate::studio::Studio;
+use crate::view::map_view::MapView;
+
+/// State of the map.
+#[derive(Default)]
+pub struct MapPanel {
+    view: Option<MapView>,
+    /// The picture, and the frame that it is of.
+    texture: Option<(TextureHandle, (u64, usize, u64))>,
+    /// The ends of the profile, in metres.
+    profile: Option<[[f64; 2]; 2]>,
+    draws_profile: bool,
+    /// The region that was asked for last in an unbounded world.
+    asked: Option<Region>,
+}
+
+/// The longest side of a picture.
+const LARGEST: usize = 4096;
+
+impl MapPanel {
+    /// Shows all.
+    pub fn show_whole(&mut self) {
+        self.view = None;
+    }
+
+    /// Shows the map.
+    pub fn show(&mut self, ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
+        ui.horizontal(|ui| {
+            ui.toggle_value(&mut self.draws_profile, language.text("map.profile"))
+                .on_hover_text(language.text("map.profile_help"));
+            if self.profile.is_some() && ui.button(language.text("map.clear")).clicked() {
+                self.profile = None;
+            }
+        });
+        let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "map view"));
+        let painter = ui.painter_at(rect);
+        painter.rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
+        let Some(frame) = &studio.frame else { return };
+        let size = [rect.width(), rect.height()];
+        let window = frame.window();
+        let bounds = [
+            window.x as f64 * window.cell,
+            window.y as f64 * window.cell,
+            window.right() as f64 * window.cell,
+            window.bottom() as f64 * window.cell,
+        ];
+        let mut view = self.view.unwrap_or_else(|| MapView::fitting(bounds, size));
+        let before = view;
+        self.navigate(ui, &response, rect, &mut view);
+        if view != before {
+            self.view = Some(view);
+        }
+        let screen = |world: [f64; 2]| {
+            let [x, y] = view.screen(world, size);
+            rect.min + Vec2::new(x, y)
+        };
+        let texture = self.texture(ui, frame);
+        // Samples are points: a pixel of the picture is around one.
+        let half = window.cell / 2.0;
+        let area = Rect::from_two_pos(
+            screen([bounds[0] - half, bounds[1] - half]),
+            screen([bounds[2] - half, bounds[3] - half]),
+        );
+        let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+        painter.image(texture, area, whole, Color32::WHITE);
+        self.follow(studio, &view, size, actions);
+        if let Some(pointer) = response.hover_pos() {
+            let at = pointer - rect.min;
+            let world = view.world([at.x, at.y], size);
+            let text = readout(frame, world, language);
+            label(&painter, rect.left_bottom() + Vec2::new(8.0, -8.0), Align2::LEFT_BOTTOM, &text);
+        }
+        scale_bar(&painter, rect, &view);
+        self.draw_profile(ui, &painter, rect, frame, screen);
+    }
+
+    fn navigate(&mut self, ui: &Ui, response: &egui::Response, rect: Rect, view: &mut MapView) {
+        let size = [rect.width(), rect.height()];
+        let is_line = self.draws_profile && response.dragged_by(PointerButton::Primary);
+        if response.dragged() && !is_line {
+            let by = response.drag_delta();
+            view.pan([by.x, by.y]);
+        }
+        if is_line && let Some(pointer) = response.interact_pointer_pos() {
+            let at = pointer - rect.min;
+            let here = view.world([at.x, at.y], size);
+            match &mut self.profile {
+                Some([_, end]) if !response.drag_started() => *end = here,
+                profile => *profile = Some([here, here]),
+            }
+        }
+        if response.contains_pointer()
+            && let Some(pointer) = ui.input(|input| input.pointer.hover_pos())
+        {
+            let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+            if scroll != 0.0 || pinch != 1.0 {
+                let at = pointer - rect.min;
+                view.zoom(f64::from(pinch * libm::expf(scroll * 0.004)), [at.x, at.y], size);
+            }
+        }
+    }
+
+    /// In an unbounded world the pictures follow the view.
+    fn follow(&mut self, studio: &Studio, view: &MapView, size: [f32; 2], actions: &mut Vec<Action>) {
+        if studio.document.recipe().world.size.is_some() || self.view.is_none() {
+            return;
+        }
+        let side = f64::from(size[0].max(size[1])) * view.scale * 1.1;
+        let wanted = Region::Square { center: view.center, side };
+        let is_near = match studio.look.region {
+            Region::Square { center, side: own } => {
+                let moved = (0..2).map(|k| (center[k] - view.center[k]).abs()).fold(0.0, f64::max);
+                moved < own * 0.12 && (0.6..1.6).contains(&(own / side))
+            }
+            Region::Whole => false,
+        };
+        if !is_near && self.asked != Some(wanted) {
+            self.asked = Some(wanted);
+            actions.push(Action::Region(wanted));
+        }
+    }
+
+    fn texture(&mut self, ui: &Ui, frame: &Arc<Frame>) -> egui::TextureId {
+        let window = frame.window();
+        let key = (frame.request, window.width, frame.seconds.to_bits());
+        if let Some((texture, own)) = &self.texture
+            && *own == key
+        {
+            return texture.id();
+        }
+        let step = window.width.max(window.height).div_ceil(LARGEST).max(1);
+        let image = match step {
+            1 => ColorImage::from_rgba_unmultiplied([window.width, window.height], &frame.shaded),
+            _ => {
+                let rows = (0..window.height).step_by(step);
+                let pixels: Vec<u8> = rows
+                    .clone()
+                    .flat_map(|j| (0..window.width).step_by(step).map(move |i| 4 * (j * window.width + i)))
+                    .flat_map(|at| frame.shaded[at..at + 4].iter().copied())
+                    .collect();
+                ColorImage::from_rgba_unmultiplied([window.width.div_ceil(step), rows.count()], &pixels)
+            }
+        };
+        let options = TextureOptions { magnification: egui::TextureFilter::Linear, ..TextureOptions::LINEAR };
+        let texture = ui.ctx().load_texture("map", image, options);
+        let id = texture.id();
+        self.texture = Some((texture, key));
+        id
+    }
+
+    fn draw_profile(
+        &self,
+        ui: &Ui,
+        painter: &egui::Painter,
+        rect: Rect,
+        frame: &Frame,
+        screen: impl Fn([f64; 2]) -> egui::Pos2,
+    ) {
+        let Some([from, to]) = self.profile else { return };
+        painter.line_segment([screen(from), screen(to)], Stroke::new(3.0, Color32::from_black_alpha(160)));
+        painter.line_segment([screen(from), screen(to)], Stroke::new(1.5, Color32::from_rgb(255, 214, 90)));
+        let steps = 200;
+        let values: Vec<Option<f32>> = (0..=steps)
+            .map(|k| {
+                let share = f64::from(k) / f64::from(steps);
+                frame.at([0, 1].map(|c| from[c] + (to[c] - from[c]) * share)).map(|[value, _]| value)
+            })
+            .collect();
+        let finite: Vec<f32> = values.iter().flatten().copied().filter(|value| value.is_finite()).collect();
+        let low = finite.iter().copied().fold(f32::INFINITY, f32::min);
+        let high = finite.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+        if finite.len() < 2 {
+            return;
+        }
+        let size = Vec2::new((rect.width() - 24.0).clamp(60.0, 420.0), 96.0);
+        let chart = Rect::from_min_size(rect.right_bottom() - size - Vec2::splat(12.0), size);
+        painter.rect_filled(chart, 4.0, ui.visuals().window_fill.gamma_multiply(0.92));
+        let inner = chart.shrink2(Vec2::new(8.0, 16.0));
+        let points: Vec<egui::Pos2> = values
+            .iter()
+            .enumerate()
+            .filter_map(|(k, value)| {
+                let share = ((*value)? - low) / (high - low).max(1e-6);
+                Some(pos2(
+                    inner.left() + inner.width() * k as f32 / steps as f32,
+                    inner.bottom() - inner.height() * share,
+                ))
+            })
+            .collect();
+        painter.line(points, Stroke::new(1.5, ui.visuals().selection.bg_fill));
+        let length = libm::hypot(to[0] - from[0], to[1] - from[1]);
+        let text = format!("{low:.1} – {high:.1} {}, {length:.0} m", frame.unit);
+        painter.text(
+            chart.left_top() + Vec2::new(8.0, 2.0),
+            Align2::LEFT_TOP,
+            text,
+            FontId::proportional(11.0),
+            ui.visuals().text_color(),
+        );
+    }
+}
+
+fn label(painter: &egui::Painter, at: egui::Pos2, align: Align2, text: &str) {
+    if !text.is_empty() {
+        let galley = painter.layout_no_wrap(text.to_owned(), FontId::monospace(11.0), Color32::WHITE);
+        let rect = align.anchor_size(at, galley.size());
+        painter.rect_filled(rect.expand(4.0), 3.0, Color32::from_black_alpha(150));
+        painter.galley(rect.min, galley, Color32::WHITE);
+    }
+}
+
+/// A bar of a round length.
+fn scale_bar(painter: &egui::Painter, rect: Rect, view: &MapView) {
+    let target = f64::from(rect.width().min(600.0)) * 0.2 * view.scale;
+    let power = libm::pow(10.0, libm::log10(target).floor());
+    let length = [5.0, 2.0, 1.0].into_iter().map(|step| step * power).find(|length| *length <= target).unwrap_or(power);
+    let width = (length / view.scale) as f32;
+    let text = if length >= 1000.0 { format!("{} km", length / 1000.0) } else { format!("{length} m") };
+    let start = rect.right_top() + Vec2::new(-width - 14.0, 30.0);
+    let end = start + Vec2::new(width, 0.0);
+    painter.line_segment([start, end], Stroke::new(4.0, Color32::from_black_alpha(160)));
+    painter.line_segment([start, end], Stroke::new(2.0, Color32::WHITE));
+    label(painter, start.lerp(end, 0.5) + Vec2::new(0.0, -6.0), Align2::CENTER_BOTTOM, &text);
+}

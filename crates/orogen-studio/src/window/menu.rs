@@ -1,0 +1,128 @@
+//! The bar at the top: menus, undo and redo, what is shown, language and colors.
+
+use eframe::egui::{self, ComboBox, Ui};
+use orogen::palette::named;
+
+use super::action::Action;
+use super::command::{self, Command, Menu};
+use crate::catalogue::Language;
+use crate::settings::{Settings, Theme};
+use crate::studio::Studio;
+
+/// Shows the bar.
+pub fn show(ui: &mut Ui, studio: Option<&Studio>, settings: &Settings, language: Language, actions: &mut Vec<Action>) {
+    egui::MenuBar::new().ui(ui, |ui| {
+        for menu in Menu::ALL {
+            ui.menu_button(language.text(menu.name()), |ui| {
+                for entry in command::ALL.iter().filter(|entry| entry.menu == menu) {
+                    let keys = entry.keys.map(|keys| ui.ctx().format_shortcut(&keys)).unwrap_or_default();
+                    let mut button = egui::Button::new(label(entry.command, studio, language));
+                    if !keys.is_empty() {
+                        button = button.shortcut_text(keys);
+                    }
+                    let enabled = is_enabled(entry.command, studio);
+                    if ui.add_enabled(enabled, button).clicked() {
+                        actions.push(Action::Command(entry.command));
+                        ui.close();
+                    }
+                }
+                if menu == Menu::File && !settings.recent.is_empty() {
+                    ui.separator();
+                    ui.weak(language.text("menu.recent"));
+                    for path in &settings.recent {
+                        if ui.button(path.display().to_string()).clicked() {
+                            actions.push(Action::Open(path.clone()));
+                            ui.close();
+                        }
+                    }
+                }
+                if menu == Menu::View {
+                    ui.separator();
+                    preferences(ui, settings, language, actions);
+                }
+            });
+        }
+        if let Some(studio) = studio {
+            ui.separator();
+            shown(ui, studio, language, actions);
+        }
+    });
+}
+
+/// The name of a command, with what it would undo or redo.
+fn label(command: Command, studio: Option<&Studio>, language: Language) -> String {
+    let name = command.entry().map_or("", |entry| language.text(entry.name));
+    let history = studio.map(|studio| studio.document.history());
+    let what = match command {
+        Command::Undo => history.and_then(|history| history.undo_label()),
+        Command::Redo => history.and_then(|history| history.redo_label()),
+        _ => None,
+    };
+    match what {
+        Some(what) => format!("{name}: {}", language.text(what)),
+        None => name.to_owned(),
+    }
+}
+
+/// Whether a command can be used now.
+#[must_use]
+pub fn is_enabled(command: Command, studio: Option<&Studio>) -> bool {
+    let Some(studio) = studio else { return command.entry().is_some_and(|entry| !entry.needs_document) };
+    match command {
+        Command::Undo => studio.document.history().undo_label().is_some(),
+        Command::Redo => studio.document.history().redo_label().is_some(),
+        Command::Delete | Command::Duplicate | Command::Rename => {
+            !studio.selected.is_empty() && studio.document.is_valid()
+        }
+        Command::AddNode | Command::NextSeed | Command::Export => studio.document.is_valid(),
+        _ => true,
+    }
+}
+
+fn preferences(ui: &mut Ui, settings: &Settings, language: Language, actions: &mut Vec<Action>) {
+    ui.menu_button(language.text("menu.language"), |ui| {
+        for other in Language::ALL {
+            if ui.selectable_label(other == language, other.name()).clicked() {
+                actions.push(Action::Language(other));
+                ui.close();
+            }
+        }
+    });
+    ui.menu_button(language.text("menu.theme"), |ui| {
+        for (theme, name) in
+            [(Theme::Dark, "theme.dark"), (Theme::Light, "theme.light"), (Theme::System, "theme.system")]
+        {
+            if ui.selectable_label(theme == settings.theme, language.text(name)).clicked() {
+                actions.push(Action::Theme(theme));
+                ui.close();
+            }
+        }
+    });
+}
+
+/// What is shown: layer and palette.
+fn shown(ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
+    ui.label(language.text("menu.layer"));
+    ComboBox::from_id_salt("layer").selected_text(&studio.look.layer).height(400.0).show_ui(ui, |ui| {
+        for layer in studio.layers() {
+            if ui.selectable_label(layer == studio.look.layer, &layer).clicked() {
+                actions.push(Action::Show(layer));
+            }
+        }
+    });
+    let own = studio.look.palette.as_deref();
+    ComboBox::from_id_salt("palette")
+        .selected_text(own.unwrap_or(language.text("menu.own_palette")))
+        .height(400.0)
+        .show_ui(ui, |ui| {
+            if ui.selectable_label(own.is_none(), language.text("menu.own_palette")).clicked() {
+                actions.push(Action::Palette(None));
+            }
+            for palette in named::all() {
+                let entry = ui.selectable_label(own == Some(palette.name), palette.name);
+                if entry.on_hover_text(palette.about).clicked() {
+                    actions.push(Action::Palette(Some(palette.name.to_owned())));
+                }
+            }
+        });
+}

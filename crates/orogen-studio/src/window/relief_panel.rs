@@ -1,0 +1,329 @@
+//! The view in space.
+
+use std::sync::Arc;
+
+use eframe::egui::{self, Align2, FontId, Key, PointerButton, Rect, Sense, Slider, Ui};
+use eframe::egui_wgpu::Callback;
+use glam::Vec3;
+
+use super::action::Action;
+use super::relief::{Ability, Drawing, Scene};
+use crate::catalogue::Language;
+use crate::preview::frame::{Frame, Quality};
+use crate::studio::Studio;
+use crate::view::camera::Camera;
+use crate::view::sun;
+
+/// State of the view.
+#[derive(Debug)]
+pub struct ReliefPanel {
+    /// The camera.
+    pub camera: Camera,
+    /// Heights are drawn this many times as high; `None` for a number that suits the land.
+    exaggeration: Option<f64>,
+    /// The interval of contours in metres; 0 draws none.
+    contours: f64,
+    has_contours: bool,
+    has_water: bool,
+    has_shadows: bool,
+    has_wire: bool,
+    /// The sun while it is being moved; shadows follow when it stands.
+    sun: Option<[f64; 2]>,
+}
+
+impl Default for ReliefPanel {
+    fn default() -> ReliefPanel {
+        ReliefPanel {
+            camera: Camera::default(),
+            exaggeration: None,
+            contours: 0.0,
+            has_contours: false,
+            has_water: true,
+            has_shadows: true,
+            has_wire: false,
+            sun: None,
+        }
+    }
+}
+
+/// A drag of the middle of the view is a walk; keys fly by this part of the distance in a second.
+const FLIGHT: f32 = 0.9;
+
+impl ReliefPanel {
+    /// Shows the view.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        studio: &Studio,
+        ability: Option<Ability>,
+        language: Language,
+        actions: &mut Vec<Action>,
+    ) {
+        self.controls(ui, studio, language, actions);
+        let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "relief view"));
+        let painter = ui.painter_at(rect);
+        let Some(ability) = ability else {
+            say(&painter, rect, language.text("relief.no_graphics"), ui);
+            return;
+        };
+        self.navigate(ui, &response, rect);
+        let Some(frame) = &studio.frame else {
+            painter.rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
+            say(&painter, rect, language.text("relief.waiting"), ui);
+            return;
+        };
+        let pixels = ui.pixels_per_point();
+        let largest = ability.largest as f32;
+        // A processor draws fewer pixels while something moves.
+        let is_moving = response.dragged() || ui.input(|input| input.smooth_scroll_delta().y != 0.0);
+        let fewer = if ability.is_software && is_moving { 0.5 } else { 1.0 };
+        let size = [rect.width(), rect.height()].map(|side| (side * pixels * fewer).round().clamp(1.0, largest) as u32);
+        let drawing = Drawing {
+            frame: Arc::clone(frame),
+            scene: self.scene(frame, studio, rect.width() / rect.height().max(1.0)),
+            has_wire: self.has_wire,
+            size,
+            ability,
+        };
+        painter.add(Callback::new_paint_callback(rect, drawing));
+        if fewer < 1.0 {
+            // The full picture once it stands.
+            ui.ctx().request_repaint();
+        }
+        if response.double_clicked()
+            && let Some(pointer) = response.interact_pointer_pos()
+            && let Some(place) = self.hit(frame, pointer, rect)
+        {
+            self.camera.target = place;
+        }
+        if let Some(pointer) = response.hover_pos()
+            && let Some(place) = self.hit(frame, pointer, rect)
+        {
+            let text = readout(frame, self.world(frame, place), language);
+            let at = rect.left_bottom() + egui::vec2(8.0, -8.0);
+            painter.text(at, Align2::LEFT_BOTTOM, text, FontId::monospace(11.0), egui::Color32::WHITE);
+        }
+    }
+
+    /// Shows all from the first position.
+    pub fn show_whole(&mut self) {
+        self.camera = Camera::default();
+        self.exaggeration = None;
+    }
+
+    fn controls(&mut self, ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
+        ui.horizontal_wrapped(|ui| {
+            let mut sun = self.sun.unwrap_or(studio.look.sun);
+            ui.label(language.text("relief.sun"));
+            let azimuth = ui
+                .add(Slider::new(&mut sun[0], 0.0..=360.0).show_value(false))
+                .on_hover_text(language.text("relief.azimuth"));
+            let altitude = ui
+                .add(Slider::new(&mut sun[1], 3.0..=90.0).show_value(false))
+                .on_hover_text(language.text("relief.altitude"));
+            if azimuth.changed() || altitude.changed() {
+                self.sun = Some(sun);
+            }
+            let still = !azimuth.dragged() && !altitude.dragged();
+            if still && let Some(sun) = self.sun.take() {
+                actions.push(Action::Sun(sun));
+            }
+            ui.separator();
+            ui.label(language.text("relief.exaggeration"));
+            let mut times = self.times(studio.frame.as_deref());
+            if ui.add(Slider::new(&mut times, 0.1..=20.0).logarithmic(true).max_decimals(1).suffix("×")).changed() {
+                self.exaggeration = Some(times);
+            }
+            ui.separator();
+            ui.toggle_value(&mut self.has_contours, language.text("relief.contours"));
+            ui.toggle_value(&mut self.has_water, language.text("relief.water"));
+            ui.toggle_value(&mut self.has_shadows, language.text("relief.shadows"));
+            ui.toggle_value(&mut self.has_wire, language.text("relief.wire"));
+            let mut finest = studio.look.finest;
+            egui::ComboBox::from_id_salt("finest").width(64.0).selected_text(finest.to_string()).show_ui(ui, |ui| {
+                for samples in [256, 512, 1024, 2048, 4096] {
+                    ui.selectable_value(&mut finest, samples, format!("{samples}²"));
+                }
+            });
+            if finest != studio.look.finest {
+                actions.push(Action::Finest(finest));
+            }
+        });
+    }
+
+    fn navigate(&mut self, ui: &Ui, response: &egui::Response, rect: Rect) {
+        let height = rect.height().max(1.0);
+        let drag = response.drag_delta() / height;
+        let shift = ui.input(|input| input.modifiers.shift);
+        if response.dragged_by(PointerButton::Primary) && !shift {
+            self.camera.orbit([drag.x, drag.y]);
+        } else if response.dragged() {
+            self.camera.pan([drag.x, drag.y]);
+        }
+        if response.contains_pointer() {
+            let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+            if scroll != 0.0 || pinch != 1.0 {
+                self.camera.zoom(pinch * libm::expf(scroll * 0.004));
+            }
+        }
+        // Keys fly while the pointer is over the view and no field has the keyboard.
+        if response.contains_pointer() && ui.ctx().memory(|memory| memory.focused().is_none()) {
+            let (step, seconds) = ui.input(|input| {
+                let axis =
+                    |plus: Key, minus: Key| f32::from(i8::from(input.key_down(plus)) - i8::from(input.key_down(minus)));
+                let is_plain = input.modifiers.is_none();
+                let step = if is_plain {
+                    [axis(Key::D, Key::A), axis(Key::E, Key::Q), axis(Key::W, Key::S)]
+                } else {
+                    [0.0; 3]
+                };
+                (step, input.stable_dt.min(0.1))
+            });
+            if step != [0.0; 3] {
+                self.camera.fly(step.map(|part| part * FLIGHT * seconds));
+                ui.ctx().request_repaint();
+            }
+        }
+    }
+
+    /// How many times as high heights are drawn: by default a whole number with which the relief is a tenth of the width, or once.
+    fn times(&self, frame: Option<&Frame>) -> f64 {
+        let suiting = |frame: &Frame| {
+            let [low, high, _] = Self::levels(frame);
+            let times = f64::from(0.2 * Self::unit(frame) / (high - low).max(1e-3));
+            times.floor().clamp(1.0, 10.0)
+        };
+        self.exaggeration.or(frame.map(suiting)).unwrap_or(1.0)
+    }
+
+    /// Metres in a unit of the view.
+    fn unit(frame: &Frame) -> f32 {
+        let window = frame.window();
+        (window.width.max(window.height) as f64 * window.cell / 2.0) as f32
+    }
+
+    /// The lowest and highest height, and the height in the middle of the view.
+    fn levels(frame: &Frame) -> [f32; 3] {
+        let finite = frame.heights.data().iter().copied().filter(|height| height.is_finite());
+        let (low, high) =
+            finite.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), height| (low.min(height), high.max(height)));
+        if low <= high { [low, high, (low + high) / 2.0] } else { [0.0; 3] }
+    }
+
+    fn scene(&self, frame: &Frame, studio: &Studio, aspect: f32) -> Scene {
+        let window = frame.window();
+        let unit = Self::unit(frame);
+        let [low, high, middle] = Self::levels(frame);
+        let up = self.times(Some(frame)) as f32 / unit;
+        let [east, south, height] = sun::towards(self.sun.unwrap_or(studio.look.sun)).map(|part| part as f32);
+        let half = |samples: usize| (samples.max(2) - 1) as f32 * window.cell as f32 / 2.0 / unit;
+        let sea = frame.sea_level as f32;
+        let is_heights = frame.values.is_none() || studio.look.layer == orogen::world::HEIGHT;
+        let has_water = self.has_water && is_heights && low < sea;
+        let relief = (high - low).max(1e-3);
+        let interval = if self.contours > 0.0 { self.contours as f32 } else { interval(relief) };
+        let sky = sky(height);
+        let eye = self.camera.position();
+        Scene {
+            matrix: self.camera.matrix(aspect).to_cols_array_2d(),
+            sun: [east, height, south, if self.has_shadows { 0.85 } else { 0.0 }],
+            extent: [half(window.width), half(window.height), up, middle],
+            lines: [if self.has_contours { interval } else { 0.0 }, 0.5, (low - middle) * up - 0.06, 1.0],
+            water: [sea, f32::from(u8::from(has_water)), 0.0, relief],
+            eye: [eye.x, eye.y, eye.z, 0.0],
+            sky: [sky[0], sky[1], sky[2], 1.0],
+        }
+    }
+
+    /// Where the ray through a position of the view meets the land.
+    fn hit(&self, frame: &Frame, pointer: egui::Pos2, rect: Rect) -> Option<Vec3> {
+        let at = [(pointer.x - rect.left()) / rect.width(), (pointer.y - rect.top()) / rect.height()];
+        let [start, ray] = self.camera.ray(at, rect.width() / rect.height().max(1.0));
+        let [_, _, middle] = Self::levels(frame);
+        let up = self.times(Some(frame)) as f32 / Self::unit(frame);
+        let below = |place: Vec3| {
+            let [_, height] = frame.at(self.world(frame, place))?;
+            Some(place.y <= (height - middle) * up)
+        };
+        // Steps that are finer than the lattice near the camera suffice for a pointer.
+        let (mut far, step) = (0.0, self.camera.distance / 160.0);
+        for _ in 0..640 {
+            let place = start + ray * far;
+            if below(place) == Some(true) {
+                let (mut near, mut behind) = (far - step, far);
+                for _ in 0..12 {
+                    let middle = (near + behind) / 2.0;
+                    match below(start + ray * middle) {
+                        Some(true) => behind = middle,
+                        _ => near = middle,
+                    }
+                }
+                return Some(start + ray * behind);
+            }
+            far += step;
+        }
+        None
+    }
+
+    /// The position of the world at a place of the view.
+    fn world(&self, frame: &Frame, place: Vec3) -> [f64; 2] {
+        let window = frame.window();
+        let unit = f64::from(Self::unit(frame));
+        let middle = |first: i64, samples: usize| (first as f64 + (samples.max(2) - 1) as f64 / 2.0) * window.cell;
+        [
+            middle(window.x, window.width) + f64::from(place.x) * unit,
+            middle(window.y, window.height) + f64::from(place.z) * unit,
+        ]
+    }
+}
+
+/// The color of the sky in linear light: blue by day, warm near sunset.
+fn sky(height: f32) -> [f32; 3] {
+    let day = (height * 2.5).clamp(0.0, 1.0);
+    let (low, high) = ([0.55, 0.36, 0.24], [0.42, 0.56, 0.72]);
+    std::array::from_fn(|c| low[c] + (high[c] - low[c]) * day)
+}
+
+/// A round interval of contours for a relief in metres.
+fn interval(relief: f32) -> f32 {
+    let rough = relief / 25.0;
+    let power = libm::powf(10.0, libm::log10f(rough.max(1e-6)).floor());
+    let nice = [1.0, 2.0, 5.0, 10.0].into_iter().find(|step| step * power >= rough).unwrap_or(10.0);
+    nice * power
+}
+
+fn say(painter: &egui::Painter, rect: Rect, text: &str, ui: &Ui) {
+    painter.text(
+        rect.center(),
+        Align2::CENTER_CENTER,
+        text,
+        FontId::proportional(14.0),
+        ui.visuals().weak_text_color(),
+    );
+}
+
+/// The value and the position under the pointer.
+#[must_use]
+pub fn readout(frame: &Frame, world: [f64; 2], language: Language) -> String {
+    let Some([value, height]) = frame.at(world) else { return String::new() };
+    let place = format!("{:.0} m E, {:.0} m S", world[0], world[1]);
+    let draft =
+        if frame.quality == Quality::Draft { format!(" ({})", language.text("analysis.draft")) } else { String::new() };
+    match frame.values {
+        None => format!("{height:.1} m{draft}   {place}"),
+        Some(_) => format!("{value:.4} {}   {height:.1} m{draft}   {place}", frame.unit),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn intervals_are_round() {
+        for (relief, expect) in [(2500.0, 100.0), (1000.0, 50.0), (30.0, 2.0), (0.001, 5e-5)] {
+            assert!((interval(relief) / expect - 1.0).abs() < 1e-3, "{relief}: {}", interval(relief));
+        }
+    }
+}

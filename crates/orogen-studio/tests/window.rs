@@ -1,0 +1,179 @@
+//! The window, used as a person uses it. Needs an adapter: `cargo xtask clients studio` installs Mesa's software driver.
+#![cfg(feature = "window")]
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use eframe::egui::{Key, Modifiers, accesskit::Role};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use orogen::test_folder::TestFolder;
+use orogen_studio::catalogue::Language;
+use orogen_studio::preview::frame::Quality;
+use orogen_studio::settings::Settings;
+use orogen_studio::studio::{Studio, open};
+use orogen_studio::window::app::App;
+
+/// A window with a recipe, a preset, or the start page.
+fn window(folder: &TestFolder, document: Option<&str>, language: Language) -> Harness<'static, App> {
+    let settings = Settings { language: Some(language), ..Settings::default() };
+    let folder = folder.to_path_buf();
+    let document = document.map(|name| open(Path::new(name)).unwrap());
+    let mut harness = Harness::builder()
+        .with_size([1280.0, 800.0])
+        .with_max_steps(8)
+        .wgpu()
+        .build_eframe(move |context| App::new(context, settings, Some(folder), document).unwrap());
+    harness.step();
+    harness
+}
+
+fn studio<'a>(harness: &'a Harness<'_, App>) -> &'a Studio {
+    harness.state().studio().unwrap()
+}
+
+/// Steps until something holds.
+fn until(harness: &mut Harness<'_, App>, what: &str, holds: impl Fn(&App) -> bool) {
+    let begun = Instant::now();
+    while !holds(harness.state()) {
+        assert!(begun.elapsed() < Duration::from_secs(120), "{what}: not after 120 s");
+        std::thread::sleep(Duration::from_millis(5));
+        harness.step();
+    }
+}
+
+fn until_done(harness: &mut Harness<'_, App>) {
+    until(harness, "the finest picture", |app| app.studio().is_some_and(Studio::is_done));
+}
+
+fn press(harness: &mut Harness<'_, App>, modifiers: Modifiers, key: Key) {
+    harness.key_press_modifiers(modifiers, key);
+    harness.run_steps(3);
+}
+
+#[test]
+fn a_preset_is_opened_changed_undone_saved_and_opened_again() {
+    let folder = TestFolder::new("studio-window").unwrap();
+    let mut harness = window(&folder, None, Language::English);
+    harness.get_by_label("preset classic").click();
+    until(&mut harness, "the preset", |app| app.studio().is_some());
+    until_done(&mut harness);
+    let frame = studio(&harness).frame.clone().unwrap();
+    assert!(frame.quality == Quality::Fine && frame.window().width == 1024);
+
+    // Another seed, and back: ten times.
+    let before = studio(&harness).document.text().to_owned();
+    for _ in 0..10 {
+        press(&mut harness, Modifiers::COMMAND, Key::R);
+    }
+    assert_eq!(studio(&harness).document.recipe().world.seed, 11);
+    for _ in 0..10 {
+        assert_ne!(studio(&harness).document.text(), before);
+        press(&mut harness, Modifiers::COMMAND, Key::Z);
+    }
+    assert_eq!(studio(&harness).document.text(), before);
+    press(&mut harness, Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
+    until_done(&mut harness);
+    assert_ne!(studio(&harness).frame.clone().unwrap().heights, frame.heights);
+
+    // Saved under a name, it is the same recipe for the library.
+    press(&mut harness, Modifiers::COMMAND, Key::S);
+    let path = folder.join("mine.toml");
+    let field = harness.get_by_role_and_label(Role::TextInput, "file name");
+    field.focus();
+    harness.run_steps(2);
+    press(&mut harness, Modifiers::COMMAND, Key::A);
+    harness.get_by_role_and_label(Role::TextInput, "file name").type_text(&path.to_string_lossy());
+    harness.run_steps(2);
+    press(&mut harness, Modifiers::NONE, Key::Enter);
+    assert!(!studio(&harness).document.is_changed());
+    let text = std::fs::read_to_string(&path).unwrap();
+    assert_eq!(text, studio(&harness).document.text());
+    assert_eq!(orogen::Recipe::read(&path).unwrap(), *studio(&harness).document.recipe());
+
+    // Another program changes the file.
+    std::fs::write(&path, text.replace("octaves = 6", "octaves = 2")).unwrap();
+    until(&mut harness, "the changed file", |app| app.studio().unwrap().document.text().contains("octaves = 2"));
+}
+
+#[test]
+fn text_is_broken_and_mended() {
+    let folder = TestFolder::new("studio-text").unwrap();
+    let mut harness = window(&folder, Some("classic"), Language::English);
+    until_done(&mut harness);
+    press(&mut harness, Modifiers::COMMAND, Key::Num4);
+    let text = studio(&harness).document.text().to_owned();
+    let field = harness.get_by_role_and_label(Role::TextInput, "recipe");
+    field.focus();
+    harness.run_steps(2);
+    harness.get_by_role_and_label(Role::TextInput, "recipe").type_text("x");
+    harness.run_steps(4);
+    assert!(!studio(&harness).document.is_valid());
+    assert!(harness.query_by_label_contains("The text has errors").is_some());
+    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert!(studio(&harness).document.is_valid());
+    assert_eq!(studio(&harness).document.text(), text);
+}
+
+#[test]
+fn a_node_is_selected_shown_and_deleted() {
+    let folder = TestFolder::new("studio-graph").unwrap();
+    let mut harness = window(&folder, Some("classic"), Language::English);
+    until_done(&mut harness);
+    harness.get_by_label("node noise").click();
+    harness.run_steps(3);
+    assert_eq!(studio(&harness).selected, ["noise"]);
+    harness.get_by_label("Show").click();
+    until(&mut harness, "the layer", |app| app.studio().unwrap().look.layer == "noise");
+    until_done(&mut harness);
+    assert!(studio(&harness).frame.as_ref().unwrap().values.is_some());
+    harness.get_by_label("node terrain").click();
+    harness.run_steps(3);
+    harness.get_by_label("Delete").click();
+    harness.run_steps(3);
+    let recipe = studio(&harness).document.recipe();
+    assert!(recipe.nodes().len() == 1 && studio(&harness).document.text().contains("height = \"noise\""));
+}
+
+/// Every preset opens and is drawn; the first picture of the default comes soon.
+#[test]
+fn every_preset_is_drawn() {
+    let folder = TestFolder::new("studio-presets").unwrap();
+    for preset in orogen::presets::all() {
+        let mut harness = window(&folder, Some(preset.name), Language::English);
+        until(&mut harness, preset.name, |app| app.studio().unwrap().frame.is_some());
+        harness.run_steps(2);
+        let picture = harness.render().unwrap();
+        // The land is in the middle of the view, and is not of one color.
+        let mut colors = std::collections::HashSet::new();
+        for y in 200..400 {
+            for x in 300..700 {
+                colors.insert(picture.get_pixel(x, y).0);
+            }
+        }
+        assert!(colors.len() > 100, "{}: {} colors", preset.name, colors.len());
+        assert!(studio(&harness).failure.is_none(), "{:?}", studio(&harness).failure);
+    }
+}
+
+#[test]
+fn it_speaks_chinese_if_the_system_has_letters_for_it() {
+    let folder = TestFolder::new("studio-chinese").unwrap();
+    let mut harness = window(&folder, Some("classic"), Language::Chinese);
+    harness.run_steps(3);
+    // Without a font it says so, in English.
+    let speaks = harness.query_by_label("节点图").is_some();
+    assert!(speaks || harness.query_by_label("Graph").is_some());
+}
+
+#[test]
+fn sizes_from_tiny_to_large_are_drawn() {
+    let folder = TestFolder::new("studio-sizes").unwrap();
+    let mut harness = window(&folder, Some("classic"), Language::English);
+    until_done(&mut harness);
+    for size in [[200.0, 120.0], [60.0, 40.0], [1920.0, 1200.0]] {
+        harness.set_size(size.into());
+        harness.run_steps(3);
+        assert!(harness.render().is_ok());
+    }
+}
