@@ -28,7 +28,7 @@ op! {
         /// Path of an SVG or GeoJSON file with lines, in place of `points`. A relative path is resolved against the folder of the recipe.
         file: LineFile = LineFile::default();
         /// Metres per unit of the file, east and south.
-        scale: [f64; 2] = [1.0, 1.0], unit "m", range -1e6 to 1e6;
+        scale: [f64; 2] = [1.0, 1.0], range -1e6 to 1e6;
         /// Position of the file's origin: metres east, metres south.
         offset: [f64; 2] = [0.0, 0.0], unit "m", range -1e9 to 1e9;
         /// Whether each line is a smooth curve through its points. Lines of a file that have curves stay as they are.
