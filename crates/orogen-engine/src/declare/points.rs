@@ -142,10 +142,10 @@ impl<const MIN: usize> Param for PointLists<MIN> {
         let list = |items: Vec<Value>| Value::List(items.into_iter().map(Spanned::unplaced).collect());
         let numbers = if self.form.has_heights { 3 } else { 2 };
         let point = |point: &[f64; 3]| list(point[..numbers].iter().map(|number| Value::Number(*number)).collect());
-        let lists = self.lists.iter().map(|points| list(points.iter().map(point).collect()));
-        match (lists.len(), self.form.is_nested) {
-            (1, false) => lists.last().unwrap_or_else(|| list(Vec::new())),
-            _ => list(lists.collect()),
+        let points = |points: &Vec<[f64; 3]>| list(points.iter().map(point).collect());
+        match (self.lists.as_slice(), self.form.is_nested) {
+            ([only], false) => points(only),
+            (lists, _) => list(lists.iter().map(points).collect()),
         }
     }
 

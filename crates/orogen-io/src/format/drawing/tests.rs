@@ -122,7 +122,7 @@ fn elements_of_svg() {
     // Round shapes: extents and areas.
     for (shape, low, high, area) in [
         ("<circle cx='5' cy='6' r='2'/>", [3.0, 4.0], [7.0, 8.0], 12.566),
-        ("<ellipse cx='5' cy='6' rx='2' ry='1'/>", [3.0, 5.0], [7.0, 7.0], 6.283),
+        ("<ellipse cx='5' cy='6' rx='2' ry='1'/>", [3.0, 5.0], [7.0, 7.0], std::f64::consts::TAU),
         ("<rect width='10' height='6' rx='1'/>", [0.0, 0.0], [10.0, 6.0], 59.1416),
         ("<rect width='10' height='6' rx='9' ry='9'/>", [0.0, 0.0], [10.0, 6.0], 47.1239),
     ] {
@@ -292,4 +292,58 @@ fn files_by_path() {
     let [a, b, c] = ["<line x2='5'/>", "<line  y1='0' x2='5.0'/>", "<line x2='6'/>"]
         .map(|text| Drawing::parse(&svg(text), Format::Svg, DrawingKind::Lines).unwrap().hash);
     assert!(a == b && a != c);
+}
+
+#[test]
+fn exported_lines_are_read_where_they_were() {
+    use crate::format::features::{Crs, Feature, Geometry, GeometryType, Value, samples};
+    let points = [[0.0, 0.0, 0.0], [120.5, 30.0, 0.0], [90.0, 410.25, 0.0]];
+    let mut layer = samples::layer("lines", GeometryType::Line, 0);
+    let values = vec![Value::Integer(1), Value::Real(250.0), Value::Boolean(true), Value::Null];
+    layer.features.push(Feature { geometry: Geometry::Line(points.to_vec()), values });
+    layer.place(None);
+    let mut text = Vec::new();
+    crate::format::geojson::write(&mut text, &layer, Crs::Local, 10.0).unwrap();
+    let read = Drawing::parse(&String::from_utf8(text).unwrap(), Format::GeoJson, DrawingKind::Lines).unwrap();
+    assert_eq!(read.outlines, [Outline::of_points(&points)]);
+}
+
+#[test]
+fn damaged_files_are_read_or_refused() {
+    let corpus = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/drawing/");
+    let mut random = orogen_grid::random::Random::new(11, 0);
+    let (mut read, mut refused) = (0, 0);
+    for (name, format) in
+        [("shapes.svg", Format::Svg), ("lines.geojson", Format::GeoJson), ("areas.geojson", Format::GeoJson)]
+    {
+        let whole = crate::fs::read(Path::new(corpus).join(name).as_path()).unwrap();
+        for _ in 0..4000 {
+            let mut bytes = whole.clone();
+            for _ in 0..=random.below(4) {
+                let at = random.below(bytes.len());
+                let other = bytes[random.below(bytes.len())];
+                match random.below(4) {
+                    0 => bytes[at] = other,
+                    1 => bytes.insert(at, other),
+                    2 => drop(bytes.remove(at)),
+                    _ => bytes[at] = b"0123456789-+eE.,[]{}<>/\"MmLlHhVvCcSsQqTtAaZz"[random.below(44)],
+                }
+            }
+            let Ok(text) = String::from_utf8(bytes) else { continue };
+            for kind in [DrawingKind::Lines, DrawingKind::Areas] {
+                match Drawing::parse(&text, format, kind) {
+                    Ok(drawing) => {
+                        read += 1;
+                        let segments = orogen_grid::polylines::segments::Segments::new(&drawing.outlines, 1e5);
+                        assert!(segments.nearest([1.0, 2.0], f64::INFINITY).is_some(), "{text}");
+                    }
+                    Err(why) => {
+                        refused += 1;
+                        assert!(!why.is_empty());
+                    }
+                }
+            }
+        }
+    }
+    assert!(read > 1000 && refused > 1000, "{read} {refused}");
 }
