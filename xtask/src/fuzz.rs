@@ -13,8 +13,10 @@ or N executions, whichever comes first, starting with the files in fuzz/corpus/T
 are written to fuzz/artifacts. Needs a C++ compiler for libFuzzer; cargo-fuzz is optional.
 ";
 
-const TARGETS: [&str; 11] =
-    ["dem", "journal", "options", "palette", "place", "plan", "recipe", "sidecar", "solution", "tileset", "zarr"];
+const TARGETS: [&str; 12] = [
+    "dem", "drawing", "journal", "options", "palette", "place", "plan", "recipe", "sidecar", "solution", "tileset",
+    "zarr",
+];
 
 /// Flags for coverage instrumentation (those of cargo-fuzz).
 const FLAGS: &str = "--cfg fuzzing -Zsanitizer=address -Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \

@@ -19,6 +19,7 @@
 //! | [`resample`] | interpolation between samples |
 //! | [`triangles`] | heights on the triangles of a full mesh |
 //! | [`poisson_discs`] | points that keep a distance, of which any window is made by itself |
+//! | [`polylines`] | lines and areas of straight segments and curves: smoothing, the nearest point, inside or outside |
 //!
 //! ```
 //! use orogen_grid::hydrology::{accumulation::accumulate, drainage::route_carving, fill::fill, outlets::Outlets, steepest::Descent};
@@ -68,6 +69,7 @@ pub mod hydrology;
 mod interop;
 pub mod multiscale;
 pub mod poisson_discs;
+pub mod polylines;
 pub mod progress;
 #[doc(hidden)]
 pub mod random;

@@ -35,6 +35,7 @@
 //! | several worlds with shared threads, memory and solutions | [`Session`] |
 //! | ops of your own | [`op!`], [`Registry`], and [`laws`], which tests them |
 //! | files and pictures of grids | [`mod@format`], [`export`], [`map`], [`palette`], [`mesh`], [`render`], [`sheet`] |
+//! | lines and areas drawn on a map | [`polylines`], and the ops `path` and `polygon` |
 //! | terrain analysis, hydrology and erosion on any grid | [`analysis`], [`hydrology`], [`hydrography`], [`erosion`], [`contour`] |
 //!
 //! Structs with options are built with `new` or `Default` and `with_*` methods, so that later versions can add options. Ops are plain structs;
@@ -49,7 +50,7 @@ pub use orogen_engine::{
 #[doc(inline)]
 pub use orogen_grid::{
     aggregate, analysis, autotile, climate, contour, erosion, error, grid, hydrography, hydrology, poisson_discs,
-    progress, resample, surface_nets, triangles, words,
+    polylines, progress, resample, surface_nets, triangles, words,
 };
 #[doc(hidden)]
 pub use orogen_io::test_folder;

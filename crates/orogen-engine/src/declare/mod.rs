@@ -6,6 +6,7 @@
 //! - [`spec`]: what is declared of an op, its inputs and its parameters
 //! - [`input`]: what a node reads
 //! - [`param`]: the types that parameters can have
+//! - [`points`]: lists of points as parameters, and their segments; [`memo`]: a value made from parameters once
 //! - [`declared`]: what every op implements
 //! - `macros`: [`op!`](crate::op!) and [`choice!`](crate::choice), which write all of it
 
@@ -14,14 +15,17 @@ mod macros;
 
 pub mod declared;
 pub mod input;
+pub mod memo;
 pub mod param;
+pub mod points;
 pub mod spec;
 
 pub use declared::Declared;
 pub use input::{Input, InputName, set_named};
-pub use orogen_io::dem::file_ref::FileRef;
+pub use orogen_io::dem::file_ref::{AreaFile, FileRef, LineFile};
 /// What the octaves of a fractal are made of.
 #[doc(hidden)]
 pub use orogen_noise as noise;
 pub use param::{Param, read_param};
+pub use points::{AreaPoints, LinePoints, OutlineOptions, PointLists};
 pub use spec::{InputSpec, Locality, MARGIN, ParamSpec, Shape, Spec, VERTICAL, short};

@@ -4,7 +4,7 @@ use super::spec::{ParamSpec, Shape};
 use crate::expression::text::Expression;
 use crate::value::{Spanned, Value};
 use orogen_grid::hex;
-use orogen_io::dem::file_ref::{FileRef, Picture};
+use orogen_io::dem::file_ref::{AreaFile, FileRef, LineFile, Picture};
 
 /// A type of parameters.
 pub trait Param: Sized {
@@ -57,8 +57,8 @@ impl Param for FileRef {
         Value::Text(self.text())
     }
     fn key(&self) -> Value {
-        match self.ground() {
-            Some(ground) => Value::Text(hex::encode(&ground.hash)),
+        match self.content_hash() {
+            Some(hash) => Value::Text(hex::encode(hash)),
             None => self.write(),
         }
     }
@@ -67,24 +67,31 @@ impl Param for FileRef {
     }
 }
 
-impl Param for Picture {
-    const SHAPE: Shape = Shape::File;
-    fn read(value: &Value) -> Option<Picture> {
-        match value {
-            Value::Text(path) => Some(Picture::from(path.as_str())),
-            _ => None,
+/// Files that are not read as heights.
+macro_rules! file_param {
+    ($($name:ident),*) => { $(
+        impl Param for $name {
+            const SHAPE: Shape = Shape::File;
+            fn read(value: &Value) -> Option<$name> {
+                match value {
+                    Value::Text(path) => Some($name::from(path.as_str())),
+                    _ => None,
+                }
+            }
+            fn write(&self) -> Value {
+                self.0.write()
+            }
+            fn key(&self) -> Value {
+                self.0.key()
+            }
+            fn file(&mut self) -> Option<&mut FileRef> {
+                Some(&mut self.0)
+            }
         }
-    }
-    fn write(&self) -> Value {
-        self.0.write()
-    }
-    fn key(&self) -> Value {
-        self.0.key()
-    }
-    fn file(&mut self) -> Option<&mut FileRef> {
-        Some(&mut self.0)
-    }
+    )* };
 }
+
+file_param!(Picture, LineFile, AreaFile);
 
 impl Param for f64 {
     const SHAPE: Shape = Shape::Number;
@@ -184,6 +191,9 @@ pub fn read_param<T: Param>(spec: &ParamSpec, value: &Value) -> Result<T, String
     match T::read(value) {
         Some(param) if param.within(spec.range) => Ok(param),
         _ => {
+            if let Some((_, message)) = spec.problem(value) {
+                return Err(message);
+            }
             let mut message = format!("`{}` must be {}, not {}", spec.name, spec.expected(), value.describe());
             if let (Shape::Choice(choices), Value::Text(text)) = (spec.shape, value) {
                 let names: Vec<&str> = choices().iter().map(|(name, _)| *name).collect();

@@ -1,6 +1,8 @@
 //! Declarations of ops, as data.
 
+use super::points;
 use crate::layer::Layer;
+use crate::value::{Span, Value};
 
 /// The locality of an op: what its result may depend on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -124,6 +126,8 @@ pub enum Shape {
     Expression,
     /// Control points [[x, y], ...], at least two, with ascending x.
     Curve,
+    /// Lists of points [[x, y], ...] or [[x, y, height], ...], each of at least this many points; or one such list.
+    Points(usize),
     /// The path of a file.
     File,
     /// A coordinate reference system, by its EPSG code.
@@ -144,21 +148,42 @@ pub fn short(doc: &str) -> String {
 }
 
 impl ParamSpec {
-    /// The valid values, for messages: "a number from 0 to 1".
-    #[must_use]
-    pub fn expected(&self) -> String {
-        let unit = match self.unit {
-            "" => String::new(),
-            unit => format!(" ({unit})"),
-        };
-        let range = match self.range {
+    fn bounds(&self) -> String {
+        match self.range {
             [low, high] if low.is_finite() && high.is_finite() => format!(" from {} to {}", number(low), number(high)),
             [low, _] if low.is_finite() => format!(" of at least {}", number(low)),
             [_, high] if high.is_finite() => format!(" of at most {}", number(high)),
             _ => String::new(),
-        };
+        }
+    }
+
+    fn unit_in_parentheses(&self) -> String {
+        match self.unit {
+            "" => String::new(),
+            unit => format!(" ({unit})"),
+        }
+    }
+
+    /// The valid values of a single number.
+    pub(super) fn number(&self) -> String {
+        format!("a finite number{}{}", self.bounds(), self.unit_in_parentheses())
+    }
+
+    /// What is wrong within a value of several parts, and its position; `None` if nothing is, or the value is a single part.
+    #[must_use]
+    pub fn problem(&self, value: &Value) -> Option<(Span, String)> {
         match self.shape {
-            Shape::Number => format!("a finite number{range}{unit}"),
+            Shape::Points(min) => points::problem(self, min, value),
+            _ => None,
+        }
+    }
+
+    /// The valid values, for messages: "a number from 0 to 1".
+    #[must_use]
+    pub fn expected(&self) -> String {
+        let (range, unit) = (self.bounds(), self.unit_in_parentheses());
+        match self.shape {
+            Shape::Number => self.number(),
             Shape::Integer => format!("a whole number{range}{unit}"),
             Shape::Seed => "a whole number from 0 to 9223372036854775807".to_string(),
             Shape::Flag => "true or false".to_string(),
@@ -170,6 +195,11 @@ impl ParamSpec {
             Shape::Curve => format!(
                 "a list of at least two points [[x, y], ...] of finite numbers{range}, each x greater than the one before"
             ),
+            Shape::Points(min) => {
+                format!(
+                    "a list of at least {min} points [[x, y], ...] or [[x, y, height], ...] of finite numbers{range}{unit}, or a list of such lists"
+                )
+            }
             Shape::Expression => "an expression in quotes, such as \"a * 2 + b\"".to_string(),
             Shape::File => "the path of a file, in quotes".to_string(),
             Shape::Crs => "an EPSG code in quotes, such as \"EPSG:32632\"".to_string(),

@@ -3,7 +3,7 @@
 use super::case::Case;
 use super::check::{FORCED, Laws};
 use super::law::{Law, Verdict, Violation};
-use super::recipes::{NODE, unsoftened, world_of};
+use super::recipes::{NODE, output_of, unsoftened, world_of};
 use crate::declare::{Input, VERTICAL};
 use crate::op::Op;
 use crate::sampler::Sampler;
@@ -32,7 +32,7 @@ impl Laws<'_> {
             }
         });
         for layer in self.node.layers().iter().skip(1) {
-            recipe.output(layer.name, Input::Node(format!("{NODE}.{}", layer.name)));
+            recipe.output(output_of(layer), Input::Node(format!("{NODE}.{}", layer.name)));
         }
         let (window, part) = (Window::new(43, 31, cell).at(11, 20), Window::new(17, 9, cell).at(34, 25));
         let case = self.case(Law::Altitudes).in_window(window);

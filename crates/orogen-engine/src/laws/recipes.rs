@@ -3,6 +3,7 @@
 use crate::declare::Input;
 use crate::field::{fbm::Fbm, perlin::Perlin};
 use crate::filter::blur::Blur;
+use crate::layer::Layer;
 use crate::node::Node;
 use crate::recipe::document::{Recipe, WorldSpec};
 use orogen_grid::grid::Window;
@@ -46,6 +47,11 @@ pub(super) fn unsoftened(from: &Recipe) -> Recipe {
 /// The node that a `source` is read through.
 const SOFT: &str = "soft";
 
+/// The name of the output of a layer that is not the first one, whose output is `height`.
+pub(super) fn output_of(layer: &Layer) -> &'static str {
+    if layer.name == "height" { "layer_height" } else { layer.name }
+}
+
 /// A bounded world of 97 x 81 samples at a cell.
 #[must_use]
 pub fn world_of(cell: f64) -> WorldSpec {
@@ -54,7 +60,8 @@ pub fn world_of(cell: f64) -> WorldSpec {
 }
 
 /// A recipe with the node as [`NODE`]. Each input is a separate noise, about -1 to 1 with a wavelength of nine cells. An input called `source` reads
-/// it through a blur, so that halos add up. The outputs are the node's layers, the first one named `height`.
+/// it through a blur, so that halos add up. The outputs are the node's layers, the first one named `height`, and another one of that name
+/// `layer_height`.
 #[must_use]
 pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
     let mut node = node.clone();
@@ -79,7 +86,7 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
     }
     recipe.output("height", NODE);
     for layer in layers.iter().skip(1) {
-        recipe.output(layer.name, Input::Node(format!("{NODE}.{}", layer.name)));
+        recipe.output(output_of(layer), Input::Node(format!("{NODE}.{}", layer.name)));
     }
     recipe
 }

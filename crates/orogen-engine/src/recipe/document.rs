@@ -2,7 +2,7 @@
 
 pub use super::text::LONGEST_TEXT;
 
-use crate::declare::Input;
+use crate::declare::{Input, Shape};
 use crate::field::dem::Dem;
 use crate::node::Node;
 use crate::op::{Op, WorldParams};
@@ -12,13 +12,14 @@ use crate::recipe::scatter::document::{ExpandedScatter, Scatter};
 use crate::recipe::surface::document::{Expanded, RAMP, Surface};
 use crate::value::{toml_key, toml_string};
 use orogen_grid::error::{Diagnostic, Error, ErrorKind, Result};
-use orogen_io::dem::file_ref::FileRef;
+use orogen_io::dem::file_ref::{FileKind, FileRef};
 use orogen_io::dem::open;
 use orogen_io::dem::prepared::PreparedDem;
 use orogen_io::dem::square::metres_of_degrees;
 use orogen_io::format::crs::registry::Crs;
 use orogen_io::format::crs::unit::Unit;
 use orogen_io::format::dem::{Georeference, Request};
+use orogen_io::format::drawing::Drawing;
 use orogen_io::palette::histogram;
 use std::collections::{BTreeMap, HashSet};
 use std::fmt::Write as _;
@@ -351,29 +352,43 @@ impl Recipe {
     /// If one cannot be read: the message contains the node, and the location if the recipe was read from a text.
     pub fn load(&mut self, allowed: u64) -> Result<()> {
         // One file may be heights for one node and a picture for another.
-        let mut known: BTreeMap<(PathBuf, bool, Option<u32>), Arc<PreparedDem>> = BTreeMap::new();
+        let mut known: BTreeMap<(PathBuf, FileKind, Option<u32>), Arc<PreparedDem>> = BTreeMap::new();
+        let mut drawings: BTreeMap<(PathBuf, FileKind), Arc<Drawing>> = BTreeMap::new();
         self.held = 0;
         for NamedNode { name, node, .. } in &mut self.nodes {
             let band = match node {
                 Node::Dem(dem) if dem.band > 0 => Some(dem.band),
                 _ => None,
             };
-            for file in node.files() {
-                let path = (file.path(), file.is_picture(), band);
+            let is_drawn = node.spec().params.iter().any(|param| matches!(param.shape, Shape::Points(_)));
+            // A drawing may be in the recipe instead of a file.
+            for file in node.files().into_iter().filter(|file| !(is_drawn && file.is_empty())) {
                 let left = allowed.saturating_sub(self.held);
+                let location = file.location().cloned();
+                let in_node = |error: Error| {
+                    let message = format!("node `{name}`: {error}");
+                    Error::from_diagnostics(ErrorKind::File, vec![Diagnostic::new(message).with_place(location)])
+                };
+                let path = (file.path(), file.kind(), band);
+                if let FileKind::Drawing(kind) = path.1 {
+                    let path = (path.0, path.1);
+                    let drawing = match file.drawing().or(drawings.get(&path)) {
+                        Some(drawing) => Arc::clone(drawing),
+                        None => Arc::new(Drawing::read(&path.0, kind, left).map_err(in_node)?),
+                    };
+                    if drawings.insert(path, Arc::clone(&drawing)).is_none() {
+                        self.held = self.held.saturating_add(drawing.memory());
+                    }
+                    file.hold_drawing(drawing);
+                    continue;
+                }
                 let read = || match path.1 {
-                    true => PreparedDem::picture(&path.0, left),
-                    false => PreparedDem::read(&path.0, None, Request::new(left).with_band(band)),
+                    FileKind::Picture => PreparedDem::picture(&path.0, left),
+                    _ => PreparedDem::read(&path.0, None, Request::new(left).with_band(band)),
                 };
                 let ground = match file.ground().or(known.get(&path)) {
                     Some(ground) => Arc::clone(ground),
-                    None => Arc::new(read().map_err(|error| {
-                        let message = format!("node `{name}`: {error}");
-                        Error::from_diagnostics(
-                            ErrorKind::File,
-                            vec![Diagnostic::new(message).with_place(file.location().cloned())],
-                        )
-                    })?),
+                    None => Arc::new(read().map_err(in_node)?),
                 };
                 if known.insert(path, Arc::clone(&ground)).is_none() {
                     self.held = self.held.saturating_add(ground.memory());

@@ -559,7 +559,8 @@ impl Walk<'_> {
                         }
                     }
                     Err(message) => {
-                        self.complain(&value.span, message);
+                        let part = spec.params[i].problem(&value.value).map(|(span, _)| span);
+                        self.complain(part.as_ref().filter(|span| !span.is_empty()).unwrap_or(&value.span), message);
                         sound = false;
                     }
                 }

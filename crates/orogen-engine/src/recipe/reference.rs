@@ -176,6 +176,9 @@ fn keys(text: &mut String, node: &Node) {
             _ => param.expected(),
         };
         let default = match node.param(i) {
+            Value::List(items) if items.is_empty() => "none".to_string(),
+            // A drawing is given as points or as a file.
+            Value::Text(text) if text.is_empty() && has_points(spec) => "none".to_string(),
             Value::Text(text) if text.is_empty() => "required".to_string(),
             Value::Text(text) => format!("`{text}`"),
             other => format!("`{}`", other.to_toml()),
@@ -183,6 +186,10 @@ fn keys(text: &mut String, node: &Node) {
         let cell = |text: String| text.replace('|', "\\|");
         let _ = writeln!(text, "| `{}` | {} | {} | {default} |", param.name, cell(short(param.doc)), cell(takes));
     }
+}
+
+fn has_points(spec: &Spec) -> bool {
+    spec.params.iter().any(|param| matches!(param.shape, Shape::Points(_)))
 }
 
 fn capital(word: &str) -> String {

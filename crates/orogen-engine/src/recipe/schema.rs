@@ -1,6 +1,7 @@
 //! The JSON Schema of recipes, made from the declarations.
 
 use super::document::{VERSION, WorldSpec};
+use crate::declare::points::MAX_POINTS;
 use crate::declare::{Param, ParamSpec, Shape, read_param, short};
 use crate::node::Node;
 use crate::registry::Registry;
@@ -363,6 +364,11 @@ fn param_schema(spec: &ParamSpec, default: Option<&Value>) -> Json {
         Shape::File | Shape::Expression => json!({ "type": "string" }),
         Shape::Crs => json!({ "type": "string", "pattern": "^EPSG:[0-9]+$" }),
         Shape::Pair => json!({ "type": "array", "minItems": 2, "maxItems": 2, "items": number }),
+        Shape::Points(min) => {
+            let point = json!({ "type": "array", "minItems": 2, "maxItems": 3, "items": number });
+            let list = json!({ "type": "array", "minItems": min, "maxItems": MAX_POINTS, "items": point });
+            json!({ "anyOf": [{ "type": "array", "maxItems": 0 }, list, { "type": "array", "items": list }] })
+        }
         Shape::Curve => json!({
             "type": "array",
             "minItems": 2,

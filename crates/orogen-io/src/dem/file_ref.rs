@@ -4,17 +4,31 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::prepared::PreparedDem;
+use crate::format::drawing::{Drawing, DrawingKind};
 use orogen_grid::error::Location;
 
-/// A file of heights named by a recipe. Its content is read once, when the world is opened.
+/// A file of heights, or of another kind, named by a recipe. Its content is read once, when the world is opened.
 #[derive(Debug, Clone, Default)]
 pub struct FileRef {
     path: String,
     folder: Option<PathBuf>,
     ground: Option<Arc<PreparedDem>>,
-    picture: bool,
+    drawing: Option<Arc<Drawing>>,
+    kind: FileKind,
     /// The location in the recipe's text that names it.
     location: Option<Box<Location>>,
+}
+
+/// What a file is read as.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum FileKind {
+    /// Heights.
+    #[default]
+    Heights,
+    /// A greyscale picture.
+    Picture,
+    /// Lines or areas.
+    Drawing(DrawingKind),
 }
 
 /// A greyscale picture named by a recipe: its content is numbers from 0 for black to 1 for white, one metre apart.
@@ -29,7 +43,39 @@ impl Default for Picture {
 
 impl From<&str> for Picture {
     fn from(path: &str) -> Picture {
-        Picture(FileRef { picture: true, ..FileRef::from(path) })
+        Picture(FileRef { kind: FileKind::Picture, ..FileRef::from(path) })
+    }
+}
+
+/// A file of lines named by a recipe.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LineFile(pub FileRef);
+
+impl Default for LineFile {
+    fn default() -> LineFile {
+        LineFile::from("")
+    }
+}
+
+impl From<&str> for LineFile {
+    fn from(path: &str) -> LineFile {
+        LineFile(FileRef { kind: FileKind::Drawing(DrawingKind::Lines), ..FileRef::from(path) })
+    }
+}
+
+/// A file of areas named by a recipe.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AreaFile(pub FileRef);
+
+impl Default for AreaFile {
+    fn default() -> AreaFile {
+        AreaFile::from("")
+    }
+}
+
+impl From<&str> for AreaFile {
+    fn from(path: &str) -> AreaFile {
+        AreaFile(FileRef { kind: FileKind::Drawing(DrawingKind::Areas), ..FileRef::from(path) })
     }
 }
 
@@ -53,10 +99,10 @@ impl FileRef {
         self.path.is_empty()
     }
 
-    /// Whether the file is read as a picture instead of heights.
+    /// What the file is read as.
     #[must_use]
-    pub fn is_picture(&self) -> bool {
-        self.picture
+    pub fn kind(&self) -> FileKind {
+        self.kind
     }
 
     /// The path: a relative one is relative to the folder of the recipe or, if the recipe is not a file, to the working
@@ -94,14 +140,31 @@ impl FileRef {
         self.location = Some(Box::new(location));
     }
 
-    /// The content, if it was read.
+    /// The heights or the picture, if they were read.
     #[must_use]
     pub fn ground(&self) -> Option<&Arc<PreparedDem>> {
         self.ground.as_ref()
     }
 
-    /// Sets the content.
+    /// Sets the heights or the picture.
     pub fn hold(&mut self, ground: Arc<PreparedDem>) {
         self.ground = Some(ground);
+    }
+
+    /// The lines or areas, if they were read.
+    #[must_use]
+    pub fn drawing(&self) -> Option<&Arc<Drawing>> {
+        self.drawing.as_ref()
+    }
+
+    /// Sets the lines or areas.
+    pub fn hold_drawing(&mut self, drawing: Arc<Drawing>) {
+        self.drawing = Some(drawing);
+    }
+
+    /// The hash of the content, if it was read.
+    #[must_use]
+    pub fn content_hash(&self) -> Option<&[u8; 32]> {
+        self.ground.as_ref().map(|ground| &ground.hash).or(self.drawing.as_ref().map(|drawing| &drawing.hash))
     }
 }

@@ -37,6 +37,18 @@ const DEM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/dem/f3
 /// A grey picture for the `image` node.
 const PICTURE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/dem/grey.png");
 
+/// Two lines or rings for the nodes that draw, in a small world: the second one crosses the first.
+fn drawing(cell: f64) -> Value {
+    let list = |items: Vec<Value>| Value::List(items.into_iter().map(Spanned::unplaced).collect());
+    let line = |points: &[[f64; 3]]| {
+        let points = points.iter().map(|[x, y, z]| list([x * cell, y * cell, *z].map(Value::Number).into()));
+        list(points.collect())
+    };
+    let first = [[11.3, 9.1, 4.0], [60.0, 20.7, 7.5], [81.9, 66.0, 3.0], [40.2, 41.0, -2.0], [15.5, 70.3, 1.0]];
+    let second = [[30.0, 15.0, 8.0], [90.4, 31.2, 5.0], [52.6, 77.7, 6.0]];
+    list(vec![line(&first), line(&second)])
+}
+
 /// The node alone, each input a noise of its own: see [`laws::recipe_of`]. Lengths are fitted so that a small world shows every effect.
 pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
     let mut node = node.clone();
@@ -44,6 +56,10 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
     for (i, param) in spec.params.iter().enumerate() {
         let pair = |a: f64, b: f64| Value::List([a, b].map(|n| Spanned::unplaced(Value::Number(n))).into());
         let fitted = match (spec.op, param.name) {
+            ("path" | "polygon", "points") => drawing(world.cell),
+            ("path" | "polygon", "smooth") => Value::Flag(true),
+            ("path" | "polygon", "tolerance") => Value::Number(0.01 * world.cell),
+            ("path" | "polygon", "falloff") => Value::Number(6.7 * world.cell),
             // Few levels, of which the finest is near the cell, and shores within the world.
             ("continents", "cell") => Value::Number(1.7 * world.cell),
             ("continents", "halvings") => Value::Integer(3),

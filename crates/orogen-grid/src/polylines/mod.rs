@@ -1,0 +1,20 @@
+//! Lines and areas that consist of straight segments: smoothed, flattened, and searched by position.
+//!
+//! - [`outline`]: a line of points, straight pieces and cubic curves; smoothing
+//! - [`cubic`]: cubic Bézier curves, and how many straight segments replace one
+//! - [`segments`]: all segments of a drawing in a tree of boxes: the nearest one to a position, and whether a position is inside
+//!
+//! ```
+//! use orogen_grid::polylines::{outline::Outline, segments::Segments};
+//!
+//! let square = Outline::of_points(&[[0.0, 0.0, 5.0], [10.0, 0.0, 5.0], [10.0, 10.0, 5.0], [0.0, 10.0, 5.0]]).closed();
+//! let segments = Segments::new(&[square], 0.1);
+//! assert!(segments.is_inside([5.0, 3.0]) && !segments.is_inside([5.0, -3.0]));
+//! let nearest = segments.nearest([5.0, -3.0], f64::INFINITY).ok_or("there are no segments")?;
+//! assert_eq!((nearest.distance(), nearest.height(), nearest.chainage()), (3.0, 5.0, 5.0));
+//! # Ok::<(), &str>(())
+//! ```
+
+pub mod cubic;
+pub mod outline;
+pub mod segments;

@@ -1,0 +1,354 @@
+//! The straight segments of a drawing in a tree of boxes.
+
+use super::outline::Outline;
+
+/// Maximum number of segments of a drawing. Curves that would have more are flattened at a larger tolerance.
+pub const MAX_SEGMENTS: usize = 1 << 20;
+
+/// Number of segments of a leaf of the tree.
+const LEAF: usize = 4;
+
+/// A straight segment of a line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Segment {
+    /// Start and end: east, south, height.
+    ends: [[f64; 3]; 2],
+    /// The distance along the line from its start to the start of the segment.
+    chainage: f64,
+    length: f64,
+    line: u32,
+}
+
+/// A box around segments that follow each other, or around whole lines.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Node {
+    low: [f64; 2],
+    high: [f64; 2],
+    /// y of the first and of the last point of segments that follow each other; equal for whole rings.
+    ends: [f64; 2],
+    content: Content,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Content {
+    /// Segments: the first, and their number.
+    Leaf(u32, u32),
+    /// Two nodes: the next one, and this one.
+    Pair(u32),
+}
+
+/// The segments of lines, in a tree of boxes. A search visits the boxes around a position and few others, so it takes as long for a drawing with many
+/// segments far away as for one without.
+///
+/// The answers depend on the position and the segments alone: of several segments at the same distance, the first is the nearest.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Segments {
+    segments: Vec<Segment>,
+    /// The length of each line.
+    lengths: Vec<f64>,
+    nodes: Vec<Node>,
+}
+
+/// The point of a drawing that is nearest to a position.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Nearest {
+    segment: Segment,
+    /// The position on the segment, 0 at its start and 1 at its end.
+    share: f64,
+    square: f64,
+    line_length: f64,
+}
+
+impl Nearest {
+    /// The distance, in metres.
+    #[must_use]
+    pub fn distance(&self) -> f64 {
+        self.square.sqrt()
+    }
+
+    /// The height there, which is linear along a segment.
+    #[must_use]
+    pub fn height(&self) -> f64 {
+        let [from, to] = self.segment.ends.map(|end| end[2]);
+        if self.share >= 1.0 { to } else { from + (to - from) * self.share }
+    }
+
+    /// The distance along the line from its start, in metres.
+    #[must_use]
+    pub fn chainage(&self) -> f64 {
+        self.segment.chainage + self.segment.length * self.share
+    }
+
+    /// The position on the line, 0 at its start and 1 at its end.
+    #[must_use]
+    pub fn position(&self) -> f64 {
+        if self.line_length > 0.0 { (self.chainage() / self.line_length).min(1.0) } else { 0.0 }
+    }
+}
+
+impl Segments {
+    /// The segments of outlines. Curves are replaced by segments at most `tolerance` metres from them. If these were more than [`MAX_SEGMENTS`], the
+    /// tolerance is doubled until they are not; straight pieces beyond that number are left out.
+    #[must_use]
+    pub fn new(outlines: &[Outline], tolerance: f64) -> Segments {
+        let count = |tolerance: f64| outlines.iter().map(|outline| outline.flattened_len(tolerance)).sum::<u64>();
+        let mut tolerance = tolerance;
+        while tolerance < 1e12 && count(tolerance) > MAX_SEGMENTS as u64 {
+            tolerance *= 2.0;
+        }
+        let mut made = Segments::default();
+        let mut lines = Vec::with_capacity(outlines.len());
+        for outline in outlines {
+            let first = made.segments.len();
+            made.add(outline, tolerance);
+            if made.segments.len() > first {
+                lines.push((first, made.segments.len()));
+            }
+        }
+        if !lines.is_empty() {
+            made.group(&mut lines);
+        }
+        made
+    }
+
+    fn add(&mut self, outline: &Outline, tolerance: f64) {
+        let (first, line) = (self.segments.len(), self.lengths.len() as u32);
+        let (mut from, mut chainage) = (outline.start, 0.0);
+        let mut push = |to: [f64; 3]| {
+            let (x, y) = (to[0] - from[0], to[1] - from[1]);
+            let length = (x * x + y * y).sqrt();
+            let is_valid = from.iter().chain(&to).all(|number| number.is_finite());
+            if length > 0.0 && is_valid && self.segments.len() < MAX_SEGMENTS {
+                self.segments.push(Segment { ends: [from, to], chainage, length, line });
+                chainage += length;
+                from = to;
+            }
+        };
+        outline.flatten(tolerance, &mut push);
+        // A line whose points coincide is a point.
+        if self.segments.len() == first && outline.start.iter().all(|number| number.is_finite()) {
+            let ends = [outline.start; 2];
+            self.segments.push(Segment { ends, chainage: 0.0, length: 0.0, line });
+        }
+        self.lengths.push(chainage);
+    }
+
+    /// The tree over lines, given as ranges of segments: halves by the middles of their boxes along the longer side.
+    fn group(&mut self, lines: &mut [(usize, usize)]) -> Node {
+        if let [(first, end)] = lines {
+            return self.chain(*first, *end);
+        }
+        let at = self.nodes.len();
+        let boxes = lines.iter().map(|(first, end)| bounds(&self.segments[*first..*end]));
+        let middles: Vec<[f64; 2]> = boxes.map(|(low, high)| [0, 1].map(|k| 0.5 * low[k] + 0.5 * high[k])).collect();
+        let side = |k: usize| {
+            let along = || middles.iter().map(|middle| middle[k]);
+            along().fold(f64::MIN, f64::max) - along().fold(f64::MAX, f64::min)
+        };
+        let axis = usize::from(side(1) > side(0));
+        let mut order: Vec<(f64, (usize, usize))> =
+            middles.iter().map(|middle| middle[axis]).zip(lines.iter().copied()).collect();
+        order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        lines.iter_mut().zip(order).for_each(|(line, (_, sorted))| *line = sorted);
+        let half = lines.len() / 2;
+        let (left, right) = lines.split_at_mut(half);
+        self.pair(at, |tree| tree.group(left), |tree| tree.group(right), Some([0.0; 2]))
+    }
+
+    /// The tree over segments that follow each other.
+    fn chain(&mut self, first: usize, end: usize) -> Node {
+        let segments = &self.segments[first..end];
+        if segments.len() <= LEAF {
+            let (low, high) = bounds(segments);
+            let y = |segment: Option<&Segment>, side: usize| segment.map_or(0.0, |segment| segment.ends[side][1]);
+            let ends = [y(segments.first(), 0), y(segments.last(), 1)];
+            let node = Node { low, high, ends, content: Content::Leaf(first as u32, (end - first) as u32) };
+            self.nodes.push(node);
+            return node;
+        }
+        let (at, middle) = (self.nodes.len(), first + (end - first) / 2);
+        self.pair(at, |tree| tree.chain(first, middle), |tree| tree.chain(middle, end), None)
+    }
+
+    fn pair(
+        &mut self,
+        at: usize,
+        left: impl FnOnce(&mut Segments) -> Node,
+        right: impl FnOnce(&mut Segments) -> Node,
+        ends: Option<[f64; 2]>,
+    ) -> Node {
+        let empty = Node { low: [0.0; 2], high: [0.0; 2], ends: [0.0; 2], content: Content::Leaf(0, 0) };
+        self.nodes.push(empty);
+        let left = left(self);
+        let second = self.nodes.len();
+        let right = right(self);
+        let node = Node {
+            low: [0, 1].map(|k| left.low[k].min(right.low[k])),
+            high: [0, 1].map(|k| left.high[k].max(right.high[k])),
+            ends: ends.unwrap_or([left.ends[0], right.ends[1]]),
+            content: Content::Pair(second as u32),
+        };
+        self.nodes[at] = node;
+        node
+    }
+
+    /// The number of segments.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.segments.len()
+    }
+
+    /// Whether there are no segments.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.segments.is_empty()
+    }
+
+    /// Memory that they take, in bytes.
+    #[must_use]
+    pub fn memory(&self) -> u64 {
+        let bytes = self.segments.len() * size_of::<Segment>()
+            + self.nodes.len() * size_of::<Node>()
+            + self.lengths.len() * size_of::<f64>();
+        bytes as u64
+    }
+
+    /// The nearest point at a distance of at most `within` metres; `None` if there is none.
+    #[must_use]
+    pub fn nearest(&self, at: [f64; 2], within: f64) -> Option<Nearest> {
+        self.nearest_counted(at, within, &mut 0)
+    }
+
+    /// The same; adds the number of segments looked at to `visited`.
+    fn nearest_counted(&self, at: [f64; 2], within: f64, visited: &mut usize) -> Option<Nearest> {
+        if !(at[0].is_finite() && at[1].is_finite() && within >= 0.0) || self.nodes.is_empty() {
+            return None;
+        }
+        let mut best = Best { square: within * within, found: None };
+        self.search(0, at, &mut best, visited);
+        best.found.map(|(index, share)| {
+            let segment = self.segments[index];
+            let line_length = self.lengths.get(segment.line as usize).copied().unwrap_or(0.0);
+            Nearest { segment, share, square: best.square, line_length }
+        })
+    }
+
+    fn search(&self, node: usize, at: [f64; 2], best: &mut Best, visited: &mut usize) {
+        match self.nodes[node].content {
+            Content::Leaf(first, count) => {
+                let first = first as usize;
+                *visited += count as usize;
+                for (k, segment) in self.segments[first..first + count as usize].iter().enumerate() {
+                    let (square, share) = distance(segment, at);
+                    let index = first + k;
+                    // Of equal distances the first segment counts, whatever the order of the tree.
+                    let is_first = best.found.is_none_or(|(other, _)| index < other);
+                    if square < best.square || square == best.square && is_first {
+                        *best = Best { square, found: Some((index, share)) };
+                    }
+                }
+            }
+            Content::Pair(second) => {
+                let nodes = [node + 1, second as usize];
+                let squares = nodes.map(|node| self.nodes[node].square_to(at));
+                let order = if squares[1] < squares[0] { [1, 0] } else { [0, 1] };
+                for k in order {
+                    if squares[k] <= best.square {
+                        self.search(nodes[k], at, best, visited);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Whether a position is inside by the even-odd rule: a line from it to infinity crosses the segments an odd number of times. Lines that are not
+    /// closed have no inside.
+    #[must_use]
+    pub fn is_inside(&self, at: [f64; 2]) -> bool {
+        self.is_inside_counted(at, &mut 0)
+    }
+
+    /// The same; adds the number of segments looked at to `visited`.
+    fn is_inside_counted(&self, at: [f64; 2], visited: &mut usize) -> bool {
+        at[0].is_finite() && at[1].is_finite() && !self.nodes.is_empty() && self.crossings_odd(0, at, visited)
+    }
+
+    /// Whether a line to the east crosses the segments of a node an odd number of times.
+    fn crossings_odd(&self, node: usize, at: [f64; 2], visited: &mut usize) -> bool {
+        let found = &self.nodes[node];
+        let [x, y] = at;
+        if y < found.low[1] || y > found.high[1] || x > found.high[0] {
+            return false;
+        }
+        // All of it is to the east: the number is odd if and only if the ends of the chain are on different sides of y, wherever the points between are.
+        if x < found.low[0] {
+            return (found.ends[0] <= y) != (found.ends[1] <= y);
+        }
+        match found.content {
+            Content::Pair(second) => {
+                self.crossings_odd(node + 1, at, visited) != self.crossings_odd(second as usize, at, visited)
+            }
+            Content::Leaf(first, count) => {
+                *visited += count as usize;
+                let segments = &self.segments[first as usize..(first + count) as usize];
+                segments.iter().filter(|segment| crosses(segment, at)).count() % 2 == 1
+            }
+        }
+    }
+}
+
+struct Best {
+    square: f64,
+    found: Option<(usize, f64)>,
+}
+
+impl Node {
+    /// The square of the distance from a position to the box.
+    fn square_to(&self, at: [f64; 2]) -> f64 {
+        let [x, y] = [0, 1].map(|k| (self.low[k] - at[k]).max(at[k] - self.high[k]).max(0.0));
+        x * x + y * y
+    }
+}
+
+fn bounds(segments: &[Segment]) -> ([f64; 2], [f64; 2]) {
+    let (mut low, mut high) = ([f64::MAX; 2], [f64::MIN; 2]);
+    for end in segments.iter().flat_map(|segment| segment.ends) {
+        for k in 0..2 {
+            low[k] = low[k].min(end[k]);
+            high[k] = high[k].max(end[k]);
+        }
+    }
+    (low, high)
+}
+
+/// The square of the distance to a segment, and the share of the segment at which it is nearest.
+fn distance(segment: &Segment, [x, y]: [f64; 2]) -> (f64, f64) {
+    let [[ax, ay, _], [bx, by, _]] = segment.ends;
+    let (rx, ry, ux, uy) = (x - ax, y - ay, bx - ax, by - ay);
+    let along = rx * ux + ry * uy;
+    let square = ux * ux + uy * uy;
+    // Distances to the ends are those of the points, so that two segments that meet have exactly the same.
+    if along >= square && square > 0.0 {
+        let (ex, ey) = (x - bx, y - by);
+        return (ex * ex + ey * ey, 1.0);
+    }
+    if along <= 0.0 || square == 0.0 {
+        return (rx * rx + ry * ry, 0.0);
+    }
+    let share = along / square;
+    let (ex, ey) = (rx - share * ux, ry - share * uy);
+    (ex * ex + ey * ey, share)
+}
+
+/// Whether a line from a position to the east crosses a segment. A point of the drawing at exactly this y counts as above.
+fn crosses(segment: &Segment, [x, y]: [f64; 2]) -> bool {
+    let [[ax, ay, _], [bx, by, _]] = segment.ends;
+    if (ay <= y) == (by <= y) {
+        return false;
+    }
+    let side = (bx - ax) * (y - ay) - (by - ay) * (x - ax);
+    if by > ay { side > 0.0 } else { side < 0.0 }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,228 @@
+//! Lines and areas from vector files: SVG and GeoJSON.
+
+use std::path::Path;
+
+use orogen_grid::error::Result;
+use orogen_grid::polylines::outline::{Outline, Piece};
+use orogen_grid::words::{bytes_apart, count};
+use sha2::{Digest, Sha256};
+
+use super::dem::refused;
+use super::{geojson_reader, svg_shapes};
+use crate::open;
+
+/// Maximum length of a file, in bytes.
+pub const MAX_LENGTH: u64 = 32 << 20;
+
+/// Maximum number of points of a file.
+pub const MAX_POINTS: usize = 1 << 20;
+
+/// Maximum coordinate, in the unit of the file.
+pub const MAX_COORDINATE: f64 = 1e9;
+
+/// Memory for reading, as a multiple of the length of a file.
+const MEMORY_PER_BYTE: u64 = 16;
+
+/// What is read of a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum DrawingKind {
+    /// Lines.
+    Lines,
+    /// Boundaries of areas.
+    Areas,
+}
+
+impl DrawingKind {
+    fn word(self) -> &'static str {
+        match self {
+            DrawingKind::Lines => "line",
+            DrawingKind::Areas => "area",
+        }
+    }
+
+    fn other(self) -> DrawingKind {
+        match self {
+            DrawingKind::Lines => DrawingKind::Areas,
+            DrawingKind::Areas => DrawingKind::Lines,
+        }
+    }
+
+    fn op(self) -> &'static str {
+        match self {
+            DrawingKind::Lines => "path",
+            DrawingKind::Areas => "polygon",
+        }
+    }
+
+    fn elements(self, format: Format) -> &'static str {
+        match (self, format) {
+            (DrawingKind::Lines, Format::Svg) => "`path`, `polyline` and `line`",
+            (DrawingKind::Areas, Format::Svg) => "`path`, `polygon`, `rect`, `circle` and `ellipse`",
+            (DrawingKind::Lines, Format::GeoJson) => "`LineString` and `MultiLineString`",
+            (DrawingKind::Areas, Format::GeoJson) => "`Polygon` and `MultiPolygon`",
+        }
+    }
+}
+
+/// A format of vector files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// Scalable Vector Graphics.
+    Svg,
+    /// GeoJSON (RFC 7946).
+    GeoJson,
+}
+
+impl Format {
+    /// The format of a file with this name.
+    #[must_use]
+    pub fn of_path(path: &Path) -> Option<Format> {
+        match path.extension()?.to_ascii_lowercase().to_str()? {
+            "svg" => Some(Format::Svg),
+            "geojson" | "json" => Some(Format::GeoJson),
+            _ => None,
+        }
+    }
+}
+
+/// The lines or areas of a file, in the file's unit, with y to the south.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drawing {
+    /// The lines or the boundaries.
+    pub outlines: Vec<Outline>,
+    /// SHA-256 of what was read.
+    pub hash: [u8; 32],
+}
+
+impl Drawing {
+    /// Reads the lines or the areas of a file; reading takes at most about `allowed` bytes.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is too large, is not valid, or has none.
+    pub fn read(path: &Path, kind: DrawingKind, allowed: u64) -> Result<Drawing> {
+        let name = path.display().to_string();
+        let Some(format) = Format::of_path(path) else {
+            return Err(refused(
+                &name,
+                format!("the op `{}` reads .svg and .geojson; save the drawing as one of these", kind.op()),
+            ));
+        };
+        let most = MAX_LENGTH.min(allowed / MEMORY_PER_BYTE);
+        let Some(bytes) = open::bytes(path, "read", most)? else {
+            let [most, needed] = bytes_apart(most, allowed.min(MAX_LENGTH * MEMORY_PER_BYTE));
+            return Err(refused(
+                &name,
+                format!(
+                    "it has more than {most}, the most that can be read in {needed} of memory; simplify its lines, or split it"
+                ),
+            ));
+        };
+        let text = String::from_utf8(bytes).map_err(|_| refused(&name, "it is not text in UTF-8"))?;
+        Drawing::parse(&text, format, kind).map_err(|why| refused(&name, why))
+    }
+
+    /// The lines or the areas of a text.
+    ///
+    /// # Errors
+    /// A message if it is not valid, or has none.
+    pub fn parse(text: &str, format: Format, kind: DrawingKind) -> std::result::Result<Drawing, String> {
+        let mut collector = Collector::new(kind);
+        let text = text.trim_start_matches('\u{feff}');
+        match format {
+            Format::Svg => svg_shapes::read(text, &mut collector)?,
+            Format::GeoJson => geojson_reader::read(text, &mut collector)?,
+        }
+        let (elements, other) = (kind.elements(format), kind.other());
+        match (collector.outlines.is_empty(), collector.others) {
+            (false, _) => {}
+            (true, 0) => return Err(format!("it has no {}s; {elements} are read", kind.word())),
+            (true, others) => {
+                return Err(format!(
+                    "it has no {}s, of which {elements} are read; the op `{}` reads its {}",
+                    kind.word(),
+                    other.op(),
+                    count(others, other.word()),
+                ));
+            }
+        }
+        Ok(Drawing { hash: hash(&collector.outlines), outlines: collector.outlines })
+    }
+
+    /// Memory that it takes, in bytes.
+    #[must_use]
+    pub fn memory(&self) -> u64 {
+        let pieces: usize = self.outlines.iter().map(|outline| outline.pieces.len()).sum();
+        (pieces * size_of::<Piece>() + self.outlines.len() * size_of::<Outline>()) as u64
+    }
+}
+
+/// The outlines that a reader finds.
+pub(super) struct Collector {
+    kind: DrawingKind,
+    outlines: Vec<Outline>,
+    /// Number of outlines of the other kind.
+    others: usize,
+    points: usize,
+}
+
+impl Collector {
+    fn new(kind: DrawingKind) -> Collector {
+        Collector { kind, outlines: Vec::new(), others: 0, points: 0 }
+    }
+
+    /// Takes outlines of an element that is of these kinds.
+    pub(super) fn take(&mut self, kinds: &[DrawingKind], outlines: Vec<Outline>) -> std::result::Result<(), String> {
+        if !kinds.contains(&self.kind) {
+            self.others += outlines.len();
+            return Ok(());
+        }
+        for mut outline in outlines {
+            self.points += 1 + outline.pieces.len();
+            if self.points > MAX_POINTS {
+                return Err(format!("it has more than {MAX_POINTS} points; simplify its lines, or split it"));
+            }
+            let is_valid = |numbers: &[f64]| numbers.iter().all(|number| number.abs() <= MAX_COORDINATE);
+            let is_sound = is_valid(&outline.start)
+                && outline.pieces.iter().all(|piece| match piece {
+                    Piece::Straight(end) => is_valid(end),
+                    Piece::Curve(control, end) => control.iter().all(|point| is_valid(point)) && is_valid(end),
+                });
+            if !is_sound {
+                return Err(format!(
+                    "it has a coordinate that is not a number from -{MAX_COORDINATE:e} to {MAX_COORDINATE:e}"
+                ));
+            }
+            outline.closed |= self.kind == DrawingKind::Areas;
+            // A single point is neither a line nor an area.
+            if !outline.pieces.is_empty() {
+                self.outlines.push(outline);
+            }
+        }
+        Ok(())
+    }
+}
+
+fn hash(outlines: &[Outline]) -> [u8; 32] {
+    let mut hash = Sha256::new();
+    let mut put = |tag: u8, numbers: &[f64]| {
+        hash.update([tag]);
+        numbers.iter().for_each(|number| hash.update(number.to_bits().to_le_bytes()));
+    };
+    for outline in outlines {
+        put(u8::from(outline.closed), &outline.start);
+        for piece in &outline.pieces {
+            match piece {
+                Piece::Straight(end) => put(2, end),
+                Piece::Curve([b, c], end) => {
+                    put(3, b);
+                    put(4, c);
+                    put(5, end);
+                }
+            }
+        }
+    }
+    hash.finalize().into()
+}
+
+#[cfg(test)]
+mod tests;
