@@ -5,11 +5,12 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use eframe::egui::{Key, Modifiers, accesskit::Role};
+use eframe::egui::{self, Event, Key, Modifiers, PointerButton, Pos2, Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use orogen::test_folder::TestFolder;
 use orogen_studio::catalogue::Language;
+use orogen_studio::editing::drawing::points_of;
 use orogen_studio::preview::frame::Quality;
 use orogen_studio::settings::Settings;
 use orogen_studio::studio::{Studio, open};
@@ -177,4 +178,76 @@ fn sizes_from_tiny_to_large_are_drawn() {
         harness.run_steps(3);
         assert!(harness.render().is_ok());
     }
+}
+
+/// Presses and releases the button of the pointer at a position.
+fn click_at(harness: &mut Harness<'_, App>, at: Pos2) {
+    harness.event(Event::PointerMoved(at));
+    for pressed in [true, false] {
+        harness.event(Event::PointerButton {
+            pos: at,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        });
+    }
+    // Longer than between the clicks of a double click.
+    harness.run_steps(30);
+}
+
+#[test]
+fn a_line_is_drawn_on_the_map_and_its_points_are_moved() {
+    let folder = TestFolder::new("studio-drawing").unwrap();
+    let mut harness = window(&folder, Some("classic"), Language::English);
+    until_done(&mut harness);
+    press(&mut harness, Modifiers::COMMAND, Key::Num2);
+    harness.get_by_label("Draw a line").click();
+    harness.run_steps(2);
+    let map = harness.get_by_label("map view").rect();
+    let at = |x: f32, y: f32| map.min + map.size() * egui::vec2(x, y);
+    for place in [at(0.4, 0.4), at(0.5, 0.6), at(0.6, 0.5)] {
+        click_at(&mut harness, place);
+    }
+    press(&mut harness, Modifiers::NONE, Key::Enter);
+    let points = |harness: &Harness<'_, App>| {
+        let recipe = studio(harness).document.recipe();
+        let named = recipe.nodes().iter().find(|named| named.name == "path").unwrap();
+        points_of(&named.node).unwrap()
+    };
+    let before = points(&harness);
+    assert!(before.len() == 3 && before[0][0] < before[1][0] && before[1][1] > before[2][1], "{before:?}");
+    assert_eq!(studio(&harness).selected, ["path"]);
+    // Its first point is dragged to the right.
+    harness.drag_at(at(0.4, 0.4));
+    harness.run_steps(2);
+    for step in 1..=5 {
+        harness.event(Event::PointerMoved(at(0.4, 0.4) + egui::vec2(8.0 * step as f32, 0.0)));
+        harness.run_steps(1);
+    }
+    harness.drop_at(at(0.4, 0.4) + egui::vec2(40.0, 0.0));
+    harness.run_steps(3);
+    let after = points(&harness);
+    assert!(after[0][0] > before[0][0] && after[1..] == before[1..], "{before:?} {after:?}");
+    // The drag is one step.
+    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(points(&harness), before);
+}
+
+/// From a change of a slider to the first picture: the times that the machine allows are far below these limits.
+#[test]
+fn a_slider_shows_the_land_soon() {
+    let folder = TestFolder::new("studio-slider").unwrap();
+    let mut harness = window(&folder, Some("alpine"), Language::English);
+    until_done(&mut harness);
+    let request = studio(&harness).frame.as_ref().unwrap().request;
+    let slider = harness.get_by_role_and_label(Role::Slider, "uplift_rate");
+    slider.focus();
+    harness.run_steps(2);
+    harness.key_press(Key::ArrowRight);
+    until(&mut harness, "a picture after the change", |app| {
+        app.studio().unwrap().frame.as_ref().unwrap().request > request
+    });
+    let frame = studio(&harness).frame.clone().unwrap();
+    assert!(frame.quality == Quality::Draft && frame.window().width == 256, "{:?}", frame.quality);
+    assert!(studio(&harness).document.text().contains("[parameters.uplift_rate]"));
 }

@@ -30,8 +30,8 @@ pub enum Edit {
     Connect { node: String, input: String, source: Input },
     /// An output: a node or layer, or nothing.
     Output { name: String, source: Input },
-    /// A new node. Required inputs that `inputs` lacks are 0.
-    Add { name: String, op: String, inputs: Vec<(String, String)> },
+    /// A new node with some inputs and parameters. Required inputs that `inputs` lacks are 0.
+    Add { name: String, op: String, inputs: Vec<(String, String)>, params: Vec<(String, Value)> },
     /// Nodes are removed; what read one reads its first input.
     Delete(Vec<String>),
     /// Copies of nodes; connections among them are those of the copies.
@@ -136,7 +136,14 @@ pub fn apply(text: &str, recipe: &Recipe, edit: &Edit) -> Result<String, String>
                 Input::Value(value) => set(outputs, name, (*value).into()),
             }
         }
-        Edit::Add { name, op, inputs } => add(&mut document, name, op, inputs)?,
+        Edit::Add { name, op, inputs, params } => {
+            add(&mut document, name, op, inputs)?;
+            let own = node(&mut document, name).ok_or_else(|| missing(&format!("node `{name}`")))?;
+            for (key, value) in params {
+                let value = value_of(value).ok_or_else(|| format!("`{key}` cannot be {}", value.describe()))?;
+                set(own, key, value);
+            }
+        }
         Edit::Delete(names) => delete(&mut document, recipe, names)?,
         Edit::Duplicate(names) => duplicate(&mut document, recipe, names)?,
         Edit::Rename { from, to } => {

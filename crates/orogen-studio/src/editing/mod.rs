@@ -1,6 +1,7 @@
 //! The recipe that is edited: its text, what the text means, edits that keep comments, and undo.
 
 pub mod document;
+pub mod drawing;
 pub mod edit;
 pub mod history;
 pub mod names;

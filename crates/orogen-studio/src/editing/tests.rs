@@ -5,6 +5,7 @@ use orogen::presets;
 use orogen::value::Value;
 
 use super::document::Document;
+use super::drawing;
 use super::edit::Edit;
 
 const TEXT: &str = r#"# A land.
@@ -131,6 +132,7 @@ fn nodes_are_added_and_copied() {
         name: name.into(),
         op: op.into(),
         inputs: inputs.iter().map(|(key, source)| ((*key).into(), (*source).into())).collect(),
+        params: Vec::new(),
     };
     document.apply(&add("bent", "warp", &[("source", "hills")])).unwrap();
     document.apply(&add("sum", "expr", &[("a", "bent")])).unwrap();
@@ -145,6 +147,29 @@ fn nodes_are_added_and_copied() {
     let sum = recipe.nodes().iter().find(|named| named.name == "sum2").unwrap();
     assert_eq!(*sum.node.input(0), node("bent2"));
     assert!(document.text().starts_with("# A land.") && document.text().contains("# The hills."));
+}
+
+#[test]
+fn a_line_is_drawn_and_moved() {
+    let mut document = document();
+    let points = |points: &[[f64; 2]]| drawing::value(points);
+    let add = |points: Value| Edit::Add {
+        name: "road".into(),
+        op: "path".into(),
+        inputs: Vec::new(),
+        params: vec![("points".into(), points)],
+    };
+    assert!(document.apply(&add(points(&[[0.0, 0.0]]))).is_err(), "a line has two points");
+    document.apply(&add(points(&[[100.0, 200.0], [900.0, 350.5]]))).unwrap();
+    assert!(document.text().contains("points = [[100.0, 200.0], [900.0, 350.5]]"), "{}", document.text());
+    let road = |document: &Document| {
+        let named = document.recipe().nodes().iter().find(|named| named.name == "road").unwrap().clone();
+        drawing::points_of(&named.node).unwrap()
+    };
+    assert_eq!(road(&document), [[100.0, 200.0], [900.0, 350.5]]);
+    let moved = points(&[[100.0, 250.0], [900.0, 350.5]]);
+    document.apply(&Edit::Param { node: "road".into(), key: "points".into(), value: moved }).unwrap();
+    assert_eq!(road(&document)[0], [100.0, 250.0]);
 }
 
 #[test]

@@ -41,6 +41,8 @@ pub enum Action {
     Language(Language),
     /// The colors of the interface.
     Theme(Theme),
+    /// A line or an area is drawn on the map, by its op.
+    Draw(&'static str),
     /// A text is copied.
     Copy(String),
     /// A line of the text is shown.

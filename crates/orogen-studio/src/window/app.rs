@@ -225,6 +225,10 @@ impl App {
                 run::set_theme(context, theme);
                 self.settings.write(self.folder.as_deref());
             }
+            Action::Draw(op) => {
+                self.view = View::Map;
+                self.map.draw(op);
+            }
             Action::Copy(text) => context.copy_text(text),
             Action::GoToLine(line) => {
                 self.below = Below::Text;

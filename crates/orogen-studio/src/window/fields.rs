@@ -120,7 +120,7 @@ pub fn value(ui: &mut Ui, label: &str, shape: Shape, value: &Value, declared: &N
         (Shape::Flag, Value::Flag(own)) => {
             let mut flag = *own;
             let response = ui.checkbox(&mut flag, "");
-            Input { value: response.changed().then_some(Value::Flag(flag)), ended: true }
+            Input { value: response.changed().then_some(Value::Flag(flag)), ended: response.changed() }
         }
         (Shape::Choice(choices), Value::Text(own)) => choice(ui, label, &choices(), own).map(Value::Text),
         (Shape::Pair, Value::List(items)) => pair(ui, items),

@@ -13,6 +13,7 @@ use orogen::recipe::document::NamedNode;
 use super::action::Action;
 use super::command::Command;
 use crate::catalogue::Language;
+use crate::editing::drawing;
 use crate::editing::edit::Edit;
 use crate::editing::names;
 use crate::studio::Studio;
@@ -454,7 +455,13 @@ impl Graph {
             if inputs.is_none() {
                 self.places.insert(name.clone(), at);
             }
-            actions.push(Action::Edit(Edit::Add { name, op: op.to_owned(), inputs: inputs.into_iter().collect() }));
+            if drawing::OPS.contains(&op) {
+                // It is nothing without points.
+                actions.push(Action::Draw(op));
+                return;
+            }
+            let inputs = inputs.into_iter().collect();
+            actions.push(Action::Edit(Edit::Add { name, op: op.to_owned(), inputs, params: Vec::new() }));
         }
     }
 }

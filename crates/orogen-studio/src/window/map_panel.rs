@@ -3,13 +3,15 @@
 use std::sync::Arc;
 
 use eframe::egui::{
-    self, Align2, Color32, ColorImage, FontId, PointerButton, Rect, Sense, Stroke, TextureHandle, TextureOptions, Ui,
-    Vec2, pos2,
+    self, Align2, Color32, ColorImage, FontId, Key, PointerButton, Rect, Sense, Stroke, TextureHandle, TextureOptions,
+    Ui, Vec2, pos2,
 };
 
 use super::action::Action;
 use super::relief_panel::readout;
 use crate::catalogue::Language;
+use crate::editing::edit::Edit;
+use crate::editing::{drawing, names};
 use crate::preview::frame::Frame;
 use crate::preview::region::Region;
 use crate::studio::Studio;
@@ -23,9 +25,23 @@ pub struct MapPanel {
     texture: Option<(TextureHandle, (u64, usize, u64))>,
     /// The ends of the profile, in metres.
     profile: Option<[[f64; 2]; 2]>,
-    draws_profile: bool,
+    tool: Tool,
+    /// The points of what is being drawn.
+    drawn: Vec<[f64; 2]>,
     /// The region that was asked for last in an unbounded world.
     asked: Option<Region>,
+}
+
+/// What a drag or a click on the map does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum Tool {
+    /// It moves the map.
+    #[default]
+    Pan,
+    /// It draws the line of a profile.
+    Profile,
+    /// It draws a line or an area: the op.
+    Draw(&'static str),
 }
 
 /// The longest side of a picture.
@@ -40,8 +56,21 @@ impl MapPanel {
     /// Shows the map.
     pub fn show(&mut self, ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
         ui.horizontal(|ui| {
-            ui.toggle_value(&mut self.draws_profile, language.text("map.profile"))
-                .on_hover_text(language.text("map.profile_help"));
+            for (tool, name, help) in [
+                (Tool::Pan, "map.pan", "map.pan_help"),
+                (Tool::Profile, "map.profile", "map.profile_help"),
+                (Tool::Draw(drawing::OPS[0]), "map.path", "map.draw_help"),
+                (Tool::Draw(drawing::OPS[1]), "map.polygon", "map.draw_help"),
+            ] {
+                if ui
+                    .selectable_label(self.tool == tool, language.text(name))
+                    .on_hover_text(language.text(help))
+                    .clicked()
+                {
+                    self.tool = tool;
+                    self.drawn.clear();
+                }
+            }
             if self.profile.is_some() && ui.button(language.text("map.clear")).clicked() {
                 self.profile = None;
             }
@@ -61,7 +90,11 @@ impl MapPanel {
         ];
         let mut view = self.view.unwrap_or_else(|| MapView::fitting(bounds, size));
         let before = view;
-        self.navigate(ui, &response, rect, &mut view);
+        let handle = self.handles(ui, rect, studio, &view, actions);
+        if !handle {
+            self.navigate(ui, &response, rect, &mut view);
+        }
+        self.draw_line(ui, &response, (rect, &view), studio, actions);
         if view != before {
             self.view = Some(view);
         }
@@ -86,12 +119,110 @@ impl MapPanel {
             label(&painter, rect.left_bottom() + Vec2::new(8.0, -8.0), Align2::LEFT_BOTTOM, &text);
         }
         scale_bar(&painter, rect, &view);
+        self.draw_drawing(&painter, studio, &screen);
         self.draw_profile(ui, &painter, rect, frame, screen);
+    }
+
+    /// Begins to draw a line or an area.
+    pub fn draw(&mut self, op: &'static str) {
+        self.tool = Tool::Draw(op);
+        self.drawn.clear();
+    }
+
+    /// Adds the points that are clicked; a double click or Enter ends, Escape drops them.
+    fn draw_line(
+        &mut self,
+        ui: &Ui,
+        response: &egui::Response,
+        (rect, view): (Rect, &MapView),
+        studio: &Studio,
+        actions: &mut Vec<Action>,
+    ) {
+        let Tool::Draw(op) = self.tool else { return };
+        let size = [rect.width(), rect.height()];
+        let ends = response.double_clicked() || ui.input(|input| input.key_pressed(Key::Enter));
+        if response.clicked()
+            && !response.double_clicked()
+            && let Some(pointer) = response.interact_pointer_pos()
+        {
+            let at = pointer - rect.min;
+            self.drawn.push(view.world([at.x, at.y], size).map(f64::round));
+        }
+        if ui.input(|input| input.key_pressed(Key::Escape)) {
+            self.drawn.clear();
+        }
+        let fewest = if op == drawing::OPS[0] { 2 } else { 3 };
+        if ends && self.drawn.len() >= fewest {
+            let taken = studio.document.recipe().nodes().iter().map(|named| named.name.as_str()).collect();
+            let points = drawing::value(&std::mem::take(&mut self.drawn));
+            actions.push(Action::Edit(Edit::Add {
+                name: names::free(&names::of_op(op), &taken),
+                op: op.to_owned(),
+                inputs: Vec::new(),
+                params: vec![(drawing::POINTS.to_owned(), points)],
+            }));
+            self.tool = Tool::Pan;
+        }
+    }
+
+    /// Handles at the points of the selected drawing. Returns whether one is being moved.
+    fn handles(&self, ui: &Ui, rect: Rect, studio: &Studio, view: &MapView, actions: &mut Vec<Action>) -> bool {
+        let Some((name, mut points)) = selected(studio) else { return false };
+        let size = [rect.width(), rect.height()];
+        let mut is_moving = false;
+        for k in 0..points.len() {
+            let [x, y] = view.screen(points[k], size);
+            let around = Rect::from_center_size(rect.min + Vec2::new(x, y), Vec2::splat(14.0)).intersect(rect);
+            if !around.is_positive() {
+                continue;
+            }
+            let handle = ui.interact(around, ui.scope_id().with((name, k)), Sense::drag());
+            handle.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, format!("point {k} of {name}")));
+            if handle.dragged()
+                && let Some(pointer) = handle.interact_pointer_pos()
+            {
+                let at = pointer - rect.min;
+                points[k] = view.world([at.x, at.y], size).map(f64::round);
+                actions.push(Action::Edit(Edit::Param {
+                    node: name.to_owned(),
+                    key: drawing::POINTS.to_owned(),
+                    value: drawing::value(&points),
+                }));
+                is_moving = true;
+            }
+            if handle.drag_stopped() {
+                actions.push(Action::EndGesture);
+            }
+        }
+        is_moving
+    }
+
+    /// Draws what is being drawn, and the selected drawing.
+    fn draw_drawing(&self, painter: &egui::Painter, studio: &Studio, screen: impl Fn([f64; 2]) -> egui::Pos2) {
+        let draw = |points: &[[f64; 2]], is_closed: bool| {
+            let mut line: Vec<egui::Pos2> = points.iter().map(|point| screen(*point)).collect();
+            if is_closed && let Some(first) = line.first().copied() {
+                line.push(first);
+            }
+            painter.line(line.clone(), Stroke::new(4.0, Color32::from_black_alpha(150)));
+            painter.line(line.clone(), Stroke::new(2.0, Color32::from_rgb(255, 240, 120)));
+            for point in line {
+                painter.circle(point, 4.5, Color32::WHITE, Stroke::new(1.5, Color32::BLACK));
+            }
+        };
+        if let Tool::Draw(op) = self.tool {
+            draw(&self.drawn, op != drawing::OPS[0] && self.drawn.len() > 2);
+        }
+        if let Some((name, points)) = selected(studio) {
+            let nodes = studio.document.recipe().nodes();
+            let is_area = nodes.iter().any(|named| named.name == name && named.node.spec().op != drawing::OPS[0]);
+            draw(&points, is_area);
+        }
     }
 
     fn navigate(&mut self, ui: &Ui, response: &egui::Response, rect: Rect, view: &mut MapView) {
         let size = [rect.width(), rect.height()];
-        let is_line = self.draws_profile && response.dragged_by(PointerButton::Primary);
+        let is_line = self.tool == Tool::Profile && response.dragged_by(PointerButton::Primary);
         if response.dragged() && !is_line {
             let by = response.drag_delta();
             view.pan([by.x, by.y]);
@@ -115,14 +246,15 @@ impl MapPanel {
         }
     }
 
-    /// In an unbounded world the pictures follow the view.
+    /// The pictures follow the view: it is shown at its own resolution.
     fn follow(&mut self, studio: &Studio, view: &MapView, size: [f32; 2], actions: &mut Vec<Action>) {
-        if studio.document.recipe().world.size.is_some() || self.view.is_none() {
+        if self.view.is_none() {
             return;
         }
         let side = f64::from(size[0].max(size[1])) * view.scale * 1.1;
-        let wanted = Region::Square { center: view.center, side };
+        let wanted = Region::in_view(studio.document.recipe().world.size, view.center, side);
         let is_near = match studio.look.region {
+            _ if wanted == Region::Whole || studio.look.region == Region::Whole => wanted == studio.look.region,
             Region::Square { center, side: own } => {
                 let moved = (0..2).map(|k| (center[k] - view.center[k]).abs()).fold(0.0, f64::max);
                 moved < own * 0.12 && (0.6..1.6).contains(&(own / side))
@@ -213,6 +345,13 @@ impl MapPanel {
             ui.visuals().text_color(),
         );
     }
+}
+
+/// The selected drawing: the name of its node, and its points.
+fn selected(studio: &Studio) -> Option<(&str, Vec<[f64; 2]>)> {
+    let name = studio.selected.first()?;
+    let named = studio.document.recipe().nodes().iter().find(|named| named.name == *name)?;
+    Some((&named.name, drawing::points_of(&named.node)?))
 }
 
 fn label(painter: &egui::Painter, at: egui::Pos2, align: Align2, text: &str) {
