@@ -14,6 +14,7 @@ mod outputs;
 mod resolution;
 mod rows;
 mod sizes;
+mod studio;
 mod tiles;
 mod water;
 mod world;
@@ -32,6 +33,7 @@ const AREAS: &[Area] = &[
     ("world", world::run),
     ("outputs", outputs::run),
     ("tiles", tiles::run),
+    ("studio", studio::run),
     ("resolution", resolution::run),
 ];
 

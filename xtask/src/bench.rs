@@ -30,8 +30,9 @@ Builds the benches at full optimisation, measures one area (or all in turn) and 
                          gdal_translate, CPU time; maps of 4096 x 4096 and a rendered view, wall time
                world     chunks, tiles with halos, threads and whole builds of hills of noise, animations of growing presets; the builds (--case build) take
                          minutes and a dozen GiB of disk
-                tiles     terrain classes, clean-up and tiles of a map of 4096 x 4096 cells, climate and biomes of 2048 x 2048 samples; chunks of
+               tiles     terrain classes, clean-up and tiles of a map of 4096 x 4096 cells, climate and biomes of 2048 x 2048 samples; chunks of
                          blocks; all cores, wall time
+               studio    from a change of a parameter to the pictures of the studio, without the drawing of the window; all cores, wall time
   --json FILE  also write the rows as JSON; needs an AREA
   --case TEXT  only cases whose name contains TEXT
   --quick      few repetitions: only to check that it runs
@@ -61,7 +62,7 @@ How to read the table: docs/benchmarks.md.
 ";
 
 /// The areas of the bench program.
-const AREAS: &[&str] = &["noise", "erosion", "generate", "world", "outputs", "tiles"];
+const AREAS: &[&str] = &["noise", "erosion", "generate", "world", "outputs", "tiles", "studio"];
 
 /// Needs files that are not part of the project, so it is measured only if it is named.
 const REALISM: &str = "realism";

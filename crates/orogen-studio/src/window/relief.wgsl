@@ -96,7 +96,7 @@ fn ground(in: Corner) -> @location(0) vec4f {
     if in.kind == 1u {
         // Layers of rock in the walls.
         let metres = in.place.y / scene.extent.z + scene.extent.w;
-        let bands = 0.86 + 0.14 * sin(metres / max(scene.water.w, 1.0) * 40.0 + in.uv.x * 3.0 + in.uv.y * 2.0);
+        let bands = 0.93 + 0.07 * sin(metres / max(scene.water.w, 1.0) * 16.0 + in.uv.x * 3.0 + in.uv.y * 2.0);
         let facing = select(0.85, 1.0, abs(in.uv.x - 0.5) > abs(in.uv.y - 0.5));
         return encoded(vec3f(0.155, 0.125, 0.10) * bands * facing);
     }

@@ -187,11 +187,11 @@ impl ReliefPanel {
         }
     }
 
-    /// How many times as high heights are drawn: by default a whole number with which the relief is a tenth of the width, or once.
+    /// How many times as high heights are drawn: by default a whole number with which the relief is at most a seventh of the width, or once.
     fn times(&self, frame: Option<&Frame>) -> f64 {
         let suiting = |frame: &Frame| {
             let [low, high, _] = Self::levels(frame);
-            let times = f64::from(0.2 * Self::unit(frame) / (high - low).max(1e-3));
+            let times = f64::from(0.3 * Self::unit(frame) / (high - low).max(1e-3));
             times.floor().clamp(1.0, 10.0)
         };
         self.exaggeration.or(frame.map(suiting)).unwrap_or(1.0)
