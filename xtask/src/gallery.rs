@@ -1,5 +1,7 @@
 //! `cargo xtask gallery`: makes the pictures of the README and the docs with `orogen` itself.
 
+use std::path::PathBuf;
+
 use crate::failure::{Failure, Result, on_file};
 use crate::shell;
 
@@ -18,8 +20,8 @@ pub const HELP: &str = "
 Usage: cargo xtask gallery
 
 Rewrites docs/images/: one relief map of each preset, the views of docs/render.md and the README's first picture, a
-map sheet, the zoom of docs/levels.md, water as vectors, a tilemap, blocks, all palettes, the page of noises side by side, and the chunks around a viewer. Then docs/gallery.md: a map
-of each preset, and the shaded relief of a part of it at one pixel per sample, which shows artefacts that colours hide. Then
+map sheet, the zoom of docs/levels.md, water as vectors, a tilemap, blocks, all palettes, the page of noises side by side, and the chunks around a viewer. Pictures of the studio's window stay. Then the pictures
+of its start page, and docs/gallery.md: a map of each preset, and the shaded relief of a part of it at one pixel per sample, which shows artefacts that colours hide. Then
 crates/orogen-noise/docs/gallery.md: the pictures at the top of the documentation of orogen-noise. They are embedded in the
 file, so that every renderer shows them.
 ";
@@ -27,13 +29,27 @@ file, so that every renderer shows them.
 /// Samples along a side of a preset's picture.
 const SIZE: &str = "400";
 
+/// Pictures of windows, which `cargo xtask clients studio` leaves in its folder.
+const WINDOWS: [&str; 2] = ["studio.png", "studio-zh.png"];
+
+/// The same on the start page of the studio.
+const START_PAGE: &str = "150";
+
 /// Makes the pictures.
 pub fn run(args: &[String]) -> Result {
     if !args.is_empty() {
         return Err(Failure::usage("expected nothing"));
     }
     let images = shell::root().join("docs/images");
+    let windows: Vec<(PathBuf, Vec<u8>)> = WINDOWS
+        .iter()
+        .map(|name| images.join(name))
+        .filter_map(|path| std::fs::read(&path).ok().map(|bytes| (path, bytes)))
+        .collect();
     shell::empty_dir(&images)?;
+    for (path, bytes) in windows {
+        std::fs::write(&path, bytes).map_err(|e| on_file("write", &path, &e))?;
+    }
     let work = shell::target_dir().join("gallery");
     let listed = shell::capture(&mut shell::cargo("run --quiet --release --package orogen-cli -- presets"))?;
     let presets: Vec<(&str, &str)> = listed.lines().filter_map(|line| line.split_once(char::is_whitespace)).collect();
@@ -43,6 +59,10 @@ pub fn run(args: &[String]) -> Result {
         let to = images.join(format!("{preset}.png"));
         std::fs::copy(work.join("map.png"), &to).map_err(|e| on_file("write", &to, &e))?;
         println!("{}", shell::relative(&to));
+        let mut orogen = shell::cargo("run --quiet --release --package orogen-cli -- generate --quiet");
+        shell::run(orogen.args([preset, "--size", START_PAGE, "-o"]).arg(&work))?;
+        let to = shell::root().join(format!("crates/orogen-studio/assets/presets/{preset}.png"));
+        std::fs::copy(work.join("map.png"), &to).map_err(|e| on_file("write", &to, &e))?;
     }
     for (arguments, name) in [
         (&["map", "alpine", "--size", "1400"][..], "map.png"),

@@ -92,13 +92,18 @@ pub fn run(args: &[String]) -> Result {
 /// All ignored tests. Without doctests, where `ignore` marks code that is not meant to run.
 fn long(name: Option<&str>) -> Result {
     reasons()?;
-    const TARGETS: &str = "test --workspace --exclude orogen-studio --lib --bins --tests --examples";
-    let with = |more: &[&str]| {
-        let mut command = cargo(TARGETS);
+    // Of the studio what needs no window.
+    const TARGETS: [&str; 2] = [
+        "test --workspace --exclude orogen-studio --lib --bins --tests --examples",
+        "test --package orogen-studio --no-default-features --lib",
+    ];
+    let with = |targets: &str, more: &[&str]| {
+        let mut command = cargo(targets);
         command.arg("--").args(name).arg("--ignored").args(more);
         command
     };
-    let listed = shell::capture(&mut with(&["--list"]))?;
+    let listed = TARGETS.map(|targets| shell::capture(&mut with(targets, &["--list"])));
+    let listed = listed.into_iter().collect::<Result<Vec<_>>>()?.concat();
     let tests: Vec<&str> = listed.lines().filter_map(|line| line.strip_suffix(": test")).collect();
     if tests.is_empty() {
         return Err(Failure::new(match name {
@@ -108,7 +113,7 @@ fn long(name: Option<&str>) -> Result {
     }
     println!("{} long tests:", tests.len());
     tests.iter().for_each(|test| println!("  {test}"));
-    sh(&mut with(&["--nocapture", "--test-threads=1"]))
+    TARGETS.iter().try_for_each(|targets| sh(&mut with(targets, &["--nocapture", "--test-threads=1"])))
 }
 
 /// Checks that every ignored test is a long one, so that `--long` runs what its help says.

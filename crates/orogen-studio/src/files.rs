@@ -20,7 +20,7 @@ pub fn read(path: &Path) -> Result<String> {
     String::from_utf8(bytes).map_err(|_| fault(format!("{} is not a text in UTF-8", path.display())))
 }
 
-/// Writes a text; the file appears whole or not at all.
+/// Writes a text atomically.
 ///
 /// # Errors
 /// If it cannot be written.

@@ -259,3 +259,6 @@ pub fn open(argument: &Path) -> Result<Document> {
 fn absolute(path: &Path) -> PathBuf {
     std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf())
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,5 +1,4 @@
 //! The window, used as a person uses it. Needs an adapter: `cargo xtask clients studio` installs Mesa's software driver.
-#![cfg(feature = "window")]
 #![allow(clippy::unwrap_used, reason = "a failure is a failed test")]
 
 use std::path::Path;

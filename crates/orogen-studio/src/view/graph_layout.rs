@@ -5,9 +5,9 @@ use std::collections::HashMap;
 use orogen::declare::Input;
 use orogen::recipe::document::Recipe;
 
-/// The place of a node: its column, from 0 at the left, and its row.
+/// The position of a node: its column, from 0 at the left, and its row.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Place {
+pub struct NodePosition {
     /// The column.
     pub column: usize,
     /// The row; rows of a column are at least 1 apart.
@@ -39,7 +39,7 @@ pub fn wires(recipe: &Recipe, at: usize) -> Vec<(String, String)> {
 
 /// The places of all nodes, in their order. Nodes of a circle are placed, too.
 #[must_use]
-pub fn tidy(recipe: &Recipe) -> Vec<Place> {
+pub fn tidy(recipe: &Recipe) -> Vec<NodePosition> {
     let names: HashMap<&str, usize> =
         recipe.nodes().iter().enumerate().map(|(at, named)| (named.name.as_str(), at)).collect();
     let count = recipe.nodes().len();
@@ -74,7 +74,7 @@ pub fn tidy(recipe: &Recipe) -> Vec<Place> {
         }
     }
     let top = rows.iter().copied().fold(f32::INFINITY, f32::min);
-    columns.iter().zip(&rows).map(|(column, row)| Place { column: *column, row: row - top }).collect()
+    columns.iter().zip(&rows).map(|(column, row)| NodePosition { column: *column, row: row - top }).collect()
 }
 
 /// The column of each node: one more than the largest of its sources.

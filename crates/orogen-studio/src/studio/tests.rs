@@ -1,0 +1,140 @@
+//! Random edits, as a person in a hurry makes them.
+
+use super::*;
+use crate::editing::names;
+use orogen::declare::Input;
+use orogen::node::Node;
+use orogen::value::Value;
+use orogen::{Budget, Options, presets};
+use std::time::{Duration, Instant};
+
+/// Random numbers: splitmix64.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    fn below(&mut self, end: usize) -> usize {
+        (self.next() % end.max(1) as u64) as usize
+    }
+
+    fn of<'a, T>(&mut self, items: &'a [T]) -> Option<&'a T> {
+        items.get(self.below(items.len()))
+    }
+}
+
+/// A random edit of a recipe.
+fn edit(recipe: &Recipe, random: &mut Random) -> Option<Edit> {
+    let names: Vec<String> = recipe.nodes().iter().map(|named| named.name.clone()).collect();
+    let name = random.of(&names)?.clone();
+    let node = &recipe.nodes().iter().find(|named| named.name == name)?.node;
+    Some(match random.below(9) {
+        0 => Edit::Seed(random.next() >> 1),
+        1 => Edit::World("sea_level", random.below(500) as f64 - 250.0),
+        2 | 3 => {
+            let (i, param) = random.of(&node.spec().params.iter().enumerate().collect::<Vec<_>>()).copied()?;
+            let value = match node.param(i) {
+                Value::Number(own) => Value::Number(own * (random.below(300) as f64 / 100.0)),
+                Value::Integer(own) => Value::Integer(own + random.below(5) as i64 - 2),
+                Value::Flag(own) => Value::Flag(!own),
+                other => other,
+            };
+            Edit::Param { node: name, key: param.name.into(), value }
+        }
+        4 => {
+            let inputs: Vec<String> = node.inputs().iter().map(|input| input.name.to_owned()).collect();
+            let source = Input::Node(random.of(&names)?.clone());
+            Edit::Connect { node: name, input: random.of(&inputs)?.clone(), source }
+        }
+        5 => {
+            // Ops that are dear are tested elsewhere.
+            let ops: Vec<&str> = Node::all()
+                .iter()
+                .map(|node| node.spec().op)
+                .filter(|op| !matches!(*op, "dem" | "image" | "dla"))
+                .collect();
+            let op = *random.of(&ops)?;
+            let taken = names.iter().map(String::as_str).collect();
+            let first = Node::named(op)?.spec().inputs.first().map(|input| (input.name.to_owned(), name));
+            let inputs = first.into_iter().collect();
+            Edit::Add { name: names::free(&names::of_op(op), &taken), op: op.into(), inputs, params: Vec::new() }
+        }
+        6 => Edit::Delete(vec![name]),
+        7 => Edit::Duplicate(vec![name]),
+        _ => Edit::Rename { to: format!("n{}", random.below(1000)), from: name },
+    })
+}
+
+/// Edits at random for a while, and looks at the pictures. Returns the number of edits.
+fn edit_for(time: Duration, seed: u64) -> usize {
+    let session = Session::new(Options { memory: Budget::of(512 << 20), ..Options::default() }).unwrap();
+    let limit = 512 << 20;
+    let document = |name: &str| Document::of_preset(presets::find(name).unwrap()).unwrap();
+    let mut studio = Studio::new(session, Arc::new(|| ()), document("hills"));
+    studio.look.finest = 256;
+    let mut random = Random(seed);
+    let begun = Instant::now();
+    let mut edits = 0;
+    while begun.elapsed() < time {
+        match random.below(20) {
+            0 => studio.open(document(random.of(&["classic", "island", "mesa", "fjords"]).unwrap())),
+            1 | 2 => drop(studio.document.undo()),
+            3 => drop(studio.document.redo()),
+            4 => {
+                let mut text = studio.document.text().to_owned();
+                let at = text.char_indices().nth(random.below(text.chars().count())).map_or(0, |(at, _)| at);
+                text.insert_str(at, ["x", "\"", "[", "=", "\n"][random.below(5)]);
+                studio.document.type_text(text);
+                assert!(studio.document.undo());
+            }
+            5 => studio.look.layer = random.of(&studio.layers()).unwrap().clone(),
+            _ => {
+                if let Some(edit) = edit(studio.document.recipe(), &mut random) {
+                    let before = studio.document.text().to_owned();
+                    if studio.edit(&edit).is_err() {
+                        assert_eq!(studio.document.text(), before, "{edit:?}");
+                    }
+                    edits += 1;
+                }
+            }
+        }
+        assert!(studio.document.is_valid(), "{:?}", studio.document.diagnostics());
+        studio.look.finest = 256;
+        studio.refresh();
+        studio.poll();
+        std::thread::sleep(Duration::from_millis(random.next() % 12));
+        assert!(studio.session().kept_memory() <= limit, "{}", studio.session().kept_memory());
+    }
+    edits
+}
+
+#[test]
+fn random_edits_do_no_harm() {
+    assert!(edit_for(Duration::from_secs(5), 1) > 20);
+}
+
+/// The memory of this process in bytes.
+#[cfg(target_os = "linux")]
+fn resident() -> u64 {
+    let text = std::fs::read_to_string("/proc/self/statm").unwrap();
+    text.split_whitespace().nth(1).unwrap().parse::<u64>().unwrap() * 4096
+}
+
+#[test]
+#[ignore = "long: half an hour of random edits, whose memory is measured"]
+#[cfg(target_os = "linux")]
+fn half_an_hour_of_random_edits_leaks_nothing() {
+    // What is kept has grown to its limits by then.
+    edit_for(Duration::from_secs(300), 2);
+    let before = resident();
+    for part in 0..5 {
+        edit_for(Duration::from_secs(300), 3 + part);
+        println!("{} MiB", resident() >> 20);
+    }
+    assert!(resident() < before + before / 20, "{} MiB, then {} MiB", before >> 20, resident() >> 20);
+}
