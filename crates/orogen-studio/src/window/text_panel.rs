@@ -73,7 +73,9 @@ impl TextPanel {
                 let row = ui.fonts_mut(|fonts| fonts.row_height(&FontId::monospace(SIZE)));
                 let painter = ui.painter();
                 for n in 1..=numbers {
-                    let y = output.galley_pos.y + row * (n as f32 - 1.0);
+                    // Lines are not wrapped, so a line is a row.
+                    let Some(line) = output.galley.rows.get(n - 1) else { break };
+                    let y = output.galley_pos.y + line.rect().top();
                     let place = egui::pos2(gutter.right() - 6.0, y);
                     if ui.is_rect_visible(egui::Rect::from_min_size(place, vec2(1.0, row))) {
                         let is_wrong =
@@ -83,7 +85,9 @@ impl TextPanel {
                     }
                 }
                 if let Some(line) = go_to {
-                    let top = output.galley_pos + vec2(0.0, row * (line.max(1) as f32 - 1.0));
+                    let rows = &output.galley.rows;
+                    let top = rows.get(line.max(1) - 1).map_or(0.0, |row| row.rect().top());
+                    let top = output.galley_pos + vec2(0.0, top);
                     ui.scroll_to_rect(egui::Rect::from_min_size(top, vec2(10.0, row)), Some(egui::Align::Center));
                 }
                 if before != self.text {
