@@ -2,7 +2,8 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use orogen::format::drawing::{Drawing, DrawingKind, Format};
+use orogen::format::drawing::{Drawing, Format};
+use orogen::format::outlines::DrawingKind;
 use orogen::polylines::outline::Outline;
 use orogen::polylines::segments::Segments;
 

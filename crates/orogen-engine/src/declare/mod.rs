@@ -17,6 +17,7 @@ pub mod declared;
 pub mod input;
 pub mod memo;
 pub mod param;
+pub(crate) mod point_lists;
 pub mod points;
 pub mod spec;
 

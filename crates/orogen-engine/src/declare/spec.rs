@@ -1,6 +1,6 @@
 //! Declarations of ops, as data.
 
-use super::points;
+use super::point_lists::Reader;
 use crate::layer::Layer;
 use crate::value::{Span, Value};
 
@@ -173,7 +173,10 @@ impl ParamSpec {
     #[must_use]
     pub fn problem(&self, value: &Value) -> Option<(Span, String)> {
         match self.shape {
-            Shape::Points(min) => points::problem(self, min, value),
+            Shape::Points(min) => {
+                let reader = Reader { name: self.name, number: self.number(), min, range: self.range };
+                reader.read(value).err()
+            }
             _ => None,
         }
     }

@@ -1,7 +1,7 @@
 //! The JSON Schema of recipes, made from the declarations.
 
 use super::document::{VERSION, WorldSpec};
-use crate::declare::points::MAX_POINTS;
+use crate::declare::point_lists::MAX_POINTS;
 use crate::declare::{Param, ParamSpec, Shape, read_param, short};
 use crate::node::Node;
 use crate::registry::Registry;

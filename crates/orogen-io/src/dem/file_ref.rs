@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::prepared::PreparedDem;
-use crate::format::drawing::{Drawing, DrawingKind};
+use crate::format::drawing::Drawing;
+use crate::format::outlines::DrawingKind;
 use orogen_grid::error::Location;
 
 /// A file of heights, or of another kind, named by a recipe. Its content is read once, when the world is opened.

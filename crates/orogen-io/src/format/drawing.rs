@@ -8,61 +8,15 @@ use orogen_grid::words::{bytes_apart, count};
 use sha2::{Digest, Sha256};
 
 use super::dem::refused;
+use super::outlines::{Collector, DrawingKind};
 use super::{geojson_reader, svg_shapes};
 use crate::open;
 
 /// Maximum length of a file, in bytes.
 pub const MAX_LENGTH: u64 = 32 << 20;
 
-/// Maximum number of points of a file.
-pub const MAX_POINTS: usize = 1 << 20;
-
-/// Maximum coordinate, in the unit of the file.
-pub const MAX_COORDINATE: f64 = 1e9;
-
 /// Memory for reading, as a multiple of the length of a file.
 const MEMORY_PER_BYTE: u64 = 16;
-
-/// What is read of a file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum DrawingKind {
-    /// Lines.
-    Lines,
-    /// Boundaries of areas.
-    Areas,
-}
-
-impl DrawingKind {
-    fn word(self) -> &'static str {
-        match self {
-            DrawingKind::Lines => "line",
-            DrawingKind::Areas => "area",
-        }
-    }
-
-    fn other(self) -> DrawingKind {
-        match self {
-            DrawingKind::Lines => DrawingKind::Areas,
-            DrawingKind::Areas => DrawingKind::Lines,
-        }
-    }
-
-    fn op(self) -> &'static str {
-        match self {
-            DrawingKind::Lines => "path",
-            DrawingKind::Areas => "polygon",
-        }
-    }
-
-    fn elements(self, format: Format) -> &'static str {
-        match (self, format) {
-            (DrawingKind::Lines, Format::Svg) => "`path`, `polyline` and `line`",
-            (DrawingKind::Areas, Format::Svg) => "`path`, `polygon`, `rect`, `circle` and `ellipse`",
-            (DrawingKind::Lines, Format::GeoJson) => "`LineString` and `MultiLineString`",
-            (DrawingKind::Areas, Format::GeoJson) => "`Polygon` and `MultiPolygon`",
-        }
-    }
-}
 
 /// A format of vector files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -132,7 +86,7 @@ impl Drawing {
             Format::Svg => svg_shapes::read(text, &mut collector)?,
             Format::GeoJson => geojson_reader::read(text, &mut collector)?,
         }
-        let (elements, other) = (kind.elements(format), kind.other());
+        let (elements, other) = (elements(kind, format), kind.other());
         match (collector.outlines.is_empty(), collector.others) {
             (false, _) => {}
             (true, 0) => return Err(format!("it has no {}s; {elements} are read", kind.word())),
@@ -156,49 +110,13 @@ impl Drawing {
     }
 }
 
-/// The outlines that a reader finds.
-pub(super) struct Collector {
-    kind: DrawingKind,
-    outlines: Vec<Outline>,
-    /// Number of outlines of the other kind.
-    others: usize,
-    points: usize,
-}
-
-impl Collector {
-    fn new(kind: DrawingKind) -> Collector {
-        Collector { kind, outlines: Vec::new(), others: 0, points: 0 }
-    }
-
-    /// Takes outlines of an element that is of these kinds.
-    pub(super) fn take(&mut self, kinds: &[DrawingKind], outlines: Vec<Outline>) -> std::result::Result<(), String> {
-        if !kinds.contains(&self.kind) {
-            self.others += outlines.len();
-            return Ok(());
-        }
-        for mut outline in outlines {
-            self.points += 1 + outline.pieces.len();
-            if self.points > MAX_POINTS {
-                return Err(format!("it has more than {MAX_POINTS} points; simplify its lines, or split it"));
-            }
-            let is_valid = |numbers: &[f64]| numbers.iter().all(|number| number.abs() <= MAX_COORDINATE);
-            let is_sound = is_valid(&outline.start)
-                && outline.pieces.iter().all(|piece| match piece {
-                    Piece::Straight(end) => is_valid(end),
-                    Piece::Curve(control, end) => control.iter().all(|point| is_valid(point)) && is_valid(end),
-                });
-            if !is_sound {
-                return Err(format!(
-                    "it has a coordinate that is not a number from -{MAX_COORDINATE:e} to {MAX_COORDINATE:e}"
-                ));
-            }
-            outline.closed |= self.kind == DrawingKind::Areas;
-            // A single point is neither a line nor an area.
-            if !outline.pieces.is_empty() {
-                self.outlines.push(outline);
-            }
-        }
-        Ok(())
+/// The elements that are read.
+fn elements(kind: DrawingKind, format: Format) -> &'static str {
+    match (kind, format) {
+        (DrawingKind::Lines, Format::Svg) => "`path`, `polyline` and `line`",
+        (DrawingKind::Areas, Format::Svg) => "`path`, `polygon`, `rect`, `circle` and `ellipse`",
+        (DrawingKind::Lines, Format::GeoJson) => "`LineString` and `MultiLineString`",
+        (DrawingKind::Areas, Format::GeoJson) => "`Polygon` and `MultiPolygon`",
     }
 }
 

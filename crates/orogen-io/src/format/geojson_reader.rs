@@ -10,7 +10,7 @@ use std::marker::PhantomData;
 use orogen_grid::polylines::outline::Outline;
 use serde::de::{self, DeserializeSeed, Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
 
-use super::drawing::{Collector, DrawingKind, MAX_POINTS};
+use super::outlines::{Collector, DrawingKind, MAX_POINTS};
 
 /// Maximum number of objects, lists and positions.
 const MAX_ITEMS: usize = 2 * MAX_POINTS;

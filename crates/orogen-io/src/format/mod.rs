@@ -32,6 +32,7 @@ pub mod luanti;
 pub(crate) mod nbt;
 mod noted;
 pub mod npy;
+pub mod outlines;
 pub(crate) mod packed_tree;
 pub mod pgm;
 pub mod png;

@@ -7,7 +7,7 @@
 use orogen_grid::polylines::outline::{Outline, Piece};
 use roxmltree::{Document, Node, ParsingOptions};
 
-use super::drawing::{Collector, DrawingKind};
+use super::outlines::{Collector, DrawingKind};
 use super::svg_path::{self, Numbers, Pen};
 
 const NAMESPACE: &str = "http://www.w3.org/2000/svg";

@@ -17,7 +17,7 @@ use super::relief::Ability;
 use super::relief_panel::ReliefPanel;
 use super::start_page::StartPage;
 use super::text_panel::TextPanel;
-use super::{analysis_panel, fonts, menu, run};
+use super::{analysis_panel, fonts, menu, theme};
 use crate::catalogue::Language;
 use crate::editing::document::Document;
 use crate::editing::edit::Edit;
@@ -101,7 +101,7 @@ impl App {
         let repaint = context.egui_ctx.clone();
         let wake: Wake = Arc::new(move || repaint.request_repaint());
         let language = settings.language();
-        run::set_theme(&context.egui_ctx, settings.theme);
+        theme::set(&context.egui_ctx, settings.theme);
         context.egui_ctx.set_zoom_factor(settings.scale);
         let ability = context.wgpu_render_state.as_ref().map(Ability::of);
         let (recovery, recovered) = Recovery::new(folder.as_deref());
@@ -222,7 +222,7 @@ impl App {
             }
             Action::Theme(theme) => {
                 self.settings.theme = theme;
-                run::set_theme(context, theme);
+                theme::set(context, theme);
                 self.settings.write(self.folder.as_deref());
             }
             Action::Draw(op) => {

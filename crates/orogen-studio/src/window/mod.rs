@@ -20,3 +20,4 @@ pub mod relief_panel;
 pub mod run;
 pub mod start_page;
 pub mod text_panel;
+pub mod theme;

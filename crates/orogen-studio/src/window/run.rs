@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
-use eframe::egui::{self, ViewportBuilder};
+use eframe::egui::ViewportBuilder;
 
 use super::app::App;
 use crate::files;
@@ -54,13 +54,4 @@ pub fn run() -> ExitCode {
 fn fail(message: &str) -> ExitCode {
     eprintln!("error: {message}");
     ExitCode::FAILURE
-}
-
-/// The colors of the interface.
-pub fn set_theme(context: &egui::Context, theme: crate::settings::Theme) {
-    context.set_theme(match theme {
-        crate::settings::Theme::Dark => egui::ThemePreference::Dark,
-        crate::settings::Theme::Light => egui::ThemePreference::Light,
-        crate::settings::Theme::System => egui::ThemePreference::System,
-    });
 }

@@ -1,4 +1,5 @@
 use super::*;
+use crate::format::outlines::MAX_POINTS;
 use crate::test_folder::TestFolder;
 
 /// The points of outlines, flattened.

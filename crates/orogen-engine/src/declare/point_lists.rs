@@ -1,0 +1,124 @@
+//! Reading of lists of points, and what is wrong with them.
+
+use crate::value::{Span, Spanned, Value};
+use orogen_grid::words::count;
+
+/// Maximum number of points of a parameter.
+pub const MAX_POINTS: usize = 100_000;
+
+pub(super) type Lists = Vec<Vec<[f64; 3]>>;
+
+/// How points are written.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Form {
+    /// As a list of lists.
+    pub(super) is_nested: bool,
+    /// Whether every point has one.
+    pub(super) has_heights: bool,
+}
+
+/// Reads lists of points; an error has the position of the item that is wrong.
+pub(super) struct Reader<'a> {
+    /// The name of the parameter.
+    pub(super) name: &'a str,
+    /// What a coordinate must be.
+    pub(super) number: String,
+    /// The fewest points of a list.
+    pub(super) min: usize,
+    /// The range of coordinates.
+    pub(super) range: [f64; 2],
+}
+
+impl Reader<'_> {
+    pub(super) fn read(&self, value: &Value) -> Result<(Lists, Form), (Span, String)> {
+        let Value::List(items) = value else {
+            let message = format!("`{}` must be a list of points [[x, y], ...], not {}", self.name, value.describe());
+            return Err((0..0, message));
+        };
+        let is_nested = match items.first().map(|item| &item.value) {
+            Some(Value::List(inner)) => matches!(inner.first().map(|item| &item.value), Some(Value::List(_))),
+            _ => false,
+        };
+        let (mut numbers, mut left) = (None, MAX_POINTS);
+        let lists = if items.is_empty() {
+            Vec::new()
+        } else if is_nested {
+            let lists = items.iter().enumerate().map(|(k, item)| {
+                let of = format!(" of list {}", k + 1);
+                match &item.value {
+                    Value::List(points) => self.list(points, &item.span, &of, &mut numbers, &mut left),
+                    other => Err(self.wrong(
+                        &item.span,
+                        format!("list {} is {}; write each line or ring as a list of points", k + 1, other.describe()),
+                    )),
+                }
+            });
+            lists.collect::<Result<Lists, _>>()?
+        } else {
+            vec![self.list(items, &(0..0), "", &mut numbers, &mut left)?]
+        };
+        Ok((lists, Form { is_nested, has_heights: numbers == Some(3) }))
+    }
+
+    fn wrong(&self, span: &Span, what: String) -> (Span, String) {
+        (span.clone(), format!("`{}`: {what}", self.name))
+    }
+
+    /// The points of one list. `of` names the list, `numbers` is the length of all points, and `left` the number of points that there may still be.
+    fn list(
+        &self,
+        items: &[Spanned<Value>],
+        span: &Span,
+        of: &str,
+        numbers: &mut Option<usize>,
+        left: &mut usize,
+    ) -> Result<Vec<[f64; 3]>, (Span, String)> {
+        if items.len() < self.min {
+            let (line, has) = (if self.min > 2 { "an area" } else { "a line" }, count(items.len(), "point"));
+            let what = match of.strip_prefix(" of ") {
+                Some(list) => format!("{list} has {has}"),
+                None => format!("it has {has}"),
+            };
+            return Err(self.wrong(span, format!("{what}; {line} needs at least {}", self.min)));
+        }
+        *left = left.checked_sub(items.len()).ok_or_else(|| {
+            let what =
+                format!("it has more than {MAX_POINTS} points; write larger drawings to a file, and name it as `file`");
+            self.wrong(span, what)
+        })?;
+        let points = items.iter().enumerate().map(|(k, item)| {
+            let at = || format!("point {}{of}", k + 1);
+            let Value::List(coordinates) = &item.value else {
+                let found = item.value.describe();
+                return Err(self.wrong(&item.span, format!("{} is {found}; a point is [x, y] or [x, y, height]", at())));
+            };
+            if !(2..=3).contains(&coordinates.len()) {
+                let has = count(coordinates.len(), "number");
+                return Err(self.wrong(&item.span, format!("{} has {has}; a point is [x, y] or [x, y, height]", at())));
+            }
+            let before = *numbers.get_or_insert(coordinates.len());
+            if before != coordinates.len() {
+                let what = format!(
+                    "{} has {} numbers, and the points before have {before}; give a height to all points or to none",
+                    at(),
+                    coordinates.len()
+                );
+                return Err(self.wrong(&item.span, what));
+            }
+            let mut point = [0.0; 3];
+            for ((place, coordinate), axis) in point.iter_mut().zip(coordinates).zip(["x", "y", "the height"]) {
+                let [low, high] = self.range;
+                match coordinate.value.number() {
+                    Some(number) if number.is_finite() && (low..=high).contains(&number) => *place = number,
+                    _ => {
+                        let found = coordinate.value.describe();
+                        let what = format!("{axis} of {} must be {}, not {found}", at(), self.number);
+                        return Err(self.wrong(&coordinate.span, what));
+                    }
+                }
+            }
+            Ok(point)
+        });
+        points.collect()
+    }
+}
