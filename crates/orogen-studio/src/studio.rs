@@ -224,7 +224,8 @@ impl Look {
 }
 
 /// The output whose values are the heights of the surface: `height`, or the first one.
-fn surface(recipe: &Recipe) -> String {
+#[must_use]
+pub fn surface(recipe: &Recipe) -> String {
     let mut outputs = recipe.outputs();
     let first = outputs.clone().next().unwrap_or(HEIGHT);
     outputs.find(|name| *name == HEIGHT).unwrap_or(first).to_owned()

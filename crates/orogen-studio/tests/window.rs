@@ -250,3 +250,22 @@ fn a_slider_shows_the_land_soon() {
     assert!(frame.quality == Quality::Draft && frame.window().width == 256, "{:?}", frame.quality);
     assert!(studio(&harness).document.text().contains("[parameters.uplift_rate]"));
 }
+
+#[test]
+fn a_variant_is_taken_over_and_compared() {
+    let folder = TestFolder::new("studio-variants").unwrap();
+    let mut harness = window(&folder, Some("classic"), Language::English);
+    until_done(&mut harness);
+    press(&mut harness, Modifiers::COMMAND, Key::Num2);
+    harness.get_by_label("Compare").click();
+    harness.run_steps(2);
+    assert!(harness.query_by_label("End the comparison").is_some());
+    press(&mut harness, Modifiers::COMMAND, Key::Num6);
+    harness.get_by_label("variant 4").click();
+    harness.run_steps(3);
+    assert_eq!(studio(&harness).document.recipe().world.seed, 4);
+    until_done(&mut harness);
+    assert!(harness.render().is_ok());
+    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(studio(&harness).document.recipe().world.seed, 1);
+}

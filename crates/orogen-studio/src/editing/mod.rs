@@ -7,6 +7,7 @@ pub mod history;
 pub mod names;
 mod references;
 mod tables;
+pub mod variants;
 
 #[cfg(test)]
 mod tests;

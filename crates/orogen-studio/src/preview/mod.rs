@@ -6,4 +6,5 @@ pub mod region;
 pub mod request;
 pub mod stages;
 pub mod statistics;
+pub mod strip;
 pub mod worker;

@@ -17,6 +17,7 @@ use super::relief::Ability;
 use super::relief_panel::ReliefPanel;
 use super::start_page::StartPage;
 use super::text_panel::TextPanel;
+use super::variants_panel::VariantsPanel;
 use super::{analysis_panel, fonts, menu, theme};
 use crate::catalogue::Language;
 use crate::editing::document::Document;
@@ -40,6 +41,7 @@ enum Below {
     Graph,
     Text,
     Analysis,
+    Variants,
 }
 
 /// What waits for the answer about changes that are not saved.
@@ -68,6 +70,7 @@ pub struct App {
     graph: Graph,
     text: TextPanel,
     inspector: Inspector,
+    variants: VariantsPanel,
     start: StartPage,
     files: Option<FileDialog>,
     export: Option<ExportDialog>,
@@ -105,6 +108,7 @@ impl App {
         context.egui_ctx.set_zoom_factor(settings.scale);
         let ability = context.wgpu_render_state.as_ref().map(Ability::of);
         let (recovery, recovered) = Recovery::new(folder.as_deref());
+        let variants = VariantsPanel::new(Arc::clone(&wake));
         let mut app = App {
             session,
             wake,
@@ -120,6 +124,7 @@ impl App {
             graph: Graph::default(),
             text: TextPanel::default(),
             inspector: Inspector::default(),
+            variants,
             start: StartPage::default(),
             files: None,
             export: None,
@@ -290,6 +295,7 @@ impl App {
             Command::ShowGraph => self.below = Below::Graph,
             Command::ShowText => self.below = Below::Text,
             Command::ShowAnalysis => self.below = Below::Analysis,
+            Command::ShowVariants => self.below = Below::Variants,
             Command::WholeView => {
                 self.relief.show_whole();
                 self.map.show_whole();
@@ -388,6 +394,7 @@ impl App {
                         (Below::Graph, "below.graph"),
                         (Below::Text, "below.text"),
                         (Below::Analysis, "below.analysis"),
+                        (Below::Variants, "below.variants"),
                     ] {
                         let label = if below == Below::Text && !studio.document.is_valid() {
                             egui::RichText::new(format!("! {}", language.text(name))).color(ui.visuals().error_fg_color)
@@ -403,6 +410,7 @@ impl App {
                     Below::Graph => self.graph.show(ui, studio, language, actions),
                     Below::Text => self.text.show(ui, studio, language, actions),
                     Below::Analysis => analysis_panel::show(ui, studio, language),
+                    Below::Variants => self.variants.show(ui, studio, language, actions),
                 }
             },
         );

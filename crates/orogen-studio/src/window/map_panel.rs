@@ -28,8 +28,19 @@ pub struct MapPanel {
     tool: Tool,
     /// The points of what is being drawn.
     drawn: Vec<[f64; 2]>,
-    /// The region that was asked for last in an unbounded world.
+    /// The region that was asked for last.
     asked: Option<Region>,
+    /// The picture with which later ones are compared.
+    kept: Option<Kept>,
+}
+
+/// A picture that is kept for a comparison.
+struct Kept {
+    texture: TextureHandle,
+    /// Its west, north, east and south sides in metres.
+    sides: [f64; 4],
+    /// The share of the view in which it is shown, from the left.
+    share: f32,
 }
 
 /// What a drag or a click on the map does.
@@ -74,6 +85,8 @@ impl MapPanel {
             if self.profile.is_some() && ui.button(language.text("map.clear")).clicked() {
                 self.profile = None;
             }
+            ui.separator();
+            self.comparison(ui, studio, language);
         });
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "map view"));
@@ -103,14 +116,25 @@ impl MapPanel {
             rect.min + Vec2::new(x, y)
         };
         let texture = self.texture(ui, frame);
-        // Samples are points: a pixel of the picture is around one.
-        let half = window.cell / 2.0;
-        let area = Rect::from_two_pos(
-            screen([bounds[0] - half, bounds[1] - half]),
-            screen([bounds[2] - half, bounds[3] - half]),
-        );
+        let [west, north, east, south] = sides(frame);
+        let area = Rect::from_two_pos(screen([west, north]), screen([east, south]));
         let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
         painter.image(texture, area, whole, Color32::WHITE);
+        if let Some(kept) = &self.kept {
+            let [west, north, east, south] = kept.sides;
+            let edge = rect.left() + rect.width() * kept.share;
+            let part = painter.with_clip_rect(Rect::from_min_max(rect.min, pos2(edge, rect.bottom())));
+            part.rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
+            part.image(
+                kept.texture.id(),
+                Rect::from_two_pos(screen([west, north]), screen([east, south])),
+                whole,
+                Color32::WHITE,
+            );
+            painter.vline(edge, rect.y_range(), Stroke::new(2.0, Color32::WHITE));
+            label(&painter, pos2(edge - 8.0, rect.top() + 10.0), Align2::RIGHT_TOP, "A");
+            label(&painter, pos2(edge + 8.0, rect.top() + 10.0), Align2::LEFT_TOP, "B");
+        }
         self.follow(studio, &view, size, actions);
         if let Some(pointer) = response.hover_pos() {
             let at = pointer - rect.min;
@@ -119,8 +143,31 @@ impl MapPanel {
             label(&painter, rect.left_bottom() + Vec2::new(8.0, -8.0), Align2::LEFT_BOTTOM, &text);
         }
         scale_bar(&painter, rect, &view);
-        self.draw_drawing(&painter, studio, &screen);
+        self.draw_drawing(&painter, studio, screen);
         self.draw_profile(ui, &painter, rect, frame, screen);
+    }
+
+    /// Keeps the picture, to be compared with those after later changes.
+    fn comparison(&mut self, ui: &mut Ui, studio: &Studio, language: Language) {
+        match &mut self.kept {
+            None => {
+                let keep = ui.add_enabled(studio.frame.is_some(), egui::Button::new(language.text("map.keep")));
+                if keep.on_hover_text(language.text("map.keep_help")).clicked()
+                    && let Some(frame) = &studio.frame
+                {
+                    let texture = ui.ctx().load_texture("kept map", image(frame), TextureOptions::LINEAR);
+                    self.kept = Some(Kept { texture, sides: sides(frame), share: 0.5 });
+                }
+            }
+            Some(kept) => {
+                ui.label("A");
+                ui.add(egui::Slider::new(&mut kept.share, 0.0..=1.0).show_value(false));
+                ui.label("B");
+                if ui.button(language.text("map.drop")).clicked() {
+                    self.kept = None;
+                }
+            }
+        }
     }
 
     /// Begins to draw a line or an area.
@@ -275,21 +322,7 @@ impl MapPanel {
         {
             return texture.id();
         }
-        let step = window.width.max(window.height).div_ceil(LARGEST).max(1);
-        let image = match step {
-            1 => ColorImage::from_rgba_unmultiplied([window.width, window.height], &frame.shaded),
-            _ => {
-                let rows = (0..window.height).step_by(step);
-                let pixels: Vec<u8> = rows
-                    .clone()
-                    .flat_map(|j| (0..window.width).step_by(step).map(move |i| 4 * (j * window.width + i)))
-                    .flat_map(|at| frame.shaded[at..at + 4].iter().copied())
-                    .collect();
-                ColorImage::from_rgba_unmultiplied([window.width.div_ceil(step), rows.count()], &pixels)
-            }
-        };
-        let options = TextureOptions { magnification: egui::TextureFilter::Linear, ..TextureOptions::LINEAR };
-        let texture = ui.ctx().load_texture("map", image, options);
+        let texture = ui.ctx().load_texture("map", image(frame), TextureOptions::LINEAR);
         let id = texture.id();
         self.texture = Some((texture, key));
         id
@@ -345,6 +378,28 @@ impl MapPanel {
             ui.visuals().text_color(),
         );
     }
+}
+
+/// The picture of a frame, of large ones every second, third, ... sample.
+fn image(frame: &Frame) -> ColorImage {
+    let window = frame.window();
+    let step = window.width.max(window.height).div_ceil(LARGEST).max(1);
+    if step == 1 {
+        return ColorImage::from_rgba_unmultiplied([window.width, window.height], &frame.shaded);
+    }
+    let rows = (0..window.height).step_by(step);
+    let pixels: Vec<u8> = rows
+        .clone()
+        .flat_map(|j| (0..window.width).step_by(step).map(move |i| 4 * (j * window.width + i)))
+        .flat_map(|at| frame.shaded[at..at + 4].iter().copied())
+        .collect();
+    ColorImage::from_rgba_unmultiplied([window.width.div_ceil(step), rows.count()], &pixels)
+}
+
+/// The sides of the picture of a frame: west, north, east and south in metres. Samples are points: a pixel of the picture is around one.
+fn sides(frame: &Frame) -> [f64; 4] {
+    let window = frame.window();
+    [window.x, window.y, window.right(), window.bottom()].map(|side| (side as f64 - 0.5) * window.cell)
 }
 
 /// The selected drawing: the name of its node, and its points.

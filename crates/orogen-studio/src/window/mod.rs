@@ -21,3 +21,4 @@ pub mod run;
 pub mod start_page;
 pub mod text_panel;
 pub mod theme;
+pub mod variants_panel;
