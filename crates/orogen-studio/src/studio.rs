@@ -146,6 +146,12 @@ impl Studio {
         self.worker.is_busy()
     }
 
+    /// The share of the pictures that are asked for that is done, 0 to 1.
+    #[must_use]
+    pub fn share(&self) -> f32 {
+        self.worker.share()
+    }
+
     /// The session.
     #[must_use]
     pub fn session(&self) -> &Session {
@@ -253,6 +259,9 @@ pub fn open(argument: &Path) -> Result<Document> {
         return Document::of_dem(argument, &Recipe::from_dem(argument, &Arc::new(ground)));
     }
     let text = files::read(argument)?;
+    if text.trim_start_matches('\u{feff}').trim_start().starts_with('{') {
+        return Document::of_json(argument, &text);
+    }
     Ok(Document::of_file(&absolute(argument), text))
 }
 

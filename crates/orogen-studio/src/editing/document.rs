@@ -75,7 +75,6 @@ impl Document {
             title,
             path: Some(path.to_path_buf()),
             folder: None,
-            // JSON is edited as TOML.
             history: History::new(text.clone()),
             saved: Some(text),
             recipe: Recipe::new(orogen::WorldSpec::default()),
@@ -84,6 +83,19 @@ impl Document {
         };
         document.read();
         document
+    }
+
+    /// A recipe that was written as JSON, as TOML: it has no file of its own yet, and relative paths start in the folder of its file.
+    ///
+    /// # Errors
+    /// If it is no valid recipe.
+    pub fn of_json(path: &Path, text: &str) -> Result<Document> {
+        let recipe = Registry::new().parse_as(text, path)?;
+        let title = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
+        let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
+        let mut document = Document { folder: Some(folder), ..Document::new(&title, recipe.to_toml())? };
+        document.read();
+        Ok(document)
     }
 
     /// A text that was not saved: it has no file yet, and is changed.

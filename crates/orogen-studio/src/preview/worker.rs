@@ -1,6 +1,7 @@
 //! The work behind the pictures: one request at a time, on a thread of the session, cancelled by the next.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::Instant;
 
@@ -40,6 +41,8 @@ pub struct Worker {
     /// The number of the last request.
     request: u64,
     running: Option<Progress>,
+    /// The share of the current request that is done, in percent.
+    share: Arc<AtomicU32>,
 }
 
 impl Worker {
@@ -47,7 +50,7 @@ impl Worker {
     #[must_use]
     pub fn new(session: Session, wake: Wake) -> Worker {
         let (sender, receiver) = channel();
-        Worker { session, wake, sender, receiver, request: 0, running: None }
+        Worker { session, wake, sender, receiver, request: 0, running: None, share: Arc::default() }
     }
 
     /// Asks for pictures. An earlier request is cancelled. Returns the number of the request.
@@ -56,7 +59,14 @@ impl Worker {
         self.request += 1;
         let number = self.request;
         let (sender, wake) = (self.sender.clone(), Arc::clone(&self.wake));
-        let progress = Progress::none();
+        let (heard, told) = (Arc::new(AtomicU32::new(0)), Arc::clone(&self.wake));
+        self.share = Arc::clone(&heard);
+        let progress = Progress::new(move |share| {
+            let percent = (share * 100.0) as u32;
+            if heard.swap(percent, Ordering::Relaxed) != percent {
+                told();
+            }
+        });
         self.running = Some(progress.clone());
         let begun = Instant::now();
         let work = move |session: &Session| {
@@ -102,6 +112,12 @@ impl Worker {
         self.running.is_some()
     }
 
+    /// The share of the current request that is done, 0 to 1.
+    #[must_use]
+    pub fn share(&self) -> f32 {
+        self.share.load(Ordering::Relaxed) as f32 / 100.0
+    }
+
     /// The session.
     #[must_use]
     pub fn session(&self) -> &Session {
@@ -125,10 +141,20 @@ fn make(
 ) -> Result<()> {
     let world = open(session, request, 1)?;
     let stages = stages::of(&world, request)?;
+    let mut works = Vec::new();
     for stage in stages {
-        progress.check()?;
         let draft = if stage.coarser > 1 { Some(open(session, request, stage.coarser)?) } else { None };
-        let made = frame(draft.as_ref().unwrap_or(&world), request, stage, progress);
+        let work = work(draft.as_ref().unwrap_or(&world), request, stage)?;
+        // The recipe's solvers run before its first picture only.
+        let is_later = works.iter().any(|(draft, ..): &(Option<World>, Stage, [f64; 2])| draft.is_none());
+        works.push((draft, stage, [if is_later { 0.0 } else { work[0] }, work[1]]));
+    }
+    works.iter().for_each(|(.., work)| progress.expect(work.iter().sum()));
+    for (draft, stage, work) in works {
+        progress.check()?;
+        let part = progress.part(work.iter().sum());
+        let made = frame(draft.as_ref().unwrap_or(&world), request, stage, &part);
+        part.finish();
         let frame = match made {
             Ok(frame) => frame,
             // A draft that does not work out is left out.
@@ -145,6 +171,12 @@ fn open(session: &Session, request: &Request, coarser: u32) -> Result<World> {
     let mut recipe = request.recipe.draft(coarser);
     list::prepare(&mut recipe, &request.layer, &LayerOptions::default())?;
     session.open(recipe)
+}
+
+/// Approximate time of a picture on one core, in nanoseconds: for its solvers, and for its samples.
+fn work(world: &World, request: &Request, stage: Stage) -> Result<[f64; 2]> {
+    let window = request.region.window(world, stage.samples)?;
+    world.work_of(&world.plan(&[&request.surface], &window)?)
 }
 
 /// Makes a picture.

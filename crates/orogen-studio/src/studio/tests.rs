@@ -114,6 +114,20 @@ fn edit_for(time: Duration, seed: u64) -> usize {
 }
 
 #[test]
+fn json_is_edited_as_toml() {
+    let folder = orogen::test_folder::TestFolder::new("studio-json").unwrap();
+    let path = folder.join("land.json");
+    let json = r#"{"orogen": 1, "world": {"cell": 5}, "nodes": {"land": {"op": "fbm", "octaves": 3}}, "outputs": {"height": "land"}}"#;
+    std::fs::write(&path, json).unwrap();
+    let mut document = open(&path).unwrap();
+    assert!(document.text().contains("[nodes.land]") && document.path().is_none());
+    document.apply(&Edit::Seed(5)).unwrap();
+    assert_eq!((document.recipe().world.seed, document.recipe().world.cell), (5, 5.0));
+    std::fs::write(&path, "{\"orogen\": 1").unwrap();
+    assert!(open(&path).is_err());
+}
+
+#[test]
 fn random_edits_do_no_harm() {
     assert!(edit_for(Duration::from_secs(5), 1) > 20);
 }

@@ -521,7 +521,7 @@ impl App {
 fn status(ui: &mut Ui, studio: &Studio, language: Language) {
     ui.horizontal(|ui| {
         if studio.is_busy() {
-            ui.spinner();
+            ui.add(egui::ProgressBar::new(studio.share()).desired_width(120.0).desired_height(8.0));
         }
         if let Some(failure) = &studio.failure {
             ui.colored_label(ui.visuals().error_fg_color, failure.to_string());
