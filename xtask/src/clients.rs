@@ -135,8 +135,8 @@ const CLIENTS: &[Client] = &[
         name: "studio",
         apt: &[
             ("/usr/share/vulkan/icd.d", "mesa-vulkan-drivers"),
-            ("/usr/lib/x86_64-linux-gnu/libvulkan.so.1", "libvulkan1"),
-            ("/usr/lib/x86_64-linux-gnu/libxkbcommon-x11.so.0", "libxkbcommon-x11-0"),
+            ("/usr/share/doc/libvulkan1", "libvulkan1"),
+            ("/usr/share/doc/libxkbcommon-x11-0", "libxkbcommon-x11-0"),
             ("/usr/share/fonts/truetype/wqy/wqy-microhei.ttc", "fonts-wqy-microhei"),
             ("Xvfb", "xvfb"),
         ],
