@@ -134,9 +134,9 @@ const CLIENTS: &[Client] = &[
     Client {
         name: "studio",
         apt: &[
-            ("/usr/share/vulkan/icd.d", "mesa-vulkan-drivers"),
-            ("/usr/share/doc/libvulkan1", "libvulkan1"),
-            ("/usr/share/doc/libxkbcommon-x11-0", "libxkbcommon-x11-0"),
+            ("/usr/share/doc/mesa-vulkan-drivers/copyright", "mesa-vulkan-drivers"),
+            ("/usr/share/doc/libvulkan1/copyright", "libvulkan1"),
+            ("/usr/share/doc/libxkbcommon-x11-0/copyright", "libxkbcommon-x11-0"),
             ("/usr/share/fonts/truetype/wqy/wqy-microhei.ttc", "fonts-wqy-microhei"),
             ("Xvfb", "xvfb"),
         ],
