@@ -8,7 +8,7 @@ use orogen::Result;
 use super::action::Action;
 use crate::catalogue::Language;
 use crate::editing::edit::Edit;
-use crate::editing::variants::Varied;
+use crate::editing::variants::{COUNT, Varied};
 use crate::preview::strip::{Picture, Strip};
 use crate::preview::worker::Wake;
 use crate::studio::{Studio, surface};
@@ -64,9 +64,11 @@ impl VariantsPanel {
                 variant.picture = Some(picture);
             }
         }
+        // All are seen at once, if there is room.
+        let room = ui.available_size();
+        let side = (room.y - 36.0).min(room.x / COUNT as f32 - 10.0).clamp(60.0, 220.0);
         egui::ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| {
             ui.horizontal(|ui| {
-                let side = (ui.available_height() - 24.0).clamp(60.0, 220.0);
                 for variant in &self.variants {
                     if card(ui, variant, side) {
                         actions.push(Action::Edit(variant.edit.clone()));
