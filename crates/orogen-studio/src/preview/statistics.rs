@@ -1,7 +1,7 @@
 //! Figures of a picture: range, histogram, hypsometric curve.
 
 use orogen::Grid;
-use orogen::analysis::{hypsometry, summary};
+use orogen::analysis::hypsometry;
 
 /// Bars of the histogram, and steps of the curve.
 pub const BARS: usize = 64;
@@ -50,12 +50,6 @@ impl Statistics {
             curve: hypsometry::curve(grid, BARS).unwrap_or_default(),
         }
     }
-}
-
-/// The SHA-256 of the samples, as `orogen generate` writes it to summary.json.
-#[must_use]
-pub fn hash(grid: &Grid, sea_level: f64) -> String {
-    summary::summary(grid.data(), sea_level).sha256
 }
 
 #[cfg(test)]

@@ -152,7 +152,7 @@ impl App {
 
     fn use_language(&mut self, context: &Context) {
         if self.language == Language::Chinese && fonts::add_chinese(context).is_none() {
-            // Boxes in place of letters help nobody.
+            // Without the font all letters would be shown as boxes.
             self.language = Language::English;
             self.message = Some((self.text("font.title").into(), self.text("font.missing").into()));
         }
@@ -321,7 +321,7 @@ impl App {
                 let seed = studio.document.recipe().world.seed;
                 let next = Edit::Seed(if seed >= i64::MAX as u64 { 0 } else { seed + 1 });
                 let edited = studio.edit(&next);
-                // Each throw is a step of its own.
+                // Each seed is a step of its own.
                 studio.document.end_gesture();
                 if let Err(error) = edited {
                     self.say(&error.to_string());
