@@ -119,6 +119,11 @@ impl Session {
         Pool::start(move || work(&session))
     }
 
+    /// Runs work on the session's threads, and returns once it is done.
+    pub fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        self.pool.install(work)
+    }
+
     /// Number of threads.
     #[must_use]
     pub fn threads(&self) -> usize {

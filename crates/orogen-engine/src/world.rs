@@ -353,7 +353,7 @@ impl World {
     /// Runs work on this world's threads.
     #[doc(hidden)]
     pub fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
-        self.session.pool.install(work)
+        self.session.install(work)
     }
 
     /// Runs a plan: returns one grid per layer, in the requested order.

@@ -10,6 +10,7 @@ use orogen::{Error, ErrorKind, Result, Session};
 use crate::editing::document::Document;
 use crate::editing::edit::Edit;
 use crate::files;
+use crate::preview::coloring::Coloring;
 use crate::preview::frame::{Frame, Quality};
 use crate::preview::region::Region;
 use crate::preview::request::Request;
@@ -20,8 +21,8 @@ use crate::preview::worker::{Event, Wake, Worker};
 pub struct Look {
     /// The layer that is coloured: an output, a node, or a layer derived from the heights.
     pub layer: String,
-    /// A palette by name; that of the layer if `None`.
-    pub palette: Option<String>,
+    /// What the colors show.
+    pub coloring: Coloring,
     /// Azimuth and altitude of the sun, in degrees.
     pub sun: [f64; 2],
     /// Samples along the longer side of the finest picture.
@@ -68,7 +69,7 @@ impl Studio {
 
     /// Another document in place of this one.
     pub fn open(&mut self, document: Document) {
-        self.look = Look { palette: None, sun: self.look.sun, finest: self.look.finest, ..Look::of(document.recipe()) };
+        self.look = Look { sun: self.look.sun, finest: self.look.finest, ..Look::of(document.recipe()) };
         self.file_time = document.path().and_then(files::changed);
         self.document = document;
         self.selected.clear();
@@ -104,6 +105,9 @@ impl Studio {
         if !has_layer(recipe, &self.look.layer) {
             self.look.layer = surface(recipe);
         }
+        if !self.look.coloring.suits(recipe) {
+            self.look.coloring = Coloring::Own;
+        }
         let now = (self.document.revision(), self.look.clone());
         if self.asked.as_ref() == Some(&now) {
             return;
@@ -117,7 +121,7 @@ impl Studio {
             layer: self.look.layer.clone(),
             surface: surface(recipe),
             region: self.look.region,
-            palette: self.look.palette.clone(),
+            coloring: self.look.coloring.clone(),
             sun: self.look.sun,
             finest: self.look.finest,
         });
@@ -221,7 +225,7 @@ impl Look {
     pub fn of(recipe: &Recipe) -> Look {
         Look {
             layer: surface(recipe),
-            palette: None,
+            coloring: Coloring::Own,
             sun: [315.0, 40.0],
             finest: 1024,
             region: Region::of(recipe.world.size, recipe.world.cell),

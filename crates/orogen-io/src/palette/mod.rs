@@ -13,7 +13,7 @@ pub(crate) mod gpl;
 pub mod histogram;
 pub mod named;
 pub mod names;
-pub(crate) mod own;
+pub mod own;
 #[allow(clippy::module_inception, reason = "the room is about palettes, the file about the one")]
 pub mod palette;
 pub mod ramp;

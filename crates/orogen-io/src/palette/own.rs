@@ -8,9 +8,11 @@
 //! missing = "#dddddd"
 //! ```
 
+use std::mem::discriminant;
+
 use serde::Deserialize;
 
-use super::color::Rgb;
+use super::color::{Rgb, hex};
 use super::names::{hexadecimal, named};
 use super::palette::{Mix, Palette, Position, Stop};
 
@@ -70,6 +72,41 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
     })
 }
 
+/// A palette as a text that [`parse`] reads. `None` if the positions of its colors are of several kinds, or follow the relief, which the format cannot say.
+#[must_use]
+pub fn write(palette: &Palette) -> Option<String> {
+    let first = palette.stops.first()?.at;
+    let unit = match first {
+        Position::Value(_) => "m",
+        Position::Share(_) => "range",
+        Position::Sea(_) => "sea",
+    };
+    let is_one_kind = palette.stops.iter().all(|stop| discriminant(&stop.at) == discriminant(&first));
+    if !is_one_kind || palette.follows_relief {
+        return None;
+    }
+    let mix = match palette.mix {
+        Mix::Oklab => "oklab",
+        Mix::Rgb => "rgb",
+        Mix::Hsv => "hsv",
+    };
+    let mut text = format!(
+        "name = {}\nunit = \"{unit}\"\nmix = \"{mix}\"\nstops = [\n",
+        serde_json::Value::from(palette.name.replace('\u{7f}', " "))
+    );
+    for Stop { at, color } in &palette.stops {
+        let (Position::Value(at) | Position::Share(at) | Position::Sea(at)) = at;
+        text.push_str(&format!("    [{at:?}, \"{}\"],\n", hex(*color)));
+    }
+    text.push_str("]\n");
+    for (key, color) in [("below", palette.below), ("above", palette.above), ("missing", palette.missing)] {
+        if let Some(color) = color {
+            text.push_str(&format!("{key} = \"{}\"\n", hex(color)));
+        }
+    }
+    Some(text)
+}
+
 fn color(text: &str) -> Result<Rgb, String> {
     let found = hexadecimal(text).or_else(|| named(text));
     found.ok_or_else(|| format!("`{text}` is not a colour; write #rrggbb or a name such as white"))
@@ -77,7 +114,21 @@ fn color(text: &str) -> Result<Rgb, String> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::named;
     use super::*;
+
+    #[test]
+    fn what_is_written_is_read() {
+        for named in named::all() {
+            let mut palette =
+                Palette { follows_relief: false, mix: Mix::Hsv, above: Some([1, 2, 3]), ..named.palette() };
+            assert_eq!(parse("", &write(&palette).unwrap()), Ok(palette.clone()));
+            palette.stops[0].at = Position::Value(-3.25e-5);
+            assert_eq!(write(&palette).is_some(), matches!(palette.stops[1].at, Position::Value(_)));
+        }
+        let quoted = Palette::new("a \"b\"\n", vec![Stop { at: Position::Share(0.5), color: [255, 0, 7] }]);
+        assert_eq!(parse("", &write(&quoted).unwrap()), Ok(quoted));
+    }
 
     #[test]
     fn a_palette_by_hand() {

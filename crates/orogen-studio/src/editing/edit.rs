@@ -4,10 +4,12 @@ use std::collections::{HashMap, HashSet};
 
 use orogen::declare::Input;
 use orogen::node::Node;
+use orogen::palette::color::Rgb;
 use orogen::recipe::document::Recipe;
 use orogen::value::Value;
 use toml_edit::{DocumentMut, Item, Table};
 
+use super::ground::{Ground, set_colors};
 use super::names;
 use super::references::{Change, Site, change};
 use super::tables::{node, set, top, value_of};
@@ -30,6 +32,8 @@ pub enum Edit {
     Connect { node: String, input: String, source: Input },
     /// An output: a node or layer, or nothing.
     Output { name: String, source: Input },
+    /// The colors of a surface or a terrain class, by its number.
+    Colors { ground: Ground, index: usize, colors: Vec<Rgb> },
     /// A new node with some inputs and parameters. Required inputs that `inputs` lacks are 0.
     Add { name: String, op: String, inputs: Vec<(String, String)>, params: Vec<(String, Value)> },
     /// Nodes are removed; what read one reads its first input.
@@ -48,6 +52,7 @@ impl Edit {
             Edit::Seed(_) => "edit.seed",
             Edit::World(..) => "edit.world",
             Edit::Default { .. } | Edit::Param { .. } => "edit.value",
+            Edit::Colors { .. } => "edit.colors",
             Edit::Reset { .. } => "edit.reset",
             Edit::Connect { .. } | Edit::Output { .. } => "edit.connect",
             Edit::Add { .. } => "edit.add",
@@ -65,6 +70,7 @@ impl Edit {
             Edit::World(key, _) => Some(format!("world/{key}")),
             Edit::Default { parameter, .. } => Some(format!("parameter/{parameter}")),
             Edit::Param { node, key, .. } => Some(format!("node/{node}/{key}")),
+            Edit::Colors { ground, index, .. } => Some(format!("colors/{ground:?}/{index}")),
             _ => None,
         }
     }
@@ -136,6 +142,7 @@ pub fn apply(text: &str, recipe: &Recipe, edit: &Edit) -> Result<String, String>
                 Input::Value(value) => set(outputs, name, (*value).into()),
             }
         }
+        Edit::Colors { ground, index, colors } => set_colors(&mut document, *ground, *index, colors)?,
         Edit::Add { name, op, inputs, params } => {
             add(&mut document, name, op, inputs)?;
             let own = node(&mut document, name).ok_or_else(|| missing(&format!("node `{name}`")))?;

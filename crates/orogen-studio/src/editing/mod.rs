@@ -3,6 +3,7 @@
 pub mod document;
 pub mod drawing;
 pub mod edit;
+pub mod ground;
 pub mod history;
 pub mod names;
 mod references;

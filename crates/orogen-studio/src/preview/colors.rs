@@ -6,10 +6,15 @@ use orogen::layer::LayerKind;
 use orogen::map::paint::Painter;
 use orogen::palette::color::{Encoder, Rgb};
 use orogen::palette::named;
+use orogen::palette::palette::Palette;
 use orogen::palette::tint::Tint;
 use orogen::recipe::class::document::CLASS;
 use orogen::recipe::document::Recipe;
 use orogen::world::HEIGHT;
+
+use super::coloring::Coloring;
+use super::legend::{Legend, STEPS};
+use super::statistics::range;
 
 /// How values become colors.
 #[derive(Debug, Clone)]
@@ -32,9 +37,9 @@ const LAYERS: &str = "viridis";
 const HUES: usize = 24;
 
 impl Colors {
-    /// The colors of a layer over a range of its values. `palette` is a name; the palette of the layer if there is none.
+    /// The colors of a layer over a range of its values.
     #[must_use]
-    pub fn of(recipe: &Recipe, layer: &str, kind: LayerKind, palette: Option<&str>, values: &Grid) -> Colors {
+    pub fn of(recipe: &Recipe, layer: &str, kind: LayerKind, coloring: &Coloring, values: &Grid) -> Colors {
         if layer == CLASS && !recipe.classes().is_empty() {
             let classes = recipe.classes().iter().enumerate();
             return Colors::Numbers(classes.map(|(k, class)| class.color(k)).collect());
@@ -47,21 +52,31 @@ impl Colors {
             return Colors::Numbers((0..HUES).map(|k| hue(k as f32 * 0.618_034)).collect());
         }
         let sea_level = recipe.world.sea_level as f32;
-        let own = list::named(layer).map(|derived| derived.palette).filter(|name| !name.is_empty());
-        let name = palette.or(own).unwrap_or(if layer == HEIGHT { named::DEFAULT } else { LAYERS });
         let log = kind == LayerKind::Flow;
-        let tint = match named::find(name).or(named::find(LAYERS)) {
-            Some(named) if log => {
+        let tint = match palette(layer, coloring) {
+            Some(palette) if log => {
                 let logs: Vec<f32> = values.data().iter().map(|value| logarithm(*value)).collect();
                 match Grid::from_data(*values.window(), logs) {
-                    Some(logs) => Tint::of(&named.palette(), &logs, f32::NEG_INFINITY),
+                    Some(logs) => Tint::of(&palette, &logs, f32::NEG_INFINITY),
                     None => Tint::fit(values, sea_level),
                 }
             }
-            Some(named) => Tint::of(&named.palette(), values, sea_level),
+            Some(palette) => Tint::of(&palette, values, sea_level),
             None => Tint::fit(values, sea_level),
         };
         Colors::Tint { tint, log }
+    }
+
+    /// What the colors of these values mean.
+    #[must_use]
+    pub fn legend(&self, values: &Grid) -> Legend {
+        let Colors::Tint { tint, log } = self else { return Legend::Entries(Vec::new()) };
+        let low = if *log { f32::MIN_POSITIVE } else { f32::NEG_INFINITY };
+        let ends = range(values.data().iter().copied().filter(|value| *value >= low));
+        let encoder = Encoder::new();
+        let [first, last] = if *log { ends.map(logarithm) } else { ends };
+        let at = |k: usize| first + (last - first) * k as f32 / (STEPS - 1) as f32;
+        Legend::Ramp { ends, colors: (0..STEPS).map(|k| encoder.bytes(tint.at(at(k)))).collect(), log: *log }
     }
 
     /// Colors without light, four bytes for each sample.
@@ -107,13 +122,27 @@ impl Colors {
     }
 }
 
+/// The palette of a layer.
+#[must_use]
+pub fn palette(layer: &str, coloring: &Coloring) -> Option<Palette> {
+    let own = list::named(layer).map(|derived| derived.palette).filter(|name| !name.is_empty());
+    let usual = own.unwrap_or(if layer == HEIGHT { named::DEFAULT } else { LAYERS });
+    let name = match coloring {
+        Coloring::Edited(palette) => return Some(Palette::clone(palette)),
+        Coloring::Named(name) => name,
+        _ => usual,
+    };
+    named::find(name).or(named::find(LAYERS)).map(named::Named::palette)
+}
+
 /// The logarithm of a value that spans orders of magnitude; that of what is not above 0 is none.
 fn logarithm(value: f32) -> f32 {
     if value > 0.0 { libm::log10f(value) } else { f32::NAN }
 }
 
-/// The color of a number.
-fn number(colors: &[Rgb], value: f32) -> Rgb {
+/// The color of a number; grey if it has none.
+#[must_use]
+pub fn number(colors: &[Rgb], value: f32) -> Rgb {
     match value.is_finite() && value >= 0.0 && !colors.is_empty() {
         true => colors[(value + 0.5) as usize % colors.len()],
         false => [128; 3],
@@ -134,16 +163,22 @@ mod tests {
     fn heights_classes_and_numbers_have_colors() {
         let grid = Grid::from_data(Window::new(4, 1, 10.0), vec![-50.0, 0.0, 100.0, f32::NAN]).unwrap();
         let recipe = presets::find("tile-continent").unwrap().recipe().unwrap();
-        let heights = Colors::of(&recipe, HEIGHT, LayerKind::Height, None, &grid).paint(&grid);
+        let heights = Colors::of(&recipe, HEIGHT, LayerKind::Height, &Coloring::Own, &grid).paint(&grid);
         assert!(heights[2] > heights[0], "the sea is blue: {heights:?}");
         let classes = Grid::from_data(Window::new(2, 1, 10.0), vec![0.0, 1.0]).unwrap();
-        let colors = Colors::of(&recipe, CLASS, LayerKind::Label, None, &classes).paint(&classes);
+        let colors = Colors::of(&recipe, CLASS, LayerKind::Label, &Coloring::Own, &classes).paint(&classes);
         let expect = [recipe.classes()[0].color(0), recipe.classes()[1].color(1)];
         assert_eq!([&colors[..3], &colors[4..7]], [&expect[0][..], &expect[1][..]]);
         let plain = Recipe::new(orogen::WorldSpec::default());
-        let numbers = Colors::of(&plain, "basins", LayerKind::Label, None, &classes).paint(&classes);
+        let numbers = Colors::of(&plain, "basins", LayerKind::Label, &Coloring::Own, &classes).paint(&classes);
         assert_ne!(numbers[..3], numbers[4..7]);
-        let flow = Colors::of(&plain, "flow", LayerKind::Flow, None, &grid).paint(&grid);
+        let flow = Colors::of(&plain, "flow", LayerKind::Flow, &Coloring::Own, &grid).paint(&grid);
         assert_eq!(flow.len(), 16);
+        let Legend::Ramp { ends, colors, log } =
+            Colors::of(&plain, "flow", LayerKind::Flow, &Coloring::Own, &grid).legend(&grid)
+        else {
+            panic!()
+        };
+        assert!(ends == [100.0; 2] && colors.len() == STEPS && log);
     }
 }

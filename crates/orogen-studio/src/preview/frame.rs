@@ -1,8 +1,18 @@
 //! A picture of a part of a world.
 
+use std::sync::Arc;
+
+use orogen::budget::Reservation;
 use orogen::{Grid, Window};
 
+use super::legend::Legend;
 use super::statistics::Statistics;
+
+/// What tells pictures apart: the request, the samples along the width, and the time.
+pub type Key = (u64, usize, u64);
+
+/// Memory of a sample in bytes.
+const BYTES: u64 = 32;
 
 /// How good a picture is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,6 +40,8 @@ pub struct Frame {
     pub unit: &'static str,
     /// Colors without light: red, green, blue and 255 for each sample, sRGB.
     pub albedo: Vec<u8>,
+    /// What the colors mean.
+    pub legend: Legend,
     /// Colors with relief shading, as maps have them.
     pub shaded: Vec<u8>,
     /// How much of the sun each sample sees, 0 to 255.
@@ -40,9 +52,23 @@ pub struct Frame {
     pub statistics: Statistics,
     /// The seconds since the request.
     pub seconds: f64,
+    /// Its memory, which counts in the session's budget.
+    pub memory: Arc<Reservation>,
 }
 
 impl Frame {
+    /// Memory of a picture of a window while it is made, in bytes: heights, values, colors with and without light, the light, and what makes them.
+    #[must_use]
+    pub fn memory(window: &Window) -> u64 {
+        (window.width as u64).saturating_mul(window.height as u64).saturating_mul(BYTES)
+    }
+
+    /// What tells it apart from others.
+    #[must_use]
+    pub fn key(&self) -> Key {
+        (self.request, self.window().width, self.seconds.to_bits())
+    }
+
     /// Its window.
     #[must_use]
     pub fn window(&self) -> &Window {

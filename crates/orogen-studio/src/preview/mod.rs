@@ -1,10 +1,16 @@
 //! Pictures of a recipe while it is edited: coarse first, then finer, off the thread of the user interface.
 
+pub mod coloring;
 pub mod colors;
+pub mod cover;
+pub mod failure;
 pub mod frame;
+pub mod legend;
+pub mod ramp;
 pub mod region;
 pub mod request;
 pub mod stages;
 pub mod statistics;
 pub mod strip;
+pub mod survey;
 pub mod worker;

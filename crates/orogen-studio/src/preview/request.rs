@@ -3,6 +3,7 @@
 use orogen::recipe::document::Recipe;
 use orogen::world::HEIGHT;
 
+use super::coloring::Coloring;
 use super::region::Region;
 
 /// A request for pictures.
@@ -16,8 +17,8 @@ pub struct Request {
     pub surface: String,
     /// The part of the world.
     pub region: Region,
-    /// A palette by name; that of the layer if `None`.
-    pub palette: Option<String>,
+    /// What the colors show.
+    pub coloring: Coloring,
     /// Direction to the sun: azimuth clockwise from north and altitude, in degrees.
     pub sun: [f64; 2],
     /// Samples along the longer side of the finest picture.
@@ -34,7 +35,7 @@ impl Request {
             layer: HEIGHT.into(),
             surface: HEIGHT.into(),
             region,
-            palette: None,
+            coloring: Coloring::Own,
             sun: [315.0, 40.0],
             finest: 1024,
         }

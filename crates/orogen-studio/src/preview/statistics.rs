@@ -25,11 +25,7 @@ impl Statistics {
     /// The figures of a grid.
     #[must_use]
     pub fn of(grid: &Grid, sea_level: f64) -> Statistics {
-        let mut gathered = [f32::INFINITY, f32::NEG_INFINITY];
-        for value in grid.data().iter().filter(|value| value.is_finite()) {
-            gathered = [gathered[0].min(*value), gathered[1].max(*value)];
-        }
-        let [low, high] = if gathered[0] <= gathered[1] { gathered } else { [f32::NAN; 2] };
+        let [low, high] = range(grid.data().iter().copied());
         let mut counts = vec![0_u32; BARS];
         let (mut sum, mut finite, mut land) = (0.0, 0_u64, 0_u64);
         let scale = BARS as f32 / (high - low);
@@ -50,6 +46,14 @@ impl Statistics {
             curve: hypsometry::curve(grid, BARS).unwrap_or_default(),
         }
     }
+}
+
+/// The lowest and highest finite value; NaN if there is none.
+#[must_use]
+pub fn range(values: impl Iterator<Item = f32>) -> [f32; 2] {
+    let finite = values.filter(|value| value.is_finite());
+    let ends = finite.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)]);
+    if ends[0] <= ends[1] { ends } else { [f32::NAN; 2] }
 }
 
 #[cfg(test)]

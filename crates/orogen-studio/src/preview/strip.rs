@@ -4,9 +4,11 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use orogen::recipe::document::Recipe;
-use orogen::{Error, ErrorKind, Progress, Result, Session};
+use orogen::{Progress, Result, Session};
 
+use super::coloring::Coloring;
 use super::colors::Colors;
+use super::failure;
 use super::region::Region;
 use super::worker::Wake;
 
@@ -90,9 +92,8 @@ impl Drop for Strip {
 fn picture(session: &Session, recipe: &Recipe, layer: &str, progress: &Progress) -> Result<Picture> {
     let world = session.open(recipe.draft(COARSER))?;
     let window = Region::of(recipe.world.size, recipe.world.cell).window(&world, SIDE)?;
-    let nothing = || Error::new(ErrorKind::Internal, "no layer was computed");
-    let heights = world.grids(&[layer], &window, progress)?.pop().ok_or_else(nothing)?;
-    let colors = Colors::of(recipe, layer, world.kind(layer)?, None, &heights);
+    let heights = world.grids(&[layer], &window, progress)?.pop().ok_or_else(failure::nothing)?;
+    let colors = Colors::of(recipe, layer, world.kind(layer)?, &Coloring::Own, &heights);
     let pixels = world.install(|| colors.shade(&colors.paint(&heights), &heights, recipe.world.sea_level));
     Ok(Picture { size: [window.width, window.height], pixels })
 }

@@ -9,6 +9,7 @@ use orogen::analysis::shadow::Shadows;
 use orogen::export::derived::list;
 use orogen::export::layer_source::LayerSource;
 use orogen::export::options::Options as LayerOptions;
+use orogen::map::paint::Painter;
 use orogen::{Error, ErrorKind, Progress, Result, Session, World};
 
 use super::colors::Colors;
@@ -16,6 +17,7 @@ use super::frame::{Frame, Quality};
 use super::request::Request;
 use super::stages::{self, Stage};
 use super::statistics::Statistics;
+use super::{cover, failure};
 use crate::view::sun;
 
 /// What the work tells.
@@ -169,6 +171,7 @@ fn make(
 /// Opens the recipe of a request, or a draft of it.
 fn open(session: &Session, request: &Request, coarser: u32) -> Result<World> {
     let mut recipe = request.recipe.draft(coarser);
+    cover::prepare(&mut recipe, &request.coloring);
     list::prepare(&mut recipe, &request.layer, &LayerOptions::default())?;
     session.open(recipe)
 }
@@ -182,7 +185,8 @@ fn work(world: &World, request: &Request, stage: Stage) -> Result<[f64; 2]> {
 /// Makes a picture.
 fn frame(world: &World, request: &Request, stage: Stage, progress: &Progress) -> Result<Frame> {
     let window = request.region.window(world, stage.samples)?;
-    let heights = world.grids(&[&request.surface], &window, progress)?.pop().ok_or_else(nothing)?;
+    let memory = Arc::new(world.budget().reserve(Frame::memory(&window))?);
+    let heights = world.grids(&[&request.surface], &window, progress)?.pop().ok_or_else(failure::nothing)?;
     let mut unit = world.unit(&request.surface)?;
     let mut kind = world.kind(&request.surface)?;
     let values = match request.layer == request.surface {
@@ -190,15 +194,24 @@ fn frame(world: &World, request: &Request, stage: Stage, progress: &Progress) ->
         false => {
             let mut source = LayerSource::new(world, &request.layer, window, progress)?;
             (unit, kind) = (source.unit(), source.kind());
-            Some(source.whole().map_err(error_of)?.into_iter().next().ok_or_else(nothing)?)
+            Some(source.whole().map_err(failure::of_stream)?.into_iter().next().ok_or_else(failure::nothing)?)
         }
     };
     let sea_level = world.recipe().world.sea_level;
     let shown = values.as_ref().unwrap_or(&heights);
-    let colors = Colors::of(world.recipe(), &request.layer, kind, request.palette.as_deref(), shown);
-    let albedo = colors.paint(shown);
+    let (albedo, legend, painter) = match request.coloring.is_cover() {
+        true => {
+            let (albedo, legend) = cover::paint(world, &request.coloring, &heights, progress)?;
+            (albedo, legend, Painter::fit(&heights, sea_level))
+        }
+        false => {
+            let colors = Colors::of(world.recipe(), &request.layer, kind, &request.coloring, shown);
+            (colors.paint(shown), colors.legend(shown), colors.painter(&heights, sea_level))
+        }
+    };
     progress.check()?;
-    let shaded = world.install(|| colors.shade(&albedo, &heights, sea_level));
+    let mut shaded = albedo.clone();
+    world.install(|| painter.shade(&heights, &mut shaded));
     progress.check()?;
     let lit = Shadows::new(heights.data(), heights.width(), window.cell).lit(sun::towards(request.sun));
     let light = lit.into_iter().map(|lit| if lit { 255 } else { 0 }).collect();
@@ -208,23 +221,15 @@ fn frame(world: &World, request: &Request, stage: Stage, progress: &Progress) ->
         unit,
         statistics: Statistics::of(shown, sea_level),
         albedo,
+        legend,
         shaded,
         light,
         sea_level,
         seconds: 0.0,
+        memory,
         heights,
         values,
     })
-}
-
-fn nothing() -> Error {
-    Error::new(ErrorKind::Internal, "no layer was computed")
-}
-
-/// The error that an error of a stream stands for.
-fn error_of(cause: std::io::Error) -> Error {
-    let own = cause.get_ref().and_then(|inner| inner.downcast_ref::<Error>()).cloned();
-    own.unwrap_or_else(|| Error::new(ErrorKind::File, cause.to_string()))
 }
 
 #[cfg(test)]

@@ -3,8 +3,10 @@
 use std::path::PathBuf;
 
 use super::command::Command;
+use super::dialogs::Purpose;
 use crate::catalogue::Language;
 use crate::editing::edit::Edit;
+use crate::preview::coloring::Coloring;
 use crate::preview::region::Region;
 use crate::settings::Theme;
 
@@ -23,8 +25,16 @@ pub enum Action {
     Select(Vec<String>),
     /// The layer that is shown.
     Show(String),
-    /// The palette; that of the layer if `None`.
-    Palette(Option<String>),
+    /// What the colors show.
+    Color(Coloring),
+    /// The dialog of color ramps is opened.
+    EditColors,
+    /// A palette is read from a file, to be edited.
+    OpenPalette(PathBuf),
+    /// The edited palette is written to a file.
+    SavePalette(PathBuf),
+    /// A file is to be chosen.
+    Choose(Purpose),
     /// The direction of the sun: azimuth and altitude in degrees.
     Sun([f64; 2]),
     /// Samples along the longer side of the finest picture.

@@ -13,6 +13,8 @@ use super::export_dialog::ExportDialog;
 use super::graph_panel::Graph;
 use super::inspector::Inspector;
 use super::map_panel::MapPanel;
+use super::ramp_editor::RampEditor;
+use super::realism_panel::RealismPanel;
 use super::relief::Ability;
 use super::relief_panel::ReliefPanel;
 use super::start_page::StartPage;
@@ -22,6 +24,8 @@ use super::{analysis_panel, fonts, menu, theme};
 use crate::catalogue::Language;
 use crate::editing::document::Document;
 use crate::editing::edit::Edit;
+use crate::preview::coloring::Coloring;
+use crate::preview::colors::palette;
 use crate::preview::frame::Quality;
 use crate::preview::worker::Wake;
 use crate::recovery::Recovery;
@@ -41,6 +45,7 @@ enum Below {
     Graph,
     Text,
     Analysis,
+    Real,
     Variants,
 }
 
@@ -70,6 +75,8 @@ pub struct App {
     graph: Graph,
     text: TextPanel,
     inspector: Inspector,
+    real: RealismPanel,
+    ramp: Option<RampEditor>,
     variants: VariantsPanel,
     start: StartPage,
     files: Option<FileDialog>,
@@ -108,6 +115,7 @@ impl App {
         context.egui_ctx.set_zoom_factor(settings.scale);
         let ability = context.wgpu_render_state.as_ref().map(Ability::of);
         let (recovery, recovered) = Recovery::new(folder.as_deref());
+        let real = RealismPanel::new(Arc::clone(&wake));
         let variants = VariantsPanel::new(Arc::clone(&wake));
         let mut app = App {
             session,
@@ -124,6 +132,8 @@ impl App {
             graph: Graph::default(),
             text: TextPanel::default(),
             inspector: Inspector::default(),
+            real,
+            ramp: None,
             variants,
             start: StartPage::default(),
             files: None,
@@ -235,6 +245,17 @@ impl App {
                 self.map.draw(op);
             }
             Action::Copy(text) => context.copy_text(text),
+            Action::EditColors => self.edit_colors(),
+            Action::OpenPalette(path) => self.use_palette(RampEditor::open(&path)),
+            Action::SavePalette(path) => {
+                if let Some(Err(error)) = self.ramp.as_ref().map(|ramp| ramp.save(&path)) {
+                    self.say(&error.to_string());
+                }
+            }
+            Action::Choose(purpose) => {
+                let name = self.ramp.as_ref().map(|ramp| PathBuf::from(ramp.file_name()));
+                self.files = Some(FileDialog::new(purpose, name.as_deref()));
+            }
             Action::GoToLine(line) => {
                 self.below = Below::Text;
                 self.text.go_to(line);
@@ -251,13 +272,33 @@ impl App {
                     Action::EndGesture => studio.document.end_gesture(),
                     Action::Select(names) => studio.selected = names,
                     Action::Show(layer) => studio.look.layer = layer,
-                    Action::Palette(palette) => studio.look.palette = palette,
+                    Action::Color(coloring) => studio.look.coloring = coloring,
                     Action::Sun(sun) => studio.look.sun = sun,
                     Action::Finest(finest) => studio.look.finest = finest,
                     Action::Region(region) => studio.look.region = region,
                     _ => {}
                 }
             }
+        }
+    }
+
+    /// Opens the dialog with the colors of the view.
+    fn edit_colors(&mut self) {
+        let Some(studio) = &self.studio else { return };
+        let is_edited = matches!(studio.look.coloring, Coloring::Edited(_));
+        if let Some(palette) = palette(&studio.look.layer, &studio.look.coloring) {
+            self.use_palette(RampEditor::new(&palette, is_edited));
+        }
+    }
+
+    fn use_palette(&mut self, made: Result<RampEditor>) {
+        match (made, &mut self.studio) {
+            (Ok(ramp), Some(studio)) => {
+                studio.look.coloring = ramp.coloring();
+                self.ramp = Some(ramp);
+            }
+            (Err(error), _) => self.say(&error.to_string()),
+            _ => {}
         }
     }
 
@@ -295,6 +336,7 @@ impl App {
             Command::ShowGraph => self.below = Below::Graph,
             Command::ShowText => self.below = Below::Text,
             Command::ShowAnalysis => self.below = Below::Analysis,
+            Command::ShowReal => self.below = Below::Real,
             Command::ShowVariants => self.below = Below::Variants,
             Command::WholeView => {
                 self.relief.show_whole();
@@ -394,6 +436,7 @@ impl App {
                         (Below::Graph, "below.graph"),
                         (Below::Text, "below.text"),
                         (Below::Analysis, "below.analysis"),
+                        (Below::Real, "below.real"),
                         (Below::Variants, "below.variants"),
                     ] {
                         let label = if below == Below::Text && !studio.document.is_valid() {
@@ -406,10 +449,13 @@ impl App {
                         }
                     }
                 });
+                // What has little to show does not make the panel smaller.
+                ui.set_min_size(ui.available_size());
                 match self.below {
                     Below::Graph => self.graph.show(ui, studio, language, actions),
                     Below::Text => self.text.show(ui, studio, language, actions),
                     Below::Analysis => analysis_panel::show(ui, studio, language),
+                    Below::Real => self.real.show(ui, studio, language),
                     Below::Variants => self.variants.show(ui, studio, language, actions),
                 }
             },
@@ -435,6 +481,11 @@ impl App {
             && !files.show(context, language, actions)
         {
             self.files = None;
+        }
+        if let Some(ramp) = &mut self.ramp
+            && (self.studio.is_none() || !ramp.show(context, language, actions))
+        {
+            self.ramp = None;
         }
         if let (Some(export), Some(studio)) = (&mut self.export, &self.studio)
             && !export.show(context, studio, &self.wake, language, actions)

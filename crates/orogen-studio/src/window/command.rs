@@ -25,6 +25,7 @@ pub enum Command {
     ShowText,
     ShowAnalysis,
     ShowVariants,
+    ShowReal,
     WholeView,
     CommandPalette,
     Shortcuts,
@@ -91,7 +92,7 @@ const CTRL: Modifiers = Modifiers::COMMAND;
 const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 /// All commands, in the order of their menus.
-pub static ALL: [Entry; 23] = [
+pub static ALL: [Entry; 24] = [
     with_keys(Command::New, "command.new", Menu::File, false, CTRL, Key::N),
     with_keys(Command::Open, "command.open", Menu::File, false, CTRL, Key::O),
     with_keys(Command::Save, "command.save", Menu::File, true, CTRL, Key::S),
@@ -111,6 +112,7 @@ pub static ALL: [Entry; 23] = [
     with_keys(Command::ShowText, "command.show_text", Menu::View, true, CTRL, Key::Num4),
     with_keys(Command::ShowAnalysis, "command.show_analysis", Menu::View, true, CTRL, Key::Num5),
     with_keys(Command::ShowVariants, "command.show_variants", Menu::View, true, CTRL, Key::Num6),
+    with_keys(Command::ShowReal, "command.show_real", Menu::View, true, CTRL, Key::Num7),
     with_keys(Command::WholeView, "command.whole_view", Menu::View, true, Modifiers::NONE, Key::Home),
     with_keys(Command::CommandPalette, "command.command_palette", Menu::Help, false, CTRL_SHIFT, Key::P),
     with_keys(Command::Shortcuts, "command.shortcuts", Menu::Help, false, Modifiers::NONE, Key::F1),

@@ -18,6 +18,33 @@ pub enum Purpose {
     Open,
     /// To be saved to.
     Save,
+    /// A palette is read.
+    OpenPalette,
+    /// A palette is written.
+    SavePalette,
+}
+
+impl Purpose {
+    fn title(self) -> &'static str {
+        match self {
+            Purpose::Open => "command.open",
+            Purpose::Save => "command.save_as",
+            Purpose::OpenPalette => "colors.open",
+            Purpose::SavePalette => "colors.save",
+        }
+    }
+
+    fn saves(self) -> bool {
+        matches!(self, Purpose::Save | Purpose::SavePalette)
+    }
+
+    /// Extensions of the files that are listed.
+    fn extensions(self) -> &'static [&'static str] {
+        match self {
+            Purpose::Open | Purpose::Save => &RECIPES,
+            Purpose::OpenPalette | Purpose::SavePalette => &PALETTES,
+        }
+    }
 }
 
 /// A dialog that chooses a file.
@@ -31,8 +58,9 @@ pub struct FileDialog {
     is_new: bool,
 }
 
-/// Extensions of recipes and of the most common files of heights.
-const SHOWN: [&str; 9] = ["toml", "json", "tif", "tiff", "asc", "hgt", "npy", "exr", "zarr"];
+/// Extensions of recipes and of the most common files of heights, and those of palettes.
+const PALETTES: [&str; 4] = ["toml", "cpt", "gpl", "txt"];
+const RECIPES: [&str; 9] = ["toml", "json", "tif", "tiff", "asc", "hgt", "npy", "exr", "zarr"];
 
 impl FileDialog {
     /// A dialog that begins at a file.
@@ -43,7 +71,7 @@ impl FileDialog {
         let mut dialog = FileDialog {
             purpose,
             folder: folder.map_or_else(files::working_folder, Path::to_path_buf),
-            name: if purpose == Purpose::Save { name.unwrap_or_else(|| "untitled.toml".into()) } else { String::new() },
+            name: if purpose.saves() { name.unwrap_or_else(|| "untitled.toml".into()) } else { String::new() },
             entries: Vec::new(),
             failure: None,
             is_new: true,
@@ -57,7 +85,8 @@ impl FileDialog {
             Ok(entries) => {
                 let is_shown = |entry: &files::Entry| {
                     let extension = entry.path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
-                    entry.is_folder || extension.is_some_and(|extension| SHOWN.contains(&extension.as_str()))
+                    entry.is_folder
+                        || extension.is_some_and(|extension| self.purpose.extensions().contains(&extension.as_str()))
                 };
                 self.entries = entries.into_iter().filter(is_shown).collect();
                 self.failure = None;
@@ -78,11 +107,7 @@ impl FileDialog {
     pub fn show(&mut self, context: &Context, language: Language, actions: &mut Vec<Action>) -> bool {
         let mut is_open = true;
         let mut chosen = None;
-        let title = match self.purpose {
-            Purpose::Open => "command.open",
-            Purpose::Save => "command.save_as",
-        };
-        window(context, language.text(title), &mut is_open, vec2(520.0, 400.0), |ui| {
+        window(context, language.text(self.purpose.title()), &mut is_open, vec2(520.0, 400.0), |ui| {
             ui.horizontal(|ui| {
                 let parent = self.folder.parent().map(Path::to_path_buf);
                 if ui.add_enabled(parent.is_some(), egui::Button::new("..")).clicked()
@@ -136,12 +161,14 @@ impl FileDialog {
                 self.enter(path);
                 return true;
             }
-            if self.purpose == Purpose::Save && path.extension().is_none() {
+            if self.purpose.saves() && path.extension().is_none() {
                 path.set_extension("toml");
             }
             actions.push(match self.purpose {
                 Purpose::Open => Action::Open(path),
                 Purpose::Save => Action::Save(path),
+                Purpose::OpenPalette => Action::OpenPalette(path),
+                Purpose::SavePalette => Action::SavePalette(path),
             });
             return false;
         }

@@ -8,6 +8,7 @@ use orogen::recipe::document::NamedNode;
 use super::action::Action;
 use super::command::Command;
 use super::fields::{self, Number};
+use super::ground;
 use crate::catalogue::Language;
 use crate::editing::edit::Edit;
 use crate::editing::names;
@@ -34,6 +35,7 @@ impl Inspector {
         ui.add_enabled_ui(studio.document.is_valid(), |ui| {
             world(ui, studio, language, actions);
             parameters(ui, studio, language, actions);
+            ground::show(ui, studio, language, actions);
             ui.separator();
             let recipe = studio.document.recipe();
             let selected =

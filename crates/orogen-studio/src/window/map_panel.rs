@@ -8,11 +8,12 @@ use eframe::egui::{
 };
 
 use super::action::Action;
+use super::legend;
 use super::relief_panel::readout;
 use crate::catalogue::Language;
 use crate::editing::edit::Edit;
 use crate::editing::{drawing, names};
-use crate::preview::frame::Frame;
+use crate::preview::frame::{self, Frame};
 use crate::preview::region::Region;
 use crate::studio::Studio;
 use crate::view::map_view::MapView;
@@ -22,7 +23,7 @@ use crate::view::map_view::MapView;
 pub struct MapPanel {
     view: Option<MapView>,
     /// The picture, and the frame that it is of.
-    texture: Option<(TextureHandle, (u64, usize, u64))>,
+    texture: Option<(TextureHandle, frame::Key)>,
     /// The ends of the profile, in metres.
     profile: Option<[[f64; 2]; 2]>,
     tool: Tool,
@@ -39,8 +40,12 @@ struct Kept {
     texture: TextureHandle,
     /// Its west, north, east and south sides in metres.
     sides: [f64; 4],
+    /// The text of the recipe that it is of.
+    text: String,
     /// The share of the view in which it is shown, from the left.
     share: f32,
+    /// Whether both pictures are shown whole, beside each other.
+    is_beside: bool,
 }
 
 /// What a drag or a click on the map does.
@@ -86,14 +91,13 @@ impl MapPanel {
                 self.profile = None;
             }
             ui.separator();
-            self.comparison(ui, studio, language);
+            self.comparison(ui, studio, language, actions);
         });
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "map view"));
         let painter = ui.painter_at(rect);
         painter.rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
         let Some(frame) = &studio.frame else { return };
-        let size = [rect.width(), rect.height()];
         let window = frame.window();
         let bounds = [
             window.x as f64 * window.cell,
@@ -101,6 +105,11 @@ impl MapPanel {
             window.right() as f64 * window.cell,
             window.bottom() as f64 * window.cell,
         ];
+        // Beside each other, A has the left half, and this picture the right one.
+        let whole_rect = rect;
+        let is_beside = self.kept.as_ref().is_some_and(|kept| kept.is_beside);
+        let rect = if is_beside { rect.with_min_x(rect.center().x) } else { rect };
+        let size = [rect.width(), rect.height()];
         let mut view = self.view.unwrap_or_else(|| MapView::fitting(bounds, size));
         let before = view;
         let handle = self.handles(ui, rect, studio, &view, actions);
@@ -119,22 +128,21 @@ impl MapPanel {
         let [west, north, east, south] = sides(frame);
         let area = Rect::from_two_pos(screen([west, north]), screen([east, south]));
         let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-        painter.image(texture, area, whole, Color32::WHITE);
+        let here = painter.with_clip_rect(rect);
+        here.image(texture, area, whole, Color32::WHITE);
         if let Some(kept) = &self.kept {
+            let edge = if is_beside { rect.left() } else { rect.left() + rect.width() * kept.share };
+            let part = painter.with_clip_rect(whole_rect.with_max_x(edge));
+            let shift = Vec2::new(if is_beside { rect.width() } else { 0.0 }, 0.0);
             let [west, north, east, south] = kept.sides;
-            let edge = rect.left() + rect.width() * kept.share;
-            let part = painter.with_clip_rect(Rect::from_min_max(rect.min, pos2(edge, rect.bottom())));
-            part.rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
-            part.image(
-                kept.texture.id(),
-                Rect::from_two_pos(screen([west, north]), screen([east, south])),
-                whole,
-                Color32::WHITE,
-            );
+            let area = Rect::from_two_pos(screen([west, north]), screen([east, south])).translate(-shift);
+            part.rect_filled(whole_rect, 0.0, ui.visuals().extreme_bg_color);
+            part.image(kept.texture.id(), area, whole, Color32::WHITE);
             painter.vline(edge, rect.y_range(), Stroke::new(2.0, Color32::WHITE));
             label(&painter, pos2(edge - 8.0, rect.top() + 10.0), Align2::RIGHT_TOP, "A");
             label(&painter, pos2(edge + 8.0, rect.top() + 10.0), Align2::LEFT_TOP, "B");
         }
+        let painter = here;
         self.follow(studio, &view, size, actions);
         if let Some(pointer) = response.hover_pos() {
             let at = pointer - rect.min;
@@ -143,12 +151,13 @@ impl MapPanel {
             label(&painter, rect.left_bottom() + Vec2::new(8.0, -8.0), Align2::LEFT_BOTTOM, &text);
         }
         scale_bar(&painter, rect, &view);
+        legend::draw(&painter, rect.min + Vec2::new(10.0, if self.kept.is_some() { 40.0 } else { 10.0 }), frame);
         self.draw_drawing(&painter, studio, screen);
         self.draw_profile(ui, &painter, rect, frame, screen);
     }
 
     /// Keeps the picture, to be compared with those after later changes.
-    fn comparison(&mut self, ui: &mut Ui, studio: &Studio, language: Language) {
+    fn comparison(&mut self, ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
         match &mut self.kept {
             None => {
                 let keep = ui.add_enabled(studio.frame.is_some(), egui::Button::new(language.text("map.keep")));
@@ -156,13 +165,21 @@ impl MapPanel {
                     && let Some(frame) = &studio.frame
                 {
                     let texture = ui.ctx().load_texture("kept map", image(frame), TextureOptions::LINEAR);
-                    self.kept = Some(Kept { texture, sides: sides(frame), share: 0.5 });
+                    let text = studio.document.text().to_owned();
+                    self.kept = Some(Kept { texture, sides: sides(frame), text, share: 0.5, is_beside: false });
                 }
             }
             Some(kept) => {
+                ui.toggle_value(&mut kept.is_beside, language.text("map.beside"))
+                    .on_hover_text(language.text("map.beside_help"));
                 ui.label("A");
-                ui.add(egui::Slider::new(&mut kept.share, 0.0..=1.0).show_value(false));
+                ui.add_enabled(!kept.is_beside, egui::Slider::new(&mut kept.share, 0.0..=1.0).show_value(false));
                 ui.label("B");
+                let can_return = kept.text != studio.document.text();
+                let back = ui.add_enabled(can_return, egui::Button::new(language.text("map.return")));
+                if back.on_hover_text(language.text("map.return_help")).clicked() {
+                    actions.push(Action::Type(kept.text.clone()));
+                }
                 if ui.button(language.text("map.drop")).clicked() {
                     self.kept = None;
                 }
@@ -287,7 +304,9 @@ impl MapPanel {
         {
             let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
             if scroll != 0.0 || pinch != 1.0 {
+                // The pointer may be over the other picture.
                 let at = pointer - rect.min;
+                let at = if at.x < 0.0 { at + Vec2::new(rect.width(), 0.0) } else { at };
                 view.zoom(f64::from(pinch * libm::expf(scroll * 0.004)), [at.x, at.y], size);
             }
         }
@@ -315,8 +334,7 @@ impl MapPanel {
     }
 
     fn texture(&mut self, ui: &Ui, frame: &Arc<Frame>) -> egui::TextureId {
-        let window = frame.window();
-        let key = (frame.request, window.width, frame.seconds.to_bits());
+        let key = frame.key();
         if let Some((texture, own)) = &self.texture
             && *own == key
         {

@@ -6,6 +6,7 @@ use orogen::palette::named;
 use super::action::Action;
 use super::command::{self, Command, Menu};
 use crate::catalogue::Language;
+use crate::preview::coloring::Coloring;
 use crate::settings::{Settings, Theme};
 use crate::studio::Studio;
 
@@ -110,19 +111,37 @@ fn shown(ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Act
             }
         }
     });
-    let own = studio.look.palette.as_deref();
-    ComboBox::from_id_salt("palette")
-        .selected_text(own.unwrap_or(language.text("menu.own_palette")))
-        .height(400.0)
-        .show_ui(ui, |ui| {
-            if ui.selectable_label(own.is_none(), language.text("menu.own_palette")).clicked() {
-                actions.push(Action::Palette(None));
+    let own = &studio.look.coloring;
+    let shown = match own {
+        Coloring::Own => language.text("menu.own_palette"),
+        Coloring::Named(name) => name,
+        Coloring::Edited(palette) => &palette.name,
+        Coloring::Surfaces => language.text("colors.surfaces"),
+        Coloring::Biomes => language.text("colors.biomes"),
+        Coloring::Classes => language.text("colors.classes"),
+    };
+    ComboBox::from_id_salt("palette").selected_text(shown).height(400.0).show_ui(ui, |ui| {
+        for (coloring, name) in [
+            (Coloring::Own, "menu.own_palette"),
+            (Coloring::Surfaces, "colors.surfaces"),
+            (Coloring::Biomes, "colors.biomes"),
+            (Coloring::Classes, "colors.classes"),
+        ] {
+            if coloring.suits(studio.document.recipe())
+                && ui.selectable_label(*own == coloring, language.text(name)).clicked()
+            {
+                actions.push(Action::Color(coloring));
             }
-            for palette in named::all() {
-                let entry = ui.selectable_label(own == Some(palette.name), palette.name);
-                if entry.on_hover_text(palette.about).clicked() {
-                    actions.push(Action::Palette(Some(palette.name.to_owned())));
-                }
+        }
+        ui.separator();
+        for palette in named::all() {
+            let entry = ui.selectable_label(matches!(own, Coloring::Named(name) if name == palette.name), palette.name);
+            if entry.on_hover_text(palette.about).clicked() {
+                actions.push(Action::Color(Coloring::Named(palette.name.to_owned())));
             }
-        });
+        }
+    });
+    if ui.button(language.text("colors.edit")).on_hover_text(language.text("colors.edit_help")).clicked() {
+        actions.push(Action::EditColors);
+    }
 }

@@ -8,7 +8,7 @@ use eframe::egui_wgpu::{CallbackResources, CallbackTrait, RenderState, ScreenDes
 use wgpu::util::DeviceExt as _;
 
 use super::mesh::{Mesh, Vertex};
-use crate::preview::frame::Frame;
+use crate::preview::frame::{Frame, Key};
 
 /// What the shaders read, as `Scene` in `relief.wgsl`.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -114,8 +114,7 @@ impl CallbackTrait for Drawing {
 
 /// The land on the graphics card.
 struct Land {
-    /// The request of the frame, its samples and its time, which tell frames apart.
-    frame: (u64, usize, u64),
+    frame: Key,
     bind: wgpu::BindGroup,
 }
 
@@ -303,7 +302,7 @@ impl Relief {
     fn load(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, drawing: &Drawing) {
         let frame = &drawing.frame;
         let window = frame.window();
-        let key = (frame.request, window.width, frame.seconds.to_bits());
+        let key = frame.key();
         if self.land.as_ref().is_none_or(|land| land.frame != key) {
             self.land = Some(Land { frame: key, bind: self.textures(device, queue, frame) });
         }

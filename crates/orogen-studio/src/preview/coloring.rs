@@ -1,0 +1,42 @@
+//! What the colors of a picture show.
+
+use std::sync::Arc;
+
+use orogen::palette::palette::Palette;
+use orogen::recipe::document::Recipe;
+
+/// What the colors show.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Coloring {
+    /// The values of the layer, by the layer's own palette.
+    #[default]
+    Own,
+    /// The values of the layer, by a palette of the program.
+    Named(String),
+    /// The values of the layer, by a palette that is being edited.
+    Edited(Arc<Palette>),
+    /// The surfaces of the ground: those of the recipe, or the standard ones.
+    Surfaces,
+    /// The biomes of the recipe.
+    Biomes,
+    /// The terrain classes of the recipe.
+    Classes,
+}
+
+impl Coloring {
+    /// Whether a recipe has what these colors show.
+    #[must_use]
+    pub fn suits(&self, recipe: &Recipe) -> bool {
+        match self {
+            Coloring::Biomes => orogen::export::biome_cover::classes(recipe).is_some(),
+            Coloring::Classes => !recipe.classes().is_empty(),
+            _ => true,
+        }
+    }
+
+    /// Whether they show what covers the ground, in place of the values of the layer.
+    #[must_use]
+    pub fn is_cover(&self) -> bool {
+        matches!(self, Coloring::Surfaces | Coloring::Biomes | Coloring::Classes)
+    }
+}

@@ -1,0 +1,122 @@
+//! How real the land of a picture is: its measures, made off the thread of the user interface.
+
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+
+use orogen::survey::job::SurveyJob;
+use orogen::survey::land::Land;
+use orogen::survey::measures::Measures;
+use orogen::{Progress, Result, Session};
+
+use super::frame::{Frame, Key};
+use super::worker::Wake;
+
+/// What was measured of a picture; `None` if it has too little land.
+pub type Outcome = Result<Option<Measures>>;
+
+/// Measures pictures, one after the other; the next one cancels the one before.
+pub struct Survey {
+    wake: Wake,
+    sender: Sender<(Key, Outcome)>,
+    receiver: Receiver<(Key, Outcome)>,
+    asked: Option<Key>,
+    running: Option<Progress>,
+    outcome: Option<Outcome>,
+}
+
+impl Survey {
+    /// Nothing is measured yet.
+    #[must_use]
+    pub fn new(wake: Wake) -> Survey {
+        let (sender, receiver) = channel();
+        Survey { wake, sender, receiver, asked: None, running: None, outcome: None }
+    }
+
+    /// Measures the heights of a picture, unless it was measured last. What was measured before stays until then.
+    pub fn ask(&mut self, session: &Session, frame: &Arc<Frame>) {
+        let key = frame.key();
+        if self.asked == Some(key) {
+            return;
+        }
+        if let Some(running) = self.running.take() {
+            running.cancel();
+        }
+        self.asked = Some(key);
+        let progress = Progress::none();
+        self.running = Some(progress.clone());
+        let (frame, sender, wake) = (Arc::clone(frame), self.sender.clone(), Arc::clone(&self.wake));
+        let started = session.start(move |session| {
+            let outcome = measure(session, &frame, &progress);
+            // The panel may be closed.
+            let _ = sender.send((key, outcome));
+            wake();
+        });
+        if let Err(error) = started {
+            (self.running, self.outcome) = (None, Some(Err(error)));
+        }
+    }
+
+    /// What was measured last.
+    pub fn outcome(&mut self) -> Option<&Outcome> {
+        while let Ok((key, outcome)) = self.receiver.try_recv() {
+            if self.asked == Some(key) {
+                (self.running, self.outcome) = (None, Some(outcome));
+            }
+        }
+        self.outcome.as_ref()
+    }
+
+    /// Whether a picture is being measured.
+    #[must_use]
+    pub fn is_busy(&self) -> bool {
+        self.running.is_some()
+    }
+}
+
+impl Drop for Survey {
+    fn drop(&mut self) {
+        if let Some(running) = self.running.take() {
+            running.cancel();
+        }
+    }
+}
+
+fn measure(session: &Session, frame: &Frame, progress: &Progress) -> Outcome {
+    let samples = frame.heights.data().len() as u64;
+    let _memory = session.budget().reserve(Measures::memory(samples).saturating_sub(4 * samples))?;
+    let land = Land::in_memory(&frame.heights, Some(frame.sea_level as f32));
+    session.install(|| SurveyJob::new(land).measure(progress))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::preview::request::Request;
+    use crate::preview::worker::{Event, Worker};
+    use orogen::{Options, presets};
+    use std::time::{Duration, Instant};
+
+    #[test]
+    fn a_picture_is_measured_as_by_the_job() {
+        let session = Session::new(Options::default()).unwrap();
+        let mut worker = Worker::new(session.clone(), Arc::new(|| ()));
+        let request = Request::new(presets::find("hills").unwrap().recipe().unwrap());
+        worker.ask(Request { finest: 256, ..request });
+        let (begun, mut survey, mut frame) = (Instant::now(), Survey::new(Arc::new(|| ())), None);
+        while survey.outcome().is_none() && begun.elapsed() < Duration::from_secs(120) {
+            for event in worker.events() {
+                if let Event::Frame(made) = event {
+                    frame = Some(Arc::<Frame>::from(made));
+                }
+            }
+            if let Some(frame) = frame.as_ref().filter(|_| !worker.is_busy()) {
+                survey.ask(&session, frame);
+            }
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        let (frame, measured) = (frame.unwrap(), survey.outcome().unwrap().as_ref().unwrap().clone().unwrap());
+        let expect = Measures::of(&frame.heights, Some(frame.sea_level as f32)).unwrap();
+        assert_eq!((measured.relief, measured.slope_mean), (expect.relief, expect.slope_mean));
+        assert!(!survey.is_busy());
+    }
+}
