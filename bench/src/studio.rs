@@ -1,12 +1,16 @@
 //! Area `studio`: from a change of a parameter to the pictures of the studio, without the drawing of the window. Wall time of all cores.
 
+use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use orogen::{Options as SessionOptions, Recipe, Session, presets};
+use orogen_studio::editing::document::Document;
+use orogen_studio::editing::edit::Edit;
 use orogen_studio::preview::frame::Quality;
 use orogen_studio::preview::request::Request;
 use orogen_studio::preview::worker::{Event, Worker};
+use orogen_studio::studio::Studio;
 use serde_json::{Value, json};
 
 use crate::measure::median;
@@ -50,8 +54,54 @@ pub fn run(options: &Options) -> Result<Value, String> {
             rows.push(Figure { case, ours: median(&mut times), unit: "s", other: None, target }.json());
         }
     }
+    if "interface".contains(&options.case) {
+        rows.push(interface()?);
+    }
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     Ok(json!({ "area": "studio", "simd": orogen_simd::Level::current().name(), "threads": threads, "rows": rows }))
+}
+
+/// Nodes of the largest recipe, and edits of each.
+const NODES: usize = 500;
+const EDITS: u64 = 40;
+
+/// The most seconds that the thread of the interface may be busy with anything but drawing.
+const BUSY: f64 = 0.016;
+
+/// The longest time that an edit, the request for its pictures and what they tell take on the thread of the interface, over all presets and a recipe of
+/// `NODES` nodes. Of each recipe the median counts: on a shared machine any one of them may be interrupted.
+fn interface() -> Result<Value, String> {
+    let mut large = String::from("orogen = 1\n\n[world]\ncell = 10\nsize = 1000\n\n[nodes.n0]\nop = \"fbm\"\n");
+    for n in 1..NODES {
+        large.push_str(&format!("\n[nodes.n{n}]\nop = \"add\"\na = \"n{}\"\nb = 0.5\n", n - 1));
+    }
+    large.push_str(&format!("\n[outputs]\nheight = \"n{}\"\n", NODES - 1));
+    let large = Document::recovered(Path::new("large.toml"), large);
+    if !large.is_valid() {
+        return Err(format!("the large recipe is not valid: {:?}", large.diagnostics()));
+    }
+    let opened = presets::all().iter().map(Document::of_preset).collect::<Result<Vec<_>, _>>().map_err(|e| e.to_string())?;
+    let mut longest = (0.0, String::new());
+    for document in opened.into_iter().chain([large]) {
+        let title = document.title().to_owned();
+        let session = Session::new(SessionOptions::default()).map_err(|e| e.to_string())?;
+        let mut studio = Studio::new(session, Arc::new(|| ()), document);
+        let mut times = Vec::new();
+        for seed in 0..EDITS {
+            let begun = Instant::now();
+            studio.poll();
+            studio.edit(&Edit::Seed(seed)).map_err(|e| e.to_string())?;
+            studio.refresh();
+            times.push(begun.elapsed().as_secs_f64());
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        let time = median(&mut times);
+        if time > longest.0 {
+            longest = (time, title);
+        }
+    }
+    let case = format!("thread of the interface, an edit ({})", longest.1);
+    Ok(Figure { case, ours: longest.0, unit: "s", other: None, target: Target::AtMost(BUSY) }.json())
 }
 
 /// The seconds until the first and until the finest picture of a request.

@@ -66,6 +66,33 @@ checks.that("the menus are in two languages", bar > 60)
 start = look("start", "en", [], 60)
 checks.that("the start page has pictures", len(numpy.unique(start.reshape(-1, 3), axis=0)) > 5000)
 
+# A lost graphics device: the text that was not saved is in the window of the next run, in the same process.
+settings = WORK / "loss" / "orogen"
+settings.mkdir(parents=True, exist_ok=True)
+(settings / "studio.json").write_text('{"language": "en"}')
+screen, server = display()
+environment = {**os.environ, "DISPLAY": screen, "XDG_CONFIG_HOME": str(WORK / "loss"), "XDG_RUNTIME_DIR": str(WORK)}
+environment.pop("WAYLAND_DISPLAY", None)
+text = "orogen = 1\n\n[world]\ncell = 10\nsize = 2000\n\n[nodes.land]\nop = \"fbm\"\n\n[outputs]\nheight = \"land\"\n"
+(settings / "studio-unsaved.toml").write_text("# unsaved: precious\n" + text)
+studio = subprocess.Popen(
+    [STUDIO, "classic", "--lose-device", "3"], env=environment, stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+)
+try:
+    end = time.monotonic() + 60
+    again = b""
+    while time.monotonic() < end and studio.poll() is None and b"--after-loss" not in again:
+        time.sleep(0.5)
+        again = Path(f"/proc/{studio.pid}/cmdline").read_bytes()
+    checks.that("a lost device: the studio starts again", b"--after-loss" in again and studio.poll() is None)
+    time.sleep(4)
+    checks.that("a lost device: the studio stays open", studio.poll() is None)
+    checks.that("a lost device: the text is kept", text in (settings / "studio-unsaved.toml").read_text())
+finally:
+    for process in studio, server:
+        process.terminate()
+        process.wait(20)
+
 # Without a display it says what is missing.
 without = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
 failed = subprocess.run([STUDIO], env=without, capture_output=True, stdin=subprocess.DEVNULL, timeout=60)

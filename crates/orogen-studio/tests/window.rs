@@ -13,18 +13,17 @@ use orogen_studio::editing::drawing::points_of;
 use orogen_studio::preview::frame::Quality;
 use orogen_studio::settings::Settings;
 use orogen_studio::studio::{Studio, open};
-use orogen_studio::window::app::App;
+use orogen_studio::window::app::{App, Start};
 
 /// A window with a recipe, a preset, or the start page.
 fn window(folder: &TestFolder, document: Option<&str>, language: Language) -> Harness<'static, App> {
     let settings = Settings { language: Some(language), ..Settings::default() };
     let folder = folder.to_path_buf();
     let document = document.map(|name| open(Path::new(name)).unwrap());
-    let mut harness = Harness::builder()
-        .with_size([1280.0, 800.0])
-        .with_max_steps(8)
-        .wgpu()
-        .build_eframe(move |context| App::new(context, settings, Some(folder), document).unwrap());
+    let mut harness =
+        Harness::builder().with_size([1280.0, 800.0]).with_max_steps(8).wgpu().build_eframe(move |context| {
+            App::new(context, Start { settings, folder: Some(folder), document, ..Start::default() }).unwrap()
+        });
     harness.step();
     harness
 }

@@ -8,6 +8,7 @@ use orogen::{Budget, Options, Result, Session};
 
 use super::action::Action;
 use super::command::{self, Command};
+use super::device::DeviceWatch;
 use super::dialogs::{self, CommandPalette, FileDialog, Purpose, Unsaved};
 use super::export_dialog::ExportDialog;
 use super::graph_panel::Graph;
@@ -67,6 +68,9 @@ pub struct App {
     folder: Option<PathBuf>,
     language: Language,
     ability: Option<Ability>,
+    watch: DeviceWatch,
+    /// When the device is to be lost, for tests.
+    lose_device: Option<f64>,
     studio: Option<Studio>,
     view: View,
     below: Below,
@@ -91,6 +95,25 @@ pub struct App {
     /// When the file of the document was looked at last.
     watched: f64,
     may_close: bool,
+    /// Whether changes that are not saved stay for the next start.
+    keeps_recovered: bool,
+}
+
+/// What an application starts with.
+#[derive(Default)]
+pub struct Start {
+    /// What is remembered between runs.
+    pub settings: Settings,
+    /// The folder of settings.
+    pub folder: Option<PathBuf>,
+    /// The document, in place of the start page.
+    pub document: Option<Document>,
+    /// What watches the graphics device.
+    pub watch: DeviceWatch,
+    /// Whether the run before ended because its device was lost.
+    pub is_after_loss: bool,
+    /// The seconds after which the device is to be lost, for tests.
+    pub lose_device: Option<f64>,
 }
 
 /// The seconds between two looks at the file of the document.
@@ -101,12 +124,8 @@ impl App {
     ///
     /// # Errors
     /// If no threads can be started.
-    pub fn new(
-        context: &eframe::CreationContext<'_>,
-        settings: Settings,
-        folder: Option<PathBuf>,
-        document: Option<Document>,
-    ) -> Result<App> {
+    pub fn new(context: &eframe::CreationContext<'_>, start: Start) -> Result<App> {
+        let Start { settings, folder, document, watch, is_after_loss, lose_device } = start;
         let session = Session::new(Options { memory: Budget::of(settings.memory), ..Options::default() })?;
         let repaint = context.egui_ctx.clone();
         let wake: Wake = Arc::new(move || repaint.request_repaint());
@@ -114,6 +133,9 @@ impl App {
         theme::set(&context.egui_ctx, settings.theme);
         context.egui_ctx.set_zoom_factor(settings.scale);
         let ability = context.wgpu_render_state.as_ref().map(Ability::of);
+        if let Some(state) = &context.wgpu_render_state {
+            watch.start(state);
+        }
         let (recovery, recovered) = Recovery::new(folder.as_deref());
         let real = RealismPanel::new(Arc::clone(&wake));
         let variants = VariantsPanel::new(Arc::clone(&wake));
@@ -124,6 +146,8 @@ impl App {
             folder,
             language,
             ability,
+            watch,
+            lose_device,
             studio: None,
             view: View::Relief,
             below: Below::Graph,
@@ -146,10 +170,15 @@ impl App {
             recovered,
             watched: 0.0,
             may_close: false,
+            keeps_recovered: false,
         };
         app.use_language(&context.egui_ctx);
         if let Some(document) = document {
             app.open(document);
+        }
+        if is_after_loss {
+            app.message = Some((app.text("device.title").into(), app.text("device.lost").into()));
+            app.open_recovered();
         }
         Ok(app)
     }
@@ -184,6 +213,16 @@ impl App {
         (self.graph, self.text, self.map) = (Graph::default(), TextPanel::default(), MapPanel::default());
         self.relief.show_whole();
         self.export = None;
+        self.note_document();
+    }
+
+    /// Notes what is open, for the case that the graphics device is lost.
+    fn note_document(&self) {
+        let document = self.studio.as_ref().map(|studio| &studio.document);
+        self.watch.set_document(document.map(|document| match document.path() {
+            Some(path) => path.to_path_buf(),
+            None => PathBuf::from(document.title()),
+        }));
     }
 
     fn open_path(&mut self, path: &Path) {
@@ -214,7 +253,10 @@ impl App {
                 Some(Err(error)) => self.say(&error.to_string()),
                 None => {}
             },
-            Pending::StartPage => self.studio = None,
+            Pending::StartPage => {
+                self.studio = None;
+                self.note_document();
+            }
             Pending::Quit => {
                 self.may_close = true;
                 context.send_viewport_cmd(egui::ViewportCommand::Close);
@@ -309,6 +351,7 @@ impl App {
                 self.recovery.forget();
                 self.settings.opened(path);
                 self.settings.write(self.folder.as_deref());
+                self.note_document();
             }
             Err(error) => self.say(&error.to_string()),
         }
@@ -511,7 +554,7 @@ impl App {
 
     /// Offers the text that a crash left behind.
     fn recover(&mut self, context: &Context) {
-        let Some((title, text)) = &self.recovered else { return };
+        let Some((title, _)) = &self.recovered else { return };
         let language = self.language;
         let mut answer = None;
         let mut is_open = true;
@@ -527,18 +570,36 @@ impl App {
             });
         });
         match answer.or((!is_open).then_some(false)) {
-            Some(true) => {
-                let path = PathBuf::from(format!("{title}.toml"));
-                // It has no file: saving asks for one.
-                let document = Document::recovered(&path, text.clone());
-                self.open(document);
-                self.recovered = None;
-            }
+            Some(true) => self.open_recovered(),
             Some(false) => {
                 self.recovered = None;
                 self.recovery.forget();
             }
             None => {}
+        }
+    }
+
+    /// Opens the text that a crash left behind. It has no file: saving asks for one.
+    fn open_recovered(&mut self) {
+        if let Some((title, text)) = self.recovered.take() {
+            self.open(Document::recovered(&PathBuf::from(format!("{title}.toml")), text));
+        }
+    }
+
+    /// Ends the window if its graphics device is gone, and tells of the device's errors.
+    fn look_at_device(&mut self, context: &Context, frame: &eframe::Frame) {
+        if self.lose_device.is_some_and(|after| context.input(|input| input.time) > after)
+            && let Some(state) = frame.wgpu_render_state()
+        {
+            state.device.destroy();
+            self.lose_device = None;
+        }
+        if self.watch.lost().is_some() {
+            self.may_close = true;
+            self.keeps_recovered = true;
+            context.send_viewport_cmd(egui::ViewportCommand::Close);
+        } else if let Some(error) = self.watch.error() {
+            self.message = Some((self.text("device.title").into(), error));
         }
     }
 
@@ -595,8 +656,9 @@ fn status(ui: &mut Ui, studio: &Studio, language: Language) {
 }
 
 impl eframe::App for App {
-    fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
+    fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let context = ui.ctx().clone();
+        self.look_at_device(&context, frame);
         let mut actions = Vec::new();
         if let Some(studio) = &mut self.studio {
             studio.poll();
@@ -631,7 +693,9 @@ impl eframe::App for App {
                 context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
                 self.pending = Some(Pending::Quit);
             } else {
-                self.recovery.forget();
+                if !self.keeps_recovered {
+                    self.recovery.forget();
+                }
                 self.settings.window =
                     context.input(|input| input.viewport().inner_rect).map(|rect| [rect.width(), rect.height()]);
                 self.settings.write(self.folder.as_deref());

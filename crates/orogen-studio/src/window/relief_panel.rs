@@ -7,6 +7,7 @@ use eframe::egui_wgpu::Callback;
 use glam::Vec3;
 
 use super::action::Action;
+use super::legend;
 use super::relief::{Ability, Drawing, Scene};
 use crate::catalogue::Language;
 use crate::preview::frame::{Frame, Quality};
@@ -87,6 +88,7 @@ impl ReliefPanel {
             ability,
         };
         painter.add(Callback::new_paint_callback(rect, drawing));
+        legend::draw(&painter, rect.min + egui::vec2(10.0, 10.0), frame);
         if fewer < 1.0 {
             // The full picture once it stands.
             ui.ctx().request_repaint();

@@ -1,12 +1,16 @@
 //! The start of the window.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::Duration;
 
 use clap::Parser;
 use eframe::egui::ViewportBuilder;
 
-use super::app::App;
+use super::app::{App, Start};
+use super::device::DeviceWatch;
+use super::restart;
 use crate::files;
 use crate::settings::Settings;
 use crate::studio::open;
@@ -17,10 +21,19 @@ use crate::studio::open;
 struct Arguments {
     /// A recipe file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...) [default: the start page]
     recipe: Option<PathBuf>,
+    /// The program was started again because the graphics device of the run before was lost
+    #[arg(long, hide = true)]
+    after_loss: bool,
+    /// Lose the graphics device after so many seconds, for tests
+    #[arg(long, hide = true, value_name = "S")]
+    lose_device: Option<f64>,
 }
 
 /// The size of the window at first, and at least.
 const SIZES: [[f32; 2]; 2] = [[1280.0, 800.0], [480.0, 320.0]];
+
+/// A device that is lost this soon after one before is not worth another try.
+const SOON: Duration = Duration::from_secs(30);
 
 /// Opens the window, and returns once it is closed.
 #[must_use]
@@ -30,6 +43,8 @@ pub fn run() -> ExitCode {
     let settings = Settings::read(folder.as_deref());
     let document = match arguments.recipe.as_deref().map(open).transpose() {
         Ok(document) => document,
+        // A text without a file, which is kept.
+        Err(_) if arguments.after_loss => None,
         Err(error) => return fail(&error.to_string()),
     };
     let viewport = ViewportBuilder::default()
@@ -38,15 +53,36 @@ pub fn run() -> ExitCode {
         .with_inner_size(settings.window.unwrap_or(SIZES[0]))
         .with_min_inner_size(SIZES[1]);
     let options = eframe::NativeOptions { viewport, ..eframe::NativeOptions::default() };
-    let start = move |context: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, Box<dyn std::error::Error + Send + Sync>> {
-        Ok(Box::new(App::new(context, settings, folder, document)?))
+    let watch = DeviceWatch::default();
+    let begin = Start {
+        settings,
+        folder,
+        document,
+        watch: watch.clone(),
+        is_after_loss: arguments.after_loss,
+        lose_device: arguments.lose_device,
     };
-    match eframe::run_native("orogen-studio", options, Box::new(start)) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => fail(&format!(
+    let start = move |context: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, Box<dyn std::error::Error + Send + Sync>> {
+        Ok(Box::new(App::new(context, begin)?))
+    };
+    let begun = std::time::Instant::now();
+    // What draws the window panics when its device is gone, in the same frame; the text was kept before.
+    let ended = catch_unwind(AssertUnwindSafe(|| eframe::run_native("orogen-studio", options, Box::new(start))));
+    match (watch.lost(), ended) {
+        (Some(why), _) if arguments.after_loss && begun.elapsed() < SOON => fail(&format!(
+            "the graphics device was lost again ({why}). Changes that were not saved are kept, and offered at the next start. Check the driver of the \
+             graphics card; WGPU_BACKEND=gl or Mesa's software driver may help"
+        )),
+        (Some(_), _) => fail(&restart::again(watch.document().as_deref())),
+        (None, Ok(Ok(()))) => ExitCode::SUCCESS,
+        (None, Ok(Err(error))) => fail(&format!(
             "cannot open a window: {error}. The studio needs a display and a driver for Vulkan, Metal, DirectX 12 or OpenGL; on Linux without a \
              graphics card install Mesa's software driver (mesa-vulkan-drivers). All else works without it: `orogen generate`, `orogen map`"
         )),
+        (None, Err(_)) => fail(
+            "the studio ended by a fault of its own, which is told above; please report it. Changes that were not saved are kept, and offered at the \
+             next start",
+        ),
     }
 }
 

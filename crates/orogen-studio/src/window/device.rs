@@ -1,0 +1,76 @@
+//! The graphics device: what goes wrong with it while the window is open.
+
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use eframe::egui_wgpu::{RenderState, wgpu};
+
+/// What has gone wrong with a device.
+#[derive(Debug, Clone, Default)]
+pub struct DeviceWatch {
+    shared: Arc<Mutex<Faults>>,
+}
+
+#[derive(Debug, Default)]
+struct Faults {
+    /// Why the device is gone.
+    lost: Option<String>,
+    /// The first error that was not told yet.
+    error: Option<String>,
+    /// Whether an error was told.
+    was_told: bool,
+    /// What was open when the device was lost.
+    document: Option<PathBuf>,
+    /// The device.
+    device: Option<wgpu::Device>,
+}
+
+impl DeviceWatch {
+    /// Watches the device of a window. Without this the first error would end the program.
+    pub fn start(&self, state: &RenderState) {
+        let shared = Arc::clone(&self.shared);
+        state.device.set_device_lost_callback(move |reason, message| {
+            let mut faults = shared.lock().unwrap_or_else(PoisonError::into_inner);
+            faults.lost.get_or_insert(format!("{reason:?}: {message}"));
+        });
+        self.shared.lock().unwrap_or_else(PoisonError::into_inner).device = Some(state.device.clone());
+        let shared = Arc::clone(&self.shared);
+        state.device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            let mut faults = shared.lock().unwrap_or_else(PoisonError::into_inner);
+            if !faults.was_told {
+                faults.error.get_or_insert(error.to_string());
+            }
+        }));
+    }
+
+    /// Why the device is gone, if it is.
+    #[must_use]
+    pub fn lost(&self) -> Option<String> {
+        let device = self.shared.lock().unwrap_or_else(PoisonError::into_inner).device.clone();
+        if let Some(device) = device {
+            // It tells of its loss when it is asked for what it has done.
+            let _ = device.poll(wgpu::PollType::Poll);
+        }
+        self.shared.lock().unwrap_or_else(PoisonError::into_inner).lost.clone()
+    }
+
+    /// Notes what is open: a file, or the name of a preset.
+    pub fn set_document(&self, document: Option<PathBuf>) {
+        self.shared.lock().unwrap_or_else(PoisonError::into_inner).document = document;
+    }
+
+    /// What was open when the device was lost.
+    #[must_use]
+    pub fn document(&self) -> Option<PathBuf> {
+        self.shared.lock().unwrap_or_else(PoisonError::into_inner).document.clone()
+    }
+
+    /// The first error of the device; later calls return none, because an error comes with every frame.
+    #[must_use]
+    pub fn error(&self) -> Option<String> {
+        let mut faults = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
+        let error = faults.error.take();
+        faults.was_told |= error.is_some();
+        error
+    }
+}
