@@ -46,6 +46,8 @@ pub struct Studio {
     worker: Worker,
     /// What the current pictures were asked for: the revision of the text, and the look.
     asked: Option<(u64, Look)>,
+    /// The finest picture, and what it was asked for.
+    land: Option<(u64, Look, Arc<Frame>)>,
     /// When its file was changed last, as far as it is known.
     file_time: Option<std::time::SystemTime>,
 }
@@ -63,6 +65,7 @@ impl Studio {
             failure: None,
             worker: Worker::new(session, wake),
             asked: None,
+            land: None,
             file_time: None,
         }
     }
@@ -76,6 +79,7 @@ impl Studio {
         self.frame = None;
         self.failure = None;
         self.asked = None;
+        self.land = None;
     }
 
     /// Applies an edit.
@@ -116,7 +120,13 @@ impl Studio {
         if !self.document.is_valid() {
             return;
         }
+        // Other colors or another sun: the samples are there.
+        let is_same = |(revision, look, _): &&(u64, Look, Arc<Frame>)| {
+            *revision == self.document.revision() && look.has_land_of(&self.look)
+        };
+        let land = self.land.as_ref().filter(is_same).map(|(.., frame)| Arc::clone(frame));
         self.worker.ask(Request {
+            land,
             recipe: recipe.clone(),
             layer: self.look.layer.clone(),
             surface: surface(recipe),
@@ -133,7 +143,11 @@ impl Studio {
         for event in self.worker.events() {
             match event {
                 Event::Frame(frame) => {
-                    self.frame = Some(Arc::from(frame));
+                    let frame: Arc<Frame> = Arc::from(frame);
+                    if let Some((revision, look)) = self.asked.as_ref().filter(|_| frame.quality == Quality::Fine) {
+                        self.land = Some((*revision, look.clone(), Arc::clone(&frame)));
+                    }
+                    self.frame = Some(frame);
                     self.failure = None;
                     is_new = true;
                 }
@@ -230,6 +244,13 @@ impl Look {
             finest: 1024,
             region: Region::of(recipe.world.size, recipe.world.cell),
         }
+    }
+}
+
+impl Look {
+    /// Whether the samples of what is shown are the same: all but colors and light.
+    fn has_land_of(&self, other: &Look) -> bool {
+        self.layer == other.layer && self.region == other.region && self.finest == other.finest
     }
 }
 

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use orogen::budget::Reservation;
+use orogen::layer::LayerKind;
 use orogen::{Grid, Window};
 
 use super::legend::Legend;
@@ -33,9 +34,11 @@ pub struct Frame {
     /// How good it is.
     pub quality: Quality,
     /// The heights of the surface, in metres.
-    pub heights: Grid,
+    pub heights: Arc<Grid>,
     /// The layer that is coloured, unless it is the surface.
-    pub values: Option<Grid>,
+    pub values: Option<Arc<Grid>>,
+    /// What kind of quantity the coloured layer is.
+    pub kind: LayerKind,
     /// The unit of the coloured layer, or empty.
     pub unit: &'static str,
     /// Colors without light: red, green, blue and 255 for each sample, sRGB.
@@ -78,7 +81,7 @@ impl Frame {
     /// The layer that is coloured.
     #[must_use]
     pub fn shown(&self) -> &Grid {
-        self.values.as_ref().unwrap_or(&self.heights)
+        self.values.as_deref().unwrap_or(&self.heights)
     }
 
     /// The value of the coloured layer and the height at a position in metres; `None` outside.

@@ -1,9 +1,12 @@
 //! What is to be shown.
 
+use std::sync::Arc;
+
 use orogen::recipe::document::Recipe;
 use orogen::world::HEIGHT;
 
 use super::coloring::Coloring;
+use super::frame::Frame;
 use super::region::Region;
 
 /// A request for pictures.
@@ -23,6 +26,8 @@ pub struct Request {
     pub sun: [f64; 2],
     /// Samples along the longer side of the finest picture.
     pub finest: usize,
+    /// The finest picture of the same land in other colors or light: its samples are not computed again.
+    pub land: Option<Arc<Frame>>,
 }
 
 impl Request {
@@ -38,6 +43,7 @@ impl Request {
             coloring: Coloring::Own,
             sun: [315.0, 40.0],
             finest: 1024,
+            land: None,
         }
     }
 }

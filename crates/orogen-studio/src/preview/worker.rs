@@ -6,11 +6,13 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::Instant;
 
 use orogen::analysis::shadow::Shadows;
+use orogen::budget::Reservation;
 use orogen::export::derived::list;
 use orogen::export::layer_source::LayerSource;
 use orogen::export::options::Options as LayerOptions;
+use orogen::layer::LayerKind;
 use orogen::map::paint::Painter;
-use orogen::{Error, ErrorKind, Progress, Result, Session, World};
+use orogen::{Error, ErrorKind, Grid, Progress, Result, Session, World};
 
 use super::colors::Colors;
 use super::frame::{Frame, Quality};
@@ -142,6 +144,20 @@ fn make(
     tell: &(impl Fn(Event) + Clone + Send + Sync),
 ) -> Result<()> {
     let world = open(session, request, 1)?;
+    let tell_of = |frame: Frame| {
+        tell(Event::Frame(Box::new(Frame { request: number, seconds: begun.elapsed().as_secs_f64(), ..frame })));
+    };
+    if let Some(land) = &request.land {
+        let samples = Samples {
+            heights: Arc::clone(&land.heights),
+            values: land.values.clone(),
+            unit: land.unit,
+            kind: land.kind,
+            memory: Arc::new(world.budget().reserve(Frame::memory(land.window()))?),
+        };
+        tell_of(paint(&world, request, Quality::Fine, samples, progress)?);
+        return Ok(());
+    }
     let stages = stages::of(&world, request)?;
     let mut works = Vec::new();
     for stage in stages {
@@ -155,7 +171,9 @@ fn make(
     for (draft, stage, work) in works {
         progress.check()?;
         let part = progress.part(work.iter().sum());
-        let made = frame(draft.as_ref().unwrap_or(&world), request, stage, &part);
+        let world = draft.as_ref().unwrap_or(&world);
+        let made = samples(world, request, stage, &part)
+            .and_then(|samples| paint(world, request, stage.quality, samples, &progress.part(0.0)));
         part.finish();
         let frame = match made {
             Ok(frame) => frame,
@@ -163,7 +181,7 @@ fn make(
             Err(error) if stage.quality == Quality::Draft && error.kind() != ErrorKind::Cancelled => continue,
             Err(error) => return Err(error),
         };
-        tell(Event::Frame(Box::new(Frame { request: number, seconds: begun.elapsed().as_secs_f64(), ..frame })));
+        tell_of(frame);
     }
     Ok(())
 }
@@ -182,8 +200,17 @@ fn work(world: &World, request: &Request, stage: Stage) -> Result<[f64; 2]> {
     world.work_of(&world.plan(&[&request.surface], &window)?)
 }
 
-/// Makes a picture.
-fn frame(world: &World, request: &Request, stage: Stage, progress: &Progress) -> Result<Frame> {
+/// The samples of a picture.
+struct Samples {
+    heights: Arc<Grid>,
+    values: Option<Arc<Grid>>,
+    unit: &'static str,
+    kind: LayerKind,
+    memory: Arc<Reservation>,
+}
+
+/// Computes the samples of a picture.
+fn samples(world: &World, request: &Request, stage: Stage, progress: &Progress) -> Result<Samples> {
     let window = request.region.window(world, stage.samples)?;
     let memory = Arc::new(world.budget().reserve(Frame::memory(&window))?);
     let heights = world.grids(&[&request.surface], &window, progress)?.pop().ok_or_else(failure::nothing)?;
@@ -194,9 +221,16 @@ fn frame(world: &World, request: &Request, stage: Stage, progress: &Progress) ->
         false => {
             let mut source = LayerSource::new(world, &request.layer, window, progress)?;
             (unit, kind) = (source.unit(), source.kind());
-            Some(source.whole().map_err(failure::of_stream)?.into_iter().next().ok_or_else(failure::nothing)?)
+            let values = source.whole().map_err(failure::of_stream)?.into_iter().next();
+            Some(Arc::new(values.ok_or_else(failure::nothing)?))
         }
     };
+    Ok(Samples { heights: Arc::new(heights), values, unit, kind, memory })
+}
+
+/// Colors samples, and lights them.
+fn paint(world: &World, request: &Request, quality: Quality, samples: Samples, progress: &Progress) -> Result<Frame> {
+    let Samples { heights, values, unit, kind, memory } = samples;
     let sea_level = world.recipe().world.sea_level;
     let shown = values.as_ref().unwrap_or(&heights);
     let (albedo, legend, painter) = match request.coloring.is_cover() {
@@ -213,12 +247,13 @@ fn frame(world: &World, request: &Request, stage: Stage, progress: &Progress) ->
     let mut shaded = albedo.clone();
     world.install(|| painter.shade(&heights, &mut shaded));
     progress.check()?;
-    let lit = Shadows::new(heights.data(), heights.width(), window.cell).lit(sun::towards(request.sun));
-    let light = lit.into_iter().map(|lit| if lit { 255 } else { 0 }).collect();
+    let shadows = Shadows::new(heights.data(), heights.width(), heights.window().cell);
+    let light = shadows.lit(sun::towards(request.sun)).into_iter().map(|lit| if lit { 255 } else { 0 }).collect();
     Ok(Frame {
         request: 0,
-        quality: stage.quality,
+        quality,
         unit,
+        kind,
         statistics: Statistics::of(shown, sea_level),
         albedo,
         legend,

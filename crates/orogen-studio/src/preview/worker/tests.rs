@@ -1,3 +1,4 @@
+use super::super::coloring::Coloring;
 use super::*;
 use orogen::{Options, Recipe, presets};
 use std::time::Duration;
@@ -37,13 +38,35 @@ fn pictures_become_finer_and_the_last_one_has_the_samples_of_the_world() {
     assert!(frames.iter().all(|frame| frame.request == number));
     assert!(frames[0].quality == Quality::Coarse && frames[1].quality == Quality::Fine);
     let world = World::open(recipe).unwrap();
-    assert_eq!(frames[1].heights, world.window("height", &world.window_fitting(400).unwrap()).unwrap());
+    assert_eq!(*frames[1].heights, world.window("height", &world.window_fitting(400).unwrap()).unwrap());
     let samples = 400 * 400;
     assert_eq!(
         [frames[1].albedo.len(), frames[1].shaded.len(), frames[1].light.len()],
         [4 * samples, 4 * samples, samples]
     );
     assert!(!worker.is_busy());
+}
+
+#[test]
+fn other_colors_of_the_same_land_are_those_of_a_picture_made_anew() {
+    let mut worker = worker();
+    let request = Request { finest: 300, ..Request::new(preset("volcano")) };
+    worker.ask(request.clone());
+    let land = finish(&mut worker).pop().map(Arc::new);
+    for (coloring, sun) in [
+        (Coloring::Named("magma".into()), [315.0, 40.0]),
+        (Coloring::Surfaces, [100.0, 20.0]),
+        (Coloring::Own, [100.0, 20.0]),
+    ] {
+        let request = Request { coloring, sun, ..request.clone() };
+        worker.ask(request.clone());
+        let anew = finish(&mut worker).pop().unwrap();
+        worker.ask(Request { land: land.clone(), ..request });
+        let frames = finish(&mut worker);
+        assert!(frames.len() == 1 && Arc::ptr_eq(&frames[0].heights, &land.as_ref().unwrap().heights));
+        assert!(frames[0].quality == Quality::Fine && frames[0].shaded == anew.shaded && frames[0].light == anew.light);
+        assert_eq!(frames[0].legend, anew.legend);
+    }
 }
 
 #[test]
