@@ -10,7 +10,9 @@ use egui_kittest::kittest::Queryable as _;
 use orogen::test_folder::TestFolder;
 use orogen_studio::catalogue::Language;
 use orogen_studio::editing::drawing::points_of;
+use orogen_studio::preview::coloring::Coloring;
 use orogen_studio::preview::frame::Quality;
+use orogen_studio::preview::legend::Legend;
 use orogen_studio::settings::Settings;
 use orogen_studio::studio::{Studio, open};
 use orogen_studio::window::app::{App, Start};
@@ -248,6 +250,79 @@ fn a_slider_shows_the_land_soon() {
     let frame = studio(&harness).frame.clone().unwrap();
     assert!(frame.quality == Quality::Draft && frame.window().width == 256, "{:?}", frame.quality);
     assert!(studio(&harness).document.text().contains("[parameters.uplift_rate]"));
+}
+
+/// Chooses an entry of the list of what the colors show.
+fn choose_color(harness: &mut Harness<'_, App>, from: &str, to: &str) {
+    harness.get_by_value(from).click();
+    harness.run_steps(3);
+    harness.get_by_label(to).click();
+    harness.run_steps(3);
+}
+
+#[test]
+fn colors_are_chosen_and_edited() {
+    let folder = TestFolder::new("studio-colors").unwrap();
+    let mut harness = window(&folder, Some("tile-island"), Language::English);
+    until_done(&mut harness);
+    let plain = studio(&harness).frame.clone().unwrap();
+    assert!(matches!(plain.legend, Legend::Ramp { .. }));
+    choose_color(&mut harness, "palette of the layer", "terrain classes");
+    until(&mut harness, "the classes", |app| app.studio().unwrap().frame.as_ref().unwrap().request > plain.request);
+    let classes = studio(&harness).frame.clone().unwrap();
+    let Legend::Entries(entries) = &classes.legend else { panic!() };
+    assert!(entries.len() > 2 && classes.albedo != plain.albedo && classes.heights == plain.heights);
+
+    // The ramp of the view is edited: a color is added by a double click, dragged, and removed again.
+    harness.get_by_label("Edit colors").click();
+    harness.run_steps(3);
+    let Coloring::Edited(before) = studio(&harness).look.coloring.clone() else { panic!() };
+    let bar = harness.get_by_label("color ramp").rect();
+    let at = bar.min + bar.size() * egui::vec2(0.31, 0.3);
+    harness.event(Event::PointerMoved(at));
+    harness.run_steps(1);
+    // In one step: steps are further apart than the clicks of a double click.
+    for pressed in [true, false, true, false] {
+        let button = PointerButton::Primary;
+        let click = Event::PointerButton { pos: at, button, pressed, modifiers: Modifiers::NONE };
+        harness.input_mut().events.push(click);
+    }
+    harness.run_steps(3);
+    let Coloring::Edited(after) = studio(&harness).look.coloring.clone() else { panic!() };
+    assert_eq!(after.stops.len(), before.stops.len() + 1);
+    harness.get_by_label("Remove").click();
+    harness.run_steps(3);
+    let Coloring::Edited(removed) = studio(&harness).look.coloring.clone() else { panic!() };
+    assert_eq!(removed.stops, before.stops);
+}
+
+#[test]
+fn the_land_is_compared_with_real_land_and_with_itself() {
+    let folder = TestFolder::new("studio-real").unwrap();
+    let mut harness = window(&folder, Some("hills"), Language::English);
+    until_done(&mut harness);
+    press(&mut harness, Modifiers::COMMAND, Key::Num7);
+    let begun = Instant::now();
+    while harness.query_by_label("mean slope").is_none() {
+        assert!(begun.elapsed() < Duration::from_secs(60), "no figures");
+        std::thread::sleep(Duration::from_millis(10));
+        harness.step();
+    }
+    assert!(harness.query_all_by_label("as real land").count() > 3);
+
+    // Two pictures side by side, and back to the first recipe.
+    press(&mut harness, Modifiers::COMMAND, Key::Num2);
+    harness.get_by_label("Compare").click();
+    harness.run_steps(2);
+    let before = studio(&harness).document.text().to_owned();
+    press(&mut harness, Modifiers::COMMAND, Key::R);
+    until_done(&mut harness);
+    harness.get_by_label("Side by side").click();
+    harness.run_steps(2);
+    assert!(harness.render().is_ok());
+    harness.get_by_label("Back to A").click();
+    harness.run_steps(2);
+    assert_eq!(studio(&harness).document.text(), before);
 }
 
 #[test]
