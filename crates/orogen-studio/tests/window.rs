@@ -168,6 +168,40 @@ fn it_speaks_chinese_if_the_system_has_letters_for_it() {
     assert!(speaks || harness.query_by_label("Graph").is_some());
 }
 
+/// Broken and huge recipes open; without a graphics card all but the view in space is there.
+#[test]
+fn broken_and_huge_recipes_open_and_so_does_a_window_without_a_graphics_card() {
+    let folder = TestFolder::new("studio-broken").unwrap();
+    let broken = folder.join("broken.toml");
+    std::fs::write(&broken, "orogen = 1\n[world]\ncell = \"wide\"\n").unwrap();
+    let mut harness = window(&folder, broken.to_str(), Language::English);
+    harness.run_steps(3);
+    assert!(!studio(&harness).document.is_valid());
+    // The text is shown with its error, and can be mended.
+    assert!(harness.query_by_label_contains("The text has errors").is_some());
+    assert!(harness.query_by_role_and_label(Role::TextInput, "recipe").is_some());
+    assert!(harness.render().is_ok());
+
+    let mut text = String::from("orogen = 1\n\n[world]\ncell = 10\nsize = 1000\n\n[nodes.n0]\nop = \"fbm\"\n");
+    (1..400).for_each(|n| text.push_str(&format!("[nodes.n{n}]\nop = \"add\"\na = \"n{}\"\nb = 0.5\n", n - 1)));
+    text.push_str("[outputs]\nheight = \"n399\"\n");
+    let huge = folder.join("huge.toml");
+    std::fs::write(&huge, text).unwrap();
+    let mut harness = window(&folder, huge.to_str(), Language::English);
+    until_done(&mut harness);
+    assert!(harness.render().is_ok() && studio(&harness).failure.is_none());
+
+    let settings = Settings { language: Some(Language::English), ..Settings::default() };
+    let start = Start { settings, document: Some(open(Path::new("classic")).unwrap()), ..Start::default() };
+    let mut harness = Harness::builder()
+        .with_size([800.0, 600.0])
+        .with_max_steps(8)
+        .build_eframe(move |context| App::new(context, start).unwrap());
+    until_done(&mut harness);
+    press(&mut harness, Modifiers::COMMAND, Key::Num2);
+    assert!(harness.query_by_label("map view").is_some());
+}
+
 #[test]
 fn sizes_from_tiny_to_large_are_drawn() {
     let folder = TestFolder::new("studio-sizes").unwrap();

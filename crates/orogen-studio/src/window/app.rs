@@ -206,6 +206,10 @@ impl App {
             self.settings.opened(path);
             self.settings.write(self.folder.as_deref());
         }
+        if !document.is_valid() {
+            // Its errors are shown there.
+            self.below = Below::Text;
+        }
         match &mut self.studio {
             Some(studio) => studio.open(document),
             None => self.studio = Some(Studio::new(self.session.clone(), Arc::clone(&self.wake), document)),
