@@ -25,6 +25,8 @@ pub struct Look {
     pub coloring: Coloring,
     /// Azimuth and altitude of the sun, in degrees.
     pub sun: [f64; 2],
+    /// The interval of contours in metres, 0 for a round one that suits the land; none if `None`.
+    pub contours: Option<f64>,
     /// Samples along the longer side of the finest picture.
     pub finest: usize,
     /// The part of the world.
@@ -72,7 +74,12 @@ impl Studio {
 
     /// Another document in place of this one.
     pub fn open(&mut self, document: Document) {
-        self.look = Look { sun: self.look.sun, finest: self.look.finest, ..Look::of(document.recipe()) };
+        self.look = Look {
+            sun: self.look.sun,
+            contours: self.look.contours,
+            finest: self.look.finest,
+            ..Look::of(document.recipe())
+        };
         self.file_time = document.path().and_then(files::changed);
         self.document = document;
         self.selected.clear();
@@ -133,6 +140,7 @@ impl Studio {
             region: self.look.region,
             coloring: self.look.coloring.clone(),
             sun: self.look.sun,
+            contours: self.look.contours,
             finest: self.look.finest,
         });
     }
@@ -241,6 +249,7 @@ impl Look {
             layer: surface(recipe),
             coloring: Coloring::Own,
             sun: [315.0, 40.0],
+            contours: None,
             finest: 1024,
             region: Region::of(recipe.world.size, recipe.world.cell),
         }

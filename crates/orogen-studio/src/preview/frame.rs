@@ -6,6 +6,7 @@ use orogen::budget::Reservation;
 use orogen::layer::LayerKind;
 use orogen::{Grid, Window};
 
+use super::contours::Contours;
 use super::legend::Legend;
 use super::statistics::Statistics;
 
@@ -47,6 +48,8 @@ pub struct Frame {
     pub legend: Legend,
     /// Colors with relief shading, as maps have them.
     pub shaded: Vec<u8>,
+    /// Contour lines of the heights, if they are wanted.
+    pub contours: Option<Arc<Contours>>,
     /// How much of the sun each sample sees, 0 to 255.
     pub light: Vec<u8>,
     /// The height of the sea.

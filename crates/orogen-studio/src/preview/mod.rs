@@ -2,6 +2,7 @@
 
 pub mod coloring;
 pub mod colors;
+pub mod contours;
 pub mod cover;
 pub mod failure;
 pub mod frame;

@@ -26,6 +26,8 @@ pub struct Request {
     pub sun: [f64; 2],
     /// Samples along the longer side of the finest picture.
     pub finest: usize,
+    /// The interval of contours in metres, 0 for a round one that suits the land; none if `None`.
+    pub contours: Option<f64>,
     /// The finest picture of the same land in other colors or light: its samples are not computed again.
     pub land: Option<Arc<Frame>>,
 }
@@ -43,6 +45,7 @@ impl Request {
             coloring: Coloring::Own,
             sun: [315.0, 40.0],
             finest: 1024,
+            contours: None,
             land: None,
         }
     }

@@ -15,6 +15,7 @@ use orogen::map::paint::Painter;
 use orogen::{Error, ErrorKind, Grid, Progress, Result, Session, World};
 
 use super::colors::Colors;
+use super::contours::Contours;
 use super::frame::{Frame, Quality};
 use super::request::Request;
 use super::stages::{self, Stage};
@@ -247,6 +248,8 @@ fn paint(world: &World, request: &Request, quality: Quality, samples: Samples, p
     let mut shaded = albedo.clone();
     world.install(|| painter.shade(&heights, &mut shaded));
     progress.check()?;
+    let contours = request.contours.map(|interval| Contours::of(&heights, interval)).transpose()?.map(Arc::new);
+    progress.check()?;
     let shadows = Shadows::new(heights.data(), heights.width(), heights.window().cell);
     let light = shadows.lit(sun::towards(request.sun)).into_iter().map(|lit| if lit { 255 } else { 0 }).collect();
     Ok(Frame {
@@ -258,6 +261,7 @@ fn paint(world: &World, request: &Request, quality: Quality, samples: Samples, p
         albedo,
         legend,
         shaded,
+        contours,
         light,
         sea_level,
         seconds: 0.0,

@@ -37,6 +37,8 @@ pub enum Action {
     Choose(Purpose),
     /// The direction of the sun: azimuth and altitude in degrees.
     Sun([f64; 2]),
+    /// The interval of contours in metres, 0 for one that suits the land; none if `None`.
+    Contours(Option<f64>),
     /// Samples along the longer side of the finest picture.
     Finest(usize),
     /// The part of the world.

@@ -320,6 +320,7 @@ impl App {
                     Action::Show(layer) => studio.look.layer = layer,
                     Action::Color(coloring) => studio.look.coloring = coloring,
                     Action::Sun(sun) => studio.look.sun = sun,
+                    Action::Contours(interval) => studio.look.contours = interval,
                     Action::Finest(finest) => studio.look.finest = finest,
                     Action::Region(region) => studio.look.region = region,
                     _ => {}

@@ -8,8 +8,9 @@ use eframe::egui::{
 };
 
 use super::action::Action;
+use super::contour_lines::ContourLines;
 use super::legend;
-use super::relief_panel::readout;
+use super::relief_panel::{contours, readout};
 use crate::catalogue::Language;
 use crate::editing::edit::Edit;
 use crate::editing::{drawing, names};
@@ -33,6 +34,7 @@ pub struct MapPanel {
     asked: Option<Region>,
     /// The picture with which later ones are compared.
     kept: Option<Kept>,
+    contours: ContourLines,
 }
 
 /// A picture that is kept for a comparison.
@@ -91,6 +93,8 @@ impl MapPanel {
                 self.profile = None;
             }
             ui.separator();
+            contours(ui, studio, language, actions);
+            ui.separator();
             self.comparison(ui, studio, language, actions);
         });
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
@@ -143,6 +147,11 @@ impl MapPanel {
             label(&painter, pos2(edge + 8.0, rect.top() + 10.0), Align2::LEFT_TOP, "B");
         }
         let painter = here;
+        let shown_from = match &self.kept {
+            Some(kept) if !is_beside => rect.left() + rect.width() * kept.share,
+            _ => rect.left(),
+        };
+        self.contours.draw(&painter.with_clip_rect(rect.with_min_x(shown_from)), rect, frame, &view);
         self.follow(studio, &view, size, actions);
         if let Some(pointer) = response.hover_pos() {
             let at = pointer - rect.min;

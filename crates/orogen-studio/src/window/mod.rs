@@ -6,6 +6,7 @@ pub mod action;
 pub mod analysis_panel;
 pub mod app;
 pub mod command;
+pub mod contour_lines;
 pub mod device;
 pub mod dialogs;
 pub mod export_dialog;

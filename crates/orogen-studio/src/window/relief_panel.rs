@@ -10,6 +10,7 @@ use super::action::Action;
 use super::legend;
 use super::relief::{Ability, Drawing, Scene};
 use crate::catalogue::Language;
+use crate::preview::contours::suiting;
 use crate::preview::frame::{Frame, Quality};
 use crate::studio::Studio;
 use crate::view::camera::Camera;
@@ -22,9 +23,6 @@ pub struct ReliefPanel {
     pub camera: Camera,
     /// Heights are drawn this many times as high; `None` for a number that suits the land.
     exaggeration: Option<f64>,
-    /// The interval of contours in metres; 0 draws none.
-    contours: f64,
-    has_contours: bool,
     has_water: bool,
     has_shadows: bool,
     has_wire: bool,
@@ -37,8 +35,6 @@ impl Default for ReliefPanel {
         ReliefPanel {
             camera: Camera::default(),
             exaggeration: None,
-            contours: 0.0,
-            has_contours: false,
             has_water: true,
             has_shadows: true,
             has_wire: false,
@@ -138,7 +134,7 @@ impl ReliefPanel {
                 self.exaggeration = Some(times);
             }
             ui.separator();
-            ui.toggle_value(&mut self.has_contours, language.text("relief.contours"));
+            contours(ui, studio, language, actions);
             ui.toggle_value(&mut self.has_water, language.text("relief.water"));
             ui.toggle_value(&mut self.has_shadows, language.text("relief.shadows"));
             ui.toggle_value(&mut self.has_wire, language.text("relief.wire"));
@@ -224,14 +220,14 @@ impl ReliefPanel {
         let is_heights = frame.values.is_none() || studio.look.layer == orogen::world::HEIGHT;
         let has_water = self.has_water && is_heights && low < sea;
         let relief = (high - low).max(1e-3);
-        let interval = if self.contours > 0.0 { self.contours as f32 } else { interval(relief) };
+        let interval = studio.look.contours.map_or(0.0, |own| suiting(own, [low, high].map(f64::from)) as f32);
         let sky = sky(height);
         let eye = self.camera.position();
         Scene {
             matrix: self.camera.matrix(aspect).to_cols_array_2d(),
             sun: [east, height, south, if self.has_shadows { 0.85 } else { 0.0 }],
             extent: [half(window.width), half(window.height), up, middle],
-            lines: [if self.has_contours { interval } else { 0.0 }, 0.5, (low - middle) * up - 0.06, 1.0],
+            lines: [interval, 0.5, (low - middle) * up - 0.06, 1.0],
             water: [sea, f32::from(u8::from(has_water)), 0.0, relief],
             eye: [eye.x, eye.y, eye.z, 0.0],
             sky: [sky[0], sky[1], sky[2], 1.0],
@@ -287,12 +283,24 @@ fn sky(height: f32) -> [f32; 3] {
     std::array::from_fn(|c| low[c] + (high[c] - low[c]) * day)
 }
 
-/// A round interval of contours for a relief in metres.
-fn interval(relief: f32) -> f32 {
-    let rough = relief / 25.0;
-    let power = libm::powf(10.0, libm::log10f(rough.max(1e-6)).floor());
-    let nice = [1.0, 2.0, 5.0, 10.0].into_iter().find(|step| step * power >= rough).unwrap_or(10.0);
-    nice * power
+/// The switch of contours and, if they are on, a field for their interval; 0 is one that suits the land.
+pub fn contours(ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
+    let own = studio.look.contours;
+    let switch = ui.selectable_label(own.is_some(), language.text("relief.contours"));
+    if switch.clicked() {
+        actions.push(Action::Contours(if own.is_some() { None } else { Some(0.0) }));
+    }
+    if let Some(own) = own {
+        let mut interval = own;
+        let suits = |number: f64, _: std::ops::RangeInclusive<usize>| match number > 0.0 {
+            true => format!("{} m", orogen::words::number(number)),
+            false => language.text("relief.interval_suits").to_owned(),
+        };
+        let field = ui.add(egui::DragValue::new(&mut interval).range(0.0..=1e5).speed(1.0).custom_formatter(suits));
+        if field.on_hover_text(language.text("relief.interval")).changed() {
+            actions.push(Action::Contours(Some(interval.round())));
+        }
+    }
 }
 
 fn say(painter: &egui::Painter, rect: Rect, text: &str, ui: &Ui) {
@@ -315,17 +323,5 @@ pub fn readout(frame: &Frame, world: [f64; 2], language: Language) -> String {
     match frame.values {
         None => format!("{height:.1} m{draft}   {place}"),
         Some(_) => format!("{value:.4} {}   {height:.1} m{draft}   {place}", frame.unit),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn intervals_are_round() {
-        for (relief, expect) in [(2500.0, 100.0), (1000.0, 50.0), (30.0, 2.0), (0.001, 5e-5)] {
-            assert!((interval(relief) / expect - 1.0).abs() < 1e-3, "{relief}: {}", interval(relief));
-        }
     }
 }
