@@ -9,6 +9,7 @@ use orogen::{Error, ErrorKind, Result, Session};
 
 use crate::editing::document::Document;
 use crate::editing::edit::Edit;
+use crate::editing::strokes::Placement;
 use crate::files;
 use crate::preview::frame::{Frame, Quality};
 use crate::preview::region::Region;
@@ -82,6 +83,8 @@ impl Studio {
     /// # Errors
     /// If it cannot be applied; then nothing changes.
     pub fn edit(&mut self, edit: &Edit) -> Result<()> {
+        let had = |name: &str| self.document.recipe().nodes().iter().any(|named| named.name == name);
+        let is_new = matches!(edit, Edit::Stroke { node, .. } if !had(node));
         self.document.apply(edit)?;
         match edit {
             Edit::Delete(names) => self.selected.retain(|name| !names.contains(name)),
@@ -89,6 +92,13 @@ impl Studio {
                 self.selected.iter_mut().filter(|name| *name == from).for_each(|name| name.clone_from(to));
             }
             Edit::Add { name, .. } => self.selected = vec![name.clone()],
+            Edit::Stroke { node, placement, .. } => {
+                self.selected = vec![node.clone()];
+                // What nothing reads would not be seen.
+                if is_new && *placement == Placement::Alone {
+                    self.look.layer.clone_from(node);
+                }
+            }
             _ => {}
         }
         Ok(())

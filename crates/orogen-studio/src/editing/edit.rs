@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use orogen::declare::Input;
+use orogen::declare::{Input, Stroke};
 use orogen::node::Node;
 use orogen::recipe::document::Recipe;
 use orogen::value::Value;
@@ -10,7 +10,8 @@ use toml_edit::{DocumentMut, Item, Table};
 
 use super::names;
 use super::references::{Change, Site, change};
-use super::tables::{node, set, top, value_of};
+use super::strokes::{self, Placement};
+use super::tables::{add_node, node, set, top, value_of};
 
 /// An edit.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,6 +33,8 @@ pub enum Edit {
     Output { name: String, source: Input },
     /// A new node with some inputs and parameters. Required inputs that `inputs` lacks are 0.
     Add { name: String, op: String, inputs: Vec<(String, String)>, params: Vec<(String, Value)> },
+    /// Stroke number `at`, from 0, of a node that paints: a new one, or a longer form of the last one. A node that is not there is made at `placement`.
+    Stroke { node: String, placement: Placement, at: usize, stroke: Stroke },
     /// Nodes are removed; what read one reads its first input.
     Delete(Vec<String>),
     /// Copies of nodes; connections among them are those of the copies.
@@ -51,6 +54,7 @@ impl Edit {
             Edit::Reset { .. } => "edit.reset",
             Edit::Connect { .. } | Edit::Output { .. } => "edit.connect",
             Edit::Add { .. } => "edit.add",
+            Edit::Stroke { .. } => "edit.stroke",
             Edit::Delete(_) => "edit.delete",
             Edit::Duplicate(_) => "edit.duplicate",
             Edit::Rename { .. } => "edit.rename",
@@ -65,6 +69,7 @@ impl Edit {
             Edit::World(key, _) => Some(format!("world/{key}")),
             Edit::Default { parameter, .. } => Some(format!("parameter/{parameter}")),
             Edit::Param { node, key, .. } => Some(format!("node/{node}/{key}")),
+            Edit::Stroke { node, at, .. } => Some(format!("stroke/{node}/{at}")),
             _ => None,
         }
     }
@@ -144,6 +149,9 @@ pub fn apply(text: &str, recipe: &Recipe, edit: &Edit) -> Result<String, String>
                 set(own, key, value);
             }
         }
+        Edit::Stroke { node: name, placement, at, stroke } => {
+            strokes::write(&mut document, name, placement, *at, stroke)?;
+        }
         Edit::Delete(names) => delete(&mut document, recipe, names)?,
         Edit::Duplicate(names) => duplicate(&mut document, recipe, names)?,
         Edit::Rename { from, to } => {
@@ -182,15 +190,7 @@ fn add(document: &mut DocumentMut, name: &str, op: &str, inputs: &[(String, Stri
             None => drop(own.insert("expr", toml_edit::value("0"))),
         }
     }
-    own.decor_mut().set_prefix("\n");
-    let nodes = top(document, "nodes").ok_or("`nodes` is no table")?;
-    match nodes.contains_key(name) {
-        true => Err(format!("there is a node `{name}` already")),
-        false => {
-            nodes.insert(name, Item::Table(own));
-            Ok(())
-        }
-    }
+    add_node(document, name, own)
 }
 
 /// The node of a reference, without its layer.

@@ -1,12 +1,15 @@
 //! The recipe that is edited: its text, what the text means, edits that keep comments, and undo.
 
+pub mod brush;
 pub mod document;
 pub mod drawing;
 pub mod edit;
 pub mod history;
 pub mod names;
 mod references;
+pub mod strokes;
 mod tables;
+mod thinning;
 pub mod variants;
 
 #[cfg(test)]

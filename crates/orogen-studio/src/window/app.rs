@@ -234,6 +234,10 @@ impl App {
                 self.view = View::Map;
                 self.map.draw(op);
             }
+            Action::Brush(effect) => {
+                self.view = View::Map;
+                self.map.take_brush(effect);
+            }
             Action::Copy(text) => context.copy_text(text),
             Action::GoToLine(line) => {
                 self.below = Below::Text;

@@ -8,8 +8,10 @@ use eframe::egui::{
 };
 
 use super::action::Action;
+use super::map_brush::{self, MapBrush};
 use super::relief_panel::readout;
 use crate::catalogue::Language;
+use crate::editing::brush::Effect;
 use crate::editing::edit::Edit;
 use crate::editing::{drawing, names};
 use crate::preview::frame::Frame;
@@ -26,6 +28,7 @@ pub struct MapPanel {
     /// The ends of the profile, in metres.
     profile: Option<[[f64; 2]; 2]>,
     tool: Tool,
+    brush: MapBrush,
     /// The points of what is being drawn.
     drawn: Vec<[f64; 2]>,
     /// The region that was asked for last.
@@ -53,6 +56,8 @@ enum Tool {
     Profile,
     /// It draws a line or an area: the op.
     Draw(&'static str),
+    /// It paints.
+    Brush(Effect),
 }
 
 /// The longest side of a picture.
@@ -66,28 +71,10 @@ impl MapPanel {
 
     /// Shows the map.
     pub fn show(&mut self, ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
-        ui.horizontal(|ui| {
-            for (tool, name, help) in [
-                (Tool::Pan, "map.pan", "map.pan_help"),
-                (Tool::Profile, "map.profile", "map.profile_help"),
-                (Tool::Draw(drawing::OPS[0]), "map.path", "map.draw_help"),
-                (Tool::Draw(drawing::OPS[1]), "map.polygon", "map.draw_help"),
-            ] {
-                if ui
-                    .selectable_label(self.tool == tool, language.text(name))
-                    .on_hover_text(language.text(help))
-                    .clicked()
-                {
-                    self.tool = tool;
-                    self.drawn.clear();
-                }
-            }
-            if self.profile.is_some() && ui.button(language.text("map.clear")).clicked() {
-                self.profile = None;
-            }
-            ui.separator();
-            self.comparison(ui, studio, language);
-        });
+        self.tools(ui, studio, language);
+        if let (Tool::Brush(effect), Some(frame)) = (self.tool, &studio.frame) {
+            self.brush.settings(ui, effect, frame, language);
+        }
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "map view"));
         let painter = ui.painter_at(rect);
@@ -103,9 +90,13 @@ impl MapPanel {
         ];
         let mut view = self.view.unwrap_or_else(|| MapView::fitting(bounds, size));
         let before = view;
-        let handle = self.handles(ui, rect, studio, &view, actions);
-        if !handle {
+        let is_brush = matches!(self.tool, Tool::Brush(_));
+        // A brush paints over the points of a drawing.
+        if is_brush || !self.handles(ui, rect, studio, &view, actions) {
             self.navigate(ui, &response, rect, &mut view);
+        }
+        if is_brush {
+            self.brush.paint(ui, &response, (rect, &view), studio, actions);
         }
         self.draw_line(ui, &response, (rect, &view), studio, actions);
         if view != before {
@@ -145,6 +136,40 @@ impl MapPanel {
         scale_bar(&painter, rect, &view);
         self.draw_drawing(&painter, studio, screen);
         self.draw_profile(ui, &painter, rect, frame, screen);
+        if is_brush {
+            self.brush.draw(&painter, response.hover_pos(), (rect, &view), studio, language);
+        }
+    }
+
+    /// The choice of the tool, and the comparison.
+    fn tools(&mut self, ui: &mut Ui, studio: &Studio, language: Language) {
+        ui.horizontal_wrapped(|ui| {
+            let brushes = Effect::ALL.map(|effect| {
+                let [name, help] = map_brush::names(effect);
+                (Tool::Brush(effect), name, help)
+            });
+            let tools = [
+                (Tool::Pan, "map.pan", "map.pan_help"),
+                (Tool::Profile, "map.profile", "map.profile_help"),
+                (Tool::Draw(drawing::OPS[0]), "map.path", "map.draw_help"),
+                (Tool::Draw(drawing::OPS[1]), "map.polygon", "map.draw_help"),
+            ];
+            for (tool, name, help) in tools.into_iter().chain(brushes) {
+                if ui
+                    .selectable_label(self.tool == tool, language.text(name))
+                    .on_hover_text(language.text(help))
+                    .clicked()
+                {
+                    self.tool = tool;
+                    self.drawn.clear();
+                }
+            }
+            if self.profile.is_some() && ui.button(language.text("map.clear")).clicked() {
+                self.profile = None;
+            }
+            ui.separator();
+            self.comparison(ui, studio, language);
+        });
     }
 
     /// Keeps the picture, to be compared with those after later changes.
@@ -174,6 +199,11 @@ impl MapPanel {
     pub fn draw(&mut self, op: &'static str) {
         self.tool = Tool::Draw(op);
         self.drawn.clear();
+    }
+
+    /// Takes a brush.
+    pub fn take_brush(&mut self, effect: Effect) {
+        self.tool = Tool::Brush(effect);
     }
 
     /// Adds the points that are clicked; a double click or Enter ends, Escape drops them.
@@ -269,8 +299,10 @@ impl MapPanel {
 
     fn navigate(&mut self, ui: &Ui, response: &egui::Response, rect: Rect, view: &mut MapView) {
         let size = [rect.width(), rect.height()];
-        let is_line = self.tool == Tool::Profile && response.dragged_by(PointerButton::Primary);
-        if response.dragged() && !is_line {
+        let is_brush = matches!(self.tool, Tool::Brush(_));
+        let is_by_primary = response.dragged_by(PointerButton::Primary);
+        let is_line = self.tool == Tool::Profile && is_by_primary;
+        if response.dragged() && !is_line && !(is_brush && is_by_primary) {
             let by = response.drag_delta();
             view.pan([by.x, by.y]);
         }
@@ -286,6 +318,8 @@ impl MapPanel {
             && let Some(pointer) = ui.input(|input| input.pointer.hover_pos())
         {
             let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+            // Ctrl with the wheel is for the brush.
+            let pinch = if is_brush { 1.0 } else { pinch };
             if scroll != 0.0 || pinch != 1.0 {
                 let at = pointer - rect.min;
                 view.zoom(f64::from(pinch * libm::expf(scroll * 0.004)), [at.x, at.y], size);
@@ -409,7 +443,8 @@ fn selected(studio: &Studio) -> Option<(&str, Vec<[f64; 2]>)> {
     Some((&named.name, drawing::points_of(&named.node)?))
 }
 
-fn label(painter: &egui::Painter, at: egui::Pos2, align: Align2, text: &str) {
+/// A text on a dark ground.
+pub(super) fn label(painter: &egui::Painter, at: egui::Pos2, align: Align2, text: &str) {
     if !text.is_empty() {
         let galley = painter.layout_no_wrap(text.to_owned(), FontId::monospace(11.0), Color32::WHITE);
         let rect = align.anchor_size(at, galley.size());
