@@ -26,6 +26,7 @@ nodes! {
         mix::Mix,
         multiply::Multiply,
         open_simplex2::OpenSimplex2,
+        paint::Paint,
         path::Path,
         perlin::Perlin,
         ping_pong::PingPong,

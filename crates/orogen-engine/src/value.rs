@@ -94,6 +94,20 @@ impl Value {
             Value::Other(name) => toml_string(name),
         }
     }
+
+    /// The value in TOML, with a line for each table of a list of tables.
+    #[must_use]
+    pub fn to_toml_lines(&self) -> String {
+        match self {
+            Value::List(items)
+                if !items.is_empty() && items.iter().all(|item| matches!(item.value, Value::Table(_))) =>
+            {
+                let lines: String = items.iter().map(|item| format!("  {},\n", item.value.to_toml())).collect();
+                format!("[\n{lines}]")
+            }
+            _ => self.to_toml(),
+        }
+    }
 }
 
 /// The shortest TOML number that reads back as the same f64.

@@ -3,12 +3,14 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use orogen::recipe::document::Recipe;
+use orogen::declare::Input;
+use orogen::recipe::document::{NamedNode, Recipe};
 use orogen::world::HEIGHT;
 use orogen::{Error, ErrorKind, Result, Session};
 
 use crate::editing::document::Document;
 use crate::editing::edit::Edit;
+use crate::editing::strokes;
 use crate::files;
 use crate::preview::coloring::Coloring;
 use crate::preview::frame::{Frame, Quality};
@@ -101,6 +103,10 @@ impl Studio {
                 self.selected.iter_mut().filter(|name| *name == from).for_each(|name| name.clone_from(to));
             }
             Edit::Add { name, .. } => self.selected = vec![name.clone()],
+            Edit::Stroke { node, .. } => {
+                self.selected = vec![node.clone()];
+                self.look.layer = layer_of_stroke(self.document.recipe(), node, &self.look.layer);
+            }
             _ => {}
         }
         Ok(())
@@ -277,6 +283,21 @@ fn has_layer(recipe: &Recipe, layer: &str) -> bool {
     recipe.outputs().any(|name| name == layer)
         || recipe.nodes().iter().any(|named| named.name == node)
         || orogen::export::derived::list::named(layer).is_some()
+}
+
+/// The layer that shows a stroke of a node: the node itself if nothing reads it; otherwise what is shown, unless that is a mask that is painted.
+fn layer_of_stroke(recipe: &Recipe, node: &str, shown: &str) -> String {
+    let is_it = |input: &Input| matches!(input, Input::Node(name) if name == node);
+    let reads =
+        |named: &NamedNode| is_it(&named.mask) || (0..named.node.inputs().len()).any(|i| is_it(named.node.input(i)));
+    let is_read = recipe.nodes().iter().any(reads) || recipe.output_inputs().iter().any(|(_, input)| is_it(input));
+    let paints =
+        |name: &str| recipe.nodes().iter().any(|named| named.name == name && named.node.spec().op == strokes::OP);
+    match is_read {
+        false => node.to_owned(),
+        true if shown != node && paints(shown) => surface(recipe),
+        true => shown.to_owned(),
+    }
 }
 
 /// Opens a recipe, a preset by its name, or a file of heights.

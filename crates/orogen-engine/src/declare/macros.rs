@@ -60,7 +60,7 @@ macro_rules! choice {
 /// - `inputs { /// .. source: required, /// .. other: optional, }`: the nodes it reads, by their index in the `inputs` that it is given.
 ///   `inputs of NAME;` instead reads whatever the expression in its parameter NAME names.
 /// - `params { /// .. name: TYPE = DEFAULT, unit "m", range 0.0 to 1e5; }`: unit and range are optional. A type is any
-///   [`Param`](crate::declare::Param): `f64`, `u32`, `u64` (a seed), `bool`, `[f64; 2]`, `Vec<[f64; 2]>` (a curve), `LinePoints` or `AreaPoints`, `FileRef`, `Expression`, or a
+///   [`Param`](crate::declare::Param): `f64`, `u32`, `u64` (a seed), `bool`, `[f64; 2]`, `Vec<[f64; 2]>` (a curve), `LinePoints` or `AreaPoints`, `Strokes`, `FileRef`, `Expression`, or a
 ///   [`choice!`](crate::choice).
 /// - `layers { /// .. name: height, unit "m"; }`: what a filter or solver makes besides one layer of heights, and how each is read
 ///   between samples (`height`, `label`, `flow`, or as its `source`).

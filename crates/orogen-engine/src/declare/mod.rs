@@ -7,6 +7,7 @@
 //! - [`input`]: what a node reads
 //! - [`param`]: the types that parameters can have
 //! - [`points`]: lists of points as parameters, and their segments; [`memo`]: a value made from parameters once
+//! - [`strokes`]: strokes of a brush as a parameter
 //! - [`declared`]: what every op implements
 //! - `macros`: [`op!`](crate::op!) and [`choice!`](crate::choice), which write all of it
 
@@ -20,6 +21,7 @@ pub mod param;
 pub(crate) mod point_lists;
 pub mod points;
 pub mod spec;
+pub mod strokes;
 
 pub use declared::Declared;
 pub use input::{Input, InputName, set_named};
@@ -29,4 +31,5 @@ pub use orogen_io::dem::file_ref::{AreaFile, FileRef, LineFile};
 pub use orogen_noise as noise;
 pub use param::{Param, read_param};
 pub use points::{AreaPoints, LinePoints, OutlineOptions, PointLists};
-pub use spec::{InputSpec, Locality, MARGIN, ParamSpec, Shape, Spec, VERTICAL, short};
+pub use spec::{InputSpec, Locality, MARGIN, ParamSpec, Shape, Spec, TableSpec, VERTICAL, short};
+pub use strokes::{Stroke, StrokeMode, Strokes};

@@ -17,14 +17,67 @@ pub(super) struct Form {
     pub(super) has_heights: bool,
 }
 
+/// What points are of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Drawn {
+    Stroke,
+    Line,
+    Area,
+}
+
+impl Drawn {
+    /// What lists of at least this many points are.
+    pub(super) fn of_at_least(points: usize) -> Drawn {
+        if points > 2 { Drawn::Area } else { Drawn::Line }
+    }
+
+    /// The fewest points of a list.
+    pub(super) fn min(self) -> usize {
+        match self {
+            Drawn::Stroke => 1,
+            Drawn::Line => 2,
+            Drawn::Area => 3,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Drawn::Stroke => "a stroke",
+            Drawn::Line => "a line",
+            Drawn::Area => "an area",
+        }
+    }
+
+    /// How a point is written.
+    fn point(self) -> &'static str {
+        match self {
+            Drawn::Stroke => "[x, y]",
+            Drawn::Line | Drawn::Area => "[x, y] or [x, y, height]",
+        }
+    }
+
+    /// The most numbers of a point.
+    fn numbers(self) -> usize {
+        if self == Drawn::Stroke { 2 } else { 3 }
+    }
+
+    /// Where more points go.
+    fn elsewhere(self) -> &'static str {
+        match self {
+            Drawn::Stroke => "paint the others in a node of their own",
+            Drawn::Line | Drawn::Area => "write larger drawings to a file, and name it as `file`",
+        }
+    }
+}
+
 /// Reads lists of points; an error has the position of the item that is wrong.
 pub(super) struct Reader<'a> {
     /// The name of the parameter.
     pub(super) name: &'a str,
     /// What a coordinate must be.
     pub(super) number: String,
-    /// The fewest points of a list.
-    pub(super) min: usize,
+    /// What the points are of.
+    pub(super) drawn: Drawn,
     /// The range of coordinates.
     pub(super) range: [f64; 2],
 }
@@ -65,7 +118,7 @@ impl Reader<'_> {
     }
 
     /// The points of one list. `of` names the list, `numbers` is the length of all points, and `left` the number of points that there may still be.
-    fn list(
+    pub(super) fn list(
         &self,
         items: &[Spanned<Value>],
         span: &Span,
@@ -73,28 +126,28 @@ impl Reader<'_> {
         numbers: &mut Option<usize>,
         left: &mut usize,
     ) -> Result<Vec<[f64; 3]>, (Span, String)> {
-        if items.len() < self.min {
-            let (line, has) = (if self.min > 2 { "an area" } else { "a line" }, count(items.len(), "point"));
+        let (min, form) = (self.drawn.min(), self.drawn.point());
+        if items.len() < min {
+            let (line, has) = (self.drawn.name(), count(items.len(), "point"));
             let what = match of.strip_prefix(" of ") {
                 Some(list) => format!("{list} has {has}"),
                 None => format!("it has {has}"),
             };
-            return Err(self.wrong(span, format!("{what}; {line} needs at least {}", self.min)));
+            return Err(self.wrong(span, format!("{what}; {line} needs at least {min}")));
         }
         *left = left.checked_sub(items.len()).ok_or_else(|| {
-            let what =
-                format!("it has more than {MAX_POINTS} points; write larger drawings to a file, and name it as `file`");
+            let what = format!("it has more than {MAX_POINTS} points; {}", self.drawn.elsewhere());
             self.wrong(span, what)
         })?;
         let points = items.iter().enumerate().map(|(k, item)| {
             let at = || format!("point {}{of}", k + 1);
             let Value::List(coordinates) = &item.value else {
                 let found = item.value.describe();
-                return Err(self.wrong(&item.span, format!("{} is {found}; a point is [x, y] or [x, y, height]", at())));
+                return Err(self.wrong(&item.span, format!("{} is {found}; a point is {form}", at())));
             };
-            if !(2..=3).contains(&coordinates.len()) {
+            if !(2..=self.drawn.numbers()).contains(&coordinates.len()) {
                 let has = count(coordinates.len(), "number");
-                return Err(self.wrong(&item.span, format!("{} has {has}; a point is [x, y] or [x, y, height]", at())));
+                return Err(self.wrong(&item.span, format!("{} has {has}; a point is {form}", at())));
             }
             let before = *numbers.get_or_insert(coordinates.len());
             if before != coordinates.len() {

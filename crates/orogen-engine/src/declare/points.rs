@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::memo::Memo;
 use super::param::Param;
-use super::point_lists::{Form, Lists, MAX_POINTS, Reader};
+use super::point_lists::{Drawn, Form, Lists, MAX_POINTS, Reader};
 use super::spec::Shape;
 use crate::value::{Spanned, Value};
 use orogen_grid::polylines::outline::Outline;
@@ -120,7 +120,7 @@ impl<const MIN: usize> Param for PointLists<MIN> {
 
     fn read(value: &Value) -> Option<PointLists<MIN>> {
         let anywhere = [f64::NEG_INFINITY, f64::INFINITY];
-        let reader = Reader { name: "", number: String::new(), min: MIN, range: anywhere };
+        let reader = Reader { name: "", number: String::new(), drawn: Drawn::of_at_least(MIN), range: anywhere };
         let (lists, form) = reader.read(value).ok()?;
         Some(PointLists { lists: Arc::new(lists), form, segments: Memo::default() })
     }

@@ -1,8 +1,9 @@
 //! Declarations of ops, as data.
 
-use super::point_lists::Reader;
+use super::point_lists::{Drawn, Reader};
 use crate::layer::Layer;
 use crate::value::{Span, Value};
+use orogen_grid::words::list;
 
 /// The locality of an op: what its result may depend on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -128,10 +129,31 @@ pub enum Shape {
     Curve,
     /// Lists of points [[x, y], ...] or [[x, y, height], ...], each of at least this many points; or one such list.
     Points(usize),
+    /// A list of positions [[x, y], ...], at least one.
+    Positions,
+    /// A list of tables.
+    Tables(&'static TableSpec),
     /// The path of a file.
     File,
     /// A coordinate reference system, by its EPSG code.
     Crs,
+}
+
+/// The declaration of tables in a list, such as the strokes of a brush.
+#[derive(Debug)]
+pub struct TableSpec {
+    /// What a table is, in the singular and the plural.
+    pub names: [&'static str; 2],
+    /// The keys.
+    pub keys: &'static [ParamSpec],
+    /// Number of keys that every table has: the first ones.
+    pub required: usize,
+    /// The defaults of the other keys.
+    pub defaults: fn() -> Vec<Value>,
+    /// Maximum number of tables.
+    pub max: usize,
+    /// What is wrong in a list, which is the value of a parameter of this name.
+    pub problem: fn(&str, &Value) -> Option<(Span, String)>,
 }
 
 /// A bound in short form: 1e9 instead of 1000000000.
@@ -174,9 +196,15 @@ impl ParamSpec {
     pub fn problem(&self, value: &Value) -> Option<(Span, String)> {
         match self.shape {
             Shape::Points(min) => {
-                let reader = Reader { name: self.name, number: self.number(), min, range: self.range };
+                let reader = Reader {
+                    name: self.name,
+                    number: self.number(),
+                    drawn: Drawn::of_at_least(min),
+                    range: self.range,
+                };
                 reader.read(value).err()
             }
+            Shape::Tables(table) => (table.problem)(self.name, value),
             _ => None,
         }
     }
@@ -202,6 +230,13 @@ impl ParamSpec {
                 format!(
                     "a list of at least {min} points [[x, y], ...] or [[x, y, height], ...] of finite numbers{range}{unit}, or a list of such lists"
                 )
+            }
+            Shape::Positions => {
+                format!("a list of at least one point [[x, y], ...] of finite numbers{range}{unit}")
+            }
+            Shape::Tables(table) => {
+                let keys = list(table.keys.iter().map(|key| key.name));
+                format!("a list of at most {} {}, each a table with {keys}", table.max, table.names[1])
             }
             Shape::Expression => "an expression in quotes, such as \"a * 2 + b\"".to_string(),
             Shape::File => "the path of a file, in quotes".to_string(),

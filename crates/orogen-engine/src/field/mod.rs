@@ -27,6 +27,7 @@ pub mod min;
 pub mod mix;
 pub mod multiply;
 pub mod open_simplex2;
+pub mod paint;
 pub mod path;
 pub mod perlin;
 pub mod ping_pong;

@@ -5,18 +5,23 @@ use orogen_noise::Points;
 
 /// Writes `value(x, y)` of each position, in metres.
 pub(super) fn each(at: &Points, out: &mut [f32], mut value: impl FnMut(f64, f64) -> f32) {
+    change(at, out, |x, y, _| value(x, y));
+}
+
+/// Writes `value(x, y, before)` of each position, in metres, and of the value that is there.
+pub(super) fn change(at: &Points, out: &mut [f32], mut value: impl FnMut(f64, f64, f32) -> f32) {
     match at {
         Points::Lattice { xs, ys } if !xs.is_empty() => {
             for (row, y) in out.chunks_mut(xs.len()).zip(ys.iter()) {
                 for (sample, x) in row.iter_mut().zip(xs.iter()) {
-                    *sample = value(*x, *y);
+                    *sample = value(*x, *y, *sample);
                 }
             }
         }
         _ => {
             for (k, sample) in out.iter_mut().enumerate() {
                 let (x, y) = at.position(k).unwrap_or(NOWHERE);
-                *sample = value(x, y);
+                *sample = value(x, y, *sample);
             }
         }
     }
@@ -41,5 +46,7 @@ mod tests {
         each(&Points::Scattered { x: &x, y: &y }, &mut b, |x, y| (x * 10.0 + y) as f32);
         assert_eq!(a, b);
         assert_eq!(a[4], 32.0);
+        change(&Points::Scattered { x: &x, y: &y }, &mut a, |x, _, before| before - (x * 10.0) as f32);
+        assert_eq!(a, [0.5, 0.5, 0.5, 7.0, 7.0, 7.0]);
     }
 }

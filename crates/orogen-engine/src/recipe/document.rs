@@ -530,7 +530,7 @@ impl Recipe {
             };
             let params = |text: &mut String| {
                 for (i, param) in spec.params.iter().enumerate() {
-                    let _ = writeln!(text, "{} = {}", param.name, node.param(i).to_toml());
+                    let _ = writeln!(text, "{} = {}", param.name, node.param(i).to_toml_lines());
                 }
             };
             // An expression is written before the names in it.

@@ -1,6 +1,6 @@
 //! Descriptions of the ops, made from their declarations.
 
-use crate::declare::{Shape, Spec, short};
+use crate::declare::{ParamSpec, Shape, Spec, TableSpec, short};
 use crate::layer::{Interpolation, Layer, ONE_LAYER};
 use crate::node::Node;
 use crate::registry::Registry;
@@ -64,10 +64,21 @@ pub fn describe(node: &Node) -> String {
         let default = node.param(i).to_toml();
         let _ = writeln!(text, "  {:longest$}  {}", param.name, short(param.doc));
         let _ = writeln!(text, "  {:longest$}  {}; default {default}", "", param.expected());
-        if let Shape::Choice(choices) = param.shape {
-            for (name, doc) in choices() {
-                let _ = writeln!(text, "  {:longest$}    {name:?}: {}", "", short(doc));
+        match param.shape {
+            Shape::Choice(choices) => {
+                for (name, doc) in choices() {
+                    let _ = writeln!(text, "  {:longest$}    {name:?}: {}", "", short(doc));
+                }
             }
+            Shape::Tables(table) => {
+                for key in table_keys(table) {
+                    let default =
+                        key.default.map_or("required".to_string(), |value| format!("default {}", value.to_toml()));
+                    let _ = writeln!(text, "  {:longest$}    {}: {}", "", key.spec.name, short(key.spec.doc));
+                    let _ = writeln!(text, "  {:longest$}      {}; {default}", "", key.spec.expected());
+                }
+            }
+            _ => {}
         }
     }
     if names_layers(spec) {
@@ -165,16 +176,7 @@ fn keys(text: &mut String, node: &Node) {
         );
     }
     for (i, param) in spec.params.iter().enumerate() {
-        let takes = match param.shape {
-            Shape::Choice(choices) => {
-                let names: Vec<String> = choices()
-                    .iter()
-                    .map(|(name, doc)| format!("`{name}` ({})", short(doc).trim_end_matches('.')))
-                    .collect();
-                names.join("; ")
-            }
-            _ => param.expected(),
-        };
+        let takes = taken(param);
         let default = match node.param(i) {
             Value::List(items) if items.is_empty() => "none".to_string(),
             // A drawing is given as points or as a file.
@@ -183,9 +185,47 @@ fn keys(text: &mut String, node: &Node) {
             Value::Text(text) => format!("`{text}`"),
             other => format!("`{}`", other.to_toml()),
         };
-        let cell = |text: String| text.replace('|', "\\|");
         let _ = writeln!(text, "| `{}` | {} | {} | {default} |", param.name, cell(short(param.doc)), cell(takes));
     }
+    for param in spec.params {
+        let Shape::Tables(table) = param.shape else { continue };
+        let _ = writeln!(text, "\n| key of a {} | description | values | default |\n|---|---|---|---|", table.names[0]);
+        for key in table_keys(table) {
+            let default = key.default.map_or("required".to_string(), |value| format!("`{}`", value.to_toml()));
+            let (doc, takes) = (cell(short(key.spec.doc)), cell(taken(key.spec)));
+            let _ = writeln!(text, "| `{}` | {doc} | {takes} | {default} |", key.spec.name);
+        }
+    }
+}
+
+/// The text of a cell of a table.
+fn cell(text: String) -> String {
+    text.replace('|', "\\|")
+}
+
+/// The values of a parameter.
+fn taken(param: &ParamSpec) -> String {
+    match param.shape {
+        Shape::Choice(choices) => {
+            let choices = choices();
+            let name = |(name, doc): &(&str, &str)| format!("`{name}` ({})", short(doc).trim_end_matches('.'));
+            choices.iter().map(name).collect::<Vec<_>>().join("; ")
+        }
+        _ => param.expected(),
+    }
+}
+
+/// A key of a table in a list.
+struct TableKey {
+    spec: &'static ParamSpec,
+    /// `None` if every table has it.
+    default: Option<Value>,
+}
+
+fn table_keys(table: &TableSpec) -> impl Iterator<Item = TableKey> {
+    let required = table.required;
+    let keys = table.keys.iter().zip((table.defaults)()).enumerate();
+    keys.map(move |(k, (spec, value))| TableKey { spec, default: (k >= required).then_some(value) })
 }
 
 fn has_points(spec: &Spec) -> bool {

@@ -2,7 +2,7 @@
 
 use super::document::{VERSION, WorldSpec};
 use crate::declare::point_lists::MAX_POINTS;
-use crate::declare::{Param, ParamSpec, Shape, read_param, short};
+use crate::declare::{Param, ParamSpec, Shape, TableSpec, read_param, short};
 use crate::node::Node;
 use crate::registry::Registry;
 use crate::value::Value;
@@ -369,6 +369,11 @@ fn param_schema(spec: &ParamSpec, default: Option<&Value>) -> Json {
             let list = json!({ "type": "array", "minItems": min, "maxItems": MAX_POINTS, "items": point });
             json!({ "anyOf": [{ "type": "array", "maxItems": 0 }, list, { "type": "array", "items": list }] })
         }
+        Shape::Positions => {
+            let point = json!({ "type": "array", "minItems": 2, "maxItems": 2, "items": number });
+            json!({ "type": "array", "minItems": 1, "maxItems": MAX_POINTS, "items": point })
+        }
+        Shape::Tables(table) => json!({ "type": "array", "maxItems": table.max, "items": table_schema(table) }),
         Shape::Curve => json!({
             "type": "array",
             "minItems": 2,
@@ -381,6 +386,22 @@ fn param_schema(spec: &ParamSpec, default: Option<&Value>) -> Json {
         schema["default"] = plain(default);
     }
     schema
+}
+
+fn table_schema(table: &TableSpec) -> Json {
+    let names = table.keys.iter().map(|key| key.name);
+    let defaults = (table.defaults)();
+    let defaults = defaults.iter().map(Some).enumerate();
+    let defaults = defaults.map(|(k, default)| default.filter(|_| k >= table.required));
+    let properties: Map<String, Json> =
+        table.keys.iter().zip(defaults).map(|(key, default)| (key.name.into(), param_schema(key, default))).collect();
+    json!({
+        "title": table.names[0],
+        "type": "object",
+        "required": names.take(table.required).collect::<Vec<_>>(),
+        "additionalProperties": false,
+        "properties": properties,
+    })
 }
 
 fn plain(value: &Value) -> Json {

@@ -3,6 +3,7 @@
 //! - [`outline`]: a line of points, straight pieces and cubic curves; smoothing
 //! - [`cubic`]: cubic Bézier curves, and how many straight segments replace one
 //! - [`segments`]: all segments of a drawing in a tree of boxes: the nearest one to a position, and whether a position is inside
+//! - [`buffers`]: lines with a distance around each: which of them contain a position
 //!
 //! ```
 //! use orogen_grid::polylines::{outline::Outline, segments::Segments};
@@ -15,6 +16,7 @@
 //! # Ok::<(), &str>(())
 //! ```
 
+pub mod buffers;
 pub mod cubic;
 pub mod outline;
 pub mod segments;

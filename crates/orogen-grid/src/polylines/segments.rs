@@ -19,6 +19,13 @@ struct Segment {
     line: u32,
 }
 
+impl Segment {
+    /// Its ends without their heights.
+    fn flat(&self) -> [[f64; 2]; 2] {
+        self.ends.map(|[x, y, _]| [x, y])
+    }
+}
+
 /// A box around segments that follow each other, or around whole lines.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Node {
@@ -239,7 +246,7 @@ impl Segments {
                 let first = first as usize;
                 *visited += count as usize;
                 for (k, segment) in self.segments[first..first + count as usize].iter().enumerate() {
-                    let (square, share) = distance(segment, at);
+                    let (square, share) = distance(segment.flat(), at);
                     let index = first + k;
                     // Of equal distances the first segment counts, whatever the order of the tree.
                     let is_first = best.found.is_none_or(|(other, _)| index < other);
@@ -321,9 +328,8 @@ fn bounds(segments: &[Segment]) -> ([f64; 2], [f64; 2]) {
     (low, high)
 }
 
-/// The square of the distance to a segment, and the share of the segment at which it is nearest.
-fn distance(segment: &Segment, [x, y]: [f64; 2]) -> (f64, f64) {
-    let [[ax, ay, _], [bx, by, _]] = segment.ends;
+/// The square of the distance to the straight line between two points, and the share of the line at which it is nearest.
+pub(super) fn distance([[ax, ay], [bx, by]]: [[f64; 2]; 2], [x, y]: [f64; 2]) -> (f64, f64) {
     let (rx, ry, ux, uy) = (x - ax, y - ay, bx - ax, by - ay);
     let along = rx * ux + ry * uy;
     let square = ux * ux + uy * uy;

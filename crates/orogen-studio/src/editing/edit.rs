@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use orogen::declare::Input;
+use orogen::declare::{Input, Stroke};
 use orogen::node::Node;
 use orogen::palette::color::Rgb;
 use orogen::recipe::document::Recipe;
@@ -12,7 +12,8 @@ use toml_edit::{DocumentMut, Item, Table};
 use super::ground::{Ground, set_colors};
 use super::names;
 use super::references::{Change, Site, change};
-use super::tables::{node, set, top, value_of};
+use super::strokes::{self, Placement};
+use super::tables::{add_node, node, set, top, value_of};
 
 /// An edit.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,6 +37,8 @@ pub enum Edit {
     Colors { ground: Ground, index: usize, colors: Vec<Rgb> },
     /// A new node with some inputs and parameters. Required inputs that `inputs` lacks are 0.
     Add { name: String, op: String, inputs: Vec<(String, String)>, params: Vec<(String, Value)> },
+    /// Stroke number `at`, from 0, of a node that paints: a new one, or a longer form of the last one. A node that is not there is made at `placement`.
+    Stroke { node: String, placement: Placement, at: usize, stroke: Stroke },
     /// Nodes are removed; what read one reads its first input.
     Delete(Vec<String>),
     /// Copies of nodes; connections among them are those of the copies.
@@ -56,6 +59,7 @@ impl Edit {
             Edit::Reset { .. } => "edit.reset",
             Edit::Connect { .. } | Edit::Output { .. } => "edit.connect",
             Edit::Add { .. } => "edit.add",
+            Edit::Stroke { .. } => "edit.stroke",
             Edit::Delete(_) => "edit.delete",
             Edit::Duplicate(_) => "edit.duplicate",
             Edit::Rename { .. } => "edit.rename",
@@ -71,6 +75,7 @@ impl Edit {
             Edit::Default { parameter, .. } => Some(format!("parameter/{parameter}")),
             Edit::Param { node, key, .. } => Some(format!("node/{node}/{key}")),
             Edit::Colors { ground, index, .. } => Some(format!("colors/{ground:?}/{index}")),
+            Edit::Stroke { node, at, .. } => Some(format!("stroke/{node}/{at}")),
             _ => None,
         }
     }
@@ -151,6 +156,9 @@ pub fn apply(text: &str, recipe: &Recipe, edit: &Edit) -> Result<String, String>
                 set(own, key, value);
             }
         }
+        Edit::Stroke { node: name, placement, at, stroke } => {
+            strokes::write(&mut document, name, placement, *at, stroke)?;
+        }
         Edit::Delete(names) => delete(&mut document, recipe, names)?,
         Edit::Duplicate(names) => duplicate(&mut document, recipe, names)?,
         Edit::Rename { from, to } => {
@@ -189,15 +197,7 @@ fn add(document: &mut DocumentMut, name: &str, op: &str, inputs: &[(String, Stri
             None => drop(own.insert("expr", toml_edit::value("0"))),
         }
     }
-    own.decor_mut().set_prefix("\n");
-    let nodes = top(document, "nodes").ok_or("`nodes` is no table")?;
-    match nodes.contains_key(name) {
-        true => Err(format!("there is a node `{name}` already")),
-        false => {
-            nodes.insert(name, Item::Table(own));
-            Ok(())
-        }
-    }
+    add_node(document, name, own)
 }
 
 /// The node of a reference, without its layer.

@@ -1,5 +1,6 @@
 //! The recipe that is edited: its text, what the text means, edits that keep comments, and undo.
 
+pub mod brush;
 pub mod document;
 pub mod drawing;
 pub mod edit;
@@ -7,7 +8,9 @@ pub mod ground;
 pub mod history;
 pub mod names;
 mod references;
+pub mod strokes;
 mod tables;
+mod thinning;
 pub mod variants;
 
 #[cfg(test)]

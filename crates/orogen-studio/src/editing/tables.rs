@@ -24,6 +24,19 @@ pub fn node<'a>(document: &'a mut DocumentMut, name: &str) -> Option<&'a mut dyn
     table(top(document, "nodes")?, name)
 }
 
+/// Adds a node with this table.
+pub fn add_node(document: &mut DocumentMut, name: &str, mut own: Table) -> Result<(), String> {
+    own.decor_mut().set_prefix("\n");
+    let nodes = top(document, "nodes").ok_or("`nodes` is no table")?;
+    match nodes.contains_key(name) {
+        true => Err(format!("there is a node `{name}` already")),
+        false => {
+            nodes.insert(name, Item::Table(own));
+            Ok(())
+        }
+    }
+}
+
 /// A value as one of the document; `None` if it cannot be written.
 pub fn value_of(value: &Value) -> Option<toml_edit::Value> {
     value.to_toml().parse().ok()

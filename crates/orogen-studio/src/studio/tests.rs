@@ -170,3 +170,21 @@ fn half_an_hour_of_random_edits_leaks_nothing() {
     }
     assert!(resident() < before + before / 20, "{} KiB, then {} KiB", before >> 10, resident() >> 10);
 }
+
+#[test]
+fn a_stroke_is_seen_whatever_was_shown() {
+    let text = "orogen = 1\n[nodes.hills]\nop = \"fbm\"\n[nodes.spots]\nop = \"paint\"\n[nodes.shaped]\nop = \"paint\"\nbackground = \"hills\"\n\
+        mask = \"part\"\n[nodes.part]\nop = \"paint\"\n[outputs]\nheight = \"shaped\"\nbare = \"hills\"\n";
+    let recipe = Recipe::parse(text, "t").unwrap();
+    for (node, shown, expect) in [
+        ("spots", "height", "spots"),
+        ("spots", "spots", "spots"),
+        ("shaped", "height", "height"),
+        ("shaped", "spots", "height"),
+        ("shaped", "bare", "bare"),
+        ("part", "part", "part"),
+        ("part", "height", "height"),
+    ] {
+        assert_eq!(layer_of_stroke(&recipe, node, shown), expect, "{node} {shown}");
+    }
+}

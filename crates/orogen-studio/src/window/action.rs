@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::command::Command;
 use super::dialogs::Purpose;
 use crate::catalogue::Language;
+use crate::editing::brush::Effect;
 use crate::editing::edit::Edit;
 use crate::preview::coloring::Coloring;
 use crate::preview::region::Region;
@@ -55,6 +56,8 @@ pub enum Action {
     Theme(Theme),
     /// A line or an area is drawn on the map, by its op.
     Draw(&'static str),
+    /// A brush is taken on the map.
+    Brush(Effect),
     /// A text is copied.
     Copy(String),
     /// A line of the text is shown.

@@ -290,6 +290,10 @@ impl App {
                 self.view = View::Map;
                 self.map.draw(op);
             }
+            Action::Brush(effect) => {
+                self.view = View::Map;
+                self.map.take_brush(effect);
+            }
             Action::Copy(text) => context.copy_text(text),
             Action::EditColors => self.edit_colors(),
             Action::OpenPalette(path) => self.use_palette(RampEditor::open(&path)),

@@ -252,6 +252,7 @@ pub fn shortcuts(context: &Context, language: Language) -> bool {
                     ("keys.pan", "keys.pan_keys"),
                     ("keys.zoom", "keys.zoom_keys"),
                     ("keys.fly", "keys.fly_keys"),
+                    ("keys.brush", "keys.brush_keys"),
                     ("keys.preview", "keys.preview_keys"),
                     ("keys.connect", "keys.connect_keys"),
                     ("keys.delete", "keys.delete_keys"),

@@ -13,9 +13,9 @@ use orogen::recipe::document::NamedNode;
 use super::action::Action;
 use super::command::Command;
 use crate::catalogue::Language;
-use crate::editing::drawing;
+use crate::editing::brush::Effect;
 use crate::editing::edit::Edit;
-use crate::editing::names;
+use crate::editing::{drawing, names, strokes};
 use crate::studio::Studio;
 use crate::view::graph_layout::{tidy, wires};
 
@@ -459,6 +459,10 @@ impl Graph {
                 // It is nothing without points.
                 actions.push(Action::Draw(op));
                 return;
+            }
+            if op == strokes::OP {
+                // Over something it changes heights; alone it is a mask.
+                actions.push(Action::Brush(if inputs.is_some() { Effect::Raise } else { Effect::Paint }));
             }
             let inputs = inputs.into_iter().collect();
             actions.push(Action::Edit(Edit::Add { name, op: op.to_owned(), inputs, params: Vec::new() }));

@@ -10,8 +10,10 @@ use eframe::egui::{
 use super::action::Action;
 use super::contour_lines::ContourLines;
 use super::legend;
+use super::map_brush::{self, MapBrush};
 use super::relief_panel::{contours, readout};
 use crate::catalogue::Language;
+use crate::editing::brush::Effect;
 use crate::editing::edit::Edit;
 use crate::editing::{drawing, names};
 use crate::preview::frame::{self, Frame};
@@ -28,6 +30,7 @@ pub struct MapPanel {
     /// The ends of the profile, in metres.
     profile: Option<[[f64; 2]; 2]>,
     tool: Tool,
+    brush: MapBrush,
     /// The points of what is being drawn.
     drawn: Vec<[f64; 2]>,
     /// The region that was asked for last.
@@ -60,6 +63,8 @@ enum Tool {
     Profile,
     /// It draws a line or an area: the op.
     Draw(&'static str),
+    /// It paints.
+    Brush(Effect),
 }
 
 /// The longest side of a picture.
@@ -73,30 +78,10 @@ impl MapPanel {
 
     /// Shows the map.
     pub fn show(&mut self, ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
-        ui.horizontal(|ui| {
-            for (tool, name, help) in [
-                (Tool::Pan, "map.pan", "map.pan_help"),
-                (Tool::Profile, "map.profile", "map.profile_help"),
-                (Tool::Draw(drawing::OPS[0]), "map.path", "map.draw_help"),
-                (Tool::Draw(drawing::OPS[1]), "map.polygon", "map.draw_help"),
-            ] {
-                if ui
-                    .selectable_label(self.tool == tool, language.text(name))
-                    .on_hover_text(language.text(help))
-                    .clicked()
-                {
-                    self.tool = tool;
-                    self.drawn.clear();
-                }
-            }
-            if self.profile.is_some() && ui.button(language.text("map.clear")).clicked() {
-                self.profile = None;
-            }
-            ui.separator();
-            contours(ui, studio, language, actions);
-            ui.separator();
-            self.comparison(ui, studio, language, actions);
-        });
+        self.tools(ui, studio, language, actions);
+        if let (Tool::Brush(effect), Some(frame)) = (self.tool, &studio.frame) {
+            self.brush.settings(ui, effect, frame, language);
+        }
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "map view"));
         let painter = ui.painter_at(rect);
@@ -116,9 +101,13 @@ impl MapPanel {
         let size = [rect.width(), rect.height()];
         let mut view = self.view.unwrap_or_else(|| MapView::fitting(bounds, size));
         let before = view;
-        let handle = self.handles(ui, rect, studio, &view, actions);
-        if !handle {
+        let is_brush = matches!(self.tool, Tool::Brush(_));
+        // A brush paints over the points of a drawing.
+        if is_brush || !self.handles(ui, rect, studio, &view, actions) {
             self.navigate(ui, &response, rect, &mut view);
+        }
+        if is_brush {
+            self.brush.paint(ui, &response, (rect, &view), studio, actions);
         }
         self.draw_line(ui, &response, (rect, &view), studio, actions);
         if view != before {
@@ -163,6 +152,42 @@ impl MapPanel {
         legend::draw(&painter, rect.min + Vec2::new(10.0, if self.kept.is_some() { 40.0 } else { 10.0 }), frame);
         self.draw_drawing(&painter, studio, screen);
         self.draw_profile(ui, &painter, rect, frame, screen);
+        if is_brush {
+            self.brush.draw(&painter, response.hover_pos(), (rect, &view), studio, language);
+        }
+    }
+
+    /// The choice of the tool, and the comparison.
+    fn tools(&mut self, ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
+        ui.horizontal_wrapped(|ui| {
+            let brushes = Effect::ALL.map(|effect| {
+                let [name, help] = map_brush::names(effect);
+                (Tool::Brush(effect), name, help)
+            });
+            let tools = [
+                (Tool::Pan, "map.pan", "map.pan_help"),
+                (Tool::Profile, "map.profile", "map.profile_help"),
+                (Tool::Draw(drawing::OPS[0]), "map.path", "map.draw_help"),
+                (Tool::Draw(drawing::OPS[1]), "map.polygon", "map.draw_help"),
+            ];
+            for (tool, name, help) in tools.into_iter().chain(brushes) {
+                if ui
+                    .selectable_label(self.tool == tool, language.text(name))
+                    .on_hover_text(language.text(help))
+                    .clicked()
+                {
+                    self.tool = tool;
+                    self.drawn.clear();
+                }
+            }
+            if self.profile.is_some() && ui.button(language.text("map.clear")).clicked() {
+                self.profile = None;
+            }
+            ui.separator();
+            contours(ui, studio, language, actions);
+            ui.separator();
+            self.comparison(ui, studio, language, actions);
+        });
     }
 
     /// Keeps the picture, to be compared with those after later changes.
@@ -200,6 +225,11 @@ impl MapPanel {
     pub fn draw(&mut self, op: &'static str) {
         self.tool = Tool::Draw(op);
         self.drawn.clear();
+    }
+
+    /// Takes a brush.
+    pub fn take_brush(&mut self, effect: Effect) {
+        self.tool = Tool::Brush(effect);
     }
 
     /// Adds the points that are clicked; a double click or Enter ends, Escape drops them.
@@ -295,8 +325,10 @@ impl MapPanel {
 
     fn navigate(&mut self, ui: &Ui, response: &egui::Response, rect: Rect, view: &mut MapView) {
         let size = [rect.width(), rect.height()];
-        let is_line = self.tool == Tool::Profile && response.dragged_by(PointerButton::Primary);
-        if response.dragged() && !is_line {
+        let is_brush = matches!(self.tool, Tool::Brush(_));
+        let is_by_primary = response.dragged_by(PointerButton::Primary);
+        let is_line = self.tool == Tool::Profile && is_by_primary;
+        if response.dragged() && !is_line && !(is_brush && is_by_primary) {
             let by = response.drag_delta();
             view.pan([by.x, by.y]);
         }
@@ -312,6 +344,8 @@ impl MapPanel {
             && let Some(pointer) = ui.input(|input| input.pointer.hover_pos())
         {
             let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+            // Ctrl with the wheel is for the brush.
+            let pinch = if is_brush { 1.0 } else { pinch };
             if scroll != 0.0 || pinch != 1.0 {
                 // The pointer may be over the other picture.
                 let at = pointer - rect.min;
@@ -436,7 +470,8 @@ fn selected(studio: &Studio) -> Option<(&str, Vec<[f64; 2]>)> {
     Some((&named.name, drawing::points_of(&named.node)?))
 }
 
-fn label(painter: &egui::Painter, at: egui::Pos2, align: Align2, text: &str) {
+/// A text on a dark ground.
+pub(super) fn label(painter: &egui::Painter, at: egui::Pos2, align: Align2, text: &str) {
     if !text.is_empty() {
         let galley = painter.layout_no_wrap(text.to_owned(), FontId::monospace(11.0), Color32::WHITE);
         let rect = align.anchor_size(at, galley.size());

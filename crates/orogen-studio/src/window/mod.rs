@@ -16,6 +16,7 @@ pub mod graph_panel;
 pub mod ground;
 pub mod inspector;
 pub mod legend;
+pub mod map_brush;
 pub mod map_panel;
 pub mod menu;
 pub mod mesh;

@@ -1,7 +1,7 @@
 //! Helpers of the tests: a recipe for every node.
 #![allow(dead_code, reason = "each test binary uses its part")]
 
-use orogen::declare::Input;
+use orogen::declare::{Input, Param as _, Stroke, StrokeMode, Strokes};
 use orogen::field::remap::Remap;
 use orogen::laws::{self, Laws};
 use orogen::node::Node;
@@ -49,6 +49,25 @@ fn drawing(cell: f64) -> Value {
     list(vec![line(&first), line(&second)])
 }
 
+/// Strokes of every mode for the node that paints, in a small world: they cross each other and themselves.
+fn strokes(cell: f64) -> Strokes {
+    let stroke = |points: &[[f64; 2]], radius: f64, hardness: f64, mode: StrokeMode, value: f64| Stroke {
+        points: points.iter().map(|point| point.map(|part| part * cell)).collect(),
+        radius: radius * cell,
+        hardness,
+        mode,
+        value,
+        strength: 0.9,
+    };
+    let loop_ = [[12.0, 9.3], [55.2, 20.7], [70.9, 61.0], [30.2, 52.0], [48.5, 8.3]];
+    Strokes::from(vec![
+        stroke(&loop_, 6.3, 0.4, StrokeMode::Add, 0.7),
+        stroke(&[[20.0, 60.5], [80.4, 30.2], [90.0, 75.0]], 9.7, 0.0, StrokeMode::Set, -0.6),
+        stroke(&[[50.3, 45.1]], 14.2, 1.0, StrokeMode::Erase, 1.0),
+        stroke(&[[40.0, 35.0], [44.0, 62.0]], 5.0, 0.6, StrokeMode::Add, -1.1),
+    ])
+}
+
 /// The node alone, each input a noise of its own: see [`laws::recipe_of`]. Lengths are fitted so that a small world shows every effect.
 pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
     let mut node = node.clone();
@@ -57,6 +76,7 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
         let pair = |a: f64, b: f64| Value::List([a, b].map(|n| Spanned::unplaced(Value::Number(n))).into());
         let fitted = match (spec.op, param.name) {
             ("path" | "polygon", "points") => drawing(world.cell),
+            ("paint", "strokes") => strokes(world.cell).write(),
             ("path" | "polygon", "smooth") => Value::Flag(true),
             ("path" | "polygon", "tolerance") => Value::Number(0.01 * world.cell),
             ("path" | "polygon", "falloff") => Value::Number(6.7 * world.cell),

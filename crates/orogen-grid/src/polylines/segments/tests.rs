@@ -77,7 +77,7 @@ fn the_tree_finds_what_a_search_of_all_segments_finds() {
                 1 => at = [vertex[0], vertex[1]],
                 _ => {}
             }
-            let all = drawing.segments.iter().map(|segment| distance(segment, at));
+            let all = drawing.segments.iter().map(|segment| distance(segment.flat(), at));
             let best = all.enumerate().min_by(|a, b| a.1.0.total_cmp(&b.1.0).then(a.0.cmp(&b.0))).unwrap();
             let nearest = drawing.nearest(at, f64::INFINITY).unwrap();
             let apart = (nearest.distance() - best.1.0.sqrt()).abs();
