@@ -3,6 +3,8 @@
 pub mod document;
 pub mod drawing;
 pub mod edit;
+pub mod expression;
+pub mod groups;
 pub mod history;
 pub mod names;
 mod references;

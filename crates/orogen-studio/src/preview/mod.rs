@@ -2,9 +2,11 @@
 
 pub mod colors;
 pub mod frame;
+pub mod picture;
 pub mod region;
 pub mod request;
 pub mod stages;
 pub mod statistics;
 pub mod strip;
+pub mod thumbnails;
 pub mod worker;

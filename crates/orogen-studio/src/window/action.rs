@@ -43,6 +43,8 @@ pub enum Action {
     Theme(Theme),
     /// A line or an area is drawn on the map, by its op.
     Draw(&'static str),
+    /// A group is shown in the graph.
+    Enter(String),
     /// A text is copied.
     Copy(String),
     /// A line of the text is shown.

@@ -22,6 +22,7 @@ use super::{analysis_panel, fonts, menu, theme};
 use crate::catalogue::Language;
 use crate::editing::document::Document;
 use crate::editing::edit::Edit;
+use crate::editing::groups;
 use crate::preview::frame::Quality;
 use crate::preview::worker::Wake;
 use crate::recovery::Recovery;
@@ -171,6 +172,10 @@ impl App {
             Some(studio) => studio.open(document),
             None => self.studio = Some(Studio::new(self.session.clone(), Arc::clone(&self.wake), document)),
         }
+        if let Some(studio) = &mut self.studio {
+            studio.has_thumbnails = self.settings.thumbnails;
+        }
+        self.inspector = Inspector::default();
         (self.graph, self.text, self.map) = (Graph::default(), TextPanel::default(), MapPanel::default());
         self.relief.show_whole();
         self.export = None;
@@ -233,6 +238,10 @@ impl App {
             Action::Draw(op) => {
                 self.view = View::Map;
                 self.map.draw(op);
+            }
+            Action::Enter(group) => {
+                self.below = Below::Graph;
+                self.graph.enter(&group);
             }
             Action::Copy(text) => context.copy_text(text),
             Action::GoToLine(line) => {
@@ -301,6 +310,13 @@ impl App {
                 self.map.show_whole();
                 self.graph.show_whole();
             }
+            Command::Thumbnails => {
+                self.settings.thumbnails = !self.settings.thumbnails;
+                self.settings.write(self.folder.as_deref());
+                if let Some(studio) = &mut self.studio {
+                    studio.has_thumbnails = self.settings.thumbnails;
+                }
+            }
             other => self.document_command(other),
         }
     }
@@ -332,12 +348,22 @@ impl App {
                 self.graph.open_search();
             }
             Command::Rename => {
-                if let Some(name) = selected.first() {
+                let group = groups::of_selection(studio.document.recipe(), &selected);
+                if let Some(name) = group.as_ref().or(selected.first()) {
                     self.inspector.rename(name);
                 }
             }
-            Command::Delete | Command::Duplicate => {
-                let edit = if command == Command::Delete { Edit::Delete(selected) } else { Edit::Duplicate(selected) };
+            Command::Delete | Command::Duplicate | Command::Group | Command::Ungroup => {
+                let edit = match command {
+                    Command::Delete => Edit::Delete(selected),
+                    Command::Duplicate => Edit::Duplicate(selected),
+                    Command::Ungroup => Edit::Ungroup(studio.selected_group().unwrap_or_default()),
+                    _ => {
+                        let outer = groups::common(selected.iter().map(String::as_str));
+                        let name = groups::free(studio.document.recipe(), outer, "group");
+                        Edit::Group { nodes: selected, name }
+                    }
+                };
                 if let Err(error) = studio.edit(&edit) {
                     self.say(&error.to_string());
                 }
