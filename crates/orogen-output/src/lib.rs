@@ -9,6 +9,7 @@
 //! - [`survey`]: a terrain in numbers, beside what real land is like.
 //! - [`fit`]: recipes like a real place.
 //! - [`tilemap`]: terrain classes drawn with tiles.
+//! - [`graph_layout`]: boxes and wires in columns.
 //! - [`blocks`]: worlds of blocks, for block games and voxel editors.
 #![forbid(unsafe_code)]
 
@@ -16,6 +17,8 @@ pub mod blocks;
 pub mod builder;
 pub mod export;
 pub mod fit;
+#[doc(hidden)]
+pub mod graph_layout;
 pub mod map;
 mod markup;
 pub mod mesh;

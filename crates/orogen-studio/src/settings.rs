@@ -39,6 +39,8 @@ pub struct Settings {
     pub scale: f32,
     /// Memory limit in bytes.
     pub memory: u64,
+    /// Whether nodes of the graph have small pictures.
+    pub thumbnails: bool,
 }
 
 /// The default of [`Settings::memory`].
@@ -46,7 +48,15 @@ const MEMORY: u64 = 2 << 30;
 
 impl Default for Settings {
     fn default() -> Settings {
-        Settings { language: None, theme: Theme::System, recent: Vec::new(), window: None, scale: 1.0, memory: MEMORY }
+        Settings {
+            language: None,
+            theme: Theme::System,
+            recent: Vec::new(),
+            window: None,
+            scale: 1.0,
+            memory: MEMORY,
+            thumbnails: true,
+        }
     }
 }
 

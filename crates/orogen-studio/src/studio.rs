@@ -10,12 +10,14 @@ use orogen::{Error, ErrorKind, Result, Session};
 
 use crate::editing::document::Document;
 use crate::editing::edit::Edit;
+use crate::editing::groups;
 use crate::editing::strokes;
 use crate::files;
 use crate::preview::coloring::Coloring;
 use crate::preview::frame::{Frame, Quality};
 use crate::preview::region::Region;
 use crate::preview::request::Request;
+use crate::preview::thumbnails::Thumbnails;
 use crate::preview::worker::{Event, Wake, Worker};
 
 /// What is shown, and in which light.
@@ -47,7 +49,13 @@ pub struct Studio {
     pub frame: Option<Arc<Frame>>,
     /// Why there is no newer picture.
     pub failure: Option<Error>,
+    /// Small pictures of the nodes.
+    pub thumbnails: Thumbnails,
+    /// Whether small pictures of the nodes are made.
+    pub has_thumbnails: bool,
     worker: Worker,
+    /// What the current small pictures were asked for.
+    asked_small: Option<(u64, Region)>,
     /// What the current pictures were asked for: the revision of the text, and the look.
     asked: Option<(u64, Look)>,
     /// The finest picture, and what it was asked for.
@@ -67,7 +75,10 @@ impl Studio {
             selected: Vec::new(),
             frame: None,
             failure: None,
+            thumbnails: Thumbnails::new(Arc::clone(&wake)),
+            has_thumbnails: true,
             worker: Worker::new(session, wake),
+            asked_small: None,
             asked: None,
             land: None,
             file_time: None,
@@ -89,6 +100,8 @@ impl Studio {
         self.failure = None;
         self.asked = None;
         self.land = None;
+        self.asked_small = None;
+        self.thumbnails.cancel();
     }
 
     /// Applies an edit.
@@ -96,12 +109,15 @@ impl Studio {
     /// # Errors
     /// If it cannot be applied; then nothing changes.
     pub fn edit(&mut self, edit: &Edit) -> Result<()> {
+        let renames = groups::renames(self.document.recipe(), edit);
         self.document.apply(edit)?;
+        for name in self.selected.iter_mut().chain([&mut self.look.layer]) {
+            if let Some((_, to)) = renames.iter().find(|(from, _)| from == name) {
+                name.clone_from(to);
+            }
+        }
         match edit {
             Edit::Delete(names) => self.selected.retain(|name| !names.contains(name)),
-            Edit::Rename { from, to } => {
-                self.selected.iter_mut().filter(|name| *name == from).for_each(|name| name.clone_from(to));
-            }
             Edit::Add { name, .. } => self.selected = vec![name.clone()],
             Edit::Stroke { node, .. } => {
                 self.selected = vec![node.clone()];
@@ -125,6 +141,8 @@ impl Studio {
         if !self.look.coloring.suits(recipe) {
             self.look.coloring = Coloring::Own;
         }
+        self.refresh_thumbnails();
+        let recipe = self.document.recipe();
         let now = (self.document.revision(), self.look.clone());
         if self.asked.as_ref() == Some(&now) {
             return;
@@ -151,9 +169,27 @@ impl Studio {
         });
     }
 
+    /// Asks for small pictures of the nodes when the picture of the land is done; a change cancels them.
+    fn refresh_thumbnails(&mut self) {
+        let now = (self.document.revision(), self.look.region);
+        if self.asked_small.is_some_and(|asked| asked != now) || !self.has_thumbnails {
+            self.thumbnails.cancel();
+            self.asked_small = None;
+        }
+        let is_current = self.asked.as_ref().is_some_and(|(revision, look)| *revision == now.0 && *look == self.look);
+        let is_time = self.has_thumbnails && is_current && !self.worker.is_busy() && self.document.is_valid();
+        if is_time && self.asked_small.is_none() {
+            self.asked_small = Some(now);
+            let recipe = self.document.recipe().clone();
+            // Without a thread there are none; the picture of the land tells of that.
+            let _ = self.thumbnails.ask(self.worker.session(), recipe, self.look.region);
+        }
+    }
+
     /// Takes what the work has told. Returns whether there is a new picture.
     pub fn poll(&mut self) -> bool {
         let mut is_new = false;
+        self.thumbnails.poll();
         for event in self.worker.events() {
             match event {
                 Event::Frame(frame) => {
@@ -233,6 +269,13 @@ impl Studio {
             self.document.reload(text);
         }
         is_new
+    }
+
+    /// The group that is selected as a whole, or else that of the first selected node.
+    #[must_use]
+    pub fn selected_group(&self) -> Option<String> {
+        let around = || self.selected.first().map(|name| groups::group_of(name)).filter(|group| !group.is_empty());
+        groups::of_selection(self.document.recipe(), &self.selected).or_else(|| around().map(str::to_owned))
     }
 
     /// The names of the layers that can be shown: outputs, layers derived from the heights.

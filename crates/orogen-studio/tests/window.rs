@@ -455,3 +455,119 @@ fn a_variant_is_taken_over_and_compared() {
     press(&mut harness, Modifiers::COMMAND, Key::Z);
     assert_eq!(studio(&harness).document.recipe().world.seed, 1);
 }
+
+#[test]
+fn nodes_are_grouped_entered_renamed_and_all_of_it_is_undone() {
+    let folder = TestFolder::new("studio-groups").unwrap();
+    let mut harness = window(&folder, Some("classic"), Language::English);
+    until_done(&mut harness);
+    let before = studio(&harness).document.text().to_owned();
+    let heights = studio(&harness).frame.clone().unwrap().heights.clone();
+    // A rectangle from one corner of the graph to the other.
+    let rects = ["node noise", "node terrain"].map(|label| harness.get_by_label(label).rect());
+    let all = rects[0].union(rects[1]).expand(6.0);
+    harness.drag_at(all.min);
+    harness.run_steps(2);
+    harness.event(Event::PointerMoved(all.center()));
+    harness.run_steps(2);
+    harness.drop_at(all.max);
+    harness.run_steps(3);
+    let mut selected = studio(&harness).selected.clone();
+    selected.sort();
+    assert_eq!(selected, ["noise", "terrain"]);
+    press(&mut harness, Modifiers::COMMAND, Key::G);
+    assert!(studio(&harness).document.text().contains("[nodes.\"group/noise\"]"));
+    assert!(harness.query_by_label("node group/noise").is_none());
+    // Its inner nodes are seen, and its name is changed in the inspector.
+    harness.get_by_label("Open").click();
+    harness.run_steps(3);
+    let inner = harness.get_by_label("node group/noise").rect().center();
+    press(&mut harness, Modifiers::NONE, Key::F2);
+    press(&mut harness, Modifiers::COMMAND, Key::A);
+    harness.event(Event::Text("land".into()));
+    harness.run_steps(2);
+    press(&mut harness, Modifiers::NONE, Key::Enter);
+    assert!(studio(&harness).document.text().contains("[nodes.\"land/noise\"]"));
+    assert!(harness.query_by_label("node land/noise").is_some());
+    // An inner node is selected and edited like any other.
+    click_at(&mut harness, inner);
+    assert_eq!(studio(&harness).selected, ["land/noise"]);
+    assert!(harness.query_by_role_and_label(Role::Slider, "land/noise.gain").is_some());
+    until_done(&mut harness);
+    assert_eq!(studio(&harness).frame.as_ref().unwrap().heights, heights);
+    harness.get_by_label("Recipe").click();
+    harness.run_steps(3);
+    assert!(harness.query_by_label("group land").is_some());
+    for _ in 0..2 {
+        press(&mut harness, Modifiers::COMMAND, Key::Z);
+    }
+    assert_eq!(studio(&harness).document.text(), before);
+    assert!(harness.query_by_label("node noise").is_some());
+}
+
+#[test]
+fn nodes_have_small_pictures_unless_they_are_switched_off() {
+    let folder = TestFolder::new("studio-thumbnails").unwrap();
+    let mut harness = window(&folder, Some("classic"), Language::English);
+    until(&mut harness, "the pictures of nodes", |app| {
+        let studio = app.studio().unwrap();
+        studio.is_done() && !studio.thumbnails.is_busy() && studio.thumbnails.of("noise").is_some()
+    });
+    harness.run_steps(3);
+    // The picture is in the lower right corner of its box.
+    let rect = harness.get_by_label("node noise").rect();
+    let colors = |harness: &mut Harness<'_, App>| {
+        let picture = harness.render().unwrap();
+        let corner = rect.max - egui::vec2(36.0, 36.0);
+        let pixels = (0..30).flat_map(|y| (0..30).map(move |x| (corner.x as u32 + x, corner.y as u32 + y)));
+        pixels.map(|(x, y)| picture.get_pixel(x, y).0).collect::<std::collections::HashSet<_>>().len()
+    };
+    assert!(colors(&mut harness) > 50);
+    let computed = studio(&harness).thumbnails.computed();
+    harness.get_by_label("View").click();
+    harness.run_steps(3);
+    harness.get_by_label("Pictures in the graph").click();
+    harness.run_steps(10);
+    assert!(!studio(&harness).has_thumbnails);
+    assert!(colors(&mut harness) < 50);
+    assert_eq!(studio(&harness).thumbnails.computed(), computed);
+}
+
+#[test]
+fn a_broken_expression_says_so_and_is_not_applied() {
+    let folder = TestFolder::new("studio-expression").unwrap();
+    let path = folder.join("land.toml");
+    let text = "orogen = 1\n[world]\nsize = 1000\n[nodes.hills]\nop = \"fbm\"\n[nodes.land]\nop = \"expr\"\nexpr = \"hills * 100\"\n[outputs]\nheight = \"land\"\n";
+    std::fs::write(&path, text).unwrap();
+    let mut harness = window(&folder, path.to_str(), Language::English);
+    until_done(&mut harness);
+    harness.get_by_label("node land").click();
+    harness.run_steps(3);
+    harness.get_by_role_and_label(Role::TextInput, "land.expr").focus();
+    harness.run_steps(2);
+    press(&mut harness, Modifiers::COMMAND, Key::A);
+    harness.get_by_role_and_label(Role::TextInput, "land.expr").type_text("hils * 100");
+    harness.run_steps(3);
+    assert!(harness.query_by_label_contains("unknown node `hils`").is_some());
+    assert_eq!(studio(&harness).document.text(), text);
+    // What is typed stays when another node is looked at in between.
+    harness.get_by_label("node hills").click();
+    harness.run_steps(3);
+    harness.get_by_label("node land").click();
+    harness.run_steps(3);
+    assert_eq!(studio(&harness).selected, ["land"]);
+    assert!(harness.query_by_label_contains("unknown node `hils`").is_some());
+    // A completion mends it.
+    harness.get_by_role_and_label(Role::TextInput, "land.expr").focus();
+    harness.run_steps(2);
+    press(&mut harness, Modifiers::COMMAND, Key::A);
+    harness.get_by_role_and_label(Role::TextInput, "land.expr").type_text("200 * hil");
+    harness.run_steps(3);
+    press(&mut harness, Modifiers::CTRL, Key::Period);
+    assert!(
+        studio(&harness).document.text().contains("expr = \"200 * hills\""),
+        "{}",
+        studio(&harness).document.text()
+    );
+    assert!(harness.query_by_label_contains("unknown node").is_none());
+}

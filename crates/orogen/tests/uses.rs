@@ -258,3 +258,25 @@ fn recipes_that_multiply_are_refused() {
     folder.write("top.toml", &format!("orogen = 1\n{uses}[outputs]\nheight = \"u0\"\n"));
     assert!(folder.read("top.toml").unwrap_err().contains("16 MiB of text together"));
 }
+
+#[test]
+fn groups_are_names_only() {
+    let text = "orogen = 1\n[parameters]\nrelief = 90\n[world]\nsize = 1000\n[nodes.noise]\nop = \"fbm\"\nwavelength = \"= relief * 4\"\n\
+                [nodes.land]\nop = \"expr\"\nexpr = \"noise * relief\"\n[outputs]\nheight = \"land\"\n";
+    let grouped = text
+        .replace("[nodes.noise]", "[nodes.\"hills/noise\"]")
+        .replace("[nodes.land]", "[nodes.\"hills/rocks/land\"]\nnoise = \"hills/noise\"")
+        .replace("\"land\"", "\"hills/rocks/land\"");
+    let [plain, grouped] = [text, &grouped].map(|text| Recipe::parse(text, "test").unwrap());
+    assert_eq!(grouped.formula("hills/noise", "wavelength"), Some(" relief * 4"));
+    assert_eq!((grouped.formula("hills/noise", "octaves"), plain.formula("hills/noise", "wavelength")), (None, None));
+    let written = grouped.to_toml();
+    assert_eq!(Recipe::parse(&written, "again").unwrap(), grouped, "{written}");
+    let [one, other] = [plain, grouped].map(|recipe| World::open(recipe).unwrap());
+    assert_eq!(one.key("height").unwrap(), other.key("height").unwrap());
+    assert_eq!(bits(&one, "height"), bits(&other, "height"));
+    // Errors are told where they are, by the whole name.
+    let wrong = written.replace("fbm", "fbn");
+    let error = Recipe::parse(&wrong, "test").unwrap_err();
+    assert!(error.diagnostics()[0].place.is_some() && error.to_string().contains("fbn"), "{error}");
+}

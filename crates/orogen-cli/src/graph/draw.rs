@@ -1,6 +1,7 @@
 //! The diagram as a scene, for PNG, SVG and PDF.
 
 use orogen::Result;
+use orogen::graph_layout::layout::{Layout, Link, Spacing};
 use orogen::map::text::Face;
 use orogen::palette::color::Rgb;
 use orogen::sheet::font_set::FontSet;
@@ -8,7 +9,6 @@ use orogen::sheet::geometry::{Point, Rect, Size};
 use orogen::sheet::scene::{INK, Scene, Step, polygon};
 
 use super::diagram::{Block, Diagram, Kind};
-use super::layout::{Layout, Link};
 
 /// Margin of the page, and the room of heading and legend.
 const MARGIN: f32 = 8.0;
@@ -23,6 +23,8 @@ const HEAD: f32 = 6.2;
 const ROW: f32 = 4.3;
 const PAD: f32 = 2.6;
 const LEAST: f32 = 24.0;
+/// Distances between boxes, wires and columns.
+const SPACING: Spacing = Spacing { gap: 6.0, wire_gap: 3.0, alley: 16.0 };
 /// The distance from the top of a box to the start of outgoing wires.
 const PORT: f32 = HEAD / 2.0;
 
@@ -54,7 +56,7 @@ pub fn draw(diagram: &Diagram, title: &str) -> Result<Scene> {
     let links: Vec<Link> = (diagram.wires.iter())
         .map(|wire| Link { from: (wire.from, PORT), to: (wire.to, wire.row.map_or(PORT, row_middle)) })
         .collect();
-    let layout = Layout::new(&sizes, &links);
+    let layout = Layout::new(&sizes, &links, SPACING);
     let key: f32 = Kind::ALL.iter().map(|kind| letters.width(kind.name(), Face::Regular, SMALL) + 12.0).sum();
     let heading = letters.width(title, Face::Bold, TITLE);
     let width = layout.size.width.max(key).max(heading) + 2.0 * MARGIN;

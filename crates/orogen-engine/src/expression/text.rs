@@ -1,6 +1,7 @@
 //! Expressions: a text and its terms.
 
 use super::error::ExpressionError;
+use super::function::Function;
 use super::parse::parse;
 use super::term::Term;
 use std::fmt;
@@ -52,6 +53,11 @@ impl fmt::Display for Expression {
 }
 
 impl Expression {
+    /// The functions that are written with a name: name, syntax with named arguments, and description.
+    pub fn functions() -> impl Iterator<Item = (&'static str, &'static str, &'static str)> {
+        Function::functions().map(|function| (function.name(), function.usage(), function.doc().trim()))
+    }
+
     /// The text of the expression.
     #[must_use]
     pub fn text(&self) -> &str {

@@ -36,8 +36,9 @@ pub fn step(step: &Step, plan: &Plan, recipe: &Recipe) -> f64 {
             let on_lattice = |grid: &GridId| plan.grids[*grid].window.cell == window.cell;
             program_cost(program, plan.scattered && out.is_empty(), recipe, &on_lattice)
         }
-        Step::Apply { node, window, .. } => match recipe.nodes()[node.index()].node.op() {
-            Op::Filter(filter) => filter.cost(window.cell),
+        Step::Apply { node, window, halo, .. } => match recipe.nodes()[node.index()].node.op() {
+            // Of the halo about half is computed: passes over it shrink.
+            Op::Filter(filter) => return filter.cost(window.cell) * window.grown(halo / 2).len() as f64,
             _ => 0.0,
         },
         Step::Refine { node, window, out, .. } => match recipe.nodes()[node.index()].node.op() {

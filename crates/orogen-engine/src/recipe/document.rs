@@ -7,7 +7,7 @@ use crate::field::dem::Dem;
 use crate::node::Node;
 use crate::op::{Op, WorldParams};
 use crate::recipe::class::document::{CLASS, ExpandedClass, TerrainClass};
-use crate::recipe::parameters::{Formula, Parameter, Parameters};
+use crate::recipe::parameters::{Formula, Parameter, Parameters, Step};
 use crate::recipe::scatter::document::{ExpandedScatter, Scatter};
 use crate::recipe::surface::document::{Expanded, RAMP, Surface};
 use crate::value::{toml_key, toml_string};
@@ -277,6 +277,16 @@ impl Recipe {
     /// The formulas.
     pub(super) fn formulas(&self) -> &[Formula] {
         &self.parameters.formulas
+    }
+
+    /// The formula that stands in place of the number of a node's parameter, without its `=`.
+    #[must_use]
+    pub fn formula(&self, node: &str, key: &str) -> Option<&str> {
+        let is_there = |formula: &&Formula| match formula.path.as_slice() {
+            [Step::Key(nodes), Step::Key(name), Step::Key(own)] => nodes == "nodes" && name == node && own == key,
+            _ => false,
+        };
+        self.parameters.formulas.iter().find(is_there).map(|formula| formula.text.as_str())
     }
 
     /// The files of the recipes that it uses, directly and indirectly.

@@ -171,12 +171,7 @@ impl Document {
     /// # Errors
     /// If the text is not valid, or the edit does not lead to a valid recipe; then nothing changes.
     pub fn apply(&mut self, edit: &Edit) -> Result<()> {
-        let fault = |message: String| Error::new(ErrorKind::Recipe, message);
-        if !self.is_valid() {
-            return Err(fault("the recipe's text has errors; mend them first".into()));
-        }
-        let text = edit::apply(self.text(), &self.recipe, edit).map_err(fault)?;
-        let recipe = self.parse(&text)?;
+        let (text, recipe) = self.edited(edit)?;
         let gesture = edit.gesture();
         let before = self.text().len();
         let unchanged = before == text.len() && self.text() == text;
@@ -186,6 +181,25 @@ impl Document {
             self.recipe = recipe;
         }
         Ok(())
+    }
+
+    /// Whether an edit could be applied.
+    ///
+    /// # Errors
+    /// As [`Document::apply`].
+    pub fn check(&self, edit: &Edit) -> Result<()> {
+        self.edited(edit).map(|_| ())
+    }
+
+    /// The text after an edit, and what it means.
+    fn edited(&self, edit: &Edit) -> Result<(String, Recipe)> {
+        let fault = |message: String| Error::new(ErrorKind::Recipe, message);
+        if !self.is_valid() {
+            return Err(fault("the recipe's text has errors; mend them first".into()));
+        }
+        let text = edit::apply(self.text(), &self.recipe, edit).map_err(fault)?;
+        let recipe = self.parse(&text)?;
+        Ok((text, recipe))
     }
 
     /// Ends the current gesture, such as the drag of a slider.

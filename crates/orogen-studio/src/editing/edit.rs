@@ -10,6 +10,7 @@ use orogen::value::Value;
 use toml_edit::{DocumentMut, Item, Table};
 
 use super::ground::{Ground, set_colors};
+use super::groups;
 use super::names;
 use super::references::{Change, Site, change};
 use super::strokes::{self, Placement};
@@ -45,6 +46,12 @@ pub enum Edit {
     Duplicate(Vec<String>),
     /// Another name; what refers to the node does so by the new name.
     Rename { from: String, to: String },
+    /// Nodes become a group of this name.
+    Group { nodes: Vec<String>, name: String },
+    /// The nodes of a group are put beside it.
+    Ungroup(String),
+    /// Another name for a group.
+    RenameGroup { from: String, to: String },
 }
 
 impl Edit {
@@ -62,7 +69,9 @@ impl Edit {
             Edit::Stroke { .. } => "edit.stroke",
             Edit::Delete(_) => "edit.delete",
             Edit::Duplicate(_) => "edit.duplicate",
-            Edit::Rename { .. } => "edit.rename",
+            Edit::Rename { .. } | Edit::RenameGroup { .. } => "edit.rename",
+            Edit::Group { .. } => "edit.group",
+            Edit::Ungroup(_) => "edit.ungroup",
         }
     }
 
@@ -92,6 +101,13 @@ pub fn apply(text: &str, recipe: &Recipe, edit: &Edit) -> Result<String, String>
         false => Err(format!("there is no node `{name}`")),
     };
     let missing = |what: &str| format!("the text has no {what}");
+    let used = used_names(&document);
+    let written = |name: &str| match used.iter().find(|used| groups::rest(name, used).is_some()) {
+        Some(used) => Err(format!(
+            "`{name}` is part of the recipe that `[use.{used}]` includes; it can be changed in that recipe only"
+        )),
+        None => Ok(()),
+    };
     match edit {
         Edit::Seed(seed) => {
             let seed = i64::try_from(*seed).map_err(|_| format!("a seed must be at most {}, not {seed}", i64::MAX))?;
@@ -119,18 +135,21 @@ pub fn apply(text: &str, recipe: &Recipe, edit: &Edit) -> Result<String, String>
         }
         Edit::Param { node: name, key, value } => {
             known(name)?;
+            written(name)?;
             let value = value_of(value).ok_or_else(|| format!("`{key}` cannot be {}", value.describe()))?;
             let own = node(&mut document, name).ok_or_else(|| missing(&format!("node `{name}`")))?;
             let key = written_key(own.get("op").and_then(Item::as_str), key, |key| own.contains_key(key));
             set(own, &key, value);
         }
         Edit::Reset { node: name, key } => {
+            written(name)?;
             let own = node(&mut document, name).ok_or_else(|| missing(&format!("node `{name}`")))?;
             let key = written_key(own.get("op").and_then(Item::as_str), key, |key| own.contains_key(key));
             own.remove(&key);
         }
         Edit::Connect { node: name, input, source } => {
             known(name)?;
+            written(name)?;
             let own = node(&mut document, name).ok_or_else(|| missing(&format!("node `{name}`")))?;
             let key = written_key(own.get("op").and_then(Item::as_str), input, |key| own.contains_key(key));
             match source {
@@ -159,11 +178,36 @@ pub fn apply(text: &str, recipe: &Recipe, edit: &Edit) -> Result<String, String>
         Edit::Stroke { node: name, placement, at, stroke } => {
             strokes::write(&mut document, name, placement, *at, stroke)?;
         }
-        Edit::Delete(names) => delete(&mut document, recipe, names)?,
-        Edit::Duplicate(names) => duplicate(&mut document, recipe, names)?,
-        Edit::Rename { from, to } => {
-            known(from)?;
-            rename(&mut document, recipe, from, to)?;
+        Edit::Delete(names) => {
+            names.iter().try_for_each(|name| written(name))?;
+            delete(&mut document, recipe, names)?;
+        }
+        Edit::Duplicate(names) => {
+            names.iter().try_for_each(|name| written(name))?;
+            duplicate(&mut document, recipe, names)?;
+        }
+        Edit::Rename { .. } | Edit::Group { .. } | Edit::Ungroup(_) | Edit::RenameGroup { .. } => {
+            let renames = groups::renames(recipe, edit);
+            match edit {
+                Edit::Group { nodes, name } if nodes.is_empty() || groups::is_group(recipe, name) => {
+                    return Err(match nodes.is_empty() {
+                        true => "no nodes are selected for the group".into(),
+                        false => format!("there is a group `{name}` already; choose another name"),
+                    });
+                }
+                Edit::Ungroup(group) | Edit::RenameGroup { from: group, .. } if renames.is_empty() => {
+                    return Err(format!("there is no group `{group}`"));
+                }
+                Edit::RenameGroup { from, to } if from != to && groups::is_group(recipe, to) => {
+                    return Err(format!("there is a group `{to}` already; choose another name"));
+                }
+                _ => {}
+            }
+            for (from, _) in &renames {
+                known(from)?;
+                written(from)?;
+            }
+            rename(&mut document, recipe, &renames)?;
         }
     }
     Ok(document.to_string())
@@ -263,8 +307,15 @@ fn delete(document: &mut DocumentMut, recipe: &Recipe, names: &[String]) -> Resu
 fn duplicate(document: &mut DocumentMut, recipe: &Recipe, names: &[String]) -> Result<(), String> {
     let mut taken: HashSet<String> = recipe.nodes().iter().map(|named| named.name.clone()).collect();
     let mut copies = HashMap::new();
+    // A whole group becomes a group of its own.
+    let group = groups::of_selection(recipe, names);
+    let copy = group.as_ref().map(|group| groups::free(recipe, groups::group_of(group), groups::own_name(group)));
     for name in names {
-        let free = names::free(name, &taken.iter().map(String::as_str).collect());
+        let moved = group.as_ref().and_then(|group| groups::rest(name, group)).zip(copy.as_ref());
+        let free = match moved {
+            Some((rest, copy)) => groups::within(copy, rest),
+            None => names::free(name, &taken.iter().map(String::as_str).collect()),
+        };
         taken.insert(free.clone());
         copies.insert(name.as_str(), free);
     }
@@ -272,6 +323,15 @@ fn duplicate(document: &mut DocumentMut, recipe: &Recipe, names: &[String]) -> R
     for name in names {
         let mut copy = nodes.get(name).cloned().ok_or_else(|| format!("there is no node `{name}`"))?;
         if let Some(own) = copy.as_table_like_mut() {
+            // Names in an expression that mean nodes which are copied, too.
+            for named in recipe.nodes().iter().filter(|named| named.name == *name && named.node.spec().named_inputs) {
+                for (i, input) in named.node.inputs().iter().enumerate() {
+                    let is_meant = *named.node.input(i) == Input::Node(input.name.to_string());
+                    if is_meant && copies.contains_key(node_of(input.name)) && !own.contains_key(input.name) {
+                        set(own, input.name, input.name.into());
+                    }
+                }
+            }
             let inputs: Vec<String> = own.iter().map(|(key, _)| key.to_owned()).collect();
             for key in inputs.iter().filter(|key| *key != "op") {
                 let Some(reference) = own.get(key).and_then(Item::as_str).map(str::to_owned) else { continue };
@@ -291,40 +351,54 @@ fn duplicate(document: &mut DocumentMut, recipe: &Recipe, names: &[String]) -> R
     Ok(())
 }
 
-fn rename(document: &mut DocumentMut, recipe: &Recipe, from: &str, to: &str) -> Result<(), String> {
-    if recipe.nodes().iter().any(|named| named.name == to) {
+/// The names of the recipes that a document uses.
+fn used_names(document: &DocumentMut) -> Vec<String> {
+    let uses = document.get("use").and_then(Item::as_table_like);
+    uses.map(|uses| uses.iter().map(|(name, _)| name.to_owned()).collect()).unwrap_or_default()
+}
+
+/// Gives nodes other names, and all that refers to them.
+fn rename(document: &mut DocumentMut, recipe: &Recipe, renames: &[(String, String)]) -> Result<(), String> {
+    let new: HashMap<&str, &str> = renames.iter().map(|(from, to)| (from.as_str(), to.as_str())).collect();
+    let mut taken: HashSet<&str> =
+        recipe.nodes().iter().map(|named| named.name.as_str()).filter(|name| !new.contains_key(name)).collect();
+    if let Some((_, to)) = renames.iter().find(|(_, to)| !taken.insert(to)) {
         return Err(format!("there is a node `{to}` already"));
     }
-    // Expressions keep their names: those that meant the node get a key that says so.
+    // Expressions keep their names: those that meant a node get a key that says so.
     for named in recipe.nodes().iter().filter(|named| named.node.spec().named_inputs) {
         for (i, input) in named.node.inputs().iter().enumerate() {
-            let is_meant = node_of(input.name) == from && *named.node.input(i) == Input::Node(input.name.to_string());
+            let is_meant =
+                new.contains_key(node_of(input.name)) && *named.node.input(i) == Input::Node(input.name.to_string());
             if is_meant && let Some(own) = node(document, &named.name).filter(|own| !own.contains_key(input.name)) {
                 set(own, input.name, input.name.into());
             }
         }
     }
     let nodes = top(document, "nodes").ok_or("`nodes` is no table")?;
-    rename_key(nodes, from, to);
-    change(document, &mut |_, reference| match node_of(reference) == from {
-        true => Change::Name(format!("{to}{}", reference.strip_prefix(from).unwrap_or_default())),
-        false => Change::Keep,
+    rename_keys(nodes, &new);
+    change(document, &mut |_, reference| match new.get(node_of(reference)) {
+        Some(to) => Change::Name(format!("{to}{}", reference.strip_prefix(node_of(reference)).unwrap_or_default())),
+        None => Change::Keep,
     });
     Ok(())
 }
 
-/// Renames a key; its place in the text stays.
-fn rename_key(nodes: &mut dyn toml_edit::TableLike, from: &str, to: &str) {
+/// Renames keys; their places in the text stay.
+fn rename_keys(nodes: &mut dyn toml_edit::TableLike, new: &HashMap<&str, &str>) {
     // Tables are written by their position in the text, which the item keeps.
     let keys: Vec<String> = nodes.iter().map(|(key, _)| key.to_owned()).collect();
-    for key in keys {
-        let Some((old, item)) = nodes.get_key_value(&key).map(|(old, item)| (old.clone(), item.clone())) else {
-            continue;
-        };
-        nodes.remove(&key);
-        match key == from {
-            true => drop(nodes.insert(to, item)),
-            false => drop(nodes.entry_format(&old).or_insert(item)),
+    let mut entries = Vec::with_capacity(keys.len());
+    for key in &keys {
+        if let Some((old, item)) = nodes.get_key_value(key).map(|(old, item)| (old.clone(), item.clone())) {
+            entries.push((key, old, item));
+        }
+        nodes.remove(key);
+    }
+    for (key, old, item) in entries {
+        match new.get(key.as_str()) {
+            Some(to) => drop(nodes.insert(to, item)),
+            None => drop(nodes.entry_format(&old).or_insert(item)),
         }
     }
 }

@@ -2,6 +2,9 @@
 
 use std::collections::HashSet;
 
+/// The number of groups within each other, and the node in them.
+const DEEPEST: usize = 17;
+
 /// A name that is not taken: `name` itself, otherwise with a number from 2 on.
 #[must_use]
 pub fn free(name: &str, taken: &HashSet<&str>) -> String {
@@ -27,15 +30,17 @@ pub fn of_op(op: &str) -> String {
     op.rsplit('.').next().unwrap_or(op).replace('-', "_")
 }
 
-/// Why a node cannot have a name, as a key of the catalogue of texts.
+/// Why a node or a group cannot have a name, as a key of the catalogue of texts. A `/` stands between a group and what is in it.
 #[must_use]
 pub fn fault(name: &str) -> Option<&'static str> {
-    let is_word = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-');
-    match name {
-        "" => Some("name.empty"),
-        _ if name.chars().count() > 64 => Some("name.long"),
-        _ if !name.chars().all(is_word) => Some("name.characters"),
-        _ => None,
+    let is_word = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
+    let is_good = |part: &str| part.chars().all(is_word) && !part.starts_with(|c: char| c.is_ascii_digit() || c == '-');
+    let mut parts = name.split('/');
+    match () {
+        () if parts.clone().any(str::is_empty) => Some("name.empty"),
+        () if parts.clone().any(|part| part.len() > 64) || parts.clone().count() > DEEPEST => Some("name.long"),
+        () if !parts.all(is_good) => Some("name.characters"),
+        () => None,
     }
 }
 
@@ -59,7 +64,17 @@ mod tests {
 
     #[test]
     fn faults() {
-        for (name, is_good) in [("a", true), ("ridge-2_b", true), ("", false), ("a.b", false), ("a b", false)] {
+        for (name, is_good) in [
+            ("a", true),
+            ("ridge-2_b", true),
+            ("hills/rocks/a", true),
+            ("", false),
+            ("hills/", false),
+            ("a.b", false),
+            ("a b", false),
+            ("2a", false),
+            ("山", false),
+        ] {
             assert_eq!(fault(name).is_none(), is_good, "{name}");
         }
     }

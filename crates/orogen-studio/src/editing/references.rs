@@ -46,6 +46,15 @@ pub fn change(document: &mut DocumentMut, of: &mut dyn FnMut(Site, &str) -> Chan
             change_keys(node, &site, of);
         }
     }
+    if let Some(uses) = document.get_mut("use").and_then(Item::as_table_like_mut) {
+        for (_, used) in uses.iter_mut() {
+            let inputs =
+                used.as_table_like_mut().and_then(|used| used.get_mut("inputs")).and_then(Item::as_table_like_mut);
+            if let Some(inputs) = inputs {
+                change_keys(inputs, &|_| Some(Site::Optional), of);
+            }
+        }
+    }
     if let Some(outputs) = document.get_mut("outputs").and_then(Item::as_table_like_mut) {
         change_keys(outputs, &|_| Some(Site::Output), of);
     }

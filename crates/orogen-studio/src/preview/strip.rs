@@ -6,9 +6,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use orogen::recipe::document::Recipe;
 use orogen::{Progress, Result, Session};
 
-use super::coloring::Coloring;
-use super::colors::Colors;
-use super::failure;
+use super::picture::Picture;
 use super::region::Region;
 use super::worker::Wake;
 
@@ -17,15 +15,6 @@ pub const SIDE: usize = 128;
 
 /// How much coarser the solvers of variants are: many small pictures matter more than their detail.
 const COARSER: u32 = 4;
-
-/// A small picture with relief shading.
-#[derive(Debug, Clone)]
-pub struct Picture {
-    /// Columns and rows.
-    pub size: [usize; 2],
-    /// Red, green, blue and 255 for each sample, sRGB.
-    pub pixels: Vec<u8>,
-}
 
 /// Makes small pictures of recipes; a new list cancels the one before.
 pub struct Strip {
@@ -92,10 +81,7 @@ impl Drop for Strip {
 fn picture(session: &Session, recipe: &Recipe, layer: &str, progress: &Progress) -> Result<Picture> {
     let world = session.open(recipe.draft(COARSER))?;
     let window = Region::of(recipe.world.size, recipe.world.cell).window(&world, SIDE)?;
-    let heights = world.grids(&[layer], &window, progress)?.pop().ok_or_else(failure::nothing)?;
-    let colors = Colors::of(recipe, layer, world.kind(layer)?, &Coloring::Own, &heights);
-    let pixels = world.install(|| colors.shade(&colors.paint(&heights), &heights, recipe.world.sea_level));
-    Ok(Picture { size: [window.width, window.height], pixels })
+    Picture::of(&world, layer, &window, progress)
 }
 
 #[cfg(test)]

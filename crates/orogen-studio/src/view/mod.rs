@@ -1,6 +1,7 @@
 //! What is looked at, and from where.
 
+pub mod arrangement;
 pub mod camera;
-pub mod graph_layout;
 pub mod map_view;
+pub mod scene;
 pub mod sun;

@@ -58,6 +58,8 @@ pub enum Action {
     Draw(&'static str),
     /// A brush is taken on the map.
     Brush(Effect),
+    /// A group is shown in the graph.
+    Enter(String),
     /// A text is copied.
     Copy(String),
     /// A line of the text is shown.

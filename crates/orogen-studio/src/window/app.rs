@@ -25,6 +25,7 @@ use super::{analysis_panel, fonts, menu, theme};
 use crate::catalogue::Language;
 use crate::editing::document::Document;
 use crate::editing::edit::Edit;
+use crate::editing::groups;
 use crate::preview::coloring::Coloring;
 use crate::preview::colors::palette;
 use crate::preview::frame::Quality;
@@ -214,6 +215,10 @@ impl App {
             Some(studio) => studio.open(document),
             None => self.studio = Some(Studio::new(self.session.clone(), Arc::clone(&self.wake), document)),
         }
+        if let Some(studio) = &mut self.studio {
+            studio.has_thumbnails = self.settings.thumbnails;
+        }
+        self.inspector = Inspector::default();
         (self.graph, self.text, self.map) = (Graph::default(), TextPanel::default(), MapPanel::default());
         self.relief.show_whole();
         self.export = None;
@@ -293,6 +298,10 @@ impl App {
             Action::Brush(effect) => {
                 self.view = View::Map;
                 self.map.take_brush(effect);
+            }
+            Action::Enter(group) => {
+                self.below = Below::Graph;
+                self.graph.enter(&group);
             }
             Action::Copy(text) => context.copy_text(text),
             Action::EditColors => self.edit_colors(),
@@ -395,6 +404,13 @@ impl App {
                 self.map.show_whole();
                 self.graph.show_whole();
             }
+            Command::Thumbnails => {
+                self.settings.thumbnails = !self.settings.thumbnails;
+                self.settings.write(self.folder.as_deref());
+                if let Some(studio) = &mut self.studio {
+                    studio.has_thumbnails = self.settings.thumbnails;
+                }
+            }
             other => self.document_command(other),
         }
     }
@@ -426,12 +442,22 @@ impl App {
                 self.graph.open_search();
             }
             Command::Rename => {
-                if let Some(name) = selected.first() {
+                let group = groups::of_selection(studio.document.recipe(), &selected);
+                if let Some(name) = group.as_ref().or(selected.first()) {
                     self.inspector.rename(name);
                 }
             }
-            Command::Delete | Command::Duplicate => {
-                let edit = if command == Command::Delete { Edit::Delete(selected) } else { Edit::Duplicate(selected) };
+            Command::Delete | Command::Duplicate | Command::Group | Command::Ungroup => {
+                let edit = match command {
+                    Command::Delete => Edit::Delete(selected),
+                    Command::Duplicate => Edit::Duplicate(selected),
+                    Command::Ungroup => Edit::Ungroup(studio.selected_group().unwrap_or_default()),
+                    _ => {
+                        let outer = groups::common(selected.iter().map(String::as_str));
+                        let name = groups::free(studio.document.recipe(), outer, "group");
+                        Edit::Group { nodes: selected, name }
+                    }
+                };
                 if let Err(error) = studio.edit(&edit) {
                     self.say(&error.to_string());
                 }

@@ -19,6 +19,8 @@ pub enum Command {
     Duplicate,
     Delete,
     Rename,
+    Group,
+    Ungroup,
     ShowRelief,
     ShowMap,
     ShowGraph,
@@ -27,6 +29,7 @@ pub enum Command {
     ShowVariants,
     ShowReal,
     WholeView,
+    Thumbnails,
     CommandPalette,
     Shortcuts,
     About,
@@ -92,7 +95,7 @@ const CTRL: Modifiers = Modifiers::COMMAND;
 const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 /// All commands, in the order of their menus.
-pub static ALL: [Entry; 24] = [
+pub static ALL: [Entry; 27] = [
     with_keys(Command::New, "command.new", Menu::File, false, CTRL, Key::N),
     with_keys(Command::Open, "command.open", Menu::File, false, CTRL, Key::O),
     with_keys(Command::Save, "command.save", Menu::File, true, CTRL, Key::S),
@@ -106,6 +109,8 @@ pub static ALL: [Entry; 24] = [
     with_keys(Command::Duplicate, "command.duplicate", Menu::Edit, true, CTRL, Key::D),
     with_keys(Command::Rename, "command.rename", Menu::Edit, true, Modifiers::NONE, Key::F2),
     entry(Command::Delete, "command.delete", Menu::Edit, true),
+    with_keys(Command::Group, "command.group", Menu::Edit, true, CTRL, Key::G),
+    with_keys(Command::Ungroup, "command.ungroup", Menu::Edit, true, CTRL_SHIFT, Key::G),
     with_keys(Command::ShowRelief, "command.show_relief", Menu::View, true, CTRL, Key::Num1),
     with_keys(Command::ShowMap, "command.show_map", Menu::View, true, CTRL, Key::Num2),
     with_keys(Command::ShowGraph, "command.show_graph", Menu::View, true, CTRL, Key::Num3),
@@ -114,6 +119,7 @@ pub static ALL: [Entry; 24] = [
     with_keys(Command::ShowVariants, "command.show_variants", Menu::View, true, CTRL, Key::Num6),
     with_keys(Command::ShowReal, "command.show_real", Menu::View, true, CTRL, Key::Num7),
     with_keys(Command::WholeView, "command.whole_view", Menu::View, true, Modifiers::NONE, Key::Home),
+    entry(Command::Thumbnails, "command.thumbnails", Menu::View, true),
     with_keys(Command::CommandPalette, "command.command_palette", Menu::Help, false, CTRL_SHIFT, Key::P),
     with_keys(Command::Shortcuts, "command.shortcuts", Menu::Help, false, Modifiers::NONE, Key::F1),
     entry(Command::About, "command.about", Menu::Help, false),

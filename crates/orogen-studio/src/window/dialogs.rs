@@ -255,6 +255,8 @@ pub fn shortcuts(context: &Context, language: Language) -> bool {
                     ("keys.brush", "keys.brush_keys"),
                     ("keys.preview", "keys.preview_keys"),
                     ("keys.connect", "keys.connect_keys"),
+                    ("keys.select", "keys.select_keys"),
+                    ("keys.pan_graph", "keys.pan_graph_keys"),
                     ("keys.delete", "keys.delete_keys"),
                     ("keys.complete", "keys.complete_keys"),
                 ] {

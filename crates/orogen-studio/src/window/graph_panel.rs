@@ -1,91 +1,79 @@
-//! The graph of the recipe: nodes, wires, and a search for new nodes.
+//! The graph of the recipe: nodes, groups, wires, and a search for new nodes.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use eframe::egui::{
-    self, Align2, Color32, FontId, Key, Pos2, Rect, Sense, Stroke, StrokeKind, TextEdit, Ui, Vec2, pos2, vec2,
+    self, Align2, Color32, ColorImage, FontId, Key, PointerButton, Pos2, Rect, Response, Sense, Stroke, StrokeKind,
+    TextureHandle, TextureOptions, Ui, UiBuilder, Vec2, pos2, vec2,
 };
 use orogen::declare::Input;
-use orogen::declare::spec::Locality;
 use orogen::node::Node;
-use orogen::recipe::document::NamedNode;
 
 use super::action::Action;
 use super::command::Command;
+use super::graph_box::{self, Shown, WIDTH};
+use super::graph_search::{Found, Search};
+use super::menu;
 use crate::catalogue::Language;
 use crate::editing::brush::Effect;
 use crate::editing::edit::Edit;
-use crate::editing::{drawing, names, strokes};
+use crate::editing::{drawing, groups, names, strokes};
+use crate::preview::picture::Picture;
 use crate::studio::Studio;
-use crate::view::graph_layout::{tidy, wires};
+use crate::view::arrangement::{self, Area};
+use crate::view::scene::{End, GraphBox, Kind, Scene};
 
 /// State of the panel.
-#[derive(Debug)]
 pub struct Graph {
     /// Where the origin of the graph is in the panel, in points.
-    offset: Vec2,
+    pub(super) offset: Vec2,
     /// Size of the graph; 1 is normal.
-    zoom: f32,
-    /// Places of nodes, in points of a graph of normal size.
-    places: HashMap<String, Pos2>,
-    /// The revision that the places are of.
-    placed: Option<u64>,
-    /// The search for a new node, and where the node is to be.
+    pub(super) zoom: f32,
+    /// The group that is shown; empty for the whole recipe.
+    pub(super) group: String,
+    /// What is shown of it.
+    pub(super) scene: Scene,
+    /// Places of boxes, in points of a graph of normal size. Those of boxes that are gone are kept for undo.
+    pub(super) places: HashMap<String, Pos2>,
+    /// What the scene is of: the revision, the group, and whether there are pictures.
+    pub(super) placed: Option<(u64, String, bool)>,
+    /// The search for a new node.
     search: Option<Search>,
-    /// The node and layer from which a wire is being drawn.
+    /// The node from which a wire is being drawn.
     wire: Option<String>,
-    wants_whole: bool,
-}
-
-#[derive(Debug, Default)]
-struct Search {
-    text: String,
-    at: Pos2,
-    is_new: bool,
+    /// Where the rectangle that selects began.
+    rectangle: Option<Pos2>,
+    /// The small pictures of nodes on the graphics card.
+    textures: HashMap<String, (Arc<Picture>, TextureHandle)>,
+    pub(super) wants_whole: bool,
 }
 
 /// The size at which names can still be read.
 const LEGIBLE: f32 = 0.62;
-
-const WIDTH: f32 = 132.0;
-const TITLE: f32 = 34.0;
-const ROW: f32 = 15.0;
-const GAP: Vec2 = vec2(62.0, 22.0);
 
 impl Default for Graph {
     fn default() -> Graph {
         Graph {
             offset: vec2(20.0, 20.0),
             zoom: 1.0,
+            group: String::new(),
+            scene: Scene::default(),
             places: HashMap::new(),
             placed: None,
             search: None,
             wire: None,
+            rectangle: None,
+            textures: HashMap::new(),
             wants_whole: true,
         }
-    }
-}
-
-/// The height of a node of normal size.
-fn height(named: &NamedNode) -> f32 {
-    TITLE + ROW * named.node.inputs().len().max(1) as f32 + 6.0
-}
-
-/// The color of a kind of nodes.
-fn color(locality: Locality) -> Color32 {
-    match locality {
-        Locality::Field => Color32::from_rgb(74, 120, 176),
-        Locality::Filter => Color32::from_rgb(84, 140, 92),
-        Locality::Levelled => Color32::from_rgb(150, 96, 150),
-        Locality::Solver => Color32::from_rgb(186, 112, 62),
     }
 }
 
 impl Graph {
     /// Opens the search for a new node.
     pub fn open_search(&mut self) {
-        let middle = self.to_graph(self.offset.to_pos2() + vec2(80.0, 60.0));
-        self.search = Some(Search { at: middle, is_new: true, ..Search::default() });
+        self.search = Some(Search::new(self.to_graph(pos2(80.0, 60.0))));
     }
 
     /// Shows the graph as a whole.
@@ -93,76 +81,22 @@ impl Graph {
         self.wants_whole = true;
     }
 
-    fn to_graph(&self, at: Pos2) -> Pos2 {
+    /// Shows what a group has; the whole recipe for the empty name.
+    pub fn enter(&mut self, group: &str) {
+        group.clone_into(&mut self.group);
+        self.search = None;
+        self.wants_whole = true;
+    }
+
+    /// A place in the panel as one of the graph.
+    pub(super) fn to_graph(&self, at: Pos2) -> Pos2 {
         ((at - self.offset) / self.zoom).to_vec2().to_pos2()
-    }
-
-    /// Places new nodes, and forgets those that are gone.
-    fn place(&mut self, studio: &Studio) {
-        if self.placed == Some(studio.document.revision()) {
-            return;
-        }
-        self.placed = Some(studio.document.revision());
-        let recipe = studio.document.recipe();
-        let nodes = recipe.nodes();
-        let is_new = self.places.is_empty()
-            || nodes.iter().filter(|named| self.places.contains_key(&named.name)).count() < nodes.len() / 2;
-        if is_new {
-            self.tidy(studio);
-            self.wants_whole = true;
-            return;
-        }
-        self.places.retain(|name, _| nodes.iter().any(|named| named.name == *name));
-        for (at, named) in nodes.iter().enumerate() {
-            if self.places.contains_key(&named.name) {
-                continue;
-            }
-            // Beside what it reads, or where the search was.
-            let sources: Vec<Pos2> =
-                wires(recipe, at).iter().filter_map(|(_, source)| self.places.get(source).copied()).collect();
-            let right = sources.iter().map(|place| place.x).fold(f32::NEG_INFINITY, f32::max);
-            let mut place = match sources.first() {
-                Some(first) => pos2(right + WIDTH + GAP.x, first.y),
-                None => self.to_graph(pos2(60.0, 60.0)),
-            };
-            while self
-                .places
-                .values()
-                .any(|other| (other.x - place.x).abs() < WIDTH && (other.y - place.y).abs() < 60.0)
-            {
-                place.y += 84.0;
-            }
-            self.places.insert(named.name.clone(), place);
-        }
-    }
-
-    /// Places all nodes in a tidy layout.
-    pub fn tidy(&mut self, studio: &Studio) {
-        let recipe = studio.document.recipe();
-        let tallest = recipe.nodes().iter().map(height).fold(60.0, f32::max);
-        let row = tallest.min(96.0) + GAP.y;
-        self.places = recipe
-            .nodes()
-            .iter()
-            .zip(tidy(recipe))
-            .map(|(named, place)| (named.name.clone(), pos2(place.column as f32 * (WIDTH + GAP.x), place.row * row)))
-            .collect();
-        // Tall nodes push those below them down.
-        let mut order: Vec<(&NamedNode, Pos2)> =
-            recipe.nodes().iter().filter_map(|named| Some((named, *self.places.get(&named.name)?))).collect();
-        order.sort_by(|a, b| a.1.x.total_cmp(&b.1.x).then(a.1.y.total_cmp(&b.1.y)));
-        let mut below: HashMap<i64, f32> = HashMap::new();
-        for (named, place) in order {
-            let next = below.entry(place.x as i64).or_insert(f32::NEG_INFINITY);
-            let y = place.y.max(*next);
-            *next = y + height(named) + GAP.y * 0.5;
-            self.places.insert(named.name.clone(), pos2(place.x, y));
-        }
     }
 
     /// Shows the panel.
     pub fn show(&mut self, ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
-        self.place(studio);
+        self.update(studio);
+        self.load(ui, studio);
         let (rect, background) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         if std::mem::take(&mut self.wants_whole) {
             self.fit(studio, rect.size());
@@ -171,66 +105,109 @@ impl Graph {
         self.navigate(ui, &background, origin);
         let painter = ui.painter_at(rect);
         painter.rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
-        let nodes = studio.document.recipe().nodes();
-        let screen = |place: Pos2, graph: &Graph| origin + graph.offset + place.to_vec2() * graph.zoom;
-        let rects: HashMap<&str, Rect> = nodes
-            .iter()
-            .filter_map(|named| {
-                let place = screen(*self.places.get(&named.name)?, self);
-                Some((named.name.as_str(), Rect::from_min_size(place, vec2(WIDTH, height(named)) * self.zoom)))
-            })
-            .collect();
-        for (at, named) in nodes.iter().enumerate() {
-            for (k, (key, source)) in wires(studio.document.recipe(), at).iter().enumerate() {
-                if let (Some(from), Some(to)) = (rects.get(source.as_str()), rects.get(named.name.as_str())) {
-                    let is_mask = key == "mask";
-                    let end = if is_mask { pos2(to.center().x, to.top()) } else { self.port(*to, k) };
-                    let is_own = studio.selected.iter().any(|name| *name == named.name || name == source);
-                    self.draw_wire(&painter, self.out(*from), end, is_own, ui.visuals().weak_text_color());
-                }
-            }
+        let scene = std::mem::take(&mut self.scene);
+        let rects: Vec<Rect> = scene.boxes.iter().map(|block| self.rect_of(block, studio, origin)).collect();
+        for wire in &scene.wires {
+            let (Some(from), Some(to)) = (scene.boxes.get(wire.from), scene.boxes.get(wire.to)) else { continue };
+            let (Some(start), Some(end)) = (rects.get(wire.from), rects.get(wire.to)) else { continue };
+            let start = graph_box::at(*start, graph_box::outlet(from, wire.outlet), self.zoom, true);
+            let end = match wire.end {
+                End::Mask => pos2(end.center().x, end.top()),
+                End::Port(k) => graph_box::at(*end, graph_box::port(to, k), self.zoom, false),
+            };
+            let is_own = [from, to].iter().any(|block| block.nodes.iter().any(|name| studio.selected.contains(name)));
+            self.draw_wire(&painter, start, end, is_own, ui.visuals().weak_text_color());
         }
-        for named in nodes {
-            if let Some(own) = rects.get(named.name.as_str()) {
-                self.node(ui, &painter, named, *own, (rect, studio), actions);
-            }
+        for (block, own) in scene.boxes.iter().zip(&rects) {
+            self.show_box(ui, &painter, block, *own, (rect, studio, language), &scene, actions);
         }
-        self.finish_wire(ui, &painter, nodes, &rects, actions);
+        self.finish_wire(ui, &painter, &scene, &rects, actions);
+        self.select(ui, &painter, &background, &scene, &rects, studio, actions);
+        self.scene = scene;
         let pointer = background.interact_pointer_pos();
         if background.double_clicked() || background.secondary_clicked() {
             let at = self.to_graph(pointer.unwrap_or(rect.center()) - origin.to_vec2());
-            self.search = Some(Search { at, is_new: true, ..Search::default() });
+            self.search = Some(Search::new(at));
         } else if background.clicked() {
             actions.push(Action::Select(Vec::new()));
             self.search = None;
         }
-        if background.hovered() && ui.input(|input| input.key_pressed(Key::Delete) || input.key_pressed(Key::Backspace))
-        {
+        let is_over = ui.rect_contains_pointer(rect) && ui.ctx().memory(|memory| memory.focused().is_none());
+        if is_over && ui.input(|input| input.key_pressed(Key::Delete) || input.key_pressed(Key::Backspace)) {
             actions.push(Action::Command(Command::Delete));
         }
-        self.search_window(ui, rect, studio, language, actions);
+        self.find(ui, rect, studio, language, actions);
         let tidy_rect = Rect::from_min_size(rect.right_top() + vec2(-70.0, 6.0), vec2(64.0, 20.0));
         if ui.put(tidy_rect, egui::Button::new(language.text("graph.tidy")).small()).clicked() {
-            self.tidy(studio);
+            self.tidy(studio.has_thumbnails);
             self.wants_whole = true;
         }
+        self.crumbs(ui, rect, language);
         if !studio.document.is_valid() {
-            let color = ui.visuals().error_fg_color;
-            painter.text(
-                rect.left_top() + vec2(8.0, 6.0),
-                Align2::LEFT_TOP,
-                language.text("graph.invalid"),
-                FontId::proportional(12.0),
-                color,
-            );
+            let (place, color) = (rect.left_bottom() + vec2(8.0, -6.0), ui.visuals().error_fg_color);
+            let text = language.text("graph.invalid");
+            painter.text(place, Align2::LEFT_BOTTOM, text, FontId::proportional(12.0), color);
         }
+    }
+
+    /// The path of groups that leads to what is shown.
+    fn crumbs(&mut self, ui: &mut Ui, rect: Rect, language: Language) {
+        if self.group.is_empty() {
+            return;
+        }
+        let place = Rect::from_min_size(rect.min + vec2(8.0, 6.0), vec2(rect.width() - 90.0, 22.0));
+        let mut chosen = None;
+        ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
+            ui.horizontal(|ui| {
+                if ui.button(language.text("graph.recipe")).clicked() {
+                    chosen = Some(String::new());
+                }
+                let ends = self.group.match_indices('/').map(|(at, _)| at).chain([self.group.len()]);
+                for end in ends {
+                    let group = &self.group[..end];
+                    ui.label("›");
+                    let crumb = ui.selectable_label(group == self.group, groups::own_name(group));
+                    if crumb.clicked() {
+                        chosen = Some(group.to_owned());
+                    }
+                }
+            });
+        });
+        if let Some(group) = chosen.filter(|group| *group != self.group) {
+            self.enter(&group);
+        }
+    }
+
+    fn rect_of(&self, block: &GraphBox, studio: &Studio, origin: Pos2) -> Rect {
+        let place = self.place_of(block).unwrap_or_default();
+        let size = graph_box::size(block, studio.has_thumbnails);
+        Rect::from_min_size(origin + self.offset + place.to_vec2() * self.zoom, size * self.zoom)
+    }
+
+    /// Brings new small pictures to the graphics card.
+    fn load(&mut self, ui: &Ui, studio: &Studio) {
+        let nodes = self.scene.boxes.iter().filter_map(|block| block.outlets.first().or(block.nodes.first()));
+        let mut textures = std::mem::take(&mut self.textures);
+        for node in nodes {
+            match studio.thumbnails.of(node).filter(|_| studio.has_thumbnails) {
+                None => drop(textures.remove(node)),
+                Some(picture) => {
+                    if textures.get(node).is_none_or(|(known, _)| !Arc::ptr_eq(known, picture)) {
+                        let image = ColorImage::from_rgba_unmultiplied(picture.size, &picture.pixels);
+                        let texture = ui.ctx().load_texture(format!("node {node}"), image, TextureOptions::LINEAR);
+                        textures.insert(node.clone(), (Arc::clone(picture), texture));
+                    }
+                }
+            }
+        }
+        self.textures = textures;
     }
 
     fn fit(&mut self, studio: &Studio, size: Vec2) {
         let mut bounds = Rect::NOTHING;
-        for named in studio.document.recipe().nodes() {
-            if let Some(place) = self.places.get(&named.name) {
-                bounds = bounds.union(Rect::from_min_size(*place, vec2(WIDTH, height(named))));
+        for block in &self.scene.boxes {
+            if let Some(place) = self.place_of(block) {
+                bounds = bounds.union(Rect::from_min_size(place, graph_box::size(block, studio.has_thumbnails)));
             }
         }
         if bounds.is_finite() && bounds.width() > 0.0 {
@@ -244,8 +221,8 @@ impl Graph {
         }
     }
 
-    fn navigate(&mut self, ui: &Ui, background: &egui::Response, origin: Pos2) {
-        if background.dragged() {
+    fn navigate(&mut self, ui: &Ui, background: &Response, origin: Pos2) {
+        if background.dragged_by(PointerButton::Middle) || background.dragged_by(PointerButton::Secondary) {
             self.offset += background.drag_delta();
         }
         if background.contains_pointer()
@@ -262,16 +239,6 @@ impl Graph {
         }
     }
 
-    /// The place of an input of a node.
-    fn port(&self, rect: Rect, k: usize) -> Pos2 {
-        pos2(rect.left(), rect.top() + (TITLE + ROW * (k as f32 + 0.5)) * self.zoom)
-    }
-
-    /// The place of the output of a node.
-    fn out(&self, rect: Rect) -> Pos2 {
-        pos2(rect.right(), rect.top() + TITLE * 0.5 * self.zoom)
-    }
-
     fn draw_wire(&self, painter: &egui::Painter, from: Pos2, to: Pos2, is_strong: bool, color: Color32) {
         let bend = ((to.x - from.x).abs() * 0.5).clamp(20.0 * self.zoom, 120.0);
         let stroke =
@@ -280,95 +247,162 @@ impl Graph {
         painter.add(egui::epaint::CubicBezierShape::from_points_stroke(points, false, Color32::TRANSPARENT, stroke));
     }
 
-    fn node(
+    /// Selects the boxes in a rectangle that is dragged over the background.
+    #[allow(clippy::too_many_arguments, reason = "all of it is of this one frame")]
+    fn select(
         &mut self,
         ui: &Ui,
         painter: &egui::Painter,
-        named: &NamedNode,
-        rect: Rect,
-        (clip, studio): (Rect, &Studio),
+        background: &Response,
+        scene: &Scene,
+        rects: &[Rect],
+        studio: &Studio,
         actions: &mut Vec<Action>,
     ) {
-        let name = &named.name;
-        let spec = named.node.spec();
-        let response = ui.interact(rect.intersect(clip), ui.scope_id().with(("node", name)), Sense::click_and_drag());
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("node {name}")));
-        if response.dragged()
-            && let Some(place) = self.places.get_mut(name)
-        {
-            *place += response.drag_delta() / self.zoom;
+        if background.drag_started_by(PointerButton::Primary) {
+            self.rectangle = ui.input(|input| input.pointer.press_origin());
         }
-        if response.clicked() || response.drag_started() {
-            let add = ui.input(|input| input.modifiers.command || input.modifiers.shift);
-            let mut selected = if add { studio.selected.clone() } else { Vec::new() };
-            if !selected.contains(name) {
-                selected.insert(0, name.clone());
+        let (Some(begun), Some(pointer)) = (self.rectangle, ui.input(|input| input.pointer.latest_pos())) else {
+            return;
+        };
+        let area = Rect::from_two_pos(begun, pointer);
+        let color = ui.visuals().selection.bg_fill;
+        painter.rect_filled(area, 0.0, color.gamma_multiply(0.25));
+        painter.rect_stroke(area, 0.0, Stroke::new(1.0, color), StrokeKind::Inside);
+        if !ui.input(|input| input.pointer.any_released()) {
+            return;
+        }
+        self.rectangle = None;
+        let adds = ui.input(|input| input.modifiers.command || input.modifiers.shift);
+        let mut selected = if adds { studio.selected.clone() } else { Vec::new() };
+        for (block, rect) in scene.boxes.iter().zip(rects) {
+            if block.kind != Kind::Outside && area.intersects(*rect) {
+                selected.extend(block.nodes.iter().filter(|name| !studio.selected.contains(name) || !adds).cloned());
             }
-            actions.push(Action::Select(selected));
+        }
+        actions.push(Action::Select(selected));
+    }
+
+    #[allow(clippy::too_many_arguments, reason = "all of it is of this one frame")]
+    fn show_box(
+        &mut self,
+        ui: &Ui,
+        painter: &egui::Painter,
+        block: &GraphBox,
+        rect: Rect,
+        (clip, studio, language): (Rect, &Studio, Language),
+        scene: &Scene,
+        actions: &mut Vec<Action>,
+    ) {
+        let id = ui.scope_id().with(("node", &block.id));
+        let response = ui.interact(rect.intersect(clip), id, Sense::click_and_drag());
+        let label = match block.kind {
+            Kind::Node(_) => format!("node {}", block.id),
+            Kind::Group => format!("group {}", block.id.trim_end_matches('/')),
+            Kind::Outside => format!("outside {}", block.title),
+        };
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, label.clone()));
+        let is_selected = block.kind != Kind::Outside && block.nodes.iter().all(|name| studio.selected.contains(name));
+        if response.dragged_by(PointerButton::Primary) {
+            let moved = |other: &&GraphBox| {
+                other.id == block.id
+                    || is_selected
+                        && other.kind != Kind::Outside
+                        && other.nodes.iter().all(|name| studio.selected.contains(name))
+            };
+            for key in scene.boxes.iter().filter(moved).map(|block| self.key(block)).collect::<Vec<_>>() {
+                if let Some(place) = self.places.get_mut(&key) {
+                    *place += response.drag_delta() / self.zoom;
+                }
+            }
+        }
+        self.click(ui, &response, block, is_selected, studio, actions);
+        if block.kind != Kind::Outside {
+            response.context_menu(|ui| self.menu(ui, block, studio, language, actions));
+        }
+        let shown = Shown {
+            is_selected,
+            is_in_view: block.nodes.contains(&studio.look.layer),
+            picture: block
+                .outlets
+                .first()
+                .filter(|_| block.kind != Kind::Outside && studio.has_thumbnails)
+                .and_then(|node| self.textures.get(node))
+                .map(|(_, texture)| texture),
+            zoom: self.zoom,
+        };
+        graph_box::draw(painter, ui.visuals(), block, rect, &shown);
+        for (k, name) in block.outlets.iter().enumerate() {
+            let out = graph_box::at(rect, graph_box::outlet(block, k), self.zoom, true);
+            let grip = Rect::from_center_size(out, Vec2::splat(15.0 * self.zoom.max(0.5))).intersect(clip);
+            let grip = ui.interact(grip, ui.scope_id().with(("out", &block.id, name)), Sense::drag());
+            grip.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, format!("output {name}")));
+            if grip.drag_started() {
+                self.wire = Some(name.clone());
+            }
+        }
+    }
+
+    /// Selects, shows or enters a box that is clicked.
+    fn click(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        block: &GraphBox,
+        is_selected: bool,
+        studio: &Studio,
+        actions: &mut Vec<Action>,
+    ) {
+        if block.kind == Kind::Outside {
+            if response.clicked() || response.double_clicked() {
+                // Its own group is shown, with it selected.
+                self.enter(block.nodes.first().map_or("", |name| groups::group_of(name)));
+                actions.push(Action::Select(block.nodes.clone()));
+            }
+            return;
+        }
+        let adds = ui.input(|input| input.modifiers.command || input.modifiers.shift);
+        let is_dragged = response.drag_started_by(PointerButton::Primary);
+        let is_menu = response.secondary_clicked();
+        if response.clicked() || ((is_dragged || is_menu) && !is_selected) {
+            let others = studio.selected.iter().filter(|name| adds && !block.nodes.contains(name)).cloned();
+            let own = block.nodes.iter().filter(|_| !(adds && is_selected)).cloned();
+            actions.push(Action::Select(own.chain(others).collect()));
         }
         if response.double_clicked() {
-            actions.push(Action::Show(name.clone()));
-        }
-        let is_selected = studio.selected.contains(name);
-        let visuals = ui.visuals();
-        let round = 5.0 * self.zoom;
-        painter.rect_filled(rect, round, visuals.window_fill);
-        let title = Rect::from_min_max(rect.min, pos2(rect.right(), rect.top() + TITLE * self.zoom));
-        painter.rect_filled(title, round, color(spec.locality));
-        let border = if is_selected {
-            Stroke::new(2.5, visuals.selection.stroke.color)
-        } else {
-            Stroke::new(1.0, visuals.window_stroke.color)
-        };
-        painter.rect_stroke(rect, round, border, StrokeKind::Outside);
-        if studio.look.layer == *name {
-            painter.circle_filled(
-                title.right_top() + vec2(-10.0, 10.0) * self.zoom,
-                4.0 * self.zoom,
-                Color32::from_rgb(255, 214, 90),
-            );
-        }
-        if self.zoom > 0.32 {
-            let inside = painter.with_clip_rect(rect.intersect(clip));
-            inside.text(
-                title.left_top() + vec2(7.0, 4.0) * self.zoom,
-                Align2::LEFT_TOP,
-                name,
-                FontId::proportional(13.0 * self.zoom),
-                Color32::WHITE,
-            );
-            inside.text(
-                title.left_top() + vec2(7.0, 19.0) * self.zoom,
-                Align2::LEFT_TOP,
-                spec.op,
-                FontId::proportional(10.5 * self.zoom),
-                Color32::from_white_alpha(190),
-            );
-            for (k, input) in named.node.inputs().iter().enumerate() {
-                let shown = match named.node.input(k) {
-                    Input::Value(value) => format!("{} = {}", input.name, orogen::words::number(*value)),
-                    _ => input.name.to_owned(),
-                };
-                let place = self.port(rect, k) + vec2(8.0 * self.zoom, 0.0);
-                inside.text(
-                    place,
-                    Align2::LEFT_CENTER,
-                    shown,
-                    FontId::proportional(10.5 * self.zoom),
-                    visuals.text_color(),
-                );
+            match block.group_name() {
+                Some(group) => self.enter(group),
+                None => actions.extend(block.nodes.first().map(|name| Action::Show(name.clone()))),
             }
         }
-        for k in 0..named.node.inputs().len() {
-            painter.circle_filled(self.port(rect, k), 3.5 * self.zoom, visuals.weak_text_color());
+    }
+
+    /// The menu of a box.
+    fn menu(&mut self, ui: &mut Ui, block: &GraphBox, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
+        let mut entry = |ui: &mut Ui, text: &'static str, action: Option<Action>| {
+            let is_clicked = ui.button(language.text(text)).clicked();
+            if is_clicked {
+                actions.extend(action);
+                ui.close();
+            }
+            is_clicked
+        };
+        match block.group_name() {
+            Some(group) => {
+                if entry(ui, "graph.enter", None) {
+                    self.enter(group);
+                }
+            }
+            None => {
+                entry(ui, "inspector.show", block.nodes.first().map(|name| Action::Show(name.clone())));
+            }
         }
-        let out = self.out(rect);
-        painter.circle_filled(out, 5.0 * self.zoom, visuals.strong_text_color());
-        let grip = Rect::from_center_size(out, Vec2::splat(16.0 * self.zoom.max(0.5))).intersect(clip);
-        let grip = ui.interact(grip, ui.scope_id().with(("out", name)), Sense::drag());
-        grip.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, format!("output {name}")));
-        if grip.drag_started() {
-            self.wire = Some(name.clone());
+        ui.separator();
+        for command in [Command::Group, Command::Ungroup, Command::Duplicate, Command::Rename, Command::Delete] {
+            let Some(declared) = command.entry() else { continue };
+            if menu::is_enabled(command, Some(studio)) {
+                entry(ui, declared.name, Some(Action::Command(command)));
+            }
         }
     }
 
@@ -377,133 +411,75 @@ impl Graph {
         &mut self,
         ui: &Ui,
         painter: &egui::Painter,
-        nodes: &[NamedNode],
-        rects: &HashMap<&str, Rect>,
+        scene: &Scene,
+        rects: &[Rect],
         actions: &mut Vec<Action>,
     ) {
         let Some(source) = self.wire.clone() else { return };
         let Some(pointer) = ui.input(|input| input.pointer.latest_pos()) else { return };
-        if let Some(from) = rects.get(source.as_str()) {
-            self.draw_wire(painter, self.out(*from), pointer, true, ui.visuals().selection.bg_fill);
+        let all = || scene.boxes.iter().zip(rects);
+        if let Some((block, rect)) = all().find(|(block, _)| block.outlets.contains(&source)) {
+            let k = block.outlets.iter().position(|name| *name == source).unwrap_or_default();
+            let start = graph_box::at(*rect, graph_box::outlet(block, k), self.zoom, true);
+            self.draw_wire(painter, start, pointer, true, ui.visuals().selection.bg_fill);
         }
         if !ui.input(|input| input.pointer.any_released()) {
             return;
         }
         self.wire = None;
-        let under = nodes.iter().find(|named| {
-            rects.get(named.name.as_str()).is_some_and(|rect| rect.expand(8.0 * self.zoom).contains(pointer))
-        });
-        let Some(named) = under.filter(|named| named.name != source) else { return };
-        let Some(rect) = rects.get(named.name.as_str()) else { return };
-        let inputs = named.node.inputs();
-        let row = ((pointer.y - rect.top()) / self.zoom - TITLE) / ROW;
-        // On the title it is the first input, below the last one the mask.
-        let input = match (row.max(0.0) as usize, inputs.len()) {
-            (_, 0) => "mask".to_owned(),
-            (k, count) => inputs[k.min(count - 1)].name.to_owned(),
+        let under = all().find(|(_, rect)| rect.expand(8.0 * self.zoom).contains(pointer));
+        let Some((block, rect)) = under.filter(|(block, _)| !block.outlets.contains(&source)) else { return };
+        // On the title it is the first input; a node without inputs has a mask.
+        let near = graph_box::port_near(block, (pointer.y - rect.top()) / self.zoom).and_then(|k| block.ports.get(k));
+        let (node, input) = match (near, block.kind) {
+            (Some(port), _) => (port.node.clone(), port.key.clone()),
+            (None, Kind::Node(_)) => (block.id.clone(), "mask".to_owned()),
+            (None, _) => return,
         };
-        actions.push(Action::Edit(Edit::Connect { node: named.name.clone(), input, source: Input::Node(source) }));
+        actions.push(Action::Edit(Edit::Connect { node, input, source: Input::Node(source) }));
     }
 
-    fn search_window(&mut self, ui: &Ui, rect: Rect, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
-        let Some(search) = &mut self.search else { return };
-        let mut chosen = None;
-        let mut is_open = true;
+    /// The search for a new node, and what it finds.
+    fn find(&mut self, ui: &Ui, rect: Rect, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
+        let Some(mut search) = self.search.take() else { return };
         let place = rect.min + self.offset + search.at.to_vec2() * self.zoom;
-        let place = place.clamp(rect.min, (rect.max - vec2(260.0, 120.0)).max(rect.min));
-        egui::Window::new(language.text("graph.add"))
-            .open(&mut is_open)
-            .fixed_pos(place)
-            .fixed_size(vec2(250.0, 260.0))
-            .collapsible(false)
-            .show(ui.ctx(), |ui| {
-                let field = ui.add(TextEdit::singleline(&mut search.text).hint_text(language.text("graph.search")));
-                if std::mem::take(&mut search.is_new) {
-                    field.request_focus();
-                }
-                let found = matches(&search.text);
-                if field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter)) {
-                    chosen = found.first().copied();
-                }
-                egui::ScrollArea::vertical().max_height(220.0).show(ui, |ui| {
-                    for op in found {
-                        let Some(node) = Node::named(op) else { continue };
-                        let about = orogen::declare::short(node.spec().doc);
-                        if ui.selectable_label(false, op).on_hover_text(about).clicked() {
-                            chosen = Some(op);
-                        }
-                    }
-                });
-            });
-        if ui.input(|input| input.key_pressed(Key::Escape)) || !is_open {
-            self.search = None;
-            return;
-        }
-        if let Some(op) = chosen {
-            let at = search.at;
-            self.search = None;
-            let recipe = studio.document.recipe();
-            let taken = recipe.nodes().iter().map(|named| named.name.as_str()).collect();
-            let name = names::free(&names::of_op(op), &taken);
-            // The selected node is what it reads.
-            let inputs = studio.selected.first().and_then(|selected| {
-                let node = Node::named(op)?;
-                let first = node.spec().inputs.first().map(|input| input.name);
-                let first = first.or(node.spec().named_inputs.then_some("a"))?;
-                Some((first.to_owned(), selected.clone()))
-            });
-            if inputs.is_none() {
-                self.places.insert(name.clone(), at);
-            }
-            if drawing::OPS.contains(&op) {
-                // It is nothing without points.
-                actions.push(Action::Draw(op));
+        let op = match search.show(ui, rect, place, language) {
+            Found::Nothing => {
+                self.search = Some(search);
                 return;
             }
-            if op == strokes::OP {
-                // Over something it changes heights; alone it is a mask.
-                actions.push(Action::Brush(if inputs.is_some() { Effect::Raise } else { Effect::Paint }));
-            }
-            let inputs = inputs.into_iter().collect();
-            actions.push(Action::Edit(Edit::Add { name, op: op.to_owned(), inputs, params: Vec::new() }));
+            Found::Closed => return,
+            Found::Op(op) => op,
+        };
+        if drawing::OPS.contains(&op) {
+            // It is nothing without points.
+            actions.push(Action::Draw(op));
+            return;
         }
-    }
-}
-
-/// The ops whose name or description has all words of a text, those whose name begins with it first.
-#[must_use]
-pub fn matches(text: &str) -> Vec<&'static str> {
-    let text = text.trim().to_lowercase();
-    let mut found: Vec<(u8, &'static str)> = Node::all()
-        .iter()
-        .map(Node::spec)
-        // Inputs of subgraphs are written by recipes that use them.
-        .filter(|spec| spec.op != "input")
-        .filter_map(|spec| {
-            let about = spec.doc.to_lowercase();
-            let rank = match () {
-                () if spec.op.starts_with(&text) => 0,
-                () if spec.op.contains(&text) => 1,
-                () if text.split_whitespace().all(|word| spec.op.contains(word) || about.contains(word)) => 2,
-                () => return None,
-            };
-            Some((rank, spec.op))
-        })
-        .collect();
-    found.sort_unstable();
-    found.into_iter().map(|(_, op)| op).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn nodes_are_found_by_name_and_description() {
-        assert_eq!(matches("blur")[0], "blur");
-        assert_eq!(matches("fb")[0], "fbm");
-        assert!(matches("hydraulic").contains(&"pipes") || matches("erosion").contains(&"stream-power"));
-        assert!(matches("no such thing").is_empty());
-        assert_eq!(matches("").len() + 1, Node::all().len());
+        let recipe = studio.document.recipe();
+        let taken = recipe.nodes().iter().filter_map(|named| groups::rest(&named.name, &self.group)).collect();
+        let name = groups::within(&self.group, &names::free(&names::of_op(op), &taken));
+        // The selected node is what it reads.
+        let inputs = studio.selected.first().and_then(|selected| {
+            let node = Node::named(op)?;
+            let first = node.spec().inputs.first().map(|input| input.name);
+            let first = first.or(node.spec().named_inputs.then_some("a"))?;
+            Some((first.to_owned(), selected.clone()))
+        });
+        if inputs.is_none() {
+            // A free place near the pointer.
+            let size = |block: &GraphBox| graph_box::size(block, studio.has_thumbnails).into();
+            let boxes = self.scene.boxes.iter();
+            let taken: Vec<Area> =
+                boxes.filter_map(|block| Some((self.place_of(block)?.into(), size(block)))).collect();
+            let free = arrangement::free(search.at.into(), [WIDTH, 120.0], &taken);
+            self.places.insert(name.clone(), free.into());
+        }
+        if op == strokes::OP {
+            // Over something it changes heights; alone it is a mask.
+            actions.push(Action::Brush(if inputs.is_some() { Effect::Raise } else { Effect::Paint }));
+        }
+        let inputs = inputs.into_iter().collect();
+        actions.push(Action::Edit(Edit::Add { name, op: op.to_owned(), inputs, params: Vec::new() }));
     }
 }

@@ -1,17 +1,20 @@
 //! The panel beside the view: the world, the recipe's own parameters, and the selected node.
 
 use eframe::egui::{self, CollapsingHeader, ComboBox, DragValue, RichText, TextEdit, Ui};
-use orogen::declare::Input;
+use orogen::declare::{Input, Shape};
 use orogen::node::Node;
-use orogen::recipe::document::NamedNode;
+use orogen::recipe::document::{NamedNode, Recipe};
+use orogen::value::Value;
 
 use super::action::Action;
 use super::command::Command;
+use super::expression_field::ExpressionFields;
 use super::fields::{self, Number};
 use super::ground;
 use crate::catalogue::Language;
 use crate::editing::edit::Edit;
-use crate::editing::names;
+use crate::editing::expression::Site;
+use crate::editing::{groups, names};
 use crate::studio::Studio;
 
 /// State of the panel.
@@ -21,12 +24,14 @@ pub struct Inspector {
     renaming: Option<(String, String)>,
     /// Whether the field of the name gets the keyboard.
     wants_focus: bool,
+    /// Expressions that are being typed.
+    expressions: ExpressionFields,
 }
 
 impl Inspector {
-    /// Begins to rename a node.
-    pub fn rename(&mut self, node: &str) {
-        self.renaming = Some((node.to_owned(), node.to_owned()));
+    /// Begins to rename a node or a group.
+    pub fn rename(&mut self, name: &str) {
+        self.renaming = Some((name.to_owned(), name.to_owned()));
         self.wants_focus = true;
     }
 
@@ -38,6 +43,12 @@ impl Inspector {
             ground::show(ui, studio, language, actions);
             ui.separator();
             let recipe = studio.document.recipe();
+            if let Some(group) = groups::of_selection(recipe, &studio.selected) {
+                return self.group(ui, &group, studio, language, actions);
+            }
+            if studio.selected.len() > 1 {
+                several(ui, studio, language, actions);
+            }
             let selected =
                 studio.selected.first().and_then(|name| recipe.nodes().iter().find(|named| named.name == *name));
             match selected {
@@ -47,32 +58,101 @@ impl Inspector {
         });
     }
 
+    /// A button that makes a formula of a number, and a number of a formula.
+    #[allow(clippy::too_many_arguments, reason = "all of it is of this one frame")]
+    fn formula(
+        &mut self,
+        ui: &mut Ui,
+        node: &str,
+        key: &str,
+        value: &Value,
+        recipe: &Recipe,
+        language: Language,
+        actions: &mut Vec<Action>,
+    ) {
+        let site = Site { node: node.to_owned(), key: key.to_owned(), is_formula: true };
+        let is_formula = recipe.formula(node, key).is_some();
+        let is_on = is_formula || self.expressions.is_typed(&site);
+        let button = ui.selectable_label(is_on, RichText::new("ƒ").small());
+        let label = format!("formula {node}.{key}");
+        button.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_on, label.clone()));
+        if !button.on_hover_text(language.text("inspector.formula")).clicked() {
+            return;
+        }
+        match is_on {
+            true => {
+                self.expressions.end(&site);
+                if is_formula {
+                    actions.push(Action::Edit(Edit::Param {
+                        node: node.into(),
+                        key: key.into(),
+                        value: value.clone(),
+                    }));
+                    actions.push(Action::EndGesture);
+                }
+            }
+            false => self.expressions.begin(site, "", &format!(" {}", value.to_toml())),
+        }
+    }
+
+    /// The name of a node or group, which can be changed. Returns the new one.
+    fn name(&mut self, ui: &mut Ui, name: &str, language: Language) -> Option<String> {
+        match &mut self.renaming {
+            Some((of, typed)) if of == name => {
+                let field = ui.add(TextEdit::singleline(typed).desired_width(140.0));
+                if std::mem::take(&mut self.wants_focus) {
+                    field.request_focus();
+                }
+                if let Some(why) = names::fault(typed) {
+                    ui.colored_label(ui.visuals().error_fg_color, language.text(why));
+                } else if field.lost_focus() {
+                    let is_given = ui.input(|input| input.key_pressed(egui::Key::Enter)) && typed != name;
+                    let to = is_given.then(|| typed.clone());
+                    self.renaming = None;
+                    return to;
+                }
+            }
+            _ => {
+                let text = RichText::new(name).strong().size(15.0);
+                let title = ui.add(egui::Label::new(text).sense(egui::Sense::click()));
+                if title.on_hover_text(language.text("inspector.rename")).double_clicked() {
+                    self.rename(name);
+                }
+            }
+        }
+        None
+    }
+
+    /// A group: its name, and its nodes.
+    fn group(&mut self, ui: &mut Ui, group: &str, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
+        ui.horizontal(|ui| {
+            if let Some(to) = self.name(ui, group, language) {
+                actions.push(Action::Edit(Edit::RenameGroup { from: group.to_owned(), to }));
+            }
+            ui.weak(language.text("inspector.group"));
+        });
+        ui.horizontal_wrapped(|ui| {
+            if ui.button(language.text("graph.enter")).clicked() {
+                actions.push(Action::Enter(group.to_owned()));
+            }
+            buttons(ui, &[Command::Ungroup, Command::Duplicate, Command::Delete], language, actions);
+        });
+        ui.add_space(4.0);
+        for name in groups::members(studio.document.recipe(), group) {
+            let own = groups::rest(&name, group).unwrap_or(&name);
+            if ui.selectable_label(false, own).clicked() {
+                actions.push(Action::Enter(groups::group_of(&name).to_owned()));
+                actions.push(Action::Select(vec![name]));
+            }
+        }
+    }
+
     fn node(&mut self, ui: &mut Ui, named: &NamedNode, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
         let NamedNode { name, node, mask } = named;
         let spec = node.spec();
         ui.horizontal(|ui| {
-            match &mut self.renaming {
-                Some((of, typed)) if of == name => {
-                    let field = ui.add(TextEdit::singleline(typed).desired_width(140.0));
-                    if std::mem::take(&mut self.wants_focus) {
-                        field.request_focus();
-                    }
-                    if let Some(why) = names::fault(typed) {
-                        ui.colored_label(ui.visuals().error_fg_color, language.text(why));
-                    } else if field.lost_focus() {
-                        if ui.input(|input| input.key_pressed(egui::Key::Enter)) && typed != name {
-                            actions.push(Action::Edit(Edit::Rename { from: name.clone(), to: typed.clone() }));
-                        }
-                        self.renaming = None;
-                    }
-                }
-                _ => {
-                    let title =
-                        ui.add(egui::Label::new(RichText::new(name).strong().size(15.0)).sense(egui::Sense::click()));
-                    if title.on_hover_text(language.text("inspector.rename")).double_clicked() {
-                        self.rename(name);
-                    }
-                }
+            if let Some(to) = self.name(ui, name, language) {
+                actions.push(Action::Edit(Edit::Rename { from: name.clone(), to }));
             }
             ui.weak(spec.op).on_hover_text(spec.doc.trim());
         });
@@ -100,6 +180,7 @@ impl Inspector {
         }
         source(ui, (name, "mask", language.text("inspector.mask"), false), mask, studio, language, actions);
         ui.add_space(4.0);
+        let recipe = studio.document.recipe();
         // A node with the defaults, for `reset`.
         let default = Node::named(spec.op);
         for (i, param) in spec.params.iter().enumerate() {
@@ -109,14 +190,35 @@ impl Inspector {
                 let label =
                     ui.label(if is_default { RichText::new(param.name) } else { RichText::new(param.name).strong() });
                 label.on_hover_text(format!("{}\n\n{}", param.doc.trim(), param.expected()));
+                if matches!(param.shape, Shape::Number | Shape::Integer) {
+                    self.formula(ui, name, param.name, &value, recipe, language, actions);
+                }
                 let reset = ui.add_visible(!is_default, egui::Button::new(language.text("inspector.reset")).small());
                 if reset.clicked() {
                     actions.push(Action::Edit(Edit::Reset { node: name.clone(), key: param.name.into() }));
                 }
             });
+            let own = recipe.formula(name, param.name);
+            let site = Site {
+                node: name.clone(),
+                key: param.name.into(),
+                is_formula: !matches!(param.shape, Shape::Expression),
+            };
+            match (&value, param.shape) {
+                (Value::Text(own), Shape::Expression) => {
+                    self.expressions.show(ui, &site, own, studio, language, actions);
+                    continue;
+                }
+                _ if own.is_some() || self.expressions.is_typed(&site) => {
+                    ui.weak(format!("= {}", value.to_toml()));
+                    self.expressions.show(ui, &site, own.unwrap_or_default(), studio, language, actions);
+                    continue;
+                }
+                _ => {}
+            }
             let number = Number {
                 range: param.range,
-                default: default.as_ref().and_then(orogen::value::Value::number).unwrap_or(0.0),
+                default: default.as_ref().and_then(Value::number).unwrap_or(0.0),
                 unit: param.unit,
                 is_whole: false,
             };
@@ -127,6 +229,25 @@ impl Inspector {
             if input.ended {
                 actions.push(Action::EndGesture);
             }
+        }
+    }
+}
+
+/// Several nodes are selected: what can be done with all of them.
+fn several(ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
+    let count = studio.selected.len().to_string();
+    ui.weak(language.fill("inspector.several", &[("count", &count)]));
+    ui.horizontal_wrapped(|ui| {
+        buttons(ui, &[Command::Group, Command::Duplicate, Command::Delete], language, actions);
+    });
+    ui.separator();
+}
+
+fn buttons(ui: &mut Ui, commands: &[Command], language: Language, actions: &mut Vec<Action>) {
+    for command in commands {
+        let name = command.entry().map_or("", |entry| language.text(entry.name));
+        if ui.button(name).clicked() {
+            actions.push(Action::Command(*command));
         }
     }
 }

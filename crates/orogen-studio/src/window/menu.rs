@@ -17,7 +17,8 @@ pub fn show(ui: &mut Ui, studio: Option<&Studio>, settings: &Settings, language:
             ui.menu_button(language.text(menu.name()), |ui| {
                 for entry in command::ALL.iter().filter(|entry| entry.menu == menu) {
                     let keys = entry.keys.map(|keys| ui.ctx().format_shortcut(&keys)).unwrap_or_default();
-                    let mut button = egui::Button::new(label(entry.command, studio, language));
+                    let mark = entry.command == Command::Thumbnails && settings.thumbnails;
+                    let mut button = egui::Button::selectable(mark, label(entry.command, studio, language));
                     if !keys.is_empty() {
                         button = button.shortcut_text(keys);
                     }
@@ -72,9 +73,10 @@ pub fn is_enabled(command: Command, studio: Option<&Studio>) -> bool {
     match command {
         Command::Undo => studio.document.history().undo_label().is_some(),
         Command::Redo => studio.document.history().redo_label().is_some(),
-        Command::Delete | Command::Duplicate | Command::Rename => {
+        Command::Delete | Command::Duplicate | Command::Rename | Command::Group => {
             !studio.selected.is_empty() && studio.document.is_valid()
         }
+        Command::Ungroup => studio.selected_group().is_some() && studio.document.is_valid(),
         Command::AddNode | Command::NextSeed | Command::Export => studio.document.is_valid(),
         _ => true,
     }

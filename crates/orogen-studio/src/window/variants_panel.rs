@@ -9,7 +9,8 @@ use super::action::Action;
 use crate::catalogue::Language;
 use crate::editing::edit::Edit;
 use crate::editing::variants::{COUNT, Varied};
-use crate::preview::strip::{Picture, Strip};
+use crate::preview::picture::Picture;
+use crate::preview::strip::Strip;
 use crate::preview::worker::Wake;
 use crate::studio::{Studio, surface};
 

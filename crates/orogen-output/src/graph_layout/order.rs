@@ -28,6 +28,7 @@ impl Columns {
     /// Arranges boxes in columns, each left of all boxes that read it and as close to them as possible, in an order
     /// with few crossings. `wires` are pairs of boxes, the one that is read first. There are no cycles, and a box comes
     /// after those that it reads.
+    #[must_use]
     pub fn new(blocks: usize, wires: &[(usize, usize)]) -> Columns {
         let mut rank = vec![0usize; blocks];
         let mut sorted: Vec<&(usize, usize)> = wires.iter().collect();

@@ -1,8 +1,18 @@
-//! The positions of boxes and wires, in millimetres.
-
-use orogen::sheet::geometry::{Point, Size};
+//! The positions of boxes and wires.
 
 use super::order::{Columns, Slot};
+use crate::sheet::geometry::{Point, Size};
+
+/// The distances of a layout, in its units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spacing {
+    /// Between two boxes of a column.
+    pub gap: f32,
+    /// Between a box and a wire that passes it, and between two such wires.
+    pub wire_gap: f32,
+    /// Between two columns.
+    pub alley: f32,
+}
 
 /// A wire to route.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,17 +34,13 @@ pub struct Layout {
     pub ways: Vec<Vec<[f32; 3]>>,
 }
 
-/// Distance between two boxes of a column, and between a box and a wire.
-const GAP: f32 = 6.0;
-const WIRE_GAP: f32 = 3.0;
-/// Distance between two columns, and more for each wire that turns there.
-const ALLEY: f32 = 16.0;
 /// Rounds of straightening.
 const ROUNDS: usize = 40;
 
 impl Layout {
     /// Places boxes; a box comes after those that it reads.
-    pub fn new(sizes: &[Size], links: &[Link]) -> Layout {
+    #[must_use]
+    pub fn new(sizes: &[Size], links: &[Link], spacing: Spacing) -> Layout {
         let wires: Vec<(usize, usize)> = links.iter().map(|link| (link.from.0, link.to.0)).collect();
         let columns = Columns::new(sizes.len(), &wires);
         let height = |slot: usize| match columns.slots[slot] {
@@ -42,8 +48,8 @@ impl Layout {
             Slot::Pass(_) => 0.0,
         };
         let apart = |above: usize, below: usize| match (columns.slots[above], columns.slots[below]) {
-            (Slot::Block(_), Slot::Block(_)) => GAP,
-            _ => WIRE_GAP,
+            (Slot::Block(_), Slot::Block(_)) => spacing.gap,
+            _ => spacing.wire_gap,
         };
         // The connections of each slot: (slot, offset below its own top, the other slot, offset below that one's top).
         let mut left: Vec<Vec<(f32, usize, f32)>> = vec![Vec::new(); columns.slots.len()];
@@ -98,7 +104,7 @@ impl Layout {
         let mut at = 0.0;
         for width in &widths {
             lefts.push(at);
-            at += width + ALLEY;
+            at += width + spacing.alley;
         }
         let mut column_of = vec![0; columns.slots.len()];
         for (k, column) in columns.columns.iter().enumerate() {
@@ -123,7 +129,7 @@ impl Layout {
             })
             .collect();
         let bottom = (0..sizes.len()).map(|block| tops[block] + sizes[block].height).chain(tops.iter().copied());
-        let size = Size::new((at - ALLEY).max(0.0), bottom.fold(0.0, f32::max));
+        let size = Size::new((at - spacing.alley).max(0.0), bottom.fold(0.0, f32::max));
         Layout { size, places, ways }
     }
 }
@@ -172,6 +178,8 @@ fn median(values: &mut [f32]) -> f32 {
 mod tests {
     use super::*;
 
+    const SPACING: Spacing = Spacing { gap: 6.0, wire_gap: 3.0, alley: 16.0 };
+
     /// Boxes with random edges from a seeded generator.
     fn random(count: usize, seed: u64) -> (Vec<Size>, Vec<Link>) {
         let mut state = seed;
@@ -195,7 +203,7 @@ mod tests {
     fn nothing_overlaps_and_wires_run_to_the_right() {
         for seed in 0..20 {
             let (sizes, links) = random(3 + 4 * seed as usize, seed);
-            let layout = Layout::new(&sizes, &links);
+            let layout = Layout::new(&sizes, &links, SPACING);
             let area = |k: usize| {
                 let Point { x, y } = layout.places[k];
                 [x, y, x + sizes[k].width, y + sizes[k].height]
@@ -222,7 +230,7 @@ mod tests {
                 let from = area(link.from.0);
                 assert_eq!([way[0][0], way[0][2]], [from[2], from[1] + link.from.1]);
             }
-            assert_eq!(layout, Layout::new(&sizes, &links));
+            assert_eq!(layout, Layout::new(&sizes, &links, SPACING));
         }
     }
 
@@ -230,7 +238,7 @@ mod tests {
     fn a_chain_is_level() {
         let sizes = [Size { width: 20.0, height: 10.0 }; 4];
         let links: Vec<Link> = (0..3).map(|k| Link { from: (k, 4.0), to: (k + 1, 4.0) }).collect();
-        let layout = Layout::new(&sizes, &links);
+        let layout = Layout::new(&sizes, &links, SPACING);
         assert!(layout.places.iter().all(|place| place.y == 0.0), "{:?}", layout.places);
     }
 }

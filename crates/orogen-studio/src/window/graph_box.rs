@@ -1,0 +1,160 @@
+//! How a box of the graph looks, and where its inputs and outputs are.
+
+use eframe::egui::{
+    Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, StrokeKind, TextureHandle, Vec2, Visuals, pos2, vec2,
+};
+use orogen::declare::spec::Locality;
+
+use crate::view::scene::{GraphBox, Kind};
+
+/// The width of a box of normal size.
+pub const WIDTH: f32 = 150.0;
+const TITLE: f32 = 34.0;
+const ROW: f32 = 15.0;
+/// The side of the small picture.
+const PICTURE: f32 = 56.0;
+const GAP: f32 = 5.0;
+
+/// The color of a kind of boxes.
+fn color(kind: Kind) -> Color32 {
+    match kind {
+        Kind::Node(Locality::Field) => Color32::from_rgb(74, 120, 176),
+        Kind::Node(Locality::Filter) => Color32::from_rgb(84, 140, 92),
+        Kind::Node(Locality::Levelled) => Color32::from_rgb(150, 96, 150),
+        Kind::Node(Locality::Solver) => Color32::from_rgb(186, 112, 62),
+        Kind::Group => Color32::from_rgb(96, 104, 118),
+        Kind::Outside => Color32::from_rgb(120, 120, 120),
+    }
+}
+
+/// The size of a box of normal size.
+#[must_use]
+pub fn size(block: &GraphBox, has_pictures: bool) -> Vec2 {
+    let rows = rows(block) as f32;
+    let picture = if has_pictures { PICTURE + 2.0 * GAP } else { 0.0 };
+    let below = match block.kind {
+        Kind::Outside => ROW * rows + GAP,
+        // Inputs stand beside the picture of a node, and above that of a group.
+        Kind::Node(_) => (ROW * rows.max(1.0) + GAP).max(picture),
+        Kind::Group => ROW * rows.max(1.0) + GAP + picture,
+    };
+    vec2(WIDTH, TITLE + below)
+}
+
+/// Inputs and outputs that stand below each other.
+fn rows(block: &GraphBox) -> usize {
+    // Other boxes have their output beside the title.
+    block.ports.len() + if block.kind == Kind::Group { block.outlets.len() } else { 0 }
+}
+
+/// The height of an input in a box of normal size.
+#[must_use]
+pub fn port(block: &GraphBox, k: usize) -> f32 {
+    let above = if block.kind == Kind::Group { block.outlets.len() } else { 0 };
+    TITLE + ROW * ((above + k) as f32 + 0.5)
+}
+
+/// The height of an output in a box of normal size.
+#[must_use]
+pub fn outlet(block: &GraphBox, k: usize) -> f32 {
+    match block.kind {
+        Kind::Group => TITLE + ROW * (k as f32 + 0.5),
+        Kind::Node(_) | Kind::Outside => TITLE * 0.5,
+    }
+}
+
+/// The input nearest to a height in a box of normal size.
+#[must_use]
+pub fn port_near(block: &GraphBox, y: f32) -> Option<usize> {
+    (0..block.ports.len()).min_by(|a, b| (port(block, *a) - y).abs().total_cmp(&(port(block, *b) - y).abs()))
+}
+
+/// How a box is shown.
+pub struct Shown<'a> {
+    /// Whether it is selected.
+    pub is_selected: bool,
+    /// Whether the view shows it.
+    pub is_in_view: bool,
+    /// Its small picture.
+    pub picture: Option<&'a TextureHandle>,
+    /// The size of the graph; 1 is normal.
+    pub zoom: f32,
+}
+
+/// Draws a box.
+pub fn draw(painter: &Painter, visuals: &Visuals, block: &GraphBox, rect: Rect, shown: &Shown) {
+    let zoom = shown.zoom;
+    let round = 5.0 * zoom;
+    if block.kind == Kind::Group {
+        // A second sheet behind tells that there is more in it.
+        let behind = rect.translate(vec2(4.0, 4.0) * zoom);
+        painter.rect_filled(behind, round, visuals.window_fill.gamma_multiply(0.8));
+        painter.rect_stroke(behind, round, Stroke::new(1.0, visuals.window_stroke.color), StrokeKind::Outside);
+    }
+    painter.rect_filled(rect, round, visuals.window_fill);
+    let title = Rect::from_min_max(rect.min, pos2(rect.right(), rect.top() + TITLE * zoom));
+    painter.rect_filled(title, round, color(block.kind));
+    let border = match shown.is_selected {
+        true => Stroke::new(2.5, visuals.selection.stroke.color),
+        false => Stroke::new(1.0, visuals.window_stroke.color),
+    };
+    painter.rect_stroke(rect, round, border, StrokeKind::Outside);
+    if let Some(picture) = shown.picture {
+        let [width, height] = picture.size().map(|side| side as f32);
+        let fitted = vec2(width, height) * (PICTURE / width.max(height));
+        let corner = rect.max - Vec2::splat(GAP * zoom);
+        let place = Rect::from_min_max(corner - fitted * zoom, corner);
+        let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
+        painter.image(picture.id(), place, whole, Color32::WHITE);
+    }
+    if shown.is_in_view {
+        let place = title.right_top() + vec2(-10.0, 10.0) * zoom;
+        painter.circle_filled(place, 4.0 * zoom, Color32::from_rgb(255, 214, 90));
+    }
+    if zoom > 0.32 {
+        words(painter, visuals, block, rect, shown);
+    }
+    for k in 0..block.ports.len() {
+        painter.circle_filled(at(rect, port(block, k), zoom, false), 3.5 * zoom, visuals.weak_text_color());
+    }
+    for k in 0..block.outlets.len() {
+        painter.circle_filled(at(rect, outlet(block, k), zoom, true), 5.0 * zoom, visuals.strong_text_color());
+    }
+}
+
+fn words(painter: &Painter, visuals: &Visuals, block: &GraphBox, rect: Rect, shown: &Shown) {
+    let zoom = shown.zoom;
+    let inside = painter.with_clip_rect(rect.intersect(painter.clip_rect()));
+    let small = FontId::proportional(10.5 * zoom);
+    let (name, below) = ((7.0, 4.0), (7.0, 19.0));
+    let write = |(x, y): (f32, f32), text: &str, font: FontId, color: Color32| {
+        inside.text(rect.min + vec2(x, y) * zoom, Align2::LEFT_TOP, text, font, color);
+    };
+    write(name, &block.title, FontId::proportional(13.0 * zoom), Color32::WHITE);
+    let count = block.nodes.len().to_string();
+    let subtitle = if block.kind == Kind::Group { &count } else { &block.subtitle };
+    if block.kind != Kind::Outside {
+        write(below, subtitle, small.clone(), Color32::from_white_alpha(190));
+    }
+    // Inputs end where the picture begins.
+    let has_picture = shown.picture.is_some() && matches!(block.kind, Kind::Node(_));
+    let room = if has_picture { WIDTH - PICTURE - 2.0 * GAP } else { WIDTH };
+    let left = Rect::from_min_size(rect.min, vec2(room * zoom, rect.height()));
+    let left = painter.with_clip_rect(left.intersect(painter.clip_rect()));
+    for (k, input) in block.ports.iter().enumerate() {
+        let place = at(rect, port(block, k), zoom, false) + vec2(8.0 * zoom, 0.0);
+        left.text(place, Align2::LEFT_CENTER, &input.label, small.clone(), visuals.text_color());
+    }
+    if block.kind == Kind::Group {
+        for (k, name) in block.outlets.iter().enumerate() {
+            let place = at(rect, outlet(block, k), zoom, true) - vec2(9.0 * zoom, 0.0);
+            inside.text(place, Align2::RIGHT_CENTER, block.inside(name), small.clone(), visuals.text_color());
+        }
+    }
+}
+
+/// A place at a side of a box.
+#[must_use]
+pub fn at(rect: Rect, y: f32, zoom: f32, is_right: bool) -> Pos2 {
+    pos2(if is_right { rect.right() } else { rect.left() }, rect.top() + y * zoom)
+}
