@@ -15,7 +15,6 @@ mod draw;
 mod export_options;
 mod failure;
 mod finite;
-mod folder;
 mod format;
 mod graph;
 mod interrupt;
