@@ -8,6 +8,7 @@ pub mod app;
 pub mod command;
 pub mod dialogs;
 pub mod export_dialog;
+pub mod export_fields;
 pub mod fields;
 pub mod fonts;
 pub mod graph_panel;
