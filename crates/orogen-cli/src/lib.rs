@@ -15,7 +15,6 @@ mod draw;
 mod export_options;
 mod failure;
 mod finite;
-mod folder;
 mod format;
 mod graph;
 mod interrupt;
@@ -35,13 +34,21 @@ mod values;
 mod view;
 mod watch;
 
-use clap::Parser;
+use std::ffi::OsString;
 use std::process::ExitCode;
+
+use clap::Parser;
 
 /// Runs the command with the arguments of the process.
 #[must_use]
 pub fn run() -> ExitCode {
-    match cli::Cli::parse().run() {
+    run_with(std::env::args_os())
+}
+
+/// Runs the command with these words, the first of which is the name of the program. A word that is not valid ends the process with a message.
+#[must_use]
+pub fn run_with(words: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> ExitCode {
+    match cli::Cli::parse_from(words).run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             report::report(&failure);

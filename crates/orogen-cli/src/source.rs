@@ -4,11 +4,11 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-use orogen::dem::open;
 use orogen::dem::prepared::{DEFAULT_MEMORY, PreparedDem};
 use orogen::recipe::document::LONGEST_TEXT;
 use orogen::recipe::presets::{self, Preset};
-use orogen::{Budget, Error, ErrorKind, Recipe, nearest};
+use orogen::recipe::source::{self, RecipeSource};
+use orogen::{Budget, Error, ErrorKind, Recipe};
 
 use crate::failure::Failure;
 use crate::say;
@@ -40,21 +40,20 @@ impl Source {
         if argument == Path::new(DASH) {
             return Ok(Source::Stdin);
         }
-        let preset = argument.to_str().and_then(presets::find);
-        match preset {
-            Some(preset) if argument.is_file() => {
-                say::error(&format!(
-                    "note: reading the file {name}, not the preset of that name; give another folder's path or rename \
-                     the file to get the preset",
-                    name = preset.name
-                ));
-                Ok(Source::File(argument.to_path_buf()))
+        Ok(match RecipeSource::find(argument)? {
+            RecipeSource::File(path) => {
+                if let Some(preset) = argument.to_str().and_then(presets::find) {
+                    say::error(&format!(
+                        "note: reading the file {name}, not the preset of that name; give another folder's path or rename \
+                         the file to get the preset",
+                        name = preset.name
+                    ));
+                }
+                Source::File(path)
             }
-            Some(preset) => Ok(Source::Preset(preset)),
-            None if open::is_dem(argument) => Ok(Source::Dem(argument.to_path_buf())),
-            None if argument.exists() || looks_like_a_path(argument) => Ok(Source::File(argument.to_path_buf())),
-            None => Err(Failure::Usage(unknown(argument))),
-        }
+            RecipeSource::Preset(preset) => Source::Preset(preset),
+            RecipeSource::Dem(path) => Source::Dem(path),
+        })
     }
 
     /// All files that a recipe from this source reads.
@@ -113,36 +112,10 @@ fn piped(set: &[(String, f64)]) -> Result<Recipe, Failure> {
 
 /// The name of a world from `argument`, for headings.
 pub fn title(argument: &Path) -> String {
-    match argument == Path::new(DASH) {
-        true => "Untitled".into(),
-        false => argument.file_stem().unwrap_or(argument.as_os_str()).to_string_lossy().into_owned(),
-    }
+    if argument == Path::new(DASH) { "Untitled".into() } else { source::title(argument) }
 }
 
 /// The preset called `name`, or an error that lists all presets.
 pub fn preset(name: &str) -> Result<&'static Preset, Failure> {
-    presets::find(name).ok_or_else(|| Failure::Usage(format!("no preset is called `{name}`; {}", hint(name))))
-}
-
-fn looks_like_a_path(argument: &Path) -> bool {
-    argument.extension().is_some() || argument.components().count() > 1
-}
-
-fn unknown(argument: &Path) -> String {
-    let name = argument.to_string_lossy();
-    for extension in ["toml", "json"] {
-        let file = argument.with_extension(extension);
-        if file.is_file() {
-            return format!("no preset or file is called `{name}`; did you mean `{0}`?", file.display());
-        }
-    }
-    format!("no preset or file is called `{name}`; {}", hint(&name))
-}
-
-fn hint(name: &str) -> String {
-    let names = || presets::all().iter().map(|preset| preset.name);
-    match nearest(name, names()) {
-        Some(near) => format!("did you mean `{near}`?"),
-        None => format!("available presets: {}", names().collect::<Vec<_>>().join(", ")),
-    }
+    Ok(source::preset(name)?)
 }

@@ -12,6 +12,7 @@ mod failure;
 #[path = "../src/values/mod.rs"]
 mod values;
 
+use orogen::sheet::paper::Paper;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseResult, TestRng, TestRunner};
 use std::fmt::Debug;
@@ -19,7 +20,7 @@ use values::bytes::Bytes;
 use values::number::{self, MOST, Numbers};
 use values::region::{self, Bounds, Rectangle};
 use values::size::Size;
-use values::{paper, seeds, time};
+use values::{seeds, time};
 
 fn check<S: Strategy>(cases: u32, strategy: S, test: impl Fn(S::Value) -> TestCaseResult)
 where
@@ -141,7 +142,7 @@ fn windows_are_read_in_samples_and_in_metres() {
 #[test]
 fn papers_are_read_in_millimetres() {
     check(500, (1u32..3000, 1u32..3000), |(width, height)| {
-        let read = format!("{width}x{height}mm").parse::<paper::Paper>().ok().map(|paper| paper.sides(false));
+        let read = format!("{width}x{height}mm").parse::<Paper>().ok().map(|paper| paper.sides(false));
         let fits = [width, height].iter().all(|side| (50..=2000).contains(side));
         prop_assert_eq!(read, fits.then_some([f64::from(width), f64::from(height)]));
         Ok(())
@@ -161,7 +162,7 @@ fn other_texts_are_refused_with_a_message() {
             text.parse::<Rectangle>().err(),
             text.parse::<Bounds>().err(),
             text.parse::<seeds::Seeds>().err(),
-            text.parse::<paper::Paper>().err(),
+            text.parse::<Paper>().err(),
             region::place(&text).err(),
         ];
         prop_assert!(messages.iter().flatten().all(|message| message.len() > 10 && !message.ends_with('.')));

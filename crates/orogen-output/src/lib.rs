@@ -5,6 +5,7 @@
 //! - [`render`]: perspective pictures with sky, water and shadows.
 //! - [`mesh`]: triangles of a grid, as GLB, OBJ, PLY and STL.
 //! - [`export`]: a registry of layers and formats, for every front end.
+//! - [`jobs`]: a map sheet or a rendered picture of a world as one job.
 //! - [`builder`]: worlds of any size into files, with resume.
 //! - [`survey`]: a terrain in numbers, beside what real land is like.
 //! - [`fit`]: recipes like a real place.
@@ -19,6 +20,7 @@ pub mod export;
 pub mod fit;
 #[doc(hidden)]
 pub mod graph_layout;
+pub mod jobs;
 pub mod map;
 mod markup;
 pub mod mesh;

@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use orogen::declare::Input;
+use orogen::dem::prepared::{DEFAULT_MEMORY, PreparedDem};
 use orogen::recipe::document::{NamedNode, Recipe};
+use orogen::recipe::source::RecipeSource;
 use orogen::world::HEIGHT;
 use orogen::{Error, ErrorKind, Result, Session};
 
@@ -348,19 +350,20 @@ fn layer_of_stroke(recipe: &Recipe, node: &str, shown: &str) -> String {
 /// # Errors
 /// If there is nothing of that name, or it cannot be read. A recipe that is not valid is no error: its document has the diagnostics.
 pub fn open(argument: &Path) -> Result<Document> {
-    if let Some(preset) = argument.to_str().and_then(orogen::presets::find).filter(|_| !argument.is_file()) {
-        return Document::of_preset(preset);
-    }
-    if orogen::dem::open::is_dem(argument) {
-        let limit = orogen::dem::prepared::DEFAULT_MEMORY;
-        let ground = orogen::dem::prepared::PreparedDem::read(argument, None, limit)?;
-        return Document::of_dem(argument, &Recipe::from_dem(argument, &Arc::new(ground)));
-    }
-    let text = files::read(argument)?;
+    let path = match RecipeSource::find(argument)? {
+        RecipeSource::Preset(preset) => return Document::of_preset(preset),
+        RecipeSource::Dem(path) => {
+            let path = absolute(&path);
+            let ground = PreparedDem::read(&path, None, DEFAULT_MEMORY)?;
+            return Document::of_dem(&path, &Recipe::from_dem(&path, &Arc::new(ground)));
+        }
+        RecipeSource::File(path) => absolute(&path),
+    };
+    let text = files::read(&path)?;
     if text.trim_start_matches('\u{feff}').trim_start().starts_with('{') {
-        return Document::of_json(argument, &text);
+        return Document::of_json(&path, &text);
     }
-    Ok(Document::of_file(&absolute(argument), text))
+    Ok(Document::of_file(&path, text))
 }
 
 /// The path from the root, so that it still leads there if the working folder changes.

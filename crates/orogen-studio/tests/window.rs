@@ -1,6 +1,9 @@
 //! The window, used as a person uses it. Needs an adapter: `cargo xtask clients studio` installs Mesa's software driver.
 #![allow(clippy::unwrap_used, reason = "a failure is a failed test")]
 
+#[path = "window/export.rs"]
+mod export;
+
 use std::path::Path;
 use std::time::{Duration, Instant};
 

@@ -59,7 +59,7 @@ pub use orogen_io::{dem, file, format, open, palette, raster, read_at, spool};
 #[doc(hidden)]
 pub use orogen_output::graph_layout;
 #[doc(inline)]
-pub use orogen_output::{blocks, builder, export, fit, map, mesh, render, sheet, survey, tilemap};
+pub use orogen_output::{blocks, builder, export, fit, jobs, map, mesh, render, sheet, survey, tilemap};
 
 pub use budget::Budget;
 pub use chunks::id::ChunkId;

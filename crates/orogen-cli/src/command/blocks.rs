@@ -12,7 +12,7 @@ use orogen::blocks::picture::Isometric;
 use orogen::blocks::schem::write_schem;
 use orogen::blocks::volume::BlockVolume;
 use orogen::blocks::vox::write_vox;
-use orogen::file::{self, Existing, Output, OutputPolicy};
+use orogen::file::{self, Existing, Output, OutputFolder, OutputPolicy};
 use orogen::format::schem;
 use orogen::words::{count, number};
 use orogen::world::HEIGHT;
@@ -21,7 +21,6 @@ use orogen::{Error, ErrorKind, Progress, Window, World};
 use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::finite;
-use crate::folder::Folder;
 use crate::interrupt::{self, Stoppable};
 use crate::options::RunOptions;
 use crate::say::{self, SOFTWARE};
@@ -172,7 +171,7 @@ enum VolumeTarget {
     Vox(Sink),
     Schem(Sink),
     Png(Sink),
-    Luanti(Folder, Vec<Output>),
+    Luanti(OutputFolder, Vec<Output>),
 }
 
 impl Target {
@@ -193,7 +192,7 @@ impl Target {
                 }
                 let outputs =
                     FILES.iter().map(|name| policy.output(args.out.join(name))).collect::<orogen::Result<_>>()?;
-                VolumeTarget::Luanti(Folder::ready(&folder_of_textures(&args.out))?, outputs)
+                VolumeTarget::Luanti(OutputFolder::ready(&folder_of_textures(&args.out))?, outputs)
             }
         }))
     }

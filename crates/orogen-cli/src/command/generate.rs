@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use orogen::Progress;
+use orogen::file::OutputFolder;
 use orogen::words::number;
 use orogen::world::{HEIGHT, LAKES};
 
 use crate::bar::Bar;
 use crate::failure::Failure;
-use crate::folder::Folder;
 use crate::options::RunOptions;
 use crate::pictures::{self, FILES, Report};
 use crate::sink::is_stdout;
@@ -91,7 +91,7 @@ fn make(source: &Source, args: &Args, progress: &Progress) -> Result<String, Fai
     let mut layers = vec![HEIGHT];
     layers.extend(world.recipe().outputs().find(|name| *name == LAKES));
     let plan = world.plan(&layers, &window)?;
-    let folder = Folder::ready(&args.out)?;
+    let folder = OutputFolder::ready(&args.out)?;
     // The pictures are encoded in parallel, in bands of rows.
     let _pictures = budget.reserve(ENCODERS)?;
     let [making, writing] = progress.parts([world.work(&plan)?, WRITING * window.len() as f64]);

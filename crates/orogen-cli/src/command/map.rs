@@ -1,24 +1,14 @@
 //! `orogen map`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::ValueEnum;
-use orogen::export::derived::list;
-use orogen::export::layer_source::LayerSource;
-use orogen::export::place;
-use orogen::export::{biome_cover, sheet_cover};
-use orogen::format::affine::Affine;
-use orogen::layer::LayerKind;
-use orogen::palette::named;
-use orogen::palette::palette::Palette;
-use orogen::sheet::draw::{Sheet, draw};
-use orogen::sheet::geometry::{Rect, Size};
-use orogen::sheet::linework::lines_at;
-use orogen::sheet::options::{Coloring, Layer, Page, Parts, Resolution, Scale, Shading, SheetOptions};
-use orogen::sheet::{pdf, raster, vector};
-use orogen::words::number;
+use orogen::file;
+use orogen::jobs::map::{MapColors, MapJob};
+use orogen::jobs::sheet_format::SheetFormat;
+use orogen::sheet::options::{Parts, Resolution, Scale, Shading};
+use orogen::sheet::paper::Paper;
 use orogen::world::HEIGHT;
-use orogen::{Grid, Progress, Window, World, file};
 
 use crate::bar::Bar;
 use crate::export_options::LayerOptions;
@@ -28,9 +18,8 @@ use crate::replace::Replace;
 use crate::sink::{Sink, kind};
 use crate::source::{Source, title};
 use crate::values::number::{Numbers, dpi, positive};
-use crate::values::paper::Paper;
 use crate::view::View;
-use crate::{finite, interrupt, palette, say};
+use crate::{interrupt, palette, say};
 
 /// Arguments of the command.
 #[derive(Debug, Clone, clap::Args)]
@@ -170,14 +159,13 @@ enum ColorOf {
     Classes,
 }
 
-impl ColorOf {
-    /// What the legend lists.
-    fn plural(self) -> &'static str {
-        match self {
-            ColorOf::Palette => "values",
-            ColorOf::Surfaces => "surfaces",
-            ColorOf::Biomes => "biomes",
-            ColorOf::Classes => "classes",
+impl From<ColorOf> for MapColors {
+    fn from(of: ColorOf) -> MapColors {
+        match of {
+            ColorOf::Palette => MapColors::Palette,
+            ColorOf::Surfaces => MapColors::Surfaces,
+            ColorOf::Biomes => MapColors::Biomes,
+            ColorOf::Classes => MapColors::Classes,
         }
     }
 }
@@ -206,285 +194,112 @@ enum Kind {
 
 const KINDS: [(Kind, &[&str]); 3] = [(Kind::Png, &["png"]), (Kind::Svg, &["svg"]), (Kind::Pdf, &["pdf"])];
 
-/// The palette of a layer without a palette of its name.
-const LAYER_PALETTE: &str = "viridis";
-
-/// Longer side of a map on a fitted page, in millimetres.
-const LONGER: f64 = 240.0;
-
-/// Default resolution in pixels per inch: of pictures, and on paper and in vector files.
-const SCREEN: f64 = 150.0;
-const PRINT: f64 = 220.0;
-
-/// Maximum number of pixels of a page.
-const MOST: f64 = 4e8;
-
-/// Approximate time of drawing per sample of the heights, and of drawing and writing per pixel of the page, in
-/// nanoseconds.
-const DRAWING: f64 = 400.0;
-const WRITING: f64 = 60.0;
-
 /// Draws the sheet.
 pub fn run(args: &Args) -> Result<(), Failure> {
     args.view.each_output(&args.out, |view, out| map(&Args { view, out, ..args.clone() }))
 }
 
 fn map(args: &Args) -> Result<(), Failure> {
-    let kind = kind(&args.out, args.format, &KINDS, "a map")?;
-    let palette = match (&args.palette, args.layer.as_str()) {
-        (Some(palette), _) => palette::find(palette)?,
-        (None, HEIGHT) => palette::find(Path::new(named::DEFAULT))?,
-        (None, layer) => {
-            let derived = list::named(layer).map(|derived| derived.palette).filter(|palette| !palette.is_empty());
-            let own = derived.or(named::find(layer).map(|named| named.name)).unwrap_or(LAYER_PALETTE);
-            palette::find(Path::new(own))?
-        }
-    };
-    let range = range(args)?;
-    let is_covered = args.color != ColorOf::Palette;
-    if is_covered && (args.layer != HEIGHT || args.palette.is_some() || range.is_some()) {
-        let color = args.color.plural();
-        return Err(Failure::Usage(format!("--color {color} cannot be combined with --layer, --palette or --range")));
-    }
+    let mut job = job(args)?;
     let source = Source::find(&args.recipe)?;
+    job.is_place = matches!(source, Source::Dem(_));
     let budget = args.limits.budget();
     let mut recipe = args.view.recipe(&source, &budget)?;
     let sink = Sink::new(&args.out, &args.replace.policy(source.inputs(&recipe)).protecting(&args.palette))?;
-    list::prepare(&mut recipe, &args.layer, &args.layer_options.read()?)?;
-    if args.color == ColorOf::Surfaces {
-        sheet_cover::prepare(&mut recipe);
-    }
+    job.prepare(&mut recipe)?;
     let world = args.limits.open(recipe, &budget)?;
-    let window = args.view.window(&world)?;
-    let is_place = matches!(source, Source::Dem(_));
-    let mut options = options(args, kind, palette, &world, is_place);
-    options.range = range.filter(|_| args.layer == HEIGHT);
-    let _drawing = world.budget().reserve(drawing(&options, &window, args)?)?;
+    job.window = Some(args.view.window(&world)?);
+    if let Sink::File(output) = &sink {
+        file::check_folder(file::folder(output.path()))?;
+    }
     let (bar, progress) = Bar::new(args.quiet);
     let stopped = |error: orogen::Error| interrupt::explain(error.into(), "nothing was written");
-    let plan = world.plan(&[HEIGHT], &window)?;
-    let work = world.work(&plan)?;
-    let layered = if args.layer == HEIGHT && !is_covered { 0.0 } else { work };
-    let [making, layering, drawing, writing] =
-        progress.parts([work, layered, DRAWING * window.len() as f64, WRITING * pixels(&options)]);
-    let mut grids = world.run(&plan, &making).map_err(stopped)?;
-    let Some(heights) = grids.pop() else { return Ok(()) };
-    finite::check(HEIGHT, &heights)?;
-    let explained = |failure: Failure| interrupt::explain(failure, "nothing was written");
-    if args.layer != HEIGHT {
-        options.coloring = Coloring::Layer(layer(args, &world, &window, range, &layering).map_err(explained)?);
+    let drawn = job.draw(&world, &progress).map_err(stopped)?;
+    for warning in drawn.warnings() {
+        say::error(&format!("warning: {warning}"));
     }
-    if is_covered {
-        let (made, doing) = match args.color {
-            ColorOf::Biomes => (biome_cover::of(&world, &heights, options.sea_level, &layering), "make the biomes of"),
-            ColorOf::Classes => {
-                (biome_cover::of_terrain(&world, &heights, options.sea_level, &layering), "make the classes of")
-            }
-            _ => (sheet_cover::of(&world, &heights, options.sea_level, &layering), "make the surfaces of"),
-        };
-        let made = made.map_err(|cause| explained(file::explain(doing, &args.out, &cause).into()))?;
-        options.coloring = Coloring::Surfaces(made);
-    }
-    let sheet = draw(&heights, &options, &drawing).map_err(stopped)?;
-    drawing.finish();
-    if !sheet.lacking.is_empty() {
-        let letters: String = sheet.lacking.iter().collect();
+    if !drawn.lacking().is_empty() {
+        let letters: String = drawn.lacking().iter().collect();
         say::error(&format!(
             "note: no installed font has the letters {letters}; they are left out (install a font that has them, such as Noto)"
         ));
     }
-    let software = say::SOFTWARE;
-    match kind {
-        Kind::Png => {
-            let page = raster::draw(&sheet.scene, sheet.dpi);
-            let mut notes = vec![("Software", software)];
-            // PNG text chunks contain Latin-1 only.
-            if options.title.chars().all(|letter| letter <= '\u{ff}' && !letter.is_control()) {
-                notes.push(("Title", &options.title));
-            }
-            let beside = match (&sink, &options.map) {
-                (Sink::File(output), Some(map)) if !args.no_sidecar => {
-                    place::stage(output, map, on_page(&map.affine(&window, false), &window, &sheet))?
-                }
-                _ => Vec::new(),
-            };
-            sink.write(|out| page.write_png(out, &notes))?;
-            file::commit(beside)?;
-        }
-        Kind::Svg => sink.write(|out| vector::write(out, &sheet.scene))?,
-        Kind::Pdf => sink.write(|out| pdf::write(out, &sheet.scene))?,
+    match &sink {
+        Sink::File(output) => drawn.to_file(output).map_err(stopped)?,
+        Sink::Stdout => sink.write(|out| drawn.to_stream(out))?,
     }
-    writing.finish();
     drop(bar);
-    if args.quiet {
-        return Ok(());
-    }
-    let Size { width, height } = sheet.scene.size;
-    let size = match kind {
-        Kind::Png => {
-            let [width, height] = raster::pixels(&sheet.scene, sheet.dpi);
-            format!("{width} x {height} pixels")
-        }
-        _ => format!("{width:.0} x {height:.0} mm"),
-    };
-    let contours = sheet.interval.map_or(String::new(), |interval| format!(", contours {} m apart", number(interval)));
-    let layer = match (args.color, args.layer.as_str()) {
-        (ColorOf::Palette, HEIGHT) => String::new(),
-        (ColorOf::Palette, layer) => format!("{layer}, "),
-        (color, _) => format!("{}, ", color.plural()),
-    };
-    let words = format!(
-        "{}: {layer}{size}, {} x {} samples of {} m{contours}\n",
-        args.out.display(),
-        window.width,
-        window.height,
-        number(window.cell)
-    );
-    sink.tell(args.quiet, &words)
+    sink.tell(args.quiet, &format!("{}: {}\n", args.out.display(), drawn.words()))
 }
 
-/// The transform from pixels of a page to map coordinates, from that of the ground on it.
-fn on_page(samples: &Affine, window: &Window, sheet: &Sheet) -> Affine {
-    let Rect { left, top, width, height } = sheet.ground;
-    let [left, top, width, height] =
-        [left, top, width, height].map(|millimetres| f64::from(millimetres) * sheet.dpi / 25.4);
-    let scale = [(window.width - 1) as f64 / width, (window.height - 1) as f64 / height];
-    samples.resampled(scale, [(0.5 - left) * scale[0], (0.5 - top) * scale[1]])
-}
-
-/// The two values of `--range`.
-fn range(args: &Args) -> Result<Option<[f32; 2]>, Failure> {
+/// What the arguments ask for, without the window.
+fn job(args: &Args) -> Result<MapJob, Failure> {
+    let usage = |message: String| Err(Failure::Usage(message));
+    let mut job = MapJob::new(match kind(&args.out, args.format, &KINDS, "a map")? {
+        Kind::Png => SheetFormat::Png,
+        Kind::Svg => SheetFormat::Svg,
+        Kind::Pdf => SheetFormat::Pdf,
+    });
+    job.colors = args.color.into();
+    job.layer.clone_from(&args.layer);
+    job.layer_options = args.layer_options.read()?;
+    job.palette = args.palette.as_deref().map(palette::find).transpose()?;
     if args.layer == HEIGHT && args.ramp.is_some() {
-        return Err(Failure::Usage("--ramp needs a --layer other than height".into()));
+        return usage("--ramp needs a --layer other than height".into());
     }
-    match args.range.as_ref().map(|range| range.0.as_slice()) {
-        None => Ok(None),
-        Some(&[low, high]) if low < high => Ok(Some([low as f32, high as f32])),
-        Some(_) => Err(Failure::Usage("--range must be LOW,HIGH with the lower value first, such as 0,45".into())),
+    job.scale = args.ramp.map(|ramp| match ramp {
+        Ramp::Linear => Scale::Linear,
+        Ramp::Log => Scale::Log,
+        Ramp::Labels => Scale::Labels,
+    });
+    job.range = match args.range.as_ref().map(|range| range.0.as_slice()) {
+        None => None,
+        Some(&[low, high]) if low < high => Some([low as f32, high as f32]),
+        Some(_) => return usage("--range must be LOW,HIGH with the lower value first, such as 0,45".into()),
+    };
+    if args.color != ColorOf::Palette && (args.layer != HEIGHT || args.palette.is_some() || job.range.is_some()) {
+        let color = job.colors.plural();
+        return usage(format!("--color {color} cannot be combined with --layer, --palette or --range"));
     }
-}
-
-/// The layer that colours the map.
-fn layer(
-    args: &Args,
-    world: &World,
-    window: &Window,
-    range: Option<[f32; 2]>,
-    progress: &Progress,
-) -> Result<Layer, Failure> {
-    let mut source = LayerSource::new(world, &args.layer, *window, progress)?;
-    if source.channels() != 1 {
-        return Err(Failure::Usage(format!(
-            "`{}` has {} channels, but a map shows a layer with one channel",
-            args.layer,
-            source.channels()
-        )));
-    }
-    let scale = match (args.ramp, source.kind()) {
-        (Some(Ramp::Linear), _) => Scale::Linear,
-        (Some(Ramp::Log), _) | (None, LayerKind::Flow) => Scale::Log,
-        (Some(Ramp::Labels), _) | (None, LayerKind::Label) => Scale::Labels,
-        (None, _) => Scale::Linear,
-    };
-    let unit = source.unit();
-    let made = source.whole().map_err(|cause| file::explain("make the layer of", &args.out, &cause))?;
-    let values = made.into_iter().next().unwrap_or_else(|| Grid::filled(*window, f32::NAN));
-    finite::check(&args.layer, &values)?;
-    Ok(Layer::new(&args.layer, values).with_unit(unit).with_scale(scale).with_range(range))
-}
-
-fn options(args: &Args, kind: Kind, palette: Palette, world: &World, is_place: bool) -> SheetOptions {
-    let recipe = world.recipe();
-    let page = match args.paper {
-        Some(paper) => Page::Paper(paper.sides(args.landscape)),
-        None => Page::Fitted(LONGER),
-    };
-    let without = &args.without;
-    // Lines and water would hide the other layer.
-    let is_height = args.layer == HEIGHT;
-    let mut parts = Parts::default();
-    parts.title = !without.no_title;
-    parts.axes = !without.no_axes;
-    parts.contours = !without.no_contours && (is_height || args.contours.is_some());
-    parts.labels = !without.no_labels;
-    parts.summits = !without.no_summits && is_height;
-    parts.rivers = !without.no_rivers && is_height;
-    // Most depressions of a real place are gorges dammed by coarse samples, and its lakes are level in the data
-    // already.
-    parts.lakes = !without.no_lakes && !is_place && is_height;
-    parts.legend = !without.no_legend;
-    parts.colors = !without.no_color;
-    parts.scale = !without.no_scale;
-    parts.north = !without.no_north;
-    parts.profile = !without.no_profile;
-    let usual = if kind == Kind::Png && args.paper.is_none() { SCREEN } else { PRINT };
-    let resolution = match (args.dpi, args.size) {
-        (Some(dpi), _) => Resolution::Inch(f64::from(dpi)),
-        (None, Some(size)) => Resolution::Longer(size),
-        (None, None) => Resolution::Inch(usual),
-    };
-    let about = match recipe.about.as_str() {
-        about if is_place => about.to_string(),
-        "" => format!("Seed {}", recipe.world.seed),
-        about => format!("{}; seed {}", about.trim_end_matches('.'), recipe.world.seed),
-    };
-    let mut options = SheetOptions::new(palette);
-    options.title = args.title.clone().unwrap_or_else(|| title(&args.recipe));
-    options.about = about;
-    options.shading = match args.shade {
-        _ if without.no_shade => Shading::None,
+    job.shading = match args.shade {
+        _ if args.without.no_shade => Shading::None,
         Shade::Single => Shading::Single,
         Shade::Multi => Shading::Multi,
         Shade::Swiss => Shading::Swiss,
         Shade::None => Shading::None,
     };
-    options.interval = args.contours;
-    options.parts = parts;
-    options.page = page;
-    options.resolution = resolution;
-    // A file of heights has no sea level: all of it is land.
-    options.sea_level = (!is_place).then_some(recipe.world.sea_level);
-    options.map = recipe.georeference();
-    options
-}
-
-/// Approximate longer side of a page, in millimetres.
-fn longer(page: Page) -> f64 {
-    match page {
-        Page::Fitted(longer) => longer + 36.0,
-        Page::Paper([width, height]) => width.max(height),
-    }
-}
-
-/// Pixels of a square that contains the page.
-fn pixels(options: &SheetOptions) -> f64 {
-    let side = match options.resolution {
-        Resolution::Inch(dpi) => longer(options.page) * dpi / 25.4,
-        Resolution::Longer(pixels) => f64::from(pixels),
+    job.interval = args.contours;
+    job.title = args.title.clone().unwrap_or_else(|| title(&args.recipe));
+    job.paper = args.paper.map(|paper| paper.sides(args.landscape));
+    job.resolution = match (args.dpi, args.size) {
+        (Some(dpi), _) => Some(Resolution::Inch(f64::from(dpi))),
+        (None, size) => size.map(Resolution::Longer),
     };
-    side * side
-}
-
-/// Memory of drawing beside the heights, in bytes, or an error if the page is too large.
-fn drawing(options: &SheetOptions, window: &Window, args: &Args) -> Result<u64, Failure> {
-    let side = pixels(options).sqrt();
-    if side * side > MOST {
-        return Err(Failure::Usage(format!(
+    job.parts = parts(&args.without);
+    job.has_sidecars = !args.no_sidecar;
+    if job.is_too_large() {
+        return usage(format!(
             "there is not enough memory for a page of {:.0} pixels per side; use a lower --dpi or a smaller --paper",
-            side
-        )));
+            job.side()
+        ));
     }
-    let lines = lines_at(longer(options.page)) as f64;
-    // First the water and the contours are computed; then they are held beside the page twice, the picture and its
-    // heights.
-    let page = f64::max(64.0 * lines * lines, 20.0 * side * side + 16.0 * lines * lines);
-    // The heights count in the world's plan; another layer is held beside them, twice while it is computed.
-    let layer = if args.layer == HEIGHT { 0.0 } else { 8.0 * window.len() as f64 };
-    // The albedo of the surfaces is also held at the resolution of the page.
-    let cover = match args.color {
-        ColorOf::Palette => 0.0,
-        ColorOf::Surfaces => sheet_cover::memory(window) as f64 + 12.0 * side * side,
-        ColorOf::Biomes | ColorOf::Classes => biome_cover::memory(window) as f64 + 12.0 * side * side,
-    };
-    Ok((page + layer + cover) as u64)
+    Ok(job)
+}
+
+/// The parts that are not left out.
+fn parts(without: &Without) -> Parts {
+    let mut parts = Parts::default();
+    parts.title = !without.no_title;
+    parts.axes = !without.no_axes;
+    parts.contours = !without.no_contours;
+    parts.labels = !without.no_labels;
+    parts.summits = !without.no_summits;
+    parts.rivers = !without.no_rivers;
+    parts.lakes = !without.no_lakes;
+    parts.legend = !without.no_legend;
+    parts.colors = !without.no_color;
+    parts.scale = !without.no_scale;
+    parts.north = !without.no_north;
+    parts.profile = !without.no_profile;
+    parts
 }

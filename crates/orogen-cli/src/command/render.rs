@@ -4,19 +4,12 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use orogen::analysis::sun::Moment;
-use orogen::export::derived::layer::Derived;
-use orogen::export::derived::rows::Rows;
-use orogen::export::derived::{albedo, list, roughness};
-use orogen::export::options::Options;
 use orogen::file;
-use orogen::format::png::{self, Animation, Picture, Pixel};
-use orogen::palette::palette::Palette;
-use orogen::render::camera::{CameraSpec, View as Shot};
-use orogen::render::relief::Land;
-use orogen::render::scene::{Colors, Edge, Scene, Style};
-use orogen::words::{count, number};
-use orogen::world::HEIGHT;
-use orogen::{Grid, Progress, Window, World};
+use orogen::format::png::Animation;
+use orogen::jobs::render::{EXAGGERATION, FOV, HAZE, MAX_SIDE, RenderJob, Rendering, SUN};
+use orogen::render::camera::View as Shot;
+use orogen::render::scene::{Colors, Edge};
+use orogen::words::count;
 
 use crate::bar::Bar;
 use crate::failure::Failure;
@@ -28,7 +21,7 @@ use crate::values::number::{Numbers, not_negative, positive};
 use crate::values::size::Size;
 use crate::values::time::clock;
 use crate::view::View;
-use crate::{finite, interrupt, palette, say};
+use crate::{interrupt, palette, say};
 
 /// Arguments of the command.
 #[derive(Debug, Clone, clap::Args)]
@@ -127,12 +120,6 @@ enum Dress {
     Clay,
 }
 
-/// Default direction of the camera: slightly west of south, looking slightly down.
-const CAMERA: [f64; 2] = [200.0, 24.0];
-
-/// Memory per sample of the land beside its layers, in bytes.
-const LAND: u64 = 116;
-
 /// Renders the picture.
 pub fn run(args: &Args) -> Result<(), Failure> {
     args.view.each_output(&args.out, |view, out| render(&Args { view, out, ..args.clone() }))
@@ -150,85 +137,78 @@ fn render(args: &Args) -> Result<(), Failure> {
             return Err(Failure::Usage(message + ", or write frames with --turntable"));
         }
     };
-    let [width, height] = size(args)?;
-    let palette = args.palette.as_deref().map(palette::find).transpose()?;
-    if palette.is_some() && !matches!(args.color, Dress::Map) {
-        return Err(Failure::Usage("--palette applies to --color map".into()));
-    }
-    let (style, shot) = (style(args, palette.as_ref())?, shot(args)?);
+    let mut job = job(args)?;
     let source = Source::find(&args.recipe)?;
     let budget = args.run.limits.budget();
     let mut recipe = args.view.recipe(&source, &budget)?;
     let policy = args.run.replace.policy(source.inputs(&recipe)).protecting(&args.palette);
     let outputs = target.outputs(&args.out, args.turntable.unwrap_or(1), &policy)?;
-    if matches!(args.color, Dress::Surfaces) {
-        COVER.iter().try_for_each(|layer| list::prepare(&mut recipe, layer.name, &Options::default()))?;
-    }
+    job.prepare(&mut recipe)?;
     let world = args.run.limits.open(recipe, &budget)?;
-    let window = args.view.window(&world)?;
-    let pixels = (width * height) as u64;
-    // Memory per sample of the land: the pyramid, slopes, and light twice while it is computed.
-    let land = (window.len() as u64).saturating_mul(LAND);
-    let needed = land.saturating_add(3 * pixels).saturating_add(target.reserved(pixels));
-    let _drawing = budget.reserve(needed)?;
+    job.window = Some(args.view.window(&world)?);
     let folder = args.out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     file::check_folder(folder)?;
     let (bar, progress) = Bar::new(args.run.quiet);
-    let shooting = Shooting { target, outputs, style, shot };
-    let made = draw(args, &world, &window, &shooting, &progress);
+    let pixels = (job.size[0] * job.size[1]) as u64;
+    let made = job
+        .scene(&world, pictures(args, &target), target.reserved(pixels), &progress)
+        .map_err(Failure::from)
+        .and_then(|rendering| write(args, &rendering, &target, &outputs));
     drop(bar);
     let words = made.map_err(|failure| interrupt::explain(failure, "nothing was written"))?;
-    shooting.outputs[0].tell(args.run.quiet, &words)
+    outputs[0].tell(args.run.quiet, &format!("{}: {words}\n", args.out.display()))
 }
 
-/// The size of the picture.
-fn size(args: &Args) -> Result<[usize; 2], Failure> {
-    let [width, height] = match args.size {
+/// What the arguments ask for, without the window.
+fn job(args: &Args) -> Result<RenderJob, Failure> {
+    let usage = |message: String| Err(Failure::Usage(message));
+    let mut job = RenderJob::default();
+    job.size = match args.size {
         Size::Longer(n) => [n, (n * 9).div_ceil(16)],
         Size::Both(width, height) => [width, height],
     };
-    match width.max(height) <= 32_768 {
-        true => Ok([width, height]),
-        false => Err(Failure::Usage(format!(
-            "a picture of {width} x {height} pixels is too large; a side may have at most 32768 pixels"
-        ))),
+    let [width, height] = job.size;
+    if width.max(height) > MAX_SIDE {
+        return usage(format!(
+            "a picture of {width} x {height} pixels is too large; a side may have at most {MAX_SIDE} pixels"
+        ));
     }
-}
-
-/// The style of the scene.
-fn style<'a>(args: &Args, palette: Option<&'a Palette>) -> Result<Style<'a>, Failure> {
-    let usage = |message: String| Err(Failure::Usage(message));
-    if !(1.0..=150.0).contains(&args.fov) {
-        return usage(format!("--fov must be from 1 to 150 degrees, not {}", args.fov));
+    job.palette = args.palette.as_deref().map(palette::find).transpose()?;
+    if job.palette.is_some() && !matches!(args.color, Dress::Map) {
+        return usage("--palette applies to --color map".into());
     }
-    if !(0.01..=100.0).contains(&args.exaggeration) {
-        return usage(format!("--exaggeration must be from 0.01 to 100, not {}", args.exaggeration));
+    if !FOV.contains(&args.fov) {
+        return usage(format!("--fov must be from {} to {} degrees, not {}", FOV.start(), FOV.end(), args.fov));
     }
-    if args.haze > 100.0 {
-        return usage(format!("--haze must be from 0 to 100, not {}", args.haze));
+    if !EXAGGERATION.contains(&args.exaggeration) {
+        let (from, to) = (EXAGGERATION.start(), EXAGGERATION.end());
+        return usage(format!("--exaggeration must be from {from} to {to}, not {}", args.exaggeration));
+    }
+    if !HAZE.contains(&args.haze) {
+        return usage(format!("--haze must be from {} to {}, not {}", HAZE.start(), HAZE.end(), args.haze));
     }
     if args.snow_line.is_some_and(|line| !line.is_finite()) {
         return usage("--snow-line must be a height in metres, such as 2400".into());
     }
-    let mut style = Style::default();
-    style.exaggeration = args.exaggeration;
-    style.sun = sun(args)?;
-    style.haze = args.haze;
-    style.edge = args.edge.map(|edge| match edge {
+    job.fov = args.fov;
+    job.exaggeration = args.exaggeration;
+    job.sun = sun(args)?;
+    job.haze = args.haze;
+    job.edge = args.edge.map(|edge| match edge {
         Ends::Cut => Edge::Cut,
         Ends::Haze => Edge::Haze,
     });
-    style.colors = match args.color {
+    job.colors = match args.color {
         Dress::Natural => Colors::Natural,
         Dress::Desert => Colors::Desert,
         Dress::Surfaces => Colors::Surfaces,
         Dress::Map => Colors::Map,
         Dress::Clay => Colors::Clay,
     };
-    style.palette = palette;
-    style.snow_line = args.snow_line;
-    style.samples = args.samples;
-    Ok(style)
+    job.snow_line = args.snow_line;
+    job.samples = args.samples;
+    job.view = shot(args)?;
+    Ok(job)
 }
 
 /// The position of the sun.
@@ -241,7 +221,7 @@ fn sun(args: &Args) -> Result<[f64; 2], Failure> {
         }
         let moment = Moment::new(latitude, args.day.unwrap_or(172), hour);
         let sun = moment.sun();
-        return match (sun[1] >= LOWEST_SUN, moment.daylight()) {
+        return match (sun[1] >= *SUN.start(), moment.daylight()) {
             (true, _) => Ok(sun),
             (false, Some([rise, set])) => usage(format!(
                 "at {} on day {} at latitude {latitude} the sun is {:.0} degrees below the horizon; it is up from {} to {}",
@@ -255,18 +235,17 @@ fn sun(args: &Args) -> Result<[f64; 2], Failure> {
         };
     }
     match args.sun.as_ref().map(|sun| sun.0.as_slice()) {
-        None => Ok(Style::default().sun),
-        Some([azimuth, elevation]) if (LOWEST_SUN..=90.0).contains(elevation) => Ok([*azimuth, *elevation]),
+        None => Ok(RenderJob::default().sun),
+        Some([azimuth, elevation]) if SUN.contains(elevation) => Ok([*azimuth, *elevation]),
         Some([_, elevation]) => usage(format!(
-            "--sun says that it stands at an elevation of {elevation} degrees; it goes from {LOWEST_SUN}, when the last light \
-             fades, to 90"
+            "--sun says that it stands at an elevation of {elevation} degrees; it goes from {}, when the last light \
+             fades, to {}",
+            SUN.start(),
+            SUN.end()
         )),
         Some(_) => usage("--sun must be AZIMUTH,ELEVATION in degrees, such as 290,30".into()),
     }
 }
-
-/// With the sun below this elevation the picture would be black.
-const LOWEST_SUN: f64 = -6.0;
 
 fn hours(hour: f64) -> String {
     let minutes = (hour * 60.0).round() as u32;
@@ -288,7 +267,7 @@ fn shot(args: &Args) -> Result<Shot, Failure> {
         };
     }
     let (azimuth, elevation, distance) = match camera {
-        None => (CAMERA[0], CAMERA[1], None),
+        None => return Ok(RenderJob::default().view),
         Some(&[azimuth, elevation]) => (azimuth, elevation, None),
         Some(&[azimuth, elevation, distance]) => (azimuth, elevation, Some(distance)),
         Some(_) => return usage("--camera must be AZIMUTH,ELEVATION[,DISTANCE], such as 200,24".into()),
@@ -311,120 +290,72 @@ fn shot(args: &Args) -> Result<Shot, Failure> {
     }
 }
 
-/// Layers that a picture uses if the recipe has them.
-const LAYERS: [&str; 3] = [HEIGHT, "surface", "flow"];
-
-/// The layers that show surfaces.
-const COVER: [&Derived; 2] = [&albedo::LAYER, &roughness::LAYER];
-
-/// Approximate time for preparing a sample of the land, and for a ray of a pixel, in nanoseconds.
-const PREPARING: f64 = 1600.0;
-const RAY: f64 = 500.0;
-
 /// The share of a frame's pixels from which a GIF's colours are taken.
 const PREVIEW: f64 = 0.25;
 
-/// The checked rendering task.
-struct Shooting<'a> {
-    target: AnimationTarget,
-    outputs: Vec<Sink>,
-    style: Style<'a>,
-    shot: Shot,
+/// How many pictures are painted: those of an animation, and the parts of some for the colours of a GIF.
+fn pictures(args: &Args, target: &AnimationTarget) -> f64 {
+    match args.turntable {
+        None => 1.0,
+        Some(frames) => f64::from(frames) + preview(target),
+    }
 }
 
-fn draw(
-    args: &Args,
-    world: &World,
-    window: &Window,
-    shooting: &Shooting,
-    progress: &Progress,
-) -> Result<String, Failure> {
-    let Shooting { target, outputs, style, shot } = shooting;
-    let has = |layer: &&str| world.recipe().outputs().any(|name| name == *layer);
-    let layers: Vec<&str> = LAYERS.into_iter().filter(|layer| *layer == HEIGHT || has(layer)).collect();
-    let size = size(args)?;
-    let [width, height] = size;
-    let plan = world.plan(&layers, window)?;
-    let pixels = (width * height) as f64 * f64::from(args.turntable.unwrap_or(1));
-    let preview = match (args.turntable, target) {
-        (Some(_), AnimationTarget::Gif) => PREVIEW,
-        _ => 0.0,
-    };
-    let [making, preparing, previewing, painting] = progress.parts([
-        world.work(&plan)?,
-        PREPARING * window.len() as f64,
-        preview * (width * height) as f64 * RAY * style.samples as f64,
-        pixels * RAY * style.samples as f64,
-    ]);
-    let grids = world.run(&plan, &making)?;
-    layers.iter().zip(&grids).try_for_each(|(layer, grid)| finite::check(layer, grid))?;
-    let layer = |name: &str| layers.iter().position(|layer| *layer == name).and_then(|at| grids.get(at));
-    let nothing = Grid::filled(*window, 0.0);
-    let land = Land {
-        heights: layer(HEIGHT).unwrap_or(&nothing),
-        surface: layer("surface"),
-        flow: layer("flow"),
-        sea_level: Some(world.recipe().world.sea_level),
-    };
-    let cover = match style.colors {
-        Colors::Surfaces => {
-            let layers = COVER
-                .iter()
-                .filter_map(|layer| layer.rows())
-                .map(|rows| Rows::new(rows, world, window, 0, &progress.part(0.0))?.whole());
-            layers.collect::<orogen::Result<Vec<Vec<Grid>>>>()?.concat()
-        }
-        _ => Vec::new(),
-    };
-    let cover = match cover.as_slice() {
-        [red, green, blue, roughness] => Some([red, green, blue, roughness]),
-        _ => None,
-    };
-    let mut style = *style;
-    style.cover = cover;
-    let scene = Scene::new(&land, &style, &preparing)?;
-    preparing.finish();
-    let spec = CameraSpec::new(*shot, size).with_fov(args.fov);
-    let notes = [("Software", say::SOFTWARE)];
-    let picture = Picture::new(width, height, Pixel::Rgb8).with_notes(&notes);
-    let file = args.out.display();
-    let samples = format!("{} x {} samples of {} m", window.width, window.height, number(window.cell));
-    if let (Some(frames), Shot::Around { azimuth, elevation, distance }) = (args.turntable, *shot) {
-        let turn = |frame: u32| azimuth + 360.0 * f64::from(frame) / f64::from(frames);
-        let sides = (0..frames).map(|frame| [turn(frame), elevation]);
-        // The closest distance at which all frames fit: a changing distance would make the land pulsate.
-        let distance = distance.unwrap_or_else(|| scene.distance(sides, &spec));
-        let view = |frame: u32| Shot::Around { azimuth: turn(frame), elevation, distance: Some(distance) };
-        let side = |frame: u32| scene.camera(&spec.with_view(view(frame)));
-        // Four small views suffice for the colours.
-        let sample = || {
-            let small = size.map(|side| side.div_ceil(4));
-            previewing.expect(4.0);
-            let mut sample = Vec::new();
-            for quarter in 0..4 {
-                let mut bytes = vec![0; 3 * small[0] * small[1]];
-                let part = previewing.part(1.0);
-                scene.paint(&side(quarter * frames / 4), small, 0..small[1], &mut bytes, &part)?;
-                sample.append(&mut bytes);
-            }
-            Ok(sample)
-        };
-        let animation = Animation::new(frames, args.delay);
-        let moving = Moving { outputs, target, picture, animation, sample: &sample };
-        painting.expect(f64::from(frames));
-        moving.write(|frame, bytes| Ok(scene.paint(&side(frame), size, 0..height, bytes, &painting.part(1.0))?))?;
-        return Ok(format!("{file}: {} of {width} x {height} pixels, of {samples}\n", count(frames as usize, "frame")));
+fn preview(target: &AnimationTarget) -> f64 {
+    if matches!(target, AnimationTarget::Gif) { PREVIEW } else { 0.0 }
+}
+
+/// Paints and writes the picture, or the frames of `--turntable`. Returns the end of the final message.
+fn write(args: &Args, rendering: &Rendering, target: &AnimationTarget, outputs: &[Sink]) -> Result<String, Failure> {
+    for warning in &rendering.warnings {
+        say::error(&format!("warning: {warning}"));
     }
-    let camera = scene.camera(&spec);
-    if let (Some(metres), false) = (camera.lifted(), args.run.quiet) {
+    if let (Some(frames), Shot::Around { azimuth, elevation, distance }) = (args.turntable, rendering.spec.view) {
+        return turntable(args, rendering, frames, [azimuth, elevation], distance, target, outputs);
+    }
+    if let (Some(metres), false) = (rendering.lifted(), args.run.quiet) {
         say::error(&format!("note: the camera was below the ground and was raised by {metres:.0} m"));
     }
-    painting.expect(height as f64);
-    outputs[0].write(|out| {
-        png::write(out, &picture, |rows, bytes| {
-            let part = painting.part(rows.len() as f64);
-            Ok(scene.paint(&camera, size, rows, bytes, &part)?)
-        })
-    })?;
-    Ok(format!("{file}: {width} x {height} pixels, of {samples}\n"))
+    outputs[0].write(|out| rendering.to_stream(out))?;
+    Ok(rendering.words())
+}
+
+/// Writes the frames of an orbit around the land.
+fn turntable(
+    args: &Args,
+    rendering: &Rendering,
+    frames: u32,
+    [azimuth, elevation]: [f64; 2],
+    distance: Option<f64>,
+    target: &AnimationTarget,
+    outputs: &[Sink],
+) -> Result<String, Failure> {
+    let Rendering { scene, spec, .. } = rendering;
+    let (size, [width, height]) = (spec.size, spec.size);
+    let [previewing, painting] = rendering.painting.parts([preview(target), f64::from(frames)]);
+    let turn = |frame: u32| azimuth + 360.0 * f64::from(frame) / f64::from(frames);
+    let sides = (0..frames).map(|frame| [turn(frame), elevation]);
+    // The closest distance at which all frames fit: a changing distance would make the land pulsate.
+    let distance = distance.unwrap_or_else(|| scene.distance(sides, spec));
+    let view = |frame: u32| Shot::Around { azimuth: turn(frame), elevation, distance: Some(distance) };
+    let side = |frame: u32| scene.camera(&spec.with_view(view(frame)));
+    // Four small views suffice for the colours.
+    let sample = || {
+        let small = size.map(|side| side.div_ceil(4));
+        previewing.expect(4.0);
+        let mut sample = Vec::new();
+        for quarter in 0..4 {
+            let mut bytes = vec![0; 3 * small[0] * small[1]];
+            let part = previewing.part(1.0);
+            scene.paint(&side(quarter * frames / 4), small, 0..small[1], &mut bytes, &part)?;
+            sample.append(&mut bytes);
+        }
+        Ok(sample)
+    };
+    let animation = Animation::new(frames, args.delay);
+    let moving = Moving { outputs, target, picture: rendering.picture(), animation, sample: &sample };
+    painting.expect(f64::from(frames));
+    moving.write(|frame, bytes| Ok(scene.paint(&side(frame), size, 0..height, bytes, &painting.part(1.0))?))?;
+    let samples = rendering.samples();
+    Ok(format!("{} of {width} x {height} pixels, of {samples}", count(frames as usize, "frame")))
 }

@@ -4,7 +4,6 @@ pub mod arguments;
 pub mod bytes;
 pub mod name_of;
 pub mod number;
-pub mod paper;
 pub mod region;
 pub mod seeds;
 pub mod size;

@@ -15,6 +15,7 @@ mod refined;
 pub mod scatter;
 pub mod schema;
 mod serialise;
+pub mod source;
 mod subgraph;
 pub mod surface;
 mod text;

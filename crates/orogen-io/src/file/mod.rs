@@ -22,10 +22,12 @@ mod atomic;
 mod identity;
 mod kind;
 pub mod mark;
+mod output_folder;
 mod policy;
 mod temporary;
 
 pub use atomic::{Staged, check_folder, commit, explain, stage, write_whole};
+pub use output_folder::OutputFolder;
 pub use policy::{Existing, Output, OutputPolicy};
 
 #[doc(hidden)]

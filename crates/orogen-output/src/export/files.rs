@@ -93,7 +93,7 @@ impl<'a> Files<'a> {
 }
 
 /// A writer that fails after cancellation.
-pub(super) struct Stopping<'a> {
+pub(crate) struct Stopping<'a> {
     /// The inner writer.
     pub out: &'a mut dyn Write,
     /// Checked before each write.

@@ -14,6 +14,7 @@ pub mod linework;
 pub(crate) mod marks;
 pub mod options;
 mod overlay;
+pub mod paper;
 pub mod pdf;
 mod profile;
 pub(crate) mod ramp;

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use orogen::error::Diagnostic;
 use orogen::recipe::document::Recipe;
-use orogen::recipe::presets::Preset;
+use orogen::recipe::presets::{self, Preset};
+use orogen::recipe::source::RecipeSource;
 use orogen::{Error, ErrorKind, Registry, Result};
 
 use super::edit::{self, Edit};
@@ -18,6 +19,8 @@ pub struct Document {
     path: Option<PathBuf>,
     /// The folder of relative paths while it has no file.
     folder: Option<PathBuf>,
+    /// What it was made from, while it has no file.
+    origin: Option<RecipeSource>,
     history: History,
     /// The text in its file; `None` if it has none.
     saved: Option<String>,
@@ -37,6 +40,7 @@ impl Document {
             title: title.to_string(),
             path: None,
             folder: None,
+            origin: None,
             history: History::new(text),
             saved: None,
             recipe,
@@ -52,7 +56,8 @@ impl Document {
     pub fn of_preset(preset: &Preset) -> Result<Document> {
         // The schema is that of the repository.
         let text = preset.text.trim_start_matches("#:schema orogen.schema.json").trim_start().to_string();
-        Document::new(preset.name, text)
+        let origin = presets::find(preset.name).map(RecipeSource::Preset);
+        Ok(Document { origin, ..Document::new(preset.name, text)? })
     }
 
     /// A recipe that consists of a file of heights.
@@ -62,7 +67,8 @@ impl Document {
     pub fn of_dem(path: &Path, recipe: &Recipe) -> Result<Document> {
         let title = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
         let text = recipe.to_toml();
-        let mut document = Document { folder: Some(PathBuf::new()), ..Document::new(&title, text)? };
+        let origin = Some(RecipeSource::Dem(path.to_path_buf()));
+        let mut document = Document { folder: Some(PathBuf::new()), origin, ..Document::new(&title, text)? };
         document.read();
         Ok(document)
     }
@@ -75,6 +81,7 @@ impl Document {
             title,
             path: Some(path.to_path_buf()),
             folder: None,
+            origin: None,
             history: History::new(text.clone()),
             saved: Some(text),
             recipe: Recipe::new(orogen::WorldSpec::default()),
@@ -93,7 +100,8 @@ impl Document {
         let recipe = Registry::new().parse_as(text, path)?;
         let title = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
         let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
-        let mut document = Document { folder: Some(folder), ..Document::new(&title, recipe.to_toml())? };
+        let origin = Some(RecipeSource::File(path.to_path_buf()));
+        let mut document = Document { folder: Some(folder), origin, ..Document::new(&title, recipe.to_toml())? };
         document.read();
         Ok(document)
     }
@@ -114,6 +122,25 @@ impl Document {
     #[must_use]
     pub fn path(&self) -> Option<&Path> {
         self.path.as_deref()
+    }
+
+    /// What a command line calls it; `None` if its text is in no file.
+    #[must_use]
+    pub fn argument(&self) -> Option<String> {
+        let path = |path: &Path| path.to_string_lossy().into_owned();
+        match (self.is_changed(), &self.path, &self.origin) {
+            (true, ..) => None,
+            (false, Some(own), _) => Some(path(own)),
+            (false, None, Some(RecipeSource::Preset(preset))) => Some(preset.name.to_owned()),
+            (false, None, Some(RecipeSource::File(own) | RecipeSource::Dem(own))) => Some(path(own)),
+            (false, None, None) => None,
+        }
+    }
+
+    /// Whether it is a file of heights, and nothing else.
+    #[must_use]
+    pub fn is_place(&self) -> bool {
+        self.path.is_none() && !self.is_changed() && matches!(self.origin, Some(RecipeSource::Dem(_)))
     }
 
     /// Its text.

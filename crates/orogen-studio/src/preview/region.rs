@@ -34,16 +34,35 @@ impl Region {
     /// # Errors
     /// If the region is whole and the world unbounded.
     pub fn window(&self, world: &World, samples: usize) -> Result<Window> {
-        let Region::Square { center, side } = *self else { return world.window_fitting(samples) };
+        self.part(world.recipe().world.size, samples).map_or_else(|| world.window_fitting(samples), Ok)
+    }
+
+    /// The same of a square, in a world of this size, if it has one; `None` for the whole.
+    #[must_use]
+    pub fn part(&self, world: Option<[f64; 2]>, samples: usize) -> Option<Window> {
+        let Region::Square { center, side } = *self else { return None };
         let cell = (side / samples as f64).max(1e-3);
         let first = |center: f64| ((center - side / 2.0) / cell).round() as i64;
         let window = Window::new(samples, samples, cell).at(first(center[0]), first(center[1]));
-        let Some(size) = world.recipe().world.size else { return Ok(window) };
+        let Some(size) = world else { return Some(window) };
         // A bounded world has nothing beyond its sides.
         let ends = size.map(|length| (length / cell).floor() as usize + 1);
         let whole = Window::new(ends[0], ends[1], cell);
         let part = window.intersection(&whole);
-        Ok(if part.width > 1 && part.height > 1 { part } else { whole })
+        Some(if part.width > 1 && part.height > 1 { part } else { whole })
+    }
+
+    /// West, north and the length of the sides of a square, moved and made smaller so that it is inside a world of this size; `None` for the whole.
+    #[must_use]
+    pub fn square(&self, world: Option<[f64; 2]>) -> Option<[f64; 3]> {
+        let Region::Square { center, side } = *self else { return None };
+        let most = world.map_or(f64::INFINITY, |size| size[0].min(size[1]));
+        let side = side.min(most);
+        let first = |axis: usize| {
+            let first = center[axis] - side / 2.0;
+            world.map_or(first, |size| first.clamp(0.0, (size[axis] - side).max(0.0)))
+        };
+        Some([first(0), first(1), side])
     }
 
     /// The part that a view shows: all of a bounded world, unless it shows less than half of it.

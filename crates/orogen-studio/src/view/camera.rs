@@ -50,6 +50,14 @@ impl Camera {
         -Vec3::new(libm::sinf(self.yaw) * level, libm::sinf(self.pitch), libm::cosf(self.yaw) * level)
     }
 
+    /// The direction from the target to the camera, in degrees clockwise from north, and its elevation in degrees above the horizon: to a tenth, and never below the horizon.
+    #[must_use]
+    pub fn bearing(&self) -> [f64; 2] {
+        let tenths = |degrees: f64| (degrees * 10.0).round() / 10.0;
+        let azimuth = tenths((180.0 - f64::from(self.yaw).to_degrees()).rem_euclid(360.0));
+        [azimuth % 360.0, tenths(f64::from(self.pitch).to_degrees()).clamp(0.0, 90.0)]
+    }
+
     fn right(&self) -> Vec3 {
         Vec3::new(libm::cosf(self.yaw), 0.0, -libm::sinf(self.yaw))
     }
@@ -115,6 +123,20 @@ mod tests {
             let [start, ray] = camera.ray([0.5, 0.5], 1.6);
             assert!((start + ray * camera.distance - camera.target).length() < 1e-3);
             assert!(camera.pitch >= PITCHES[0] && camera.pitch <= PITCHES[1]);
+        }
+    }
+
+    #[test]
+    fn bearings_are_those_of_a_map() {
+        for (yaw, pitch, expect) in
+            [(0.0, 0.5, [180.0, 28.6]), (1.570_796_4, -0.1, [90.0, 0.0]), (3.2, 1.55, [356.7, 88.8])]
+        {
+            let camera = Camera { target: Vec3::ZERO, yaw, pitch, distance: 1.0 };
+            assert_eq!(camera.bearing(), expect);
+            // East is x, and south is z.
+            let place = camera.position();
+            let azimuth = f64::from(libm::atan2f(place.x, -place.z)).to_degrees().rem_euclid(360.0);
+            assert!((azimuth - expect[0]).abs() < 0.1, "{azimuth}");
         }
     }
 

@@ -190,6 +190,12 @@ impl App {
         self.studio.as_ref()
     }
 
+    /// The dialog of exports, while it is open.
+    #[must_use]
+    pub fn export_dialog(&self) -> Option<&ExportDialog> {
+        self.export.as_ref()
+    }
+
     fn use_language(&mut self, context: &Context) {
         if self.language == Language::Chinese && fonts::add_chinese(context).is_none() {
             // Without the font all letters would be shown as boxes.
@@ -424,7 +430,7 @@ impl App {
                 None => self.save_as(),
             },
             Command::SaveAs => self.save_as(),
-            Command::Export => self.export = ExportDialog::new(studio),
+            Command::Export => self.export = ExportDialog::new(studio, &self.relief.shown(studio)),
             Command::Undo => drop(studio.document.undo()),
             Command::Redo => drop(studio.document.redo()),
             Command::NextSeed => {
@@ -566,7 +572,7 @@ impl App {
             self.ramp = None;
         }
         if let (Some(export), Some(studio)) = (&mut self.export, &self.studio)
-            && !export.show(context, studio, &self.wake, language, actions)
+            && !export.show(context, (studio, &self.relief.shown(studio)), &self.wake, language, actions)
         {
             self.export = None;
         }

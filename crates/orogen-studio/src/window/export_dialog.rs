@@ -1,46 +1,58 @@
-//! The dialog of exports: any format of the registry, with its options.
+//! The dialog of exports.
 
 use std::path::PathBuf;
 
-use eframe::egui::{self, ComboBox, Context, ProgressBar, RichText, ScrollArea, TextEdit, Ui, vec2};
-use orogen::export::options::{OptionSpec, ValueKind};
-use orogen::export::registry;
+use eframe::egui::{self, Context, Label, ProgressBar, RichText, ScrollArea, TextEdit, Ui, vec2};
+use orogen::words::number;
 
 use super::action::Action;
 use super::dialogs::window;
+use super::export_fields::{engine, layer, map, render, rows, tilemap};
+use super::relief_panel::ShownView;
 use crate::catalogue::Language;
-use crate::export::{Export, Running};
+use crate::export::kind::Kind;
+use crate::export::request::Export;
+use crate::export::running::Running;
+use crate::preview::region::Region;
 use crate::preview::worker::Wake;
 use crate::studio::Studio;
 
 /// State of the dialog.
 pub struct ExportDialog {
     export: Export,
+    /// The file as it is typed.
     path: String,
     running: Option<Running>,
     /// What the last export has led to.
     outcome: Option<Result<String, String>>,
 }
 
-/// Sizes that are offered; 0 is the world's own.
-const SIZES: [usize; 8] = [0, 256, 512, 1024, 1025, 2048, 4096, 8192];
+/// Maximum height of the fields, and the height of all else.
+const HEIGHT: f32 = 410.0;
+const OTHER: f32 = 370.0;
 
 impl ExportDialog {
-    /// A dialog for the document of the studio.
+    /// A dialog for the document of the studio. A render begins with what the view in space shows.
     #[must_use]
-    pub fn new(studio: &Studio) -> Option<ExportDialog> {
-        let format = registry::named("tif").or(registry::all().first().copied())?;
-        let mut export = Export::new(format, studio.look.region);
-        let folder = studio.document.path().and_then(std::path::Path::parent).map(PathBuf::from);
-        export.path = folder.unwrap_or_default().join(format!("{}.{}", studio.document.title(), format.name));
-        Some(ExportDialog { path: export.path.to_string_lossy().into_owned(), export, running: None, outcome: None })
+    pub fn new(studio: &Studio, view: &ShownView) -> Option<ExportDialog> {
+        let document = &studio.document;
+        let folder = document.path().and_then(std::path::Path::parent).map(PathBuf::from).unwrap_or_default();
+        let mut export = Export::new(studio.look.region, document.title(), document.is_place(), &folder)?;
+        render::follow(&mut export.render, view);
+        Some(ExportDialog { path: shown(&export), export, running: None, outcome: None })
+    }
+
+    /// What is to be exported.
+    #[must_use]
+    pub fn export(&self) -> &Export {
+        &self.export
     }
 
     /// Shows the dialog; false once it is closed.
     pub fn show(
         &mut self,
         context: &Context,
-        studio: &Studio,
+        (studio, view): (&Studio, &ShownView),
         wake: &Wake,
         language: Language,
         actions: &mut Vec<Action>,
@@ -49,39 +61,106 @@ impl ExportDialog {
             self.running = None;
             self.outcome = Some(result.map_err(|error| error.to_string()));
         }
+        if self.running.is_none() {
+            self.export.region = studio.look.region;
+        }
         let mut is_open = true;
-        window(context, language.text("export.title"), &mut is_open, vec2(460.0, 420.0), |ui| {
-            ui.add_enabled_ui(self.running.is_none(), |ui| self.fields(ui, studio, language));
-            ui.separator();
-            let command = self.export.command_line(&source(studio));
-            ui.add(egui::Label::new(RichText::new(&command).monospace().small()).wrap());
-            ui.horizontal(|ui| {
-                if ui.button(language.text("export.copy")).clicked() {
-                    actions.push(Action::Copy(command));
-                }
-                match &self.running {
-                    Some(running) => {
-                        if ui.button(language.text("export.cancel")).clicked() {
-                            running.cancel();
-                        }
-                        ui.add(ProgressBar::new(running.share()).desired_width(200.0).show_percentage());
-                    }
-                    None => {
-                        if ui.button(RichText::new(language.text("export.start")).strong()).clicked() {
-                            self.start(studio, wake);
-                        }
-                    }
-                }
+        window(context, language.text("export.title"), &mut is_open, vec2(520.0, 420.0), |ui| {
+            ui.add_enabled_ui(self.running.is_none(), |ui| {
+                self.kinds(ui, language);
+                ui.separator();
+                let height = (context.content_rect().height() - OTHER).clamp(60.0, HEIGHT);
+                let area = ScrollArea::vertical().max_height(height).auto_shrink([false, true]);
+                area.show(ui, |ui| self.fields(ui, studio, view, language));
+                ui.add_space(4.0);
+                rows::grid(ui, "file", |ui| self.file(ui, language));
             });
-            match &self.outcome {
-                Some(Ok(words)) => {
-                    drop(ui.label(language.fill("export.done", &[("file", &self.path), ("what", words)])))
-                }
-                Some(Err(error)) => drop(ui.colored_label(ui.visuals().error_fg_color, error)),
-                None => {}
-            }
+            ui.separator();
+            self.ending(ui, studio, wake, language, actions);
         });
         is_open && !(self.running.is_none() && context.input(|input| input.key_pressed(egui::Key::Escape)))
+    }
+
+    fn kinds(&mut self, ui: &mut Ui, language: Language) {
+        ui.horizontal_wrapped(|ui| {
+            for (kind, key) in Kind::ALL {
+                if ui.selectable_label(self.export.kind == kind, language.text(key)).clicked() {
+                    self.export.set_kind(kind);
+                    self.path = shown(&self.export);
+                    self.outcome = None;
+                }
+            }
+        });
+    }
+
+    fn fields(&mut self, ui: &mut Ui, studio: &Studio, view: &ShownView, language: Language) {
+        let before = self.export.path().to_path_buf();
+        let export = &mut self.export;
+        match export.kind {
+            Kind::Layer => layer::show(ui, export, studio, language),
+            Kind::Engine => engine::show(ui, export, studio, language),
+            Kind::Map => map::show(ui, export, studio, language),
+            Kind::Render => render::show(ui, export, view, language),
+            Kind::Tilemap => tilemap::show(ui, export, language),
+        }
+        if self.export.path() != before {
+            self.path = shown(&self.export);
+        }
+    }
+
+    fn file(&mut self, ui: &mut Ui, language: Language) {
+        ui.label(language.text("export.land"));
+        ui.label(match self.export.region {
+            Region::Whole => language.text("export.land_whole").to_owned(),
+            Region::Square { side, .. } => language.fill("export.land_part", &[("side", &number(side.round()))]),
+        });
+        ui.end_row();
+        let name = if self.export.kind.is_folder() { "export.folder" } else { "export.file" };
+        ui.label(language.text(name));
+        let field = ui.add(TextEdit::singleline(&mut self.path).desired_width(380.0));
+        field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "file of export"));
+        if field.changed() {
+            self.export.set_path(&self.path);
+        }
+        ui.end_row();
+    }
+
+    /// The command line, the buttons, and what the export has led to.
+    fn ending(&mut self, ui: &mut Ui, studio: &Studio, wake: &Wake, language: Language, actions: &mut Vec<Action>) {
+        let document = &studio.document;
+        let argument = document.argument();
+        let recipe = argument.clone().unwrap_or_else(|| format!("{}.toml", document.title()));
+        let command = self.export.command_line(&recipe, &document.recipe().world).to_string();
+        ui.add(Label::new(RichText::new(&command).monospace().small()).wrap());
+        if argument.is_none() {
+            ui.colored_label(ui.visuals().warn_fg_color, language.text("export.unsaved"));
+        }
+        ui.horizontal(|ui| {
+            if ui.add_enabled(argument.is_some(), egui::Button::new(language.text("export.copy"))).clicked() {
+                actions.push(Action::Copy(command));
+            }
+            match &self.running {
+                Some(running) => {
+                    if ui.button(language.text("export.cancel")).clicked() {
+                        running.cancel();
+                    }
+                    ui.add(ProgressBar::new(running.share()).desired_width(200.0).show_percentage());
+                }
+                None => {
+                    if ui.button(RichText::new(language.text("export.start")).strong()).clicked() {
+                        self.start(studio, wake);
+                    }
+                }
+            }
+        });
+        match &self.outcome {
+            Some(Ok(words)) => {
+                let text = language.fill("export.done", &[("file", &self.path), ("what", words)]);
+                ScrollArea::vertical().id_salt("outcome").max_height(150.0).show(ui, |ui| ui.label(text));
+            }
+            Some(Err(error)) => drop(ui.colored_label(ui.visuals().error_fg_color, error)),
+            None => {}
+        }
     }
 
     fn start(&mut self, studio: &Studio, wake: &Wake) {
@@ -94,116 +173,13 @@ impl ExportDialog {
         }
     }
 
-    fn fields(&mut self, ui: &mut Ui, studio: &Studio, language: Language) {
-        egui::Grid::new("export").num_columns(2).spacing([12.0, 6.0]).show(ui, |ui| {
-            ui.label(language.text("export.format"));
-            ComboBox::from_id_salt("format")
-                .width(300.0)
-                .selected_text(shown(self.export.format))
-                .height(360.0)
-                .show_ui(ui, |ui| {
-                    for format in registry::all() {
-                        if ui.selectable_label(format.name == self.export.format.name, shown(format)).clicked() {
-                            self.export.set_format(format);
-                            self.path = self.export.path.to_string_lossy().into_owned();
-                        }
-                    }
-                });
-            ui.end_row();
-            ui.label(language.text("menu.layer"));
-            ComboBox::from_id_salt("layer of export")
-                .width(300.0)
-                .selected_text(&self.export.layer)
-                .height(360.0)
-                .show_ui(ui, |ui| {
-                    for layer in studio.layers() {
-                        if ui.selectable_label(layer == self.export.layer, &layer).clicked() {
-                            self.export.layer = layer;
-                        }
-                    }
-                });
-            ui.end_row();
-            ui.label(language.text("export.size"));
-            let size = |samples: usize| match samples {
-                0 => language.text("export.own_size").to_owned(),
-                samples => samples.to_string(),
-            };
-            ComboBox::from_id_salt("size").selected_text(size(self.export.size.unwrap_or(0))).show_ui(ui, |ui| {
-                for samples in SIZES {
-                    if ui.selectable_label(self.export.size.unwrap_or(0) == samples, size(samples)).clicked() {
-                        self.export.size = (samples > 0).then_some(samples);
-                    }
-                }
-            });
-            ui.end_row();
-            ui.label(language.text("export.file"));
-            let field = ui.add(TextEdit::singleline(&mut self.path).desired_width(300.0));
-            field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "file of export"));
-            if field.changed() {
-                self.export.path = PathBuf::from(&self.path);
-            }
-            ui.end_row();
-        });
-        if self.export.format.options.is_empty() {
-            return;
-        }
-        ui.add_space(4.0);
-        ui.strong(language.text("export.options"));
-        ScrollArea::vertical().max_height(180.0).show(ui, |ui| {
-            egui::Grid::new("options").num_columns(2).spacing([12.0, 4.0]).show(ui, |ui| {
-                for spec in self.export.format.options {
-                    ui.label(spec.name).on_hover_text(spec.about);
-                    option(ui, spec, &mut self.export.options);
-                    ui.end_row();
-                }
-            });
-        });
+    /// What the last export has led to; `None` while it runs.
+    #[must_use]
+    pub fn outcome(&self) -> Option<&Result<String, String>> {
+        self.outcome.as_ref()
     }
 }
 
-fn shown(format: &orogen::export::format::Format) -> String {
-    format!(".{}  {}", format.name, format.about)
-}
-
-/// What a command line calls the document.
-fn source(studio: &Studio) -> String {
-    let document = &studio.document;
-    document.path().map_or_else(|| document.title().to_owned(), |path| path.to_string_lossy().into_owned())
-}
-
-/// A field for an option; an empty one is not given.
-fn option(ui: &mut Ui, spec: &'static OptionSpec, options: &mut std::collections::BTreeMap<&'static str, String>) {
-    match spec.value_kind {
-        ValueKind::Nothing => {
-            let mut given = options.contains_key(spec.name);
-            if ui.checkbox(&mut given, "").changed() {
-                match given {
-                    true => drop(options.insert(spec.name, String::new())),
-                    false => drop(options.remove(spec.name)),
-                }
-            }
-        }
-        ValueKind::Word(words) => {
-            let own = options.get(spec.name).cloned().unwrap_or_default();
-            ComboBox::from_id_salt(spec.name).selected_text(&own).show_ui(ui, |ui| {
-                if ui.selectable_label(own.is_empty(), "–").clicked() {
-                    options.remove(spec.name);
-                }
-                for word in words {
-                    if ui.selectable_label(own == *word, *word).clicked() {
-                        options.insert(spec.name, (*word).to_owned());
-                    }
-                }
-            });
-        }
-        _ => {
-            let mut text = options.get(spec.name).cloned().unwrap_or_default();
-            if ui.add(TextEdit::singleline(&mut text).desired_width(140.0).hint_text(spec.value)).changed() {
-                match text.is_empty() {
-                    true => drop(options.remove(spec.name)),
-                    false => drop(options.insert(spec.name, text)),
-                }
-            }
-        }
-    }
+fn shown(export: &Export) -> String {
+    export.path().to_string_lossy().into_owned()
 }

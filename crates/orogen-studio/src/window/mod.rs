@@ -10,6 +10,7 @@ pub mod contour_lines;
 pub mod device;
 pub mod dialogs;
 pub mod export_dialog;
+pub mod export_fields;
 pub mod expression_field;
 pub mod fields;
 pub mod fonts;

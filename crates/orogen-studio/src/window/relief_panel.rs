@@ -43,6 +43,17 @@ impl Default for ReliefPanel {
     }
 }
 
+/// What the view shows, as the choices of a render.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShownView {
+    /// The camera: degrees clockwise from north, and degrees above the horizon.
+    pub camera: [f64; 2],
+    /// The sun, likewise.
+    pub sun: [f64; 2],
+    /// How many times as high heights are drawn.
+    pub exaggeration: f64,
+}
+
 /// A drag of the middle of the view is a walk; keys fly by this part of the distance in a second.
 const FLIGHT: f32 = 0.9;
 
@@ -101,6 +112,17 @@ impl ReliefPanel {
             let text = readout(frame, self.world(frame, place), language);
             let at = rect.left_bottom() + egui::vec2(8.0, -8.0);
             painter.text(at, Align2::LEFT_BOTTOM, text, FontId::monospace(11.0), egui::Color32::WHITE);
+        }
+    }
+
+    /// The view as the choices of a render: where the camera is, and how many times as high heights are drawn, to a tenth.
+    #[must_use]
+    pub fn shown(&self, studio: &Studio) -> ShownView {
+        let times = self.times(studio.frame.as_deref());
+        ShownView {
+            camera: self.camera.bearing(),
+            sun: studio.look.sun.map(|degrees| (degrees * 10.0).round() / 10.0),
+            exaggeration: ((times * 10.0).round() / 10.0).max(0.1),
         }
     }
 

@@ -1,4 +1,4 @@
-//! `--paper`: paper sizes.
+//! Paper sizes.
 
 use std::str::FromStr;
 
@@ -6,7 +6,8 @@ use std::str::FromStr;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Paper([f64; 2]);
 
-const NAMES: [(&str, [f64; 2]); 8] = [
+/// The papers that have a name, in portrait orientation.
+pub const NAMES: [(&str, [f64; 2]); 8] = [
     ("a0", [841.0, 1189.0]),
     ("a1", [594.0, 841.0]),
     ("a2", [420.0, 594.0]),
@@ -21,7 +22,8 @@ const NAMES: [(&str, [f64; 2]); 8] = [
 const SIDES: [f64; 2] = [50.0, 2000.0];
 
 impl Paper {
-    /// Width and height, in landscape orientation on request.
+    /// Width and height in millimetres, in landscape orientation on request.
+    #[must_use]
     pub fn sides(self, landscape: bool) -> [f64; 2] {
         let [width, height] = self.0;
         if landscape { [width.max(height), width.min(height)] } else { [width, height] }

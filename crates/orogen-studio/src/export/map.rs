@@ -1,0 +1,239 @@
+//! A map sheet.
+
+use std::path::Path;
+
+use orogen::export::derived::list as derived;
+use orogen::jobs::map::{MapColors, MapJob};
+use orogen::jobs::sheet_format::SheetFormat;
+use orogen::palette::named;
+use orogen::recipe::document::Recipe;
+use orogen::sheet::options::{Parts, Resolution, Scale, Shading};
+use orogen::sheet::paper::Paper;
+use orogen::world::HEIGHT;
+use orogen::{Error, ErrorKind, Result, WorldSpec};
+
+use super::command_line::CommandLine;
+use super::samples::Samples;
+use super::work::{Work, lines};
+use crate::preview::region::Region;
+
+/// A part of a sheet: the option that leaves it out, the key of its name, and its place in [`Parts`].
+pub type Part = (&'static str, &'static str, fn(&mut Parts) -> &mut bool);
+
+/// The parts of a sheet.
+pub const PARTS: [Part; 12] = [
+    ("no-title", "export.part_title", |parts| &mut parts.title),
+    ("no-contours", "export.part_contours", |parts| &mut parts.contours),
+    ("no-labels", "export.part_labels", |parts| &mut parts.labels),
+    ("no-rivers", "export.part_rivers", |parts| &mut parts.rivers),
+    ("no-lakes", "export.part_lakes", |parts| &mut parts.lakes),
+    ("no-summits", "export.part_summits", |parts| &mut parts.summits),
+    ("no-axes", "export.part_axes", |parts| &mut parts.axes),
+    ("no-color", "export.part_colors", |parts| &mut parts.colors),
+    ("no-legend", "export.part_legend", |parts| &mut parts.legend),
+    ("no-scale", "export.part_scale", |parts| &mut parts.scale),
+    ("no-north", "export.part_north", |parts| &mut parts.north),
+    ("no-profile", "export.part_profile", |parts| &mut parts.profile),
+];
+
+/// What the colors show: its name on the command line, and the key of its name.
+pub const COLORS: [(MapColors, &str, &str); 4] = [
+    (MapColors::Palette, "palette", "export.color_palette"),
+    (MapColors::Surfaces, "surfaces", "export.color_surfaces"),
+    (MapColors::Biomes, "biomes", "export.color_biomes"),
+    (MapColors::Classes, "classes", "export.color_classes"),
+];
+
+/// Relief shading, likewise.
+pub const SHADINGS: [(Shading, &str, &str); 4] = [
+    (Shading::Multi, "multi", "export.shade_multi"),
+    (Shading::Single, "single", "export.shade_single"),
+    (Shading::Swiss, "swiss", "export.shade_swiss"),
+    (Shading::None, "none", "export.shade_none"),
+];
+
+/// How values are mapped to colors, likewise.
+pub const SCALES: [(Scale, &str, &str); 3] = [
+    (Scale::Linear, "linear", "export.scale_linear"),
+    (Scale::Log, "log", "export.scale_log"),
+    (Scale::Labels, "labels", "export.scale_labels"),
+];
+
+/// Pixels per inch that a sheet may have.
+pub const DPI: std::ops::RangeInclusive<u16> = 20..=1200;
+
+/// Pixels along the longer side of a page.
+pub const SIDE: std::ops::RangeInclusive<u32> = 100..=30_000;
+
+/// The choices of a map sheet.
+#[derive(Debug, Clone)]
+pub struct MapExport {
+    /// The kind of file.
+    pub format: SheetFormat,
+    /// Samples along the longer side; `None` for the world's own cell.
+    pub samples: Option<usize>,
+    /// What the colors show.
+    pub colors: MapColors,
+    /// The layer that the palette colors.
+    pub layer: String,
+    /// The palette by name; that of the layer if `None`.
+    pub palette: Option<&'static str>,
+    /// How values of another layer than the heights are mapped to colors.
+    pub scale: Option<Scale>,
+    /// The values at the ends of the palette.
+    pub range: Option<[f32; 2]>,
+    /// The relief shading.
+    pub shading: Shading,
+    /// The interval of contours in metres; a round number if `None`.
+    pub interval: Option<f64>,
+    /// The heading.
+    pub title: String,
+    /// The heading that a command line gives by itself.
+    pub own_title: String,
+    /// The paper, by its name.
+    pub paper: Option<&'static str>,
+    /// Whether the paper is wider than high.
+    pub is_landscape: bool,
+    /// The resolution; one that suits the kind of file if `None`.
+    pub resolution: Option<Resolution>,
+    /// The parts.
+    pub parts: Parts,
+    /// Whether the world is a file of heights.
+    pub is_place: bool,
+}
+
+impl MapExport {
+    /// A picture of the heights.
+    #[must_use]
+    pub fn new(title: &str, is_place: bool) -> MapExport {
+        MapExport {
+            format: SheetFormat::Png,
+            samples: None,
+            colors: MapColors::Palette,
+            layer: HEIGHT.into(),
+            palette: None,
+            scale: None,
+            range: None,
+            shading: Shading::Multi,
+            interval: None,
+            title: title.into(),
+            own_title: title.into(),
+            paper: None,
+            is_landscape: false,
+            resolution: None,
+            parts: Parts::default(),
+            is_place,
+        }
+    }
+
+    /// Other colors; only a palette has a layer and a range of its own.
+    pub fn set_colors(&mut self, colors: MapColors) {
+        self.colors = colors;
+        if colors != MapColors::Palette {
+            (self.palette, self.range) = (None, None);
+            self.set_layer(HEIGHT);
+        }
+    }
+
+    /// Another layer; only other layers than the heights have a scale.
+    pub fn set_layer(&mut self, layer: &str) {
+        self.layer = layer.to_owned();
+        self.scale = self.scale.filter(|_| layer != HEIGHT);
+    }
+
+    /// The layers of a recipe that a map can show: those of one channel.
+    #[must_use]
+    pub fn layers(recipe: &Recipe) -> Vec<String> {
+        let mut names: Vec<String> = recipe.outputs().map(str::to_owned).collect();
+        for layer in derived::all().iter().filter(|layer| !layer.palette.is_empty()) {
+            if !names.iter().any(|name| name == layer.name) {
+                names.push(layer.name.to_owned());
+            }
+        }
+        names
+    }
+
+    fn job(&self) -> Result<MapJob> {
+        let mut job = MapJob::new(self.format).with_colors(self.colors).with_layer(&self.layer);
+        job = job.with_title(&self.title);
+        job.palette = self.palette.and_then(named::find).map(|palette| palette.palette());
+        job.scale = self.scale;
+        if self.range.is_some_and(|[low, high]| low >= high) {
+            let message = "the lower end of the range of colors must be below the upper one";
+            return Err(Error::new(ErrorKind::Request, message));
+        }
+        job.range = self.range;
+        job.shading = self.shading;
+        job.interval = self.interval;
+        job.paper = self
+            .paper
+            .map(|name| name.parse::<Paper>().map_err(|message| Error::new(ErrorKind::Request, message)))
+            .transpose()?
+            .map(|paper| paper.sides(self.is_landscape));
+        job.resolution = self.resolution;
+        job.parts = self.parts;
+        job.is_place = self.is_place;
+        job.check()?;
+        Ok(job)
+    }
+
+    /// Adds the options of `orogen map`.
+    pub fn words(&self, path: &Path, region: Region, world: &WorldSpec, line: &mut CommandLine) {
+        if SheetFormat::of_path(path) != Some(self.format) {
+            line.option("format", self.format.name());
+        }
+        if let Some((_, name, _)) = COLORS.iter().find(|(colors, ..)| *colors == self.colors) {
+            line.differing("color", *name, &"palette");
+        }
+        line.differing("layer", self.layer.as_str(), &HEIGHT);
+        if let Some(palette) = self.palette {
+            line.option("palette", palette);
+        }
+        if let Some((_, name, _)) = SCALES.iter().find(|(scale, ..)| Some(*scale) == self.scale) {
+            line.option("ramp", name);
+        }
+        if let Some([low, high]) = self.range {
+            line.option("range", format!("{low},{high}"));
+        }
+        if let Some((_, name, _)) = SHADINGS.iter().find(|(shading, ..)| *shading == self.shading) {
+            line.differing("shade", *name, &"multi");
+        }
+        if let Some(interval) = self.interval {
+            line.option("contours", interval);
+        }
+        line.differing("title", self.title.as_str(), &self.own_title.as_str());
+        if let Some(paper) = self.paper {
+            line.option("paper", paper);
+            if self.is_landscape {
+                line.flag("landscape");
+            }
+        }
+        match self.resolution {
+            Some(Resolution::Inch(dpi)) => line.option("dpi", dpi),
+            Some(Resolution::Longer(pixels)) => line.option("size", pixels),
+            None => {}
+        }
+        let mut parts = self.parts;
+        for (flag, _, part) in PARTS {
+            if !*part(&mut parts) {
+                line.flag(flag);
+            }
+        }
+        Samples::of(region, self.samples, world).unsized_for(world, line);
+    }
+
+    /// Makes the file. Returns a description.
+    ///
+    /// # Errors
+    /// If options are not valid, or the export fails; then there is no file, or that which was there.
+    pub fn make(&self, mut work: Work, region: Region) -> Result<String> {
+        let job = self.job()?;
+        job.prepare(&mut work.recipe)?;
+        let world = work.open()?;
+        let window = Samples::of(region, self.samples, &work.recipe.world).window(&world)?;
+        let drawn = job.with_window(window).to_file(&world, &work.output()?, work.progress)?;
+        let lacking: String = drawn.lacking().iter().collect();
+        let letters = (!lacking.is_empty()).then(|| format!("no installed font has the letters {lacking}"));
+        Ok(lines(&drawn.words(), drawn.warnings().iter().cloned().chain(letters)))
+    }
+}

@@ -1,0 +1,211 @@
+//! Files of each kind against the jobs of the library, and the command lines.
+
+use std::path::Path;
+
+use orogen::export::registry;
+use orogen::export::targets::list;
+use orogen::file::OutputPolicy;
+use orogen::jobs::map::{MapColors, MapJob};
+use orogen::jobs::render::RenderJob;
+use orogen::jobs::sheet_format::SheetFormat;
+use orogen::recipe::document::Recipe;
+use orogen::render::camera::View;
+use orogen::sheet::options::{Resolution, Shading};
+use orogen::test_folder::TestFolder;
+use orogen::tilemap::art::set::SETS;
+use orogen::tilemap::job::TilemapJob;
+use orogen::world::HEIGHT;
+use orogen::{ErrorKind, Progress, Session, presets};
+
+use super::kind::Kind;
+use super::request::Export;
+use crate::preview::region::Region;
+
+fn recipe() -> Recipe {
+    presets::find("classic").unwrap().recipe().unwrap()
+}
+
+fn session() -> Session {
+    Session::new(orogen::Options::default()).unwrap()
+}
+
+fn export(kind: Kind, folder: &Path) -> Export {
+    let mut export = Export::new(Region::Whole, "classic", false, folder).unwrap();
+    export.set_kind(kind);
+    export
+}
+
+fn run(export: &Export) -> String {
+    export.run(&session(), recipe(), None, &Progress::none()).unwrap()
+}
+
+fn line(export: &Export) -> String {
+    export.command_line("classic", &recipe().world).to_string()
+}
+
+#[test]
+fn a_layer_has_the_samples_of_the_world() {
+    let folder = TestFolder::new("studio-export").unwrap();
+    let mut export = export(Kind::Layer, &folder);
+    export.layer.set_format(registry::named("r32").unwrap(), None);
+    export.layer.size = Some(64);
+    export.set_extension();
+    run(&export);
+    let bytes = std::fs::read(folder.join("classic.r32")).unwrap();
+    let world = session().open(recipe()).unwrap();
+    let grid = world.window(HEIGHT, &world.window_fitting(64).unwrap()).unwrap();
+    let expect: Vec<u8> = grid.data().iter().flat_map(|height| height.to_le_bytes()).collect();
+    assert!(bytes == expect);
+}
+
+#[test]
+fn an_engine_gets_what_it_imports_and_says_how() {
+    let folder = TestFolder::new("studio-engine").unwrap();
+    let mut export = export(Kind::Engine, &folder);
+    export.engine.set_target(list::named("unity").unwrap());
+    export.engine.side = Some(65);
+    export.engine.tiles = [2, 2];
+    export.set_extension();
+    let words = run(&export);
+    assert!(words.contains("Heightmap Resolution 65 x 65") && words.starts_with("129 x 129 samples"), "{words}");
+    assert_eq!(std::fs::metadata(folder.join("classic_1_1.r16")).unwrap().len(), 2 * 65 * 65);
+    // Weights are pictures.
+    export.engine.layer = "slope".into();
+    export.set_extension();
+    assert!(
+        line(&export).ends_with("classic.png --target unity --layer slope --size 65 --tiles 2x2"),
+        "{}",
+        line(&export)
+    );
+    export.set_path(&folder.join("a.r16").to_string_lossy());
+    let error = export.run(&session(), recipe(), None, &Progress::none()).unwrap_err();
+    assert!(error.to_string().contains("is a .png"), "{error}");
+    // A part is a square of a size that the engine has.
+    export.region = Region::Square { center: [100.0, 4000.0], side: 1500.0 };
+    export.engine.layer = HEIGHT.into();
+    (export.engine.tiles, export.engine.side) = ([1, 1], Some(33));
+    let words = run(&export);
+    assert!(words.starts_with("33 x 33 samples of 46.875 m"), "{words}");
+}
+
+#[test]
+fn a_map_is_that_of_the_job() {
+    let folder = TestFolder::new("studio-map").unwrap();
+    let mut export = export(Kind::Map, &folder);
+    export.map.samples = Some(80);
+    export.map.resolution = Some(Resolution::Longer(300));
+    export.map.shading = Shading::Swiss;
+    export.map.set_colors(MapColors::Surfaces);
+    export.map.parts.rivers = false;
+    let words = run(&export);
+    assert!(words.starts_with("surfaces, ") && words.contains("80 x 80 samples"), "{words}");
+    let mut job = MapJob::new(SheetFormat::Png).with_colors(MapColors::Surfaces).with_title("classic");
+    job.resolution = Some(Resolution::Longer(300));
+    job.shading = Shading::Swiss;
+    job.parts.rivers = false;
+    let mut recipe = recipe();
+    job.prepare(&mut recipe).unwrap();
+    let world = session().open(recipe).unwrap();
+    let job = job.with_window(world.window_fitting(80).unwrap());
+    let output = OutputPolicy::default().output(folder.join("job.png")).unwrap();
+    job.to_file(&world, &output, &Progress::none()).unwrap();
+    assert!(std::fs::read(export.path()).unwrap() == std::fs::read(output.path()).unwrap());
+    let cell = 0.0125 * super::tests::recipe().world.size.unwrap()[0];
+    let end = format!("classic-map.png --color surfaces --shade swiss --size 300 --no-rivers --cell {cell}");
+    assert!(line(&export).ends_with(&end), "{}", line(&export));
+    // Its extension chooses the kind of file.
+    export.set_path(&folder.join("a.pdf").to_string_lossy());
+    assert_eq!(export.map.format, SheetFormat::Pdf);
+    export.map.range = Some([3.0, 1.0]);
+    let error = export.run(&session(), super::tests::recipe(), None, &Progress::none()).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::Request);
+}
+
+#[test]
+fn a_render_is_that_of_the_job() {
+    let folder = TestFolder::new("studio-render").unwrap();
+    let mut export = export(Kind::Render, &folder);
+    export.render.samples = Some(48);
+    export.render.size = [64, 40];
+    export.render.camera = [120.5, 40.0];
+    export.render.rays = 1;
+    let words = run(&export);
+    assert!(words.starts_with("64 x 40 pixels, of 48 x 48 samples"), "{words}");
+    let mut job = RenderJob::default();
+    job.size = [64, 40];
+    job.view = View::Around { azimuth: 120.5, elevation: 40.0, distance: None };
+    job.samples = 1;
+    let world = session().open(recipe()).unwrap();
+    let job = job.with_window(world.window_fitting(48).unwrap());
+    let output = OutputPolicy::default().output(folder.join("job.png")).unwrap();
+    job.to_file(&world, &output, &Progress::none()).unwrap();
+    assert!(std::fs::read(export.path()).unwrap() == std::fs::read(output.path()).unwrap());
+    assert!(line(&export).contains(" --size 64x40 --camera 120.5,40 --samples 1 --cell "), "{}", line(&export));
+    export.render.haze = 101.0;
+    let error = export.run(&session(), recipe(), None, &Progress::none()).unwrap_err();
+    assert!(error.to_string().contains("the haze must be from 0 to 100"), "{error}");
+}
+
+#[test]
+fn a_tilemap_is_that_of_the_job() {
+    let folder = TestFolder::new("studio-tilemap").unwrap();
+    let mut export = export(Kind::Tilemap, &folder);
+    assert_eq!(export.path(), folder.join("classic-tiles"));
+    export.tilemap.size = 24;
+    let words = run(&export);
+    assert!(words.starts_with("tiles.png ") && words.contains("24 x 24 tiles of fields-16 (blob)"), "{words}");
+    let job = TilemapJob::new(SETS[0].draw(orogen::autotile::mask::Layout::Blob));
+    let world = session().open(recipe()).unwrap();
+    let window = world.window_fitting(24).unwrap();
+    let mut recipe = recipe();
+    job.prepare(&mut recipe, window.cell).unwrap();
+    let map = job.make(&session().open(recipe).unwrap(), &window, &Progress::none()).unwrap();
+    let mut bytes = Vec::new();
+    map.write_csv(&mut bytes).unwrap();
+    assert!(std::fs::read(folder.join("classic-tiles/classes.csv")).unwrap() == bytes);
+    assert!(line(&export).ends_with("classic-tiles --size 24"), "{}", line(&export));
+}
+
+#[test]
+fn command_lines_name_the_part_of_the_world() {
+    let mut export = export(Kind::Layer, Path::new(""));
+    assert_eq!(line(&export), "orogen export classic --out classic.tif");
+    export.set_path("my map's.png");
+    assert_eq!(export.layer.format.name, "png");
+    export.layer.size = Some(300);
+    export.layer.set_layer("viewshed");
+    export.layer.options.insert("bits", "8".into());
+    export.layer.layer_options.insert("observer", "-5,7".into());
+    assert_eq!(
+        line(&export),
+        "orogen export classic --out 'my map'\\''s.png' --layer viewshed --size 300 --bits 8 --observer=-5,7"
+    );
+    // A name that was given stays.
+    export.set_kind(Kind::Render);
+    assert_eq!(export.path(), Path::new("my map's.png"));
+    export.set_kind(Kind::Layer);
+    export.set_path("my map's.png");
+    export.set_path("a.data");
+    assert!(line(&export).contains("--out a.data --format png"), "{}", line(&export));
+    // A part of an unbounded world, and one that a bounded world ends.
+    export.layer.set_layer(HEIGHT);
+    export.region = Region::Square { center: [1000.0, 500.0], side: 2000.0 };
+    export.layer.size = Some(200);
+    let mut endless = recipe().world;
+    endless.size = None;
+    let words = export.command_line("endless", &endless).to_string();
+    assert!(words.contains("--cell 10 --window 0,-50,200,200"), "{words}");
+    assert!(line(&export).contains("--cell 10 --window 0,0,200,150"), "{}", line(&export));
+}
+
+#[test]
+fn what_is_cancelled_leaves_no_file() {
+    let folder = TestFolder::new("studio-cancel").unwrap();
+    for (kind, _) in Kind::ALL {
+        let progress = Progress::none();
+        progress.cancel();
+        let error = export(kind, &folder).run(&session(), recipe(), None, &progress).unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::Cancelled, "{kind:?}");
+    }
+    assert!(folder.names().is_empty(), "{:?}", folder.names());
+}

@@ -1,0 +1,54 @@
+//! The fields of a layer or a mesh.
+
+use eframe::egui::Ui;
+use orogen::export::registry;
+
+use super::rows;
+use crate::catalogue::Language;
+use crate::export::layer::{layer_options, layers};
+use crate::export::request::Export;
+use crate::studio::Studio;
+
+/// Shows the fields.
+pub fn show(ui: &mut Ui, export: &mut Export, studio: &Studio, language: Language) {
+    let own = &mut export.layer;
+    let mut is_other = false;
+    rows::grid(ui, "layer", |ui| {
+        let items: Vec<(&'static str, String)> =
+            registry::all().iter().map(|format| (format.name, format!(".{}  {}", format.name, format.about))).collect();
+        let mut name = own.format.name;
+        if rows::choice(ui, language.text("export.format"), &mut name, &items)
+            && let Some(format) = registry::named(name)
+        {
+            own.set_format(format, relief(studio));
+            is_other = true;
+        }
+        let mut layer = own.layer.clone();
+        let all = layers(own.format, studio.document.recipe());
+        if rows::names(ui, language.text("menu.layer"), &mut layer, all) {
+            own.set_layer(&layer);
+        }
+        rows::samples(ui, &mut own.size, language);
+    });
+    let known = layer_options(&own.layer);
+    if !own.format.options.is_empty() || !known.is_empty() {
+        ui.add_space(4.0);
+        ui.strong(language.text("export.options"));
+        rows::grid(ui, "options", |ui| {
+            rows::options(ui, own.format.options, &mut own.options);
+            rows::options(ui, known, &mut own.layer_options);
+        });
+    }
+    if is_other {
+        export.set_extension();
+    }
+}
+
+/// The difference of the highest and the lowest height in the picture.
+fn relief(studio: &Studio) -> Option<f64> {
+    let frame = studio.frame.as_ref()?;
+    let finite = frame.heights.data().iter().copied().filter(|height| height.is_finite());
+    let (low, high) =
+        finite.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), height| (low.min(height), high.max(height)));
+    (low <= high).then(|| f64::from(high - low))
+}

@@ -1,0 +1,134 @@
+//! The fields of a map sheet.
+
+use eframe::egui::{Checkbox, ComboBox, DragValue, Grid, Ui};
+use orogen::jobs::map::MapColors;
+use orogen::jobs::sheet_format::SheetFormat;
+use orogen::palette::named;
+use orogen::sheet::options::Resolution;
+use orogen::sheet::paper;
+use orogen::world::HEIGHT;
+
+use super::rows;
+use crate::catalogue::Language;
+use crate::export::map::{COLORS, DPI, MapExport, PARTS, SCALES, SHADINGS, SIDE};
+use crate::export::request::Export;
+use crate::studio::Studio;
+
+/// Columns of the parts.
+const COLUMNS: usize = 3;
+
+/// Shows the fields.
+pub fn show(ui: &mut Ui, export: &mut Export, studio: &Studio, language: Language) {
+    let own = &mut export.map;
+    let mut is_other = false;
+    rows::grid(ui, "map", |ui| {
+        let formats: Vec<(SheetFormat, String)> =
+            SheetFormat::ALL.into_iter().map(|format| (format, format!(".{}", format.name()))).collect();
+        is_other = rows::choice(ui, language.text("export.format"), &mut own.format, &formats);
+        colors(ui, own, studio, language);
+        let shadings: Vec<_> =
+            SHADINGS.iter().map(|(shading, _, key)| (*shading, language.text(key).to_owned())).collect();
+        rows::choice(ui, language.text("export.shading"), &mut own.shading, &shadings);
+        rows::optional(ui, language.text("export.interval"), &mut own.interval, 100.0, 0.01..=10_000.0, language);
+        rows::text(ui, language.text("export.sheet_title"), &mut own.title);
+        let fitted = language.text("export.paper_fitted");
+        rows::optional_name(
+            ui,
+            language.text("export.paper"),
+            &mut own.paper,
+            fitted,
+            paper::NAMES.iter().map(|(name, _)| *name),
+        );
+        if own.paper.is_some() {
+            rows::switch(ui, language.text("export.landscape"), &mut own.is_landscape);
+        }
+        resolution(ui, &mut own.resolution, language);
+        rows::samples(ui, &mut own.samples, language);
+    });
+    ui.add_space(4.0);
+    ui.strong(language.text("export.parts"));
+    Grid::new("parts").num_columns(COLUMNS).spacing([16.0, 4.0]).show(ui, |ui| {
+        for (nth, (_, key, part)) in PARTS.iter().enumerate() {
+            ui.add(Checkbox::new(part(&mut own.parts), language.text(key)));
+            if nth % COLUMNS == COLUMNS - 1 {
+                ui.end_row();
+            }
+        }
+    });
+    if is_other {
+        export.set_extension();
+    }
+}
+
+/// What the colors show, and how.
+fn colors(ui: &mut Ui, own: &mut MapExport, studio: &Studio, language: Language) {
+    let items: Vec<_> = COLORS.iter().map(|(colors, _, key)| (*colors, language.text(key).to_owned())).collect();
+    let mut colors = own.colors;
+    if rows::choice(ui, language.text("export.colors"), &mut colors, &items) {
+        own.set_colors(colors);
+    }
+    if own.colors != MapColors::Palette {
+        return;
+    }
+    let mut layer = own.layer.clone();
+    if rows::names(ui, language.text("menu.layer"), &mut layer, MapExport::layers(studio.document.recipe())) {
+        own.set_layer(&layer);
+    }
+    let palettes = named::all().iter().map(|palette| palette.name);
+    let none = language.text("menu.own_palette");
+    rows::optional_name(ui, language.text("export.palette"), &mut own.palette, none, palettes);
+    if own.layer != HEIGHT {
+        let automatic = (None, language.text("export.automatic").to_owned());
+        let scales: Vec<_> = std::iter::once(automatic)
+            .chain(SCALES.iter().map(|(scale, _, key)| (Some(*scale), language.text(key).to_owned())))
+            .collect();
+        rows::choice(ui, language.text("export.scale"), &mut own.scale, &scales);
+    }
+    ui.label(language.text("export.range"));
+    ui.horizontal(|ui| {
+        let mut is_given = own.range.is_some();
+        if ui.checkbox(&mut is_given, "").changed() {
+            own.range = is_given.then_some([0.0, 1000.0]);
+        }
+        match &mut own.range {
+            Some(ends) => ends.iter_mut().for_each(|end| drop(ui.add(DragValue::new(end)))),
+            None => drop(ui.weak(language.text("export.automatic"))),
+        }
+    });
+    ui.end_row();
+}
+
+/// The resolution: pixels per inch, or pixels of the page.
+fn resolution(ui: &mut Ui, value: &mut Option<Resolution>, language: Language) {
+    ui.label(language.text("export.resolution"));
+    ui.horizontal(|ui| {
+        let [automatic, inch, longer] =
+            ["export.automatic", "export.dpi", "export.page_side"].map(|key| language.text(key));
+        let shown = match value {
+            None => automatic,
+            Some(Resolution::Inch(_)) => inch,
+            Some(Resolution::Longer(_)) => longer,
+        };
+        ComboBox::from_id_salt("resolution").width(200.0).selected_text(shown).show_ui(ui, |ui| {
+            for (text, first) in
+                [(automatic, None), (inch, Some(Resolution::Inch(150.0))), (longer, Some(Resolution::Longer(2000)))]
+            {
+                if ui.selectable_label(shown == text, text).clicked() && shown != text {
+                    *value = first;
+                }
+            }
+        });
+        match value {
+            None => {}
+            Some(Resolution::Inch(dpi)) => {
+                // The command line takes whole numbers.
+                let mut whole = *dpi as u16;
+                if ui.add(DragValue::new(&mut whole).range(DPI)).changed() {
+                    *dpi = f64::from(whole);
+                }
+            }
+            Some(Resolution::Longer(pixels)) => drop(ui.add(DragValue::new(pixels).range(SIDE).speed(5.0))),
+        }
+    });
+    ui.end_row();
+}
