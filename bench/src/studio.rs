@@ -80,7 +80,8 @@ fn interface() -> Result<Value, String> {
     if !large.is_valid() {
         return Err(format!("the large recipe is not valid: {:?}", large.diagnostics()));
     }
-    let opened = presets::all().iter().map(Document::of_preset).collect::<Result<Vec<_>, _>>().map_err(|e| e.to_string())?;
+    let opened =
+        presets::all().iter().map(Document::of_preset).collect::<Result<Vec<_>, _>>().map_err(|e| e.to_string())?;
     let mut longest = (0.0, String::new());
     for document in opened.into_iter().chain([large]) {
         let title = document.title().to_owned();

@@ -11,7 +11,7 @@ use orogen::world::HEIGHT;
 use orogen::{Error, ErrorKind, Result, Session};
 
 use crate::editing::document::Document;
-use crate::editing::edit::Edit;
+use crate::editing::edit::{Edit, renames};
 use crate::editing::groups;
 use crate::editing::strokes;
 use crate::files;
@@ -111,7 +111,7 @@ impl Studio {
     /// # Errors
     /// If it cannot be applied; then nothing changes.
     pub fn edit(&mut self, edit: &Edit) -> Result<()> {
-        let renames = groups::renames(self.document.recipe(), edit);
+        let renames = renames(self.document.recipe(), edit);
         self.document.apply(edit)?;
         for name in self.selected.iter_mut().chain([&mut self.look.layer]) {
             if let Some((_, to)) = renames.iter().find(|(from, _)| from == name) {

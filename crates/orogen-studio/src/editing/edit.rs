@@ -90,6 +90,18 @@ impl Edit {
     }
 }
 
+/// The names of nodes that an edit changes: from and to.
+#[must_use]
+pub fn renames(recipe: &Recipe, edit: &Edit) -> Vec<(String, String)> {
+    match edit {
+        Edit::Rename { from, to } => vec![(from.clone(), to.clone())],
+        Edit::Group { nodes, name } => groups::grouped(nodes, name),
+        Edit::Ungroup(group) => groups::ungrouped(recipe, group),
+        Edit::RenameGroup { from, to } => groups::renamed(recipe, from, to),
+        _ => Vec::new(),
+    }
+}
+
 /// Applies an edit to the text of a recipe; `recipe` is what the text means.
 ///
 /// # Errors
@@ -187,7 +199,7 @@ pub fn apply(text: &str, recipe: &Recipe, edit: &Edit) -> Result<String, String>
             duplicate(&mut document, recipe, names)?;
         }
         Edit::Rename { .. } | Edit::Group { .. } | Edit::Ungroup(_) | Edit::RenameGroup { .. } => {
-            let renames = groups::renames(recipe, edit);
+            let renames = renames(recipe, edit);
             match edit {
                 Edit::Group { nodes, name } if nodes.is_empty() || groups::is_group(recipe, name) => {
                     return Err(match nodes.is_empty() {

@@ -5,7 +5,6 @@ use std::collections::HashSet;
 
 use orogen::recipe::document::Recipe;
 
-use super::edit::Edit;
 use super::names;
 
 /// The group of a node or of a group; empty at the top.
@@ -87,55 +86,54 @@ pub fn free(recipe: &Recipe, group: &str, name: &str) -> String {
     within(group, &names::free(name, &taken))
 }
 
-/// The names that an edit of groups, or of a name, changes: from and to.
+/// The names that change where nodes become a group: from and to.
 #[must_use]
-pub fn renames(recipe: &Recipe, edit: &Edit) -> Vec<(String, String)> {
-    match edit {
-        Edit::Rename { from, to } => vec![(from.clone(), to.clone())],
-        Edit::Group { nodes, name } => {
-            let outer = common(nodes.iter().map(String::as_str));
-            let moved = |node: &String| Some((node.clone(), within(name, rest(node, outer)?)));
-            nodes.iter().filter_map(moved).collect()
-        }
-        Edit::Ungroup(group) => {
-            let inside = members(recipe, group);
-            let outer = group_of(group);
-            // Names, and groups, that are there already stay as they are.
-            let others =
-                recipe.nodes().iter().map(|named| named.name.as_str()).filter(|name| rest(name, group).is_none());
-            let mut taken: HashSet<String> = HashSet::new();
-            for name in others.filter_map(|name| rest(name, outer)) {
-                taken.insert(name.split_once('/').map_or(name, |(first, _)| first).to_owned());
-                taken.insert(name.to_owned());
-            }
-            let mut heads: Vec<(String, String)> = Vec::new();
-            let mut all = Vec::new();
-            for name in inside {
-                let Some(own) = rest(&name, group) else { continue };
-                let (head, tail) = own.split_once('/').map_or((own, None), |(head, tail)| (head, Some(tail)));
-                // A node and a group of one name are different things.
-                let head = format!("{head}{}", if tail.is_some() { "/" } else { "" });
-                let known = heads.iter().find(|(known, _)| *known == head).map(|(_, to)| to.clone());
-                let to = known.unwrap_or_else(|| {
-                    let to = names::free(head.trim_end_matches('/'), &taken.iter().map(String::as_str).collect());
-                    taken.insert(to.clone());
-                    heads.push((head, to.clone()));
-                    to
-                });
-                let to = within(outer, &tail.map_or(to.clone(), |tail| within(&to, tail)));
-                all.push((name, to));
-            }
-            all
-        }
-        Edit::RenameGroup { from, to } => {
-            let moved = |name: String| {
-                let new = within(to, rest(&name, from)?);
-                Some((name, new))
-            };
-            members(recipe, from).into_iter().filter_map(moved).collect()
-        }
-        _ => Vec::new(),
+pub fn grouped(nodes: &[String], name: &str) -> Vec<(String, String)> {
+    let outer = common(nodes.iter().map(String::as_str));
+    let moved = |node: &String| Some((node.clone(), within(name, rest(node, outer)?)));
+    nodes.iter().filter_map(moved).collect()
+}
+
+/// The names that change where a group is dissolved.
+#[must_use]
+pub fn ungrouped(recipe: &Recipe, group: &str) -> Vec<(String, String)> {
+    let inside = members(recipe, group);
+    let outer = group_of(group);
+    // Names, and groups, that are there already stay as they are.
+    let others = recipe.nodes().iter().map(|named| named.name.as_str()).filter(|name| rest(name, group).is_none());
+    let mut taken: HashSet<String> = HashSet::new();
+    for name in others.filter_map(|name| rest(name, outer)) {
+        taken.insert(name.split_once('/').map_or(name, |(first, _)| first).to_owned());
+        taken.insert(name.to_owned());
     }
+    let mut heads: Vec<(String, String)> = Vec::new();
+    let mut all = Vec::new();
+    for name in inside {
+        let Some(own) = rest(&name, group) else { continue };
+        let (head, tail) = own.split_once('/').map_or((own, None), |(head, tail)| (head, Some(tail)));
+        // A node and a group of one name are different things.
+        let head = format!("{head}{}", if tail.is_some() { "/" } else { "" });
+        let known = heads.iter().find(|(known, _)| *known == head).map(|(_, to)| to.clone());
+        let to = known.unwrap_or_else(|| {
+            let to = names::free(head.trim_end_matches('/'), &taken.iter().map(String::as_str).collect());
+            taken.insert(to.clone());
+            heads.push((head, to.clone()));
+            to
+        });
+        let to = within(outer, &tail.map_or(to.clone(), |tail| within(&to, tail)));
+        all.push((name, to));
+    }
+    all
+}
+
+/// The names that change with that of a group.
+#[must_use]
+pub fn renamed(recipe: &Recipe, from: &str, to: &str) -> Vec<(String, String)> {
+    let moved = |name: String| {
+        let new = within(to, rest(&name, from)?);
+        Some((name, new))
+    };
+    members(recipe, from).into_iter().filter_map(moved).collect()
 }
 
 #[cfg(test)]

@@ -138,9 +138,18 @@ fn random_edits_do_no_harm() {
     assert!(edit_for(Duration::from_secs(5), 1) > 20);
 }
 
-/// The memory of this process in bytes.
+/// The memory of this process in bytes, once all cancelled work has ended.
 #[cfg(target_os = "linux")]
 fn resident() -> u64 {
+    let is_working = || {
+        let threads = std::fs::read_dir("/proc/self/task").unwrap().flatten();
+        let mut names = threads.filter_map(|thread| std::fs::read_to_string(thread.path().join("comm")).ok());
+        names.any(|name| name.starts_with("orogen-request"))
+    };
+    let begun = Instant::now();
+    while is_working() && begun.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(20));
+    }
     let text = std::fs::read_to_string("/proc/self/statm").unwrap();
     text.split_whitespace().nth(1).unwrap().parse::<u64>().unwrap() * 4096
 }

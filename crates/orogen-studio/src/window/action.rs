@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::command::Command;
-use super::dialogs::Purpose;
+use super::purpose::Purpose;
 use crate::catalogue::Language;
 use crate::editing::brush::Effect;
 use crate::editing::edit::Edit;

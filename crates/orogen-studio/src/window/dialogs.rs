@@ -7,45 +7,10 @@ use eframe::egui::{self, Align2, Context, Key, RichText, ScrollArea, TextEdit, V
 use super::action::Action;
 use super::command::{self, Command};
 use super::menu::is_enabled;
+use super::purpose::Purpose;
 use crate::catalogue::Language;
 use crate::files;
 use crate::studio::Studio;
-
-/// What a file is chosen for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Purpose {
-    /// To be opened.
-    Open,
-    /// To be saved to.
-    Save,
-    /// A palette is read.
-    OpenPalette,
-    /// A palette is written.
-    SavePalette,
-}
-
-impl Purpose {
-    fn title(self) -> &'static str {
-        match self {
-            Purpose::Open => "command.open",
-            Purpose::Save => "command.save_as",
-            Purpose::OpenPalette => "colors.open",
-            Purpose::SavePalette => "colors.save",
-        }
-    }
-
-    fn saves(self) -> bool {
-        matches!(self, Purpose::Save | Purpose::SavePalette)
-    }
-
-    /// Extensions of the files that are listed.
-    fn extensions(self) -> &'static [&'static str] {
-        match self {
-            Purpose::Open | Purpose::Save => &RECIPES,
-            Purpose::OpenPalette | Purpose::SavePalette => &PALETTES,
-        }
-    }
-}
 
 /// A dialog that chooses a file.
 #[derive(Debug)]
@@ -57,10 +22,6 @@ pub struct FileDialog {
     failure: Option<String>,
     is_new: bool,
 }
-
-/// Extensions of recipes and of the most common files of heights, and those of palettes.
-const PALETTES: [&str; 4] = ["toml", "cpt", "gpl", "txt"];
-const RECIPES: [&str; 9] = ["toml", "json", "tif", "tiff", "asc", "hgt", "npy", "exr", "zarr"];
 
 impl FileDialog {
     /// A dialog that begins at a file.

@@ -4,7 +4,7 @@ use eframe::egui::{self, Align2, Color32, CursorIcon, Event, Key, Pos2, Rect, Re
 
 use super::action::Action;
 use super::fields::{self, Number};
-use super::map_panel::label;
+use super::label::label;
 use crate::catalogue::Language;
 use crate::editing::brush::{Brush, Effect, Painting, RADII};
 use crate::preview::frame::Frame;

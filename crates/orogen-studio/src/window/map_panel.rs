@@ -9,6 +9,7 @@ use eframe::egui::{
 
 use super::action::Action;
 use super::contour_lines::ContourLines;
+use super::label::label;
 use super::legend;
 use super::map_brush::{self, MapBrush};
 use super::relief_panel::{contours, readout};
@@ -468,16 +469,6 @@ fn selected(studio: &Studio) -> Option<(&str, Vec<[f64; 2]>)> {
     let name = studio.selected.first()?;
     let named = studio.document.recipe().nodes().iter().find(|named| named.name == *name)?;
     Some((&named.name, drawing::points_of(&named.node)?))
-}
-
-/// A text on a dark ground.
-pub(super) fn label(painter: &egui::Painter, at: egui::Pos2, align: Align2, text: &str) {
-    if !text.is_empty() {
-        let galley = painter.layout_no_wrap(text.to_owned(), FontId::monospace(11.0), Color32::WHITE);
-        let rect = align.anchor_size(at, galley.size());
-        painter.rect_filled(rect.expand(4.0), 3.0, Color32::from_black_alpha(150));
-        painter.galley(rect.min, galley, Color32::WHITE);
-    }
 }
 
 /// A bar of a round length.

@@ -11,7 +11,8 @@ use orogen::palette::{named, own, read};
 use orogen::{Error, ErrorKind, Result};
 
 use super::action::Action;
-use super::dialogs::{Purpose, window};
+use super::dialogs::window;
+use super::purpose::Purpose;
 use crate::catalogue::Language;
 use crate::files;
 use crate::preview::coloring::Coloring;

@@ -1,0 +1,46 @@
+//! What a file is chosen for.
+
+/// What a file is chosen for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Purpose {
+    /// To be opened.
+    Open,
+    /// To be saved to.
+    Save,
+    /// A palette is read.
+    OpenPalette,
+    /// A palette is written.
+    SavePalette,
+}
+
+impl Purpose {
+    /// The key of the dialog's title.
+    #[must_use]
+    pub fn title(self) -> &'static str {
+        match self {
+            Purpose::Open => "command.open",
+            Purpose::Save => "command.save_as",
+            Purpose::OpenPalette => "colors.open",
+            Purpose::SavePalette => "colors.save",
+        }
+    }
+
+    /// Whether the file is written.
+    #[must_use]
+    pub fn saves(self) -> bool {
+        matches!(self, Purpose::Save | Purpose::SavePalette)
+    }
+
+    /// Extensions of the files that are listed.
+    #[must_use]
+    pub fn extensions(self) -> &'static [&'static str] {
+        match self {
+            Purpose::Open | Purpose::Save => &RECIPES,
+            Purpose::OpenPalette | Purpose::SavePalette => &PALETTES,
+        }
+    }
+}
+
+/// Extensions of recipes and of the most common files of heights, and those of palettes.
+const PALETTES: [&str; 4] = ["toml", "cpt", "gpl", "txt"];
+const RECIPES: [&str; 9] = ["toml", "json", "tif", "tiff", "asc", "hgt", "npy", "exr", "zarr"];
