@@ -3,6 +3,8 @@
 
 #[path = "window/export.rs"]
 mod export;
+#[path = "window/views.rs"]
+mod views;
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -18,13 +20,13 @@ use orogen_studio::editing::drawing::points_of;
 use orogen_studio::preview::coloring::Coloring;
 use orogen_studio::preview::frame::Quality;
 use orogen_studio::preview::legend::Legend;
-use orogen_studio::settings::Settings;
+use orogen_studio::settings::{Settings, Theme};
 use orogen_studio::studio::{Studio, open};
 use orogen_studio::window::app::{App, Start};
 
 /// A window with a recipe, a preset, or the start page.
 fn window(folder: &TestFolder, document: Option<&str>, language: Language) -> Harness<'static, App> {
-    let settings = Settings { language: Some(language), ..Settings::default() };
+    let settings = Settings { language: Some(language), theme: Theme::Dark, ..Settings::default() };
     let folder = folder.to_path_buf();
     let document = document.map(|name| open(Path::new(name)).unwrap());
     let mut harness =
