@@ -248,20 +248,23 @@ fn paint(world: &World, request: &Request, quality: Quality, samples: Samples, p
     let mut shaded = albedo.clone();
     world.install(|| painter.shade(&heights, &mut shaded));
     progress.check()?;
-    let contours = request.contours.map(|interval| Contours::of(&heights, interval)).transpose()?.map(Arc::new);
-    progress.check()?;
-    let shadows = Shadows::new(heights.data(), heights.width(), heights.window().cell);
-    let light = shadows.lit(sun::towards(request.sun)).into_iter().map(|lit| if lit { 255 } else { 0 }).collect();
+    // On the session's threads, as all that is divided among threads.
+    let (contours, light, statistics) = world.install(|| {
+        let contours = request.contours.map(|interval| Contours::of(&heights, interval)).transpose();
+        let shadows = Shadows::new(heights.data(), heights.width(), heights.window().cell);
+        let light = shadows.lit(sun::towards(request.sun)).into_iter().map(|lit| if lit { 255 } else { 0 }).collect();
+        (contours, light, Statistics::of(shown, sea_level))
+    });
     Ok(Frame {
         request: 0,
         quality,
         unit,
         kind,
-        statistics: Statistics::of(shown, sea_level),
+        statistics,
         albedo,
         legend,
         shaded,
-        contours,
+        contours: contours?.map(Arc::new),
         light,
         sea_level,
         seconds: 0.0,
