@@ -32,7 +32,7 @@ const REACH: f32 = 2.0;
 impl Default for Camera {
     fn default() -> Camera {
         // A little in front of the middle, so that the land is in the middle of the picture.
-        Camera { target: Vec3::new(0.1, 0.0, 0.19), yaw: 0.55, pitch: 0.62, distance: 2.95 }
+        Camera { target: Vec3::new(0.12, 0.0, 0.25), yaw: 0.55, pitch: 0.62, distance: 3.05 }
     }
 }
 
