@@ -17,11 +17,12 @@ use orogen::export::registry;
 use orogen::expression::text::Expression;
 use orogen::format::crs::registry::Crs;
 use orogen::palette::names;
+use orogen::sheet::paper;
 use values::bytes::Bytes;
 use values::number::{self, MOST, Numbers};
 use values::region::{self, Bounds, Rectangle};
 use values::size::Size;
-use values::{arguments, paper, seeds, time};
+use values::{arguments, seeds, time};
 
 fuzz_target!(|text: &str| {
     if let Ok(size) = text.parse::<Size>() {
