@@ -48,7 +48,7 @@ const STEPS: &[&Step] = &[
         about: "cargo clippy --all-targets -- -D warnings, the studio without its window",
         run: || {
             let flags = "--all-targets --features orogen-bench/peers -- -D warnings";
-            sh(&mut cargo(&format!("clippy --quiet --workspace --exclude orogen-studio {flags}")))?;
+            sh(&mut cargo(&format!("clippy --quiet --workspace --exclude orogen-studio --exclude orogen-gpu {flags}")))?;
             sh(&mut cargo("clippy --quiet --package orogen-studio --no-default-features --lib -- -D warnings"))
         },
     },
@@ -56,7 +56,7 @@ const STEPS: &[&Step] = &[
         name: "tests",
         about: "cargo test, the studio without its window",
         run: || {
-            sh(&mut cargo("test --workspace --exclude orogen-studio"))?;
+            sh(&mut cargo("test --workspace --exclude orogen-studio --exclude orogen-gpu"))?;
             sh(&mut cargo("test --package orogen-studio --no-default-features --lib"))
         },
     },
@@ -94,7 +94,7 @@ fn long(name: Option<&str>) -> Result {
     reasons()?;
     // Of the studio what needs no window.
     const TARGETS: [&str; 2] = [
-        "test --workspace --exclude orogen-studio --lib --bins --tests --examples",
+        "test --workspace --exclude orogen-studio --exclude orogen-gpu --lib --bins --tests --examples",
         "test --package orogen-studio --no-default-features --lib",
     ];
     let with = |targets: &str, more: &[&str]| {
@@ -150,7 +150,7 @@ fn without_files() -> Result {
 /// Without the binary `orogen`, whose pages would overwrite those of the library of the same name, and without the studio.
 fn docs() -> Result {
     let mut command = cargo(
-        "doc --quiet --workspace --no-deps --exclude orogen-cli --exclude orogen-studio --exclude orogen-bench --exclude xtask",
+        "doc --quiet --workspace --no-deps --exclude orogen-cli --exclude orogen-studio --exclude orogen-gpu --exclude orogen-bench --exclude xtask",
     );
     sh(command.env("RUSTDOCFLAGS", "-D warnings"))
 }
@@ -162,7 +162,7 @@ fn package() -> Result {
     forget_archives(&folder);
     let flags = "package --quiet --workspace --exclude xtask --exclude orogen-bench --allow-dirty";
     sh(cargo(&format!("{flags} --no-verify")).arg("--target-dir").arg(&folder))?;
-    let mut command = cargo(&format!("{flags} --exclude orogen-studio"));
+    let mut command = cargo(&format!("{flags} --exclude orogen-studio --exclude orogen-gpu"));
     command.arg("--target-dir").arg(folder);
     sh(command.env("CARGO_PROFILE_DEV_OPT_LEVEL", "0").env("CARGO_PROFILE_DEV_DEBUG", "false"))
 }

@@ -1,0 +1,30 @@
+//! Why work could not be done on a graphics card.
+
+use std::fmt;
+
+/// Why work could not be done on a graphics card. The engine then does it on the processor.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Failure {
+    /// There is no adapter, or none that can be used: why each was refused.
+    NoAdapter(String),
+    /// The device was lost: the driver was restarted or updated, or the card was removed.
+    Lost(String),
+    /// The device has too little memory, or the work exceeds one of its limits.
+    Memory(String),
+    /// The driver refused a shader or a command.
+    Driver(String),
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Failure::NoAdapter(why) => write!(f, "no graphics card can be used: {why}"),
+            Failure::Lost(why) => write!(f, "the graphics card was lost: {why}"),
+            Failure::Memory(why) => write!(f, "the graphics card has too little memory: {why}"),
+            Failure::Driver(why) => write!(f, "the graphics driver refused the work: {why}"),
+        }
+    }
+}
+
+impl std::error::Error for Failure {}

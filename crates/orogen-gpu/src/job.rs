@@ -1,0 +1,160 @@
+//! One piece of work on a device: what is copied there, what is run, and what is copied back.
+
+use crate::failure::Failure;
+use crate::gpu::Gpu;
+use crate::pipelines::FRAME;
+use std::sync::mpsc;
+
+/// Columns and rows of a workgroup.
+pub const GROUP: u32 = 8;
+
+/// One run of a shader.
+#[derive(Debug, Clone)]
+pub struct Dispatch<'a> {
+    /// The shader's text after the header. Its entry point is `main`, with workgroups of 8 x 8.
+    pub text: &'a str,
+    /// Index of its first word in the data.
+    pub base: u32,
+    /// Number of columns and rows.
+    pub size: [u32; 2],
+    /// Any number, such as that of the iteration.
+    pub step: u32,
+}
+
+/// Work on a device.
+#[derive(Debug, Default)]
+pub struct Job<'a> {
+    /// Numbers and tables.
+    pub data: Vec<u32>,
+    /// Number of samples in all grids.
+    pub samples: usize,
+    /// Grids that are copied to the device, with the index of their first sample.
+    pub uploads: Vec<(usize, &'a [f32])>,
+    /// What is run, in order.
+    pub dispatches: Vec<Dispatch<'a>>,
+    /// Grids that are copied back: the index of their first sample, and the number of samples.
+    pub downloads: Vec<(usize, usize)>,
+}
+
+/// Maximum number of dispatches that are submitted together, so that a long job can be cancelled and no driver takes it for a hang.
+const TOGETHER: usize = 64;
+
+impl Job<'_> {
+    /// Memory on the device, in bytes.
+    #[must_use]
+    pub fn memory(&self) -> u64 {
+        let downloads: usize = self.downloads.iter().map(|(_, count)| count).sum();
+        4 * (self.data.len() + self.samples + downloads) as u64 + FRAME * self.dispatches.len() as u64
+    }
+
+    /// Runs it; returns the downloads. `is_cancelled` is asked between parts of the work.
+    ///
+    /// # Errors
+    /// If the device was lost, has too little memory, or refuses a shader; `Ok(None)` if the work was cancelled.
+    pub fn run(&self, gpu: &Gpu, is_cancelled: impl Fn() -> bool) -> Result<Option<Vec<Vec<f32>>>, Failure> {
+        gpu.check()?;
+        let (device, queue) = (gpu.device(), gpu.queue());
+        let out_of_memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let invalid = device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let done = self.submit(gpu, device, queue, is_cancelled);
+        let invalid = pollster::block_on(invalid.pop());
+        let out_of_memory = pollster::block_on(out_of_memory.pop());
+        gpu.check()?;
+        if let Some(error) = out_of_memory {
+            return Err(Failure::Memory(error.to_string()));
+        }
+        if let Some(error) = invalid {
+            return Err(Failure::Driver(error.to_string()));
+        }
+        done
+    }
+
+    fn submit(
+        &self,
+        gpu: &Gpu,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        is_cancelled: impl Fn() -> bool,
+    ) -> Result<Option<Vec<Vec<f32>>>, Failure> {
+        let buffer = |words: usize, usage| {
+            let size = 4 * words.max(4) as u64;
+            device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
+        };
+        use wgpu::BufferUsages as Usage;
+        let data = buffer(self.data.len(), Usage::STORAGE | Usage::COPY_DST);
+        let samples = buffer(self.samples, Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC);
+        let frames = buffer(FRAME as usize / 4 * self.dispatches.len(), Usage::UNIFORM | Usage::COPY_DST);
+        queue.write_buffer(&data, 0, bytemuck::cast_slice(&self.data));
+        for (start, grid) in &self.uploads {
+            queue.write_buffer(&samples, 4 * *start as u64, bytemuck::cast_slice(grid));
+        }
+        let mut words = vec![0u32; FRAME as usize / 4 * self.dispatches.len()];
+        for (frame, dispatch) in words.chunks_mut(FRAME as usize / 4).zip(&self.dispatches) {
+            frame[..4].copy_from_slice(&[dispatch.base, dispatch.size[0], dispatch.size[1], dispatch.step]);
+        }
+        queue.write_buffer(&frames, 0, bytemuck::cast_slice(&words));
+        let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: gpu.pipelines().bindings(),
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: data.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: samples.as_entire_binding() },
+                wgpu::BindGroupEntry {
+                    binding: 2,
+                    resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                        buffer: &frames,
+                        offset: 0,
+                        size: std::num::NonZero::new(16),
+                    }),
+                },
+            ],
+        });
+        for (part, dispatches) in self.dispatches.chunks(TOGETHER).enumerate() {
+            if is_cancelled() {
+                return Ok(None);
+            }
+            let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            for (i, dispatch) in dispatches.iter().enumerate() {
+                let frame = FRAME * (part * TOGETHER + i) as u64;
+                pass.set_pipeline(&*gpu.pipelines().of(device, dispatch.text)?);
+                pass.set_bind_group(0, &bindings, &[frame as u32]);
+                let [width, height] = dispatch.size;
+                pass.dispatch_workgroups(width.div_ceil(GROUP), height.div_ceil(GROUP), 1);
+            }
+            drop(pass);
+            queue.submit([encoder.finish()]);
+            // The next part waits for this one, so that a cancelled job leaves little behind.
+            if self.dispatches.len() > TOGETHER {
+                gpu.wait()?;
+            }
+        }
+        let mut back = Vec::with_capacity(self.downloads.len());
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        for (start, count) in &self.downloads {
+            let to = buffer(*count, Usage::COPY_DST | Usage::MAP_READ);
+            encoder.copy_buffer_to_buffer(&samples, 4 * *start as u64, &to, 0, 4 * *count as u64);
+            back.push(to);
+        }
+        queue.submit([encoder.finish()]);
+        let (sender, receiver) = mpsc::channel();
+        for buffer in &back {
+            let sender = sender.clone();
+            // A receiver that is gone has given up.
+            buffer.slice(..).map_async(wgpu::MapMode::Read, move |mapped| drop(sender.send(mapped)));
+        }
+        gpu.wait()?;
+        for _ in &back {
+            match receiver.try_recv() {
+                Ok(Ok(())) => {}
+                _ => return Err(Failure::Lost("its results could not be read".to_string())),
+            }
+        }
+        let read = |(buffer, (_, count)): (&wgpu::Buffer, &(usize, usize))| {
+            let bytes = buffer.slice(..).get_mapped_range();
+            let bytes = bytes.map_err(|error| Failure::Lost(error.to_string()))?;
+            Ok(bytemuck::cast_slice::<u8, f32>(&bytes)[..*count].to_vec())
+        };
+        back.iter().zip(&self.downloads).map(read).collect::<Result<_, Failure>>().map(Some)
+    }
+}
