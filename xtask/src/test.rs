@@ -48,7 +48,9 @@ const STEPS: &[&Step] = &[
         about: "cargo clippy --all-targets -- -D warnings, the studio without its window",
         run: || {
             let flags = "--all-targets --features orogen-bench/peers -- -D warnings";
-            sh(&mut cargo(&format!("clippy --quiet --workspace --exclude orogen-studio --exclude orogen-gpu {flags}")))?;
+            sh(&mut cargo(&format!(
+                "clippy --quiet --workspace --exclude orogen-studio --exclude orogen-gpu {flags}"
+            )))?;
             sh(&mut cargo("clippy --quiet --package orogen-studio --no-default-features --lib -- -D warnings"))
         },
     },

@@ -30,6 +30,8 @@ pub mod large;
 pub mod laws;
 pub mod layer;
 pub mod levelled;
+#[doc(hidden)]
+pub mod lower;
 pub mod node;
 pub mod objects;
 pub mod op;

@@ -3,6 +3,7 @@
 use crate::declare::Declared;
 use crate::expression::term::{self, Term};
 use crate::layer::LayerKind;
+use crate::lower::{Lowering, Passes};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
@@ -10,6 +11,7 @@ use orogen_grid::random::{STEP, mix64};
 use orogen_io::format::dem::Georeference;
 use orogen_io::raster::Raster;
 use orogen_noise::Points;
+use orogen_noise::shader::function::Shader;
 use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
 
@@ -133,6 +135,14 @@ pub trait Field: Send + Sync {
     /// Memory of files that it holds while its world is open, in bytes.
     fn memory(&self) -> u64 {
         0
+    }
+
+    /// How a graphics card computes a layer in the plane. A field with terms, a coordinate map or a cell of its own need not implement it: the engine
+    /// computes it otherwise.
+    #[doc(hidden)]
+    fn lower(&self, layer: usize, world_params: &WorldParams) -> Lowering<Shader> {
+        let _ = (layer, world_params);
+        Lowering::Missing
     }
 
     /// The position of the world's metres on a map, if this is a georeferenced real place.
@@ -278,6 +288,13 @@ pub trait Filter: Declared + Send + Sync {
         out: &mut [Option<Grid>],
         context: &Context,
     ) -> Result<()>;
+
+    /// How a graphics card computes the filter at this cell, in metres.
+    #[doc(hidden)]
+    fn lower(&self, cell: f64, world_params: &WorldParams) -> Lowering<Passes> {
+        let _ = (cell, world_params);
+        Lowering::Missing
+    }
 
     /// Approximate nanoseconds per sample at this cell.
     fn cost(&self, cell: f64) -> f64 {

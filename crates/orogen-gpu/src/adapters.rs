@@ -140,9 +140,10 @@ fn described(index: usize, handle: &wgpu::Adapter) -> Adapter {
         () if limits.buffer < LEAST.buffer => {
             Some(format!("its buffers have at most {} MiB; {} are needed", limits.buffer >> 20, LEAST.buffer >> 20))
         }
-        () if limits.workgroups < LEAST.workgroups || limits.invocations < LEAST.invocations => {
-            Some(format!("its workgroups have at most {} invocations; {} are needed", limits.invocations, LEAST.invocations))
-        }
+        () if limits.workgroups < LEAST.workgroups || limits.invocations < LEAST.invocations => Some(format!(
+            "its workgroups have at most {} invocations; {} are needed",
+            limits.invocations, LEAST.invocations
+        )),
         () => None,
     };
     Adapter {

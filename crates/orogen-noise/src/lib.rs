@@ -53,6 +53,8 @@ mod points;
 mod prepared;
 mod program;
 mod seed;
+#[doc(hidden)]
+pub mod shader;
 mod simplex;
 mod tables;
 #[cfg(test)]

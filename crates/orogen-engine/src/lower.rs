@@ -1,0 +1,63 @@
+//! How ops are computed on a graphics card: each field has a function of WGSL, and each filter has passes, beside its computation on the processor.
+
+use orogen_noise::shader::function::Shader;
+
+/// How a graphics card computes a node.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Lowering<T> {
+    /// By this.
+    Shader(T),
+    /// Not at all: the processor computes it, for this reason, which reads after "the processor computes it: ".
+    Processor(&'static str),
+    /// Nobody has said how. The processor computes it. No built-in op may leave it at that.
+    Missing,
+}
+
+/// A filter as passes over planes: grids over its window grown by the halo, all in the same place.
+///
+/// The first planes are its inputs, one for each that is declared (zeros if it is not given). The next are its layers, and then come `scratch` planes. Planes
+/// other than inputs start as zeros. The text defines one function `fn NAME(base: u32, at: vec2<i32>)` for each pass, which is called for every sample of the
+/// planes. It reads numbers with `number(base, i)`, samples with `plane(k, at)`, where positions beyond the border are those of the border, and writes the sample
+/// at its own position with `set_plane(k, at, value)`. A pass must not read planes that it writes, except at its own position.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Passes {
+    /// The text that defines the functions of the passes.
+    pub code: &'static str,
+    /// The numbers that they read.
+    pub words: Vec<u32>,
+    /// Number of planes beside inputs and layers.
+    pub scratch: usize,
+    /// The passes, in order.
+    pub passes: Vec<Pass>,
+}
+
+/// One run of a function over all samples.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pass {
+    /// The name of the function.
+    pub function: &'static str,
+    /// A number that the function reads as `frame.step`, such as that of the iteration.
+    pub step: u32,
+}
+
+impl Passes {
+    /// Passes that read these numbers.
+    #[must_use]
+    pub fn new(code: &'static str, numbers: &[f32]) -> Passes {
+        Passes { code, words: numbers.iter().map(|number| number.to_bits()).collect(), scratch: 0, passes: Vec::new() }
+    }
+
+    /// With this number of planes beside inputs and layers.
+    #[must_use]
+    pub fn with_scratch(mut self, planes: usize) -> Passes {
+        self.scratch = planes;
+        self
+    }
+
+    /// With a run of a function after the others.
+    #[must_use]
+    pub fn then(mut self, function: &'static str, step: u32) -> Passes {
+        self.passes.push(Pass { function, step });
+        self
+    }
+}

@@ -1,0 +1,52 @@
+//! Functions of WGSL with their numbers.
+
+use super::lattice::{LATTICE_WORDS, Lattice, Positions};
+
+/// The functions that find the cell of a sample: needed by every [`Shader`] with lattices.
+pub const PLACE: &str = include_str!("place.wgsl");
+
+/// A function of WGSL that computes one number per sample.
+///
+/// Its signature is `fn NAME(base: u32, place: Place, a: f32, b: f32, ..) -> f32` with one number for each input of the op. What it reads of `data` starts at
+/// `base`: its `words`, and then a block for each of its lattices. Parameters are words, so the text depends on none of them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Shader {
+    /// The name of the function.
+    pub name: &'static str,
+    /// The parts of the text that defines it, each of which other functions may have, too: the text of a kernel contains each once, in this order. [`PLACE`]
+    /// is always there.
+    pub code: Vec<&'static str>,
+    /// Its numbers.
+    pub words: Vec<u32>,
+    /// The lattices on which it needs the position of samples.
+    pub lattices: Vec<Lattice>,
+}
+
+impl Shader {
+    /// A function without lattices.
+    #[must_use]
+    pub fn new(name: &'static str, code: &'static str, numbers: &[f32]) -> Shader {
+        let words = numbers.iter().map(|number| number.to_bits()).collect();
+        Shader { name, code: vec![code], words, lattices: Vec::new() }
+    }
+
+    /// With a lattice on which it needs the position of samples.
+    #[must_use]
+    pub fn on(mut self, lattice: Lattice) -> Shader {
+        self.lattices.push(lattice);
+        self
+    }
+
+    /// Appends the numbers and the tables for samples at these positions to `data`; returns the `base`.
+    pub fn encode(&self, positions: &Positions, data: &mut Vec<u32>) -> u32 {
+        let base = data.len();
+        data.extend_from_slice(&self.words);
+        let blocks = data.len();
+        data.resize(blocks + LATTICE_WORDS * self.lattices.len(), 0);
+        for (i, lattice) in self.lattices.iter().enumerate() {
+            let block = lattice.encode(positions, data);
+            data[blocks + LATTICE_WORDS * i..][..LATTICE_WORDS].copy_from_slice(&block);
+        }
+        base as u32
+    }
+}

@@ -1,0 +1,95 @@
+//! Lattices as a graphics card reads them. The cells of columns and rows are computed here, in f64: positions keep their precision at any distance from
+//! the origin, and a shader adds only the fraction and what displaces the sample.
+
+/// Positions of the columns and rows of a window along each axis, in metres. The position of a sample is the sum of its column's and its row's. An empty list
+/// contributes nothing: columns of the plane have no y.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Positions {
+    /// x and y of the columns.
+    pub columns: [Vec<f64>; 2],
+    /// x and y of the rows.
+    pub rows: [Vec<f64>; 2],
+}
+
+/// A lattice: coordinates in cells are `matrix` times the position in metres, plus `offset`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lattice {
+    /// Cells per metre, a row for each axis of the lattice.
+    pub matrix: [[f64; 2]; 2],
+    /// Coordinates of the origin, in cells.
+    pub offset: [f64; 2],
+    /// Positions are clamped to plus and minus this, in metres.
+    pub limit: f64,
+}
+
+/// Number of words of a lattice's block: its matrix as pairs of f32, and the tables of columns and rows along each axis.
+pub const LATTICE_WORDS: usize = 12;
+
+impl Lattice {
+    /// Square cells along the axes, `1 / frequency` metres large.
+    #[must_use]
+    pub fn square(frequency: f64, offset: [f64; 2]) -> Lattice {
+        Lattice { matrix: [[frequency, 0.0], [0.0, frequency]], offset, limit: f64::MAX }
+    }
+
+    /// Coordinates in units of `unit` metres from `origin`.
+    #[must_use]
+    pub fn metres(unit: f64, origin: [f64; 2]) -> Lattice {
+        Lattice::square(1.0 / unit, origin.map(|origin| -origin / unit))
+    }
+
+    /// Appends the tables to `data`; returns the block.
+    pub(super) fn encode(&self, positions: &Positions, data: &mut Vec<u32>) -> [u32; LATTICE_WORDS] {
+        let mut block = [0; LATTICE_WORDS];
+        for axis in 0..2 {
+            for by in 0..2 {
+                let factor = self.matrix[axis][by];
+                // A pair of f32 has twice the digits: displacements of many cells keep their fraction.
+                let first = factor as f32;
+                let [high, low] = [first, (factor - f64::from(first)) as f32];
+                block[4 * axis + 2 * by] = high.to_bits();
+                block[4 * axis + 2 * by + 1] = low.to_bits();
+            }
+            let offset = self.offset[axis];
+            let columns = self.part(axis, &positions.columns);
+            let rows = self.part(axis, &positions.rows);
+            // The offset belongs to one of them.
+            let (to_columns, to_rows) = if columns.is_empty() { (0.0, offset) } else { (offset, 0.0) };
+            block[8 + 2 * axis] = table(&columns, to_columns, data);
+            block[9 + 2 * axis] = table(&rows, to_rows, data);
+        }
+        block
+    }
+
+    /// The coordinates along an axis that columns or rows contribute, without the offset; empty if none.
+    fn part(&self, axis: usize, at: &[Vec<f64>; 2]) -> Vec<f64> {
+        let [by_x, by_y] = self.matrix[axis];
+        let held = |position: f64| position.max(-self.limit).min(self.limit);
+        match (at, by_x != 0.0, by_y != 0.0) {
+            ([x, y], true, true) if !x.is_empty() && !y.is_empty() => {
+                x.iter().zip(y).map(|(x, y)| held(*x) * by_x + held(*y) * by_y).collect()
+            }
+            ([x, _], true, _) if !x.is_empty() => x.iter().map(|x| held(*x) * by_x).collect(),
+            ([_, y], _, true) if !y.is_empty() => y.iter().map(|y| held(*y) * by_y).collect(),
+            // A lattice without cells along the axis: all samples are at its offset.
+            ([x, y], false, false) => vec![0.0; x.len().max(y.len())],
+            _ => Vec::new(),
+        }
+    }
+}
+
+/// Appends a table of cells: low word, high word and fraction of each; returns its index, or 0 if there is none.
+fn table(coordinates: &[f64], offset: f64, data: &mut Vec<u32>) -> u32 {
+    if coordinates.is_empty() {
+        return 0;
+    }
+    let at = data.len() as u32;
+    for coordinate in coordinates {
+        let coordinate = coordinate + offset;
+        let whole = coordinate.floor();
+        let fraction = (coordinate - whole) as f32;
+        let cell = whole as i64;
+        data.extend([cell as u32, (cell >> 32) as u32, fraction.to_bits()]);
+    }
+    at
+}
