@@ -19,6 +19,8 @@ pub mod declare;
 pub mod bands;
 pub mod budget;
 pub mod chunks;
+#[doc(hidden)]
+pub mod device;
 mod engine;
 pub mod expression;
 pub mod field;

@@ -1,6 +1,7 @@
 //! Sessions: threads, solutions and memory that worlds share.
 
 use crate::budget::Budget;
+use crate::device::Device;
 use crate::op::Solution;
 use crate::plan::key::Key;
 use crate::pool::Pool;
@@ -60,6 +61,7 @@ pub struct Session {
     pub(crate) grids: Arc<GridStore>,
     pub(crate) level_tiles: Arc<LevelTiles>,
     pub(crate) budget: Budget,
+    pub(crate) device: Option<Arc<dyn Device>>,
 }
 
 /// Default of [`Options::kept_grids`], in bytes.
@@ -84,7 +86,16 @@ impl Session {
                 options.memory.limit().map_or(LEVEL_TILES, |limit| LEVEL_TILES.min(limit / 8)),
             )),
             budget: options.memory.clone(),
+            device: None,
         })
+    }
+
+    /// The same session with a device that computes windows in place of the processor, where it can and exact bits are not needed: for previews. Solutions,
+    /// tiles of levels and kept grids remain those of the processor, and so do points, objects and volumes.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn with_device(&self, device: Arc<dyn Device>) -> Session {
+        Session { device: Some(device), ..self.clone() }
     }
 
     /// The memory budget, which callers can reserve from: see [`Budget::reserve`].

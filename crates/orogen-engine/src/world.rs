@@ -516,6 +516,7 @@ impl World {
             budget: &self.session.budget,
             pool: &self.session.pool,
             progress,
+            device: self.session.device.as_deref(),
             observer: None,
         }
     }

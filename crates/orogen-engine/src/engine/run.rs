@@ -1,9 +1,11 @@
 //! Running the steps of a plan.
 
 use super::interpreter::{Bindings, Interpreter};
+use super::on_device::OnDevice;
 use crate::budget::Budget;
+use crate::device::Device;
 use crate::ids::{GridId, Id, IndexVec, NodeId, StepId};
-use crate::op::{Context, Field, Op, Solution, Solver, StepObserver, WorldParams};
+use crate::op::{Context, Field, Filter, Op, Solution, Solver, StepObserver, WorldParams};
 use crate::plan::cost;
 use crate::plan::key::Key;
 use crate::plan::program::{BLOCK_HEIGHT, BLOCK_WIDTH, Program};
@@ -38,6 +40,8 @@ pub struct Engine<'a> {
     /// The thread pool. Waiting happens only on the calling thread.
     pub pool: &'a Pool,
     pub progress: &'a Progress,
+    /// The device that computes steps in place of the processor, where exact bits are not needed.
+    pub device: Option<&'a dyn Device>,
     /// The observer of a solver's steps, with the node. That node is solved even if its solution is stored.
     pub observer: Option<(NodeId, &'a (dyn StepObserver + Sync))>,
 }
@@ -72,6 +76,7 @@ impl<'a> Engine<'a> {
         progress.expect(cost::steps(plan, self.recipe));
         let mut grids: IndexVec<GridId, Option<Grid>> = plan.grids.iter().map(|_| None).collect();
         let needed = self.kept_grids(plan, &mut grids);
+        let mut on_device = OnDevice::of(plan, self.device);
         for (at, step) in plan.steps.entries() {
             progress.check()?;
             if !needed[at] {
@@ -79,7 +84,11 @@ impl<'a> Engine<'a> {
                 continue;
             }
             let part = progress.part(cost::step(step, plan, self.recipe));
-            self.step(step, solutions, &mut grids, &part)?;
+            let made = on_device.step(self, step, solutions, &grids, &part)?;
+            match made {
+                Some(made) => put(step, made, &mut grids),
+                None => self.step(step, solutions, &mut grids, &part, on_device.is_exact(step))?,
+            }
             part.finish();
             for (grid, slot) in grids.iter_mut().zip(&plan.grids) {
                 if slot.last_use.is_some_and(|last| last <= at) {
@@ -142,7 +151,7 @@ impl<'a> Engine<'a> {
             match step {
                 Step::Fill { out, .. } if out.is_empty() => continue,
                 _ if !needed[at] => continue,
-                _ => self.step(step, &solutions, &mut grids, self.progress)?,
+                _ => self.step(step, &solutions, &mut grids, self.progress, true)?,
             }
             for (grid, slot) in grids.iter_mut().zip(&plan.grids) {
                 if slot.last_use.is_some_and(|last| last <= at) {
@@ -153,13 +162,14 @@ impl<'a> Engine<'a> {
         Ok((solutions, grids))
     }
 
-    /// Runs a step on the threads of the pool.
+    /// Runs a step on the threads of the pool. Its grids may be kept for later requests if they are exact.
     fn step(
         &self,
         step: &Step,
         solutions: &Solutions,
         grids: &mut IndexVec<GridId, Option<Grid>>,
         progress: &Progress,
+        is_exact: bool,
     ) -> Result<()> {
         let made = match step {
             Step::Fill { program, window, out } => {
@@ -168,7 +178,9 @@ impl<'a> Engine<'a> {
             }
             Step::Apply { .. } => {
                 let made = self.pool.install(|| self.apply(step, grids, progress))?;
-                self.keep_grids(step, &made);
+                if is_exact {
+                    self.keep_grids(step, &made);
+                }
                 made
             }
             Step::Refine { node, inputs, window, out } => {
@@ -183,9 +195,7 @@ impl<'a> Engine<'a> {
                 made
             }
         };
-        for (slot, grid) in step.writes().into_iter().zip(made) {
-            grids[slot] = Some(grid);
-        }
+        put(step, made, grids);
         Ok(())
     }
 
@@ -289,37 +299,74 @@ impl<'a> Engine<'a> {
         Ok(out)
     }
 
-    fn apply(&self, step: &Step, grids: &IndexVec<GridId, Option<Grid>>, progress: &Progress) -> Result<Vec<Grid>> {
-        let Step::Apply { node, inputs, window, halo, out } = step else { return Ok(Vec::new()) };
-        let Op::Filter(filter) = self.recipe.nodes()[node.index()].node.op() else {
-            return Err(Error::new(ErrorKind::Internal, "a node that is not a filter was to be applied"));
-        };
-        if inputs.iter().flatten().any(|&slot| grids[slot].is_none()) {
-            return Err(missing("an input of a filter"));
+    /// Runs a part of a program over its window, on the threads of the pool.
+    pub(super) fn fill_part(
+        &self,
+        program: &Program,
+        window: &Window,
+        solutions: &Solutions,
+        grids: &IndexVec<GridId, Option<Grid>>,
+        progress: &Progress,
+    ) -> Result<Vec<Grid>> {
+        let filling = Filling { program, window, outputs: program.outputs.len() };
+        self.pool.install(|| self.fill(&filling, solutions, grids, progress))
+    }
+
+    /// The filter of a step.
+    pub(super) fn filter(&self, node: NodeId) -> Result<&'a dyn Filter> {
+        match self.recipe.nodes()[node.index()].node.op() {
+            Op::Filter(filter) => Ok(filter),
+            _ => Err(Error::new(ErrorKind::Internal, "a node that is not a filter was to be applied")),
         }
-        let grown = window.grown(*halo);
-        // An input may cover more samples because other steps read it too: it is cropped to the declared halo.
-        let cropped: Vec<Option<Grid>> = inputs
-            .iter()
-            .map(|input| {
-                let grid = input.and_then(|slot| grids[slot].as_ref())?;
-                if *grid.window() == grown { None } else { grid.crop(&grown) }
-            })
-            .collect();
-        let given: Vec<Option<&Grid>> = inputs
-            .iter()
-            .zip(&cropped)
-            .map(|(input, cropped)| cropped.as_ref().or_else(|| input.and_then(|slot| grids[slot].as_ref())))
-            .collect();
-        let context = Context { world_params: self.world_params, progress, observer: None };
-        let mut made: Vec<Option<Grid>> =
-            out.iter().map(|wanted| wanted.map(|_| Grid::filled(*window, 0.0f32))).collect();
-        filter.apply(&given, window, &mut made, &context)?;
-        Ok(made.into_iter().flatten().collect())
+    }
+
+    fn apply(&self, step: &Step, grids: &IndexVec<GridId, Option<Grid>>, progress: &Progress) -> Result<Vec<Grid>> {
+        let Step::Apply { node, window, out, .. } = step else { return Ok(Vec::new()) };
+        let filter = self.filter(*node)?;
+        with_inputs(step, grids, |given| {
+            let context = Context { world_params: self.world_params, progress, observer: None };
+            let mut made: Vec<Option<Grid>> =
+                out.iter().map(|wanted| wanted.map(|_| Grid::filled(*window, 0.0f32))).collect();
+            filter.apply(given, window, &mut made, &context)?;
+            Ok(made.into_iter().flatten().collect())
+        })
     }
 }
 
+/// Puts the grids that a step made into their slots.
+fn put(step: &Step, made: Vec<Grid>, grids: &mut IndexVec<GridId, Option<Grid>>) {
+    for (slot, grid) in step.writes().into_iter().zip(made) {
+        grids[slot] = Some(grid);
+    }
+}
+
+/// Lends the inputs of a filter, cropped to its window grown by its halo: they may cover more because other steps read them, too.
+pub(super) fn with_inputs<T>(
+    step: &Step,
+    grids: &IndexVec<GridId, Option<Grid>>,
+    work: impl FnOnce(&[Option<&Grid>]) -> Result<T>,
+) -> Result<T> {
+    let Step::Apply { inputs, window, halo, .. } = step else { return Err(missing("the filter of a step")) };
+    if inputs.iter().flatten().any(|&slot| grids[slot].is_none()) {
+        return Err(missing("an input of a filter"));
+    }
+    let grown = window.grown(*halo);
+    let cropped: Vec<Option<Grid>> = inputs
+        .iter()
+        .map(|input| {
+            let grid = input.and_then(|slot| grids[slot].as_ref())?;
+            if *grid.window() == grown { None } else { grid.crop(&grown) }
+        })
+        .collect();
+    let given: Vec<Option<&Grid>> = inputs
+        .iter()
+        .zip(&cropped)
+        .map(|(input, cropped)| cropped.as_ref().or_else(|| input.and_then(|slot| grids[slot].as_ref())))
+        .collect();
+    work(&given)
+}
+
 /// A grid that steps before should have computed is not there.
-fn missing(what: &str) -> Error {
+pub(super) fn missing(what: &str) -> Error {
     Error::new(ErrorKind::Internal, format!("{what} was not computed"))
 }

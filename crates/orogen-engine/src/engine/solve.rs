@@ -98,8 +98,8 @@ impl Engine<'_> {
         sources.expect(order.source_work);
         let make = |link: Link, tile: Window| {
             let plan = planner.source(link, tile)?;
-            // The solution is kept, its sources are not.
-            let engine = Engine { grids: None, ..*self };
+            // The solution is kept, its sources are not. Its bits are those of the processor.
+            let engine = Engine { grids: None, device: None, ..*self };
             engine.steps(&plan, there, &sources.part(cost::steps(&plan, self.recipe)))
         };
         let tiles = Tiles { links: &self.graph.links[order.node], order, make: &make, scratch: self.store.scratch() };

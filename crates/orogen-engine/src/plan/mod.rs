@@ -20,5 +20,6 @@ mod request;
 mod schedule;
 mod solves;
 mod space;
+pub(crate) mod split;
 pub mod steps;
 mod stored;

@@ -162,10 +162,16 @@ fn status(key: &str) -> u64 {
     line.trim().trim_end_matches(" kB").parse::<u64>().unwrap() * 1024
 }
 
-/// The settings of glibc's allocator with which it gives back what is freed. Without them it keeps some of it for each thread that there was, so that the
-/// memory of the process says little about what is in use.
+/// The settings of glibc's allocator with which it gives back what is freed: all threads share one heap, its end is trimmed, and blocks from 16 KiB on have
+/// pages of their own. Without them it keeps holes between blocks that are in use, and some memory for each thread that there was, so that the memory of the
+/// process says little about what is in use.
 #[cfg(target_os = "linux")]
-const ALLOCATOR: [(&str, &str); 2] = [("MALLOC_ARENA_MAX", "1"), ("MALLOC_TRIM_THRESHOLD_", "65536")];
+const ALLOCATOR: [(&str, &str); 4] = [
+    ("MALLOC_ARENA_MAX", "1"),
+    ("MALLOC_TRIM_THRESHOLD_", "65536"),
+    ("MALLOC_MMAP_THRESHOLD_", "16384"),
+    ("MALLOC_MMAP_MAX_", "1000000"),
+];
 
 #[test]
 #[ignore = "long: half an hour of random edits, whose memory is measured"]

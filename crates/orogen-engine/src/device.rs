@@ -1,0 +1,172 @@
+//! Devices that compute steps of plans where exact bits are not needed, such as graphics cards.
+
+use crate::expression::function::Function;
+use crate::layer::LayerKind;
+use crate::lower::Passes;
+use crate::op::Affine;
+use orogen_grid::error::Result;
+use orogen_grid::grid::{Grid, Window};
+use orogen_grid::progress::Progress;
+use orogen_noise::shader::function::Shader;
+
+/// Computes steps of plans in place of the processor. Its results are close to those of the processor, and not the same: a [session](crate::Session) keeps
+/// none of them for later requests, and gives nothing of them to solvers and levelled ops.
+///
+/// A step that returns `None` is computed by the processor: because the device cannot do it, or has failed. An error ends the request.
+pub trait Device: Send + Sync {
+    /// Computes the outputs of a program over a window. `grids` are those that the program reads.
+    ///
+    /// # Errors
+    /// If the work was cancelled.
+    fn fill(
+        &self,
+        program: &LoweredProgram,
+        window: &Window,
+        grids: &[&Grid],
+        progress: &Progress,
+    ) -> Result<Option<Vec<Grid>>>;
+
+    /// Computes the wanted layers of a filter over a window; the inputs cover the window grown by the halo.
+    ///
+    /// # Errors
+    /// If the work was cancelled.
+    fn apply(
+        &self,
+        passes: &Passes,
+        inputs: &[Option<&Grid>],
+        extent: &FilterExtent,
+        progress: &Progress,
+    ) -> Result<Option<Vec<Option<Grid>>>>;
+}
+
+/// What of a filter is computed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FilterExtent {
+    /// The window of the result.
+    pub window: Window,
+    /// Samples beyond it on each side that the inputs have.
+    pub halo: usize,
+    /// Which layers are wanted.
+    pub wanted: Vec<bool>,
+}
+
+/// A program for a device: each instruction makes the value of its index, and each coordinate set is written once.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct LoweredProgram {
+    /// The instructions, in order.
+    pub instructions: Vec<Lowered>,
+    /// The coordinate sets. The first is the block itself.
+    pub coord_sets: Vec<LoweredCoords>,
+    /// The values that are the results.
+    pub outputs: Vec<usize>,
+}
+
+/// An instruction for a device. Numbers name values and coordinate sets.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Lowered {
+    /// A constant.
+    Constant(f32),
+    /// A field.
+    Field {
+        /// The function that computes it.
+        shader: Shader,
+        /// The coordinate set.
+        coords: usize,
+        /// Its inputs there; a missing one is 0.
+        inputs: Vec<Option<usize>>,
+    },
+    /// A function of numbers.
+    Apply {
+        /// The function.
+        function: Function,
+        /// Its arguments.
+        arguments: Vec<LoweredOperand>,
+    },
+    /// A grid at a coordinate set.
+    Grid {
+        /// Index of the grid.
+        grid: usize,
+        /// The interpolation.
+        kind: LayerKind,
+        /// The coordinate set.
+        coords: usize,
+    },
+    /// source + (result - source) * mask, with the mask clamped to 0 ..= 1; a missing source is 0.
+    Mask {
+        /// The value where the mask is 0.
+        source: Option<usize>,
+        /// The value where the mask is 1.
+        result: usize,
+        /// The mask.
+        mask: usize,
+    },
+}
+
+/// An argument of a function.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LoweredOperand {
+    /// A constant.
+    Number(f32),
+    /// A value.
+    Value(usize),
+}
+
+/// A coordinate set for a device.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LoweredCoords {
+    /// The block itself.
+    Block,
+    /// Displaced by two values times a strength, each clamped to the reach.
+    Displaced {
+        /// The coordinate set that is displaced.
+        from: usize,
+        /// Displacement east.
+        east: usize,
+        /// Displacement south.
+        south: usize,
+        /// Metres per unit of the values.
+        strength: f64,
+        /// Maximum displacement along an axis, in metres.
+        reach: f64,
+    },
+    /// Mapped by a similarity.
+    Mapped {
+        /// The coordinate set that is mapped.
+        from: usize,
+        /// The map.
+        map: Affine,
+    },
+}
+
+impl LoweredProgram {
+    /// The values that an instruction reads, with those of its coordinate set.
+    #[must_use]
+    pub fn reads(&self, instruction: usize) -> Vec<usize> {
+        let Some(lowered) = self.instructions.get(instruction) else { return Vec::new() };
+        let (mut values, coords) = match lowered {
+            Lowered::Constant(_) => (Vec::new(), 0),
+            Lowered::Field { inputs, coords, .. } => (inputs.iter().flatten().copied().collect(), *coords),
+            Lowered::Apply { arguments, .. } => {
+                let value = |argument: &LoweredOperand| match argument {
+                    LoweredOperand::Value(value) => Some(*value),
+                    LoweredOperand::Number(_) => None,
+                };
+                (arguments.iter().filter_map(value).collect(), 0)
+            }
+            Lowered::Grid { coords, .. } => (Vec::new(), *coords),
+            Lowered::Mask { source, result, mask } => (source.iter().copied().chain([*result, *mask]).collect(), 0),
+        };
+        let mut coords = coords;
+        while let Some(set) = self.coord_sets.get(coords) {
+            match *set {
+                LoweredCoords::Block => break,
+                LoweredCoords::Displaced { from, east, south, .. } => {
+                    values.extend([east, south]);
+                    coords = from;
+                }
+                LoweredCoords::Mapped { from, .. } => coords = from,
+            }
+        }
+        values
+    }
+}
