@@ -3,6 +3,8 @@
 use crate::adapters::{Adapter, Choice, found};
 use crate::failure::Failure;
 use crate::pipelines::Pipelines;
+use orogen_grid::error::Error;
+use orogen_grid::progress::Progress;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// An opened graphics card. Clones share it.
@@ -17,30 +19,51 @@ struct Opened {
     queue: wgpu::Queue,
     pipelines: Pipelines,
     lost: Arc<Mutex<Option<String>>>,
+    failure: Mutex<Option<Failure>>,
     buffer: u64,
+    kernel: usize,
 }
 
 /// Options of opening a graphics card.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Options {
     /// Which adapter.
     pub choice: Choice,
     /// Maximum size of a buffer, in bytes: less than the adapter's own limit. `None` uses that.
     pub buffer: Option<u64>,
+    /// Maximum number of instructions of a program in one shader, where a call of a noise counts as 8. Larger programs are divided. With 1, each
+    /// instruction is a shader of its own: a recipe whose structure changes compiles only what it has not had before, and runs slower.
+    pub kernel: usize,
+}
+
+/// Default of [`Options::kernel`].
+const KERNEL: usize = 64;
+
+impl Default for Options {
+    fn default() -> Options {
+        Options::new(Choice::default())
+    }
 }
 
 impl Options {
     /// Options for an adapter.
     #[must_use]
     pub fn new(choice: Choice) -> Options {
-        Options { choice, buffer: None }
+        Options { choice, buffer: None, kernel: KERNEL }
     }
 
     /// With at most this size of a buffer, in bytes.
     #[must_use]
     pub fn with_buffer(mut self, bytes: u64) -> Options {
         self.buffer = Some(bytes);
+        self
+    }
+
+    /// With at most this number of instructions in a shader.
+    #[must_use]
+    pub fn with_kernel(mut self, instructions: usize) -> Options {
+        self.kernel = instructions;
         self
     }
 }
@@ -97,7 +120,8 @@ impl Gpu {
         }));
         let buffer = options.buffer.unwrap_or(u64::MAX).min(adapter.limits.buffer);
         let pipelines = Pipelines::new(&device);
-        Ok(Gpu { opened: Arc::new(Opened { adapter, device, queue, pipelines, lost, buffer }) })
+        let (failure, kernel) = (Mutex::default(), options.kernel.max(1));
+        Ok(Gpu { opened: Arc::new(Opened { adapter, device, queue, pipelines, lost, failure, buffer, kernel }) })
     }
 
     /// The adapter.
@@ -123,6 +147,29 @@ impl Gpu {
     pub fn lose(&self) {
         self.opened.device.destroy();
         *self.opened.lost.lock().unwrap_or_else(PoisonError::into_inner) = Some("it was given up".to_string());
+    }
+
+    /// The first failure, if there was one: from then on, or for that work, the processor stood in.
+    #[must_use]
+    pub fn failure(&self) -> Option<Failure> {
+        self.opened.failure.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// What the engine gets: work that failed is left to the processor, and cancelled work is an error.
+    pub(crate) fn outcome<T>(&self, made: Result<Option<T>, Failure>, progress: &Progress) -> Result<Option<T>, Error> {
+        progress.check()?;
+        match made {
+            Ok(made) => Ok(made),
+            Err(failure) => {
+                self.opened.failure.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(failure);
+                Ok(None)
+            }
+        }
+    }
+
+    /// Maximum weight of a part of a program in one shader.
+    pub(crate) fn kernel_weight(&self) -> usize {
+        self.opened.kernel
     }
 
     pub(crate) fn device(&self) -> &wgpu::Device {

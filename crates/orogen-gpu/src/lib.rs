@@ -5,13 +5,16 @@
 #![forbid(unsafe_code)]
 
 pub mod adapters;
+mod device;
 pub mod failure;
+pub mod gpu;
 #[doc(hidden)]
 pub mod job;
 mod pipelines;
-
-pub mod gpu;
+mod program;
+mod session;
 
 pub use adapters::{Adapter, Choice, adapters};
 pub use failure::Failure;
 pub use gpu::Gpu;
+pub use session::WithGpu;

@@ -9,7 +9,8 @@
 
 pub(crate) mod error;
 pub(crate) mod formula;
-pub(crate) mod function;
+#[doc(hidden)]
+pub mod function;
 mod parse;
 pub(crate) mod term;
 pub mod text;

@@ -1,7 +1,10 @@
 //! The altitude at which a layer is sampled.
 
+use super::constant::CONSTANT;
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
+use orogen_noise::shader::function::Shader;
 
 op! {
     /// The altitude at which the layer is sampled, in metres: 0 in the plane, where maps, meshes and points are made.
@@ -19,5 +22,10 @@ impl Field for Altitude {
 
     fn reads_altitude(&self) -> bool {
         true
+    }
+
+    fn lower(&self, _: usize, _: &WorldParams) -> Lowering<Shader> {
+        // Windows are in the plane.
+        Lowering::Shader(Shader::new("constant", CONSTANT, &[0.0]))
     }
 }

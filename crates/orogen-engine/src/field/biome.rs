@@ -2,11 +2,13 @@
 
 use super::evapotranspiration::{DEFAULT_RANGE, sample_or};
 use crate::declare::Input;
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_grid::climate::biomes::class::{Climate, WATER};
 use orogen_grid::climate::biomes::scheme;
 use orogen_grid::climate::year::Year;
 use orogen_noise::Points;
+use orogen_noise::shader::function::Shader;
 
 choice! {
     /// The classes of climates or biomes.
@@ -88,5 +90,9 @@ impl Field for Biome {
             Scheme::Whittaker => 5.0,
             Scheme::Holdridge | Scheme::KoppenGeiger => 60.0,
         }
+    }
+
+    fn lower(&self, _: usize, _: &WorldParams) -> Lowering<Shader> {
+        Lowering::Processor("classes depend on months in f64")
     }
 }

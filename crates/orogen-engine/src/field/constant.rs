@@ -1,7 +1,9 @@
 //! A constant value.
 
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
+use orogen_noise::shader::function::Shader;
 
 op! {
     /// The same value everywhere.
@@ -12,8 +14,15 @@ op! {
     }
 }
 
+/// The number that it is given.
+pub(super) const CONSTANT: &str = "fn constant(base: u32, place: Place) -> f32 { return number(base, 0u); }";
+
 impl Field for Constant {
     fn eval(&self, _: &Points, _: &Inputs, _: &WorldParams, out: &mut [f32]) {
         out.fill(self.value as f32);
+    }
+
+    fn lower(&self, _: usize, _: &WorldParams) -> Lowering<Shader> {
+        Lowering::Shader(Shader::new("constant", CONSTANT, &[self.value as f32]))
     }
 }

@@ -1,7 +1,9 @@
 //! A monotone curve through control points.
 
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
+use orogen_noise::shader::function::Shader;
 
 op! {
     /// The source mapped through a smooth monotone curve through the control points. The curve does not overshoot between points.
@@ -125,6 +127,22 @@ impl Field for Curve {
 
     fn cost(&self) -> f64 {
         1.5
+    }
+
+    fn lower(&self, _: usize, _: &WorldParams) -> Lowering<Shader> {
+        let count = self.points.len();
+        let mut knots = vec![Knot::default(); count];
+        self.tie(&mut knots);
+        let end = |point: Option<&[f64; 2]>| point.map_or([0.0f32; 2], |[x, y]| [*x as f32, *y as f32]);
+        let (first, last) = (end(self.points.first()), end(self.points.last()));
+        let mut numbers = vec![first[0], first[1], last[0], last[1]];
+        for knot in &knots[..count.saturating_sub(1)] {
+            let Segment { start, a, b, c, d } = knot.piece;
+            numbers.extend([start, a, b, c, d]);
+        }
+        let mut shader = Shader::new("curve", include_str!("curve.wgsl"), &numbers);
+        shader.words.insert(0, count.saturating_sub(1) as u32);
+        Lowering::Shader(shader)
     }
 }
 

@@ -1,11 +1,13 @@
 //! Heights from a digital elevation model in a file.
 
 use crate::layer::LayerKind;
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_grid::resample::{self, NOWHERE};
 use orogen_io::dem::file_ref::FileRef;
 use orogen_io::format::dem::Georeference;
 use orogen_noise::Points;
+use orogen_noise::shader::function::Shader;
 
 choice! {
     /// What the field shows of a file of heights.
@@ -128,5 +130,9 @@ impl Field for Dem {
 
     fn memory(&self) -> u64 {
         self.path.ground().map_or(0, |ground| ground.memory())
+    }
+
+    fn lower(&self, _: usize, _: &WorldParams) -> Lowering<Shader> {
+        Lowering::Processor("heights of files are interpolated in f64")
     }
 }

@@ -1,8 +1,12 @@
 //! Falloff towards the world's edges.
 
+use super::constant::CONSTANT;
 use super::positions::{each, smoothstep};
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
+use orogen_noise::shader::function::Shader;
+use orogen_noise::shader::lattice::Lattice;
 
 choice! {
     /// How two edges meet in a corner.
@@ -51,5 +55,16 @@ impl Field for Edge {
 
     fn cost(&self) -> f64 {
         2.0
+    }
+
+    fn lower(&self, _: usize, world_params: &WorldParams) -> Lowering<Shader> {
+        let Some([width, height]) = world_params.size else {
+            return Lowering::Shader(Shader::new("constant", CONSTANT, &[1.0]));
+        };
+        let is_square = if self.corners == Corners::Square { 1.0 } else { 0.0 };
+        // Distances from the western and northern edges, and from the eastern and southern ones, in widths of the border.
+        let shader = Shader::new("edge", include_str!("edge.wgsl"), &[is_square]);
+        let lattices = [[0.0, 0.0], [width, height]].map(|origin| Lattice::metres(self.width, origin));
+        Lowering::Shader(shader.on(lattices[0]).on(lattices[1]))
     }
 }

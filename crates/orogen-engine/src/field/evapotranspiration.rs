@@ -1,9 +1,11 @@
 //! Potential evapotranspiration.
 
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_grid::climate::evapotranspiration::{humidity, potential};
 use orogen_grid::climate::year::Year;
 use orogen_noise::Points;
+use orogen_noise::shader::function::Shader;
 
 op! {
     /// Potential evapotranspiration: water that plants and soil would evaporate in a year if it were there.
@@ -54,5 +56,9 @@ impl Field for Evapotranspiration {
 
     fn cost(&self) -> f64 {
         12.0
+    }
+
+    fn lower(&self, _: usize, _: &WorldParams) -> Lowering<Shader> {
+        Lowering::Processor("it is a sum over months in f64")
     }
 }

@@ -2,10 +2,12 @@
 
 use super::positions::each;
 use crate::layer::LayerKind;
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_grid::resample;
 use orogen_io::dem::file_ref::Picture;
 use orogen_noise::Points;
+use orogen_noise::shader::function::Shader;
 
 op! {
     /// A grey picture as a field: black is 0, white is 1. Use it as a mask, for example a painted coast, a forest or a road.
@@ -71,5 +73,9 @@ impl Field for Image {
 
     fn memory(&self) -> u64 {
         self.path.0.ground().map_or(0, |picture| picture.memory())
+    }
+
+    fn lower(&self, _: usize, _: &WorldParams) -> Lowering<Shader> {
+        Lowering::Processor("pictures are interpolated in f64")
     }
 }

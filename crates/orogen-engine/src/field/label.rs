@@ -1,7 +1,9 @@
 //! Whole numbers as labels.
 
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
+use orogen_noise::shader::function::Shader;
 
 op! {
     /// The source as labels: rounded to whole numbers, and read at the nearest sample instead of interpolated.
@@ -28,5 +30,10 @@ impl Field for Label {
 
     fn cost(&self) -> f64 {
         0.5
+    }
+
+    fn lower(&self, _: usize, _: &WorldParams) -> Lowering<Shader> {
+        const CODE: &str = "fn label(base: u32, place: Place, source: f32) -> f32 { return rounded(source); }";
+        Lowering::Shader(Shader::new("label", CODE, &[]))
     }
 }

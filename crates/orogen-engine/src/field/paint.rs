@@ -2,8 +2,10 @@
 
 use super::positions::change;
 use crate::declare::{Stroke, StrokeMode, Strokes};
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
+use orogen_noise::shader::function::Shader;
 
 op! {
     /// Strokes of a brush on the map: a painted mask, or heights that are raised, lowered and levelled by hand.
@@ -70,6 +72,10 @@ impl Field for Paint {
 
     fn memory(&self) -> u64 {
         self.strokes.memory()
+    }
+
+    fn lower(&self, _: usize, _: &WorldParams) -> Lowering<Shader> {
+        Lowering::Processor("strokes are searched in a tree of boxes")
     }
 }
 

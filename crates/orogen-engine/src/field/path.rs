@@ -2,9 +2,11 @@
 
 use super::positions::{each, smoothstep};
 use crate::declare::{LineFile, LinePoints, OutlineOptions};
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_grid::polylines::segments::Segments;
 use orogen_noise::Points;
+use orogen_noise::shader::function::Shader;
 
 op! {
     /// Lines drawn on the map, such as rivers, roads or ridges: the distance to them, the position along them, their height, and a mask.
@@ -118,5 +120,9 @@ impl Field for Path {
 
     fn memory(&self) -> u64 {
         self.with_segments(Segments::memory) + self.file.0.drawing().map_or(0, |drawing| drawing.memory())
+    }
+
+    fn lower(&self, _: usize, _: &WorldParams) -> Lowering<Shader> {
+        Lowering::Processor("lines are searched in a tree of boxes")
     }
 }

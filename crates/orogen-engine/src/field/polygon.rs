@@ -2,9 +2,11 @@
 
 use super::positions::{each, smoothstep};
 use crate::declare::{AreaFile, AreaPoints, OutlineOptions};
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_grid::polylines::segments::Segments;
 use orogen_noise::Points;
+use orogen_noise::shader::function::Shader;
 
 op! {
     /// Areas drawn on the map, such as lakes, forests or mountains: a mask of them, the distance to their boundary, and its height.
@@ -115,5 +117,9 @@ impl Field for Polygon {
 
     fn memory(&self) -> u64 {
         self.with_segments(Segments::memory) + self.file.0.drawing().map_or(0, |drawing| drawing.memory())
+    }
+
+    fn lower(&self, _: usize, _: &WorldParams) -> Lowering<Shader> {
+        Lowering::Processor("outlines are searched in a tree of boxes")
     }
 }

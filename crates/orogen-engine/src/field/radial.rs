@@ -1,8 +1,11 @@
 //! A round hill, the simplest island.
 
 use super::positions::{each, smoothstep};
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
+use orogen_noise::shader::function::Shader;
+use orogen_noise::shader::lattice::Lattice;
 
 op! {
     /// A round hill: 1 at the centre, falling smoothly to 0 at `radius`.
@@ -23,6 +26,13 @@ op! {
     };
 }
 
+/// The radius and positions are in units of the falloff's width.
+const RADIAL: &str = "fn radial(base: u32, place: Place) -> f32 {
+    let at = vec2<f32>(coordinate(base + 1u, 0u, place), coordinate(base + 1u, 1u, place));
+    let t = clamp(number(base, 0u) - length(at), 0.0, 1.0);
+    return t * t * (3.0 - 2.0 * t);
+}";
+
 impl Field for Radial {
     fn eval(&self, at: &Points, _: &Inputs, _: &WorldParams, out: &mut [f32]) {
         let [x0, y0] = self.center;
@@ -35,5 +45,11 @@ impl Field for Radial {
 
     fn cost(&self) -> f64 {
         2.0
+    }
+
+    fn lower(&self, _: usize, _: &WorldParams) -> Lowering<Shader> {
+        let span = self.radius - self.inner;
+        let shader = Shader::new("radial", RADIAL, &[(self.radius / span) as f32]);
+        Lowering::Shader(shader.on(Lattice::metres(span, self.center)))
     }
 }

@@ -1,8 +1,11 @@
 //! A plane that rises in one direction.
 
 use super::positions::each;
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
+use orogen_noise::shader::function::Shader;
+use orogen_noise::shader::lattice::Lattice;
 
 op! {
     /// An inclined plane: 0 at `origin`, rising by 1 every `length` metres in the direction `azimuth`.
@@ -41,5 +44,19 @@ impl Field for Ramp {
         let (sin, cos) = sin_cos_degrees(self.azimuth);
         let [x0, y0] = self.origin;
         each(at, out, |x, y| (((x - x0) * sin - (y - y0) * cos) / self.length) as f32);
+    }
+
+    fn lower(&self, _: usize, _: &WorldParams) -> Lowering<Shader> {
+        const CODE: &str = "fn ramp(base: u32, place: Place) -> f32 { return coordinate(base, 0u, place); }";
+        let (sin, cos) = sin_cos_degrees(self.azimuth);
+        let [along_x, along_y] = [sin / self.length, -cos / self.length];
+        let [x0, y0] = self.origin;
+        // The rise is a coordinate along one axis.
+        let lattice = Lattice {
+            matrix: [[along_x, along_y], [0.0, 0.0]],
+            offset: [-(x0 * along_x + y0 * along_y), 0.0],
+            limit: f64::MAX,
+        };
+        Lowering::Shader(Shader::new("ramp", CODE, &[]).on(lattice))
     }
 }

@@ -1,7 +1,9 @@
 //! Maps one range to another.
 
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
+use orogen_noise::shader::function::Shader;
 
 op! {
     /// The source with the range `from` mapped linearly to the range `to`. With [1, 0] as either range the source is inverted.
@@ -35,5 +37,17 @@ impl Field for Remap {
         for (sample, source) in out.iter_mut().zip(inputs.required(0)) {
             *sample = ((source - from) * scale + to).clamp(low, high);
         }
+    }
+
+    fn lower(&self, _: usize, _: &WorldParams) -> Lowering<Shader> {
+        const CODE: &str = "fn remap(base: u32, place: Place, source: f32) -> f32 {
+    let value = (source - number(base, 0u)) * number(base, 1u) + number(base, 2u);
+    return select(value, clamp(value, number(base, 3u), number(base, 4u)), number(base, 5u) != 0.0);
+}";
+        let scale = (self.to[1] - self.to[0]) / (self.from[1] - self.from[0]);
+        let (low, high) = (self.to[0].min(self.to[1]), self.to[0].max(self.to[1]));
+        let is_clamped = if self.clamp { 1.0 } else { 0.0 };
+        let numbers = [self.from[0], scale, self.to[0], low, high, is_clamped].map(|number| number as f32);
+        Lowering::Shader(Shader::new("remap", CODE, &numbers))
     }
 }

@@ -1,8 +1,11 @@
 //! A mask by drainage area.
 
+use super::select_height::SELECTED;
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_grid::analysis::selection::Selection;
 use orogen_noise::Points;
+use orogen_noise::shader::function::Shader;
 
 op! {
     /// A mask by drainage area: 1 inside a range, falling smoothly to 0 below and above it, on a logarithmic scale.
@@ -36,5 +39,18 @@ impl Field for SelectFlow {
 
     fn cost(&self) -> f64 {
         8.0
+    }
+
+    fn lower(&self, _: usize, _: &WorldParams) -> Lowering<Shader> {
+        // An area of 0 is below all others: 1e-38 m^2.
+        const CODE: &str = "fn select_flow(base: u32, place: Place, source: f32) -> f32 {
+    return selected(base, select(-1e30, log2(max(source, 1e-38)) * 0.30102999566398120, source > 0.0));
+}";
+        // A lower end of 0 is below all areas.
+        let [low, high] = self.range.map(|area| libm::log10(area).max(-1e29));
+        let [below, above] = self.falloff;
+        let mut shader = Shader::new("select_flow", CODE, &[low, high, below, above].map(|number| number as f32));
+        shader.code.insert(0, SELECTED);
+        Lowering::Shader(shader)
     }
 }

@@ -1,8 +1,10 @@
 //! A mask by height.
 
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_grid::analysis::selection::Selection;
 use orogen_noise::Points;
+use orogen_noise::shader::function::Shader;
 
 op! {
     /// A mask by height: 1 inside a range of values, falling smoothly to 0 below and above it.
@@ -25,6 +27,9 @@ op! {
     };
 }
 
+/// The selection of a range with smooth ends, as [`Selection`].
+pub(super) const SELECTED: &str = include_str!("selected.wgsl");
+
 impl Field for SelectHeight {
     fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
         let selection = Selection::new(self.range, self.falloff);
@@ -35,5 +40,14 @@ impl Field for SelectHeight {
 
     fn cost(&self) -> f64 {
         1.0
+    }
+
+    fn lower(&self, _: usize, _: &WorldParams) -> Lowering<Shader> {
+        const CODE: &str =
+            "fn select_height(base: u32, place: Place, source: f32) -> f32 { return selected(base, source); }";
+        let [low, high, below, above] = [self.range[0], self.range[1], self.falloff[0], self.falloff[1]];
+        let mut shader = Shader::new("select_height", CODE, &[low, high, below, above].map(|number| number as f32));
+        shader.code.insert(0, SELECTED);
+        Lowering::Shader(shader)
     }
 }

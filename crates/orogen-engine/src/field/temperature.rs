@@ -1,9 +1,13 @@
 //! Temperature by latitude, height and distance from the sea.
 
 use super::positions::each;
+use crate::declare::Input;
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_grid::climate::temperature::{Temperature as Law, seasons};
 use orogen_noise::Points;
+use orogen_noise::shader::function::Shader;
+use orogen_noise::shader::lattice::Lattice;
 
 op! {
     /// Mean annual temperature of the air near the ground, and its range over the year.
@@ -113,5 +117,23 @@ impl Field for Temperature {
 
     fn cost(&self) -> f64 {
         3.0
+    }
+
+    fn lower(&self, layer: usize, world_params: &WorldParams) -> Lowering<Shader> {
+        let flag = |input: &Input| if *input == Input::None { 0.0 } else { 1.0 };
+        let numbers = [
+            self.latitude,
+            self.equator,
+            self.pole,
+            self.lapse_rate / 1000.0,
+            world_params.sea_level,
+            flag(&self.sea_distance),
+            self.continental_distance,
+            seasons(self.continentality),
+        ];
+        let name = if layer == 0 { "temperature_mean" } else { "temperature_range" };
+        let shader = Shader::new(name, include_str!("temperature.wgsl"), &numbers.map(|number| number as f32));
+        // Degrees south of the northern edge.
+        Lowering::Shader(shader.on(Lattice::metres(self.metres_per_degree, [0.0, 0.0])))
     }
 }

@@ -1,7 +1,9 @@
 //! Terraces, for mesas and rice fields.
 
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
+use orogen_noise::shader::function::Shader;
 
 op! {
     /// The source quantised into terraces: level treads with smooth risers between them.
@@ -42,5 +44,14 @@ impl Field for Terrace {
 
     fn cost(&self) -> f64 {
         2.0
+    }
+
+    fn lower(&self, _: usize, _: &WorldParams) -> Lowering<Shader> {
+        let riser = ((1.0 - self.sharpness) as f32).max(1e-3);
+        Lowering::Shader(Shader::new(
+            "terrace",
+            include_str!("terrace.wgsl"),
+            &[self.step as f32, self.offset as f32, riser],
+        ))
     }
 }

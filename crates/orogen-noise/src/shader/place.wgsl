@@ -93,5 +93,10 @@ fn cell_at(lattice: u32, axis: u32, place: Place) -> Cell {
 // A coordinate as one number, which is exact only near the lattice's origin.
 fn coordinate(lattice: u32, axis: u32, place: Place) -> f32 {
     let cell = cell_at(lattice, axis, place);
-    return f32(bitcast<i32>(cell.high)) * 4294967296.0 + f32(cell.low) + cell.t;
+    let low = bitcast<i32>(cell.low);
+    // Whether the high word is only the sign of the low one.
+    if (bitcast<i32>(cell.high) == (low >> 31u)) {
+        return f32(low) + cell.t;
+    }
+    return f32(bitcast<i32>(cell.high)) * 4294967296.0 + f32(cell.low);
 }

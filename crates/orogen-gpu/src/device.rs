@@ -1,0 +1,33 @@
+//! The graphics card as a device of the engine.
+
+use crate::gpu::Gpu;
+use crate::program::run;
+use orogen_engine::device::{Device, FilterExtent, LoweredProgram};
+use orogen_engine::lower::Passes;
+use orogen_grid::error::Result;
+use orogen_grid::grid::{Grid, Window};
+use orogen_grid::progress::Progress;
+
+impl Device for Gpu {
+    fn fill(
+        &self,
+        program: &LoweredProgram,
+        window: &Window,
+        grids: &[&Grid],
+        progress: &Progress,
+    ) -> Result<Option<Vec<Grid>>> {
+        let is_cancelled = || progress.check().is_err();
+        let made = run::run(self, program, window, grids, self.kernel_weight(), is_cancelled);
+        self.outcome(made, progress)
+    }
+
+    fn apply(
+        &self,
+        _: &Passes,
+        _: &[Option<&Grid>],
+        _: &FilterExtent,
+        _: &Progress,
+    ) -> Result<Option<Vec<Option<Grid>>>> {
+        Ok(None)
+    }
+}

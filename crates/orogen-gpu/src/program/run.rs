@@ -1,0 +1,174 @@
+//! Running a program on a device: tile by tile, kernel by kernel.
+
+use super::kernel::{Kernel, Word, kernel, parts};
+use super::positions;
+use super::tiles::fitting;
+use crate::failure::Failure;
+use crate::gpu::Gpu;
+use crate::job::{Dispatch, Job};
+use orogen_engine::device::{Lowered, LoweredCoords, LoweredProgram};
+use orogen_grid::grid::{Grid, Window};
+use orogen_noise::shader::function::Shader;
+use orogen_noise::shader::lattice::{Lattice, Positions};
+use std::collections::BTreeMap;
+
+/// A program that runs over a window.
+struct Run<'a> {
+    program: &'a LoweredProgram,
+    grids: &'a [&'a Grid],
+    kernels: Vec<Kernel>,
+    /// The slot of each value that is kept between kernels or is an output.
+    slots: BTreeMap<usize, usize>,
+    /// Number of slots.
+    slot_count: usize,
+}
+
+/// The outputs of a program over a window; `None` if it was cancelled. Parts of the program weigh at most `most`.
+pub(crate) fn run(
+    gpu: &Gpu,
+    program: &LoweredProgram,
+    window: &Window,
+    grids: &[&Grid],
+    most: usize,
+    is_cancelled: impl Fn() -> bool,
+) -> Result<Option<Vec<Grid>>, Failure> {
+    let run = Run::new(program, window, grids, most);
+    let limit = gpu.buffer_limit();
+    let Some(tiles) = fitting(window, |tile| run.bytes(tile).into_iter().max() <= Some(limit)) else {
+        return Err(Failure::Memory(format!("a program and its grids need buffers of more than {limit} bytes")));
+    };
+    let mut outputs: Vec<Grid> = program.outputs.iter().map(|_| Grid::filled(*window, 0.0f32)).collect();
+    for tile in tiles {
+        if is_cancelled() {
+            return Ok(None);
+        }
+        let Some(made) = run.tile(&tile).run(gpu, &is_cancelled)? else { return Ok(None) };
+        for (output, made) in outputs.iter_mut().zip(made) {
+            if tile == *window {
+                // The job reads back as many samples as the tile has.
+                *output = Grid::from_data(tile, made).unwrap_or_else(|| Grid::filled(tile, f32::NAN));
+                continue;
+            }
+            let (left, top) = ((tile.x - window.x) as usize, (tile.y - window.y) as usize);
+            for (j, row) in made.chunks(tile.width).enumerate() {
+                output.row_mut(top + j)[left..left + tile.width].copy_from_slice(row);
+            }
+        }
+    }
+    Ok(Some(outputs))
+}
+
+impl<'a> Run<'a> {
+    fn new(program: &'a LoweredProgram, window: &Window, grids: &'a [&'a Grid], most: usize) -> Run<'a> {
+        let is_copy = |i: usize| match &program.instructions[i] {
+            Lowered::Grid { grid, coords: 0, .. } => {
+                grids.get(*grid).is_some_and(|grid| grid.window().cell == window.cell && grid.window().contains(window))
+            }
+            _ => false,
+        };
+        let parts = parts(program, most);
+        // The last part that reads each value.
+        let part_of = |i: usize| parts.partition_point(|part| part.end <= i);
+        let mut last: Vec<usize> = (0..program.instructions.len()).map(part_of).collect();
+        for i in 0..program.instructions.len() {
+            for value in program.reads(i) {
+                last[value] = last[value].max(part_of(i));
+            }
+        }
+        program.outputs.iter().for_each(|value| last[*value] = parts.len());
+        let is_constant = |i: usize| matches!(program.instructions[i], Lowered::Constant(_));
+        let is_output = |i: usize| program.outputs.contains(&i);
+        let (mut slots, mut free, mut slot_count, mut kernels) = (BTreeMap::new(), Vec::new(), 0, Vec::new());
+        for (p, part) in parts.iter().enumerate() {
+            let kept: Vec<usize> =
+                part.clone().filter(|i| last[*i] > p && (is_output(*i) || !is_constant(*i))).collect();
+            for value in &kept {
+                let slot = free.pop().unwrap_or_else(|| {
+                    slot_count += 1;
+                    slot_count - 1
+                });
+                slots.insert(*value, slot);
+            }
+            kernels.push(kernel(program, part.clone(), &kept, &is_copy));
+            // A slot whose value was read for the last time is free for the next part.
+            free.extend(slots.iter().filter(|(value, _)| last[**value] == p).map(|(_, slot)| *slot));
+        }
+        Run { program, grids, kernels, slots, slot_count }
+    }
+
+    /// An upper bound of the sizes of the buffers of samples and of data for a tile, in bytes.
+    fn bytes(&self, tile: &Window) -> [u64; 2] {
+        let grids: usize = self.grids.iter().map(|grid| grid.data().len()).sum();
+        let tables = |instruction: &Lowered| match instruction {
+            Lowered::Field { shader, .. } => shader.words.len() + shader.lattices.len() * self.table(tile),
+            Lowered::Grid { .. } => self.table(tile),
+            _ => 4,
+        };
+        let data: usize = self.program.instructions.iter().map(tables).sum();
+        [4 * (grids + self.slot_count * tile.len()) as u64, 4 * (data + 16) as u64]
+    }
+
+    /// Number of words of a lattice's block and tables.
+    fn table(&self, tile: &Window) -> usize {
+        let is_turned = |set: &LoweredCoords| matches!(set, LoweredCoords::Mapped { map, .. } if !map.is_separable());
+        let both = if self.program.coord_sets.iter().any(is_turned) { 2 } else { 1 };
+        // Lattices of simplices have both parts along both axes.
+        16 + 3 * 2 * both.max(2) * (tile.width + tile.height)
+    }
+
+    /// The job of a tile.
+    fn tile(&self, tile: &Window) -> Job<'_> {
+        let sets = positions::of_sets(&self.program.coord_sets, tile);
+        let mut uploads = Vec::with_capacity(self.grids.len());
+        let mut starts = Vec::with_capacity(self.grids.len());
+        let mut samples = self.slot_count * tile.len();
+        for grid in self.grids {
+            uploads.push((samples, grid.data()));
+            starts.push(samples);
+            samples += grid.data().len();
+        }
+        // The first word is no table.
+        let mut data = vec![0];
+        let mut dispatches = Vec::with_capacity(self.kernels.len());
+        let slot = |value: usize| (self.slots.get(&value).copied().unwrap_or(0) * tile.len()) as u32;
+        for kernel in &self.kernels {
+            let words: Vec<u32> = kernel
+                .words
+                .iter()
+                .map(|word| match word {
+                    Word::Number(number) => number.to_bits(),
+                    Word::Slot(value) => slot(*value),
+                    Word::Function(i) => match &self.program.instructions[*i] {
+                        Lowered::Field { shader, coords, .. } => shader.encode(&sets[*coords], &mut data),
+                        _ => 0,
+                    },
+                    Word::Grid(i) => self.grid(*i, tile, &sets, &starts, &mut data),
+                })
+                .collect();
+            let base = data.len() as u32;
+            data.extend(words);
+            dispatches.push(Dispatch {
+                text: &kernel.text,
+                base,
+                size: [tile.width as u32, tile.height as u32],
+                step: 0,
+            });
+        }
+        let downloads = self.program.outputs.iter().map(|value| (slot(*value) as usize, tile.len())).collect();
+        Job { data, samples, uploads, dispatches, downloads }
+    }
+
+    /// Appends the block of the grid that an instruction reads; returns its index.
+    fn grid(&self, i: usize, tile: &Window, sets: &[Positions], starts: &[usize], data: &mut Vec<u32>) -> u32 {
+        let Lowered::Grid { grid, coords, .. } = self.program.instructions[i] else { return 0 };
+        let (window, start) = (self.grids[grid].window(), starts[grid] as i64);
+        if coords == 0 && window.cell == tile.cell && window.contains(tile) {
+            let first = start + (tile.y - window.y) * window.width as i64 + (tile.x - window.x);
+            data.extend([first as u32, window.width as u32]);
+            return data.len() as u32 - 2;
+        }
+        let lattice = Lattice::square(1.0 / window.cell, [-(window.x as f64), -(window.y as f64)]);
+        let words = vec![start as u32, window.width as u32, window.height as u32];
+        Shader { name: "", code: Vec::new(), words, lattices: vec![lattice] }.encode(&sets[coords], data)
+    }
+}

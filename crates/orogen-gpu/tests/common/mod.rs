@@ -1,0 +1,63 @@
+//! What the tests have in common: a graphics card, and the difference between its terrain and the processor's.
+
+#![allow(dead_code, unreachable_pub, clippy::must_use_candidate)]
+
+use orogen_engine::{Grid, Options, Recipe, Session, Window};
+use orogen_gpu::{Choice, Gpu, gpu};
+use std::sync::{Arc, OnceLock};
+
+/// The first adapter of this machine, software too.
+pub fn gpu() -> &'static Gpu {
+    static GPU: OnceLock<Gpu> = OnceLock::new();
+    GPU.get_or_init(|| Gpu::open(&gpu::Options::new(Choice::Any)).unwrap())
+}
+
+pub fn session_of(gpu: &Gpu) -> Session {
+    Session::new(Options::default()).unwrap().with_device(Arc::new(gpu.clone()))
+}
+
+pub fn session() -> Session {
+    session_of(gpu())
+}
+
+/// The window as the processor makes it.
+pub fn exact(recipe: &Recipe, layer: &str, window: &Window) -> Grid {
+    static SESSION: OnceLock<Session> = OnceLock::new();
+    let session = SESSION.get_or_init(|| Session::new(Options::default()).unwrap());
+    session.open(recipe.clone()).unwrap().window(layer, window).unwrap()
+}
+
+/// The difference between two grids.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Difference {
+    pub worst: f32,
+    pub rms: f64,
+    /// The worst difference as a share of the range of values.
+    pub share: f32,
+    /// The share of samples that differ by more than 1e-4 of the range.
+    pub beyond: f64,
+}
+
+pub fn difference(exact: &Grid, made: &Grid) -> Difference {
+    assert_eq!(exact.window(), made.window());
+    let finite = || exact.data().iter().filter(|sample| sample.is_finite());
+    let range = finite().copied().fold(f32::MIN, f32::max) - finite().copied().fold(f32::MAX, f32::min);
+    // Flat land has no range of its own.
+    let range = if range > 0.0 { range } else { finite().copied().fold(1.0, |most: f32, sample| most.max(sample.abs())) };
+    let (mut worst, mut squares, mut beyond) = (0.0f32, 0.0f64, 0usize);
+    for (a, b) in exact.data().iter().zip(made.data()) {
+        let apart = if a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan()) { 0.0 } else { (a - b).abs() };
+        let apart = if apart.is_nan() { f32::INFINITY } else { apart };
+        worst = worst.max(apart);
+        squares += f64::from(apart) * f64::from(apart);
+        beyond += usize::from(apart > 1e-4 * range);
+    }
+    let count = exact.data().len().max(1) as f64;
+    Difference { worst, rms: (squares / count).sqrt(), share: worst / range, beyond: beyond as f64 / count }
+}
+
+/// Compares a layer of a session with a device with the processor's.
+pub fn compare(session: &Session, recipe: &Recipe, layer: &str, window: &Window) -> Difference {
+    let made = session.open(recipe.clone()).unwrap().window(layer, window).unwrap();
+    difference(&exact(recipe, layer, window), &made)
+}
