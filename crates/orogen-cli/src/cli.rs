@@ -6,8 +6,8 @@ use orogen::Level;
 
 use crate::bar::{Mode, set_mode};
 use crate::command::{
-    analyze, blocks, build, cache, check, compare, completions, explain, export, fit, generate, graph, grow, map, new,
-    noise, ops, palettes, presets, refine, render, schema, studio, tilemap, variants,
+    analyze, blocks, build, cache, check, compare, completions, devices, explain, export, fit, generate, graph, grow,
+    map, new, noise, ops, palettes, presets, refine, render, schema, studio, tilemap, variants,
 };
 use crate::failure::Failure;
 
@@ -73,6 +73,8 @@ enum Command {
     Check(check::Args),
     /// Draw the graph of a recipe: its nodes and the connections between them
     Graph(graph::Args),
+    /// List the graphics cards that `--device` can use
+    Devices(devices::Args),
     /// List or remove the solutions stored for later runs
     Cache(cache::Args),
     /// Print a shell completion script
@@ -109,6 +111,7 @@ impl Cli {
             Command::Explain(args) => explain::run(&args),
             Command::Check(args) => check::run(&args),
             Command::Graph(args) => graph::run(&args),
+            Command::Devices(args) => devices::run(&args),
             Command::Cache(args) => cache::run(&args),
             Command::Completions(args) => completions::run(&args, Cli::command()),
         }

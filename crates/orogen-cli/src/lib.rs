@@ -10,6 +10,7 @@ mod bar;
 mod cli;
 mod command;
 mod contact;
+mod device;
 mod disk;
 mod draw;
 mod export_options;

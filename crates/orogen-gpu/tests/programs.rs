@@ -52,11 +52,7 @@ fn fields() -> Vec<String> {
 #[test]
 fn fields_are_close_to_those_of_the_processor() {
     let session = session();
-    let windows = [
-        Window::new(67, 45, 13.7).at(-11, 5),
-        Window::new(1, 1, 10.0),
-        Window::new(9, 130, 7.3).at(3, -40),
-    ];
+    let windows = [Window::new(67, 45, 13.7).at(-11, 5), Window::new(1, 1, 10.0), Window::new(9, 130, 7.3).at(3, -40)];
     for recipe in fields() {
         let recipe = Recipe::parse(&recipe, "test").unwrap();
         for window in &windows {

@@ -33,6 +33,7 @@
 //! | chunks of blocks, with caves and overhangs | [`blocks::land::Land`] |
 //! | a large area in tiles or rows | [`World::tiles`], [`bands`] |
 //! | several worlds with shared threads, memory and solutions | [`Session`] |
+//! | previews on a graphics card | `gpu::WithGpu`, with the feature `gpu` |
 //! | ops of your own | [`op!`], [`Registry`], and [`laws`], which tests them |
 //! | files and pictures of grids | [`mod@format`], [`export`], [`map`], [`palette`], [`mesh`], [`render`], [`sheet`] |
 //! | lines and areas drawn on a map | [`polylines`], and the ops `path` and `polygon` |
@@ -47,6 +48,10 @@ pub use orogen_engine::{
     bands, budget, choice, chunks, declare, expression, field, filter, growth, ids, laws, layer, node, objects, op,
     plan, recipe, registered, registry, sampler, session, solver, store, tiles, value, volume, world,
 };
+/// Windows on a graphics card, for previews (feature `gpu`).
+#[cfg(feature = "gpu")]
+#[doc(inline)]
+pub use orogen_gpu as gpu;
 #[doc(inline)]
 pub use orogen_grid::{
     aggregate, analysis, autotile, climate, contour, erosion, error, grid, hydrography, hydrology, poisson_discs,

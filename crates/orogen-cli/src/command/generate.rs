@@ -9,6 +9,7 @@ use orogen::words::number;
 use orogen::world::{HEIGHT, LAKES};
 
 use crate::bar::Bar;
+use crate::device::DeviceOption;
 use crate::failure::Failure;
 use crate::options::RunOptions;
 use crate::pictures::{self, FILES, Report};
@@ -28,6 +29,8 @@ pub struct Args {
     /// Output folder; it is created if needed
     #[arg(short, long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
+    #[command(flatten)]
+    device: DeviceOption,
     #[command(flatten)]
     run: RunOptions,
     /// Print the summary as JSON instead of text
@@ -85,7 +88,7 @@ fn make(source: &Source, args: &Args, progress: &Progress) -> Result<String, Fai
     let budget = args.run.limits.budget();
     let recipe = args.samples.recipe(source, &budget)?;
     let policy = args.run.replace.policy(source.inputs(&recipe));
-    let world = args.run.limits.open(recipe, &budget)?;
+    let (world, card) = args.device.open(&args.run.limits, recipe, &budget)?;
     let window = args.samples.window(&world)?;
     let outputs = pictures::outputs(&args.out, &policy)?;
     let mut layers = vec![HEIGHT];
@@ -96,6 +99,7 @@ fn make(source: &Source, args: &Args, progress: &Progress) -> Result<String, Fai
     let _pictures = budget.reserve(ENCODERS)?;
     let [making, writing] = progress.parts([world.work(&plan)?, WRITING * window.len() as f64]);
     let mut grids = world.run(&plan, &making)?.into_iter();
+    let card = card.used();
     let (Some(grid), lakes) = (grids.next(), grids.next()) else {
         return Ok(String::new());
     };
@@ -106,22 +110,23 @@ fn make(source: &Source, args: &Args, progress: &Progress) -> Result<String, Fai
     Ok(match (args.json, args.run.quiet) {
         (true, _) => report.json(),
         (false, true) => String::new(),
-        (false, false) => words(&report, &args.out),
+        (false, false) => words(&report, &args.out, card.as_deref()),
     })
 }
 
 /// The final message.
-fn words(report: &Report, folder: &Path) -> String {
+fn words(report: &Report, folder: &Path, card: Option<&str>) -> String {
     let Report { seed, width, height, cell, height_min, height_max, height_mean, land_share, seconds, .. } = report;
     let across = |samples: &usize| *samples as f64 * cell / 1000.0;
     let sea = match land_share {
         share if *share >= 1.0 => String::new(),
         share => format!(", {:.0} % land", share * 100.0),
     };
+    let on = card.map_or(String::new(), |card| format!(" on {card}: a preview, not the exact bits of the processor"));
     let flat = if height_min == height_max { "; the terrain is flat, so the grey pictures are black" } else { "" };
     format!(
         "{}: {}\n{width} x {height} samples of {} m, {:.1} x {:.1} km, seed {seed}\nheights {height_min:.1} to \
-         {height_max:.1} m, {height_mean:.1} m on average{sea}{flat}\nmade in {seconds:.1} s\n",
+         {height_max:.1} m, {height_mean:.1} m on average{sea}{flat}\nmade in {seconds:.1} s{on}\n",
         folder.display(),
         FILES.join("  "),
         number(*cell),

@@ -7,6 +7,7 @@ pub mod cache;
 pub mod check;
 pub mod compare;
 pub mod completions;
+pub mod devices;
 pub mod explain;
 pub mod export;
 pub mod fit;

@@ -97,7 +97,7 @@ pub const WRITERS: &[Writer] = &[
 ];
 
 /// Commands that only write text to standard output.
-const TALKERS: &[&str] = &["presets", "ops", "schema", "explain", "check", "cache", "completions", "help"];
+const TALKERS: &[&str] = &["presets", "ops", "schema", "explain", "check", "cache", "devices", "completions", "help"];
 
 /// Commands that never overwrite files.
 const STARTERS: &[&str] = &["new"];

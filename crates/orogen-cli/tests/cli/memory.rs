@@ -22,7 +22,8 @@ use crate::harness::Folder;
 const MOST: f64 = 1.1;
 
 /// Commands that only hold a text or a page of fixed size, and have no `--memory`.
-const SMALL: [&str; 9] = ["cache", "presets", "new", "ops", "palettes", "schema", "studio", "completions", "help"];
+const SMALL: [&str; 10] =
+    ["cache", "devices", "presets", "new", "ops", "palettes", "schema", "studio", "completions", "help"];
 
 /// Rough terrain with many contours, rivers and triangles.
 fn recipe(side: usize, last: &str) -> String {

@@ -1,6 +1,6 @@
 //! What the tests have in common: a graphics card, and the difference between its terrain and the processor's.
 
-#![allow(dead_code, unreachable_pub, clippy::must_use_candidate)]
+#![allow(dead_code, unreachable_pub, clippy::must_use_candidate, clippy::unwrap_used)]
 
 use orogen_engine::{Grid, Options, Recipe, Session, Window};
 use orogen_gpu::{Choice, Gpu, gpu};
@@ -43,7 +43,8 @@ pub fn difference(exact: &Grid, made: &Grid) -> Difference {
     let finite = || exact.data().iter().filter(|sample| sample.is_finite());
     let range = finite().copied().fold(f32::MIN, f32::max) - finite().copied().fold(f32::MAX, f32::min);
     // Flat land has no range of its own.
-    let range = if range > 0.0 { range } else { finite().copied().fold(1.0, |most: f32, sample| most.max(sample.abs())) };
+    let range =
+        if range > 0.0 { range } else { finite().copied().fold(1.0, |most: f32, sample| most.max(sample.abs())) };
     let (mut worst, mut squares, mut beyond) = (0.0f32, 0.0f64, 0usize);
     for (a, b) in exact.data().iter().zip(made.data()) {
         let apart = if a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan()) { 0.0 } else { (a - b).abs() };
