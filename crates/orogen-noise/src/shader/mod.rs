@@ -2,3 +2,4 @@
 
 pub mod function;
 pub mod lattice;
+pub(crate) mod noise;
