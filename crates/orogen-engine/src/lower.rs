@@ -1,6 +1,5 @@
 //! How ops are computed on a graphics card: each field has a function of WGSL, and each filter has passes, beside its computation on the processor.
 
-
 /// How a graphics card computes a node.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Lowering<T> {

@@ -2,4 +2,5 @@
 
 pub mod function;
 pub mod lattice;
-pub(crate) mod noise;
+mod noise;
+pub mod phacelle;
