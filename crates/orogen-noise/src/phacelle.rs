@@ -161,6 +161,15 @@ pub struct PreparedPhacelle {
 }
 
 impl PreparedPhacelle {
+    pub(crate) fn program(&self) -> &Program {
+        &self.program
+    }
+
+    /// Stripes per cell, and the minimum length that a wave is divided by.
+    pub(crate) fn wave(&self) -> [f32; 2] {
+        [self.stripes, self.shortest]
+    }
+
     /// [`Phacelle::sample`] of the noise that was prepared.
     #[must_use]
     pub fn sample(&self, x: f64, y: f64) -> f32 {

@@ -44,10 +44,17 @@ impl Prepared {
 
 noise_methods!(Prepared);
 
-/// Writes `prepare`.
+/// Writes `prepare`, and `shader` of a noise that does not repeat.
 macro_rules! preparable {
     ($noise:ident) => {
         impl $noise {
+            /// The noise in the plane as a function of WGSL, for graphics cards.
+            #[doc(hidden)]
+            #[must_use]
+            pub fn shader(&self) -> $crate::shader::function::Shader {
+                self.program(2).shader()
+            }
+
             /// The noise with its tables computed once: the same methods, the same bits, and less work per call.
             #[must_use]
             pub fn prepare(&self) -> $crate::Prepared {

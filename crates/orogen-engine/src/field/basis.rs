@@ -1,7 +1,9 @@
 //! Noise bases of fractals, as a choice in recipes.
 
 use crate::declare::{Param, Shape};
+use crate::lower::Lowering;
 use crate::value::Value;
+use orogen_noise::shader::function::Shader;
 use orogen_noise::{
     Basis, Classic, Depth, Fractal, LengthMismatch, OpenSimplex2, Perlin, Points, Simplex, Value as ValueNoise, White,
     Worley,
@@ -56,6 +58,8 @@ pub(super) trait Noise {
     fn in_plane(&self, at: &Points, out: &mut [f32]) -> Result<(), LengthMismatch>;
     /// The values at points that have the same third coordinate, in metres.
     fn in_space(&self, at: &Points, depth: f64, out: &mut [f32]) -> Result<(), LengthMismatch>;
+    /// The noise of the plane as a function for graphics cards.
+    fn shader(&self) -> Shader;
 }
 
 macro_rules! noises {
@@ -68,6 +72,10 @@ macro_rules! noises {
             fn in_space(&self, at: &Points, depth: f64, out: &mut [f32]) -> Result<(), LengthMismatch> {
                 self.fill3(at, &Depth::Slice(depth), out)
             }
+
+            fn shader(&self) -> Shader {
+                self.shader()
+            }
         }
     )* };
 }
@@ -79,6 +87,14 @@ pub(super) fn sample(noise: &impl Noise, at: &Points, depth: Option<f64>, out: &
         Some(depth) => noise.in_space(at, depth, out),
         None => noise.in_plane(at, out),
     });
+}
+
+/// How graphics cards compute a noise: of the plane if `vertical`, its wavelength along the altitude, is 0.
+pub(super) fn lower(noise: &impl Noise, vertical: f64) -> Lowering<Shader> {
+    if vertical > 0.0 {
+        return Lowering::Processor("noise of space is not computed on graphics cards");
+    }
+    Lowering::Shader(noise.shader())
 }
 
 /// Nanoseconds per sample.

@@ -1,8 +1,10 @@
 //! Classic Perlin noise, as in textbooks.
 
-use super::basis::sample;
+use super::basis::{lower, sample};
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
+use orogen_noise::shader::function::Shader;
 
 choice! {
     /// The gradient set of classic Perlin noise in 2D.
@@ -40,11 +42,20 @@ op! {
     }
 }
 
+impl Classic {
+    fn noise(&self, world_params: &WorldParams) -> orogen_noise::Classic {
+        let seed = if world_params.seed == 0 && self.seed == 0 { 0 } else { world_params.seed_of(self.seed) };
+        orogen_noise::Classic::new(seed, self.wavelength).with_variant(self.variant.noise())
+    }
+}
+
 impl Field for Classic {
     fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
-        let seed = if world_params.seed == 0 && self.seed == 0 { 0 } else { world_params.seed_of(self.seed) };
-        let noise = orogen_noise::Classic::new(seed, self.wavelength).with_variant(self.variant.noise());
-        sample(&noise, at, self.depth(inputs), out);
+        sample(&self.noise(world_params), at, self.depth(inputs), out);
+    }
+
+    fn lower(&self, _: usize, world_params: &WorldParams) -> Lowering<Shader> {
+        lower(&self.noise(world_params), self.vertical)
     }
 
     fn cost(&self) -> f64 {

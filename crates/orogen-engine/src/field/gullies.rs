@@ -2,7 +2,10 @@
 
 use super::basis::fill;
 use super::powers::raise;
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, Stencil, WorldParams};
+use orogen_noise::shader::function::Shader;
+use orogen_noise::shader::phacelle::PHACELLE;
 use orogen_noise::{Phacelle, Points};
 
 op! {
@@ -94,6 +97,10 @@ impl Field for Gullies {
         }
     }
 
+    fn lower(&self, _: usize, world_params: &WorldParams) -> Lowering<Shader> {
+        Lowering::Shader(self.shader(world_params))
+    }
+
     fn stencil(&self) -> Option<Stencil> {
         Some(Stencil { source: 0, step: self.step })
     }
@@ -107,6 +114,39 @@ impl Field for Gullies {
 const CHUNK: usize = 256;
 
 impl Gullies {
+    /// The octaves: their noise, their depth, and how far they turn the next one.
+    fn octaves(&self, world_params: &WorldParams) -> impl Iterator<Item = (Phacelle, f32, f32)> {
+        let seed = world_params.seed_of(self.seed);
+        let (mut wavelength, mut depth) = (self.wavelength, self.strength * self.wavelength);
+        (0..self.octaves).map(move |octave| {
+            let noise = Phacelle::new(seed.wrapping_add(u64::from(octave)), wavelength)
+                .with_cell(self.cell)
+                .with_normalisation(self.normalisation);
+            let turn = (std::f64::consts::TAU * depth / wavelength) as f32 * self.weight as f32;
+            let made = (noise, depth as f32, turn);
+            wavelength /= self.lacunarity;
+            depth *= self.gain;
+            made
+        })
+    }
+
+    /// The function for graphics cards. A `fade` that is not given is 0.
+    fn shader(&self, world_params: &WorldParams) -> Shader {
+        let per_metre = 0.5 / self.step;
+        let [weight, detail, sharpness] = [self.weight, self.detail, self.sharpness];
+        let numbers = [per_metre, self.onset, self.assumed_slope, weight, detail, sharpness];
+        let mut words = vec![self.octaves];
+        words.extend(numbers.map(|number| (number as f32).to_bits()));
+        let mut lattices = Vec::new();
+        for (noise, depth, turn) in self.octaves(world_params) {
+            words.extend(noise.shader_words());
+            words.extend([depth.to_bits(), turn.to_bits()]);
+            lattices.push(noise.shader_lattice());
+        }
+        let [place, hash, phacelle] = PHACELLE;
+        Shader { name: "gullies", code: vec![place, hash, phacelle, include_str!("gullies.wgsl")], words, lattices }
+    }
+
     /// Adds the gullies at up to [`CHUNK`] points to `heights`.
     fn cut(
         &self,
@@ -130,23 +170,17 @@ impl Gullies {
             target[k] = fade.map_or(0.0, |fade| fade[k].clamp(-1.0, 1.0));
         }
         let (weight, detail, sharpness) = (self.weight as f32, self.detail as f32, self.sharpness as f32);
-        let seed = world_params.seed_of(self.seed);
-        let (mut wavelength, mut depth) = (self.wavelength, self.strength * self.wavelength);
         let (mut cosine, mut sine) = ([0.0f32; CHUNK], [0.0f32; CHUNK]);
-        for octave in 0..self.octaves {
-            let noise = Phacelle::new(seed.wrapping_add(u64::from(octave)), wavelength)
-                .with_cell(self.cell)
-                .with_normalisation(self.normalisation);
+        for (octave, (noise, amplitude, turn)) in (1..).zip(self.octaves(world_params)) {
             let [x, y] = &slope;
             fill(&mut cosine[..count], |cosine| {
                 noise.fill_along(points, &x[..count], &y[..count], cosine, &mut sine[..count])
             });
-            let (amplitude, turn) = (depth as f32, (std::f64::consts::TAU * depth / wavelength) as f32 * weight);
             for k in 0..count {
                 target[k] += (cosine[k] * weight - target[k]) * mask[k];
                 heights[k] += target[k] * amplitude;
             }
-            if octave + 1 == self.octaves {
+            if octave == self.octaves {
                 break;
             }
             for k in 0..count {
@@ -163,8 +197,6 @@ impl Gullies {
             for k in 0..count {
                 mask[k] = (1.0 - mask[k]) * soft(sine[k].abs() * sharpness);
             }
-            wavelength /= self.lacunarity;
-            depth *= self.gain;
         }
     }
 }

@@ -1,8 +1,10 @@
 //! Musgrave's heterogeneous terrain.
 
-use super::basis::{cost, sample};
+use super::basis::{cost, lower, sample};
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
-use orogen_noise::{Kind, Points};
+use orogen_noise::shader::function::Shader;
+use orogen_noise::{Fractal, Kind, Points};
 
 op! {
     /// Heterogeneous terrain: each octave is scaled by the height so far, so low ground is smooth and high ground is rough. In -1 ..= 1.
@@ -17,10 +19,19 @@ op! {
     }
 }
 
+impl Hetero {
+    fn noise(&self, world_params: &WorldParams) -> Fractal {
+        self.fractal(world_params, Kind::Hetero { offset: self.offset })
+    }
+}
+
 impl Field for Hetero {
     fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
-        let noise = self.fractal(world_params, Kind::Hetero { offset: self.offset });
-        sample(&noise, at, self.depth(inputs), out);
+        sample(&self.noise(world_params), at, self.depth(inputs), out);
+    }
+
+    fn lower(&self, _: usize, world_params: &WorldParams) -> Lowering<Shader> {
+        lower(&self.noise(world_params), self.vertical)
     }
 
     fn cost(&self) -> f64 {

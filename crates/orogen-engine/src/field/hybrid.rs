@@ -1,8 +1,10 @@
 //! Musgrave's hybrid multifractal.
 
-use super::basis::{cost, sample};
+use super::basis::{cost, lower, sample};
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
-use orogen_noise::{Kind, Points};
+use orogen_noise::shader::function::Shader;
+use orogen_noise::{Fractal, Kind, Points};
 
 op! {
     /// Hybrid multifractal: each octave is scaled by the product of those before it, so valleys stay smooth and high ground is rough. In -1
@@ -18,10 +20,19 @@ op! {
     }
 }
 
+impl Hybrid {
+    fn noise(&self, world_params: &WorldParams) -> Fractal {
+        self.fractal(world_params, Kind::Hybrid { offset: self.offset })
+    }
+}
+
 impl Field for Hybrid {
     fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
-        let noise = self.fractal(world_params, Kind::Hybrid { offset: self.offset });
-        sample(&noise, at, self.depth(inputs), out);
+        sample(&self.noise(world_params), at, self.depth(inputs), out);
+    }
+
+    fn lower(&self, _: usize, world_params: &WorldParams) -> Lowering<Shader> {
+        lower(&self.noise(world_params), self.vertical)
     }
 
     fn cost(&self) -> f64 {

@@ -1,8 +1,10 @@
 //! Jordan turbulence.
 
-use super::basis::{cost, sample};
+use super::basis::{cost, lower, sample};
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
-use orogen_noise::{Kind, Points};
+use orogen_noise::shader::function::Shader;
+use orogen_noise::{Fractal, Kind, Points};
 
 op! {
     /// Jordan turbulence: squared noise, displaced and damped by the slopes of earlier octaves. It gives rounded massifs with worn flanks.
@@ -21,10 +23,19 @@ op! {
     }
 }
 
+impl Jordan {
+    fn noise(&self, world_params: &WorldParams) -> Fractal {
+        self.fractal(world_params, Kind::Jordan { warp: self.warp, damp: self.damp })
+    }
+}
+
 impl Field for Jordan {
     fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
-        let noise = self.fractal(world_params, Kind::Jordan { warp: self.warp, damp: self.damp });
-        sample(&noise, at, self.depth(inputs), out);
+        sample(&self.noise(world_params), at, self.depth(inputs), out);
+    }
+
+    fn lower(&self, _: usize, world_params: &WorldParams) -> Lowering<Shader> {
+        lower(&self.noise(world_params), self.vertical)
     }
 
     fn cost(&self) -> f64 {

@@ -1,7 +1,9 @@
 //! OpenSimplex2 noise.
 
-use super::basis::{cost, sample};
+use super::basis::{cost, lower, sample};
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
+use orogen_noise::shader::function::Shader;
 use orogen_noise::{Basis, Points};
 
 choice! {
@@ -39,15 +41,24 @@ op! {
     }
 }
 
-impl Field for OpenSimplex2 {
-    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
-        let noise = orogen_noise::OpenSimplex2::new(world_params.seed_of(self.seed), self.wavelength).with_smoothness(
+impl OpenSimplex2 {
+    fn noise(&self, world_params: &WorldParams) -> orogen_noise::OpenSimplex2 {
+        orogen_noise::OpenSimplex2::new(world_params.seed_of(self.seed), self.wavelength).with_smoothness(
             match self.smoothness {
                 Smoothness::Fast => orogen_noise::Smoothness::Fast,
                 Smoothness::Smooth => orogen_noise::Smoothness::Smooth,
             },
-        );
-        sample(&noise, at, self.depth(inputs), out);
+        )
+    }
+}
+
+impl Field for OpenSimplex2 {
+    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+        sample(&self.noise(world_params), at, self.depth(inputs), out);
+    }
+
+    fn lower(&self, _: usize, world_params: &WorldParams) -> Lowering<Shader> {
+        lower(&self.noise(world_params), self.vertical)
     }
 
     fn cost(&self) -> f64 {

@@ -1,8 +1,10 @@
 //! Perlin noise.
 
-use super::basis::sample;
+use super::basis::{lower, sample};
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
+use orogen_noise::shader::function::Shader;
 
 op! {
     /// Perlin's gradient noise (2002) on a hashed lattice, in -1 ..= 1. It is smooth and has no period.
@@ -16,10 +18,19 @@ op! {
     }
 }
 
+impl Perlin {
+    fn noise(&self, world_params: &WorldParams) -> orogen_noise::Perlin {
+        orogen_noise::Perlin::new(world_params.seed_of(self.seed), self.wavelength)
+    }
+}
+
 impl Field for Perlin {
     fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
-        let noise = orogen_noise::Perlin::new(world_params.seed_of(self.seed), self.wavelength);
-        sample(&noise, at, self.depth(inputs), out);
+        sample(&self.noise(world_params), at, self.depth(inputs), out);
+    }
+
+    fn lower(&self, _: usize, world_params: &WorldParams) -> Lowering<Shader> {
+        lower(&self.noise(world_params), self.vertical)
     }
 
     fn cost(&self) -> f64 {

@@ -1,8 +1,10 @@
 //! Folded fractal noise.
 
-use super::basis::{cost, sample};
+use super::basis::{cost, lower, sample};
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
-use orogen_noise::{Kind, Points};
+use orogen_noise::shader::function::Shader;
+use orogen_noise::{Fractal, Kind, Points};
 
 op! {
     /// Ping-pong noise: a sum of octaves of folded noise, in -1 ..= 1. It gives contour bands like those of agate or of rice terraces.
@@ -18,10 +20,19 @@ op! {
     }
 }
 
+impl PingPong {
+    fn noise(&self, world_params: &WorldParams) -> Fractal {
+        self.fractal(world_params, Kind::PingPong { strength: self.strength })
+    }
+}
+
 impl Field for PingPong {
     fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
-        let noise = self.fractal(world_params, Kind::PingPong { strength: self.strength });
-        sample(&noise, at, self.depth(inputs), out);
+        sample(&self.noise(world_params), at, self.depth(inputs), out);
+    }
+
+    fn lower(&self, _: usize, world_params: &WorldParams) -> Lowering<Shader> {
+        lower(&self.noise(world_params), self.vertical)
     }
 
     fn cost(&self) -> f64 {

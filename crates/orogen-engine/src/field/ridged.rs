@@ -1,8 +1,10 @@
 //! Ridged fractal noise.
 
-use super::basis::{cost, sample};
+use super::basis::{cost, lower, sample};
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
-use orogen_noise::{Kind, Points};
+use orogen_noise::shader::function::Shader;
+use orogen_noise::{Fractal, Kind, Points};
 
 op! {
     /// Ridged noise: the sum of octaves of 1 - 2 |noise|, in -1 ..= 1. It gives sharp crests and round valleys. Musgrave 1994.
@@ -10,10 +12,19 @@ op! {
     octaves in space;
 }
 
+impl Ridged {
+    fn noise(&self, world_params: &WorldParams) -> Fractal {
+        self.fractal(world_params, Kind::Ridged)
+    }
+}
+
 impl Field for Ridged {
     fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
-        let noise = self.fractal(world_params, Kind::Ridged);
-        sample(&noise, at, self.depth(inputs), out);
+        sample(&self.noise(world_params), at, self.depth(inputs), out);
+    }
+
+    fn lower(&self, _: usize, world_params: &WorldParams) -> Lowering<Shader> {
+        lower(&self.noise(world_params), self.vertical)
     }
 
     fn cost(&self) -> f64 {

@@ -1,7 +1,9 @@
 //! Simplex noise.
 
-use super::basis::{cost, sample};
+use super::basis::{cost, lower, sample};
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
+use orogen_noise::shader::function::Shader;
 use orogen_noise::{Basis, Points};
 
 op! {
@@ -19,10 +21,19 @@ op! {
     }
 }
 
+impl Simplex {
+    fn noise(&self, world_params: &WorldParams) -> orogen_noise::Simplex {
+        orogen_noise::Simplex::new(world_params.seed_of(self.seed), self.wavelength)
+    }
+}
+
 impl Field for Simplex {
     fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
-        let noise = orogen_noise::Simplex::new(world_params.seed_of(self.seed), self.wavelength);
-        sample(&noise, at, self.depth(inputs), out);
+        sample(&self.noise(world_params), at, self.depth(inputs), out);
+    }
+
+    fn lower(&self, _: usize, world_params: &WorldParams) -> Lowering<Shader> {
+        lower(&self.noise(world_params), self.vertical)
     }
 
     fn cost(&self) -> f64 {

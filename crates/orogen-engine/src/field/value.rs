@@ -1,8 +1,10 @@
 //! Value noise.
 
-use super::basis::sample;
+use super::basis::{lower, sample};
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
+use orogen_noise::shader::function::Shader;
 
 choice! {
     /// Interpolation between the lattice points of value noise.
@@ -40,11 +42,19 @@ op! {
     }
 }
 
+impl Value {
+    fn noise(&self, world_params: &WorldParams) -> orogen_noise::Value {
+        orogen_noise::Value::new(world_params.seed_of(self.seed), self.wavelength).with_fade(self.fade.noise())
+    }
+}
+
 impl Field for Value {
     fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
-        let noise =
-            orogen_noise::Value::new(world_params.seed_of(self.seed), self.wavelength).with_fade(self.fade.noise());
-        sample(&noise, at, self.depth(inputs), out);
+        sample(&self.noise(world_params), at, self.depth(inputs), out);
+    }
+
+    fn lower(&self, _: usize, world_params: &WorldParams) -> Lowering<Shader> {
+        lower(&self.noise(world_params), self.vertical)
     }
 
     fn cost(&self) -> f64 {

@@ -1,8 +1,10 @@
 //! Gradient-weighted fractal noise.
 
-use super::basis::{cost, sample};
+use super::basis::{cost, lower, sample};
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
-use orogen_noise::{Kind, Points};
+use orogen_noise::shader::function::Shader;
+use orogen_noise::{Fractal, Kind, Points};
 
 choice! {
     /// How slope damps an octave of weighted fBm. m is the squared slope of the octaves so far (dimensionless).
@@ -45,10 +47,19 @@ op! {
     }
 }
 
+impl WeightedFbm {
+    fn noise(&self, world_params: &WorldParams) -> Fractal {
+        self.fractal(world_params, Kind::Weighted { k: self.k, falloff: self.falloff.noise() })
+    }
+}
+
 impl Field for WeightedFbm {
     fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
-        let noise = self.fractal(world_params, Kind::Weighted { k: self.k, falloff: self.falloff.noise() });
-        sample(&noise, at, self.depth(inputs), out);
+        sample(&self.noise(world_params), at, self.depth(inputs), out);
+    }
+
+    fn lower(&self, _: usize, world_params: &WorldParams) -> Lowering<Shader> {
+        lower(&self.noise(world_params), self.vertical)
     }
 
     fn cost(&self) -> f64 {

@@ -1,8 +1,10 @@
 //! White noise.
 
-use super::basis::sample;
+use super::basis::{lower, sample};
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
+use orogen_noise::shader::function::Shader;
 
 op! {
     /// White noise: an independent value in -1 ..= 1 for each square of side `wavelength`.
@@ -16,10 +18,19 @@ op! {
     }
 }
 
+impl White {
+    fn noise(&self, world_params: &WorldParams) -> orogen_noise::White {
+        orogen_noise::White::new(world_params.seed_of(self.seed), self.wavelength)
+    }
+}
+
 impl Field for White {
     fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
-        let noise = orogen_noise::White::new(world_params.seed_of(self.seed), self.wavelength);
-        sample(&noise, at, self.depth(inputs), out);
+        sample(&self.noise(world_params), at, self.depth(inputs), out);
+    }
+
+    fn lower(&self, _: usize, world_params: &WorldParams) -> Lowering<Shader> {
+        lower(&self.noise(world_params), self.vertical)
     }
 
     fn cost(&self) -> f64 {

@@ -1,8 +1,10 @@
 //! Worley's cellular noise.
 
-use super::basis::sample;
+use super::basis::{lower, sample};
+use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
+use orogen_noise::shader::function::Shader;
 
 choice! {
     /// The feature of cellular noise: what is computed from the points near a sample.
@@ -81,13 +83,22 @@ op! {
     }
 }
 
-impl Field for Worley {
-    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
-        let noise = orogen_noise::Worley::new(world_params.seed_of(self.seed), self.wavelength)
+impl Worley {
+    fn noise(&self, world_params: &WorldParams) -> orogen_noise::Worley {
+        orogen_noise::Worley::new(world_params.seed_of(self.seed), self.wavelength)
             .with_distance(self.distance.noise())
             .with_feature(self.feature.noise())
-            .with_jitter(self.jitter);
-        sample(&noise, at, self.depth(inputs), out);
+            .with_jitter(self.jitter)
+    }
+}
+
+impl Field for Worley {
+    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+        sample(&self.noise(world_params), at, self.depth(inputs), out);
+    }
+
+    fn lower(&self, _: usize, world_params: &WorldParams) -> Lowering<Shader> {
+        lower(&self.noise(world_params), self.vertical)
     }
 
     // One octave of a wavelength looks at fewer cells than the finer ones of a fractal.

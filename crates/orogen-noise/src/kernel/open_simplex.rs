@@ -94,8 +94,8 @@ impl Corners for Open {
 pub(crate) struct Wide<S: Simd, const DIMS: usize>(OpenSource<S>);
 
 /// Squared radius of a corner's kernel: in the plane the distance to the next corner, in four dimensions almost that.
-const WIDE_REACH: [f32; 3] = [2.0 / 3.0, 0.75, 0.8];
-const WIDE_SCALE: [f32; 3] = [18.241_9, 11.867_1, 8.491_0];
+pub(crate) const WIDE_REACH: [f32; 3] = [2.0 / 3.0, 0.75, 0.8];
+pub(crate) const WIDE_SCALE: [f32; 3] = [18.241_9, 11.867_1, 8.491_0];
 
 impl<S: Simd, const DIMS: usize> Wide<S, DIMS> {
     /// Five corners around a triangle: those of its rhombus, and the nearer one of the two beside the triangle.

@@ -29,7 +29,7 @@ pub(crate) struct Slanted<S: Simd> {
 }
 
 /// (sqrt(n + 1) - 1) / n: factor of the skew.
-const SKEW: [f64; 3] = [0.366_025_403_784_438_65, 1.0 / 3.0, 0.309_016_994_374_947_45];
+pub(crate) const SKEW: [f64; 3] = [0.366_025_403_784_438_65, 1.0 / 3.0, 0.309_016_994_374_947_45];
 /// (1 - 1 / sqrt(n + 1)) / n: factor of the inverse skew.
 pub(crate) const UNSKEW: [f32; 3] = [0.211_324_87, 1.0 / 6.0, 0.138_196_6];
 

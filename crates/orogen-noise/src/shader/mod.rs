@@ -2,3 +2,5 @@
 
 pub mod function;
 pub mod lattice;
+mod noise;
+pub mod phacelle;

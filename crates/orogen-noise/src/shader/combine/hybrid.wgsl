@@ -1,0 +1,19 @@
+// Musgrave's hybrid multifractal: octaves are weighted by the product of those before. Parameters: offset, and factor of the result.
+fn hybrid_SOURCE(base: u32, place: Place) -> f32 {
+    let source = noise_source(base);
+    var lattice = noise_lattice(base);
+    var octave = base + NOISE_OCTAVES;
+    var sum = 0.0;
+    var weight = 1.0;
+    for (var i = 0u; i < data[base]; i = i + 1u) {
+        let x = cell_at(lattice, 0u, place);
+        let y = cell_at(lattice, 1u, place);
+        let noise = number(octave, 4u) * SOURCE_value(source, octave, x, y);
+        let weighted = weight * ((noise + number(base, 3u)) * number(octave, 6u));
+        sum = sum + weighted;
+        weight = clamp(weighted, 0.0, 1.0);
+        octave = octave + NOISE_OCTAVE;
+        lattice = lattice + NOISE_LATTICE;
+    }
+    return clamp(sum * number(base, 4u), -1.0, 1.0);
+}

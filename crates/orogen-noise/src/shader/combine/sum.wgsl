@@ -1,0 +1,15 @@
+// The sum of octaves.
+fn sum_SOURCE(base: u32, place: Place) -> f32 {
+    let source = noise_source(base);
+    var lattice = noise_lattice(base);
+    var octave = base + NOISE_OCTAVES;
+    var sum = 0.0;
+    for (var i = 0u; i < data[base]; i = i + 1u) {
+        let x = cell_at(lattice, 0u, place);
+        let y = cell_at(lattice, 1u, place);
+        sum = sum + number(octave, 4u) * SOURCE_value(source, octave, x, y);
+        octave = octave + NOISE_OCTAVE;
+        lattice = lattice + NOISE_LATTICE;
+    }
+    return sum;
+}

@@ -1,0 +1,22 @@
+// De Carpentier's swiss turbulence: ridges whose slopes displace finer octaves. Parameters: none, and factor of the result.
+fn swiss_SOURCE(base: u32, place: Place) -> f32 {
+    let source = noise_source(base);
+    var lattice = noise_lattice(base);
+    var octave = base + NOISE_OCTAVES;
+    var sum = 0.0;
+    var weight = 1.0;
+    var displacement = vec2<f32>(0.0);
+    for (var i = 0u; i < data[base]; i = i + 1u) {
+        let shift = noise_shift(displacement, number(octave, 7u));
+        let x = noise_moved(base, cell_at(lattice, 0u, place), 0u, shift);
+        let y = noise_moved(base, cell_at(lattice, 1u, place), 1u, shift);
+        let one = noise_scaled(octave, SOURCE_slopes(source, octave, x, y));
+        let amplitude = weight * number(octave, 6u);
+        sum = sum + amplitude * (1.0 - abs(one.value));
+        displacement = displacement - (amplitude * one.value) * (one.slope * number(octave, 8u));
+        weight = weight * clamp(sum, 0.0, 1.0);
+        octave = octave + NOISE_OCTAVE;
+        lattice = lattice + NOISE_LATTICE;
+    }
+    return clamp(sum * number(base, 4u) * 2.0 - 1.0, -1.0, 1.0);
+}

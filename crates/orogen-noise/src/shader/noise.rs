@@ -1,0 +1,167 @@
+//! Noises as functions of WGSL. The text depends only on the kind of lattice and on the kind of sum; all parameters are words.
+
+use super::function::{PLACE, Shader};
+use super::lattice::Lattice;
+use crate::choices::{ClassicVariant, Distance, Fade, Falloff, Feature, Smoothness};
+use crate::kernel::open_simplex::{Open, WIDE_REACH, WIDE_SCALE};
+use crate::kernel::simplex::{Corners, Plain, REACH, SKEW};
+use crate::program::{Combine, Program, Shape, Source};
+use crate::tables::reference;
+use std::sync::OnceLock;
+
+/// The hash of lattice points.
+pub(super) const HASH: &str = include_str!("hash.wgsl");
+/// How octaves are stored, and displaced.
+const OCTAVES: &str = include_str!("octaves.wgsl");
+
+/// What the functions of a source start with, and their text.
+struct Family {
+    name: &'static str,
+    code: &'static [&'static str],
+}
+
+const GRADIENTS: &str = include_str!("source/gradients.wgsl");
+const FAMILIES: [Family; 5] = [
+    Family { name: "value", code: &[include_str!("source/value.wgsl")] },
+    Family { name: "perlin", code: &[GRADIENTS, include_str!("source/perlin.wgsl")] },
+    Family { name: "classic", code: &[GRADIENTS, include_str!("source/classic.wgsl")] },
+    Family { name: "simplex", code: &[include_str!("source/simplex.wgsl")] },
+    Family { name: "worley", code: &[include_str!("source/worley.wgsl")] },
+];
+
+/// The names of the sums, and their texts. `SOURCE` in them stands for the name of the source's family.
+const SUMS: [[&str; 2]; 8] = [
+    ["sum", include_str!("combine/sum.wgsl")],
+    ["sizes", include_str!("combine/sizes.wgsl")],
+    ["weighted", include_str!("combine/weighted.wgsl")],
+    ["ping_pong", include_str!("combine/ping_pong.wgsl")],
+    ["hybrid", include_str!("combine/hybrid.wgsl")],
+    ["hetero", include_str!("combine/hetero.wgsl")],
+    ["swiss", include_str!("combine/swiss.wgsl")],
+    ["jordan", include_str!("combine/jordan.wgsl")],
+];
+
+/// The name of a function and its text, of each sum over each family: written at the first use.
+static TEXTS: [[OnceLock<[String; 2]>; FAMILIES.len()]; SUMS.len()] =
+    [const { [const { OnceLock::new() }; FAMILIES.len()] }; SUMS.len()];
+
+impl Program {
+    /// The noise in the plane as a function of WGSL.
+    pub(crate) fn shader(&self) -> Shader {
+        let (family, of_source, skew) = self.source.encoded();
+        let (sum, parameters) = self.combine.encoded();
+        let skew_factor = skew as f32;
+        let octaves = self.octaves();
+        let mut words = vec![octaves.len() as u32, of_source.len() as u32, skew_factor.to_bits()];
+        words.extend(parameters);
+        for octave in octaves {
+            words.extend(octave.words[..2].iter().flatten());
+            let shift = match self.combine {
+                Combine::Shaped { shape: Shape::Swiss { warp }, .. } => warp * octave.ratio as f32,
+                Combine::Shaped { shape: Shape::Jordan { warp, .. }, .. } => warp,
+                _ => 0.0,
+            };
+            let numbers = [octave.amplitude, octave.slope, octave.gain, shift, (1.0 / octave.ratio) as f32];
+            words.extend(numbers.map(f32::to_bits));
+        }
+        words.extend(of_source);
+        let lattices = octaves.iter().map(|octave| {
+            let [along, across] = [octave.frequency * (1.0 + skew), octave.frequency * skew];
+            let [x, y, ..] = octave.offset;
+            let shared = (x + y) * skew;
+            Lattice { matrix: [[along, across], [across, along]], offset: [x + shared, y + shared], limit: self.limit }
+        });
+        let Family { name, code } = &FAMILIES[family];
+        let [function, text] = TEXTS[sum][family].get_or_init(|| {
+            let [sum, text] = SUMS[sum];
+            [format!("{sum}_{name}"), text.replace("SOURCE", name)]
+        });
+        let mut parts = vec![PLACE, HASH, OCTAVES];
+        parts.extend_from_slice(code);
+        parts.push(text);
+        Shader { name: function, code: parts, words, lattices: lattices.collect() }
+    }
+}
+
+impl Source {
+    /// Index of its family, its words, and the skew of its lattice.
+    fn encoded(self) -> (usize, Vec<u32>, f64) {
+        let slanted = |corners: u32, reach: f32, scale: f32, directions: u32| {
+            (3, vec![corners, reach.to_bits(), scale.to_bits(), directions], SKEW[0])
+        };
+        match self {
+            Source::Value(fade) => {
+                let fade = match fade {
+                    Fade::Step => 0,
+                    Fade::Linear => 1,
+                    Fade::Cubic => 2,
+                    Fade::Quintic => 3,
+                };
+                (0, vec![fade], 0.0)
+            }
+            Source::Perlin => (1, Vec::new(), 0.0),
+            Source::Classic(variant) => (2, classic(variant), 0.0),
+            Source::Simplex => slanted(3, REACH, Plain::SCALE[0], 0),
+            Source::OpenSimplex2(Smoothness::Fast) => slanted(3, REACH, Open::SCALE[0], 1),
+            Source::OpenSimplex2(Smoothness::Smooth) => slanted(5, WIDE_REACH[0], WIDE_SCALE[0], 1),
+            Source::Worley(cellular) => {
+                let distance = match cellular.distance {
+                    Distance::Euclidean => 0,
+                    Distance::Manhattan => 1,
+                    Distance::Chebyshev => 2,
+                };
+                let feature = match cellular.feature {
+                    Feature::F1 => 0,
+                    Feature::F2 => 1,
+                    Feature::Difference => 2,
+                    Feature::Product => 3,
+                    Feature::Value => 4,
+                    Feature::Edge => 5,
+                };
+                let [jitter, rest] = [cellular.jitter, 0.5 - 0.5 * cellular.jitter].map(f32::to_bits);
+                (4, vec![jitter, rest, distance, feature, (2.0 / cellular.bound(2)).to_bits()], 0.0)
+            }
+        }
+    }
+}
+
+/// The mask of hashes, the permutation, and the gradients of the masked hashes.
+fn classic(variant: ClassicVariant) -> Vec<u32> {
+    let (mask, gradient): (usize, fn(usize) -> [f32; 2]) = match variant {
+        ClassicVariant::Diagonal => (7, |hash| [reference::DIAGONAL_X[hash], reference::DIAGONAL_Y[hash]]),
+        ClassicVariant::Eight => (7, |hash| [reference::EIGHT_X[hash], reference::EIGHT_Y[hash]]),
+        ClassicVariant::Angle => (255, |hash| [reference::SINE[(hash + 64) & 255], reference::SINE[hash]]),
+    };
+    let mut words = vec![mask as u32];
+    let packed = |bytes: &[u32]| bytes.iter().rev().fold(0, |word, byte| word << 8 | byte);
+    words.extend(reference::TABLE.chunks(4).map(packed));
+    words.extend((0..=mask).flat_map(gradient).map(f32::to_bits));
+    words
+}
+
+impl Combine {
+    /// Index of its sum, and the sum's parameters.
+    fn encoded(self) -> (usize, [u32; 3]) {
+        let numbers = |numbers: [f32; 2]| [numbers[0].to_bits(), numbers[1].to_bits(), 0];
+        match self {
+            Combine::Sum => (0, [0; 3]),
+            Combine::Sizes { sign } => (1, numbers([sign, 0.0])),
+            Combine::Weighted { k, falloff, .. } => {
+                let falloff = match falloff {
+                    Falloff::Reciprocal => 0,
+                    Falloff::Exponential => 1,
+                    Falloff::SquareRoot => 2,
+                    Falloff::Smoothstep => 3,
+                };
+                (2, [k.to_bits(), falloff, 0])
+            }
+            Combine::Shaped { shape, scale, .. } => match shape {
+                Shape::PingPong { strength } => (3, numbers([strength, scale])),
+                Shape::Hybrid { offset } => (4, numbers([offset, scale])),
+                Shape::Hetero { offset } => (5, numbers([offset, scale])),
+                Shape::Swiss { .. } => (6, numbers([0.0, scale])),
+                Shape::Jordan { damp, .. } => (7, numbers([damp, scale])),
+            },
+        }
+    }
+}
