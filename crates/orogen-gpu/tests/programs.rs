@@ -125,3 +125,21 @@ fn a_lost_device_leaves_the_work_to_the_processor() {
     assert_eq!(session.open(recipe).unwrap().window("height", &window).unwrap(), exact);
     assert!(gpu.failure().is_some_and(|failure| failure.to_string().contains("lost")));
 }
+
+/// The presets, with the layers that a preview shows.
+#[test]
+fn presets_are_close_to_those_of_the_processor() {
+    let session = session();
+    for preset in orogen_engine::presets::all() {
+        let recipe = preset.recipe().unwrap();
+        let world = session.open(recipe.clone()).unwrap();
+        let window = world.window_fitting(96).unwrap_or(Window::new(96, 96, recipe.world.cell));
+        let begun = std::time::Instant::now();
+        let made = world.window("height", &window).unwrap();
+        let seconds = begun.elapsed().as_secs_f64();
+        let difference = common::difference(&common::exact(&recipe, "height", &window), &made);
+        println!("{} {difference:?} {seconds:.2} s, {} shaders", preset.name, gpu().shaders_compiled());
+        assert!(difference.beyond < 1e-2, "{} {difference:?}", preset.name);
+        assert_eq!(gpu().failure(), None, "{}", preset.name);
+    }
+}
