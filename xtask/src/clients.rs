@@ -5,6 +5,7 @@
 
 mod asan;
 mod blender;
+mod gpu;
 mod install;
 mod neon;
 mod presets;
@@ -47,6 +48,7 @@ Builds `orogen` in release mode, installs missing clients and runs every step, o
   relief    gdaldem computes the same hillshade, slope and aspect
   layers    GRASS, WhiteboxTools and gdaldem compute the same derived layers: wetness, HAND, insolation, viewshed, landforms ...
   studio    the studio's tests with Mesa's software Vulkan, and its window under Xvfb in both languages
+  gpu       fields, filters, presets and pictures on a graphics card, or Mesa's software Vulkan, beside the processor's; and without any card
   fuzz      libFuzzer on the readers of foreign files, 15 s each
   taplo     taplo validates every recipe against the JSON Schema, and rejects broken ones
 
@@ -143,6 +145,15 @@ const CLIENTS: &[Client] = &[
         pip: &[NUMPY, PILLOW],
         npm: &[],
     },
+    Client {
+        name: "gpu",
+        apt: &[
+            ("/usr/share/doc/mesa-vulkan-drivers/copyright", "mesa-vulkan-drivers"),
+            ("/usr/share/doc/libvulkan1/copyright", "libvulkan1"),
+        ],
+        pip: &[NUMPY, PILLOW],
+        npm: &[],
+    },
     Client { name: "fuzz", apt: &[("g++", "g++")], pip: &[], npm: &[] },
     Client { name: "taplo", apt: &[("node", "nodejs"), ("npm", "npm")], pip: &[], npm: &["@taplo/cli@0.7.0"] },
 ];
@@ -209,6 +220,7 @@ const STEPS: &[&Step] = &[
         run: || script("layers"),
     },
     &Step { name: "studio", about: "the studio with software Vulkan, and its window under Xvfb", run: studio::check },
+    &Step { name: "gpu", about: "terrain and pictures on a graphics card, beside the processor's", run: gpu::check },
     &Step { name: "fuzz", about: "libFuzzer on the readers of foreign files", run: fuzz },
     &Step { name: "taplo", about: "taplo checks the recipes against the schema", run: || script("taplo") },
 ];

@@ -1,12 +1,13 @@
 //! The studio: its tests with a software adapter, and its window on a display without a screen.
 
+use super::gpu::{PACKAGES, lint};
 use crate::failure::Result;
 use crate::shell::{cargo, run as sh};
 
 /// Tests it as a person uses it, and opens its window in both languages.
 pub fn check() -> Result {
-    sh(&mut cargo("clippy --quiet --package orogen-studio --all-targets --features kittest -- -D warnings"))?;
-    sh(&mut cargo("test --package orogen-studio --features kittest"))?;
-    sh(&mut cargo("build --quiet --package orogen-studio --features kittest"))?;
+    lint()?;
+    sh(&mut cargo(&format!("test {PACKAGES} --lib --test window")))?;
+    sh(&mut cargo(&format!("build --quiet {PACKAGES} --bins")))?;
     super::script("studio")
 }

@@ -1,0 +1,98 @@
+//! Prints how far terrain on a graphics card is from the processor's: the tables of docs/gpu.md.
+//!
+//! ```text
+//! cargo run --release -p orogen-gpu --example differences
+//! ```
+
+#[path = "../tests/common/mod.rs"]
+mod common;
+
+use common::{compare, gpu, session};
+use orogen_engine::lower::Lowering;
+use orogen_engine::node::Node;
+use orogen_engine::op::{Op, WorldParams};
+use orogen_engine::{Recipe, Window, presets};
+
+/// What the ops read: noise, heights in metres, and areas.
+const SOURCES: &str = "orogen = 1\n[world]\ncell = 10\nsize = [4e6, 4e6]\n[nodes.hills]\nop = \"fbm\"\nseed = 3\nwavelength = 700\n\
+    [nodes.other]\nop = \"perlin\"\nseed = 4\nwavelength = 900\n\
+    [nodes.heights]\nop = \"expr\"\nexpr = \"300 + 400 * hills\"\n";
+
+/// Samples near the origin and a thousand kilometres away.
+fn windows() -> [Window; 2] {
+    let window = Window::new(257, 193, 10.0);
+    [window.at(20, 31), window.at(100_000, 100_003)]
+}
+
+/// A recipe with one node of an op with its defaults.
+fn recipe(node: &Node) -> Option<Recipe> {
+    let spec = node.spec();
+    let reads_heights = !matches!(node.op(), Op::Field(_));
+    let mut text = format!("{SOURCES}[nodes.made]\nop = \"{}\"\n", spec.op);
+    for (i, input) in spec.inputs.iter().filter(|input| input.required).enumerate() {
+        let source = if reads_heights { "heights" } else { ["hills", "other"][i % 2] };
+        text.push_str(&format!("{} = \"{source}\"\n", input.name));
+    }
+    text.push_str("[outputs]\nheight = \"made\"\n");
+    Recipe::parse(&text, spec.op).ok()
+}
+
+/// Why the processor computes an op, if it does; `Err` for ops of which there is nothing to compute, or that are no fields and filters.
+fn reason(node: &Node) -> Result<Option<&'static str>, ()> {
+    let world_params = WorldParams { seed: 0, size: Some([4e6, 4e6]), cell: 10.0, sea_level: 0.0 };
+    match node.op() {
+        Op::Field(field) if field.terms().is_some() || field.source_cell(1.0, 1.0).is_some() => Err(()),
+        Op::Field(field) if field.coord_map().is_some() => Ok(None),
+        Op::Field(field) => Ok(reason_of(&field.lower(0, &world_params))),
+        Op::Filter(filter) => Ok(reason_of(&filter.lower(10.0, &world_params))),
+        Op::Levelled(_) | Op::Solver(_) => Err(()),
+    }
+}
+
+fn reason_of<T>(lowering: &Lowering<T>) -> Option<&'static str> {
+    match lowering {
+        Lowering::Shader(_) => None,
+        Lowering::Processor(why) => Some(why),
+        Lowering::Missing => Some("not written yet"),
+    }
+}
+
+fn main() {
+    let session = session();
+    println!("Adapter: {}, {}.\n", gpu().adapter(), gpu().adapter().driver);
+    println!("| op | layer | RMS | worst | worst, of the range | worst at 1000 km, of the range |\n|---|---|---|---|---|---|");
+    let mut on_processor = Vec::new();
+    for node in Node::all() {
+        let name = node.spec().op;
+        match reason(&node) {
+            Err(()) => continue,
+            Ok(Some(why)) => {
+                on_processor.push((name, why));
+                continue;
+            }
+            Ok(None) => {}
+        }
+        let Some(recipe) = recipe(&node) else { continue };
+        for layer in node.layers() {
+            let path = format!("made.{}", layer.name);
+            let path = if node.layers().len() == 1 { "height".to_string() } else { path };
+            let [near, far] = windows().map(|window| compare(&session, &recipe, &path, &window));
+            println!("| `{name}` | {} | {:.1e} | {:.1e} | {:.1e} | {:.1e} |", layer.name, near.rms, near.worst, near.share, far.share);
+        }
+    }
+    println!("\n| preset | RMS in m | worst in m | worst, of the range |\n|---|---|---|---|");
+    for preset in presets::all() {
+        let Ok(recipe) = preset.recipe() else { continue };
+        let window = session.open(recipe.clone()).and_then(|world| world.window_fitting(256));
+        let window = window.unwrap_or(Window::new(256, 256, recipe.world.cell));
+        let difference = compare(&session, &recipe, "height", &window);
+        println!("| `{}` | {:.1e} | {:.1e} | {:.1e} |", preset.name, difference.rms, difference.worst, difference.share);
+    }
+    println!("\n| op | why the processor computes it |\n|---|---|");
+    for (name, why) in on_processor {
+        println!("| `{name}` | {why} |");
+    }
+    if let Some(failure) = gpu().failure() {
+        println!("\n{failure}");
+    }
+}

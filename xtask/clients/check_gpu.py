@@ -1,0 +1,74 @@
+"""Commands on a graphics card, on a card that is not there, and without any driver: the processor always stands in."""
+
+import json
+import os
+import subprocess
+from pathlib import Path
+
+import numpy
+from orogen import BINARY, WORK, Checks
+from PIL import Image
+
+checks = Checks()
+# Built with graphics cards, which the release under test is not.
+OROGEN = Path(BINARY).parent.parent / "debug" / "orogen"
+WITHOUT_DRIVERS = {**os.environ, "VK_DRIVER_FILES": "/nonexistent", "VK_ICD_FILENAMES": "/nonexistent"}
+
+
+def run(*arguments, program=OROGEN, env=None):
+    """Runs the command; returns its output and its messages."""
+    line = [program, *map(str, arguments)]
+    done = subprocess.run(line, cwd=WORK, capture_output=True, stdin=subprocess.DEVNULL, env=env)
+    checks.equal(f"{' '.join(line[1:])} ends well", done.returncode, 0)
+    if done.returncode != 0:
+        print(done.stderr.decode())
+    # The loader of Vulkan may have messages of its own.
+    messages = [line for line in done.stderr.decode().splitlines() if "XDG_RUNTIME_DIR" not in line]
+    return done.stdout.decode(), messages
+
+
+def heights(folder):
+    """The heights in metres, and the summary."""
+    summary = json.loads((WORK / folder / "summary.json").read_text())
+    grey = numpy.asarray(Image.open(WORK / folder / "height.png"), dtype=numpy.float64) / 65535
+    low, high = summary["height_min"], summary["height_max"]
+    return low + grey * (high - low), summary
+
+
+devices = json.loads(run("devices", "--json")[0])
+checks.that("there is an adapter", len(devices) > 0)
+checks.that("an adapter can be used", any(device["refused"] is None for device in devices), devices)
+checks.that("its buffers have a size", all(device["buffer_bytes"] >= 128 << 20 for device in devices), devices)
+checks.that("the list names it", devices[0]["name"] in run("devices")[0])
+
+for recipe in ["island", "mesa", "archipelago"]:
+    arguments = ["generate", recipe, "--size", "256", "--quiet"]
+    _, exact_messages = run(*arguments, "-o", f"{recipe}-cpu")
+    _, messages = run(*arguments, "-o", f"{recipe}-gpu", "--device", "gpu")
+    checks.equal(f"{recipe}: nothing stands in", messages, [])
+    (exact, summary), (preview, _) = heights(f"{recipe}-cpu"), heights(f"{recipe}-gpu")
+    relief = summary["height_max"] - summary["height_min"]
+    checks.that(f"{recipe}: the preview is close", abs(preview - exact).max() < 2e-4 * relief, abs(preview - exact).max())
+
+text, _ = run("generate", "island", "--size", "64", "-o", "told", "--device", "gpu")
+checks.that("the summary names the card", "preview" in text and devices[0]["name"] in text, text)
+
+for what, arguments, env in [
+    ("no such card", ["--device", "gpu:no such card"], None),
+    ("no driver", ["--device", "gpu"], WITHOUT_DRIVERS),
+]:
+    folder = what.replace(" ", "-")
+    _, messages = run("generate", "island", "--size", "256", "--quiet", "-o", folder, *arguments, env=env)
+    checks.equal(f"{what}: one line says so", [len(messages), messages[0].endswith("the processor computes instead")], [1, True])
+    same = (WORK / folder / "height.png").read_bytes() == (WORK / "island-cpu" / "height.png").read_bytes()
+    checks.that(f"{what}: the heights are those of the processor", same)
+_, messages = run("generate", "island", "--size", "64", "--quiet", "-o", "auto", "--device", "auto", env=WITHOUT_DRIVERS)
+checks.equal("auto says nothing without a card", messages, [])
+checks.that("devices says that there is none", "no graphics card" in run("devices", env=WITHOUT_DRIVERS)[0])
+
+# The release under test is built without graphics cards.
+checks.that("it says so", "built without" in run("devices", program=BINARY)[0])
+_, messages = run("generate", "island", "--size", "64", "--quiet", "-o", "without", "--device", "gpu", program=BINARY)
+checks.that("the processor stands in for it", len(messages) == 1 and "--features gpu" in messages[0], messages)
+
+checks.end()
