@@ -8,7 +8,7 @@ const NOISE_OCTAVE: u32 = 9u;
 const NOISE_LATTICE: u32 = 12u;
 
 // A value and its slopes along x and y.
-struct Sloped {
+struct NoiseSloped {
     value: f32,
     slope: vec2<f32>,
 }
@@ -24,8 +24,8 @@ fn noise_lattice(base: u32) -> u32 {
 }
 
 // A sample of an octave with its factors.
-fn noise_scaled(octave: u32, raw: vec3<f32>) -> Sloped {
-    return Sloped(number(octave, 4u) * raw.x, number(octave, 5u) * raw.yz);
+fn noise_scaled(octave: u32, raw: vec3<f32>) -> NoiseSloped {
+    return NoiseSloped(number(octave, 4u) * raw.x, number(octave, 5u) * raw.yz);
 }
 
 fn noise_moved_along(cell: Cell, by: f32) -> Cell {

@@ -1,4 +1,4 @@
-// De Carpentier's swiss turbulence: ridges whose slopes displace finer octaves. Parameters: none, and factor of the result.
+// De Carpentier's swiss turbulence: ridges whose slopes displace finer octaves. Parameter, the second: factor of the result.
 fn swiss_SOURCE(base: u32, place: Place) -> f32 {
     let source = noise_source(base);
     var lattice = noise_lattice(base);

@@ -11,12 +11,12 @@ fn classic_gradient(source: u32, x: u32, y: u32) -> vec2<f32> {
     return vec2<f32>(number(source, 65u + 2u * hash), number(source, 66u + 2u * hash));
 }
 
-fn classic_gradients(source: u32, octave: u32, x: Cell, y: Cell) -> Gradients {
+fn classic_gradients(source: u32, octave: u32, x: Cell, y: Cell) -> NoiseGradients {
     let column = x.low + data[octave];
     let here = classic_permuted(source, column);
     let next = classic_permuted(source, column + 1u);
     let row = y.low + data[octave + 2u];
-    return Gradients(
+    return NoiseGradients(
         classic_gradient(source, here, row),
         classic_gradient(source, next, row),
         classic_gradient(source, here, row + 1u),
@@ -25,9 +25,9 @@ fn classic_gradients(source: u32, octave: u32, x: Cell, y: Cell) -> Gradients {
 }
 
 fn classic_value(source: u32, octave: u32, x: Cell, y: Cell) -> f32 {
-    return gradients_value(classic_gradients(source, octave, x, y), vec2<f32>(x.t, y.t));
+    return noise_gradients_value(classic_gradients(source, octave, x, y), vec2<f32>(x.t, y.t));
 }
 
 fn classic_slopes(source: u32, octave: u32, x: Cell, y: Cell) -> vec3<f32> {
-    return gradients_slopes(classic_gradients(source, octave, x, y), vec2<f32>(x.t, y.t));
+    return noise_gradients_slopes(classic_gradients(source, octave, x, y), vec2<f32>(x.t, y.t));
 }

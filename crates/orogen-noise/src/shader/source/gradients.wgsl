@@ -1,7 +1,7 @@
 // Noise of gradients at the corners of square cells.
 
 // The gradients of the corners: at the lower y, and at the upper y.
-struct Gradients {
+struct NoiseGradients {
     g00: vec2<f32>,
     g10: vec2<f32>,
     g01: vec2<f32>,
@@ -9,7 +9,7 @@ struct Gradients {
 }
 
 // The products of the gradients and the ways from the corners to the sample, in the same order.
-fn gradients_ramps(g: Gradients, t: vec2<f32>) -> vec4<f32> {
+fn noise_gradients_ramps(g: NoiseGradients, t: vec2<f32>) -> vec4<f32> {
     let s = t - 1.0;
     return vec4<f32>(
         g.g00.x * t.x + g.g00.y * t.y,
@@ -19,16 +19,16 @@ fn gradients_ramps(g: Gradients, t: vec2<f32>) -> vec4<f32> {
     );
 }
 
-fn gradients_value(g: Gradients, t: vec2<f32>) -> f32 {
-    let ramps = gradients_ramps(g, t);
+fn noise_gradients_value(g: NoiseGradients, t: vec2<f32>) -> f32 {
+    let ramps = noise_gradients_ramps(g, t);
     let u = noise_quintic(t.x).x;
     let v = noise_quintic(t.y).x;
     let across = ramps.xy * (1.0 - v) + ramps.zw * v;
     return across.x * (1.0 - u) + across.y * u;
 }
 
-fn gradients_slopes(g: Gradients, t: vec2<f32>) -> vec3<f32> {
-    let ramps = gradients_ramps(g, t);
+fn noise_gradients_slopes(g: NoiseGradients, t: vec2<f32>) -> vec3<f32> {
+    let ramps = noise_gradients_ramps(g, t);
     let u = noise_quintic(t.x);
     let v = noise_quintic(t.y);
     let across = ramps.xy * (1.0 - v.x) + ramps.zw * v.x;
