@@ -21,6 +21,8 @@ pub mod budget;
 pub mod chunks;
 #[doc(hidden)]
 pub mod device;
+#[doc(hidden)]
+pub mod device_choice;
 mod engine;
 pub mod expression;
 pub mod field;

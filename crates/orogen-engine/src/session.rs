@@ -98,6 +98,13 @@ impl Session {
         Session { device: Some(device), ..self.clone() }
     }
 
+    /// The same session without its device: all is computed by the processor.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn without_device(&self) -> Session {
+        Session { device: None, ..self.clone() }
+    }
+
     /// The memory budget, which callers can reserve from: see [`Budget::reserve`].
     #[must_use]
     pub fn budget(&self) -> &Budget {

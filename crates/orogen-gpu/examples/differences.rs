@@ -60,7 +60,9 @@ fn reason_of<T>(lowering: &Lowering<T>) -> Option<&'static str> {
 fn main() {
     let session = session();
     println!("Adapter: {}, {}.\n", gpu().adapter(), gpu().adapter().driver);
-    println!("| op | layer | RMS | worst | worst, of the range | worst at 1000 km, of the range |\n|---|---|---|---|---|---|");
+    println!(
+        "| op | layer | RMS | worst | worst, of the range | worst at 1000 km, of the range |\n|---|---|---|---|---|---|"
+    );
     let mut on_processor = Vec::new();
     for node in Node::all() {
         let name = node.spec().op;
@@ -77,7 +79,10 @@ fn main() {
             let path = format!("made.{}", layer.name);
             let path = if node.layers().len() == 1 { "height".to_string() } else { path };
             let [near, far] = windows().map(|window| compare(&session, &recipe, &path, &window));
-            println!("| `{name}` | {} | {:.1e} | {:.1e} | {:.1e} | {:.1e} |", layer.name, near.rms, near.worst, near.share, far.share);
+            println!(
+                "| `{name}` | {} | {:.1e} | {:.1e} | {:.1e} | {:.1e} |",
+                layer.name, near.rms, near.worst, near.share, far.share
+            );
         }
     }
     println!("\n| preset | RMS in m | worst in m | worst, of the range |\n|---|---|---|---|");
@@ -86,7 +91,10 @@ fn main() {
         let window = session.open(recipe.clone()).and_then(|world| world.window_fitting(256));
         let window = window.unwrap_or(Window::new(256, 256, recipe.world.cell));
         let difference = compare(&session, &recipe, "height", &window);
-        println!("| `{}` | {:.1e} | {:.1e} | {:.1e} |", preset.name, difference.rms, difference.worst, difference.share);
+        println!(
+            "| `{}` | {:.1e} | {:.1e} | {:.1e} |",
+            preset.name, difference.rms, difference.worst, difference.share
+        );
     }
     println!("\n| op | why the processor computes it |\n|---|---|");
     for (name, why) in on_processor {

@@ -3,6 +3,7 @@
 use crate::adapters::{Adapter, Choice, found};
 use crate::failure::Failure;
 use crate::pipelines::Pipelines;
+use orogen_engine::device_choice::DeviceChoice;
 use orogen_grid::error::Error;
 use orogen_grid::progress::Progress;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -96,6 +97,20 @@ impl Gpu {
             true => "no driver for Vulkan, Metal or Direct3D 12 was found".to_string(),
             false => refused.join("; "),
         }))
+    }
+
+    /// Opens the card of a choice; `None` for the processor, or if there is none for [`DeviceChoice::Auto`].
+    ///
+    /// # Errors
+    /// If a card was asked for and none can be used.
+    pub fn chosen(choice: &DeviceChoice) -> Result<Option<Gpu>, Failure> {
+        let choice = match choice {
+            DeviceChoice::Processor => return Ok(None),
+            DeviceChoice::Auto => return Ok(Gpu::open(&Options::new(Choice::Card)).ok()),
+            DeviceChoice::Card(None) => Choice::Any,
+            DeviceChoice::Card(Some(name)) => Choice::Named(name.clone()),
+        };
+        Gpu::open(&Options::new(choice)).map(Some)
     }
 
     fn opened(adapter: Adapter, handle: &wgpu::Adapter, options: &Options) -> Result<Gpu, wgpu::RequestDeviceError> {

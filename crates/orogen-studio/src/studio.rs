@@ -222,10 +222,10 @@ impl Studio {
         self.worker.share()
     }
 
-    /// The session.
+    /// The session for what is kept: without a graphics card, which makes previews alone.
     #[must_use]
-    pub fn session(&self) -> &Session {
-        self.worker.session()
+    pub fn session(&self) -> Session {
+        self.worker.session().without_device()
     }
 
     /// Whether the picture is the finest of the current text and look.

@@ -43,6 +43,8 @@
 //! write `..Default::default()` after the parameters that you set. Noises without recipes are in the crate `orogen-noise`.
 #![forbid(unsafe_code)]
 
+#[doc(hidden)]
+pub use orogen_engine::device_choice;
 #[doc(inline)]
 pub use orogen_engine::{
     bands, budget, choice, chunks, declare, expression, field, filter, growth, ids, laws, layer, node, objects, op,

@@ -5,6 +5,7 @@ use std::io;
 use std::path::PathBuf;
 use std::process::Command;
 
+use orogen::device_choice::DeviceChoice;
 use orogen::{Error, ErrorKind};
 
 use crate::failure::Failure;
@@ -15,6 +16,9 @@ use crate::source::Source;
 pub struct Args {
     /// A recipe file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...) [default: a page of presets]
     recipe: Option<PathBuf>,
+    /// Where previews are computed: cpu, gpu, gpu:NAME or auto; exports are always the processor's
+    #[arg(long, value_name = "DEVICE", default_value_t)]
+    device: DeviceChoice,
 }
 
 /// The program with the window.
@@ -26,7 +30,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     if let Some(Source::Stdin) = args.recipe.as_deref().map(Source::find).transpose()? {
         return Err(Failure::Usage("the studio opens files and presets, not standard input; name a file".into()));
     }
-    match Command::new(program()).args(&args.recipe).status() {
+    match Command::new(program()).arg("--device").arg(args.device.to_string()).args(&args.recipe).status() {
         Ok(status) if status.success() => Ok(()),
         // It has said why.
         Ok(_) => Err(Failure::Told),

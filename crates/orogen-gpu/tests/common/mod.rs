@@ -12,8 +12,14 @@ pub fn gpu() -> &'static Gpu {
     GPU.get_or_init(|| Gpu::open(&gpu::Options::new(Choice::Any)).unwrap())
 }
 
+/// A session of the processor alone. All sessions share its solutions.
+fn processor() -> &'static Session {
+    static SESSION: OnceLock<Session> = OnceLock::new();
+    SESSION.get_or_init(|| Session::new(Options::default()).unwrap())
+}
+
 pub fn session_of(gpu: &Gpu) -> Session {
-    Session::new(Options::default()).unwrap().with_device(Arc::new(gpu.clone()))
+    processor().with_device(Arc::new(gpu.clone()))
 }
 
 pub fn session() -> Session {
@@ -22,9 +28,7 @@ pub fn session() -> Session {
 
 /// The window as the processor makes it.
 pub fn exact(recipe: &Recipe, layer: &str, window: &Window) -> Grid {
-    static SESSION: OnceLock<Session> = OnceLock::new();
-    let session = SESSION.get_or_init(|| Session::new(Options::default()).unwrap());
-    session.open(recipe.clone()).unwrap().window(layer, window).unwrap()
+    processor().open(recipe.clone()).unwrap().window(layer, window).unwrap()
 }
 
 /// The difference between two grids.

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use eframe::egui::{self, CentralPanel, Context, Panel, Ui};
+use orogen::gpu::Gpu;
 use orogen::{Budget, Options, Result, Session};
 
 use super::action::Action;
@@ -110,6 +111,8 @@ pub struct Start {
     pub folder: Option<PathBuf>,
     /// The document, in place of the start page.
     pub document: Option<Document>,
+    /// The graphics card that makes previews.
+    pub gpu: Option<Gpu>,
     /// What watches the graphics device.
     pub watch: DeviceWatch,
     /// Whether the run before ended because its device was lost.
@@ -127,8 +130,12 @@ impl App {
     /// # Errors
     /// If no threads can be started.
     pub fn new(context: &eframe::CreationContext<'_>, start: Start) -> Result<App> {
-        let Start { settings, folder, document, watch, is_after_loss, lose_device } = start;
+        let Start { settings, folder, document, gpu, watch, is_after_loss, lose_device } = start;
         let session = Session::new(Options { memory: Budget::of(settings.memory), ..Options::default() })?;
+        let session = match gpu {
+            Some(gpu) => session.with_device(Arc::new(gpu)),
+            None => session,
+        };
         let repaint = context.egui_ctx.clone();
         let wake: Wake = Arc::new(move || repaint.request_repaint());
         let language = settings.language();

@@ -167,7 +167,7 @@ impl ExportDialog {
         let own = studio.document.path().map(PathBuf::from);
         let recipe = studio.document.recipe().clone();
         self.outcome = None;
-        match Running::start(self.export.clone(), recipe, own, studio.session(), wake.clone()) {
+        match Running::start(self.export.clone(), recipe, own, &studio.session(), wake.clone()) {
             Ok(running) => self.running = Some(running),
             Err(error) => self.outcome = Some(Err(error.to_string())),
         }

@@ -35,7 +35,7 @@ impl RealismPanel {
     pub fn show(&mut self, ui: &mut Ui, studio: &Studio, language: Language) {
         // Drafts and coarse pictures would be measured for nothing.
         if let Some(frame) = studio.frame.as_ref().filter(|frame| frame.quality == Quality::Fine) {
-            self.survey.ask(studio.session(), frame);
+            self.survey.ask(&studio.session(), frame);
         }
         let is_busy = self.survey.is_busy();
         ui.horizontal(|ui| {

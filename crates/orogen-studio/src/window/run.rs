@@ -7,6 +7,8 @@ use std::time::Duration;
 
 use clap::Parser;
 use eframe::egui::ViewportBuilder;
+use orogen::device_choice::DeviceChoice;
+use orogen::gpu::Gpu;
 
 use super::app::{App, Start};
 use super::device::DeviceWatch;
@@ -21,6 +23,9 @@ use crate::studio::open;
 struct Arguments {
     /// A recipe file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...) [default: the start page]
     recipe: Option<PathBuf>,
+    /// Where previews are computed: cpu, gpu, gpu:NAME or auto; exports are always the processor's
+    #[arg(long, value_name = "DEVICE", default_value_t)]
+    device: DeviceChoice,
     /// The program was started again because the graphics device of the run before was lost
     #[arg(long, hide = true)]
     after_loss: bool,
@@ -47,6 +52,10 @@ pub fn run() -> ExitCode {
         Err(_) if arguments.after_loss => None,
         Err(error) => return fail(&error.to_string()),
     };
+    let gpu = Gpu::chosen(&arguments.device).unwrap_or_else(|failure| {
+        note(&format!("{failure}; the processor computes instead"));
+        None
+    });
     let viewport = ViewportBuilder::default()
         .with_title("Orogen")
         .with_app_id("orogen-studio")
@@ -58,6 +67,7 @@ pub fn run() -> ExitCode {
         settings,
         folder,
         document,
+        gpu,
         watch: watch.clone(),
         is_after_loss: arguments.after_loss,
         lose_device: arguments.lose_device,
@@ -86,8 +96,12 @@ pub fn run() -> ExitCode {
     }
 }
 
-#[allow(clippy::print_stderr, reason = "there is no window to say it in")]
 fn fail(message: &str) -> ExitCode {
-    eprintln!("error: {message}");
+    note(&format!("error: {message}"));
     ExitCode::FAILURE
+}
+
+#[allow(clippy::print_stderr, reason = "there is no window to say it in")]
+fn note(message: &str) {
+    eprintln!("{message}");
 }

@@ -97,7 +97,7 @@ impl VariantsPanel {
                 self.variants.push(Variant { value, edit, picture: None });
             }
         }
-        self.strip.ask(studio.session(), recipes, surface(studio.document.recipe()))
+        self.strip.ask(&studio.session(), recipes, surface(studio.document.recipe()))
     }
 }
 
