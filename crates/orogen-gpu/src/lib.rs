@@ -9,6 +9,7 @@ pub mod failure;
 #[doc(hidden)]
 pub mod job;
 mod pipelines;
+pub mod render;
 
 pub mod gpu;
 
