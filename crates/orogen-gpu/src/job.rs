@@ -52,11 +52,24 @@ impl Job<'_> {
     /// # Errors
     /// If the device was lost, has too little memory, or refuses a shader; `Ok(None)` if the work was cancelled.
     pub fn run(&self, gpu: &Gpu, is_cancelled: impl Fn() -> bool) -> Result<Option<Vec<Vec<f32>>>, Failure> {
+        self.run_in_parts(gpu, TOGETHER, is_cancelled)
+    }
+
+    /// The same with at most `together` dispatches at once: fewer, if each of them takes long.
+    ///
+    /// # Errors
+    /// Those of [`run`](Job::run).
+    pub fn run_in_parts(
+        &self,
+        gpu: &Gpu,
+        together: usize,
+        is_cancelled: impl Fn() -> bool,
+    ) -> Result<Option<Vec<Vec<f32>>>, Failure> {
         gpu.check()?;
-        let (device, queue) = (gpu.device(), gpu.queue());
+        let device = gpu.device();
         let out_of_memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let invalid = device.push_error_scope(wgpu::ErrorFilter::Validation);
-        let done = self.submit(gpu, device, queue, is_cancelled);
+        let done = self.submit(gpu, together.max(1), is_cancelled);
         let invalid = pollster::block_on(invalid.pop());
         let out_of_memory = pollster::block_on(out_of_memory.pop());
         gpu.check()?;
@@ -72,10 +85,10 @@ impl Job<'_> {
     fn submit(
         &self,
         gpu: &Gpu,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
+        together: usize,
         is_cancelled: impl Fn() -> bool,
     ) -> Result<Option<Vec<Vec<f32>>>, Failure> {
+        let (device, queue) = (gpu.device(), gpu.queue());
         let buffer = |words: usize, usage| {
             let size = 4 * words.max(4) as u64;
             device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
@@ -109,14 +122,14 @@ impl Job<'_> {
                 },
             ],
         });
-        for (part, dispatches) in self.dispatches.chunks(TOGETHER).enumerate() {
+        for (part, dispatches) in self.dispatches.chunks(together).enumerate() {
             if is_cancelled() {
                 return Ok(None);
             }
             let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             for (i, dispatch) in dispatches.iter().enumerate() {
-                let frame = FRAME * (part * TOGETHER + i) as u64;
+                let frame = FRAME * (part * together + i) as u64;
                 pass.set_pipeline(&*gpu.pipelines().of(device, dispatch.text)?);
                 pass.set_bind_group(0, &bindings, &[frame as u32]);
                 let [width, height] = dispatch.size;
@@ -125,7 +138,7 @@ impl Job<'_> {
             drop(pass);
             queue.submit([encoder.finish()]);
             // The next part waits for this one, so that a cancelled job leaves little behind.
-            if self.dispatches.len() > TOGETHER {
+            if self.dispatches.len() > together {
                 gpu.wait()?;
             }
         }

@@ -12,6 +12,7 @@ pub mod gpu;
 pub mod job;
 mod pipelines;
 mod program;
+pub mod render;
 mod session;
 
 pub use adapters::{Adapter, Choice, adapters};

@@ -1,7 +1,8 @@
 //! A rendered picture as one job.
 
 use std::io::{self, Write};
-use std::ops::RangeInclusive;
+use std::ops::{Range, RangeInclusive};
+use std::sync::{Arc, OnceLock};
 
 use super::finite;
 use crate::export::derived::layer::Derived;
@@ -10,7 +11,8 @@ use crate::export::derived::{albedo, list, roughness};
 use crate::export::files::Stopping;
 use crate::export::notes::SOFTWARE;
 use crate::export::options::Options;
-use crate::render::camera::{CameraSpec, View};
+use crate::render::camera::{Camera, CameraSpec, View};
+use crate::render::painter::{Painted, Painter};
 use crate::render::relief::Land;
 use crate::render::scene::{Colors, Edge, Scene, Style};
 use orogen_engine::budget::Reservation;
@@ -75,6 +77,8 @@ pub struct RenderJob {
     pub samples: u32,
     /// The window; by default the whole world at its own cell, which must then be bounded.
     pub window: Option<Window>,
+    /// The device that paints; by default the processor, which also paints what the device refuses.
+    pub painter: Option<Arc<dyn Painter>>,
 }
 
 impl Default for RenderJob {
@@ -93,6 +97,7 @@ impl Default for RenderJob {
             snow_line: style.snow_line,
             samples: style.samples,
             window: None,
+            painter: None,
         }
     }
 }
@@ -115,6 +120,12 @@ impl RenderJob {
     #[must_use]
     pub fn with_window(self, window: Window) -> RenderJob {
         RenderJob { window: Some(window), ..self }
+    }
+
+    /// The same, painted by this device.
+    #[must_use]
+    pub fn with_painter(self, painter: Arc<dyn Painter>) -> RenderJob {
+        RenderJob { painter: Some(painter), ..self }
     }
 
     /// Checks all options.
@@ -199,7 +210,9 @@ impl RenderJob {
         };
         let pixels = (self.size[0] * self.size[1]) as u64;
         let land = (window.len() as u64).saturating_mul(LAND);
-        let reserved = world.budget().reserve(land.saturating_add(3 * pixels).saturating_add(writing))?;
+        // A device's picture is whole before it is copied.
+        let copies = if self.painter.is_some() { 2 } else { 1 };
+        let reserved = world.budget().reserve(land.saturating_add(copies * 3 * pixels).saturating_add(writing))?;
         let has = |layer: &&str| world.recipe().outputs().any(|name| name == *layer);
         let layers: Vec<&str> = LAYERS.into_iter().filter(|layer| *layer == HEIGHT || has(layer)).collect();
         let plan = world.plan(&layers, &window)?;
@@ -234,10 +247,19 @@ impl RenderJob {
             snow_line: self.snow_line,
             samples: self.samples,
         };
-        let scene = Scene::new(&land, &style, &preparing)?;
+        let scene = Scene::prepared(&land, &style, self.painter.as_deref(), &preparing)?;
         preparing.finish();
         let spec = CameraSpec::new(self.view, self.size).with_fov(self.fov);
-        Ok(Rendering { scene, spec, window, warnings, painting, _reserved: reserved })
+        Ok(Rendering {
+            scene,
+            spec,
+            window,
+            warnings,
+            painting,
+            painter: self.painter.clone(),
+            refused: OnceLock::new(),
+            _reserved: reserved,
+        })
     }
 
     /// Albedo and roughness of the surfaces, if they are shown.
@@ -264,6 +286,8 @@ pub struct Rendering {
     /// Progress of painting.
     pub painting: Progress,
     window: Window,
+    painter: Option<Arc<dyn Painter>>,
+    refused: OnceLock<String>,
     _reserved: Reservation,
 }
 
@@ -295,6 +319,35 @@ impl Rendering {
         Picture::new(width, height, Pixel::Rgb8).with_notes(&[("Software", SOFTWARE)])
     }
 
+    /// Why the device did not paint, so that the processor did; `None` if it painted, or nothing was painted yet.
+    #[must_use]
+    pub fn refused(&self) -> Option<&str> {
+        self.refused.get().map(String::as_str)
+    }
+
+    /// Paints some rows of a picture of `size` pixels, like [`Scene::paint`], with the job's device. If the device refuses,
+    /// the processor paints this picture and all later ones, and [`refused`](Rendering::refused) says why.
+    ///
+    /// # Errors
+    /// If the work is cancelled.
+    pub fn paint(
+        &self,
+        camera: &Camera,
+        size: [usize; 2],
+        rows: Range<usize>,
+        bytes: &mut [u8],
+        progress: &Progress,
+    ) -> Result<()> {
+        if let (Some(painter), None) = (&self.painter, self.refused.get()) {
+            match painter.paint(&self.scene, camera, size, rows.clone(), bytes, progress)? {
+                Painted::Done => return Ok(()),
+                // The first reason remains.
+                Painted::Refused(why) => drop(self.refused.set(why)),
+            }
+        }
+        self.scene.paint(camera, size, rows, bytes, progress)
+    }
+
     /// Paints the picture of the job and writes it to a PNG file, atomically.
     ///
     /// # Errors
@@ -310,9 +363,70 @@ impl Rendering {
     pub fn to_stream(&self, out: &mut dyn Write) -> io::Result<()> {
         let camera = self.scene.camera(&self.spec);
         self.painting.expect(self.spec.size[1] as f64);
-        png::write(&mut Stopping { out, progress: &self.painting }, &self.picture(), |rows, bytes| {
+        let stopping = &mut Stopping { out, progress: &self.painting };
+        if self.painter.is_some() {
+            // At once: a device receives the scene for each call.
+            let [width, height] = self.spec.size;
+            let mut bytes = vec![0; 3 * width * height];
+            let part = self.painting.part(height as f64);
+            self.paint(&camera, self.spec.size, 0..height, &mut bytes, &part)?;
+            return png::write_through(stopping, &self.picture(), |out| out.write_all(&bytes));
+        }
+        png::write(stopping, &self.picture(), |rows, bytes| {
             let part = self.painting.part(rows.len() as f64);
             Ok(self.scene.paint(&camera, self.spec.size, rows, bytes, &part)?)
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A device that paints all pixels in one grey, or refuses.
+    struct Device(Option<u8>);
+
+    impl Painter for Device {
+        fn paint(
+            &self,
+            _scene: &Scene,
+            _camera: &Camera,
+            _size: [usize; 2],
+            _rows: Range<usize>,
+            bytes: &mut [u8],
+            _progress: &Progress,
+        ) -> Result<Painted> {
+            Ok(match self.0 {
+                Some(grey) => {
+                    bytes.fill(grey);
+                    Painted::Done
+                }
+                None => Painted::Refused("it was lost".to_string()),
+            })
+        }
+    }
+
+    /// The picture as PNG, and why the device refused.
+    fn picture(painter: Option<Device>) -> (Vec<u8>, Option<String>) {
+        let recipe = orogen_engine::presets::find("hills").unwrap().recipe().unwrap();
+        let job = RenderJob { size: [40, 24], samples: 1, ..RenderJob::default() };
+        let mut job = job.with_window(Window::new(50, 40, 40.0));
+        if let Some(painter) = painter {
+            job = job.with_painter(Arc::new(painter));
+        }
+        let rendering = job.scene(&World::open(recipe).unwrap(), 1.0, 0, &Progress::none()).unwrap();
+        let mut bytes = Vec::new();
+        rendering.to_stream(&mut bytes).unwrap();
+        (bytes, rendering.refused().map(str::to_string))
+    }
+
+    #[test]
+    fn a_device_paints_and_the_processor_paints_what_it_refuses() {
+        let (plain, none) = picture(None);
+        assert_eq!(none, None);
+        let (grey, none) = picture(Some(Device(Some(99))));
+        assert!(grey != plain && none.is_none());
+        let (fallen_back, why) = picture(Some(Device(None)));
+        assert!(fallen_back == plain && why.as_deref() == Some("it was lost"));
     }
 }

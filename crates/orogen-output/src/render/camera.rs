@@ -92,11 +92,11 @@ const LEAST: f64 = 0.05;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
     eye: Vector,
-    ahead: Vector,
-    right: Vector,
-    down: Vector,
+    pub(super) ahead: Vector,
+    pub(super) right: Vector,
+    pub(super) down: Vector,
     /// Tangents of half the angles of view.
-    wide: [f64; 2],
+    pub(super) wide: [f64; 2],
     lifted: Option<f64>,
 }
 

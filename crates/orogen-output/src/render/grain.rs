@@ -3,16 +3,31 @@
 use orogen_noise::{Perlin, Points};
 
 /// Side of the tile in samples; a power of two.
-const SIDE: usize = 256;
+pub(super) const SIDE: usize = 256;
 
 /// Wavelength of the tile's noise in samples.
 const WAVELENGTH: usize = 8;
+
+/// Cosine and sine of 37 degrees times 0, 1, 2, ...
+const TURNS: [[f64; 2]; 8] = [
+    [1.0, 0.0],
+    [0.798_635_5, 0.601_815],
+    [0.275_637_4, 0.961_261_7],
+    [-0.358_368, 0.933_580_4],
+    [-0.848_048_1, 0.529_919_3],
+    [-0.996_194_7, -0.087_155_7],
+    [-0.743_144_8, -0.669_130_6],
+    [-0.190_809, -0.981_627_2],
+];
+
+/// Shift of a noise for each kind, in wavelengths, so that kinds of one angle differ.
+const SHIFT: f64 = 7.31;
 
 /// A tile of periodic Perlin noise with its derivatives.
 #[derive(Debug, Clone)]
 pub(super) struct Grain {
     /// Value, and derivatives east and south per wavelength.
-    samples: Vec<[f32; 3]>,
+    pub samples: Vec<[f32; 3]>,
 }
 
 /// A value between -1 and 1, and its derivatives east and south per wavelength.
@@ -42,19 +57,8 @@ impl Grain {
     /// The noise at a position in units of its wavelength. `kind` selects one of several independent noises; each is
     /// rotated by a different angle, which hides the repetition of the tile.
     pub fn at(&self, x: f64, y: f64, kind: u32) -> Bump {
-        /// Cosine and sine of 37 degrees times 0, 1, 2, ...
-        const TURNS: [[f64; 2]; 8] = [
-            [1.0, 0.0],
-            [0.798_635_5, 0.601_815],
-            [0.275_637_4, 0.961_261_7],
-            [-0.358_368, 0.933_580_4],
-            [-0.848_048_1, 0.529_919_3],
-            [-0.996_194_7, -0.087_155_7],
-            [-0.743_144_8, -0.669_130_6],
-            [-0.190_809, -0.981_627_2],
-        ];
         let [cos, sin] = TURNS[(kind & 7) as usize];
-        let shift = f64::from(kind) * 7.31;
+        let shift = f64::from(kind) * SHIFT;
         let scale = WAVELENGTH as f64;
         let (u, v) = ((x * cos - y * sin + shift) * scale, (x * sin + y * cos - shift) * scale);
         let (i, j) = (whole(u), whole(v));
@@ -68,6 +72,32 @@ impl Grain {
         });
         let (cos, sin) = (cos as f32, sin as f32);
         Bump { value, slope: [du * cos + dv * sin, dv * cos - du * sin] }
+    }
+}
+
+/// A noise of [`Grain`] as an affine map from positions to the tile: (u, v) = matrix (x, y) + offset, in samples.
+///
+/// The offset is that of an origin near the camera, reduced by whole tiles, so that single precision suffices.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct GrainMap {
+    pub matrix: [[f64; 2]; 2],
+    pub offset: [f64; 2],
+    /// Cosine and sine of the noise's angle.
+    pub turn: [f64; 2],
+}
+
+impl GrainMap {
+    /// The noise `kind` at (x * scale[0], y * scale[1]), for positions relative to `origin`.
+    pub fn new(kind: u32, scale: [f64; 2], origin: [f64; 2]) -> GrainMap {
+        let [cos, sin] = TURNS[(kind & 7) as usize];
+        let matrix = [[cos * scale[0], -sin * scale[1]], [sin * scale[0], cos * scale[1]]]
+            .map(|row| row.map(|part| part * WAVELENGTH as f64));
+        let shift = f64::from(kind) * SHIFT * WAVELENGTH as f64;
+        let offset = [0, 1].map(|k| {
+            let at = matrix[k][0] * origin[0] + matrix[k][1] * origin[1] + [shift, -shift][k];
+            at.rem_euclid(SIDE as f64)
+        });
+        GrainMap { matrix, offset, turn: [cos, sin] }
     }
 }
 

@@ -2,6 +2,10 @@
 
 use rayon::prelude::*;
 
+use super::albedo::{
+    BEDS, CLAY, DESERT_WAVES, FARMLAND, GRAVEL, LUSH, NATURAL_WAVES, OCTAVES, ROCK, SAND, SCREE, SCRUB, SHORE, SNOW,
+    SOIL, TREES, TUNDRA, Tones,
+};
 use super::grain::Grain;
 use super::relief::{Land, Relief};
 use orogen_grid::grid::Grid;
@@ -58,22 +62,22 @@ pub(super) struct Look {
 /// The ground of a land, prepared for shading.
 #[derive(Debug, Clone)]
 pub(super) struct GroundCover {
-    colors: Colors,
-    tint: Tint,
+    pub(super) colors: Colors,
+    pub(super) tint: Tint,
     /// Per sample: slope east and south (metres per metre), concavity (-1 to 1), flow (0 to 1).
-    shape: Vec<[f32; 4]>,
+    pub(super) shape: Vec<[f32; 4]>,
     /// Albedo and roughness of every sample; empty if surfaces are not shown.
-    cover: Vec<[f32; 4]>,
+    pub(super) cover: Vec<[f32; 4]>,
     /// Whether each sample had no finite height; empty if all had one.
-    missing: Vec<bool>,
-    columns: usize,
-    rows: usize,
-    cell: f32,
-    exaggeration: f32,
-    sea: Option<f32>,
-    snow_line: f32,
-    tree_line: f32,
-    grain: Grain,
+    pub(super) missing: Vec<bool>,
+    pub(super) columns: usize,
+    pub(super) rows: usize,
+    pub(super) cell: f32,
+    pub(super) exaggeration: f32,
+    pub(super) sea: Option<f32>,
+    pub(super) snow_line: f32,
+    pub(super) tree_line: f32,
+    pub(super) grain: Grain,
 }
 
 /// Land with less relief than this, in metres, has no snow by default.
@@ -152,6 +156,11 @@ impl GroundCover {
         self.grain.at(site.x * scale, site.y * scale, kind).value * seen
     }
 
+    fn noises(&self, site: &GroundPoint, waves: [f32; 4]) -> [f32; 4] {
+        let [a, b, c, d] = waves;
+        [self.noise(site, a, 0), self.noise(site, b, 1), self.noise(site, c, 2), self.noise(site, d, 3)]
+    }
+
     /// Whether the nearest sample has no finite height.
     fn is_missing(&self, site: &GroundPoint) -> bool {
         let nearest = |at: f64, count: usize| (at.max(0.0).round() as usize).min(count - 1);
@@ -164,14 +173,14 @@ impl GroundCover {
         let shape = self.shape_at(site.x, site.y);
         if self.is_missing(site) {
             let slope = [shape[0], shape[1]].map(|part| part * self.exaggeration);
-            return Look { albedo: NO_DATA.map(|part| decode(part) * MISSING), slope };
+            return Look { albedo: no_height(), slope };
         }
         let (albedo, rough) = match self.colors {
             Colors::Natural => self.natural(site, shape),
             Colors::Desert => self.desert(site, shape),
             Colors::Surfaces => self.covered(site),
-            Colors::Map => (self.tint.at(site.height).map(|c| c * PAPER), 0.0),
-            Colors::Clay => ([0.30, 0.265, 0.235], 0.0),
+            Colors::Map => (self.map_color(site.height), 0.0),
+            Colors::Clay => (CLAY, 0.0),
         };
         let mut slope = [shape[0], shape[1]];
         if rough > 0.0 {
@@ -183,7 +192,7 @@ impl GroundCover {
     /// Adds detail smaller than a cell: octaves from two cells down to the width of a pixel, the smaller ones steeper.
     fn roughen(&self, site: &GroundPoint, rough: f32, slope: &mut [f32; 2]) {
         let mut wavelength = 2.0 * self.cell;
-        for octave in 0..8u8 {
+        for octave in 0..OCTAVES {
             let seen = seen(wavelength, site.footprint) * (0.45 + 0.15 * f32::from(octave.min(4)));
             if seen <= 0.0 {
                 return;
@@ -199,6 +208,11 @@ impl GroundCover {
         }
     }
 
+    /// The color of a height on the map, as albedo.
+    pub fn map_color(&self, height: f32) -> Light {
+        self.tint.at(height).map(|c| c * PAPER)
+    }
+
     /// The recipe's surfaces. Between samples their color varies like that of soil and rock.
     fn covered(&self, site: &GroundPoint) -> (Light, f32) {
         let [red, green, blue, roughness] = self.between(&self.cover, site.x, site.y);
@@ -212,22 +226,21 @@ impl GroundCover {
         let steep = (east * east + south * south).sqrt();
         // 1 on slopes that face north.
         let north = south / (steep + 0.2);
-        let (wide, middle) = (self.noise(site, 1800.0, 0), self.noise(site, 420.0, 1));
-        let (small, fine) = (self.noise(site, 95.0, 2), self.noise(site, 24.0, 3));
+        let [wide, middle, small, fine] = self.noises(site, NATURAL_WAVES);
         let rough_edge = 0.6 * middle + 0.4 * small + 0.25 * fine;
 
         // Rock: partly greyer and browner, with faint beds.
         let bed = self.strata(site.height + 25.0 * wide + 6.0 * middle, 70.0);
-        let tone = 0.5 + 0.30 * wide + 0.25 * middle + 0.25 * small + 0.30 * fine + 0.22 * bed;
-        let rock = mix([0.070, 0.065, 0.061], [0.215, 0.195, 0.170], tone.clamp(0.0, 1.0));
-        let scree = mix([0.155, 0.142, 0.125], [0.245, 0.227, 0.200], 0.5 + 0.4 * small + 0.4 * fine);
+        let shade = 0.5 + 0.30 * wide + 0.25 * middle + 0.25 * small + 0.30 * fine + 0.22 * bed;
+        let rock = tone(ROCK, shade.clamp(0.0, 1.0));
+        let scree = tone(SCREE, 0.5 + 0.4 * small + 0.4 * fine);
 
         // Vegetation: forest below the tree line, meadow above it, sparser towards the snow.
         let over_trees = site.height - self.tree_line + 130.0 * wide + 90.0 * middle + 60.0 * north;
-        let lush = mix([0.070, 0.088, 0.034], [0.120, 0.122, 0.050], 0.5 + 0.5 * wide + 0.4 * small);
-        let tundra = mix([0.135, 0.125, 0.060], [0.185, 0.160, 0.095], 0.5 + 0.5 * middle + 0.4 * fine);
+        let lush = tone(LUSH, 0.5 + 0.5 * wide + 0.4 * small);
+        let tundra = tone(TUNDRA, 0.5 + 0.5 * middle + 0.4 * fine);
         let meadow = mix(lush, tundra, step(-250.0, 350.0, over_trees));
-        let trees = mix([0.016, 0.028, 0.012], [0.034, 0.048, 0.020], 0.5 + 0.45 * middle + 0.5 * fine);
+        let trees = tone(TREES, 0.5 + 0.45 * middle + 0.5 * fine);
         let wooded = step(120.0, -160.0, over_trees)
             * step(-0.42, 0.05, 0.55 * wide + 0.55 * middle + 0.25 * small + 0.5 * steep - 0.10)
             * step(1.05, 0.75, steep);
@@ -236,8 +249,7 @@ impl GroundCover {
 
         // Valley floors are farmland: lighter and more yellow.
         let floor = step(0.10, 0.03, steep) * step(0.0, -400.0, over_trees) * (1.0 - 0.6 * wooded);
-        color =
-            mix(color, mix([0.15, 0.16, 0.055], [0.22, 0.19, 0.085], 0.5 + 0.5 * middle + 0.5 * small), 0.6 * floor);
+        color = mix(color, tone(FARMLAND, 0.5 + 0.5 * middle + 0.5 * small), 0.6 * floor);
 
         // Too steep for soil, or too high.
         let high =
@@ -250,10 +262,10 @@ impl GroundCover {
 
         // Gravel along rivers, sand along the sea.
         let gravel = step(0.72, 0.92, flow) * step(0.20, 0.05, steep) * 0.5;
-        color = mix(color, [0.26, 0.245, 0.22], gravel);
+        color = mix(color, GRAVEL, gravel);
         if let Some(sea) = self.sea {
             let shore = step(9.0, 2.0, site.height - sea + 5.0 * small) * step(0.40, 0.15, steep);
-            color = mix(color, [0.40, 0.345, 0.25], shore);
+            color = mix(color, SHORE, shore);
             rough *= 1.0 - 0.8 * shore;
         }
 
@@ -266,24 +278,15 @@ impl GroundCover {
             + 110.0 * hollow;
         let lies = step(1.25, 0.80, steep + 0.15 * rough_edge - 0.25 * hollow - 0.0003 * above.clamp(0.0, 1500.0));
         let snow = step(-60.0, 140.0, above) * lies;
-        color = mix(color, [0.80, 0.83, 0.88], snow);
+        color = mix(color, SNOW, snow);
         rough = rough * (1.0 - snow) + 0.05 * snow;
         (color, rough)
     }
 
     /// Land with little vegetation.
     fn desert(&self, site: &GroundPoint, [east, south, hollow, flow]: [f32; 4]) -> (Light, f32) {
-        const BEDS: [Light; 6] = [
-            [0.27, 0.105, 0.055],
-            [0.33, 0.165, 0.088],
-            [0.21, 0.072, 0.040],
-            [0.37, 0.225, 0.130],
-            [0.29, 0.130, 0.068],
-            [0.42, 0.305, 0.200],
-        ];
         let steep = (east * east + south * south).sqrt();
-        let (wide, middle) = (self.noise(site, 1500.0, 0), self.noise(site, 300.0, 1));
-        let (small, fine) = (self.noise(site, 70.0, 2), self.noise(site, 18.0, 3));
+        let [wide, middle, small, fine] = self.noises(site, DESERT_WAVES);
         // Beds of some metres within beds of some tens of metres.
         let height = site.height + 14.0 * wide + 3.0 * middle;
         let at = f64::from(height) / 42.0;
@@ -292,13 +295,12 @@ impl GroundCover {
         let index = place as usize;
         let rock = mix(BEDS[index], BEDS[index + 1], place - index as f32);
         let rock = rock.map(|c| c * (1.0 + 0.12 * small + 0.14 * fine + 0.10 * middle));
-        let sand = mix([0.31, 0.175, 0.092], [0.37, 0.240, 0.140], 0.5 + 0.5 * middle + 0.3 * fine);
-        let scrub = [0.125, 0.125, 0.062];
+        let sand = tone(SAND, 0.5 + 0.5 * middle + 0.3 * fine);
         let bare = step(0.16, 0.42, steep + 0.06 * (middle + small + fine) - 0.05 * hollow);
         let mut color = mix(sand, rock, 0.25 + 0.75 * bare);
         let green = step(0.55, 0.85, flow) * step(0.35, 0.12, steep) * 0.75
             + 0.35 * step(0.05, 0.45, 0.6 * middle + 0.5 * small + 0.5 * fine) * (1.0 - bare);
-        color = mix(color, scrub, green.min(0.9));
+        color = mix(color, SCRUB, green.min(0.9));
         (color, 0.07 + 0.26 * bare)
     }
 
@@ -307,19 +309,28 @@ impl GroundCover {
         self.grain.at(f64::from(height / thickness), 0.53, 6).value
     }
 
+    /// The colors of the rock of a block's side.
+    pub fn section_rock(&self) -> Tones {
+        match self.colors {
+            Colors::Desert => [[0.24, 0.10, 0.06], [0.42, 0.25, 0.15]],
+            Colors::Clay => [[0.26, 0.23, 0.205], [0.29, 0.255, 0.225]],
+            _ => [[0.135, 0.115, 0.098], [0.27, 0.235, 0.20]],
+        }
+    }
+
+    /// The color of the soil above it, if there is any.
+    pub fn section_soil(&self) -> Option<Light> {
+        (self.colors != Colors::Clay).then_some(SOIL)
+    }
+
     /// The colour of a block's side at a depth below the ground, in metres.
     pub fn section(&self, along: f64, height: f32, depth: f32, thickness: f32) -> Light {
         let scale = f64::from(self.cell) / f64::from(thickness);
         let wave = self.grain.at(along * scale * 0.25, 0.7, 7).value;
         let at = f64::from((height / thickness + 0.35 * wave) * 1.0);
         let bed = self.grain.at(at * 3.0, 0.41, 4).value + 0.5 * self.grain.at(at * 9.0, 3.3, 5).value;
-        let (dark, light): (Light, Light) = match self.colors {
-            Colors::Desert => ([0.24, 0.10, 0.06], [0.42, 0.25, 0.15]),
-            Colors::Clay => ([0.26, 0.23, 0.205], [0.29, 0.255, 0.225]),
-            _ => ([0.135, 0.115, 0.098], [0.27, 0.235, 0.20]),
-        };
-        let rock = mix(dark, light, (0.5 + 0.55 * bed).clamp(0.0, 1.0));
-        let soil = if self.colors == Colors::Clay { rock } else { [0.085, 0.060, 0.040] };
+        let rock = tone(self.section_rock(), (0.5 + 0.55 * bed).clamp(0.0, 1.0));
+        let soil = self.section_soil().unwrap_or(rock);
         mix(soil, rock, step(0.015 * thickness, 0.05 * thickness, depth))
     }
 }
@@ -333,6 +344,15 @@ fn seen(wavelength: f32, footprint: f32) -> f32 {
 fn step(from: f32, to: f32, x: f32) -> f32 {
     let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
     if t.is_nan() { 0.0 } else { t * t * (3.0 - 2.0 * t) }
+}
+
+fn tone([dark, light]: Tones, share: f32) -> Light {
+    mix(dark, light, share)
+}
+
+/// Albedo of ground without a height.
+pub(super) fn no_height() -> Light {
+    NO_DATA.map(|part| decode(part) * MISSING)
 }
 
 fn mix(from: Light, to: Light, share: f32) -> Light {

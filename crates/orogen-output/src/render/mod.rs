@@ -4,15 +4,20 @@
 //! render it. Sampling is deterministic: a pixel depends only on its position in the picture, so a picture has the same
 //! bytes on any machine and any number of threads.
 
+mod albedo;
 pub mod camera;
+#[doc(hidden)]
+pub mod encode;
 mod grain;
 mod ground;
 pub(crate) mod march;
+pub mod painter;
 pub mod relief;
 pub mod scene;
 mod shade;
 pub(crate) mod sky;
-mod skylight;
+#[doc(hidden)]
+pub mod skylight;
 mod tone;
 pub(crate) mod vector;
 mod water;

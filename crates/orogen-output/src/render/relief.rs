@@ -39,8 +39,8 @@ pub struct Relief {
 /// A level of the pyramid.
 #[derive(Debug, Clone)]
 pub(super) struct Tops {
-    columns: usize,
-    highest: Vec<f32>,
+    pub columns: usize,
+    pub highest: Vec<f32>,
 }
 
 impl Tops {
@@ -219,6 +219,11 @@ impl Relief {
     /// The z of all ground samples.
     pub(super) fn bed(&self) -> &[f32] {
         &self.bed
+    }
+
+    /// The water level of each patch; empty if there is no water.
+    pub(super) fn water(&self) -> &[f32] {
+        &self.water
     }
 
     /// The pyramid, the finest level first.

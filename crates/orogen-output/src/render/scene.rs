@@ -6,6 +6,7 @@ use super::camera::{Camera, CameraSpec, Frame, folded};
 pub use super::ground::Colors;
 use super::ground::{Dress, GroundCover};
 use super::march::{Hit, Ray, Surface};
+use super::painter::Painter;
 use super::relief::{Land, Relief};
 use super::sky::{Haze, SUN_RADIUS, Sky};
 use super::skylight::Skylight;
@@ -70,7 +71,7 @@ impl Default for Style<'_> {
 
 /// The surroundings of the land, with positions.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Around {
+pub(super) enum Around {
     /// A table at this z.
     Table(f64),
     /// The sea at this z.
@@ -80,7 +81,7 @@ enum Around {
 }
 
 /// Maximum number of mirrored copies along a ray.
-const MIRRORS: usize = 12;
+pub(super) const MIRRORS: usize = 12;
 
 /// Optical depth of green light over the land's diagonal at a haze of 1: for a block, and for land that continues.
 const CLEAR: f64 = 0.30;
@@ -95,10 +96,10 @@ pub struct Scene {
     pub(super) sky: Sky,
     pub(super) skylight: Skylight,
     pub(super) haze: Haze,
-    around: Around,
+    pub(super) around: Around,
     /// The z of the lowest drawn point.
     pub(super) floor: f64,
-    samples: u32,
+    pub(super) samples: u32,
     /// The horizontal direction to the sun, and the tangents of the elevations of its lower and upper limb.
     pub(super) sunwards: [f64; 2],
     pub(super) rims: [f64; 2],
@@ -106,7 +107,7 @@ pub struct Scene {
     pub(super) level_sun: Light,
     pub(super) level_sky: Light,
     /// Factor from light to exposure.
-    exposure: Light,
+    pub(super) exposure: Light,
     encoder: Encoder,
 }
 
@@ -136,6 +137,14 @@ impl Scene {
     /// # Errors
     /// The errors of [`Relief::new`], or cancellation.
     pub fn new(land: &Land, style: &Style, progress: &Progress) -> Result<Scene> {
+        Scene::prepared(land, style, None, progress)
+    }
+
+    /// Prepares a scene, with the part of the work that `painter` can do done by it.
+    ///
+    /// # Errors
+    /// Those of [`Scene::new`].
+    pub fn prepared(land: &Land, style: &Style, painter: Option<&dyn Painter>, progress: &Progress) -> Result<Scene> {
         let [raising, lighting, painting] = progress.parts([1.0, 8.0, 2.0]);
         let relief = Relief::new(land, style.exaggeration)?;
         raising.finish();
@@ -143,7 +152,7 @@ impl Scene {
         let [azimuth, elevation] = style.sun;
         let sky = Sky::new(azimuth, elevation);
         progress.check()?;
-        let skylight = Skylight::new(&relief, &sky, &lighting)?;
+        let skylight = Skylight::new(&relief, &sky, painter, &lighting)?;
         let cover = style.cover.into_iter().flatten().all(|layer| layer.window() == land.heights.window());
         if !cover || (style.colors == Colors::Surfaces && style.cover.is_none()) {
             let message = "a picture of surfaces needs their albedo and roughness over the window of the heights";
@@ -262,6 +271,13 @@ impl Scene {
             progress.advance(1.0);
             Ok(())
         })
+    }
+
+    /// The sRGB bytes of a pixel's tone-mapped color in linear light.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn bytes(&self, color: Light) -> [u8; 3] {
+        self.encoder.bytes(color)
     }
 
     /// The light along a ray.
@@ -392,7 +408,7 @@ const BALANCE: f32 = 0.55;
 
 /// The k-th sample position in a pixel: evenly distributed for any number of samples (M. Roberts' sequence of the
 /// plastic number, 2018).
-fn spot(k: u32) -> [f64; 2] {
+pub(super) fn spot(k: u32) -> [f64; 2] {
     let k = f64::from(k);
     [(0.5 + k * 0.754_877_666_246_693) % 1.0, (0.5 + k * 0.569_840_290_998_053_3) % 1.0]
 }

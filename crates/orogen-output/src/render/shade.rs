@@ -8,16 +8,16 @@ use super::water::{self, Kind};
 use orogen_io::palette::color::Light;
 
 /// Mean albedo of the ground, which lights ground that sees little sky.
-const MEAN_ALBEDO: f32 = 0.16;
+pub(super) const MEAN_ALBEDO: f32 = 0.16;
 
 /// Albedo of the table below a block.
-const TABLE: Light = [0.62, 0.61, 0.59];
+pub(super) const TABLE: Light = [0.62, 0.61, 0.59];
 
 /// Water within this distance of the sea level, in cells, belongs to the sea.
-const LEVEL: f64 = 1e-4;
+pub(super) const LEVEL: f64 = 1e-4;
 
 /// Variation of the water's slopes within a pixel.
-const ROUGH_WATER: f32 = 0.09;
+pub(super) const ROUGH_WATER: f32 = 0.09;
 
 impl Scene {
     /// The light after passing through the haze.

@@ -36,8 +36,8 @@ const PALE: f32 = 0.45;
 pub(super) const SUN_RADIUS: f64 = 0.267;
 
 /// Directions in the table: from the sun's azimuth to the opposite one, and up from the horizon.
-const AROUND: usize = 48;
-const UP: usize = 40;
+pub(super) const AROUND: usize = 48;
+pub(super) const UP: usize = 40;
 
 /// Steps along a view ray, and along a ray to the sun.
 const STEPS: usize = 24;
@@ -49,10 +49,10 @@ const SUN_STEPS: usize = 8;
 pub struct Sky {
     sun: Vector,
     /// The horizontal direction to the sun.
-    ahead: [f64; 2],
+    pub(super) ahead: [f64; 2],
     /// Direct sunlight on a surface that faces the sun.
     sunlight: Light,
-    table: Vec<Light>,
+    pub(super) table: Vec<Light>,
 }
 
 impl Sky {
@@ -239,9 +239,9 @@ fn scattered(up: f32, sun_up: f32, [towards_sun, cosine]: [f32; 2], shed: Light)
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Haze {
     /// Extinction of red, green and blue per cell at z = 0.
-    dims: Light,
+    pub dims: Light,
     /// Scale height, in cells.
-    thins: f32,
+    pub thins: f32,
 }
 
 impl Haze {

@@ -8,6 +8,7 @@
 
 use rayon::prelude::*;
 
+use super::painter::Painter;
 use super::relief::Relief;
 use super::sky::Sky;
 use super::vector::Vector;
@@ -23,56 +24,35 @@ const AZIMUTHS: usize = 16;
 const MOST: usize = 2048;
 
 /// Entries of the tables, over the sine of the horizon's elevation.
-const ENTRIES: usize = 96;
+pub const ENTRIES: usize = 96;
 
 /// Light of the sky on the ground (red, green, blue, in the sky's unit times steradians), and the share relative to a
 /// uniform sky without obstacles.
-pub(super) type Shed = [f32; 4];
+pub type Shed = [f32; 4];
 
 /// The light of the sky on every sample, or every n-th.
 #[derive(Debug, Clone)]
 pub(super) struct Skylight {
-    columns: usize,
-    rows: usize,
-    stride: usize,
-    shed: Vec<Shed>,
+    pub columns: usize,
+    pub rows: usize,
+    pub stride: usize,
+    pub shed: Vec<Shed>,
 }
 
 impl Skylight {
-    /// Computes the light.
+    /// Computes the light, with `painter` if it can.
     ///
     /// # Errors
     /// If the work is cancelled.
-    pub fn new(relief: &Relief, sky: &Sky, progress: &Progress) -> Result<Skylight> {
-        let [all_columns, all_rows] = relief.samples();
-        let stride = all_columns.max(all_rows).div_ceil(MOST);
-        let (columns, rows) = (all_columns.div_ceil(stride), all_rows.div_ceil(stride));
-        let bed: Vec<f32> = (0..rows * columns)
-            .into_par_iter()
-            .map(|at| relief.bed()[at / columns * stride * all_columns + at % columns * stride] / stride as f32)
-            .collect();
-        let turned = transposed(&bed, columns);
-        let nothing = || vec![[0.0f32; 4]; bed.len()];
-        let (mut shed, mut shed_turned) = (nothing(), nothing());
-        progress.expect(AZIMUTHS as f64);
-        for k in 0..AZIMUTHS {
-            progress.check()?;
-            // Between the axes, with which ridges on grids often align.
-            let azimuth = (k as f64 + 0.5) * 360.0 / AZIMUTHS as f64;
-            let towards = Vector::towards(azimuth, 0.0);
-            let dome = Dome::new(sky, azimuth);
-            if towards.x.abs() >= towards.y.abs() {
-                let sweep = Sweep { bed: &bed, length: columns, lines: rows, towards: [towards.x, towards.y] };
-                sweep.gather(&dome, &mut shed);
-            } else {
-                let sweep = Sweep { bed: &turned, length: rows, lines: columns, towards: [towards.y, towards.x] };
-                sweep.gather(&dome, &mut shed_turned);
-            }
-            progress.advance(1.0);
-        }
-        let back = transposed(&shed_turned, rows);
-        shed.par_iter_mut().zip(back).for_each(|(shed, more)| shed.iter_mut().zip(more).for_each(|(s, m)| *s += m));
-        Ok(Skylight { columns, rows, stride, shed })
+    pub fn new(relief: &Relief, sky: &Sky, painter: Option<&dyn Painter>, progress: &Progress) -> Result<Skylight> {
+        let input = SkylightInput::new(relief, sky);
+        let [columns, rows] = input.size;
+        let lit = painter.map(|painter| painter.skylight(&input, progress)).transpose()?.flatten();
+        let shed = match lit.filter(|shed| shed.len() == columns * rows) {
+            Some(shed) => shed,
+            None => input.light(progress)?,
+        };
+        Ok(Skylight { columns, rows, stride: input.stride, shed })
     }
 
     /// The light at a position in cells.
@@ -92,11 +72,69 @@ impl Skylight {
     }
 }
 
+/// What the light is computed from, for the processor and other devices.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct SkylightInput {
+    /// Number of columns and rows.
+    pub size: [usize; 2],
+    /// The z of the ground, in cells of this size.
+    pub bed: Vec<f32>,
+    /// The same column by column.
+    pub turned: Vec<f32>,
+    /// The horizontal directions, of length 1, with the sky in each of them.
+    pub directions: Vec<([f64; 2], Dome)>,
+    stride: usize,
+}
+
+impl SkylightInput {
+    fn new(relief: &Relief, sky: &Sky) -> SkylightInput {
+        let [all_columns, all_rows] = relief.samples();
+        let stride = all_columns.max(all_rows).div_ceil(MOST);
+        let (columns, rows) = (all_columns.div_ceil(stride), all_rows.div_ceil(stride));
+        let bed: Vec<f32> = (0..rows * columns)
+            .into_par_iter()
+            .map(|at| relief.bed()[at / columns * stride * all_columns + at % columns * stride] / stride as f32)
+            .collect();
+        let turned = transposed(&bed, columns);
+        let direction = |k: usize| {
+            // Between the axes, with which ridges on grids often align.
+            let azimuth = (k as f64 + 0.5) * 360.0 / AZIMUTHS as f64;
+            let towards = Vector::towards(azimuth, 0.0);
+            ([towards.x, towards.y], Dome::new(sky, azimuth))
+        };
+        SkylightInput { size: [columns, rows], bed, turned, directions: (0..AZIMUTHS).map(direction).collect(), stride }
+    }
+
+    /// The light on every sample, computed by the processor.
+    fn light(&self, progress: &Progress) -> Result<Vec<Shed>> {
+        let [columns, rows] = self.size;
+        let nothing = || vec![[0.0f32; 4]; self.bed.len()];
+        let (mut shed, mut shed_turned) = (nothing(), nothing());
+        progress.expect(AZIMUTHS as f64);
+        for ([x, y], dome) in &self.directions {
+            progress.check()?;
+            if x.abs() >= y.abs() {
+                let sweep = Sweep { bed: &self.bed, length: columns, lines: rows, towards: [*x, *y] };
+                sweep.gather(dome, &mut shed);
+            } else {
+                let sweep = Sweep { bed: &self.turned, length: rows, lines: columns, towards: [*y, *x] };
+                sweep.gather(dome, &mut shed_turned);
+            }
+            progress.advance(1.0);
+        }
+        let back = transposed(&shed_turned, rows);
+        shed.par_iter_mut().zip(back).for_each(|(shed, more)| shed.iter_mut().zip(more).for_each(|(s, m)| *s += m));
+        Ok(shed)
+    }
+}
+
 /// The sky in one direction, summed from the zenith down: for level ground and for slopes that face it.
-struct Dome {
+#[derive(Debug)]
+pub struct Dome {
     /// By the sine of the horizon's elevation: light times cos^2, then light times sin cos, each followed by that of a
     /// uniform sky.
-    sums: Vec<[[f32; 4]; 2]>,
+    pub sums: Vec<[[f32; 4]; 2]>,
 }
 
 impl Dome {
@@ -243,7 +281,7 @@ mod tests {
         let data = (0..window.len()).map(|at| f((at % columns) as f64, (at / columns) as f64) as f32).collect();
         let heights = Grid::from_data(window, data).unwrap();
         let relief = Relief::new(&Land { heights: &heights, surface: None, flow: None, sea_level: None }, 1.0).unwrap();
-        Skylight::new(&relief, &Sky::new(200.0, 40.0), &Progress::none()).unwrap()
+        Skylight::new(&relief, &Sky::new(200.0, 40.0), None, &Progress::none()).unwrap()
     }
 
     #[test]

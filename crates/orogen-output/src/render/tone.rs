@@ -2,25 +2,26 @@
 
 use orogen_io::palette::color::Light;
 
+/// Channels are mixed before the curve, and after it.
+pub(super) const INPUT: [Light; 3] =
+    [[0.597_19, 0.354_58, 0.048_23], [0.076_00, 0.908_34, 0.015_66], [0.028_40, 0.133_83, 0.837_77]];
+pub(super) const OUTPUT: [Light; 3] =
+    [[1.604_75, -0.531_08, -0.073_67], [-0.102_08, 1.108_13, -0.006_05], [-0.003_27, -0.072_76, 1.076_02]];
+
+/// The coefficients a to e of the curve (v (v + a) - b) / (v (c v + d) + e).
+pub(super) const CURVE: [f32; 5] = [0.024_578_6, 0.000_090_537, 0.983_729, 0.432_951, 0.238_081];
+
 /// Filmic tone mapping of red, green and blue light: shadows keep their colour, highlights roll off to white.
 ///
 /// S. Hill's fit of the ACES reference rendering and output transforms (2014), including its mixing of channels, which
 /// desaturates bright light. `light` is 1 for a white sheet in the sun.
 pub(super) fn tone_map(light: Light) -> Light {
     let [r, g, b] = light.map(|c| c.max(0.0));
-    let mixed = [
-        0.597_19 * r + 0.354_58 * g + 0.048_23 * b,
-        0.076_00 * r + 0.908_34 * g + 0.015_66 * b,
-        0.028_40 * r + 0.133_83 * g + 0.837_77 * b,
-    ];
-    let [r, g, b] =
-        mixed.map(|v| (v * (v + 0.024_578_6) - 0.000_090_537) / (v * (0.983_729 * v + 0.432_951) + 0.238_081));
-    [
-        1.604_75 * r - 0.531_08 * g - 0.073_67 * b,
-        -0.102_08 * r + 1.108_13 * g - 0.006_05 * b,
-        -0.003_27 * r - 0.072_76 * g + 1.076_02 * b,
-    ]
-    .map(|c| c.clamp(0.0, 1.0))
+    let [above, less, square, linear, rest] = CURVE;
+    let [r, g, b] = INPUT
+        .map(|mix| mix[0] * r + mix[1] * g + mix[2] * b)
+        .map(|v| (v * (v + above) - less) / (v * (square * v + linear) + rest));
+    OUTPUT.map(|mix| (mix[0] * r + mix[1] * g + mix[2] * b).clamp(0.0, 1.0))
 }
 
 #[cfg(test)]

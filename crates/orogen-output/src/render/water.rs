@@ -9,26 +9,33 @@ use orogen_io::palette::color::Light;
 const TAKES: Light = [0.40, 0.085, 0.060];
 
 /// The albedo of deep water.
-const DEEP: Light = [0.006, 0.024, 0.036];
+pub(super) const DEEP: Light = [0.006, 0.024, 0.036];
 
 /// The albedo of the bottom.
-const BOTTOM: Light = [0.20, 0.18, 0.125];
+pub(super) const BOTTOM: Light = [0.20, 0.18, 0.125];
 
 /// The same for lakes: brown with humus and green with algae, with a Secchi depth of about 4 m (1.7 over the
 /// coefficient of green: H. H. Poole and W. R. G. Atkins, "Photo-electric measurements of submarine illumination",
 /// 1929), over mud and dark stones.
-const LAKE_TAKES: Light = [0.85, 0.42, 0.65];
-const LAKE_DEEP: Light = [0.009, 0.026, 0.030];
-const LAKE_BOTTOM: Light = [0.060, 0.056, 0.040];
+pub(super) const LAKE_TAKES: Light = [0.85, 0.42, 0.65];
+pub(super) const LAKE_DEEP: Light = [0.009, 0.026, 0.030];
+pub(super) const LAKE_BOTTOM: Light = [0.060, 0.056, 0.040];
+
+/// The colors of a section through water: near the surface, and deep below it.
+pub(super) const SHALLOW: Light = [0.16, 0.36, 0.40];
+pub(super) const DARK: Light = [0.018, 0.075, 0.115];
 
 /// With cells wider than this, in metres, water is drawn clearer; otherwise shores would be thinner than a pixel.
 const FINE_CELL: f64 = 10.0;
 
 /// The square of 1 / 1.33, for refraction.
-const BENDS: f32 = 0.565;
+pub(super) const BENDS: f32 = 0.565;
 
 /// Wavelengths of waves in metres, the longest first, with their steepness.
-const WAVES: [(f32, f32); 4] = [(46.0, 0.012), (19.0, 0.018), (7.0, 0.026), (2.6, 0.030)];
+pub(super) const WAVES: [(f32, f32); 4] = [(46.0, 0.012), (19.0, 0.018), (7.0, 0.026), (2.6, 0.030)];
+
+/// Waves are shorter from north to south by this factor.
+pub(super) const STRETCH: f64 = 1.4;
 
 /// Kinds of water.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,7 +50,7 @@ pub(super) enum Kind {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Water {
     /// Absorption of the sea per metre.
-    takes: Light,
+    pub takes: Light,
     cell: f32,
 }
 
@@ -63,7 +70,7 @@ impl Water {
                 continue;
             }
             let scale = f64::from(self.cell / wavelength);
-            let bump = grain.at(x * scale, y * scale * 1.4, kind as u32 + 1);
+            let bump = grain.at(x * scale, y * scale * STRETCH, kind as u32 + 1);
             slope[0] += bump.slope[0] * steep * seen;
             slope[1] += bump.slope[1] * steep * seen;
         }
@@ -88,8 +95,6 @@ impl Water {
     /// The colour of a section through water, at a depth in metres.
     pub fn section(&self, depth: f32) -> Light {
         let left: Light = self.takes.map(|takes| libm::expf(-takes * depth * 0.12));
-        const SHALLOW: Light = [0.16, 0.36, 0.40];
-        const DARK: Light = [0.018, 0.075, 0.115];
         std::array::from_fn(|c| DARK[c] + (SHALLOW[c] - DARK[c]) * left[c].max(left[1] * 0.6))
     }
 }

@@ -1,0 +1,44 @@
+// Numbers of the scene. Their indices in `data` are constants that stand before this text.
+//
+// The CPU twin of each of these files is the file of the same name in `orogen-output/src/render`; `tests/render.rs` compares their pictures. Positions are in cells,
+// relative to ORIGIN and ORIGIN_Z, which are near the camera.
+
+const PI = 3.14159265358979;
+
+fn value(at: u32) -> f32 {
+    return bitcast<f32>(data[at]);
+}
+
+fn whole(at: u32) -> i32 {
+    return bitcast<i32>(data[at]);
+}
+
+fn pair(at: u32) -> vec2<f32> {
+    return vec2<f32>(value(at), value(at + 1u));
+}
+
+fn triple(at: u32) -> vec3<f32> {
+    return vec3<f32>(value(at), value(at + 1u), value(at + 2u));
+}
+
+fn triple_of(start: u32) -> vec3<f32> {
+    return vec3<f32>(samples[start], samples[start + 1u], samples[start + 2u]);
+}
+
+fn quad_of(start: u32) -> vec4<f32> {
+    return vec4<f32>(samples[start], samples[start + 1u], samples[start + 2u], samples[start + 3u]);
+}
+
+// Smoothstep from 0 at `first` to 1 at `end`; `first` may be the larger.
+fn ease(first: f32, end: f32, x: f32) -> f32 {
+    let t = clamp((x - first) / (end - first), 0.0, 1.0);
+    return t * t * (3.0 - 2.0 * t);
+}
+
+fn blend(dark: vec3<f32>, light: vec3<f32>, share: f32) -> vec3<f32> {
+    return dark + (light - dark) * clamp(share, 0.0, 1.0);
+}
+
+fn unit(v: vec3<f32>) -> vec3<f32> {
+    return v / sqrt(dot(v, v));
+}

@@ -1,0 +1,98 @@
+//! The light of the sky on every sample.
+
+use crate::failure::Failure;
+use crate::gpu::Gpu;
+use crate::job::{Dispatch, GROUP, Job};
+use orogen_output::render::skylight::{ENTRIES, Shed, SkylightInput};
+
+/// Invocations of a workgroup.
+const INVOCATIONS: u32 = GROUP * GROUP;
+
+/// Lines in one direction that cross every column of the land: the sweep's columns are the land's rows where the direction is nearer to north or south.
+struct Sweep {
+    /// Number of columns of the sweep, and of rows.
+    length: usize,
+    lines: usize,
+    /// The direction along the columns, and across them; the first component is the larger.
+    towards: [f64; 2],
+    turned: bool,
+}
+
+impl Sweep {
+    fn new([columns, rows]: [usize; 2], [x, y]: [f64; 2]) -> Sweep {
+        match x.abs() >= y.abs() {
+            true => Sweep { length: columns, lines: rows, towards: [x, y], turned: false },
+            false => Sweep { length: rows, lines: columns, towards: [y, x], turned: true },
+        }
+    }
+
+    /// Rows per column of a line.
+    fn slant(&self) -> f64 {
+        self.towards[1] / self.towards[0]
+    }
+
+    /// The first line's row at column 0, and the number of lines, such that each sample is between two of them.
+    fn starts(&self) -> (i32, usize) {
+        let drift = self.slant() * self.length.saturating_sub(1) as f64;
+        ((-drift.max(0.0)) as i32 - 1, self.lines + drift.abs() as usize + 3)
+    }
+}
+
+/// Computes the light of the sky on every sample of the land. `is_cancelled` is asked between parts of the work; `Ok(None)` if it was cancelled.
+///
+/// # Errors
+/// If the land does not fit into a buffer of the card, or the card fails.
+pub fn skylight(
+    gpu: &Gpu,
+    input: &SkylightInput,
+    is_cancelled: impl Fn() -> bool,
+) -> Result<Option<Vec<Shed>>, Failure> {
+    let text = format!("const ENTRIES = {ENTRIES}u;\n{}", include_str!("skylight.wgsl"));
+    let [columns, rows] = input.size;
+    let count = columns * rows;
+    let sweeps: Vec<Sweep> = input.directions.iter().map(|(towards, _)| Sweep::new(input.size, *towards)).collect();
+    let crossings = sweeps.iter().map(|sweep| sweep.starts().1 * sweep.length).max().unwrap_or(0);
+    let [turned, shed, horizons, hulls] = [count, 2 * count, 6 * count, 6 * count + crossings];
+    let samples = hulls + 2 * crossings;
+    if 4 * samples as u64 > gpu.buffer_limit() {
+        let [needed, limit] = [4 * samples as u64, gpu.buffer_limit()].map(|bytes| bytes >> 20);
+        return Err(Failure::Memory(format!("the light takes {needed} MiB, and a buffer has at most {limit} MiB")));
+    }
+    let mut data = Vec::new();
+    let mut dispatches = Vec::new();
+    for (sweep, (_, dome)) in sweeps.iter().zip(&input.directions) {
+        let table = data.len() as u32;
+        data.extend(dome.sums.as_flattened().as_flattened().iter().map(|light| light.to_bits()));
+        let base = data.len() as u32;
+        let (first, lines) = sweep.starts();
+        let strides = if sweep.turned { [columns, 1] } else { [1, columns] };
+        let float = |value: f64| (value as f32).to_bits();
+        data.extend([
+            sweep.length as u32,
+            sweep.lines as u32,
+            first.cast_unsigned(),
+            lines as u32,
+            float(sweep.slant()),
+            float(1.0 / sweep.towards[0].abs()),
+            u32::from(sweep.towards[0] > 0.0),
+            // Column by column of the sweep.
+            if sweep.turned { 0 } else { turned as u32 },
+            float(sweep.towards[0]),
+            float(sweep.towards[1]),
+            table,
+            horizons as u32,
+            hulls as u32,
+            shed as u32,
+            strides[0] as u32,
+            strides[1] as u32,
+        ]);
+        let groups = (lines as u32).div_ceil(INVOCATIONS);
+        dispatches.push(Dispatch { text: &text, base, size: [groups * GROUP, GROUP], step: 0 });
+        dispatches.push(Dispatch { text: &text, base, size: [columns as u32, rows as u32], step: 1 });
+    }
+    let uploads = vec![(0, input.bed.as_slice()), (turned, input.turned.as_slice())];
+    let job = Job { data, samples, uploads, dispatches, downloads: vec![(shed, 4 * count)] };
+    // Those of one direction at once.
+    let back = job.run_in_parts(gpu, 2, is_cancelled)?;
+    Ok(back.and_then(|mut grids| grids.pop()).map(|shed| shed.as_chunks::<4>().0.to_vec()))
+}
