@@ -42,6 +42,7 @@ mod with_gpu {
     use orogen::Session;
     use orogen::device_choice::DeviceChoice;
     use orogen::gpu::Gpu;
+    use orogen::render::painter::Painter;
     use std::sync::Arc;
 
     /// An opened graphics card, if there is one.
@@ -62,11 +63,23 @@ mod with_gpu {
             }
         }
 
+        /// What paints pictures, if there is a card.
+        pub fn painter(&self) -> Option<Arc<dyn Painter>> {
+            self.0.as_ref().map(|gpu| Arc::new(gpu.clone()) as Arc<dyn Painter>)
+        }
+
         /// The card's name, if it computed; a failure is told, once the work is done.
         pub fn used(&self) -> Option<String> {
+            self.used_with(None)
+        }
+
+        /// The same after work that the card may have refused.
+        pub fn used_with(&self, refused: Option<&str>) -> Option<String> {
             let gpu = self.0.as_ref()?;
-            if let Some(failure) = gpu.failure() {
-                stands_in(failure);
+            match (refused, gpu.failure()) {
+                (Some(why), _) => stands_in(why),
+                (None, Some(failure)) => stands_in(failure),
+                (None, None) => {}
             }
             Some(gpu.adapter().to_string())
         }
@@ -81,6 +94,8 @@ mod without_gpu {
     use super::stands_in;
     use orogen::Session;
     use orogen::device_choice::DeviceChoice;
+    use orogen::render::painter::Painter;
+    use std::sync::Arc;
 
     /// No graphics card: this program was built without support for them.
     pub struct Card;
@@ -99,8 +114,18 @@ mod without_gpu {
             session
         }
 
+        /// What paints pictures: the processor.
+        pub fn painter(&self) -> Option<Arc<dyn Painter>> {
+            None
+        }
+
         /// The card's name, if it computed.
         pub fn used(&self) -> Option<String> {
+            None
+        }
+
+        /// The same after work that a card may have refused.
+        pub fn used_with(&self, _: Option<&str>) -> Option<String> {
             None
         }
     }

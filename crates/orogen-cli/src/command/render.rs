@@ -12,6 +12,7 @@ use orogen::render::scene::{Colors, Edge};
 use orogen::words::count;
 
 use crate::bar::Bar;
+use crate::device::DeviceOption;
 use crate::failure::Failure;
 use crate::moving::{AnimationTarget, Moving};
 use crate::options::RunOptions;
@@ -26,7 +27,7 @@ use crate::{interrupt, palette, say};
 /// Arguments of the command.
 #[derive(Debug, Clone, clap::Args)]
 #[command(
-    after_help = "Nothing but the processor draws, and the picture has the same bytes on every machine. Grain finer than the \
+    after_help = "Unless --device says otherwise, the processor draws, and the picture has the same bytes on every machine. Grain finer than the \
                         world's samples is made up by the picture; heights, shadows and outlines are the world's own."
 )]
 pub struct Args {
@@ -93,6 +94,8 @@ pub struct Args {
     #[command(flatten)]
     view: View,
     #[command(flatten)]
+    device: DeviceOption,
+    #[command(flatten)]
     run: RunOptions,
 }
 
@@ -144,7 +147,8 @@ fn render(args: &Args) -> Result<(), Failure> {
     let policy = args.run.replace.policy(source.inputs(&recipe)).protecting(&args.palette);
     let outputs = target.outputs(&args.out, args.turntable.unwrap_or(1), &policy)?;
     job.prepare(&mut recipe)?;
-    let world = args.run.limits.open(recipe, &budget)?;
+    let (world, card) = args.device.open(&args.run.limits, recipe, &budget)?;
+    job.painter = card.painter();
     job.window = Some(args.view.window(&world)?);
     let folder = args.out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     file::check_folder(folder)?;
@@ -153,7 +157,11 @@ fn render(args: &Args) -> Result<(), Failure> {
     let made = job
         .scene(&world, pictures(args, &target), target.reserved(pixels), &progress)
         .map_err(Failure::from)
-        .and_then(|rendering| write(args, &rendering, &target, &outputs));
+        .and_then(|rendering| {
+            let words = write(args, &rendering, &target, &outputs)?;
+            let card = card.used_with(rendering.refused());
+            Ok(words + &card.map_or(String::new(), |card| format!(", on {card}")))
+        });
     drop(bar);
     let words = made.map_err(|failure| interrupt::explain(failure, "nothing was written"))?;
     outputs[0].tell(args.run.quiet, &format!("{}: {words}\n", args.out.display()))
@@ -347,7 +355,7 @@ fn turntable(
         for quarter in 0..4 {
             let mut bytes = vec![0; 3 * small[0] * small[1]];
             let part = previewing.part(1.0);
-            scene.paint(&side(quarter * frames / 4), small, 0..small[1], &mut bytes, &part)?;
+            rendering.paint(&side(quarter * frames / 4), small, 0..small[1], &mut bytes, &part)?;
             sample.append(&mut bytes);
         }
         Ok(sample)
@@ -355,7 +363,7 @@ fn turntable(
     let animation = Animation::new(frames, args.delay);
     let moving = Moving { outputs, target, picture: rendering.picture(), animation, sample: &sample };
     painting.expect(f64::from(frames));
-    moving.write(|frame, bytes| Ok(scene.paint(&side(frame), size, 0..height, bytes, &painting.part(1.0))?))?;
+    moving.write(|frame, bytes| Ok(rendering.paint(&side(frame), size, 0..height, bytes, &painting.part(1.0))?))?;
     let samples = rendering.samples();
     Ok(format!("{} of {width} x {height} pixels, of {samples}", count(frames as usize, "frame")))
 }
