@@ -7,6 +7,8 @@
 mod erosion;
 mod filters;
 mod generate;
+#[cfg(feature = "gpu")]
+mod gpu;
 mod measure;
 mod noise;
 mod options;
@@ -34,6 +36,8 @@ const AREAS: &[Area] = &[
     ("outputs", outputs::run),
     ("tiles", tiles::run),
     ("studio", studio::run),
+    #[cfg(feature = "gpu")]
+    ("gpu", gpu::run),
     ("resolution", resolution::run),
 ];
 

@@ -33,6 +33,8 @@ Builds the benches at full optimisation, measures one area (or all in turn) and 
                tiles     terrain classes, clean-up and tiles of a map of 4096 x 4096 cells, climate and biomes of 2048 x 2048 samples; chunks of
                          blocks; all cores, wall time
                studio    from a change of a parameter to the pictures of the studio, without the drawing of the window; all cores, wall time
+               gpu       only if it is named: terrain and pictures on the first graphics card, beside a copy within its memory and beside the
+                         processor, wall time; a software adapter has no targets
   --json FILE  also write the rows as JSON; needs an AREA
   --case TEXT  only cases whose name contains TEXT
   --quick      few repetitions: only to check that it runs
@@ -63,6 +65,9 @@ How to read the table: docs/benchmarks.md.
 
 /// The areas of the bench program.
 const AREAS: &[&str] = &["noise", "erosion", "generate", "world", "outputs", "tiles", "studio"];
+
+/// Builds the libraries of graphics drivers, so it is measured only if it is named.
+const GPU: &str = "gpu";
 
 /// Needs files that are not part of the project, so it is measured only if it is named.
 const REALISM: &str = "realism";
@@ -101,7 +106,9 @@ pub fn run(args: &[String]) -> Result {
             realism::run(&options.realism, &program)?;
             continue;
         }
-        let mut command = shell::cargo("run --quiet --profile bench --package orogen-bench --features peers --");
+        let features = if area == GPU { "peers,gpu" } else { "peers" };
+        let mut command =
+            shell::cargo(&format!("run --quiet --profile bench --package orogen-bench --features {features} --"));
         command.envs(peers::installed(area));
         let measured = shell::capture(command.arg(area).args(&options.passed).env("OROGEN_BIN", &program))?;
         let report = report::Report::read(&measured)?;
@@ -135,7 +142,7 @@ fn parse(args: &[String]) -> Result<Options> {
                 options.realism.first = Some(seed);
             }
             "--quick" => options.passed.push(arg.clone()),
-            area if (AREAS.contains(&area) || area == REALISM) && options.area.is_none() => {
+            area if (AREAS.contains(&area) || [REALISM, GPU].contains(&area)) && options.area.is_none() => {
                 options.area = Some(area.to_owned())
             }
             flag if flag.starts_with('-') => return Err(Failure::usage(format!("there is no option '{flag}'"))),

@@ -7,6 +7,7 @@ use orogen_engine::device_choice::DeviceChoice;
 use orogen_grid::error::Error;
 use orogen_grid::progress::Progress;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
 
 /// An opened graphics card. Clones share it.
 #[derive(Clone)]
@@ -21,6 +22,7 @@ struct Opened {
     pipelines: Pipelines,
     lost: Arc<Mutex<Option<String>>>,
     failure: Mutex<Option<Failure>>,
+    seconds: Mutex<f64>,
     buffer: u64,
     kernel: usize,
 }
@@ -135,8 +137,10 @@ impl Gpu {
         }));
         let buffer = options.buffer.unwrap_or(u64::MAX).min(adapter.limits.buffer);
         let pipelines = Pipelines::new(&device);
-        let (failure, kernel) = (Mutex::default(), options.kernel.max(1));
-        Ok(Gpu { opened: Arc::new(Opened { adapter, device, queue, pipelines, lost, failure, buffer, kernel }) })
+        let (failure, seconds, kernel) = (Mutex::default(), Mutex::default(), options.kernel.max(1));
+        Ok(Gpu {
+            opened: Arc::new(Opened { adapter, device, queue, pipelines, lost, failure, seconds, buffer, kernel }),
+        })
     }
 
     /// The adapter.
@@ -155,6 +159,42 @@ impl Gpu {
     #[must_use]
     pub fn buffer_limit(&self) -> u64 {
         self.opened.buffer
+    }
+
+    /// The seconds of all jobs since the last call, from the first copy to the device to the end of the last shader: without copying back.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn take_seconds(&self) -> f64 {
+        std::mem::take(&mut *self.opened.seconds.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    pub(crate) fn count_seconds(&self, seconds: f64) {
+        *self.opened.seconds.lock().unwrap_or_else(PoisonError::into_inner) += seconds;
+    }
+
+    /// The seconds that the device takes to copy this many bytes within its memory.
+    ///
+    /// # Errors
+    /// If the device was lost.
+    #[doc(hidden)]
+    pub fn copy_seconds(&self, bytes: u64) -> Result<f64, Failure> {
+        use wgpu::BufferUsages as Usage;
+        let buffer = |usage| {
+            let size = bytes.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
+            self.device().create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
+        };
+        let (from, to) = (buffer(Usage::COPY_SRC), buffer(Usage::COPY_DST));
+        let mut fastest = f64::MAX;
+        // The first copy may have to find the memory.
+        for _ in 0..4 {
+            let mut encoder = self.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            encoder.copy_buffer_to_buffer(&from, 0, &to, 0, from.size());
+            let begun = Instant::now();
+            self.queue().submit([encoder.finish()]);
+            self.wait()?;
+            fastest = fastest.min(begun.elapsed().as_secs_f64());
+        }
+        Ok(fastest)
     }
 
     /// Gives the device up, as a driver that is restarted does: for tests of what happens then.

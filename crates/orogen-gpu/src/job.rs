@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use crate::gpu::Gpu;
 use crate::pipelines::FRAME;
 use std::sync::mpsc;
+use std::time::Instant;
 
 /// Columns and rows of a workgroup.
 pub const GROUP: u32 = 8;
@@ -94,6 +95,7 @@ impl Job<'_> {
             device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
         };
         use wgpu::BufferUsages as Usage;
+        let begun = Instant::now();
         let data = buffer(self.data.len(), Usage::STORAGE | Usage::COPY_DST);
         let samples = buffer(self.samples, Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC);
         let frames = buffer(FRAME as usize / 4 * self.dispatches.len(), Usage::UNIFORM | Usage::COPY_DST);
@@ -142,6 +144,8 @@ impl Job<'_> {
                 gpu.wait()?;
             }
         }
+        gpu.wait()?;
+        gpu.count_seconds(begun.elapsed().as_secs_f64());
         let mut back = Vec::with_capacity(self.downloads.len());
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         for (start, count) in &self.downloads {
