@@ -164,7 +164,7 @@ fn package() -> Result {
     forget_archives(&folder);
     let flags = "package --quiet --workspace --exclude xtask --exclude orogen-bench --allow-dirty";
     sh(cargo(&format!("{flags} --no-verify")).arg("--target-dir").arg(&folder))?;
-    let mut command = cargo(&format!("{flags} --exclude orogen-studio --exclude orogen-gpu"));
+    let mut command = cargo(&format!("{flags} --exclude orogen-studio"));
     command.arg("--target-dir").arg(folder);
     sh(command.env("CARGO_PROFILE_DEV_OPT_LEVEL", "0").env("CARGO_PROFILE_DEV_DEBUG", "false"))
 }

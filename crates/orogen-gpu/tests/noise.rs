@@ -199,7 +199,7 @@ fn kernel(shader: &Shader, inputs: usize) -> String {
             if (id.x >= frame.width || id.y >= frame.height) {{ return; }}
             let count = frame.width * frame.height;
             let at = id.y * frame.width + id.x;
-            let place = Place(id.x, id.y, vec2<f32>(samples[at], samples[at + count]));
+            let place = Placement(id.x, id.y, vec2<f32>(samples[at], samples[at + count]));
             samples[frame.step + at] = {}(frame.base, place{inputs});
         }}",
         shader.code.concat(),

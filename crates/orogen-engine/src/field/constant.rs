@@ -15,7 +15,7 @@ op! {
 }
 
 /// The number that it is given.
-pub(super) const CONSTANT: &str = "fn constant(base: u32, place: Place) -> f32 { return number(base, 0u); }";
+pub(super) const CONSTANT: &str = "fn constant(base: u32, place: Placement) -> f32 { return number(base, 0u); }";
 
 impl Field for Constant {
     fn eval(&self, _: &Points, _: &Inputs, _: &WorldParams, out: &mut [f32]) {

@@ -1,5 +1,5 @@
 // A curve: the number of its segments, its ends, and for each segment the start and the coefficients of a cubic.
-fn curve(base: u32, place: Place, source: f32) -> f32 {
+fn curve(base: u32, place: Placement, source: f32) -> f32 {
     let x = source;
     if (x <= number(base, 1u)) {
         return number(base, 2u);

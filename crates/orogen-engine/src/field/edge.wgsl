@@ -1,6 +1,6 @@
 // The falloff towards the edges of the world: whether corners are square, and two lattices whose unit is the width of the border: from the north-western
 // corner and from the south-eastern one.
-fn edge(base: u32, place: Place) -> f32 {
+fn edge(base: u32, place: Placement) -> f32 {
     let near = vec2<f32>(coordinate(base + 1u, 0u, place), coordinate(base + 1u, 1u, place));
     let far = -vec2<f32>(coordinate(base + 13u, 0u, place), coordinate(base + 13u, 1u, place));
     // Distance into the border, as a share of its width: 0 inside, 1 at the edge.

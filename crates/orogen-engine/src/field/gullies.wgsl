@@ -14,7 +14,7 @@ fn gullies_soft(t: f32) -> f32 {
 
 fn gullies(
     base: u32,
-    place: Place,
+    place: Placement,
     source: f32,
     fade: f32,
     east: f32,

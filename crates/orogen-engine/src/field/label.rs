@@ -33,7 +33,7 @@ impl Field for Label {
     }
 
     fn lower(&self, _: usize, _: &WorldParams) -> Lowering<Shader> {
-        const CODE: &str = "fn label(base: u32, place: Place, source: f32) -> f32 { return rounded(source); }";
+        const CODE: &str = "fn label(base: u32, place: Placement, source: f32) -> f32 { return rounded(source); }";
         Lowering::Shader(Shader::new("label", CODE, &[]))
     }
 }

@@ -27,7 +27,7 @@ op! {
 }
 
 /// The radius and positions are in units of the falloff's width.
-const RADIAL: &str = "fn radial(base: u32, place: Place) -> f32 {
+const RADIAL: &str = "fn radial(base: u32, place: Placement) -> f32 {
     let at = vec2<f32>(coordinate(base + 1u, 0u, place), coordinate(base + 1u, 1u, place));
     let t = clamp(number(base, 0u) - length(at), 0.0, 1.0);
     return t * t * (3.0 - 2.0 * t);

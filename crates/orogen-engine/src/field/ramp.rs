@@ -47,7 +47,7 @@ impl Field for Ramp {
     }
 
     fn lower(&self, _: usize, _: &WorldParams) -> Lowering<Shader> {
-        const CODE: &str = "fn ramp(base: u32, place: Place) -> f32 { return coordinate(base, 0u, place); }";
+        const CODE: &str = "fn ramp(base: u32, place: Placement) -> f32 { return coordinate(base, 0u, place); }";
         let (sin, cos) = sin_cos_degrees(self.azimuth);
         let [along_x, along_y] = [sin / self.length, -cos / self.length];
         let [x0, y0] = self.origin;

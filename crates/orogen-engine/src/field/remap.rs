@@ -40,7 +40,7 @@ impl Field for Remap {
     }
 
     fn lower(&self, _: usize, _: &WorldParams) -> Lowering<Shader> {
-        const CODE: &str = "fn remap(base: u32, place: Place, source: f32) -> f32 {
+        const CODE: &str = "fn remap(base: u32, place: Placement, source: f32) -> f32 {
     let value = (source - number(base, 0u)) * number(base, 1u) + number(base, 2u);
     return select(value, clamp(value, number(base, 3u), number(base, 4u)), number(base, 5u) != 0.0);
 }";

@@ -43,7 +43,7 @@ impl Field for SelectFlow {
 
     fn lower(&self, _: usize, _: &WorldParams) -> Lowering<Shader> {
         // An area of 0 is below all others: 1e-38 m^2.
-        const CODE: &str = "fn select_flow(base: u32, place: Place, source: f32) -> f32 {
+        const CODE: &str = "fn select_flow(base: u32, place: Placement, source: f32) -> f32 {
     return selected(base, select(-1e30, log2(max(source, 1e-38)) * 0.30102999566398120, source > 0.0));
 }";
         // A lower end of 0 is below all areas.

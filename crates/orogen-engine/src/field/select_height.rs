@@ -44,7 +44,7 @@ impl Field for SelectHeight {
 
     fn lower(&self, _: usize, _: &WorldParams) -> Lowering<Shader> {
         const CODE: &str =
-            "fn select_height(base: u32, place: Place, source: f32) -> f32 { return selected(base, source); }";
+            "fn select_height(base: u32, place: Placement, source: f32) -> f32 { return selected(base, source); }";
         let [low, high, below, above] = [self.range[0], self.range[1], self.falloff[0], self.falloff[1]];
         let mut shader = Shader::new("select_height", CODE, &[low, high, below, above].map(|number| number as f32));
         shader.code.insert(0, SELECTED);

@@ -4,7 +4,7 @@ fn terrace_rise(t: f32, riser: f32) -> f32 {
 }
 
 // Terraces: the height of a step, the height of one tread, and the riser's share of a step.
-fn terrace(base: u32, place: Place, source: f32) -> f32 {
+fn terrace(base: u32, place: Placement, source: f32) -> f32 {
     let step = number(base, 0u);
     let offset = number(base, 1u);
     let riser = number(base, 2u);

@@ -29,7 +29,7 @@ fn grid_row(base: u32, i: i32, j: i32, u: f32) -> f32 {
     return catmull_rom(taps, u);
 }
 
-fn grid_height(base: u32, place: Place) -> f32 {
+fn grid_height(base: u32, place: Placement) -> f32 {
     let x = cell_at(base + 3u, 0u, place);
     let y = cell_at(base + 3u, 1u, place);
     let i = grid_index(x);
@@ -38,14 +38,14 @@ fn grid_height(base: u32, place: Place) -> f32 {
     return catmull_rom(rows, y.t);
 }
 
-fn grid_label(base: u32, place: Place) -> f32 {
+fn grid_label(base: u32, place: Placement) -> f32 {
     let x = cell_at(base + 3u, 0u, place);
     let y = cell_at(base + 3u, 1u, place);
     return grid_sample(base, grid_index(x) + select(0, 1, x.t >= 0.5), grid_index(y) + select(0, 1, y.t >= 0.5));
 }
 
 // Linear in the logarithms of the four surrounding samples; the nearest sample if one of them is not positive.
-fn grid_flow(base: u32, place: Place) -> f32 {
+fn grid_flow(base: u32, place: Placement) -> f32 {
     let x = cell_at(base + 3u, 0u, place);
     let y = cell_at(base + 3u, 1u, place);
     let i = grid_index(x);
@@ -62,6 +62,6 @@ fn grid_flow(base: u32, place: Place) -> f32 {
 }
 
 // A grid with the same samples as the block: its block has the index of the sample at the block's corner, and its width.
-fn grid_copy(base: u32, place: Place) -> f32 {
+fn grid_copy(base: u32, place: Placement) -> f32 {
     return samples[data[base] + place.row * data[base + 1u] + place.column];
 }

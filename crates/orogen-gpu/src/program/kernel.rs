@@ -191,7 +191,7 @@ impl Writer<'_> {
             }
         };
         let name = format!("p{}", self.places.len());
-        self.line(&format!("let {name} = Place(id.x, id.y, {moved});"));
+        self.line(&format!("let {name} = Placement(id.x, id.y, {moved});"));
         self.places.insert(set, name.clone());
         name
     }

@@ -7,7 +7,7 @@ pub const PLACE: &str = include_str!("place.wgsl");
 
 /// A function of WGSL that computes one number per sample.
 ///
-/// Its signature is `fn NAME(base: u32, place: Place, a: f32, b: f32, ..) -> f32` with one number for each input of the op. What it reads of `data` starts at
+/// Its signature is `fn NAME(base: u32, place: Placement, a: f32, b: f32, ..) -> f32` with one number for each input of the op. What it reads of `data` starts at
 /// `base`: its `words`, and then a block for each of its lattices. Parameters are words, so the text depends on none of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shader {

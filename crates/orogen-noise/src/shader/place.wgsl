@@ -1,7 +1,7 @@
 // Where a sample is on lattices.
 
 // A sample: its column and row, and how far it is displaced, in metres.
-struct Place {
+struct Placement {
     column: u32,
     row: u32,
     moved: vec2<f32>,
@@ -66,7 +66,7 @@ fn tabled(table: u32, index: u32) -> Cell {
 }
 
 // The cell of a sample along an axis of the lattice whose block starts at `lattice`.
-fn cell_at(lattice: u32, axis: u32, place: Place) -> Cell {
+fn cell_at(lattice: u32, axis: u32, place: Placement) -> Cell {
     let columns = data[lattice + 8u + 2u * axis];
     let rows = data[lattice + 9u + 2u * axis];
     var cell = Cell(0u, 0u, 0.0);
@@ -91,7 +91,7 @@ fn cell_at(lattice: u32, axis: u32, place: Place) -> Cell {
 }
 
 // A coordinate as one number, which is exact only near the lattice's origin.
-fn coordinate(lattice: u32, axis: u32, place: Place) -> f32 {
+fn coordinate(lattice: u32, axis: u32, place: Placement) -> f32 {
     let cell = cell_at(lattice, axis, place);
     let low = bitcast<i32>(cell.low);
     // Whether the high word is only the sign of the low one.

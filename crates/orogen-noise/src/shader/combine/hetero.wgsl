@@ -1,5 +1,5 @@
 // Musgrave's heterogeneous terrain: octaves are weighted by the height so far. Parameters: offset, and factor of the result.
-fn hetero_SOURCE(base: u32, place: Place) -> f32 {
+fn hetero_SOURCE(base: u32, place: Placement) -> f32 {
     let source = noise_source(base);
     var lattice = noise_lattice(base);
     var octave = base + NOISE_OCTAVES;

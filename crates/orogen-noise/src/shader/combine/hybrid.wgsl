@@ -1,5 +1,5 @@
 // Musgrave's hybrid multifractal: octaves are weighted by the product of those before. Parameters: offset, and factor of the result.
-fn hybrid_SOURCE(base: u32, place: Place) -> f32 {
+fn hybrid_SOURCE(base: u32, place: Placement) -> f32 {
     let source = noise_source(base);
     var lattice = noise_lattice(base);
     var octave = base + NOISE_OCTAVES;

@@ -1,5 +1,5 @@
 // De Carpentier's jordan turbulence: squares whose slopes displace and damp finer octaves. Parameters: damping, and factor of the result.
-fn jordan_SOURCE(base: u32, place: Place) -> f32 {
+fn jordan_SOURCE(base: u32, place: Placement) -> f32 {
     let source = noise_source(base);
     var lattice = noise_lattice(base);
     var octave = base + NOISE_OCTAVES;

@@ -1,5 +1,5 @@
 // The sum of triangle waves of octaves. Parameters: strength, and factor of the result.
-fn ping_pong_SOURCE(base: u32, place: Place) -> f32 {
+fn ping_pong_SOURCE(base: u32, place: Placement) -> f32 {
     let source = noise_source(base);
     var lattice = noise_lattice(base);
     var octave = base + NOISE_OCTAVES;

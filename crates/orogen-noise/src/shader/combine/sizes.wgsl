@@ -1,5 +1,5 @@
 // The sum of absolute values. Parameter: 1 for billow noise, -1 for ridged noise.
-fn sizes_SOURCE(base: u32, place: Place) -> f32 {
+fn sizes_SOURCE(base: u32, place: Placement) -> f32 {
     let source = noise_source(base);
     var lattice = noise_lattice(base);
     var octave = base + NOISE_OCTAVES;

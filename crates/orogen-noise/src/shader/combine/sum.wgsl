@@ -1,5 +1,5 @@
 // The sum of octaves.
-fn sum_SOURCE(base: u32, place: Place) -> f32 {
+fn sum_SOURCE(base: u32, place: Placement) -> f32 {
     let source = noise_source(base);
     var lattice = noise_lattice(base);
     var octave = base + NOISE_OCTAVES;

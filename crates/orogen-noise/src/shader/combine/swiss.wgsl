@@ -1,5 +1,5 @@
 // De Carpentier's swiss turbulence: ridges whose slopes displace finer octaves. Parameter, the second: factor of the result.
-fn swiss_SOURCE(base: u32, place: Place) -> f32 {
+fn swiss_SOURCE(base: u32, place: Placement) -> f32 {
     let source = noise_source(base);
     var lattice = noise_lattice(base);
     var octave = base + NOISE_OCTAVES;

@@ -1,6 +1,6 @@
 // The sum of octaves, each damped by the slope of the plain sum so far. Parameters: strength k, and the shape of the damping (0: 1 / (1 + k m), 1: e^(-k m),
 // 2: 1 / (1 + k sqrt m), 3: 1 - smoothstep(k m), of the squared slope m).
-fn weighted_SOURCE(base: u32, place: Place) -> f32 {
+fn weighted_SOURCE(base: u32, place: Placement) -> f32 {
     let source = noise_source(base);
     let k = number(base, 3u);
     let falloff = data[base + 4u];
