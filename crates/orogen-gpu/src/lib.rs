@@ -6,6 +6,7 @@
 
 pub mod adapters;
 pub mod failure;
+pub mod filters;
 #[doc(hidden)]
 pub mod job;
 mod pipelines;

@@ -1,6 +1,7 @@
 //! Gaussian blur.
 
-use crate::op::{Context, Filter};
+use crate::lower::{Lowering, Passes};
+use crate::op::{Context, Filter, WorldParams};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use rayon::prelude::*;
@@ -34,6 +35,11 @@ impl Blur {
         weights.iter().map(|weight| (weight / sum) as f32).collect()
     }
 }
+
+/// Number of weights that a pass of the shader adds up, as there.
+const TOGETHER: usize = 512;
+
+const CODE: &str = include_str!("blur.wgsl");
 
 impl Filter for Blur {
     fn halo(&self, cell: f64) -> usize {
@@ -82,6 +88,16 @@ impl Filter for Blur {
                 Ok(())
             },
         )
+    }
+
+    fn lower(&self, cell: f64, _: &WorldParams) -> Lowering<Passes> {
+        let reach = self.halo(cell);
+        let weights = if reach == 0 { vec![1.0] } else { self.weights(cell) };
+        let runs = weights.len().div_ceil(TOGETHER) as u32;
+        let words = std::iter::once(weights.len() as u32).chain(weights.iter().map(|weight| weight.to_bits()));
+        let passes = Passes::new(CODE, &[]).with_words(words).with_scratch(1);
+        let passes = (0..runs).fold(passes, |passes, run| passes.then("rows", run, [reach, 0]));
+        Lowering::Shader((0..runs).fold(passes, |passes, run| passes.then("columns", run, [reach; 2])))
     }
 
     fn cost(&self, cell: f64) -> f64 {
