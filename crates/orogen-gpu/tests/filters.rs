@@ -6,7 +6,7 @@ mod support;
 use orogen_engine::node::Node;
 use orogen_grid::grid::{Grid, Window};
 use std::collections::BTreeMap;
-use support::{WORLD, filter, gpu, gpu_with_buffers_of, inputs, lowered, on_card, on_processor, variants};
+use support::{WORLD, filter, gpu, gpu_with_buffers_of, inputs, lowered, on_card, on_processor, tried_on_card, variants};
 
 /// How far the layers of a filter may be from the processor's.
 #[derive(Clone, Copy)]
@@ -24,7 +24,8 @@ fn budget(op: &str, layer: &str) -> Budget {
         ("geomorphons", _) | ("topographic-position", "class") => Budget::Labels(2e-3),
         // Soil ends at the critical slope, and a mask without a fall-off is a label.
         ("soil-depth" | "select-slope", _) => Budget::Labels(5e-4),
-        ("pipes", _) => Budget::Chaotic(0.05),
+        // Where ground is almost level, water goes where the last digits of the heights send it.
+        ("pipes" | "local-stream-power", _) => Budget::Chaotic(5e-3),
         _ => Budget::Close,
     }
 }
@@ -48,8 +49,11 @@ fn statistics(grid: &Grid) -> [f64; 2] {
     [mean, variance.sqrt()]
 }
 
-/// The range of the values, of a few samples too: heights have that of the source at least.
+/// The range of the values, at least `floor`; of a single sample, its value.
 fn range(layer: &Grid, floor: f64) -> f64 {
+    if let [only] = layer.data() {
+        return f64::from(only.abs()).max(floor);
+    }
     let finite = layer.data().iter().filter(|v| v.is_finite());
     let (low, high) = finite.fold((f32::MAX, f32::MIN), |(l, h), v| (l.min(*v), h.max(*v)));
     (f64::from(high) - f64::from(low)).max(floor)
@@ -73,12 +77,18 @@ fn filters_are_those_of_the_processor() {
                 let all = windows(cell);
                 // A wide halo costs the same for each window.
                 let halo = filter(&node).unwrap().halo(cell);
-                let windows = if halo > 60 { &all[1..2] } else { &all[..] };
+                let windows = if halo > 60 { &all[2..] } else { &all[..] };
                 for window in windows {
                     for optional in if has_optional { vec![false, true] } else { vec![true] } {
                         let given = inputs(&node, window, optional);
                         let expected = on_processor(&node, window, &given);
-                        let made = on_card(&gpu, &node, window, &given);
+                        let made = match tried_on_card(&gpu, &node, window, &given) {
+                            Ok(made) => made,
+                            Err(failure) => {
+                                failures.push(format!("{op}: {failure}"));
+                                continue;
+                            }
+                        };
                         assert_eq!(made.len(), expected.len());
                         for ((layer, expected), made) in node.layers().iter().zip(&expected).zip(&made) {
                             assert_eq!(made.window(), window);

@@ -50,9 +50,9 @@ fn flow(base: u32, at: vec2<i32>) {
     set_plane(LOAD, at, plane(SEDIMENT, at) / max(depth, TINY));
 }
 
-// A flow, limited to the water of the cell that it comes from.
-fn held(flow: f32, from: f32, to: f32) -> f32 {
-    return flow * select(to, from, flow > 0.0);
+// A flow, limited to the water of the cell that it comes from: the limits of the cells that it leaves and enters if it is positive.
+fn held(flow: f32, left: f32, entered: f32) -> f32 {
+    return flow * select(entered, left, flow > 0.0);
 }
 
 // Moves water and sediment over the sides. Records erosion and deposition, and changes the sediment accordingly.

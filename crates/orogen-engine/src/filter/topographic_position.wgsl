@@ -51,11 +51,14 @@ fn rounded(a: vec2<u32>) -> f32 {
     return f32(a.y) * 4294967296.0 + f32(a.x);
 }
 
+// A height in units of 1/256 m. Halves are rounded away from 0, as on the processor; `round` of WGSL rounds them to even numbers.
 fn counts(height: f32) -> i32 {
     if (is_missing(height)) {
         return 0;
     }
-    return i32(round(clamp(height, -131072.0, 131072.0) * 256.0));
+    let exact = clamp(height, -131072.0, 131072.0) * 256.0;
+    let whole = trunc(exact);
+    return i32(whole + select(0.0, sign(exact), abs(exact - whole) >= 0.5));
 }
 
 // Sums down a column up to and including each sample: one call for each column.

@@ -19,7 +19,7 @@ use orogen_engine::lower::{Lowering, Passes};
 use orogen_engine::node::Node;
 use orogen_engine::op::{Context, Filter, Op, WorldParams};
 use orogen_gpu::gpu::Options;
-use orogen_gpu::{Choice, Gpu};
+use orogen_gpu::{Choice, Failure, Gpu};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 
@@ -131,12 +131,17 @@ pub fn on_processor(node: &Node, window: &Window, inputs: &[Option<Grid>]) -> Ve
 
 /// All layers of a node by a graphics card.
 pub fn on_card(gpu: &Gpu, node: &Node, window: &Window, inputs: &[Option<Grid>]) -> Vec<Grid> {
+    tried_on_card(gpu, node, window, inputs).unwrap()
+}
+
+/// The same, with its failure.
+pub fn tried_on_card(gpu: &Gpu, node: &Node, window: &Window, inputs: &[Option<Grid>]) -> Result<Vec<Grid>, Failure> {
     let inputs: Vec<Option<&Grid>> = inputs.iter().map(Option::as_ref).collect();
     let wanted = vec![true; node.layers().len()];
     let passes = lowered(node, window.cell).unwrap();
     let halo = filter(node).unwrap().halo(window.cell);
-    let made = orogen_gpu::filters::apply(gpu, &passes, &inputs, window, halo, &wanted, || false).unwrap().unwrap();
-    made.into_iter().flatten().collect()
+    let made = orogen_gpu::filters::apply(gpu, &passes, &inputs, window, halo, &wanted, || false)?;
+    Ok(made.unwrap().into_iter().flatten().collect())
 }
 
 /// A filter with other parameters than its defaults, several times.
