@@ -39,7 +39,12 @@ pub struct Pass {
     pub step: u32,
     /// Columns and rows at each side of the planes that it leaves out, at most the halo.
     pub inset: [usize; 2],
+    /// Number of samples that a call reads, about. The samples of an expensive pass are computed in parts, so that no driver takes it for a hang.
+    pub reads: usize,
 }
+
+/// Number of samples that a call reads if nothing else is said.
+const READS: usize = 20;
 
 impl Passes {
     /// Passes that read these numbers.
@@ -65,7 +70,16 @@ impl Passes {
     /// With a run of a function after the others, which leaves out `inset` columns and rows at each side.
     #[must_use]
     pub fn then(mut self, function: &'static str, step: u32, inset: [usize; 2]) -> Passes {
-        self.passes.push(Pass { function, step, inset });
+        self.passes.push(Pass { function, step, inset, reads: READS });
+        self
+    }
+
+    /// With this number of samples that a call of the last pass reads, about.
+    #[must_use]
+    pub fn reading(mut self, reads: usize) -> Passes {
+        if let Some(pass) = self.passes.last_mut() {
+            pass.reads = reads.max(1);
+        }
         self
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::gpu::Gpu;
-use crate::job::{Dispatch, Job};
+use crate::job::{Dispatch, GROUP, Job};
 use orogen_engine::lower::Passes;
 use orogen_grid::grid::{Grid, Window};
 use std::collections::HashMap;
@@ -117,17 +117,22 @@ impl<'a> Filter<'a> {
             uploads: uploads.collect(),
             ..Job::default()
         };
+        // Passes of the same part share their words.
         let mut bases = HashMap::new();
         for pass in &self.passes.passes {
-            let inset = pass.inset.map(|inset| inset.min(halo));
-            let size = [grown.width - 2 * inset[0], grown.height - 2 * inset[1]];
-            let base = *bases.entry(inset).or_insert(job.data.len());
-            if base == job.data.len() {
-                let words: [usize; WORDS] = [grown.width, grown.height, inset[0], inset[1], 0];
-                job.data.extend(words.map(|word| word as u32));
-            }
             let Some(text) = self.texts.get(pass.function) else { continue };
-            job.dispatches.push(Dispatch { text, base: base as u32, size: size.map(|side| side as u32), step: pass.step });
+            let [left, top] = pass.inset.map(|inset| inset.min(halo));
+            let (width, height) = (grown.width - 2 * left, grown.height - 2 * top);
+            for (first, rows) in bands(height, width * pass.reads) {
+                let start = [left, top + first];
+                let base = *bases.entry(start).or_insert(job.data.len());
+                if base == job.data.len() {
+                    let words: [usize; WORDS] = [grown.width, grown.height, start[0], start[1], 0];
+                    job.data.extend(words.map(|word| word as u32));
+                }
+                let size = [width, rows].map(|side| side as u32);
+                job.dispatches.push(Dispatch { text, base: base as u32, size, step: pass.step });
+            }
         }
         // Whole rows are copied back: those of the tile.
         let rows = tile.height * grown.width;
@@ -137,6 +142,16 @@ impl<'a> Filter<'a> {
         let Some(back) = job.run(gpu, is_cancelled)? else { return Ok(None) };
         Ok(Some(back.into_iter().map(|rows| inner(rows, tile, grown.width, halo)).collect()))
     }
+}
+
+/// Number of samples that one dispatch reads at most: a fraction of a second on slow cards.
+const READS: usize = 1 << 30;
+
+/// Bands of rows, of each the first row and the number of rows, of which none reads too much if a row reads `reads` samples. At least one workgroup is high.
+fn bands(height: usize, reads: usize) -> impl Iterator<Item = (usize, usize)> {
+    let group = GROUP as usize;
+    let rows = (READS / reads.max(1) / group).max(1) * group;
+    (0..height).step_by(rows).map(move |first| (first, rows.min(height - first)))
 }
 
 /// The tiles of a window, at most of this size.
@@ -184,4 +199,25 @@ fn text(code: &str, function: &str) -> String {
         \x20   {function}(data[frame.base + 4u], vec2<i32>(at));\n\
         }}\n"
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bands_and_tiles_cover_everything_once() {
+        for (height, reads) in [(1, 1), (100, READS), (100, READS / 30), (64, READS / 64), (5, usize::MAX)] {
+            let bands: Vec<_> = bands(height, reads).collect();
+            assert_eq!(bands.iter().map(|(_, rows)| rows).sum::<usize>(), height);
+            assert!(bands.windows(2).all(|pair| pair[0].0 + pair[0].1 == pair[1].0), "{bands:?}");
+            assert!(bands.iter().all(|(_, rows)| *rows <= 8 || rows * reads <= READS), "{bands:?}");
+        }
+        let window = Window::new(30, 17, 2.0).at(-5, 9);
+        for side in [[30, 17], [7, 5], [30, 1], [1, 17]] {
+            let tiles: Vec<_> = tiles(&window, side).collect();
+            assert_eq!(tiles.iter().map(Window::len).sum::<usize>(), window.len());
+            assert!(tiles.iter().all(|tile| window.contains(tile) && tile.width <= side[0] && tile.height <= side[1]));
+        }
+    }
 }

@@ -36,9 +36,6 @@ impl Blur {
     }
 }
 
-/// Number of weights that a pass of the shader adds up, as there.
-const TOGETHER: usize = 512;
-
 const CODE: &str = include_str!("blur.wgsl");
 
 impl Filter for Blur {
@@ -93,11 +90,11 @@ impl Filter for Blur {
     fn lower(&self, cell: f64, _: &WorldParams) -> Lowering<Passes> {
         let reach = self.halo(cell);
         let weights = if reach == 0 { vec![1.0] } else { self.weights(cell) };
-        let runs = weights.len().div_ceil(TOGETHER) as u32;
-        let words = std::iter::once(weights.len() as u32).chain(weights.iter().map(|weight| weight.to_bits()));
+        let count = weights.len();
+        let words = std::iter::once(count as u32).chain(weights.iter().map(|weight| weight.to_bits()));
         let passes = Passes::new(CODE, &[]).with_words(words).with_scratch(1);
-        let passes = (0..runs).fold(passes, |passes, run| passes.then("rows", run, [reach, 0]));
-        Lowering::Shader((0..runs).fold(passes, |passes, run| passes.then("columns", run, [reach; 2])))
+        let passes = passes.then("rows", 0, [reach, 0]).reading(count).then("columns", 0, [reach; 2]).reading(count);
+        Lowering::Shader(passes)
     }
 
     fn cost(&self, cell: f64) -> f64 {

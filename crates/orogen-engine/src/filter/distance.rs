@@ -34,9 +34,6 @@ op! {
 /// Maximum reach in samples.
 const FARTHEST: f64 = 16_384.0;
 
-/// Number of columns that a pass of the shader tries, as there.
-const TOGETHER: u32 = 256;
-
 const CODE: &str = concat!(include_str!("selection.wgsl"), include_str!("distance.wgsl"));
 
 impl Filter for Distance {
@@ -86,8 +83,7 @@ impl Filter for Distance {
         let passes = Passes::new(CODE, &numbers).then("mark", first << 8, [0; 2]);
         let down = |passes: Passes, (k, step)| passes.then("down_columns", step | (1u32 << (16 + k)), [0; 2]);
         let passes = steps.into_iter().enumerate().fold(passes, down);
-        let along = |passes: Passes, run| passes.then("along_rows", run, [reach; 2]);
-        let passes = (0..=reach as u32 / TOGETHER).fold(passes, along);
+        let passes = passes.then("along_rows", 0, [reach; 2]).reading(2 * reach);
         Lowering::Shader(passes.then("measure", 0, [reach; 2]))
     }
 

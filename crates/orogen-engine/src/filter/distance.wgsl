@@ -16,17 +16,11 @@ fn down_columns(base: u32, at: vec2<i32>) {
     set_plane((frame.step >> 8u) & 0xffu, at, min(plane(source, at), there + f32(length)));
 }
 
-// Squared distances in plane 1, from the distances within the columns in plane 2. A run tries some columns, the nearest first, because only a few matter.
-const TOGETHER = 256;
-
+// Squared distances in plane 1, from the distances within the columns in plane 2. The nearest columns are tried first, because only a few matter.
 fn along_rows(base: u32, at: vec2<i32>) {
-    let first = i32(frame.step) * TOGETHER;
-    let last = min(first + TOGETHER - 1, i32(number(base, 1u)));
+    let reach = i32(number(base, 1u));
     var best = NONE * NONE;
-    if (first > 0) {
-        best = plane(1u, at);
-    }
-    for (var x = first; x <= last; x += 1) {
+    for (var x = 0; x <= reach; x += 1) {
         let square = f32(x) * f32(x);
         if (square >= best) {
             break;

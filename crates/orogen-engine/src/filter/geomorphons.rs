@@ -75,9 +75,8 @@ impl Filter for Geomorphons {
         let limit = libm::tan(look.flat.to_radians()) as f32;
         let mut numbers = vec![look.straight as f32, look.diagonal as f32, limit, by_difference, cell as f32];
         numbers.extend(CODES.iter().flatten().map(|code| f32::from(*code)));
-        let inset = [self.halo(cell); 2];
-        let passes = (0..8).fold(Passes::new(CODE, &numbers), |passes, turn| passes.then("look", turn, inset));
-        Lowering::Shader(passes.then("classify", 0, inset))
+        let reach = self.halo(cell);
+        Lowering::Shader(Passes::new(CODE, &numbers).then("forms", 0, [reach; 2]).reading(8 * reach))
     }
 
     fn cost(&self, cell: f64) -> f64 {

@@ -99,7 +99,8 @@ impl Filter for TopographicPosition {
         let count: usize = halves.iter().map(|half| 2 * half + 1).sum();
         let words = [radius, count].into_iter().chain(halves).map(|number| number as u32);
         let passes = Passes::new(CODE, &[(1.0 / (8.0 * cell)) as f32]).with_words(words).with_scratch(5);
-        Lowering::Shader(passes.then("add_up", 0, [0; 2]).then("compare", 0, [radius; 2]))
+        let passes = passes.then("add_up", 0, [0; 2]).then("compare", 0, [radius; 2]).reading(20 * radius);
+        Lowering::Shader(passes)
     }
 
     fn cost(&self, cell: f64) -> f64 {
