@@ -35,7 +35,9 @@ fn every_filter_says_how_a_graphics_card_computes_it() {
 fn the_text_of_a_filter_does_not_depend_on_the_cell() {
     for node in Node::all() {
         let Op::Filter(filter) = node.op() else { continue };
-        if let (Lowering::Shader(fine), Lowering::Shader(coarse)) = (filter.lower(1.0, &WORLD), filter.lower(30.0, &WORLD)) {
+        if let (Lowering::Shader(fine), Lowering::Shader(coarse)) =
+            (filter.lower(1.0, &WORLD), filter.lower(30.0, &WORLD))
+        {
             assert_eq!((fine.code, fine.scratch), (coarse.code, coarse.scratch), "{}", node.spec().op);
         }
     }

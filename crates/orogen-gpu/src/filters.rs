@@ -137,8 +137,7 @@ impl<'a> Filter<'a> {
         // Whole rows are copied back: those of the tile.
         let rows = tile.height * grown.width;
         let layers = self.wanted.iter().enumerate().filter(|(_, wanted)| **wanted);
-        job.downloads =
-            layers.map(|(k, _)| ((self.inputs + k) * grown.len() + halo * grown.width, rows)).collect();
+        job.downloads = layers.map(|(k, _)| ((self.inputs + k) * grown.len() + halo * grown.width, rows)).collect();
         let Some(back) = job.run(gpu, is_cancelled)? else { return Ok(None) };
         Ok(Some(back.into_iter().map(|rows| inner(rows, tile, grown.width, halo)).collect()))
     }

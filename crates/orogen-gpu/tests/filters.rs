@@ -6,7 +6,9 @@ mod support;
 use orogen_engine::node::Node;
 use orogen_grid::grid::{Grid, Window};
 use std::collections::BTreeMap;
-use support::{WORLD, filter, gpu, gpu_with_buffers_of, inputs, lowered, on_card, on_processor, tried_on_card, variants};
+use support::{
+    WORLD, filter, gpu, gpu_with_buffers_of, inputs, lowered, on_card, on_processor, tried_on_card, variants,
+};
 
 /// How far the layers of a filter may be from the processor's.
 #[derive(Clone, Copy)]
@@ -94,7 +96,8 @@ fn filters_are_those_of_the_processor() {
                         assert_eq!(made.len(), expected.len());
                         for ((layer, expected), made) in node.layers().iter().zip(&expected).zip(&made) {
                             assert_eq!(made.window(), window);
-                            let case = format!("{op} {v}, {}, {cell} m, {} x {}", layer.name, window.width, window.height);
+                            let case =
+                                format!("{op} {v}, {}, {cell} m, {} x {}", layer.name, window.width, window.height);
                             let entry = table.entry((op, layer.name)).or_default();
                             if let Some(failure) = compare(entry, budget(op, layer.name), expected, made, &case) {
                                 failures.push(format!("{case}: {failure}"));
@@ -123,13 +126,7 @@ fn filters_are_those_of_the_processor() {
 }
 
 /// Adds the differences of a case; what is wrong with it, other than the share of samples that differ.
-fn compare(
-    entry: &mut Differences,
-    budget: Budget,
-    expected: &Grid,
-    made: &Grid,
-    case: &str,
-) -> Option<String> {
+fn compare(entry: &mut Differences, budget: Budget, expected: &Grid, made: &Grid, case: &str) -> Option<String> {
     let range = range(expected, 1e-3 * expected.window().cell);
     let mut worst: f64 = 0.0;
     for (expected, made) in expected.data().iter().zip(made.data()) {
@@ -173,7 +170,8 @@ fn tiles_give_the_same() {
         let (one, many) = (on_card(&whole, &node, &window, &given), on_card(&tiled, &node, &window, &given));
         for (layer, (one, many)) in node.layers().iter().zip(one.iter().zip(&many)) {
             let range = range(one, 1e-3);
-            let off = one.data().iter().zip(many.data()).map(|(a, b)| f64::from((a - b).abs()) / range).fold(0.0, f64::max);
+            let off =
+                one.data().iter().zip(many.data()).map(|(a, b)| f64::from((a - b).abs()) / range).fold(0.0, f64::max);
             assert!(off < 1e-6, "{} {}: {off}", node.spec().op, layer.name);
         }
     }
@@ -269,7 +267,10 @@ fn time_of_pipes() {
     let begin = std::time::Instant::now();
     let expected = on_processor(&node, &window, &given);
     let processor = begin.elapsed();
-    println!("100 iterations of pipes on 2048 x 2048 samples: {}: {card:.2?}; processor: {processor:.2?}", gpu.adapter());
+    println!(
+        "100 iterations of pipes on 2048 x 2048 samples: {}: {card:.2?}; processor: {processor:.2?}",
+        gpu.adapter()
+    );
     let ([mean, _], [made_mean, _]) = (statistics(&expected[0]), statistics(&made[0]));
     println!("mean height {made_mean}, on the processor {mean}");
 }

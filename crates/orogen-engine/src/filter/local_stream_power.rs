@@ -94,7 +94,8 @@ impl Filter for LocalStreamPower {
                 None => areas.fill(own),
             }
         }
-        let done = self.law(window.cell, context.world_params).run(planes, self.iterations as usize, context.progress)?;
+        let done =
+            self.law(window.cell, context.world_params).run(planes, self.iterations as usize, context.progress)?;
         for (layer, plane) in out.iter_mut().zip([HEIGHT, AREA, SEDIMENT]) {
             if let Some(layer) = layer {
                 *layer = done.grid(plane, *window);

@@ -50,7 +50,11 @@ op! {
 /// Maximum distance between the heights, in samples.
 const FARTHEST: f64 = 16_384.0;
 
-const CODE: &str = concat!(include_str!("second_difference.wgsl"), include_str!("selection.wgsl"), include_str!("select_curvature.wgsl"));
+const CODE: &str = concat!(
+    include_str!("second_difference.wgsl"),
+    include_str!("selection.wgsl"),
+    include_str!("select_curvature.wgsl")
+);
 
 impl Filter for SelectCurvature {
     fn halo(&self, cell: f64) -> usize {

@@ -62,7 +62,8 @@ impl Filter for SoilDepth {
 
     fn lower(&self, cell: f64, _: &WorldParams) -> Lowering<Passes> {
         let made = self.density_ratio * self.production;
-        let numbers = [cell, self.critical_slope, self.creep, self.decay, made, self.deepest].map(|number| number as f32);
+        let numbers =
+            [cell, self.critical_slope, self.creep, self.decay, made, self.deepest].map(|number| number as f32);
         Lowering::Shader(Passes::new(CODE, &numbers).then("depths", 0, [1; 2]))
     }
 

@@ -114,9 +114,10 @@ pub fn lowered(node: &Node, cell: f64) -> Option<Passes> {
 /// The inputs of a node over a window of its result, with or without those that are optional.
 pub fn inputs(node: &Node, window: &Window, with_optional: bool) -> Vec<Option<Grid>> {
     let grown = window.grown(filter(node).unwrap().halo(window.cell));
-    let made = node.inputs().into_iter().map(|declared| {
-        (declared.required || with_optional).then(|| input(declared.name, node.spec().op, &grown))
-    });
+    let made = node
+        .inputs()
+        .into_iter()
+        .map(|declared| (declared.required || with_optional).then(|| input(declared.name, node.spec().op, &grown)));
     made.collect()
 }
 
@@ -147,7 +148,9 @@ pub fn tried_on_card(gpu: &Gpu, node: &Node, window: &Window, inputs: &[Option<G
 /// A filter with other parameters than its defaults, several times.
 pub fn variants(node: &Node) -> Vec<Node> {
     match node.spec().op {
-        "blur" => vec![Blur { radius: 0.0, ..Default::default() }.into(), Blur { radius: 3.7, ..Default::default() }.into()],
+        "blur" => {
+            vec![Blur { radius: 0.0, ..Default::default() }.into(), Blur { radius: 3.7, ..Default::default() }.into()]
+        }
         "slope" => vec![Slope { unit: SlopeUnit::Ratio, ..Default::default() }.into()],
         "thermal" => vec![
             Thermal { iterations: 0, ..Default::default() }.into(),
@@ -157,12 +160,20 @@ pub fn variants(node: &Node) -> Vec<Node> {
         "pipes" => vec![
             Pipes { iterations: 0, ..Default::default() }.into(),
             Pipes { iterations: 1, ..Default::default() }.into(),
-            Pipes { iterations: 12, rain: 20.0, erosion: 0.8, time_step: 0.4, evaporation: 0.1, ..Default::default() }.into(),
+            Pipes { iterations: 12, rain: 20.0, erosion: 0.8, time_step: 0.4, evaporation: 0.1, ..Default::default() }
+                .into(),
         ],
         "local-stream-power" => vec![
             LocalStreamPower { iterations: 1, ..Default::default() }.into(),
-            LocalStreamPower { iterations: 8, slope_exponent: 1.6, uplift: 2.0, creep: 1.0, sea: false, ..Default::default() }
-                .into(),
+            LocalStreamPower {
+                iterations: 8,
+                slope_exponent: 1.6,
+                uplift: 2.0,
+                creep: 1.0,
+                sea: false,
+                ..Default::default()
+            }
+            .into(),
             LocalStreamPower { iterations: 15, deposition: 5.0, years: 1e6, ..Default::default() }.into(),
         ],
         "distance" => vec![
@@ -172,7 +183,8 @@ pub fn variants(node: &Node) -> Vec<Node> {
         ],
         "select-slope" => vec![SelectSlope { range: [0.0, 12.0], falloff: [0.0, 25.0], ..Default::default() }.into()],
         "select-aspect" => vec![
-            SelectAspect { direction: 250.0, width: 10.0, falloff: 100.0, least_slope: 0.0, ..Default::default() }.into(),
+            SelectAspect { direction: 250.0, width: 10.0, falloff: 100.0, least_slope: 0.0, ..Default::default() }
+                .into(),
             SelectAspect { direction: -80.0, width: 100.0, falloff: 80.0, ..Default::default() }.into(),
         ],
         "select-curvature" => [Bend::Total, Bend::Profile, Bend::Plan]
