@@ -32,6 +32,12 @@ fn depths(base: u32, at: vec2<i32>) {
     let sw = plane(0u, at + vec2<i32>(-1, 1));
     let s = plane(0u, at + vec2<i32>(0, 1));
     let se = plane(0u, at + vec2<i32>(1, 1));
+    // A difference with a missing height is missing, and the sum of their sizes is, too.
+    let all = (abs(nw - z) + abs(n - z) + abs(ne - z)) + (abs(w - z) + abs(e - z)) + (abs(sw - z) + abs(s - z) + abs(se - z));
+    if (is_missing(all)) {
+        set_plane(1u, at, missing());
+        return;
+    }
     let corners = sum_of_differences(ne, nw, sw, se) / (4.0 * c);
     let columns = flux_difference(
         vec2<f32>(w - z, z - e) / c,

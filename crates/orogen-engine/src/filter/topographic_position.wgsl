@@ -51,9 +51,9 @@ fn rounded(a: vec2<u32>) -> f32 {
     return f32(a.y) * 4294967296.0 + f32(a.x);
 }
 
-// A height in units of 1/256 m. Halves are rounded away from 0, as on the processor; `round` of WGSL rounds them to even numbers.
+// A height in units of 1/256 m; 0 if it is not a number. Halves are rounded away from 0, as on the processor; `round` of WGSL rounds them to even numbers.
 fn counts(height: f32) -> i32 {
-    if (is_missing(height)) {
+    if ((bitcast<u32>(height) & 0x7fffffffu) > 0x7f800000u) {
         return 0;
     }
     let exact = clamp(height, -131072.0, 131072.0) * 256.0;
