@@ -30,5 +30,10 @@ fn select_curvatures(base: u32, at: vec2<i32>) {
     } else {
         bend = -(r * q * q - 2.0 * d * p * q + t * p * p) / (steep * sqrt(steep));
     }
+    // All nine heights must be known, also where the corners do not matter.
+    if (is_missing(bend) || is_missing(d)) {
+        set_plane(1u, at, 0.0);
+        return;
+    }
     set_plane(1u, at, selected(base + 3u, bend));
 }
