@@ -15,11 +15,12 @@ pub enum Lowering<T> {
 ///
 /// The first planes are its inputs, one for each that is declared (zeros if it is not given). The next are its layers, and then come `scratch` planes. Planes
 /// other than inputs start as zeros. The text defines one function `fn NAME(base: u32, at: vec2<i32>)` for each pass, which is called for every sample of the
-/// planes. It reads numbers with `number(base, i)`, samples with `plane(k, at)`, where positions beyond the border are those of the border, and writes the sample
-/// at its own position with `set_plane(k, at, value)`. A pass must not read planes that it writes, except at its own position.
+/// planes, except for a border that nothing reads any more. It reads numbers with `number(base, i)` and samples with `plane(k, at)`, where positions beyond the
+/// border are those of the border, and writes samples with `set_plane(k, at, value)`; `size()` is the number of columns and rows of the planes. A pass may run
+/// for all samples at once: it must not read samples that another call writes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Passes {
-    /// The text that defines the functions of the passes.
+    /// The text that defines the functions of the passes. It does not depend on parameters.
     pub code: &'static str,
     /// The numbers that they read.
     pub words: Vec<u32>,
@@ -29,20 +30,34 @@ pub struct Passes {
     pub passes: Vec<Pass>,
 }
 
-/// One run of a function over all samples.
+/// One run of a function over samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pass {
     /// The name of the function.
     pub function: &'static str,
     /// A number that the function reads as `frame.step`, such as that of the iteration.
     pub step: u32,
+    /// Columns and rows at each side of the planes that it leaves out, at most the halo.
+    pub inset: [usize; 2],
+    /// Number of samples that a call reads, about. The samples of an expensive pass are computed in parts, so that no driver takes it for a hang.
+    pub reads: usize,
 }
+
+/// Number of samples that a call reads if nothing else is said.
+const READS: usize = 20;
 
 impl Passes {
     /// Passes that read these numbers.
     #[must_use]
     pub fn new(code: &'static str, numbers: &[f32]) -> Passes {
         Passes { code, words: numbers.iter().map(|number| number.to_bits()).collect(), scratch: 0, passes: Vec::new() }
+    }
+
+    /// With these words after the others.
+    #[must_use]
+    pub fn with_words(mut self, words: impl IntoIterator<Item = u32>) -> Passes {
+        self.words.extend(words);
+        self
     }
 
     /// With this number of planes beside inputs and layers.
@@ -52,10 +67,27 @@ impl Passes {
         self
     }
 
-    /// With a run of a function after the others.
+    /// With a run of a function after the others, which leaves out `inset` columns and rows at each side.
     #[must_use]
-    pub fn then(mut self, function: &'static str, step: u32) -> Passes {
-        self.passes.push(Pass { function, step });
+    pub fn then(mut self, function: &'static str, step: u32, inset: [usize; 2]) -> Passes {
+        self.passes.push(Pass { function, step, inset, reads: READS });
         self
     }
+
+    /// With this number of samples that a call of the last pass reads, about.
+    #[must_use]
+    pub fn reading(mut self, reads: usize) -> Passes {
+        if let Some(pass) = self.passes.last_mut() {
+            pass.reads = reads.max(1);
+        }
+        self
+    }
+}
+
+/// The planes that iterations read and write in turn, as the step of a pass: the plane that is read in the lower eight bits, and the one that is written in the
+/// next eight. The first iteration reads `first`, the last one writes `turns[0]`, the one before it `turns[1]`, and so on.
+#[must_use]
+pub fn alternating(iterations: u32, first: u32, turns: [u32; 2]) -> Vec<u32> {
+    let written = |k: u32| if (iterations - k) % 2 == 1 { turns[0] } else { turns[1] };
+    (0..iterations).map(|k| if k == 0 { first } else { written(k - 1) } | written(k) << 8).collect()
 }

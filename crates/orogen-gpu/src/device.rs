@@ -1,5 +1,6 @@
 //! The graphics card as a device of the engine.
 
+use crate::filters;
 use crate::gpu::Gpu;
 use crate::program::run;
 use orogen_engine::device::{Device, FilterExtent, LoweredProgram};
@@ -23,11 +24,13 @@ impl Device for Gpu {
 
     fn apply(
         &self,
-        _: &Passes,
-        _: &[Option<&Grid>],
-        _: &FilterExtent,
-        _: &Progress,
+        passes: &Passes,
+        inputs: &[Option<&Grid>],
+        extent: &FilterExtent,
+        progress: &Progress,
     ) -> Result<Option<Vec<Option<Grid>>>> {
-        Ok(None)
+        let is_cancelled = || progress.check().is_err();
+        let FilterExtent { window, halo, wanted } = extent;
+        self.outcome(filters::apply(self, passes, inputs, window, *halo, wanted, is_cancelled), progress)
     }
 }

@@ -14,6 +14,8 @@ pub enum Failure {
     Memory(String),
     /// The driver refused a shader or a command.
     Driver(String),
+    /// An input does not fit the work.
+    Input(String),
 }
 
 impl fmt::Display for Failure {
@@ -23,6 +25,7 @@ impl fmt::Display for Failure {
             Failure::Lost(why) => write!(f, "the graphics card was lost: {why}"),
             Failure::Memory(why) => write!(f, "the graphics card has too little memory: {why}"),
             Failure::Driver(why) => write!(f, "the graphics driver refused the work: {why}"),
+            Failure::Input(why) => write!(f, "the graphics card cannot do the work: {why}"),
         }
     }
 }

@@ -7,6 +7,8 @@
 pub mod adapters;
 mod device;
 pub mod failure;
+#[doc(hidden)]
+pub mod filters;
 pub mod gpu;
 #[doc(hidden)]
 pub mod job;

@@ -1,6 +1,7 @@
 //! Gaussian blur.
 
-use crate::op::{Context, Filter};
+use crate::lower::{Lowering, Passes};
+use crate::op::{Context, Filter, WorldParams};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use rayon::prelude::*;
@@ -34,6 +35,8 @@ impl Blur {
         weights.iter().map(|weight| (weight / sum) as f32).collect()
     }
 }
+
+const CODE: &str = include_str!("blur.wgsl");
 
 impl Filter for Blur {
     fn halo(&self, cell: f64) -> usize {
@@ -82,6 +85,16 @@ impl Filter for Blur {
                 Ok(())
             },
         )
+    }
+
+    fn lower(&self, cell: f64, _: &WorldParams) -> Lowering<Passes> {
+        let reach = self.halo(cell);
+        let weights = if reach == 0 { vec![1.0] } else { self.weights(cell) };
+        let count = weights.len();
+        let words = std::iter::once(count as u32).chain(weights.iter().map(|weight| weight.to_bits()));
+        let passes = Passes::new(CODE, &[]).with_words(words).with_scratch(1);
+        let passes = passes.then("rows", 0, [reach, 0]).reading(count).then("columns", 0, [reach; 2]).reading(count);
+        Lowering::Shader(passes)
     }
 
     fn cost(&self, cell: f64) -> f64 {

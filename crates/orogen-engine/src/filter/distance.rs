@@ -1,6 +1,7 @@
 //! Distance to the nearest sample above a threshold.
 
-use crate::op::{Context, Filter};
+use crate::lower::{Lowering, Passes, alternating};
+use crate::op::{Context, Filter, WorldParams};
 use orogen_grid::analysis::distance::nearest_with;
 use orogen_grid::analysis::selection::Selection;
 use orogen_grid::error::Result;
@@ -33,6 +34,8 @@ op! {
 /// Maximum reach in samples.
 const FARTHEST: f64 = 16_384.0;
 
+const CODE: &str = concat!(include_str!("selection.wgsl"), include_str!("distance.wgsl"));
+
 impl Filter for Distance {
     fn halo(&self, cell: f64) -> usize {
         (self.reach / cell).ceil().min(FARTHEST) as usize
@@ -53,7 +56,7 @@ impl Filter for Distance {
     ) -> Result<()> {
         let ([Some(source)], [distance, near]) = (inputs, out) else { return Ok(()) };
         let samples = nearest_with(source, self.threshold as f32, self.halo(window.cell), context.progress)?;
-        let fade = Selection::new([-1.0, 0.0], [0.0, self.reach]);
+        let fade = self.fade();
         let metres = |steps: f32| (f64::from(steps) * window.cell).min(self.reach) as f32;
         for (layer, near) in [(distance, false), (near, true)] {
             let Some(layer) = layer else { continue };
@@ -68,7 +71,29 @@ impl Filter for Distance {
         Ok(())
     }
 
+    fn lower(&self, cell: f64, _: &WorldParams) -> Lowering<Passes> {
+        let reach = self.halo(cell);
+        let mut numbers = vec![self.threshold as f32, reach as f32, cell as f32, self.reach as f32];
+        numbers.extend(self.fade().numbers());
+        // Steps of 1, 2, 4, ... add up to every distance up to the reach.
+        let doublings = usize::BITS - reach.leading_zeros();
+        // Plane 2 has the distances within the columns at last.
+        let first = if doublings.is_multiple_of(2) { 2 } else { 1 };
+        let steps = alternating(doublings, first, [2, 1]);
+        let passes = Passes::new(CODE, &numbers).then("mark", first << 8, [0; 2]);
+        let down = |passes: Passes, (k, step)| passes.then("down_columns", step | (1u32 << (16 + k)), [0; 2]);
+        let passes = steps.into_iter().enumerate().fold(passes, down);
+        let passes = passes.then("along_rows", 0, [reach; 2]).reading(2 * reach);
+        Lowering::Shader(passes.then("measure", 0, [reach; 2]))
+    }
+
     fn cost(&self, _: f64) -> f64 {
         15.0
+    }
+}
+
+impl Distance {
+    fn fade(&self) -> Selection {
+        Selection::new([-1.0, 0.0], [0.0, self.reach])
     }
 }

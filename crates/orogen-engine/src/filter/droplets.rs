@@ -1,6 +1,7 @@
 //! Hydraulic erosion by droplets.
 
-use crate::op::{Context, Filter};
+use crate::lower::{Lowering, Passes};
+use crate::op::{Context, Filter, WorldParams};
 use orogen_grid::erosion::droplets::Droplets as Law;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -74,6 +75,13 @@ impl Filter for Droplets {
         }
         *out = self.law(context.world_params.seed_of(self.seed)).run(source, context.progress)?;
         Ok(())
+    }
+
+    fn lower(&self, _: f64, _: &WorldParams) -> Lowering<Passes> {
+        // Sums of fractions in any order would make the result depend on the card and on the moment.
+        Lowering::Processor(
+            "its droplets add up their changes in whole numbers of 64 bits, for which WGSL has no atomic sum",
+        )
     }
 
     fn cost(&self, cell: f64) -> f64 {

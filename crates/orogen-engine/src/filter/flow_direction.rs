@@ -1,9 +1,10 @@
 //! Flow directions in the encodings of other programs.
 
-use crate::op::{Context, Filter};
+use crate::lower::{Lowering, Passes};
+use crate::op::{Context, Filter, WorldParams};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
-use orogen_grid::hydrology::direction::Convention;
+use orogen_grid::hydrology::direction::{Convention, NONE};
 
 choice! {
     /// Encoding of flow directions.
@@ -38,6 +39,8 @@ op! {
     }
 }
 
+const CODE: &str = include_str!("flow_direction.wgsl");
+
 impl Filter for FlowDirection {
     fn halo(&self, _: f64) -> usize {
         0
@@ -45,16 +48,28 @@ impl Filter for FlowDirection {
 
     fn apply(&self, inputs: &[Option<&Grid>], _: &Window, out: &mut [Option<Grid>], _: &Context) -> Result<()> {
         let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
-        let convention = match self.codes {
+        let convention = self.convention();
+        for (out, code) in out.data_mut().iter_mut().zip(source.data()) {
+            *out = f32::from(convention.of(*code as u8));
+        }
+        Ok(())
+    }
+
+    fn lower(&self, _: f64, _: &WorldParams) -> Lowering<Passes> {
+        let convention = self.convention();
+        let codes: Vec<f32> = (0..=NONE).map(|code| f32::from(convention.of(code))).collect();
+        Lowering::Shader(Passes::new(CODE, &codes).then("convert", 0, [0; 2]))
+    }
+}
+
+impl FlowDirection {
+    fn convention(&self) -> Convention {
+        match self.codes {
             Codes::Esri => Convention::ESRI,
             Codes::Grass => Convention::GRASS,
             Codes::Taudem => Convention::TAUDEM,
             Codes::Whitebox => Convention::WHITEBOX,
             Codes::Pcraster => Convention::PCRASTER,
-        };
-        for (out, code) in out.data_mut().iter_mut().zip(source.data()) {
-            *out = f32::from(convention.of(*code as u8));
         }
-        Ok(())
     }
 }

@@ -2,7 +2,8 @@
 
 use rayon::prelude::*;
 
-use crate::op::{Context, Filter};
+use crate::lower::{Lowering, Passes};
+use crate::op::{Context, Filter, WorldParams};
 use orogen_grid::analysis::slope::gradients_between;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -34,6 +35,8 @@ op! {
     }
 }
 
+const CODE: &str = concat!(include_str!("horn.wgsl"), include_str!("flow_indices.wgsl"));
+
 impl Filter for FlowIndices {
     fn halo(&self, _: f64) -> usize {
         1
@@ -64,6 +67,11 @@ impl Filter for FlowIndices {
             })?;
         }
         Ok(())
+    }
+
+    fn lower(&self, cell: f64, _: &WorldParams) -> Lowering<Passes> {
+        let numbers = [(1.0 / (8.0 * cell)) as f32, cell as f32, self.least_slope as f32];
+        Lowering::Shader(Passes::new(CODE, &numbers).then("indices", 0, [1; 2]))
     }
 
     fn cost(&self, _: f64) -> f64 {

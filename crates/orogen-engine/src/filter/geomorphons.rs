@@ -1,7 +1,8 @@
 //! Landforms by geomorphons.
 
-use crate::op::{Context, Filter};
-use orogen_grid::analysis::geomorphons::{Level, Look, geomorphons_with};
+use crate::lower::{Lowering, Passes};
+use crate::op::{Context, Filter, WorldParams};
+use orogen_grid::analysis::geomorphons::{CODES, Level, Look, geomorphons_with};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 
@@ -44,6 +45,8 @@ op! {
 /// Maximum search radius in samples.
 const FARTHEST: f64 = 1024.0;
 
+const CODE: &str = include_str!("geomorphons.wgsl");
+
 impl Filter for Geomorphons {
     fn halo(&self, cell: f64) -> usize {
         (self.reach / cell).floor().clamp(1.0, FARTHEST) as usize
@@ -61,17 +64,32 @@ impl Filter for Geomorphons {
         context: &Context,
     ) -> Result<()> {
         let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
-        let level = match self.comparison {
-            Comparison::Steepest => Level::BySteepest,
-            Comparison::Difference => Level::ByDifference,
-        };
-        let look = Look::round((self.reach / window.cell).min(FARTHEST), self.flat, level);
-        let forms = geomorphons_with(source, &look, context.progress)?;
+        let forms = geomorphons_with(source, &self.look(window.cell), context.progress)?;
         out.data_mut().iter_mut().zip(forms.data()).for_each(|(out, form)| *out = f32::from(*form));
         Ok(())
     }
 
+    fn lower(&self, cell: f64, _: &WorldParams) -> Lowering<Passes> {
+        let look = self.look(cell);
+        let by_difference = f32::from(u8::from(look.level == Level::ByDifference));
+        let limit = libm::tan(look.flat.to_radians()) as f32;
+        let mut numbers = vec![look.straight as f32, look.diagonal as f32, limit, by_difference, cell as f32];
+        numbers.extend(CODES.iter().flatten().map(|code| f32::from(*code)));
+        let reach = self.halo(cell);
+        Lowering::Shader(Passes::new(CODE, &numbers).then("forms", 0, [reach; 2]).reading(8 * reach))
+    }
+
     fn cost(&self, cell: f64) -> f64 {
         10.0 * self.halo(cell) as f64
+    }
+}
+
+impl Geomorphons {
+    fn look(&self, cell: f64) -> Look {
+        let level = match self.comparison {
+            Comparison::Steepest => Level::BySteepest,
+            Comparison::Difference => Level::ByDifference,
+        };
+        Look::round((self.reach / cell).min(FARTHEST), self.flat, level)
     }
 }

@@ -1,6 +1,7 @@
 //! Stream power erosion with a finite halo.
 
-use crate::op::{Context, Filter};
+use crate::lower::{Lowering, Passes, alternating};
+use crate::op::{Context, Filter, WorldParams};
 use orogen_grid::erosion::local_stream_power::{AREA, HEIGHT, LocalStreamPower as Law, RADIUS, SEDIMENT};
 use orogen_grid::erosion::planes::Planes;
 use orogen_grid::error::Result;
@@ -56,6 +57,8 @@ op! {
     }
 }
 
+const CODE: &str = include_str!("local_stream_power.wgsl");
+
 impl Filter for LocalStreamPower {
     fn halo(&self, _: f64) -> usize {
         RADIUS * self.iterations as usize
@@ -91,7 +94,8 @@ impl Filter for LocalStreamPower {
                 None => areas.fill(own),
             }
         }
-        let done = self.law(window.cell, context).run(planes, self.iterations as usize, context.progress)?;
+        let done =
+            self.law(window.cell, context.world_params).run(planes, self.iterations as usize, context.progress)?;
         for (layer, plane) in out.iter_mut().zip([HEIGHT, AREA, SEDIMENT]) {
             if let Some(layer) = layer {
                 *layer = done.grid(plane, *window);
@@ -100,13 +104,25 @@ impl Filter for LocalStreamPower {
         Ok(())
     }
 
+    fn lower(&self, cell: f64, world_params: &WorldParams) -> Lowering<Passes> {
+        // The layer of the heights, and the other plane that has them after every second iteration.
+        const TURNS: [u32; 2] = [2, 7];
+        let first = TURNS[(self.iterations % 2) as usize];
+        let passes = Passes::new(CODE, &self.law(cell, world_params).numbers()).with_scratch(3);
+        let steps = alternating(self.iterations, first, TURNS);
+        let iterate = |passes: Passes, (k, step)| {
+            passes.then("give", step, [RADIUS * k + 1; 2]).then("take", step, [RADIUS * (k + 1); 2])
+        };
+        Lowering::Shader(steps.into_iter().enumerate().fold(passes.then("start", first << 8, [0; 2]), iterate))
+    }
+
     fn cost(&self, _: f64) -> f64 {
         4.0 * f64::from(self.iterations)
     }
 }
 
 impl LocalStreamPower {
-    fn law(&self, cell: f64, context: &Context) -> Law {
+    fn law(&self, cell: f64, world_params: &WorldParams) -> Law {
         Law::new(cell)
             .with_years(self.years / f64::from(self.iterations.max(1)))
             .with_erodibility(self.erodibility)
@@ -115,6 +131,6 @@ impl LocalStreamPower {
             .with_uplift(self.uplift / 1000.0)
             .with_deposition(self.deposition)
             .with_creep(self.creep)
-            .with_sea_level(self.sea.then_some(context.world_params.sea_level as f32))
+            .with_sea_level(self.sea.then_some(world_params.sea_level as f32))
     }
 }

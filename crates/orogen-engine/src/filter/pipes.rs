@@ -1,6 +1,7 @@
 //! Hydraulic erosion with virtual pipes.
 
-use crate::op::{Context, Filter};
+use crate::lower::{Lowering, Passes};
+use crate::op::{Context, Filter, WorldParams};
 use orogen_grid::erosion::pipe_rows::{BED, DEPTH, SEDIMENT};
 use orogen_grid::erosion::pipes::{Pipes as Law, RADIUS, Wet};
 use orogen_grid::error::Result;
@@ -58,6 +59,8 @@ op! {
     }
 }
 
+const CODE: &str = include_str!("pipes.wgsl");
+
 impl Filter for Pipes {
     fn halo(&self, _: f64) -> usize {
         // One more for the velocity, which is defined between the sides of a cell.
@@ -91,6 +94,15 @@ impl Filter for Pipes {
             }
         }
         Ok(())
+    }
+
+    fn lower(&self, cell: f64, _: &WorldParams) -> Lowering<Passes> {
+        let passes = Passes::new(CODE, &self.law().numbers(cell)).with_scratch(6).then("start", 0, [0; 2]);
+        let passes = (0..self.iterations as usize).map(|k| RADIUS * k).fold(passes, |passes, inset| {
+            let passes = passes.then("flow", 0, [inset + 1; 2]).then("pass_on", 0, [inset + 2; 2]);
+            passes.then("lay", 0, [inset + 3; 2])
+        });
+        Lowering::Shader(passes.then("finish", 0, [self.halo(cell); 2]))
     }
 
     fn cost(&self, _: f64) -> f64 {

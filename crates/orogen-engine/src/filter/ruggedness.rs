@@ -1,6 +1,7 @@
 //! Terrain ruggedness index.
 
-use crate::op::{Context, Filter};
+use crate::lower::{Lowering, Passes};
+use crate::op::{Context, Filter, WorldParams};
 use orogen_grid::analysis::roughness::riley_with;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -21,6 +22,8 @@ op! {
     }
 }
 
+const CODE: &str = include_str!("ruggedness.wgsl");
+
 impl Filter for Ruggedness {
     fn halo(&self, _: f64) -> usize {
         1
@@ -30,5 +33,9 @@ impl Filter for Ruggedness {
         let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
         *out = riley_with(source, context.progress)?;
         Ok(())
+    }
+
+    fn lower(&self, _: f64, _: &WorldParams) -> Lowering<Passes> {
+        Lowering::Shader(Passes::new(CODE, &[]).then("index", 0, [1; 2]))
     }
 }

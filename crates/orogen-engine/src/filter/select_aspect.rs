@@ -1,6 +1,7 @@
 //! A mask by aspect.
 
-use crate::op::{Context, Filter};
+use crate::lower::{Lowering, Passes};
+use crate::op::{Context, Filter, WorldParams};
 use orogen_grid::analysis::aspect::aspect_of;
 use orogen_grid::analysis::selection::Selection;
 use orogen_grid::analysis::slope::gradients_between;
@@ -30,6 +31,9 @@ op! {
     }
 }
 
+const CODE: &str =
+    concat!(include_str!("horn.wgsl"), include_str!("selection.wgsl"), include_str!("select_aspect.wgsl"));
+
 impl Filter for SelectAspect {
     fn halo(&self, _: f64) -> usize {
         1
@@ -57,6 +61,14 @@ impl Filter for SelectAspect {
             });
             Ok(())
         })
+    }
+
+    fn lower(&self, cell: f64, _: &WorldParams) -> Lowering<Passes> {
+        let directions = Selection::new([-1.0, self.width], [0.0, self.falloff]).numbers();
+        let slopes = Selection::new([self.least_slope, 90.0], [self.least_slope, 0.0]).numbers();
+        let mut numbers = vec![(1.0 / (8.0 * cell)) as f32, self.direction as f32];
+        numbers.extend(directions.into_iter().chain(slopes));
+        Lowering::Shader(Passes::new(CODE, &numbers).then("select_aspects", 0, [1; 2]))
     }
 
     fn cost(&self, _: f64) -> f64 {

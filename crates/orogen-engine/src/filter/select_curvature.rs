@@ -1,6 +1,7 @@
 //! A mask by curvature.
 
-use crate::op::{Context, Filter};
+use crate::lower::{Lowering, Passes};
+use crate::op::{Context, Filter, WorldParams};
 use orogen_grid::analysis::curvature::{Curvature, bend};
 use orogen_grid::analysis::selection::Selection;
 use orogen_grid::error::Result;
@@ -49,6 +50,13 @@ op! {
 /// Maximum distance between the heights, in samples.
 const FARTHEST: f64 = 16_384.0;
 
+const CODE: &str = concat!(
+    include_str!("horn.wgsl"),
+    include_str!("second_difference.wgsl"),
+    include_str!("selection.wgsl"),
+    include_str!("select_curvature.wgsl")
+);
+
 impl Filter for SelectCurvature {
     fn halo(&self, cell: f64) -> usize {
         (self.scale / cell).round().clamp(1.0, FARTHEST) as usize
@@ -80,6 +88,18 @@ impl Filter for SelectCurvature {
             }
             Ok(())
         })
+    }
+
+    fn lower(&self, cell: f64, _: &WorldParams) -> Lowering<Passes> {
+        let apart = self.halo(cell);
+        let kind = match self.kind {
+            Bend::Total => 0.0,
+            Bend::Profile => 1.0,
+            Bend::Plan => 2.0,
+        };
+        let mut numbers = vec![apart as f32, (apart as f64 * cell) as f32, kind];
+        numbers.extend(Selection::new(self.range, self.falloff).numbers());
+        Lowering::Shader(Passes::new(CODE, &numbers).then("select_curvatures", 0, [apart; 2]))
     }
 
     fn cost(&self, _: f64) -> f64 {

@@ -1,6 +1,7 @@
 //! A mask by slope.
 
-use crate::op::{Context, Filter};
+use crate::lower::{Lowering, Passes};
+use crate::op::{Context, Filter, WorldParams};
 use orogen_grid::analysis::selection::Selection;
 use orogen_grid::analysis::slope::gradients_between;
 use orogen_grid::error::Result;
@@ -28,6 +29,9 @@ op! {
     };
 }
 
+const CODE: &str =
+    concat!(include_str!("horn.wgsl"), include_str!("selection.wgsl"), include_str!("select_slope.wgsl"));
+
 impl Filter for SelectSlope {
     fn halo(&self, _: f64) -> usize {
         1
@@ -50,5 +54,11 @@ impl Filter for SelectSlope {
             });
             Ok(())
         })
+    }
+
+    fn lower(&self, cell: f64, _: &WorldParams) -> Lowering<Passes> {
+        let [low, high, below, above] = Selection::new(self.range, self.falloff).numbers();
+        let numbers = [(1.0 / (8.0 * cell)) as f32, low, high, below, above];
+        Lowering::Shader(Passes::new(CODE, &numbers).then("select_slopes", 0, [1; 2]))
     }
 }

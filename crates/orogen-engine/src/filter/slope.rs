@@ -1,6 +1,7 @@
 //! Slope and its components.
 
-use crate::op::{Context, Filter};
+use crate::lower::{Lowering, Passes};
+use crate::op::{Context, Filter, WorldParams};
 use orogen_grid::analysis::slope::{Gradient, gradients_between};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -40,6 +41,8 @@ op! {
     }
 }
 
+const CODE: &str = concat!(include_str!("horn.wgsl"), include_str!("slope.wgsl"));
+
 impl Filter for Slope {
     fn halo(&self, _: f64) -> usize {
         1
@@ -70,5 +73,11 @@ impl Filter for Slope {
             })?;
         }
         Ok(())
+    }
+
+    fn lower(&self, cell: f64, _: &WorldParams) -> Lowering<Passes> {
+        let is_angle = self.unit == SlopeUnit::Degrees;
+        let numbers = [(1.0 / (8.0 * cell)) as f32, f32::from(u8::from(is_angle))];
+        Lowering::Shader(Passes::new(CODE, &numbers).then("slopes", 0, [1; 2]))
     }
 }

@@ -1,6 +1,7 @@
 //! Steady-state soil depth.
 
-use crate::op::{Context, Filter};
+use crate::lower::{Lowering, Passes};
+use crate::op::{Context, Filter, WorldParams};
 use orogen_grid::analysis::soil::Soil;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -39,6 +40,9 @@ op! {
     }
 }
 
+const CODE: &str =
+    concat!(include_str!("horn.wgsl"), include_str!("second_difference.wgsl"), include_str!("soil_depth.wgsl"));
+
 impl Filter for SoilDepth {
     fn halo(&self, _: f64) -> usize {
         1
@@ -55,6 +59,13 @@ impl Filter for SoilDepth {
             .with_deepest(self.deepest);
         *out = soil.depths_with(source, context.progress)?;
         Ok(())
+    }
+
+    fn lower(&self, cell: f64, _: &WorldParams) -> Lowering<Passes> {
+        let made = self.density_ratio * self.production;
+        let numbers =
+            [cell, self.critical_slope, self.creep, self.decay, made, self.deepest].map(|number| number as f32);
+        Lowering::Shader(Passes::new(CODE, &numbers).then("depths", 0, [1; 2]))
     }
 
     fn cost(&self, _: f64) -> f64 {

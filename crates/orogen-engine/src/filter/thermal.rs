@@ -1,6 +1,7 @@
 //! Thermal weathering: slopes slide to the talus angle.
 
-use crate::op::{Context, Filter};
+use crate::lower::{Lowering, Passes, alternating};
+use crate::op::{Context, Filter, WorldParams};
 use orogen_grid::erosion::thermal::Thermal as Law;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -28,6 +29,8 @@ op! {
     }
 }
 
+const CODE: &str = include_str!("thermal.wgsl");
+
 impl Filter for Thermal {
     fn halo(&self, _: f64) -> usize {
         self.iterations as usize
@@ -49,12 +52,30 @@ impl Filter for Thermal {
         if window.is_empty() {
             return Ok(());
         }
-        let law = Law::new(libm::tan(self.talus_angle.to_radians())).with_rate(self.rate);
-        *out = law.run(source, self.iterations as usize, context.progress)?;
+        *out = self.law().run(source, self.iterations as usize, context.progress)?;
         Ok(())
+    }
+
+    fn lower(&self, cell: f64, _: &WorldParams) -> Lowering<Passes> {
+        let [stands, share] = self.law().numbers(cell);
+        if self.iterations == 0 {
+            // A pass that moves nothing.
+            let passes = Passes::new(CODE, &[stands, 0.0]).with_scratch(1);
+            return Lowering::Shader(passes.then("slide", 1 << 8, [0; 2]));
+        }
+        let passes = Passes::new(CODE, &[stands, share]).with_scratch(1);
+        let steps = alternating(self.iterations, 0, [1, 2]);
+        let slide = |passes: Passes, (k, step)| passes.then("slide", step, [k + 1; 2]);
+        Lowering::Shader(steps.into_iter().enumerate().fold(passes, slide))
     }
 
     fn cost(&self, _: f64) -> f64 {
         0.7 * f64::from(self.iterations)
+    }
+}
+
+impl Thermal {
+    fn law(&self) -> Law {
+        Law::new(libm::tan(self.talus_angle.to_radians())).with_rate(self.rate)
     }
 }

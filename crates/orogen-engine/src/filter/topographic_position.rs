@@ -1,7 +1,8 @@
 //! Topographic position index.
 
-use crate::op::{Context, Filter};
-use orogen_grid::analysis::position::{class, positions_with};
+use crate::lower::{Lowering, Passes};
+use crate::op::{Context, Filter, WorldParams};
+use orogen_grid::analysis::position::{class, half_widths, positions_with};
 use orogen_grid::analysis::slope::degrees;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -40,6 +41,8 @@ const FARTHEST: f64 = 1024.0;
 
 /// Rows whose slopes are computed together.
 const BAND: usize = 64;
+
+const CODE: &str = concat!(include_str!("horn.wgsl"), include_str!("topographic_position.wgsl"));
 
 impl Filter for TopographicPosition {
     fn halo(&self, cell: f64) -> usize {
@@ -87,6 +90,17 @@ impl Filter for TopographicPosition {
             )?;
         }
         Ok(())
+    }
+
+    fn lower(&self, cell: f64, _: &WorldParams) -> Lowering<Passes> {
+        let radius = self.halo(cell);
+        // A disc is the same turned by a right angle.
+        let halves = half_widths(radius);
+        let count: usize = halves.iter().map(|half| 2 * half + 1).sum();
+        let words = [radius, count].into_iter().chain(halves).map(|number| number as u32);
+        let passes = Passes::new(CODE, &[(1.0 / (8.0 * cell)) as f32]).with_words(words).with_scratch(5);
+        let passes = passes.then("add_up", 0, [0; 2]).then("compare", 0, [radius; 2]).reading(20 * radius);
+        Lowering::Shader(passes)
     }
 
     fn cost(&self, cell: f64) -> f64 {

@@ -15,7 +15,8 @@ pub const FORMS: [&str; 10] =
     ["flat", "peak", "ridge", "shoulder", "spur", "slope", "hollow", "footslope", "valley", "pit"];
 
 /// The code of a form by the number of lower (row) and higher (column) directions: the paper's table.
-const CODES: [[u8; 9]; 9] = [
+#[doc(hidden)]
+pub const CODES: [[u8; 9]; 9] = [
     [1, 1, 1, 8, 8, 9, 9, 9, 10],
     [1, 1, 8, 8, 8, 9, 9, 9, 0],
     [1, 4, 6, 6, 7, 7, 9, 0, 0],

@@ -28,7 +28,9 @@ pub struct Position {
 }
 
 /// Half width, in samples, of each row of a disc, from the northernmost to the southernmost row.
-fn half_widths(radius: usize) -> Vec<usize> {
+#[doc(hidden)]
+#[must_use]
+pub fn half_widths(radius: usize) -> Vec<usize> {
     let square = radius * radius;
     (0..=2 * radius).map(|row| (square - row.abs_diff(radius) * row.abs_diff(radius)).isqrt()).collect()
 }

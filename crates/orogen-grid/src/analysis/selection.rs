@@ -19,6 +19,13 @@ impl Selection {
         Selection { low, high, below, above }
     }
 
+    /// The lower and the upper end of the range, and the widths of the fall-offs below and above it.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn numbers(&self) -> [f32; 4] {
+        [self.low, self.high, self.below, self.above]
+    }
+
     /// The weight of a value, 0 to 1; 0 for NaN.
     #[must_use]
     pub fn of(&self, value: f32) -> f32 {

@@ -99,6 +99,27 @@ impl LocalStreamPower {
         planes::run(planes, iterations, &self.constants(), progress)
     }
 
+    /// The constants of an iteration, in the order of `Constants`.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn numbers(&self) -> [f32; 11] {
+        let c = self.constants();
+        [
+            c.per_side,
+            c.per_corner,
+            c.cell_area,
+            c.cut,
+            c.area_exponent,
+            c.slope_exponent,
+            c.risen,
+            c.laid,
+            c.years,
+            c.spread,
+            // No reader needs to expect an infinite number.
+            c.sea_level.max(f32::MIN),
+        ]
+    }
+
     fn constants(&self) -> Constants {
         Constants {
             per_side: (1.0 / self.cell) as f32,

@@ -149,7 +149,7 @@ impl Wet {
     #[must_use]
     pub fn speed(&self, pipes: &Pipes) -> Grid {
         let mut out = Grid::filled(self.window, 0.0f32);
-        let scale = (0.5 * self.window.cell / pipes.step(self.window.cell)) as f32;
+        let scale = pipes.speed_scale(self.window.cell);
         for j in 0..self.window.height {
             let [north, here] = [self.planes.row(j), self.planes.row(j + 1)];
             for (i, out) in out.row_mut(j).iter_mut().enumerate() {
@@ -204,6 +204,19 @@ impl Pipes {
             left -= now;
         }
         Ok(wet)
+    }
+
+    /// The constants of an iteration, in the order of [`Constants`], and the speed in m/s of a flow over two sides in a depth of 1 m.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn numbers(&self, cell: f64) -> [f32; 9] {
+        let Constants { pull, kept, rain, capacity, level, erosion, deposition, left } = self.constants(cell);
+        [pull, kept, rain, capacity, level, erosion, deposition, left, self.speed_scale(cell)]
+    }
+
+    /// The speed in m/s of a flow over two sides in a depth of 1 m.
+    fn speed_scale(&self, cell: f64) -> f32 {
+        (0.5 * cell / self.step(cell)) as f32
     }
 
     fn constants(&self, cell: f64) -> Constants {

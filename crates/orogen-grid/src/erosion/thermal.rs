@@ -50,9 +50,17 @@ impl Thermal {
     pub fn run(&self, heights: &Grid, passes: usize, progress: &Progress) -> Result<Grid> {
         let mut planes = Planes::new(heights.width(), heights.height());
         planes.fill(0, heights);
-        let pass = Slide { stands: (self.talus * heights.window().cell) as f32, share: (self.rate * FASTEST) as f32 };
+        let [stands, share] = self.numbers(heights.window().cell);
+        let pass = Slide { stands, share };
         let settled = planes::run(planes, passes, &pass, progress)?;
         Ok(settled.grid(0, heights.window().shrunk(passes)))
+    }
+
+    /// The height difference between neighbours at the stable slope, and the share of a difference that moves in a pass.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn numbers(&self, cell: f64) -> [f32; 2] {
+        [(self.talus * cell) as f32, (self.rate * FASTEST) as f32]
     }
 }
 

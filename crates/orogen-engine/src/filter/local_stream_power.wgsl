@@ -1,0 +1,110 @@
+// Stream power with local rules: an iteration of orogen-grid's `erosion/local_stream_power.rs` as two passes. The numbers are those of its `Constants`.
+//
+// The lower eight bits of `frame.step` are the plane of the heights that are read, and the next eight that of those that are written.
+const SOURCE = 0u;
+const FLOW = 1u;
+const AREA = 3u;
+const SEDIMENT = 4u;
+const GIVEN_AREA = 5u;
+const GIVEN_SEDIMENT = 6u;
+
+fn per_side(base: u32) -> f32 { return number(base, 0u); }
+fn per_corner(base: u32) -> f32 { return number(base, 1u); }
+fn cell_area(base: u32) -> f32 { return number(base, 2u); }
+
+fn positive(x: f32) -> f32 {
+    return max(x, 0.0);
+}
+
+fn start(base: u32, at: vec2<i32>) {
+    set_plane(frame.step >> 8u, at, plane(SOURCE, at));
+    set_plane(AREA, at, max(plane(FLOW, at), cell_area(base)));
+}
+
+// The weight of a slope: its fourth power, 0 uphill.
+fn weight(drop: f32, per: f32) -> f32 {
+    let slope = positive(drop) * per;
+    let square = slope * slope;
+    return square * square;
+}
+
+// x to the power y, for positive x, as in orogen-grid's `erosion/power.rs`.
+fn power(x: f32, y: f32) -> f32 {
+    let bits = bitcast<u32>(x) - 0x3f3504f3u;
+    let exponent = bitcast<i32>(bits) >> 23u;
+    let m = bitcast<f32>((bits & 0x007fffffu) + 0x3f3504f3u);
+    let t = (m - 1.0) / (m + 1.0);
+    let s = t * t;
+    let series = ((((0.2222222 * s + 0.2857143) * s + 0.4) * s + 0.6666667) * s + 2.0) * t;
+    let z = clamp(y * (f32(exponent) + series * 1.442695), -126.0, 127.0);
+    let whole = round(z);
+    return exp2(z - whole) * bitcast<f32>(u32(i32(whole) + 127) << 23u);
+}
+
+// What a cell gives per unit of weight: area and sediment.
+fn give(base: u32, at: vec2<i32>) {
+    let heights = frame.step & 0xffu;
+    let h = plane(heights, at);
+    var all = 0.0;
+    for (var y = -1; y <= 1; y += 1) {
+        for (var x = -1; x <= 1; x += 1) {
+            let per = select(per_side(base), per_corner(base), x * y != 0);
+            all += weight(h - plane(heights, at + vec2<i32>(x, y)), per);
+        }
+    }
+    // A pit gives nothing.
+    var share = 0.0;
+    if (all > 1e-24) {
+        share = 1.0 / all;
+    }
+    set_plane(GIVEN_AREA, at, plane(AREA, at) * share);
+    set_plane(GIVEN_SEDIMENT, at, plane(SEDIMENT, at) * share);
+}
+
+// Adds the inflow to a cell, and erodes and deposits.
+fn take(base: u32, at: vec2<i32>) {
+    let heights = frame.step & 0xffu;
+    let side = per_side(base);
+    let h = plane(heights, at);
+    var inflow = vec2<f32>(0.0);
+    var lowest = h;
+    // The sums of the differences to the neighbours at the sides and the corners.
+    var sides = 0.0;
+    var corners = 0.0;
+    for (var y = -1; y <= 1; y += 1) {
+        for (var x = -1; x <= 1; x += 1) {
+            let there_at = at + vec2<i32>(x, y);
+            let there = plane(heights, there_at);
+            let is_corner = x * y != 0;
+            let given = weight(there - h, select(side, per_corner(base), is_corner));
+            inflow += given * vec2<f32>(plane(GIVEN_AREA, there_at), plane(GIVEN_SEDIMENT, there_at));
+            lowest = min(lowest, there);
+            corners += select(0.0, there - h, is_corner);
+            sides += select(there - h, 0.0, is_corner);
+        }
+    }
+    let n = plane(heights, at - vec2<i32>(0, 1));
+    let s = plane(heights, at + vec2<i32>(0, 1));
+    let w = plane(heights, at - vec2<i32>(1, 0));
+    let e = plane(heights, at + vec2<i32>(1, 0));
+    let drained = cell_area(base) + inflow.x;
+    let came = inflow.y;
+    let across = positive(h - min(w, e)) * side;
+    let down = positive(h - min(n, s)) * side;
+    let steep = sqrt(across * across + down * down);
+    var rate = number(base, 3u) * power(drained, number(base, 4u));
+    if (number(base, 5u) != 0.0) {
+        rate *= power(max(steep, 1e-12), number(base, 5u));
+    }
+    let cut = min(rate * steep / (1.0 + rate * side), h - lowest);
+    // At most the inflow, and nothing on cells above their surroundings.
+    let years = number(base, 8u);
+    let all = came * years / cell_area(base);
+    let hollow = positive(0.25 * sides + cut);
+    let laid = min(min(number(base, 7u) * came / drained, all), hollow + cut);
+    let crept = number(base, 9u) * (4.0 * sides + corners);
+    let settled = (h - cut) + ((laid + crept) + number(base, 6u));
+    set_plane((frame.step >> 8u) & 0xffu, at, select(h, settled, h > number(base, 10u)));
+    set_plane(AREA, at, drained);
+    set_plane(SEDIMENT, at, positive(came + (cut - laid) * cell_area(base) / years));
+}

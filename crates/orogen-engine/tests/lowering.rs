@@ -1,0 +1,58 @@
+//! How a graphics card computes the built-in fields and filters.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
+
+use orogen_engine::lower::Lowering;
+use orogen_engine::node::Node;
+use orogen_engine::op::{Op, WorldParams};
+
+const WORLD: WorldParams = WorldParams { seed: 1, size: None, cell: 10.0, sea_level: 0.0 };
+
+#[test]
+fn every_field_says_how_a_graphics_card_computes_it() {
+    for node in Node::all() {
+        let Op::Field(field) = node.op() else { continue };
+        // The engine computes these by instructions of its own.
+        if field.terms().is_some() || field.coord_map().is_some() || field.source_cell(1.0, 1.0).is_some() {
+            continue;
+        }
+        for layer in 0..node.layers().len() {
+            assert_ne!(field.lower(layer, &WORLD), Lowering::Missing, "{}", node.spec().op);
+        }
+    }
+}
+
+#[test]
+fn every_filter_says_how_a_graphics_card_computes_it() {
+    let (mut lowered, mut left) = (0, Vec::new());
+    for node in Node::all() {
+        let Op::Filter(filter) = node.op() else { continue };
+        let name = node.spec().op;
+        match filter.lower(10.0, &WORLD) {
+            Lowering::Missing => panic!("{name} does not say how a graphics card computes it"),
+            Lowering::Processor(_) => left.push(name),
+            Lowering::Shader(passes) => {
+                lowered += 1;
+                let halo = filter.halo(10.0);
+                assert!(!passes.passes.is_empty(), "{name} has no pass");
+                for pass in &passes.passes {
+                    let header = format!("fn {}(base: u32, at: vec2<i32>) {{", pass.function);
+                    assert!(passes.code.contains(&header), "{name} has no function {}", pass.function);
+                    assert!(pass.inset.iter().all(|inset| *inset <= halo), "{name} leaves out samples of the window");
+                }
+            }
+        }
+    }
+    assert_eq!((lowered, left), (15, vec!["droplets"]));
+}
+
+#[test]
+fn the_text_of_a_filter_does_not_depend_on_the_cell() {
+    for node in Node::all() {
+        let Op::Filter(filter) = node.op() else { continue };
+        if let (Lowering::Shader(fine), Lowering::Shader(coarse)) =
+            (filter.lower(1.0, &WORLD), filter.lower(30.0, &WORLD))
+        {
+            assert_eq!((fine.code, fine.scratch), (coarse.code, coarse.scratch), "{}", node.spec().op);
+        }
+    }
+}

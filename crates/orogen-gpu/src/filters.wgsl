@@ -1,0 +1,21 @@
+// What the passes of all filters have in common: planes of one size, one after the other in `samples`.
+//
+// The words at `frame.base` are the columns and rows of the planes, the first column and row of this pass, and where the filter's own words start.
+
+// Columns and rows of the planes.
+fn size() -> vec2<i32> {
+    return vec2<i32>(i32(data[frame.base]), i32(data[frame.base + 1u]));
+}
+
+fn index_of(k: u32, at: vec2<i32>) -> u32 {
+    return (k * data[frame.base + 1u] + u32(at.y)) * data[frame.base] + u32(at.x);
+}
+
+// A sample of plane `k`; beyond the border, that of the border.
+fn plane(k: u32, at: vec2<i32>) -> f32 {
+    return samples[index_of(k, clamp(at, vec2<i32>(0), size() - vec2<i32>(1)))];
+}
+
+fn set_plane(k: u32, at: vec2<i32>, value: f32) {
+    samples[index_of(k, at)] = value;
+}
