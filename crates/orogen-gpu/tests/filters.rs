@@ -253,7 +253,7 @@ fn missing_samples_are_those_of_the_processor() {
 
 /// Run it with `--ignored --nocapture` and `--release`.
 #[test]
-#[ignore = "takes minutes with a software driver"]
+#[ignore = "long: minutes with a software driver"]
 fn time_of_pipes() {
     let gpu = gpu();
     let window = Window::new(2048, 2048, 10.0);

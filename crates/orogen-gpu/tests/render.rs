@@ -355,7 +355,7 @@ fn it_can_be_cancelled_and_lost() {
 }
 
 #[test]
-#[ignore = "a measurement"]
+#[ignore = "long: a measurement"]
 fn time_of_a_large_picture() {
     let gpu = gpu();
     let heights = grid(Window::new(1024, 1024, 10.0), |x, y| height(x * 0.3, y * 0.3));
