@@ -57,6 +57,10 @@ fn reason_of<T>(lowering: &Lowering<T>) -> Option<&'static str> {
     }
 }
 
+fn shown(number: f64) -> String {
+    if number == 0.0 { "0".to_string() } else { format!("{number:.0e}") }
+}
+
 fn main() {
     let session = session();
     println!("Adapter: {}, {}.\n", gpu().adapter(), gpu().adapter().driver);
@@ -85,6 +89,7 @@ fn main() {
             );
         }
     }
+    let mut alone = Vec::new();
     println!("\n| preset | RMS in m | worst in m | worst, of the range |\n|---|---|---|---|");
     for preset in presets::all() {
         let Ok(recipe) = preset.recipe() else { continue };
