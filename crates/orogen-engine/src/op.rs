@@ -544,6 +544,13 @@ pub trait Solver: Declared + Send + Sync {
         }
     }
 
+    /// How a graphics card computes what [`Solver::read`] does.
+    #[doc(hidden)]
+    fn lower_read(&self, layer: usize, solution: &Solution) -> Lowering<Shader> {
+        let _ = (layer, solution);
+        Lowering::Processor("rasters of solutions are interpolated by the processor")
+    }
+
     /// Approximate nanoseconds per sample of its domain for solving, without its sources.
     fn cost(&self) -> f64 {
         1.0

@@ -4,6 +4,7 @@ use super::run::{Engine, Solutions, missing, with_inputs};
 use crate::device::{Device, FilterExtent};
 use crate::ids::{GridId, IndexVec};
 use crate::lower::Lowering;
+use crate::plan::program::Instruction;
 use crate::plan::split::split;
 use crate::plan::steps::{Plan, Step, wanted};
 use orogen_grid::error::Result;
@@ -81,9 +82,19 @@ fn fill(
     if window.is_empty() {
         return Ok(None);
     }
-    let lower = |node, layer| match engine.field(node)?.lower(layer, engine.world_params) {
-        Lowering::Shader(shader) => Some(shader),
-        Lowering::Processor(_) | Lowering::Missing => None,
+    let lower = |instruction: &Instruction| {
+        let lowering = match instruction {
+            Instruction::Field { node, layer, .. } => engine.field(*node)?.lower(*layer, engine.world_params),
+            Instruction::Solved { node, layer, .. } => {
+                let (solver, solution) = engine.solver(*node, solutions)?;
+                solver.lower_read(*layer, &solution)
+            }
+            _ => return None,
+        };
+        match lowering {
+            Lowering::Shader(shader) => Some(shader),
+            Lowering::Processor(_) | Lowering::Missing => None,
+        }
     };
     let Some(split) = split(program, lower)? else { return Ok(None) };
     let handed = match &split.processor {

@@ -4,7 +4,7 @@
 use super::allocate::allocate;
 use super::program::{Instruction, Operand, Program};
 use crate::device::{Lowered, LoweredCoords, LoweredOperand, LoweredProgram};
-use crate::ids::{CoordSetId, GridId, Id, IndexVec, NodeId, RegisterId};
+use crate::ids::{CoordSetId, GridId, Id, IndexVec, RegisterId};
 use crate::layer::LayerKind;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_noise::shader::function::Shader;
@@ -21,24 +21,23 @@ pub struct Split {
     pub device: LoweredProgram,
 }
 
-/// Splits a program. `lower` is the function that computes a layer of a node on the device, if there is one. Returns `None` if no field is left for the
+/// Splits a program. `lower` is the function that computes a field, or reads a solution, on the device, if there is one. Returns `None` if no field is left for the
 /// device: then it would only copy grids.
 ///
 /// # Errors
 /// If an instruction reads a value before it is written, which is a bug.
-pub fn split(program: &Program, lower: impl Fn(NodeId, usize) -> Option<Shader>) -> Result<Option<Split>> {
+pub fn split(program: &Program, lower: impl Fn(&Instruction) -> Option<Shader>) -> Result<Option<Split>> {
     let written_once = WrittenOnce::of(program)?;
     let shaders: Vec<Option<Shader>> = written_once
         .instructions
         .iter()
         .map(|instruction| match instruction {
-            Instruction::Field { node, layer, .. } => lower(*node, *layer),
+            Instruction::Field { .. } | Instruction::Solved { .. } => lower(instruction),
             _ => None,
         })
         .collect();
     let is_for_processor = |i: usize| match &written_once.instructions[i] {
-        Instruction::Solved { .. } => true,
-        Instruction::Field { .. } => shaders[i].is_none(),
+        Instruction::Field { .. } | Instruction::Solved { .. } => shaders[i].is_none(),
         _ => false,
     };
     let needed = written_once.needed(&written_once.outputs, is_for_processor);
@@ -172,7 +171,7 @@ impl Lowering {
     fn lower(&mut self, instruction: &Instruction, shader: Option<Shader>) -> Result<()> {
         match instruction {
             Instruction::Constant { value, out } => self.make(*out, Lowered::Constant(*value)),
-            Instruction::Field { coords, inputs, out, .. } => {
+            Instruction::Field { coords, inputs, out, .. } | Instruction::Solved { coords, inputs, out, .. } => {
                 let shader = shader.ok_or_else(unwritten)?;
                 let inputs = inputs.iter().map(|input| input.map(|input| self.value(input)).transpose());
                 let inputs = inputs.collect::<Result<_>>()?;
@@ -186,8 +185,6 @@ impl Lowering {
                 let arguments = arguments.iter().map(argument).collect::<Result<_>>()?;
                 self.make(*out, Lowered::Apply { function: *function, arguments });
             }
-            // Made by the processor.
-            Instruction::Solved { .. } => return Err(unwritten()),
             Instruction::Grid { grid, kind, coords, out } => {
                 let grid = self.grids.iter().position(|known| known == grid).ok_or_else(unwritten)?;
                 self.make(*out, Lowered::Grid { grid, kind: *kind, coords: self.at(*coords)? });
@@ -223,6 +220,7 @@ fn unwritten() -> Error {
 mod tests {
     use super::*;
     use crate::expression::function::Function;
+    use crate::ids::NodeId;
 
     fn field(node: usize, inputs: &[usize], out: usize) -> Instruction {
         let inputs = inputs.iter().map(|input| Some(RegisterId::new(*input))).collect();
@@ -235,9 +233,12 @@ mod tests {
         }
     }
 
-    fn shader(node: NodeId, _: usize) -> Option<Shader> {
+    fn shader(instruction: &Instruction) -> Option<Shader> {
         // Nodes from 10 on are for the processor.
-        (node.index() < 10).then(|| Shader::new("f", "", &[]))
+        match instruction {
+            Instruction::Field { node, .. } if node.index() < 10 => Some(Shader::new("f", "", &[])),
+            _ => None,
+        }
     }
 
     #[test]

@@ -1,8 +1,10 @@
 //! Scales the source to a range of heights over the world.
 
+use crate::lower::Lowering;
 use crate::op::{Context, Reading, Solution, Solver, Sources};
 use orogen_grid::error::Result;
 use orogen_grid::grid::Grid;
+use orogen_noise::shader::function::Shader;
 use rayon::prelude::*;
 
 op! {
@@ -44,18 +46,32 @@ impl Solver for Normalise {
     }
 
     fn read(&self, solution: &Solution, asked: &Reading, out: &mut [f32]) -> Result<()> {
-        let [low, high] = [0, 1].map(|i| solution.scalars.get(i).copied().unwrap_or(0.0));
-        let relief = high - low;
-        let scale = if relief > 0.0 { ((self.high - self.low) / relief) as f32 } else { 0.0 };
-        let (from, to) = (if relief >= 0.0 { low as f32 } else { 0.0 }, self.low as f32);
+        let [from, scale, to] = self.map(solution);
         for (sample, source) in out.iter_mut().zip(asked.inputs.required(0)) {
             *sample = (source - from) * scale + to;
         }
         Ok(())
     }
 
+    fn lower_read(&self, _: usize, solution: &Solution) -> Lowering<Shader> {
+        const CODE: &str = "fn normalise(base: u32, place: Placement, source: f32) -> f32 {
+    return (source - number(base, 0u)) * number(base, 1u) + number(base, 2u);
+}";
+        Lowering::Shader(Shader::new("normalise", CODE, &self.map(solution)))
+    }
+
     fn cost(&self) -> f64 {
         0.2
+    }
+}
+
+impl Normalise {
+    /// The linear map of a solution: what is subtracted, the factor, and what is added.
+    fn map(&self, solution: &Solution) -> [f32; 3] {
+        let [low, high] = [0, 1].map(|i| solution.scalars.get(i).copied().unwrap_or(0.0));
+        let relief = high - low;
+        let scale = if relief > 0.0 { ((self.high - self.low) / relief) as f32 } else { 0.0 };
+        [if relief >= 0.0 { low as f32 } else { 0.0 }, scale, self.low as f32]
     }
 }
 
