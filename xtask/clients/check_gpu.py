@@ -41,6 +41,20 @@ checks.that("an adapter can be used", any(device["refused"] is None for device i
 checks.that("its buffers have a size", all(device["buffer_bytes"] >= 128 << 20 for device in devices), devices)
 checks.that("the list names it", devices[0]["name"] in run("devices")[0])
 
+def similarity(a, b):
+    """The structural similarity of two pictures (Wang et al. 2004), by windows of 8 x 8 pixels."""
+    def windows(picture):
+        grey = numpy.asarray(Image.open(picture).convert("L"), dtype=numpy.float64)
+        height, width = (side // 8 * 8 for side in grey.shape)
+        return grey[:height, :width].reshape(height // 8, 8, width // 8, 8).swapaxes(1, 2).reshape(-1, 64)
+
+    x, y = windows(a), windows(b)
+    mx, my = x.mean(1), y.mean(1)
+    covariance = ((x - mx[:, None]) * (y - my[:, None])).mean(1)
+    one, two = (0.01 * 255) ** 2, (0.03 * 255) ** 2
+    return float((((2 * mx * my + one) * (2 * covariance + two)) / ((mx**2 + my**2 + one) * (x.var(1) + y.var(1) + two))).mean())
+
+
 for recipe in ["island", "mesa", "archipelago"]:
     arguments = ["generate", recipe, "--size", "256", "--quiet"]
     _, exact_messages = run(*arguments, "-o", f"{recipe}-cpu")
@@ -49,6 +63,17 @@ for recipe in ["island", "mesa", "archipelago"]:
     (exact, summary), (preview, _) = heights(f"{recipe}-cpu"), heights(f"{recipe}-gpu")
     relief = summary["height_max"] - summary["height_min"]
     checks.that(f"{recipe}: the preview is close", abs(preview - exact).max() < 2e-4 * relief, abs(preview - exact).max())
+
+    alike = similarity(WORK / f"{recipe}-cpu" / "map.png", WORK / f"{recipe}-gpu" / "map.png")
+    checks.that(f"{recipe}: the maps look the same", alike >= 0.98, alike)
+
+for device in ["cpu", "gpu"]:
+    run("render", "mesa", "--size", "320x180", "--samples", "2", "--quiet", "-o", f"{device}.png", "--device", device)
+alike = similarity(WORK / "cpu.png", WORK / "gpu.png")
+checks.that("renders look the same", alike >= 0.98, alike)
+
+_, messages = run("generate", "mesa", "--size", "512", "--quiet", "-o", "limited", "--device", "gpu", "--memory", "256MiB")
+checks.equal("a card works within a memory limit", messages, [])
 
 text, _ = run("generate", "island", "--size", "64", "-o", "told", "--device", "gpu")
 checks.that("the summary names the card", "preview" in text and devices[0]["name"] in text, text)

@@ -22,7 +22,7 @@ impl DeviceOption {
     /// Opens the world of a recipe, with the device if it can be used. If it cannot, the processor stands in, and a line on standard error says why.
     pub fn open(&self, limits: &Limits, recipe: Recipe, budget: &Budget) -> Result<(World, Card), Failure> {
         let session = Session::new(limits.options(budget))?;
-        let card = Card::open(&self.device);
+        let card = Card::open(&self.device, budget)?;
         let session = card.session(session);
         Ok((session.open(recipe)?, card))
     }
@@ -39,25 +39,39 @@ pub use with_gpu::Card;
 #[cfg(feature = "gpu")]
 mod with_gpu {
     use super::stands_in;
-    use orogen::Session;
+    use crate::failure::Failure;
+    use orogen::budget::Reservation;
     use orogen::device_choice::DeviceChoice;
     use orogen::gpu::Gpu;
     use orogen::render::painter::Painter;
+    use orogen::{Budget, Session};
     use std::sync::Arc;
 
     /// An opened graphics card, if there is one.
-    pub struct Card(Option<Gpu>);
+    pub struct Card {
+        gpu: Option<Gpu>,
+        /// The memory of its buffers, which may be that of the processor.
+        _buffers: Option<Reservation>,
+    }
+
+    /// The share of the memory limit that a buffer may have, and the number of buffers that exist at once.
+    const SHARE: u64 = 8;
+    const BUFFERS: u64 = 3;
 
     impl Card {
-        pub(super) fn open(choice: &DeviceChoice) -> Card {
-            Card(Gpu::chosen(choice).unwrap_or_else(|failure| {
+        pub(super) fn open(choice: &DeviceChoice, budget: &Budget) -> Result<Card, Failure> {
+            let most = budget.limit().map(|limit| limit / SHARE);
+            let gpu = Gpu::chosen(choice, most).unwrap_or_else(|failure| {
                 stands_in(failure);
                 None
-            }))
+            });
+            let reserved =
+                gpu.as_ref().zip(most).map(|(gpu, most)| budget.reserve(BUFFERS * most.min(gpu.buffer_limit())));
+            Ok(Card { gpu, _buffers: reserved.transpose()? })
         }
 
         pub(super) fn session(&self, session: Session) -> Session {
-            match &self.0 {
+            match &self.gpu {
                 Some(gpu) => session.with_device(Arc::new(gpu.clone())),
                 None => session,
             }
@@ -65,7 +79,7 @@ mod with_gpu {
 
         /// What paints pictures, if there is a card.
         pub fn painter(&self) -> Option<Arc<dyn Painter>> {
-            self.0.as_ref().map(|gpu| Arc::new(gpu.clone()) as Arc<dyn Painter>)
+            self.gpu.as_ref().map(|gpu| Arc::new(gpu.clone()) as Arc<dyn Painter>)
         }
 
         /// The card's name, if it computed; a failure is told, once the work is done.
@@ -75,7 +89,7 @@ mod with_gpu {
 
         /// The same after work that the card may have refused.
         pub fn used_with(&self, refused: Option<&str>) -> Option<String> {
-            let gpu = self.0.as_ref()?;
+            let gpu = self.gpu.as_ref()?;
             match (refused, gpu.failure()) {
                 (Some(why), _) => stands_in(why),
                 (None, Some(failure)) => stands_in(failure),
@@ -92,22 +106,23 @@ pub use without_gpu::Card;
 #[cfg(not(feature = "gpu"))]
 mod without_gpu {
     use super::stands_in;
-    use orogen::Session;
+    use crate::failure::Failure;
     use orogen::device_choice::DeviceChoice;
     use orogen::render::painter::Painter;
+    use orogen::{Budget, Session};
     use std::sync::Arc;
 
     /// No graphics card: this program was built without support for them.
     pub struct Card;
 
     impl Card {
-        pub(super) fn open(choice: &DeviceChoice) -> Card {
+        pub(super) fn open(choice: &DeviceChoice, _: &Budget) -> Result<Card, Failure> {
             if matches!(choice, DeviceChoice::Card(_)) {
                 stands_in(
                     "this program was built without graphics cards (`cargo build --release --features gpu` builds it with them)",
                 );
             }
-            Card
+            Ok(Card)
         }
 
         pub(super) fn session(&self, session: Session) -> Session {

@@ -101,18 +101,21 @@ impl Gpu {
         }))
     }
 
-    /// Opens the card of a choice; `None` for the processor, or if there is none for [`DeviceChoice::Auto`].
+    /// Opens the card of a choice; `None` for the processor, or if there is none for [`DeviceChoice::Auto`]. Buffers have at most `buffer` bytes, if it is given.
     ///
     /// # Errors
     /// If a card was asked for and none can be used.
-    pub fn chosen(choice: &DeviceChoice) -> Result<Option<Gpu>, Failure> {
-        let choice = match choice {
+    pub fn chosen(choice: &DeviceChoice, buffer: Option<u64>) -> Result<Option<Gpu>, Failure> {
+        let wanted = match choice {
             DeviceChoice::Processor => return Ok(None),
-            DeviceChoice::Auto => return Ok(Gpu::open(&Options::new(Choice::Card)).ok()),
+            DeviceChoice::Auto => Choice::Card,
             DeviceChoice::Card(None) => Choice::Any,
             DeviceChoice::Card(Some(name)) => Choice::Named(name.clone()),
         };
-        Gpu::open(&Options::new(choice)).map(Some)
+        match Gpu::open(&Options { buffer, ..Options::new(wanted) }) {
+            Err(_) if *choice == DeviceChoice::Auto => Ok(None),
+            opened => opened.map(Some),
+        }
     }
 
     fn opened(adapter: Adapter, handle: &wgpu::Adapter, options: &Options) -> Result<Gpu, wgpu::RequestDeviceError> {

@@ -196,6 +196,7 @@ functions! {
 
 impl Function {
     /// The function with this name; operators have none.
+    #[must_use]
     pub fn named(name: &str) -> Option<Function> {
         Function::functions().find(|function| function.name() == name)
     }

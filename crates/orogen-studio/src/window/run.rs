@@ -52,7 +52,7 @@ pub fn run() -> ExitCode {
         Err(_) if arguments.after_loss => None,
         Err(error) => return fail(&error.to_string()),
     };
-    let gpu = Gpu::chosen(&arguments.device).unwrap_or_else(|failure| {
+    let gpu = Gpu::chosen(&arguments.device, Some(settings.memory / 8)).unwrap_or_else(|failure| {
         note(&format!("{failure}; the processor computes instead"));
         None
     });
