@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::gpu::Gpu;
 use crate::pipelines::FRAME;
 use std::sync::mpsc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Columns and rows of a workgroup.
 pub const GROUP: u32 = 8;
@@ -39,6 +39,9 @@ pub struct Job<'a> {
 
 /// Maximum number of dispatches that are submitted together, so that a long job can be cancelled and no driver takes it for a hang.
 const TOGETHER: usize = 64;
+
+/// The longest wait for buffers to be readable once all work is done.
+const MAPPED: Duration = Duration::from_secs(10);
 
 impl Job<'_> {
     /// Memory on the device, in bytes.
@@ -162,7 +165,8 @@ impl Job<'_> {
         }
         gpu.wait()?;
         for _ in &back {
-            match receiver.try_recv() {
+            // They are mapped by now; another thread that waits for the device may be about to say so.
+            match receiver.recv_timeout(MAPPED) {
                 Ok(Ok(())) => {}
                 _ => return Err(Failure::Lost("its results could not be read".to_string())),
             }

@@ -143,3 +143,22 @@ fn presets_are_close_to_those_of_the_processor() {
         assert_eq!(gpu().failure(), None, "{}", preset.name);
     }
 }
+
+#[test]
+fn concurrent_requests_share_a_device() {
+    let session = session();
+    let recipe = Recipe::parse(&fields()[9], "test").unwrap();
+    let window = Window::new(120, 90, 9.0);
+    let expect = common::exact(&recipe, "height", &window);
+    std::thread::scope(|scope| {
+        for _ in 0..4 {
+            scope.spawn(|| {
+                for _ in 0..5 {
+                    let made = session.open(recipe.clone()).unwrap().window("height", &window).unwrap();
+                    assert!(common::difference(&expect, &made).share < 1e-4);
+                }
+            });
+        }
+    });
+    assert_eq!(gpu().failure(), None);
+}

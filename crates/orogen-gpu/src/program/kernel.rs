@@ -52,11 +52,9 @@ pub(crate) fn parts(program: &LoweredProgram, most: usize) -> Vec<Range<usize>> 
     parts
 }
 
-/// Whether an instruction reads its grid as it is, because the grid has the samples of the block.
-pub(crate) type IsCopy<'a> = &'a dyn Fn(usize) -> bool;
-
-/// The kernel of a part. `kept` are the values of the part that later parts or the outputs need.
-pub(crate) fn kernel(program: &LoweredProgram, part: Range<usize>, kept: &[usize], is_copy: IsCopy) -> Kernel {
+/// The kernel of a part. `kept` are the values of the part that later parts or the outputs need; `copies` says of each instruction whether it reads its grid as
+/// it is, because the grid has the samples of the block.
+pub(crate) fn kernel(program: &LoweredProgram, part: Range<usize>, kept: &[usize], copies: &[bool]) -> Kernel {
     let mut writer = Writer {
         program,
         part: part.clone(),
@@ -67,7 +65,7 @@ pub(crate) fn kernel(program: &LoweredProgram, part: Range<usize>, kept: &[usize
     };
     let mut chunks: Vec<&str> = vec![PLACE, functions::TEXT];
     for i in part {
-        let value = writer.instruction(i, is_copy);
+        let value = writer.instruction(i, copies);
         if let Lowered::Field { shader, .. } = &program.instructions[i] {
             for chunk in &shader.code {
                 if !chunks.contains(chunk) {
@@ -197,7 +195,7 @@ impl Writer<'_> {
     }
 
     /// The expression of an instruction's value; `None` for a constant, which is written where it is read.
-    fn instruction(&mut self, i: usize, is_copy: IsCopy) -> Option<String> {
+    fn instruction(&mut self, i: usize, copies: &[bool]) -> Option<String> {
         debug_assert!(self.part.contains(&i), "an instruction of another part");
         Some(match self.program.instructions.get(i)?.clone() {
             Lowered::Constant(_) => return None,
@@ -223,7 +221,7 @@ impl Writer<'_> {
             }
             Lowered::Grid { kind, coords, .. } => {
                 let function = match kind {
-                    _ if is_copy(i) => "grid_copy",
+                    _ if copies[i] => "grid_copy",
                     LayerKind::Label => "grid_label",
                     LayerKind::Flow => "grid_flow",
                     _ => "grid_height",

@@ -6,7 +6,7 @@ use super::tiles::fitting;
 use crate::failure::Failure;
 use crate::gpu::Gpu;
 use crate::job::{Dispatch, Job};
-use orogen_engine::device::{Lowered, LoweredCoords, LoweredProgram};
+use orogen_engine::device::{Lowered, LoweredProgram};
 use orogen_grid::grid::{Grid, Window};
 use orogen_noise::shader::function::Shader;
 use orogen_noise::shader::lattice::{Lattice, Positions};
@@ -17,6 +17,8 @@ struct Run<'a> {
     program: &'a LoweredProgram,
     grids: &'a [&'a Grid],
     kernels: Vec<Kernel>,
+    /// Of each instruction, whether it reads a grid that has the samples of the window.
+    copies: Vec<bool>,
     /// The slot of each value that is kept between kernels or is an output.
     slots: BTreeMap<usize, usize>,
     /// Number of slots.
@@ -60,12 +62,13 @@ pub(crate) fn run(
 
 impl<'a> Run<'a> {
     fn new(program: &'a LoweredProgram, window: &Window, grids: &'a [&'a Grid], most: usize) -> Run<'a> {
-        let is_copy = |i: usize| match &program.instructions[i] {
+        let is_copy = |instruction: &Lowered| match instruction {
             Lowered::Grid { grid, coords: 0, .. } => {
                 grids.get(*grid).is_some_and(|grid| grid.window().cell == window.cell && grid.window().contains(window))
             }
             _ => false,
         };
+        let copies: Vec<bool> = program.instructions.iter().map(is_copy).collect();
         let parts = parts(program, most);
         // The last part that reads each value.
         let part_of = |i: usize| parts.partition_point(|part| part.end <= i);
@@ -89,31 +92,25 @@ impl<'a> Run<'a> {
                 });
                 slots.insert(*value, slot);
             }
-            kernels.push(kernel(program, part.clone(), &kept, &is_copy));
+            kernels.push(kernel(program, part.clone(), &kept, &copies));
             // A slot whose value was read for the last time is free for the next part.
             free.extend(slots.iter().filter(|(value, _)| last[**value] == p).map(|(_, slot)| *slot));
         }
-        Run { program, grids, kernels, slots, slot_count }
+        Run { program, grids, kernels, copies, slots, slot_count }
     }
 
     /// An upper bound of the sizes of the buffers of samples and of data for a tile, in bytes.
     fn bytes(&self, tile: &Window) -> [u64; 2] {
         let grids: usize = self.grids.iter().map(|grid| grid.data().len()).sum();
+        // A block, and tables of columns and rows along both axes.
+        let table = 16 + 2 * 3 * (tile.width + tile.height);
         let tables = |instruction: &Lowered| match instruction {
-            Lowered::Field { shader, .. } => shader.words.len() + shader.lattices.len() * self.table(tile),
-            Lowered::Grid { .. } => self.table(tile),
+            Lowered::Field { shader, .. } => shader.words.len() + shader.lattices.len() * table,
+            Lowered::Grid { .. } => table,
             _ => 4,
         };
         let data: usize = self.program.instructions.iter().map(tables).sum();
         [4 * (grids + self.slot_count * tile.len()) as u64, 4 * (data + 16) as u64]
-    }
-
-    /// Number of words of a lattice's block and tables.
-    fn table(&self, tile: &Window) -> usize {
-        let is_turned = |set: &LoweredCoords| matches!(set, LoweredCoords::Mapped { map, .. } if !map.is_separable());
-        let both = if self.program.coord_sets.iter().any(is_turned) { 2 } else { 1 };
-        // Lattices of simplices have both parts along both axes.
-        16 + 3 * 2 * both.max(2) * (tile.width + tile.height)
     }
 
     /// The job of a tile.
@@ -162,7 +159,7 @@ impl<'a> Run<'a> {
     fn grid(&self, i: usize, tile: &Window, sets: &[Positions], starts: &[usize], data: &mut Vec<u32>) -> u32 {
         let Lowered::Grid { grid, coords, .. } = self.program.instructions[i] else { return 0 };
         let (window, start) = (self.grids[grid].window(), starts[grid] as i64);
-        if coords == 0 && window.cell == tile.cell && window.contains(tile) {
+        if self.copies[i] {
             let first = start + (tile.y - window.y) * window.width as i64 + (tile.x - window.x);
             data.extend([first as u32, window.width as u32]);
             return data.len() as u32 - 2;
