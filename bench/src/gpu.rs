@@ -136,7 +136,7 @@ impl Bench {
         for (seconds, on_card) in seconds.iter_mut().zip([true, false]) {
             let mut job = RenderJob::default().with_window(land);
             if on_card {
-                job = job.with_painter(Arc::new(self.gpu.clone()));
+                job = job.with_device(Arc::new(self.gpu.clone()));
             }
             let progress = Progress::none();
             let rendering = job.scene(&world, 1.0, 0, &progress).map_err(|e| e.to_string())?;

@@ -43,7 +43,7 @@ mod with_gpu {
     use orogen::budget::Reservation;
     use orogen::device_choice::DeviceChoice;
     use orogen::gpu::Gpu;
-    use orogen::render::painter::Painter;
+    use orogen::render::device::RenderDevice;
     use orogen::{Budget, Session};
     use std::sync::Arc;
 
@@ -78,8 +78,8 @@ mod with_gpu {
         }
 
         /// What paints pictures, if there is a card.
-        pub fn painter(&self) -> Option<Arc<dyn Painter>> {
-            self.gpu.as_ref().map(|gpu| Arc::new(gpu.clone()) as Arc<dyn Painter>)
+        pub fn render_device(&self) -> Option<Arc<dyn RenderDevice>> {
+            self.gpu.as_ref().map(|gpu| Arc::new(gpu.clone()) as Arc<dyn RenderDevice>)
         }
 
         /// The card's name, if it computed; a failure is told, once the work is done.
@@ -108,7 +108,7 @@ mod without_gpu {
     use super::stands_in;
     use crate::failure::Failure;
     use orogen::device_choice::DeviceChoice;
-    use orogen::render::painter::Painter;
+    use orogen::render::device::RenderDevice;
     use orogen::{Budget, Session};
     use std::sync::Arc;
 
@@ -130,7 +130,7 @@ mod without_gpu {
         }
 
         /// What paints pictures: the processor.
-        pub fn painter(&self) -> Option<Arc<dyn Painter>> {
+        pub fn render_device(&self) -> Option<Arc<dyn RenderDevice>> {
             None
         }
 

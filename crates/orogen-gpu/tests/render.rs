@@ -10,7 +10,7 @@ use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 use orogen_io::format::png::{self, Picture, Pixel};
 use orogen_output::render::camera::{Camera, CameraSpec, View};
-use orogen_output::render::painter::{Painted, Painter};
+use orogen_output::render::device::{Painted, RenderDevice};
 use orogen_output::render::relief::Land;
 use orogen_output::render::scene::{Colors, Edge, Scene, Style};
 use std::sync::OnceLock;

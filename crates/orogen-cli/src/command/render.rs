@@ -148,7 +148,7 @@ fn render(args: &Args) -> Result<(), Failure> {
     let outputs = target.outputs(&args.out, args.turntable.unwrap_or(1), &policy)?;
     job.prepare(&mut recipe)?;
     let (world, card) = args.device.open(&args.run.limits, recipe, &budget)?;
-    job.painter = card.painter();
+    job.device = card.render_device();
     job.window = Some(args.view.window(&world)?);
     let folder = args.out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     file::check_folder(folder)?;

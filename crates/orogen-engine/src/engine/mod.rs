@@ -1,5 +1,6 @@
 //! The engine, which runs plans.
 
+mod exactness;
 pub(crate) mod inline;
 pub(crate) mod interpreter;
 mod level_tiles;

@@ -1,7 +1,7 @@
 //! Running the steps of a plan.
 
+use super::exactness::Exactness;
 use super::interpreter::{Bindings, Interpreter};
-use super::on_device::OnDevice;
 use crate::budget::Budget;
 use crate::device::Device;
 use crate::ids::{GridId, Id, IndexVec, NodeId, StepId};
@@ -76,7 +76,7 @@ impl<'a> Engine<'a> {
         progress.expect(cost::steps(plan, self.recipe));
         let mut grids: IndexVec<GridId, Option<Grid>> = plan.grids.iter().map(|_| None).collect();
         let needed = self.kept_grids(plan, &mut grids);
-        let mut on_device = OnDevice::of(plan, self.device);
+        let mut exactness = Exactness::of(plan);
         for (at, step) in plan.steps.entries() {
             progress.check()?;
             if !needed[at] {
@@ -84,11 +84,16 @@ impl<'a> Engine<'a> {
                 continue;
             }
             let part = progress.part(cost::step(step, plan, self.recipe));
-            let made = on_device.step(self, step, solutions, &grids, &part)?;
+            let made = match exactness.is_required(step) {
+                true => None,
+                false => self.on_device(step, solutions, &grids, &part)?,
+            };
+            let on_device = made.is_some();
             match made {
                 Some(made) => put(step, made, &mut grids),
-                None => self.step(step, solutions, &mut grids, &part, on_device.is_exact(step))?,
+                None => self.step(step, solutions, &mut grids, &part, exactness.is_read_by(step))?,
             }
+            exactness.ran(step, on_device);
             part.finish();
             for (grid, slot) in grids.iter_mut().zip(&plan.grids) {
                 if slot.last_use.is_some_and(|last| last <= at) {

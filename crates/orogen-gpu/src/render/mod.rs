@@ -15,9 +15,9 @@ use crate::job::{Dispatch, GROUP, Job};
 use orogen_grid::error::Result as Outcome;
 use orogen_grid::progress::Progress;
 use orogen_output::render::camera::Camera;
-use orogen_output::render::painter::{Painted, Painter};
+use orogen_output::render::device::{Painted, RenderDevice};
 use orogen_output::render::scene::Scene;
-use orogen_output::render::skylight::{Shed, SkylightInput};
+use orogen_output::render::skylight::{Shed, SkylightDevice, SkylightInput};
 use shader::Encoded;
 pub use skylight::skylight;
 
@@ -117,7 +117,7 @@ fn tiles(width: usize, rows: Range<usize>, rays_per_pixel: usize) -> Vec<Tile> {
     rows.clone().step_by(high).flat_map(across).collect()
 }
 
-impl Painter for Gpu {
+impl RenderDevice for Gpu {
     fn paint(
         &self,
         scene: &Scene,
@@ -145,7 +145,9 @@ impl Painter for Gpu {
             Err(failure) => Ok(Painted::Refused(failure.to_string())),
         }
     }
+}
 
+impl SkylightDevice for Gpu {
     fn skylight(&self, input: &SkylightInput, progress: &Progress) -> Outcome<Option<Vec<Shed>>> {
         progress.check()?;
         let directions = input.directions.len() as f64;

@@ -12,9 +12,10 @@ use crate::export::files::Stopping;
 use crate::export::notes::SOFTWARE;
 use crate::export::options::Options;
 use crate::render::camera::{Camera, CameraSpec, View};
-use crate::render::painter::{Painted, Painter};
+use crate::render::device::{Painted, RenderDevice};
 use crate::render::relief::Land;
 use crate::render::scene::{Colors, Edge, Scene, Style};
+use crate::render::skylight::SkylightDevice;
 use orogen_engine::budget::Reservation;
 use orogen_engine::recipe::document::Recipe;
 use orogen_engine::world::{HEIGHT, World};
@@ -78,7 +79,7 @@ pub struct RenderJob {
     /// The window; by default the whole world at its own cell, which must then be bounded.
     pub window: Option<Window>,
     /// The device that paints; by default the processor, which also paints what the device refuses.
-    pub painter: Option<Arc<dyn Painter>>,
+    pub device: Option<Arc<dyn RenderDevice>>,
 }
 
 impl Default for RenderJob {
@@ -97,7 +98,7 @@ impl Default for RenderJob {
             snow_line: style.snow_line,
             samples: style.samples,
             window: None,
-            painter: None,
+            device: None,
         }
     }
 }
@@ -124,8 +125,8 @@ impl RenderJob {
 
     /// The same, painted by this device.
     #[must_use]
-    pub fn with_painter(self, painter: Arc<dyn Painter>) -> RenderJob {
-        RenderJob { painter: Some(painter), ..self }
+    pub fn with_device(self, device: Arc<dyn RenderDevice>) -> RenderJob {
+        RenderJob { device: Some(device), ..self }
     }
 
     /// Checks all options.
@@ -211,7 +212,7 @@ impl RenderJob {
         let pixels = (self.size[0] * self.size[1]) as u64;
         let land = (window.len() as u64).saturating_mul(LAND);
         // A device's picture is whole before it is copied.
-        let copies = if self.painter.is_some() { 2 } else { 1 };
+        let copies = if self.device.is_some() { 2 } else { 1 };
         let reserved = world.budget().reserve(land.saturating_add(copies * 3 * pixels).saturating_add(writing))?;
         let has = |layer: &&str| world.recipe().outputs().any(|name| name == *layer);
         let layers: Vec<&str> = LAYERS.into_iter().filter(|layer| *layer == HEIGHT || has(layer)).collect();
@@ -247,7 +248,12 @@ impl RenderJob {
             snow_line: self.snow_line,
             samples: self.samples,
         };
-        let scene = Scene::prepared(&land, &style, self.painter.as_deref(), &preparing)?;
+        let scene = Scene::prepared(
+            &land,
+            &style,
+            self.device.as_deref().map(|device| device as &dyn SkylightDevice),
+            &preparing,
+        )?;
         preparing.finish();
         let spec = CameraSpec::new(self.view, self.size).with_fov(self.fov);
         Ok(Rendering {
@@ -256,7 +262,7 @@ impl RenderJob {
             window,
             warnings,
             painting,
-            painter: self.painter.clone(),
+            device: self.device.clone(),
             refused: OnceLock::new(),
             _reserved: reserved,
         })
@@ -286,7 +292,7 @@ pub struct Rendering {
     /// Progress of painting.
     pub painting: Progress,
     window: Window,
-    painter: Option<Arc<dyn Painter>>,
+    device: Option<Arc<dyn RenderDevice>>,
     refused: OnceLock<String>,
     _reserved: Reservation,
 }
@@ -338,8 +344,8 @@ impl Rendering {
         bytes: &mut [u8],
         progress: &Progress,
     ) -> Result<()> {
-        if let (Some(painter), None) = (&self.painter, self.refused.get()) {
-            match painter.paint(&self.scene, camera, size, rows.clone(), bytes, progress)? {
+        if let (Some(device), None) = (&self.device, self.refused.get()) {
+            match device.paint(&self.scene, camera, size, rows.clone(), bytes, progress)? {
                 Painted::Done => return Ok(()),
                 // The first reason remains.
                 Painted::Refused(why) => drop(self.refused.set(why)),
@@ -364,7 +370,7 @@ impl Rendering {
         let camera = self.scene.camera(&self.spec);
         self.painting.expect(self.spec.size[1] as f64);
         let stopping = &mut Stopping { out, progress: &self.painting };
-        if self.painter.is_some() {
+        if self.device.is_some() {
             // At once: a device receives the scene for each call.
             let [width, height] = self.spec.size;
             let mut bytes = vec![0; 3 * width * height];
@@ -382,11 +388,18 @@ impl Rendering {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::render::skylight::{Shed, SkylightInput};
 
     /// A device that paints all pixels in one grey, or refuses.
     struct Device(Option<u8>);
 
-    impl Painter for Device {
+    impl SkylightDevice for Device {
+        fn skylight(&self, _input: &SkylightInput, _progress: &Progress) -> Result<Option<Vec<Shed>>> {
+            Ok(None)
+        }
+    }
+
+    impl RenderDevice for Device {
         fn paint(
             &self,
             _scene: &Scene,
@@ -407,12 +420,12 @@ mod tests {
     }
 
     /// The picture as PNG, and why the device refused.
-    fn picture(painter: Option<Device>) -> (Vec<u8>, Option<String>) {
+    fn picture(device: Option<Device>) -> (Vec<u8>, Option<String>) {
         let recipe = orogen_engine::presets::find("hills").unwrap().recipe().unwrap();
         let job = RenderJob { size: [40, 24], samples: 1, ..RenderJob::default() };
         let mut job = job.with_window(Window::new(50, 40, 40.0));
-        if let Some(painter) = painter {
-            job = job.with_painter(Arc::new(painter));
+        if let Some(device) = device {
+            job = job.with_device(Arc::new(device));
         }
         let rendering = job.scene(&World::open(recipe).unwrap(), 1.0, 0, &Progress::none()).unwrap();
         let mut bytes = Vec::new();

@@ -6,12 +6,12 @@
 
 mod albedo;
 pub mod camera;
+pub mod device;
 #[doc(hidden)]
 pub mod encode;
 mod grain;
 mod ground;
 pub(crate) mod march;
-pub mod painter;
 pub mod relief;
 pub mod scene;
 mod shade;

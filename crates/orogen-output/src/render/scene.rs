@@ -6,10 +6,9 @@ use super::camera::{Camera, CameraSpec, Frame, folded};
 pub use super::ground::Colors;
 use super::ground::{Dress, GroundCover};
 use super::march::{Hit, Ray, Surface};
-use super::painter::Painter;
 use super::relief::{Land, Relief};
 use super::sky::{Haze, SUN_RADIUS, Sky};
-use super::skylight::Skylight;
+use super::skylight::{Skylight, SkylightDevice};
 use super::tone::tone_map;
 use super::vector::Vector;
 use super::water::Water;
@@ -140,11 +139,16 @@ impl Scene {
         Scene::prepared(land, style, None, progress)
     }
 
-    /// Prepares a scene, with the part of the work that `painter` can do done by it.
+    /// Prepares a scene, with the part of the work that `device` can do done by it.
     ///
     /// # Errors
     /// Those of [`Scene::new`].
-    pub fn prepared(land: &Land, style: &Style, painter: Option<&dyn Painter>, progress: &Progress) -> Result<Scene> {
+    pub fn prepared(
+        land: &Land,
+        style: &Style,
+        device: Option<&dyn SkylightDevice>,
+        progress: &Progress,
+    ) -> Result<Scene> {
         let [raising, lighting, painting] = progress.parts([1.0, 8.0, 2.0]);
         let relief = Relief::new(land, style.exaggeration)?;
         raising.finish();
@@ -152,7 +156,7 @@ impl Scene {
         let [azimuth, elevation] = style.sun;
         let sky = Sky::new(azimuth, elevation);
         progress.check()?;
-        let skylight = Skylight::new(&relief, &sky, painter, &lighting)?;
+        let skylight = Skylight::new(&relief, &sky, device, &lighting)?;
         let cover = style.cover.into_iter().flatten().all(|layer| layer.window() == land.heights.window());
         if !cover || (style.colors == Colors::Surfaces && style.cover.is_none()) {
             let message = "a picture of surfaces needs their albedo and roughness over the window of the heights";

@@ -8,7 +8,6 @@
 
 use rayon::prelude::*;
 
-use super::painter::Painter;
 use super::relief::Relief;
 use super::sky::Sky;
 use super::vector::Vector;
@@ -30,6 +29,15 @@ pub const ENTRIES: usize = 96;
 /// uniform sky without obstacles.
 pub type Shed = [f32; 4];
 
+/// A device that computes the light of the sky, such as a graphics card.
+pub trait SkylightDevice {
+    /// Computes the light of the sky on every sample of the land; `None` if the processor must.
+    ///
+    /// # Errors
+    /// If the work is cancelled.
+    fn skylight(&self, input: &SkylightInput, progress: &Progress) -> Result<Option<Vec<Shed>>>;
+}
+
 /// The light of the sky on every sample, or every n-th.
 #[derive(Debug, Clone)]
 pub(super) struct Skylight {
@@ -40,14 +48,19 @@ pub(super) struct Skylight {
 }
 
 impl Skylight {
-    /// Computes the light, with `painter` if it can.
+    /// Computes the light, on `device` if it can.
     ///
     /// # Errors
     /// If the work is cancelled.
-    pub fn new(relief: &Relief, sky: &Sky, painter: Option<&dyn Painter>, progress: &Progress) -> Result<Skylight> {
+    pub fn new(
+        relief: &Relief,
+        sky: &Sky,
+        device: Option<&dyn SkylightDevice>,
+        progress: &Progress,
+    ) -> Result<Skylight> {
         let input = SkylightInput::new(relief, sky);
         let [columns, rows] = input.size;
-        let lit = painter.map(|painter| painter.skylight(&input, progress)).transpose()?.flatten();
+        let lit = device.map(|device| device.skylight(&input, progress)).transpose()?.flatten();
         let shed = match lit.filter(|shed| shed.len() == columns * rows) {
             Some(shed) => shed,
             None => input.light(progress)?,

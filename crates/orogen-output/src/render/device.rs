@@ -1,17 +1,17 @@
-//! Painting on other devices than the processor.
+//! Devices that paint pictures in place of the processor.
 
 use std::fmt;
 use std::ops::Range;
 
 use super::camera::Camera;
 use super::scene::Scene;
-use super::skylight::{Shed, SkylightInput};
+use super::skylight::SkylightDevice;
 use orogen_grid::error::Result;
 use orogen_grid::progress::Progress;
 
 /// A device that paints scenes, such as a graphics card. Its pictures look like those of [`Scene::paint`], but may differ
 /// in their last bits.
-pub trait Painter: Send + Sync {
+pub trait RenderDevice: SkylightDevice + Send + Sync {
     /// Paints some rows of a picture of `size` pixels as sRGB bytes, three per pixel, like [`Scene::paint`].
     ///
     /// # Errors
@@ -25,17 +25,9 @@ pub trait Painter: Send + Sync {
         bytes: &mut [u8],
         progress: &Progress,
     ) -> Result<Painted>;
-
-    /// Computes the light of the sky on every sample of the land; `None` if the processor must.
-    ///
-    /// # Errors
-    /// If the work is cancelled.
-    fn skylight(&self, _input: &SkylightInput, _progress: &Progress) -> Result<Option<Vec<Shed>>> {
-        Ok(None)
-    }
 }
 
-/// The result of a [`Painter`].
+/// The result of a [`RenderDevice`].
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Painted {
     /// All rows were painted.
@@ -44,8 +36,8 @@ pub enum Painted {
     Refused(String),
 }
 
-impl fmt::Debug for dyn Painter {
+impl fmt::Debug for dyn RenderDevice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("Painter")
+        f.write_str("RenderDevice")
     }
 }
