@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use crate::gpu::Gpu;
 use crate::job::{Dispatch, GROUP, Job};
+use crate::tiles::fitting;
 use orogen_engine::lower::Passes;
 use orogen_grid::grid::{Grid, Window};
 use std::collections::HashMap;
@@ -35,8 +36,15 @@ pub fn apply(
         return Ok(Some(out));
     }
     let filter = Filter::new(passes, inputs.len(), wanted);
-    let side = filter.tile(window, halo, gpu.buffer_limit())?;
-    for tile in tiles(window, side) {
+    let limit = gpu.buffer_limit();
+    let Some(tiles) = fitting(window, |tile| filter.bytes(tile, halo) <= limit) else {
+        let needed = filter.bytes(&Window { width: 1, height: 1, ..*window }, halo) >> 20;
+        return Err(Failure::Memory(format!(
+            "a sample with its halo of {halo} samples takes {needed} MiB in one buffer, and buffers have at most {} MiB",
+            limit >> 20
+        )));
+    };
+    for tile in tiles {
         let Some(made) = filter.tile_of(gpu, inputs, &tile, halo, &is_cancelled)? else { return Ok(None) };
         let mut made = made.into_iter();
         for layer in out.iter_mut().flatten() {
@@ -74,26 +82,10 @@ impl<'a> Filter<'a> {
         self.inputs + self.wanted.len() + self.passes.scratch
     }
 
-    /// Columns and rows of tiles whose planes fit into a buffer of `limit` bytes.
-    fn tile(&self, window: &Window, halo: usize, limit: u64) -> Result<[usize; 2], Failure> {
-        let bytes = |[width, height]: [usize; 2]| {
-            let [width, height] = [width, height].map(|side| side as u128 + 2 * halo as u128);
-            4 * self.planes() as u128 * width * height
-        };
-        let mut side = [window.width, window.height];
-        while bytes(side) > u128::from(limit) {
-            match side {
-                [1, 1] => {
-                    let (needed, limit) = (bytes(side) >> 20, limit >> 20);
-                    return Err(Failure::Memory(format!(
-                        "a sample with its halo of {halo} samples takes {needed} MiB in one buffer, and buffers have at most {limit} MiB"
-                    )));
-                }
-                [width, height] if width > height => side = [width.div_ceil(2), height],
-                [width, height] => side = [width, height.div_ceil(2)],
-            }
-        }
-        Ok(side)
+    /// Memory of the planes for a tile, in bytes.
+    fn bytes(&self, tile: &Window, halo: usize) -> u64 {
+        let side = |samples: usize| samples as u64 + 2 * halo as u64;
+        (4 * self.planes() as u64).saturating_mul(side(tile.width)).saturating_mul(side(tile.height))
     }
 
     /// The wanted layers over a tile.
@@ -153,20 +145,6 @@ fn bands(height: usize, reads: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..height).step_by(rows).map(move |first| (first, rows.min(height - first)))
 }
 
-/// The tiles of a window, at most of this size.
-fn tiles(window: &Window, [width, height]: [usize; 2]) -> impl Iterator<Item = Window> {
-    let window = *window;
-    (0..window.height).step_by(height).flat_map(move |y| {
-        (0..window.width).step_by(width).map(move |x| Window {
-            x: window.x + x as i64,
-            y: window.y + y as i64,
-            width: width.min(window.width - x),
-            height: height.min(window.height - y),
-            cell: window.cell,
-        })
-    })
-}
-
 /// The part of an input that a tile needs; `None` if that is all of it, or if it is not given.
 fn cropped(input: Option<&Grid>, grown: &Window) -> Result<Option<Grid>, Failure> {
     match input {
@@ -205,18 +183,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bands_and_tiles_cover_everything_once() {
+    fn bands_cover_everything_once() {
         for (height, reads) in [(1, 1), (100, READS), (100, READS / 30), (64, READS / 64), (5, usize::MAX)] {
             let bands: Vec<_> = bands(height, reads).collect();
             assert_eq!(bands.iter().map(|(_, rows)| rows).sum::<usize>(), height);
             assert!(bands.windows(2).all(|pair| pair[0].0 + pair[0].1 == pair[1].0), "{bands:?}");
             assert!(bands.iter().all(|(_, rows)| *rows <= 8 || rows * reads <= READS), "{bands:?}");
-        }
-        let window = Window::new(30, 17, 2.0).at(-5, 9);
-        for side in [[30, 17], [7, 5], [30, 1], [1, 17]] {
-            let tiles: Vec<_> = tiles(&window, side).collect();
-            assert_eq!(tiles.iter().map(Window::len).sum::<usize>(), window.len());
-            assert!(tiles.iter().all(|tile| window.contains(tile) && tile.width <= side[0] && tile.height <= side[1]));
         }
     }
 }

@@ -16,6 +16,7 @@ mod pipelines;
 mod program;
 pub mod render;
 mod session;
+mod tiles;
 
 pub use adapters::{Adapter, Choice, adapters};
 pub use failure::Failure;

@@ -4,4 +4,3 @@ pub(crate) mod functions;
 pub(crate) mod kernel;
 pub(crate) mod positions;
 pub(crate) mod run;
-pub(crate) mod tiles;

@@ -2,10 +2,10 @@
 
 use super::kernel::{Kernel, Word, kernel, parts};
 use super::positions;
-use super::tiles::fitting;
 use crate::failure::Failure;
 use crate::gpu::Gpu;
 use crate::job::{Dispatch, Job};
+use crate::tiles::fitting;
 use orogen_engine::device::{Lowered, LoweredProgram};
 use orogen_grid::grid::{Grid, Window};
 use orogen_noise::shader::function::Shader;
