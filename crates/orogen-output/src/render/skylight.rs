@@ -1,6 +1,6 @@
 //! Light of the sky on each sample, with the horizon and the colour of every direction.
 //!
-//! In each of [`AZIMUTHS`] directions the horizon of every sample is found exactly: lines through the land are
+//! In each of sixteen directions the horizon of every sample is found exactly: lines through the land are
 //! traversed against the direction, with the convex hull of the ground passed (V. Timonen, J. Westerholm, "Scalable
 //! height field self-shadowing", 2010), in a few steps per sample for any distance. The light of the sky above that
 //! horizon on the sample's slope is read from a table of sums, so there is neither noise nor a radius that limits the
