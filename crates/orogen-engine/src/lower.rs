@@ -1,13 +1,16 @@
 //! How ops are computed on a graphics card: each field has a function of WGSL, and each filter has passes, beside its computation on the processor.
 
+/// The function `selected` of WGSL, which several ops have: a range with smooth ends.
+pub const SELECTION: &str = include_str!("lower/selection.wgsl");
+
 /// How a graphics card computes a node.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Lowering<T> {
     /// By this.
     Shader(T),
-    /// Not at all: the processor computes it, for this reason, which reads after "the processor computes it: ".
+    /// Not at all: the processor computes it, for this reason.
     Processor(&'static str),
-    /// Nobody has said how. The processor computes it. No built-in op may leave it at that.
+    /// Not declared: the processor computes it. Every built-in op declares one of the others.
     Missing,
 }
 
@@ -15,7 +18,7 @@ pub enum Lowering<T> {
 ///
 /// The first planes are its inputs, one for each that is declared (zeros if it is not given). The next are its layers, and then come `scratch` planes. Planes
 /// other than inputs start as zeros. The text defines one function `fn NAME(base: u32, at: vec2<i32>)` for each pass, which is called for every sample of the
-/// planes, except for a border that nothing reads any more. It reads numbers with `number(base, i)` and samples with `plane(k, at)`, where positions beyond the
+/// planes, except for a border that no later pass reads. It reads numbers with `number(base, i)` and samples with `plane(k, at)`, where positions beyond the
 /// border are those of the border, and writes samples with `set_plane(k, at, value)`; `size()` is the number of columns and rows of the planes. A pass may run
 /// for all samples at once: it must not read samples that another call writes.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,11 +42,11 @@ pub struct Pass {
     pub step: u32,
     /// Columns and rows at each side of the planes that it leaves out, at most the halo.
     pub inset: [usize; 2],
-    /// Number of samples that a call reads, about. The samples of an expensive pass are computed in parts, so that no driver takes it for a hang.
+    /// Number of samples that a call reads, about. The samples of an expensive pass are computed in parts, so that no driver ends it as a hang.
     pub reads: usize,
 }
 
-/// Number of samples that a call reads if nothing else is said.
+/// Default number of samples that a call reads.
 const READS: usize = 20;
 
 impl Passes {

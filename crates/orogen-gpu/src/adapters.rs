@@ -22,7 +22,7 @@ pub struct Adapter {
     pub refused: Option<String>,
 }
 
-/// What an adapter is, from the most to the least wanted.
+/// The kind of an adapter, in order of preference.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
     /// A card with memory of its own.
@@ -33,7 +33,7 @@ pub enum Kind {
     Virtual,
     /// Not known.
     Other,
-    /// A driver that computes on the processor, such as Mesa's lavapipe: slower than the engine itself, and used only if it is asked for.
+    /// A driver that computes on the processor, such as Mesa's lavapipe: slower than the engine itself, and used only on request.
     Software,
 }
 
@@ -54,7 +54,7 @@ impl Kind {
 /// The limits of an adapter that decide what work it gets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
-    /// Maximum size of a buffer that a shader uses, in bytes. Larger windows are computed in bands of rows.
+    /// Maximum size of a buffer that a shader uses, in bytes. Larger windows are computed in tiles.
     pub buffer: u64,
     /// Maximum number of workgroups along an axis.
     pub workgroups: u32,

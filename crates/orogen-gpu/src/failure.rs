@@ -1,4 +1,4 @@
-//! Why work could not be done on a graphics card.
+//! Failures of work on a graphics card.
 
 use std::fmt;
 

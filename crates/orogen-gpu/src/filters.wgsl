@@ -19,3 +19,13 @@ fn plane(k: u32, at: vec2<i32>) -> f32 {
 fn set_plane(k: u32, at: vec2<i32>, value: f32) {
     samples[index_of(k, at)] = value;
 }
+
+// Whether a value is infinite or not a number. Shader compilers may assume that there are none, so the bits are compared.
+fn is_missing(value: f32) -> bool {
+    return (bitcast<u32>(value) & 0x7f800000u) == 0x7f800000u;
+}
+
+// Not a number. The sum hides it from compilers that refuse such a constant.
+fn missing() -> f32 {
+    return bitcast<f32>(0x7fc00000u + min(frame.width, 0u));
+}

@@ -134,7 +134,7 @@ impl Gpu {
             *told.lock().unwrap_or_else(PoisonError::into_inner) = Some(message);
         });
         let told = Arc::clone(&lost);
-        // What no scope catches happens outside of jobs: the device is not to be trusted any more.
+        // Errors that no scope catches happen outside of jobs: the device is not used any more.
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             *told.lock().unwrap_or_else(PoisonError::into_inner) = Some(error.to_string());
         }));
@@ -188,7 +188,7 @@ impl Gpu {
         };
         let (from, to) = (buffer(Usage::COPY_SRC), buffer(Usage::COPY_DST));
         let mut fastest = f64::MAX;
-        // The first copy may have to find the memory.
+        // The first copy may include the allocation of memory.
         for _ in 0..4 {
             let mut encoder = self.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             encoder.copy_buffer_to_buffer(&from, 0, &to, 0, from.size());
@@ -200,11 +200,11 @@ impl Gpu {
         Ok(fastest)
     }
 
-    /// Gives the device up, as a driver that is restarted does: for tests of what happens then.
+    /// Destroys the device, like the restart of a driver: for tests.
     #[doc(hidden)]
     pub fn lose(&self) {
         self.opened.device.destroy();
-        *self.opened.lost.lock().unwrap_or_else(PoisonError::into_inner) = Some("it was given up".to_string());
+        *self.opened.lost.lock().unwrap_or_else(PoisonError::into_inner) = Some("it was destroyed".to_string());
     }
 
     /// The first failure, if there was one: from then on, or for that work, the processor stood in.

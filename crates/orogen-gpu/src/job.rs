@@ -37,7 +37,7 @@ pub struct Job<'a> {
     pub downloads: Vec<(usize, usize)>,
 }
 
-/// Maximum number of dispatches that are submitted together, so that a long job can be cancelled and no driver takes it for a hang.
+/// Maximum number of dispatches that are submitted together, so that a long job can be cancelled and no driver ends it as a hang.
 const TOGETHER: usize = 64;
 
 /// The longest wait for buffers to be readable once all work is done.
@@ -160,12 +160,12 @@ impl Job<'_> {
         let (sender, receiver) = mpsc::channel();
         for buffer in &back {
             let sender = sender.clone();
-            // A receiver that is gone has given up.
+            // If the receiver is gone, nothing waits for the result.
             buffer.slice(..).map_async(wgpu::MapMode::Read, move |mapped| drop(sender.send(mapped)));
         }
         gpu.wait()?;
         for _ in &back {
-            // They are mapped by now; another thread that waits for the device may be about to say so.
+            // They are mapped by now, but the callback may still be running on another thread that polls the device.
             match receiver.recv_timeout(MAPPED) {
                 Ok(Ok(())) => {}
                 _ => return Err(Failure::Lost("its results could not be read".to_string())),

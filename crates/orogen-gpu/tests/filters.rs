@@ -1,12 +1,14 @@
 //! Filters on whatever adapter this machine has, against the processor.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
-mod support;
+mod common;
 
+use common::filters::{
+    filter, gpu, gpu_with_buffers_of, inputs, lowered, on_card, on_processor, tried_on_card, variants,
+};
 use orogen_engine::node::Node;
 use orogen_grid::grid::{Grid, Window};
 use std::collections::BTreeMap;
-use support::{filter, gpu, gpu_with_buffers_of, inputs, lowered, on_card, on_processor, tried_on_card, variants};
 
 /// How far the layers of a filter may be from the processor's.
 #[derive(Clone, Copy)]

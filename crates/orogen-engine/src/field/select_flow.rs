@@ -1,7 +1,6 @@
 //! A mask by drainage area.
 
-use super::select_height::SELECTED;
-use crate::lower::Lowering;
+use crate::lower::{Lowering, SELECTION};
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_grid::analysis::selection::Selection;
 use orogen_noise::Points;
@@ -50,7 +49,7 @@ impl Field for SelectFlow {
         let [low, high] = self.range.map(|area| libm::log10(area).max(-1e29));
         let [below, above] = self.falloff;
         let mut shader = Shader::new("select_flow", CODE, &[low, high, below, above].map(|number| number as f32));
-        shader.code.insert(0, SELECTED);
+        shader.code.insert(0, SELECTION);
         Lowering::Shader(shader)
     }
 }

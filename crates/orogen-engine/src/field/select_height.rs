@@ -1,6 +1,6 @@
 //! A mask by height.
 
-use crate::lower::Lowering;
+use crate::lower::{Lowering, SELECTION};
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_grid::analysis::selection::Selection;
 use orogen_noise::Points;
@@ -27,9 +27,6 @@ op! {
     };
 }
 
-/// The selection of a range with smooth ends, as [`Selection`].
-pub(super) const SELECTED: &str = include_str!("selected.wgsl");
-
 impl Field for SelectHeight {
     fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
         let selection = Selection::new(self.range, self.falloff);
@@ -47,7 +44,7 @@ impl Field for SelectHeight {
             "fn select_height(base: u32, place: Placement, source: f32) -> f32 { return selected(base, source); }";
         let [low, high, below, above] = [self.range[0], self.range[1], self.falloff[0], self.falloff[1]];
         let mut shader = Shader::new("select_height", CODE, &[low, high, below, above].map(|number| number as f32));
-        shader.code.insert(0, SELECTED);
+        shader.code.insert(0, SELECTION);
         Lowering::Shader(shader)
     }
 }

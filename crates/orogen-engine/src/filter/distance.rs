@@ -34,7 +34,7 @@ op! {
 /// Maximum reach in samples.
 const FARTHEST: f64 = 16_384.0;
 
-const CODE: &str = concat!(include_str!("selection.wgsl"), include_str!("distance.wgsl"));
+const CODE: &str = concat!(include_str!("../lower/selection.wgsl"), include_str!("distance.wgsl"));
 
 impl Filter for Distance {
     fn halo(&self, cell: f64) -> usize {

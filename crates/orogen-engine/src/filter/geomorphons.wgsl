@@ -1,9 +1,5 @@
 // Landforms by lines of sight: samples along the axes and along the diagonals, the tangent of the limit, the rule (1 for the difference of the angles), the
 // cell, then the forms by the numbers of lower and higher directions.
-fn is_missing(value: f32) -> bool {
-    return (bitcast<u32>(value) & 0x7f800000u) == 0x7f800000u;
-}
-
 // Whether a direction leads up (1), down (-1) or is level (0); 2 if a sample is missing.
 fn look(base: u32, at: vec2<i32>, along: vec2<i32>) -> i32 {
     let centre = plane(0u, at);

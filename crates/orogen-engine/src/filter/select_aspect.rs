@@ -32,7 +32,7 @@ op! {
 }
 
 const CODE: &str =
-    concat!(include_str!("horn.wgsl"), include_str!("selection.wgsl"), include_str!("select_aspect.wgsl"));
+    concat!(include_str!("horn.wgsl"), include_str!("../lower/selection.wgsl"), include_str!("select_aspect.wgsl"));
 
 impl Filter for SelectAspect {
     fn halo(&self, _: f64) -> usize {

@@ -53,7 +53,7 @@ const FARTHEST: f64 = 16_384.0;
 const CODE: &str = concat!(
     include_str!("horn.wgsl"),
     include_str!("second_difference.wgsl"),
-    include_str!("selection.wgsl"),
+    include_str!("../lower/selection.wgsl"),
     include_str!("select_curvature.wgsl")
 );
 

@@ -2,7 +2,7 @@
 
 use orogen_engine::expression::function::Function;
 
-/// What the functions that WGSL lacks are made of.
+/// Functions that WGSL lacks, or has with too few digits.
 pub(crate) const TEXT: &str = include_str!("functions.wgsl");
 
 /// The expression of a function of arguments.

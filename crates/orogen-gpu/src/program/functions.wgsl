@@ -82,23 +82,6 @@ fn cosine(a: f32) -> f32 {
     return sine_of(a, 1.0);
 }
 
-// The polynomial of Cephes' atanf, after reduction to at most tan(pi / 8).
-fn arc_tangent(a: f32) -> f32 {
-    var x = abs(a);
-    var start = 0.0;
-    if (x > 2.414213562373095) {
-        start = 1.5707963267948966;
-        x = -1.0 / x;
-    } else if (x > 0.4142135623730950) {
-        start = 0.7853981633974483;
-        x = (x - 1.0) / (x + 1.0);
-    }
-    let z = x * x;
-    let y = start
-        + ((((8.05374449538e-2 * z - 1.38776856032e-1) * z + 1.99777106478e-1) * z - 3.33329491539e-1) * z * x + x);
-    return select(y, -y, a < 0.0);
-}
-
 fn arc_tangent2(y: f32, x: f32) -> f32 {
     if (x == 0.0 && y == 0.0) {
         return 0.0;

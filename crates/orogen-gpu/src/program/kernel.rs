@@ -33,7 +33,7 @@ pub(crate) struct Kernel {
     pub words: Vec<Word>,
 }
 
-/// Weight of a call of a field's function, beside 1 for all other instructions: drivers put its whole text where it is called.
+/// Weight of a call of a field's function, beside 1 for all other instructions: drivers inline it.
 const FIELD: usize = 8;
 
 /// Divides a program into parts of at most this weight.

@@ -1,6 +1,15 @@
 //! What the tests have in common: a graphics card, and the difference between its terrain and the processor's.
 
-#![allow(dead_code, unreachable_pub, clippy::must_use_candidate, clippy::unwrap_used)]
+#![allow(
+    dead_code,
+    unreachable_pub,
+    clippy::must_use_candidate,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic
+)]
+
+pub mod filters;
 
 use orogen_engine::{Grid, Options, Recipe, Session, Window};
 use orogen_gpu::{Choice, Gpu, gpu};

@@ -1,6 +1,6 @@
 // Masks of ranges with smooth ends, as orogen-grid's `Selection`: low, high, and the widths of the ends below and above are the numbers from `base` on.
 
-fn falling(beyond: f32, width: f32) -> f32 {
+fn selection_fall(beyond: f32, width: f32) -> f32 {
     if (beyond < width) {
         let t = 1.0 - beyond / width;
         return t * t * (3.0 - 2.0 * t);
@@ -15,7 +15,7 @@ fn selected(base: u32, value: f32) -> f32 {
         return 1.0;
     }
     if (value < low) {
-        return falling(low - value, number(base, 2u));
+        return selection_fall(low - value, number(base, 2u));
     }
-    return falling(value - high, number(base, 3u));
+    return selection_fall(value - high, number(base, 3u));
 }
