@@ -2,7 +2,7 @@
 
 use crate::expression::function::Function;
 use crate::layer::LayerKind;
-use crate::lower::Passes;
+use crate::lower::{LevelPasses, Passes};
 use crate::op::Affine;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -37,6 +37,38 @@ pub trait Device: Send + Sync {
         extent: &FilterExtent,
         progress: &Progress,
     ) -> Result<Option<Vec<Option<Grid>>>>;
+
+    /// Computes the planes of a level over a window from those of the level above, over exactly the samples that `Levelled::refine` gets, and from the op's
+    /// inputs, which cover at least what it reads of them.
+    ///
+    /// # Errors
+    /// If the work was cancelled.
+    fn refine(
+        &self,
+        passes: &LevelPasses,
+        above: &[Grid],
+        inputs: &[Option<&Grid>],
+        window: &Window,
+        progress: &Progress,
+    ) -> Result<Option<Vec<Grid>>> {
+        let _ = (passes, above, inputs, window, progress);
+        Ok(None)
+    }
+
+    /// Computes the layers of a solution over a window from the solver's inputs over the same window.
+    ///
+    /// # Errors
+    /// If the work was cancelled.
+    fn solve(
+        &self,
+        passes: &Passes,
+        inputs: &[Option<&Grid>],
+        window: &Window,
+        progress: &Progress,
+    ) -> Result<Option<Vec<Grid>>> {
+        let _ = (passes, inputs, window, progress);
+        Ok(None)
+    }
 }
 
 /// What of a filter is computed.

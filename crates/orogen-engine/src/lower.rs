@@ -46,6 +46,16 @@ pub struct Pass {
     pub reads: usize,
 }
 
+/// A level of a levelled op as passes over planes: those of the level above, the inputs, those of the level, and scratch planes, in this order.
+///
+/// The planes have twice the columns and rows of the level above, which is in the first columns and rows of its own planes: sample (i, j) of the level is made
+/// from sample (i / 2, j / 2) of the level above. Inputs are at the cell of the level. All passes are run for all samples except the border that they leave out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LevelPasses {
+    /// The passes. Their inputs are the planes of the level above, and then those of the op; their layers are the planes of the level.
+    pub passes: Passes,
+}
+
 /// Default number of samples that a call reads.
 const READS: usize = 20;
 

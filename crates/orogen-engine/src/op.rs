@@ -3,7 +3,7 @@
 use crate::declare::Declared;
 use crate::expression::term::{self, Term};
 use crate::layer::LayerKind;
-use crate::lower::{Lowering, Passes};
+use crate::lower::{LevelPasses, Lowering, Passes};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
@@ -402,6 +402,13 @@ pub trait Levelled: Declared + Send + Sync {
         context: &Context,
     ) -> Result<()>;
 
+    /// How a graphics card computes what [`Levelled::refine`] does, where `given` says of each input whether it is given.
+    #[doc(hidden)]
+    fn lower(&self, level: usize, given: &[bool], world_params: &WorldParams) -> Lowering<LevelPasses> {
+        let _ = (level, given, world_params);
+        Lowering::Missing
+    }
+
     /// Memory beside planes and layers for making a level over `window`, in bytes.
     fn scratch(&self, level: usize, window: &Window) -> u64 {
         let _ = (level, window);
@@ -542,6 +549,14 @@ pub trait Solver: Declared + Send + Sync {
             Some(raster) => raster.read(asked.kind, asked.at, out),
             None => Err(Error::new(ErrorKind::Internal, format!("a solution has no layer {}", asked.layer))),
         }
+    }
+
+    /// How a graphics card computes what [`Solver::solve`] does over `padded`, the window of [`Sources::padded`], where `given` says of each input whether it is
+    /// given: the layers of the solution, without numbers.
+    #[doc(hidden)]
+    fn lower(&self, padded: &Window, given: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
+        let _ = (padded, given, world_params);
+        Lowering::Missing
     }
 
     /// How a graphics card computes what [`Solver::read`] does.
