@@ -21,12 +21,17 @@ pub enum Lowering<T> {
 /// planes, except for a border that no later pass reads. It reads numbers with `number(base, i)` and samples with `plane(k, at)`, where positions beyond the
 /// border are those of the border, and writes samples with `set_plane(k, at, value)`; `size()` is the number of columns and rows of the planes. A pass may run
 /// for all samples at once: it must not read samples that another call writes.
+///
+/// Those of a solver read and write the planes otherwise, as atomic words: see `solvers.wgsl` of orogen-gpu. A call may read what another one writes, if the
+/// result does not depend on their order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Passes {
     /// The text that defines the functions of the passes. It does not depend on parameters.
     pub code: &'static str,
     /// The numbers that they read.
     pub words: Vec<u32>,
+    /// Number of layers, for solvers. A filter is told which of its layers are wanted.
+    pub layers: usize,
     /// Number of planes beside inputs and layers.
     pub scratch: usize,
     /// The passes, in order.
@@ -63,13 +68,21 @@ impl Passes {
     /// Passes that read these numbers.
     #[must_use]
     pub fn new(code: &'static str, numbers: &[f32]) -> Passes {
-        Passes { code, words: numbers.iter().map(|number| number.to_bits()).collect(), scratch: 0, passes: Vec::new() }
+        let words = numbers.iter().map(|number| number.to_bits()).collect();
+        Passes { code, words, layers: 0, scratch: 0, passes: Vec::new() }
     }
 
     /// With these words after the others.
     #[must_use]
     pub fn with_words(mut self, words: impl IntoIterator<Item = u32>) -> Passes {
         self.words.extend(words);
+        self
+    }
+
+    /// With this number of layers.
+    #[must_use]
+    pub fn with_layers(mut self, layers: usize) -> Passes {
+        self.layers = layers;
         self
     }
 

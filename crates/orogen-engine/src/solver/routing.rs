@@ -1,0 +1,106 @@
+//! Drainage on a graphics card: the passes of `routing.wgsl`.
+//!
+//! Depressions are drained as on the processor, by the passes between basins, but the spanning tree of basins is found by Borůvka's algorithm, whose rounds run
+//! for all basins at once (compare Jain, Kerbl, Gain, Finley and Cordonnier, "FastFlow: GPU acceleration of flow and depression routing for landscape
+//! simulation", 2024). Paths are followed by pointer doubling.
+
+use crate::lower::Passes;
+use orogen_grid::grid::Window;
+
+/// Number of planes of the routing.
+pub(crate) const PLANES: usize = 8;
+
+/// The step of the last pass of a run, on the lattice.
+pub(crate) const LAST: u32 = 1 << 31;
+
+/// Number of counters.
+const COUNTERS: usize = 8;
+
+/// Cells by which one pass follows receivers, and the same for the accumulation: the constants of the shaders.
+const HOPS: usize = 16;
+const GATHERED_HOPS: usize = 8;
+
+/// How cells choose their receivers: the words of the shaders.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Descent {
+    /// By steepest descent.
+    Steepest,
+    /// The same with random lengths of diagonals by this salt, to which the number of the step is added.
+    Scattered(u32),
+    /// By steepest descent between points: their salt, and their maximum displacement along each axis, in cells.
+    Points(u32, f32),
+}
+
+/// The words that `routing.wgsl` reads.
+pub(crate) fn words(padded: &Window, sea_level: Option<f32>, descent: Descent) -> Vec<u32> {
+    let (kind, salt, reach) = match descent {
+        Descent::Steepest => (0, 0, 0.0),
+        Descent::Scattered(salt) => (1, salt, 0.0),
+        Descent::Points(salt, reach) => (2, salt, reach),
+    };
+    let [x, y] = [padded.x, padded.y].map(|start| [start as u32, (start >> 32) as u32]);
+    let sea_level = sea_level.unwrap_or(f32::MIN);
+    vec![x[0], x[1], y[0], y[1], sea_level.to_bits(), kind, salt, reach.to_bits()]
+}
+
+/// A step as the shaders read it: the planes that are read and written, and a number.
+pub(crate) fn step(from: u32, to: u32, number: u32) -> u32 {
+    from | to << 8 | number << 16
+}
+
+/// Number of planes that hold the counters: more than one in tiny windows.
+pub(crate) fn counter_planes(padded: &Window) -> usize {
+    COUNTERS.div_ceil(padded.len().max(1))
+}
+
+/// Number of rounds over basins in a step that begins with drained ground: there are few pits then. If basins are left, their pits wait for the next step.
+pub(crate) const FEW_ROUNDS: usize = 8;
+
+/// Number of rounds over basins that drain everything: each at least halves the basins.
+pub(crate) fn all_rounds(padded: &Window) -> usize {
+    let inner = padded.width.saturating_sub(2) * padded.height.saturating_sub(2);
+    (usize::BITS - inner.leading_zeros()) as usize
+}
+
+/// Number of passes in which paths over all cells are followed, if each of them multiplies the length by `factor`.
+pub(crate) fn doublings(padded: &Window, factor: usize) -> usize {
+    let (mut passes, mut length) = (1, factor);
+    while length < padded.len() {
+        passes += 1;
+        length = length.saturating_mul(factor);
+    }
+    passes
+}
+
+/// The same, following receivers by the usual number of cells.
+pub(crate) fn following(padded: &Window) -> usize {
+    doublings(padded, HOPS + 1)
+}
+
+/// `passes`, and those that find the receivers of all cells from the heights in a plane. `number` is that of the time step.
+pub(crate) fn route(passes: Passes, padded: &Window, rounds: usize, step: u32) -> Passes {
+    let heights = step & 0xff;
+    let at = |passes: Passes, function, number: usize| then(passes, function, heights | (number as u32) << 16);
+    let mut passes = then(passes, "receive", step);
+    for _ in 0..following(padded) {
+        passes = at(passes, "find_pit", 0);
+    }
+    for round in 1..=rounds {
+        for function in ["offer_pass", "choose_pass", "join", "find_root"] {
+            passes = at(passes, function, round);
+        }
+    }
+    at(passes, "lead_out", 0)
+}
+
+/// `passes`, and those that count the cells that drain through each cell.
+pub(crate) fn gather(passes: Passes, padded: &Window) -> Passes {
+    let passes = then(passes, "begin_areas", 0);
+    let steps = 0..doublings(padded, GATHERED_HOPS) as u32;
+    steps.fold(passes, |passes, k| then(passes, "gather_areas", k << 16))
+}
+
+/// `passes`, and a run of a function for all cells.
+pub(crate) fn then(passes: Passes, function: &'static str, step: u32) -> Passes {
+    passes.then(function, step, [0; 2])
+}
