@@ -7,6 +7,9 @@
 use crate::lower::Passes;
 use orogen_grid::grid::Window;
 
+/// Why the processor weights drainage areas by the rain.
+pub(crate) const RAIN: &str = "the rain is summed up in whole numbers of 64 bits, for which WGSL has no atomic sum";
+
 /// Number of planes of the routing.
 pub(crate) const PLANES: usize = 8;
 
@@ -82,15 +85,48 @@ pub(crate) fn route(passes: Passes, padded: &Window, rounds: usize, step: u32) -
     let heights = step & 0xff;
     let at = |passes: Passes, function, number: usize| then(passes, function, heights | (number as u32) << 16);
     let mut passes = then(passes, "receive", step);
-    for _ in 0..following(padded) {
-        passes = at(passes, "find_pit", 0);
-    }
+    passes = follow(passes, padded, "find_pit");
     for round in 1..=rounds {
         for function in ["offer_pass", "choose_pass", "join", "find_root"] {
             passes = at(passes, function, round);
         }
     }
     at(passes, "lead_out", 0)
+}
+
+/// `passes`, and those that follow the labels of all cells to the end by a function.
+pub(crate) fn follow(passes: Passes, padded: &Window, function: &'static str) -> Passes {
+    (0..following(padded)).fold(passes, |passes, _| then(passes, function, 0))
+}
+
+/// `passes`, and those that find the spill levels of basins, and the number by which functions read them.
+pub(crate) fn spill(passes: Passes, padded: &Window) -> (Passes, u32) {
+    let turns = following(padded) as u32;
+    let passes = then(passes, "begin_spill", 0);
+    ((0..turns).fold(passes, |passes, k| then(passes, "raise_spill", step(0, 0, k % 2))), turns % 2)
+}
+
+/// `passes`, and those that number marked cells, of `numbering.wgsl`.
+pub(crate) fn number(passes: Passes) -> Passes {
+    ["count_marks", "sum_marks", "number_marks"].into_iter().fold(passes, |passes, name| then(passes, name, 0))
+}
+
+/// Passes that route the heights of plane 0 by steepest descent, with words of the solver after those of the routing. `scratch` is the number of planes beside
+/// inputs, layers, those of the routing and counters.
+pub(crate) fn routed(
+    code: &'static str,
+    padded: &Window,
+    sea_level: Option<f32>,
+    own_words: &[u32],
+    layers: usize,
+    scratch: usize,
+) -> Passes {
+    let passes = Passes::new(code, &[])
+        .with_words(words(padded, sea_level, Descent::Steepest))
+        .with_words(own_words.iter().copied())
+        .with_layers(layers)
+        .with_scratch(PLANES + scratch + counter_planes(padded));
+    route(then(passes, "outlets", 0), padded, all_rounds(padded), 0)
 }
 
 /// `passes`, and those that count the cells that drain through each cell.

@@ -429,3 +429,12 @@ fn gather_areas(base: u32, at: vec2<i32>) {
 fn drained_cells(cell: u32) -> u32 {
     return word(AREA + (counter(GATHERED) + 1u) % 3u, cell);
 }
+
+// The level to which water fills the basin of a cell, as an ordered integer; 0 outside. The number is that of the last raise.
+fn spill_level(cell: u32, turn: u32) -> u32 {
+    let label = word(LABEL, cell);
+    if (label == NONE) {
+        return 0u;
+    }
+    return word(SPILL_LEVEL + turn, label);
+}

@@ -1,7 +1,7 @@
 //! Stream power erosion with uplift.
 
 use super::routing::{self, Descent, LAST, then};
-use super::terrain::{flow_layer, memory, sea_level};
+use super::terrain::{flow_layer, memory, sea_level, sea_level_of};
 use crate::declare::{Declared, Input};
 use crate::lower::{Lowering, Passes};
 use crate::op::{Context, Solution, Solver, Sources, WorldParams};
@@ -144,9 +144,7 @@ impl Solver for StreamPower {
             );
         }
         if given.get(3) == Some(&true) {
-            return Lowering::Processor(
-                "the rain is summed up in whole numbers of 64 bits, for which WGSL has no atomic sum",
-            );
+            return Lowering::Processor(routing::RAIN);
         }
         let given = |i: usize| u32::from(given.get(i) == Some(&true));
         Lowering::Shader(self.passes(padded, [given(1), given(2)], world_params))
@@ -212,7 +210,7 @@ impl StreamPower {
         let share = creep.map_or(0.0, |[_, _, share]| share / 6.0);
         let last = [share, cell * cell].map(|number| (number as f32).to_bits());
         let mut passes = Passes::new(CODE, &[])
-            .with_words(routing::words(padded, self.sea.then_some(world_params.sea_level as f32), descent))
+            .with_words(routing::words(padded, sea_level_of(self.sea, world_params), descent))
             .with_words(numbers.map(|number| (number as f32).to_bits()))
             .with_words(given)
             .with_words(last)
