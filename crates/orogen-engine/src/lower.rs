@@ -22,8 +22,8 @@ pub enum Lowering<T> {
 /// border are those of the border, and writes samples with `set_plane(k, at, value)`; `size()` is the number of columns and rows of the planes. A pass may run
 /// for all samples at once: it must not read samples that another call writes.
 ///
-/// Those of a solver read and write the planes otherwise, as atomic words: see `solvers.wgsl` of orogen-gpu. A call may read what another one writes, if the
-/// result does not depend on their order.
+/// Those of a solver read and write the planes otherwise, as words: see `solvers.wgsl` of orogen-gpu. Calls of a [shared](Pass::is_shared) pass may read what
+/// others write, if the result does not depend on their order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Passes {
     /// The text that defines the functions of the passes. It does not depend on parameters.
@@ -49,6 +49,8 @@ pub struct Pass {
     pub inset: [usize; 2],
     /// Number of samples that a call reads, about. The samples of an expensive pass are computed in parts, so that no driver ends it as a hang.
     pub reads: usize,
+    /// Whether calls write to samples of other calls, or read what they write: only in solvers.
+    pub is_shared: bool,
 }
 
 /// A level of a levelled op as passes over planes: those of the level above, the inputs, those of the level, and scratch planes, in this order.
@@ -96,7 +98,7 @@ impl Passes {
     /// With a run of a function after the others, which leaves out `inset` columns and rows at each side.
     #[must_use]
     pub fn then(mut self, function: &'static str, step: u32, inset: [usize; 2]) -> Passes {
-        self.passes.push(Pass { function, step, inset, reads: READS });
+        self.passes.push(Pass { function, step, inset, reads: READS, is_shared: false });
         self
     }
 
@@ -105,6 +107,15 @@ impl Passes {
     pub fn reading(mut self, reads: usize) -> Passes {
         if let Some(pass) = self.passes.last_mut() {
             pass.reads = reads.max(1);
+        }
+        self
+    }
+
+    /// With the last pass as one whose calls [share](Pass::is_shared) samples.
+    #[must_use]
+    pub fn shared(mut self) -> Passes {
+        if let Some(pass) = self.passes.last_mut() {
+            pass.is_shared = true;
         }
         self
     }

@@ -9,7 +9,17 @@ use orogen_grid::grid::{Grid, Window};
 use std::collections::HashMap;
 
 /// What the passes of all filters have in common.
+const PRELUDES: Preludes = Preludes { own: PRELUDE, shared: PRELUDE };
+
 const PRELUDE: &str = include_str!("filters.wgsl");
+
+/// What passes have in common, by whether their calls write to samples of others.
+pub(crate) struct Preludes {
+    /// The text of passes whose calls write to their own samples alone.
+    pub(crate) own: &'static str,
+    /// The text of those that share samples.
+    pub(crate) shared: &'static str,
+}
 
 /// Words before those of the filter, for each pass: see the prelude.
 const WORDS: usize = 5;
@@ -35,7 +45,7 @@ pub fn apply(
     if window.is_empty() || !wanted.contains(&true) {
         return Ok(Some(out));
     }
-    let filter = Planes::new(PRELUDE, passes, inputs.len(), wanted);
+    let filter = Planes::new(&PRELUDES, passes, inputs.len(), wanted);
     let limit = gpu.buffer_limit();
     let Some(tiles) = fitting(window, |tile| filter.bytes(tile, halo) <= limit) else {
         let needed = filter.bytes(&Window { width: 1, height: 1, ..*window }, halo) >> 20;
@@ -69,10 +79,11 @@ pub(crate) struct Planes<'a> {
 }
 
 impl<'a> Planes<'a> {
-    /// Planes of passes that have `prelude` in common.
-    pub(crate) fn new(prelude: &str, passes: &'a Passes, inputs: usize, wanted: &'a [bool]) -> Planes<'a> {
+    /// Planes of passes that have these texts in common.
+    pub(crate) fn new(preludes: &Preludes, passes: &'a Passes, inputs: usize, wanted: &'a [bool]) -> Planes<'a> {
         let mut texts = HashMap::new();
         for pass in &passes.passes {
+            let prelude = if pass.is_shared { preludes.shared } else { preludes.own };
             texts.entry(pass.function).or_insert_with(|| text(prelude, passes.code, pass.function));
         }
         Planes { passes, texts, inputs, wanted }

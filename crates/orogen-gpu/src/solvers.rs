@@ -1,13 +1,16 @@
 //! Solvers of the engine, by their passes.
 
 use crate::failure::Failure;
-use crate::filters::Planes;
+use crate::filters::{Planes, Preludes};
 use crate::gpu::Gpu;
 use orogen_engine::lower::Passes;
 use orogen_grid::grid::{Grid, Window};
 
 /// What the passes of all solvers have in common.
-const PRELUDE: &str = include_str!("solvers.wgsl");
+const PRELUDES: Preludes = Preludes {
+    own: concat!(include_str!("solvers.wgsl"), include_str!("own_words.wgsl")),
+    shared: concat!(include_str!("solvers.wgsl"), include_str!("shared_words.wgsl")),
+};
 
 /// Computes the layers of a solution over `window` from the solver's inputs, which cover it. `Ok(None)` if the work was cancelled; `is_cancelled` is asked
 /// between parts of it. The result is the same in each run on a device.
@@ -26,7 +29,7 @@ pub fn solve(
     if window.is_empty() {
         return Ok(Some(wanted.iter().map(|_| Grid::filled(*window, 0.0)).collect()));
     }
-    let planes = Planes::new(PRELUDE, passes, inputs.len(), &wanted);
+    let planes = Planes::new(&PRELUDES, passes, inputs.len(), &wanted);
     let (needed, limit) = (planes.bytes(window, 0), gpu.buffer_limit());
     if needed > limit {
         return Err(Failure::Memory(format!(

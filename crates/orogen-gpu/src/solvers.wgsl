@@ -1,10 +1,7 @@
-// What the passes of all solvers have in common: planes of one size, one after the other. They are atomic words, because calls write to cells of others.
+// What the passes of all solvers have in common: planes of words of one size, one after the other.
 //
 // The words at `frame.base` are those of filters: the columns and rows of the planes, the first column and row of this pass, and where the solver's own words
 // start.
-
-// The binding is that of `samples`, which no solver uses.
-@group(0) @binding(1) var<storage, read_write> words: array<atomic<u32>>;
 
 // Columns and rows of the planes.
 fn size() -> vec2<i32> {
@@ -21,15 +18,6 @@ fn cell_at(at: vec2<i32>) -> u32 {
     return u32(at.y) * data[frame.base] + u32(at.x);
 }
 
-// A word of plane `k`.
-fn word(k: u32, cell: u32) -> u32 {
-    return atomicLoad(&words[k * cells() + cell]);
-}
-
-fn set_word(k: u32, cell: u32, value: u32) {
-    atomicStore(&words[k * cells() + cell], value);
-}
-
 // A sample of plane `k`.
 fn sample(k: u32, cell: u32) -> f32 {
     return bitcast<f32>(word(k, cell));
@@ -37,24 +25,6 @@ fn sample(k: u32, cell: u32) -> f32 {
 
 fn set_sample(k: u32, cell: u32, value: f32) {
     set_word(k, cell, bitcast<u32>(value));
-}
-
-// Lowers a word to `value`, if that is less.
-fn lower_word(k: u32, cell: u32, value: u32) {
-    if (word(k, cell) > value) {
-        atomicMin(&words[k * cells() + cell], value);
-    }
-}
-
-// Raises a word to `value`, if that is more.
-fn raise_word(k: u32, cell: u32, value: u32) {
-    if (word(k, cell) < value) {
-        atomicMax(&words[k * cells() + cell], value);
-    }
-}
-
-fn add_word(k: u32, cell: u32, value: u32) {
-    atomicAdd(&words[k * cells() + cell], value);
 }
 
 // Whether the bits of a value are those of an infinite one or of one that is not a number. Shader compilers may assume that there are none.

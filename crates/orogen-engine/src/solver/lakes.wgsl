@@ -148,26 +148,26 @@ fn begin_surface(base: u32, at: vec2<i32>) {
 fn compose_surface(base: u32, at: vec2<i32>) {
     let cell = cell_at(at);
     let turn = step_number();
-    let from = SURFACES + 3u * turn;
+    let read = SURFACES + 3u * turn;
     var downstream = word(DOWNSTREAM + turn, cell);
-    var below = sample(from, cell);
-    var least = sample(from + 1u, cell);
-    var rise = sample(from + 2u, cell);
+    var below = sample(read, cell);
+    var least = sample(read + 1u, cell);
+    var rise = sample(read + 2u, cell);
     for (var k = 0; k < HOPS && downstream != NONE; k += 1) {
-        let their_least = sample(from + 1u, downstream);
-        let their_rise = sample(from + 2u, downstream);
+        let their_least = sample(read + 1u, downstream);
+        let their_rise = sample(read + 2u, downstream);
         if (their_least >= below) {
             least = their_least + rise;
         }
-        below = max(sample(from, downstream), below - their_rise);
+        below = max(sample(read, downstream), below - their_rise);
         rise += their_rise;
         downstream = word(DOWNSTREAM + turn, downstream);
     }
-    let to = SURFACES + 3u - 3u * turn;
+    let written = SURFACES + 3u - 3u * turn;
     set_word(DOWNSTREAM + 1u - turn, cell, downstream);
-    set_sample(to, cell, below);
-    set_sample(to + 1u, cell, least);
-    set_sample(to + 2u, cell, rise);
+    set_sample(written, cell, below);
+    set_sample(written + 1u, cell, least);
+    set_sample(written + 2u, cell, rise);
 }
 
 // The layers. The other plane has the surface.

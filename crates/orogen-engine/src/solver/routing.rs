@@ -136,7 +136,24 @@ pub(crate) fn gather(passes: Passes, padded: &Window) -> Passes {
     steps.fold(passes, |passes, k| then(passes, "gather_areas", k << 16))
 }
 
+/// The functions whose calls write to words of others, or read what others write.
+const SHARED: [&str; 12] = [
+    "find_pit",
+    "offer_pass",
+    "choose_pass",
+    "find_root",
+    "gather_areas",
+    "choose_piece",
+    "find_lake",
+    "count_cells",
+    "find_deepest",
+    "find_outflow",
+    "raise_order",
+    "lead_out",
+];
+
 /// `passes`, and a run of a function for all cells.
 pub(crate) fn then(passes: Passes, function: &'static str, step: u32) -> Passes {
-    passes.then(function, step, [0; 2])
+    let passes = passes.then(function, step, [0; 2]);
+    if SHARED.contains(&function) { passes.shared() } else { passes }
 }

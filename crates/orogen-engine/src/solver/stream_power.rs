@@ -165,8 +165,9 @@ const HEIGHTS: [u32; 3] = [4, 16, 17];
 /// Number of planes beside inputs, layers and counters.
 const SCRATCH: usize = routing::PLANES + 7;
 
-/// Number of times that the pieces of the law are chosen in a step. Passes without changes end at once.
-const ITERATIONS: u32 = 6;
+/// Number of times that the pieces of the law are chosen in a step: if nothing is known of them, and if those of the step before are a good guess. Passes after
+/// the last change end at once.
+const ITERATIONS: [u32; 2] = [12, 3];
 
 impl StreamPower {
     /// The run of the law.
@@ -230,7 +231,7 @@ impl StreamPower {
             passes = routing::route(passes, padded, rounds.min(routing::all_rounds(padded)), step(here, 0, done));
             passes = routing::gather(passes, padded);
             let to = next();
-            passes = solved(passes, padded, here, to, 0);
+            passes = solved(passes, padded, here, to, u32::from(done > 0));
             here = to;
             let [strides, stages, _] = creep.unwrap_or_default();
             for stage in (0..strides as u32).flat_map(|_| 1..=stages as u32) {
@@ -253,12 +254,14 @@ impl StreamPower {
     }
 }
 
-/// `passes`, and those that solve the law for the heights of a plane, and write them to another one.
-fn solved(mut passes: Passes, padded: &Window, from: u32, to: u32, last: u32) -> Passes {
+/// `passes`, and those that solve the law for the heights of a plane, and write them to another one. The kind is [`LAST`], or 1 if there was a time step before,
+/// or 0.
+fn solved(mut passes: Passes, padded: &Window, from: u32, to: u32, kind: u32) -> Passes {
+    let (last, known) = (kind & LAST, kind & 1);
     // An odd number of passes leaves the result in the second of two planes.
     let compositions = routing::following(padded) as u32 | 1;
-    for iteration in 0..ITERATIONS {
-        passes = then(passes, "choose_piece", routing::step(from, 0, iteration) | last);
+    for iteration in 0..ITERATIONS[known as usize] {
+        passes = then(passes, "choose_piece", routing::step(from, known, iteration) | last);
         for k in 0..compositions {
             passes = then(passes, "compose_pieces", routing::step(from, k % 2, iteration) | last);
         }

@@ -70,7 +70,7 @@ fn law_of(base: u32, cell: u32, receiver: u32) -> Law {
 }
 
 // The change of a cell's height is a function of its receiver's in three pieces, each of them affine. Chooses the piece by the changes that were computed with
-// the pieces chosen before.
+// the pieces chosen before. The first choice is that of the time step before, if the other plane is 1.
 fn choose_piece(base: u32, at: vec2<i32>) {
     let iteration = step_number();
     if (counter(CHANGED) < iteration) {
@@ -91,21 +91,25 @@ fn choose_piece(base: u32, at: vec2<i32>) {
         below = sample(AFFINE + 3u, receiver);
     }
     let left = (drop + law.risen - below) / (1.0 + law.cut);
+    let before = word(PIECE, cell);
     var piece = FREE;
-    var factor = law.cut / (1.0 + law.cut);
-    var offset = law.risen / (1.0 + law.cut) - drop * factor;
     if (left >= law.most) {
         piece = LIMITED;
-        factor = 1.0;
-        offset = law.most - drop;
     }
     if (left <= law.least || law.most <= law.least) {
         piece = RAISED;
-        factor = 1.0;
-        offset = law.least - drop;
     }
-    if (iteration == 0u || word(PIECE, cell) != piece) {
+    if (iteration == 0u && other_plane() == 1u && before != 0u) {
+        piece = before;
+    }
+    if (iteration == 0u || before != piece) {
         raise_counter(CHANGED, iteration + 1u);
+    }
+    var factor = 1.0;
+    var offset = select(law.least, law.most, piece == LIMITED) - drop;
+    if (piece == FREE) {
+        factor = law.cut / (1.0 + law.cut);
+        offset = law.risen / (1.0 + law.cut) - drop * factor;
     }
     set_word(PIECE, cell, piece);
     set_sample(AFFINE, cell, factor);
