@@ -1,6 +1,6 @@
 //! Drainage: flow directions, drainage areas, watersheds and stream order.
 
-use super::routing::{self, step, then};
+use super::routing::{self, Flats, step, then};
 use super::terrain::{Terrain, TiledTerrain, cells_of, flow_layer, layer_of, memory, sea_level_of};
 use crate::declare::{Declared, Input};
 use crate::large::areas::Layers;
@@ -127,18 +127,21 @@ impl Solver for Drainage {
     }
 
     fn lower(&self, padded: &Window, given: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
-        if self.over == Over::Surface {
-            return Lowering::Processor("distances over level water are counted cell by cell");
-        }
         if given.get(1) == Some(&true) {
             return Lowering::Processor(routing::RAIN);
         }
         let cell_area = ((padded.cell * padded.cell) as f32).to_bits();
         let own_words = [cell_area, cells_of(self.stream, padded, 0)];
-        let (sea_level, layers) = (sea_level_of(self.sea, world_params), self.spec().layers.len());
-        let passes = routing::routed(CODE, padded, sea_level, &own_words, layers, 3);
+        let (sea_level, planes) = (sea_level_of(self.sea, world_params), [self.spec().layers.len(), SCRATCH]);
+        let over_bed = if self.over == Over::Bed { Flats::Graded } else { Flats::Basins };
+        let passes = routing::routed(CODE, padded, sea_level, &own_words, planes, over_bed);
         let (passes, turn) = routing::spill(passes, padded);
-        let passes = routing::gather(then(passes, "fill", step(0, 0, turn)), padded);
+        let mut passes = then(passes, "fill", step(0, 0, turn));
+        if self.over == Over::Surface {
+            let rounds = routing::all_rounds(padded);
+            passes = routing::route(passes, padded, rounds, Flats::Graded, step(FILLED, 0, 0));
+        }
+        let passes = routing::gather(passes, padded);
         let passes = routing::follow(then(passes, "begin_watersheds", 0), padded, "find_pit");
         let orders = 2..=routing::doublings(padded, 2) as u32 + 1;
         let passes = orders.fold(passes, |passes, order| then(passes, "raise_order", step(0, 0, order)));
@@ -149,6 +152,10 @@ impl Solver for Drainage {
         35.0
     }
 }
+
+/// Number of planes beside inputs, layers, the routing and counters, and the plane of the filled heights, in the shaders.
+const SCRATCH: usize = 3;
+const FILLED: u32 = 6;
 
 const CODE: &str = concat!(include_str!("routing.wgsl"), include_str!("numbering.wgsl"), include_str!("drainage.wgsl"));
 

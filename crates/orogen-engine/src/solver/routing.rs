@@ -56,8 +56,11 @@ pub(crate) fn counter_planes(padded: &Window) -> usize {
     COUNTERS.div_ceil(padded.len().max(1))
 }
 
+/// The farthest that cells of flats look for the rim, in cells.
+const FARTHEST: usize = 512;
+
 /// Number of rounds over basins in a step that begins with drained ground: there are few pits then. If basins are left, their pits wait for the next step.
-pub(crate) const FEW_ROUNDS: usize = 8;
+pub(crate) const FEW_ROUNDS: usize = 5;
 
 /// Number of rounds over basins that drain everything: each at least halves the basins.
 pub(crate) fn all_rounds(padded: &Window) -> usize {
@@ -80,11 +83,26 @@ pub(crate) fn following(padded: &Window) -> usize {
     doublings(padded, HOPS + 1)
 }
 
-/// `passes`, and those that find the receivers of all cells from the heights in a plane. `number` is that of the time step.
-pub(crate) fn route(passes: Passes, padded: &Window, rounds: usize, step: u32) -> Passes {
+/// Whether flats are drained by gradients over them, which take many passes. Otherwise each of their cells is a basin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Flats {
+    /// By gradients.
+    Graded,
+    /// As basins.
+    Basins,
+}
+
+/// `passes`, and those that find the receivers of all cells from the heights in a plane. The number of the step is that of the time step.
+pub(crate) fn route(passes: Passes, padded: &Window, rounds: usize, flats: Flats, step: u32) -> Passes {
     let heights = step & 0xff;
     let at = |passes: Passes, function, number: usize| then(passes, function, heights | (number as u32) << 16);
     let mut passes = then(passes, "receive", step);
+    if flats == Flats::Graded {
+        let farthest = padded.width.max(padded.height).div_ceil(2).min(FARTHEST);
+        passes = at(passes, "begin_flats", 0);
+        passes = (1..=farthest).fold(passes, |passes, steps| at(passes, "spread_flats", steps));
+        passes = at(at(passes, "drain_flats", farthest + 2), "begin_basins", 0);
+    }
     passes = follow(passes, padded, "find_pit");
     for round in 1..=rounds {
         for function in ["offer_pass", "choose_pass", "join", "find_root"] {
@@ -111,22 +129,22 @@ pub(crate) fn number(passes: Passes) -> Passes {
     ["count_marks", "sum_marks", "number_marks"].into_iter().fold(passes, |passes, name| then(passes, name, 0))
 }
 
-/// Passes that route the heights of plane 0 by steepest descent, with words of the solver after those of the routing. `scratch` is the number of planes beside
-/// inputs, layers, those of the routing and counters.
+/// Passes that route the heights of plane 0 by steepest descent, with words of the solver after those of the routing. The planes are those of layers, and those
+/// beside inputs, layers, the routing and counters.
 pub(crate) fn routed(
     code: &'static str,
     padded: &Window,
     sea_level: Option<f32>,
     own_words: &[u32],
-    layers: usize,
-    scratch: usize,
+    [layers, scratch]: [usize; 2],
+    flats: Flats,
 ) -> Passes {
     let passes = Passes::new(code, &[])
         .with_words(words(padded, sea_level, Descent::Steepest))
         .with_words(own_words.iter().copied())
         .with_layers(layers)
         .with_scratch(PLANES + scratch + counter_planes(padded));
-    route(then(passes, "outlets", 0), padded, all_rounds(padded), 0)
+    route(then(passes, "outlets", 0), padded, all_rounds(padded), flats, 0)
 }
 
 /// `passes`, and those that count the cells that drain through each cell.
@@ -137,7 +155,9 @@ pub(crate) fn gather(passes: Passes, padded: &Window) -> Passes {
 }
 
 /// The functions whose calls write to words of others, or read what others write.
-const SHARED: [&str; 12] = [
+const SHARED: [&str; 14] = [
+    "begin_flats",
+    "spread_flats",
     "find_pit",
     "offer_pass",
     "choose_pass",

@@ -10,7 +10,9 @@ const NEXT = ROUTING + 4u;
 const LOWEST = ROUTING + 5u;
 const EDGE = ROUTING + 6u;
 const WAY_OUT = ROUTING + 7u;
-// These planes take the place of those above once the water has a way out.
+// These planes take the place of those above before basins are found, and once the water has a way out.
+const TOWARD = ROUTING + 5u;
+const AWAY = ROUTING + 6u;
 const ANCESTOR = ROUTING + 3u;
 const AREA = ROUTING + 5u;
 const SPILL_NEXT = ROUTING + 3u;
@@ -18,10 +20,11 @@ const SPILL_LEVEL = ROUTING + 5u;
 
 // No cell; as a label, that of all cells that drain to an outlet.
 const NONE = 0xffffffffu;
-// The number of passes that had work: rounds over basins, and steps of the accumulation.
+// The number of passes that had work: rounds over basins, steps of the accumulation, those of the solver, and steps over flats.
 const ROUNDS = 0u;
 const GATHERED = 1u;
 const CHANGED = 2u;
+const SPREAD = 3u;
 const ALL_COUNTERS = 8u;
 // Receivers are followed by this many cells in one pass.
 const HOPS = 16;
@@ -163,17 +166,23 @@ fn steepest(base: u32, cell: u32) -> u32 {
             found |= 1u << code;
         }
     }
-    if (found == 0u) {
+    return one_of(base, cell, found);
+}
+
+// Chooses one direction of a set by a hash of the cell; 8 of an empty set.
+fn one_of(base: u32, cell: u32, directions: u32) -> u32 {
+    if (directions == 0u) {
         return 8u;
     }
-    let count = countOneBits(found);
+    var rest = directions;
+    let count = countOneBits(directions);
     if (count > 1u) {
         let skip = upper_product(hashed(base, cell, 0u), count);
         for (var k = 0u; k < skip; k += 1u) {
-            found &= found - 1u;
+            rest &= rest - 1u;
         }
     }
-    return firstTrailingBit(found);
+    return firstTrailingBit(rest);
 }
 
 // Receivers by steepest descent. Pits, outlets and cells of flats have none.
@@ -195,11 +204,112 @@ fn receive(base: u32, at: vec2<i32>) {
     }
     set_word(RECEIVER, cell, receiver);
     set_word(LABEL, cell, label);
+    begin_basins(base, at);
+}
+
+// Each cell without a receiver is a basin.
+fn begin_basins(base: u32, at: vec2<i32>) {
+    let cell = cell_at(at);
     set_word(COMPONENT, cell, cell);
     set_word(NEXT, cell, cell);
     set_word(LOWEST, cell, NONE);
     set_word(EDGE, cell, NONE);
     set_word(WAY_OUT, cell, NONE);
+}
+
+// Flats after `hydrology/flats.rs`: steps away from higher ground, and steps towards the lower rim. Cells of flats that have no rim, or are farther from it than
+// the passes reach, stay basins of their own. A cell of a flat has a number of steps away, or NONE until it is known; other cells have 0.
+fn begin_flats(base: u32, at: vec2<i32>) {
+    let cell = cell_at(at);
+    var away = 0u;
+    var toward = 0u;
+    if (word(OUTLET, cell) == 0u && word(RECEIVER, cell) == NONE) {
+        away = NONE;
+        let height = ordered(word(heights_plane(), cell));
+        for (var code = 0u; code < 8u; code += 1u) {
+            let there = neighbour(cell, code);
+            let height_there = ordered(word(heights_plane(), there));
+            if (height_there > height) {
+                away = 1u;
+            } else if (height_there == height && (word(RECEIVER, there) != NONE || word(OUTLET, there) == 1u)) {
+                toward = 1u;
+            }
+        }
+        raise_counter(SPREAD, 1u);
+    }
+    set_word(AWAY, cell, away);
+    set_word(TOWARD, cell, toward);
+}
+
+// Whether a neighbour belongs to the same flat.
+fn is_level(cell: u32, there: u32) -> bool {
+    return word(AWAY, there) != 0u && ordered(word(heights_plane(), there)) == ordered(word(heights_plane(), cell));
+}
+
+// Cells beside those with this number of steps have one more. What other calls write now is more than that.
+fn spread_flats(base: u32, at: vec2<i32>) {
+    let steps = step_number();
+    let cell = cell_at(at);
+    if (counter(SPREAD) < steps || word(AWAY, cell) == 0u) {
+        return;
+    }
+    var is_away = false;
+    var is_toward = false;
+    for (var code = 0u; code < 8u; code += 1u) {
+        let there = neighbour(cell, code);
+        if (is_level(cell, there)) {
+            is_away = is_away || word(AWAY, there) == steps;
+            is_toward = is_toward || word(TOWARD, there) == steps;
+        }
+    }
+    if (is_away && word(AWAY, cell) == NONE) {
+        set_word(AWAY, cell, steps + 1u);
+        raise_counter(SPREAD, steps + 1u);
+    }
+    if (is_toward && word(TOWARD, cell) == 0u) {
+        set_word(TOWARD, cell, steps + 1u);
+        raise_counter(SPREAD, steps + 1u);
+    }
+}
+
+// Twice the steps towards the rim, less those away from higher ground. The number of the step is more than all steps that were counted.
+fn slope_of_flat(cell: u32) -> i32 {
+    return 2 * i32(word(TOWARD, cell)) - i32(min(word(AWAY, cell), step_number()));
+}
+
+// Receivers of the cells of flats with a rim.
+fn drain_flats(base: u32, at: vec2<i32>) {
+    let cell = cell_at(at);
+    let toward = word(TOWARD, cell);
+    if (toward == 0u) {
+        return;
+    }
+    let height = ordered(word(heights_plane(), cell));
+    var directions = 0u;
+    var least = slope_of_flat(cell);
+    for (var code = 0u; code < 8u; code += 1u) {
+        let there = neighbour(cell, code);
+        if (ordered(word(heights_plane(), there)) != height) {
+            continue;
+        }
+        if (toward == 1u) {
+            // At the rim: to a cell that drains.
+            if (word(AWAY, there) == 0u) {
+                directions |= 1u << code;
+            }
+        } else if (word(AWAY, there) != 0u && word(TOWARD, there) != 0u) {
+            let slope = slope_of_flat(there);
+            if (slope < least) {
+                least = slope;
+                directions = 1u << code;
+            } else if (slope == least && directions != 0u) {
+                directions |= 1u << code;
+            }
+        }
+    }
+    let receiver = neighbour(cell, one_of(base, cell, directions));
+    set_word(RECEIVER, cell, receiver);
+    set_word(LABEL, cell, receiver);
 }
 
 // Leads the label of each cell towards its pit or outlet. Other calls do the same to the labels that this one reads, which only shortens the way.

@@ -1,6 +1,6 @@
 //! Stream power erosion with uplift.
 
-use super::routing::{self, Descent, LAST, then};
+use super::routing::{self, Descent, Flats, LAST, then};
 use super::terrain::{flow_layer, memory, sea_level, sea_level_of};
 use crate::declare::{Declared, Input};
 use crate::lower::{Lowering, Passes};
@@ -226,9 +226,11 @@ impl StreamPower {
         let mut turn = HEIGHTS.into_iter().cycle();
         let mut here = SOURCE;
         let mut next = || turn.next().unwrap_or_default();
+        let all = routing::all_rounds(padded);
         for done in 0..erosion.steps {
-            let rounds = if done == 0 { routing::all_rounds(padded) } else { routing::FEW_ROUNDS };
-            passes = routing::route(passes, padded, rounds.min(routing::all_rounds(padded)), step(here, 0, done));
+            let (rounds, flats) =
+                if done == 0 { (all, Flats::Graded) } else { (all.min(routing::FEW_ROUNDS), Flats::Basins) };
+            passes = routing::route(passes, padded, rounds, flats, step(here, 0, done));
             passes = routing::gather(passes, padded);
             let to = next();
             passes = solved(passes, padded, here, to, u32::from(done > 0));
@@ -246,10 +248,10 @@ impl StreamPower {
             here = to;
         }
         let to = next();
-        passes = routing::route(passes, padded, routing::all_rounds(padded), step(here, 0, 0) | LAST);
+        passes = routing::route(passes, padded, all, Flats::Basins, step(here, 0, 0) | LAST);
         passes = solved(passes, padded, here, to, LAST);
         // The heights may have pits where the last digits of a gentle slope were lost, so the flow is routed through depressions again.
-        passes = routing::route(passes, padded, routing::all_rounds(padded), step(to, 0, 0) | LAST);
+        passes = routing::route(passes, padded, all, Flats::Basins, step(to, 0, 0) | LAST);
         then(routing::gather(passes, padded), "finish", step(to, 0, 0))
     }
 }
