@@ -4,9 +4,10 @@
 mod common;
 
 use common::filters::{WORLD, gpu, gpu_with_buffers_of, heights, sampled};
-use common::solvers::{solved_by_card, solved_by_processor, solver_passes, try_card};
+use common::solvers::{solved_by_card, solved_by_processor, solver, solver_passes, try_card};
 use orogen_engine::Recipe;
 use orogen_engine::device::Device;
+use orogen_engine::lower::Lowering;
 use orogen_engine::node::Node;
 use orogen_engine::op::Op;
 use orogen_engine::solver::drainage::{Drainage, Over};
@@ -89,7 +90,9 @@ fn filled_ground_and_lakes_are_those_of_the_processor() {
                     if worst > 0.0 {
                         println!("{case}");
                     }
-                    assert!(worst <= 1e-4, "{case}");
+                    // In closed flats water takes other ways than on the processor, so ground that is raised until it drains is so along other ways.
+                    let most = if land == "steps" { 1e-3 } else { 1e-4 };
+                    assert!(worst <= most, "{case}");
                 }
             }
         }
@@ -373,8 +376,32 @@ fn what_a_card_cannot_solve_is_left_to_the_processor() {
     let heights = heights(&window);
     let steep: Node = StreamPower { slope_exponent: 2.0, ..Default::default() }.into();
     assert!(solver_passes(&steep, &window, &alone(&steep, &heights)).is_none());
-    let rain = || Some(Grid::filled(window, 1.0));
-    let (drainage, law) = (Node::named("drainage").unwrap(), Node::named("stream-power").unwrap());
-    assert!(solver_passes(&drainage, &window, &[Some(heights.clone()), rain()]).is_none());
-    assert!(solver_passes(&law, &window, &[Some(heights), None, None, rain()]).is_none());
+    let law = Node::named("stream-power").unwrap();
+    let all = |window: &Window| solver(&law).unwrap().lower(window, &[true; 4], &WORLD);
+    assert!(matches!(all(&window), Lowering::Shader(_)));
+    assert!(matches!(all(&Window::new(5000, 5000, 10.0)), Lowering::Processor(_)));
+}
+
+#[test]
+fn rain_weights_areas_as_on_the_processor() {
+    let gpu = gpu();
+    let window = Window::new(150, 110, 20.0).at(-30, 40);
+    let mut rain = sampled(&window, |x, y| (x / 9.0).sin() * (y / 7.0).cos() * 3.0 + 1.0);
+    rain.row_mut(50)[40..43].copy_from_slice(&[f32::NAN, f32::INFINITY, f32::NEG_INFINITY]);
+    let drainage: Node = Drainage { stream: 2e4, ..Default::default() }.into();
+    let inputs = [Some(heights(&window)), Some(rain.clone())];
+    let expected = solved_by_processor(&drainage, &window, &inputs);
+    let made = solved_by_card(&gpu, &drainage, &window, &inputs);
+    for ((layer, expected), made) in drainage.layers().iter().zip(&expected).zip(&made) {
+        let found = differences(expected, made);
+        println!("drainage {}: {}", layer.name, shown(found));
+        // Weights are rounded to 4096ths, and so are thresholds of streams.
+        assert!(found[0] < 1e-2 && found[2] < 1e-2, "{}", layer.name);
+    }
+    let law: Node = StreamPower { years: 2e4, steps: 1, ..Default::default() }.into();
+    let inputs = [Some(heights(&window)), None, None, Some(rain)];
+    let expected = solved_by_processor(&law, &window, &inputs);
+    let found = differences(&expected[0], &solved_by_card(&gpu, &law, &window, &inputs)[0]);
+    println!("stream-power: {}", shown(found));
+    assert!(found[0] < 1e-3 && found[2] < 1e-2);
 }

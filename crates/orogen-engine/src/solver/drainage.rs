@@ -1,6 +1,6 @@
 //! Drainage: flow directions, drainage areas, watersheds and stream order.
 
-use super::routing::{self, Flats, step, then};
+use super::routing::{self, Flats, Planes, step, then};
 use super::terrain::{Terrain, TiledTerrain, cells_of, flow_layer, layer_of, memory, sea_level_of};
 use crate::declare::{Declared, Input};
 use crate::large::areas::Layers;
@@ -127,12 +127,14 @@ impl Solver for Drainage {
     }
 
     fn lower(&self, padded: &Window, given: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
-        if given.get(1) == Some(&true) {
+        let rain = (given.get(1) == Some(&true)).then_some(1);
+        let planes = Planes { inputs: 2, layers: self.spec().layers.len(), scratch: SCRATCH, rain };
+        if !planes.can_rain(padded) {
             return Lowering::Processor(routing::RAIN);
         }
         let cell_area = ((padded.cell * padded.cell) as f32).to_bits();
         let own_words = [cell_area, cells_of(self.stream, padded, 0)];
-        let (sea_level, planes) = (sea_level_of(self.sea, world_params), [self.spec().layers.len(), SCRATCH]);
+        let sea_level = sea_level_of(self.sea, world_params);
         let over_bed = if self.over == Over::Bed { Flats::Graded } else { Flats::Basins };
         let passes = routing::routed(CODE, padded, sea_level, &own_words, planes, over_bed);
         let (passes, turn) = routing::spill(passes, padded);

@@ -1,4 +1,4 @@
-// Drainage, after `routing.wgsl` and `numbering.wgsl`. The words from `base` + 8 on are the area of a cell and the cells of a stream.
+// Drainage, after `routing.wgsl` and `numbering.wgsl`. The words from `base` + 10 on are the area of a cell and the cells of a stream.
 const SOURCE = 0u;
 const FLOW = 2u;
 const DIRECTION = 3u;
@@ -28,7 +28,8 @@ fn begin_watersheds(base: u32, at: vec2<i32>) {
     let area = drained_cells(cell);
     set_word(LABEL, cell, select(receiver, cell, receiver == NONE));
     set_word(MARK, cell, select(0u, 1u, receiver == NONE && area > 1u));
-    set_word(ORDER, cell, select(0u, 1u, area >= data[base + 9u]));
+    let is_stream = select(area >= data[base + 11u], discharge(base, cell) >= f32(data[base + 11u]), rain_sums(base) != 0u);
+    set_word(ORDER, cell, select(0u, 1u, is_stream));
 }
 
 // Streams of the order of the step and higher: those downstream of the confluence of two streams of the order before. Streams of that order stay so, whatever
@@ -74,7 +75,7 @@ fn finish(base: u32, at: vec2<i32>) {
         code = code_between(cell, receiver);
     }
     let outlet = word(LABEL, cell);
-    set_sample(FLOW, cell, f32(drained_cells(cell)) * number(base, 8u));
+    set_sample(FLOW, cell, discharge(base, cell) * number(base, 10u));
     set_sample(DIRECTION, cell, f32(code));
     set_sample(WATERSHED, cell, select(0.0, f32(word(NUMBER, outlet)), word(MARK, outlet) == 1u));
     set_sample(STRAHLER, cell, f32(word(ORDER, cell)));

@@ -1,6 +1,6 @@
 //! Depression filling.
 
-use super::routing::{self, Flats, step, then};
+use super::routing::{self, Flats, Planes, step, then};
 use super::terrain::{Terrain, TiledTerrain, memory, sea_level_of};
 use crate::declare::Declared;
 use crate::lower::{Lowering, Passes};
@@ -72,7 +72,8 @@ impl Solver for Fill {
 
     fn lower(&self, padded: &Window, _: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
         let sea_level = sea_level_of(self.sea, world_params);
-        let passes = routing::routed(CODE, padded, sea_level, &[], [self.spec().layers.len(), 0], Flats::Basins);
+        let planes = Planes { inputs: 1, layers: self.spec().layers.len(), scratch: 0, rain: None };
+        let passes = routing::routed(CODE, padded, sea_level, &[], planes, Flats::Basins);
         let (passes, turn) = routing::spill(passes, padded);
         Lowering::Shader(then(passes, "fill", step(0, 0, turn)))
     }

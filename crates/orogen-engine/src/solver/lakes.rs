@@ -1,6 +1,6 @@
 //! Lakes in depressions.
 
-use super::routing::{self, Flats, step, then};
+use super::routing::{self, Flats, Planes, step, then};
 use super::terrain::{Terrain, cells_of, layer_of, memory, sea_level_of};
 use crate::declare::Declared;
 use crate::lower::{Lowering, Passes};
@@ -76,7 +76,8 @@ impl Solver for Lakes {
     fn lower(&self, padded: &Window, _: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
         let rise = ((padded.cell * lakes::MIN_SLOPE) as f32).to_bits();
         let own_words = [cells_of(self.smallest, padded, MIN_CELLS), rise];
-        let (sea_level, planes) = (sea_level_of(self.sea, world_params), [self.spec().layers.len(), SCRATCH]);
+        let sea_level = sea_level_of(self.sea, world_params);
+        let planes = Planes { inputs: 1, layers: self.spec().layers.len(), scratch: SCRATCH, rain: None };
         let passes = routing::routed(CODE, padded, sea_level, &own_words, planes, Flats::Graded);
         let (passes, turn) = routing::spill(passes, padded);
         let passes = then(passes, "begin_lakes", step(0, 0, turn));

@@ -1,4 +1,4 @@
-// Lakes, after `routing.wgsl` and `numbering.wgsl`. The words from `base` + 8 on are the minimum number of cells of a lake, and the rise of raised ground over a
+// Lakes, after `routing.wgsl` and `numbering.wgsl`. The words from `base` + 10 on are the minimum number of cells of a lake, and the rise of raised ground over a
 // cell.
 const SOURCE = 0u;
 const BED = 1u;
@@ -72,7 +72,7 @@ fn lake_over(base: u32, cell: u32) -> u32 {
     if (lake == NONE) {
         return NONE;
     }
-    return select(NONE, lake, word(COUNT, lake) >= data[base + 8u]);
+    return select(NONE, lake, word(COUNT, lake) >= data[base + 10u]);
 }
 
 fn count_cells(base: u32, at: vec2<i32>) {
@@ -136,7 +136,7 @@ fn begin_surface(base: u32, at: vec2<i32>) {
         let code = code_between(cell, downstream);
         // The rise may be less than the last digit of the height, but the cell must drain.
         let up = abs(bitcast<f32>(height_bits(ordered(bits) + 1u)) - height);
-        rise = max(number(base, 9u) * select(1.0, 1.41421356, (code & 1u) == 1u), up);
+        rise = max(number(base, 11u) * select(1.0, 1.41421356, (code & 1u) == 1u), up);
     }
     set_word(DOWNSTREAM, cell, downstream);
     set_sample(SURFACES, cell, below);

@@ -7,11 +7,14 @@
 use crate::lower::Passes;
 use orogen_grid::grid::Window;
 
-/// Why the processor weights drainage areas by the rain.
-pub(crate) const RAIN: &str = "the rain is summed up in whole numbers of 64 bits, for which WGSL has no atomic sum";
+/// Number of planes with the sums of the rain.
+const RAIN_PLANES: usize = 6;
+
+/// The most cells over which the rain can be summed up: the sum of a part of it fits into 32 bits.
+const MOST_RAINY: usize = 1 << 22;
 
 /// Number of planes of the routing.
-pub(crate) const PLANES: usize = 8;
+const PLANES: usize = 8;
 
 /// The step of the last pass of a run, on the lattice.
 pub(crate) const LAST: u32 = 1 << 31;
@@ -34,8 +37,58 @@ pub(crate) enum Descent {
     Points(u32, f32),
 }
 
-/// The words that `routing.wgsl` reads.
-pub(crate) fn words(padded: &Window, sea_level: Option<f32>, descent: Descent) -> Vec<u32> {
+/// The planes of a solver.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Planes {
+    /// Inputs.
+    pub(crate) inputs: usize,
+    /// Layers.
+    pub(crate) layers: usize,
+    /// Those beside inputs, layers, the routing, counters and the rain.
+    pub(crate) scratch: usize,
+    /// The plane of the rain, if areas are weighted by it.
+    pub(crate) rain: Option<usize>,
+}
+
+impl Planes {
+    /// Whether the rain can be summed up over a window.
+    pub(crate) fn can_rain(self, padded: &Window) -> bool {
+        self.rain.is_none() || padded.len() <= MOST_RAINY
+    }
+
+    /// `passes` with these planes.
+    fn of(self, passes: Passes, padded: &Window) -> Passes {
+        let rain = if self.rain.is_some() { RAIN_PLANES } else { 0 };
+        let scratch = PLANES + self.scratch + counter_planes(padded) + rain;
+        passes.with_layers(self.layers).with_scratch(scratch)
+    }
+
+    /// The plane of the rain, and the first one with its sums.
+    fn words(self, padded: &Window) -> [u32; 2] {
+        let sums = self.inputs + self.layers + PLANES + self.scratch + counter_planes(padded);
+        self.rain.map_or([0; 2], |rain| [rain, sums].map(|plane| plane as u32))
+    }
+}
+
+/// Why the processor weights the drainage areas of large domains.
+pub(crate) const RAIN: &str = "the rain over so many cells needs sums of 64 bits, for which WGSL has no atomics";
+
+/// Passes with words for the routing, and planes.
+pub(crate) fn passes(
+    code: &'static str,
+    padded: &Window,
+    sea_level: Option<f32>,
+    descent: Descent,
+    planes: Planes,
+) -> Passes {
+    planes
+        .of(Passes::new(code, &[]), padded)
+        .with_words(words(padded, sea_level, descent))
+        .with_words(planes.words(padded))
+}
+
+/// The words that `routing.wgsl` reads, before those of the rain.
+fn words(padded: &Window, sea_level: Option<f32>, descent: Descent) -> Vec<u32> {
     let (kind, salt, reach) = match descent {
         Descent::Steepest => (0, 0, 0.0),
         Descent::Scattered(salt) => (1, salt, 0.0),
@@ -52,7 +105,7 @@ pub(crate) fn step(from: u32, to: u32, number: u32) -> u32 {
 }
 
 /// Number of planes that hold the counters: more than one in tiny windows.
-pub(crate) fn counter_planes(padded: &Window) -> usize {
+fn counter_planes(padded: &Window) -> usize {
     COUNTERS.div_ceil(padded.len().max(1))
 }
 
@@ -129,21 +182,16 @@ pub(crate) fn number(passes: Passes) -> Passes {
     ["count_marks", "sum_marks", "number_marks"].into_iter().fold(passes, |passes, name| then(passes, name, 0))
 }
 
-/// Passes that route the heights of plane 0 by steepest descent, with words of the solver after those of the routing. The planes are those of layers, and those
-/// beside inputs, layers, the routing and counters.
+/// Passes that route the heights of plane 0 by steepest descent, with words of the solver after those of the routing.
 pub(crate) fn routed(
     code: &'static str,
     padded: &Window,
     sea_level: Option<f32>,
     own_words: &[u32],
-    [layers, scratch]: [usize; 2],
+    planes: Planes,
     flats: Flats,
 ) -> Passes {
-    let passes = Passes::new(code, &[])
-        .with_words(words(padded, sea_level, Descent::Steepest))
-        .with_words(own_words.iter().copied())
-        .with_layers(layers)
-        .with_scratch(PLANES + scratch + counter_planes(padded));
+    let passes = passes(code, padded, sea_level, Descent::Steepest, planes).with_words(own_words.iter().copied());
     route(then(passes, "outlets", 0), padded, all_rounds(padded), flats, 0)
 }
 

@@ -42,6 +42,9 @@ fn is_scattered(base: u32) -> bool { return data[base + 5u] == 1u; }
 fn is_between_points(base: u32) -> bool { return data[base + 5u] == 2u; }
 fn salt(base: u32) -> u32 { return data[base + 6u]; }
 fn reach(base: u32) -> f32 { return number(base, 7u); }
+// The plane of the rain, and the first of six planes with its sums; 0 without rain.
+fn rain_plane(base: u32) -> u32 { return data[base + 8u]; }
+fn rain_sums(base: u32) -> u32 { return data[base + 9u]; }
 
 fn counter(k: u32) -> u32 { return word(COUNTERS, k); }
 fn raise_counter(k: u32, value: u32) { raise_word(COUNTERS, k, value); }
@@ -505,28 +508,57 @@ fn raise_spill(base: u32, at: vec2<i32>) {
     set_word(SPILL_LEVEL + 1u - turn, pit, level);
 }
 
+// The rain on a cell in 4096ths of a factor of 1, in two parts of which the first counts 1024: so that their sums over all cells fit into a word each.
+fn rain_on(base: u32, cell: u32) -> vec2<u32> {
+    let bits = word(rain_plane(base), cell);
+    var factor = clamp(bitcast<f32>(bits), 0.01, 100.0);
+    if (is_missing(bits)) {
+        // Not a number counts as 1.
+        factor = select(select(1.0, 0.01, bits == 0xff800000u), 100.0, bits == 0x7f800000u);
+    }
+    let weight = u32(factor * 4096.0 + 0.5);
+    return vec2<u32>(weight >> 10u, weight & 1023u);
+}
+
 // Each cell drains itself.
 fn begin_areas(base: u32, at: vec2<i32>) {
     let cell = cell_at(at);
     set_word(ANCESTOR, cell, word(RECEIVER, cell));
     set_word(AREA, cell, 1u);
     set_word(AREA + 1u, cell, 0u);
+    let sums = rain_sums(base);
+    if (sums != 0u) {
+        let rain = rain_on(base, cell);
+        set_word(sums, cell, rain.x);
+        set_word(sums + 1u, cell, 0u);
+        set_word(sums + 3u, cell, rain.y);
+        set_word(sums + 4u, cell, 0u);
+    }
 }
 
 // Gives the cells that drain through each cell within 8^k steps to its ancestors: then they are known within 8^(k + 1) steps.
 fn gather_areas(base: u32, at: vec2<i32>) {
-    let k = step_number();
-    if (counter(GATHERED) < k) {
+    if (counter(GATHERED) < step_number()) {
         return;
     }
-    let cell = cell_at(at);
-    let area = word(AREA + k % 3u, cell);
-    let to = AREA + (k + 1u) % 3u;
-    set_word(AREA + (k + 2u) % 3u, cell, 0u);
-    add_word(to, cell, area);
+    gather_plane(AREA, cell_at(at));
+    let sums = rain_sums(base);
+    if (sums != 0u) {
+        gather_plane(sums, cell_at(at));
+        gather_plane(sums + 3u, cell_at(at));
+    }
+}
+
+// Of three planes, one is read, the second one is added to, and the third one is cleared for the next pass.
+fn gather_plane(first: u32, cell: u32) {
+    let k = step_number();
+    let sum = word(first + k % 3u, cell);
+    let to = first + (k + 1u) % 3u;
+    set_word(first + (k + 2u) % 3u, cell, 0u);
+    add_word(to, cell, sum);
     var ancestor = word(ANCESTOR + (k & 1u), cell);
     for (var hop = 1; hop < GATHERED_HOPS && ancestor != NONE; hop += 1) {
-        add_word(to, ancestor, area);
+        add_word(to, ancestor, sum);
         ancestor = word(ANCESTOR + (k & 1u), ancestor);
     }
     set_word(ANCESTOR + 1u - (k & 1u), cell, ancestor);
@@ -538,6 +570,16 @@ fn gather_areas(base: u32, at: vec2<i32>) {
 // Number of cells that drain through a cell, once all passes have run.
 fn drained_cells(cell: u32) -> u32 {
     return word(AREA + (counter(GATHERED) + 1u) % 3u, cell);
+}
+
+// The same weighted by the rain.
+fn discharge(base: u32, cell: u32) -> f32 {
+    let sums = rain_sums(base);
+    if (sums == 0u) {
+        return f32(drained_cells(cell));
+    }
+    let turn = sums + (counter(GATHERED) + 1u) % 3u;
+    return f32(word(turn, cell)) * 0.25 + f32(word(turn + 3u, cell)) * (1.0 / 4096.0);
 }
 
 // The level to which water fills the basin of a cell, as an ordered integer; 0 outside. The number is that of the last raise.

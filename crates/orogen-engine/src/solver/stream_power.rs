@@ -1,6 +1,6 @@
 //! Stream power erosion with uplift.
 
-use super::routing::{self, Descent, Flats, LAST, then};
+use super::routing::{self, Descent, Flats, LAST, Planes, then};
 use super::terrain::{flow_layer, memory, sea_level, sea_level_of};
 use crate::declare::{Declared, Input};
 use crate::lower::{Lowering, Passes};
@@ -143,11 +143,13 @@ impl Solver for StreamPower {
                 "with a slope exponent other than 1 heights are not affine functions of their receivers",
             );
         }
-        if given.get(3) == Some(&true) {
+        let given = |i: usize| given.get(i) == Some(&true);
+        let rain = given(3).then_some(3);
+        let planes = Planes { inputs: 4, layers: self.spec().layers.len(), scratch: SCRATCH, rain };
+        if !planes.can_rain(padded) {
             return Lowering::Processor(routing::RAIN);
         }
-        let given = |i: usize| u32::from(given.get(i) == Some(&true));
-        Lowering::Shader(self.passes(padded, [given(1), given(2)], world_params))
+        Lowering::Shader(self.passes(padded, planes, [given(1), given(2)], world_params))
     }
 
     fn cost(&self) -> f64 {
@@ -162,8 +164,8 @@ const CODE: &str =
 const SOURCE: u32 = 0;
 const HEIGHTS: [u32; 3] = [4, 16, 17];
 
-/// Number of planes beside inputs, layers and counters.
-const SCRATCH: usize = routing::PLANES + 7;
+/// Number of planes beside inputs, layers, the routing, counters and the rain.
+const SCRATCH: usize = 7;
 
 /// Number of times that the pieces of the law are chosen in a step: if nothing is known of them, and if those of the step before are a good guess. Passes after
 /// the last change end at once.
@@ -186,7 +188,7 @@ impl StreamPower {
     }
 
     /// The passes of a run; `given` are the factors of the erodibility and the uplift.
-    fn passes(&self, padded: &Window, given: [u32; 2], world_params: &WorldParams) -> Passes {
+    fn passes(&self, padded: &Window, planes: Planes, given: [bool; 2], world_params: &WorldParams) -> Passes {
         let erosion = self.erosion(world_params);
         let (law, cell) = (erosion.law, padded.cell);
         let years = erosion.years / f64::from(erosion.steps.max(1));
@@ -210,13 +212,11 @@ impl StreamPower {
         ];
         let share = creep.map_or(0.0, |[_, _, share]| share / 6.0);
         let last = [share, cell * cell].map(|number| (number as f32).to_bits());
-        let mut passes = Passes::new(CODE, &[])
-            .with_words(routing::words(padded, sea_level_of(self.sea, world_params), descent))
+        let sea_level = sea_level_of(self.sea, world_params);
+        let mut passes = routing::passes(CODE, padded, sea_level, descent, planes)
             .with_words(numbers.map(|number| (number as f32).to_bits()))
-            .with_words(given)
-            .with_words(last)
-            .with_layers(self.spec().layers.len())
-            .with_scratch(SCRATCH + routing::counter_planes(padded));
+            .with_words(given.map(u32::from))
+            .with_words(last);
         let step = |from, to, number| routing::step(from, to, number);
         passes = then(passes, "outlets", step(SOURCE, 0, 0));
         if is_between_points {

@@ -48,20 +48,20 @@ fn inverse_distance(base: u32, cell: u32, receiver: u32) -> f32 {
 
 fn law_of(base: u32, cell: u32, receiver: u32) -> Law {
     let near = inverse_distance(base, cell, receiver);
-    let most = select(number(base, 11u), number(base, 12u), is_last());
-    var law = Law(number(base, 10u) / near, most / near, 0.0, 0.0);
+    let most = select(number(base, 13u), number(base, 14u), is_last());
+    var law = Law(number(base, 12u) / near, most / near, 0.0, 0.0);
     if (is_last()) {
         return law;
     }
-    law.risen = number(base, 13u);
-    if (data[base + 15u] == 1u) {
+    law.risen = number(base, 15u);
+    if (data[base + 17u] == 1u) {
         law.risen *= sample(UPLIFT, cell);
         if (is_missing(word(UPLIFT, cell))) {
             law.risen = 1e30;
         }
     }
-    law.cut = number(base, 8u) * near * power(f32(drained_cells(cell)), number(base, 9u));
-    if (data[base + 14u] == 1u) {
+    law.cut = number(base, 10u) * near * power(discharge(base, cell), number(base, 11u));
+    if (data[base + 16u] == 1u) {
         let factor = word(ERODIBILITY, cell);
         law.cut *= max(select(bitcast<f32>(factor), 0.0, is_missing(factor)), 0.0);
     }
@@ -177,7 +177,7 @@ fn creep(base: u32, at: vec2<i32>) {
     if (step_number() > 1u) {
         again = (stage - 1.0) / stage * (h - sample(last, cell));
     }
-    let inflow = (2.0 * stage - 1.0) / stage * number(base, 16u) * (4.0 * sides + corners);
+    let inflow = (2.0 * stage - 1.0) / stage * number(base, 18u) * (4.0 * sides + corners);
     set_sample(other_plane(), cell, h + again + inflow);
 }
 
@@ -208,6 +208,6 @@ fn finish(base: u32, at: vec2<i32>) {
     let cell = cell_at(at);
     let height = word(heights_plane(), cell);
     set_word(HEIGHT, cell, height);
-    set_sample(FLOW, cell, f32(drained_cells(cell)) * number(base, 17u));
+    set_sample(FLOW, cell, discharge(base, cell) * number(base, 19u));
     set_sample(CHANGE, cell, bitcast<f32>(height) - sample(SOURCE, cell));
 }
