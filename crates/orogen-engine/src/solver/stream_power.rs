@@ -138,11 +138,6 @@ impl Solver for StreamPower {
     }
 
     fn lower(&self, padded: &Window, given: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
-        if self.slope_exponent != 1.0 {
-            return Lowering::Processor(
-                "with a slope exponent other than 1 heights are not affine functions of their receivers",
-            );
-        }
         let given = |i: usize| given.get(i) == Some(&true);
         let rain = given(3).then_some(3);
         let planes = Planes { inputs: 4, layers: self.spec().layers.len(), scratch: SCRATCH, rain };
@@ -170,6 +165,9 @@ const SCRATCH: usize = 7;
 /// Number of times that the pieces of the law are chosen in a step: if nothing is known of them, and if those of the step before are a good guess. Passes after
 /// the last change end at once.
 const ITERATIONS: [u32; 2] = [12, 3];
+
+/// More of them in a step whose law is not affine in the heights.
+const MORE_ITERATIONS: u32 = 2;
 
 impl StreamPower {
     /// The run of the law.
@@ -203,18 +201,19 @@ impl StreamPower {
         // Slopes above the limit have already slid between the points.
         let last_max_slope = if is_between_points { f64::INFINITY } else { law.max_slope };
         let numbers = [
-            years * law.erodibility * libm::pow(cell * cell, law.area_exponent) / cell,
+            years * law.erodibility * libm::pow(cell, 2.0 * law.area_exponent - law.slope_exponent),
             law.area_exponent,
             law.min_slope * cell,
             law.max_slope * cell,
-            (last_max_slope * cell).min(1e30),
+            last_max_slope * cell,
             years * law.uplift,
         ];
         let share = creep.map_or(0.0, |[_, _, share]| share / 6.0);
-        let last = [share, cell * cell].map(|number| (number as f32).to_bits());
+        let last = [share, cell * cell, law.slope_exponent].map(|number| (number as f32).to_bits());
         let sea_level = sea_level_of(self.sea, world_params);
         let mut passes = routing::passes(CODE, padded, sea_level, descent, planes)
-            .with_words(numbers.map(|number| (number as f32).to_bits()))
+            // Shaders know no infinite numbers.
+            .with_words(numbers.map(|number| (number.min(1e30) as f32).to_bits()))
             .with_words(given.map(u32::from))
             .with_words(last);
         let step = |from, to, number| routing::step(from, to, number);
@@ -227,13 +226,14 @@ impl StreamPower {
         let mut here = SOURCE;
         let mut next = || turn.next().unwrap_or_default();
         let all = routing::all_rounds(padded);
+        let more = if law.slope_exponent == 1.0 { 0 } else { MORE_ITERATIONS };
         for done in 0..erosion.steps {
             let (rounds, flats) =
                 if done == 0 { (all, Flats::Graded) } else { (all.min(routing::FEW_ROUNDS), Flats::Basins) };
             passes = routing::route(passes, padded, rounds, flats, step(here, 0, done));
             passes = routing::gather(passes, padded);
             let to = next();
-            passes = solved(passes, padded, here, to, u32::from(done > 0));
+            passes = solved(passes, padded, [here, to], u32::from(done > 0), more);
             here = to;
             let [strides, stages, _] = creep.unwrap_or_default();
             for stage in (0..strides as u32).flat_map(|_| 1..=stages as u32) {
@@ -249,7 +249,7 @@ impl StreamPower {
         }
         let to = next();
         passes = routing::route(passes, padded, all, Flats::Basins, step(here, 0, 0) | LAST);
-        passes = solved(passes, padded, here, to, LAST);
+        passes = solved(passes, padded, [here, to], LAST, 0);
         // The heights may have pits where the last digits of a gentle slope were lost, so the flow is routed through depressions again.
         passes = routing::route(passes, padded, all, Flats::Basins, step(to, 0, 0) | LAST);
         then(routing::gather(passes, padded), "finish", step(to, 0, 0))
@@ -258,11 +258,11 @@ impl StreamPower {
 
 /// `passes`, and those that solve the law for the heights of a plane, and write them to another one. The kind is [`LAST`], or 1 if there was a time step before,
 /// or 0.
-fn solved(mut passes: Passes, padded: &Window, from: u32, to: u32, kind: u32) -> Passes {
+fn solved(mut passes: Passes, padded: &Window, [from, to]: [u32; 2], kind: u32, more: u32) -> Passes {
     let (last, known) = (kind & LAST, kind & 1);
     // An odd number of passes leaves the result in the second of two planes.
     let compositions = routing::following(padded) as u32 | 1;
-    for iteration in 0..ITERATIONS[known as usize] {
+    for iteration in 0..ITERATIONS[known as usize] + more {
         passes = then(passes, "choose_piece", routing::step(from, known, iteration) | last);
         for k in 0..compositions {
             passes = then(passes, "compose_pieces", routing::step(from, k % 2, iteration) | last);

@@ -27,9 +27,11 @@ struct Law {
     most: f32,
     // Uplift of the step, in metres.
     risen: f32,
-    // What is cut of the drop to the receiver, over what is left of it.
+    // The equation of the drop x to the receiver that is left of a drop: x + cut x^n = drop.
     cut: f32,
 }
+
+fn slope_exponent(base: u32) -> f32 { return number(base, 20u); }
 
 // Draws the points of the cells.
 fn draw_points(base: u32, at: vec2<i32>) {
@@ -60,7 +62,9 @@ fn law_of(base: u32, cell: u32, receiver: u32) -> Law {
             law.risen = 1e30;
         }
     }
-    law.cut = number(base, 10u) * near * power(discharge(base, cell), number(base, 11u));
+    let n = slope_exponent(base);
+    let per_distance = select(power(near, n), near, n == 1.0);
+    law.cut = number(base, 10u) * per_distance * power(discharge(base, cell), number(base, 11u));
     if (data[base + 16u] == 1u) {
         let factor = word(ERODIBILITY, cell);
         law.cut *= max(select(bitcast<f32>(factor), 0.0, is_missing(factor)), 0.0);
@@ -69,8 +73,33 @@ fn law_of(base: u32, cell: u32, receiver: u32) -> Law {
     return law;
 }
 
-// The change of a cell's height is a function of its receiver's in three pieces, each of them affine. Chooses the piece by the changes that were computed with
-// the pieces chosen before. The first choice is that of the time step before, if the other plane is 1.
+// The drop that is left of a drop without limits, and how much of it is left of a little more drop. Newton's method starts above the root of a convex form, in
+// units of the drop: of s + c s^n = 1 for n > 1, and of t^(1/n) + c t = 1 with t = s^n for n < 1.
+fn left_of(base: u32, law: Law, drop: f32) -> vec2<f32> {
+    let n = slope_exponent(base);
+    if (n == 1.0) {
+        return vec2<f32>(drop, 1.0) / (1.0 + law.cut);
+    }
+    if (drop <= 0.0) {
+        return vec2<f32>(drop, 1.0);
+    }
+    let c = clamp(law.cut * power(max(drop, 1e-30), n - 1.0), 1e-30, 1e30);
+    let exponent = max(n, 1.0 / n);
+    let linear = select(c, 1.0, n > 1.0);
+    let bent = select(1.0, c, n > 1.0);
+    var root = min(1.0, select(1.0 / c, power(c, -1.0 / n), n > 1.0));
+    for (var k = 0; k < 12; k += 1) {
+        let bend = bent * power(max(root, 1e-30), exponent - 1.0);
+        root -= (linear * root + bend * root - 1.0) / (linear + exponent * bend);
+        root = clamp(root, 0.0, 1.0);
+    }
+    let s = select(power(max(root, 1e-30), 1.0 / n), root, n > 1.0);
+    return vec2<f32>(drop * s, 1.0 / (1.0 + n * c * power(max(s, 1e-30), n - 1.0)));
+}
+
+// The change of a cell's height is a function of its receiver's in three pieces. Two are affine, and so is the third one if the slope exponent is 1; otherwise
+// its tangent is. Chooses the piece by the changes that were computed with the pieces chosen before. The first choice is that of the time step before, if the
+// other plane is 1.
 fn choose_piece(base: u32, at: vec2<i32>) {
     let iteration = step_number();
     if (counter(CHANGED) < iteration) {
@@ -90,26 +119,34 @@ fn choose_piece(base: u32, at: vec2<i32>) {
     if (iteration > 0u) {
         below = sample(AFFINE + 3u, receiver);
     }
-    let left = (drop + law.risen - below) / (1.0 + law.cut);
+    let left = left_of(base, law, drop + law.risen - below);
     let before = word(PIECE, cell);
     var piece = FREE;
-    if (left >= law.most) {
+    if (left.x >= law.most) {
         piece = LIMITED;
     }
-    if (left <= law.least || law.most <= law.least) {
+    if (left.x <= law.least || law.most <= law.least) {
         piece = RAISED;
     }
     if (iteration == 0u && other_plane() == 1u && before != 0u) {
         piece = before;
     }
-    if (iteration == 0u || before != piece) {
-        raise_counter(CHANGED, iteration + 1u);
-    }
+    var is_changed = iteration == 0u || before != piece;
     var factor = 1.0;
     var offset = select(law.least, law.most, piece == LIMITED) - drop;
-    if (piece == FREE) {
-        factor = law.cut / (1.0 + law.cut);
-        offset = law.risen / (1.0 + law.cut) - drop * factor;
+    if (piece == FREE && slope_exponent(base) == 1.0) {
+        factor = law.cut * left.y;
+        offset = law.risen * left.y - drop * factor;
+    } else if (piece == FREE) {
+        factor = 1.0 - left.y;
+        offset = left.x - drop + below * left.y;
+        if (iteration > 0u) {
+            let tangent = sample(AFFINE + 3u, cell);
+            is_changed = is_changed || abs(below + left.x - drop - tangent) > 1e-4 * (1.0 + abs(tangent));
+        }
+    }
+    if (is_changed) {
+        raise_counter(CHANGED, iteration + 1u);
     }
     set_word(PIECE, cell, piece);
     set_sample(AFFINE, cell, factor);
@@ -150,7 +187,7 @@ fn set_heights(base: u32, at: vec2<i32>) {
     let change_below = sample(AFFINE + 3u, receiver);
     let above = (bitcast<f32>(before) - height_below) + law.risen - change_below;
     let below = height_below + change_below;
-    let height = below + max(min(above / (1.0 + law.cut), law.most), law.least);
+    let height = below + max(min(left_of(base, law, above).x, law.most), law.least);
     // The minimum slope may round to nothing, but the cell must drain.
     let least = height_bits(ordered(bitcast<u32>(below)) + 1u);
     set_word(other_plane(), cell, select(least, bitcast<u32>(height), height > below));
