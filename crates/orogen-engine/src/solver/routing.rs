@@ -1,6 +1,6 @@
 //! Drainage on a graphics card: the passes of `routing.wgsl`.
 //!
-//! Depressions are drained as on the processor, by the passes between basins, but the spanning tree of basins is found by Borůvka's algorithm, whose rounds run
+//! Depressions are drained as on the processor, by the passes between basins, but the spanning tree of basins is found by Boruvka's algorithm, whose rounds run
 //! for all basins at once (compare Jain, Kerbl, Gain, Finley and Cordonnier, "FastFlow: GPU acceleration of flow and depression routing for landscape
 //! simulation", 2024). Paths are followed by pointer doubling.
 

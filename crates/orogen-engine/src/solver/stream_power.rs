@@ -164,10 +164,10 @@ const SCRATCH: usize = 7;
 
 /// Number of times that the pieces of the law are chosen in a step: if nothing is known of them, and if those of the step before are a good guess. Passes after
 /// the last change end at once.
-const ITERATIONS: [u32; 2] = [12, 3];
+const ITERATIONS: [u32; 2] = [12, 8];
 
 /// More of them in a step whose law is not affine in the heights.
-const MORE_ITERATIONS: u32 = 2;
+const MORE_ITERATIONS: u32 = 4;
 
 impl StreamPower {
     /// The run of the law.
