@@ -168,7 +168,7 @@ fn drains(directions: &Grid, flow: &Grid, outlets: &Outlets) {
 
 /// Factors of erodibility and uplift.
 fn factors(window: &Window) -> [Option<Grid>; 2] {
-    let factor = |phase: f64| Some(sampled(window, |x, y| 1.0 + 0.5 * (x / 9.0 + phase).sin() * (y / 7.0).cos()));
+    let factor = |phase: f64| Some(sampled(window, |x, y| 1.0 + 0.5 * libm::sin(x / 9.0 + phase) * libm::cos(y / 7.0)));
     [factor(0.0), factor(1.0)]
 }
 
@@ -235,7 +235,7 @@ fn landscape(layers: &[Grid]) -> Vec<(&'static str, f64)> {
         for i in 1..heights.width() - 1 {
             let east = f64::from(heights[(i + 1, j)] - heights[(i - 1, j)]);
             let south = f64::from(heights[(i, j + 1)] - heights[(i, j - 1)]);
-            slopes.push(east.hypot(south) / (2.0 * cell));
+            slopes.push(libm::hypot(east, south) / (2.0 * cell));
         }
     }
     slopes.sort_by(f64::total_cmp);
@@ -383,7 +383,7 @@ fn what_a_card_cannot_solve_is_left_to_the_processor() {
 fn rain_weights_areas_as_on_the_processor() {
     let gpu = gpu();
     let window = Window::new(150, 110, 20.0).at(-30, 40);
-    let mut rain = sampled(&window, |x, y| (x / 9.0).sin() * (y / 7.0).cos() * 3.0 + 1.0);
+    let mut rain = sampled(&window, |x, y| libm::sin(x / 9.0) * libm::cos(y / 7.0) * 3.0 + 1.0);
     rain.row_mut(50)[40..43].copy_from_slice(&[f32::NAN, f32::INFINITY, f32::NEG_INFINITY]);
     let drainage: Node = Drainage { stream: 2e4, ..Default::default() }.into();
     let inputs = [Some(heights(&window)), Some(rain.clone())];
