@@ -15,10 +15,7 @@ const POINT = SOURCE;
 
 // The layer of the filled heights.
 fn fill(base: u32, at: vec2<i32>) {
-    let cell = cell_at(at);
-    let height = word(SOURCE, cell);
-    let level = spill_level(cell, step_number());
-    set_word(FILLED, cell, select(height, height_bits(level), ordered(height) < level));
+    set_word(FILLED, cell_at(at), filled_bits(cell_at(at), step_number()));
 }
 
 // Labels that lead to outlets, and the outlets that drain more than themselves.

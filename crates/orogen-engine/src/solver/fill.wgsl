@@ -10,8 +10,7 @@ const POINT = SOURCE;
 fn fill(base: u32, at: vec2<i32>) {
     let cell = cell_at(at);
     let height = word(SOURCE, cell);
-    let level = spill_level(cell, step_number());
-    let filled = select(height, height_bits(level), ordered(height) < level);
+    let filled = filled_bits(cell, step_number());
     set_word(FILLED, cell, filled);
     // An infinite height minus itself is not a number.
     let depth = bitcast<u32>(bitcast<f32>(filled) - bitcast<f32>(height));

@@ -1,6 +1,8 @@
 //! Height above nearest drainage and distance to streams.
 
-use super::terrain::{Terrain, cells_of, layer_of, memory};
+use super::routing::{self, Flats, Planes, step, then};
+use super::terrain::{Terrain, cells_of, layer_of, memory, sea_level_of};
+use crate::declare::Declared;
 use crate::lower::{Lowering, Passes};
 use crate::op::{Context, Solution, Solver, Sources, WorldParams};
 use orogen_grid::analysis::distance::nearest_in_whole_with;
@@ -78,11 +80,26 @@ impl Solver for HeightAboveDrainage {
         Ok(Solution { layers: layers.into_iter().chain([sources.keep(distance)?]).collect(), scalars: Vec::new() })
     }
 
-    fn lower(&self, _: &Window, _: &[bool], _: &WorldParams) -> Lowering<Passes> {
-        Lowering::Processor("distances are added up in f64 from the outlets upstream")
+    fn lower(&self, padded: &Window, _: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
+        let own_words = [cells_of(self.stream, padded, 1), (padded.cell as f32).to_bits()];
+        let planes = Planes { inputs: 1, layers: self.spec().layers.len(), scratch: SCRATCH, rain: None };
+        let sea_level = sea_level_of(self.sea, world_params);
+        let passes = routing::routed(CODE, padded, sea_level, &own_words, planes, Flats::Graded);
+        let (passes, turn) = routing::spill(passes, padded);
+        let passes = routing::gather(then(passes, "fill", step(0, 0, turn)), padded);
+        let turns = routing::following(padded) as u32;
+        let follow = |passes, k| then(passes, "follow_paths", step(0, 0, k % 2));
+        let passes = (0..turns).fold(then(passes, "begin_paths", 0), follow);
+        let passes = then(then(passes, "scan_columns", 0), "finish", step(0, 0, turns % 2));
+        Lowering::Shader(passes.reading(padded.width))
     }
 
     fn cost(&self) -> f64 {
         80.0
     }
 }
+
+const CODE: &str = concat!(include_str!("routing.wgsl"), include_str!("height_above_drainage.wgsl"));
+
+/// Number of planes beside inputs, layers, the routing and counters.
+const SCRATCH: usize = 6;

@@ -590,3 +590,10 @@ fn spill_level(cell: u32, turn: u32) -> u32 {
     }
     return word(SPILL_LEVEL + turn, label);
 }
+
+// The bits of a height raised to the spill level.
+fn filled_bits(cell: u32, turn: u32) -> u32 {
+    let height = word(heights_plane(), cell);
+    let level = spill_level(cell, turn);
+    return select(height, height_bits(level), ordered(height) < level);
+}
