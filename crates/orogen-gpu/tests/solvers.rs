@@ -382,6 +382,8 @@ fn failures_are_errors_and_cancelled_work_ends() {
 fn what_a_card_cannot_solve_is_left_to_the_processor() {
     let window = Window::new(20, 20, 10.0);
     let law = Node::named("stream-power").unwrap();
+    let long: Node = StreamPower { steps: 10_000, ..Default::default() }.into();
+    assert!(solver_passes(&long, &window, &alone(&long, &heights(&window))).is_none());
     let all = |window: &Window| solver(&law).unwrap().lower(window, &[true; 4], &WORLD);
     assert!(matches!(all(&window), Lowering::Shader(_)));
     assert!(matches!(all(&Window::new(5000, 5000, 10.0)), Lowering::Processor(_)));

@@ -144,6 +144,9 @@ impl Solver for StreamPower {
         if !planes.can_rain(padded) {
             return Lowering::Processor(routing::RAIN);
         }
+        if self.passes_of_steps(padded) > MOST_PASSES {
+            return Lowering::Processor("so many passes are submitted no faster than the processor computes");
+        }
         Lowering::Shader(self.passes(padded, planes, [given(1), given(2)], world_params))
     }
 
@@ -169,7 +172,20 @@ const ITERATIONS: [u32; 2] = [12, 8];
 /// More of them in a step whose law is not affine in the heights.
 const MORE_ITERATIONS: u32 = 4;
 
+/// Maximum number of passes of all steps: a second of submissions.
+const MOST_PASSES: f64 = 5e5;
+
+/// Number of passes of a step without creep, about.
+const PASSES_OF_STEP: f64 = 100.0;
+
 impl StreamPower {
+    /// Number of passes of all steps, about.
+    fn passes_of_steps(&self, padded: &Window) -> f64 {
+        let steps = f64::from(self.steps.max(1));
+        let creep = creep_strides(padded, self.years / steps * self.creep);
+        steps * (PASSES_OF_STEP + creep.map_or(0.0, |[strides, stages, _]| strides * stages))
+    }
+
     /// The run of the law.
     fn erosion(&self, world_params: &WorldParams) -> Erosion {
         let law = Law::default()
