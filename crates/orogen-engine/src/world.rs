@@ -2,6 +2,7 @@
 
 use crate::budget::{Budget, Reservation};
 use crate::engine::inline::PreparedProgram;
+use crate::engine::preview::Preview;
 use crate::engine::run::Engine;
 use crate::ids::{Id, IndexVec, NodeId};
 use crate::layer::LayerKind;
@@ -362,7 +363,10 @@ impl World {
     /// If it is a plan of another recipe, needs more memory than allowed (then nothing was started), or was cancelled.
     pub fn run(&self, plan: &Plan, progress: &Progress) -> Result<Vec<Grid>> {
         let _running = self.admit(plan, progress)?;
-        self.engine(progress).run(plan)
+        let engine = self.engine(progress);
+        let session = &self.session;
+        let preview = session.device.as_deref().map(|device| Preview::new(device, &session.previews, &engine));
+        Engine { preview: preview.as_ref(), ..engine }.run(plan)
     }
 
     /// Makes layers over a window.
@@ -516,7 +520,7 @@ impl World {
             budget: &self.session.budget,
             pool: &self.session.pool,
             progress,
-            device: self.session.device.as_deref(),
+            preview: None,
             observer: None,
         }
     }
