@@ -1,6 +1,7 @@
 //! Worlds: opened recipes, from which windows and points are requested.
 
 use crate::budget::{Budget, Reservation};
+use crate::device::Device;
 use crate::engine::inline::PreparedProgram;
 use crate::engine::preview::Preview;
 use crate::engine::run::Engine;
@@ -155,6 +156,15 @@ impl World {
         let _running = self.admit(plan, progress)?;
         let engine = Engine { observer: Some((node, observer)), ..self.engine(progress) };
         engine.run(plan).map(drop)
+    }
+
+    /// Runs a plan without the session's device.
+    ///
+    /// # Errors
+    /// The errors of [`World::run`].
+    pub(crate) fn run_exactly(&self, plan: &Plan, progress: &Progress) -> Result<Vec<Grid>> {
+        let _running = self.admit(plan, progress)?;
+        self.engine(progress).run(plan)
     }
 
     /// The nodes in an order where each comes after those that it reads.
@@ -312,6 +322,12 @@ impl World {
     pub fn explain(&self, plan: &Plan) -> Result<String> {
         self.check_plan(plan)?;
         Ok(explain(plan, &self.recipe, &self.graph, self.threads()))
+    }
+
+    /// The device that computes in place of the processor where exact bits are not needed, if the session has one.
+    #[doc(hidden)]
+    pub fn device(&self) -> Option<&dyn Device> {
+        self.session.device.as_deref()
     }
 
     /// Number of threads.
