@@ -24,12 +24,17 @@ pub enum Lowering<T> {
 /// planes, except for a border that no later pass reads. It reads numbers with `number(base, i)` and samples with `plane(k, at)`, where positions beyond the
 /// border are those of the border, and writes samples with `set_plane(k, at, value)`; `size()` is the number of columns and rows of the planes. A pass may run
 /// for all samples at once: it must not read samples that another call writes.
+///
+/// Those of a solver read and write the planes otherwise, as words: see `solvers.wgsl` of orogen-gpu. Calls of a [shared](Pass::is_shared) pass may read what
+/// others write, if the result does not depend on their order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Passes {
     /// The text that defines the functions of the passes. It does not depend on parameters.
     pub code: &'static str,
     /// The numbers that they read.
     pub words: Vec<u32>,
+    /// Number of layers, for solvers. A filter is told which of its layers are wanted.
+    pub layers: usize,
     /// Number of planes beside inputs and layers.
     pub scratch: usize,
     /// The passes, in order.
@@ -47,6 +52,8 @@ pub struct Pass {
     pub inset: [usize; 2],
     /// Number of samples that a call reads, about. The samples of an expensive pass are computed in parts, so that no driver ends it as a hang.
     pub reads: usize,
+    /// Whether calls write to samples of other calls, or read what they write: only in solvers.
+    pub is_shared: bool,
 }
 
 /// A level of a levelled op as passes over planes: those of the level above, the inputs, those of the level, and scratch planes, in this order.
@@ -66,13 +73,21 @@ impl Passes {
     /// Passes that read these numbers.
     #[must_use]
     pub fn new(code: &'static str, numbers: &[f32]) -> Passes {
-        Passes { code, words: numbers.iter().map(|number| number.to_bits()).collect(), scratch: 0, passes: Vec::new() }
+        let words = numbers.iter().map(|number| number.to_bits()).collect();
+        Passes { code, words, layers: 0, scratch: 0, passes: Vec::new() }
     }
 
     /// With these words after the others.
     #[must_use]
     pub fn with_words(mut self, words: impl IntoIterator<Item = u32>) -> Passes {
         self.words.extend(words);
+        self
+    }
+
+    /// With this number of layers.
+    #[must_use]
+    pub fn with_layers(mut self, layers: usize) -> Passes {
+        self.layers = layers;
         self
     }
 
@@ -86,7 +101,7 @@ impl Passes {
     /// With a run of a function after the others, which leaves out `inset` columns and rows at each side.
     #[must_use]
     pub fn then(mut self, function: &'static str, step: u32, inset: [usize; 2]) -> Passes {
-        self.passes.push(Pass { function, step, inset, reads: READS });
+        self.passes.push(Pass { function, step, inset, reads: READS, is_shared: false });
         self
     }
 
@@ -95,6 +110,15 @@ impl Passes {
     pub fn reading(mut self, reads: usize) -> Passes {
         if let Some(pass) = self.passes.last_mut() {
             pass.reads = reads.max(1);
+        }
+        self
+    }
+
+    /// With the last pass as one whose calls [share](Pass::is_shared) samples.
+    #[must_use]
+    pub fn shared(mut self) -> Passes {
+        if let Some(pass) = self.passes.last_mut() {
+            pass.is_shared = true;
         }
         self
     }

@@ -1,9 +1,10 @@
-//! How a graphics card computes the built-in fields and filters.
+//! How a graphics card computes the built-in fields, filters and solvers.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
 use orogen_engine::lower::Lowering;
 use orogen_engine::node::Node;
 use orogen_engine::op::{Op, WorldParams};
+use orogen_grid::grid::Window;
 
 const WORLD: WorldParams = WorldParams { seed: 1, size: None, cell: 10.0, sea_level: 0.0 };
 
@@ -53,6 +54,53 @@ fn the_text_of_a_filter_does_not_depend_on_the_cell() {
             (filter.lower(1.0, &WORLD), filter.lower(30.0, &WORLD))
         {
             assert_eq!((fine.code, fine.scratch), (coarse.code, coarse.scratch), "{}", node.spec().op);
+        }
+    }
+}
+
+#[test]
+fn every_solver_says_how_a_graphics_card_computes_it() {
+    let (mut lowered, mut left) = (Vec::new(), Vec::new());
+    let window = Window::new(40, 30, 10.0);
+    for node in Node::all() {
+        let Op::Solver(solver) = node.op() else { continue };
+        let (name, inputs) = (node.spec().op, node.inputs());
+        let required: Vec<bool> = inputs.iter().map(|input| input.required).collect();
+        // With all inputs the processor may have to do it, but it says so.
+        assert_ne!(solver.lower(&window, &vec![true; inputs.len()], &WORLD), Lowering::Missing, "{name}");
+        match solver.lower(&window, &required, &WORLD) {
+            Lowering::Missing => panic!("{name} does not say how a graphics card computes it"),
+            Lowering::Processor(why) => {
+                assert!(!why.is_empty());
+                left.push(name);
+            }
+            Lowering::Shader(passes) => {
+                lowered.push(name);
+                assert_eq!(passes.layers, node.layers().len(), "{name}");
+                assert!(!passes.passes.is_empty(), "{name} has no pass");
+                for pass in &passes.passes {
+                    let header = format!("fn {}(base: u32, at: vec2<i32>) {{", pass.function);
+                    assert!(passes.code.contains(&header), "{name} has no function {}", pass.function);
+                    assert_eq!(pass.inset, [0; 2], "{name} leaves out samples");
+                }
+            }
+        }
+    }
+    assert_eq!(lowered, ["drainage", "fill", "lakes", "stream-power"]);
+    let processor = ["bake", "breach", "dla", "height-above-drainage", "insolation", "normalise", "orographic-rain"];
+    assert_eq!(left, [&processor[..], &["rivers", "select-share", "viewshed"]].concat());
+}
+
+#[test]
+fn the_text_of_a_solver_depends_neither_on_the_window_nor_on_the_cell() {
+    for node in Node::all() {
+        let Op::Solver(solver) = node.op() else { continue };
+        let given: Vec<bool> = node.inputs().iter().map(|input| input.required).collect();
+        let passes = |window: Window| solver.lower(&window, &given, &WORLD);
+        if let (Lowering::Shader(small), Lowering::Shader(large)) =
+            (passes(Window::new(20, 10, 1.0)), passes(Window::new(300, 400, 30.0).at(-9, 7)))
+        {
+            assert_eq!((small.code, small.scratch), (large.code, large.scratch), "{}", node.spec().op);
         }
     }
 }

@@ -3,6 +3,7 @@
 use crate::filters;
 use crate::gpu::Gpu;
 use crate::program::run;
+use crate::solvers;
 use orogen_engine::device::{Device, FilterExtent, LoweredProgram};
 use orogen_engine::lower::Passes;
 use orogen_grid::error::Result;
@@ -32,5 +33,16 @@ impl Device for Gpu {
         let is_cancelled = || progress.check().is_err();
         let FilterExtent { window, halo, wanted } = extent;
         self.outcome(filters::apply(self, passes, inputs, window, *halo, wanted, is_cancelled), progress)
+    }
+
+    fn solve(
+        &self,
+        passes: &Passes,
+        inputs: &[Option<&Grid>],
+        window: &Window,
+        progress: &Progress,
+    ) -> Result<Option<Vec<Grid>>> {
+        let is_cancelled = || progress.check().is_err();
+        self.outcome(solvers::solve(self, passes, inputs, window, is_cancelled), progress)
     }
 }

@@ -9,7 +9,17 @@ use orogen_grid::grid::{Grid, Window};
 use std::collections::HashMap;
 
 /// What the passes of all filters have in common.
+const PRELUDES: Preludes = Preludes { own: PRELUDE, shared: PRELUDE };
+
 const PRELUDE: &str = include_str!("filters.wgsl");
+
+/// What passes have in common, by whether their calls write to samples of others.
+pub(crate) struct Preludes {
+    /// The text of passes whose calls write to their own samples alone.
+    pub(crate) own: &'static str,
+    /// The text of those that share samples.
+    pub(crate) shared: &'static str,
+}
 
 /// Words before those of the filter, for each pass: see the prelude.
 const WORDS: usize = 5;
@@ -35,7 +45,7 @@ pub fn apply(
     if window.is_empty() || !wanted.contains(&true) {
         return Ok(Some(out));
     }
-    let filter = Filter::new(passes, inputs.len(), wanted);
+    let filter = Planes::new(&PRELUDES, passes, inputs.len(), wanted);
     let limit = gpu.buffer_limit();
     let Some(tiles) = fitting(window, |tile| filter.bytes(tile, halo) <= limit) else {
         let needed = filter.bytes(&Window { width: 1, height: 1, ..*window }, halo) >> 20;
@@ -58,8 +68,8 @@ pub fn apply(
     Ok(Some(out))
 }
 
-/// A filter with its texts.
-struct Filter<'a> {
+/// The planes of a filter or solver, with the texts of its passes.
+pub(crate) struct Planes<'a> {
     passes: &'a Passes,
     /// The text of each function.
     texts: HashMap<&'static str, String>,
@@ -68,28 +78,30 @@ struct Filter<'a> {
     wanted: &'a [bool],
 }
 
-impl<'a> Filter<'a> {
-    fn new(passes: &'a Passes, inputs: usize, wanted: &'a [bool]) -> Filter<'a> {
+impl<'a> Planes<'a> {
+    /// Planes of passes that have these texts in common.
+    pub(crate) fn new(preludes: &Preludes, passes: &'a Passes, inputs: usize, wanted: &'a [bool]) -> Planes<'a> {
         let mut texts = HashMap::new();
         for pass in &passes.passes {
-            texts.entry(pass.function).or_insert_with(|| text(passes.code, pass.function));
+            let prelude = if pass.is_shared { preludes.shared } else { preludes.own };
+            texts.entry(pass.function).or_insert_with(|| text(prelude, passes.code, pass.function));
         }
-        Filter { passes, texts, inputs, wanted }
+        Planes { passes, texts, inputs, wanted }
     }
 
     /// Number of planes.
-    fn planes(&self) -> usize {
+    fn count(&self) -> usize {
         self.inputs + self.wanted.len() + self.passes.scratch
     }
 
     /// Memory of the planes for a tile, in bytes.
-    fn bytes(&self, tile: &Window, halo: usize) -> u64 {
+    pub(crate) fn bytes(&self, tile: &Window, halo: usize) -> u64 {
         let side = |samples: usize| samples as u64 + 2 * halo as u64;
-        (4 * self.planes() as u64).saturating_mul(side(tile.width)).saturating_mul(side(tile.height))
+        (4 * self.count() as u64).saturating_mul(side(tile.width)).saturating_mul(side(tile.height))
     }
 
     /// The wanted layers over a tile.
-    fn tile_of(
+    pub(crate) fn tile_of(
         &self,
         gpu: &Gpu,
         inputs: &[Option<&Grid>],
@@ -105,7 +117,7 @@ impl<'a> Filter<'a> {
         });
         let mut job = Job {
             data: self.passes.words.clone(),
-            samples: self.planes() * grown.len(),
+            samples: self.count() * grown.len(),
             uploads: uploads.collect(),
             ..Job::default()
         };
@@ -166,10 +178,10 @@ fn inner(rows: Vec<f32>, tile: &Window, width: usize, halo: usize) -> Grid {
     grid
 }
 
-/// The text of a pass. It depends on the filter and the function alone.
-fn text(code: &str, function: &str) -> String {
+/// The text of a pass. It depends on the op and the function alone.
+fn text(prelude: &str, code: &str, function: &str) -> String {
     format!(
-        "{PRELUDE}\n{code}\n\
+        "{prelude}\n{code}\n\
         @compute @workgroup_size(8, 8) fn main(@builtin(global_invocation_id) id: vec3<u32>) {{\n\
         \x20   if (id.x >= frame.width || id.y >= frame.height) {{ return; }}\n\
         \x20   let at = id.xy + vec2<u32>(data[frame.base + 2u], data[frame.base + 3u]);\n\

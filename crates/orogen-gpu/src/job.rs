@@ -3,6 +3,8 @@
 use crate::failure::Failure;
 use crate::gpu::Gpu;
 use crate::pipelines::FRAME;
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
@@ -86,6 +88,22 @@ impl Job<'_> {
         done
     }
 
+    /// The frames of all dispatches, equal ones once, and the offset of each dispatch's frame in bytes.
+    fn frames(&self) -> (Vec<u32>, Vec<u32>) {
+        let (mut words, mut known) = (Vec::new(), HashMap::new());
+        let offset_of = |dispatch: &Dispatch| {
+            let frame = [dispatch.base, dispatch.size[0], dispatch.size[1], dispatch.step];
+            *known.entry(frame).or_insert_with(|| {
+                let start = words.len();
+                words.extend(frame);
+                words.resize(start + FRAME as usize / 4, 0);
+                4 * start as u32
+            })
+        };
+        let offsets = self.dispatches.iter().map(offset_of).collect();
+        (words, offsets)
+    }
+
     fn submit(
         &self,
         gpu: &Gpu,
@@ -101,14 +119,11 @@ impl Job<'_> {
         let begun = Instant::now();
         let data = buffer(self.data.len(), Usage::STORAGE | Usage::COPY_DST);
         let samples = buffer(self.samples, Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC);
-        let frames = buffer(FRAME as usize / 4 * self.dispatches.len(), Usage::UNIFORM | Usage::COPY_DST);
+        let (words, offsets) = self.frames();
+        let frames = buffer(words.len(), Usage::UNIFORM | Usage::COPY_DST);
         queue.write_buffer(&data, 0, bytemuck::cast_slice(&self.data));
         for (start, grid) in &self.uploads {
             queue.write_buffer(&samples, 4 * *start as u64, bytemuck::cast_slice(grid));
-        }
-        let mut words = vec![0u32; FRAME as usize / 4 * self.dispatches.len()];
-        for (frame, dispatch) in words.chunks_mut(FRAME as usize / 4).zip(&self.dispatches) {
-            frame[..4].copy_from_slice(&[dispatch.base, dispatch.size[0], dispatch.size[1], dispatch.step]);
         }
         queue.write_buffer(&frames, 0, bytemuck::cast_slice(&words));
         let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -127,16 +142,21 @@ impl Job<'_> {
                 },
             ],
         });
-        for (part, dispatches) in self.dispatches.chunks(together).enumerate() {
+        // The passes of a solver share few texts, and comparing texts takes longer than a dispatch.
+        let mut pipelines = HashMap::new();
+        for (dispatches, offsets) in self.dispatches.chunks(together).zip(offsets.chunks(together)) {
             if is_cancelled() {
                 return Ok(None);
             }
             let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-            for (i, dispatch) in dispatches.iter().enumerate() {
-                let frame = FRAME * (part * together + i) as u64;
-                pass.set_pipeline(&*gpu.pipelines().of(device, dispatch.text)?);
-                pass.set_bind_group(0, &bindings, &[frame as u32]);
+            for (dispatch, offset) in dispatches.iter().zip(offsets) {
+                let pipeline = match pipelines.entry(dispatch.text.as_ptr()) {
+                    Entry::Occupied(known) => known.into_mut(),
+                    Entry::Vacant(new) => new.insert(gpu.pipelines().of(device, dispatch.text)?),
+                };
+                pass.set_pipeline(pipeline);
+                pass.set_bind_group(0, &bindings, &[*offset]);
                 let [width, height] = dispatch.size;
                 pass.dispatch_workgroups(width.div_ceil(GROUP), height.div_ceil(GROUP), 1);
             }

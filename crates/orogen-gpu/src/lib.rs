@@ -16,6 +16,8 @@ mod pipelines;
 mod program;
 pub mod render;
 mod session;
+#[doc(hidden)]
+pub mod solvers;
 mod tiles;
 
 pub use adapters::{Adapter, Choice, adapters};

@@ -57,7 +57,7 @@ op! {
     }
 }
 
-const CODE: &str = include_str!("local_stream_power.wgsl");
+const CODE: &str = concat!(include_str!("../lower/power.wgsl"), include_str!("local_stream_power.wgsl"));
 
 impl Filter for LocalStreamPower {
     fn halo(&self, _: f64) -> usize {

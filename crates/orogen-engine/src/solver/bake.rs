@@ -1,7 +1,9 @@
 //! Evaluates a part of the graph once over the world and stores it.
 
-use crate::op::{Context, Solution, Solver, Sources};
+use crate::lower::{Lowering, Passes};
+use crate::op::{Context, Solution, Solver, Sources, WorldParams};
 use orogen_grid::error::Result;
+use orogen_grid::grid::Window;
 
 op! {
     /// The source, evaluated once over the whole world at a fixed cell size and stored. Readers interpolate between the stored samples.
@@ -35,6 +37,10 @@ impl Solver for Bake {
         let mut baked = sources.raster()?;
         sources.each_tile(0, sources.padded(), &mut |tile| baked.put(tile))?;
         Ok(Solution { layers: vec![baked], scalars: Vec::new() })
+    }
+
+    fn lower(&self, _: &Window, _: &[bool], _: &WorldParams) -> Lowering<Passes> {
+        Lowering::Processor("it stores the samples of its source and computes nothing")
     }
 
     fn cost(&self) -> f64 {

@@ -1,7 +1,8 @@
 //! Depression breaching.
 
 use super::terrain::{Terrain, memory};
-use crate::op::{Context, Solution, Solver, Sources};
+use crate::lower::{Lowering, Passes};
+use crate::op::{Context, Solution, Solver, Sources, WorldParams};
 use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
 use orogen_grid::hydrology::breach;
@@ -85,6 +86,10 @@ impl Solver for Breach {
         let mut change = land.heights;
         change.data_mut().iter_mut().zip(out.data()).for_each(|(change, new)| *change = new - *change);
         Ok(Solution { layers: vec![sources.keep(out)?, sources.keep(change)?], scalars: Vec::new() })
+    }
+
+    fn lower(&self, _: &Window, _: &[bool], _: &WorldParams) -> Lowering<Passes> {
+        Lowering::Processor("channels are dug one after the other")
     }
 
     fn cost(&self) -> f64 {

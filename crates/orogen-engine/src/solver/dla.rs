@@ -1,7 +1,8 @@
 //! Mountains from diffusion-limited aggregation.
 
 use super::terrain::memory;
-use crate::op::{Context, Solution, Solver, Sources};
+use crate::lower::{Lowering, Passes};
+use crate::op::{Context, Solution, Solver, Sources, WorldParams};
 use orogen_grid::aggregate::relief::{self, Ridges};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -71,6 +72,10 @@ impl Solver for Dla {
             }
         }
         Ok(Solution { layers: vec![sources.keep(out)?], scalars: Vec::new() })
+    }
+
+    fn lower(&self, _: &Window, _: &[bool], _: &WorldParams) -> Lowering<Passes> {
+        Lowering::Processor("random walkers attach one after the other")
     }
 
     fn cost(&self) -> f64 {

@@ -1,9 +1,11 @@
 //! Drainage: flow directions, drainage areas, watersheds and stream order.
 
-use super::terrain::{Terrain, TiledTerrain, cells_of, flow_layer, layer_of, memory};
-use crate::declare::Input;
+use super::routing::{self, Flats, Planes, step, then};
+use super::terrain::{Terrain, TiledTerrain, cells_of, flow_layer, layer_of, memory, sea_level_of};
+use crate::declare::{Declared, Input};
 use crate::large::areas::Layers;
-use crate::op::{Context, Solution, Solver, Sources};
+use crate::lower::{Lowering, Passes};
+use crate::op::{Context, Solution, Solver, Sources, WorldParams};
 use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
 use orogen_grid::hydrology::accumulation::accumulate_rain_with;
@@ -124,10 +126,40 @@ impl Solver for Drainage {
         Ok(Solution { layers, scalars: Vec::new() })
     }
 
+    fn lower(&self, padded: &Window, given: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
+        let rain = (given.get(1) == Some(&true)).then_some(1);
+        let planes = Planes { inputs: 2, layers: self.spec().layers.len(), scratch: SCRATCH, rain };
+        if !planes.can_rain(padded) {
+            return Lowering::Processor(routing::RAIN);
+        }
+        let cell_area = ((padded.cell * padded.cell) as f32).to_bits();
+        let own_words = [cell_area, cells_of(self.stream, padded, 0)];
+        let sea_level = sea_level_of(self.sea, world_params);
+        let over_bed = if self.over == Over::Bed { Flats::Graded } else { Flats::Basins };
+        let passes = routing::routed(CODE, padded, sea_level, &own_words, planes, over_bed);
+        let (passes, turn) = routing::spill(passes, padded);
+        let mut passes = then(passes, "fill", step(0, 0, turn));
+        if self.over == Over::Surface {
+            let rounds = routing::all_rounds(padded);
+            passes = routing::route(passes, padded, rounds, Flats::Graded, step(FILLED, 0, 0));
+        }
+        let passes = routing::gather(passes, padded);
+        let passes = routing::follow(then(passes, "begin_watersheds", 0), padded, "find_pit");
+        let orders = 2..=routing::doublings(padded, 2) as u32 + 1;
+        let passes = orders.fold(passes, |passes, order| then(passes, "raise_order", step(0, 0, order)));
+        Lowering::Shader(then(routing::number(passes), "finish", 0))
+    }
+
     fn cost(&self) -> f64 {
         35.0
     }
 }
+
+/// Number of planes beside inputs, layers, the routing and counters, and the plane of the filled heights, in the shaders.
+const SCRATCH: usize = 3;
+const FILLED: u32 = 6;
+
+const CODE: &str = concat!(include_str!("routing.wgsl"), include_str!("numbering.wgsl"), include_str!("drainage.wgsl"));
 
 impl Drainage {
     fn has_rain(&self) -> bool {

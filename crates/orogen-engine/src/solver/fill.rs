@@ -1,7 +1,10 @@
 //! Depression filling.
 
-use super::terrain::{Terrain, TiledTerrain, memory};
-use crate::op::{Context, Solution, Solver, Sources};
+use super::routing::{self, Flats, Planes, step, then};
+use super::terrain::{Terrain, TiledTerrain, memory, sea_level_of};
+use crate::declare::Declared;
+use crate::lower::{Lowering, Passes};
+use crate::op::{Context, Solution, Solver, Sources, WorldParams};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::hydrology::fill;
@@ -67,10 +70,20 @@ impl Solver for Fill {
         Ok(Solution { layers: vec![sources.keep(filled)?, sources.keep(depth)?], scalars: Vec::new() })
     }
 
+    fn lower(&self, padded: &Window, _: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
+        let sea_level = sea_level_of(self.sea, world_params);
+        let planes = Planes { inputs: 1, layers: self.spec().layers.len(), scratch: 0, rain: None };
+        let passes = routing::routed(CODE, padded, sea_level, &[], planes, Flats::Basins);
+        let (passes, turn) = routing::spill(passes, padded);
+        Lowering::Shader(then(passes, "fill", step(0, 0, turn)))
+    }
+
     fn cost(&self) -> f64 {
         17.0
     }
 }
+
+const CODE: &str = concat!(include_str!("routing.wgsl"), include_str!("fill.wgsl"));
 
 impl Fill {
     /// Tile by tile.

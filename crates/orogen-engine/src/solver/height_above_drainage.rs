@@ -1,7 +1,8 @@
 //! Height above nearest drainage and distance to streams.
 
 use super::terrain::{Terrain, cells_of, layer_of, memory};
-use crate::op::{Context, Solution, Solver, Sources};
+use crate::lower::{Lowering, Passes};
+use crate::op::{Context, Solution, Solver, Sources, WorldParams};
 use orogen_grid::analysis::distance::nearest_in_whole_with;
 use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
@@ -75,6 +76,10 @@ impl Solver for HeightAboveDrainage {
         }
         nearing.finish();
         Ok(Solution { layers: layers.into_iter().chain([sources.keep(distance)?]).collect(), scalars: Vec::new() })
+    }
+
+    fn lower(&self, _: &Window, _: &[bool], _: &WorldParams) -> Lowering<Passes> {
+        Lowering::Processor("distances are added up in f64 from the outlets upstream")
     }
 
     fn cost(&self) -> f64 {

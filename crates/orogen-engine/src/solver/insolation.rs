@@ -1,7 +1,8 @@
 //! Solar energy that the ground receives.
 
 use super::terrain::{self, memory};
-use crate::op::{Context, Solution, Solver, Sources};
+use crate::lower::{Lowering, Passes};
+use crate::op::{Context, Solution, Solver, Sources, WorldParams};
 use orogen_grid::analysis::clear_sky::ClearSky;
 use orogen_grid::analysis::insolation::{Period, insolation};
 use orogen_grid::error::Result;
@@ -51,6 +52,10 @@ impl Solver for Insolation {
         let energy = insolation(&heights, &period, &sky, context.progress)?;
         drop(heights);
         Ok(Solution { layers: vec![sources.keep(energy)?], scalars: Vec::new() })
+    }
+
+    fn lower(&self, _: &Window, _: &[bool], _: &WorldParams) -> Lowering<Passes> {
+        Lowering::Processor("angles of the sun and of horizons are sums in f64")
     }
 
     fn cost(&self) -> f64 {

@@ -1,7 +1,10 @@
 //! Lakes in depressions.
 
-use super::terrain::{Terrain, cells_of, layer_of, memory};
-use crate::op::{Context, Solution, Solver, Sources};
+use super::routing::{self, Flats, Planes, step, then};
+use super::terrain::{Terrain, cells_of, layer_of, memory, sea_level_of};
+use crate::declare::Declared;
+use crate::lower::{Lowering, Passes};
+use crate::op::{Context, Solution, Solver, Sources, WorldParams};
 use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
 use orogen_grid::hydrology::lakes;
@@ -55,7 +58,7 @@ impl Solver for Lakes {
         let land = Terrain::read(sources, self.sea, context)?;
         let [routing, filling] = context.progress.parts([1.0, 3.0]);
         let drainage = land.route(&routing)?;
-        let fewest = cells_of(self.smallest, land.heights.window(), 4);
+        let fewest = cells_of(self.smallest, land.heights.window(), MIN_CELLS);
         let found = lakes::lakes_with(&land.heights, &land.outlets, &drainage, fewest, &filling)?;
         context.progress.check()?;
         let mut depth = land.heights;
@@ -70,7 +73,36 @@ impl Solver for Lakes {
         Ok(Solution { layers, scalars: Vec::new() })
     }
 
+    fn lower(&self, padded: &Window, _: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
+        let rise = ((padded.cell * lakes::MIN_SLOPE) as f32).to_bits();
+        let own_words = [cells_of(self.smallest, padded, MIN_CELLS), rise];
+        let sea_level = sea_level_of(self.sea, world_params);
+        let planes = Planes { inputs: 1, layers: self.spec().layers.len(), scratch: SCRATCH, rain: None };
+        let passes = routing::routed(CODE, padded, sea_level, &own_words, planes, Flats::Graded);
+        let (passes, turn) = routing::spill(passes, padded);
+        let passes = then(passes, "begin_lakes", step(0, 0, turn));
+        let passes = routing::follow(passes, padded, "find_lake");
+        let functions = ["count_cells", "find_deepest", "find_outflow", "begin_surface"];
+        let passes = functions.into_iter().fold(passes, |passes, name| then(passes, name, step(0, 0, turn)));
+        let compositions = routing::following(padded) as u32;
+        let compose = |passes, k| then(passes, "compose_surface", step(0, 0, k % 2));
+        let passes = routing::number((0..compositions).fold(passes, compose));
+        let surface = SURFACES + 3 * (compositions % 2) + 1;
+        Lowering::Shader(then(passes, "finish", step(0, surface, turn)))
+    }
+
     fn cost(&self) -> f64 {
         100.0
     }
 }
+
+const CODE: &str = concat!(include_str!("routing.wgsl"), include_str!("numbering.wgsl"), include_str!("lakes.wgsl"));
+
+/// Number of planes beside inputs, layers, the routing and counters.
+const SCRATCH: usize = 16;
+
+/// The first plane of the functions of surfaces, in the shaders.
+const SURFACES: u32 = 23;
+
+/// Minimum number of cells of a lake.
+const MIN_CELLS: u32 = 4;

@@ -12,6 +12,7 @@ pub mod lakes;
 pub mod normalise;
 pub mod orographic_rain;
 pub mod rivers;
+pub mod routing;
 pub mod select_share;
 pub mod stream_power;
 pub mod terrain;

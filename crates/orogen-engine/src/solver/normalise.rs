@@ -1,9 +1,9 @@
 //! Scales the source to a range of heights over the world.
 
-use crate::lower::Lowering;
-use crate::op::{Context, Reading, Solution, Solver, Sources};
+use crate::lower::{Lowering, Passes};
+use crate::op::{Context, Reading, Solution, Solver, Sources, WorldParams};
 use orogen_grid::error::Result;
-use orogen_grid::grid::Grid;
+use orogen_grid::grid::{Grid, Window};
 use orogen_noise::shader::function::Shader;
 use rayon::prelude::*;
 
@@ -58,6 +58,10 @@ impl Solver for Normalise {
     return (source - number(base, 0u)) * number(base, 1u) + number(base, 2u);
 }";
         Lowering::Shader(Shader::new("normalise", CODE, &self.map(solution)))
+    }
+
+    fn lower(&self, _: &Window, _: &[bool], _: &WorldParams) -> Lowering<Passes> {
+        Lowering::Processor("its solution is two numbers, not a grid")
     }
 
     fn cost(&self) -> f64 {

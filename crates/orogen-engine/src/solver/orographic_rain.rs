@@ -1,7 +1,8 @@
 //! Rain over mountains.
 
 use super::terrain::{self, memory};
-use crate::op::{Context, Reading, Solution, Solver, Sources};
+use crate::lower::{Lowering, Passes};
+use crate::op::{Context, Reading, Solution, Solver, Sources, WorldParams};
 use orogen_grid::climate::orographic::OrographicRain as Law;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
@@ -95,6 +96,10 @@ impl Solver for OrographicRain {
         // The cubic between samples swings below 0 beside dry ground.
         out.iter_mut().for_each(|rain| *rain = rain.max(0.0));
         Ok(())
+    }
+
+    fn lower(&self, _: &Window, _: &[bool], _: &WorldParams) -> Lowering<Passes> {
+        Lowering::Processor("it is a Fourier transform in f64")
     }
 
     fn cost(&self) -> f64 {

@@ -1,7 +1,8 @@
 //! Rivers and their beds.
 
 use super::terrain::{Terrain, cells_of, layer, layer_of, memory};
-use crate::op::{Context, Solution, Solver, Sources};
+use crate::lower::{Lowering, Passes};
+use crate::op::{Context, Solution, Solver, Sources, WorldParams};
 use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
 use orogen_grid::hydrology::accumulation::accumulate_with;
@@ -92,6 +93,10 @@ impl Solver for Rivers {
         context.progress.check()?;
         layers.push(sources.keep(layer_of(&orders, f32::from))?);
         Ok(Solution { layers, scalars: Vec::new() })
+    }
+
+    fn lower(&self, _: &Window, _: &[bool], _: &WorldParams) -> Lowering<Passes> {
+        Lowering::Processor("beds are cut in f64 from the sources downstream")
     }
 
     fn cost(&self) -> f64 {

@@ -1,5 +1,6 @@
 //! A mask of an exact share of the world.
 
+use crate::lower::{Lowering, Passes};
 use crate::op::{Context, Reading, Solution, Solver, Sources, WorldParams};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
@@ -105,6 +106,10 @@ impl Solver for SelectShare {
             *sample = f32::from(u8::from(is_selected));
         }
         Ok(())
+    }
+
+    fn lower(&self, _: &Window, _: &[bool], _: &WorldParams) -> Lowering<Passes> {
+        Lowering::Processor("its solution is a number, not a grid")
     }
 
     fn cost(&self) -> f64 {

@@ -1,12 +1,16 @@
 //! Stream power erosion with uplift.
 
-use super::terrain::{flow_layer, memory, sea_level};
+use super::routing::{self, Descent, Flats, LAST, Planes, then};
+use super::terrain::{flow_layer, memory, sea_level, sea_level_of};
 use crate::declare::{Declared, Input};
-use crate::op::{Context, Solution, Solver, Sources};
+use crate::lower::{Lowering, Passes};
+use crate::op::{Context, Solution, Solver, Sources, WorldParams};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::hydrology::accumulation::Accumulation;
+use orogen_grid::hydrology::creep::creep_strides;
 use orogen_grid::hydrology::erosion::{Erosion, ErosionRun};
+use orogen_grid::hydrology::points::Points;
 use orogen_grid::hydrology::stream_power::{StreamPower as Law, Substrate};
 
 op! {
@@ -93,20 +97,7 @@ impl Solver for StreamPower {
         let source = sources.whole(0, &window)?;
         let given = |i: usize| sources.given(i).then(|| sources.whole(i, &window)).transpose();
         let (erodibility_factor, uplift_factor, rain) = (given(1)?, given(2)?, given(3)?);
-        let erosion = Erosion::new(
-            Law::default()
-                .with_erodibility(self.erodibility)
-                .with_area_exponent(self.area_exponent)
-                .with_slope_exponent(self.slope_exponent)
-                .with_uplift(self.uplift / 1000.0)
-                .with_max_slope(libm::tan(self.talus_angle.to_radians()))
-                .with_min_slope(Law::default().min_slope),
-            self.years,
-            self.steps,
-        )
-        .with_creep(self.creep)
-        .with_jitter(self.jitter)
-        .with_scattered(self.random_receivers.then_some(context.world_params.seed_of(self.seed) as u32));
+        let erosion = self.erosion(context.world_params);
         let substrate = Substrate::default()
             .with_erodibility_factor(erodibility_factor.as_ref())
             .with_uplift_factor(uplift_factor.as_ref())
@@ -146,9 +137,138 @@ impl Solver for StreamPower {
         solution(sources, heights, &drained, source)
     }
 
+    fn lower(&self, padded: &Window, given: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
+        if self.slope_exponent != 1.0 {
+            return Lowering::Processor(
+                "with a slope exponent other than 1 heights are not affine functions of their receivers",
+            );
+        }
+        let given = |i: usize| given.get(i) == Some(&true);
+        let rain = given(3).then_some(3);
+        let planes = Planes { inputs: 4, layers: self.spec().layers.len(), scratch: SCRATCH, rain };
+        if !planes.can_rain(padded) {
+            return Lowering::Processor(routing::RAIN);
+        }
+        Lowering::Shader(self.passes(padded, planes, [given(1), given(2)], world_params))
+    }
+
     fn cost(&self) -> f64 {
         45.0 * f64::from(self.steps)
     }
+}
+
+const CODE: &str =
+    concat!(include_str!("routing.wgsl"), include_str!("../lower/power.wgsl"), include_str!("stream_power.wgsl"));
+
+/// The planes of the source and of the heights, in the shaders.
+const SOURCE: u32 = 0;
+const HEIGHTS: [u32; 3] = [4, 16, 17];
+
+/// Number of planes beside inputs, layers, the routing, counters and the rain.
+const SCRATCH: usize = 7;
+
+/// Number of times that the pieces of the law are chosen in a step: if nothing is known of them, and if those of the step before are a good guess. Passes after
+/// the last change end at once.
+const ITERATIONS: [u32; 2] = [12, 3];
+
+impl StreamPower {
+    /// The run of the law.
+    fn erosion(&self, world_params: &WorldParams) -> Erosion {
+        let law = Law::default()
+            .with_erodibility(self.erodibility)
+            .with_area_exponent(self.area_exponent)
+            .with_slope_exponent(self.slope_exponent)
+            .with_uplift(self.uplift / 1000.0)
+            .with_max_slope(libm::tan(self.talus_angle.to_radians()))
+            .with_min_slope(Law::default().min_slope);
+        Erosion::new(law, self.years, self.steps)
+            .with_creep(self.creep)
+            .with_jitter(self.jitter)
+            .with_scattered(self.random_receivers.then_some(world_params.seed_of(self.seed) as u32))
+    }
+
+    /// The passes of a run; `given` are the factors of the erodibility and the uplift.
+    fn passes(&self, padded: &Window, planes: Planes, given: [bool; 2], world_params: &WorldParams) -> Passes {
+        let erosion = self.erosion(world_params);
+        let (law, cell) = (erosion.law, padded.cell);
+        let years = erosion.years / f64::from(erosion.steps.max(1));
+        let salt = erosion.scattered.unwrap_or_default();
+        let is_between_points = erosion.jitter > 0.0;
+        let descent = match (is_between_points, erosion.scattered) {
+            (true, _) => Descent::Points(salt, Points::reach(erosion.jitter)),
+            (false, Some(salt)) => Descent::Scattered(salt),
+            (false, None) => Descent::Steepest,
+        };
+        let creep = creep_strides(padded, years * erosion.creep);
+        // Slopes above the limit have already slid between the points.
+        let last_max_slope = if is_between_points { f64::INFINITY } else { law.max_slope };
+        let numbers = [
+            years * law.erodibility * libm::pow(cell * cell, law.area_exponent) / cell,
+            law.area_exponent,
+            law.min_slope * cell,
+            law.max_slope * cell,
+            (last_max_slope * cell).min(1e30),
+            years * law.uplift,
+        ];
+        let share = creep.map_or(0.0, |[_, _, share]| share / 6.0);
+        let last = [share, cell * cell].map(|number| (number as f32).to_bits());
+        let sea_level = sea_level_of(self.sea, world_params);
+        let mut passes = routing::passes(CODE, padded, sea_level, descent, planes)
+            .with_words(numbers.map(|number| (number as f32).to_bits()))
+            .with_words(given.map(u32::from))
+            .with_words(last);
+        let step = |from, to, number| routing::step(from, to, number);
+        passes = then(passes, "outlets", step(SOURCE, 0, 0));
+        if is_between_points {
+            passes = then(passes, "draw_points", 0);
+        }
+        // The plane of the heights now; the next one is another of the three.
+        let mut turn = HEIGHTS.into_iter().cycle();
+        let mut here = SOURCE;
+        let mut next = || turn.next().unwrap_or_default();
+        let all = routing::all_rounds(padded);
+        for done in 0..erosion.steps {
+            let (rounds, flats) =
+                if done == 0 { (all, Flats::Graded) } else { (all.min(routing::FEW_ROUNDS), Flats::Basins) };
+            passes = routing::route(passes, padded, rounds, flats, step(here, 0, done));
+            passes = routing::gather(passes, padded);
+            let to = next();
+            passes = solved(passes, padded, here, to, u32::from(done > 0));
+            here = to;
+            let [strides, stages, _] = creep.unwrap_or_default();
+            for stage in (0..strides as u32).flat_map(|_| 1..=stages as u32) {
+                let to = next();
+                passes = then(passes, "creep", step(here, to, stage));
+                here = to;
+            }
+        }
+        if is_between_points {
+            let to = next();
+            passes = then(passes, "onto_lattice", step(here, to, 0));
+            here = to;
+        }
+        let to = next();
+        passes = routing::route(passes, padded, all, Flats::Basins, step(here, 0, 0) | LAST);
+        passes = solved(passes, padded, here, to, LAST);
+        // The heights may have pits where the last digits of a gentle slope were lost, so the flow is routed through depressions again.
+        passes = routing::route(passes, padded, all, Flats::Basins, step(to, 0, 0) | LAST);
+        then(routing::gather(passes, padded), "finish", step(to, 0, 0))
+    }
+}
+
+/// `passes`, and those that solve the law for the heights of a plane, and write them to another one. The kind is [`LAST`], or 1 if there was a time step before,
+/// or 0.
+fn solved(mut passes: Passes, padded: &Window, from: u32, to: u32, kind: u32) -> Passes {
+    let (last, known) = (kind & LAST, kind & 1);
+    // An odd number of passes leaves the result in the second of two planes.
+    let compositions = routing::following(padded) as u32 | 1;
+    for iteration in 0..ITERATIONS[known as usize] {
+        passes = then(passes, "choose_piece", routing::step(from, known, iteration) | last);
+        for k in 0..compositions {
+            passes = then(passes, "compose_pieces", routing::step(from, k % 2, iteration) | last);
+        }
+    }
+    then(passes, "set_heights", routing::step(from, to, 0) | last)
 }
 
 /// The layers of heights that started as `source`.

@@ -2,7 +2,7 @@
 
 use crate::large::drainage::{self as large, Water};
 use crate::large::tiling::Tiling;
-use crate::op::{Context, Sources};
+use crate::op::{Context, Sources, WorldParams};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::hydrology::accumulation::{Accumulation, UNIT_WEIGHT};
@@ -21,7 +21,12 @@ pub(crate) fn heights(sources: &dyn Sources, context: &Context) -> Result<Grid> 
 
 /// The sea level as a height, if the sea is an outlet.
 pub(crate) fn sea_level(sea: bool, context: &Context) -> Option<f32> {
-    sea.then_some(context.world_params.sea_level as f32)
+    sea_level_of(sea, context.world_params)
+}
+
+/// The same in a world.
+pub(crate) fn sea_level_of(sea: bool, world_params: &WorldParams) -> Option<f32> {
+    sea.then_some(world_params.sea_level as f32)
 }
 
 /// Memory of a domain with this many bytes per cell.

@@ -1,7 +1,8 @@
 //! Viewshed of an observer.
 
 use super::terrain::{self, memory};
-use crate::op::{Context, Solution, Solver, Sources};
+use crate::lower::{Lowering, Passes};
+use crate::op::{Context, Solution, Solver, Sources, WorldParams};
 use orogen_grid::analysis::viewshed::{BEYOND, Observer, hidden, sinking};
 use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
@@ -61,6 +62,10 @@ impl Solver for Viewshed {
             *visible = f32::from(u8::from(*hidden != BEYOND && f64::from(*hidden) <= self.target_height));
         }
         Ok(Solution { layers: vec![sources.keep(visible)?, sources.keep(hidden)?], scalars: Vec::new() })
+    }
+
+    fn lower(&self, _: &Window, _: &[bool], _: &WorldParams) -> Lowering<Passes> {
+        Lowering::Processor("lines of sight are compared in f64")
     }
 
     fn cost(&self) -> f64 {

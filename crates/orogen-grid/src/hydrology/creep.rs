@@ -42,6 +42,15 @@ pub(super) fn creep_stages(window: &Window, amount: f64) -> f64 {
     strides(window, amount).map_or(0.0, |[_, strides, stages]| strides * stages)
 }
 
+/// How a map creeps by an amount: the number of strides, the stages of each, and the amount of a stage in squared cells before its own factor. `None` if nothing
+/// moves.
+#[doc(hidden)]
+#[must_use]
+pub fn creep_strides(window: &Window, amount: f64) -> Option<[f64; 3]> {
+    let [whole, strides, stages] = strides(window, amount)?;
+    Some([strides, stages, whole / strides * 2.0 / (stages * (stages + 1.0))])
+}
+
 /// [`creep`] for repeated use on one map: `buffers`, empty at first, avoids new allocations.
 pub(super) fn creep_again(
     heights: &mut Grid,
@@ -50,9 +59,8 @@ pub(super) fn creep_again(
     buffers: &mut Vec<Grid>,
     progress: &Progress,
 ) -> Result<()> {
-    let Some([whole, strides, stages]) = strides(heights.window(), amount) else { return Ok(()) };
+    let Some([strides, stages, share]) = creep_strides(heights.window(), amount) else { return Ok(()) };
     progress.expect(strides * stages);
-    let share = whole / strides * 2.0 / (stages * (stages + 1.0));
     buffers.resize_with(2, || heights.clone());
     let [last, next] = &mut buffers[..] else { return Ok(()) };
     [&mut *last, &mut *next].into_iter().for_each(|buffer| buffer.data_mut().copy_from_slice(heights.data()));

@@ -45,7 +45,8 @@ pub struct Lakes {
 }
 
 /// Slope of raised ground, rise over run: a typical slope of sediment.
-const GENTLEST: f64 = 1e-4;
+#[doc(hidden)]
+pub const MIN_SLOPE: f64 = 1e-4;
 
 /// Fills every depression of at least `fewest` cells with water up to its spill level, and smaller ones with sediment.
 ///
@@ -150,7 +151,7 @@ fn raise<E>(
             surface[c] = lake.level;
         } else if !outlets.at(c) {
             let below = surface[drainage.receivers.of(c)];
-            let rise = DISTANCES[usize::from(drainage.receivers.code(c) & 7)] * cell * GENTLEST;
+            let rise = DISTANCES[usize::from(drainage.receivers.code(c) & 7)] * cell * MIN_SLOPE;
             let least = (f64::from(below) + rise) as f32;
             // In f32 the minimum rise may round to nothing, but the cell must drain. Dry ground that is higher than its
             // receiver stays.

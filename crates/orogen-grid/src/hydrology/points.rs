@@ -30,7 +30,7 @@ impl Points {
     /// `salt`. Holds 16 bytes per cell.
     #[must_use]
     pub fn new(window: Window, share: f64, salt: u32) -> Points {
-        let reach = (share.clamp(0.0, 1.0) * FURTHEST) as f32;
+        let reach = Points::reach(share);
         let (width, cells) = (window.width, window.len());
         let mut points = Points { window, reach, salt, inverse_distance: std::array::from_fn(|_| vec![1.0; cells]) };
         let mut planes = std::mem::take(&mut points.inverse_distance);
@@ -53,6 +53,13 @@ impl Points {
         });
         points.inverse_distance = planes;
         points
+    }
+
+    /// The maximum displacement along each axis, in cells, for a share of half a cell.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn reach(share: f64) -> f32 {
+        (share.clamp(0.0, 1.0) * FURTHEST) as f32
     }
 
     /// The displacement, in cells east and south, of the point of column `i` and row `j`.

@@ -1,0 +1,82 @@
+// Drainage, after `routing.wgsl` and `numbering.wgsl`. The words from `base` + 10 on are the area of a cell and the cells of a stream.
+const SOURCE = 0u;
+const FLOW = 2u;
+const DIRECTION = 3u;
+const WATERSHED = 4u;
+const STRAHLER = 5u;
+const FILLED = 6u;
+const ROUTING = 7u;
+const ORDER = 15u;
+const MARK = 16u;
+const NUMBER = 17u;
+const COUNTERS = 18u;
+// There are no points between cells.
+const POINT = SOURCE;
+
+// The layer of the filled heights.
+fn fill(base: u32, at: vec2<i32>) {
+    let cell = cell_at(at);
+    let height = word(SOURCE, cell);
+    let level = spill_level(cell, step_number());
+    set_word(FILLED, cell, select(height, height_bits(level), ordered(height) < level));
+}
+
+// Labels that lead to outlets, and the outlets that drain more than themselves.
+fn begin_watersheds(base: u32, at: vec2<i32>) {
+    let cell = cell_at(at);
+    let receiver = word(RECEIVER, cell);
+    let area = drained_cells(cell);
+    set_word(LABEL, cell, select(receiver, cell, receiver == NONE));
+    set_word(MARK, cell, select(0u, 1u, receiver == NONE && area > 1u));
+    let is_stream = select(area >= data[base + 11u], discharge(base, cell) >= f32(data[base + 11u]), rain_sums(base) != 0u);
+    set_word(ORDER, cell, select(0u, 1u, is_stream));
+}
+
+// Streams of the order of the step and higher: those downstream of the confluence of two streams of the order before. Streams of that order stay so, whatever
+// other calls write.
+fn raise_order(base: u32, at: vec2<i32>) {
+    let order = step_number();
+    if (order > 2u && counter(CHANGED) < order - 1u) {
+        return;
+    }
+    let cell = cell_at(at);
+    if (word(ORDER, cell) + 1u < order) {
+        return;
+    }
+    var inflows = 0;
+    for (var y = max(at.y - 1, 0); y <= min(at.y + 1, size().y - 1); y += 1) {
+        for (var x = max(at.x - 1, 0); x <= min(at.x + 1, size().x - 1); x += 1) {
+            let there = cell_at(vec2<i32>(x, y));
+            if (word(RECEIVER, there) == cell && word(ORDER, there) + 1u >= order) {
+                inflows += 1;
+            }
+        }
+    }
+    if (inflows < 2) {
+        return;
+    }
+    raise_counter(CHANGED, order);
+    var downstream = cell;
+    for (var k = 0u; k < cells() && downstream != NONE; k += 1u) {
+        if (word(ORDER, downstream) >= order) {
+            break;
+        }
+        raise_word(ORDER, downstream, order);
+        downstream = word(RECEIVER, downstream);
+    }
+}
+
+// The layers.
+fn finish(base: u32, at: vec2<i32>) {
+    let cell = cell_at(at);
+    let receiver = word(RECEIVER, cell);
+    var code = 8u;
+    if (receiver != NONE) {
+        code = code_between(cell, receiver);
+    }
+    let outlet = word(LABEL, cell);
+    set_sample(FLOW, cell, discharge(base, cell) * number(base, 10u));
+    set_sample(DIRECTION, cell, f32(code));
+    set_sample(WATERSHED, cell, select(0.0, f32(word(NUMBER, outlet)), word(MARK, outlet) == 1u));
+    set_sample(STRAHLER, cell, f32(word(ORDER, cell)));
+}

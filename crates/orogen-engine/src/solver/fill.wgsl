@@ -1,0 +1,19 @@
+// Depression filling, after `routing.wgsl`.
+const SOURCE = 0u;
+const FILLED = 1u;
+const DEPTH = 2u;
+const ROUTING = 3u;
+const COUNTERS = 11u;
+// There are no points between cells.
+const POINT = SOURCE;
+
+fn fill(base: u32, at: vec2<i32>) {
+    let cell = cell_at(at);
+    let height = word(SOURCE, cell);
+    let level = spill_level(cell, step_number());
+    let filled = select(height, height_bits(level), ordered(height) < level);
+    set_word(FILLED, cell, filled);
+    // An infinite height minus itself is not a number.
+    let depth = bitcast<u32>(bitcast<f32>(filled) - bitcast<f32>(height));
+    set_word(DEPTH, cell, select(depth, 0x7fc00000u, is_missing(height)));
+}

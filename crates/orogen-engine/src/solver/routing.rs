@@ -1,0 +1,227 @@
+//! Drainage on a graphics card: the passes of `routing.wgsl`.
+//!
+//! Depressions are drained as on the processor, by the passes between basins, but the spanning tree of basins is found by Borůvka's algorithm, whose rounds run
+//! for all basins at once (compare Jain, Kerbl, Gain, Finley and Cordonnier, "FastFlow: GPU acceleration of flow and depression routing for landscape
+//! simulation", 2024). Paths are followed by pointer doubling.
+
+use crate::lower::Passes;
+use orogen_grid::grid::Window;
+
+/// Number of planes with the sums of the rain.
+const RAIN_PLANES: usize = 6;
+
+/// The most cells over which the rain can be summed up: the sum of a part of it fits into 32 bits.
+const MOST_RAINY: usize = 1 << 22;
+
+/// Number of planes of the routing.
+const PLANES: usize = 8;
+
+/// The step of the last pass of a run, on the lattice.
+pub(crate) const LAST: u32 = 1 << 31;
+
+/// Number of counters.
+const COUNTERS: usize = 8;
+
+/// Cells by which one pass follows receivers, and the same for the accumulation: the constants of the shaders.
+const HOPS: usize = 16;
+const GATHERED_HOPS: usize = 8;
+
+/// How cells choose their receivers: the words of the shaders.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Descent {
+    /// By steepest descent.
+    Steepest,
+    /// The same with random lengths of diagonals by this salt, to which the number of the step is added.
+    Scattered(u32),
+    /// By steepest descent between points: their salt, and their maximum displacement along each axis, in cells.
+    Points(u32, f32),
+}
+
+/// The planes of a solver.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Planes {
+    /// Inputs.
+    pub(crate) inputs: usize,
+    /// Layers.
+    pub(crate) layers: usize,
+    /// Those beside inputs, layers, the routing, counters and the rain.
+    pub(crate) scratch: usize,
+    /// The plane of the rain, if areas are weighted by it.
+    pub(crate) rain: Option<usize>,
+}
+
+impl Planes {
+    /// Whether the rain can be summed up over a window.
+    pub(crate) fn can_rain(self, padded: &Window) -> bool {
+        self.rain.is_none() || padded.len() <= MOST_RAINY
+    }
+
+    /// `passes` with these planes.
+    fn of(self, passes: Passes, padded: &Window) -> Passes {
+        let rain = if self.rain.is_some() { RAIN_PLANES } else { 0 };
+        let scratch = PLANES + self.scratch + counter_planes(padded) + rain;
+        passes.with_layers(self.layers).with_scratch(scratch)
+    }
+
+    /// The plane of the rain, and the first one with its sums.
+    fn words(self, padded: &Window) -> [u32; 2] {
+        let sums = self.inputs + self.layers + PLANES + self.scratch + counter_planes(padded);
+        self.rain.map_or([0; 2], |rain| [rain, sums].map(|plane| plane as u32))
+    }
+}
+
+/// Why the processor weights the drainage areas of large domains.
+pub(crate) const RAIN: &str = "the rain over so many cells needs sums of 64 bits, for which WGSL has no atomics";
+
+/// Passes with words for the routing, and planes.
+pub(crate) fn passes(
+    code: &'static str,
+    padded: &Window,
+    sea_level: Option<f32>,
+    descent: Descent,
+    planes: Planes,
+) -> Passes {
+    planes
+        .of(Passes::new(code, &[]), padded)
+        .with_words(words(padded, sea_level, descent))
+        .with_words(planes.words(padded))
+}
+
+/// The words that `routing.wgsl` reads, before those of the rain.
+fn words(padded: &Window, sea_level: Option<f32>, descent: Descent) -> Vec<u32> {
+    let (kind, salt, reach) = match descent {
+        Descent::Steepest => (0, 0, 0.0),
+        Descent::Scattered(salt) => (1, salt, 0.0),
+        Descent::Points(salt, reach) => (2, salt, reach),
+    };
+    let [x, y] = [padded.x, padded.y].map(|start| [start as u32, (start >> 32) as u32]);
+    let sea_level = sea_level.unwrap_or(f32::MIN);
+    vec![x[0], x[1], y[0], y[1], sea_level.to_bits(), kind, salt, reach.to_bits()]
+}
+
+/// A step as the shaders read it: the planes that are read and written, and a number.
+pub(crate) fn step(from: u32, to: u32, number: u32) -> u32 {
+    from | to << 8 | number << 16
+}
+
+/// Number of planes that hold the counters: more than one in tiny windows.
+fn counter_planes(padded: &Window) -> usize {
+    COUNTERS.div_ceil(padded.len().max(1))
+}
+
+/// The farthest that cells of flats look for the rim, in cells.
+const FARTHEST: usize = 512;
+
+/// Number of rounds over basins in a step that begins with drained ground: there are few pits then. If basins are left, their pits wait for the next step.
+pub(crate) const FEW_ROUNDS: usize = 5;
+
+/// Number of rounds over basins that drain everything: each at least halves the basins.
+pub(crate) fn all_rounds(padded: &Window) -> usize {
+    let inner = padded.width.saturating_sub(2) * padded.height.saturating_sub(2);
+    (usize::BITS - inner.leading_zeros()) as usize
+}
+
+/// Number of passes in which paths over all cells are followed, if each of them multiplies the length by `factor`.
+pub(crate) fn doublings(padded: &Window, factor: usize) -> usize {
+    let (mut passes, mut length) = (1, factor);
+    while length < padded.len() {
+        passes += 1;
+        length = length.saturating_mul(factor);
+    }
+    passes
+}
+
+/// The same, following receivers by the usual number of cells.
+pub(crate) fn following(padded: &Window) -> usize {
+    doublings(padded, HOPS + 1)
+}
+
+/// Whether flats are drained by gradients over them, which take many passes. Otherwise each of their cells is a basin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Flats {
+    /// By gradients.
+    Graded,
+    /// As basins.
+    Basins,
+}
+
+/// `passes`, and those that find the receivers of all cells from the heights in a plane. The number of the step is that of the time step.
+pub(crate) fn route(passes: Passes, padded: &Window, rounds: usize, flats: Flats, step: u32) -> Passes {
+    let heights = step & 0xff;
+    let at = |passes: Passes, function, number: usize| then(passes, function, heights | (number as u32) << 16);
+    let mut passes = then(passes, "receive", step);
+    if flats == Flats::Graded {
+        let farthest = padded.width.max(padded.height).div_ceil(2).min(FARTHEST);
+        passes = at(passes, "begin_flats", 0);
+        passes = (1..=farthest).fold(passes, |passes, steps| at(passes, "spread_flats", steps));
+        passes = at(at(passes, "drain_flats", farthest + 2), "begin_basins", 0);
+    }
+    passes = follow(passes, padded, "find_pit");
+    for round in 1..=rounds {
+        for function in ["offer_pass", "choose_pass", "join", "find_root"] {
+            passes = at(passes, function, round);
+        }
+    }
+    at(passes, "lead_out", 0)
+}
+
+/// `passes`, and those that follow the labels of all cells to the end by a function.
+pub(crate) fn follow(passes: Passes, padded: &Window, function: &'static str) -> Passes {
+    (0..following(padded)).fold(passes, |passes, _| then(passes, function, 0))
+}
+
+/// `passes`, and those that find the spill levels of basins, and the number by which functions read them.
+pub(crate) fn spill(passes: Passes, padded: &Window) -> (Passes, u32) {
+    let turns = following(padded) as u32;
+    let passes = then(passes, "begin_spill", 0);
+    ((0..turns).fold(passes, |passes, k| then(passes, "raise_spill", step(0, 0, k % 2))), turns % 2)
+}
+
+/// `passes`, and those that number marked cells, of `numbering.wgsl`.
+pub(crate) fn number(passes: Passes) -> Passes {
+    ["count_marks", "sum_marks", "number_marks"].into_iter().fold(passes, |passes, name| then(passes, name, 0))
+}
+
+/// Passes that route the heights of plane 0 by steepest descent, with words of the solver after those of the routing.
+pub(crate) fn routed(
+    code: &'static str,
+    padded: &Window,
+    sea_level: Option<f32>,
+    own_words: &[u32],
+    planes: Planes,
+    flats: Flats,
+) -> Passes {
+    let passes = passes(code, padded, sea_level, Descent::Steepest, planes).with_words(own_words.iter().copied());
+    route(then(passes, "outlets", 0), padded, all_rounds(padded), flats, 0)
+}
+
+/// `passes`, and those that count the cells that drain through each cell.
+pub(crate) fn gather(passes: Passes, padded: &Window) -> Passes {
+    let passes = then(passes, "begin_areas", 0);
+    let steps = 0..doublings(padded, GATHERED_HOPS) as u32;
+    steps.fold(passes, |passes, k| then(passes, "gather_areas", k << 16))
+}
+
+/// The functions whose calls write to words of others, or read what others write.
+const SHARED: [&str; 14] = [
+    "begin_flats",
+    "spread_flats",
+    "find_pit",
+    "offer_pass",
+    "choose_pass",
+    "find_root",
+    "gather_areas",
+    "choose_piece",
+    "find_lake",
+    "count_cells",
+    "find_deepest",
+    "find_outflow",
+    "raise_order",
+    "lead_out",
+];
+
+/// `passes`, and a run of a function for all cells.
+pub(crate) fn then(passes: Passes, function: &'static str, step: u32) -> Passes {
+    let passes = passes.then(function, step, [0; 2]);
+    if SHARED.contains(&function) { passes.shared() } else { passes }
+}

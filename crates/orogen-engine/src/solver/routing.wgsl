@@ -1,0 +1,592 @@
+// Drainage: receivers by steepest descent, the spills of basins, paths out of depressions, and drainage areas. After orogen-grid's `hydrology`.
+//
+// Cells are numbered in row order. A solver defines `ROUTING`, the first of the planes below, and `COUNTERS`, the plane of the counters. The words from `base`
+// on are those of `routing.rs`. In `frame.step` the lower eight bits are the plane of the heights, the next eight another plane, and the next 15 a number.
+const OUTLET = ROUTING;
+const RECEIVER = ROUTING + 1u;
+const LABEL = ROUTING + 2u;
+const COMPONENT = ROUTING + 3u;
+const NEXT = ROUTING + 4u;
+const LOWEST = ROUTING + 5u;
+const EDGE = ROUTING + 6u;
+const WAY_OUT = ROUTING + 7u;
+// These planes take the place of those above before basins are found, and once the water has a way out.
+const TOWARD = ROUTING + 5u;
+const AWAY = ROUTING + 6u;
+const ANCESTOR = ROUTING + 3u;
+const AREA = ROUTING + 5u;
+const SPILL_NEXT = ROUTING + 3u;
+const SPILL_LEVEL = ROUTING + 5u;
+
+// No cell; as a label, that of all cells that drain to an outlet.
+const NONE = 0xffffffffu;
+// The number of passes that had work: rounds over basins, steps of the accumulation, those of the solver, and steps over flats.
+const ROUNDS = 0u;
+const GATHERED = 1u;
+const CHANGED = 2u;
+const SPREAD = 3u;
+const ALL_COUNTERS = 8u;
+// Receivers are followed by this many cells in one pass.
+const HOPS = 16;
+const GATHERED_HOPS = 8;
+// A step of the last pass of a run, on the lattice.
+const LAST = 0x80000000u;
+
+fn heights_plane() -> u32 { return frame.step & 0xffu; }
+fn other_plane() -> u32 { return (frame.step >> 8u) & 0xffu; }
+fn step_number() -> u32 { return (frame.step >> 16u) & 0x7fffu; }
+fn is_last() -> bool { return (frame.step & LAST) != 0u; }
+
+fn sea_level(base: u32) -> f32 { return number(base, 4u); }
+fn is_scattered(base: u32) -> bool { return data[base + 5u] == 1u; }
+fn is_between_points(base: u32) -> bool { return data[base + 5u] == 2u; }
+fn salt(base: u32) -> u32 { return data[base + 6u]; }
+fn reach(base: u32) -> f32 { return number(base, 7u); }
+// The plane of the rain, and the first of six planes with its sums; 0 without rain.
+fn rain_plane(base: u32) -> u32 { return data[base + 8u]; }
+fn rain_sums(base: u32) -> u32 { return data[base + 9u]; }
+
+fn counter(k: u32) -> u32 { return word(COUNTERS, k); }
+fn raise_counter(k: u32, value: u32) { raise_word(COUNTERS, k, value); }
+
+// The offset of a direction, clockwise from the east.
+fn offset_of(code: u32) -> vec2<i32> {
+    let east = select(select(0, -1, code >= 3u && code <= 5u), 1, code == 0u || code == 1u || code == 7u);
+    let south = select(select(0, -1, code >= 5u), 1, code >= 1u && code <= 3u);
+    return vec2<i32>(east, south);
+}
+
+// The neighbour in a direction of a cell that is not on the border.
+fn neighbour(cell: u32, code: u32) -> u32 {
+    let offset = offset_of(code);
+    return cell + u32(offset.y) * data[frame.base] + u32(offset.x);
+}
+
+// The direction from a cell to a neighbour.
+fn code_between(cell: u32, to: u32) -> u32 {
+    for (var code = 0u; code < 8u; code += 1u) {
+        if (neighbour(cell, code) == to) {
+            return code;
+        }
+    }
+    return 8u;
+}
+
+// An integer that sorts like the heights; 0 and -0 are equal.
+fn ordered(bits: u32) -> u32 {
+    if (bits == 0x80000000u) {
+        return 0x80000000u;
+    }
+    return select(~bits, bits | 0x80000000u, (bits >> 31u) == 0u);
+}
+
+// The bits of a height by its integer.
+fn height_bits(key: u32) -> u32 {
+    return select(~key, key & 0x7fffffffu, (key >> 31u) == 1u);
+}
+
+// The upper word of a product.
+fn upper_product(a: u32, b: u32) -> u32 {
+    let low = (a & 0xffffu) * (b & 0xffffu);
+    let first = (a >> 16u) * (b & 0xffffu) + (low >> 16u);
+    let second = (a & 0xffffu) * (b >> 16u) + (first & 0xffffu);
+    return (a >> 16u) * (b >> 16u) + (first >> 16u) + (second >> 16u);
+}
+
+// The product of two numbers of 64 bits, lower word first.
+fn product(a: vec2<u32>, b: vec2<u32>) -> vec2<u32> {
+    return vec2<u32>(a.x * b.x, upper_product(a.x, b.x) + a.x * b.y + a.y * b.x);
+}
+
+// A number of 64 bits shifted down by less than 32.
+fn shifted(a: vec2<u32>, by: u32) -> vec2<u32> {
+    return vec2<u32>((a.x >> by) | (a.y << (32u - by)), a.y >> by);
+}
+
+// A hash of a cell's position on the lattice of the world and a salt: that of `hydrology/direction.rs`.
+fn hashed(base: u32, cell: u32, with_salt: u32) -> u32 {
+    let at = vec2<u32>(cell % data[frame.base], cell / data[frame.base]);
+    let low = vec2<u32>(data[base], data[base + 2u]) + at;
+    let carry = select(vec2<u32>(0u), vec2<u32>(1u), low < at);
+    let high = vec2<u32>(data[base + 1u], data[base + 3u]) + carry;
+    var z = product(vec2<u32>(low.x, high.x), vec2<u32>(0x7f4a7c15u, 0x9e3779b9u))
+        ^ product(vec2<u32>(low.y, high.y ^ with_salt), vec2<u32>(0xd192ed03u, 0xd1b54a32u));
+    z = product(z ^ shifted(z, 30u), vec2<u32>(0x1ce4e5b9u, 0xbf58476du));
+    z = product(z ^ shifted(z, 27u), vec2<u32>(0x133111ebu, 0x94d049bbu));
+    return z.y;
+}
+
+// The displacement of a cell's point, in cells.
+fn point_of(base: u32, hash: u32) -> vec2<f32> {
+    let bits = vec2<f32>(f32(hash & 0xffffu), f32(hash >> 16u));
+    return (bits * (2.0 / 65535.0) - vec2<f32>(1.0)) * reach(base);
+}
+
+// The vector between the points of a cell and its neighbour in a direction, in cells.
+fn between_points(base: u32, cell: u32, code: u32) -> vec2<f32> {
+    let there = point_of(base, word(POINT, neighbour(cell, code)));
+    return vec2<f32>(offset_of(code)) + there - point_of(base, word(POINT, cell));
+}
+
+// Border, sea, cells that are not finite, and their neighbours.
+fn outlets(base: u32, at: vec2<i32>) {
+    let here = word(heights_plane(), cell_at(at));
+    var is_outlet = any(at == vec2<i32>(0)) || any(at == size() - vec2<i32>(1)) || bitcast<f32>(here) <= sea_level(base);
+    for (var y = -1; y <= 1; y += 1) {
+        for (var x = -1; x <= 1; x += 1) {
+            let there = clamp(at + vec2<i32>(x, y), vec2<i32>(0), size() - vec2<i32>(1));
+            if (is_missing(word(heights_plane(), cell_at(there)))) {
+                is_outlet = true;
+            }
+        }
+    }
+    set_word(OUTLET, cell_at(at), select(0u, 1u, is_outlet));
+}
+
+// The direction of steepest descent; 8 without a lower neighbour.
+fn steepest(base: u32, cell: u32) -> u32 {
+    let h = sample(heights_plane(), cell);
+    let on_lattice = is_last() || !is_between_points(base);
+    var diagonal = 0.70710678;
+    if (on_lattice && !is_last() && is_scattered(base)) {
+        let share = f32(hashed(base, cell, salt(base) + step_number()) >> 8u) * (1.0 / 16777216.0);
+        diagonal = 1.0 / (2.0 - share);
+    }
+    var most = 1.1754944e-38;
+    var found = 0u;
+    for (var code = 0u; code < 8u; code += 1u) {
+        let drop = h - sample(heights_plane(), neighbour(cell, code));
+        var per = select(1.0, diagonal, (code & 1u) == 1u);
+        if (!on_lattice) {
+            let away = between_points(base, cell, code);
+            per = 1.0 / sqrt(away.x * away.x + away.y * away.y);
+        }
+        let fall = drop * per;
+        if (fall > most) {
+            most = fall;
+            found = 1u << code;
+        } else if (fall == most) {
+            found |= 1u << code;
+        }
+    }
+    return one_of(base, cell, found);
+}
+
+// Chooses one direction of a set by a hash of the cell; 8 of an empty set.
+fn one_of(base: u32, cell: u32, directions: u32) -> u32 {
+    if (directions == 0u) {
+        return 8u;
+    }
+    var rest = directions;
+    let count = countOneBits(directions);
+    if (count > 1u) {
+        let skip = upper_product(hashed(base, cell, 0u), count);
+        for (var k = 0u; k < skip; k += 1u) {
+            rest &= rest - 1u;
+        }
+    }
+    return firstTrailingBit(rest);
+}
+
+// Receivers by steepest descent. Pits, outlets and cells of flats have none.
+fn receive(base: u32, at: vec2<i32>) {
+    let cell = cell_at(at);
+    if (cell == 0u) {
+        for (var k = 0u; k < ALL_COUNTERS; k += 1u) {
+            set_word(COUNTERS, k, 0u);
+        }
+    }
+    var receiver = NONE;
+    var label = NONE;
+    if (word(OUTLET, cell) == 0u) {
+        let code = steepest(base, cell);
+        if (code < 8u) {
+            receiver = neighbour(cell, code);
+        }
+        label = select(receiver, cell, receiver == NONE);
+    }
+    set_word(RECEIVER, cell, receiver);
+    set_word(LABEL, cell, label);
+    begin_basins(base, at);
+}
+
+// Each cell without a receiver is a basin.
+fn begin_basins(base: u32, at: vec2<i32>) {
+    let cell = cell_at(at);
+    set_word(COMPONENT, cell, cell);
+    set_word(NEXT, cell, cell);
+    set_word(LOWEST, cell, NONE);
+    set_word(EDGE, cell, NONE);
+    set_word(WAY_OUT, cell, NONE);
+}
+
+// Flats after `hydrology/flats.rs`: steps away from higher ground, and steps towards the lower rim. Cells of flats that have no rim, or are farther from it than
+// the passes reach, stay basins of their own. A cell of a flat has a number of steps away, or NONE until it is known; other cells have 0.
+fn begin_flats(base: u32, at: vec2<i32>) {
+    let cell = cell_at(at);
+    var away = 0u;
+    var toward = 0u;
+    if (word(OUTLET, cell) == 0u && word(RECEIVER, cell) == NONE) {
+        away = NONE;
+        let height = ordered(word(heights_plane(), cell));
+        for (var code = 0u; code < 8u; code += 1u) {
+            let there = neighbour(cell, code);
+            let height_there = ordered(word(heights_plane(), there));
+            if (height_there > height) {
+                away = 1u;
+            } else if (height_there == height && (word(RECEIVER, there) != NONE || word(OUTLET, there) == 1u)) {
+                toward = 1u;
+            }
+        }
+        raise_counter(SPREAD, 1u);
+    }
+    set_word(AWAY, cell, away);
+    set_word(TOWARD, cell, toward);
+}
+
+// Whether a neighbour belongs to the same flat.
+fn is_level(cell: u32, there: u32) -> bool {
+    return word(AWAY, there) != 0u && ordered(word(heights_plane(), there)) == ordered(word(heights_plane(), cell));
+}
+
+// Cells beside those with this number of steps have one more. What other calls write now is more than that.
+fn spread_flats(base: u32, at: vec2<i32>) {
+    let steps = step_number();
+    let cell = cell_at(at);
+    if (counter(SPREAD) < steps || word(AWAY, cell) == 0u) {
+        return;
+    }
+    var is_away = false;
+    var is_toward = false;
+    for (var code = 0u; code < 8u; code += 1u) {
+        let there = neighbour(cell, code);
+        if (is_level(cell, there)) {
+            is_away = is_away || word(AWAY, there) == steps;
+            is_toward = is_toward || word(TOWARD, there) == steps;
+        }
+    }
+    if (is_away && word(AWAY, cell) == NONE) {
+        set_word(AWAY, cell, steps + 1u);
+        raise_counter(SPREAD, steps + 1u);
+    }
+    if (is_toward && word(TOWARD, cell) == 0u) {
+        set_word(TOWARD, cell, steps + 1u);
+        raise_counter(SPREAD, steps + 1u);
+    }
+}
+
+// Twice the steps towards the rim, less those away from higher ground. The number of the step is more than all steps that were counted.
+fn slope_of_flat(cell: u32) -> i32 {
+    return 2 * i32(word(TOWARD, cell)) - i32(min(word(AWAY, cell), step_number()));
+}
+
+// Receivers of the cells of flats with a rim.
+fn drain_flats(base: u32, at: vec2<i32>) {
+    let cell = cell_at(at);
+    let toward = word(TOWARD, cell);
+    if (toward == 0u) {
+        return;
+    }
+    let height = ordered(word(heights_plane(), cell));
+    var directions = 0u;
+    var least = slope_of_flat(cell);
+    for (var code = 0u; code < 8u; code += 1u) {
+        let there = neighbour(cell, code);
+        if (ordered(word(heights_plane(), there)) != height) {
+            continue;
+        }
+        if (toward == 1u) {
+            // At the rim: to a cell that drains.
+            if (word(AWAY, there) == 0u) {
+                directions |= 1u << code;
+            }
+        } else if (word(AWAY, there) != 0u && word(TOWARD, there) != 0u) {
+            let slope = slope_of_flat(there);
+            if (slope < least) {
+                least = slope;
+                directions = 1u << code;
+            } else if (slope == least && directions != 0u) {
+                directions |= 1u << code;
+            }
+        }
+    }
+    let receiver = neighbour(cell, one_of(base, cell, directions));
+    set_word(RECEIVER, cell, receiver);
+    set_word(LABEL, cell, receiver);
+}
+
+// Leads the label of each cell towards its pit or outlet. Other calls do the same to the labels that this one reads, which only shortens the way.
+fn find_pit(base: u32, at: vec2<i32>) {
+    let cell = cell_at(at);
+    var label = word(LABEL, cell);
+    if (label == cell) {
+        raise_counter(ROUNDS, 1u);
+        return;
+    }
+    for (var k = 0; k < HOPS && label != NONE; k += 1) {
+        let next = word(LABEL, label);
+        if (next == label) {
+            break;
+        }
+        label = next;
+    }
+    set_word(LABEL, cell, label);
+}
+
+// Basins that are known to spill into each other form components. The component of a cell: its root pit, or NONE outside.
+fn component_of(cell: u32) -> u32 {
+    let label = word(LABEL, cell);
+    if (label == NONE) {
+        return NONE;
+    }
+    return word(COMPONENT, label);
+}
+
+// The ends of an edge: two neighbours. Edges are numbered by their first cell and the direction of the other one, which is below or to the east.
+fn edge_between(a: u32, b: u32) -> u32 {
+    return 4u * min(a, b) + code_between(min(a, b), max(a, b));
+}
+
+fn edge_ends(edge: u32) -> vec2<u32> {
+    return vec2<u32>(edge >> 2u, neighbour(edge >> 2u, edge & 3u));
+}
+
+// The height of the pass between two cells, as an ordered integer.
+fn pass_key(a: u32, b: u32) -> u32 {
+    return max(ordered(word(heights_plane(), a)), ordered(word(heights_plane(), b)));
+}
+
+// Finds the lowest pass out of each component.
+fn offer_pass(base: u32, at: vec2<i32>) {
+    if (counter(ROUNDS) < step_number()) {
+        return;
+    }
+    let cell = cell_at(at);
+    let mine = component_of(cell);
+    if (mine == NONE) {
+        return;
+    }
+    var lowest = NONE;
+    for (var code = 0u; code < 8u; code += 1u) {
+        let there = neighbour(cell, code);
+        if (component_of(there) != mine) {
+            lowest = min(lowest, pass_key(cell, there));
+        }
+    }
+    if (lowest != NONE) {
+        lower_word(LOWEST, mine, lowest);
+    }
+}
+
+// Of equally low passes, the first edge.
+fn choose_pass(base: u32, at: vec2<i32>) {
+    if (counter(ROUNDS) < step_number()) {
+        return;
+    }
+    let cell = cell_at(at);
+    let mine = component_of(cell);
+    if (mine == NONE) {
+        return;
+    }
+    let lowest = word(LOWEST, mine);
+    // A pass is at least as high as both cells.
+    if (ordered(word(heights_plane(), cell)) > lowest) {
+        return;
+    }
+    for (var code = 0u; code < 8u; code += 1u) {
+        let there = neighbour(cell, code);
+        if (component_of(there) != mine && pass_key(cell, there) == lowest) {
+            lower_word(EDGE, mine, edge_between(cell, there));
+        }
+    }
+}
+
+// Joins each component to the one beyond its pass. Of two that choose the same edge, that with the smaller root waits.
+fn join(base: u32, at: vec2<i32>) {
+    let cell = cell_at(at);
+    if (counter(ROUNDS) < step_number() || word(LABEL, cell) != cell || word(COMPONENT, cell) != cell) {
+        return;
+    }
+    let edge = word(EDGE, cell);
+    if (edge == NONE) {
+        return;
+    }
+    let ends = edge_ends(edge);
+    let is_first = component_of(ends.x) == cell;
+    let theirs = component_of(select(ends.x, ends.y, is_first));
+    if (theirs != NONE && word(EDGE, theirs) == edge && cell < theirs) {
+        return;
+    }
+    set_word(NEXT, cell, theirs);
+    // The basins from the pass to the root spilled towards the root: from now on, towards the pass.
+    var basin = word(LABEL, select(ends.y, ends.x, is_first));
+    var way = edge;
+    for (var k = 0u; k < cells(); k += 1u) {
+        let before = word(WAY_OUT, basin);
+        set_word(WAY_OUT, basin, way);
+        if (before == NONE) {
+            break;
+        }
+        let old = edge_ends(before);
+        let first = word(LABEL, old.x);
+        basin = select(first, word(LABEL, old.y), first == basin);
+        way = before;
+    }
+}
+
+// The new root of each basin.
+fn find_root(base: u32, at: vec2<i32>) {
+    let cell = cell_at(at);
+    if (counter(ROUNDS) < step_number() || word(LABEL, cell) != cell) {
+        return;
+    }
+    var root = word(COMPONENT, cell);
+    for (var k = 0u; k < cells() && root != NONE; k += 1u) {
+        let next = word(NEXT, root);
+        if (next == root) {
+            break;
+        }
+        root = next;
+    }
+    set_word(COMPONENT, cell, root);
+    set_word(LOWEST, cell, NONE);
+    set_word(EDGE, cell, NONE);
+    if (root == cell) {
+        raise_counter(ROUNDS, step_number() + 1u);
+    }
+}
+
+// Reverses the path from the pass to the pit, so that water flows from the pit to the pass and out.
+fn lead_out(base: u32, at: vec2<i32>) {
+    let pit = cell_at(at);
+    let edge = word(WAY_OUT, pit);
+    if (word(LABEL, pit) != pit || edge == NONE) {
+        return;
+    }
+    let ends = edge_ends(edge);
+    let is_first = word(LABEL, ends.x) == pit;
+    var cell = select(ends.y, ends.x, is_first);
+    var to = select(ends.x, ends.y, is_first);
+    for (var k = 0u; k < cells(); k += 1u) {
+        let next = word(RECEIVER, cell);
+        set_word(RECEIVER, cell, to);
+        if (next == NONE) {
+            break;
+        }
+        to = cell;
+        cell = next;
+    }
+}
+
+// The basin that each basin spills into, and the height of the pass.
+fn begin_spill(base: u32, at: vec2<i32>) {
+    let pit = cell_at(at);
+    let edge = word(WAY_OUT, pit);
+    if (word(LABEL, pit) != pit || edge == NONE) {
+        return;
+    }
+    let ends = edge_ends(edge);
+    let first = word(LABEL, ends.x);
+    set_word(SPILL_NEXT, pit, select(first, word(LABEL, ends.y), first == pit));
+    set_word(SPILL_LEVEL, pit, pass_key(ends.x, ends.y));
+}
+
+// Raises the spill levels to those of the basins downstream. The number is 0 or 1, in turn.
+fn raise_spill(base: u32, at: vec2<i32>) {
+    let pit = cell_at(at);
+    if (word(LABEL, pit) != pit) {
+        return;
+    }
+    let turn = step_number();
+    var next = word(SPILL_NEXT + turn, pit);
+    var level = word(SPILL_LEVEL + turn, pit);
+    for (var k = 0; k < HOPS && next != NONE; k += 1) {
+        level = max(level, word(SPILL_LEVEL + turn, next));
+        next = word(SPILL_NEXT + turn, next);
+    }
+    set_word(SPILL_NEXT + 1u - turn, pit, next);
+    set_word(SPILL_LEVEL + 1u - turn, pit, level);
+}
+
+// The rain on a cell in 4096ths of a factor of 1, in two parts of which the first counts 1024: so that their sums over all cells fit into a word each.
+fn rain_on(base: u32, cell: u32) -> vec2<u32> {
+    let bits = word(rain_plane(base), cell);
+    var factor = clamp(bitcast<f32>(bits), 0.01, 100.0);
+    if (is_missing(bits)) {
+        // Not a number counts as 1.
+        factor = select(select(1.0, 0.01, bits == 0xff800000u), 100.0, bits == 0x7f800000u);
+    }
+    let weight = u32(factor * 4096.0 + 0.5);
+    return vec2<u32>(weight >> 10u, weight & 1023u);
+}
+
+// Each cell drains itself.
+fn begin_areas(base: u32, at: vec2<i32>) {
+    let cell = cell_at(at);
+    set_word(ANCESTOR, cell, word(RECEIVER, cell));
+    set_word(AREA, cell, 1u);
+    set_word(AREA + 1u, cell, 0u);
+    let sums = rain_sums(base);
+    if (sums != 0u) {
+        let rain = rain_on(base, cell);
+        set_word(sums, cell, rain.x);
+        set_word(sums + 1u, cell, 0u);
+        set_word(sums + 3u, cell, rain.y);
+        set_word(sums + 4u, cell, 0u);
+    }
+}
+
+// Gives the cells that drain through each cell within 8^k steps to its ancestors: then they are known within 8^(k + 1) steps.
+fn gather_areas(base: u32, at: vec2<i32>) {
+    if (counter(GATHERED) < step_number()) {
+        return;
+    }
+    gather_plane(AREA, cell_at(at));
+    let sums = rain_sums(base);
+    if (sums != 0u) {
+        gather_plane(sums, cell_at(at));
+        gather_plane(sums + 3u, cell_at(at));
+    }
+}
+
+// Of three planes, one is read, the second one is added to, and the third one is cleared for the next pass.
+fn gather_plane(first: u32, cell: u32) {
+    let k = step_number();
+    let sum = word(first + k % 3u, cell);
+    let to = first + (k + 1u) % 3u;
+    set_word(first + (k + 2u) % 3u, cell, 0u);
+    add_word(to, cell, sum);
+    var ancestor = word(ANCESTOR + (k & 1u), cell);
+    for (var hop = 1; hop < GATHERED_HOPS && ancestor != NONE; hop += 1) {
+        add_word(to, ancestor, sum);
+        ancestor = word(ANCESTOR + (k & 1u), ancestor);
+    }
+    set_word(ANCESTOR + 1u - (k & 1u), cell, ancestor);
+    if (ancestor != NONE) {
+        raise_counter(GATHERED, k + 1u);
+    }
+}
+
+// Number of cells that drain through a cell, once all passes have run.
+fn drained_cells(cell: u32) -> u32 {
+    return word(AREA + (counter(GATHERED) + 1u) % 3u, cell);
+}
+
+// The same weighted by the rain.
+fn discharge(base: u32, cell: u32) -> f32 {
+    let sums = rain_sums(base);
+    if (sums == 0u) {
+        return f32(drained_cells(cell));
+    }
+    let turn = sums + (counter(GATHERED) + 1u) % 3u;
+    return f32(word(turn, cell)) * 0.25 + f32(word(turn + 3u, cell)) * (1.0 / 4096.0);
+}
+
+// The level to which water fills the basin of a cell, as an ordered integer; 0 outside. The number is that of the last raise.
+fn spill_level(cell: u32, turn: u32) -> u32 {
+    let label = word(LABEL, cell);
+    if (label == NONE) {
+        return 0u;
+    }
+    return word(SPILL_LEVEL + turn, label);
+}

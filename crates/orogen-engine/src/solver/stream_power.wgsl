@@ -1,0 +1,213 @@
+// Stream power: steps of orogen-grid's `hydrology/stream_power.rs`, `erosion.rs`, `creep.rs` and `points.rs`, after `routing.wgsl`.
+//
+// The heights move between three planes. The layers hold other data until the last pass.
+const SOURCE = 0u;
+const ERODIBILITY = 1u;
+const UPLIFT = 2u;
+const HEIGHT = 4u;
+const FLOW = 5u;
+const CHANGE = 6u;
+const ROUTING = 7u;
+const POINT = 15u;
+const SPARE = 16u;
+const COUNTERS = 22u;
+// Which piece of the law applies to each cell.
+const PIECE = CHANGE;
+// The factor and the offset of a piece, twice.
+const AFFINE = 18u;
+
+const FREE = 1u;
+const LIMITED = 2u;
+const RAISED = 3u;
+
+// The law's numbers for a cell.
+struct Law {
+    // The minimum and maximum height above the receiver.
+    least: f32,
+    most: f32,
+    // Uplift of the step, in metres.
+    risen: f32,
+    // What is cut of the drop to the receiver, over what is left of it.
+    cut: f32,
+}
+
+// Draws the points of the cells.
+fn draw_points(base: u32, at: vec2<i32>) {
+    set_word(POINT, cell_at(at), hashed(base, cell_at(at), salt(base)));
+}
+
+// The inverse distance from a cell to its receiver, in cells.
+fn inverse_distance(base: u32, cell: u32, receiver: u32) -> f32 {
+    let code = code_between(cell, receiver);
+    if (is_last() || !is_between_points(base)) {
+        return select(1.0, 0.70710678, (code & 1u) == 1u);
+    }
+    let away = between_points(base, cell, code);
+    return 1.0 / sqrt(away.x * away.x + away.y * away.y);
+}
+
+fn law_of(base: u32, cell: u32, receiver: u32) -> Law {
+    let near = inverse_distance(base, cell, receiver);
+    let most = select(number(base, 13u), number(base, 14u), is_last());
+    var law = Law(number(base, 12u) / near, most / near, 0.0, 0.0);
+    if (is_last()) {
+        return law;
+    }
+    law.risen = number(base, 15u);
+    if (data[base + 17u] == 1u) {
+        law.risen *= sample(UPLIFT, cell);
+        if (is_missing(word(UPLIFT, cell))) {
+            law.risen = 1e30;
+        }
+    }
+    law.cut = number(base, 10u) * near * power(discharge(base, cell), number(base, 11u));
+    if (data[base + 16u] == 1u) {
+        let factor = word(ERODIBILITY, cell);
+        law.cut *= max(select(bitcast<f32>(factor), 0.0, is_missing(factor)), 0.0);
+    }
+    law.cut = min(law.cut, 1e30);
+    return law;
+}
+
+// The change of a cell's height is a function of its receiver's in three pieces, each of them affine. Chooses the piece by the changes that were computed with
+// the pieces chosen before. The first choice is that of the time step before, if the other plane is 1.
+fn choose_piece(base: u32, at: vec2<i32>) {
+    let iteration = step_number();
+    if (counter(CHANGED) < iteration) {
+        return;
+    }
+    let cell = cell_at(at);
+    let receiver = word(RECEIVER, cell);
+    set_word(ANCESTOR, cell, receiver);
+    if (receiver == NONE) {
+        set_sample(AFFINE, cell, 0.0);
+        set_sample(AFFINE + 1u, cell, 0.0);
+        return;
+    }
+    let law = law_of(base, cell, receiver);
+    let drop = sample(heights_plane(), cell) - sample(heights_plane(), receiver);
+    var below = 0.0;
+    if (iteration > 0u) {
+        below = sample(AFFINE + 3u, receiver);
+    }
+    let left = (drop + law.risen - below) / (1.0 + law.cut);
+    let before = word(PIECE, cell);
+    var piece = FREE;
+    if (left >= law.most) {
+        piece = LIMITED;
+    }
+    if (left <= law.least || law.most <= law.least) {
+        piece = RAISED;
+    }
+    if (iteration == 0u && other_plane() == 1u && before != 0u) {
+        piece = before;
+    }
+    if (iteration == 0u || before != piece) {
+        raise_counter(CHANGED, iteration + 1u);
+    }
+    var factor = 1.0;
+    var offset = select(law.least, law.most, piece == LIMITED) - drop;
+    if (piece == FREE) {
+        factor = law.cut / (1.0 + law.cut);
+        offset = law.risen / (1.0 + law.cut) - drop * factor;
+    }
+    set_word(PIECE, cell, piece);
+    set_sample(AFFINE, cell, factor);
+    set_sample(AFFINE + 1u, cell, offset);
+}
+
+// Composes the pieces from each cell downstream. The other plane is 0 or 1, in turn.
+fn compose_pieces(base: u32, at: vec2<i32>) {
+    if (counter(CHANGED) <= step_number()) {
+        return;
+    }
+    let cell = cell_at(at);
+    let turn = other_plane();
+    var ancestor = word(ANCESTOR + turn, cell);
+    var factor = sample(AFFINE + 2u * turn, cell);
+    var offset = sample(AFFINE + 2u * turn + 1u, cell);
+    for (var k = 0; k < HOPS && ancestor != NONE; k += 1) {
+        offset += factor * sample(AFFINE + 2u * turn + 1u, ancestor);
+        factor *= sample(AFFINE + 2u * turn, ancestor);
+        ancestor = word(ANCESTOR + turn, ancestor);
+    }
+    set_word(ANCESTOR + 1u - turn, cell, ancestor);
+    set_sample(AFFINE + 2u - 2u * turn, cell, factor);
+    set_sample(AFFINE + 3u - 2u * turn, cell, offset);
+}
+
+// The heights after the step.
+fn set_heights(base: u32, at: vec2<i32>) {
+    let cell = cell_at(at);
+    let receiver = word(RECEIVER, cell);
+    let before = word(heights_plane(), cell);
+    if (receiver == NONE) {
+        set_word(other_plane(), cell, before);
+        return;
+    }
+    let law = law_of(base, cell, receiver);
+    let height_below = sample(heights_plane(), receiver);
+    let change_below = sample(AFFINE + 3u, receiver);
+    let above = (bitcast<f32>(before) - height_below) + law.risen - change_below;
+    let below = height_below + change_below;
+    let height = below + max(min(above / (1.0 + law.cut), law.most), law.least);
+    // The minimum slope may round to nothing, but the cell must drain.
+    let least = height_bits(ordered(bitcast<u32>(below)) + 1u);
+    set_word(other_plane(), cell, select(least, bitcast<u32>(height), height > below));
+}
+
+// A stage of soil creep. The third of the planes has the heights of the stage before the last.
+fn creep(base: u32, at: vec2<i32>) {
+    let cell = cell_at(at);
+    let here = word(heights_plane(), cell);
+    if (word(OUTLET, cell) == 1u) {
+        set_word(other_plane(), cell, here);
+        return;
+    }
+    let h = bitcast<f32>(here);
+    var sides = 0.0;
+    var corners = 0.0;
+    for (var code = 0u; code < 8u; code += 2u) {
+        sides += sample(heights_plane(), neighbour(cell, code)) - h;
+        corners += sample(heights_plane(), neighbour(cell, code + 1u)) - h;
+    }
+    let stage = f32(step_number());
+    let last = HEIGHT + 2u * SPARE + 1u - heights_plane() - other_plane();
+    var again = 0.0;
+    if (step_number() > 1u) {
+        again = (stage - 1.0) / stage * (h - sample(last, cell));
+    }
+    let inflow = (2.0 * stage - 1.0) / stage * number(base, 18u) * (4.0 * sides + corners);
+    set_sample(other_plane(), cell, h + again + inflow);
+}
+
+// Interpolates the heights at the points to the lattice along the local slope: that of the least-squares plane through the point.
+fn onto_lattice(base: u32, at: vec2<i32>) {
+    let cell = cell_at(at);
+    let here = word(heights_plane(), cell);
+    if (word(OUTLET, cell) == 1u) {
+        set_word(other_plane(), cell, here);
+        return;
+    }
+    let h = bitcast<f32>(here);
+    var squares = vec3<f32>(0.0);
+    var rises = vec2<f32>(0.0);
+    for (var code = 0u; code < 8u; code += 1u) {
+        let away = between_points(base, cell, code);
+        let rise = sample(heights_plane(), neighbour(cell, code)) - h;
+        squares += vec3<f32>(away.x * away.x, away.x * away.y, away.y * away.y);
+        rises += away * rise;
+    }
+    let scale = 1.0 / (squares.x * squares.z - squares.y * squares.y);
+    let slope = vec2<f32>(rises.x * squares.z - rises.y * squares.y, rises.y * squares.x - rises.x * squares.y) * scale;
+    set_sample(other_plane(), cell, h - dot(slope, point_of(base, word(POINT, cell))));
+}
+
+// The layers.
+fn finish(base: u32, at: vec2<i32>) {
+    let cell = cell_at(at);
+    let height = word(heights_plane(), cell);
+    set_word(HEIGHT, cell, height);
+    set_sample(FLOW, cell, discharge(base, cell) * number(base, 19u));
+    set_sample(CHANGE, cell, bitcast<f32>(height) - sample(SOURCE, cell));
+}
