@@ -21,8 +21,7 @@ const LEVEL_WORDS: usize = 5;
 /// If the planes exceed the [largest buffer](Gpu::buffer_limit), the window is computed in tiles, each from its own part of the level above.
 ///
 /// # Errors
-/// If the device was lost, has too little memory for a single sample and what it is made from, or refuses a shader; if the level above or an input covers too
-/// little.
+/// If the device was lost, has too little memory for a single sample and what it is made from, or refuses a shader; if the level above covers too little.
 pub fn refine(
     gpu: &Gpu,
     passes: &LevelPasses,
@@ -55,6 +54,16 @@ pub fn refine(
         }
     }
     Ok(Some(out))
+}
+
+/// The part of an input that a tile needs, without values beyond the input's edge; `None` if that is all of it. As `Levelled::refine` does, the last samples at
+/// the edge read inputs that none of the window's samples depend on.
+fn padded(input: &Grid, grown: &Window) -> Option<Grid> {
+    (input.window() != grown).then(|| {
+        let mut part = Grid::filled(*grown, f32::NAN);
+        part.paste(input);
+        part
+    })
 }
 
 /// A level with its texts.
@@ -132,9 +141,8 @@ impl<'a> Level<'a> {
     ) -> Result<Option<Vec<Grid>>, Failure> {
         let Extents { above, grown } = self.extents(tile);
         let [planes, planes_above] = self.planes();
-        let crop = |grid: &'a Grid, window: &Window| cropped(Some(grid), window);
-        let parents = self.above.iter().map(|grid| crop(grid, &above)).collect::<Result<Vec<_>, _>>()?;
-        let inputs = self.inputs.iter().map(|grid| crop(grid, &grown)).collect::<Result<Vec<_>, _>>()?;
+        let parents = self.above.iter().map(|grid| cropped(Some(grid), &above)).collect::<Result<Vec<_>, _>>()?;
+        let inputs: Vec<Option<Grid>> = self.inputs.iter().map(|grid| padded(grid, &grown)).collect();
         let first_above = planes * grown.len();
         let first_input = self.passes.planes + self.passes.scratch;
         let parents = self.above.iter().zip(&parents).enumerate();

@@ -194,15 +194,19 @@ fn between(at: vec2<i32>, code: u32) -> f32 {
     return max(distance_of(at, at + step_of(code)), 0.35);
 }
 
-// Whether the diagonal from a cell to the south-east is open, rather than the one that crosses it: links open theirs, otherwise the shorter one is.
+// Whether the diagonal from a cell to the south-east is open, rather than the one that crosses it: links open theirs, the last one if two cross, and otherwise the
+// shorter one is.
 fn is_falling(at: vec2<i32>) -> bool {
     let east = at + vec2<i32>(1, 0);
     let south = at + vec2<i32>(0, 1);
-    if (plane(LED, at) == 1.0 || plane(LED, at + vec2<i32>(1)) == 5.0) {
+    if (plane(LED, at + vec2<i32>(1)) == 5.0) {
         return true;
     }
     if (plane(LED, east) == 3.0 || plane(LED, south) == 7.0) {
         return false;
+    }
+    if (plane(LED, at) == 1.0) {
+        return true;
     }
     return between(at, 1u) < between(east, 3u);
 }
