@@ -108,7 +108,7 @@ fn settle_modules(folder: &Path, names: &[String], check: bool) -> Result {
 }
 
 /// Writes the documents made from declarations: the JSON Schema of recipes and the reference of the ops.
-pub fn written(check: bool) -> Result {
+fn written(check: bool) -> Result {
     for (arguments, path) in [("schema", SCHEMA), ("ops --markdown", REFERENCE)] {
         let text = shell::capture(&mut shell::cargo(&format!("run --quiet --package orogen-cli -- {arguments}")))?;
         if text.trim().is_empty() {

@@ -8,8 +8,8 @@ pub const ABOUT: &str = "run libFuzzer on the readers of files and texts";
 pub const HELP: &str = "
 Usage: cargo xtask fuzz [TARGET...] [--seconds N] [--runs N]
 
-Builds fuzz/ with coverage counters and AddressSanitizer into target/fuzz and runs all targets, or those named, for N seconds each (default 60)
-or N executions, whichever comes first, starting with the files in fuzz/corpus/TARGET. New inputs are written to target/fuzz/found, not to the committed corpus. Inputs that break a reader
+Builds fuzz/ with coverage counters and AddressSanitizer into target/fuzz and runs all targets, or those named, as many at once as there are cores, for N seconds
+each (default 60) or N executions, whichever comes first, starting with the files in fuzz/corpus/TARGET. New inputs are written to target/fuzz/found, not to the committed corpus. Inputs that break a reader
 are written to fuzz/artifacts. Needs a C++ compiler for libFuzzer; cargo-fuzz is optional.
 ";
 
@@ -44,29 +44,38 @@ pub fn run(args: &[String]) -> Result {
     }
     let folder = shell::target_dir().join("fuzz");
     let artifacts = shell::root().join("fuzz/artifacts");
+    let host = shell::host()?;
+    let mut build = shell::cargo("build --quiet --release --manifest-path fuzz/Cargo.toml");
+    build
+        .args(named.iter().flat_map(|target| ["--bin", target]))
+        // Sanitizers are unstable; this allows them in the stable compiler that builds everything else.
+        .env("RUSTC_BOOTSTRAP", "1")
+        .env("RUSTFLAGS", FLAGS)
+        // A named target keeps the flags from build scripts.
+        .env("CARGO_BUILD_TARGET", &host)
+        .env("CARGO_TARGET_DIR", &folder)
+        .env("CARGO_INCREMENTAL", "0");
+    shell::run(&mut build)?;
+    let mut commands = Vec::with_capacity(named.len());
     for target in named {
         let found = folder.join("found").join(target);
         for folder in [&found, &artifacts.join(target)] {
             std::fs::create_dir_all(folder).map_err(|cause| crate::failure::on_file("make", folder, &cause))?;
         }
-        let host = shell::host()?;
-        let mut command = shell::cargo("run --quiet --release --manifest-path fuzz/Cargo.toml --bin");
+        let mut command = shell::program(folder.join(&host).join("release").join(target));
         command
-            .arg(target)
-            .arg("--")
             .args([&found, &shell::root().join("fuzz/corpus").join(target)])
             .arg(format!("-max_total_time={seconds}"))
             .args(runs.map(|runs| format!("-runs={runs}")))
             .arg(format!("-artifact_prefix={}/", artifacts.join(target).display()))
-            .args(["-rss_limit_mb=1024", "-malloc_limit_mb=256", "-timeout=10", "-print_final_stats=1", "-verbosity=0"])
-            // Sanitizers are unstable; this allows them in the stable compiler that builds everything else.
-            .env("RUSTC_BOOTSTRAP", "1")
-            .env("RUSTFLAGS", FLAGS)
-            // A named target keeps the flags from build scripts.
-            .env("CARGO_BUILD_TARGET", &host)
-            .env("CARGO_TARGET_DIR", &folder)
-            .env("CARGO_INCREMENTAL", "0");
-        shell::run(&mut command)?;
+            .args([
+                "-rss_limit_mb=1024",
+                "-malloc_limit_mb=256",
+                "-timeout=10",
+                "-print_final_stats=1",
+                "-verbosity=0",
+            ]);
+        commands.push(command);
     }
-    Ok(())
+    shell::run_together(commands)
 }

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::{Mutex, PoisonError};
 
 use crate::failure::{Failure, Result, on_file};
 
@@ -44,6 +45,26 @@ pub fn host() -> Result<String> {
 pub fn run(command: &mut Command) -> Result {
     let status = command.stdin(Stdio::null()).status().map_err(|e| cannot_start(command, &e))?;
     if status.success() { Ok(()) } else { Err(Failure::new(format!("`{}` ended with {status}", shown(command)))) }
+}
+
+/// Runs programs with our output and without input, as many at once as there are cores.
+pub fn run_together(commands: Vec<Command>) -> Result {
+    let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let waiting = Mutex::new(commands.into_iter());
+    let work = || {
+        let next = || waiting.lock().unwrap_or_else(PoisonError::into_inner).next();
+        while let Some(mut command) = next() {
+            run(&mut command)?;
+        }
+        Ok(())
+    };
+    std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..cores).map(|_| scope.spawn(work)).collect();
+        let ended = |thread: std::thread::ScopedJoinHandle<Result>| {
+            thread.join().unwrap_or_else(|_| Err(Failure::new("a thread that runs programs panicked")))
+        };
+        threads.into_iter().map(ended).collect::<Vec<_>>().into_iter().collect()
+    })
 }
 
 /// Runs a program and returns its output; its errors go to our standard error.

@@ -22,7 +22,6 @@ Runs the steps in this order, or only those named, and stops at the first failur
   clippy        no warning in any target
   tests         unit tests, integration tests, doctests, examples build; of the studio what needs no window
   features      what is off by default: no warning, unit tests and doctests; the libraries without files and threads
-  schema        crates/orogen-engine/recipes/orogen.schema.json is what `orogen schema` prints
   docs          the libraries' documentation builds without a warning
   licences      every dependency has a licence we accept
   package       every crate builds from its own published archive
@@ -66,11 +65,6 @@ const STEPS: &[&Step] = &[
         name: "features",
         about: "orogen-grid with ndarray, image and mint; orogen without files and threads",
         run: features,
-    },
-    &Step {
-        name: "schema",
-        about: "crates/orogen-engine/recipes/orogen.schema.json is what `orogen schema` prints",
-        run: || codegen::written(true),
     },
     &Step { name: "docs", about: "the libraries' documentation builds without a warning", run: docs },
     &Step { name: "licences", about: "every dependency has a licence we accept", run: licences::check },

@@ -3,6 +3,9 @@
 /// The function `selected` of WGSL, which several ops have: a range with smooth ends.
 pub const SELECTION: &str = include_str!("lower/selection.wgsl");
 
+/// The function `gradient` of WGSL, and what is made of it: slopes by Horn's method.
+pub const HORN: &str = include_str!("lower/horn.wgsl");
+
 /// How a graphics card computes a node.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Lowering<T> {
@@ -53,14 +56,42 @@ pub struct Pass {
     pub is_shared: bool,
 }
 
-/// A level of a levelled op as passes over planes: those of the level above, the inputs, those of the level, and scratch planes, in this order.
+/// A level of a levelled op as passes over planes, of the level and of the level above.
 ///
-/// The planes have twice the columns and rows of the level above, which is in the first columns and rows of its own planes: sample (i, j) of the level is made
-/// from sample (i / 2, j / 2) of the level above. Inputs are at the cell of the level. All passes are run for all samples except the border that they leave out.
+/// Planes of the level begin with those that it has; then come `scratch` planes, which start as zeros like these, and the inputs. Planes of the level above have
+/// half the columns and rows: sample (i, j) of the level is in the cell of sample (i / 2, j / 2) of the level above. They begin with those of the level above, and
+/// `scratch_above` planes follow. The functions of passes are those of [`Passes`], which also read `above(k, at)`, write `set_above(k, at, value)`, and have the
+/// number `above_size()` of columns and rows of the level above, and the position of the first sample on the lattice as whole numbers of 64 bits,
+/// `first_column()` and `first_row()`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LevelPasses {
-    /// The passes. Their inputs are the planes of the level above, and then those of the op; their layers are the planes of the level.
-    pub passes: Passes,
+    /// The numbers that the functions read.
+    pub words: Vec<u32>,
+    /// Number of planes of the level.
+    pub planes: usize,
+    /// Number of planes beside these and the inputs.
+    pub scratch: usize,
+    /// Number of planes beside those of the level above, at its cell.
+    pub scratch_above: usize,
+    /// The indices of the op's inputs that are planes, in the order of the planes.
+    pub inputs: Vec<usize>,
+    /// Number of samples that the lattices of the level above and of the level are ahead of those of windows.
+    pub ahead: [i64; 2],
+    /// Number of samples of the level above that are read beyond the halved window.
+    pub reach: usize,
+    /// The passes, in order.
+    pub passes: Vec<LevelPass>,
+}
+
+/// One run of a function over samples of a level or of the level above.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LevelPass {
+    /// The text that defines the function. It does not depend on parameters.
+    pub code: &'static str,
+    /// Whether it runs for the samples of the level above.
+    pub is_above: bool,
+    /// The run. It leaves out samples of the planes that it runs for.
+    pub pass: Pass,
 }
 
 /// Default number of samples that a call reads.

@@ -2,6 +2,7 @@
 
 use crate::budget::Budget;
 use crate::device::Device;
+use crate::engine::preview::Previews;
 use crate::op::Solution;
 use crate::plan::key::Key;
 use crate::pool::Pool;
@@ -62,6 +63,8 @@ pub struct Session {
     pub(crate) level_tiles: Arc<LevelTiles>,
     pub(crate) budget: Budget,
     pub(crate) device: Option<Arc<dyn Device>>,
+    /// What previews with the device keep.
+    pub(crate) previews: Arc<Previews>,
 }
 
 /// Default of [`Options::kept_grids`], in bytes.
@@ -77,25 +80,29 @@ impl Session {
     /// If no threads can be started.
     pub fn new(options: Options) -> Result<Session> {
         let pool = Pool::new(options.threads)?;
-        let most = options.memory.limit().map_or(KEPT_GRIDS, |limit| KEPT_GRIDS.min(limit / 4));
+        let limit = options.memory.limit();
+        let grids = options.kept_grids.unwrap_or(limit.map_or(KEPT_GRIDS, |limit| KEPT_GRIDS.min(limit / 4)));
+        let level_tiles = limit.map_or(LEVEL_TILES, |limit| LEVEL_TILES.min(limit / 8));
+        let store = Store::new(options.store, options.scratch);
+        let previews = Previews::new(store.scratch(), grids, level_tiles);
         Ok(Session {
             pool: Arc::new(pool),
-            store: Arc::new(Store::new(options.store, options.scratch)),
-            grids: Arc::new(GridStore::new(options.kept_grids.unwrap_or(most))),
-            level_tiles: Arc::new(LevelTiles::new(
-                options.memory.limit().map_or(LEVEL_TILES, |limit| LEVEL_TILES.min(limit / 8)),
-            )),
+            store: Arc::new(store),
+            grids: Arc::new(GridStore::new(grids)),
+            level_tiles: Arc::new(LevelTiles::new(level_tiles)),
             budget: options.memory.clone(),
             device: None,
+            previews: Arc::new(previews),
         })
     }
 
-    /// The same session with a device that computes windows in place of the processor, where it can and exact bits are not needed: for previews. Solutions,
-    /// tiles of levels and kept grids remain those of the processor, and so do points, objects and volumes.
+    /// The same session with a device that computes windows in place of the processor, where it can and exact bits are not needed: for previews. Stored solutions,
+    /// tiles of levels and kept grids remain those of the processor, and so do points, objects and volumes: what is made on the device is kept in memory, for
+    /// later windows of sessions with it.
     #[doc(hidden)]
     #[must_use]
     pub fn with_device(&self, device: Arc<dyn Device>) -> Session {
-        Session { device: Some(device), ..self.clone() }
+        Session { device: Some(device), previews: Arc::new(self.previews.emptied()), ..self.clone() }
     }
 
     /// The same session without its device: all is computed by the processor.
@@ -176,7 +183,8 @@ impl Session {
     /// Memory of kept solutions, grids and tiles, in bytes, without that of running requests.
     #[must_use]
     pub fn kept_memory(&self) -> u64 {
-        self.store.memory().saturating_add(self.grids.memory()).saturating_add(self.level_tiles.memory())
+        let exact = self.store.memory().saturating_add(self.grids.memory()).saturating_add(self.level_tiles.memory());
+        exact.saturating_add(self.previews.memory())
     }
 
     /// The same threads and memory without any solutions and without a store for later runs.
@@ -190,6 +198,7 @@ impl Session {
         Session {
             store: Arc::new(Store::holding(solved, self.store.scratch().clone())),
             grids: Arc::new(GridStore::new(0)),
+            previews: Arc::new(Previews::new(self.store.scratch(), 0, 0)),
             ..self.clone()
         }
     }
@@ -201,7 +210,9 @@ impl Session {
             self.store.make_room(unused, needed);
             let left = unused.saturating_sub(self.store.memory());
             self.grids.make_room(left);
-            self.level_tiles.make_room(left.saturating_sub(self.grids.memory()));
+            let left = left.saturating_sub(self.grids.memory());
+            self.level_tiles.make_room(left);
+            self.previews.make_room(left.saturating_sub(self.level_tiles.memory()));
         }
     }
 }

@@ -1,7 +1,9 @@
 //! Worlds: opened recipes, from which windows and points are requested.
 
 use crate::budget::{Budget, Reservation};
+use crate::device::Device;
 use crate::engine::inline::PreparedProgram;
+use crate::engine::preview::Preview;
 use crate::engine::run::Engine;
 use crate::ids::{Id, IndexVec, NodeId};
 use crate::layer::LayerKind;
@@ -154,6 +156,15 @@ impl World {
         let _running = self.admit(plan, progress)?;
         let engine = Engine { observer: Some((node, observer)), ..self.engine(progress) };
         engine.run(plan).map(drop)
+    }
+
+    /// Runs a plan without the session's device.
+    ///
+    /// # Errors
+    /// The errors of [`World::run`].
+    pub(crate) fn run_exactly(&self, plan: &Plan, progress: &Progress) -> Result<Vec<Grid>> {
+        let _running = self.admit(plan, progress)?;
+        self.engine(progress).run(plan)
     }
 
     /// The nodes in an order where each comes after those that it reads.
@@ -313,6 +324,12 @@ impl World {
         Ok(explain(plan, &self.recipe, &self.graph, self.threads()))
     }
 
+    /// The device that computes in place of the processor where exact bits are not needed, if the session has one.
+    #[doc(hidden)]
+    pub fn device(&self) -> Option<&dyn Device> {
+        self.session.device.as_deref()
+    }
+
     /// Number of threads.
     pub fn threads(&self) -> usize {
         self.session.threads()
@@ -362,7 +379,10 @@ impl World {
     /// If it is a plan of another recipe, needs more memory than allowed (then nothing was started), or was cancelled.
     pub fn run(&self, plan: &Plan, progress: &Progress) -> Result<Vec<Grid>> {
         let _running = self.admit(plan, progress)?;
-        self.engine(progress).run(plan)
+        let engine = self.engine(progress);
+        let session = &self.session;
+        let preview = session.device.as_deref().map(|device| Preview::new(device, &session.previews, &engine));
+        Engine { preview: preview.as_ref(), ..engine }.run(plan)
     }
 
     /// Makes layers over a window.
@@ -516,7 +536,7 @@ impl World {
             budget: &self.session.budget,
             pool: &self.session.pool,
             progress,
-            device: self.session.device.as_deref(),
+            preview: None,
             observer: None,
         }
     }

@@ -2,10 +2,11 @@
 
 use crate::filters;
 use crate::gpu::Gpu;
+use crate::levels;
 use crate::program::run;
 use crate::solvers;
 use orogen_engine::device::{Device, FilterExtent, LoweredProgram};
-use orogen_engine::lower::Passes;
+use orogen_engine::lower::{LevelPasses, Passes};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
@@ -33,6 +34,18 @@ impl Device for Gpu {
         let is_cancelled = || progress.check().is_err();
         let FilterExtent { window, halo, wanted } = extent;
         self.outcome(filters::apply(self, passes, inputs, window, *halo, wanted, is_cancelled), progress)
+    }
+
+    fn refine(
+        &self,
+        passes: &LevelPasses,
+        above: &[Grid],
+        inputs: &[Option<&Grid>],
+        window: &Window,
+        progress: &Progress,
+    ) -> Result<Option<Vec<Grid>>> {
+        let is_cancelled = || progress.check().is_err();
+        self.outcome(levels::refine(self, passes, above, inputs, window, is_cancelled), progress)
     }
 
     fn solve(

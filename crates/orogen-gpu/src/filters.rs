@@ -143,7 +143,7 @@ impl<'a> Planes<'a> {
         let layers = self.wanted.iter().enumerate().filter(|(_, wanted)| **wanted);
         job.downloads = layers.map(|(k, _)| ((self.inputs + k) * grown.len() + halo * grown.width, rows)).collect();
         let Some(back) = job.run(gpu, is_cancelled)? else { return Ok(None) };
-        Ok(Some(back.into_iter().map(|rows| inner(rows, tile, grown.width, halo)).collect()))
+        Ok(Some(back.into_iter().map(|rows| inner(&rows, tile, grown.width, halo)).collect()))
     }
 }
 
@@ -151,14 +151,14 @@ impl<'a> Planes<'a> {
 const READS: usize = 1 << 30;
 
 /// Bands of rows, of each the first row and the number of rows, of which none reads too much if a row reads `reads` samples. At least one workgroup is high.
-fn bands(height: usize, reads: usize) -> impl Iterator<Item = (usize, usize)> {
+pub(crate) fn bands(height: usize, reads: usize) -> impl Iterator<Item = (usize, usize)> {
     let group = GROUP as usize;
     let rows = (READS / reads.max(1) / group).max(1) * group;
     (0..height).step_by(rows).map(move |first| (first, rows.min(height - first)))
 }
 
 /// The part of an input that a tile needs; `None` if that is all of it, or if it is not given.
-fn cropped(input: Option<&Grid>, grown: &Window) -> Result<Option<Grid>, Failure> {
+pub(crate) fn cropped(input: Option<&Grid>, grown: &Window) -> Result<Option<Grid>, Failure> {
     match input {
         None => Ok(None),
         Some(grid) if grid.window() == grown => Ok(None),
@@ -169,17 +169,17 @@ fn cropped(input: Option<&Grid>, grown: &Window) -> Result<Option<Grid>, Failure
     }
 }
 
-/// A tile from whole rows of its planes.
-fn inner(rows: Vec<f32>, tile: &Window, width: usize, halo: usize) -> Grid {
+/// A tile from whole rows of its planes, of which each has `left` samples before it.
+pub(crate) fn inner(rows: &[f32], tile: &Window, width: usize, left: usize) -> Grid {
     let mut grid = Grid::filled(*tile, 0.0f32);
     for (out, row) in grid.data_mut().chunks_mut(tile.width).zip(rows.chunks(width)) {
-        out.copy_from_slice(&row[halo..halo + tile.width]);
+        out.copy_from_slice(&row[left..left + tile.width]);
     }
     grid
 }
 
 /// The text of a pass. It depends on the op and the function alone.
-fn text(prelude: &str, code: &str, function: &str) -> String {
+pub(crate) fn text(prelude: &str, code: &str, function: &str) -> String {
     format!(
         "{prelude}\n{code}\n\
         @compute @workgroup_size(8, 8) fn main(@builtin(global_invocation_id) id: vec3<u32>) {{\n\

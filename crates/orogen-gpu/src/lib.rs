@@ -12,6 +12,8 @@ pub mod filters;
 pub mod gpu;
 #[doc(hidden)]
 pub mod job;
+#[doc(hidden)]
+pub mod levels;
 mod pipelines;
 mod program;
 pub mod render;

@@ -17,6 +17,7 @@ use orogen::world::HEIGHT;
 use orogen::{Budget, Error, Grid, Progress, Recipe};
 
 use crate::bar::Bar;
+use crate::device::DeviceOption;
 use crate::failure::Failure;
 use crate::moving::{AnimationTarget, Moving};
 use crate::options::RunOptions;
@@ -50,6 +51,8 @@ pub struct Args {
     /// Duration of each frame, in milliseconds
     #[arg(long, value_name = "MS", default_value = "120")]
     delay: u16,
+    #[command(flatten)]
+    device: DeviceOption,
     #[command(flatten)]
     run: RunOptions,
 }
@@ -98,7 +101,7 @@ fn write(
     progress: &Progress,
 ) -> Result<String, Failure> {
     let sea_level = recipe.world.sea_level;
-    let world = args.run.limits.open(recipe, budget)?;
+    let (world, card) = args.device.open(&args.run.limits, recipe, budget)?;
     let window = args.samples.window(&world)?;
     let (width, height) = (window.width, window.height);
     let pixels = (width * height) as u64;
@@ -117,6 +120,7 @@ fn write(
         let mut heights = heights.lock().unwrap_or_else(PoisonError::into_inner);
         heights.put(step, grid).map_err(|cause| Error::file("write", &args.out, &cause))
     })?;
+    let on = card.used().map_or(String::new(), |card| format!(", a preview on {card}"));
     let land = Land { heights: RefCell::new(heights.into_inner().unwrap_or_else(PoisonError::into_inner)) };
     let last =
         land.at(growth.steps()).map_err(|cause| Error::file("read back the spilled data of", &args.out, &cause))?;
@@ -142,7 +146,8 @@ fn write(
         painting.advance(1.0);
         Ok(())
     })?;
-    Ok(format!("{}: {} of {width} x {height} pixels\n", args.out.display(), count(usize::from(args.frames), "frame")))
+    let frames = count(usize::from(args.frames), "frame");
+    Ok(format!("{}: {frames} of {width} x {height} pixels{on}\n", args.out.display()))
 }
 
 /// Approximate time for painting and encoding a pixel, in nanoseconds.

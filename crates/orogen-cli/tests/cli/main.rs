@@ -10,6 +10,7 @@ mod cache;
 mod check;
 mod commands;
 mod compare;
+mod documents;
 mod export;
 mod generate;
 mod harness;

@@ -1,27 +1,32 @@
 //! Which grids of a plan have the bits of the processor, and which must have them.
 
+use super::run::Engine;
 use crate::ids::{GridId, IndexVec};
-use crate::plan::steps::{Plan, Step};
+use crate::op::Op;
+use crate::plan::levels::{self, Serving};
+use crate::plan::steps::{Plan, Step, wanted};
 
 /// Which grids have the bits of the processor, and which must have them.
-pub struct Exactness {
-    /// What levelled ops read, because their tiles are kept.
+pub struct Exactness<'a> {
+    engine: &'a Engine<'a>,
+    /// What tiles of levels are made from, because they are kept, and what is made on the processor alone.
     required: IndexVec<GridId, bool>,
     /// What a device made, and what was made from that.
     approximate: IndexVec<GridId, bool>,
 }
 
-impl Exactness {
+impl<'a> Exactness<'a> {
     /// That of a plan before its first step.
-    pub fn of(plan: &Plan) -> Exactness {
+    pub fn of(engine: &'a Engine<'a>, plan: &Plan) -> Exactness<'a> {
         let none = || -> IndexVec<GridId, bool> { vec![false; plan.grids.len()].into() };
         let mut required = none();
         for (_, step) in plan.steps.entries().rev() {
-            if matches!(step, Step::Refine { .. }) || step.writes().iter().any(|grid| required[*grid]) {
+            if step.writes().iter().any(|grid| required[*grid]) {
                 step.reads().into_iter().for_each(|grid| required[grid] = true);
             }
+            exact_inputs(engine, step).into_iter().for_each(|grid| required[grid] = true);
         }
-        Exactness { required, approximate: none() }
+        Exactness { engine, required, approximate: none() }
     }
 
     /// Whether a step's grids must have the bits of the processor.
@@ -31,12 +36,38 @@ impl Exactness {
 
     /// Whether all that a step reads has them.
     pub fn is_read_by(&self, step: &Step) -> bool {
-        !step.reads().iter().any(|grid| self.approximate[*grid])
+        let Some(preview) = self.engine.preview else { return true };
+        let reads_solution = step.solvers_read().any(|node| preview.is_approximate(node));
+        !reads_solution && !step.reads().iter().any(|grid| self.approximate[*grid])
     }
 
-    /// Marks the grids of a step that was run, on a device or not.
-    pub fn ran(&mut self, step: &Step, on_device: bool) {
-        let approximate = on_device || !self.is_read_by(step);
+    /// Marks the grids of a step that was run, on a device or not. Returns whether they have the bits of the processor.
+    pub fn ran(&mut self, step: &Step, on_device: bool) -> bool {
+        let levels = match (step, self.engine.preview) {
+            (Step::Refine { node, .. }, Some(preview)) => preview.is_approximate(*node),
+            _ => false,
+        };
+        let approximate = on_device || levels || !self.is_read_by(step);
         step.writes().into_iter().for_each(|grid| self.approximate[grid] = approximate);
+        !approximate
     }
+
+    /// Marks the grids of a step that were kept from an earlier preview.
+    pub fn found(&mut self, step: &Step) {
+        step.writes().into_iter().for_each(|grid| self.approximate[grid] = true);
+    }
+}
+
+/// The grids that must be exact for a levelled op: none if it reads what the device makes anyway. Otherwise its tiles are exact; if it is made on the device, that
+/// begins below the tiled levels.
+fn exact_inputs(engine: &Engine, step: &Step) -> Vec<GridId> {
+    let Step::Refine { node, inputs, window, out } = step else { return Vec::new() };
+    let exact = match (engine.preview, engine.op(*node)) {
+        (Some(preview), _) if preview.is_read_by(*node) => 0,
+        (Some(preview), Some(Op::Levelled(op))) if preview.is_approximate(*node) => {
+            1 + levels::tiled(op, &wanted(out), &Serving::of(&op.levels(), window))
+        }
+        _ => inputs.len(),
+    };
+    inputs.iter().take(exact).flatten().flatten().copied().collect()
 }

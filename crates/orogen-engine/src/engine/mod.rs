@@ -5,6 +5,7 @@ pub(crate) mod inline;
 pub(crate) mod interpreter;
 mod level_tiles;
 mod on_device;
+pub(crate) mod preview;
 mod refine;
 pub(crate) mod run;
 mod solve;

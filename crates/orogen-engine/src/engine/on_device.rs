@@ -20,7 +20,7 @@ impl Engine<'_> {
         grids: &IndexVec<GridId, Option<Grid>>,
         progress: &Progress,
     ) -> Result<Option<Vec<Grid>>> {
-        let Some(device) = self.device else { return Ok(None) };
+        let Some(device) = self.preview.map(|preview| preview.device) else { return Ok(None) };
         match step {
             Step::Fill { .. } => fill(self, device, step, solutions, grids, progress),
             Step::Apply { .. } => apply(self, device, step, grids, progress),

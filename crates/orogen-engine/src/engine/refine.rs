@@ -1,7 +1,10 @@
 //! Making windows of levelled ops: tiles of the coarse levels, coarsest first, then each piece of the window from them.
 
+use super::preview::{Preview, Previews, given};
 use super::run::Engine;
+use crate::device::Device;
 use crate::ids::{Id, NodeId};
+use crate::lower::Lowering;
 use crate::op::{Context, Levelled, Op, WorldParams};
 use crate::plan::levels::{self, Serving};
 use crate::recipe::graph::LayerRef;
@@ -30,6 +33,8 @@ pub(super) struct Refining<'a> {
     pub wanted: &'a [bool],
     world_params: &'a WorldParams,
     pub progress: &'a Progress,
+    /// The device that makes levels over pieces, where it can, and whether each input is given.
+    device: Option<(&'a dyn Device, Vec<bool>)>,
 }
 
 impl Engine<'_> {
@@ -46,9 +51,15 @@ impl Engine<'_> {
         let Op::Levelled(op) = self.recipe.nodes()[node.index()].node.op() else {
             return Err(internal("a node that is not levelled was to be refined"));
         };
-        let refining = Refining { op, node, inputs, wanted, world_params: self.world_params, progress };
+        let device = self.preview.map(|preview| (preview.device, given(self, node)));
+        let refining = Refining { op, node, inputs, wanted, world_params: self.world_params, progress, device };
         let serving = Serving::of(&op.levels(), window);
-        let made = self.samples(&refining, &serving)?;
+        let made = match self.preview.filter(|preview| preview.is_read_by(node)) {
+            Some(Preview { kept: Previews { store, level_tiles, .. }, .. }) => {
+                Engine { store, level_tiles, ..*self }.samples(&refining, &serving)?
+            }
+            None => self.samples(&refining, &serving)?,
+        };
         if serving.samples.cell == window.cell {
             return Ok(made);
         }
@@ -66,7 +77,8 @@ impl Engine<'_> {
         if samples.is_empty() {
             return Ok(layers);
         }
-        let pieces = serving.pieces(self.pool.threads());
+        // A device is best used by one piece at a time.
+        let pieces = serving.pieces(if refining.device.is_some() { 1 } else { self.pool.threads() });
         let tiled = levels::tiled(refining.op, refining.wanted, serving);
         let tiles = self.level_tiles(refining, tiled..=level, &pieces)?;
         let make = |piece: &Window| refining.piece(tiled..=level, piece, &tiles);
@@ -137,6 +149,19 @@ impl Refining<'_> {
         self.checked(planes, window)
     }
 
+    /// The same on the device; `None` if there is none, or the processor is to do it.
+    fn on_device(&self, level: usize, above: &[Grid], window: &Window) -> Result<Option<Vec<Grid>>> {
+        let Some((device, given)) = &self.device else { return Ok(None) };
+        let Lowering::Shader(passes) = self.op.lower(level, given, self.world_params) else { return Ok(None) };
+        let part = self.progress.part(self.work(level, window));
+        let refine = |inputs: &[Option<&Grid>]| device.refine(&passes, above, inputs, window, &part);
+        let made = self.with_inputs(level, window, refine)?;
+        if made.is_some() {
+            part.finish();
+        }
+        made.map(|planes| self.checked(planes, window)).transpose()
+    }
+
     /// Passes the op's inputs over exactly the samples that it may read.
     fn with_inputs<T>(
         &self,
@@ -161,7 +186,10 @@ impl Refining<'_> {
             None => Vec::new(),
         };
         for (level, window) in direct.zip(&windows).skip(1) {
-            planes = self.refined(level, &planes, window)?;
+            planes = match self.on_device(level, &planes, window)? {
+                Some(planes) => planes,
+                None => self.refined(level, &planes, window)?,
+            };
         }
         let mut layers = self.layers(piece);
         let part = self.progress.part(LAYER_COST * piece.len() as f64);

@@ -2,8 +2,8 @@
 
 use super::exactness::Exactness;
 use super::interpreter::{Bindings, Interpreter};
+use super::preview::Preview;
 use crate::budget::Budget;
-use crate::device::Device;
 use crate::ids::{GridId, Id, IndexVec, NodeId, StepId};
 use crate::op::{Context, Field, Filter, Op, Solution, Solver, StepObserver, WorldParams};
 use crate::plan::cost;
@@ -40,8 +40,8 @@ pub struct Engine<'a> {
     /// The thread pool. Waiting happens only on the calling thread.
     pub pool: &'a Pool,
     pub progress: &'a Progress,
-    /// The device that computes steps in place of the processor, where exact bits are not needed.
-    pub device: Option<&'a dyn Device>,
+    /// The device that computes in place of the processor, where exact bits are not needed.
+    pub preview: Option<&'a Preview<'a>>,
     /// The observer of a solver's steps, with the node. That node is solved even if its solution is stored.
     pub observer: Option<(NodeId, &'a (dyn StepObserver + Sync))>,
 }
@@ -75,8 +75,8 @@ impl<'a> Engine<'a> {
     pub(super) fn steps(&self, plan: &Plan, solutions: &Solutions, progress: &Progress) -> Result<Vec<Grid>> {
         progress.expect(cost::steps(plan, self.recipe));
         let mut grids: IndexVec<GridId, Option<Grid>> = plan.grids.iter().map(|_| None).collect();
-        let needed = self.kept_grids(plan, &mut grids);
-        let mut exactness = Exactness::of(plan);
+        let mut exactness = Exactness::of(self, plan);
+        let needed = self.kept_grids(plan, &mut grids, &mut exactness);
         for (at, step) in plan.steps.entries() {
             progress.check()?;
             if !needed[at] {
@@ -89,11 +89,13 @@ impl<'a> Engine<'a> {
                 false => self.on_device(step, solutions, &grids, &part)?,
             };
             let on_device = made.is_some();
-            match made {
-                Some(made) => put(step, made, &mut grids),
-                None => self.step(step, solutions, &mut grids, &part, exactness.is_read_by(step))?,
-            }
-            exactness.ran(step, on_device);
+            let made = match made {
+                Some(made) => made,
+                None => self.step(step, solutions, &grids, &part)?,
+            };
+            let is_exact = exactness.ran(step, on_device);
+            self.keep_grids(step, &made, is_exact);
+            put(step, made, &mut grids);
             part.finish();
             for (grid, slot) in grids.iter_mut().zip(&plan.grids) {
                 if slot.last_use.is_some_and(|last| last <= at) {
@@ -107,7 +109,12 @@ impl<'a> Engine<'a> {
 
     /// Takes kept grids of expensive filters from earlier requests. Returns which steps are still needed: those whose
     /// grids are results or are read by needed steps.
-    fn kept_grids(&self, plan: &Plan, grids: &mut IndexVec<GridId, Option<Grid>>) -> IndexVec<StepId, bool> {
+    fn kept_grids(
+        &self,
+        plan: &Plan,
+        grids: &mut IndexVec<GridId, Option<Grid>>,
+        exactness: &mut Exactness,
+    ) -> IndexVec<StepId, bool> {
         let mut needed: IndexVec<StepId, bool> = vec![true; plan.steps.len()].into();
         let Some(store) = self.grids.filter(|store| store.is_used()) else { return needed };
         let mut read: IndexVec<GridId, bool> = plan.grids.iter().map(|slot| slot.last_use.is_none()).collect();
@@ -115,9 +122,18 @@ impl<'a> Engine<'a> {
             let writes = step.writes();
             // A program for points writes no grid.
             needed[at] = writes.is_empty() || writes.iter().any(|&slot| read[slot]);
-            if let Some(found) = needed[at].then(|| store.find(&self.grid_keys(step)?)).flatten() {
-                writes.iter().zip(found).for_each(|(&slot, grid)| grids[slot] = Some(grid));
-                needed[at] = false;
+            if let Some(keys) = needed[at].then(|| self.grid_keys(step)).flatten() {
+                let mut found = store.find(&keys);
+                if let (None, Some(preview), false) = (&found, self.preview, exactness.is_required(step)) {
+                    found = preview.kept.grids.find(&keys);
+                    if found.is_some() {
+                        exactness.found(step);
+                    }
+                }
+                if let Some(found) = found {
+                    writes.iter().zip(found).for_each(|(&slot, grid)| grids[slot] = Some(grid));
+                    needed[at] = false;
+                }
             }
             if needed[at] {
                 step.reads().into_iter().for_each(|slot| read[slot] = true);
@@ -151,13 +167,16 @@ impl<'a> Engine<'a> {
     pub fn before_points(&self, plan: &Plan) -> Result<(Solutions, IndexVec<GridId, Option<Grid>>)> {
         let solutions = self.solve(plan)?;
         let mut grids: IndexVec<GridId, Option<Grid>> = plan.grids.iter().map(|_| None).collect();
-        let needed = self.kept_grids(plan, &mut grids);
+        let mut exactness = Exactness::of(self, plan);
+        let needed = self.kept_grids(plan, &mut grids, &mut exactness);
         for (at, step) in plan.steps.entries() {
-            match step {
-                Step::Fill { out, .. } if out.is_empty() => continue,
-                _ if !needed[at] => continue,
-                _ => self.step(step, &solutions, &mut grids, self.progress, true)?,
+            if matches!(step, Step::Fill { out, .. } if out.is_empty()) || !needed[at] {
+                continue;
             }
+            let made = self.step(step, &solutions, &grids, self.progress)?;
+            let is_exact = exactness.ran(step, false);
+            self.keep_grids(step, &made, is_exact);
+            put(step, made, &mut grids);
             for (grid, slot) in grids.iter_mut().zip(&plan.grids) {
                 if slot.last_use.is_some_and(|last| last <= at) {
                     *grid = None;
@@ -167,27 +186,20 @@ impl<'a> Engine<'a> {
         Ok((solutions, grids))
     }
 
-    /// Runs a step on the threads of the pool. Its grids may be kept for later requests if they are exact.
+    /// Runs a step on the threads of the pool.
     fn step(
         &self,
         step: &Step,
         solutions: &Solutions,
-        grids: &mut IndexVec<GridId, Option<Grid>>,
+        grids: &IndexVec<GridId, Option<Grid>>,
         progress: &Progress,
-        is_exact: bool,
-    ) -> Result<()> {
-        let made = match step {
+    ) -> Result<Vec<Grid>> {
+        match step {
             Step::Fill { program, window, out } => {
                 let filling = Filling { program, window, outputs: out.len() };
-                self.pool.install(|| self.fill(&filling, solutions, grids, progress))?
+                self.pool.install(|| self.fill(&filling, solutions, grids, progress))
             }
-            Step::Apply { .. } => {
-                let made = self.pool.install(|| self.apply(step, grids, progress))?;
-                if is_exact {
-                    self.keep_grids(step, &made);
-                }
-                made
-            }
+            Step::Apply { .. } => self.pool.install(|| self.apply(step, grids, progress)),
             Step::Refine { node, inputs, window, out } => {
                 let mut given = Vec::with_capacity(inputs.len());
                 for level in inputs {
@@ -195,33 +207,38 @@ impl<'a> Engine<'a> {
                     given.push(level.iter().map(|slot| slot.as_ref().map(grid).transpose()).collect::<Result<_>>()?);
                 }
                 let made = self.refine(*node, given, &wanted(out), window, progress)?;
-                let made: Vec<Grid> = made.into_iter().flatten().collect();
-                self.keep_grids(step, &made);
-                made
+                Ok(made.into_iter().flatten().collect())
             }
-        };
-        put(step, made, grids);
-        Ok(())
+        }
     }
 
-    /// Keeps the grids of an expensive filter for later requests.
-    fn keep_grids(&self, step: &Step, made: &[Grid]) {
-        let Some(store) = self.grids.filter(|store| store.is_used()) else { return };
+    /// Keeps the grids of an expensive filter for later requests; those that are not exact for previews alone.
+    fn keep_grids(&self, step: &Step, made: &[Grid], is_exact: bool) {
+        let Some(exact) = self.grids.filter(|store| store.is_used()) else { return };
+        let store = match self.preview {
+            Some(preview) if !is_exact => &preview.kept.grids,
+            _ => exact,
+        };
         for (key, grid) in self.grid_keys(step).into_iter().flatten().zip(made) {
             let allowed = self.budget.unused().map(|unused| unused.saturating_sub(self.store.memory()));
             store.keep(key, grid, allowed);
         }
     }
 
+    /// A node as what it is.
+    pub(super) fn op(&self, node: NodeId) -> Option<Op<'a>> {
+        Some(self.recipe.nodes().get(node.index())?.node.op())
+    }
+
     pub(super) fn field(&self, node: NodeId) -> Option<&'a dyn Field> {
-        match self.recipe.nodes().get(node.index())?.node.op() {
+        match self.op(node)? {
             Op::Field(field) => Some(field),
             _ => None,
         }
     }
 
     pub(super) fn solver(&self, node: NodeId, solutions: &Solutions) -> Option<(&'a dyn Solver, Arc<Solution>)> {
-        match self.recipe.nodes().get(node.index())?.node.op() {
+        match self.op(node)? {
             Op::Solver(solver) => Some((solver, Arc::clone(solutions.get(&node)?))),
             _ => None,
         }

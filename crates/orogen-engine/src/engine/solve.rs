@@ -1,16 +1,18 @@
 //! Solving the solvers of a plan.
 
+use super::preview::given;
 use super::run::{Engine, Solutions};
 use super::tiles::Tiles;
 use crate::ids::{Id, NodeId};
-use crate::op::{Context, Op, Solution};
+use crate::lower::Lowering;
+use crate::op::{Context, Op, Solution, Solver, Sources};
 use crate::plan::cost;
 use crate::plan::planner::Planner;
 use crate::plan::steps::{Plan, Solve};
 use crate::recipe::graph::Link;
-use crate::store::solutions::Begun;
+use crate::store::solutions::{Begun, Store};
 use orogen_grid::error::{Error, ErrorKind, Result};
-use orogen_grid::grid::Window;
+use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 use std::sync::Arc;
 
@@ -25,7 +27,7 @@ impl Engine<'_> {
             if !wanted.contains(&order.node) {
                 continue;
             }
-            match self.store.find(&order.key, order.on_disk)? {
+            match self.found(order)? {
                 Some(solution) if !self.is_observed(order.node) => {
                     there.insert(order.node, solution);
                 }
@@ -40,7 +42,7 @@ impl Engine<'_> {
             let part = self.progress.part(order.work());
             let begun = match self.is_observed(order.node) {
                 true => self.store.begin_again(&order.key),
-                false => self.store.begin(&order.key, self.may_wait(), &part)?,
+                false => self.store_of(order.node).begin(&order.key, self.may_wait(), &part)?,
             };
             let solution = match begun {
                 Begun::Found(solution) => solution,
@@ -54,6 +56,23 @@ impl Engine<'_> {
             there.insert(order.node, self.moved(order, solution)?);
         }
         Ok(there)
+    }
+
+    /// The solution of an order that is there: an exact one, or in a preview one that an earlier preview made.
+    fn found(&self, order: &Solve) -> Result<Option<Arc<Solution>>> {
+        let exact = self.store.find(&order.key, order.on_disk)?;
+        match self.preview {
+            Some(preview) if exact.is_none() => preview.kept.store.find(&order.key, order.on_disk),
+            _ => Ok(exact),
+        }
+    }
+
+    /// The store that keeps the solution of a node.
+    fn store_of(&self, node: NodeId) -> &Store {
+        match self.preview {
+            Some(preview) if preview.is_approximate(node) => &preview.kept.store,
+            _ => self.store,
+        }
     }
 
     /// Whether this thread may wait for a solution or a tile that another request is computing. A thread of the pool may not:
@@ -83,7 +102,7 @@ impl Engine<'_> {
     /// A solution that two requests computed at once may be in memory although this request needs it on disk.
     fn moved(&self, order: &Solve, solution: Arc<Solution>) -> Result<Arc<Solution>> {
         match order.on_disk {
-            true => Ok(self.store.find(&order.key, true)?.unwrap_or(solution)),
+            true => Ok(self.store_of(order.node).find(&order.key, true)?.unwrap_or(solution)),
             false => Ok(solution),
         }
     }
@@ -98,12 +117,36 @@ impl Engine<'_> {
         sources.expect(order.source_work);
         let make = |link: Link, tile: Window| {
             let plan = planner.source(link, tile)?;
-            // The solution is kept, its sources are not. Its bits are those of the processor.
-            let engine = Engine { grids: None, device: None, ..*self };
+            // The solution is kept, its sources are not. If it is exact, so are they.
+            let preview = self.preview.filter(|preview| preview.is_approximate(order.node));
+            let engine = Engine { grids: None, preview, ..*self };
             engine.steps(&plan, there, &sources.part(cost::steps(&plan, self.recipe)))
         };
         let tiles = Tiles { links: &self.graph.links[order.node], order, make: &make, scratch: self.store.scratch() };
+        if let Some(solution) = self.solved_on_device(order, solver, &tiles, &own)? {
+            return Ok(solution);
+        }
         let observer = self.observer.and_then(|(node, observer)| (node == order.node).then_some(observer));
         solver.solve(&tiles, &Context { world_params: self.world_params, progress: &own, observer })
+    }
+
+    /// Solves a solver on the device; `None` if there is none, or the processor is to do it.
+    fn solved_on_device(
+        &self,
+        order: &Solve,
+        solver: &dyn Solver,
+        tiles: &Tiles,
+        progress: &Progress,
+    ) -> Result<Option<Solution>> {
+        let is_there = !order.on_disk && !self.is_observed(order.node);
+        let Some(preview) = self.preview.filter(|_| is_there) else { return Ok(None) };
+        let given = given(self, order.node);
+        let Lowering::Shader(passes) = solver.lower(&order.padded, &given, self.world_params) else { return Ok(None) };
+        let whole = |(input, given): (usize, &bool)| given.then(|| tiles.whole(input, &order.padded)).transpose();
+        let inputs: Vec<Option<Grid>> = given.iter().enumerate().map(whole).collect::<Result<_>>()?;
+        let inputs: Vec<Option<&Grid>> = inputs.iter().map(Option::as_ref).collect();
+        let Some(made) = preview.device.solve(&passes, &inputs, &order.padded, progress)? else { return Ok(None) };
+        let layers = made.into_iter().map(|layer| tiles.keep(layer)).collect::<Result<_>>()?;
+        Ok(Some(Solution { layers, scalars: Vec::new() }))
     }
 }

@@ -35,7 +35,7 @@ op! {
     }
 }
 
-const CODE: &str = concat!(include_str!("horn.wgsl"), include_str!("flow_indices.wgsl"));
+const CODE: &str = concat!(include_str!("../lower/horn.wgsl"), include_str!("flow_indices.wgsl"));
 
 impl Filter for FlowIndices {
     fn halo(&self, _: f64) -> usize {

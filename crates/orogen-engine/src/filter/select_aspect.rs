@@ -31,8 +31,11 @@ op! {
     }
 }
 
-const CODE: &str =
-    concat!(include_str!("horn.wgsl"), include_str!("../lower/selection.wgsl"), include_str!("select_aspect.wgsl"));
+const CODE: &str = concat!(
+    include_str!("../lower/horn.wgsl"),
+    include_str!("../lower/selection.wgsl"),
+    include_str!("select_aspect.wgsl")
+);
 
 impl Filter for SelectAspect {
     fn halo(&self, _: f64) -> usize {

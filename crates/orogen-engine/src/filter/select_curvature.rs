@@ -51,7 +51,7 @@ op! {
 const FARTHEST: f64 = 16_384.0;
 
 const CODE: &str = concat!(
-    include_str!("horn.wgsl"),
+    include_str!("../lower/horn.wgsl"),
     include_str!("second_difference.wgsl"),
     include_str!("../lower/selection.wgsl"),
     include_str!("select_curvature.wgsl")

@@ -29,8 +29,11 @@ op! {
     };
 }
 
-const CODE: &str =
-    concat!(include_str!("horn.wgsl"), include_str!("../lower/selection.wgsl"), include_str!("select_slope.wgsl"));
+const CODE: &str = concat!(
+    include_str!("../lower/horn.wgsl"),
+    include_str!("../lower/selection.wgsl"),
+    include_str!("select_slope.wgsl")
+);
 
 impl Filter for SelectSlope {
     fn halo(&self, _: f64) -> usize {

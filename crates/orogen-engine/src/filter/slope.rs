@@ -41,7 +41,7 @@ op! {
     }
 }
 
-const CODE: &str = concat!(include_str!("horn.wgsl"), include_str!("slope.wgsl"));
+const CODE: &str = concat!(include_str!("../lower/horn.wgsl"), include_str!("slope.wgsl"));
 
 impl Filter for Slope {
     fn halo(&self, _: f64) -> usize {

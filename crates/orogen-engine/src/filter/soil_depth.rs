@@ -40,8 +40,11 @@ op! {
     }
 }
 
-const CODE: &str =
-    concat!(include_str!("horn.wgsl"), include_str!("second_difference.wgsl"), include_str!("soil_depth.wgsl"));
+const CODE: &str = concat!(
+    include_str!("../lower/horn.wgsl"),
+    include_str!("second_difference.wgsl"),
+    include_str!("soil_depth.wgsl")
+);
 
 impl Filter for SoilDepth {
     fn halo(&self, _: f64) -> usize {

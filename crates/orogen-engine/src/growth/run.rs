@@ -193,7 +193,7 @@ impl<'w> Growth<'w> {
         let steady: Vec<NodeId> =
             self.plan.solves.iter().map(|solve| solve.node).filter(|node| !changed.contains(node)).collect();
         if !steady.is_empty() {
-            self.world.run(&self.world.plan_to_solve(&steady)?, progress)?;
+            self.world.run_exactly(&self.world.plan_to_solve(&steady)?, progress)?;
         }
         Ok(())
     }

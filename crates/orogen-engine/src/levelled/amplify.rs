@@ -1,8 +1,10 @@
 //! Coarse land with ever smaller valleys.
 
 use super::drained::{self, Lattices, Reading};
+use super::passes::{self, GivenInputs};
 use crate::declare::Declared;
-use crate::op::{Context, Levelled, Levels};
+use crate::lower::{LevelPasses, Lowering};
+use crate::op::{Context, Levelled, Levels, WorldParams};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::multiscale::coarse::{Coarse, REACH};
@@ -205,6 +207,20 @@ impl Levelled for Amplify {
         let sea_level = if self.sea { context.world_params.sea_level as f32 } else { 0.0 };
         let reading = Reading { share, stream: self.stream, runoff: self.runoff, sea_level };
         drained::layers_of(&self.seeded(context), &reading, level, planes, window, out, context)
+    }
+
+    fn lower(&self, level: usize, given: &[bool], world_params: &WorldParams) -> Lowering<LevelPasses> {
+        let refinement = self.refinement().with_seed(world_params.seed_of(self.seed));
+        let input = |i: usize| given.get(i).copied().unwrap_or(false).then_some(i);
+        let given = GivenInputs {
+            shore: None,
+            uplift: input(3),
+            stability_factor: input(4),
+            creep_factor: input(5),
+            floor_factor: input(6),
+            rain: input(7),
+        };
+        passes::lower(&refinement, level, &given, ahead)
     }
 
     fn reads_sea_level(&self) -> bool {

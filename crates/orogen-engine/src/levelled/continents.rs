@@ -1,8 +1,10 @@
 //! Continents with rivers, without bounds.
 
 use super::drained::{self, Lattices, Reading};
+use super::passes::{self, GivenInputs};
 use crate::declare::Declared;
-use crate::op::{Context, Levelled, Levels};
+use crate::lower::{LevelPasses, Lowering};
+use crate::op::{Context, Levelled, Levels, WorldParams};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::multiscale::continents::Continents as Land;
@@ -200,6 +202,23 @@ impl Levelled for Continents {
     ) -> Result<()> {
         let reading = Reading { share: 0.0, stream: self.stream, runoff: self.runoff, sea_level: 0.0 };
         drained::layers_of(&self.refinement(), &reading, level, planes, window, out, context)
+    }
+
+    fn lower(&self, level: usize, given: &[bool], world_params: &WorldParams) -> Lowering<LevelPasses> {
+        let refinement = self.refinement().with_seed(world_params.seed_of(self.seed));
+        if refinement.has_geography(level) {
+            return Lowering::Processor("continents and ranges are placed in f64");
+        }
+        let input = |i: usize| given.get(i).copied().unwrap_or(false).then_some(i);
+        let given = GivenInputs {
+            shore: input(0),
+            uplift: input(1),
+            stability_factor: input(2),
+            creep_factor: input(3),
+            floor_factor: input(4),
+            rain: input(5),
+        };
+        passes::lower(&refinement, level, &given, |_| 0)
     }
 
     fn cost(&self, level: usize) -> f64 {

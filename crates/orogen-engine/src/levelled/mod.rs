@@ -4,3 +4,4 @@
 pub mod amplify;
 pub mod continents;
 pub mod drained;
+pub mod passes;

@@ -150,6 +150,18 @@ fn resolved<G, H>(inputs: Vec<Option<G>>, grid: &impl Fn(G) -> Result<H>) -> Res
 }
 
 impl Step {
+    /// The solvers that it reads.
+    pub fn solvers_read(&self) -> impl Iterator<Item = NodeId> {
+        let program = match self {
+            Step::Fill { program, .. } => Some(program),
+            Step::Apply { .. } | Step::Refine { .. } => None,
+        };
+        program.into_iter().flat_map(|program| &program.instructions).filter_map(|instruction| match instruction {
+            Instruction::Solved { node, .. } => Some(*node),
+            _ => None,
+        })
+    }
+
     /// The grids that it reads.
     #[must_use]
     pub fn reads(&self) -> Vec<GridId> {
@@ -229,16 +241,7 @@ impl Plan {
     /// The solvers that its steps read.
     #[must_use]
     pub fn solvers_read(&self) -> BTreeSet<NodeId> {
-        let mut read = BTreeSet::new();
-        for step in &self.steps {
-            let Step::Fill { program, .. } = step else { continue };
-            for instruction in &program.instructions {
-                if let Instruction::Solved { node, .. } = instruction {
-                    read.insert(*node);
-                }
-            }
-        }
-        read
+        self.steps.iter().flat_map(Step::solvers_read).collect()
     }
 
     /// Number of samples to be made, without solvers' sources.

@@ -51,6 +51,11 @@ impl GridStore {
         GridStore { limit, held: Mutex::default() }
     }
 
+    /// The most that it keeps, in bytes.
+    pub fn limit(&self) -> u64 {
+        self.limit
+    }
+
     /// Whether the store can keep grids.
     pub fn is_used(&self) -> bool {
         self.limit > 0

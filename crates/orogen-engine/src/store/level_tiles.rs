@@ -53,6 +53,11 @@ impl LevelTiles {
         }
     }
 
+    /// The most that is kept, in bytes.
+    pub fn limit(&self) -> u64 {
+        self.grids.limit()
+    }
+
     /// A copy of the planes of a tile.
     pub fn find(&self, tile: &LevelTile) -> Option<Vec<Grid>> {
         self.grids.find(&tile.grids())

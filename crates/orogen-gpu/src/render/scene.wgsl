@@ -1,16 +1,16 @@
 // Numbers of the scene. Their indices in `data` are constants that stand before this text.
 //
-// The CPU twin of each of these files is the file of the same name in `orogen-output/src/render`; `tests/render.rs` compares their pictures. Positions are in cells,
-// relative to ORIGIN and ORIGIN_Z, which are near the camera.
+// The CPU twin of each of these files is the file of the same name in `orogen-output/src/render`; `tests/render.rs` compares their pictures. This file and those of
+// the sky, the water and tones are parts of other shaders, too, which have `word`, `triple_of` and `quad_of` of their own.
 
 const PI = 3.14159265358979;
 
 fn value(at: u32) -> f32 {
-    return bitcast<f32>(data[at]);
+    return bitcast<f32>(word(at));
 }
 
 fn whole(at: u32) -> i32 {
-    return bitcast<i32>(data[at]);
+    return bitcast<i32>(word(at));
 }
 
 fn pair(at: u32) -> vec2<f32> {
@@ -19,14 +19,6 @@ fn pair(at: u32) -> vec2<f32> {
 
 fn triple(at: u32) -> vec3<f32> {
     return vec3<f32>(value(at), value(at + 1u), value(at + 2u));
-}
-
-fn triple_of(start: u32) -> vec3<f32> {
-    return vec3<f32>(samples[start], samples[start + 1u], samples[start + 2u]);
-}
-
-fn quad_of(start: u32) -> vec4<f32> {
-    return vec4<f32>(samples[start], samples[start + 1u], samples[start + 2u], samples[start + 3u]);
 }
 
 // Smoothstep from 0 at `first` to 1 at `end`; `first` may be the larger.

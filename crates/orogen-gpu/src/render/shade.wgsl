@@ -15,8 +15,7 @@ fn sun_seen(place: vec3<f32>, flip: vec2<f32>, nearest: f32) -> f32 {
         return 0.0;
     }
     let rise = steepest(place, pair(SUNWARDS) * flip, nearest, rims.x, rims.y);
-    let hidden = clamp((rise - rims.x) / (rims.y - rims.x), 0.0, 1.0);
-    return 1.0 - hidden * hidden * (3.0 - 2.0 * hidden);
+    return sun_above(rise, rims);
 }
 
 fn side_light(met: Met) -> vec3<f32> {
@@ -33,32 +32,22 @@ fn side_light(met: Met) -> vec3<f32> {
         albedo = section(along, height_of(place.z), below, max(metres(depth), 1.0));
     }
     let facing = max(dot(met.normal, pair(SUN)), 0.0);
-    // The side sees half sky, half table, which is darker at its foot.
     var foot = 1.0;
     if (depth > 0.0) {
         foot = 0.55 + 0.45 * clamp((place.z - lowest) / depth, 0.0, 1.0);
     }
-    let table = TABLE * (0.5 * triple(LEVEL_SUN) + triple(LEVEL_SKY));
-    let soft = foot * 0.5 * (triple(LEVEL_SKY) + table);
-    return albedo / PI * (triple(SUNLIGHT) * facing + soft);
+    return side_of(albedo, facing, foot);
 }
 
 fn table_light(met: Met, seen: f32) -> vec3<f32> {
     let place = met.place;
     let nearest = clamp(place.xy, land_low, land_high);
-    let off = distance(place.xy, nearest);
-    let high = top_at(nearest) - place.z;
-    let open = 0.5 + 0.5 * off / max(sqrt(off * off + high * high), 1e-9);
-    let near = TABLE / PI * (triple(LEVEL_SUN) * seen + triple(LEVEL_SKY) * open);
-    // The table fades into the horizon far behind the land.
-    let far = exp(-(off / (1.3 * length(land_high - land_low))));
-    return mix(sky_light(unit(vec3<f32>(met.ray.along.xy, 0.02))), near, far);
+    let across = length(land_high - land_low);
+    return table_of(met.ray.along, distance(place.xy, nearest), top_at(nearest) - place.z, across, seen);
 }
 
 fn ground_light(look: Look, facing: f32, seen: f32, place: vec2<f32>) -> vec3<f32> {
-    let shed = skylight_at(place);
-    let bounced = MEAN_ALBEDO * (0.7 * triple(LEVEL_SUN) + triple(LEVEL_SKY)) * max(1.0 - shed.w, 0.0);
-    return look.albedo / PI * (triple(SUNLIGHT) * (max(facing, 0.0) * seen) + shed.xyz + bounced);
+    return diffuse(look.albedo, max(facing, 0.0) * seen, skylight_at(place));
 }
 
 // The light along a ray from the camera. Each surface is shaded by the same code, whether a ray meets it directly or reflected: the second pass follows the ray that
@@ -125,8 +114,7 @@ fn light_along(view: vec3<f32>) -> vec3<f32> {
             let off = abs(place.z - value(SEA));
             let is_sea = !inside || (data[HAS_SEA] != 0u && off < SEA_LEVEL_TOLERANCE + 1e-6 * abs(place.z + origin_z));
             let body = water_body(is_sea, depth, cosine, max(sun_here.z, 0.0));
-            let within = body / PI * (triple(LEVEL_SUN) * seen + triple(LEVEL_SKY));
-            light = within * (1.0 - reflected) + triple(SUNLIGHT) * (seen * glitter(normal, -along, sun_here));
+            light = water_light(body, normal, -along, sun_here, seen, reflected);
             away = along - normal * (2.0 * dot(along, normal));
             away = unit(vec3<f32>(away.xy, max(away.z, 0.004)));
         } else if (met.surface == TABLE_TOP) {
@@ -135,10 +123,9 @@ fn light_along(view: vec3<f32>) -> vec3<f32> {
             light = side_light(met);
         }
 
-        let left = haze_left(ray.start.z, place.z, met.distance);
+        let left = haze_left(ray.start.z + origin_z, place.z + origin_z, met.distance);
         let air_along = select(ray.along, view, first);
-        let air = sky_light(unit(vec3<f32>(air_along.xy, max(air_along.z, 0.0) + 0.015)));
-        sum += weight * mix(air, light, left);
+        sum += weight * through_air(light, air_along, left);
         if (reflected <= 0.0) {
             break;
         }

@@ -4,16 +4,19 @@ use std::fmt::Write;
 
 use orogen_output::render::encode::SceneData;
 
-/// The shader after its constants, in parts by concern.
-const PARTS: [&str; 11] = [
-    include_str!("scene.wgsl"),
+/// What other shaders have, too: the light of the sky, of water, and tones.
+const LIGHT: [&str; 4] =
+    [include_str!("scene.wgsl"), include_str!("sky.wgsl"), include_str!("water.wgsl"), include_str!("tone.wgsl")];
+
+/// The rest of the shader, in parts by concern.
+const PARTS: [&str; 10] = [
+    include_str!("data.wgsl"),
     include_str!("relief.wgsl"),
     include_str!("march.wgsl"),
-    include_str!("sky.wgsl"),
+    include_str!("skylight_at.wgsl"),
     include_str!("grain.wgsl"),
     include_str!("ground.wgsl"),
-    include_str!("water.wgsl"),
-    include_str!("tone.wgsl"),
+    include_str!("waves.wgsl"),
     include_str!("meet.wgsl"),
     include_str!("shade.wgsl"),
     include_str!("picture.wgsl"),
@@ -32,46 +35,81 @@ pub(super) struct Encoded<'a> {
     pub rays_per_pixel: usize,
 }
 
-impl<'a> Encoded<'a> {
-    pub fn new(data: &'a SceneData) -> Encoded<'a> {
-        let mut text = String::new();
-        let mut words = Vec::new();
+/// The constants, numbers and grids of a scene, by name.
+struct Named<'a> {
+    text: String,
+    words: Vec<u32>,
+    uploads: Vec<(usize, &'a [f32])>,
+    samples: usize,
+}
+
+impl<'a> Named<'a> {
+    fn new(data: &'a SceneData) -> Named<'a> {
         let constants = data.constants.iter().map(|(name, values)| match values[..] {
             [red, green, blue] => format!("const {name} = vec3<f32>({red:?}, {green:?}, {blue:?});\n"),
             _ => format!("const {name} = f32({:?});\n", values.first().copied().unwrap_or_default()),
         });
-        text.extend(constants);
-        text.extend(data.counts.iter().map(|(name, count)| format!("const {name} = {count}u;\n")));
-        let mut name_word = |name: &str, at: usize| {
-            // Writing to a string cannot fail.
-            let _ = writeln!(text, "const {name} = {at}u;");
-        };
+        let counts = data.counts.iter().map(|(name, count)| format!("const {name} = {count}u;\n"));
+        let mut named =
+            Named { text: constants.chain(counts).collect(), words: Vec::new(), uploads: Vec::new(), samples: 0 };
         for (name, values) in &data.numbers {
-            name_word(name, words.len());
-            words.extend(values.iter().map(|value| value.to_bits()));
+            named.word(name);
+            named.words.extend(values.iter().map(|value| value.to_bits()));
         }
-        let mut rays_per_pixel = 1;
         for (name, values) in &data.integers {
-            name_word(name, words.len());
-            words.extend(values.iter().map(|value| value.cast_unsigned()));
-            if *name == "SAMPLES" {
-                rays_per_pixel = values.first().map_or(1, |count| count.unsigned_abs() as usize);
-            }
+            named.word(name);
+            named.words.extend(values.iter().map(|value| value.cast_unsigned()));
         }
-        let mut uploads = Vec::new();
-        let mut samples = 0;
         for (name, parts) in &data.grids {
-            name_word(name, words.len());
-            words.push(samples as u32);
+            named.word(name);
+            named.words.push(named.samples as u32);
             for part in parts.iter().filter(|part| !part.is_empty()) {
-                uploads.push((samples, &**part));
-                samples += part.len();
+                named.uploads.push((named.samples, &**part));
+                named.samples += part.len();
             }
         }
-        name_word("PICTURE", words.len());
-        words.push(samples as u32);
-        name_word("FIRST_ROW", words.len());
-        text.extend(PARTS);
+        named
+    }
+
+    /// Names the word that comes next.
+    fn word(&mut self, name: &str) {
+        // Writing to a string cannot fail.
+        let _ = writeln!(self.text, "const {name} = {}u;", self.words.len());
+    }
+}
+
+impl<'a> Encoded<'a> {
+    pub fn new(data: &'a SceneData) -> Encoded<'a> {
+        let mut named = Named::new(data);
+        named.word("PICTURE");
+        named.words.push(named.samples as u32);
+        named.word("FIRST_ROW");
+        let Named { mut text, words, uploads, samples } = named;
+        text.extend(LIGHT.into_iter().chain(PARTS));
+        let rays = data.integers.iter().find_map(|(name, values)| (*name == "SAMPLES").then(|| values.first())?);
+        let rays_per_pixel = rays.map_or(1, |count| count.unsigned_abs() as usize);
         Encoded { text, words, uploads, samples, rays_per_pixel }
+    }
+}
+
+/// The light of pictures for shaders of other programs: that of the sky, of haze, ground and water, and tone mapping.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LightShader {
+    /// Functions in WGSL; the text is the same for all light. What includes it defines `fn word(at: u32) -> u32`, a word, and
+    /// `fn triple_of(start: u32) -> vec3<f32>`, three successive numbers of the tables.
+    pub text: String,
+    /// The words.
+    pub words: Vec<u32>,
+    /// The tables, one after the other.
+    pub tables: Vec<f32>,
+}
+
+impl LightShader {
+    /// From the data of [`Lighting`](orogen_output::render::lighting::Lighting).
+    #[must_use]
+    pub fn new(data: &SceneData) -> LightShader {
+        let Named { mut text, words, uploads, .. } = Named::new(data);
+        text.extend(LIGHT);
+        LightShader { text, words, tables: uploads.into_iter().flat_map(|(_, part)| part).copied().collect() }
     }
 }

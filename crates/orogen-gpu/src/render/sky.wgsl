@@ -13,7 +13,7 @@ fn sky_light(along: vec3<f32>) -> vec3<f32> {
     let k = min(u32(up), SKY_ROWS - 2u);
     let s = min(around - f32(i), 1.0);
     let t = min(up - f32(k), 1.0);
-    let low = data[SKY] + 3u * (k * SKY_COLUMNS + i);
+    let low = word(SKY) + 3u * (k * SKY_COLUMNS + i);
     let high = low + 3u * SKY_COLUMNS;
     return mix(mix(triple_of(low), triple_of(low + 3u), s), mix(triple_of(high), triple_of(high + 3u), s), t);
 }
@@ -32,10 +32,16 @@ fn sky_seen(along: vec3<f32>) -> vec3<f32> {
     return sky + triple(SUNLIGHT) * min(SUN_DISC * edge * rim, 4000.0);
 }
 
-// The transmittance of haze over a distance between two values of z.
+// The visible share of the sun above a horizon that rises by this tangent; `rims` are those of its lower and upper limb.
+fn sun_above(rise: f32, rims: vec2<f32>) -> f32 {
+    let hidden = clamp((rise - rims.x) / (rims.y - rims.x), 0.0, 1.0);
+    return 1.0 - hidden * hidden * (3.0 - 2.0 * hidden);
+}
+
+// The transmittance of haze over a distance between two heights above the lowest ground.
 fn haze_left(eye: f32, place: f32, distance: f32) -> vec3<f32> {
     let thins = value(HAZE_THINS);
-    let ends = max((vec2<f32>(eye, place) + vec2<f32>(origin_z)) / thins, vec2<f32>(0.0));
+    let ends = max(vec2<f32>(eye, place) / thins, vec2<f32>(0.0));
     let low = min(ends.x, ends.y);
     let high = max(ends.x, ends.y);
     let rise = high - low;
@@ -47,22 +53,28 @@ fn haze_left(eye: f32, place: f32, distance: f32) -> vec3<f32> {
     return exp(-triple(HAZE_DIMS) * (thick * distance));
 }
 
-// The light of the sky on the ground (red, green, blue), and the share relative to a uniform sky without obstacles.
-fn skylight_at(place: vec2<f32>) -> vec4<f32> {
-    let columns = whole(SKYLIGHT_SIZE);
-    let rows = whole(SKYLIGHT_SIZE + 1u);
-    let stride = whole(SKYLIGHT_SIZE + 2u);
-    // Whole strides and the rest of the origin apart: their sum would lose the digits of the position.
-    let first = origin / vec2<i32>(stride);
-    let rest = vec2<f32>(origin - first * stride);
-    let size = vec2<i32>(columns, rows);
-    let at = clamp((place + rest) / f32(stride), vec2<f32>(-first), vec2<f32>(size - vec2<i32>(1) - first));
-    let cell = clamp(vec2<i32>(floor(at)) + first, vec2<i32>(0), max(size - vec2<i32>(2), vec2<i32>(0)));
-    let uv = at - vec2<f32>(cell - first);
-    let nw = data[SKYLIGHT] + 4u * u32(cell.y * columns + cell.x);
-    let east = select(0u, 4u, columns > 1);
-    let south = select(0u, 4u * u32(columns), rows > 1);
-    let north_row = mix(quad_of(nw), quad_of(nw + east), uv.x);
-    let south_row = mix(quad_of(nw + south), quad_of(nw + south + east), uv.x);
-    return mix(north_row, south_row, uv.y);
+// The light from ground of an albedo, of which the sun sees a share, under the light of the sky (red, green, blue) and its share relative to a sky without obstacles.
+fn diffuse(albedo: vec3<f32>, sun: f32, shed: vec4<f32>) -> vec3<f32> {
+    let bounced = MEAN_ALBEDO * (0.7 * triple(LEVEL_SUN) + triple(LEVEL_SKY)) * max(1.0 - shed.w, 0.0);
+    return albedo / PI * (triple(SUNLIGHT) * sun + shed.xyz + bounced);
+}
+
+// The light from a side of the block, which sees half sky, half table; the table is darker at its `foot`, which is 1 above it. `facing` is the cosine to the sun.
+fn side_of(albedo: vec3<f32>, facing: f32, foot: f32) -> vec3<f32> {
+    let table = TABLE * (0.5 * triple(LEVEL_SUN) + triple(LEVEL_SKY));
+    return albedo / PI * (triple(SUNLIGHT) * facing + foot * 0.5 * (triple(LEVEL_SKY) + table));
+}
+
+// The light from the table on which the block stands, at a distance from it, and `high` above it at the nearest place. The table fades into the horizon far behind
+// the land, whose diagonal is `across`; the sun sees a share of it.
+fn table_of(along: vec3<f32>, off: f32, high: f32, across: f32, seen: f32) -> vec3<f32> {
+    let open = 0.5 + 0.5 * off / max(sqrt(off * off + high * high), 1e-9);
+    let near = TABLE / PI * (triple(LEVEL_SUN) * seen + triple(LEVEL_SKY) * open);
+    let far = exp(-(off / (1.3 * across)));
+    return mix(sky_light(unit(vec3<f32>(along.xy, 0.02))), near, far);
+}
+
+// Light from a surface of which the air on the way along a ray leaves a share.
+fn through_air(light: vec3<f32>, along: vec3<f32>, left: vec3<f32>) -> vec3<f32> {
+    return mix(sky_light(unit(vec3<f32>(along.xy, max(along.z, 0.0) + 0.015))), light, left);
 }

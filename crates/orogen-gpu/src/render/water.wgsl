@@ -1,17 +1,4 @@
-// Water: waves, reflection, and colour by depth.
-
-// The normal of the waves at a position, for a pixel of `footprint` metres.
-fn wave_normal(place: vec2<f32>, footprint: f32) -> vec3<f32> {
-    var slope = vec2<f32>(0.0);
-    for (var k = 0u; k < WAVE_COUNT; k++) {
-        let noise = WAVES + NOISE * k;
-        let seen = clamp((value(noise) / footprint - 1.0) / 3.0, 0.0, 1.0);
-        if (seen > 0.0) {
-            slope += grain_at(noise, place.x, place.y).yz * value(noise + 9u) * seen;
-        }
-    }
-    return unit(vec3<f32>(-slope, 1.0));
-}
+// Water: reflection, and colour by depth.
 
 fn slanted(cosine: f32) -> f32 {
     return 1.0 / sqrt(max(1.0 - BENDS * (1.0 - cosine * cosine), 0.1));
@@ -57,4 +44,11 @@ fn glitter(normal: vec3<f32>, to_eye: vec3<f32>, to_sun: vec3<f32>) -> f32 {
     let rough = ROUGH_WATER * ROUGH_WATER;
     let facing = exp((square - 1.0) / (square * rough)) / (PI * rough * square * square);
     return facing * mirrored_share(dot(middle, to_eye)) / (4.0 * seen);
+}
+
+// The light from within water and the glitter of the sun on it, of which a share is seen from there; `body` is what the water scatters back, `reflected` what it
+// reflects.
+fn water_light(body: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>, to_sun: vec3<f32>, seen: f32, reflected: f32) -> vec3<f32> {
+    let within = body / PI * (triple(LEVEL_SUN) * seen + triple(LEVEL_SKY));
+    return within * (1.0 - reflected) + triple(SUNLIGHT) * (seen * glitter(normal, to_eye, to_sun));
 }

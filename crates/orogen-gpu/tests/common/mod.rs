@@ -23,7 +23,7 @@ pub fn gpu() -> &'static Gpu {
 }
 
 /// A session of the processor alone. All sessions share its solutions.
-fn processor() -> &'static Session {
+pub fn processor() -> &'static Session {
     static SESSION: OnceLock<Session> = OnceLock::new();
     SESSION.get_or_init(|| Session::new(Options::default()).unwrap())
 }

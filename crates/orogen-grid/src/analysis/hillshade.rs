@@ -56,6 +56,13 @@ impl Light {
         if light < 1.0 { light } else { 1.0 }
     }
 
+    /// The direction to the light (east, north and up), and the z factor: for other renderers.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn numbers(&self) -> [f32; 4] {
+        [self.east, self.north, self.up, self.z_factor]
+    }
+
     /// The illumination of level ground.
     #[must_use]
     pub fn on_level(&self) -> f32 {

@@ -41,6 +41,31 @@ fn looks(reach: usize, cell: f64) -> (Vec<Look>, Vec<f64>) {
     (looks, shares)
 }
 
+/// A step of [`view`], for other devices.
+#[doc(hidden)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ViewStep {
+    /// Columns and rows.
+    pub offset: [i64; 2],
+    /// The inverse of the distance in metres.
+    pub per_metre: f32,
+    /// At the last step of a direction its share of the circle, otherwise 0.
+    pub share: f32,
+}
+
+/// The steps of [`view`], direction by direction.
+#[doc(hidden)]
+#[must_use]
+pub fn steps_of_view(reach: usize, cell: f64) -> Vec<ViewStep> {
+    let (looks, shares) = looks(reach, cell);
+    let next = looks.iter().skip(1).map(|look| Some(look.direction)).chain([None]);
+    let step = |(look, next): (&Look, Option<usize>)| {
+        let share = if next == Some(look.direction) { 0.0 } else { shares[look.direction] as f32 };
+        ViewStep { offset: look.offset, per_metre: look.per_metre, share }
+    };
+    looks.iter().zip(next).map(step).collect()
+}
+
 /// 1, 2, 3, 4, 6, 8, 12, 16, ...
 fn steps() -> impl Iterator<Item = i64> {
     [1, 2, 3].into_iter().chain((1..40).flat_map(|power| [4 << (power - 1), 6 << (power - 1)]))

@@ -17,7 +17,7 @@ use crate::random::mix64;
 const VARIATION: [f32; 12] = [0.0, 0.3, 0.35, 0.45, 0.5, 0.5, 0.4, 0.4, 0.4, 0.3, 0.2, 0.2];
 
 /// The smallest cell, in km, at which geography is evaluated. Finer levels interpolate it.
-const FINEST_GEOGRAPHY: f64 = 3.0;
+pub const FINEST_GEOGRAPHY: f64 = 3.0;
 
 /// Share of the way by which the node that a parent becomes moves to a random position in its cell.
 const WANDER: f32 = 0.5;
@@ -44,8 +44,13 @@ pub fn heir(parent: &Level, q: usize) -> u8 {
 }
 
 /// Irregularity of the shore that a level adds, in km: a fractal line of this roughness.
-fn indent(land: &Refinement, depth: usize) -> f32 {
+pub fn indent(land: &Refinement, depth: usize) -> f32 {
     (0.5 * 61.44 * libm::pow(land.kilometres(depth) / 61.44, 0.92)) as f32
+}
+
+/// Standard deviation of the variation of the rock that a level adds.
+pub fn amplitude(land: &Refinement, depth: usize) -> f32 {
+    land.variation as f32 * VARIATION[depth.min(VARIATION.len() - 1)]
 }
 
 /// Share of the change over a cell that is the slope of the shore: the irregularities of coarser levels are the rest.
@@ -141,7 +146,7 @@ impl Children {
         let far_row = if j & 1 == 1 { near_row + parents } else { near_row - parents };
         let (has_lakes, beside) = (land.lakes > 0.0, lakes::beside(land, parent.depth));
         let kilometres = land.kilometres(self.depth) as f32;
-        let amplitude = land.variation as f32 * VARIATION[self.depth.min(VARIATION.len() - 1)];
+        let amplitude = amplitude(land, self.depth);
         for i in 2..width - 2 {
             let near = i / 2;
             let far = if i & 1 == 1 { near + 1 } else { near - 1 };

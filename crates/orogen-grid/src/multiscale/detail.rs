@@ -4,7 +4,7 @@
 use super::carve::Carved;
 use super::creep;
 use super::hash;
-use super::law::{CONCAVITY, Law, STABLE, STABLE_EXPONENT, river_slope};
+use super::law::{CONCAVITY, Law, STABLE, STABLE_EXPONENT, river_slope, stable_slope};
 use super::level::Level;
 use super::refinement::Refinement;
 use super::rock;
@@ -59,7 +59,7 @@ fn stable_slopes(land: &Refinement, level: &Level) -> Vec<f32> {
     let kilometres = land.kilometres(level.depth);
     let river_factor = river_slope(land, kilometres * kilometres) as f32;
     let cell = land.cell_of(level.depth) as f32;
-    let by_law = STABLE * power(land.relief as f32, STABLE_EXPONENT);
+    let by_law = stable_slope(land);
     // Each value with its weight.
     let mut own = vec![(0.0, 0.0); level.window.len()];
     for q in (1..height - 1).flat_map(|j| j * width + 1..(j + 1) * width - 1) {
@@ -95,11 +95,16 @@ fn stable_slopes(land: &Refinement, level: &Level) -> Vec<f32> {
     stable
 }
 
+/// Drainage area, in cells, below which rivers choose their receivers again.
+pub fn free_area(cell: f64) -> f32 {
+    (FREE_AREA / (cell * cell)) as f32
+}
+
 /// Rivers of small area choose their receivers again. They keep their slopes where those are steeper than the law: they fell by less than the level
 /// above otherwise, and a fall that moves upstream by a few cells on each level would leave steps.
 pub fn free_rivers(land: &Refinement, depth: usize, carved: &mut Carved, extent: Extent, law: &mut Law) {
     let cell = land.cell_of(depth);
-    let free_area = (FREE_AREA / (cell * cell)) as f32;
+    let free_area = free_area(cell);
     let (inner, width) = (extent.shrunk(1), extent.width);
     if let Some(distances) = &carved.distances {
         for j in inner.rows() {

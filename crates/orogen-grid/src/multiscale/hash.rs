@@ -5,11 +5,16 @@ use crate::random::{STEP, mix64};
 /// Displacement of nodes: the share of a cell in which they are.
 pub const JITTER: f32 = 0.8;
 
+/// What the hashes of all nodes of a level start with.
+#[inline(always)]
+pub fn start(seed: u64, depth: usize, stream: u64) -> u64 {
+    seed.wrapping_add(((depth as u64) << 8 | stream).wrapping_mul(STEP))
+}
+
 /// 64 random bits of the node at column `x` and row `y` of a level.
 #[inline(always)]
 pub fn node(seed: u64, depth: usize, x: i64, y: i64, stream: u64) -> u64 {
-    let start = seed.wrapping_add(((depth as u64) << 8 | stream).wrapping_mul(STEP));
-    let column = mix64(start ^ (x as u64).wrapping_mul(0xD6E8_FEB8_6659_FD93));
+    let column = mix64(start(seed, depth, stream) ^ (x as u64).wrapping_mul(0xD6E8_FEB8_6659_FD93));
     mix64(column.wrapping_add((y as u64).wrapping_mul(0xA076_1D64_78BD_642F)))
 }
 

@@ -31,6 +31,11 @@ pub fn river_slope(land: &Refinement, square_kilometres: f64) -> f64 {
     land.relief * STEEPNESS * libm::pow(square_kilometres, -f64::from(CONCAVITY))
 }
 
+/// Stable slope of hillsides where uplift over erodibility is 1, with the factor of the uplift.
+pub fn stable_slope(land: &Refinement) -> f32 {
+    STABLE * power(land.relief as f32, STABLE_EXPONENT)
+}
+
 /// The law at the nodes of a level. The slope is s t / (s + t) with s = `river` A^-0.45, A in cells, and t = `stable`.
 pub struct Law {
     pub river: Vec<f32>,
@@ -46,7 +51,7 @@ impl Law {
         let cells = variation.len().min(uplift.len());
         let kilometres = land.kilometres(depth);
         let river_factor = river_slope(land, kilometres * kilometres) as f32;
-        let stable_factor = STABLE * power(land.relief as f32, STABLE_EXPONENT);
+        let stable_factor = stable_slope(land);
         let mut law = Law { river: vec![0.0; cells], stable: vec![0.0; cells], floor: Vec::new() };
         if has_floors(land, depth) {
             law.floor.resize(cells, 0.0);

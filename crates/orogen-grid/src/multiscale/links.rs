@@ -16,6 +16,11 @@ const FINE_WANDER: f32 = 0.3;
 /// Factor of the length of a detour around a corner: rivers that follow diagonals would be straight without detours.
 const DETOUR: f32 = 0.9;
 
+/// Randomness of the choice between ways to the nodes of a level.
+pub fn wander(land: &Refinement, depth: usize) -> f32 {
+    if depth + 2 >= land.levels { FINE_WANDER } else { WANDER }
+}
+
 /// A child of a cell: its parent and which of the four it is, bit 0 for the east, bit 1 for the south.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Child {
@@ -72,7 +77,7 @@ impl Links {
         let mut links = Links { list: vec![nothing; parent.window.len()], size };
         links.keep(parent);
         progress.check()?;
-        let wander = if children.depth + 2 >= land.levels { FINE_WANDER } else { WANDER };
+        let wander = wander(land, children.depth);
         for q in links.inner().filter(|&q| links.list[q].kept && drains(parent.receiver[q])).collect::<Vec<_>>() {
             links.cross(land, parent, children, q, wander);
         }

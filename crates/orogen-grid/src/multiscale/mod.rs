@@ -33,6 +33,8 @@ mod lakes;
 mod law;
 pub mod level;
 mod links;
+#[doc(hidden)]
+pub mod lowered;
 mod nearest;
 mod refine;
 pub mod refinement;

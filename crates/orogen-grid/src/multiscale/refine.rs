@@ -21,14 +21,14 @@ use crate::grid::Window;
 use crate::progress::Progress;
 
 /// Cells at the edge of the children whose rivers and shores are not exact.
-const CARVED: usize = 7;
+pub const CARVED: usize = 7;
 
 /// Passes of heights before drainage areas change, and rounds of areas and heights after.
-const FIRST_PASSES: usize = 3;
-const ROUNDS: usize = 5;
+pub const FIRST_PASSES: usize = 3;
+pub const ROUNDS: usize = 5;
 
 /// Passes of areas in a round.
-const AREA_PASSES: usize = 2;
+pub const AREA_PASSES: usize = 2;
 
 /// The work before growth and on banks and creep, in passes of growth.
 const CARVING_WORK: [f64; 4] = [1.0, 1.0, 0.5, 0.5];
@@ -42,17 +42,17 @@ const LAST_AREA_PASSES: usize = 3;
 const FINEST_AREA_PASSES: usize = 6;
 
 /// Passes that keep areas from falling downstream: they rise along the receivers, then fall against them.
-const RAISE_PASSES: usize = 6;
-const LIMIT_PASSES: usize = 3;
+pub const RAISE_PASSES: usize = 6;
+pub const LIMIT_PASSES: usize = 3;
 
 /// Passes that raise banks on the finest level, and rounds of them: nodes that drained to a bank choose their receivers again after each.
-const BANK_PASSES: usize = 3;
-const BANK_ROUNDS: usize = 2;
+pub const BANK_PASSES: usize = 3;
+pub const BANK_ROUNDS: usize = 2;
 
 /// Drainage area, in cells, below which nodes of rivers of the level above choose their receivers again.
-const FREE_AREA: f32 = 64.0;
+pub const FREE_AREA: f32 = 64.0;
 
-fn last_area_passes(finest: bool) -> usize {
+pub fn last_area_passes(finest: bool) -> usize {
     if finest { FINEST_AREA_PASSES } else { LAST_AREA_PASSES }
 }
 

@@ -15,14 +15,15 @@ use super::albedo::{
 };
 use super::camera::{Camera, folded};
 use super::grain::{self, GrainMap};
-use super::ground::{Colors, no_height};
+use super::ground::{Colors, PAPER, no_height};
+use super::lighting::Lighting;
 use super::relief::DRY;
 use super::scene::{Around, MIRRORS, Scene, spot};
 use super::shade::{LEVEL, MEAN_ALBEDO, ROUGH_WATER, TABLE};
-use super::sky::{self, SUN_RADIUS};
+use super::sky::{self, Haze, SUN_RADIUS};
 use super::tone::{CURVE, INPUT, OUTPUT};
 use super::vector::Vector;
-use super::water::{BENDS, BOTTOM, DARK, DEEP, LAKE_BOTTOM, LAKE_DEEP, LAKE_TAKES, SHALLOW, STRETCH, WAVES};
+use super::water::{BENDS, BOTTOM, DARK, DEEP, LAKE_BOTTOM, LAKE_DEEP, LAKE_TAKES, SHALLOW, STRETCH, WAVES, Water};
 
 /// A scene and a camera as numbers and grids.
 #[derive(Debug, Clone, Default)]
@@ -137,18 +138,7 @@ impl Scene {
     }
 
     fn encode_light<'a>(&'a self, data: &mut SceneData<'a>) {
-        let sun = self.sky.sun();
-        data.number("SUN", &[sun.x as f32, sun.y as f32, sun.z as f32]);
-        data.number("SUNLIGHT", &self.sky.sunlight());
-        data.number("SKY_AHEAD", &self.sky.ahead.map(|part| part as f32));
-        data.grid("SKY", [self.sky.table.as_flattened().into()]);
-        data.number("SUNWARDS", &self.sunwards.map(|part| part as f32));
-        data.number("RIMS", &self.rims.map(|part| part as f32));
-        data.number("LEVEL_SUN", &self.level_sun);
-        data.number("LEVEL_SKY", &self.level_sky);
-        data.number("EXPOSURE", &self.exposure);
-        data.number("HAZE_DIMS", &self.haze.dims);
-        data.number("HAZE_THINS", &[self.haze.thins]);
+        self.lighting.encode(&self.haze, data);
         let light = &self.skylight;
         data.integer("SKYLIGHT_SIZE", &[light.columns, light.rows, light.stride].map(|count| count as i32));
         data.grid("SKYLIGHT", [light.shed.as_flattened().into()]);
@@ -214,6 +204,34 @@ impl Scene {
     }
 }
 
+impl Lighting {
+    /// The light without any land, for renderers that have their own: in haze of this density over a block with this diagonal and highest ground, and on the sea
+    /// of land with this cell in metres.
+    #[must_use]
+    pub fn data(&self, haze: f64, [across, highest]: [f64; 2], cell: f64) -> SceneData<'_> {
+        let mut data = SceneData::default();
+        data.constants();
+        self.encode(&Haze::of_block(haze, across, highest), &mut data);
+        data.number("SEA_TAKES", &Water::new(cell).takes);
+        data
+    }
+
+    fn encode<'a>(&'a self, haze: &Haze, data: &mut SceneData<'a>) {
+        let sun = self.sky.sun();
+        data.number("SUN", &[sun.x as f32, sun.y as f32, sun.z as f32]);
+        data.number("SUNLIGHT", &self.sky.sunlight());
+        data.number("SKY_AHEAD", &self.sky.ahead.map(|part| part as f32));
+        data.grid("SKY", [self.sky.table.as_flattened().into()]);
+        data.number("SUNWARDS", &self.sunwards.map(|part| part as f32));
+        data.number("RIMS", &self.rims.map(|part| part as f32));
+        data.number("LEVEL_SUN", &self.level_sun);
+        data.number("LEVEL_SKY", &self.level_sky);
+        data.number("EXPOSURE", &self.exposure);
+        data.number("HAZE_DIMS", &haze.dims);
+        data.number("HAZE_THINS", &[haze.thins]);
+    }
+}
+
 /// A noise: its wavelength in metres, matrix, offset, angle, and the steepness of its waves.
 fn grain_numbers(map: &GrainMap, [wavelength, steep]: [f32; 2]) -> [f32; 10] {
     let [[a, b], [c, d]] = map.matrix.map(|row| row.map(|part| part as f32));
@@ -253,6 +271,7 @@ impl<'a> SceneData<'a> {
             one("MEAN_ALBEDO", MEAN_ALBEDO),
             one("SEA_LEVEL_TOLERANCE", LEVEL as f32),
             one("ROUGH_WATER", ROUGH_WATER),
+            one("PAPER", PAPER),
             one("SUN_HALF_SQUARE", (0.5 * radius * radius) as f32),
             one("SUN_DISC", (1.0 / (std::f64::consts::PI * radius * radius)) as f32),
             one("BENDS", BENDS),

@@ -87,7 +87,7 @@ const SNOW_SHARE: f64 = 0.60;
 const TREE_SHARE: f64 = 0.40;
 
 /// Factor of a map's colors: paper is brighter than any ground, and would be white in the sun.
-const PAPER: f32 = 0.55;
+pub(super) const PAPER: f32 = 0.55;
 
 /// Albedo of ground without a height: a middle grey, darker than snow.
 const MISSING: f32 = 0.3;

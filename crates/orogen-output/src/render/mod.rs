@@ -11,6 +11,8 @@ pub mod device;
 pub mod encode;
 mod grain;
 mod ground;
+#[doc(hidden)]
+pub mod lighting;
 pub(crate) mod march;
 pub mod relief;
 pub mod scene;

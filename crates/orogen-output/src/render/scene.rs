@@ -5,9 +5,10 @@ use rayon::prelude::*;
 use super::camera::{Camera, CameraSpec, Frame, folded};
 pub use super::ground::Colors;
 use super::ground::{Dress, GroundCover};
+use super::lighting::Lighting;
 use super::march::{Hit, Ray, Surface};
 use super::relief::{Land, Relief};
-use super::sky::{Haze, SUN_RADIUS, Sky};
+use super::sky::Haze;
 use super::skylight::{Skylight, SkylightDevice};
 use super::tone::tone_map;
 use super::vector::Vector;
@@ -82,8 +83,7 @@ pub(super) enum Around {
 /// Maximum number of mirrored copies along a ray.
 pub(super) const MIRRORS: usize = 12;
 
-/// Optical depth of green light over the land's diagonal at a haze of 1: for a block, and for land that continues.
-const CLEAR: f64 = 0.30;
+/// Optical depth of green light over the diagonal of land that continues, at a haze of 1.
 const CLEAR_AROUND: f64 = 1.0;
 
 /// The land with its light.
@@ -92,21 +92,13 @@ pub struct Scene {
     pub(super) relief: Relief,
     pub(super) ground: GroundCover,
     pub(super) water: Water,
-    pub(super) sky: Sky,
+    pub(super) lighting: Lighting,
     pub(super) skylight: Skylight,
     pub(super) haze: Haze,
     pub(super) around: Around,
     /// The z of the lowest drawn point.
     pub(super) floor: f64,
     pub(super) samples: u32,
-    /// The horizontal direction to the sun, and the tangents of the elevations of its lower and upper limb.
-    pub(super) sunwards: [f64; 2],
-    pub(super) rims: [f64; 2],
-    /// The light of the sun and of the whole sky on level ground.
-    pub(super) level_sun: Light,
-    pub(super) level_sky: Light,
-    /// Factor from light to exposure.
-    pub(super) exposure: Light,
     encoder: Encoder,
 }
 
@@ -149,14 +141,13 @@ impl Scene {
         device: Option<&dyn SkylightDevice>,
         progress: &Progress,
     ) -> Result<Scene> {
-        let [raising, lighting, painting] = progress.parts([1.0, 8.0, 2.0]);
+        let [raising, shedding, painting] = progress.parts([1.0, 8.0, 2.0]);
         let relief = Relief::new(land, style.exaggeration)?;
         raising.finish();
         progress.check()?;
-        let [azimuth, elevation] = style.sun;
-        let sky = Sky::new(azimuth, elevation);
+        let lighting = Lighting::new(style.sun);
         progress.check()?;
-        let skylight = Skylight::new(&relief, &sky, device, &lighting)?;
+        let skylight = Skylight::new(&relief, &lighting.sky, device, &shedding)?;
         let cover = style.cover.into_iter().flatten().all(|layer| layer.window() == land.heights.window());
         if !cover || (style.colors == Colors::Surfaces && style.cover.is_none()) {
             let message = "a picture of surfaces needs their albedo and roughness over the window of the heights";
@@ -177,31 +168,22 @@ impl Scene {
             (Edge::Haze, Some(sea)) if wet > 0.6 => Around::Sea(sea),
             (Edge::Haze, _) => Around::Mirrors,
         };
-        let (clear, reach) = if matches!(around, Around::Mirrors) { (CLEAR_AROUND, 2.2) } else { (CLEAR, 1.2) };
-        let thins = (reach * relief.highest()).max(0.02 * across);
-        let haze = Haze::new(style.haze * clear, across, thins);
-        let sun = sky.sun();
-        let (sin, cos) = libm::sincos(azimuth.to_radians());
-        // At the zenith, the two limbs would coincide.
-        let rims = [-SUN_RADIUS, SUN_RADIUS].map(|off| libm::tan((elevation.min(88.0) + off).to_radians()));
-        let level_sun = sky.sunlight().map(|c| c * sun.z.max(0.0) as f32);
-        let level_sky = sky.dome();
-        let exposure = exposure(&sky, level_sky);
+        let haze = match around {
+            Around::Mirrors => {
+                Haze::new(style.haze * CLEAR_AROUND, across, (2.2 * relief.highest()).max(0.02 * across))
+            }
+            _ => Haze::of_block(style.haze, across, relief.highest()),
+        };
         Ok(Scene {
             water: Water::new(relief.cell()),
             relief,
             ground,
-            sky,
+            lighting,
             skylight,
             haze,
             around,
             floor: if matches!(around, Around::Table(_)) { floor } else { 0.0 },
             samples: style.samples.max(1),
-            sunwards: [sin, -cos],
-            rims,
-            level_sun,
-            level_sky,
-            exposure,
             encoder: Encoder::new(),
         })
     }
@@ -267,7 +249,7 @@ impl Scene {
                     let [u, v] = spot(k);
                     let ray = camera.ray((i as f64 + u) / width as f64, (j as f64 + v) / height as f64);
                     let light = self.light(&ray, pixel);
-                    let shown = tone_map(std::array::from_fn(|c| light[c] * self.exposure[c]));
+                    let shown = tone_map(std::array::from_fn(|c| light[c] * self.lighting.exposure[c]));
                     sum.iter_mut().zip(shown).for_each(|(sum, c)| *sum += c);
                 }
                 bytes.copy_from_slice(&self.encoder.bytes(sum.map(|c| c / self.samples as f32)));
@@ -291,7 +273,7 @@ impl Scene {
                 let light = self.shade(&met, pixel, true);
                 self.through_haze(ray, &met, light)
             }
-            None => self.sky.seen(ray.along),
+            None => self.lighting.sky.seen(ray.along),
         }
     }
 
@@ -394,21 +376,6 @@ fn wet_edge(relief: &Relief) -> f64 {
     let down: usize = (0..rows).map(|j| wet(0, j) + wet(columns - 1, j)).sum();
     (across + down) as f64 / (2 * (columns + rows)) as f64
 }
-
-/// The exposure: factors that light is multiplied by before tone mapping. Sunlit, slightly inclined ground is exposed
-/// correctly, and the colour of the light is partly compensated (white balance).
-fn exposure(sky: &Sky, level_sky: Light) -> Light {
-    let facing = (sky.sun().z.max(0.0) as f32).max(0.45);
-    let light: Light = std::array::from_fn(|c| sky.sunlight()[c] * facing + level_sky[c]);
-    let bright = 0.2126 * light[0] + 0.7152 * light[1] + 0.0722 * light[2];
-    // Nights stay dark.
-    let scale = BRIGHT * std::f32::consts::PI / bright.max(0.004);
-    light.map(|c| scale * libm::powf(bright.max(1e-6) / c.max(1e-6), BALANCE).clamp(0.5, 2.0))
-}
-
-/// The exposed brightness of a white sheet in the sun, and the share of the white balance.
-const BRIGHT: f32 = 2.1;
-const BALANCE: f32 = 0.55;
 
 /// The k-th sample position in a pixel: evenly distributed for any number of samples (M. Roberts' sequence of the
 /// plastic number, 2018).

@@ -24,7 +24,7 @@ impl Scene {
     pub(super) fn through_haze(&self, ray: &Ray, met: &Met, light: Light) -> Light {
         let left = self.haze.left(ray.from.z, met.place.z, met.distance);
         let level = Vector { z: ray.along.z.max(0.0) + 0.015, ..ray.along }.unit();
-        let air = self.sky.light(level);
+        let air = self.lighting.sky.light(level);
         std::array::from_fn(|c| light[c] * left[c] + air[c] * (1.0 - left[c]))
     }
 
@@ -46,18 +46,18 @@ impl Scene {
 
     /// The visible share of the sun from a point, ignoring obstacles within `nearest` cells.
     fn sun_seen(&self, place: Vector, flip: [f64; 2], nearest: f64) -> f32 {
-        let [low, high] = self.rims;
+        let [low, high] = self.lighting.rims;
         if high <= 0.0 {
             return 0.0;
         }
-        let towards = [self.sunwards[0] * flip[0], self.sunwards[1] * flip[1]];
+        let towards = [self.lighting.sunwards[0] * flip[0], self.lighting.sunwards[1] * flip[1]];
         let rise = self.relief.steepest(place, towards, nearest, low, high);
         let hidden = ((rise - low) / (high - low)).clamp(0.0, 1.0) as f32;
         1.0 - hidden * hidden * (3.0 - 2.0 * hidden)
     }
 
     fn sun(&self, flip: [f64; 2]) -> Vector {
-        let sun = self.sky.sun();
+        let sun = self.lighting.sky.sun();
         Vector { x: sun.x * flip[0], y: sun.y * flip[1], z: sun.z }
     }
 
@@ -71,9 +71,11 @@ impl Scene {
         let facing = normal.dot(self.sun(met.flip)) as f32;
         let direct = if facing > 0.0 { facing * self.sun_seen(met.place, met.flip, 0.75) } else { 0.0 };
         let shed = self.skylight.at(x, y);
-        let sunlight = self.sky.sunlight();
+        let sunlight = self.lighting.sky.sunlight();
         std::array::from_fn(|c| {
-            let bounced = MEAN_ALBEDO * (0.7 * self.level_sun[c] + self.level_sky[c]) * (1.0 - shed[3]).max(0.0);
+            let bounced = MEAN_ALBEDO
+                * (0.7 * self.lighting.level_sun[c] + self.lighting.level_sky[c])
+                * (1.0 - shed[3]).max(0.0);
             look.albedo[c] * std::f32::consts::FRAC_1_PI * (sunlight[c] * direct + shed[c] + bounced)
         })
     }
@@ -113,12 +115,14 @@ impl Scene {
                 let light = self.shade_ground(&there, pixel * 2.0);
                 self.through_haze(&reflected, &Met { distance: hit.distance, ..there }, light)
             }
-            None => self.sky.light(Vector { x: away.x * met.flip[0], y: away.y * met.flip[1], z: away.z }),
+            None => self.lighting.sky.light(Vector { x: away.x * met.flip[0], y: away.y * met.flip[1], z: away.z }),
         };
         let glitter = seen * water::glitter(normal, to_eye, sun, ROUGH_WATER);
-        let sunlight = self.sky.sunlight();
+        let sunlight = self.lighting.sky.sunlight();
         std::array::from_fn(|c| {
-            let within = body[c] * std::f32::consts::FRAC_1_PI * (self.level_sun[c] * seen + self.level_sky[c]);
+            let within = body[c]
+                * std::f32::consts::FRAC_1_PI
+                * (self.lighting.level_sun[c] * seen + self.lighting.level_sky[c]);
             within * (1.0 - mirrored) + behind[c] * mirrored + sunlight[c] * glitter
         })
     }
@@ -139,13 +143,13 @@ impl Scene {
                 )
             }
         };
-        let facing = met.normal.dot(self.sky.sun()).max(0.0) as f32;
-        let sunlight = self.sky.sunlight();
+        let facing = met.normal.dot(self.lighting.sky.sun()).max(0.0) as f32;
+        let sunlight = self.lighting.sky.sunlight();
         // The side sees half sky, half table, which is darker at its foot.
         let foot = 0.55 + 0.45 * ((z - self.floor) / -self.floor).clamp(0.0, 1.0) as f32;
         std::array::from_fn(|c| {
-            let table = TABLE[c] * (0.5 * self.level_sun[c] + self.level_sky[c]);
-            let soft = foot * 0.5 * (self.level_sky[c] + table);
+            let table = TABLE[c] * (0.5 * self.lighting.level_sun[c] + self.lighting.level_sky[c]);
+            let soft = foot * 0.5 * (self.lighting.level_sky[c] + table);
             albedo[c] * std::f32::consts::FRAC_1_PI * (sunlight[c] * facing + soft)
         })
     }
@@ -159,13 +163,15 @@ impl Scene {
         let high = self.relief.top(x, y) - place.z;
         let open = (0.5 + 0.5 * off / (off * off + high * high).sqrt().max(1e-9)) as f32;
         let near: Light = std::array::from_fn(|c| {
-            TABLE[c] * std::f32::consts::FRAC_1_PI * (self.level_sun[c] * seen + self.level_sky[c] * open)
+            TABLE[c]
+                * std::f32::consts::FRAC_1_PI
+                * (self.lighting.level_sun[c] * seen + self.lighting.level_sky[c] * open)
         });
         // The table fades into the horizon far behind the land.
         let across = (east * east + south * south).sqrt();
         let far = libm::expf(-((off / (1.3 * across)) as f32));
         let level = Vector { z: 0.02, ..met.along }.unit();
-        let edge = self.sky.light(level);
+        let edge = self.lighting.sky.light(level);
         std::array::from_fn(|c| near[c] * far + edge[c] * (1.0 - far))
     }
 }

@@ -87,6 +87,14 @@ impl Sky {
         Sky { table: rows(shed), ..once }
     }
 
+    /// The same sky with the sun at another azimuth in degrees.
+    pub fn turned(&self, azimuth: f64) -> Sky {
+        let (sin, cos) = libm::sincos(azimuth.to_radians());
+        let level = (1.0 - self.sun.z * self.sun.z).max(0.0).sqrt();
+        let sun = Vector::new(sin * level, -cos * level, self.sun.z);
+        Sky { sun, ahead: [sin, -cos], ..self.clone() }
+    }
+
     /// The light of the whole sky on level ground.
     pub fn dome(&self) -> Light {
         let mut sum = [0.0f32; 3];
@@ -244,7 +252,16 @@ pub(super) struct Haze {
     pub thins: f32,
 }
 
+/// Optical depth of green light over the diagonal of a block at a density of 1.
+const BLOCK: f64 = 0.30;
+
 impl Haze {
+    /// Haze of this density over a block: 0 is none, 1 that of a clear day. Lengths are the diagonal of the block and the height of its highest ground above the
+    /// lowest.
+    pub fn of_block(density: f64, across: f64, highest: f64) -> Haze {
+        Haze::new(BLOCK * density, across, (1.2 * highest).max(0.02 * across))
+    }
+
     /// Haze with the optical depth `amount` of green light over `way` cells along the lowest ground, and a scale height
     /// of `thins` cells.
     pub fn new(amount: f64, way: f64, thins: f64) -> Haze {

@@ -23,14 +23,13 @@ use super::relief_panel::ReliefPanel;
 use super::start_page::StartPage;
 use super::text_panel::TextPanel;
 use super::variants_panel::VariantsPanel;
-use super::{analysis_panel, fonts, menu, theme};
+use super::{analysis_panel, fonts, menu, status, theme};
 use crate::catalogue::Language;
 use crate::editing::document::Document;
 use crate::editing::edit::Edit;
 use crate::editing::groups;
 use crate::preview::coloring::Coloring;
 use crate::preview::colors::palette;
-use crate::preview::frame::Quality;
 use crate::preview::worker::Wake;
 use crate::recovery::Recovery;
 use crate::settings::Settings;
@@ -65,6 +64,8 @@ enum Pending {
 /// The application.
 pub struct App {
     session: Session,
+    /// The graphics card that computes previews.
+    gpu: Option<Gpu>,
     wake: Wake,
     settings: Settings,
     /// The folder of settings.
@@ -132,8 +133,8 @@ impl App {
     pub fn new(context: &eframe::CreationContext<'_>, start: Start) -> Result<App> {
         let Start { settings, folder, document, gpu, watch, is_after_loss, lose_device } = start;
         let session = Session::new(Options { memory: Budget::of(settings.memory), ..Options::default() })?;
-        let session = match gpu {
-            Some(gpu) => session.with_device(Arc::new(gpu)),
+        let session = match &gpu {
+            Some(gpu) => session.with_device(Arc::new(gpu.clone())),
             None => session,
         };
         let repaint = context.egui_ctx.clone();
@@ -150,6 +151,7 @@ impl App {
         let variants = VariantsPanel::new(Arc::clone(&wake));
         let mut app = App {
             session,
+            gpu,
             wake,
             settings,
             folder,
@@ -513,7 +515,7 @@ impl App {
             return;
         };
         let language = self.language;
-        Panel::bottom("status").show(ui, |ui| status(ui, studio, language));
+        Panel::bottom("status").show(ui, |ui| status::show(ui, studio, self.gpu.as_ref(), language));
         Panel::right("inspector").default_size(300.0).size_range(220.0..=520.0).show(ui, |ui| {
             egui::ScrollArea::vertical()
                 .auto_shrink(false)
@@ -676,32 +678,6 @@ impl App {
             None => {}
         }
     }
-}
-
-/// The line at the bottom.
-fn status(ui: &mut Ui, studio: &Studio, language: Language) {
-    ui.horizontal(|ui| {
-        if studio.is_busy() {
-            ui.add(egui::ProgressBar::new(studio.share()).desired_width(120.0).desired_height(8.0));
-        }
-        if let Some(failure) = &studio.failure {
-            ui.colored_label(ui.visuals().error_fg_color, failure.to_string());
-            return;
-        }
-        if !studio.document.is_valid() {
-            ui.colored_label(ui.visuals().error_fg_color, language.text("status.invalid"));
-            return;
-        }
-        if let Some(frame) = &studio.frame {
-            let samples = frame.window().width.max(frame.window().height).to_string();
-            let seconds = format!("{:.2}", frame.seconds);
-            ui.weak(language.fill("status.made", &[("samples", &samples), ("seconds", &seconds)]));
-            if frame.quality == Quality::Draft {
-                ui.weak(language.text("analysis.draft"));
-            }
-        }
-        ui.weak(orogen::words::bytes(studio.session().kept_memory()));
-    });
 }
 
 impl eframe::App for App {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use bytemuck::{Pod, Zeroable};
 use eframe::egui::PaintCallbackInfo;
 use eframe::egui_wgpu::{CallbackResources, CallbackTrait, RenderState, ScreenDescriptor, wgpu};
+use orogen::gpu::render::LightShader;
 use wgpu::util::DeviceExt as _;
 
 use super::mesh::{Mesh, Vertex};
@@ -16,18 +17,16 @@ use crate::preview::frame::{Frame, Key};
 pub struct Scene {
     /// From the view's space to clip space.
     pub matrix: [[f32; 4]; 4],
-    /// Direction to the sun, and strength of shadows.
-    pub sun: [f32; 4],
+    /// Its inverse.
+    pub inverse: [[f32; 4]; 4],
     /// Half the width and depth, units of height for a metre, the height at 0.
     pub extent: [f32; 4],
-    /// Interval of contours, their strength, the base, haze.
+    /// Interval of contours, their strength, the base, the strength of shadows.
     pub lines: [f32; 4],
-    /// Height of the water, whether there is any, nothing, the relief in metres.
+    /// Height of the water, whether there is any, the lowest ground, the relief in metres.
     pub water: [f32; 4],
     /// The position of the camera.
     pub eye: [f32; 4],
-    /// The color of the sky in linear light.
-    pub sky: [f32; 4],
 }
 
 const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
@@ -72,8 +71,10 @@ impl Ability {
 pub struct Drawing {
     /// The land.
     pub frame: Arc<Frame>,
-    /// The camera and the light.
+    /// The camera and the land.
     pub scene: Scene,
+    /// The light.
+    pub light: Arc<LightShader>,
     /// Whether the lattice of the mesh is drawn.
     pub has_wire: bool,
     /// The size of the picture in pixels.
@@ -92,7 +93,7 @@ impl CallbackTrait for Drawing {
         resources: &mut CallbackResources,
     ) -> Vec<wgpu::CommandBuffer> {
         if !resources.contains::<Relief>() {
-            resources.insert(Relief::new(device, self.ability));
+            resources.insert(Relief::new(device, self.ability, &self.light));
         }
         if let Some(relief) = resources.get_mut::<Relief>() {
             relief.load(device, queue, self);
@@ -115,6 +116,12 @@ impl CallbackTrait for Drawing {
 /// The land on the graphics card.
 struct Land {
     frame: Key,
+    bind: wgpu::BindGroup,
+}
+
+/// The light on the graphics card.
+struct Light {
+    shader: Arc<LightShader>,
     bind: wgpu::BindGroup,
 }
 
@@ -143,14 +150,38 @@ struct Relief {
     ground: wgpu::RenderPipeline,
     water: wgpu::RenderPipeline,
     wire: wgpu::RenderPipeline,
+    behind: wgpu::RenderPipeline,
     blit: wgpu::RenderPipeline,
     scene: wgpu::Buffer,
     sampler: wgpu::Sampler,
     land_layout: wgpu::BindGroupLayout,
+    light_layout: wgpu::BindGroupLayout,
     blit_layout: wgpu::BindGroupLayout,
     land: Option<Land>,
+    light: Option<Light>,
     buffers: Option<Buffers>,
     target: Option<Target>,
+}
+
+/// A texture with a label, a size and a format.
+fn filled(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    (label, [width, height], format): (&str, [u32; 2], wgpu::TextureFormat),
+    bytes: &[u8],
+) -> wgpu::TextureView {
+    let descriptor = wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    };
+    let texture = device.create_texture_with_data(queue, &descriptor, wgpu::util::TextureDataOrder::LayerMajor, bytes);
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
 /// Entry of a texture in a layout.
@@ -178,13 +209,16 @@ fn sampler(binding: u32) -> wgpu::BindGroupLayoutEntry {
 }
 
 impl Relief {
-    fn new(device: &wgpu::Device, ability: Ability) -> Relief {
+    fn new(device: &wgpu::Device, ability: Ability, light: &LightShader) -> Relief {
+        // The text is the same for all light.
+        let words = light.words.len().div_ceil(4);
+        let text = format!("const WORDS = {words}u;\n{}{}", light.text, include_str!("relief.wgsl"));
         let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("relief"),
-            source: wgpu::ShaderSource::Wgsl(include_str!("relief.wgsl").into()),
+            source: wgpu::ShaderSource::Wgsl(text.into()),
         });
-        let uniform = wgpu::BindGroupLayoutEntry {
-            binding: 0,
+        let uniform = |binding: u32| wgpu::BindGroupLayoutEntry {
+            binding,
             visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
             ty: wgpu::BindingType::Buffer {
                 ty: wgpu::BufferBindingType::Uniform,
@@ -195,7 +229,11 @@ impl Relief {
         };
         let land_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("land"),
-            entries: &[uniform, texture(1, false), texture(2, true), texture(3, true), sampler(4)],
+            entries: &[uniform(0), texture(1, false), texture(2, true), texture(3, true), sampler(4)],
+        });
+        let light_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("light"),
+            entries: &[uniform(0), texture(1, false)],
         });
         let blit_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("picture"),
@@ -203,7 +241,7 @@ impl Relief {
         });
         let land_pipelines = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("land"),
-            bind_group_layouts: &[Some(&land_layout)],
+            bind_group_layouts: &[Some(&land_layout), Some(&light_layout)],
             immediate_size: 0,
         });
         let blit_pipelines = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -217,20 +255,23 @@ impl Relief {
             step_mode: wgpu::VertexStepMode::Vertex,
             attributes: &attributes,
         })];
-        let land = |fragment: &str, blend: Option<wgpu::BlendState>, topology: wgpu::PrimitiveTopology| {
+        let land = |vertex: &str, fragment: &str, topology: wgpu::PrimitiveTopology| {
+            // Lines are drawn over what is there. What is behind the land is drawn first, and hides nothing.
+            let blend = (fragment == "wire").then_some(wgpu::BlendState::ALPHA_BLENDING);
+            let hides = vertex == "corner" && blend.is_none();
             device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some(fragment),
                 layout: Some(&land_pipelines),
                 vertex: wgpu::VertexState {
                     module: &shader,
-                    entry_point: Some("corner"),
+                    entry_point: Some(vertex),
                     compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    buffers: &vertices,
+                    buffers: if vertex == "corner" { &vertices } else { &[] },
                 },
                 primitive: wgpu::PrimitiveState { topology, ..wgpu::PrimitiveState::default() },
                 depth_stencil: Some(wgpu::DepthStencilState {
                     format: DEPTH,
-                    depth_write_enabled: Some(blend.is_none()),
+                    depth_write_enabled: Some(hides),
                     depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
                     stencil: wgpu::StencilState::default(),
                     bias: wgpu::DepthBiasState::default(),
@@ -255,7 +296,7 @@ impl Relief {
             layout: Some(&blit_pipelines),
             vertex: wgpu::VertexState {
                 module: &shader,
-                entry_point: Some("whole"),
+                entry_point: Some("covering"),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
                 buffers: &[],
             },
@@ -272,12 +313,12 @@ impl Relief {
             cache: None,
         });
         let triangles = wgpu::PrimitiveTopology::TriangleList;
-        let alpha = Some(wgpu::BlendState::ALPHA_BLENDING);
         Relief {
             ability,
-            ground: land("ground", None, triangles),
-            water: land("water", alpha, triangles),
-            wire: land("wire", alpha, wgpu::PrimitiveTopology::LineList),
+            ground: land("corner", "ground", triangles),
+            water: land("corner", "water", triangles),
+            wire: land("corner", "wire", wgpu::PrimitiveTopology::LineList),
+            behind: land("covering", "behind", triangles),
             blit,
             scene: device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("scene"),
@@ -291,8 +332,10 @@ impl Relief {
                 ..wgpu::SamplerDescriptor::default()
             }),
             land_layout,
+            light_layout,
             blit_layout,
             land: None,
+            light: None,
             buffers: None,
             target: None,
         }
@@ -305,6 +348,10 @@ impl Relief {
         let key = frame.key();
         if self.land.as_ref().is_none_or(|land| land.frame != key) {
             self.land = Some(Land { frame: key, bind: self.textures(device, queue, frame) });
+        }
+        if self.light.as_ref().is_none_or(|light| !Arc::ptr_eq(&light.shader, &drawing.light)) {
+            let bind = self.light_bind(device, queue, &drawing.light);
+            self.light = Some(Light { shader: Arc::clone(&drawing.light), bind });
         }
         let longest = window.width.max(window.height).max(2);
         let lattice = [window.width, window.height]
@@ -324,26 +371,9 @@ impl Relief {
         let low = if low.is_finite() { low } else { 0.0 };
         let heights: Vec<f32> =
             frame.heights.data().iter().map(|height| if height.is_finite() { *height } else { low }).collect();
-        let window = frame.window();
+        let size = [frame.window().width, frame.window().height].map(|side| side as u32);
         let view = |label: &str, format: wgpu::TextureFormat, bytes: &[u8]| {
-            let descriptor = wgpu::TextureDescriptor {
-                label: Some(label),
-                size: wgpu::Extent3d {
-                    width: window.width as u32,
-                    height: window.height as u32,
-                    depth_or_array_layers: 1,
-                },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: wgpu::TextureUsages::TEXTURE_BINDING,
-                view_formats: &[],
-            };
-            let order = wgpu::util::TextureDataOrder::LayerMajor;
-            device
-                .create_texture_with_data(queue, &descriptor, order, bytes)
-                .create_view(&wgpu::TextureViewDescriptor::default())
+            filled(device, queue, (label, size, format), bytes)
         };
         let views = [
             view("heights", wgpu::TextureFormat::R32Float, bytemuck::cast_slice(&heights)),
@@ -360,6 +390,32 @@ impl Relief {
                 entry(2, wgpu::BindingResource::TextureView(&views[1])),
                 entry(3, wgpu::BindingResource::TextureView(&views[2])),
                 entry(4, wgpu::BindingResource::Sampler(&self.sampler)),
+            ],
+        })
+    }
+
+    fn light_bind(&self, device: &wgpu::Device, queue: &wgpu::Queue, light: &LightShader) -> wgpu::BindGroup {
+        let mut words = light.words.clone();
+        words.resize(words.len().next_multiple_of(4), 0);
+        let words = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("light"),
+            contents: bytemuck::cast_slice(&words),
+            usage: wgpu::BufferUsages::UNIFORM,
+        });
+        // Rows of a width that every device has; each texel is three numbers.
+        const COLUMNS: usize = 64;
+        let mut texels: Vec<f32> =
+            light.tables.chunks(3).flat_map(|three| three.iter().copied().chain([1.0])).collect();
+        texels.resize(texels.len().next_multiple_of(4 * COLUMNS), 0.0);
+        let size = [COLUMNS, texels.len() / (4 * COLUMNS)].map(|side| side as u32);
+        let format = wgpu::TextureFormat::Rgba32Float;
+        let tables = filled(device, queue, ("sky", size, format), bytemuck::cast_slice(&texels));
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("light"),
+            layout: &self.light_layout,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: words.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&tables) },
             ],
         })
     }
@@ -399,19 +455,16 @@ impl Relief {
 
     /// Draws the land into the picture.
     fn draw(&self, queue: &wgpu::Queue, encoder: &mut wgpu::CommandEncoder, drawing: &Drawing) {
-        let (Some(land), Some(buffers), Some(target)) = (&self.land, &self.buffers, &self.target) else { return };
+        let (Some(land), Some(light)) = (&self.land, &self.light) else { return };
+        let (Some(buffers), Some(target)) = (&self.buffers, &self.target) else { return };
         queue.write_buffer(&self.scene, 0, bytemuck::bytes_of(&drawing.scene));
-        let [red, green, blue, _] = drawing.scene.sky.map(|c| f64::from(orogen::palette::color::encode(c)) / 255.0);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("relief"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
                 view: target.many.as_ref().unwrap_or(&target.color),
                 depth_slice: None,
                 resolve_target: target.many.as_ref().map(|_| &target.color),
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color { r: red, g: green, b: blue, a: 1.0 }),
-                    store: wgpu::StoreOp::Store,
-                },
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
             })],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &target.depth,
@@ -423,6 +476,9 @@ impl Relief {
             multiview_mask: None,
         });
         pass.set_bind_group(0, &land.bind, &[]);
+        pass.set_bind_group(1, &light.bind, &[]);
+        pass.set_pipeline(&self.behind);
+        pass.draw(0..3, 0..1);
         pass.set_vertex_buffer(0, buffers.vertices.slice(..));
         let mut part = |pipeline: &wgpu::RenderPipeline, (indices, count): &(wgpu::Buffer, u32)| {
             pass.set_pipeline(pipeline);

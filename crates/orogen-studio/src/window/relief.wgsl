@@ -1,17 +1,17 @@
 // The land in space: a mesh that reads its heights from a texture, with walls down to a base, and water.
+//
+// Its light is that of rendered pictures, whose text stands before this one. There, z points up and y south.
 
 struct Scene {
     matrix: mat4x4f,
-    // To the sun: east, up, south. w: strength of shadows.
-    sun: vec4f,
+    inverse: mat4x4f,
     // Half the width and depth in units, units of height for a metre, the height in metres that is at 0.
     extent: vec4f,
-    // Interval of contours in metres, 0 for none; their strength; the height of the base in units; 1 for haze.
+    // Interval of contours in metres, 0 for none; their strength; the height of the base in units; the strength of shadows.
     lines: vec4f,
-    // The height of the water in metres; 1 if there is water; a cell in units.
+    // The height of the water in metres; 1 if there is water; the lowest ground in units; the relief in metres.
     water: vec4f,
     eye: vec4f,
-    sky: vec4f,
 }
 
 @group(0) @binding(0) var<uniform> scene: Scene;
@@ -19,6 +19,18 @@ struct Scene {
 @group(0) @binding(2) var albedo: texture_2d<f32>;
 @group(0) @binding(3) var light: texture_2d<f32>;
 @group(0) @binding(4) var linear_sampler: sampler;
+@group(1) @binding(0) var<uniform> words: array<vec4u, WORDS>;
+@group(1) @binding(1) var tables: texture_2d<f32>;
+
+fn word(at: u32) -> u32 {
+    return words[at / 4u][at % 4u];
+}
+
+fn triple_of(start: u32) -> vec3f {
+    let columns = textureDimensions(tables).x;
+    let at = start / 3u;
+    return textureLoad(tables, vec2u(at % columns, at / columns), 0).xyz;
+}
 
 fn texel(at: vec2i) -> f32 {
     let last = vec2i(textureDimensions(heights)) - 1;
@@ -77,35 +89,48 @@ fn encoded(linear: vec3f) -> vec4f {
     return vec4f(select(high, low, c <= vec3f(0.0031308)), 1.0);
 }
 
-// Light of the sun and the sky on a surface.
-fn lit(color: vec3f, normal: vec3f, seen: f32) -> vec3f {
-    let sun = max(dot(normal, scene.sun.xyz), 0.0) * mix(1.0, seen, scene.sun.w);
-    let sky = 0.5 + 0.5 * normal.y;
-    return color * (sun * vec3f(1.22, 1.14, 1.0) + sky * vec3f(0.26, 0.31, 0.40));
+// The unit vector from the camera to a place, with z up.
+fn along_to(place: vec3f) -> vec3f {
+    return normalize(place - scene.eye.xyz).xzy;
 }
 
-fn hazy(color: vec3f, place: vec3f) -> vec3f {
-    let far = distance(place, scene.eye.xyz);
-    let haze = (1.0 - exp(-max(far - 1.0, 0.0) * 0.06)) * scene.lines.w;
-    return mix(color, scene.sky.xyz, haze);
+// The color of light from a place.
+fn exposed(light: vec3f, place: vec3f) -> vec4f {
+    let lowest = scene.water.z;
+    let left = haze_left(scene.eye.y - lowest, place.y - lowest, distance(place, scene.eye.xyz));
+    return encoded(tone_map(through_air(light, along_to(place), left) * triple(EXPOSURE)));
+}
+
+// The cosine to the sun of the wall at a position.
+fn wall_facing(uv: vec2f) -> f32 {
+    let off = uv - 0.5;
+    let normal = select(vec2f(0.0, sign(off.y)), vec2f(sign(off.x), 0.0), abs(off.x) > abs(off.y));
+    return max(dot(normal, triple(SUN).xy), 0.0);
+}
+
+// The light from a wall: `metres` is the height above its foot.
+fn wall_light(albedo: vec3f, uv: vec2f, place: vec3f) -> vec3f {
+    let base = scene.lines.z;
+    let foot = 0.55 + 0.45 * clamp((place.y - base) / max(scene.water.z - base, 1e-6), 0.0, 1.0);
+    return side_of(albedo, wall_facing(uv), foot);
+}
+
+// Where samples of textures are at a position.
+fn sample_at(uv: vec2f) -> vec2f {
+    let step = 1.0 / (vec2f(textureDimensions(heights)) - 1.0);
+    return uv * (1.0 - step) + 0.5 * step;
+}
+
+// The share of the sun that reaches the ground.
+fn sun_seen(uv: vec2f) -> f32 {
+    return mix(1.0, textureSample(light, linear_sampler, sample_at(uv)).r, scene.lines.w);
 }
 
 @fragment
 fn ground(in: Corner) -> @location(0) vec4f {
+    let seen = sun_seen(in.uv);
+    var color = PAPER * textureSample(albedo, linear_sampler, sample_at(in.uv)).rgb;
     let step = 1.0 / (vec2f(textureDimensions(heights)) - 1.0);
-    if in.kind == 1u {
-        // Layers of rock in the walls.
-        let metres = in.place.y / scene.extent.z + scene.extent.w;
-        let bands = 0.93 + 0.07 * sin(metres / max(scene.water.w, 1.0) * 16.0 + in.uv.x * 3.0 + in.uv.y * 2.0);
-        let facing = select(0.85, 1.0, abs(in.uv.x - 0.5) > abs(in.uv.y - 0.5));
-        return encoded(vec3f(0.155, 0.125, 0.10) * bands * facing);
-    }
-    let cell = vec2f(scene.extent.x, scene.extent.y) * 2.0 * step;
-    let east = (height(in.uv + vec2f(step.x, 0.0)) - height(in.uv - vec2f(step.x, 0.0))) * scene.extent.z;
-    let south = (height(in.uv + vec2f(0.0, step.y)) - height(in.uv - vec2f(0.0, step.y))) * scene.extent.z;
-    let normal = normalize(vec3f(-east / (2.0 * cell.x), 1.0, -south / (2.0 * cell.y)));
-    let sample = in.uv * (1.0 - step) + 0.5 * step;
-    var color = lit(textureSample(albedo, linear_sampler, sample).rgb, normal, textureSample(light, linear_sampler, sample).r);
     if scene.lines.x > 0.0 {
         let at = height(in.uv) / scene.lines.x;
         let width = max(fwidth(at), 1e-6);
@@ -117,22 +142,85 @@ fn ground(in: Corner) -> @location(0) vec4f {
         let line = max((1.0 - smoothstep(0.5, 1.2, apart)) * room * 0.6, (1.0 - smoothstep(0.8, 1.7, fifth)) * room5);
         color *= 1.0 - line * scene.lines.y;
     }
-    return encoded(hazy(color, in.place));
+    if in.kind == 1u {
+        // Layers of rock in the walls.
+        let metres = in.place.y / scene.extent.z + scene.extent.w;
+        let bands = 0.93 + 0.07 * sin(metres / max(scene.water.w, 1.0) * 16.0 + in.uv.x * 3.0 + in.uv.y * 2.0);
+        return exposed(wall_light(vec3f(0.155, 0.125, 0.10) * bands, in.uv, in.place), in.place);
+    }
+    let cell = vec2f(scene.extent.x, scene.extent.y) * 2.0 * step;
+    let east = (height(in.uv + vec2f(step.x, 0.0)) - height(in.uv - vec2f(step.x, 0.0))) * scene.extent.z;
+    let south = (height(in.uv + vec2f(0.0, step.y)) - height(in.uv - vec2f(0.0, step.y))) * scene.extent.z;
+    let normal = normalize(vec3f(-east / (2.0 * cell.x), -south / (2.0 * cell.y), 1.0));
+    let open = 0.5 + 0.5 * normal.z;
+    let sun = max(dot(normal, triple(SUN)), 0.0) * seen;
+    return exposed(diffuse(color, sun, vec4f(triple(LEVEL_SKY) * open, open)), in.place);
 }
 
 @fragment
 fn water(in: Corner) -> @location(0) vec4f {
+    let seen = sun_seen(in.uv);
     let depth = scene.water.x - height(in.uv);
-    if in.kind == 2u && depth <= 0.0 {
+    if in.kind == 3u {
+        let below = scene.water.x - (in.place.y / scene.extent.z + scene.extent.w);
+        return exposed(wall_light(water_section(max(below, 0.0)), in.uv, in.place), in.place);
+    }
+    if depth <= 0.0 {
         discard;
     }
-    let view = normalize(scene.eye.xyz - in.place);
-    let half = normalize(view + scene.sun.xyz);
-    let glint = pow(max(half.y, 0.0), 220.0) * 0.5 * select(0.0, 1.0, in.kind == 2u);
-    let fresnel = pow(1.0 - max(view.y, 0.0), 4.0) * 0.35;
-    let color = mix(vec3f(0.045, 0.16, 0.28), scene.sky.xyz, fresnel) + vec3f(glint);
-    let shown = select(0.62, 1.0 - exp(-depth / max(scene.water.w, 1.0) * 9.0) * 0.7, in.kind == 2u);
-    return vec4f(encoded(hazy(color, in.place)).rgb, clamp(shown + glint, 0.0, 0.92));
+    let along = along_to(in.place);
+    let up = vec3f(0.0, 0.0, 1.0);
+    let cosine = max(-along.z, 0.02);
+    let reflected = mirrored_share(cosine);
+    let body = water_body(true, depth, cosine, max(triple(SUN).z, 0.0));
+    let mirrored = sky_light(unit(vec3f(along.xy, max(-along.z, 0.004))));
+    return exposed(water_light(body, up, -along, triple(SUN), seen, reflected) + reflected * mirrored, in.place);
+}
+
+// Steps towards the sun over the land, from where its shadow is looked for.
+const SHADOW_STEPS = 64;
+
+// The share of the sun that reaches a place of the table.
+fn table_seen(place: vec3f) -> f32 {
+    let rims = pair(RIMS);
+    if scene.lines.w <= 0.0 || rims.y <= 0.0 {
+        return 1.0;
+    }
+    // The way over the land, as horizontal distances from the place.
+    let towards = pair(SUNWARDS);
+    let half = scene.extent.xy;
+    let safe = select(towards, vec2f(1e-6), abs(towards) < vec2f(1e-6));
+    let one = (-half - place.xz) / safe;
+    let other = (half - place.xz) / safe;
+    let enters = max(max(min(one.x, other.x), min(one.y, other.y)), 0.0);
+    let leaves = min(max(one.x, other.x), max(one.y, other.y));
+    if leaves <= enters {
+        return 1.0;
+    }
+    var rise = -1.0;
+    for (var k = 0; k < SHADOW_STEPS; k++) {
+        let far = mix(enters, leaves, (f32(k) + 0.5) / f32(SHADOW_STEPS));
+        let uv = 0.5 + 0.5 * (place.xz + towards * far) / half;
+        rise = max(rise, (level(height(uv)) - place.y) / max(far, 1e-4));
+    }
+    return mix(1.0, sun_above(rise, rims), scene.lines.w);
+}
+
+// What is behind the land: the sky, and the table on which the land stands.
+@fragment
+fn behind(in: Blit) -> @location(0) vec4f {
+    let far = scene.inverse * vec4f(2.0 * in.uv.x - 1.0, 1.0 - 2.0 * in.uv.y, 0.5, 1.0);
+    let ray = normalize(far.xyz / far.w - scene.eye.xyz);
+    let base = scene.lines.z;
+    if ray.y >= 0.0 || scene.eye.y <= base {
+        return encoded(tone_map(sky_seen(ray.xzy) * triple(EXPOSURE)));
+    }
+    let place = scene.eye.xyz + ray * ((base - scene.eye.y) / ray.y);
+    let half = scene.extent.xy;
+    let nearest = clamp(place.xz, -half, half);
+    let high = max(level(height(0.5 + 0.5 * nearest / half)) - base, 0.0);
+    let table = table_of(ray.xzy, distance(place.xz, nearest), high, 2.0 * length(half), table_seen(place));
+    return exposed(table, place);
 }
 
 @fragment
@@ -146,7 +234,7 @@ struct Blit {
 }
 
 @vertex
-fn whole(@builtin(vertex_index) index: u32) -> Blit {
+fn covering(@builtin(vertex_index) index: u32) -> Blit {
     let uv = vec2f(f32((index << 1u) & 2u), f32(index & 2u));
     return Blit(vec4f(uv * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0), 0.0, 1.0), uv);
 }

@@ -8,13 +8,13 @@ use glam::Vec3;
 
 use super::action::Action;
 use super::legend;
+use super::light::{Block, Light};
 use super::relief::{Ability, Drawing, Scene};
 use crate::catalogue::Language;
 use crate::preview::contours::suiting;
 use crate::preview::frame::{Frame, Quality};
 use crate::studio::Studio;
 use crate::view::camera::Camera;
-use crate::view::sun;
 
 /// State of the view.
 #[derive(Debug)]
@@ -28,6 +28,7 @@ pub struct ReliefPanel {
     has_wire: bool,
     /// The sun while it is being moved; shadows follow when it stands.
     sun: Option<[f64; 2]>,
+    light: Light,
 }
 
 impl Default for ReliefPanel {
@@ -39,6 +40,7 @@ impl Default for ReliefPanel {
             has_shadows: true,
             has_wire: false,
             sun: None,
+            light: Light::default(),
         }
     }
 }
@@ -87,9 +89,11 @@ impl ReliefPanel {
         let is_moving = response.dragged() || ui.input(|input| input.smooth_scroll_delta().y != 0.0);
         let fewer = if ability.is_software && is_moving { 0.5 } else { 1.0 };
         let size = [rect.width(), rect.height()].map(|side| (side * pixels * fewer).round().clamp(1.0, largest) as u32);
+        let sun = self.sun.unwrap_or(studio.look.sun);
         let drawing = Drawing {
             frame: Arc::clone(frame),
             scene: self.scene(frame, studio, rect.width() / rect.height().max(1.0)),
+            light: self.light.of(studio, ui.ctx(), sun, self.block(frame)),
             has_wire: self.has_wire,
             size,
             ability,
@@ -110,8 +114,12 @@ impl ReliefPanel {
             && let Some(place) = self.hit(frame, pointer, rect)
         {
             let text = readout(frame, self.world(frame, place), language);
-            let at = rect.left_bottom() + egui::vec2(8.0, -8.0);
-            painter.text(at, Align2::LEFT_BOTTOM, text, FontId::monospace(11.0), egui::Color32::WHITE);
+            let galley = painter.layout_no_wrap(text, FontId::monospace(11.0), egui::Color32::WHITE);
+            let at = rect.left_bottom() + egui::vec2(12.0, -12.0 - galley.size().y);
+            // Light ground would swallow light letters.
+            let behind = Rect::from_min_size(at, galley.size()).expand(4.0);
+            painter.rect_filled(behind, 3.0, egui::Color32::from_black_alpha(150));
+            painter.galley(at, galley, egui::Color32::WHITE);
         }
     }
 
@@ -231,28 +239,39 @@ impl ReliefPanel {
         if low <= high { [low, high, (low + high) / 2.0] } else { [0.0; 3] }
     }
 
+    /// The land as the light has it.
+    fn block(&self, frame: &Frame) -> Block {
+        let window = frame.window();
+        let [width, height] = [window.width, window.height].map(|samples| (samples.max(2) - 1) as f64 * window.cell);
+        let ([low, high, _], unit) = (Self::levels(frame), f64::from(Self::unit(frame)));
+        Block {
+            across: (width * width + height * height).sqrt() / unit,
+            highest: f64::from(high - low) * self.times(Some(frame)) / unit,
+            cell: window.cell,
+        }
+    }
+
     fn scene(&self, frame: &Frame, studio: &Studio, aspect: f32) -> Scene {
         let window = frame.window();
         let unit = Self::unit(frame);
         let [low, high, middle] = Self::levels(frame);
         let up = self.times(Some(frame)) as f32 / unit;
-        let [east, south, height] = sun::towards(self.sun.unwrap_or(studio.look.sun)).map(|part| part as f32);
         let half = |samples: usize| (samples.max(2) - 1) as f32 * window.cell as f32 / 2.0 / unit;
         let sea = frame.sea_level as f32;
         let is_heights = frame.values.is_none() || studio.look.layer == orogen::world::HEIGHT;
         let has_water = self.has_water && is_heights && low < sea;
         let relief = (high - low).max(1e-3);
         let interval = studio.look.contours.map_or(0.0, |own| suiting(own, [low, high].map(f64::from)) as f32);
-        let sky = sky(height);
         let eye = self.camera.position();
+        let matrix = self.camera.matrix(aspect);
+        let lowest = (low - middle) * up;
         Scene {
-            matrix: self.camera.matrix(aspect).to_cols_array_2d(),
-            sun: [east, height, south, if self.has_shadows { 0.85 } else { 0.0 }],
+            matrix: matrix.to_cols_array_2d(),
+            inverse: matrix.inverse().to_cols_array_2d(),
             extent: [half(window.width), half(window.height), up, middle],
-            lines: [interval, 0.5, (low - middle) * up - 0.06, 1.0],
-            water: [sea, f32::from(u8::from(has_water)), 0.0, relief],
+            lines: [interval, 0.5, lowest - 0.06, if self.has_shadows { 1.0 } else { 0.0 }],
+            water: [sea, f32::from(u8::from(has_water)), lowest, relief],
             eye: [eye.x, eye.y, eye.z, 0.0],
-            sky: [sky[0], sky[1], sky[2], 1.0],
         }
     }
 
@@ -296,13 +315,6 @@ impl ReliefPanel {
             middle(window.y, window.height) + f64::from(place.z) * unit,
         ]
     }
-}
-
-/// The color of the sky in linear light: blue by day, warm near sunset.
-fn sky(height: f32) -> [f32; 3] {
-    let day = (height * 2.5).clamp(0.0, 1.0);
-    let (low, high) = ([0.55, 0.36, 0.24], [0.42, 0.56, 0.72]);
-    std::array::from_fn(|c| low[c] + (high[c] - low[c]) * day)
 }
 
 /// The switch of contours and, if they are on, a field for their interval; 0 is one that suits the land.

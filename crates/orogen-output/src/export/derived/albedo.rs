@@ -18,5 +18,6 @@ pub static LAYER: Derived = Derived {
         layers: cover::shares_and_positions,
         reach: |_| 0,
         make: |around, window| Cover::new(around).albedo(window),
+        lowered: None,
     }),
 };

@@ -17,5 +17,6 @@ pub static LAYER: Derived = Derived {
         layers: none,
         reach: |_| 1,
         make: |around, window| vec![curvature(&around.bordered(window), Curvature::Total)],
+        lowered: None,
     }),
 };

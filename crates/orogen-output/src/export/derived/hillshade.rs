@@ -1,7 +1,9 @@
 //! The layer `hillshade`.
 
-use super::layer::{Derived, Made, Nature, RowLayer, none, nothing};
+use super::layer::{Derived, LoweredRows, Made, Nature, RowLayer, none, nothing};
+use orogen_engine::lower::{HORN, Passes};
 use orogen_grid::analysis::hillshade::{Light, hillshade};
+use std::sync::LazyLock;
 
 /// The layer.
 pub static LAYER: Derived = Derived {
@@ -17,5 +19,13 @@ pub static LAYER: Derived = Derived {
         layers: none,
         reach: |_| 1,
         make: |around, window| vec![hillshade(&around.bordered(window), &Light::default())],
+        lowered: Some(LoweredRows { passes, heights: |around, window| around.bordered(window) }),
     }),
 };
+
+/// The passes of a graphics card.
+fn passes(cell: f64) -> Passes {
+    static CODE: LazyLock<String> = LazyLock::new(|| format!("{HORN}{}", include_str!("hillshade.wgsl")));
+    let [east, north, up, z_factor] = Light::default().numbers();
+    Passes::new(&CODE, &[(1.0 / (8.0 * cell)) as f32, east, north, up, z_factor]).then("hillshade", 0, [1; 2])
+}

@@ -3,6 +3,7 @@
 use super::appended::Appended;
 use crate::export::options::OptionSpec;
 use orogen_engine::declare::Input;
+use orogen_engine::lower::Passes;
 use orogen_engine::recipe::document::Recipe;
 use orogen_grid::analysis::slope::beyond;
 use orogen_grid::error::Result;
@@ -82,6 +83,16 @@ pub struct RowLayer {
     pub reach: fn(f64) -> usize,
     /// Computes the samples of a window: one grid per channel.
     pub make: fn(&Around, &Window) -> Vec<Grid>,
+    /// How a graphics card does, if it can.
+    pub lowered: Option<LoweredRows>,
+}
+
+/// How a graphics card computes a row layer in place of [`RowLayer::make`].
+pub struct LoweredRows {
+    /// The passes for a cell in metres. They read the heights as plane 0, and write the channels as the next planes.
+    pub passes: fn(f64) -> Passes,
+    /// The heights over a window grown by the reach of the layer.
+    pub heights: fn(&Around, &Window) -> Grid,
 }
 
 /// The ground around the samples to compute.

@@ -1,8 +1,10 @@
 //! The layer `normal`.
 
-use super::layer::{Derived, Made, Nature, RowLayer, none, nothing};
+use super::layer::{Derived, LoweredRows, Made, Nature, RowLayer, none, nothing};
+use orogen_engine::lower::{HORN, Passes};
 use orogen_grid::analysis::slope::gradients_between;
 use orogen_grid::grid::Grid;
+use std::sync::LazyLock;
 
 /// The layer.
 pub static LAYER: Derived = Derived {
@@ -30,5 +32,12 @@ pub static LAYER: Derived = Derived {
             }
             parts
         },
+        lowered: Some(LoweredRows { passes, heights: |around, window| around.bordered(window) }),
     }),
 };
+
+/// The passes of a graphics card.
+fn passes(cell: f64) -> Passes {
+    static CODE: LazyLock<String> = LazyLock::new(|| format!("{HORN}{}", include_str!("normal.wgsl")));
+    Passes::new(&CODE, &[(1.0 / (8.0 * cell)) as f32]).then("normal", 0, [1; 2])
+}

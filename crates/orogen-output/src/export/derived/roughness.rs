@@ -18,5 +18,6 @@ pub static LAYER: Derived = Derived {
         layers: cover::shares,
         reach: |_| 0,
         make: |around, window| Cover::new(around).roughness(window),
+        lowered: None,
     }),
 };

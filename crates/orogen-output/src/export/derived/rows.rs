@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::layer::{Around, RowLayer};
 use orogen_engine::bands::Bands;
+use orogen_engine::device::FilterExtent;
 use orogen_engine::world::{HEIGHT, World};
 use orogen_grid::analysis::finite::FiniteCount;
 use orogen_grid::error::Result;
@@ -87,6 +88,12 @@ impl<'w> Rows<'w> {
         let grids = self.source.around(&band.grown(reach))?;
         let Some((heights, layers)) = grids.split_first() else { return Ok((Vec::new(), FiniteCount::default())) };
         let around = Around { heights, layers, recipe: self.world.recipe() };
+        let beneath = heights.crop(&band.intersection(heights.window()));
+        // Shades and weights are finite even if the heights are not.
+        let finite = beneath.map_or_else(FiniteCount::default, |beneath| FiniteCount::of(beneath.data()));
+        if let Some(made) = self.on_device(&around, &band)? {
+            return Ok((made, finite));
+        }
         let strips: Vec<Window> = (0..height)
             .step_by(STRIP)
             .map(|first| Window { y: band.y + first as i64, height: STRIP.min(height - first), ..band })
@@ -98,9 +105,17 @@ impl<'w> Rows<'w> {
         for strip in made {
             out.iter_mut().zip(&strip).for_each(|(out, strip)| out.paste(strip));
         }
-        // Shades and weights are finite even if the heights are not.
-        let beneath = heights.crop(&band.intersection(heights.window()));
-        Ok((out, beneath.map_or_else(FiniteCount::default, |beneath| FiniteCount::of(beneath.data()))))
+        Ok((out, finite))
+    }
+
+    /// The channels over a band, made by the device of the world; `None` if there is none, or the processor is to do it.
+    fn on_device(&self, around: &Around, band: &Window) -> Result<Option<Vec<Grid>>> {
+        let Some((device, lowered)) = self.world.device().zip(self.derived.lowered.as_ref()) else { return Ok(None) };
+        let (passes, heights) = ((lowered.passes)(band.cell), (lowered.heights)(around, band));
+        let halo = (self.derived.reach)(band.cell);
+        let extent = FilterExtent { window: *band, halo, wanted: vec![true; self.channels] };
+        let made = device.apply(&passes, &[Some(&heights)], &extent, &Progress::none())?;
+        Ok(made.map(|made| made.into_iter().flatten().collect()))
     }
 }
 

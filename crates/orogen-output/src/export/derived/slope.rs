@@ -17,5 +17,6 @@ pub static LAYER: Derived = Derived {
         layers: none,
         reach: |_| 1,
         make: |around, window| vec![degrees(&around.bordered(window))],
+        lowered: None,
     }),
 };

@@ -1,0 +1,237 @@
+// What the passes of drained land have in common: orogen-grid's `multiscale`. The numbers are those of `Refinement::words`, and then the planes of what is given,
+// 0 where nothing is.
+//
+// Planes of the level, and of the level above.
+const EAST = 0u;
+const SOUTH = 1u;
+const HEIGHT = 2u;
+const AREA = 3u;
+const RECEIVER = 4u;
+const VARIATION = 5u;
+const UPLIFT = 6u;
+const SHORE = 7u;
+// Receivers that stay, FREE or WATER.
+const FIXED = 10u;
+// The law of slopes.
+const RIVER = 11u;
+const STABLE = 12u;
+const WIDTH = 13u;
+// The smallest heights around lakes.
+const LEAST = 21u;
+// What links say about each child, with a height, until the law takes their place.
+const HELD = 11u;
+const HELD_HEIGHT = 12u;
+// Water levels.
+const LEVEL = 13u;
+// The direction to the water that has spread to a child, and 1 more; 0 elsewhere.
+const GAINED = 14u;
+// The direction in which a link leads; NONE elsewhere.
+const LED = 15u;
+// Distances to the nodes in the east, south-east, south and south-west.
+const DISTANCE = 16u;
+// Planes of the level above: links, and the shares of a link's way up to the exit and the entry.
+const LINK = 10u;
+const TO_EXIT = 11u;
+const TO_ENTRY = 12u;
+
+// Codes of receivers: none, and what is added in lakes with an outlet.
+const NONE = 8.0;
+const LAKE = 16.0;
+// In planes of fixed receivers.
+const FREE = -1.0;
+const WATER = 8.0;
+// Height of nodes that have none yet, and the level of children without water. Smaller numbers are heights.
+const UNKNOWN = 1e30;
+const KNOWN = 1e29;
+
+const FINEST = 1u;
+const DETAIL = 2u;
+const FLOORS = 4u;
+const LAKES = 8u;
+const SEA = 16u;
+
+fn has(base: u32, flag: u32) -> bool {
+    return (data[base] & flag) != 0u;
+}
+
+fn wander(base: u32) -> f32 { return number(base, 9u); }
+fn amplitude(base: u32) -> f32 { return number(base, 10u); }
+fn indent(base: u32) -> f32 { return number(base, 11u); }
+fn kilometres(base: u32) -> f32 { return number(base, 12u); }
+fn cell(base: u32) -> f32 { return number(base, 13u); }
+fn least_rise(base: u32) -> f32 { return number(base, 14u); }
+fn floor_area(base: u32) -> f32 { return number(base, 15u); }
+fn river_slope(base: u32) -> f32 { return number(base, 16u); }
+fn stable_slope(base: u32) -> f32 { return number(base, 17u); }
+fn free_area(base: u32) -> f32 { return number(base, 18u); }
+fn beside_lakes(base: u32) -> f32 { return number(base, 19u); }
+fn kept_fall(base: u32) -> f32 { return number(base, 20u); }
+fn cut_area(base: u32) -> f32 { return number(base, 21u); }
+fn river_slope_above(base: u32) -> f32 { return number(base, 22u); }
+fn cell_above(base: u32) -> f32 { return number(base, 23u); }
+
+// Words of the planes of what is given.
+const GIVEN_SHORE = 24u;
+const GIVEN_UPLIFT = 25u;
+const GIVEN_STABILITY = 26u;
+const GIVEN_CREEP = 27u;
+const GIVEN_FLOOR = 28u;
+const GIVEN_RAIN = 29u;
+
+// What is given at a node; missing if nothing is.
+fn given(base: u32, word: u32, at: vec2<i32>) -> f32 {
+    let k = data[base + word];
+    if (k == 0u) {
+        return missing();
+    }
+    return plane(k, at);
+}
+
+// A factor that is given, within a range; 1 if nothing is.
+fn factor(base: u32, word: u32, at: vec2<i32>, low: f32, high: f32) -> f32 {
+    let value = given(base, word, at);
+    if (is_missing(value)) {
+        return 1.0;
+    }
+    return clamp(value, low, high);
+}
+
+// Whole numbers of 64 bits are pairs of u32, the lower part first.
+
+fn product(a: u32, b: u32) -> vec2<u32> {
+    let low = (a & 0xffffu) * (b & 0xffffu);
+    let left = (a >> 16u) * (b & 0xffffu);
+    let right = (a & 0xffffu) * (b >> 16u);
+    let middle = (low >> 16u) + (left & 0xffffu) + (right & 0xffffu);
+    let high = (a >> 16u) * (b >> 16u) + (left >> 16u) + (right >> 16u) + (middle >> 16u);
+    return vec2<u32>((low & 0xffffu) | (middle << 16u), high);
+}
+
+fn times(a: vec2<u32>, b: vec2<u32>) -> vec2<u32> {
+    let low = product(a.x, b.x);
+    return vec2<u32>(low.x, low.y + a.x * b.y + a.y * b.x);
+}
+
+fn plus(a: vec2<u32>, b: vec2<u32>) -> vec2<u32> {
+    let low = a.x + b.x;
+    return vec2<u32>(low, a.y + b.y + select(0u, 1u, low < a.x));
+}
+
+// A number, and the same shifted right by 1 to 31 bits, combined by "exclusive or".
+fn folded(a: vec2<u32>, by: u32) -> vec2<u32> {
+    return a ^ vec2<u32>((a.x >> by) | (a.y << (32u - by)), a.y >> by);
+}
+
+// The finaliser of splitmix64.
+fn mix64(a: vec2<u32>) -> vec2<u32> {
+    let b = times(folded(a, 30u), vec2<u32>(0x1ce4e5b9u, 0xbf58476du));
+    return folded(times(folded(b, 27u), vec2<u32>(0x133111ebu, 0x94d049bbu)), 31u);
+}
+
+// The random bits of a node. `word` is that of the start of the hashes.
+fn node_bits(base: u32, word: u32, x: vec2<u32>, y: vec2<u32>) -> vec2<u32> {
+    let begin = vec2<u32>(data[base + word], data[base + word + 1u]);
+    let column = mix64(begin ^ times(x, vec2<u32>(0x6659fd93u, 0xd6e8feb8u)));
+    return mix64(plus(column, times(y, vec2<u32>(0x78bd642fu, 0xa0761d64u))));
+}
+
+// The random bits of a child, and of a parent.
+fn child_bits(base: u32, word: u32, at: vec2<i32>) -> vec2<u32> {
+    let x = plus(first_column(), vec2<u32>(u32(at.x), 0u));
+    return node_bits(base, word, x, plus(first_row(), vec2<u32>(u32(at.y), 0u)));
+}
+
+fn halved(a: vec2<u32>) -> vec2<u32> {
+    return vec2<u32>((a.x >> 1u) | (a.y << 31u), bitcast<u32>(bitcast<i32>(a.y) >> 1u));
+}
+
+fn parent_bits(base: u32, word: u32, at: vec2<i32>) -> vec2<u32> {
+    let x = plus(halved(first_column()), vec2<u32>(u32(at.x), 0u));
+    return node_bits(base, word, x, plus(halved(first_row()), vec2<u32>(u32(at.y), 0u)));
+}
+
+// Numbers from 0 to 1 by the upper 24 bits, by the next 24, and by a part of 16 bits.
+fn unit(bits: vec2<u32>) -> f32 {
+    return f32(bits.y >> 8u) * 5.9604644775390625e-8;
+}
+
+fn second_unit(bits: vec2<u32>) -> f32 {
+    return f32(((bits.x >> 16u) | (bits.y << 16u)) & 0xffffffu) * 5.9604644775390625e-8;
+}
+
+fn unit16(bits: vec2<u32>, part: u32) -> f32 {
+    let word = select(bits.x, bits.y, part > 1u);
+    return f32((word >> (16u * (part & 1u))) & 0xffffu) * 1.52587890625e-5;
+}
+
+// The step of a direction, and the direction of a step: `by` is -1, 0 or 1 along each axis, not 0 along both.
+fn step_of(code: u32) -> vec2<i32> {
+    let shift = 2u * (code & 7u);
+    return vec2<i32>(i32((0x901au >> shift) & 3u) - 1, i32((0x1a9u >> shift) & 3u) - 1);
+}
+
+fn code_of(by: vec2<i32>) -> u32 {
+    let index = u32(clamp((by.y + 1) * 3 + by.x + 1, 0, 8));
+    if (index == 8u) {
+        return 1u;
+    }
+    return (0x23084765u >> (4u * index)) & 15u;
+}
+
+fn opposite(code: u32) -> u32 {
+    return (code + 4u) & 7u;
+}
+
+fn is_lake(code: f32) -> bool {
+    return code >= LAKE;
+}
+
+// Whether a node has a receiver: land, and lakes with an outlet.
+fn drains(code: f32) -> bool {
+    return code < NONE || code >= LAKE;
+}
+
+// Which of the four children of a cell its node becomes: bit 0 is set in the east, bit 1 in the south.
+fn heir(parent: vec2<i32>) -> u32 {
+    return select(0u, 1u, above(EAST, parent) >= 0.5) | select(0u, 2u, above(SOUTH, parent) >= 0.5);
+}
+
+fn child_of(parent: vec2<i32>, corner: u32) -> vec2<i32> {
+    return 2 * parent + vec2<i32>(i32(corner & 1u), i32(corner >> 1u));
+}
+
+fn is_inner(parent: vec2<i32>) -> bool {
+    return all(parent > vec2<i32>(0)) && all(parent < above_size() - vec2<i32>(1));
+}
+
+// The distance between two children, in cells.
+fn distance_of(start: vec2<i32>, end: vec2<i32>) -> f32 {
+    let by = vec2<f32>(end - start);
+    let x = plane(EAST, end) - plane(EAST, start) + by.x;
+    let y = plane(SOUTH, end) - plane(SOUTH, start) + by.y;
+    return sqrt(x * x + y * y);
+}
+
+// The share of the way from the first to the second value, 0 before and 1 after.
+fn share_between(value: f32, first: f32, second: f32) -> f32 {
+    return clamp((value - first) / (second - first), 0.0, 1.0);
+}
+
+// x to the power y, for positive x, as in orogen-grid's `erosion/power.rs`.
+fn power(x: f32, y: f32) -> f32 {
+    let bits = bitcast<u32>(x) - 0x3f3504f3u;
+    let exponent = bitcast<i32>(bits) >> 23u;
+    let m = bitcast<f32>((bits & 0x007fffffu) + 0x3f3504f3u);
+    let t = (m - 1.0) / (m + 1.0);
+    let s = t * t;
+    let series = ((((0.2222222 * s + 0.2857143) * s + 0.4) * s + 0.6666667) * s + 2.0) * t;
+    let z = clamp(y * (f32(exponent) + series * 1.442695), -126.0, 127.0);
+    let whole = round(z);
+    let f = (z - whole) * 0.6931472;
+    let root = (((((f / 720.0 + 0.008333334) * f + 0.041666668) * f + 0.16666667) * f + 0.5) * f + 1.0) * f + 1.0;
+    return root * bitcast<f32>(u32(i32(whole) + 127) << 23u);
+}
+
+fn exponential(y: f32) -> f32 {
+    return power(2.7182817, y);
+}

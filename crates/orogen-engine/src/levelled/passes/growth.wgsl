@@ -1,0 +1,107 @@
+// A pass of growth: `growth_row.rs`. Of `frame.step` the lowest eight bits are the plane of the heights that are read, and then come that of the heights that
+// are written, that of the areas, and one bit: 0 if the first plane of floors is read and the second one written.
+const FIRST_FLOOR = 14u;
+const SECOND_FLOOR = 15u;
+
+fn distance_in(code: u32, at: vec2<i32>, base: u32) -> f32 {
+    if (has(base, FINEST)) {
+        return select(1.0, 1.4142135, (code & 1u) != 0u);
+    }
+    if (code < 4u) {
+        return plane(DISTANCE + code, at);
+    }
+    return plane(DISTANCE + code - 4u, at + step_of(code));
+}
+
+// What all neighbours of a node are measured by, and the best so far.
+struct Growing {
+    rise: f32,
+    flat_rise: f32,
+    below: f32,
+    fixed: f32,
+    lowest: f32,
+    best: f32,
+    floor_left: f32,
+}
+
+fn begin(base: u32, at: vec2<i32>, height: f32, area: f32) -> Growing {
+    let fixed = plane(FIXED, at);
+    let slope = plane(RIVER, at) * power(area, -0.45);
+    let stable = plane(STABLE, at);
+    let rise = max(slope * stable / (slope + stable) * cell(base), least_rise(base));
+    return Growing(rise, min(0.02 * cell(base), rise), select(-UNKNOWN, height, fixed == FREE), fixed, UNKNOWN, -1.0, 0.0);
+}
+
+// Takes the height over the neighbour in a direction where it is the lowest so far. No link crosses a river from one of the two cells beside a diagonal to the
+// other.
+fn offer(base: u32, at: vec2<i32>, code: u32, before: Growing) -> Growing {
+    var growing = before;
+    let near = at + step_of(code);
+    let there = plane(frame.step & 0xffu, near);
+    let distance = distance_in(code, at, base);
+    var left = 0.0;
+    if (has(base, FLOORS)) {
+        left = plane(FIRST_FLOOR + ((frame.step >> 24u) & 1u), near) - distance * cell(base);
+    }
+    let candidate = there + distance * select(growing.rise, growing.flat_rise, left > 0.0);
+    var crosses = false;
+    if ((code & 1u) != 0u) {
+        let one = plane(FIXED, at + step_of(code + 7u)) == f32((code + 2u) & 7u);
+        let other = plane(FIXED, at + step_of(code + 1u)) == f32((code + 6u) & 7u);
+        crosses = one || other;
+    }
+    let possible = (there < growing.below && !crosses) || growing.fixed == f32(code);
+    if (possible && candidate < growing.lowest) {
+        growing.lowest = candidate;
+        growing.best = f32(code);
+        growing.floor_left = left;
+    }
+    return growing;
+}
+
+// Takes the height of a front that passes between a neighbour and the lower one beside it where it is the lowest so far.
+fn front(at: vec2<i32>, here: f32, code: u32, beside: u32, before: Growing) -> Growing {
+    var growing = before;
+    let there = plane(frame.step & 0xffu, at + step_of(code));
+    let corner = plane(frame.step & 0xffu, at + step_of(beside));
+    let fall = there - corner;
+    let candidate = there + sqrt(max(growing.rise * growing.rise - fall * fall, 0.0));
+    if (fall > 0.0 && fall < growing.rise * 0.70710677 && corner < here && candidate < growing.lowest) {
+        growing.lowest = candidate;
+        growing.best = f32(beside & 7u);
+        growing.floor_left = 0.0;
+    }
+    return growing;
+}
+
+fn grow(base: u32, at: vec2<i32>) {
+    let height = plane(frame.step & 0xffu, at);
+    let area = plane((frame.step >> 16u) & 0xffu, at);
+    var growing = begin(base, at, height, area);
+    for (var code = 0u; code < 8u; code += 1u) {
+        growing = offer(base, at, code, growing);
+    }
+    if (has(base, FINEST) && growing.fixed == FREE && area < 30.0) {
+        for (var code = 0u; code < 8u; code += 2u) {
+            growing = front(at, height, code, code + 1u, growing);
+            growing = front(at, height, code, code + 7u, growing);
+        }
+    }
+    var lowest = growing.lowest;
+    if (has(base, LAKES)) {
+        lowest = max(lowest, plane(LEAST, at));
+    }
+    set_plane((frame.step >> 8u) & 0xffu, at, min(lowest, height));
+    if (growing.best >= 0.0) {
+        set_plane(RECEIVER, at, growing.best);
+    }
+    if (has(base, FLOORS)) {
+        // The distance over which a river's floor continues, from its size or from downstream.
+        let share = area * floor_area(base);
+        var own = 0.0;
+        if (share > 1.0 && growing.fixed < WATER) {
+            own = 100.0 * sqrt(share) * plane(WIDTH, at);
+        }
+        set_plane(SECOND_FLOOR - ((frame.step >> 24u) & 1u), at, max(growing.floor_left, own));
+    }
+}

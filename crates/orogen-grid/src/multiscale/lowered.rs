@@ -1,0 +1,140 @@
+//! What a graphics card has to know of a level: numbers, and how often each pass runs.
+
+use super::children::{FINEST_GEOGRAPHY, amplitude, indent};
+use super::creep::{self, Kept};
+use super::detail;
+use super::growth::{FLOOR_AREA, least_rise};
+use super::hash;
+use super::lake_shores;
+use super::lakes;
+use super::law::{self, has_floors, river_slope};
+use super::links;
+use super::refine::{
+    AREA_PASSES, BANK_PASSES, BANK_ROUNDS, CARVED, FIRST_PASSES, FREE_AREA, LIMIT_PASSES, RAISE_PASSES, ROUNDS,
+    last_area_passes,
+};
+use super::refinement::Refinement;
+use super::straighten;
+
+/// How often the passes of a level run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Schedule {
+    /// Whether the nodes are on the lattice, and rivers are straightened.
+    pub is_finest: bool,
+    /// Whether the nodes of the level above are first turned into those that detail levels begin with.
+    pub begins_details: bool,
+    /// Whether land around lakes has a smallest height, and the number of cells around a lake that have it.
+    pub rims: Option<usize>,
+    /// Cells at the edge of the children whose rivers are not exact.
+    pub carved: usize,
+    /// Cells beyond that on which the straightened rivers of a cell depend.
+    pub straightened: usize,
+    /// Passes of heights before drainage areas change.
+    pub first_passes: usize,
+    /// Rounds of areas and heights after.
+    pub rounds: usize,
+    /// Passes of areas in a round.
+    pub area_passes: usize,
+    /// Passes of creep.
+    pub creep_passes: usize,
+    /// Rounds of banks; nodes choose their receivers again after each.
+    pub bank_rounds: usize,
+    /// Passes that raise banks in a round.
+    pub bank_passes: usize,
+    /// Passes of areas at the end.
+    pub last_area_passes: usize,
+    /// Passes in which areas rise along the receivers.
+    pub raise_passes: usize,
+    /// Passes in which areas fall against the receivers.
+    pub limit_passes: usize,
+}
+
+/// Number of words of [`Refinement::words`].
+pub const WORDS: usize = 24;
+
+/// The bits of the first word.
+const FINEST: u32 = 1;
+const DETAIL: u32 = 2;
+const FLOORS: u32 = 4;
+const LAKES: u32 = 8;
+const SEA: u32 = 16;
+
+impl Refinement {
+    /// Whether rivers of the level above become lakes with an outlet, whose shapes level `depth` is made with.
+    #[must_use]
+    pub fn begins_lakes(&self, depth: usize) -> bool {
+        lakes::begin_at(self, depth.saturating_sub(1))
+    }
+
+    /// Whether a level of [continents](super::continents::Continents) evaluates their geography.
+    #[must_use]
+    pub fn has_geography(&self, depth: usize) -> bool {
+        self.kilometres(depth) >= FINEST_GEOGRAPHY
+    }
+
+    /// How often the passes of level `depth`, at least 1, run.
+    #[must_use]
+    pub fn schedule(&self, depth: usize) -> Schedule {
+        let is_finest = self.is_finest(depth);
+        let finest = |count: usize| if is_finest { count } else { 0 };
+        let details = if self.is_detail(depth) { detail::creep_passes(self) } else { 0 };
+        Schedule {
+            is_finest,
+            begins_details: self.is_finest(depth.saturating_sub(1)),
+            rims: (self.lakes > 0.0).then_some(lake_shores::RIM),
+            carved: CARVED,
+            straightened: finest(straighten::REACH),
+            first_passes: FIRST_PASSES,
+            rounds: ROUNDS,
+            area_passes: AREA_PASSES,
+            creep_passes: finest(creep::creep_passes(self.creep)) + details,
+            bank_rounds: finest(BANK_ROUNDS),
+            bank_passes: BANK_PASSES,
+            last_area_passes: last_area_passes(is_finest),
+            raise_passes: RAISE_PASSES,
+            limit_passes: LIMIT_PASSES,
+        }
+    }
+
+    /// The numbers of level `depth`, at least 1: bits of what it has; the starts of the hashes of streams 0, 7 and 9, and of stream 11 of the level above, each
+    /// as a low and a high word; and then numbers of f32, in the order of the shaders in orogen-engine.
+    #[must_use]
+    pub fn words(&self, depth: usize) -> [u32; WORDS] {
+        let above = depth.saturating_sub(1);
+        let (cell, kilometres) = (self.cell_of(depth), self.kilometres(depth));
+        let has = |has: bool, bit: u32| if has { bit } else { 0 };
+        let is_detail = self.is_detail(depth);
+        let flags = has(self.is_finest(depth), FINEST)
+            | has(is_detail, DETAIL)
+            | has(has_floors(self, depth), FLOORS)
+            | has(self.lakes > 0.0, LAKES)
+            | has(self.sea, SEA);
+        let starts = [(depth, 0), (depth, 7), (depth, 9), (above, 11)];
+        let starts = starts.map(|(depth, stream)| hash::start(self.seed, depth, stream));
+        let kept = if is_detail { Kept::details(least_rise(self, depth)) } else { Kept::VALLEYS };
+        let river = |kilometres: f64| river_slope(self, kilometres * kilometres) as f32;
+        let numbers = [
+            links::wander(self, depth),
+            amplitude(self, depth),
+            indent(self, depth),
+            kilometres as f32,
+            cell as f32,
+            least_rise(self, depth),
+            (cell * cell * 1e-6 / FLOOR_AREA) as f32,
+            river(kilometres),
+            law::stable_slope(self),
+            if is_detail { detail::free_area(cell) } else { FREE_AREA },
+            lakes::beside(self, above),
+            kept.fall,
+            // Shaders have no infinite numbers.
+            kept.cut_area.min(f32::MAX),
+            river(self.kilometres(above)),
+            self.cell_of(above) as f32,
+        ];
+        let mut words = [0; WORDS];
+        let halves = starts.into_iter().flat_map(|start| [start as u32, (start >> 32) as u32]);
+        let all = std::iter::once(flags).chain(halves).chain(numbers.map(f32::to_bits));
+        words.iter_mut().zip(all).for_each(|(word, value)| *word = value);
+        words
+    }
+}

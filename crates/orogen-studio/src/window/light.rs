@@ -1,0 +1,66 @@
+//! The light of the view in space, which is that of rendered pictures.
+
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+
+use eframe::egui::Context;
+use orogen::gpu::render::LightShader;
+use orogen::render::lighting::Lighting;
+
+use crate::studio::Studio;
+
+/// What the light in the view depends on beside the sun.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Block {
+    /// The diagonal of the land, in units of the view.
+    pub across: f64,
+    /// Height of the highest ground above the lowest, in units of the view.
+    pub highest: f64,
+    /// The cell, in metres.
+    pub cell: f64,
+}
+
+/// The light, made again where the sun or the land changes.
+#[derive(Debug, Default)]
+pub struct Light {
+    /// The sky for an elevation of the sun. One takes longer to make than a frame may.
+    sky: Option<(f64, Lighting)>,
+    making: Option<Receiver<(f64, Lighting)>>,
+    shader: Option<([f64; 2], Block, Arc<LightShader>)>,
+}
+
+impl Light {
+    /// The light for a sun (degrees clockwise from north, and above the horizon) and a block of land. While the sky for another elevation is being made, it is
+    /// the last one.
+    pub fn of(&mut self, studio: &Studio, context: &Context, sun: [f64; 2], block: Block) -> Arc<LightShader> {
+        let [azimuth, elevation] = sun;
+        let made = self.making.as_ref().map(Receiver::try_recv);
+        match made {
+            Some(Ok(sky)) => (self.sky, self.making) = (Some(sky), None),
+            Some(Err(TryRecvError::Disconnected)) => self.making = None,
+            Some(Err(TryRecvError::Empty)) | None => {}
+        }
+        let (known, lighting) = self.sky.get_or_insert_with(|| (elevation, Lighting::new(sun)));
+        if *known != elevation && self.making.is_none() {
+            let (sender, receiver) = channel();
+            let context = context.clone();
+            let started = studio.session().start(move |_| {
+                // The view may be gone.
+                let _ = sender.send((elevation, Lighting::new([azimuth, elevation])));
+                context.request_repaint();
+            });
+            self.making = started.is_ok().then_some(receiver);
+        }
+        let sun = [azimuth, *known];
+        match &self.shader {
+            Some((of_sun, of_block, shader)) if *of_sun == sun && *of_block == block => Arc::clone(shader),
+            _ => {
+                let lighting = lighting.turned(azimuth);
+                let data = lighting.data(1.0, [block.across, block.highest], block.cell);
+                let shader = Arc::new(LightShader::new(&data));
+                self.shader = Some((sun, block, Arc::clone(&shader)));
+                shader
+            }
+        }
+    }
+}
