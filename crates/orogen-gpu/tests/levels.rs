@@ -31,17 +31,17 @@ const RECEIVER: usize = 4;
 fn land() -> &'static [Grid; 2] {
     static LAND: OnceLock<[Grid; 2]> = OnceLock::new();
     LAND.get_or_init(|| {
-        let recipe = "orogen = 1\n[world]\nseed = 2\nsize = [96000.0, 96000.0]\ncell = 480.0\n\
+        let recipe = "orogen = 1\n[world]\nseed = 2\nsize = [105600.0, 105600.0]\ncell = 480.0\n\
             [nodes.swells]\nop = \"fbm\"\nwavelength = 24000.0\noctaves = 5\n\
             [nodes.foreland]\nop = \"remap\"\nsource = \"swells\"\nfrom = [-0.5, 0.5]\nto = [100.0, 400.0]\n\
             [nodes.ranges]\nop = \"stream-power\"\nsource = \"foreland\"\ncell = 480.0\nyears = 15000000.0\nsteps = 60\n\
             erodibility = 6e-06\nuplift = 0.7\ncreep = 0.0\n[outputs]\nheight = \"ranges\"\nflow = \"ranges.flow\"\n";
         let session = Session::new(Options::default()).unwrap();
         let world = session.open(Recipe::parse(recipe, "test").unwrap()).unwrap();
-        let window = Window::new(190, 190, 480.0).at(4, 4);
+        let window = Window::new(212, 212, 480.0).at(4, 4);
         let [mut height, flow] = ["height", "flow"].map(|layer| world.window(layer, &window).unwrap());
         // Two hollows.
-        for (x, y) in [(95, 96), (87, 101)] {
+        for (x, y) in [(106, 107), (98, 112)] {
             height.row_mut(y)[x] -= 900.0;
         }
         [height, flow]
@@ -69,7 +69,11 @@ fn factor(window: &Window, input: usize) -> Grid {
     sampled(window, |x, y| {
         let (x, y) = ((x * metres).rem_euclid(61_440.0), (y * metres).rem_euclid(61_440.0));
         let wave = libm::sin(x / (1500.0 + 400.0 * input as f64)) * libm::cos(y / 2300.0 + input as f64);
-        if (x - 9000.0).hypot(y - 7000.0) < 800.0 && input % 2 == 0 { f64::NAN } else { libm::exp(0.8 * wave) }
+        if libm::hypot(x - 9000.0, y - 7000.0) < 800.0 && input.is_multiple_of(2) {
+            f64::NAN
+        } else {
+            libm::exp(0.8 * wave)
+        }
     })
 }
 
