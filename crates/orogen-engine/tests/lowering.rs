@@ -1,9 +1,11 @@
-//! How a graphics card computes the built-in fields, filters and solvers.
+//! How a graphics card computes the built-in fields, filters, levels and solvers.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
-use orogen_engine::lower::Lowering;
+use orogen_engine::levelled::amplify::Amplify;
+use orogen_engine::levelled::continents::Continents;
+use orogen_engine::lower::{LevelPasses, Lowering};
 use orogen_engine::node::Node;
-use orogen_engine::op::{Op, WorldParams};
+use orogen_engine::op::{Levelled, Op, WorldParams};
 use orogen_grid::grid::Window;
 
 const WORLD: WorldParams = WorldParams { seed: 1, size: None, cell: 10.0, sea_level: 0.0 };
@@ -56,6 +58,49 @@ fn the_text_of_a_filter_does_not_depend_on_the_cell() {
             assert_eq!((fine.code, fine.scratch), (coarse.code, coarse.scratch), "{}", node.spec().op);
         }
     }
+}
+
+/// How a level is computed with all inputs.
+fn level(levelled: &dyn Levelled, level: usize) -> Lowering<LevelPasses> {
+    levelled.lower(level, &[true; 8], &WORLD)
+}
+
+#[test]
+fn every_level_says_how_a_graphics_card_computes_it() {
+    for node in Node::all() {
+        let Op::Levelled(levelled) = node.op() else { continue };
+        let name = node.spec().op;
+        for depth in 0..levelled.levels().count {
+            match level(levelled, depth) {
+                Lowering::Missing => panic!("{name} does not say how a graphics card computes level {depth}"),
+                Lowering::Processor(reason) => assert!(!reason.is_empty(), "{name}"),
+                Lowering::Shader(passes) => {
+                    assert_eq!(passes.planes, levelled.planes(), "{name}");
+                    let cells = 2 * levelled.halo(depth);
+                    for pass in &passes.passes {
+                        let header = format!("fn {}(base: u32, at: vec2<i32>) {{", pass.pass.function);
+                        assert!(pass.code.contains(&header), "{name} has no function {}", pass.pass.function);
+                        let inset = if pass.is_above { levelled.halo(depth) } else { cells };
+                        assert!(pass.pass.inset.iter().all(|left| *left <= inset), "{name}, {}", pass.pass.function);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The levels that a graphics card computes.
+fn lowered(levelled: &dyn Levelled) -> Vec<usize> {
+    (0..levelled.levels().count).filter(|depth| matches!(level(levelled, *depth), Lowering::Shader(_))).collect()
+}
+
+#[test]
+fn levels_are_computed_on_a_graphics_card_except_where_they_cannot_be() {
+    let amplify = Amplify { details: 2, ..Default::default() };
+    assert_eq!(lowered(&amplify), [1, 2, 3, 4, 5, 6]);
+    // Cells of 960 m and 480 m have new lakes, which the level below each begins with.
+    assert_eq!(lowered(&Amplify { lakes: 0.5, ..amplify }), [3, 4, 5, 6]);
+    assert_eq!(lowered(&Continents::default()), [6, 7, 8, 9, 10, 11]);
 }
 
 #[test]

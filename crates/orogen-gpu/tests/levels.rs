@@ -5,6 +5,7 @@ mod common;
 
 use common::filters::{gpu, gpu_with_buffers_of, sampled};
 use common::gpu as shared_gpu;
+use orogen_engine::device::Device;
 use orogen_engine::levelled::amplify::Amplify;
 use orogen_engine::levelled::continents::Continents;
 use orogen_engine::lower::{LevelPasses, Lowering};
@@ -14,7 +15,9 @@ use orogen_gpu::Gpu;
 use orogen_gpu::levels::refine;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
+use std::collections::BTreeMap;
 use std::sync::OnceLock;
+use std::time::Instant;
 
 const WORLD: WorldParams = WorldParams { seed: 1, size: None, cell: 60.0, sea_level: 400.0 };
 
@@ -28,17 +31,17 @@ const RECEIVER: usize = 4;
 fn land() -> &'static [Grid; 2] {
     static LAND: OnceLock<[Grid; 2]> = OnceLock::new();
     LAND.get_or_init(|| {
-        let recipe = "orogen = 1\n[world]\nseed = 2\nsize = [62400.0, 62400.0]\ncell = 480.0\n\
+        let recipe = "orogen = 1\n[world]\nseed = 2\nsize = [105600.0, 105600.0]\ncell = 480.0\n\
             [nodes.swells]\nop = \"fbm\"\nwavelength = 24000.0\noctaves = 5\n\
             [nodes.foreland]\nop = \"remap\"\nsource = \"swells\"\nfrom = [-0.5, 0.5]\nto = [100.0, 400.0]\n\
             [nodes.ranges]\nop = \"stream-power\"\nsource = \"foreland\"\ncell = 480.0\nyears = 15000000.0\nsteps = 60\n\
             erodibility = 6e-06\nuplift = 0.7\ncreep = 0.0\n[outputs]\nheight = \"ranges\"\nflow = \"ranges.flow\"\n";
         let session = Session::new(Options::default()).unwrap();
         let world = session.open(Recipe::parse(recipe, "test").unwrap()).unwrap();
-        let window = Window::new(120, 120, 480.0).at(4, 4);
+        let window = Window::new(212, 212, 480.0).at(4, 4);
         let [mut height, flow] = ["height", "flow"].map(|layer| world.window(layer, &window).unwrap());
         // Two hollows.
-        for (x, y) in [(60, 61), (52, 66)] {
+        for (x, y) in [(106, 107), (98, 112)] {
             height.row_mut(y)[x] -= 900.0;
         }
         [height, flow]
@@ -66,7 +69,11 @@ fn factor(window: &Window, input: usize) -> Grid {
     sampled(window, |x, y| {
         let (x, y) = ((x * metres).rem_euclid(61_440.0), (y * metres).rem_euclid(61_440.0));
         let wave = libm::sin(x / (1500.0 + 400.0 * input as f64)) * libm::cos(y / 2300.0 + input as f64);
-        if (x - 9000.0).hypot(y - 7000.0) < 800.0 && input % 2 == 0 { f64::NAN } else { libm::exp(0.8 * wave) }
+        if libm::hypot(x - 9000.0, y - 7000.0) < 800.0 && input.is_multiple_of(2) {
+            f64::NAN
+        } else {
+            libm::exp(0.8 * wave)
+        }
     })
 }
 
@@ -79,14 +86,38 @@ impl Chain<'_> {
         let read = windows[0].grown(op.source_halo(0));
         let [height, flow] = land();
         let place = |grid: &Grid| {
+            assert!(read.width <= grid.width() && read.height <= grid.height(), "the land is too small");
             let [left, top] = [read.width, read.height].map(|side| (grid.width() - side) / 2);
             let first = height.window();
-            let part = Window { x: first.x + left as i64, y: first.y + top as i64, ..read };
+            let (x, y) = (first.x + left as i64, first.y + top as i64);
+            let part = Window { x, y, cell: first.cell, ..read };
             Grid::from_data(read, grid.crop(&part).unwrap().data().to_vec()).unwrap()
         };
         let mut coarsest = vec![Some(place(height)), Some(place(flow))];
         coarsest.extend((2..given.len()).map(|i| given[i].then(|| factor(&read, i))));
         Chain { op, windows, coarsest, given: given.to_vec() }
+    }
+
+    /// Without any inputs.
+    fn of_nothing<'a>(op: &'a dyn Levelled, level: usize, window: &Window) -> Chain<'a> {
+        let mut windows = vec![*window];
+        for depth in (1..=level).rev() {
+            windows.insert(0, op.parent(depth, &windows[0]));
+        }
+        Chain { op, windows, coarsest: vec![None; 6], given: vec![false; 6] }
+    }
+
+    fn is_lowered(&self, level: usize) -> bool {
+        match self.op.lower(level, &self.given, &WORLD) {
+            Lowering::Shader(_) => true,
+            Lowering::Processor(_) => false,
+            Lowering::Missing => panic!("level {level}"),
+        }
+    }
+
+    /// A level by the processor.
+    fn until(&self, level: usize) -> Vec<Grid> {
+        (1..=level).fold(self.first(), |above, level| self.on_processor(level, &above))
     }
 
     fn inputs(&self, level: usize) -> Vec<Option<Grid>> {
@@ -122,7 +153,7 @@ fn passes(op: &dyn Levelled, level: usize, given: &[bool]) -> LevelPasses {
 }
 
 /// How two levels differ.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy)]
 struct Difference {
     /// Share of the samples with another receiver.
     receivers: f64,
@@ -144,7 +175,8 @@ fn difference(expected: &[Grid], made: &[Grid]) -> Difference {
         pairs.filter(|(a, b)| is_off(**a, **b)).count() as f64 / samples
     };
     let (low, high) = expected[HEIGHT].data().iter().fold((f32::MAX, f32::MIN), |(l, h), v| (l.min(*v), h.max(*v)));
-    let range = (high - low).max(0.1);
+    // A single sample has no range of its own.
+    let range = if samples > 1.0 { (high - low).max(1.0) } else { high.abs().max(1.0) };
     let apart = |plane: usize| {
         assert_eq!(expected[plane].window(), made[plane].window());
         let pairs = expected[plane].data().iter().zip(made[plane].data());
@@ -193,35 +225,208 @@ fn windows(cell: f64) -> [(&'static str, Window); 4] {
     ]
 }
 
+/// Sums of differences, by level.
+#[derive(Default)]
+struct Totals(BTreeMap<usize, [f64; 4]>);
+
+impl Totals {
+    fn add(&mut self, level: usize, samples: usize, difference: &Difference) {
+        let sums = self.0.entry(level).or_default();
+        let shares = [1.0, difference.receivers, difference.far, difference.areas];
+        sums.iter_mut().zip(shares).for_each(|(sum, share)| *sum += share * samples as f64);
+    }
+
+    /// Nearly all samples have the same receiver and height. A rounding error may decide between two ways, and with it about all that is upstream: if the rock of
+    /// level 2 moves by 1e-6, the processor's own level 3 of `alpine` has other heights in 5e-3 of the samples and other receivers in 7e-5.
+    fn check(&self) {
+        for (level, [samples, receivers, far, areas]) in &self.0 {
+            let [receivers, far, areas] = [receivers, far, areas].map(|sum| sum / samples);
+            println!("level {level}, {samples} samples: receivers {receivers:.1e}, far {far:.1e}, areas {areas:.1e}");
+            assert!(receivers < 1e-3 && far < 1e-2 && areas < 5e-3, "level {level}");
+        }
+    }
+}
+
 /// Compares each level, made from the processor's level above, and all levels together.
-fn compare(gpu: &Gpu, name: &str, op: &dyn Levelled, given: &[bool]) {
+fn compare(gpu: &Gpu, totals: &mut Totals, case: &str, chain: &Chain) {
+    let mut above = chain.first();
+    let mut on_card = above.clone();
+    let finest = chain.windows.len() - 1;
+    for level in 1..=finest {
+        let samples = chain.windows[level].len();
+        let expected = chain.on_processor(level, &above);
+        if chain.is_lowered(level) {
+            let one = difference(&expected, &chain.on_card(gpu, level, &above));
+            report(case, level, &one);
+            totals.add(level, samples, &one);
+            on_card = chain.on_card(gpu, level, &on_card);
+        } else {
+            on_card = chain.on_processor(level, &on_card);
+        }
+        if level == finest {
+            let all = difference(&expected, &on_card);
+            report(&format!("{case}, all on the card"), level, &all);
+            totals.add(level, samples, &all);
+        }
+        above = expected;
+    }
+}
+
+fn compare_windows(gpu: &Gpu, totals: &mut Totals, name: &str, op: &dyn Levelled, given: &[bool]) {
     let finest = op.levels().count - 1;
     for (place, window) in windows(op.levels().cell(finest)) {
-        let chain = Chain::new(op, finest, &window, given);
-        let case = format!("{name}, {place}");
-        let mut above = chain.first();
-        let mut on_card = above.clone();
-        for level in 1..=finest {
-            let expected = chain.on_processor(level, &above);
-            let made = chain.on_card(gpu, level, &above);
-            let one = difference(&expected, &made);
-            report(&case, level, &one);
-            on_card = chain.on_card(gpu, level, &on_card);
-            if level == finest {
-                report(&format!("{case}, all on the card"), level, &difference(&expected, &on_card));
-            }
-            above = expected;
-        }
+        compare(gpu, totals, &format!("{name}, {place}"), &Chain::new(op, finest, &window, given));
     }
 }
 
 #[test]
 fn levels_are_those_of_the_processor() {
-    let gpu = shared_gpu();
+    let (gpu, mut totals) = (shared_gpu(), Totals::default());
     println!("{}", gpu.adapter());
-    compare(gpu, "alpine", &alpine(), &ALPINE_INPUTS);
-    compare(gpu, "no inputs", &Amplify { halvings: 3, creep: 0.0, ..alpine() }, &NO_INPUTS);
-    compare(gpu, "rain", &Amplify { relief: 2.0, seed: 7, variation: 2.0, ..alpine() }, &ALL_INPUTS);
-    compare(gpu, "sea", &Amplify { sea: true, ..alpine() }, &ALPINE_INPUTS);
-    compare(gpu, "details", &Amplify { details: 2, cell: 120.0, halvings: 2, ..alpine() }, &ALPINE_INPUTS);
+    compare_windows(gpu, &mut totals, "alpine", &alpine(), &ALPINE_INPUTS);
+    compare_windows(gpu, &mut totals, "no inputs", &Amplify { creep: 0.0, ..alpine() }, &NO_INPUTS);
+    let rainy = Amplify { relief: 2.0, seed: 7, variation: 2.0, creep: 2.5, ..alpine() };
+    compare_windows(gpu, &mut totals, "rain", &rainy, &ALL_INPUTS);
+    compare_windows(gpu, &mut totals, "sea", &Amplify { sea: true, ..alpine() }, &ALPINE_INPUTS);
+    let details = Amplify { details: 2, cell: 120.0, halvings: 2, ..alpine() };
+    compare_windows(gpu, &mut totals, "details", &details, &ALPINE_INPUTS);
+    totals.check();
+}
+
+#[test]
+fn lakes_of_coarser_levels_are_those_of_the_processor() {
+    let (gpu, mut totals) = (shared_gpu(), Totals::default());
+    let mut found = 0;
+    // Where lakes are frequent depends on the seed.
+    for seed in 0..40 {
+        let op = Amplify { lakes: 1.0, seed, details: 1, ..alpine() };
+        let window = Window::new(80, 70, 30.0).at(-20, 31);
+        let chain = Chain::new(&op, 4, &window, &ALPINE_INPUTS);
+        let lowered: Vec<bool> = (1..=4).map(|level| chain.is_lowered(level)).collect();
+        assert_eq!(lowered, [false, true, true, true]);
+        let first = chain.on_processor(1, &chain.first());
+        let lakes = first[RECEIVER].data().iter().filter(|code| **code >= 16.0).count();
+        if lakes > 8 {
+            found += 1;
+            compare(gpu, &mut totals, &format!("{lakes} samples in lakes"), &chain);
+        }
+        if found == 3 {
+            break;
+        }
+    }
+    assert!(found > 0);
+    totals.check();
+}
+
+#[test]
+fn continents_below_their_geography_are_those_of_the_processor() {
+    let (gpu, mut totals) = (shared_gpu(), Totals::default());
+    let op = Continents { halvings: 8, cell: 480.0, creep: 1.0, ..Default::default() };
+    let mut found = 0;
+    for k in 0..30 {
+        let window = Window::new(60, 44, 480.0).at(700 * k, -311 * k);
+        let chain = Chain::of_nothing(&op, 8, &window);
+        let lowered: Vec<usize> = (1..=8).filter(|level| chain.is_lowered(*level)).collect();
+        assert_eq!(lowered, [6, 7, 8]);
+        let coarse = chain.until(4);
+        let water = coarse[RECEIVER].data().iter().filter(|code| **code == 8.0).count();
+        if water * 4 > coarse[RECEIVER].data().len() && water * 4 < 3 * coarse[RECEIVER].data().len() {
+            found += 1;
+            compare(gpu, &mut totals, &format!("continents {k}"), &chain);
+        }
+        if found == 2 {
+            break;
+        }
+    }
+    assert!(found > 0);
+    totals.check();
+}
+
+#[test]
+fn tiles_give_the_same() {
+    let window = Window::new(61, 45, 60.0).at(-7, 3);
+    let op = alpine();
+    let chain = Chain::new(&op, 3, &window, &ALPINE_INPUTS);
+    let above = chain.until(2);
+    let whole = chain.on_card(shared_gpu(), 3, &above);
+    // The planes of some 20 x 20 samples.
+    let cells = (20 + 2 * op.source_halo(3)).pow(2) as u64;
+    let tiled = chain.on_card(&gpu_with_buffers_of(4 * 28 * cells), 3, &above);
+    let apart = difference(&whole, &tiled);
+    report("tiles", 3, &apart);
+    assert!(apart.receivers == 0.0 && apart.worst < 1e-3 && apart.areas == 0.0);
+    let tiny = gpu_with_buffers_of(10_000);
+    let inputs = chain.inputs(3);
+    let inputs: Vec<Option<&Grid>> = inputs.iter().map(Option::as_ref).collect();
+    let passes = passes(&op, 3, &ALPINE_INPUTS);
+    let made = refine(&tiny, &passes, &above, &inputs, &window, || false);
+    assert!(matches!(made, Err(orogen_gpu::Failure::Memory(_))), "{made:?}");
+}
+
+#[test]
+fn what_is_missing_is_an_error_and_cancelled_work_ends() {
+    let gpu = shared_gpu();
+    let window = Window::new(9, 8, 240.0).at(3, 4);
+    let op = alpine();
+    let chain = Chain::new(&op, 1, &window, &NO_INPUTS);
+    let (above, passes) = (chain.first(), passes(&op, 1, &NO_INPUTS));
+    let none = [None; 8];
+    assert!(refine(gpu, &passes, &above, &none, &window, || true).unwrap().is_none());
+    assert!(refine(gpu, &passes, &above, &none, &window.grown(3), || false).is_err());
+    assert!(refine(gpu, &passes, &[], &none, &window, || false).is_err());
+    let empty = Window { width: 0, ..window };
+    assert_eq!(refine(gpu, &passes, &above, &none, &empty, || false).unwrap().unwrap().len(), 8);
+    let given = match op.lower(1, &ALPINE_INPUTS, &WORLD) {
+        Lowering::Shader(passes) => passes,
+        other => panic!("{other:?}"),
+    };
+    assert!(refine(gpu, &given, &above, &none, &window, || false).is_err());
+    // As a device, with the progress of a request.
+    let made = gpu.refine(&passes, &above, &none, &window, &Progress::none()).unwrap().unwrap();
+    assert!(difference(&chain.on_processor(1, &above), &made).receivers < 1e-2);
+}
+
+#[test]
+fn other_parameters_and_sizes_compile_nothing() {
+    let gpu = gpu();
+    let make = |op: &Amplify, window: &Window, given: &[bool]| {
+        let chain = Chain::new(op, 3, window, given);
+        let mut above = chain.first();
+        for level in 1..=3 {
+            above = chain.on_card(&gpu, level, &above);
+        }
+    };
+    make(&alpine(), &Window::new(9, 7, 60.0), &ALPINE_INPUTS);
+    let compiled = gpu.shaders_compiled();
+    let other = Amplify { relief: 2.0, variation: 0.1, creep: 3.0, seed: 4, cell: 50.0, sea: true, ..alpine() };
+    make(&other, &Window::new(5, 8, 50.0).at(40, -3), &ALL_INPUTS);
+    make(&other, &Window::new(15, 8, 50.0).at(-40, -3), &NO_INPUTS);
+    assert_eq!(gpu.shaders_compiled(), compiled);
+}
+
+/// Run it with `--ignored --nocapture` and `--release`.
+#[test]
+#[ignore = "long: seconds with a software driver"]
+fn time_of_levels() {
+    let gpu = gpu();
+    let op = alpine();
+    let window = Window::new(1024, 1024, 60.0);
+    let chain = Chain::new(&op, 3, &window, &ALPINE_INPUTS);
+    let first = chain.first();
+    for name in ["with compilation", "again"] {
+        let begin = Instant::now();
+        let mut above = first.clone();
+        for level in 1..=3 {
+            let level_begin = Instant::now();
+            above = chain.on_card(&gpu, level, &above);
+            println!("  level {level}, {} samples: {:.2?}", chain.windows[level].len(), level_begin.elapsed());
+        }
+        println!("{}, {name}: {:.2?}", gpu.adapter(), begin.elapsed());
+    }
+    let begin = Instant::now();
+    let mut above = first;
+    for level in 1..=3 {
+        above = chain.on_processor(level, &above);
+    }
+    println!("processor, one thread: {:.2?}", begin.elapsed());
 }

@@ -125,8 +125,12 @@ fn carve(base: u32, at: vec2<i32>) {
     var carved = Carved(plane(LEVEL, at), 0.0, 8u);
     for (var k = 0; k < 9; k += 1) {
         let near = near_cell(parent, k);
+        // Before its entry a link passes its parent, and a third cell if it leads around a corner.
         if (is_kept(near) && drains(above(RECEIVER, near))) {
-            carved = left_by(near, link_in(LINK, near), at, carved);
+            let link = link_in(LINK, near);
+            if (k == 4 || link.around != 0u) {
+                carved = left_by(near, link, at, carved);
+            }
         }
     }
     for (var k = 0; k < 9; k += 1) {

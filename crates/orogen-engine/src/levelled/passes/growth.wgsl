@@ -33,23 +33,18 @@ fn begin(base: u32, at: vec2<i32>, height: f32, area: f32) -> Growing {
 }
 
 // Takes the height over the neighbour in a direction where it is the lowest so far. No link crosses a river from one of the two cells beside a diagonal to the
-// other.
-fn offer(base: u32, at: vec2<i32>, code: u32, before: Growing) -> Growing {
+// other: `beside` are their fixed receivers.
+fn offer(base: u32, at: vec2<i32>, code: u32, there: f32, beside: vec2<f32>, before: Growing) -> Growing {
     var growing = before;
     let near = at + step_of(code);
-    let there = plane(frame.step & 0xffu, near);
     let distance = distance_in(code, at, base);
     var left = 0.0;
     if (has(base, FLOORS)) {
         left = plane(FIRST_FLOOR + ((frame.step >> 24u) & 1u), near) - distance * cell(base);
     }
     let candidate = there + distance * select(growing.rise, growing.flat_rise, left > 0.0);
-    var crosses = false;
-    if ((code & 1u) != 0u) {
-        let one = plane(FIXED, at + step_of(code + 7u)) == f32((code + 2u) & 7u);
-        let other = plane(FIXED, at + step_of(code + 1u)) == f32((code + 6u) & 7u);
-        crosses = one || other;
-    }
+    let across = vec2<f32>(f32((code + 2u) & 7u), f32((code + 6u) & 7u));
+    let crosses = (code & 1u) != 0u && any(beside == across);
     let possible = (there < growing.below && !crosses) || growing.fixed == f32(code);
     if (possible && candidate < growing.lowest) {
         growing.lowest = candidate;
@@ -60,15 +55,13 @@ fn offer(base: u32, at: vec2<i32>, code: u32, before: Growing) -> Growing {
 }
 
 // Takes the height of a front that passes between a neighbour and the lower one beside it where it is the lowest so far.
-fn front(at: vec2<i32>, here: f32, code: u32, beside: u32, before: Growing) -> Growing {
+fn front(here: f32, there: f32, corner: f32, beside: u32, before: Growing) -> Growing {
     var growing = before;
-    let there = plane(frame.step & 0xffu, at + step_of(code));
-    let corner = plane(frame.step & 0xffu, at + step_of(beside));
     let fall = there - corner;
     let candidate = there + sqrt(max(growing.rise * growing.rise - fall * fall, 0.0));
     if (fall > 0.0 && fall < growing.rise * 0.70710677 && corner < here && candidate < growing.lowest) {
         growing.lowest = candidate;
-        growing.best = f32(beside & 7u);
+        growing.best = f32(beside);
         growing.floor_left = 0.0;
     }
     return growing;
@@ -78,13 +71,24 @@ fn grow(base: u32, at: vec2<i32>) {
     let height = plane(frame.step & 0xffu, at);
     let area = plane((frame.step >> 16u) & 0xffu, at);
     var growing = begin(base, at, height, area);
+    var heights: array<f32, 8>;
     for (var code = 0u; code < 8u; code += 1u) {
-        growing = offer(base, at, code, growing);
+        heights[code] = plane(frame.step & 0xffu, at + step_of(code));
+    }
+    // In the east, south, west and north.
+    var fixed: array<f32, 4>;
+    for (var side = 0u; side < 4u; side += 1u) {
+        fixed[side] = plane(FIXED, at + step_of(2u * side));
+    }
+    for (var code = 0u; code < 8u; code += 1u) {
+        let beside = vec2<f32>(fixed[code >> 1u], fixed[((code + 1u) & 7u) >> 1u]);
+        growing = offer(base, at, code, heights[code], beside, growing);
     }
     if (has(base, FINEST) && growing.fixed == FREE && area < 30.0) {
         for (var code = 0u; code < 8u; code += 2u) {
-            growing = front(at, height, code, code + 1u, growing);
-            growing = front(at, height, code, code + 7u, growing);
+            let last = (code + 7u) & 7u;
+            growing = front(height, heights[code], heights[code + 1u], code + 1u, growing);
+            growing = front(height, heights[code], heights[last], last, growing);
         }
     }
     var lowest = growing.lowest;

@@ -91,7 +91,9 @@ fn hold(base: u32, at: vec2<i32>) {
             continue;
         }
         if (drains(above(RECEIVER, near))) {
-            held = held_by(near, link, at, held);
+            if (k == 4 || link.around != 0u || same(receiver_of(near), parent)) {
+                held = held_by(near, link, at, held);
+            }
         } else if (same(near, parent) && link.fed && same(at, child_of(parent, heir(parent)))) {
             is_mouth = true;
         }
