@@ -8,7 +8,7 @@ pub const PACKAGES: &str = "--package orogen-gpu --package orogen-studio --packa
     --features orogen-studio/kittest,orogen-cli/gpu";
 
 /// The tests of orogen-gpu.
-const TESTS: &str = "--test job --test noise --test programs --test filters --test render";
+const TESTS: &str = "--test job --test noise --test programs --test filters --test levels --test render";
 
 /// Compares fields, filters, presets and pictures with those of the processor, and runs commands without any card.
 pub fn check() -> Result {
