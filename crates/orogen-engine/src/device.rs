@@ -14,6 +14,11 @@ use orogen_noise::shader::function::Shader;
 ///
 /// A step that returns `None` is computed by the processor: because the device cannot do it, or has failed. An error ends the request.
 pub trait Device: Send + Sync {
+    /// Whether it is the processor itself, by a software driver: then it is slower than without it.
+    fn is_software(&self) -> bool {
+        false
+    }
+
     /// Computes the outputs of a program over a window. `grids` are those that the program reads.
     ///
     /// # Errors

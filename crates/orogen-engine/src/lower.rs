@@ -37,6 +37,8 @@ pub struct Passes {
     pub layers: usize,
     /// Number of planes beside inputs and layers.
     pub scratch: usize,
+    /// Whether differences of the last digits grow, so that the result is other land, as real as that of the processor: for drafts.
+    pub is_chaotic: bool,
     /// The passes, in order.
     pub passes: Vec<Pass>,
 }
@@ -102,7 +104,7 @@ impl Passes {
     #[must_use]
     pub fn new(code: &'static str, numbers: &[f32]) -> Passes {
         let words = numbers.iter().map(|number| number.to_bits()).collect();
-        Passes { code, words, layers: 0, scratch: 0, passes: Vec::new() }
+        Passes { code, words, layers: 0, scratch: 0, is_chaotic: false, passes: Vec::new() }
     }
 
     /// With these words after the others.
@@ -116,6 +118,13 @@ impl Passes {
     #[must_use]
     pub fn with_layers(mut self, layers: usize) -> Passes {
         self.layers = layers;
+        self
+    }
+
+    /// Passes whose result is other land, as real as that of the processor.
+    #[must_use]
+    pub fn chaotic(mut self) -> Passes {
+        self.is_chaotic = true;
         self
     }
 

@@ -65,6 +65,9 @@ pub struct Session {
     pub(crate) device: Option<Arc<dyn Device>>,
     /// What previews with the device keep.
     pub(crate) previews: Arc<Previews>,
+    /// What its drafts keep, and whether windows are drafts.
+    pub(crate) drafts: Arc<Previews>,
+    pub(crate) is_draft: bool,
 }
 
 /// Default of [`Options::kept_grids`], in bytes.
@@ -92,7 +95,9 @@ impl Session {
             level_tiles: Arc::new(LevelTiles::new(level_tiles)),
             budget: options.memory.clone(),
             device: None,
+            drafts: Arc::new(previews.emptied()),
             previews: Arc::new(previews),
+            is_draft: false,
         })
     }
 
@@ -102,7 +107,16 @@ impl Session {
     #[doc(hidden)]
     #[must_use]
     pub fn with_device(&self, device: Arc<dyn Device>) -> Session {
-        Session { device: Some(device), previews: Arc::new(self.previews.emptied()), ..self.clone() }
+        let kept = || Arc::new(self.previews.emptied());
+        Session { device: Some(device), previews: kept(), drafts: kept(), ..self.clone() }
+    }
+
+    /// The same session, whose device also computes solvers that are chaotic: of which the device makes other land, as real as that of the processor. Their
+    /// rivers lie elsewhere, so this is for drafts. Without a device it changes nothing.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn drafting(&self) -> Session {
+        Session { is_draft: true, ..self.clone() }
     }
 
     /// The same session without its device: all is computed by the processor.
@@ -184,7 +198,7 @@ impl Session {
     #[must_use]
     pub fn kept_memory(&self) -> u64 {
         let exact = self.store.memory().saturating_add(self.grids.memory()).saturating_add(self.level_tiles.memory());
-        exact.saturating_add(self.previews.memory())
+        exact.saturating_add(self.previews.memory()).saturating_add(self.drafts.memory())
     }
 
     /// The same threads and memory without any solutions and without a store for later runs.
@@ -199,6 +213,7 @@ impl Session {
             store: Arc::new(Store::holding(solved, self.store.scratch().clone())),
             grids: Arc::new(GridStore::new(0)),
             previews: Arc::new(Previews::new(self.store.scratch(), 0, 0)),
+            drafts: Arc::new(Previews::new(self.store.scratch(), 0, 0)),
             ..self.clone()
         }
     }
@@ -212,7 +227,9 @@ impl Session {
             self.grids.make_room(left);
             let left = left.saturating_sub(self.grids.memory());
             self.level_tiles.make_room(left);
-            self.previews.make_room(left.saturating_sub(self.level_tiles.memory()));
+            let left = left.saturating_sub(self.level_tiles.memory());
+            self.previews.make_room(left);
+            self.drafts.make_room(left.saturating_sub(self.previews.memory()));
         }
     }
 }

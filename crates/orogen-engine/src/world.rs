@@ -3,7 +3,7 @@
 use crate::budget::{Budget, Reservation};
 use crate::device::Device;
 use crate::engine::inline::PreparedProgram;
-use crate::engine::preview::Preview;
+use crate::engine::preview::{Preview, may_draft};
 use crate::engine::run::Engine;
 use crate::ids::{Id, IndexVec, NodeId};
 use crate::layer::LayerKind;
@@ -330,6 +330,16 @@ impl World {
         self.session.device.as_deref()
     }
 
+    /// Whether a [draft](Session::drafting) of a plan would be other land: because its device solves a solver of it that is chaotic and not solved yet.
+    ///
+    /// # Errors
+    /// The plan was made for another recipe.
+    #[doc(hidden)]
+    pub fn may_draft(&self, plan: &Plan) -> Result<bool> {
+        self.check_plan(plan)?;
+        Ok(self.session.device.is_some() && may_draft(&self.engine(&Progress::none()), plan))
+    }
+
     /// Number of threads.
     pub fn threads(&self) -> usize {
         self.session.threads()
@@ -381,7 +391,8 @@ impl World {
         let _running = self.admit(plan, progress)?;
         let engine = self.engine(progress);
         let session = &self.session;
-        let preview = session.device.as_deref().map(|device| Preview::new(device, &session.previews, &engine));
+        let kept = if session.is_draft { &session.drafts } else { &session.previews };
+        let preview = session.device.as_deref().map(|device| Preview::new(device, kept, &engine, session.is_draft));
         Engine { preview: preview.as_ref(), ..engine }.run(plan)
     }
 

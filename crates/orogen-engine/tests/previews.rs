@@ -8,6 +8,7 @@ use orogen_engine::levelled::amplify::Amplify;
 use orogen_engine::lower::{Lowering, Passes};
 use orogen_engine::op::{Context, Solution, Solver, Sources, WorldParams};
 use orogen_engine::solver::drainage::Drainage;
+use orogen_engine::solver::normalise::Normalise;
 use orogen_engine::{Grid, Options, Progress, Recipe, Result, Session, Window, WorldSpec};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -22,6 +23,8 @@ orogen_engine::op! {
     params {
         /// Added to them.
         raise: f64 = 0.0, unit "m", range -1e4 to 1e4;
+        /// Whether the device makes other land.
+        chaotic: bool = false;
     }
 }
 
@@ -37,7 +40,8 @@ impl Solver for Solved {
     }
 
     fn lower(&self, _: &Window, _: &[bool], _: &WorldParams) -> Lowering<Passes> {
-        Lowering::Shader(Passes::new("", &[self.raise as f32]))
+        let passes = Passes::new("", &[self.raise as f32]);
+        Lowering::Shader(if self.chaotic { passes.chaotic() } else { passes })
     }
 }
 
@@ -76,6 +80,10 @@ impl Device for Off {
         window: &Window,
         _: &Progress,
     ) -> Result<Option<Vec<Grid>>> {
+        if !passes.code.is_empty() {
+            // Built-in solvers are left to the processor.
+            return Ok(None);
+        }
         self.solved.fetch_add(1, Ordering::Relaxed);
         let mut heights = inputs[0].unwrap().clone();
         assert_eq!(heights.window(), window);
@@ -87,11 +95,11 @@ impl Device for Off {
 
 const WINDOW: Window = Window { x: 3, y: 5, width: 40, height: 30, cell: 100.0 };
 
-fn recipe() -> Recipe {
+fn recipe(chaotic: bool) -> Recipe {
     let mut recipe = Recipe::new(WorldSpec::default().with_seed(2).with_size(Some([8000.0; 2])).with_cell(100.0));
     recipe.add("noise", Fbm { seed: 3, wavelength: 3000.0, octaves: 4, ..Fbm::default() });
     recipe.add("land", Multiply { a: "noise".into(), b: 200.0.into() });
-    recipe.add("solved", Solved { source: "land".into(), raise: 10.0 });
+    recipe.add("solved", Solved { source: "land".into(), raise: 10.0, chaotic });
     recipe.add("drained", Drainage { source: "solved".into(), ..Drainage::default() });
     let refined = Amplify {
         source: "solved".into(),
@@ -102,16 +110,16 @@ fn recipe() -> Recipe {
     };
     recipe.add("refined", refined);
     recipe.add("eroded", Pipes { source: "solved".into(), ..Pipes::default() });
-    recipe.add("dry", Drainage { source: "land".into(), ..Drainage::default() });
+    recipe.add("even", Normalise { source: "land".into(), ..Normalise::default() });
     recipe.output("height", "refined");
     recipe
 }
 
 fn window(session: &Session, layer: &str) -> Grid {
-    session.open(recipe()).unwrap().window(layer, &WINDOW).unwrap()
+    session.open(recipe(false)).unwrap().window(layer, &WINDOW).unwrap()
 }
 
-const LAYERS: [&str; 5] = ["solved", "drained.flow", "refined", "eroded", "dry.flow"];
+const LAYERS: [&str; 5] = ["solved", "drained.flow", "refined", "eroded", "even"];
 
 fn session() -> Session {
     Session::new(Options { threads: Some(2), ..Options::default() }).unwrap()
@@ -136,7 +144,7 @@ fn what_a_device_makes_is_never_taken_for_exact() {
     }
     // Solutions and grids of filters are kept for later previews.
     assert_eq!((device.solved.load(Ordering::Relaxed), device.filtered.load(Ordering::Relaxed)), (1, 1));
-    assert_eq!(session.solutions_made(), 1, "`dry` alone is exact");
+    assert_eq!(session.solutions_made(), 1, "`even` alone is exact");
     assert!(preview.kept_memory() > 0);
     for (layer, exact) in LAYERS.iter().zip(&exact) {
         assert_eq!(window(&preview.without_device(), layer), *exact, "{layer}");
@@ -146,8 +154,29 @@ fn what_a_device_makes_is_never_taken_for_exact() {
     let made = window(&session.with_device(Arc::new(Off::default())), "solved");
     assert_eq!(made, exact[0]);
     // Points are always exact.
-    let world = preview.open(recipe()).unwrap();
+    let world = preview.open(recipe(false)).unwrap();
     assert_eq!(world.points("solved", &[1000.0], &[2000.0]).unwrap(), [exact[0][(7, 15)]]);
+}
+
+#[test]
+fn other_land_is_made_for_drafts_alone() {
+    let session = session();
+    let preview = session.with_device(Arc::new(Off::default()));
+    let window = |session: &Session, layer: &str| {
+        session.open(recipe(true)).unwrap().window(layer, &WINDOW).unwrap().data().to_vec()
+    };
+    let may_draft = |session: &Session| {
+        let world = session.open(recipe(true)).unwrap();
+        world.may_draft(&world.plan(&["eroded"], &WINDOW).unwrap()).unwrap()
+    };
+    assert!(may_draft(&preview) && !may_draft(&session));
+    let draft = window(&preview.drafting(), "solved");
+    let heights = window(&preview, "solved");
+    assert!(heights.iter().zip(&draft).all(|(height, draft)| (draft - height - OFF).abs() < 0.01));
+    assert_eq!(session.solutions_made(), 1);
+    // What is solved exactly by now needs no draft.
+    assert!(!may_draft(&preview) && window(&preview.drafting(), "solved") == heights);
+    assert_eq!(window(&session.drafting(), "solved"), heights);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! The graphics card as a device of the engine.
 
+use crate::adapters::Kind;
 use crate::filters;
 use crate::gpu::Gpu;
 use crate::levels;
@@ -12,6 +13,10 @@ use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 
 impl Device for Gpu {
+    fn is_software(&self) -> bool {
+        self.adapter().kind == Kind::Software
+    }
+
     fn fill(
         &self,
         program: &LoweredProgram,

@@ -44,7 +44,7 @@
 #![forbid(unsafe_code)]
 
 #[doc(hidden)]
-pub use orogen_engine::device_choice;
+pub use orogen_engine::{device, device_choice, lower};
 #[doc(inline)]
 pub use orogen_engine::{
     bands, budget, choice, chunks, declare, expression, field, filter, growth, ids, laws, layer, node, objects, op,

@@ -3,9 +3,10 @@
 use super::run::Engine;
 use crate::device::Device;
 use crate::ids::{IndexVec, NodeId};
-use crate::lower::Lowering;
-use crate::op::Op;
+use crate::lower::{Lowering, Passes};
+use crate::op::{Op, Solver};
 use crate::plan::domain::Domain;
+use crate::plan::steps::{Plan, Solve};
 use crate::recipe::graph::Link;
 use crate::store::grids::GridStore;
 use crate::store::level_tiles::LevelTiles;
@@ -52,6 +53,8 @@ impl Previews {
 pub struct Preview<'a> {
     pub device: &'a dyn Device,
     pub kept: &'a Previews,
+    /// Whether the device also solves what is chaotic.
+    is_draft: bool,
     /// Solvers and levelled ops that the device computes, and all that reads them. Fields and filters that it computes are not among them: whether they
     /// must be exact depends on who reads them.
     approximate: IndexVec<NodeId, bool>,
@@ -60,17 +63,36 @@ pub struct Preview<'a> {
 }
 
 impl<'a> Preview<'a> {
-    /// That of an engine's recipe.
-    pub fn new(device: &'a dyn Device, kept: &'a Previews, engine: &Engine) -> Preview<'a> {
+    /// That of an engine's recipe; a draft if the device may make other land.
+    pub fn new(device: &'a dyn Device, kept: &'a Previews, engine: &Engine, is_draft: bool) -> Preview<'a> {
         let none = || -> IndexVec<NodeId, bool> { vec![false; engine.recipe.nodes().len()].into() };
-        let mut preview = Preview { device, kept, approximate: none(), reads: none() };
+        let mut preview = Preview { device, kept, is_draft, approximate: none(), reads: none() };
         for &node in &engine.graph.order {
             let is_approximate = |link: &Link| matches!(link, Link::Node(read) if preview.approximate[read.node]);
             let mut links = engine.graph.links[node].iter().chain([&engine.graph.masks[node]]);
             preview.reads[node] = links.any(is_approximate);
-            preview.approximate[node] = preview.reads[node] || is_lowered(engine, node);
+            preview.approximate[node] = preview.reads[node] || preview.makes(engine, node);
         }
         preview
+    }
+
+    /// Whether the device computes a solver, or a level of a levelled op.
+    fn makes(&self, engine: &Engine, node: NodeId) -> bool {
+        match engine.op(node) {
+            Some(Op::Solver(solver)) => self.passes_of(engine, node, solver).is_some(),
+            Some(Op::Levelled(op)) => {
+                let given = given(engine, node);
+                let mut levels = 1..op.levels().count;
+                levels.any(|level| matches!(op.lower(level, &given, engine.world_params), Lowering::Shader(_)))
+            }
+            _ => false,
+        }
+    }
+
+    /// How the device solves a solver; `None` if the processor does.
+    pub fn passes_of(&self, engine: &Engine, node: NodeId, solver: &dyn Solver) -> Option<Passes> {
+        let passes = lowered(engine, node, solver)?;
+        (self.is_draft || !passes.is_chaotic).then_some(passes)
     }
 
     /// Whether a node is made on the device, or from what is made there.
@@ -84,20 +106,22 @@ impl<'a> Preview<'a> {
     }
 }
 
-/// Whether a device computes a solver, or a level of a levelled op.
-fn is_lowered(engine: &Engine, node: NodeId) -> bool {
-    let given = given(engine, node);
-    match engine.op(node) {
-        Some(Op::Solver(solver)) => {
-            let padded = Domain::of(solver, engine.world_params).padded;
-            matches!(solver.lower(&padded, &given, engine.world_params), Lowering::Shader(_))
-        }
-        Some(Op::Levelled(op)) => {
-            let mut levels = 1..op.levels().count;
-            levels.any(|level| matches!(op.lower(level, &given, engine.world_params), Lowering::Shader(_)))
-        }
-        _ => false,
+/// How a device solves a solver, also if that is chaotic.
+fn lowered(engine: &Engine, node: NodeId, solver: &dyn Solver) -> Option<Passes> {
+    let padded = Domain::of(solver, engine.world_params).padded;
+    match solver.lower(&padded, &given(engine, node), engine.world_params) {
+        Lowering::Shader(passes) => Some(passes),
+        Lowering::Processor(_) | Lowering::Missing => None,
     }
+}
+
+/// Whether a device would make other land than the processor of one of the solvers that a plan has to solve.
+pub fn may_draft(engine: &Engine, plan: &Plan) -> bool {
+    let is_missing = |order: &&Solve| !engine.store.has(&order.key);
+    plan.solves.iter().filter(is_missing).any(|order| match engine.op(order.node) {
+        Some(Op::Solver(solver)) => lowered(engine, order.node, solver).is_some_and(|passes| passes.is_chaotic),
+        _ => false,
+    })
 }
 
 /// Whether each input of a node is given.

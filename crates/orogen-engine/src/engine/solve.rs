@@ -4,7 +4,6 @@ use super::preview::given;
 use super::run::{Engine, Solutions};
 use super::tiles::Tiles;
 use crate::ids::{Id, NodeId};
-use crate::lower::Lowering;
 use crate::op::{Context, Op, Solution, Solver, Sources};
 use crate::plan::cost;
 use crate::plan::planner::Planner;
@@ -140,8 +139,8 @@ impl Engine<'_> {
     ) -> Result<Option<Solution>> {
         let is_there = !order.on_disk && !self.is_observed(order.node);
         let Some(preview) = self.preview.filter(|_| is_there) else { return Ok(None) };
+        let Some(passes) = preview.passes_of(self, order.node, solver) else { return Ok(None) };
         let given = given(self, order.node);
-        let Lowering::Shader(passes) = solver.lower(&order.padded, &given, self.world_params) else { return Ok(None) };
         let whole = |(input, given): (usize, &bool)| given.then(|| tiles.whole(input, &order.padded)).transpose();
         let inputs: Vec<Option<Grid>> = given.iter().enumerate().map(whole).collect::<Result<_>>()?;
         let inputs: Vec<Option<&Grid>> = inputs.iter().map(Option::as_ref).collect();

@@ -147,7 +147,8 @@ impl Solver for StreamPower {
         if self.passes_of_steps(padded) > MOST_PASSES {
             return Lowering::Processor("so many passes are submitted no faster than the processor computes");
         }
-        Lowering::Shader(self.passes(padded, planes, [given(1), given(2)], world_params))
+        // Where rivers go in the first steps depends on the last digits of nearly level ground.
+        Lowering::Shader(self.passes(padded, planes, [given(1), given(2)], world_params).chaotic())
     }
 
     fn cost(&self) -> f64 {

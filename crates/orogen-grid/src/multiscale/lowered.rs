@@ -138,3 +138,26 @@ impl Refinement {
         words
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_hold_all_numbers_and_schedules_stay_within_the_reach() {
+        let land = Refinement::new(5).with_levels(3).with_details(2).with_lakes(0.5);
+        for depth in 1..=5 {
+            let words = land.words(depth);
+            assert_eq!(words[0] & DETAIL != 0, depth > 3);
+            let start = hash::start(5, depth, 0);
+            assert_eq!([words[1], words[2]], [start as u32, (start >> 32) as u32]);
+            assert_eq!(f32::from_bits(words[WORDS - 1]), land.cell_of(depth - 1) as f32);
+            let s = land.schedule(depth);
+            let passes = s.first_passes + s.rounds * (s.area_passes + 1) + s.creep_passes;
+            let passes = passes + s.bank_rounds * (s.bank_passes + 1);
+            let passes = passes + s.last_area_passes + s.raise_passes + s.limit_passes;
+            let inset = s.carved + s.straightened + s.rims.map_or(0, |rim| rim + 1) + passes;
+            assert!(inset <= 2 * land.reach(depth) && (land.begins_lakes(depth) || inset + 1 >= 2 * land.reach(depth)));
+        }
+    }
+}

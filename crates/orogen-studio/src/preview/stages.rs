@@ -10,6 +10,8 @@ use super::request::Request;
 pub struct Stage {
     /// How much coarser its solvers are than the recipe's; 1 for the recipe itself.
     pub coarser: u32,
+    /// Whether the graphics card solves what is chaotic, so that it is other land than the recipe's.
+    pub on_card: bool,
     /// Samples along its longer side.
     pub samples: usize,
     /// How good it is.
@@ -40,20 +42,21 @@ pub fn of(world: &World, request: &Request) -> Result<Vec<Stage>> {
         Err(_) => world.plan(&[&request.surface], &window)?,
     };
     let [solving, _] = world.work_of(&plan)?;
+    let finest = request.finest.max(FIRST);
     let mut stages = Vec::new();
     if solving > PATIENCE {
         // A solver's work grows with its samples and its steps.
         let is_quick = |coarser: &u32| solving / f64::from(coarser.pow(3)) < PATIENCE;
         let coarser = COARSER.into_iter().find(is_quick).unwrap_or(COARSER[COARSER.len() - 1]);
-        stages.push(Stage { coarser, samples: FIRST, quality: Quality::Draft });
+        // A card makes the draft with all details; a software driver would be slower than the solvers.
+        let on_card = world.device().is_some_and(|device| !device.is_software()) && world.may_draft(&plan)?;
+        let (coarser, samples) = if on_card { (1, NEXT[0].min(finest)) } else { (coarser, FIRST) };
+        stages.push(Stage { coarser, on_card, samples, quality: Quality::Draft });
     }
-    let finest = request.finest.max(FIRST);
-    stages.push(Stage { coarser: 1, samples: FIRST, quality: Quality::Coarse });
+    let exact = |samples: usize| Stage { coarser: 1, on_card: false, samples, quality: Quality::Coarse };
+    stages.push(exact(FIRST));
     stages.extend(
-        NEXT.into_iter()
-            .take_while(|samples| *samples < finest)
-            .chain((finest > FIRST).then_some(finest))
-            .map(|samples| Stage { coarser: 1, samples, quality: Quality::Coarse }),
+        NEXT.into_iter().take_while(|samples| *samples < finest).chain((finest > FIRST).then_some(finest)).map(exact),
     );
     if let Some(last) = stages.last_mut() {
         last.quality = Quality::Fine;
@@ -64,7 +67,10 @@ pub fn of(world: &World, request: &Request) -> Result<Vec<Stage>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use orogen::{Options, Session, presets};
+    use orogen::device::{Device, FilterExtent, LoweredProgram};
+    use orogen::lower::Passes;
+    use orogen::{Grid, Options, Progress, Session, Window, presets};
+    use std::sync::Arc;
 
     fn stages(preset: &str, finest: usize) -> Vec<Stage> {
         let session = Session::new(Options::default()).unwrap();
@@ -84,5 +90,45 @@ mod tests {
         assert_eq!(sizes(&alpine), [256, 256, 1024]);
         assert!(alpine[0].quality == Quality::Draft && alpine[0].coarser > 1);
         assert_eq!(sizes(&stages("classic", 100)), [256]);
+    }
+
+    /// A card that refuses everything.
+    struct Card {
+        is_software: bool,
+    }
+
+    impl Device for Card {
+        fn is_software(&self) -> bool {
+            self.is_software
+        }
+
+        fn fill(&self, _: &LoweredProgram, _: &Window, _: &[&Grid], _: &Progress) -> Result<Option<Vec<Grid>>> {
+            Ok(None)
+        }
+
+        fn apply(
+            &self,
+            _: &Passes,
+            _: &[Option<&Grid>],
+            _: &FilterExtent,
+            _: &Progress,
+        ) -> Result<Option<Vec<Option<Grid>>>> {
+            Ok(None)
+        }
+    }
+
+    #[test]
+    fn a_card_makes_drafts_with_all_details() {
+        let draft = |preset: &str, is_software: bool| {
+            let session = Session::new(Options::default()).unwrap().with_device(Arc::new(Card { is_software }));
+            let recipe = presets::find(preset).unwrap().recipe().unwrap();
+            let request = Request::new(recipe.clone());
+            of(&session.open(recipe).unwrap(), &request).unwrap()[0]
+        };
+        let alpine = draft("alpine", false);
+        assert!(alpine.on_card && alpine.quality == Quality::Draft && alpine.samples == 1024 && alpine.coarser == 1);
+        let software = draft("alpine", true);
+        assert!(!software.on_card && software.coarser > 1, "{software:?}");
+        assert!(!draft("classic", false).on_card);
     }
 }

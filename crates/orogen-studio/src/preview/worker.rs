@@ -162,7 +162,12 @@ fn make(
     let stages = stages::of(&world, request)?;
     let mut works = Vec::new();
     for stage in stages {
-        let draft = if stage.coarser > 1 { Some(open(session, request, stage.coarser)?) } else { None };
+        let is_draft = stage.quality == Quality::Draft;
+        let of_stage = || match stage.on_card {
+            true => open(&session.drafting(), request, 1),
+            false => open(session, request, stage.coarser),
+        };
+        let draft = is_draft.then(of_stage).transpose()?;
         let work = work(draft.as_ref().unwrap_or(&world), request, stage)?;
         // The recipe's solvers run before its first picture only.
         let is_later = works.iter().any(|(draft, ..): &(Option<World>, Stage, [f64; 2])| draft.is_none());
