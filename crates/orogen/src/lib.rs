@@ -43,13 +43,13 @@
 //! write `..Default::default()` after the parameters that you set. Noises without recipes are in the crate `orogen-noise`.
 #![forbid(unsafe_code)]
 
-#[doc(hidden)]
-pub use orogen_engine::{device, device_choice, lower};
 #[doc(inline)]
 pub use orogen_engine::{
     bands, budget, choice, chunks, declare, expression, field, filter, growth, ids, laws, layer, node, objects, op,
     plan, recipe, registered, registry, sampler, session, solver, store, tiles, value, volume, world,
 };
+#[doc(hidden)]
+pub use orogen_engine::{device, device_choice, lower};
 /// Windows on a graphics card, for previews (feature `gpu`).
 #[cfg(feature = "gpu")]
 #[doc(inline)]
