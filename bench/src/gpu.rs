@@ -7,6 +7,7 @@ use std::time::Instant;
 use orogen::gpu::gpu::Options as GpuOptions;
 use orogen::gpu::{Choice, Gpu, adapters::Kind};
 use orogen::jobs::render::RenderJob;
+use orogen::node::Node;
 use orogen::{Options as SessionOptions, Progress, Recipe, Session, Window, presets};
 use serde_json::{Value, json};
 
@@ -70,6 +71,20 @@ pub fn run(options: &Options) -> Result<Value, String> {
         let case = "mesa, 1024 x 1024 after a slider's move: heights in memory".to_string();
         row(Figure { case, ours: median(&mut times), unit: "s", other: None, target: Target::AtMost(PREVIEW) });
     }
+    for (part, about) in [
+        (Part::Rivers, "rivers of alpine, 339 x 339, 130 steps: a draft"),
+        (Part::Levels, "levels of alpine, 1024 x 1024, after a slider's move: heights in memory"),
+    ] {
+        if is_wanted(about) {
+            let card = match part {
+                Part::Rivers => bench.card.drafting(),
+                Part::Levels => bench.card.clone(),
+            };
+            let [ours, other] = [bench.alpine(part, &card)?, bench.alpine(part, &bench.processor)?];
+            let other = Some(("the processor, all cores", other));
+            row(Figure { case: about.to_string(), ours, unit: "s", other, target: Target::None });
+        }
+    }
     if is_wanted("render") {
         let [ours, other] = bench.pictures()?;
         let case = "render of mesa, 1920 x 1080, 5 samples a pixel".to_string();
@@ -87,6 +102,15 @@ const FBM: &str = "orogen = 1\n[nodes.land]\nop = \"fbm\"\nwavelength = 1000\n[o
 
 const PIPES: &str = "orogen = 1\n[nodes.hills]\nop = \"fbm\"\nwavelength = 5000\n[nodes.heights]\nop = \"multiply\"\na = \"hills\"\nb = 800\n\
     [nodes.land]\nop = \"pipes\"\nsource = \"heights\"\niterations = 100\n[outputs]\nheight = \"land\"\n";
+
+/// What is measured of the preset `alpine`.
+#[derive(Clone, Copy)]
+enum Part {
+    /// Its two solves of `stream-power`.
+    Rivers,
+    /// The levels of `amplify` below them.
+    Levels,
+}
 
 /// Makes the heights of a recipe.
 fn window(session: &Session, recipe: &str, side: usize) -> Result<(), String> {
@@ -125,6 +149,38 @@ impl Bench {
             }
         }
         Ok(times)
+    }
+
+    /// The seconds of a part of the preset `alpine` in a session, with another parameter each time.
+    fn alpine(&self, part: Part, session: &Session) -> Result<f64, String> {
+        let preset = presets::find("alpine").ok_or("no such preset")?;
+        let mut times = Vec::new();
+        for k in 0..=self.repetitions {
+            let mut recipe = preset.recipe().map_err(|e| e.to_string())?;
+            let (layer, window) = match part {
+                Part::Rivers => ("valleys", Window::new(128, 128, 480.0)),
+                Part::Levels => ("amplified", Window::new(1024, 1024, 60.0)),
+            };
+            match part {
+                Part::Rivers => recipe.world.seed = 100 + k as u64,
+                Part::Levels => recipe.change(|node| {
+                    if let Node::Amplify(levels) = node {
+                        levels.creep += 0.01 * k as f64;
+                    }
+                }),
+            }
+            let world = session.open(recipe).map_err(|e| e.to_string())?;
+            // The rivers that levels begin with are not measured.
+            if let Part::Levels = part {
+                world.window("valleys", &Window::new(1, 1, 480.0)).map_err(|e| e.to_string())?;
+            }
+            let begun = Instant::now();
+            world.window(layer, &window).map_err(|e| e.to_string())?;
+            if k > 0 {
+                times.push(begun.elapsed().as_secs_f64());
+            }
+        }
+        Ok(median(&mut times))
     }
 
     /// The seconds of painting a picture on the card and on the processor.
