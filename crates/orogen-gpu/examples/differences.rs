@@ -11,7 +11,8 @@ use common::{compare, gpu, session};
 use orogen_engine::lower::Lowering;
 use orogen_engine::node::Node;
 use orogen_engine::op::{Op, WorldParams};
-use orogen_engine::{Recipe, Window, presets};
+use orogen_engine::{Options, Recipe, Session, Window, presets};
+use std::sync::Arc;
 
 /// What the ops read: noise, heights in metres, and areas.
 const SOURCES: &str = "orogen = 1\n[world]\ncell = 10\nsize = [4e6, 4e6]\n[nodes.hills]\nop = \"fbm\"\nseed = 3\nwavelength = 700\n\
@@ -37,7 +38,30 @@ fn recipe(node: &Node) -> Option<Recipe> {
     Recipe::parse(&text, spec.op).ok()
 }
 
-/// Why the processor computes an op, if it does; `Err` for ops of which there is nothing to compute, or that are no fields and filters.
+/// A recipe of a solver of water, of the same heights as the processor's, or of a levelled op with its rivers.
+fn water_recipe(op: &str) -> Option<Recipe> {
+    let more = match op {
+        "fill" | "lakes" | "drainage" => "",
+        "height-above-drainage" => "stream = 1e5\n",
+        "stream-power" => "steps = 1\nyears = 30000\n",
+        "amplify" => "flow = \"rivers.flow\"\ncell = 60\nhalvings = 3\n",
+        "continents" => "",
+        _ => return None,
+    };
+    let source = match op {
+        "amplify" => "source = \"rivers\"\n",
+        "continents" => "",
+        _ => "source = \"baked\"\n",
+    };
+    let text = format!(
+        "orogen = 1\n[world]\nseed = 2\ncell = 30\nsize = [12000, 9000]\n[nodes.hills]\nop = \"fbm\"\nwavelength = 3000\n\
+         [nodes.heights]\nop = \"expr\"\nexpr = \"400 + 300 * hills\"\n[nodes.baked]\nop = \"bake\"\nsource = \"heights\"\n[nodes.rivers]\nop = \"stream-power\"\nsource = \"heights\"\n\
+         cell = 480\nmargin = 20000\nsteps = 1\n[nodes.made]\nop = \"{op}\"\n{source}{more}[outputs]\nheight = \"made\"\n"
+    );
+    Recipe::parse(&text, op).ok()
+}
+
+/// Why the processor computes an op, if it does; `Err` for ops of which there is nothing to compute, or that are computed level by level.
 fn reason(node: &Node) -> Result<Option<&'static str>, ()> {
     let world_params = WorldParams { seed: 0, size: Some([4e6, 4e6]), cell: 10.0, sea_level: 0.0 };
     match node.op() {
@@ -45,7 +69,11 @@ fn reason(node: &Node) -> Result<Option<&'static str>, ()> {
         Op::Field(field) if field.coord_map().is_some() => Ok(None),
         Op::Field(field) => Ok(reason_of(&field.lower(0, &world_params))),
         Op::Filter(filter) => Ok(reason_of(&filter.lower(10.0, &world_params))),
-        Op::Levelled(_) | Op::Solver(_) => Err(()),
+        Op::Solver(solver) => {
+            let padded = Window::new(400, 300, 10.0);
+            Ok(reason_of(&solver.lower(&padded, &vec![false; node.inputs().len()], &world_params)))
+        }
+        Op::Levelled(_) => Err(()),
     }
 }
 
@@ -78,7 +106,7 @@ fn main() {
             }
             Ok(None) => {}
         }
-        let Some(recipe) = recipe(&node) else { continue };
+        let Some(recipe) = recipe(&node).filter(|_| !matches!(node.op(), Op::Solver(_))) else { continue };
         for layer in node.layers() {
             let path = format!("made.{}", layer.name);
             let path = if node.layers().len() == 1 { "height".to_string() } else { path };
@@ -86,6 +114,23 @@ fn main() {
             let [rms, worst, share, far] =
                 [near.rms, f64::from(near.worst), f64::from(near.share), f64::from(far.share)].map(shown);
             println!("| `{name}` | {} | {rms} | {worst} | {share} | {far} |", layer.name);
+        }
+    }
+    println!(
+        "\n| op | layer | RMS | worst, of the range | share of the samples beyond 1e-4 of it |\n|---|---|---|---|---|"
+    );
+    for node in Node::all().iter().filter(|node| matches!(node.op(), Op::Solver(_) | Op::Levelled(_))) {
+        let name = node.spec().op;
+        let Some(recipe) = water_recipe(name) else { continue };
+        let cell = if matches!(node.op(), Op::Levelled(_)) { 60.0 } else { 30.0 };
+        for layer in node.layers() {
+            // A session of its own has no exact solution that it would take. A draft, so that the card solves one step of `stream-power`.
+            let Ok(card) = Session::new(Options::default()) else { continue };
+            let card = card.with_device(Arc::new(gpu().clone()));
+            let card = if name == "stream-power" { card.drafting() } else { card };
+            let found = compare(&card, &recipe, &format!("made.{}", layer.name), &Window::new(200, 150, cell));
+            let [rms, share, beyond] = [found.rms, f64::from(found.share), found.beyond].map(shown);
+            println!("| `{name}` | {} | {rms} | {share} | {beyond} |", layer.name);
         }
     }
     let mut alone: Vec<String> = Vec::new();

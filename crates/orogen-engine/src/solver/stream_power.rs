@@ -279,6 +279,13 @@ fn solved(mut passes: Passes, padded: &Window, [from, to]: [u32; 2], kind: u32, 
     let (last, known) = (kind & LAST, kind & 1);
     // An odd number of passes leaves the result in the second of two planes.
     let compositions = routing::following(padded) as u32 | 1;
+    if known == 0 {
+        passes = then(passes, "begin_raise", routing::step(from, 0, 0) | last);
+        for k in 0..compositions {
+            passes = then(passes, "compose_raise", routing::step(from, k % 2, 0) | last);
+        }
+        passes = then(passes, "end_raise", routing::step(from, 0, 0) | last);
+    }
     for iteration in 0..ITERATIONS[known as usize] + more {
         passes = then(passes, "choose_piece", routing::step(from, known, iteration) | last);
         for k in 0..compositions {

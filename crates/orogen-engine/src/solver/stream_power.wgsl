@@ -97,9 +97,51 @@ fn left_of(base: u32, law: Law, drop: f32) -> vec2<f32> {
     return vec2<f32>(drop * s, 1.0 / (1.0 + n * c * power(max(s, 1e-30), n - 1.0)));
 }
 
+// How much cells are raised at least, before anything is known of the pieces. A cell's change is at least that of a receiver that does not change, and at least
+// what keeps it above its raised receiver: max(a, b + x) of the receiver's change x, and so are compositions of such functions. Where a valley is filled,
+// each choice of pieces alone would reach one cell more of it.
+fn begin_raise(base: u32, at: vec2<i32>) {
+    let cell = cell_at(at);
+    let receiver = word(RECEIVER, cell);
+    set_word(ANCESTOR, cell, receiver);
+    if (receiver == NONE) {
+        set_sample(AFFINE, cell, 0.0);
+        set_sample(AFFINE + 1u, cell, -1e30);
+        return;
+    }
+    let law = law_of(base, cell, receiver);
+    let drop = sample(heights_plane(), cell) - sample(heights_plane(), receiver);
+    let left = left_of(base, law, drop + law.risen).x;
+    set_sample(AFFINE, cell, max(min(left, law.most), law.least) - drop);
+    set_sample(AFFINE + 1u, cell, law.least - drop);
+}
+
+// Composes them from each cell downstream. The other plane is 0 or 1, in turn.
+fn compose_raise(base: u32, at: vec2<i32>) {
+    let cell = cell_at(at);
+    let turn = other_plane();
+    var ancestor = word(ANCESTOR + turn, cell);
+    var least = sample(AFFINE + 2u * turn, cell);
+    var above = sample(AFFINE + 2u * turn + 1u, cell);
+    for (var k = 0; k < HOPS && ancestor != NONE; k += 1) {
+        least = max(least, above + sample(AFFINE + 2u * turn, ancestor));
+        above += sample(AFFINE + 2u * turn + 1u, ancestor);
+        ancestor = word(ANCESTOR + turn, ancestor);
+    }
+    set_word(ANCESTOR + 1u - turn, cell, ancestor);
+    set_sample(AFFINE + 2u - 2u * turn, cell, least);
+    set_sample(AFFINE + 3u - 2u * turn, cell, max(above, -1e30));
+}
+
+// The changes so far are those.
+fn end_raise(base: u32, at: vec2<i32>) {
+    let cell = cell_at(at);
+    set_sample(AFFINE + 3u, cell, sample(AFFINE + 2u, cell));
+}
+
 // The change of a cell's height is a function of its receiver's in three pieces. Two are affine, and so is the third one if the slope exponent is 1; otherwise
 // its tangent is. Chooses the piece by the changes that were computed with the pieces chosen before. The first choice is that of the time step before, if the
-// other plane is 1.
+// other plane is 1, otherwise by how much cells are raised.
 fn choose_piece(base: u32, at: vec2<i32>) {
     let iteration = step_number();
     if (counter(CHANGED) < iteration) {
@@ -116,7 +158,7 @@ fn choose_piece(base: u32, at: vec2<i32>) {
     let law = law_of(base, cell, receiver);
     let drop = sample(heights_plane(), cell) - sample(heights_plane(), receiver);
     var below = 0.0;
-    if (iteration > 0u) {
+    if (iteration > 0u || other_plane() == 0u) {
         below = sample(AFFINE + 3u, receiver);
     }
     let left = left_of(base, law, drop + law.risen - below);
