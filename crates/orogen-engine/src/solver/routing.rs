@@ -11,7 +11,7 @@ use orogen_grid::grid::Window;
 const RAIN_PLANES: usize = 6;
 
 /// The most cells over which the rain can be summed up: the sum of a part of it fits into 32 bits.
-const MOST_RAINY: usize = 1 << 22;
+const MAX_RAINY: usize = 1 << 22;
 
 /// Number of planes of the routing.
 const PLANES: usize = 8;
@@ -53,7 +53,7 @@ pub(crate) struct Planes {
 impl Planes {
     /// Whether the rain can be summed up over a window.
     pub(crate) fn can_rain(self, padded: &Window) -> bool {
-        self.rain.is_none() || padded.len() <= MOST_RAINY
+        self.rain.is_none() || padded.len() <= MAX_RAINY
     }
 
     /// `passes` with these planes.

@@ -144,7 +144,7 @@ impl Solver for StreamPower {
         if !planes.can_rain(padded) {
             return Lowering::Processor(routing::RAIN);
         }
-        if self.passes_of_steps(padded) > MOST_PASSES {
+        if self.passes_of_steps(padded) > MAX_PASSES {
             return Lowering::Processor("so many passes are submitted no faster than the processor computes");
         }
         // Where rivers go in the first steps depends on the last digits of nearly level ground.
@@ -174,7 +174,7 @@ const ITERATIONS: [u32; 2] = [12, 8];
 const MORE_ITERATIONS: u32 = 4;
 
 /// Maximum number of passes of all steps: a second of submissions.
-const MOST_PASSES: f64 = 5e5;
+const MAX_PASSES: f64 = 5e5;
 
 /// Number of passes of a step without creep, about.
 const PASSES_OF_STEP: f64 = 100.0;
