@@ -337,7 +337,8 @@ impl World {
     #[doc(hidden)]
     pub fn may_draft(&self, plan: &Plan) -> Result<bool> {
         self.check_plan(plan)?;
-        Ok(self.session.device.is_some() && may_draft(&self.engine(&Progress::none()), plan))
+        Ok(self.session.device.is_some()
+            && may_draft(&self.engine(&Progress::none()).nodes(), &self.session.store, plan))
     }
 
     /// Number of threads.
@@ -392,7 +393,8 @@ impl World {
         let engine = self.engine(progress);
         let session = &self.session;
         let kept = if session.is_draft { &session.drafts } else { &session.previews };
-        let preview = session.device.as_deref().map(|device| Preview::new(device, kept, &engine, session.is_draft));
+        let preview =
+            session.device.as_deref().map(|device| Preview::new(device, kept, &engine.nodes(), session.is_draft));
         Engine { preview: preview.as_ref(), ..engine }.run(plan)
     }
 

@@ -1,6 +1,7 @@
 //! Which grids of a plan have the bits of the processor, and which must have them.
 
-use super::run::Engine;
+use super::nodes::Nodes;
+use super::preview::Preview;
 use crate::ids::{GridId, IndexVec};
 use crate::op::Op;
 use crate::plan::levels::{self, Serving};
@@ -8,7 +9,7 @@ use crate::plan::steps::{Plan, Step, wanted};
 
 /// Which grids have the bits of the processor, and which must have them.
 pub struct Exactness<'a> {
-    engine: &'a Engine<'a>,
+    preview: Option<&'a Preview<'a>>,
     /// What tiles of levels are made from, because they are kept, and what is made on the processor alone.
     required: IndexVec<GridId, bool>,
     /// What a device made, and what was made from that.
@@ -17,16 +18,16 @@ pub struct Exactness<'a> {
 
 impl<'a> Exactness<'a> {
     /// That of a plan before its first step.
-    pub fn of(engine: &'a Engine<'a>, plan: &Plan) -> Exactness<'a> {
+    pub fn of(nodes: &Nodes, preview: Option<&'a Preview<'a>>, plan: &Plan) -> Exactness<'a> {
         let none = || -> IndexVec<GridId, bool> { vec![false; plan.grids.len()].into() };
         let mut required = none();
         for (_, step) in plan.steps.entries().rev() {
             if step.writes().iter().any(|grid| required[*grid]) {
                 step.reads().into_iter().for_each(|grid| required[grid] = true);
             }
-            exact_inputs(engine, step).into_iter().for_each(|grid| required[grid] = true);
+            exact_inputs(nodes, preview, step).into_iter().for_each(|grid| required[grid] = true);
         }
-        Exactness { engine, required, approximate: none() }
+        Exactness { preview, required, approximate: none() }
     }
 
     /// Whether a step's grids must have the bits of the processor.
@@ -36,14 +37,14 @@ impl<'a> Exactness<'a> {
 
     /// Whether all that a step reads has them.
     pub fn is_read_by(&self, step: &Step) -> bool {
-        let Some(preview) = self.engine.preview else { return true };
+        let Some(preview) = self.preview else { return true };
         let reads_solution = step.solvers_read().any(|node| preview.is_approximate(node));
         !reads_solution && !step.reads().iter().any(|grid| self.approximate[*grid])
     }
 
     /// Marks the grids of a step that was run, on a device or not. Returns whether they have the bits of the processor.
     pub fn ran(&mut self, step: &Step, on_device: bool) -> bool {
-        let levels = match (step, self.engine.preview) {
+        let levels = match (step, self.preview) {
             (Step::Refine { node, .. }, Some(preview)) => preview.is_approximate(*node),
             _ => false,
         };
@@ -60,9 +61,9 @@ impl<'a> Exactness<'a> {
 
 /// The grids that must be exact for a levelled op: none if it reads what the device makes anyway. Otherwise its tiles are exact; if it is made on the device, that
 /// begins below the tiled levels.
-fn exact_inputs(engine: &Engine, step: &Step) -> Vec<GridId> {
+fn exact_inputs(nodes: &Nodes, preview: Option<&Preview>, step: &Step) -> Vec<GridId> {
     let Step::Refine { node, inputs, window, out } = step else { return Vec::new() };
-    let exact = match (engine.preview, engine.op(*node)) {
+    let exact = match (preview, nodes.op(*node)) {
         (Some(preview), _) if preview.is_read_by(*node) => 0,
         (Some(preview), Some(Op::Levelled(op))) if preview.is_approximate(*node) => {
             1 + levels::tiled(op, &wanted(out), &Serving::of(&op.levels(), window))

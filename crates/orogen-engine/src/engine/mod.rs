@@ -4,6 +4,7 @@ mod exactness;
 pub(crate) mod inline;
 pub(crate) mod interpreter;
 mod level_tiles;
+pub(crate) mod nodes;
 mod on_device;
 pub(crate) mod preview;
 mod refine;

@@ -1,6 +1,6 @@
 //! Previews: what a device computes, kept apart from what the processor computes.
 
-use super::run::Engine;
+use super::nodes::Nodes;
 use crate::device::Device;
 use crate::ids::{IndexVec, NodeId};
 use crate::lower::{Lowering, Passes};
@@ -63,35 +63,35 @@ pub struct Preview<'a> {
 }
 
 impl<'a> Preview<'a> {
-    /// That of an engine's recipe; a draft if the device may make other land.
-    pub fn new(device: &'a dyn Device, kept: &'a Previews, engine: &Engine, is_draft: bool) -> Preview<'a> {
-        let none = || -> IndexVec<NodeId, bool> { vec![false; engine.recipe.nodes().len()].into() };
+    /// That of these nodes; a draft if the device may make other land.
+    pub fn new(device: &'a dyn Device, kept: &'a Previews, nodes: &Nodes, is_draft: bool) -> Preview<'a> {
+        let none = || -> IndexVec<NodeId, bool> { vec![false; nodes.recipe.nodes().len()].into() };
         let mut preview = Preview { device, kept, is_draft, approximate: none(), reads: none() };
-        for &node in &engine.graph.order {
+        for &node in &nodes.graph.order {
             let is_approximate = |link: &Link| matches!(link, Link::Node(read) if preview.approximate[read.node]);
-            let mut links = engine.graph.links[node].iter().chain([&engine.graph.masks[node]]);
+            let mut links = nodes.graph.links[node].iter().chain([&nodes.graph.masks[node]]);
             preview.reads[node] = links.any(is_approximate);
-            preview.approximate[node] = preview.reads[node] || preview.makes(engine, node);
+            preview.approximate[node] = preview.reads[node] || preview.makes(nodes, node);
         }
         preview
     }
 
     /// Whether the device computes a solver, or a level of a levelled op.
-    fn makes(&self, engine: &Engine, node: NodeId) -> bool {
-        match engine.op(node) {
-            Some(Op::Solver(solver)) => self.passes_of(engine, node, solver).is_some(),
+    fn makes(&self, nodes: &Nodes, node: NodeId) -> bool {
+        match nodes.op(node) {
+            Some(Op::Solver(solver)) => self.passes_of(nodes, node, solver).is_some(),
             Some(Op::Levelled(op)) => {
-                let given = given(engine, node);
+                let given = nodes.given(node);
                 let mut levels = 1..op.levels().count;
-                levels.any(|level| matches!(op.lower(level, &given, engine.world_params), Lowering::Shader(_)))
+                levels.any(|level| matches!(op.lower(level, &given, nodes.world_params), Lowering::Shader(_)))
             }
             _ => false,
         }
     }
 
     /// How the device solves a solver; `None` if the processor does.
-    pub fn passes_of(&self, engine: &Engine, node: NodeId, solver: &dyn Solver) -> Option<Passes> {
-        let passes = lowered(engine, node, solver)?;
+    pub fn passes_of(&self, nodes: &Nodes, node: NodeId, solver: &dyn Solver) -> Option<Passes> {
+        let passes = lowered(nodes, node, solver)?;
         (self.is_draft || !passes.is_chaotic).then_some(passes)
     }
 
@@ -107,24 +107,19 @@ impl<'a> Preview<'a> {
 }
 
 /// How a device solves a solver, also if that is chaotic.
-fn lowered(engine: &Engine, node: NodeId, solver: &dyn Solver) -> Option<Passes> {
-    let padded = Domain::of(solver, engine.world_params).padded;
-    match solver.lower(&padded, &given(engine, node), engine.world_params) {
+fn lowered(nodes: &Nodes, node: NodeId, solver: &dyn Solver) -> Option<Passes> {
+    let padded = Domain::of(solver, nodes.world_params).padded;
+    match solver.lower(&padded, &nodes.given(node), nodes.world_params) {
         Lowering::Shader(passes) => Some(passes),
         Lowering::Processor(_) | Lowering::Missing => None,
     }
 }
 
 /// Whether a device would make other land than the processor of one of the solvers that a plan has to solve.
-pub fn may_draft(engine: &Engine, plan: &Plan) -> bool {
-    let is_missing = |order: &&Solve| !engine.store.has(&order.key);
-    plan.solves.iter().filter(is_missing).any(|order| match engine.op(order.node) {
-        Some(Op::Solver(solver)) => lowered(engine, order.node, solver).is_some_and(|passes| passes.is_chaotic),
+pub fn may_draft(nodes: &Nodes, store: &Store, plan: &Plan) -> bool {
+    let is_missing = |order: &&Solve| !store.has(&order.key);
+    plan.solves.iter().filter(is_missing).any(|order| match nodes.op(order.node) {
+        Some(Op::Solver(solver)) => lowered(nodes, order.node, solver).is_some_and(|passes| passes.is_chaotic),
         _ => false,
     })
-}
-
-/// Whether each input of a node is given.
-pub fn given(engine: &Engine, node: NodeId) -> Vec<bool> {
-    engine.graph.links[node].iter().map(|link| *link != Link::None).collect()
 }

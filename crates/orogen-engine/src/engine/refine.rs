@@ -1,6 +1,6 @@
 //! Making windows of levelled ops: tiles of the coarse levels, coarsest first, then each piece of the window from them.
 
-use super::preview::{Preview, Previews, given};
+use super::preview::{Preview, Previews};
 use super::run::Engine;
 use crate::device::Device;
 use crate::ids::{Id, NodeId};
@@ -51,7 +51,7 @@ impl Engine<'_> {
         let Op::Levelled(op) = self.recipe.nodes()[node.index()].node.op() else {
             return Err(internal("a node that is not levelled was to be refined"));
         };
-        let device = self.preview.map(|preview| (preview.device, given(self, node)));
+        let device = self.preview.map(|preview| (preview.device, self.nodes().given(node)));
         let refining = Refining { op, node, inputs, wanted, world_params: self.world_params, progress, device };
         let serving = Serving::of(&op.levels(), window);
         let made = match self.preview.filter(|preview| preview.is_read_by(node)) {

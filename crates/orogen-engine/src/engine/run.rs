@@ -2,6 +2,7 @@
 
 use super::exactness::Exactness;
 use super::interpreter::{Bindings, Interpreter};
+use super::nodes::Nodes;
 use super::preview::Preview;
 use crate::budget::Budget;
 use crate::ids::{GridId, Id, IndexVec, NodeId, StepId};
@@ -75,7 +76,7 @@ impl<'a> Engine<'a> {
     pub(super) fn steps(&self, plan: &Plan, solutions: &Solutions, progress: &Progress) -> Result<Vec<Grid>> {
         progress.expect(cost::steps(plan, self.recipe));
         let mut grids: IndexVec<GridId, Option<Grid>> = plan.grids.iter().map(|_| None).collect();
-        let mut exactness = Exactness::of(self, plan);
+        let mut exactness = Exactness::of(&self.nodes(), self.preview, plan);
         let needed = self.kept_grids(plan, &mut grids, &mut exactness);
         for (at, step) in plan.steps.entries() {
             progress.check()?;
@@ -167,7 +168,7 @@ impl<'a> Engine<'a> {
     pub fn before_points(&self, plan: &Plan) -> Result<(Solutions, IndexVec<GridId, Option<Grid>>)> {
         let solutions = self.solve(plan)?;
         let mut grids: IndexVec<GridId, Option<Grid>> = plan.grids.iter().map(|_| None).collect();
-        let mut exactness = Exactness::of(self, plan);
+        let mut exactness = Exactness::of(&self.nodes(), self.preview, plan);
         let needed = self.kept_grids(plan, &mut grids, &mut exactness);
         for (at, step) in plan.steps.entries() {
             if matches!(step, Step::Fill { out, .. } if out.is_empty()) || !needed[at] {
@@ -225,20 +226,20 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// A node as what it is.
-    pub(super) fn op(&self, node: NodeId) -> Option<Op<'a>> {
-        Some(self.recipe.nodes().get(node.index())?.node.op())
+    /// The nodes of the recipe.
+    pub fn nodes(&self) -> Nodes<'a> {
+        Nodes { recipe: self.recipe, graph: self.graph, world_params: self.world_params }
     }
 
     pub(super) fn field(&self, node: NodeId) -> Option<&'a dyn Field> {
-        match self.op(node)? {
+        match self.nodes().op(node)? {
             Op::Field(field) => Some(field),
             _ => None,
         }
     }
 
     pub(super) fn solver(&self, node: NodeId, solutions: &Solutions) -> Option<(&'a dyn Solver, Arc<Solution>)> {
-        match self.op(node)? {
+        match self.nodes().op(node)? {
             Op::Solver(solver) => Some((solver, Arc::clone(solutions.get(&node)?))),
             _ => None,
         }

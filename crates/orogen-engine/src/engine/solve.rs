@@ -1,6 +1,5 @@
 //! Solving the solvers of a plan.
 
-use super::preview::given;
 use super::run::{Engine, Solutions};
 use super::tiles::Tiles;
 use crate::ids::{Id, NodeId};
@@ -139,8 +138,8 @@ impl Engine<'_> {
     ) -> Result<Option<Solution>> {
         let is_there = !order.on_disk && !self.is_observed(order.node);
         let Some(preview) = self.preview.filter(|_| is_there) else { return Ok(None) };
-        let Some(passes) = preview.passes_of(self, order.node, solver) else { return Ok(None) };
-        let given = given(self, order.node);
+        let Some(passes) = preview.passes_of(&self.nodes(), order.node, solver) else { return Ok(None) };
+        let given = self.nodes().given(order.node);
         let whole = |(input, given): (usize, &bool)| given.then(|| tiles.whole(input, &order.padded)).transpose();
         let inputs: Vec<Option<Grid>> = given.iter().enumerate().map(whole).collect::<Result<_>>()?;
         let inputs: Vec<Option<&Grid>> = inputs.iter().map(Option::as_ref).collect();

@@ -42,7 +42,11 @@ const FARTHEST: f64 = 1024.0;
 /// Rows whose slopes are computed together.
 const BAND: usize = 64;
 
-const CODE: &str = concat!(include_str!("../lower/horn.wgsl"), include_str!("topographic_position.wgsl"));
+const CODE: &str = concat!(
+    include_str!("../lower/horn.wgsl"),
+    include_str!("../lower/product.wgsl"),
+    include_str!("topographic_position.wgsl")
+);
 
 impl Filter for TopographicPosition {
     fn halo(&self, cell: f64) -> usize {

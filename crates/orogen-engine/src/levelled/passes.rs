@@ -9,7 +9,7 @@ use orogen_grid::multiscale::refinement::Refinement;
 /// What the passes of one file of shaders need before it.
 macro_rules! code {
     ($($file:literal),+) => {
-        concat!(include_str!("passes/common.wgsl"), $(include_str!(concat!("passes/", $file))),+)
+        concat!(include_str!("../lower/power.wgsl"), include_str!("../lower/product.wgsl"), include_str!("passes/common.wgsl"), $(include_str!(concat!("passes/", $file))),+)
     };
 }
 

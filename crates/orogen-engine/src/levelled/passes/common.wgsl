@@ -97,16 +97,6 @@ fn factor(base: u32, word: u32, at: vec2<i32>, low: f32, high: f32) -> f32 {
 }
 
 // Whole numbers of 64 bits are pairs of u32, the lower part first.
-
-fn product(a: u32, b: u32) -> vec2<u32> {
-    let low = (a & 0xffffu) * (b & 0xffffu);
-    let left = (a >> 16u) * (b & 0xffffu);
-    let right = (a & 0xffffu) * (b >> 16u);
-    let middle = (low >> 16u) + (left & 0xffffu) + (right & 0xffffu);
-    let high = (a >> 16u) * (b >> 16u) + (left >> 16u) + (right >> 16u) + (middle >> 16u);
-    return vec2<u32>((low & 0xffffu) | (middle << 16u), high);
-}
-
 fn times(a: vec2<u32>, b: vec2<u32>) -> vec2<u32> {
     let low = product(a.x, b.x);
     return vec2<u32>(low.x, low.y + a.x * b.y + a.y * b.x);
@@ -215,21 +205,6 @@ fn distance_of(start: vec2<i32>, end: vec2<i32>) -> f32 {
 // The share of the way from the first to the second value, 0 before and 1 after.
 fn share_between(value: f32, first: f32, second: f32) -> f32 {
     return clamp((value - first) / (second - first), 0.0, 1.0);
-}
-
-// x to the power y, for positive x, as in orogen-grid's `erosion/power.rs`.
-fn power(x: f32, y: f32) -> f32 {
-    let bits = bitcast<u32>(x) - 0x3f3504f3u;
-    let exponent = bitcast<i32>(bits) >> 23u;
-    let m = bitcast<f32>((bits & 0x007fffffu) + 0x3f3504f3u);
-    let t = (m - 1.0) / (m + 1.0);
-    let s = t * t;
-    let series = ((((0.2222222 * s + 0.2857143) * s + 0.4) * s + 0.6666667) * s + 2.0) * t;
-    let z = clamp(y * (f32(exponent) + series * 1.442695), -126.0, 127.0);
-    let whole = round(z);
-    let f = (z - whole) * 0.6931472;
-    let root = (((((f / 720.0 + 0.008333334) * f + 0.041666668) * f + 0.16666667) * f + 0.5) * f + 1.0) * f + 1.0;
-    return root * bitcast<f32>(u32(i32(whole) + 127) << 23u);
 }
 
 fn exponential(y: f32) -> f32 {
