@@ -43,20 +43,13 @@ pub trait Device: Send + Sync {
         progress: &Progress,
     ) -> Result<Option<Vec<Option<Grid>>>>;
 
-    /// Computes the planes of a level over a window from those of the level above, over exactly the samples that `Levelled::refine` gets, and from the op's
-    /// inputs, which cover at least what it reads of them.
+    /// Computes the planes of the last of some levels, each from those of the level above it. Those above the first are given over exactly the samples that
+    /// `Levelled::refine` gets, and each level covers those that the next one reads.
     ///
     /// # Errors
     /// If the work was cancelled.
-    fn refine(
-        &self,
-        passes: &LevelPasses,
-        above: &[Grid],
-        inputs: &[Option<&Grid>],
-        window: &Window,
-        progress: &Progress,
-    ) -> Result<Option<Vec<Grid>>> {
-        let _ = (passes, above, inputs, window, progress);
+    fn refine(&self, levels: &[LevelStep], above: &[Grid], progress: &Progress) -> Result<Option<Vec<Grid>>> {
+        let _ = (levels, above, progress);
         Ok(None)
     }
 
@@ -74,6 +67,17 @@ pub trait Device: Send + Sync {
         let _ = (passes, inputs, window, progress);
         Ok(None)
     }
+}
+
+/// A level that is made from the one above it.
+#[derive(Debug, Clone)]
+pub struct LevelStep {
+    /// How.
+    pub passes: LevelPasses,
+    /// The op's inputs, which cover at least what it reads of them.
+    pub inputs: Vec<Option<Grid>>,
+    /// The window of the level.
+    pub window: Window,
 }
 
 /// What of a filter is computed.

@@ -6,8 +6,8 @@ use crate::gpu::Gpu;
 use crate::levels;
 use crate::program::run;
 use crate::solvers;
-use orogen_engine::device::{Device, FilterExtent, LoweredProgram};
-use orogen_engine::lower::{LevelPasses, Passes};
+use orogen_engine::device::{Device, FilterExtent, LevelStep, LoweredProgram};
+use orogen_engine::lower::Passes;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
@@ -41,16 +41,9 @@ impl Device for Gpu {
         self.outcome(filters::apply(self, passes, inputs, window, *halo, wanted, is_cancelled), progress)
     }
 
-    fn refine(
-        &self,
-        passes: &LevelPasses,
-        above: &[Grid],
-        inputs: &[Option<&Grid>],
-        window: &Window,
-        progress: &Progress,
-    ) -> Result<Option<Vec<Grid>>> {
+    fn refine(&self, levels: &[LevelStep], above: &[Grid], progress: &Progress) -> Result<Option<Vec<Grid>>> {
         let is_cancelled = || progress.check().is_err();
-        self.outcome(levels::refine(self, passes, above, inputs, window, is_cancelled), progress)
+        self.outcome(levels::refine(self, levels, above, is_cancelled), progress)
     }
 
     fn solve(

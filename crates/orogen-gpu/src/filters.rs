@@ -22,7 +22,7 @@ pub(crate) struct Preludes {
 }
 
 /// Words before those of the filter, for each pass: see the prelude.
-const WORDS: usize = 5;
+const WORDS: usize = 6;
 
 /// Computes layers of a filter over `window`, as `Filter::apply` does: each given input covers the window grown by `halo`. The result has an element for each
 /// of `wanted`, one per declared layer: a grid if it is true. `Ok(None)` if the work was cancelled; `is_cancelled` is asked between parts of it.
@@ -131,7 +131,7 @@ impl<'a> Planes<'a> {
                 let start = [left, top + first];
                 let base = *bases.entry(start).or_insert(job.data.len());
                 if base == job.data.len() {
-                    let words: [usize; WORDS] = [grown.width, grown.height, start[0], start[1], 0];
+                    let words: [usize; WORDS] = [grown.width, grown.height, start[0], start[1], 0, 0];
                     job.data.extend(words.map(|word| word as u32));
                 }
                 let size = [width, rows].map(|side| side as u32);

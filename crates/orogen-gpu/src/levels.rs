@@ -5,55 +5,97 @@ use crate::filters::{bands, cropped, inner, text};
 use crate::gpu::Gpu;
 use crate::job::{Dispatch, Job};
 use crate::tiles::fitting;
+use orogen_engine::device::LevelStep;
 use orogen_engine::lower::LevelPasses;
 use orogen_grid::grid::{Grid, Window};
+use std::borrow::Cow;
 use std::collections::HashMap;
 
 /// What the passes of all levels have in common.
 const PRELUDE: &str = concat!(include_str!("filters.wgsl"), "\n", include_str!("levels.wgsl"));
 
-/// Words of a level before its own numbers: see the prelude.
-const LEVEL_WORDS: usize = 5;
-
-/// Computes the planes of a level over `window`, as `Levelled::refine` does: from those of the level above, and from the op's inputs at the cell of the level.
-/// `Ok(None)` if the work was cancelled; `is_cancelled` is asked between parts of it.
+/// Computes the planes of the last of some levels, each as `Levelled::refine` does: from those of the level above, and from the op's inputs at the cell of the
+/// level. `above` are those above the first. `Ok(None)` if the work was cancelled; `is_cancelled` is asked between parts of it.
 ///
-/// If the planes exceed the [largest buffer](Gpu::buffer_limit), the window is computed in tiles, each from its own part of the level above.
+/// Levels that fit into the [largest buffer](Gpu::buffer_limit) together stay on the card. One that does not fit is computed in tiles, each from its own part of the
+/// level above.
 ///
 /// # Errors
-/// If the device was lost, has too little memory for a single sample and what it is made from, or refuses a shader; if the level above covers too little.
+/// If the device was lost, has too little memory for a single sample and what it is made from, or refuses a shader; if a level above covers too little.
 pub fn refine(
     gpu: &Gpu,
-    passes: &LevelPasses,
+    levels: &[LevelStep],
     above: &[Grid],
-    inputs: &[Option<&Grid>],
-    window: &Window,
     is_cancelled: impl Fn() -> bool,
 ) -> Result<Option<Vec<Grid>>, Failure> {
-    let mut out: Vec<Grid> = (0..passes.planes).map(|_| Grid::filled(*window, 0.0f32)).collect();
-    if window.is_empty() {
-        return Ok(Some(out));
-    }
-    let level = Level::new(passes, above, inputs)?;
     let limit = gpu.buffer_limit();
-    let Some(tiles) = fitting(window, |tile| level.bytes(tile) <= limit) else {
-        let needed = level.bytes(&Window { width: 1, height: 1, ..*window }) >> 20;
-        return Err(Failure::Memory(format!(
-            "a sample of a level takes {needed} MiB in one buffer, and buffers have at most {} MiB",
-            limit >> 20
-        )));
-    };
-    for tile in tiles {
-        let Some(made) = level.tile_of(gpu, &tile, &is_cancelled)? else { return Ok(None) };
-        for (plane, made) in out.iter_mut().zip(made) {
-            if tile == *window {
-                *plane = made;
-            } else {
-                plane.paste(&made);
+    let (mut left, mut made) = (levels, None::<Vec<Grid>>);
+    while !left.is_empty() {
+        let above = made.as_deref().unwrap_or(above);
+        let mut planes_above = above.len();
+        let mut chain = Vec::new();
+        let mut bytes = 0u64;
+        for step in left {
+            let level = Level::new(step, planes_above)?;
+            bytes = bytes.saturating_add(level.bytes(&step.window));
+            if !chain.is_empty() && bytes > limit {
+                break;
+            }
+            planes_above = step.passes.planes;
+            chain.push(level);
+        }
+        let done = match chain.as_slice() {
+            [level] if level.bytes(&level.window) > limit => level.in_tiles(gpu, above, &is_cancelled)?,
+            levels => together(gpu, levels, above, &is_cancelled)?,
+        };
+        let Some(planes) = done else { return Ok(None) };
+        made = Some(planes);
+        left = left.get(chain.len()..).unwrap_or_default();
+    }
+    Ok(made)
+}
+
+/// Levels one from the other, whose planes are all on the card at once. The first one may be a part of its window.
+fn together(
+    gpu: &Gpu,
+    levels: &[Level],
+    above: &[Grid],
+    is_cancelled: &impl Fn() -> bool,
+) -> Result<Option<Vec<Grid>>, Failure> {
+    let mut job = Job::default();
+    let mut grids: Vec<(usize, Cow<'_, Grid>)> = Vec::new();
+    let mut before: Option<Made> = None;
+    for level in levels {
+        if level.window.is_empty() {
+            return Ok(Some((0..level.passes.planes).map(|_| Grid::filled(level.window, 0.0f32)).collect()));
+        }
+        let extents = level.extents(&level.window);
+        let [planes, planes_above] = level.planes();
+        let first = job.samples;
+        let first_above = first + planes * extents.grown.len();
+        job.samples = first_above + planes_above * extents.above.len();
+        if before.is_none() {
+            for (k, grid) in above.iter().enumerate() {
+                let part = cropped(Some(grid), &extents.above)?.map_or(Cow::Borrowed(grid), Cow::Owned);
+                grids.push((first_above + k * extents.above.len(), part));
             }
         }
+        let first_input = first + (level.passes.planes + level.passes.scratch) * extents.grown.len();
+        for (k, grid) in level.inputs.iter().enumerate() {
+            let part = padded(grid, &extents.grown).map_or(Cow::Borrowed(*grid), Cow::Owned);
+            grids.push((first_input + k * extents.grown.len(), part));
+        }
+        level.dispatch(&mut job, first, &extents, before.as_ref())?;
+        before = Some(Made { first, grown: extents.grown, window: level.window });
     }
-    Ok(Some(out))
+    let (Some(last), Some(Made { first, grown, window })) = (levels.last(), before) else { return Ok(None) };
+    // Whole rows are copied back: those of the window.
+    let (left, top) = ((window.x - grown.x) as usize, (window.y - grown.y) as usize);
+    let rows = window.height * grown.width;
+    job.downloads = (0..last.passes.planes).map(|k| (first + k * grown.len() + top * grown.width, rows)).collect();
+    job.uploads = grids.iter().map(|(first, grid)| (*first, grid.data())).collect();
+    let Some(back) = job.run(gpu, is_cancelled)? else { return Ok(None) };
+    Ok(Some(back.into_iter().map(|rows| inner(&rows, &window, grown.width, left)).collect()))
 }
 
 /// The part of an input that a tile needs, without values beyond the input's edge; `None` if that is all of it. As `Levelled::refine` does, the last samples at
@@ -66,16 +108,25 @@ fn padded(input: &Grid, grown: &Window) -> Option<Grid> {
     })
 }
 
+/// A level that a job makes.
+struct Made {
+    /// The index of its first sample.
+    first: usize,
+    /// All samples of its planes, and those that are right.
+    grown: Window,
+    window: Window,
+}
+
 /// A level with its texts.
 struct Level<'a> {
     passes: &'a LevelPasses,
     /// The text of each function.
     texts: HashMap<&'static str, String>,
-    above: &'a [Grid],
     /// The inputs that are planes.
     inputs: Vec<&'a Grid>,
-    /// The cell of the level above.
-    cell_above: f64,
+    /// Number of planes of the level above.
+    planes_above: usize,
+    window: Window,
 }
 
 /// The windows of a tile.
@@ -86,24 +137,27 @@ struct Extents {
     grown: Window,
 }
 
+/// The function that takes planes of the level above.
+const TAKE_OVER: &str = "take_over";
+
 impl<'a> Level<'a> {
-    fn new(passes: &'a LevelPasses, above: &'a [Grid], inputs: &[Option<&'a Grid>]) -> Result<Level<'a>, Failure> {
+    fn new(step: &'a LevelStep, planes_above: usize) -> Result<Level<'a>, Failure> {
         let missing = || Failure::Input("an input of a level or the level above is missing".to_string());
-        let inputs = passes.inputs.iter().map(|&input| inputs.get(input).copied().flatten());
-        let inputs = inputs.collect::<Option<Vec<_>>>().ok_or_else(missing)?;
-        let cell_above = above.first().ok_or_else(missing)?.window().cell;
-        let mut texts = HashMap::new();
+        let passes = &step.passes;
+        let inputs = passes.inputs.iter().map(|&input| step.inputs.get(input)?.as_ref());
+        let inputs = inputs.collect::<Option<Vec<_>>>().filter(|_| planes_above > 0).ok_or_else(missing)?;
+        let mut texts = HashMap::from([(TAKE_OVER, text(PRELUDE, "", TAKE_OVER))]);
         for pass in &passes.passes {
             let function = pass.pass.function;
             texts.entry(function).or_insert_with(|| text(PRELUDE, pass.code, function));
         }
-        Ok(Level { passes, texts, above, inputs, cell_above })
+        Ok(Level { passes, texts, inputs, planes_above, window: step.window })
     }
 
     /// Number of planes of the level, and of the level above.
     fn planes(&self) -> [usize; 2] {
         let passes = self.passes;
-        [passes.planes + passes.scratch + self.inputs.len(), self.above.len() + passes.scratch_above]
+        [passes.planes + passes.scratch + self.inputs.len(), self.planes_above + passes.scratch_above]
     }
 
     /// What a tile is made from.
@@ -114,7 +168,7 @@ impl<'a> Level<'a> {
         let ((left, right), (top, bottom)) =
             (halved(tile.x + ahead, tile.right() + ahead), halved(tile.y + ahead, tile.bottom() + ahead));
         let (width, height) = ((right - left) as usize, (bottom - top) as usize);
-        let nodes = Window { x: left, y: top, width, height, cell: self.cell_above }.grown(self.passes.reach);
+        let nodes = Window { x: left, y: top, width, height, cell: 2.0 * tile.cell }.grown(self.passes.reach);
         let grown = Window {
             x: 2 * nodes.x - ahead,
             y: 2 * nodes.y - ahead,
@@ -129,62 +183,81 @@ impl<'a> Level<'a> {
     fn bytes(&self, tile: &Window) -> u64 {
         let Extents { above, grown } = self.extents(tile);
         let [planes, planes_above] = self.planes().map(|planes| planes as u64);
-        4 * (planes.saturating_mul(grown.len() as u64)).saturating_add(planes_above.saturating_mul(above.len() as u64))
+        let words = planes.saturating_mul(grown.len() as u64);
+        words.saturating_add(planes_above.saturating_mul(above.len() as u64)).saturating_mul(4)
     }
 
-    /// The planes over a tile.
-    fn tile_of(
+    /// The planes over the window, tile by tile.
+    fn in_tiles(
         &self,
         gpu: &Gpu,
-        tile: &Window,
+        above: &[Grid],
         is_cancelled: &impl Fn() -> bool,
     ) -> Result<Option<Vec<Grid>>, Failure> {
-        let Extents { above, grown } = self.extents(tile);
-        let [planes, planes_above] = self.planes();
-        let parents = self.above.iter().map(|grid| cropped(Some(grid), &above)).collect::<Result<Vec<_>, _>>()?;
-        let inputs: Vec<Option<Grid>> = self.inputs.iter().map(|grid| padded(grid, &grown)).collect();
-        let first_above = planes * grown.len();
-        let first_input = self.passes.planes + self.passes.scratch;
-        let parents = self.above.iter().zip(&parents).enumerate();
-        let parents = parents.map(|(k, (whole, part))| (first_above + k * above.len(), part.as_ref().unwrap_or(whole)));
-        let inputs = self.inputs.iter().zip(&inputs).enumerate();
-        let inputs = inputs.map(|(k, (whole, part))| ((first_input + k) * grown.len(), part.as_ref().unwrap_or(whole)));
-        let nodes = [grown.x, grown.y].map(|x| x + self.passes.ahead[1]);
-        let position = nodes.into_iter().flat_map(|x| [x as u32, (x >> 32) as u32]);
-        let mut job = Job {
-            data: std::iter::once(planes as u32).chain(position).chain(self.passes.words.iter().copied()).collect(),
-            samples: first_above + planes_above * above.len(),
-            uploads: parents.chain(inputs).map(|(first, grid)| (first, grid.data())).collect(),
-            ..Job::default()
+        let limit = gpu.buffer_limit();
+        let Some(tiles) = fitting(&self.window, |tile| self.bytes(tile) <= limit) else {
+            let needed = self.bytes(&Window { width: 1, height: 1, ..self.window }) >> 20;
+            return Err(Failure::Memory(format!(
+                "a sample of a level takes {needed} MiB in one buffer, and buffers have at most {} MiB",
+                limit >> 20
+            )));
         };
-        self.dispatch(&mut job, &grown, &above);
-        // Whole rows are copied back: those of the tile.
-        let (left, top) = ((tile.x - grown.x) as usize, (tile.y - grown.y) as usize);
-        let rows = tile.height * grown.width;
-        job.downloads = (0..self.passes.planes).map(|k| (k * grown.len() + top * grown.width, rows)).collect();
-        let Some(back) = job.run(gpu, is_cancelled)? else { return Ok(None) };
-        Ok(Some(back.into_iter().map(|rows| inner(&rows, tile, grown.width, left)).collect()))
+        let mut out: Vec<Grid> = (0..self.passes.planes).map(|_| Grid::filled(self.window, 0.0f32)).collect();
+        for window in tiles {
+            let tile = Level { window, texts: self.texts.clone(), inputs: self.inputs.clone(), ..*self };
+            let Some(made) = together(gpu, &[tile], above, is_cancelled)? else { return Ok(None) };
+            out.iter_mut().zip(&made).for_each(|(plane, made)| plane.paste(made));
+        }
+        Ok(Some(out))
     }
 
-    /// Adds the runs of all passes to a job.
-    fn dispatch<'b>(&'b self, job: &mut Job<'b>, grown: &Window, above: &Window) {
+    /// Adds the runs of all passes to a job, with planes from `first` on. The level above is uploaded, or was made `before`.
+    fn dispatch<'b>(
+        &'b self,
+        job: &mut Job<'b>,
+        first: usize,
+        extents: &Extents,
+        before: Option<&Made>,
+    ) -> Result<(), Failure> {
+        let Extents { above, grown } = extents;
+        let source = match before {
+            None => [0; 5],
+            Some(made) if made.window.contains(above) => {
+                let (left, top) = (above.x - made.grown.x, above.y - made.grown.y);
+                [made.first, made.grown.width, made.grown.height, left as usize, top as usize]
+            }
+            Some(_) => return Err(Failure::Input("a level does not cover what the next one reads".to_string())),
+        };
+        let [planes, _] = self.planes();
+        let nodes = [grown.x, grown.y].map(|x| x + self.passes.ahead[1]);
+        job.data.push(planes as u32);
+        job.data.extend(nodes.into_iter().flat_map(|x| [x as u32, (x >> 32) as u32]));
+        job.data.extend(source.map(|word| word as u32));
+        let own = job.data.len();
+        job.data.extend_from_slice(&self.passes.words);
         // Passes of the same part share their words.
         let mut bases = HashMap::new();
-        for pass in &self.passes.passes {
-            let Some(text) = self.texts.get(pass.pass.function) else { continue };
-            let over = if pass.is_above { above } else { grown };
-            let [left, top] = pass.pass.inset;
+        let mut add = |function: &str, step: u32, over: &Window, [left, top]: [usize; 2], reads: usize| {
+            let Some(text) = self.texts.get(function) else { return };
             let (width, height) = (over.width.saturating_sub(2 * left), over.height.saturating_sub(2 * top));
-            for (first, rows) in bands(height, width * pass.pass.reads) {
-                let start = [left, top + first];
+            for (row, rows) in bands(height, width * reads) {
+                let start = [left, top + row];
                 let base = *bases.entry(start).or_insert(job.data.len());
                 if base == job.data.len() {
-                    let words = [grown.width, grown.height, start[0], start[1], LEVEL_WORDS];
+                    let words = [grown.width, grown.height, start[0], start[1], own, first];
                     job.data.extend(words.map(|word| word as u32));
                 }
                 let size = [width, rows].map(|side| side as u32);
-                job.dispatches.push(Dispatch { text, base: base as u32, size, step: pass.pass.step });
+                job.dispatches.push(Dispatch { text, base: base as u32, size, step });
             }
+        };
+        if before.is_some() {
+            (0..self.planes_above).for_each(|plane| add(TAKE_OVER, plane as u32, above, [0; 2], 1));
         }
+        for pass in &self.passes.passes {
+            let over = if pass.is_above { above } else { grown };
+            add(pass.pass.function, pass.pass.step, over, pass.pass.inset, pass.pass.reads);
+        }
+        Ok(())
     }
 }

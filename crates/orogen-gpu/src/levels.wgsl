@@ -1,6 +1,13 @@
 // What the passes of all levels have in common: planes of the level above, with half the columns and rows, after those of the level.
 //
-// The first words of `data` are the number of planes of the level, and the column and the row of their first sample, each as a low and a high word.
+// Before the level's own words are its number of planes; the column and the row of their first sample, each as a low and a high word; and where the planes of
+// the level above are made on the card, too: the index of its first sample, its columns and rows, and the column and row of the first sample that is read.
+const LEVEL_WORDS = 10u;
+
+// A word before the level's own.
+fn header(i: u32) -> u32 {
+    return data[data[frame.base + 4u] - LEVEL_WORDS + i];
+}
 
 // Columns and rows of the planes of the level above.
 fn above_size() -> vec2<i32> {
@@ -9,7 +16,7 @@ fn above_size() -> vec2<i32> {
 
 fn index_above(k: u32, at: vec2<i32>) -> u32 {
     let columns_and_rows = vec2<u32>(above_size());
-    let first = data[0] * data[frame.base] * data[frame.base + 1u];
+    let first = data[frame.base + 5u] + header(0u) * data[frame.base] * data[frame.base + 1u];
     return first + (k * columns_and_rows.y + u32(at.y)) * columns_and_rows.x + u32(at.x);
 }
 
@@ -24,9 +31,16 @@ fn set_above(k: u32, at: vec2<i32>, value: f32) {
 
 // Column and row of the first sample, as whole numbers of 64 bits, the lower part first.
 fn first_column() -> vec2<u32> {
-    return vec2<u32>(data[1], data[2]);
+    return vec2<u32>(header(1u), header(2u));
 }
 
 fn first_row() -> vec2<u32> {
-    return vec2<u32>(data[3], data[4]);
+    return vec2<u32>(header(3u), header(4u));
+}
+
+// Takes a plane of the level above from where that level was made.
+fn take_over(base: u32, at: vec2<i32>) {
+    let size = vec2<u32>(header(6u), header(7u));
+    let place = vec2<u32>(at) + vec2<u32>(header(8u), header(9u));
+    set_above(frame.step, at, samples[header(5u) + (frame.step * size.y + place.y) * size.x + place.x]);
 }

@@ -1,7 +1,7 @@
 // What the passes of all solvers have in common: planes of words of one size, one after the other.
 //
-// The words at `frame.base` are those of filters: the columns and rows of the planes, the first column and row of this pass, and where the solver's own words
-// start.
+// The words at `frame.base` are those of filters: the columns and rows of the planes, the first column and row of this pass, where the solver's own words start,
+// and 0.
 
 // Columns and rows of the planes.
 fn size() -> vec2<i32> {

@@ -5,7 +5,7 @@ mod common;
 
 use common::filters::{gpu, gpu_with_buffers_of, sampled};
 use common::gpu as shared_gpu;
-use orogen_engine::device::Device;
+use orogen_engine::device::{Device, LevelStep};
 use orogen_engine::levelled::amplify::Amplify;
 use orogen_engine::levelled::continents::Continents;
 use orogen_engine::lower::{LevelPasses, Lowering};
@@ -143,10 +143,13 @@ impl Chain<'_> {
     }
 
     fn on_card(&self, gpu: &Gpu, level: usize, above: &[Grid]) -> Vec<Grid> {
+        refine(gpu, &[self.step(level)], above, || false).unwrap().unwrap()
+    }
+
+    fn step(&self, level: usize) -> LevelStep {
         let inputs = self.inputs(level);
-        let inputs: Vec<Option<&Grid>> = inputs.iter().map(Option::as_ref).collect();
         let given: Vec<bool> = inputs.iter().map(Option::is_some).collect();
-        refine(gpu, &passes(self.op, level, &given), above, &inputs, &self.windows[level], || false).unwrap().unwrap()
+        LevelStep { passes: passes(self.op, level, &given), inputs, window: self.windows[level] }
     }
 }
 
@@ -369,11 +372,32 @@ fn tiles_give_the_same() {
     report("tiles", 3, &apart);
     assert!(apart.receivers == 0.0 && apart.worst < 1e-3 && apart.areas == 0.0);
     let tiny = gpu_with_buffers_of(10_000);
-    let inputs = chain.inputs(3);
-    let inputs: Vec<Option<&Grid>> = inputs.iter().map(Option::as_ref).collect();
-    let passes = passes(&op, 3, &ALPINE_INPUTS);
-    let made = refine(&tiny, &passes, &above, &inputs, &window, || false);
+    let made = refine(&tiny, &[chain.step(3)], &above, || false);
     assert!(matches!(made, Err(orogen_gpu::Failure::Memory(_))), "{made:?}");
+}
+
+#[test]
+fn levels_that_stay_on_the_card_are_those_that_are_copied() {
+    let op = alpine();
+    let window = Window::new(70, 50, 60.0).at(-7, 3);
+    let chain = Chain::new(&op, 3, &window, &ALPINE_INPUTS);
+    let first = chain.first();
+    let copied = (1..=3).fold(first.clone(), |above, level| chain.on_card(shared_gpu(), level, &above));
+    let steps: Vec<LevelStep> = (1..=3).map(|level| chain.step(level)).collect();
+    let kept = refine(shared_gpu(), &steps, &first, || false).unwrap().unwrap();
+    // A buffer for two of them, and one for a part of the last.
+    let smaller = gpu_with_buffers_of(24 << 20);
+    let parts = refine(&smaller, &steps, &first, || false).unwrap().unwrap();
+    assert_eq!(smaller.failure(), None);
+    for made in [&kept, &parts] {
+        let apart = difference(&copied, made);
+        report("kept", 3, &apart);
+        assert!(apart.receivers == 0.0 && apart.worst < 1e-3 && apart.areas == 0.0);
+    }
+    // A level that does not cover what the next one reads.
+    let mut steps = steps;
+    steps[1].window = Window { width: 9, ..steps[1].window };
+    assert!(refine(shared_gpu(), &steps, &first, || false).is_err());
 }
 
 #[test]
@@ -382,20 +406,16 @@ fn what_is_missing_is_an_error_and_cancelled_work_ends() {
     let window = Window::new(9, 8, 240.0).at(3, 4);
     let op = alpine();
     let chain = Chain::new(&op, 1, &window, &NO_INPUTS);
-    let (above, passes) = (chain.first(), passes(&op, 1, &NO_INPUTS));
-    let none = [None; 8];
-    assert!(refine(gpu, &passes, &above, &none, &window, || true).unwrap().is_none());
-    assert!(refine(gpu, &passes, &above, &none, &window.grown(3), || false).is_err());
-    assert!(refine(gpu, &passes, &[], &none, &window, || false).is_err());
-    let empty = Window { width: 0, ..window };
-    assert_eq!(refine(gpu, &passes, &above, &none, &empty, || false).unwrap().unwrap().len(), 8);
-    let given = match op.lower(1, &ALPINE_INPUTS, &WORLD) {
-        Lowering::Shader(passes) => passes,
-        other => panic!("{other:?}"),
-    };
-    assert!(refine(gpu, &given, &above, &none, &window, || false).is_err());
+    let (above, step) = (chain.first(), chain.step(1));
+    assert!(refine(gpu, std::slice::from_ref(&step), &above, || true).unwrap().is_none());
+    let over = |window: Window| [LevelStep { window, ..step.clone() }];
+    assert!(refine(gpu, &over(window.grown(3)), &above, || false).is_err());
+    assert!(refine(gpu, std::slice::from_ref(&step), &[], || false).is_err());
+    assert_eq!(refine(gpu, &over(Window { width: 0, ..window }), &above, || false).unwrap().unwrap().len(), 8);
+    let given = LevelStep { passes: passes(&op, 1, &ALPINE_INPUTS), ..step.clone() };
+    assert!(refine(gpu, &[given], &above, || false).is_err());
     // As a device, with the progress of a request.
-    let made = gpu.refine(&passes, &above, &none, &window, &Progress::none()).unwrap().unwrap();
+    let made = gpu.refine(&[step], &above, &Progress::none()).unwrap().unwrap();
     assert!(difference(&chain.on_processor(1, &above), &made).receivers < 1e-2);
 }
 

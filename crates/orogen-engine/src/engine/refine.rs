@@ -2,7 +2,7 @@
 
 use super::preview::{Preview, Previews};
 use super::run::Engine;
-use crate::device::Device;
+use crate::device::{Device, LevelStep};
 use crate::ids::{Id, NodeId};
 use crate::lower::Lowering;
 use crate::op::{Context, Levelled, Op, WorldParams};
@@ -149,17 +149,20 @@ impl Refining<'_> {
         self.checked(planes, window)
     }
 
-    /// The same on the device; `None` if there is none, or the processor is to do it.
-    fn on_device(&self, level: usize, above: &[Grid], window: &Window) -> Result<Option<Vec<Grid>>> {
+    /// As many of these levels as the device makes one from the other, and their number; `None` if there is no device, or the processor is to make the first.
+    fn on_device(&self, levels: &[(usize, &Window)], above: &[Grid]) -> Result<Option<(Vec<Grid>, usize)>> {
         let Some((device, given)) = &self.device else { return Ok(None) };
-        let Lowering::Shader(passes) = self.op.lower(level, given, self.world_params) else { return Ok(None) };
-        let part = self.progress.part(self.work(level, window));
-        let refine = |inputs: &[Option<&Grid>]| device.refine(&passes, above, inputs, window, &part);
-        let made = self.with_inputs(level, window, refine)?;
-        if made.is_some() {
-            part.finish();
+        let mut steps = Vec::new();
+        for &(level, window) in levels {
+            let Lowering::Shader(passes) = self.op.lower(level, given, self.world_params) else { break };
+            steps.push(LevelStep { passes, inputs: self.inputs_over(level, window)?, window: *window });
         }
-        made.map(|planes| self.checked(planes, window)).transpose()
+        let Some((_, last)) = steps.len().checked_sub(1).and_then(|last| levels.get(last)) else { return Ok(None) };
+        let work = levels.iter().take(steps.len()).map(|(level, window)| self.work(*level, window)).sum();
+        let part = self.progress.part(work);
+        let Some(made) = device.refine(&steps, above, &part)? else { return Ok(None) };
+        part.finish();
+        Ok(Some((self.checked(made, last)?, steps.len())))
     }
 
     /// Passes the op's inputs over exactly the samples that it may read.
@@ -169,12 +172,15 @@ impl Refining<'_> {
         window: &Window,
         work: impl FnOnce(&[Option<&Grid>]) -> Result<T>,
     ) -> Result<T> {
-        let Some(inputs) = self.inputs.get(level) else { return work(&vec![None; self.op.spec().inputs.len()]) };
+        work(&self.inputs_over(level, window)?.iter().map(Option::as_ref).collect::<Vec<_>>())
+    }
+
+    /// The op's inputs over exactly the samples that it may read.
+    fn inputs_over(&self, level: usize, window: &Window) -> Result<Vec<Option<Grid>>> {
+        let Some(inputs) = self.inputs.get(level) else { return Ok(vec![None; self.op.spec().inputs.len()]) };
         let read = window.grown(self.op.source_halo(level));
         let crop = |grid: &Grid| grid.crop(&read).ok_or_else(|| internal("an input of a level is too small"));
-        let cropped: Vec<Option<Grid>> =
-            inputs.iter().map(|input| input.map(crop).transpose()).collect::<Result<_>>()?;
-        work(&cropped.iter().map(Option::as_ref).collect::<Vec<_>>())
+        inputs.iter().map(|input| input.map(crop).transpose()).collect()
     }
 
     /// The layers of the last of the `direct` levels over a piece, from tiles of the first.
@@ -185,11 +191,14 @@ impl Refining<'_> {
             Some(first) => self.mosaic(*direct.start(), first, tiles)?,
             None => Vec::new(),
         };
-        for (level, window) in direct.zip(&windows).skip(1) {
-            planes = match self.on_device(level, &planes, window)? {
-                Some(planes) => planes,
-                None => self.refined(level, &planes, window)?,
+        let mut levels: Vec<(usize, &Window)> = direct.zip(&windows).skip(1).collect();
+        while let Some((level, window)) = levels.first().copied() {
+            let (made, count) = match self.on_device(&levels, &planes)? {
+                Some(made) => made,
+                None => (self.refined(level, &planes, window)?, 1),
             };
+            planes = made;
+            levels.drain(..count);
         }
         let mut layers = self.layers(piece);
         let part = self.progress.part(LAYER_COST * piece.len() as f64);
