@@ -97,7 +97,7 @@ impl Refinement {
     }
 
     /// The numbers of level `depth`, at least 1: bits of what it has; the starts of the hashes of streams 0, 7 and 9, and of stream 11 of the level above, each
-    /// as a low and a high word; and then numbers of f32, in the order of the shaders in orogen-engine.
+    /// as a low and a high word; and then numbers of f32, in the order in which shaders read them.
     #[must_use]
     pub fn words(&self, depth: usize) -> [u32; WORDS] {
         let above = depth.saturating_sub(1);
