@@ -8,11 +8,15 @@ use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 use orogen_noise::shader::function::Shader;
+use std::any::Any;
+use std::fmt;
+use std::sync::Arc;
 
 /// Computes steps of plans in place of the processor. Its results are close to those of the processor, and not the same: a [session](crate::Session) keeps
 /// none of them for later requests, and gives nothing of them to solvers and levelled ops.
 ///
-/// A step that returns `None` is computed by the processor: because the device cannot do it, or has failed. An error ends the request.
+/// A step that returns `None` is computed by the processor: because the device cannot do it, or has failed. An error ends the request. What a step makes may
+/// stay on the device until the processor [asks](Device::read) for it.
 pub trait Device: Send + Sync {
     /// Whether it is the processor itself, by a software driver: then it is slower than without it.
     fn is_software(&self) -> bool {
@@ -27,21 +31,42 @@ pub trait Device: Send + Sync {
         &self,
         program: &LoweredProgram,
         window: &Window,
-        grids: &[&Grid],
+        grids: &[&PlanGrid],
         progress: &Progress,
-    ) -> Result<Option<Vec<Grid>>>;
+    ) -> Result<Option<Vec<PlanGrid>>>;
 
-    /// Computes the wanted layers of a filter over a window; the inputs cover the window grown by the halo.
+    /// Computes the wanted layers of a filter over a window; the inputs cover at least the window grown by the halo.
     ///
     /// # Errors
     /// If the work was cancelled.
     fn apply(
         &self,
         passes: &Passes,
-        inputs: &[Option<&Grid>],
+        inputs: &[Option<&PlanGrid>],
         extent: &FilterExtent,
         progress: &Progress,
-    ) -> Result<Option<Vec<Option<Grid>>>>;
+    ) -> Result<Option<Vec<Option<PlanGrid>>>>;
+
+    /// Copies grids that the device made to the processor's memory. `None` if the device has lost one of them: the processor then makes all again.
+    ///
+    /// # Errors
+    /// If the work was cancelled.
+    fn read(&self, grids: &[&DeviceGrid], progress: &Progress) -> Result<Option<Vec<Grid>>> {
+        let _ = (grids, progress);
+        Ok(None)
+    }
+
+    /// Grids that the device made, in the processor's memory; `None` if it has lost one of them.
+    ///
+    /// # Errors
+    /// If the work was cancelled.
+    fn fetch(&self, grids: Vec<PlanGrid>, progress: &Progress) -> Result<Option<Vec<Grid>>> {
+        let away: Vec<&DeviceGrid> =
+            grids.iter().filter(|grid| grid.memory.is_none()).filter_map(PlanGrid::on_device).collect();
+        let read = if away.is_empty() { Some(Vec::new()) } else { self.read(&away, progress)? };
+        let Some(mut read) = read.map(Vec::into_iter) else { return Ok(None) };
+        Ok(grids.into_iter().map(|grid| grid.memory.or_else(|| read.next())).collect())
+    }
 
     /// Computes the planes of the last of some levels, each from those of the level above it. Those above the first are given over exactly the samples that
     /// `Levelled::refine` gets, and each level covers those that the next one reads.
@@ -66,6 +91,91 @@ pub trait Device: Send + Sync {
     ) -> Result<Option<Vec<Grid>>> {
         let _ = (passes, inputs, window, progress);
         Ok(None)
+    }
+}
+
+/// A grid that a step of a plan makes: in the processor's memory, on the device that made it, or both.
+#[derive(Debug, Clone)]
+pub struct PlanGrid {
+    memory: Option<Grid>,
+    on_device: Option<DeviceGrid>,
+    window: Window,
+}
+
+impl PlanGrid {
+    /// The window.
+    #[must_use]
+    pub fn window(&self) -> &Window {
+        &self.window
+    }
+
+    /// The grid, if it is in the processor's memory.
+    #[must_use]
+    pub fn memory(&self) -> Option<&Grid> {
+        self.memory.as_ref()
+    }
+
+    /// The grid in the processor's memory, if it is there.
+    #[must_use]
+    pub fn into_memory(self) -> Option<Grid> {
+        self.memory
+    }
+
+    /// The grid on the device, if it is there.
+    #[must_use]
+    pub fn on_device(&self) -> Option<&DeviceGrid> {
+        self.on_device.as_ref()
+    }
+
+    /// The same grid, also in the processor's memory.
+    #[must_use]
+    pub fn with_memory(self, grid: Grid) -> PlanGrid {
+        PlanGrid { memory: Some(grid), ..self }
+    }
+}
+
+impl From<Grid> for PlanGrid {
+    fn from(grid: Grid) -> PlanGrid {
+        PlanGrid { window: *grid.window(), memory: Some(grid), on_device: None }
+    }
+}
+
+impl From<DeviceGrid> for PlanGrid {
+    fn from(grid: DeviceGrid) -> PlanGrid {
+        PlanGrid { window: grid.window, memory: None, on_device: Some(grid) }
+    }
+}
+
+/// A grid in the memory of a device. Clones share it.
+#[derive(Clone)]
+pub struct DeviceGrid {
+    window: Window,
+    samples: Arc<dyn Any + Send + Sync>,
+}
+
+impl DeviceGrid {
+    /// A grid over a window; `samples` is what the device knows its samples by.
+    #[must_use]
+    pub fn new<T: Any + Send + Sync>(window: Window, samples: T) -> DeviceGrid {
+        DeviceGrid { window, samples: Arc::new(samples) }
+    }
+
+    /// The window.
+    #[must_use]
+    pub fn window(&self) -> &Window {
+        &self.window
+    }
+
+    /// What the device knows its samples by; `None` if that has another type.
+    #[must_use]
+    pub fn samples<T: Any>(&self) -> Option<&T> {
+        self.samples.downcast_ref()
+    }
+}
+
+impl fmt::Debug for DeviceGrid {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("DeviceGrid").field("window", &self.window).finish_non_exhaustive()
     }
 }
 

@@ -1,8 +1,9 @@
 //! Windows that a device computes, and what is kept of them.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
-use orogen_engine::device::{Device, FilterExtent, LoweredProgram};
+use orogen_engine::device::{Device, DeviceGrid, FilterExtent, LoweredProgram, PlanGrid};
 use orogen_engine::field::{fbm::Fbm, multiply::Multiply};
+use orogen_engine::filter::blur::Blur;
 use orogen_engine::filter::pipes::Pipes;
 use orogen_engine::levelled::amplify::Amplify;
 use orogen_engine::lower::{Lowering, Passes};
@@ -11,7 +12,7 @@ use orogen_engine::solver::drainage::Drainage;
 use orogen_engine::solver::normalise::Normalise;
 use orogen_engine::{Grid, Options, Progress, Recipe, Result, Session, Window, WorldSpec};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 orogen_engine::op! {
     /// Land that is solved, also by a device.
@@ -57,19 +58,19 @@ struct Off {
 }
 
 impl Device for Off {
-    fn fill(&self, _: &LoweredProgram, _: &Window, _: &[&Grid], _: &Progress) -> Result<Option<Vec<Grid>>> {
+    fn fill(&self, _: &LoweredProgram, _: &Window, _: &[&PlanGrid], _: &Progress) -> Result<Option<Vec<PlanGrid>>> {
         Ok(None)
     }
 
     fn apply(
         &self,
         _: &Passes,
-        _: &[Option<&Grid>],
+        _: &[Option<&PlanGrid>],
         extent: &FilterExtent,
         _: &Progress,
-    ) -> Result<Option<Vec<Option<Grid>>>> {
+    ) -> Result<Option<Vec<Option<PlanGrid>>>> {
         self.filtered.fetch_add(1, Ordering::Relaxed);
-        let layer = |wanted: &bool| wanted.then(|| Grid::filled(extent.window, OFF));
+        let layer = |wanted: &bool| wanted.then(|| Grid::filled(extent.window, OFF).into());
         Ok((!self.refuses).then(|| extent.wanted.iter().map(layer).collect()))
     }
 
@@ -187,4 +188,89 @@ fn what_a_device_refuses_is_made_by_the_processor() {
         assert_eq!(window(&preview, layer), window(&session(), layer), "{layer}");
     }
     assert!(device.solved.load(Ordering::Relaxed) > 0 && device.filtered.load(Ordering::Relaxed) > 0);
+}
+
+/// A device that filters and keeps what it has made, until it is lost.
+#[derive(Default)]
+struct Keeping {
+    is_lost: AtomicBool,
+    filtered: AtomicUsize,
+    read: AtomicUsize,
+}
+
+impl Keeping {
+    /// A grid, wherever it is.
+    fn grid<'a>(&self, grid: &'a PlanGrid) -> &'a Grid {
+        grid.memory().or_else(|| grid.on_device()?.samples::<Grid>()).unwrap()
+    }
+}
+
+impl Device for Keeping {
+    fn fill(&self, _: &LoweredProgram, _: &Window, _: &[&PlanGrid], _: &Progress) -> Result<Option<Vec<PlanGrid>>> {
+        Ok(None)
+    }
+
+    fn apply(
+        &self,
+        _: &Passes,
+        inputs: &[Option<&PlanGrid>],
+        extent: &FilterExtent,
+        _: &Progress,
+    ) -> Result<Option<Vec<Option<PlanGrid>>>> {
+        if self.is_lost.load(Ordering::Relaxed) {
+            return Ok(None);
+        }
+        self.filtered.fetch_add(1, Ordering::Relaxed);
+        let mut made = self.grid(inputs[0].unwrap()).crop(&extent.window).unwrap();
+        made.data_mut().iter_mut().for_each(|height| *height += OFF);
+        let grid = DeviceGrid::new(extent.window, made);
+        Ok(Some(extent.wanted.iter().map(|wanted| wanted.then(|| grid.clone().into())).collect()))
+    }
+
+    fn read(&self, grids: &[&DeviceGrid], _: &Progress) -> Result<Option<Vec<Grid>>> {
+        if self.is_lost.load(Ordering::Relaxed) {
+            return Ok(None);
+        }
+        self.read.fetch_add(grids.len(), Ordering::Relaxed);
+        Ok(Some(grids.iter().map(|grid| grid.samples::<Grid>().unwrap().clone()).collect()))
+    }
+}
+
+/// Two filters one after the other, and a field that reads both.
+fn filtered() -> Recipe {
+    let mut recipe = Recipe::new(WorldSpec::default().with_seed(2).with_cell(100.0));
+    recipe.add("noise", Fbm { seed: 3, wavelength: 3000.0, octaves: 4, ..Fbm::default() });
+    recipe.add("land", Multiply { a: "noise".into(), b: 200.0.into() });
+    recipe.add("soft", Blur { source: "land".into(), radius: 250.0 });
+    recipe.add("eroded", Pipes { source: "soft".into(), ..Pipes::default() });
+    recipe.add("both", Multiply { a: "soft".into(), b: "eroded".into() });
+    recipe.output("height", "both");
+    recipe
+}
+
+#[test]
+fn grids_stay_on_a_device_until_the_processor_reads_them() {
+    let device = Arc::new(Keeping::default());
+    let session = session();
+    let preview = session.with_device(Arc::clone(&device) as Arc<dyn Device>);
+    let window = |session: &Session, layer: &str| session.open(filtered()).unwrap().window(layer, &WINDOW).unwrap();
+    let count = |count: &AtomicUsize| count.swap(0, Ordering::Relaxed);
+    let land = window(&session, "land");
+    // The one between is not read.
+    let twice = window(&preview, "eroded");
+    assert!(twice.data().iter().zip(land.data()).all(|(made, land)| (made - land - 2.0 * OFF).abs() < 0.01));
+    assert_eq!((count(&device.filtered), count(&device.read)), (2, 1));
+    // It is kept on the device for a later window.
+    assert_eq!(window(&preview, "eroded"), twice);
+    assert_eq!((count(&device.filtered), count(&device.read)), (0, 1));
+    // The processor reads both for a field, and only once.
+    let both = window(&preview, "both");
+    let expect = |(both, land): (&f32, &f32)| (both / ((land + OFF) * (land + 2.0 * OFF)) - 1.0).abs() < 1e-5;
+    assert!(both.data().iter().zip(land.data()).all(expect));
+    assert_eq!(count(&device.read), 2);
+    // A device that is lost has lost what is kept on it; the processor makes it.
+    device.is_lost.store(true, Ordering::Relaxed);
+    for layer in ["eroded", "both"] {
+        assert_eq!(window(&preview, layer), window(&session, layer), "{layer}");
+    }
 }

@@ -5,8 +5,9 @@ use crate::filters;
 use crate::gpu::Gpu;
 use crate::levels;
 use crate::program::run;
+use crate::resident;
 use crate::solvers;
-use orogen_engine::device::{Device, FilterExtent, LevelStep, LoweredProgram};
+use orogen_engine::device::{Device, DeviceGrid, FilterExtent, LevelStep, LoweredProgram, PlanGrid};
 use orogen_engine::lower::Passes;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -21,9 +22,9 @@ impl Device for Gpu {
         &self,
         program: &LoweredProgram,
         window: &Window,
-        grids: &[&Grid],
+        grids: &[&PlanGrid],
         progress: &Progress,
-    ) -> Result<Option<Vec<Grid>>> {
+    ) -> Result<Option<Vec<PlanGrid>>> {
         let is_cancelled = || progress.check().is_err();
         let made = run::run(self, program, window, grids, self.kernel_weight(), is_cancelled);
         self.outcome(made, progress)
@@ -32,13 +33,16 @@ impl Device for Gpu {
     fn apply(
         &self,
         passes: &Passes,
-        inputs: &[Option<&Grid>],
+        inputs: &[Option<&PlanGrid>],
         extent: &FilterExtent,
         progress: &Progress,
-    ) -> Result<Option<Vec<Option<Grid>>>> {
+    ) -> Result<Option<Vec<Option<PlanGrid>>>> {
         let is_cancelled = || progress.check().is_err();
-        let FilterExtent { window, halo, wanted } = extent;
-        self.outcome(filters::apply(self, passes, inputs, window, *halo, wanted, is_cancelled), progress)
+        self.outcome(filters::apply(self, passes, inputs, extent, is_cancelled), progress)
+    }
+
+    fn read(&self, grids: &[&DeviceGrid], progress: &Progress) -> Result<Option<Vec<Grid>>> {
+        self.outcome(resident::read(self, grids).map(Some), progress)
     }
 
     fn refine(&self, levels: &[LevelStep], above: &[Grid], progress: &Progress) -> Result<Option<Vec<Grid>>> {

@@ -3,7 +3,10 @@
 use crate::failure::Failure;
 use crate::gpu::Gpu;
 use crate::job::{Dispatch, GROUP, Job};
+use crate::layers::{Layers, index};
+use crate::resident::Source;
 use crate::tiles::fitting;
+use orogen_engine::device::{FilterExtent, PlanGrid};
 use orogen_engine::lower::Passes;
 use orogen_grid::grid::{Grid, Window};
 use std::collections::HashMap;
@@ -24,48 +27,48 @@ pub(crate) struct Preludes {
 /// Words before those of the filter, for each pass: see the prelude.
 const WORDS: usize = 6;
 
-/// Computes layers of a filter over `window`, as `Filter::apply` does: each given input covers the window grown by `halo`. The result has an element for each
-/// of `wanted`, one per declared layer: a grid if it is true. `Ok(None)` if the work was cancelled; `is_cancelled` is asked between parts of it.
+/// Computes layers of a filter over `window`, as `Filter::apply` does: each given input covers at least the window grown by `halo`. The result has an element
+/// for each of `wanted`, one per declared layer: a grid if it is true. `Ok(None)` if the work was cancelled; `is_cancelled` is asked between parts of it.
 ///
-/// If the planes exceed the [largest buffer](Gpu::buffer_limit), the window is computed in tiles, each with its halo.
+/// If the planes exceed the [largest buffer](Gpu::buffer_limit), the window is computed in tiles, each with its halo. The layers stay on the device, if they fit
+/// into its buffers.
 ///
 /// # Errors
 /// If the device was lost, has too little memory for a single sample with its halo, or refuses a shader; if an input does not cover the window and its halo.
 pub fn apply(
     gpu: &Gpu,
     passes: &Passes,
-    inputs: &[Option<&Grid>],
-    window: &Window,
-    halo: usize,
-    wanted: &[bool],
+    inputs: &[Option<&PlanGrid>],
+    extent: &FilterExtent,
     is_cancelled: impl Fn() -> bool,
-) -> Result<Option<Vec<Option<Grid>>>, Failure> {
-    let layers = || wanted.iter().map(|wanted| wanted.then(|| Grid::filled(*window, 0.0f32)));
-    let mut out: Vec<Option<Grid>> = layers().collect();
-    if window.is_empty() || !wanted.contains(&true) {
-        return Ok(Some(out));
-    }
-    let filter = Planes::new(&PRELUDES, passes, inputs.len(), wanted);
-    let limit = gpu.buffer_limit();
-    let Some(tiles) = fitting(window, |tile| filter.bytes(tile, halo) <= limit) else {
-        let needed = filter.bytes(&Window { width: 1, height: 1, ..*window }, halo) >> 20;
-        return Err(Failure::Memory(format!(
-            "a sample with its halo of {halo} samples takes {needed} MiB in one buffer, and buffers have at most {} MiB",
-            limit >> 20
-        )));
-    };
-    for tile in tiles {
-        let Some(made) = filter.tile_of(gpu, inputs, &tile, halo, &is_cancelled)? else { return Ok(None) };
-        let mut made = made.into_iter();
-        for layer in out.iter_mut().flatten() {
-            match made.next() {
-                Some(made) if tile == *window => *layer = made,
-                Some(made) => layer.paste(&made),
-                None => {}
+) -> Result<Option<Vec<Option<PlanGrid>>>, Failure> {
+    let FilterExtent { window, halo, ref wanted } = *extent;
+    let count = wanted.iter().filter(|wanted| **wanted).count();
+    let layers = match window.is_empty() || count == 0 {
+        true => Layers::in_memory(&window, count),
+        false => {
+            let sources = inputs.iter().map(|input| input.map(|grid| Source::of(gpu, grid)).transpose());
+            let sources = sources.collect::<Result<Vec<_>, _>>()?;
+            let filter = Planes::new(&PRELUDES, passes, inputs.len(), wanted);
+            let limit = gpu.buffer_limit();
+            let Some(tiles) = fitting(&window, |tile| filter.bytes(tile, halo) <= limit) else {
+                let needed = filter.bytes(&Window { width: 1, height: 1, ..window }, halo) >> 20;
+                return Err(Failure::Memory(format!(
+                    "a sample with its halo of {halo} samples takes {needed} MiB in one buffer, and buffers have at most {} MiB",
+                    limit >> 20
+                )));
+            };
+            let mut layers = Layers::new(gpu, &window, count)?;
+            for tile in tiles {
+                if !filter.make(gpu, &sources, (&tile, halo), &mut layers, &is_cancelled)? {
+                    return Ok(None);
+                }
             }
+            layers
         }
-    }
-    Ok(Some(out))
+    };
+    let mut made = layers.into_grids().into_iter();
+    Ok(Some(wanted.iter().map(|wanted| if *wanted { made.next() } else { None }).collect()))
 }
 
 /// The planes of a filter or solver, with the texts of its passes.
@@ -100,27 +103,20 @@ impl<'a> Planes<'a> {
         (4 * self.count() as u64).saturating_mul(side(tile.width)).saturating_mul(side(tile.height))
     }
 
-    /// The wanted layers over a tile.
-    pub(crate) fn tile_of(
+    /// Makes the wanted layers over a tile from inputs that cover it, grown by the halo. Returns whether that was done, not cancelled.
+    pub(crate) fn make(
         &self,
         gpu: &Gpu,
-        inputs: &[Option<&Grid>],
-        tile: &Window,
-        halo: usize,
+        inputs: &[Option<Source>],
+        (tile, halo): (&Window, usize),
+        layers: &mut Layers,
         is_cancelled: &impl Fn() -> bool,
-    ) -> Result<Option<Vec<Grid>>, Failure> {
+    ) -> Result<bool, Failure> {
         let grown = tile.grown(halo);
-        let cropped = inputs.iter().map(|input| cropped(*input, &grown)).collect::<Result<Vec<_>, _>>()?;
-        let uploads = inputs.iter().zip(&cropped).enumerate().filter_map(|(k, (input, cropped))| {
-            let grid = cropped.as_ref().or(*input)?;
-            Some((k * grown.len(), grid.data()))
-        });
-        let mut job = Job {
-            data: self.passes.words.clone(),
-            samples: self.count() * grown.len(),
-            uploads: uploads.collect(),
-            ..Job::default()
-        };
+        let mut job = Job { data: self.passes.words.clone(), samples: self.count() * grown.len(), ..Job::default() };
+        for (k, input) in inputs.iter().enumerate() {
+            input.map_or(Ok(()), |source| source.add_to(&mut job, &grown, k * grown.len()))?;
+        }
         // Passes of the same part share their words.
         let mut bases = HashMap::new();
         for pass in &self.passes.passes {
@@ -138,12 +134,10 @@ impl<'a> Planes<'a> {
                 job.dispatches.push(Dispatch { text, base: base as u32, size, step: pass.step });
             }
         }
-        // Whole rows are copied back: those of the tile.
-        let rows = tile.height * grown.width;
-        let layers = self.wanted.iter().enumerate().filter(|(_, wanted)| **wanted);
-        job.downloads = layers.map(|(k, _)| ((self.inputs + k) * grown.len() + halo * grown.width, rows)).collect();
-        let Some(back) = job.run(gpu, is_cancelled)? else { return Ok(None) };
-        Ok(Some(back.into_iter().map(|rows| inner(&rows, tile, grown.width, halo)).collect()))
+        let planes = self.wanted.iter().enumerate().filter(|(_, wanted)| **wanted);
+        let first = |k: usize| (self.inputs + k) * grown.len() + index(&grown, tile);
+        let firsts: Vec<usize> = planes.map(|(k, _)| first(k)).collect();
+        layers.run(gpu, job, tile, (&firsts, grown.width), is_cancelled)
     }
 }
 
@@ -155,18 +149,6 @@ pub(crate) fn bands(height: usize, reads: usize) -> impl Iterator<Item = (usize,
     let group = GROUP as usize;
     let rows = (READS / reads.max(1) / group).max(1) * group;
     (0..height).step_by(rows).map(move |first| (first, rows.min(height - first)))
-}
-
-/// The part of an input that a tile needs; `None` if that is all of it, or if it is not given.
-pub(crate) fn cropped(input: Option<&Grid>, grown: &Window) -> Result<Option<Grid>, Failure> {
-    match input {
-        None => Ok(None),
-        Some(grid) if grid.window() == grown => Ok(None),
-        Some(grid) => match grid.crop(grown) {
-            Some(grid) => Ok(Some(grid)),
-            None => Err(Failure::Input("an input does not cover the window and its halo".to_string())),
-        },
-    }
 }
 
 /// A tile from whole rows of its planes, of which each has `left` samples before it.

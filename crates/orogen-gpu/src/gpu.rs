@@ -23,8 +23,21 @@ struct Opened {
     lost: Arc<Mutex<Option<String>>>,
     failure: Mutex<Option<Failure>>,
     seconds: Mutex<f64>,
+    /// When work was begun that nobody has waited for.
+    begun: Mutex<Option<Instant>>,
+    moved: Mutex<Moved>,
     buffer: u64,
     kernel: usize,
+}
+
+/// Grids that were copied between the processor's memory and a card's.
+#[doc(hidden)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Moved {
+    /// Number of samples that were copied to the card.
+    pub there: u64,
+    /// Number of samples that were copied back.
+    pub back: u64,
 }
 
 /// Options of opening a graphics card.
@@ -140,9 +153,20 @@ impl Gpu {
         }));
         let buffer = options.buffer.unwrap_or(u64::MAX).min(adapter.limits.buffer);
         let pipelines = Pipelines::new(&device);
-        let (failure, seconds, kernel) = (Mutex::default(), Mutex::default(), options.kernel.max(1));
         Ok(Gpu {
-            opened: Arc::new(Opened { adapter, device, queue, pipelines, lost, failure, seconds, buffer, kernel }),
+            opened: Arc::new(Opened {
+                adapter,
+                device,
+                queue,
+                pipelines,
+                lost,
+                failure: Mutex::default(),
+                seconds: Mutex::default(),
+                begun: Mutex::default(),
+                moved: Mutex::default(),
+                buffer,
+                kernel: options.kernel.max(1),
+            }),
         })
     }
 
@@ -164,15 +188,31 @@ impl Gpu {
         self.opened.buffer
     }
 
-    /// The seconds of all jobs since the last call, from the first copy to the device to the end of the last shader: without copying back.
+    /// The seconds of all jobs since the last call, from the first copy to the device to the end of the last shader: without copying back. Successive jobs on
+    /// grids that stay on the device count together, with what the processor does between them.
     #[doc(hidden)]
     #[must_use]
     pub fn take_seconds(&self) -> f64 {
         std::mem::take(&mut *self.opened.seconds.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    pub(crate) fn count_seconds(&self, seconds: f64) {
-        *self.opened.seconds.lock().unwrap_or_else(PoisonError::into_inner) += seconds;
+    /// What was copied since the last call.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn take_moved(&self) -> Moved {
+        std::mem::take(&mut *self.opened.moved.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// Counts what is copied.
+    pub(crate) fn count_moved(&self, moved: Moved) {
+        let mut sum = self.opened.moved.lock().unwrap_or_else(PoisonError::into_inner);
+        sum.there += moved.there;
+        sum.back += moved.back;
+    }
+
+    /// Notes that work begins.
+    pub(crate) fn begin(&self) {
+        self.opened.begun.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert_with(Instant::now);
     }
 
     /// The seconds that the device takes to copy this many bytes within its memory.
@@ -250,9 +290,41 @@ impl Gpu {
         }
     }
 
+    /// Whether this is the same card, opened once.
+    pub(crate) fn is(&self, other: &Gpu) -> bool {
+        Arc::ptr_eq(&self.opened, &other.opened)
+    }
+
+    /// A buffer of some words.
+    pub(crate) fn buffer(&self, words: usize, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+        let size = 4 * words.max(4) as u64;
+        self.device().create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
+    }
+
+    /// Work whose errors are failures.
+    pub(crate) fn scoped<T>(&self, work: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
+        self.check()?;
+        let out_of_memory = self.device().push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let invalid = self.device().push_error_scope(wgpu::ErrorFilter::Validation);
+        let done = work();
+        let invalid = pollster::block_on(invalid.pop());
+        let out_of_memory = pollster::block_on(out_of_memory.pop());
+        self.check()?;
+        if let Some(error) = out_of_memory {
+            return Err(Failure::Memory(error.to_string()));
+        }
+        if let Some(error) = invalid {
+            return Err(Failure::Driver(error.to_string()));
+        }
+        done
+    }
+
     /// Waits until all submitted work is done.
     pub(crate) fn wait(&self) -> Result<(), Failure> {
         let waited = self.opened.device.poll(wgpu::PollType::wait_indefinitely());
+        if let Some(begun) = self.opened.begun.lock().unwrap_or_else(PoisonError::into_inner).take() {
+            *self.opened.seconds.lock().unwrap_or_else(PoisonError::into_inner) += begun.elapsed().as_secs_f64();
+        }
         self.check()?;
         waited.map(drop).map_err(|error| Failure::Lost(error.to_string()))
     }

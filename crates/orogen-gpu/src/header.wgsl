@@ -13,6 +13,8 @@ struct Frame {
     height: u32,
     // Any number that changes from dispatch to dispatch, such as that of the iteration.
     step: u32,
+    // Samples from row to row of what is copied, there and here.
+    strides: vec2<u32>,
 }
 @group(0) @binding(2) var<uniform> frame: Frame;
 

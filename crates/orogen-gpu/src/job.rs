@@ -1,12 +1,12 @@
 //! One piece of work on a device: what is copied there, what is run, and what is copied back.
 
 use crate::failure::Failure;
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, Moved};
 use crate::pipelines::FRAME;
+use crate::resident::{Resident, download};
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
-use std::sync::mpsc;
-use std::time::{Duration, Instant};
 
 /// Columns and rows of a workgroup.
 pub const GROUP: u32 = 8;
@@ -24,36 +24,55 @@ pub struct Dispatch<'a> {
     pub step: u32,
 }
 
+/// A part of a grid that is on the device, and where it lies among the samples of a job.
+#[derive(Clone)]
+pub struct Part<'a> {
+    /// The grid.
+    pub resident: &'a Resident,
+    /// Index of the part's first sample in the grid.
+    pub first: usize,
+    /// Index of its first sample among those of the job.
+    pub at: usize,
+    /// Number of samples of the job from row to row.
+    pub stride: usize,
+    /// Number of columns and rows.
+    pub size: [usize; 2],
+}
+
+const COPY: &str = include_str!("copy.wgsl");
+
 /// Work on a device.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub struct Job<'a> {
     /// Numbers and tables.
     pub data: Vec<u32>,
     /// Number of samples in all grids.
     pub samples: usize,
     /// Grids that are copied to the device, with the index of their first sample.
-    pub uploads: Vec<(usize, &'a [f32])>,
+    pub uploads: Vec<(usize, Cow<'a, [f32]>)>,
+    /// Parts of grids on the device that are copied to the samples.
+    pub brought: Vec<Part<'a>>,
     /// What is run, in order.
     pub dispatches: Vec<Dispatch<'a>>,
     /// Grids that are copied back: the index of their first sample, and the number of samples.
     pub downloads: Vec<(usize, usize)>,
+    /// Parts of the samples that are copied to grids on the device.
+    pub left: Vec<Part<'a>>,
 }
 
 /// Maximum number of dispatches that are submitted together, so that a long job can be cancelled and no driver ends it as a hang.
 const TOGETHER: usize = 64;
-
-/// The longest wait for buffers to be readable once all work is done.
-const MAPPED: Duration = Duration::from_secs(10);
 
 impl Job<'_> {
     /// Memory on the device, in bytes.
     #[must_use]
     pub fn memory(&self) -> u64 {
         let downloads: usize = self.downloads.iter().map(|(_, count)| count).sum();
-        4 * (self.data.len() + self.samples + downloads) as u64 + FRAME * self.dispatches.len() as u64
+        let frames = self.brought.len() + self.dispatches.len() + self.left.len();
+        4 * (self.data.len() + self.samples + downloads) as u64 + FRAME * frames as u64
     }
 
-    /// Runs it; returns the downloads. `is_cancelled` is asked between parts of the work.
+    /// Runs it; returns the downloads. `is_cancelled` is asked between parts of the work. Without downloads it may not have ended yet: later jobs come after it.
     ///
     /// # Errors
     /// If the device was lost, has too little memory, or refuses a shader; `Ok(None)` if the work was cancelled.
@@ -71,37 +90,7 @@ impl Job<'_> {
         together: usize,
         is_cancelled: impl Fn() -> bool,
     ) -> Result<Option<Vec<Vec<f32>>>, Failure> {
-        gpu.check()?;
-        let device = gpu.device();
-        let out_of_memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
-        let invalid = device.push_error_scope(wgpu::ErrorFilter::Validation);
-        let done = self.submit(gpu, together.max(1), is_cancelled);
-        let invalid = pollster::block_on(invalid.pop());
-        let out_of_memory = pollster::block_on(out_of_memory.pop());
-        gpu.check()?;
-        if let Some(error) = out_of_memory {
-            return Err(Failure::Memory(error.to_string()));
-        }
-        if let Some(error) = invalid {
-            return Err(Failure::Driver(error.to_string()));
-        }
-        done
-    }
-
-    /// The frames of all dispatches, equal ones once, and the offset of each dispatch's frame in bytes.
-    fn frames(&self) -> (Vec<u32>, Vec<u32>) {
-        let (mut words, mut known) = (Vec::new(), HashMap::new());
-        let offset_of = |dispatch: &Dispatch| {
-            let frame = [dispatch.base, dispatch.size[0], dispatch.size[1], dispatch.step];
-            *known.entry(frame).or_insert_with(|| {
-                let start = words.len();
-                words.extend(frame);
-                words.resize(start + FRAME as usize / 4, 0);
-                4 * start as u32
-            })
-        };
-        let offsets = self.dispatches.iter().map(offset_of).collect();
-        (words, offsets)
+        gpu.scoped(|| self.submit(gpu, together.max(1), is_cancelled))
     }
 
     fn submit(
@@ -110,38 +99,35 @@ impl Job<'_> {
         together: usize,
         is_cancelled: impl Fn() -> bool,
     ) -> Result<Option<Vec<Vec<f32>>>, Failure> {
-        let (device, queue) = (gpu.device(), gpu.queue());
-        let buffer = |words: usize, usage| {
-            let size = 4 * words.max(4) as u64;
-            device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
-        };
         use wgpu::BufferUsages as Usage;
-        let begun = Instant::now();
-        let data = buffer(self.data.len(), Usage::STORAGE | Usage::COPY_DST);
-        let samples = buffer(self.samples, Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC);
-        let (words, offsets) = self.frames();
-        let frames = buffer(words.len(), Usage::UNIFORM | Usage::COPY_DST);
+        let (device, queue) = (gpu.device(), gpu.queue());
+        gpu.begin();
+        let data = gpu.buffer(self.data.len(), Usage::STORAGE | Usage::COPY_DST);
+        let samples = gpu.buffer(self.samples, Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC);
+        let mut frames = Frames::default();
+        let brought: Vec<u32> = self.brought.iter().map(|part| frames.of(part.frame(true))).collect();
+        let offsets: Vec<u32> = self.dispatches.iter().map(|dispatch| frames.of(dispatch.frame())).collect();
+        let left: Vec<u32> = self.left.iter().map(|part| frames.of(part.frame(false))).collect();
+        let frames = {
+            let buffer = gpu.buffer(frames.words.len(), Usage::UNIFORM | Usage::COPY_DST);
+            queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&frames.words));
+            buffer
+        };
         queue.write_buffer(&data, 0, bytemuck::cast_slice(&self.data));
         for (start, grid) in &self.uploads {
             queue.write_buffer(&samples, 4 * *start as u64, bytemuck::cast_slice(grid));
         }
-        queue.write_buffer(&frames, 0, bytemuck::cast_slice(&words));
-        let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: None,
-            layout: gpu.pipelines().bindings(),
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: data.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: samples.as_entire_binding() },
-                wgpu::BindGroupEntry {
-                    binding: 2,
-                    resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                        buffer: &frames,
-                        offset: 0,
-                        size: std::num::NonZero::new(16),
-                    }),
-                },
-            ],
-        });
+        let there = self.uploads.iter().map(|(_, grid)| grid.len() as u64).sum();
+        gpu.count_moved(Moved { there, back: 0 });
+        if is_cancelled() {
+            return Ok(None);
+        }
+        let brought = self.brought.iter().zip(brought);
+        let brought: Vec<Copy> = brought
+            .map(|(part, offset)| Copy::new(gpu, [&part.resident.buffer, &samples, &frames], offset, part.size))
+            .collect();
+        copy(gpu, &brought)?;
+        let bindings = gpu.pipelines().bind(device, [&data, &samples, &frames]);
         // The passes of a solver share few texts, and comparing texts takes longer than a dispatch.
         let mut pipelines = HashMap::new();
         for (dispatches, offsets) in self.dispatches.chunks(together).zip(offsets.chunks(together)) {
@@ -167,35 +153,83 @@ impl Job<'_> {
                 gpu.wait()?;
             }
         }
-        gpu.wait()?;
-        gpu.count_seconds(begun.elapsed().as_secs_f64());
-        let mut back = Vec::with_capacity(self.downloads.len());
-        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        for (start, count) in &self.downloads {
-            let to = buffer(*count, Usage::COPY_DST | Usage::MAP_READ);
-            encoder.copy_buffer_to_buffer(&samples, 4 * *start as u64, &to, 0, 4 * *count as u64);
-            back.push(to);
+        let left: Vec<Copy> = self
+            .left
+            .iter()
+            .zip(left)
+            .map(|(part, offset)| Copy::new(gpu, [&samples, &part.resident.buffer, &frames], offset, part.size))
+            .collect();
+        copy(gpu, &left)?;
+        if self.downloads.is_empty() {
+            return Ok(Some(Vec::new()));
         }
-        queue.submit([encoder.finish()]);
-        let (sender, receiver) = mpsc::channel();
-        for buffer in &back {
-            let sender = sender.clone();
-            // If the receiver is gone, nothing waits for the result.
-            buffer.slice(..).map_async(wgpu::MapMode::Read, move |mapped| drop(sender.send(mapped)));
-        }
-        gpu.wait()?;
-        for _ in &back {
-            // They are mapped by now, but the callback may still be running on another thread that polls the device.
-            match receiver.recv_timeout(MAPPED) {
-                Ok(Ok(())) => {}
-                _ => return Err(Failure::Lost("its results could not be read".to_string())),
-            }
-        }
-        let read = |(buffer, (_, count)): (&wgpu::Buffer, &(usize, usize))| {
-            let bytes = buffer.slice(..).get_mapped_range();
-            let bytes = bytes.map_err(|error| Failure::Lost(error.to_string()))?;
-            Ok(bytemuck::cast_slice::<u8, f32>(&bytes)[..*count].to_vec())
-        };
-        back.iter().zip(&self.downloads).map(read).collect::<Result<_, Failure>>().map(Some)
+        let parts: Vec<_> = self.downloads.iter().map(|(first, count)| (&samples, *first, *count)).collect();
+        download(gpu, &parts).map(Some)
     }
+}
+
+/// The frames of dispatches, equal ones once.
+#[derive(Default)]
+struct Frames {
+    words: Vec<u32>,
+    known: HashMap<[u32; 6], u32>,
+}
+
+impl Frames {
+    /// The offset of a frame, in bytes.
+    fn of(&mut self, frame: [u32; 6]) -> u32 {
+        *self.known.entry(frame).or_insert_with(|| {
+            let start = self.words.len();
+            self.words.extend(frame);
+            self.words.resize(start + FRAME as usize / 4, 0);
+            4 * start as u32
+        })
+    }
+}
+
+impl Dispatch<'_> {
+    fn frame(&self) -> [u32; 6] {
+        [self.base, self.size[0], self.size[1], self.step, 0, 0]
+    }
+}
+
+impl Part<'_> {
+    /// The frame of copying it to the job's samples, or back.
+    fn frame(&self, is_brought: bool) -> [u32; 6] {
+        let ends = [(self.first, self.resident.window.width), (self.at, self.stride)];
+        let [from, to] = if is_brought { ends } else { [ends[1], ends[0]] };
+        [from.0, self.size[0], self.size[1], to.0, from.1, to.1].map(|word| word as u32)
+    }
+}
+
+/// A copy from buffer to buffer.
+struct Copy {
+    bindings: wgpu::BindGroup,
+    offset: u32,
+    size: [usize; 2],
+}
+
+impl Copy {
+    /// From one buffer to another, with their frame.
+    fn new(gpu: &Gpu, buffers: [&wgpu::Buffer; 3], offset: u32, size: [usize; 2]) -> Copy {
+        Copy { bindings: gpu.pipelines().bind(gpu.device(), buffers), offset, size }
+    }
+}
+
+/// Copies parts of buffers.
+fn copy(gpu: &Gpu, copies: &[Copy]) -> Result<(), Failure> {
+    if copies.is_empty() {
+        return Ok(());
+    }
+    let pipeline = gpu.pipelines().of(gpu.device(), COPY)?;
+    let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+    pass.set_pipeline(&pipeline);
+    for Copy { bindings, offset, size: [width, height] } in copies {
+        pass.set_bind_group(0, bindings, &[*offset]);
+        pass.dispatch_workgroups((*width as u32).div_ceil(GROUP), (*height as u32).div_ceil(GROUP), 1);
+    }
+    drop(pass);
+    gpu.queue().submit([encoder.finish()]);
+    Ok(())
 }

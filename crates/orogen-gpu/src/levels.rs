@@ -1,9 +1,10 @@
 //! Levels of levelled ops, by their passes.
 
 use crate::failure::Failure;
-use crate::filters::{bands, cropped, inner, text};
+use crate::filters::{bands, inner, text};
 use crate::gpu::Gpu;
 use crate::job::{Dispatch, Job};
+use crate::resident::Source;
 use crate::tiles::fitting;
 use orogen_engine::device::LevelStep;
 use orogen_engine::lower::LevelPasses;
@@ -63,7 +64,6 @@ fn together(
     is_cancelled: &impl Fn() -> bool,
 ) -> Result<Option<Vec<Grid>>, Failure> {
     let mut job = Job::default();
-    let mut grids: Vec<(usize, Cow<'_, Grid>)> = Vec::new();
     let mut before: Option<Made> = None;
     for level in levels {
         if level.window.is_empty() {
@@ -76,14 +76,13 @@ fn together(
         job.samples = first_above + planes_above * extents.above.len();
         if before.is_none() {
             for (k, grid) in above.iter().enumerate() {
-                let part = cropped(Some(grid), &extents.above)?.map_or(Cow::Borrowed(grid), Cow::Owned);
-                grids.push((first_above + k * extents.above.len(), part));
+                let at = first_above + k * extents.above.len();
+                Source::Memory(grid).add_to(&mut job, &extents.above, at)?;
             }
         }
         let first_input = first + (level.passes.planes + level.passes.scratch) * extents.grown.len();
         for (k, grid) in level.inputs.iter().enumerate() {
-            let part = padded(grid, &extents.grown).map_or(Cow::Borrowed(*grid), Cow::Owned);
-            grids.push((first_input + k * extents.grown.len(), part));
+            job.uploads.push((first_input + k * extents.grown.len(), padded(grid, &extents.grown)));
         }
         level.dispatch(&mut job, first, &extents, before.as_ref())?;
         before = Some(Made { first, grown: extents.grown, window: level.window });
@@ -93,19 +92,19 @@ fn together(
     let (left, top) = ((window.x - grown.x) as usize, (window.y - grown.y) as usize);
     let rows = window.height * grown.width;
     job.downloads = (0..last.passes.planes).map(|k| (first + k * grown.len() + top * grown.width, rows)).collect();
-    job.uploads = grids.iter().map(|(first, grid)| (*first, grid.data())).collect();
     let Some(back) = job.run(gpu, is_cancelled)? else { return Ok(None) };
     Ok(Some(back.into_iter().map(|rows| inner(&rows, &window, grown.width, left)).collect()))
 }
 
-/// The part of an input that a tile needs, without values beyond the input's edge; `None` if that is all of it. As `Levelled::refine` does, the last samples at
-/// the edge read inputs that none of the window's samples depend on.
-fn padded(input: &Grid, grown: &Window) -> Option<Grid> {
-    (input.window() != grown).then(|| {
-        let mut part = Grid::filled(*grown, f32::NAN);
-        part.paste(input);
-        part
-    })
+/// The part of an input that a tile needs, without values beyond the input's edge. As `Levelled::refine` does, the last samples at the edge read inputs that
+/// none of the window's samples depend on.
+fn padded<'a>(input: &'a Grid, grown: &Window) -> Cow<'a, [f32]> {
+    if input.window() == grown {
+        return input.data().into();
+    }
+    let mut part = Grid::filled(*grown, f32::NAN);
+    part.paste(input);
+    part.into_data().into()
 }
 
 /// A level that a job makes.

@@ -12,11 +12,13 @@ pub mod filters;
 pub mod gpu;
 #[doc(hidden)]
 pub mod job;
+mod layers;
 #[doc(hidden)]
 pub mod levels;
 mod pipelines;
 mod program;
 pub mod render;
+mod resident;
 mod session;
 #[doc(hidden)]
 pub mod solvers;

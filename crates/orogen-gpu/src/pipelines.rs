@@ -17,8 +17,11 @@ pub(crate) struct Pipelines {
     compiled: AtomicU64,
 }
 
-/// Size of a dispatch's frame, in bytes: the distance at which all devices allow uniforms.
+/// Distance of the frames of dispatches, in bytes: that at which all devices allow uniforms.
 pub(crate) const FRAME: u64 = 256;
+
+/// Size of a frame, in bytes.
+pub(crate) const FRAME_SIZE: std::num::NonZero<u64> = std::num::NonZero::<u64>::MIN.saturating_add(23);
 
 impl Pipelines {
     pub(crate) fn new(device: &wgpu::Device) -> Pipelines {
@@ -33,7 +36,7 @@ impl Pipelines {
             entries: &[
                 entry(0, wgpu::BufferBindingType::Storage { read_only: true }, false, None),
                 entry(1, wgpu::BufferBindingType::Storage { read_only: false }, false, None),
-                entry(2, wgpu::BufferBindingType::Uniform, true, std::num::NonZero::new(16)),
+                entry(2, wgpu::BufferBindingType::Uniform, true, Some(FRAME_SIZE)),
             ],
         });
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -44,9 +47,19 @@ impl Pipelines {
         Pipelines { bindings, layout, kept: Mutex::default(), compiled: AtomicU64::new(0) }
     }
 
-    /// The layout of the bindings of all shaders.
-    pub(crate) fn bindings(&self) -> &wgpu::BindGroupLayout {
-        &self.bindings
+    /// Buffers of data, samples and frames as the bindings of a shader.
+    pub(crate) fn bind(&self, device: &wgpu::Device, buffers: [&wgpu::Buffer; 3]) -> wgpu::BindGroup {
+        let [data, samples, frames] = buffers;
+        let frame = wgpu::BufferBinding { buffer: frames, offset: 0, size: Some(FRAME_SIZE) };
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &self.bindings,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: data.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: samples.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::Buffer(frame) },
+            ],
+        })
     }
 
     /// Number of shaders compiled so far.

@@ -3,6 +3,8 @@
 use crate::failure::Failure;
 use crate::filters::{Planes, Preludes};
 use crate::gpu::Gpu;
+use crate::layers::Layers;
+use crate::resident::Source;
 use orogen_engine::lower::Passes;
 use orogen_grid::grid::{Grid, Window};
 
@@ -38,5 +40,8 @@ pub fn solve(
             limit >> 20
         )));
     }
-    planes.tile_of(gpu, inputs, window, 0, &is_cancelled)
+    let sources: Vec<Option<Source>> = inputs.iter().map(|input| input.map(Source::Memory)).collect();
+    let mut layers = Layers::in_memory(window, passes.layers);
+    let is_done = planes.make(gpu, &sources, (window, 0), &mut layers, &is_cancelled)?;
+    Ok(is_done.then(|| layers.into_memory()).flatten())
 }

@@ -4,8 +4,9 @@
 mod common;
 
 use common::filters::{
-    filter, gpu, gpu_with_buffers_of, inputs, lowered, on_card, on_processor, tried_on_card, variants,
+    apply, filter, gpu, gpu_with_buffers_of, inputs, lowered, on_card, on_processor, tried_on_card, variants,
 };
+use orogen_engine::device::FilterExtent;
 use orogen_engine::node::Node;
 use orogen_grid::grid::{Grid, Window};
 use std::collections::BTreeMap;
@@ -184,9 +185,10 @@ fn a_sample_that_fits_into_no_buffer_is_an_error() {
     let window = Window::new(9, 9, 10.0);
     let given = inputs(&node, &window, true);
     let passes = lowered(&node, window.cell).unwrap();
-    let made = orogen_gpu::filters::apply(&gpu, &passes, &[given[0].as_ref()], &window, 50, &[true], || false);
+    let extent = |window| FilterExtent { window, halo: 50, wanted: vec![true] };
+    let made = apply(&gpu, &passes, &given[..1], &extent(window), false);
     assert!(matches!(made, Err(orogen_gpu::Failure::Memory(_))), "{made:?}");
-    let made = orogen_gpu::filters::apply(&gpu, &passes, &[given[0].as_ref()], &window.grown(1), 50, &[true], || false);
+    let made = apply(&gpu, &passes, &given[..1], &extent(window.grown(1)), false);
     assert!(made.is_err());
 }
 
@@ -198,7 +200,8 @@ fn layers_that_nobody_wants_are_left_out_and_cancelled_work_ends() {
     let given = inputs(&node, &window, true);
     let passes = lowered(&node, window.cell).unwrap();
     let apply = |wanted: [bool; 3], window: &Window, is_cancelled: bool| {
-        orogen_gpu::filters::apply(&gpu, &passes, &[given[0].as_ref()], window, 1, &wanted, || is_cancelled).unwrap()
+        let extent = FilterExtent { window: *window, halo: 1, wanted: wanted.to_vec() };
+        apply(&gpu, &passes, &given[..1], &extent, is_cancelled).unwrap()
     };
     let made = apply([false, true, false], &window, false).unwrap();
     assert!(made[0].is_none() && made[2].is_none());

@@ -17,9 +17,10 @@ fn a_job_runs() {
     let job = Job {
         data: vec![0, 2.0f32.to_bits()],
         samples: grid.len(),
-        uploads: vec![(0, &grid)],
+        uploads: vec![(0, grid.as_slice().into())],
         dispatches: vec![dispatch(1), dispatch(0)],
         downloads: vec![(0, grid.len())],
+        ..Job::default()
     };
     let back = job.run(&gpu, || false).unwrap().unwrap();
     assert!(back[0].iter().zip(&grid).all(|(made, k)| *made == 4.0 * k + 2.0));

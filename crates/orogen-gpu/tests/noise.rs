@@ -221,8 +221,9 @@ fn computed(gpu: &Gpu, noises: &[Noise], window: &Window, inputs: &[Vec<f32>]) -
     });
     let dispatches = dispatches.collect();
     let downloads = (0..noises.len()).map(|n| (count * (before + n), count)).collect();
-    let uploads = window.displaced.iter().chain(inputs).enumerate().map(|(i, grid)| (i * count, &grid[..])).collect();
-    let job = Job { data, samples: count * (before + noises.len()), uploads, dispatches, downloads };
+    let uploads =
+        window.displaced.iter().chain(inputs).enumerate().map(|(i, grid)| (i * count, grid[..].into())).collect();
+    let job = Job { data, samples: count * (before + noises.len()), uploads, dispatches, downloads, ..Job::default() };
     job.run(gpu, || false).unwrap().unwrap()
 }
 

@@ -4,9 +4,12 @@
 mod common;
 
 use common::{compare, gpu, session};
-use orogen_engine::{Recipe, Window};
+use orogen_engine::device::{Device, DeviceGrid, FilterExtent, LoweredProgram, PlanGrid};
+use orogen_engine::lower::Passes;
+use orogen_engine::{Grid, Progress, Recipe, Result, Window};
 use orogen_gpu::gpu::Options;
 use orogen_gpu::{Choice, Gpu};
+use std::sync::Arc;
 
 /// Positions as numbers: `x` and `y` rise by 1 in 1000 m, and `wave` is a smooth hill and dale.
 const POSITIONS: &str = "orogen = 1\n[nodes.x]\nop = \"ramp\"\n[nodes.y]\nop = \"ramp\"\nazimuth = 180\n\
@@ -123,6 +126,77 @@ fn a_lost_device_leaves_the_work_to_the_processor() {
     let window = Window::new(50, 40, 10.0);
     let exact = common::exact(&recipe, "height", &window);
     gpu.lose();
+    assert_eq!(session.open(recipe).unwrap().window("height", &window).unwrap(), exact);
+    assert!(gpu.failure().is_some_and(|failure| failure.to_string().contains("lost")));
+}
+
+/// A card that is lost when its first grid is read.
+struct LostWhenRead(Gpu);
+
+impl Device for LostWhenRead {
+    fn fill(
+        &self,
+        program: &LoweredProgram,
+        window: &Window,
+        grids: &[&PlanGrid],
+        progress: &Progress,
+    ) -> Result<Option<Vec<PlanGrid>>> {
+        self.0.fill(program, window, grids, progress)
+    }
+
+    fn apply(
+        &self,
+        passes: &Passes,
+        inputs: &[Option<&PlanGrid>],
+        extent: &FilterExtent,
+        progress: &Progress,
+    ) -> Result<Option<Vec<Option<PlanGrid>>>> {
+        self.0.apply(passes, inputs, extent, progress)
+    }
+
+    fn read(&self, grids: &[&DeviceGrid], progress: &Progress) -> Result<Option<Vec<Grid>>> {
+        self.0.lose();
+        self.0.read(grids, progress)
+    }
+}
+
+/// Fields, two filters of them, and fields that read both.
+const FILTERED: &str = "[nodes.steep]\nop = \"slope\"\nsource = \"wave\"\n[nodes.soft]\nop = \"blur\"\nsource = \"steep\"\nradius = 45\n\
+    [nodes.made]\nop = \"expr\"\nexpr = \"steep - soft + x\"\n[outputs]\nheight = \"made\"\n";
+
+#[test]
+fn grids_stay_on_the_card() {
+    let recipe = Recipe::parse(&format!("{POSITIONS}{FILTERED}"), "test").unwrap();
+    let window = Window::new(70, 50, 10.0).at(-20, 9);
+    let made = |options: &Options| {
+        let gpu = Gpu::open(options).unwrap();
+        let grid = common::session_of(&gpu).open(recipe.clone()).unwrap().window("height", &window).unwrap();
+        assert_eq!(gpu.failure(), None);
+        (grid, gpu.take_moved())
+    };
+    let (whole, moved) = made(&Options::new(Choice::Any));
+    assert_eq!((moved.there, moved.back), (0, window.len() as u64), "only the result is copied back");
+    let exact = common::exact(&recipe, "height", &window);
+    assert!(common::difference(&exact, &whole).share < 1e-4, "{:?}", common::difference(&exact, &whole));
+    // Grids that are larger than a buffer go through memory.
+    let (tiled, moved) = made(&Options::new(Choice::Any).with_buffer(12_000));
+    assert!(moved.there > 0 && moved.back > window.len() as u64, "{moved:?}");
+    let worst = whole.data().iter().zip(tiled.data()).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    assert!(worst <= 1e-5, "{worst}");
+    // Grids in tiles, each of which fits with its planes.
+    let (tiled, moved) = made(&Options::new(Choice::Any).with_buffer(40_000));
+    assert_eq!((moved.there, moved.back), (0, window.len() as u64));
+    let worst = whole.data().iter().zip(tiled.data()).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    assert!(worst <= 1e-5, "{worst}");
+}
+
+#[test]
+fn a_device_that_is_lost_with_its_grids_leaves_the_work_to_the_processor() {
+    let gpu = Gpu::open(&Options::new(Choice::Any)).unwrap();
+    let session = common::processor().with_device(Arc::new(LostWhenRead(gpu.clone())));
+    let recipe = Recipe::parse(&format!("{POSITIONS}{FILTERED}"), "test").unwrap();
+    let window = Window::new(50, 40, 10.0);
+    let exact = common::exact(&recipe, "height", &window);
     assert_eq!(session.open(recipe).unwrap().window("height", &window).unwrap(), exact);
     assert!(gpu.failure().is_some_and(|failure| failure.to_string().contains("lost")));
 }

@@ -1,19 +1,19 @@
 //! Running a program on the calling thread into the caller's samples: without the pool, without grids, and without
 //! allocation once the buffers have their final size.
 
+use super::grids::Grids;
 use super::interpreter::{Bindings, Buffers, Interpreter};
 use super::run::{Engine, Solutions};
-use crate::ids::{GridId, IndexVec};
 use crate::plan::program::{BLOCK_HEIGHT, BLOCK_WIDTH, Program};
 use crate::plan::steps::Plan;
 use orogen_grid::error::Result;
-use orogen_grid::grid::{Grid, Window};
+use orogen_grid::grid::Window;
 
 /// A program for points, with all its inputs computed.
 pub struct PreparedProgram {
     program: Program,
     solutions: Solutions,
-    grids: IndexVec<GridId, Option<Grid>>,
+    grids: Grids,
     anywhere: bool,
 }
 

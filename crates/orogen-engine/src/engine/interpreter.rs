@@ -1,7 +1,8 @@
 //! The interpreter of programs over a block of samples.
 
+use super::grids::Grids;
 use crate::expression::function::{Argument, MAX_ARGUMENTS};
-use crate::ids::{CoordSetId, GridId, IndexVec, NodeId, RegisterId};
+use crate::ids::{CoordSetId, IndexVec, NodeId, RegisterId};
 use crate::layer::LayerKind;
 use crate::op::{Field, Inputs, Reading, Solution, Solver, WorldParams};
 use crate::plan::program::{Instruction, Operand, Program};
@@ -16,7 +17,7 @@ pub struct Bindings<'a> {
     pub world_params: &'a WorldParams,
     pub fields: &'a (dyn Fn(NodeId) -> Option<&'a dyn Field> + Sync),
     pub solvers: &'a (dyn Fn(NodeId) -> Option<(&'a dyn Solver, Arc<Solution>)> + Sync),
-    pub grids: &'a IndexVec<GridId, Option<Grid>>,
+    pub grids: &'a Grids,
 }
 
 /// The representation of a coordinate set.
@@ -194,7 +195,7 @@ impl<'p> Interpreter<'p> {
                 })?;
             }
             Instruction::Grid { grid, kind, coords, out } => {
-                let grid = bindings.grids.find(*grid).and_then(Option::as_ref);
+                let grid = bindings.grids.memory(*grid);
                 let grid = grid.ok_or_else(|| internal("a grid was read before it was made"))?;
                 // Only the block itself is on the lattice of the grid.
                 let block = block.filter(|_| *coords == CoordSetId::BLOCK);

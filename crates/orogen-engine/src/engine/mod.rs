@@ -1,6 +1,7 @@
 //! The engine, which runs plans.
 
 mod exactness;
+mod grids;
 pub(crate) mod inline;
 pub(crate) mod interpreter;
 mod level_tiles;

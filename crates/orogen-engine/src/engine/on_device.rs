@@ -1,26 +1,26 @@
 //! Steps of a plan on a device.
 
-use super::run::{Engine, Solutions, missing, with_inputs};
-use crate::device::{Device, FilterExtent};
-use crate::ids::{GridId, IndexVec};
+use super::grids::Grids;
+use super::run::{Engine, Solutions, missing};
+use crate::device::{Device, FilterExtent, PlanGrid};
+use crate::ids::GridId;
 use crate::lower::Lowering;
 use crate::plan::program::Instruction;
 use crate::plan::split::split;
 use crate::plan::steps::{Step, wanted};
 use orogen_grid::error::Result;
-use orogen_grid::grid::Grid;
 use orogen_grid::progress::Progress;
 
 impl Engine<'_> {
-    /// Computes a step on the device; `None` if there is none, or the processor is to do it.
+    /// Computes a step on a device; `None` if the processor is to do it.
     pub(super) fn on_device(
         &self,
+        device: &dyn Device,
         step: &Step,
         solutions: &Solutions,
-        grids: &IndexVec<GridId, Option<Grid>>,
+        grids: &mut Grids,
         progress: &Progress,
-    ) -> Result<Option<Vec<Grid>>> {
-        let Some(device) = self.preview.map(|preview| preview.device) else { return Ok(None) };
+    ) -> Result<Option<Vec<PlanGrid>>> {
         match step {
             Step::Fill { .. } => fill(self, device, step, solutions, grids, progress),
             Step::Apply { .. } => apply(self, device, step, grids, progress),
@@ -34,9 +34,9 @@ fn fill(
     device: &dyn Device,
     step: &Step,
     solutions: &Solutions,
-    grids: &IndexVec<GridId, Option<Grid>>,
+    grids: &mut Grids,
     progress: &Progress,
-) -> Result<Option<Vec<Grid>>> {
+) -> Result<Option<Vec<PlanGrid>>> {
     let Step::Fill { program, window, .. } = step else { return Ok(None) };
     if window.is_empty() {
         return Ok(None);
@@ -55,14 +55,20 @@ fn fill(
             Lowering::Processor(_) | Lowering::Missing => None,
         }
     };
-    let Some(split) = split(program, lower)? else { return Ok(None) };
+    let Some(split) = split(program, lower, |grid| grids.is_away(grid))? else { return Ok(None) };
     let handed = match &split.processor {
-        Some(program) => engine.fill_part(program, window, solutions, grids, &Progress::none())?,
+        Some(program) => {
+            if !grids.fetch(&program.reads(), Some(device), progress)? {
+                return Ok(None);
+            }
+            engine.fill_part(program, window, solutions, grids, &Progress::none())?
+        }
         None => Vec::new(),
     };
+    let handed: Vec<PlanGrid> = handed.into_iter().map(PlanGrid::from).collect();
     let mut read = Vec::with_capacity(split.grids.len() + handed.len());
     for grid in &split.grids {
-        read.push(grids[*grid].as_ref().ok_or_else(|| missing("a grid of a program"))?);
+        read.push(grids.find(*grid).ok_or_else(|| missing("a grid of a program"))?);
     }
     read.extend(&handed);
     device.fill(&split.device, window, &read, progress)
@@ -72,10 +78,10 @@ fn apply(
     engine: &Engine,
     device: &dyn Device,
     step: &Step,
-    grids: &IndexVec<GridId, Option<Grid>>,
+    grids: &Grids,
     progress: &Progress,
-) -> Result<Option<Vec<Grid>>> {
-    let Step::Apply { node, window, halo, out, .. } = step else { return Ok(None) };
+) -> Result<Option<Vec<PlanGrid>>> {
+    let Step::Apply { node, inputs, window, halo, out } = step else { return Ok(None) };
     if window.is_empty() {
         return Ok(None);
     }
@@ -83,6 +89,9 @@ fn apply(
         return Ok(None);
     };
     let extent = FilterExtent { window: *window, halo: *halo, wanted: wanted(out) };
-    let made = with_inputs(step, grids, |given| device.apply(&passes, given, &extent, progress))?;
+    let input = |slot: &GridId| grids.find(*slot).ok_or_else(|| missing("an input of a filter"));
+    let given: Vec<Option<&PlanGrid>> =
+        inputs.iter().map(|slot| slot.as_ref().map(input).transpose()).collect::<Result<_>>()?;
+    let made = device.apply(&passes, &given, &extent, progress)?;
     Ok(made.map(|made| made.into_iter().flatten().collect()))
 }

@@ -1,7 +1,7 @@
 //! Previews: what a device computes, kept apart from what the processor computes.
 
 use super::nodes::Nodes;
-use crate::device::Device;
+use crate::device::{Device, PlanGrid};
 use crate::ids::{IndexVec, NodeId};
 use crate::lower::{Lowering, Passes};
 use crate::op::{Op, Solver};
@@ -16,7 +16,7 @@ use std::path::Path;
 /// What previews of a session keep in memory, for later ones. Nothing of it is stored for later runs, and nothing exact is made from it.
 pub struct Previews {
     pub store: Store,
-    pub grids: GridStore,
+    pub grids: GridStore<PlanGrid>,
     pub level_tiles: LevelTiles,
 }
 

@@ -1,10 +1,12 @@
 //! Running the steps of a plan.
 
 use super::exactness::Exactness;
+use super::grids::Grids;
 use super::interpreter::{Bindings, Interpreter};
 use super::nodes::Nodes;
 use super::preview::Preview;
 use crate::budget::Budget;
+use crate::device::{Device, PlanGrid};
 use crate::ids::{GridId, Id, IndexVec, NodeId, StepId};
 use crate::op::{Context, Field, Filter, Op, Solution, Solver, StepObserver, WorldParams};
 use crate::plan::cost;
@@ -75,9 +77,25 @@ impl<'a> Engine<'a> {
     /// Computes the output grids of a plan, with all its solvers solved.
     pub(super) fn steps(&self, plan: &Plan, solutions: &Solutions, progress: &Progress) -> Result<Vec<Grid>> {
         progress.expect(cost::steps(plan, self.recipe));
-        let mut grids: IndexVec<GridId, Option<Grid>> = plan.grids.iter().map(|_| None).collect();
+        if let Some(device) = self.preview.map(|preview| preview.device)
+            && let Some(made) = self.steps_with(Some(device), plan, solutions, progress)?
+        {
+            return Ok(made);
+        }
+        self.steps_with(None, plan, solutions, progress)?.ok_or_else(|| missing("a grid of a step"))
+    }
+
+    /// The same with a device, or without one. `None` if the device has lost grids that it had made.
+    fn steps_with(
+        &self,
+        device: Option<&dyn Device>,
+        plan: &Plan,
+        solutions: &Solutions,
+        progress: &Progress,
+    ) -> Result<Option<Vec<Grid>>> {
+        let mut grids = Grids::before(plan);
         let mut exactness = Exactness::of(&self.nodes(), self.preview, plan);
-        let needed = self.kept_grids(plan, &mut grids, &mut exactness);
+        let needed = self.kept_grids(plan, device.is_some(), &mut grids, &mut exactness);
         for (at, step) in plan.steps.entries() {
             progress.check()?;
             if !needed[at] {
@@ -85,35 +103,36 @@ impl<'a> Engine<'a> {
                 continue;
             }
             let part = progress.part(cost::step(step, plan, self.recipe));
-            let made = match exactness.is_required(step) {
-                true => None,
-                false => self.on_device(step, solutions, &grids, &part)?,
+            let made = match device.filter(|_| !exactness.is_required(step)) {
+                Some(device) => self.on_device(device, step, solutions, &mut grids, &part)?,
+                None => None,
             };
             let on_device = made.is_some();
             let made = match made {
                 Some(made) => made,
-                None => self.step(step, solutions, &grids, &part)?,
+                None if grids.fetch(&step.reads(), device, progress)? => self.step(step, solutions, &grids, &part)?,
+                None => return Ok(None),
             };
             let is_exact = exactness.ran(step, on_device);
             self.keep_grids(step, &made, is_exact);
-            put(step, made, &mut grids);
+            grids.put(&step.writes(), made);
             part.finish();
-            for (grid, slot) in grids.iter_mut().zip(&plan.grids) {
-                if slot.last_use.is_some_and(|last| last <= at) {
-                    *grid = None;
-                }
-            }
+            grids.drop_after(at, plan);
+        }
+        if !grids.fetch(&plan.outputs, device, progress)? {
+            return Ok(None);
         }
         // Each output has its own slot, so a grid is an output only once.
-        plan.outputs.iter().map(|&slot| grids[slot].take().ok_or_else(|| missing("an output"))).collect()
+        plan.outputs.iter().map(|&slot| grids.take(slot).ok_or_else(|| missing("an output")).map(Some)).collect()
     }
 
-    /// Takes kept grids of expensive filters from earlier requests. Returns which steps are still needed: those whose
-    /// grids are results or are read by needed steps.
+    /// Takes kept grids of expensive filters from earlier requests, those on the device only if it `has_device`. Returns which steps are still needed: those
+    /// whose grids are results or are read by needed steps.
     fn kept_grids(
         &self,
         plan: &Plan,
-        grids: &mut IndexVec<GridId, Option<Grid>>,
+        has_device: bool,
+        grids: &mut Grids,
         exactness: &mut Exactness,
     ) -> IndexVec<StepId, bool> {
         let mut needed: IndexVec<StepId, bool> = vec![true; plan.steps.len()].into();
@@ -124,15 +143,18 @@ impl<'a> Engine<'a> {
             // A program for points writes no grid.
             needed[at] = writes.is_empty() || writes.iter().any(|&slot| read[slot]);
             if let Some(keys) = needed[at].then(|| self.grid_keys(step)).flatten() {
-                let mut found = store.find(&keys);
-                if let (None, Some(preview), false) = (&found, self.preview, exactness.is_required(step)) {
-                    found = preview.kept.grids.find(&keys);
-                    if found.is_some() {
-                        exactness.found(step);
-                    }
-                }
+                let exact = store.find(&keys).map(|found| found.into_iter().map(PlanGrid::from).collect());
+                let approximate = || {
+                    let preview = self.preview.filter(|_| !exactness.is_required(step))?;
+                    let found: Vec<PlanGrid> = preview.kept.grids.find(&keys)?;
+                    (has_device || found.iter().all(|grid| grid.memory().is_some())).then_some(found)
+                };
+                let found: Option<Vec<PlanGrid>> = match exact {
+                    Some(exact) => Some(exact),
+                    None => approximate().inspect(|_| exactness.found(step)),
+                };
                 if let Some(found) = found {
-                    writes.iter().zip(found).for_each(|(&slot, grid)| grids[slot] = Some(grid));
+                    grids.put(&writes, found);
                     needed[at] = false;
                 }
             }
@@ -165,11 +187,11 @@ impl<'a> Engine<'a> {
     }
 
     /// Computes everything that a scattered plan needs before its points.
-    pub fn before_points(&self, plan: &Plan) -> Result<(Solutions, IndexVec<GridId, Option<Grid>>)> {
+    pub fn before_points(&self, plan: &Plan) -> Result<(Solutions, Grids)> {
         let solutions = self.solve(plan)?;
-        let mut grids: IndexVec<GridId, Option<Grid>> = plan.grids.iter().map(|_| None).collect();
+        let mut grids = Grids::before(plan);
         let mut exactness = Exactness::of(&self.nodes(), self.preview, plan);
-        let needed = self.kept_grids(plan, &mut grids, &mut exactness);
+        let needed = self.kept_grids(plan, false, &mut grids, &mut exactness);
         for (at, step) in plan.steps.entries() {
             if matches!(step, Step::Fill { out, .. } if out.is_empty()) || !needed[at] {
                 continue;
@@ -177,52 +199,43 @@ impl<'a> Engine<'a> {
             let made = self.step(step, &solutions, &grids, self.progress)?;
             let is_exact = exactness.ran(step, false);
             self.keep_grids(step, &made, is_exact);
-            put(step, made, &mut grids);
-            for (grid, slot) in grids.iter_mut().zip(&plan.grids) {
-                if slot.last_use.is_some_and(|last| last <= at) {
-                    *grid = None;
-                }
-            }
+            grids.put(&step.writes(), made);
+            grids.drop_after(at, plan);
         }
         Ok((solutions, grids))
     }
 
     /// Runs a step on the threads of the pool.
-    fn step(
-        &self,
-        step: &Step,
-        solutions: &Solutions,
-        grids: &IndexVec<GridId, Option<Grid>>,
-        progress: &Progress,
-    ) -> Result<Vec<Grid>> {
-        match step {
+    fn step(&self, step: &Step, solutions: &Solutions, grids: &Grids, progress: &Progress) -> Result<Vec<PlanGrid>> {
+        let made = match step {
             Step::Fill { program, window, out } => {
                 let filling = Filling { program, window, outputs: out.len() };
-                self.pool.install(|| self.fill(&filling, solutions, grids, progress))
+                self.pool.install(|| self.fill(&filling, solutions, grids, progress))?
             }
-            Step::Apply { .. } => self.pool.install(|| self.apply(step, grids, progress)),
+            Step::Apply { .. } => self.pool.install(|| self.apply(step, grids, progress))?,
             Step::Refine { node, inputs, window, out } => {
                 let mut given = Vec::with_capacity(inputs.len());
                 for level in inputs {
-                    let grid = |slot: &GridId| grids[*slot].as_ref().ok_or_else(|| missing("an input of a level"));
+                    let grid = |slot: &GridId| grids.memory(*slot).ok_or_else(|| missing("an input of a level"));
                     given.push(level.iter().map(|slot| slot.as_ref().map(grid).transpose()).collect::<Result<_>>()?);
                 }
                 let made = self.refine(*node, given, &wanted(out), window, progress)?;
-                Ok(made.into_iter().flatten().collect())
+                made.into_iter().flatten().collect()
             }
-        }
+        };
+        Ok(made.into_iter().map(PlanGrid::from).collect())
     }
 
     /// Keeps the grids of an expensive filter for later requests; those that are not exact for previews alone.
-    fn keep_grids(&self, step: &Step, made: &[Grid], is_exact: bool) {
+    fn keep_grids(&self, step: &Step, made: &[PlanGrid], is_exact: bool) {
         let Some(exact) = self.grids.filter(|store| store.is_used()) else { return };
-        let store = match self.preview {
-            Some(preview) if !is_exact => &preview.kept.grids,
-            _ => exact,
-        };
         for (key, grid) in self.grid_keys(step).into_iter().flatten().zip(made) {
             let allowed = self.budget.unused().map(|unused| unused.saturating_sub(self.store.memory()));
-            store.keep(key, grid, allowed);
+            match (self.preview, grid.memory()) {
+                (Some(preview), _) if !is_exact => preview.kept.grids.keep(key, grid, allowed),
+                (_, Some(grid)) => exact.keep(key, grid, allowed),
+                (_, None) => {}
+            }
         }
     }
 
@@ -251,7 +264,7 @@ impl<'a> Engine<'a> {
         x: &[f64],
         y: &[f64],
         solutions: &Solutions,
-        grids: &IndexVec<GridId, Option<Grid>>,
+        grids: &Grids,
     ) -> Result<Vec<Vec<f32>>> {
         let fields = |node| self.field(node);
         let solvers = |node| self.solver(node, solutions);
@@ -269,13 +282,7 @@ impl<'a> Engine<'a> {
     }
 
     /// Runs a program over a window: bands of rows in parallel, each band block by block.
-    fn fill(
-        &self,
-        filling: &Filling,
-        solutions: &Solutions,
-        grids: &IndexVec<GridId, Option<Grid>>,
-        progress: &Progress,
-    ) -> Result<Vec<Grid>> {
+    fn fill(&self, filling: &Filling, solutions: &Solutions, grids: &Grids, progress: &Progress) -> Result<Vec<Grid>> {
         let Filling { program, window, outputs } = *filling;
         let mut out: Vec<Grid> = (0..outputs).map(|_| Grid::filled(*window, 0.0f32)).collect();
         if window.is_empty() {
@@ -328,7 +335,7 @@ impl<'a> Engine<'a> {
         program: &Program,
         window: &Window,
         solutions: &Solutions,
-        grids: &IndexVec<GridId, Option<Grid>>,
+        grids: &Grids,
         progress: &Progress,
     ) -> Result<Vec<Grid>> {
         let filling = Filling { program, window, outputs: program.outputs.len() };
@@ -343,7 +350,7 @@ impl<'a> Engine<'a> {
         }
     }
 
-    fn apply(&self, step: &Step, grids: &IndexVec<GridId, Option<Grid>>, progress: &Progress) -> Result<Vec<Grid>> {
+    fn apply(&self, step: &Step, grids: &Grids, progress: &Progress) -> Result<Vec<Grid>> {
         let Step::Apply { node, window, out, .. } = step else { return Ok(Vec::new()) };
         let filter = self.filter(*node)?;
         with_inputs(step, grids, |given| {
@@ -356,35 +363,24 @@ impl<'a> Engine<'a> {
     }
 }
 
-/// Puts the grids that a step made into their slots.
-fn put(step: &Step, made: Vec<Grid>, grids: &mut IndexVec<GridId, Option<Grid>>) {
-    for (slot, grid) in step.writes().into_iter().zip(made) {
-        grids[slot] = Some(grid);
-    }
-}
-
 /// Lends the inputs of a filter, cropped to its window grown by its halo: they may cover more because other steps read them, too.
-pub(super) fn with_inputs<T>(
-    step: &Step,
-    grids: &IndexVec<GridId, Option<Grid>>,
-    work: impl FnOnce(&[Option<&Grid>]) -> Result<T>,
-) -> Result<T> {
+fn with_inputs<T>(step: &Step, grids: &Grids, work: impl FnOnce(&[Option<&Grid>]) -> Result<T>) -> Result<T> {
     let Step::Apply { inputs, window, halo, .. } = step else { return Err(missing("the filter of a step")) };
-    if inputs.iter().flatten().any(|&slot| grids[slot].is_none()) {
+    if inputs.iter().flatten().any(|&slot| grids.memory(slot).is_none()) {
         return Err(missing("an input of a filter"));
     }
     let grown = window.grown(*halo);
     let cropped: Vec<Option<Grid>> = inputs
         .iter()
         .map(|input| {
-            let grid = input.and_then(|slot| grids[slot].as_ref())?;
+            let grid = input.and_then(|slot| grids.memory(slot))?;
             if *grid.window() == grown { None } else { grid.crop(&grown) }
         })
         .collect();
     let given: Vec<Option<&Grid>> = inputs
         .iter()
         .zip(&cropped)
-        .map(|(input, cropped)| cropped.as_ref().or_else(|| input.and_then(|slot| grids[slot].as_ref())))
+        .map(|(input, cropped)| cropped.as_ref().or_else(|| input.and_then(|slot| grids.memory(slot))))
         .collect();
     work(&given)
 }

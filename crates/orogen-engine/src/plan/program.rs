@@ -143,6 +143,18 @@ pub struct Program<G = GridId> {
     pub outputs: Vec<RegisterId>,
 }
 
+impl Program {
+    /// The grids that it reads.
+    #[must_use]
+    pub fn reads(&self) -> Vec<GridId> {
+        let grid = |instruction: &Instruction| match instruction {
+            Instruction::Grid { grid, .. } => Some(*grid),
+            _ => None,
+        };
+        self.instructions.iter().filter_map(grid).collect()
+    }
+}
+
 impl<G> Program<G> {
     /// The program with other grids in place of its own.
     pub(super) fn resolve<H>(self, grid: impl Fn(G) -> Result<H>) -> Result<Program<H>> {

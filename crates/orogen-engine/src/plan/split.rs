@@ -21,12 +21,16 @@ pub struct Split {
     pub device: LoweredProgram,
 }
 
-/// Splits a program. `lower` is the function that computes a field, or reads a solution, on the device, if there is one. Returns `None` if no field is left for the
-/// device: then it would only copy grids.
+/// Splits a program. `lower` is the function that computes a field, or reads a solution, on the device, if there is one; `is_away` says of a grid whether it is on
+/// the device alone. Returns `None` if no field and no such grid is left for the device: then it would only copy grids.
 ///
 /// # Errors
 /// If an instruction reads a value before it is written, which is a bug.
-pub fn split(program: &Program, lower: impl Fn(&Instruction) -> Option<Shader>) -> Result<Option<Split>> {
+pub fn split(
+    program: &Program,
+    lower: impl Fn(&Instruction) -> Option<Shader>,
+    is_away: impl Fn(GridId) -> bool,
+) -> Result<Option<Split>> {
     let written_once = WrittenOnce::of(program)?;
     let shaders: Vec<Option<Shader>> = written_once
         .instructions
@@ -41,7 +45,11 @@ pub fn split(program: &Program, lower: impl Fn(&Instruction) -> Option<Shader>) 
         _ => false,
     };
     let needed = written_once.needed(&written_once.outputs, is_for_processor);
-    if !needed.iter().enumerate().any(|(i, needed)| *needed && shaders[i].is_some()) {
+    let is_there = |i: usize| match &written_once.instructions[i] {
+        Instruction::Grid { grid, .. } => is_away(*grid),
+        _ => shaders[i].is_some(),
+    };
+    if !needed.iter().enumerate().any(|(i, needed)| *needed && is_there(i)) {
         return Ok(None);
     }
     let handed: Vec<RegisterId> = (0..needed.len())
@@ -252,7 +260,7 @@ mod tests {
         let instructions =
             vec![field(1, &[], 0), field(10, &[0], 1), field(2, &[1], 0), sum(0, 1, 2), field(3, &[2], 0)];
         let program = Program { instructions, once: 5, registers: 3, coord_sets: 1, outputs: vec![RegisterId::new(0)] };
-        let split = split(&program, shader).unwrap().unwrap();
+        let split = split(&program, shader, |_| false).unwrap().unwrap();
         let processor = split.processor.unwrap();
         assert_eq!((processor.instructions.len(), processor.outputs.len()), (2, 1));
         // The grid that is handed over, 2, the sum and 3.
@@ -266,6 +274,6 @@ mod tests {
     fn programs_without_fields_for_a_device_are_not_split() {
         let instructions = vec![field(11, &[], 0)];
         let program = Program { instructions, once: 1, registers: 1, coord_sets: 1, outputs: vec![RegisterId::new(0)] };
-        assert_eq!(split(&program, shader).unwrap(), None);
+        assert_eq!(split(&program, shader, |_| false).unwrap(), None);
     }
 }

@@ -166,14 +166,7 @@ impl Step {
     #[must_use]
     pub fn reads(&self) -> Vec<GridId> {
         match self {
-            Step::Fill { program, .. } => program
-                .instructions
-                .iter()
-                .filter_map(|instruction| match instruction {
-                    Instruction::Grid { grid, .. } => Some(*grid),
-                    _ => None,
-                })
-                .collect(),
+            Step::Fill { program, .. } => program.reads(),
             Step::Apply { inputs, .. } => inputs.iter().flatten().copied().collect(),
             Step::Refine { inputs, .. } => inputs.iter().flatten().flatten().copied().collect(),
         }

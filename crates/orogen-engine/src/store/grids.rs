@@ -10,14 +10,13 @@ pub const EXPENSIVE: f64 = 25.0;
 
 /// Grids by the filter's content key, the layer and the window. The least recently used ones are dropped if the limit
 /// is exceeded.
-pub struct GridStore {
+pub struct GridStore<G = Grid> {
     limit: u64,
-    held: Mutex<Entries>,
+    held: Mutex<Entries<G>>,
 }
 
-#[derive(Default)]
-struct Entries {
-    grids: HashMap<GridKey, (u64, Grid)>,
+struct Entries<G> {
+    grids: HashMap<GridKey, (u64, G)>,
     bytes: u64,
     turn: u64,
     /// The number of requests whose grids were all present.
@@ -38,6 +37,11 @@ pub struct GridKey {
 }
 
 impl GridKey {
+    /// Bytes of the grid.
+    fn bytes(&self) -> u64 {
+        4 * self.samples[2].unsigned_abs() * self.samples[3].unsigned_abs()
+    }
+
     /// The key of a layer of a filter over a window.
     pub fn new(node: Key, layer: usize, window: &Window) -> GridKey {
         let samples = [window.x, window.y, window.width as i64, window.height as i64];
@@ -45,10 +49,11 @@ impl GridKey {
     }
 }
 
-impl GridStore {
+impl<G: Clone> GridStore<G> {
     /// A store of at most `limit` bytes.
-    pub fn new(limit: u64) -> GridStore {
-        GridStore { limit, held: Mutex::default() }
+    pub fn new(limit: u64) -> GridStore<G> {
+        let none = Entries { grids: HashMap::new(), bytes: 0, turn: 0, found: 0 };
+        GridStore { limit, held: Mutex::new(none) }
     }
 
     /// The most that it keeps, in bytes.
@@ -62,7 +67,7 @@ impl GridStore {
     }
 
     /// Copies of all these grids, if all of them are present.
-    pub fn find(&self, keys: &[GridKey]) -> Option<Vec<Grid>> {
+    pub fn find(&self, keys: &[GridKey]) -> Option<Vec<G>> {
         let mut held = self.lock();
         if !keys.iter().all(|key| held.grids.contains_key(key)) {
             return None;
@@ -87,8 +92,8 @@ impl GridStore {
 
     /// Keeps a copy of a grid, if it fits in the limit and in `allowed`, the bytes that all grids may take now (`None`
     /// for no such limit).
-    pub fn keep(&self, key: GridKey, grid: &Grid, allowed: Option<u64>) {
-        let bytes = 4 * grid.data().len() as u64;
+    pub fn keep(&self, key: GridKey, grid: &G, allowed: Option<u64>) {
+        let bytes = key.bytes();
         let mut held = self.lock();
         let allowed = self.limit.min(allowed.unwrap_or(u64::MAX));
         // A very large grid would displace all others.
@@ -118,17 +123,17 @@ impl GridStore {
     }
 
     /// Grids are inserted as a whole, so the data is consistent even after a panic of another thread.
-    fn lock(&self) -> MutexGuard<'_, Entries> {
+    fn lock(&self) -> MutexGuard<'_, Entries<G>> {
         self.held.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl Entries {
+impl<G> Entries<G> {
     fn shrink(&mut self, allowed: u64) {
         while self.bytes > allowed {
             let oldest = self.grids.iter().min_by_key(|(_, (used, _))| *used).map(|(key, _)| *key);
-            let Some((_, grid)) = oldest.and_then(|key| self.grids.remove(&key)) else { return };
-            self.bytes -= 4 * grid.data().len() as u64;
+            let Some((key, _)) = oldest.and_then(|key| self.grids.remove_entry(&key)) else { return };
+            self.bytes -= key.bytes();
         }
     }
 }
@@ -168,6 +173,6 @@ mod tests {
         let store = GridStore::new(399);
         store.keep(key(1), &grid(1.0), None);
         assert!(store.find(&[key(1)]).is_none());
-        assert!(!GridStore::new(0).is_used());
+        assert!(!GridStore::<Grid>::new(0).is_used());
     }
 }

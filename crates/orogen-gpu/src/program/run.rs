@@ -5,9 +5,11 @@ use super::positions;
 use crate::failure::Failure;
 use crate::gpu::Gpu;
 use crate::job::{Dispatch, Job};
+use crate::layers::Layers;
+use crate::resident::Source;
 use crate::tiles::fitting;
-use orogen_engine::device::{Lowered, LoweredProgram};
-use orogen_grid::grid::{Grid, Window};
+use orogen_engine::device::{Lowered, LoweredProgram, PlanGrid};
+use orogen_grid::grid::Window;
 use orogen_noise::shader::function::Shader;
 use orogen_noise::shader::lattice::{Lattice, Positions};
 use std::collections::BTreeMap;
@@ -15,7 +17,7 @@ use std::collections::BTreeMap;
 /// A program that runs over a window.
 struct Run<'a> {
     program: &'a LoweredProgram,
-    grids: &'a [&'a Grid],
+    grids: &'a [Source<'a>],
     kernels: Vec<Kernel>,
     /// Of each instruction, whether it reads a grid that has the samples of the window.
     copies: Vec<bool>,
@@ -30,38 +32,28 @@ pub(crate) fn run(
     gpu: &Gpu,
     program: &LoweredProgram,
     window: &Window,
-    grids: &[&Grid],
+    grids: &[&PlanGrid],
     most: usize,
     is_cancelled: impl Fn() -> bool,
-) -> Result<Option<Vec<Grid>>, Failure> {
-    let run = Run::new(program, window, grids, most);
+) -> Result<Option<Vec<PlanGrid>>, Failure> {
+    let grids = grids.iter().map(|grid| Source::of(gpu, grid)).collect::<Result<Vec<_>, _>>()?;
+    let run = Run::new(program, window, &grids, most);
     let limit = gpu.buffer_limit();
     let Some(tiles) = fitting(window, |tile| run.bytes(tile).into_iter().max() <= Some(limit)) else {
         return Err(Failure::Memory(format!("a program and its grids need buffers of more than {limit} bytes")));
     };
-    let mut outputs: Vec<Grid> = program.outputs.iter().map(|_| Grid::filled(*window, 0.0f32)).collect();
+    let mut layers = Layers::new(gpu, window, program.outputs.len())?;
     for tile in tiles {
-        if is_cancelled() {
+        let firsts: Vec<usize> = program.outputs.iter().map(|value| run.slot(*value, &tile)).collect();
+        if !layers.run(gpu, run.tile(&tile)?, &tile, (&firsts, tile.width), &is_cancelled)? {
             return Ok(None);
         }
-        let Some(made) = run.tile(&tile).run(gpu, &is_cancelled)? else { return Ok(None) };
-        for (output, made) in outputs.iter_mut().zip(made) {
-            if tile == *window {
-                // The job reads back as many samples as the tile has.
-                *output = Grid::from_data(tile, made).unwrap_or_else(|| Grid::filled(tile, f32::NAN));
-                continue;
-            }
-            let (left, top) = ((tile.x - window.x) as usize, (tile.y - window.y) as usize);
-            for (j, row) in made.chunks(tile.width).enumerate() {
-                output.row_mut(top + j)[left..left + tile.width].copy_from_slice(row);
-            }
-        }
     }
-    Ok(Some(outputs))
+    Ok(Some(layers.into_grids()))
 }
 
 impl<'a> Run<'a> {
-    fn new(program: &'a LoweredProgram, window: &Window, grids: &'a [&'a Grid], most: usize) -> Run<'a> {
+    fn new(program: &'a LoweredProgram, window: &Window, grids: &'a [Source<'a>], most: usize) -> Run<'a> {
         let is_copy = |instruction: &Lowered| match instruction {
             Lowered::Grid { grid, coords: 0, .. } => {
                 grids.get(*grid).is_some_and(|grid| grid.window().cell == window.cell && grid.window().contains(window))
@@ -101,7 +93,7 @@ impl<'a> Run<'a> {
 
     /// An upper bound of the sizes of the buffers of samples and of data for a tile, in bytes.
     fn bytes(&self, tile: &Window) -> [u64; 2] {
-        let grids: usize = self.grids.iter().map(|grid| grid.data().len()).sum();
+        let grids: usize = (0..self.grids.len()).map(|k| self.part(k, tile).len()).sum();
         // A block, and tables of columns and rows along both axes.
         let table = 16 + 2 * 3 * (tile.width + tile.height);
         let tables = |instruction: &Lowered| match instruction {
@@ -114,27 +106,28 @@ impl<'a> Run<'a> {
     }
 
     /// The job of a tile.
-    fn tile(&self, tile: &Window) -> Job<'_> {
+    ///
+    /// # Errors
+    /// If a grid does not cover what is read of it.
+    fn tile(&self, tile: &Window) -> Result<Job<'_>, Failure> {
         let sets = positions::of_sets(&self.program.coord_sets, tile);
-        let mut uploads = Vec::with_capacity(self.grids.len());
+        let mut job = Job { samples: self.slot_count * tile.len(), ..Job::default() };
         let mut starts = Vec::with_capacity(self.grids.len());
-        let mut samples = self.slot_count * tile.len();
-        for grid in self.grids {
-            uploads.push((samples, grid.data()));
-            starts.push(samples);
-            samples += grid.data().len();
+        for (k, grid) in self.grids.iter().enumerate() {
+            let part = self.part(k, tile);
+            starts.push(job.samples);
+            job.samples += part.len();
+            grid.add_to(&mut job, part, starts[k])?;
         }
         // The first word is no table.
         let mut data = vec![0];
-        let mut dispatches = Vec::with_capacity(self.kernels.len());
-        let slot = |value: usize| (self.slots.get(&value).copied().unwrap_or(0) * tile.len()) as u32;
         for kernel in &self.kernels {
             let words: Vec<u32> = kernel
                 .words
                 .iter()
                 .map(|word| match word {
                     Word::Number(number) => number.to_bits(),
-                    Word::Slot(value) => slot(*value),
+                    Word::Slot(value) => self.slot(*value, tile) as u32,
                     Word::Function(i) => match &self.program.instructions[*i] {
                         Lowered::Field { shader, coords, .. } => shader.encode(&sets[*coords], &mut data),
                         _ => 0,
@@ -144,21 +137,32 @@ impl<'a> Run<'a> {
                 .collect();
             let base = data.len() as u32;
             data.extend(words);
-            dispatches.push(Dispatch {
+            job.dispatches.push(Dispatch {
                 text: &kernel.text,
                 base,
                 size: [tile.width as u32, tile.height as u32],
                 step: 0,
             });
         }
-        let downloads = self.program.outputs.iter().map(|value| (slot(*value) as usize, tile.len())).collect();
-        Job { data, samples, uploads, dispatches, downloads }
+        Ok(Job { data, ..job })
+    }
+
+    /// The part of a grid that a tile reads: the tile itself, if the grid is read as it is and nowhere else.
+    fn part<'b>(&'b self, grid: usize, tile: &'b Window) -> &'b Window {
+        let reads = self.program.instructions.iter().zip(&self.copies);
+        let mut reads = reads.filter(|(read, _)| matches!(read, Lowered::Grid { grid: read, .. } if *read == grid));
+        if reads.all(|(_, is_copy)| *is_copy) { tile } else { self.grids[grid].window() }
+    }
+
+    /// The index of the first sample of a value that is kept.
+    fn slot(&self, value: usize, tile: &Window) -> usize {
+        self.slots.get(&value).copied().unwrap_or(0) * tile.len()
     }
 
     /// Appends the block of the grid that an instruction reads; returns its index.
     fn grid(&self, i: usize, tile: &Window, sets: &[Positions], starts: &[usize], data: &mut Vec<u32>) -> u32 {
         let Lowered::Grid { grid, coords, .. } = self.program.instructions[i] else { return 0 };
-        let (window, start) = (self.grids[grid].window(), starts[grid] as i64);
+        let (window, start) = (self.part(grid, tile), starts[grid] as i64);
         if self.copies[i] {
             let first = start + (tile.y - window.y) * window.width as i64 + (tile.x - window.x);
             data.extend([first as u32, window.width as u32]);

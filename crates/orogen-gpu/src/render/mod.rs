@@ -83,9 +83,10 @@ fn draw_band(
     let job = Job {
         data,
         samples: encoded.samples + count,
-        uploads: encoded.uploads.clone(),
+        uploads: encoded.uploads.iter().map(|(at, grid)| (*at, (*grid).into())).collect(),
         dispatches,
         downloads: vec![(encoded.samples, count)],
+        ..Job::default()
     };
     let asked = Cell::new(0);
     let back = job.run_in_parts(gpu, 1, || {

@@ -90,8 +90,8 @@ pub fn skylight(
         dispatches.push(Dispatch { text: &text, base, size: [groups * GROUP, GROUP], step: 0 });
         dispatches.push(Dispatch { text: &text, base, size: [columns as u32, rows as u32], step: 1 });
     }
-    let uploads = vec![(0, input.bed.as_slice()), (turned, input.turned.as_slice())];
-    let job = Job { data, samples, uploads, dispatches, downloads: vec![(shed, 4 * count)] };
+    let uploads = vec![(0, input.bed.as_slice().into()), (turned, input.turned.as_slice().into())];
+    let job = Job { data, samples, uploads, dispatches, downloads: vec![(shed, 4 * count)], ..Job::default() };
     // Those of one direction at once.
     let back = job.run_in_parts(gpu, 2, is_cancelled)?;
     Ok(back.and_then(|mut grids| grids.pop()).map(|shed| shed.as_chunks::<4>().0.to_vec()))

@@ -1,6 +1,7 @@
 //! What the tests of filters have in common: a device, inputs, and the filters with some parameters.
 #![allow(dead_code, clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
+use orogen_engine::device::{Device, FilterExtent, PlanGrid};
 use orogen_engine::filter::blur::Blur;
 use orogen_engine::filter::distance::Distance;
 use orogen_engine::filter::flow_direction::{Codes, FlowDirection};
@@ -137,12 +138,28 @@ pub fn on_card(gpu: &Gpu, node: &Node, window: &Window, inputs: &[Option<Grid>])
 
 /// The same, with its failure.
 pub fn tried_on_card(gpu: &Gpu, node: &Node, window: &Window, inputs: &[Option<Grid>]) -> Result<Vec<Grid>, Failure> {
-    let inputs: Vec<Option<&Grid>> = inputs.iter().map(Option::as_ref).collect();
     let wanted = vec![true; node.layers().len()];
     let passes = lowered(node, window.cell).unwrap();
-    let halo = filter(node).unwrap().halo(window.cell);
-    let made = orogen_gpu::filters::apply(gpu, &passes, &inputs, window, halo, &wanted, || false)?;
+    let extent = FilterExtent { window: *window, halo: filter(node).unwrap().halo(window.cell), wanted };
+    let made = apply(gpu, &passes, inputs, &extent, false)?;
     Ok(made.unwrap().into_iter().flatten().collect())
+}
+
+/// Layers of a filter from grids in memory, and in memory again.
+pub fn apply(
+    gpu: &Gpu,
+    passes: &Passes,
+    inputs: &[Option<Grid>],
+    extent: &FilterExtent,
+    is_cancelled: bool,
+) -> Result<Option<Vec<Option<Grid>>>, Failure> {
+    let inputs: Vec<Option<PlanGrid>> = inputs.iter().cloned().map(|input| input.map(PlanGrid::from)).collect();
+    let inputs: Vec<Option<&PlanGrid>> = inputs.iter().map(Option::as_ref).collect();
+    let Some(made) = orogen_gpu::filters::apply(gpu, passes, &inputs, extent, || is_cancelled)? else {
+        return Ok(None);
+    };
+    let fetched = |grid: PlanGrid| gpu.fetch(vec![grid], &Progress::none()).unwrap().unwrap().remove(0);
+    Ok(Some(made.into_iter().map(|grid| grid.map(fetched)).collect()))
 }
 
 /// A filter with other parameters than its defaults, several times.

@@ -67,9 +67,9 @@ pub fn of(world: &World, request: &Request) -> Result<Vec<Stage>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use orogen::device::{Device, FilterExtent, LoweredProgram};
+    use orogen::device::{Device, FilterExtent, LoweredProgram, PlanGrid};
     use orogen::lower::Passes;
-    use orogen::{Grid, Options, Progress, Session, Window, presets};
+    use orogen::{Options, Progress, Session, Window, presets};
     use std::sync::Arc;
 
     fn stages(preset: &str, finest: usize) -> Vec<Stage> {
@@ -102,17 +102,17 @@ mod tests {
             self.is_software
         }
 
-        fn fill(&self, _: &LoweredProgram, _: &Window, _: &[&Grid], _: &Progress) -> Result<Option<Vec<Grid>>> {
+        fn fill(&self, _: &LoweredProgram, _: &Window, _: &[&PlanGrid], _: &Progress) -> Result<Option<Vec<PlanGrid>>> {
             Ok(None)
         }
 
         fn apply(
             &self,
             _: &Passes,
-            _: &[Option<&Grid>],
+            _: &[Option<&PlanGrid>],
             _: &FilterExtent,
             _: &Progress,
-        ) -> Result<Option<Vec<Option<Grid>>>> {
+        ) -> Result<Option<Vec<Option<PlanGrid>>>> {
             Ok(None)
         }
     }

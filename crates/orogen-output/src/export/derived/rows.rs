@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::layer::{Around, RowLayer};
 use orogen_engine::bands::Bands;
-use orogen_engine::device::FilterExtent;
+use orogen_engine::device::{FilterExtent, PlanGrid};
 use orogen_engine::world::{HEIGHT, World};
 use orogen_grid::analysis::finite::FiniteCount;
 use orogen_grid::error::Result;
@@ -111,11 +111,12 @@ impl<'w> Rows<'w> {
     /// The channels over a band, made by the device of the world; `None` if there is none, or the processor is to do it.
     fn on_device(&self, around: &Around, band: &Window) -> Result<Option<Vec<Grid>>> {
         let Some((device, lowered)) = self.world.device().zip(self.derived.lowered.as_ref()) else { return Ok(None) };
-        let (passes, heights) = ((lowered.passes)(band.cell), (lowered.heights)(around, band));
+        let (passes, heights) = ((lowered.passes)(band.cell), PlanGrid::from((lowered.heights)(around, band)));
         let halo = (self.derived.reach)(band.cell);
         let extent = FilterExtent { window: *band, halo, wanted: vec![true; self.channels] };
-        let made = device.apply(&passes, &[Some(&heights)], &extent, &Progress::none())?;
-        Ok(made.map(|made| made.into_iter().flatten().collect()))
+        let progress = Progress::none();
+        let Some(made) = device.apply(&passes, &[Some(&heights)], &extent, &progress)? else { return Ok(None) };
+        device.fetch(made.into_iter().flatten().collect(), &progress)
     }
 }
 
