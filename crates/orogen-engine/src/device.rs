@@ -2,7 +2,7 @@
 
 use crate::expression::function::Function;
 use crate::layer::LayerKind;
-use crate::lower::{LevelPasses, Passes};
+use crate::lower::{LayerPasses, LevelPasses, Passes};
 use crate::op::Affine;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -75,6 +75,21 @@ pub trait Device: Send + Sync {
     /// If the work was cancelled.
     fn refine(&self, levels: &[LevelStep], above: &[Grid], progress: &Progress) -> Result<Option<Vec<Grid>>> {
         let _ = (levels, above, progress);
+        Ok(None)
+    }
+
+    /// Computes layers from the last of some levels, which are made as by [`Device::refine`].
+    ///
+    /// # Errors
+    /// If the work was cancelled.
+    fn layers(
+        &self,
+        levels: &[LevelStep],
+        layers: &LayerStep,
+        above: &[Grid],
+        progress: &Progress,
+    ) -> Result<Option<Vec<PlanGrid>>> {
+        let _ = (levels, layers, above, progress);
         Ok(None)
     }
 
@@ -188,6 +203,17 @@ pub struct LevelStep {
     pub inputs: Vec<Option<Grid>>,
     /// The window of the level.
     pub window: Window,
+}
+
+/// Layers that are made from a level.
+#[derive(Debug, Clone)]
+pub struct LayerStep {
+    /// How.
+    pub passes: LayerPasses,
+    /// The window of the layers.
+    pub window: Window,
+    /// Samples around it that the level covers.
+    pub halo: usize,
 }
 
 /// What of a filter is computed.

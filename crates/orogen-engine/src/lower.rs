@@ -96,6 +96,37 @@ pub struct LevelPass {
     pub pass: Pass,
 }
 
+/// The layers of a levelled op as passes over the planes of its last level.
+///
+/// Planes beside those of the level have any values before the passes. The functions are those of [`Passes`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct LayerPasses {
+    /// The numbers that the functions read. After them come the first column and row, and the number of columns and rows, of the samples of the layers among
+    /// those of the planes.
+    pub words: Vec<u32>,
+    /// Number of planes beside those of the level.
+    pub scratch: usize,
+    /// The planes of the wanted layers.
+    pub layers: Vec<usize>,
+    /// The passes, in order.
+    pub passes: Vec<LayerPass>,
+}
+
+/// One run of a function over the samples of layers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LayerPass {
+    /// The text that defines the function. It does not depend on parameters.
+    pub code: &'static str,
+    /// The name of the function.
+    pub function: &'static str,
+    /// Samples of the level around those of the layers for which it also runs.
+    pub around: usize,
+    /// That of [`Pass::reads`].
+    pub reads: usize,
+    /// That of [`Pass::is_shared`]: then the code declares the planes as words, and functions that read samples are not called.
+    pub is_shared: bool,
+}
+
 /// Default number of samples that a call reads.
 const READS: usize = 20;
 

@@ -3,7 +3,7 @@
 use crate::declare::Declared;
 use crate::expression::term::{self, Term};
 use crate::layer::LayerKind;
-use crate::lower::{LevelPasses, Lowering, Passes};
+use crate::lower::{LayerPasses, LevelPasses, Lowering, Passes};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
@@ -406,6 +406,13 @@ pub trait Levelled: Declared + Send + Sync {
     #[doc(hidden)]
     fn lower(&self, level: usize, given: &[bool], world_params: &WorldParams) -> Lowering<LevelPasses> {
         let _ = (level, given, world_params);
+        Lowering::Missing
+    }
+
+    /// How a graphics card computes what [`Levelled::layers_of`] does, for layers that are wanted, from a level that it has made.
+    #[doc(hidden)]
+    fn lower_layers(&self, level: usize, wanted: &[bool], world_params: &WorldParams) -> Lowering<LayerPasses> {
+        let _ = (level, wanted, world_params);
         Lowering::Missing
     }
 

@@ -85,6 +85,20 @@ fn every_level_says_how_a_graphics_card_computes_it() {
                     }
                 }
             }
+            let mut heights = vec![false; levelled.spec().layers.len()];
+            heights[0] = true;
+            match levelled.lower_layers(depth, &heights, &WORLD) {
+                Lowering::Missing => panic!("{name} does not say how a graphics card reads layers from level {depth}"),
+                Lowering::Processor(reason) => assert!(!reason.is_empty(), "{name}"),
+                Lowering::Shader(passes) => {
+                    assert_eq!(passes.layers.len(), 1, "{name}");
+                    for pass in &passes.passes {
+                        let header = format!("fn {}(base: u32, at: vec2<i32>) {{", pass.function);
+                        assert!(pass.code.contains(&header), "{name} has no function {}", pass.function);
+                        assert!(pass.around <= levelled.surface_halo(depth, &heights), "{name}, {}", pass.function);
+                    }
+                }
+            }
         }
     }
 }

@@ -3,11 +3,12 @@
 use crate::adapters::Kind;
 use crate::filters;
 use crate::gpu::Gpu;
+use crate::level_layers;
 use crate::levels;
 use crate::program::run;
 use crate::resident;
 use crate::solvers;
-use orogen_engine::device::{Device, DeviceGrid, FilterExtent, LevelStep, LoweredProgram, PlanGrid};
+use orogen_engine::device::{Device, DeviceGrid, FilterExtent, LayerStep, LevelStep, LoweredProgram, PlanGrid};
 use orogen_engine::lower::Passes;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -48,6 +49,17 @@ impl Device for Gpu {
     fn refine(&self, levels: &[LevelStep], above: &[Grid], progress: &Progress) -> Result<Option<Vec<Grid>>> {
         let is_cancelled = || progress.check().is_err();
         self.outcome(levels::refine(self, levels, above, is_cancelled), progress)
+    }
+
+    fn layers(
+        &self,
+        levels: &[LevelStep],
+        layers: &LayerStep,
+        above: &[Grid],
+        progress: &Progress,
+    ) -> Result<Option<Vec<PlanGrid>>> {
+        let is_cancelled = || progress.check().is_err();
+        self.outcome(level_layers::layers(self, levels, layers, above, is_cancelled), progress)
     }
 
     fn solve(

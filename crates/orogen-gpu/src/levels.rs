@@ -13,7 +13,7 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 
 /// What the passes of all levels have in common.
-const PRELUDE: &str = concat!(include_str!("filters.wgsl"), "\n", include_str!("levels.wgsl"));
+pub(crate) const PRELUDE: &str = concat!(include_str!("filters.wgsl"), "\n", include_str!("levels.wgsl"));
 
 /// Computes the planes of the last of some levels, each as `Levelled::refine` does: from those of the level above, and from the op's inputs at the cell of the
 /// level. `above` are those above the first. `Ok(None)` if the work was cancelled; `is_cancelled` is asked between parts of it.
@@ -63,12 +63,27 @@ fn together(
     above: &[Grid],
     is_cancelled: &impl Fn() -> bool,
 ) -> Result<Option<Vec<Grid>>, Failure> {
+    if let Some(level) = levels.iter().find(|level| level.window.is_empty()) {
+        return Ok(Some((0..level.passes.planes).map(|_| Grid::filled(level.window, 0.0f32)).collect()));
+    }
+    let (mut job, made) = job(levels, above)?;
+    let (Some(last), Some(Made { first, grown, window })) = (levels.last(), made) else { return Ok(None) };
+    // Whole rows are copied back: those of the window.
+    let (left, top) = ((window.x - grown.x) as usize, (window.y - grown.y) as usize);
+    let rows = window.height * grown.width;
+    job.downloads = (0..last.passes.planes).map(|k| (first + k * grown.len() + top * grown.width, rows)).collect();
+    let Some(back) = job.run(gpu, is_cancelled)? else { return Ok(None) };
+    Ok(Some(back.into_iter().map(|rows| inner(&rows, &window, grown.width, left)).collect()))
+}
+
+/// The work that makes levels one from the other, and the last of them, if there is one.
+///
+/// # Errors
+/// If a level covers less than what the next one reads.
+pub(crate) fn job<'a>(levels: &'a [Level], above: &'a [Grid]) -> Result<(Job<'a>, Option<Made>), Failure> {
     let mut job = Job::default();
     let mut before: Option<Made> = None;
     for level in levels {
-        if level.window.is_empty() {
-            return Ok(Some((0..level.passes.planes).map(|_| Grid::filled(level.window, 0.0f32)).collect()));
-        }
         let extents = level.extents(&level.window);
         let [planes, planes_above] = level.planes();
         let first = job.samples;
@@ -87,13 +102,7 @@ fn together(
         level.dispatch(&mut job, first, &extents, before.as_ref())?;
         before = Some(Made { first, grown: extents.grown, window: level.window });
     }
-    let (Some(last), Some(Made { first, grown, window })) = (levels.last(), before) else { return Ok(None) };
-    // Whole rows are copied back: those of the window.
-    let (left, top) = ((window.x - grown.x) as usize, (window.y - grown.y) as usize);
-    let rows = window.height * grown.width;
-    job.downloads = (0..last.passes.planes).map(|k| (first + k * grown.len() + top * grown.width, rows)).collect();
-    let Some(back) = job.run(gpu, is_cancelled)? else { return Ok(None) };
-    Ok(Some(back.into_iter().map(|rows| inner(&rows, &window, grown.width, left)).collect()))
+    Ok((job, before))
 }
 
 /// The part of an input that a tile needs, without values beyond the input's edge. As `Levelled::refine` does, the last samples at the edge read inputs that
@@ -108,16 +117,16 @@ fn padded<'a>(input: &'a Grid, grown: &Window) -> Cow<'a, [f32]> {
 }
 
 /// A level that a job makes.
-struct Made {
+pub(crate) struct Made {
     /// The index of its first sample.
-    first: usize,
+    pub first: usize,
     /// All samples of its planes, and those that are right.
-    grown: Window,
+    pub grown: Window,
     window: Window,
 }
 
 /// A level with its texts.
-struct Level<'a> {
+pub(crate) struct Level<'a> {
     passes: &'a LevelPasses,
     /// The text of each function.
     texts: HashMap<&'static str, String>,
@@ -125,6 +134,8 @@ struct Level<'a> {
     inputs: Vec<&'a Grid>,
     /// Number of planes of the level above.
     planes_above: usize,
+    /// Number of planes beside those of the level that its layers need.
+    layer_scratch: usize,
     window: Window,
 }
 
@@ -140,7 +151,7 @@ struct Extents {
 const TAKE_OVER: &str = "take_over";
 
 impl<'a> Level<'a> {
-    fn new(step: &'a LevelStep, planes_above: usize) -> Result<Level<'a>, Failure> {
+    pub(crate) fn new(step: &'a LevelStep, planes_above: usize) -> Result<Level<'a>, Failure> {
         let missing = || Failure::Input("an input of a level or the level above is missing".to_string());
         let passes = &step.passes;
         let inputs = passes.inputs.iter().map(|&input| step.inputs.get(input)?.as_ref());
@@ -150,13 +161,24 @@ impl<'a> Level<'a> {
             let function = pass.pass.function;
             texts.entry(function).or_insert_with(|| text(PRELUDE, pass.code, function));
         }
-        Ok(Level { passes, texts, inputs, planes_above, window: step.window })
+        Ok(Level { passes, texts, inputs, planes_above, layer_scratch: 0, window: step.window })
+    }
+
+    /// The same level, whose layers need this number of planes.
+    pub(crate) fn with_layer_scratch(self, layer_scratch: usize) -> Level<'a> {
+        Level { layer_scratch, ..self }
+    }
+
+    /// The same over another window.
+    pub(crate) fn over(&self, window: Window) -> Level<'a> {
+        Level { window, texts: self.texts.clone(), inputs: self.inputs.clone(), ..*self }
     }
 
     /// Number of planes of the level, and of the level above.
     fn planes(&self) -> [usize; 2] {
         let passes = self.passes;
-        [passes.planes + passes.scratch + self.inputs.len(), self.planes_above + passes.scratch_above]
+        let beside = (passes.scratch + self.inputs.len()).max(self.layer_scratch);
+        [passes.planes + beside, self.planes_above + passes.scratch_above]
     }
 
     /// What a tile is made from.
@@ -179,7 +201,7 @@ impl<'a> Level<'a> {
     }
 
     /// Memory of the planes for a tile, in bytes.
-    fn bytes(&self, tile: &Window) -> u64 {
+    pub(crate) fn bytes(&self, tile: &Window) -> u64 {
         let Extents { above, grown } = self.extents(tile);
         let [planes, planes_above] = self.planes().map(|planes| planes as u64);
         let words = planes.saturating_mul(grown.len() as u64);
@@ -203,8 +225,7 @@ impl<'a> Level<'a> {
         };
         let mut out: Vec<Grid> = (0..self.passes.planes).map(|_| Grid::filled(self.window, 0.0f32)).collect();
         for window in tiles {
-            let tile = Level { window, texts: self.texts.clone(), inputs: self.inputs.clone(), ..*self };
-            let Some(made) = together(gpu, &[tile], above, is_cancelled)? else { return Ok(None) };
+            let Some(made) = together(gpu, &[self.over(window)], above, is_cancelled)? else { return Ok(None) };
             out.iter_mut().zip(&made).for_each(|(plane, made)| plane.paste(made));
         }
         Ok(Some(out))

@@ -14,6 +14,8 @@ pub mod gpu;
 pub mod job;
 mod layers;
 #[doc(hidden)]
+pub mod level_layers;
+#[doc(hidden)]
 pub mod levels;
 mod pipelines;
 mod program;

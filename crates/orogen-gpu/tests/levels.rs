@@ -3,162 +3,21 @@
 
 mod common;
 
-use common::filters::{gpu, gpu_with_buffers_of, sampled};
+use common::filters::{gpu, gpu_with_buffers_of};
 use common::gpu as shared_gpu;
+use common::levels::{
+    ALL_INPUTS, ALPINE_INPUTS, AREA, Chain, HEIGHT, NO_INPUTS, PLANES, RECEIVER, alpine, passes, windows,
+};
 use orogen_engine::device::{Device, LevelStep};
 use orogen_engine::levelled::amplify::Amplify;
 use orogen_engine::levelled::continents::Continents;
-use orogen_engine::lower::{LevelPasses, Lowering};
-use orogen_engine::op::{Context, Levelled, WorldParams};
-use orogen_engine::{Options, Recipe, Session};
+use orogen_engine::op::Levelled;
 use orogen_gpu::Gpu;
 use orogen_gpu::levels::refine;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 use std::collections::BTreeMap;
-use std::sync::OnceLock;
 use std::time::Instant;
-
-const WORLD: WorldParams = WorldParams { seed: 1, size: None, cell: 60.0, sea_level: 400.0 };
-
-/// The planes of a level.
-const PLANES: [&str; 8] = ["east", "south", "height", "area", "receiver", "variation", "uplift", "shore"];
-const HEIGHT: usize = 2;
-const AREA: usize = 3;
-const RECEIVER: usize = 4;
-
-/// Coarse land with rivers, and basins without an outlet: heights and drainage areas.
-fn land() -> &'static [Grid; 2] {
-    static LAND: OnceLock<[Grid; 2]> = OnceLock::new();
-    LAND.get_or_init(|| {
-        let recipe = "orogen = 1\n[world]\nseed = 2\nsize = [105600.0, 105600.0]\ncell = 480.0\n\
-            [nodes.swells]\nop = \"fbm\"\nwavelength = 24000.0\noctaves = 5\n\
-            [nodes.foreland]\nop = \"remap\"\nsource = \"swells\"\nfrom = [-0.5, 0.5]\nto = [100.0, 400.0]\n\
-            [nodes.ranges]\nop = \"stream-power\"\nsource = \"foreland\"\ncell = 480.0\nyears = 15000000.0\nsteps = 60\n\
-            erodibility = 6e-06\nuplift = 0.7\ncreep = 0.0\n[outputs]\nheight = \"ranges\"\nflow = \"ranges.flow\"\n";
-        let session = Session::new(Options::default()).unwrap();
-        let world = session.open(Recipe::parse(recipe, "test").unwrap()).unwrap();
-        let window = Window::new(212, 212, 480.0).at(4, 4);
-        let [mut height, flow] = ["height", "flow"].map(|layer| world.window(layer, &window).unwrap());
-        // A third of the middle is below sea level.
-        let mut middle = height.crop(&window.shrunk(70)).unwrap().data().to_vec();
-        middle.sort_by(f32::total_cmp);
-        let fall = middle[middle.len() / 3] - WORLD.sea_level as f32;
-        height.data_mut().iter_mut().for_each(|height| *height -= fall);
-        // Two hollows.
-        for (x, y) in [(106, 107), (98, 112)] {
-            height.row_mut(y)[x] -= 900.0;
-        }
-        [height, flow]
-    })
-}
-
-/// A chain of levels: each window is what the next finer one is made from.
-struct Chain<'a> {
-    op: &'a dyn Levelled,
-    /// The windows of the levels from the coarsest.
-    windows: Vec<Window>,
-    /// The inputs of the coarsest level.
-    coarsest: Vec<Option<Grid>>,
-    /// Which of the other inputs are given, as a function of the position.
-    given: Vec<bool>,
-}
-
-const fn context(progress: &Progress) -> Context<'_> {
-    Context { world_params: &WORLD, progress, observer: None }
-}
-
-/// A factor by the position: smooth, with a hole.
-fn factor(window: &Window, input: usize) -> Grid {
-    let metres = window.cell;
-    sampled(window, |x, y| {
-        let (x, y) = ((x * metres).rem_euclid(61_440.0), (y * metres).rem_euclid(61_440.0));
-        let wave = libm::sin(x / (1500.0 + 400.0 * input as f64)) * libm::cos(y / 2300.0 + input as f64);
-        if libm::hypot(x - 9000.0, y - 7000.0) < 800.0 && input.is_multiple_of(2) {
-            f64::NAN
-        } else {
-            libm::exp(0.8 * wave)
-        }
-    })
-}
-
-impl Chain<'_> {
-    fn new<'a>(op: &'a dyn Levelled, level: usize, window: &Window, given: &[bool]) -> Chain<'a> {
-        let mut windows = vec![*window];
-        for depth in (1..=level).rev() {
-            windows.insert(0, op.parent(depth, &windows[0]));
-        }
-        let read = windows[0].grown(op.source_halo(0));
-        let [height, flow] = land();
-        let place = |grid: &Grid| {
-            assert!(read.width <= grid.width() && read.height <= grid.height(), "the land is too small");
-            let [left, top] = [read.width, read.height].map(|side| (grid.width() - side) / 2);
-            let first = height.window();
-            let (x, y) = (first.x + left as i64, first.y + top as i64);
-            let part = Window { x, y, cell: first.cell, ..read };
-            Grid::from_data(read, grid.crop(&part).unwrap().data().to_vec()).unwrap()
-        };
-        let mut coarsest = vec![Some(place(height)), Some(place(flow))];
-        coarsest.extend((2..given.len()).map(|i| given[i].then(|| factor(&read, i))));
-        Chain { op, windows, coarsest, given: given.to_vec() }
-    }
-
-    /// Without any inputs.
-    fn of_nothing<'a>(op: &'a dyn Levelled, level: usize, window: &Window) -> Chain<'a> {
-        let mut windows = vec![*window];
-        for depth in (1..=level).rev() {
-            windows.insert(0, op.parent(depth, &windows[0]));
-        }
-        Chain { op, windows, coarsest: vec![None; 6], given: vec![false; 6] }
-    }
-
-    fn is_lowered(&self, level: usize) -> bool {
-        match self.op.lower(level, &self.given, &WORLD) {
-            Lowering::Shader(_) => true,
-            Lowering::Processor(_) => false,
-            Lowering::Missing => panic!("level {level}"),
-        }
-    }
-
-    /// A level by the processor.
-    fn until(&self, level: usize) -> Vec<Grid> {
-        (1..=level).fold(self.first(), |above, level| self.on_processor(level, &above))
-    }
-
-    fn inputs(&self, level: usize) -> Vec<Option<Grid>> {
-        let read = self.windows[level].grown(self.op.source_halo(level));
-        let reads = level < self.op.levels_with_inputs();
-        (0..self.given.len()).map(|i| (self.given[i] && reads && i >= 2).then(|| factor(&read, i))).collect()
-    }
-
-    fn first(&self) -> Vec<Grid> {
-        let inputs: Vec<Option<&Grid>> = self.coarsest.iter().map(Option::as_ref).collect();
-        self.op.coarsest(&inputs, &self.windows[0], &context(&Progress::none())).unwrap()
-    }
-
-    fn on_processor(&self, level: usize, above: &[Grid]) -> Vec<Grid> {
-        let inputs = self.inputs(level);
-        let inputs: Vec<Option<&Grid>> = inputs.iter().map(Option::as_ref).collect();
-        self.op.refine(level, above, &inputs, &self.windows[level], &context(&Progress::none())).unwrap()
-    }
-
-    fn on_card(&self, gpu: &Gpu, level: usize, above: &[Grid]) -> Vec<Grid> {
-        refine(gpu, &[self.step(level)], above, || false).unwrap().unwrap()
-    }
-
-    fn step(&self, level: usize) -> LevelStep {
-        let inputs = self.inputs(level);
-        let given: Vec<bool> = inputs.iter().map(Option::is_some).collect();
-        LevelStep { passes: passes(self.op, level, &given), inputs, window: self.windows[level] }
-    }
-}
-
-fn passes(op: &dyn Levelled, level: usize, given: &[bool]) -> LevelPasses {
-    match op.lower(level, given, &WORLD) {
-        Lowering::Shader(passes) => passes,
-        other => panic!("level {level}: {other:?}"),
-    }
-}
 
 /// How two levels differ.
 #[derive(Debug, Clone, Copy)]
@@ -214,26 +73,6 @@ fn report(case: &str, level: usize, difference: &Difference) {
             println!("    {name}: {worst:.1e}");
         }
     }
-}
-
-/// As the preset `alpine` has it.
-fn alpine() -> Amplify {
-    Amplify { cell: 60.0, halvings: 3, creep: 1.2, variation: 0.75, ..Default::default() }
-}
-
-/// No optional input, and those that `alpine` gives.
-const NO_INPUTS: [bool; 8] = [true, true, false, false, false, false, false, false];
-const ALPINE_INPUTS: [bool; 8] = [true, true, false, true, true, true, true, false];
-const ALL_INPUTS: [bool; 8] = [true, true, false, true, true, true, true, true];
-
-fn windows(cell: f64) -> [(&'static str, Window); 4] {
-    let far = (1e6 / cell) as i64;
-    [
-        ("near", Window::new(64, 51, cell).at(10, 7)),
-        ("odd", Window::new(37, 23, cell).at(-41, 15)),
-        ("far", Window::new(33, 40, cell).at(far, -far - 3)),
-        ("one sample", Window::new(1, 1, cell).at(1, -2)),
-    ]
 }
 
 /// Sums of differences, by level.

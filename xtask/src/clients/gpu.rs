@@ -8,7 +8,7 @@ pub const PACKAGES: &str = "--package orogen-gpu --package orogen-studio --packa
     --features orogen-studio/kittest,orogen-cli/gpu";
 
 /// The tests of orogen-gpu.
-const TESTS: &str = "--test job --test noise --test programs --test filters --test realism --test derived --test levels --test solvers --test render";
+const TESTS: &str = "--test job --test noise --test programs --test filters --test realism --test derived --test levels --test level_layers --test solvers --test render";
 
 /// Compares fields, filters, solvers, presets and pictures with those of the processor, and runs commands without any card.
 pub fn check() -> Result {

@@ -2,7 +2,7 @@
 
 use super::preview::{Preview, Previews};
 use super::run::Engine;
-use crate::device::{Device, LevelStep};
+use crate::device::{Device, LayerStep, LevelStep, PlanGrid};
 use crate::ids::{Id, NodeId};
 use crate::lower::Lowering;
 use crate::op::{Context, Levelled, Op, WorldParams};
@@ -38,51 +38,61 @@ pub(super) struct Refining<'a> {
 }
 
 impl Engine<'_> {
-    /// Computes the wanted layers of a levelled op over a window. Work is done on the threads of the pool, and the calling thread waits for tiles that
-    /// other requests make.
+    /// Computes the wanted layers of a levelled op over a window; they may be on a device if `keeps` allows it. Work is done on the threads of the pool, and
+    /// the calling thread waits for tiles that other requests make.
     pub(super) fn refine(
         &self,
         node: NodeId,
         inputs: Vec<Vec<Option<&Grid>>>,
         wanted: &[bool],
-        window: &Window,
+        (window, keeps): (&Window, bool),
         progress: &Progress,
-    ) -> Result<Vec<Option<Grid>>> {
+    ) -> Result<Vec<Option<PlanGrid>>> {
         let Op::Levelled(op) = self.recipe.nodes()[node.index()].node.op() else {
             return Err(internal("a node that is not levelled was to be refined"));
         };
         let device = self.preview.map(|preview| (preview.device, self.nodes().given(node)));
         let refining = Refining { op, node, inputs, wanted, world_params: self.world_params, progress, device };
         let serving = Serving::of(&op.levels(), window);
+        let is_between = serving.samples.cell != window.cell;
+        let keeps = keeps && !is_between;
         let made = match self.preview.filter(|preview| preview.is_read_by(node)) {
             Some(Preview { kept: Previews { store, level_tiles, .. }, .. }) => {
-                Engine { store, level_tiles, ..*self }.samples(&refining, &serving)?
+                Engine { store, level_tiles, ..*self }.samples(&refining, &serving, keeps)?
             }
-            None => self.samples(&refining, &serving)?,
+            None => self.samples(&refining, &serving, keeps)?,
         };
-        if serving.samples.cell == window.cell {
+        if !is_between {
             return Ok(made);
         }
-        let between = |(layer, grid): (usize, Option<Grid>)| {
+        let between = |(layer, grid): (usize, Option<PlanGrid>)| {
             let kind = self.graph.layer_kind(self.recipe, LayerRef { node, layer });
-            grid.map(|grid| interpolated(&grid, kind, window, progress)).transpose()
+            let made = |grid: Grid| interpolated(&grid, kind, window, progress).map(PlanGrid::from);
+            grid.and_then(PlanGrid::into_memory).map(made).transpose()
         };
         self.pool.install(|| made.into_iter().enumerate().map(between).collect())
     }
 
-    /// The layers over samples of a level.
-    fn samples(&self, refining: &Refining, serving: &Serving) -> Result<Vec<Option<Grid>>> {
+    /// The layers over samples of a level, which may be on a device if `keeps` allows it.
+    fn samples(&self, refining: &Refining, serving: &Serving, keeps: bool) -> Result<Vec<Option<PlanGrid>>> {
         let Serving { level, samples } = *serving;
-        let mut layers = refining.layers(&samples);
+        let in_memory = |layers: Vec<Option<Grid>>| layers.into_iter().map(|layer| layer.map(PlanGrid::from)).collect();
         if samples.is_empty() {
-            return Ok(layers);
+            return Ok(in_memory(refining.layers(&samples)));
         }
         // A device is best used by one piece at a time.
         let pieces = serving.pieces(if refining.device.is_some() { 1 } else { self.pool.threads() });
         let tiled = levels::tiled(refining.op, refining.wanted, serving);
         let tiles = self.level_tiles(refining, tiled..=level, &pieces)?;
+        if let ([piece], true) = (pieces.as_slice(), keeps)
+            && *piece == samples
+            && let Some(made) = self.pool.install(|| refining.layers_on_device(tiled..=level, piece, &tiles))?
+        {
+            return Ok(made);
+        }
         let make = |piece: &Window| refining.piece(tiled..=level, piece, &tiles);
         let made: Vec<Vec<Option<Grid>>> = self.pool.install(|| pieces.par_iter().map(make).collect::<Result<_>>())?;
+        let mut layers = refining.layers(&samples);
         for piece in made {
             for (layer, part) in layers.iter_mut().zip(piece) {
                 if let (Some(layer), Some(part)) = (layer, part) {
@@ -90,7 +100,7 @@ impl Engine<'_> {
                 }
             }
         }
-        Ok(layers)
+        Ok(in_memory(layers))
     }
 }
 
@@ -163,6 +173,34 @@ impl Refining<'_> {
         let Some(made) = device.refine(&steps, above, &part)? else { return Ok(None) };
         part.finish();
         Ok(Some((self.checked(made, last)?, steps.len())))
+    }
+
+    /// The layers of the last of the `direct` levels over a piece, which a device makes with all levels from tiles of the first; `None` if it does not.
+    fn layers_on_device(
+        &self,
+        direct: RangeInclusive<usize>,
+        piece: &Window,
+        tiles: &Planes,
+    ) -> Result<Option<Vec<Option<PlanGrid>>>> {
+        let Some((device, given)) = &self.device else { return Ok(None) };
+        let level = *direct.end();
+        let Lowering::Shader(passes) = self.op.lower_layers(level, self.wanted, self.world_params) else {
+            return Ok(None);
+        };
+        let windows = levels::windows(self.op, self.wanted, *direct.start(), level, piece);
+        let mut steps = Vec::new();
+        for (level, window) in direct.clone().zip(&windows).skip(1) {
+            let Lowering::Shader(passes) = self.op.lower(level, given, self.world_params) else { return Ok(None) };
+            steps.push(LevelStep { passes, inputs: self.inputs_over(level, window)?, window: *window });
+        }
+        let (Some(first), false) = (windows.first(), steps.is_empty()) else { return Ok(None) };
+        let layers = LayerStep { passes, window: *piece, halo: self.op.surface_halo(level, self.wanted) };
+        let part = self.progress.part(self.work_of_piece(direct.clone(), piece));
+        let above = self.mosaic(*direct.start(), first, tiles)?;
+        let Some(made) = device.layers(&steps, &layers, &above, &part)? else { return Ok(None) };
+        part.finish();
+        let mut made = made.into_iter();
+        Ok(Some(self.wanted.iter().map(|wanted| if *wanted { made.next() } else { None }).collect()))
     }
 
     /// Passes the op's inputs over exactly the samples that it may read.

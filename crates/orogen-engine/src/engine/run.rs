@@ -110,7 +110,9 @@ impl<'a> Engine<'a> {
             let on_device = made.is_some();
             let made = match made {
                 Some(made) => made,
-                None if grids.fetch(&step.reads(), device, progress)? => self.step(step, solutions, &grids, &part)?,
+                None if grids.fetch(&step.reads(), device, progress)? => {
+                    self.step(step, solutions, (&grids, device.is_some()), &part)?
+                }
                 None => return Ok(None),
             };
             let is_exact = exactness.ran(step, on_device);
@@ -196,7 +198,7 @@ impl<'a> Engine<'a> {
             if matches!(step, Step::Fill { out, .. } if out.is_empty()) || !needed[at] {
                 continue;
             }
-            let made = self.step(step, &solutions, &grids, self.progress)?;
+            let made = self.step(step, &solutions, (&grids, false), self.progress)?;
             let is_exact = exactness.ran(step, false);
             self.keep_grids(step, &made, is_exact);
             grids.put(&step.writes(), made);
@@ -205,8 +207,14 @@ impl<'a> Engine<'a> {
         Ok((solutions, grids))
     }
 
-    /// Runs a step on the threads of the pool.
-    fn step(&self, step: &Step, solutions: &Solutions, grids: &Grids, progress: &Progress) -> Result<Vec<PlanGrid>> {
+    /// Runs a step on the threads of the pool. Layers of levels may stay on a device if `keeps` allows it.
+    fn step(
+        &self,
+        step: &Step,
+        solutions: &Solutions,
+        (grids, keeps): (&Grids, bool),
+        progress: &Progress,
+    ) -> Result<Vec<PlanGrid>> {
         let made = match step {
             Step::Fill { program, window, out } => {
                 let filling = Filling { program, window, outputs: out.len() };
@@ -219,8 +227,8 @@ impl<'a> Engine<'a> {
                     let grid = |slot: &GridId| grids.memory(*slot).ok_or_else(|| missing("an input of a level"));
                     given.push(level.iter().map(|slot| slot.as_ref().map(grid).transpose()).collect::<Result<_>>()?);
                 }
-                let made = self.refine(*node, given, &wanted(out), window, progress)?;
-                made.into_iter().flatten().collect()
+                let made = self.refine(*node, given, &wanted(out), (window, keeps), progress)?;
+                return Ok(made.into_iter().flatten().collect());
             }
         };
         Ok(made.into_iter().map(PlanGrid::from).collect())

@@ -1,9 +1,10 @@
 //! Coarse land with ever smaller valleys.
 
 use super::drained::{self, Lattices, Reading};
+use super::layer_passes::lower_layers;
 use super::passes::{self, GivenInputs};
 use crate::declare::Declared;
-use crate::lower::{LevelPasses, Lowering};
+use crate::lower::{LayerPasses, LevelPasses, Lowering};
 use crate::op::{Context, Levelled, Levels, WorldParams};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
@@ -112,6 +113,14 @@ impl Amplify {
             .with_sea(self.sea)
     }
 
+    fn reading(&self, level: usize, world_params: &WorldParams) -> Reading {
+        // The samples of level 0 are those of the source, in the middles of its cells; those of finer levels are at the corners of theirs.
+        let share = if level == 0 { 0.5 } else { 0.0 };
+        // Levels with a sea have it at 0.
+        let sea_level = if self.sea { world_params.sea_level as f32 } else { 0.0 };
+        Reading { share, stream: self.stream, runoff: self.runoff, sea_level }
+    }
+
     fn seeded(&self, context: &Context) -> Refinement {
         self.refinement().with_seed(context.world_params.seed_of(self.seed))
     }
@@ -201,12 +210,12 @@ impl Levelled for Amplify {
         out: &mut [Option<Grid>],
         context: &Context,
     ) -> Result<()> {
-        // The samples of level 0 are those of the source, in the middles of its cells; those of finer levels are at the corners of theirs.
-        let share = if level == 0 { 0.5 } else { 0.0 };
-        // Levels with a sea have it at 0.
-        let sea_level = if self.sea { context.world_params.sea_level as f32 } else { 0.0 };
-        let reading = Reading { share, stream: self.stream, runoff: self.runoff, sea_level };
+        let reading = self.reading(level, context.world_params);
         drained::layers_of(&self.seeded(context), &reading, level, planes, window, out, context)
+    }
+
+    fn lower_layers(&self, level: usize, wanted: &[bool], world_params: &WorldParams) -> Lowering<LayerPasses> {
+        lower_layers(&self.refinement(), &self.reading(level, world_params), level, wanted)
     }
 
     fn lower(&self, level: usize, given: &[bool], world_params: &WorldParams) -> Lowering<LevelPasses> {

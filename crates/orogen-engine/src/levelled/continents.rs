@@ -1,9 +1,10 @@
 //! Continents with rivers, without bounds.
 
 use super::drained::{self, Lattices, Reading};
+use super::layer_passes::lower_layers;
 use super::passes::{self, GivenInputs};
 use crate::declare::Declared;
-use crate::lower::{LevelPasses, Lowering};
+use crate::lower::{LayerPasses, LevelPasses, Lowering};
 use crate::op::{Context, Levelled, Levels, WorldParams};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -108,6 +109,10 @@ op! {
 }
 
 impl Continents {
+    fn reading(&self) -> Reading {
+        Reading { share: 0.0, stream: self.stream, runoff: self.runoff, sea_level: 0.0 }
+    }
+
     fn land(&self, context: &Context) -> Land {
         let refinement = self.refinement().with_seed(context.world_params.seed_of(self.seed));
         Land::default().with_refinement(refinement).with_land(self.land).with_size(self.size).with_basins(self.basins)
@@ -200,8 +205,11 @@ impl Levelled for Continents {
         out: &mut [Option<Grid>],
         context: &Context,
     ) -> Result<()> {
-        let reading = Reading { share: 0.0, stream: self.stream, runoff: self.runoff, sea_level: 0.0 };
-        drained::layers_of(&self.refinement(), &reading, level, planes, window, out, context)
+        drained::layers_of(&self.refinement(), &self.reading(), level, planes, window, out, context)
+    }
+
+    fn lower_layers(&self, level: usize, wanted: &[bool], _: &WorldParams) -> Lowering<LayerPasses> {
+        lower_layers(&self.refinement(), &self.reading(), level, wanted)
     }
 
     fn lower(&self, level: usize, given: &[bool], world_params: &WorldParams) -> Lowering<LevelPasses> {

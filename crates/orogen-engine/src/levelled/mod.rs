@@ -4,4 +4,5 @@
 pub mod amplify;
 pub mod continents;
 pub mod drained;
+pub mod layer_passes;
 pub mod passes;

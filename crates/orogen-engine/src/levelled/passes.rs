@@ -12,6 +12,7 @@ macro_rules! code {
         concat!(include_str!("../lower/power.wgsl"), include_str!("../lower/product.wgsl"), include_str!("passes/common.wgsl"), $(include_str!(concat!("passes/", $file))),+)
     };
 }
+pub(super) use code;
 
 const CHILDREN: &str = code!("children.wgsl");
 const LINKS: &str = code!("link.wgsl", "links.wgsl");
@@ -42,9 +43,12 @@ const LAKE_SCRATCH: usize = 14;
 const SCRATCH_ABOVE: usize = 5;
 
 /// Samples that a call reads, about: of few planes, of the neighbours, and of the links around a cell.
-const FEW: usize = 10;
-const AROUND: usize = 40;
+pub(super) const FEW: usize = 10;
+pub(super) const AROUND: usize = 40;
 const LINKS_AROUND: usize = 200;
+
+/// Number of the inputs that levels read.
+pub(super) const GIVEN: usize = 6;
 
 /// The inputs of an op that levels read: their indices among its inputs, of those that are given.
 #[derive(Debug, Clone, Copy, Default)]
@@ -83,7 +87,8 @@ pub fn lower(
     // Detail levels take over what the finest level of valleys has.
     let given = if level > refinement.levels { &GivenInputs::default() } else { given };
     let GivenInputs { shore, uplift, stability_factor, creep_factor, floor_factor, rain } = *given;
-    for input in [shore, uplift, stability_factor, creep_factor, floor_factor, rain] {
+    let given: [Option<usize>; GIVEN] = [shore, uplift, stability_factor, creep_factor, floor_factor, rain];
+    for input in given {
         // Number 0 is the first plane of the level, never an input.
         words.push(input.map_or(0, |_| (Level::PLANES + scratch + inputs.len()) as u32));
         inputs.extend(input);

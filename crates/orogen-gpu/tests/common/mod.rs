@@ -10,6 +10,7 @@
 )]
 
 pub mod filters;
+pub mod levels;
 pub mod solvers;
 
 use orogen_engine::{Grid, Options, Recipe, Session, Window};

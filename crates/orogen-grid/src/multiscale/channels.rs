@@ -42,6 +42,9 @@ struct Rivers<'a> {
 }
 
 impl Refinement {
+    /// Samples beyond a window whose rivers [`Refinement::cut_rivers`] cuts into it.
+    pub const BEDS_REACH: usize = WIDEST as usize + 1;
+
     /// Samples of a level beyond a window that [`Refinement::cut_rivers`] reads.
     #[must_use]
     pub fn rivers_reach(&self, depth: usize) -> usize {
@@ -65,7 +68,7 @@ impl Refinement {
             return Ok(());
         }
         let nodes = self.nodes_at(level.depth, surface.height.window());
-        let read = nodes.grown(WIDEST as usize + 1);
+        let read = nodes.grown(Refinement::BEDS_REACH);
         let needed = nodes.grown(self.rivers_reach(level.depth));
         if !level.window.contains(&needed) {
             return Err(invalid(format!("rivers over {nodes:?} need their level over {needed:?}")));

@@ -96,6 +96,18 @@ impl Refinement {
         }
     }
 
+    /// Whether rivers have beds in level `depth`: [`Refinement::cut_rivers`] does nothing in others.
+    #[must_use]
+    pub fn has_beds(&self, depth: usize) -> bool {
+        self.is_detail(depth)
+    }
+
+    /// The numbers of [`Refinement::surface_at`]: where samples are in their cells, and the mean change of heights by finer levels.
+    #[must_use]
+    pub fn surface_numbers(&self, depth: usize, share: f32) -> [f32; 2] {
+        [self.inside(depth, share), self.mean_change(depth)]
+    }
+
     /// The numbers of level `depth`, at least 1: bits of what it has; the starts of the hashes of streams 0, 7 and 9, and of stream 11 of the level above, each
     /// as a low and a high word; and then numbers of f32, in the order in which shaders read them.
     #[must_use]

@@ -98,11 +98,21 @@ impl Refinement {
         Ok(surface)
     }
 
+    /// Where points at a share of the sides of cells are, in cells from the corner of the node's cell.
+    pub(super) fn inside(&self, depth: usize, share: f32) -> f32 {
+        share + self.half_finest(depth) - self.ahead(depth) as f32
+    }
+
+    /// The mean change of heights by the levels that are finer, as in [`MEAN_CHANGE`].
+    pub(super) fn mean_change(&self, depth: usize) -> f32 {
+        MEAN_CHANGE[self.levels.saturating_sub(depth).min(MEAN_CHANGE.len() - 1)]
+    }
+
     /// The point at a share of the sides of cell `q`, half a finest cell further inside, from the nodes of 4 x 4 cells. Around a corner these are all
     /// that count; around a middle, of 3 x 3 cells.
     fn between(&self, share: f32, level: &Level, q: usize) -> Point {
         let width = level.window.width;
-        let inside = share + self.half_finest(level.depth) - self.ahead(level.depth) as f32;
+        let inside = self.inside(level.depth, share);
         let (mut land, mut water) = (Plane::default(), Plane::default());
         let (mut shore, mut nearest, mut nearest_water) = (Plane::default(), (f32::INFINITY, q), (f32::INFINITY, q));
         for (row, south) in (0..4).map(|row| (q + row * width - 2 * width - 2, row as f32 - 2.0)) {
@@ -137,8 +147,7 @@ impl Refinement {
             let receiver = level.receiver[nearest_water.1];
             return Point { height: bed, area, lake_depth, water_level: surface, receiver };
         }
-        let finer = self.levels.saturating_sub(level.depth).min(MEAN_CHANGE.len() - 1);
-        let change = MEAN_CHANGE[finer]
+        let change = self.mean_change(level.depth)
             * slope_of_one_cell(self, level.depth, level.variation[nearest.1] + level.uplift[nearest.1]);
         let height = land.at_origin() + change;
         // Land at a shore is not lower than the water.

@@ -1,0 +1,75 @@
+// Beds of rivers, which are cut by the links of their nodes: `channels.rs`. Links may cut the same sample, so planes are words. The binding is that of `samples`.
+@group(0) @binding(1) var<storage, read_write> words: array<atomic<u32>>;
+
+// Widths in cells from which beds are cut.
+const NARROW = 1.0;
+
+// A sample of a plane; there is no sample beyond the border.
+fn sample(k: u32, at: vec2<i32>) -> f32 {
+    return bitcast<f32>(atomicLoad(&words[index_of(k, at)]));
+}
+
+struct Node {
+    place: vec2<f32>,
+    height: f32,
+    half: f32,
+    depth: f32,
+}
+
+// A node, whose cell is `by` from another.
+fn node(at: vec2<i32>, by: vec2<i32>) -> Node {
+    let o = at + by;
+    let place = vec2<f32>(sample(NODE_EAST, o), sample(NODE_SOUTH, o)) + vec2<f32>(by);
+    return Node(place, sample(NODE_HEIGHT, o), sample(NODE_HALF, o), sample(NODE_DEPTH, o));
+}
+
+// Lowers the ground to a bed.
+fn lower_ground(at: vec2<i32>, bed: f32) {
+    let index = index_of(GROUND, at);
+    var now = atomicLoad(&words[index]);
+    while (bed < bitcast<f32>(now)) {
+        let outcome = atomicCompareExchangeWeak(&words[index], now, bitcast<u32>(bed));
+        if (outcome.exchanged) {
+            break;
+        }
+        now = outcome.old_value;
+    }
+}
+
+// Cuts the bed of the link from a node. Before the words of the level are first column, first row, columns and rows of the samples that are cut.
+fn cut_bed(base: u32, at: vec2<i32>) {
+    let area = sample(AREA, at) * square_metres(base);
+    let receiver = sample(RECEIVER, at);
+    if (area < stream(base) || receiver >= NONE) {
+        return;
+    }
+    let origin = node(at, vec2<i32>(0));
+    let end = node(at, step_of(u32(receiver)));
+    let half = max(origin.half, end.half);
+    if (2.0 * half <= NARROW) {
+        return;
+    }
+    let left_top = vec2<i32>(floor(min(origin.place, end.place) - half));
+    let right_bottom = vec2<i32>(ceil(max(origin.place, end.place) + half));
+    let first = vec2<i32>(vec2<u32>(data[base + 37u], data[base + 38u]));
+    let last = first + vec2<i32>(vec2<u32>(data[base + 39u], data[base + 40u])) - vec2<i32>(1);
+    let along = end.place - origin.place;
+    let square = max(dot(along, along), 1e-6);
+    let from_cell = max(at + left_top, first);
+    let to_cell = min(at + right_bottom, last);
+    for (var y = from_cell.y; y <= to_cell.y; y += 1) {
+        for (var x = from_cell.x; x <= to_cell.x; x += 1) {
+            let o = vec2<i32>(x, y);
+            let there = vec2<f32>(o - at) - origin.place;
+            let share = clamp(dot(there, along) / square, 0.0, 1.0);
+            let beside = there - share * along;
+            let wide = mix(origin.half, end.half, share);
+            let across = dot(beside, beside) / (wide * wide);
+            if (across < 1.0 && (atomicLoad(&words[index_of(WATER_LEVEL, o)]) & 0x7f800000u) == 0x7f800000u) {
+                let profile = 1.0 - across * across;
+                let bed = origin.height + share * (end.height - origin.height) - (origin.depth + share * (end.depth - origin.depth)) * profile;
+                lower_ground(o, bed);
+            }
+        }
+    }
+}

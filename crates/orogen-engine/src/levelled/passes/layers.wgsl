@@ -1,0 +1,46 @@
+// What the passes that read layers from a level have in common.
+//
+// Planes beside those of the level: heights of the ground, drainage areas in m^2, depths of lakes, receivers, and water levels.
+const GROUND = 8u;
+const FLOW = 9u;
+const LAKE_DEPTH = 10u;
+const LED_TO = 11u;
+const WATER_LEVEL = 12u;
+// Of nodes of rivers, until the layers take their place: position, height, half of the width in cells, and depth.
+const NODE_EAST = 13u;
+const NODE_SOUTH = 14u;
+const NODE_HEIGHT = 15u;
+const NODE_HALF = 16u;
+const NODE_DEPTH = 17u;
+// Surface, width and depth.
+const SURFACE = 13u;
+const RIVER_WIDTH = 14u;
+const RIVER_DEPTH = 15u;
+
+// Where samples are in their cells, as a share of the sides.
+fn inside(base: u32) -> f32 { return number(base, 30u); }
+// The mean change of heights by finer levels, as a share of the rise to a node at the source of a river.
+fn mean_change(base: u32) -> f32 { return number(base, 31u); }
+fn sea_level(base: u32) -> f32 { return number(base, 32u); }
+// Least area of rivers in m^2, discharge in m^3/s from a m^2, and width and depth of a river of 1 m^3/s.
+fn stream(base: u32) -> f32 { return number(base, 33u); }
+fn runoff(base: u32) -> f32 { return number(base, 34u); }
+fn width_of_one(base: u32) -> f32 { return number(base, 35u); }
+fn depth_of_one(base: u32) -> f32 { return number(base, 36u); }
+
+fn square_metres(base: u32) -> f32 {
+    return cell(base) * cell(base);
+}
+
+// Width and depth of a river with this drainage area in m^2, in metres.
+fn width_of(base: u32, area: f32) -> f32 {
+    return width_of_one(base) * sqrt(max(area * runoff(base), 0.0));
+}
+
+fn depth_of(base: u32, area: f32) -> f32 {
+    let discharge = area * runoff(base);
+    if (discharge <= 0.0) {
+        return 0.0;
+    }
+    return depth_of_one(base) * power(discharge, 0.4);
+}
