@@ -1,13 +1,14 @@
 //! An opened graphics card.
 
-use crate::adapters::{Adapter, Choice, found};
+use crate::adapters::{Adapter, Choice, Kind, found};
 use crate::failure::Failure;
 use crate::pipelines::Pipelines;
 use orogen_engine::device_choice::DeviceChoice;
 use orogen_grid::error::Error;
 use orogen_grid::progress::Progress;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// An opened graphics card. Clones share it.
 #[derive(Clone)]
@@ -26,6 +27,7 @@ struct Opened {
     /// When work was begun that nobody has waited for.
     begun: Mutex<Option<Instant>>,
     moved: Mutex<Moved>,
+    together: AtomicUsize,
     buffer: u64,
     kernel: usize,
 }
@@ -52,6 +54,12 @@ pub struct Options {
     /// instruction is a shader of its own: a recipe whose structure changes compiles only what it has not had before, and runs slower.
     pub kernel: usize,
 }
+
+/// Maximum number of dispatches that are submitted together.
+const TOGETHER: usize = 64;
+
+/// The time that dispatches which are submitted together should take at most, so that work can be cancelled and no driver ends it as a hang.
+const PART: Duration = Duration::from_millis(100);
 
 /// Default of [`Options::kernel`].
 const KERNEL: usize = 64;
@@ -153,6 +161,7 @@ impl Gpu {
         }));
         let buffer = options.buffer.unwrap_or(u64::MAX).min(adapter.limits.buffer);
         let pipelines = Pipelines::new(&device);
+        let together = if adapter.kind == Kind::Software { 1 } else { TOGETHER };
         Ok(Gpu {
             opened: Arc::new(Opened {
                 adapter,
@@ -164,6 +173,7 @@ impl Gpu {
                 seconds: Mutex::default(),
                 begun: Mutex::default(),
                 moved: Mutex::default(),
+                together: AtomicUsize::new(together),
                 buffer,
                 kernel: options.kernel.max(1),
             }),
@@ -208,6 +218,19 @@ impl Gpu {
         let mut sum = self.opened.moved.lock().unwrap_or_else(PoisonError::into_inner);
         sum.there += moved.there;
         sum.back += moved.back;
+    }
+
+    /// Number of dispatches to be submitted together: as many as are expected to take a tenth of a second, going by those before.
+    pub(crate) fn together(&self) -> usize {
+        self.opened.together.load(Ordering::Relaxed)
+    }
+
+    /// Notes how long dispatches took that were submitted together.
+    pub(crate) fn took(&self, dispatches: usize, time: Duration) {
+        let fitting = dispatches as f64 * PART.as_secs_f64() / time.as_secs_f64().max(1e-9);
+        // One that is quicker than others does not change much.
+        let most = (2 * dispatches).min(TOGETHER);
+        self.opened.together.store((fitting as usize).clamp(1, most), Ordering::Relaxed);
     }
 
     /// Notes that work begins.

@@ -7,6 +7,7 @@ use crate::resident::{Resident, download};
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::time::Instant;
 
 /// Columns and rows of a workgroup.
 pub const GROUP: u32 = 8;
@@ -60,9 +61,6 @@ pub struct Job<'a> {
     pub left: Vec<Part<'a>>,
 }
 
-/// Maximum number of dispatches that are submitted together, so that a long job can be cancelled and no driver ends it as a hang.
-const TOGETHER: usize = 64;
-
 impl Job<'_> {
     /// Memory on the device, in bytes.
     #[must_use]
@@ -77,7 +75,7 @@ impl Job<'_> {
     /// # Errors
     /// If the device was lost, has too little memory, or refuses a shader; `Ok(None)` if the work was cancelled.
     pub fn run(&self, gpu: &Gpu, is_cancelled: impl Fn() -> bool) -> Result<Option<Vec<Vec<f32>>>, Failure> {
-        self.run_in_parts(gpu, TOGETHER, is_cancelled)
+        gpu.scoped(|| self.submit(gpu, None, is_cancelled))
     }
 
     /// The same with at most `together` dispatches at once: fewer, if each of them takes long.
@@ -90,13 +88,13 @@ impl Job<'_> {
         together: usize,
         is_cancelled: impl Fn() -> bool,
     ) -> Result<Option<Vec<Vec<f32>>>, Failure> {
-        gpu.scoped(|| self.submit(gpu, together.max(1), is_cancelled))
+        gpu.scoped(|| self.submit(gpu, Some(together.max(1)), is_cancelled))
     }
 
     fn submit(
         &self,
         gpu: &Gpu,
-        together: usize,
+        together: Option<usize>,
         is_cancelled: impl Fn() -> bool,
     ) -> Result<Option<Vec<Vec<f32>>>, Failure> {
         use wgpu::BufferUsages as Usage;
@@ -130,10 +128,14 @@ impl Job<'_> {
         let bindings = gpu.pipelines().bind(device, [&data, &samples, &frames]);
         // The passes of a solver share few texts, and comparing texts takes longer than a dispatch.
         let mut pipelines = HashMap::new();
-        for (dispatches, offsets) in self.dispatches.chunks(together).zip(offsets.chunks(together)) {
+        let mut done = 0;
+        while done < self.dispatches.len() {
             if is_cancelled() {
                 return Ok(None);
             }
+            let now = done..(done + together.unwrap_or_else(|| gpu.together())).min(self.dispatches.len());
+            let (dispatches, offsets) = (&self.dispatches[now.clone()], &offsets[now.clone()]);
+            let begun = Instant::now();
             let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             for (dispatch, offset) in dispatches.iter().zip(offsets) {
@@ -149,9 +151,11 @@ impl Job<'_> {
             drop(pass);
             queue.submit([encoder.finish()]);
             // The next part waits for this one, so that a cancelled job leaves little behind.
-            if self.dispatches.len() > together {
+            if now.len() < self.dispatches.len() {
                 gpu.wait()?;
+                gpu.took(now.len(), begun.elapsed());
             }
+            done = now.end;
         }
         let left: Vec<Copy> = self
             .left
