@@ -10,6 +10,8 @@ mod fuzz;
 mod gallery;
 mod licences;
 mod links;
+mod output;
+mod pool;
 mod resolution;
 mod shell;
 mod steps;

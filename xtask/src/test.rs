@@ -33,18 +33,30 @@ Needs only Rust and, the first time, a connection for the crates in Cargo.lock.
 ";
 
 const STEPS: &[&Step] = &[
-    &Step { name: "fmt", about: "cargo fmt --all --check", run: || sh(&mut cargo("fmt --all --check")) },
-    &Step { name: "lists", about: "the generated module and node lists are up to date", run: || codegen::lists(true) },
-    &Step { name: "words", about: "names and texts use the field's terms", run: words::check },
-    &Step { name: "links", about: "relative links in Markdown files lead to files and headings", run: links::check },
+    &Step { name: "fmt", about: "cargo fmt --all --check", group: None, run: || sh(&mut cargo("fmt --all --check")) },
+    &Step {
+        name: "lists",
+        about: "the generated module and node lists are up to date",
+        group: None,
+        run: || codegen::lists(true),
+    },
+    &Step { name: "words", about: "names and texts use the field's terms", group: None, run: words::check },
+    &Step {
+        name: "links",
+        about: "relative links in Markdown files lead to files and headings",
+        group: None,
+        run: links::check,
+    },
     &Step {
         name: "translations",
         about: "translated files have the headings, tables, code and links of their originals",
+        group: None,
         run: translations::check,
     },
     &Step {
         name: "clippy",
         about: "cargo clippy --all-targets -- -D warnings, the studio without its window",
+        group: None,
         run: || {
             let flags = "--all-targets --features orogen-bench/peers -- -D warnings";
             sh(&mut cargo(&format!(
@@ -56,6 +68,7 @@ const STEPS: &[&Step] = &[
     &Step {
         name: "tests",
         about: "cargo test, the studio without its window",
+        group: None,
         run: || {
             sh(&mut cargo("test --workspace --exclude orogen-studio --exclude orogen-gpu"))?;
             sh(&mut cargo("test --package orogen-studio --no-default-features --lib"))
@@ -64,11 +77,12 @@ const STEPS: &[&Step] = &[
     &Step {
         name: "features",
         about: "orogen-grid with ndarray, image and mint; orogen without files and threads",
+        group: None,
         run: features,
     },
-    &Step { name: "docs", about: "the libraries' documentation builds without a warning", run: docs },
-    &Step { name: "licences", about: "every dependency has a licence we accept", run: licences::check },
-    &Step { name: "package", about: "every crate builds from its own published archive", run: package },
+    &Step { name: "docs", about: "the libraries' documentation builds without a warning", group: None, run: docs },
+    &Step { name: "licences", about: "every dependency has a licence we accept", group: None, run: licences::check },
+    &Step { name: "package", about: "every crate builds from its own published archive", group: None, run: package },
 ];
 
 /// Runs the checks, or the long tests.
