@@ -11,6 +11,7 @@ mod gallery;
 mod licences;
 mod links;
 mod output;
+mod package;
 mod pool;
 mod resolution;
 mod shell;
