@@ -25,12 +25,12 @@ Usage: cargo xtask clients [STEP...]
 
 Builds `orogen` in release mode, installs missing clients and runs every step, or only the steps named:
 
+  install   apt (as root on Debian); rustup's aarch64-unknown-linux-gnu and wasm32-unknown-unknown
+  packages  pip into target/clients/venv, npm into target/clients/node; versions pinned
   build     cargo build --release -p orogen-cli
-  install   apt (as root on Debian), pip into target/clients/venv, npm into target/clients/node; versions pinned; rustup's
-            aarch64-unknown-linux-gnu and wasm32-unknown-unknown
+  wasm      the libraries built for WebAssembly, without threads; every preset under node
   neon      the tests of every SIMD level, built for ARM, in QEMU: NEON gives the committed bits
   presets   every preset against golden/presets.txt, on one thread and two, at every SIMD level of this machine
-  wasm      the libraries built for WebAssembly, without threads; every preset under node
   asan      the tests of the SIMD levels under AddressSanitizer: no kernel reads or writes outside its slices
   numpy     NumPy reads .npy: the numbers of summary.json, and the orientation
   pillow    Pillow reads the pictures: grey values, the share of sea, animations
@@ -47,16 +47,17 @@ Builds `orogen` in release mode, installs missing clients and runs every step, o
   formats   OpenEXR, GDAL, rasterio, Pillow and Godot read exported heights of every format, not mirrored, rotated or shifted
   relief    gdaldem computes the same hillshade, slope and aspect
   layers    GRASS, WhiteboxTools and gdaldem compute the same derived layers: wetness, HAND, insolation, viewshed, landforms ...
+  taplo     taplo validates every recipe against the JSON Schema, and rejects broken ones
   studio    the studio's tests with Mesa's software Vulkan, and its window under Xvfb in both languages
   gpu       fields, filters, presets and pictures on a graphics card, or Mesa's software Vulkan, beside the processor's; and without any card
   fuzz      libFuzzer on the readers of foreign files, 15 s each
-  taplo     taplo validates every recipe against the JSON Schema, and rejects broken ones
 
 Only if named, because Blender is large and needs Python 3.11:
 
   blender   Blender imports meshes: size, summit and light are right
 
-`build` and `install` always run first. On systems other than Debian, or without root, the command prints what to install.
+`install`, `packages` and `build` always run first. The last two run side by side, and then `wasm` to `taplo`, one for each core: each
+prints when it ends, and what it has printed so far is in target/steps. The others run alone. On systems other than Debian, or without root, the command prints what to install.
 ";
 
 /// A foreign program, or several that one script runs.
@@ -158,75 +159,68 @@ const CLIENTS: &[Client] = &[
     Client { name: "taplo", apt: &[("node", "nodejs"), ("npm", "npm")], pip: &[], npm: &["@taplo/cli@0.7.0"] },
 ];
 
+/// A step that runs by itself: it has time limits, or keeps all cores busy.
+const fn alone(name: &'static str, about: &'static str, run: fn() -> Result) -> Step {
+    Step { name, about, group: None, run }
+}
+
+/// A step that runs beside the others that need only what was built and installed.
+const fn beside(name: &'static str, about: &'static str, run: fn() -> Result) -> Step {
+    Step { name, about, group: Some(2), run }
+}
+
+/// First by itself: packages of the system may replace the linker.
+const INSTALL: Step = alone("install", "the programs of the clients, and the standard libraries of targets", || {
+    install::programs(CLIENTS)?;
+    neon::install()?;
+    wasm::install()
+});
+/// It waits for downloads most of the time, so something is built beside it.
+const PACKAGES: Step = Step {
+    name: "packages",
+    about: "the Python and Node packages of the clients",
+    group: Some(1),
+    run: || install::packages(CLIENTS),
+};
 const BUILD: Step = Step {
     name: "build",
     about: "cargo build --release -p orogen-cli",
+    group: Some(1),
     run: || sh(&mut cargo("build --quiet --release --package orogen-cli")),
 };
-const INSTALL: Step = Step {
-    name: "install",
-    about: "the programs and packages of the clients",
-    run: || {
-        install::all(CLIENTS)?;
-        neon::install()?;
-        wasm::install()
-    },
-};
 
+/// The longest of those side by side first.
 const STEPS: &[&Step] = &[
-    &BUILD,
     &INSTALL,
-    &Step { name: "presets", about: "the presets' golden hashes at every level and thread count", run: presets::check },
-    &Step { name: "neon", about: "the tests of every SIMD level on an emulated ARM processor", run: neon::check },
-    &Step { name: "wasm", about: "every preset made by the libraries built for WebAssembly", run: wasm::check },
-    &Step { name: "asan", about: "the tests of the SIMD levels under AddressSanitizer", run: asan::check },
-    &Step { name: "numpy", about: "NumPy reads .npy", run: || script("numpy") },
-    &Step { name: "pillow", about: "Pillow reads the pictures", run: || script("pillow") },
-    &Step { name: "rasterio", about: "rasterio and rio-cogeo read GeoTIFFs", run: || script("rasterio") },
-    &Step { name: "xarray", about: "xarray and zarr-python read Zarr groups", run: || script("xarray") },
-    &Step { name: "tiles", about: "NumPy and Pillow read tiles", run: || script("tiles") },
-    &Step { name: "dems", about: "orogen reads what rasterio writes", run: || script("dems") },
-    &Step {
-        name: "meshes",
-        about: "the glTF validator, trimesh, meshio and admesh read meshes",
-        run: || script("meshes"),
-    },
-    &Step {
-        name: "tilemaps",
-        about: "Tiled, PyTMX, ldtkpy and godot_parser read tilemaps",
-        run: || script("tilemaps"),
-    },
-    &Step {
-        name: "blocks",
-        about: "nbtlib, midvoxio, trimesh and a Luanti server read worlds of blocks",
-        run: || script("blocks"),
-    },
-    &Step { name: "contours", about: "gdal_contour draws the same contours", run: || script("contours") },
-    &Step {
-        name: "water",
-        about: "GDAL, SQLite and Shapely read rivers, lakes and watersheds",
-        run: || script("water"),
-    },
-    &Step { name: "maps", about: "Poppler and librsvg draw map sheets", run: || script("maps") },
-    &Step {
-        name: "formats",
-        about: "OpenEXR, GDAL, rasterio, Pillow and Godot read exports",
-        run: || script("formats"),
-    },
-    &Step { name: "relief", about: "gdaldem computes the same hillshade, slope and aspect", run: || script("relief") },
-    &Step {
-        name: "layers",
-        about: "GRASS, WhiteboxTools and gdaldem compute the same derived layers",
-        run: || script("layers"),
-    },
-    &Step { name: "studio", about: "the studio with software Vulkan, and its window under Xvfb", run: studio::check },
-    &Step { name: "gpu", about: "terrain and pictures on a graphics card, beside the processor's", run: gpu::check },
-    &Step { name: "fuzz", about: "libFuzzer on the readers of foreign files", run: fuzz },
-    &Step { name: "taplo", about: "taplo checks the recipes against the schema", run: || script("taplo") },
+    &PACKAGES,
+    &BUILD,
+    &beside("wasm", "every preset made by the libraries built for WebAssembly", wasm::check),
+    &beside("neon", "the tests of every SIMD level on an emulated ARM processor", neon::check),
+    &beside("presets", "the presets' golden hashes at every level and thread count", presets::check),
+    &beside("asan", "the tests of the SIMD levels under AddressSanitizer", asan::check),
+    &beside("numpy", "NumPy reads .npy", || script("numpy")),
+    &beside("pillow", "Pillow reads the pictures", || script("pillow")),
+    &beside("rasterio", "rasterio and rio-cogeo read GeoTIFFs", || script("rasterio")),
+    &beside("xarray", "xarray and zarr-python read Zarr groups", || script("xarray")),
+    &beside("tiles", "NumPy and Pillow read tiles", || script("tiles")),
+    &beside("dems", "orogen reads what rasterio writes", || script("dems")),
+    &beside("meshes", "the glTF validator, trimesh, meshio and admesh read meshes", || script("meshes")),
+    &beside("tilemaps", "Tiled, PyTMX, ldtkpy and godot_parser read tilemaps", || script("tilemaps")),
+    &beside("blocks", "nbtlib, midvoxio, trimesh and a Luanti server read worlds of blocks", || script("blocks")),
+    &beside("contours", "gdal_contour draws the same contours", || script("contours")),
+    &beside("water", "GDAL, SQLite and Shapely read rivers, lakes and watersheds", || script("water")),
+    &beside("maps", "Poppler and librsvg draw map sheets", || script("maps")),
+    &beside("formats", "OpenEXR, GDAL, rasterio, Pillow and Godot read exports", || script("formats")),
+    &beside("relief", "gdaldem computes the same hillshade, slope and aspect", || script("relief")),
+    &beside("layers", "GRASS, WhiteboxTools and gdaldem compute the same derived layers", || script("layers")),
+    &beside("taplo", "taplo checks the recipes against the schema", || script("taplo")),
+    &alone("studio", "the studio with software Vulkan, and its window under Xvfb", studio::check),
+    &alone("gpu", "terrain and pictures on a graphics card, beside the processor's", gpu::check),
+    &alone("fuzz", "libFuzzer on the readers of foreign files", fuzz),
 ];
 
 /// Steps that run only if they are named.
-const ASKED: &[&Step] = &[&Step { name: "blender", about: "Blender imports meshes", run: blender::check }];
+const ASKED: &[&Step] = &[&alone("blender", "Blender imports meshes", blender::check)];
 
 /// A short run, which covers inputs close to the committed files; `cargo xtask fuzz` runs longer.
 fn fuzz() -> Result {
@@ -239,7 +233,7 @@ pub fn run(args: &[String]) -> Result {
     let mut steps = STEPS.to_vec();
     if !named.is_empty() {
         steps.extend(ASKED);
-        named.extend([BUILD.name.to_owned(), INSTALL.name.to_owned()]);
+        named.extend([INSTALL, PACKAGES, BUILD].map(|step| step.name.to_owned()));
     }
     steps::run("cargo xtask clients", &steps, &named)
 }

@@ -1,7 +1,7 @@
 //! `cargo xtask fuzz`: libFuzzer on every reader of files and texts, with the stable compiler.
 
 use crate::failure::{Failure, Result};
-use crate::shell;
+use crate::{pool, shell};
 
 pub const ABOUT: &str = "run libFuzzer on the readers of files and texts";
 
@@ -77,5 +77,5 @@ pub fn run(args: &[String]) -> Result {
             ]);
         commands.push(command);
     }
-    shell::run_together(commands)
+    pool::run(commands, |mut command| shell::run(&mut command))
 }

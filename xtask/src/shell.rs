@@ -1,10 +1,10 @@
 //! Running other programs, and paths of the project.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::sync::{Mutex, PoisonError};
+use std::process::{Command, ExitStatus, Stdio};
 
 use crate::failure::{Failure, Result, on_file};
+use crate::output;
 
 /// The root of the repository.
 pub fn root() -> &'static Path {
@@ -41,36 +41,21 @@ pub fn host() -> Result<String> {
     host.map(str::to_owned).ok_or_else(|| Failure::new("`rustc -vV` names no host"))
 }
 
-/// Runs a program with our output and without input.
+/// Runs a program with the step's output and without input.
 pub fn run(command: &mut Command) -> Result {
-    let status = command.stdin(Stdio::null()).status().map_err(|e| cannot_start(command, &e))?;
+    let status = status(command)?;
     if status.success() { Ok(()) } else { Err(Failure::new(format!("`{}` ended with {status}", shown(command)))) }
 }
 
-/// Runs programs with our output and without input, as many at once as there are cores.
-pub fn run_together(commands: Vec<Command>) -> Result {
-    let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-    let waiting = Mutex::new(commands.into_iter());
-    let work = || {
-        let next = || waiting.lock().unwrap_or_else(PoisonError::into_inner).next();
-        while let Some(mut command) = next() {
-            run(&mut command)?;
-        }
-        Ok(())
-    };
-    std::thread::scope(|scope| {
-        let threads: Vec<_> = (0..cores).map(|_| scope.spawn(work)).collect();
-        let ended = |thread: std::thread::ScopedJoinHandle<Result>| {
-            thread.join().unwrap_or_else(|_| Err(Failure::new("a thread that runs programs panicked")))
-        };
-        threads.into_iter().map(ended).collect::<Vec<_>>().into_iter().collect()
-    })
+/// The same; returns how it ended.
+pub fn status(command: &mut Command) -> Result<ExitStatus> {
+    output::connect(command).stdin(Stdio::null()).status().map_err(|e| cannot_start(command, &e))
 }
 
-/// Runs a program and returns its output; its errors go to our standard error.
+/// Runs a program and returns its output; its errors go to the step's output.
 pub fn capture(command: &mut Command) -> Result<String> {
     let output =
-        command.stdin(Stdio::null()).stderr(Stdio::inherit()).output().map_err(|e| cannot_start(command, &e))?;
+        output::connect_errors(command).stdin(Stdio::null()).output().map_err(|e| cannot_start(command, &e))?;
     if !output.status.success() {
         return Err(Failure::new(format!("`{}` ended with {}", shown(command), output.status)));
     }

@@ -1,9 +1,12 @@
-//! Named steps in order, each timed; the first failure ends the run.
+//! Named steps in order, each timed; the first failure ends the run. Neighbours of the same group run side by side.
 
+use std::fs::File;
+use std::io::{self, Write as _};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
-use crate::failure::{Failure, Result};
-use crate::table;
+use crate::failure::{Failure, Result, on_file};
+use crate::{output, pool, shell, table};
 
 /// A step.
 pub struct Step {
@@ -11,34 +14,95 @@ pub struct Step {
     pub name: &'static str,
     /// The description in the list.
     pub about: &'static str,
-    /// The function.
+    /// Neighbours of the same group run side by side: none depends on another, shares a folder with it or has time limits. Without a group it runs alone.
+    pub group: Option<u32>,
+    /// The function. It prints with [`output::line`] and starts programs with [`shell`].
     pub run: fn() -> Result,
+}
+
+/// A run of steps.
+struct Run<'a> {
+    /// The command that runs a single step.
+    command: &'a str,
+    /// The names and seconds of those that are done.
+    done: Mutex<Vec<Vec<String>>>,
 }
 
 /// Runs the named steps, or all of them, and prints the time of each. `command` is the command that runs a single step.
 pub fn run(command: &str, steps: &[&Step], named: &[String]) -> Result {
     let chosen = choose(steps, named)?;
     let begun = Instant::now();
-    let mut done: Vec<Vec<String>> = Vec::new();
-    for step in chosen {
-        println!("==> {}: {}", step.name, step.about);
-        let start = Instant::now();
-        let result = (step.run)();
-        let seconds = format!("{:.1}", start.elapsed().as_secs_f64());
-        if let Err(failure) = result {
-            return Err(Failure::new(format!(
-                "step '{}' failed after {seconds} s: {}\n       run it alone: {command} {}",
-                step.name,
-                failure.message(),
-                step.name
-            )));
+    let run = Run { command, done: Mutex::default() };
+    for group in chosen.chunk_by(|a, b| a.group.is_some() && a.group == b.group) {
+        match group {
+            [step] => run.in_sight(step)?,
+            several => pool::run(several.to_vec(), |step| run.logged(step))?,
         }
-        println!("    {} done in {seconds} s", step.name);
-        done.push(vec![step.name.to_owned(), seconds]);
     }
+    let done = run.done.into_inner().unwrap_or_else(PoisonError::into_inner);
     println!("\n{}", table::render(&["step", "seconds"], &done));
     println!("all {} steps well in {:.1} s", done.len(), begun.elapsed().as_secs_f64());
     Ok(())
+}
+
+impl Run<'_> {
+    /// Runs a step that prints as it goes.
+    fn in_sight(&self, step: &Step) -> Result {
+        println!("{}", title(step));
+        let seconds = self.timed(step)?;
+        println!("{}", self.end(step, seconds));
+        Ok(())
+    }
+
+    /// Runs a step beside others. What it prints goes to `steps/NAME.log` in the target folder, and from there to our output when it ends.
+    fn logged(&self, step: &Step) -> Result {
+        let folder = shell::target_dir().join("steps");
+        let path = folder.join(format!("{}.log", step.name));
+        std::fs::create_dir_all(&folder).map_err(|cause| on_file("create", &folder, &cause))?;
+        // Emptied, then appended to: several programs write to it.
+        let log = File::create(&path).and_then(|_| File::options().append(true).open(&path));
+        let log = log.map_err(|cause| on_file("create", &path, &cause))?;
+        println!("    {} started", step.name);
+        output::set_log(Some(Arc::new(log)));
+        let result = self.timed(step);
+        output::set_log(None);
+        let mut text = format!("{}\n", title(step)).into_bytes();
+        text.extend(std::fs::read(&path).map_err(|cause| on_file("read", &path, &cause))?);
+        if let Ok(seconds) = &result {
+            text.extend(format!("{}\n", self.end(step, seconds.clone())).into_bytes());
+        }
+        // At once, so that nothing of other steps gets between.
+        io::stdout().lock().write_all(&text).map_err(|cause| Failure::new(format!("cannot print: {cause}")))?;
+        result.map(drop)
+    }
+
+    /// Runs a step; returns its seconds.
+    fn timed(&self, step: &Step) -> Result<String> {
+        let start = Instant::now();
+        let result = (step.run)();
+        let seconds = format!("{:.1}", start.elapsed().as_secs_f64());
+        match result {
+            Ok(()) => Ok(seconds),
+            Err(failure) => Err(Failure::new(format!(
+                "step '{}' failed after {seconds} s: {}\n       run it alone: {} {}",
+                step.name,
+                failure.message(),
+                self.command,
+                step.name
+            ))),
+        }
+    }
+
+    /// Counts a step as done; returns the line that says so.
+    fn end(&self, step: &Step, seconds: String) -> String {
+        let line = format!("    {} done in {seconds} s", step.name);
+        self.done.lock().unwrap_or_else(PoisonError::into_inner).push(vec![step.name.to_owned(), seconds]);
+        line
+    }
+}
+
+fn title(step: &Step) -> String {
+    format!("==> {}: {}", step.name, step.about)
 }
 
 fn choose<'a>(steps: &[&'a Step], named: &[String]) -> Result<Vec<&'a Step>> {
@@ -61,8 +125,8 @@ mod tests {
         Err(Failure::new("it broke"))
     }
 
-    const FINE: Step = Step { name: "fine", about: "goes well", run: fine };
-    const BROKEN: Step = Step { name: "broken", about: "does not", run: broken };
+    const FINE: Step = Step { name: "fine", about: "goes well", group: None, run: fine };
+    const BROKEN: Step = Step { name: "broken", about: "does not", group: None, run: broken };
 
     #[test]
     fn a_failure_names_the_step_and_how_to_run_it() {
@@ -76,5 +140,28 @@ mod tests {
         run("x", &[&FINE, &BROKEN], &["fine".to_owned()]).expect("the broken step is not chosen");
         let failure = run("x", &[&FINE], &["fin".to_owned()]).expect_err("no such step");
         assert!(failure.message().contains("no step 'fin'"), "{}", failure.message());
+    }
+
+    #[test]
+    fn steps_side_by_side_meet_and_their_failures_name_them() {
+        // Each waits for the other.
+        static MEETING: std::sync::Barrier = std::sync::Barrier::new(2);
+        fn meets() -> Result {
+            MEETING.wait();
+            Ok(())
+        }
+        fn meets_and_breaks() -> Result {
+            output::line("a line of the log");
+            MEETING.wait();
+            Err(Failure::new("it broke"))
+        }
+        let one = Step { name: "one", about: "", group: Some(1), run: meets };
+        let other = Step { name: "other", about: "", group: Some(1), run: meets_and_breaks };
+        let failure = run("cargo xtask test", &[&one, &other, &BROKEN], &[]).expect_err("one of the two fails");
+        assert!(failure.message().contains("step 'other' failed"), "{}", failure.message());
+        assert!(failure.message().ends_with("run it alone: cargo xtask test other"), "{}", failure.message());
+        let log = shell::read(&shell::target_dir().join("steps/other.log")).expect("the log is kept");
+        assert_eq!(log, "a line of the log\n");
+        assert!(output::log().is_none());
     }
 }

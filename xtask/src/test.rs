@@ -3,8 +3,8 @@
 use crate::failure::{Failure, Result};
 use crate::shell::{self, cargo, run as sh};
 use crate::steps::{self, Step};
-use crate::{codegen, licences, links, translations, words};
-use std::path::{Path, PathBuf};
+use crate::{codegen, licences, links, package, translations, words};
+use std::process::Command;
 
 pub const ABOUT: &str = "run all tests that need only Rust";
 
@@ -24,7 +24,7 @@ Runs the steps in this order, or only those named, and stops at the first failur
   features      what is off by default: no warning, unit tests and doctests; the libraries without files and threads
   docs          the libraries' documentation builds without a warning
   licences      every dependency has a licence we accept
-  package       every crate builds from its own published archive
+  package       every crate compiles from its own published archive
 
 With --long, it runs the long tests instead, one at a time: all tests of the workspace that are marked as ignored, with a reason
 that begins with `long: `, or those whose name contains NAME. All together take hours.
@@ -32,43 +32,61 @@ that begins with `long: `, or those whose name contains NAME. All together take 
 Needs only Rust and, the first time, a connection for the crates in Cargo.lock.
 ";
 
+/// The whole workspace; the studio without its window, which its default features are. Two commands, one for the studio, would select other features of the
+/// libraries and compile them twice. So the default features of all others are named.
+const PACKAGES: &str = "--workspace --exclude orogen-gpu --no-default-features \
+    --features orogen/default,orogen-engine/default,orogen-io/default,orogen-output/default";
+
 const STEPS: &[&Step] = &[
-    &Step { name: "fmt", about: "cargo fmt --all --check", run: || sh(&mut cargo("fmt --all --check")) },
-    &Step { name: "lists", about: "the generated module and node lists are up to date", run: || codegen::lists(true) },
-    &Step { name: "words", about: "names and texts use the field's terms", run: words::check },
-    &Step { name: "links", about: "relative links in Markdown files lead to files and headings", run: links::check },
+    &Step { name: "fmt", about: "cargo fmt --all --check", group: None, run: || sh(&mut cargo("fmt --all --check")) },
+    &Step {
+        name: "lists",
+        about: "the generated module and node lists are up to date",
+        group: None,
+        run: || codegen::lists(true),
+    },
+    &Step { name: "words", about: "names and texts use the field's terms", group: None, run: words::check },
+    &Step {
+        name: "links",
+        about: "relative links in Markdown files lead to files and headings",
+        group: None,
+        run: links::check,
+    },
     &Step {
         name: "translations",
         about: "translated files have the headings, tables, code and links of their originals",
+        group: None,
         run: translations::check,
     },
     &Step {
         name: "clippy",
         about: "cargo clippy --all-targets -- -D warnings, the studio without its window",
+        group: None,
         run: || {
             let flags = "--all-targets --features orogen-bench/peers -- -D warnings";
-            sh(&mut cargo(&format!(
-                "clippy --quiet --workspace --exclude orogen-studio --exclude orogen-gpu {flags}"
-            )))?;
-            sh(&mut cargo("clippy --quiet --package orogen-studio --no-default-features --lib -- -D warnings"))
+            sh(&mut cargo(&format!("clippy --quiet {PACKAGES} {flags}")))
         },
     },
     &Step {
         name: "tests",
         about: "cargo test, the studio without its window",
-        run: || {
-            sh(&mut cargo("test --workspace --exclude orogen-studio --exclude orogen-gpu"))?;
-            sh(&mut cargo("test --package orogen-studio --no-default-features --lib"))
-        },
+        group: None,
+        run: || sh(&mut cargo(&format!("test {PACKAGES}"))),
     },
     &Step {
         name: "features",
         about: "orogen-grid with ndarray, image and mint; orogen without files and threads",
+        group: None,
         run: features,
     },
-    &Step { name: "docs", about: "the libraries' documentation builds without a warning", run: docs },
-    &Step { name: "licences", about: "every dependency has a licence we accept", run: licences::check },
-    &Step { name: "package", about: "every crate builds from its own published archive", run: package },
+    &Step { name: "docs", about: "the libraries' documentation builds without a warning", group: None, run: docs },
+    &Step { name: "licences", about: "every dependency has a licence we accept", group: None, run: licences::check },
+    &Step {
+        name: "package",
+        about: "every crate compiles from its own published archive",
+        group: None,
+        run: package::check,
+    },
 ];
 
 /// Runs the checks, or the long tests.
@@ -88,18 +106,13 @@ pub fn run(args: &[String]) -> Result {
 /// All ignored tests. Without doctests, where `ignore` marks code that is not meant to run.
 fn long(name: Option<&str>) -> Result {
     reasons()?;
-    // Of the studio what needs no window.
-    const TARGETS: [&str; 2] = [
-        "test --workspace --exclude orogen-studio --exclude orogen-gpu --lib --bins --tests --examples",
-        "test --package orogen-studio --no-default-features --lib",
-    ];
-    let with = |targets: &str, more: &[&str]| {
-        let mut command = cargo(targets);
+    let targets = format!("test {PACKAGES} --lib --bins --tests --examples");
+    let with = |more: &[&str]| {
+        let mut command = cargo(&targets);
         command.arg("--").args(name).arg("--ignored").args(more);
         command
     };
-    let listed = TARGETS.map(|targets| shell::capture(&mut with(targets, &["--list"])));
-    let listed = listed.into_iter().collect::<Result<Vec<_>>>()?.concat();
+    let listed = shell::capture(&mut with(&["--list"]))?;
     let tests: Vec<&str> = listed.lines().filter_map(|line| line.strip_suffix(": test")).collect();
     if tests.is_empty() {
         return Err(Failure::new(match name {
@@ -109,7 +122,7 @@ fn long(name: Option<&str>) -> Result {
     }
     println!("{} long tests:", tests.len());
     tests.iter().for_each(|test| println!("  {test}"));
-    TARGETS.iter().try_for_each(|targets| sh(&mut with(targets, &["--nocapture", "--test-threads=1"])))
+    sh(&mut with(&["--nocapture", "--test-threads=1"]))
 }
 
 /// Checks that every ignored test is a long one, so that `--long` runs what its help says.
@@ -129,9 +142,16 @@ fn reasons() -> Result {
 fn features() -> Result {
     let grid = "--package orogen-grid --all-features";
     sh(&mut cargo(&format!("clippy --quiet {grid} --all-targets -- -D warnings")))?;
-    sh(&mut cargo(&format!("test --quiet {grid} --lib interop")))?;
-    sh(&mut cargo(&format!("test --quiet {grid} --doc")))?;
+    sh(&mut unoptimised(&format!("test --quiet {grid} --lib interop")))?;
+    sh(&mut unoptimised(&format!("test --quiet {grid} --doc")))?;
     without_files()
+}
+
+/// What runs for a moment: optimising our crates for it would take longer than all else here.
+fn unoptimised(args: &str) -> Command {
+    let mut command = cargo(args);
+    command.env("CARGO_PROFILE_DEV_OPT_LEVEL", "0");
+    command
 }
 
 /// Builds the libraries without files and threads. No code of theirs, tests aside, may then name anything of the standard library's file
@@ -140,7 +160,7 @@ fn without_files() -> Result {
     let mut clippy = cargo("clippy --quiet --package orogen --lib --no-default-features -- -D warnings");
     clippy.arg("-D").arg("clippy::disallowed_types");
     sh(clippy.env("CLIPPY_CONF_DIR", shell::root().join("xtask/no_fs")))?;
-    sh(&mut cargo("run --quiet --package orogen-engine --example without_files --no-default-features"))
+    sh(&mut unoptimised("run --quiet --package orogen-engine --example without_files --no-default-features"))
 }
 
 /// Without the binary `orogen`, whose pages would overwrite those of the library of the same name, and without the studio.
@@ -151,38 +171,23 @@ fn docs() -> Result {
     sh(command.env("RUSTDOCFLAGS", "-D warnings"))
 }
 
-/// Packs every crate as it would be published and builds it from that archive alone, without optimisation: paths that lead out of a
-/// crate's folder, and files that are missing in it, fail here. Of the studio only the archive is made: building its window takes as long as all others.
-fn package() -> Result {
-    let folder = shell::target_dir().join("packages");
-    forget_archives(&folder);
-    let flags = "package --quiet --workspace --exclude xtask --exclude orogen-bench --allow-dirty";
-    sh(cargo(&format!("{flags} --no-verify")).arg("--target-dir").arg(&folder))?;
-    let mut command = cargo(&format!("{flags} --exclude orogen-studio"));
-    command.arg("--target-dir").arg(folder);
-    sh(command.env("CARGO_PROFILE_DEV_OPT_LEVEL", "0").env("CARGO_PROFILE_DEV_DEBUG", "false"))
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
 
-/// Removes what earlier runs unpacked and built of our archives. Cargo takes an archive of the same version for the same archive, and
-/// would build the sources of before.
-fn forget_archives(folder: &Path) {
-    let home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
-    let home = home.or_else(|| std::env::home_dir().map(|home| home.join(".cargo"))).unwrap_or_default();
-    // Registries in folders, such as the one that `cargo package` makes, have no host in their names.
-    let unpacked = entries(&home.join("registry/src")).filter(|registry| starts_with(registry, "-"));
-    let built = [folder.join("debug/.fingerprint")];
-    for of_crate in unpacked.chain(built).flat_map(|parent| entries(&parent)).filter(|name| starts_with(name, "orogen"))
-    {
-        // What is left fails the build, if it matters.
-        let _ = std::fs::remove_dir_all(of_crate);
+    #[test]
+    fn default_features_of_all_crates_but_the_studio_are_named() {
+        let crates = std::fs::read_dir(shell::root().join("crates")).expect("the crates");
+        let folders = crates
+            .map(|entry| entry.expect("an entry").path())
+            .chain(["bench", "xtask"].map(|name| shell::root().join(name)));
+        let found: BTreeSet<String> = folders
+            .filter(|folder| shell::read(&folder.join("Cargo.toml")).is_ok_and(|text| text.contains("\ndefault = [")))
+            .map(|folder| format!("{}/default", folder.file_name().expect("a name").to_string_lossy()))
+            .filter(|feature| feature != "orogen-studio/default" && feature != "orogen-gpu/default")
+            .collect();
+        let (_, named) = PACKAGES.split_once("--features ").expect("features");
+        assert_eq!(named.split(',').map(str::to_owned).collect::<BTreeSet<_>>(), found);
     }
-}
-
-/// Paths in a folder; none if it cannot be read.
-fn entries(folder: &Path) -> impl Iterator<Item = PathBuf> + use<> {
-    std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path())
-}
-
-fn starts_with(path: &Path, start: &str) -> bool {
-    path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(start))
 }

@@ -6,20 +6,24 @@ use std::time::Duration;
 
 use super::Client;
 use crate::failure::{Failure, Result};
-use crate::shell;
+use crate::{output, shell};
 
 /// Waits before the second and the third try, because registries may be unavailable for a moment.
 const BACK_OFF: [Duration; 2] = [Duration::from_secs(5), Duration::from_secs(20)];
 
-/// Installs the missing programs and packages of these clients.
-pub fn all(clients: &[Client]) -> Result {
+/// Installs the missing programs of these clients.
+pub fn programs(clients: &[Client]) -> Result {
     let mut debian: Vec<&str> = Vec::new();
     if !shell::succeeds(shell::program("python3").args(["-c", "import venv, ensurepip"])) {
         debian.extend(["python3", "python3-venv"]);
     }
     let wanted = clients.iter().flat_map(|c| c.apt);
     debian.extend(wanted.filter(|(program, _)| !on_path(program)).map(|(_, package)| *package));
-    apt(&sorted(debian))?;
+    apt(&sorted(debian))
+}
+
+/// Installs the missing Python and Node packages of these clients.
+pub fn packages(clients: &[Client]) -> Result {
     pip(&sorted(clients.iter().flat_map(|c| c.pip).copied().collect()))?;
     npm(&sorted(clients.iter().flat_map(|c| c.npm).copied().collect()))
 }
@@ -83,7 +87,7 @@ fn apt(packages: &[&str]) -> Result {
         command.args(["-qq", "-y"]).args(args).env("DEBIAN_FRONTEND", "noninteractive");
         command
     };
-    println!("    apt-get install {}", packages.join(" "));
+    output::line(format_args!("    apt-get install {}", packages.join(" ")));
     patiently(|| apt_get(&["update"]))?;
     patiently(|| {
         let mut command = apt_get(&["install", "--no-install-recommends"]);
@@ -96,7 +100,7 @@ fn pip(packages: &[&str]) -> Result {
     if installed(&venv(), packages) && python().is_file() {
         return Ok(());
     }
-    println!("    pip install {}", packages.join(" "));
+    output::line(format_args!("    pip install {}", packages.join(" ")));
     shell::empty_dir(&venv())?;
     shell::run(shell::program("python3").args(["-m", "venv"]).arg(venv()))?;
     patiently(|| {
@@ -112,7 +116,7 @@ fn npm(packages: &[&str]) -> Result {
     if installed(&node(), packages) {
         return Ok(());
     }
-    println!("    npm install {}", packages.join(" "));
+    output::line(format_args!("    npm install {}", packages.join(" ")));
     shell::empty_dir(&node())?;
     shell::write(&node().join("package.json"), "{ \"private\": true }\n")?;
     patiently(|| {
@@ -129,7 +133,9 @@ pub fn patiently(command: impl Fn() -> Command) -> Result {
     for wait in BACK_OFF {
         match shell::run(&mut command()) {
             Ok(()) => return Ok(()),
-            Err(failure) => println!("    {}; trying again in {} s", failure.message(), wait.as_secs()),
+            Err(failure) => {
+                output::line(format_args!("    {}; trying again in {} s", failure.message(), wait.as_secs()))
+            }
         }
         std::thread::sleep(wait);
     }

@@ -7,7 +7,7 @@ use std::process::Command;
 
 use super::install;
 use crate::failure::{Failure, Result};
-use crate::shell;
+use crate::{output, shell};
 
 const TARGET: &str = "aarch64-unknown-linux-gnu";
 
@@ -32,7 +32,7 @@ pub fn install() -> Result {
     if native() || rustc().is_some() {
         return Ok(());
     }
-    println!("    rustup target add {TARGET}");
+    output::line(format_args!("    rustup target add {TARGET}"));
     match install::patiently(|| {
         let mut command = shell::program("rustup");
         command.args(["target", "add", TARGET]);
@@ -40,7 +40,7 @@ pub fn install() -> Result {
     }) {
         Ok(()) => Ok(()),
         Err(failure) => {
-            println!("    {}; trying Debian's", failure.message());
+            output::line(format_args!("    {}; trying Debian's", failure.message()));
             install::foreign_apt("arm64", &DEBIAN_PACKAGES)
         }
     }

@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use crate::failure::{Failure, Result};
-use crate::shell;
+use crate::{output, shell};
 
 const GOLDEN: &str = "golden/presets.txt";
 
@@ -32,7 +32,11 @@ pub fn check() -> Result {
     if !wrong.is_empty() {
         return Err(Failure::new(format!("hashes that differ from {GOLDEN}:\n{}", wrong.join("\n"))));
     }
-    println!("    {} presets, levels {}, 1 and 2 threads: all as in {GOLDEN}", golden.len(), levels.join(" "));
+    output::line(format_args!(
+        "    {} presets, levels {}, 1 and 2 threads: all as in {GOLDEN}",
+        golden.len(),
+        levels.join(" ")
+    ));
     Ok(())
 }
 

@@ -3,7 +3,7 @@
 
 use super::install;
 use crate::failure::{Failure, Result};
-use crate::shell;
+use crate::{output, shell};
 
 const TARGET: &str = "wasm32-unknown-unknown";
 
@@ -15,7 +15,7 @@ pub fn install() -> Result {
     {
         return Ok(());
     }
-    println!("    rustup target add {TARGET}");
+    output::line(format_args!("    rustup target add {TARGET}"));
     install::patiently(|| {
         let mut command = shell::program("rustup");
         command.args(["target", "add", TARGET]);
@@ -39,9 +39,9 @@ pub fn check() -> Result {
     let module = folder.join(TARGET).join("release/examples/golden_presets.wasm");
     let mut run = shell::program("node");
     run.arg(shell::root().join("xtask/clients/run_wasm.mjs")).arg(module);
-    match run.status().map_err(|cause| Failure::new(format!("cannot run node: {cause}")))?.code() {
+    match shell::status(&mut run)?.code() {
         Some(0) => {
-            println!("    every preset at the level simd128: all as in golden/presets.txt");
+            output::line("    every preset at the level simd128: all as in golden/presets.txt");
             Ok(())
         }
         Some(number @ 1..=200) => Err(Failure::new(format!("preset number {number} differs from golden/presets.txt"))),

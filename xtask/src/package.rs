@@ -1,0 +1,85 @@
+//! Checks that every crate compiles from its own published archive.
+
+use std::path::{Path, PathBuf};
+
+use crate::failure::{Failure, Result, on_file};
+use crate::shell::{self, cargo, program, run as sh};
+
+/// Packs every crate as it would be published, unpacks the archives and compiles each from what is in them alone: paths that lead out of a
+/// crate's folder, and files that are missing in it, fail here.
+///
+/// `cargo package` itself would generate code for each crate and its dependencies. Here no code is generated, and the profile and the target folder are
+/// those of clippy, so that what clippy has compiled of other crates is used again. Each crate is compiled by itself: only then it has its own features.
+pub fn check() -> Result {
+    let folder = shell::target_dir().join("packages");
+    // Archives of other versions.
+    shell::empty_dir(&folder.join("package"))?;
+    let pack = "package --quiet --workspace --exclude xtask --exclude orogen-bench --allow-dirty --no-verify";
+    sh(cargo(pack).arg("--target-dir").arg(&folder))?;
+    let unpacked = folder.join("unpacked");
+    shell::empty_dir(&unpacked)?;
+    let crates = unpack(&folder.join("package"), &unpacked)?;
+    write_workspace(&unpacked, &crates)?;
+    for name in crates.iter().map(|folder| name(folder)) {
+        // Compiling the window of the studio takes as long as all others.
+        let features = if name == "orogen-studio" { "--no-default-features" } else { "" };
+        let mut command = cargo(&format!("check --quiet --package {name} --lib --bins {features} --manifest-path"));
+        sh(command.arg(unpacked.join("Cargo.toml")).arg("--target-dir").arg(shell::target_dir()))?;
+    }
+    Ok(())
+}
+
+/// Unpacks the archives of a folder; returns the folders of the crates, sorted.
+fn unpack(archives: &Path, into: &Path) -> Result<Vec<String>> {
+    let entries = std::fs::read_dir(archives).map_err(|cause| on_file("read", archives, &cause))?;
+    let paths = entries.flatten().map(|entry| entry.path());
+    let mut archives: Vec<PathBuf> = paths.filter(|path| path.extension().is_some_and(|end| end == "crate")).collect();
+    archives.sort();
+    if archives.is_empty() {
+        return Err(Failure::new("`cargo package` has made no archive"));
+    }
+    for archive in &archives {
+        // With -m the files have the time of now. Those in archives never change, and cargo would take changed files for those of before.
+        sh(program("tar").arg("-xzmf").arg(archive).arg("-C").arg(into))?;
+    }
+    Ok(archives.iter().filter_map(|path| Some(path.file_stem()?.to_string_lossy().into_owned())).collect())
+}
+
+/// Makes a workspace of the unpacked crates, which are there what the registry would be to a user, with our profiles and versions of dependencies.
+fn write_workspace(folder: &Path, crates: &[String]) -> Result {
+    let root = shell::read(&shell::root().join("Cargo.toml"))?;
+    let manifest = manifest(&root, crates)?;
+    shell::write(&folder.join("Cargo.toml"), &manifest)?;
+    shell::write(&folder.join("Cargo.lock"), &shell::read(&shell::root().join("Cargo.lock"))?)
+}
+
+/// The manifest of that workspace.
+fn manifest(root: &str, crates: &[String]) -> Result<String> {
+    let (_, profiles) =
+        root.split_once("[profile.dev]").ok_or_else(|| Failure::new("Cargo.toml has no section [profile.dev]"))?;
+    let mut text = format!("[workspace]\nresolver = \"3\"\nmembers = {crates:?}\n\n[patch.crates-io]\n");
+    for folder in crates {
+        text += &format!("{} = {{ path = \"{folder}\" }}\n", name(folder));
+    }
+    Ok(text + "\n[profile.dev]" + profiles)
+}
+
+/// The name of a crate, from `NAME-VERSION`.
+fn name(folder: &str) -> &str {
+    folder.rsplit_once('-').map_or(folder, |(name, _)| name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_workspace_has_the_crates_and_our_profiles() {
+        let crates = ["a-1.0.0", "a-b-1.0.0"].map(str::to_owned);
+        let text = manifest("[workspace]\n\n[profile.dev]\nopt-level = 1\n", &crates).expect("a profile");
+        assert!(text.contains("members = [\"a-1.0.0\", \"a-b-1.0.0\"]"), "{text}");
+        assert!(text.contains("\na = { path = \"a-1.0.0\" }\na-b = { path = \"a-b-1.0.0\" }\n"), "{text}");
+        assert!(text.ends_with("\n[profile.dev]\nopt-level = 1\n"), "{text}");
+        assert!(manifest("[workspace]\n", &crates).is_err());
+    }
+}
