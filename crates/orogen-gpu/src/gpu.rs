@@ -227,10 +227,14 @@ impl Gpu {
 
     /// Notes how long dispatches took that were submitted together.
     pub(crate) fn took(&self, dispatches: usize, time: Duration) {
-        let fitting = dispatches as f64 * PART.as_secs_f64() / time.as_secs_f64().max(1e-9);
-        // One that is quicker than others does not change much.
-        let most = (2 * dispatches).min(TOGETHER);
-        self.opened.together.store((fitting as usize).clamp(1, most), Ordering::Relaxed);
+        let together = self.together();
+        let next = match time {
+            _ if time > PART => (dispatches as f64 * PART.as_secs_f64() / time.as_secs_f64()) as usize,
+            // As many again would still take less.
+            _ if dispatches >= together && 2 * time < PART => 2 * together,
+            _ => together,
+        };
+        self.opened.together.store(next.clamp(1, TOGETHER), Ordering::Relaxed);
     }
 
     /// Notes that work begins.

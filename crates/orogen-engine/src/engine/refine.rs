@@ -164,8 +164,8 @@ impl Refining<'_> {
         let Some((device, given)) = &self.device else { return Ok(None) };
         let mut steps = Vec::new();
         for &(level, window) in levels {
-            let Lowering::Shader(passes) = self.op.lower(level, given, self.world_params) else { break };
-            steps.push(LevelStep { passes, inputs: self.inputs_over(level, window)?, window: *window });
+            let Some(step) = self.level_step(level, window, given)? else { break };
+            steps.push(step);
         }
         let Some((_, last)) = steps.len().checked_sub(1).and_then(|last| levels.get(last)) else { return Ok(None) };
         let work = levels.iter().take(steps.len()).map(|(level, window)| self.work(*level, window)).sum();
@@ -173,6 +173,12 @@ impl Refining<'_> {
         let Some(made) = device.refine(&steps, above, &part)? else { return Ok(None) };
         part.finish();
         Ok(Some((self.checked(made, last)?, steps.len())))
+    }
+
+    /// How a device makes a level from the one above it; `None` if the processor is to do it.
+    fn level_step(&self, level: usize, window: &Window, given: &[bool]) -> Result<Option<LevelStep>> {
+        let Lowering::Shader(passes) = self.op.lower(level, given, self.world_params) else { return Ok(None) };
+        Ok(Some(LevelStep { passes, inputs: self.inputs_over(level, window)?, window: *window }))
     }
 
     /// The layers of the last of the `direct` levels over a piece, which a device makes with all levels from tiles of the first; `None` if it does not.
@@ -190,8 +196,8 @@ impl Refining<'_> {
         let windows = levels::windows(self.op, self.wanted, *direct.start(), level, piece);
         let mut steps = Vec::new();
         for (level, window) in direct.clone().zip(&windows).skip(1) {
-            let Lowering::Shader(passes) = self.op.lower(level, given, self.world_params) else { return Ok(None) };
-            steps.push(LevelStep { passes, inputs: self.inputs_over(level, window)?, window: *window });
+            let Some(step) = self.level_step(level, window, given)? else { return Ok(None) };
+            steps.push(step);
         }
         let (Some(first), false) = (windows.first(), steps.is_empty()) else { return Ok(None) };
         let layers = LayerStep { passes, window: *piece, halo: self.op.surface_halo(level, self.wanted) };
