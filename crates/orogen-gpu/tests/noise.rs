@@ -156,6 +156,12 @@ impl Window {
         self
     }
 
+    /// Whether samples are elsewhere than at their columns and rows.
+    fn is_displaced(&self) -> bool {
+        let is_turned = self.positions.columns.iter().all(|columns| !columns.is_empty());
+        is_turned || self.displaced.iter().flatten().any(|by| *by != 0.0)
+    }
+
     fn points(&self) -> [Vec<f64>; 2] {
         [0, 1].map(|axis| {
             let at = |list: &[f64], i: usize| list.get(i).copied().unwrap_or(0.0);
@@ -192,7 +198,8 @@ fn windows() -> Vec<Window> {
 }
 
 /// The text of a kernel that writes the samples of a function from `frame.step` on. Before it are the displacements and the function's inputs.
-fn kernel(shader: &Shader, inputs: usize) -> String {
+fn kernel(shader: &Shader, inputs: usize, is_displaced: bool) -> String {
+    let (name, code) = shader.function(is_displaced);
     let inputs: String = (0..inputs).map(|i| format!(", samples[at + {}u * count]", 2 + i)).collect();
     format!(
         "{}@compute @workgroup_size(8, 8) fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
@@ -200,23 +207,23 @@ fn kernel(shader: &Shader, inputs: usize) -> String {
             let count = frame.width * frame.height;
             let at = id.y * frame.width + id.x;
             let place = Placement(id.x, id.y, vec2<f32>(samples[at], samples[at + count]));
-            samples[frame.step + at] = {}(frame.base, place{inputs});
+            samples[frame.step + at] = {name}(frame.base, place{inputs});
         }}",
-        shader.code.concat(),
-        shader.name,
+        code.concat(),
     )
 }
 
 /// The samples of functions on the device.
 fn computed(gpu: &Gpu, noises: &[Noise], window: &Window, inputs: &[Vec<f32>]) -> Vec<Vec<f32>> {
-    let texts: Vec<String> = noises.iter().map(|noise| kernel(&noise.shader, inputs.len())).collect();
+    let texts: Vec<String> =
+        noises.iter().map(|noise| kernel(&noise.shader, inputs.len(), window.is_displaced())).collect();
     let count = window.size[0] * window.size[1];
     let before = 2 + inputs.len();
     // Index 0 stands for tables that are not there.
     let mut data = vec![0];
     let size = window.size.map(|side| side as u32);
     let dispatches = noises.iter().zip(&texts).enumerate().map(|(n, (noise, text))| {
-        let base = noise.shader.encode(&window.positions, &mut data);
+        let base = noise.shader.encode(&window.positions, window.is_displaced(), &mut data);
         Dispatch { text, base, size, step: (count * (before + n)) as u32 }
     });
     let dispatches = dispatches.collect();
@@ -253,22 +260,26 @@ fn compare(gpu: &Gpu, noises: &[Noise], window: &Window, inputs: &[Vec<f32>]) ->
 fn noises_are_those_of_the_processor() {
     let gpu = Gpu::open(&Options::new(Choice::Any)).unwrap();
     let noises = all(7, 100.0);
-    let texts: BTreeSet<String> = noises.iter().map(|noise| kernel(&noise.shader, 0)).collect();
+    let texts_of = |is_displaced| noises.iter().map(move |noise| kernel(&noise.shader, 0, is_displaced));
+    let undisplaced: BTreeSet<String> = texts_of(false).collect();
+    let texts: BTreeSet<String> = texts_of(false).chain(texts_of(true)).collect();
+    assert!(texts.len() > undisplaced.len());
     let mut slowest = (0.0, "");
     let mut seen = BTreeSet::new();
     let one = Window::new("of one sample", [1, 1], [0.0; 2], 1.0, STRAIGHT, 1e-4);
     for noise in &noises {
-        if seen.insert(noise.shader.name) {
+        let (name, _) = noise.shader.function(false);
+        if seen.insert(name) {
             let start = Instant::now();
             computed(&gpu, std::slice::from_ref(noise), &one, &[]);
             let took = start.elapsed().as_secs_f64();
-            println!("{} compiled in {took:.3} s", noise.shader.name);
+            println!("{name} compiled in {took:.3} s");
             if took > slowest.0 {
-                slowest = (took, noise.shader.name);
+                slowest = (took, name);
             }
         }
     }
-    assert_eq!(gpu.shaders_compiled(), texts.len() as u64);
+    assert_eq!(gpu.shaders_compiled(), undisplaced.len() as u64);
     println!("{} shaders, the slowest {} in {:.3} s", texts.len(), slowest.1, slowest.0);
     for window in windows() {
         let start = Instant::now();
@@ -292,8 +303,10 @@ fn functions_of_one_kernel_have_different_names() {
     let Lowering::Shader(gullies) = Gullies::default().lower(0, &WORLD) else { panic!("gullies are not lowered") };
     shaders.push(gullies);
     let mut parts: Vec<&str> = Vec::new();
-    for part in shaders.iter().flat_map(|shader| &shader.code) {
-        if !parts.contains(part) {
+    for part in
+        shaders.iter().flat_map(|shader| [true, false].map(|is_displaced| shader.function(is_displaced).1)).flatten()
+    {
+        if !parts.contains(&part) {
             parts.push(part);
         }
     }

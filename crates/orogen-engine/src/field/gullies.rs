@@ -144,7 +144,13 @@ impl Gullies {
             lattices.push(noise.shader_lattice());
         }
         let [place, hash, phacelle] = PHACELLE;
-        Shader { name: "gullies", code: vec![place, hash, phacelle, include_str!("gullies.wgsl")], words, lattices }
+        Shader {
+            name: "gullies",
+            code: vec![place, hash, phacelle, include_str!("gullies.wgsl")],
+            words,
+            lattices,
+            undisplaced: None,
+        }
     }
 
     /// Adds the gullies at up to [`CHUNK`] points to `heights`.

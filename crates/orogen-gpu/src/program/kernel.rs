@@ -66,9 +66,9 @@ pub(crate) fn kernel(program: &LoweredProgram, part: Range<usize>, kept: &[usize
     let mut chunks: Vec<&str> = vec![PLACE, functions::TEXT];
     for i in part {
         let value = writer.instruction(i, copies);
-        if let Lowered::Field { shader, .. } = &program.instructions[i] {
-            for chunk in &shader.code {
-                if !chunks.contains(chunk) {
+        if let Lowered::Field { shader, coords, .. } = &program.instructions[i] {
+            for chunk in shader.function(*coords != 0).1 {
+                if !chunks.contains(&chunk) {
                     chunks.push(chunk);
                 }
             }
@@ -201,7 +201,7 @@ impl Writer<'_> {
             Lowered::Constant(_) => return None,
             Lowered::Field { shader, coords, inputs } => {
                 let place = self.place(coords);
-                let mut call = format!("{}({}, {place}", shader.name, self.word(Word::Function(i)));
+                let mut call = format!("{}({}, {place}", shader.function(coords != 0).0, self.word(Word::Function(i)));
                 for input in inputs {
                     let input = input.map_or("0.0".to_string(), |input| self.value(input));
                     // A String takes any text.

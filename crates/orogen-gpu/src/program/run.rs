@@ -129,7 +129,7 @@ impl<'a> Run<'a> {
                     Word::Number(number) => number.to_bits(),
                     Word::Slot(value) => self.slot(*value, tile) as u32,
                     Word::Function(i) => match &self.program.instructions[*i] {
-                        Lowered::Field { shader, coords, .. } => shader.encode(&sets[*coords], &mut data),
+                        Lowered::Field { shader, coords, .. } => shader.encode(&sets[*coords], *coords != 0, &mut data),
                         _ => 0,
                     },
                     Word::Grid(i) => self.grid(*i, tile, &sets, &starts, &mut data),
@@ -170,6 +170,6 @@ impl<'a> Run<'a> {
         }
         let lattice = Lattice::square(1.0 / window.cell, [-(window.x as f64), -(window.y as f64)]);
         let words = vec![start as u32, window.width as u32, window.height as u32];
-        Shader { name: "", code: Vec::new(), words, lattices: vec![lattice] }.encode(&sets[coords], data)
+        Shader { words, ..Shader::new("", "", &[]) }.on(lattice).encode(&sets[coords], true, data)
     }
 }

@@ -1,6 +1,6 @@
 //! Functions of WGSL with their numbers.
 
-use super::lattice::{LATTICE_WORDS, Lattice, Positions};
+use super::lattice::{AxisWords, LATTICE_WORDS, Lattice, Positions};
 
 /// The functions that find the cell of a sample: needed by every [`Shader`] with lattices.
 pub const PLACE: &str = include_str!("place.wgsl");
@@ -20,6 +20,19 @@ pub struct Shader {
     pub words: Vec<u32>,
     /// The lattices on which it needs the position of samples.
     pub lattices: Vec<Lattice>,
+    /// A faster function of the same words, if there is one, for samples that are not displaced.
+    pub undisplaced: Option<Undisplaced>,
+}
+
+/// A function for samples that are not displaced: its tables have the keys of the hash in place of cells, which are not hashed for each sample.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Undisplaced {
+    /// The name of the function.
+    pub name: &'static str,
+    /// The last part of the text, in place of that of the other function.
+    pub code: &'static str,
+    /// The words of the hash on each lattice.
+    pub hashes: Vec<AxisWords>,
 }
 
 impl Shader {
@@ -27,7 +40,7 @@ impl Shader {
     #[must_use]
     pub fn new(name: &'static str, code: &'static str, numbers: &[f32]) -> Shader {
         let words = numbers.iter().map(|number| number.to_bits()).collect();
-        Shader { name, code: vec![code], words, lattices: Vec::new() }
+        Shader { name, code: vec![code], words, lattices: Vec::new(), undisplaced: None }
     }
 
     /// With a lattice on which it needs the position of samples.
@@ -37,14 +50,27 @@ impl Shader {
         self
     }
 
-    /// Appends the numbers and the tables for samples at these positions to `data`; returns the `base`.
-    pub fn encode(&self, positions: &Positions, data: &mut Vec<u32>) -> u32 {
+    /// The function for samples that are displaced or not: its name, and the parts of its text.
+    #[must_use]
+    pub fn function(&self, is_displaced: bool) -> (&'static str, Vec<&'static str>) {
+        match self.undisplaced.as_ref().filter(|_| !is_displaced) {
+            Some(undisplaced) => {
+                let others = self.code.iter().take(self.code.len().saturating_sub(1)).copied();
+                (undisplaced.name, others.chain([undisplaced.code]).collect())
+            }
+            None => (self.name, self.code.clone()),
+        }
+    }
+
+    /// Appends the numbers and the tables for samples at these positions, from which they may be displaced, to `data`; returns the `base`.
+    pub fn encode(&self, positions: &Positions, is_displaced: bool, data: &mut Vec<u32>) -> u32 {
         let base = data.len();
         data.extend_from_slice(&self.words);
         let blocks = data.len();
         data.resize(blocks + LATTICE_WORDS * self.lattices.len(), 0);
         for (i, lattice) in self.lattices.iter().enumerate() {
-            let block = lattice.encode(positions, data);
+            let hash = self.undisplaced.as_ref().filter(|_| !is_displaced).and_then(|function| function.hashes.get(i));
+            let block = lattice.encode(positions, hash, data);
             data[blocks + LATTICE_WORDS * i..][..LATTICE_WORDS].copy_from_slice(&block);
         }
         base as u32

@@ -14,6 +14,24 @@ fn noise_keys(words: u32, cell: Cell) -> vec2<u32> {
     return vec2<u32>(noise_key(words, cell), noise_key(words, stepped(cell, 1)));
 }
 
+// A cell along an axis by its key and that of the next one, with the fraction.
+struct Keyed {
+    keys: vec2<u32>,
+    t: f32,
+}
+
+fn keyed(words: u32, cell: Cell) -> Keyed {
+    return Keyed(noise_keys(words, cell), cell.t);
+}
+
+// The cell of a sample that is not displaced, from a table of keys of columns or rows.
+fn keyed_at(lattice: u32, axis: u32, place: Placement) -> Keyed {
+    let columns = data[lattice + 8u + 2u * axis];
+    let rows = data[lattice + 9u + 2u * axis];
+    let at = select(rows + 3u * place.row, columns + 3u * place.column, columns != 0u);
+    return Keyed(vec2<u32>(data[at], data[at + 1u]), bitcast<f32>(data[at + 2u]));
+}
+
 // The hash of the point with these keys along x and y.
 fn noise_hash(x: u32, y: u32) -> u32 {
     return (x ^ y) * 0xadb4a92du;
@@ -29,25 +47,22 @@ fn noise_unit(hash: u32) -> f32 {
     return f32(hash >> 8u) * 5.9604644775390625e-8;
 }
 
-// Adds the top bit of a word to the sign of a direction.
-fn noise_turned(direction: vec2<f32>, sign: u32) -> vec2<f32> {
-    return select(direction, -direction, (sign & 0x80000000u) != 0u);
+// A number whose sign is turned by the top bit of a word.
+fn noise_turned(number: f32, sign: u32) -> f32 {
+    return bitcast<f32>(bitcast<u32>(number) ^ (sign & 0x80000000u));
 }
 
-// One of sixteen directions, by the upper four bits of a hash.
+// One of sixteen directions, by the upper four bits of a hash. Each bit of their Gray code tells on which side of an axis or a diagonal a direction is.
 fn noise_sixteenth(hash: u32) -> vec2<f32> {
-    let index = (hash >> 28u) & 7u;
-    // The directions 4 to 7 are the mirror images of 3 to 0.
-    let folded = select(index, 7u - index, index > 3u);
-    let odd = (folded & 1u) != 0u;
-    let outer = select(1.41048455, 1.19575107, odd);
-    let inner = select(0.798975348, 0.280562818, odd);
-    let near = select(0.280562818, 0.798975348, odd);
-    let far = select(1.19575107, 1.41048455, odd);
-    let upper = folded > 1u;
-    let x = select(outer, inner, upper);
-    let y = select(near, far, upper);
-    return noise_turned(vec2<f32>(select(x, -x, index > 3u), y), hash);
+    let gray = hash ^ (hash << 1u);
+    let is_diagonal = (gray & 0x20000000u) != 0u;
+    let longer = select(1.41048455, 1.19575107, is_diagonal);
+    let shorter = select(0.280562818, 0.798975348, is_diagonal);
+    let is_steep = (gray & 0x40000000u) != 0u;
+    return vec2<f32>(
+        noise_turned(select(longer, shorter, is_steep), gray),
+        noise_turned(select(shorter, longer, is_steep), hash),
+    );
 }
 
 // 6 t^5 - 15 t^4 + 10 t^3 and its slope, written around the centre.

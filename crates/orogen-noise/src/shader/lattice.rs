@@ -38,8 +38,13 @@ impl Lattice {
         Lattice::square(1.0 / unit, origin.map(|origin| -origin / unit))
     }
 
-    /// Appends the tables to `data`; returns the block.
-    pub(super) fn encode(&self, positions: &Positions, data: &mut Vec<u32>) -> [u32; LATTICE_WORDS] {
+    /// Appends the tables to `data`; returns the block. With the words of the hash along each axis, the tables have the keys of cells in place of the cells.
+    pub(super) fn encode(
+        &self,
+        positions: &Positions,
+        hash: Option<&AxisWords>,
+        data: &mut Vec<u32>,
+    ) -> [u32; LATTICE_WORDS] {
         let mut block = [0; LATTICE_WORDS];
         for axis in 0..2 {
             for by in 0..2 {
@@ -55,8 +60,9 @@ impl Lattice {
             let rows = self.part(axis, &positions.rows);
             // The offset belongs to one of them.
             let (to_columns, to_rows) = if columns.is_empty() { (0.0, offset) } else { (offset, 0.0) };
-            block[8 + 2 * axis] = table(&columns, to_columns, data);
-            block[9 + 2 * axis] = table(&rows, to_rows, data);
+            let hash = hash.map(|words| words[axis]);
+            block[8 + 2 * axis] = table(&columns, to_columns, hash, data);
+            block[9 + 2 * axis] = table(&rows, to_rows, hash, data);
         }
         block
     }
@@ -78,8 +84,19 @@ impl Lattice {
     }
 }
 
-/// Appends a table of cells: low word, high word and fraction of each; returns its index, or 0 if there is none.
-fn table(coordinates: &[f64], offset: f64, data: &mut Vec<u32>) -> u32 {
+/// The words of a hash along each axis.
+pub type AxisWords = [[u32; 2]; 2];
+
+/// The key of a cell along an axis: `noise_key` of `hash.wgsl`.
+fn key([low, high]: [u32; 2], cell: i64) -> u32 {
+    let here = (cell as u32).wrapping_mul(0x915f_77f5).wrapping_add(low);
+    let upper = ((cell >> 32) as u32).wrapping_add(0x4338_0000);
+    let key = (here ^ (here >> 15) ^ upper ^ high).wrapping_mul(0x93d7_65dd);
+    key ^ (key >> 15)
+}
+
+/// Appends a table of cells: low word, high word and fraction of each, or two keys and the fraction; returns its index, or 0 if there is none.
+fn table(coordinates: &[f64], offset: f64, hash: Option<[u32; 2]>, data: &mut Vec<u32>) -> u32 {
     if coordinates.is_empty() {
         return 0;
     }
@@ -89,7 +106,11 @@ fn table(coordinates: &[f64], offset: f64, data: &mut Vec<u32>) -> u32 {
         let whole = coordinate.floor();
         let fraction = (coordinate - whole) as f32;
         let cell = whole as i64;
-        data.extend([cell as u32, (cell >> 32) as u32, fraction.to_bits()]);
+        let [first, second] = match hash {
+            Some(words) => [key(words, cell), key(words, cell.wrapping_add(1))],
+            None => [cell as u32, (cell >> 32) as u32],
+        };
+        data.extend([first, second, fraction.to_bits()]);
     }
     at
 }

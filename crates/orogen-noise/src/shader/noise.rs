@@ -1,6 +1,6 @@
 //! Noises as functions of WGSL. The text depends only on the kind of lattice and on the kind of sum; all parameters are words.
 
-use super::function::{PLACE, Shader};
+use super::function::{PLACE, Shader, Undisplaced};
 use super::lattice::Lattice;
 use crate::choices::{ClassicVariant, Distance, Fade, Falloff, Feature, Smoothness};
 use crate::kernel::open_simplex::{Open, WIDE_REACH, WIDE_SCALE};
@@ -18,15 +18,17 @@ const OCTAVES: &str = include_str!("octaves.wgsl");
 struct Family {
     name: &'static str,
     code: &'static [&'static str],
+    /// Whether it needs the keys of two cells along each axis alone.
+    is_keyed: bool,
 }
 
 const GRADIENTS: &str = include_str!("source/gradients.wgsl");
 const FAMILIES: [Family; 5] = [
-    Family { name: "value", code: &[include_str!("source/value.wgsl")] },
-    Family { name: "perlin", code: &[GRADIENTS, include_str!("source/perlin.wgsl")] },
-    Family { name: "classic", code: &[GRADIENTS, include_str!("source/classic.wgsl")] },
-    Family { name: "simplex", code: &[include_str!("source/simplex.wgsl")] },
-    Family { name: "worley", code: &[include_str!("source/worley.wgsl")] },
+    Family { name: "value", code: &[include_str!("source/value.wgsl")], is_keyed: true },
+    Family { name: "perlin", code: &[GRADIENTS, include_str!("source/perlin.wgsl")], is_keyed: true },
+    Family { name: "classic", code: &[GRADIENTS, include_str!("source/classic.wgsl")], is_keyed: false },
+    Family { name: "simplex", code: &[include_str!("source/simplex.wgsl")], is_keyed: false },
+    Family { name: "worley", code: &[include_str!("source/worley.wgsl")], is_keyed: false },
 ];
 
 /// The names of the sums, and their texts. `SOURCE` in them stands for the name of the source's family.
@@ -41,9 +43,29 @@ const SUMS: [[&str; 2]; 8] = [
     ["jordan", include_str!("combine/jordan.wgsl")],
 ];
 
-/// The name of a function and its text, of each sum over each family: written at the first use.
-static TEXTS: [[OnceLock<[String; 2]>; FAMILIES.len()]; SUMS.len()] =
-    [const { [const { OnceLock::new() }; FAMILIES.len()] }; SUMS.len()];
+/// Number of the sums, from the first, whose octaves do not displace samples.
+const UNDISPLACED_SUMS: usize = 6;
+
+/// The name of a function and its text.
+type Text = OnceLock<[String; 2]>;
+
+/// Those of each sum over each family, also with tables of keys: written at the first use.
+static TEXTS: [[[Text; 2]; FAMILIES.len()]; SUMS.len()] =
+    [const { [const { [const { OnceLock::new() }; 2] }; FAMILIES.len()] }; SUMS.len()];
+
+/// The function of a sum over a family.
+fn text_of(sum: usize, family: usize, is_keyed: bool) -> &'static [String; 2] {
+    TEXTS[sum][family][usize::from(is_keyed)].get_or_init(|| {
+        let ([sum, text], name) = (SUMS[sum], FAMILIES[family].name);
+        match is_keyed {
+            true => {
+                let name = format!("{name}_keyed");
+                [format!("{sum}_{name}"), text.replace("SOURCE", &name).replace("cell_at(", "keyed_at(")]
+            }
+            false => [format!("{sum}_{name}"), text.replace("SOURCE", name)],
+        }
+    })
+}
 
 impl Program {
     /// The noise in the plane as a function of WGSL.
@@ -71,15 +93,17 @@ impl Program {
             let shared = (x + y) * skew;
             Lattice { matrix: [[along, across], [across, along]], offset: [x + shared, y + shared], limit: self.limit }
         });
-        let Family { name, code } = &FAMILIES[family];
-        let [function, text] = TEXTS[sum][family].get_or_init(|| {
-            let [sum, text] = SUMS[sum];
-            [format!("{sum}_{name}"), text.replace("SOURCE", name)]
-        });
+        let Family { code, is_keyed, .. } = FAMILIES[family];
+        let [name, text] = text_of(sum, family, false);
         let mut parts = vec![PLACE, HASH, OCTAVES];
         parts.extend_from_slice(code);
         parts.push(text);
-        Shader { name: function, code: parts, words, lattices: lattices.collect() }
+        let undisplaced = (is_keyed && sum < UNDISPLACED_SUMS).then(|| {
+            let [name, code] = text_of(sum, family, true);
+            let hashes = octaves.iter().map(|octave| [octave.words[0], octave.words[1]]);
+            Undisplaced { name, code, hashes: hashes.collect() }
+        });
+        Shader { name, code: parts, words, lattices: lattices.collect(), undisplaced }
     }
 }
 

@@ -23,7 +23,8 @@ fn simplex_twelfth(hash: u32) -> vec2<f32> {
         select(0.923879504, 0.991444886, odd),
         last,
     );
-    return noise_turned(vec2<f32>(select(x, -x, mirrored), y), scaled << 16u);
+    let sign = scaled << 16u;
+    return vec2<f32>(noise_turned(select(x, -x, mirrored), sign), noise_turned(y, sign));
 }
 
 // Value and slopes by unskewed coordinates.
