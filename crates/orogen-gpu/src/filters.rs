@@ -24,9 +24,6 @@ pub(crate) struct Preludes {
     pub(crate) shared: &'static str,
 }
 
-/// Words before those of the filter, for each pass: see the prelude.
-const WORDS: usize = 6;
-
 /// Computes layers of a filter over `window`, as `Filter::apply` does: each given input covers at least the window grown by `halo`. The result has an element
 /// for each of `wanted`, one per declared layer: a grid if it is true. `Ok(None)` if the work was cancelled; `is_cancelled` is asked between parts of it.
 ///
@@ -127,11 +124,11 @@ impl<'a> Planes<'a> {
                 let start = [left, top + first];
                 let base = *bases.entry(start).or_insert(job.data.len());
                 if base == job.data.len() {
-                    let words: [usize; WORDS] = [grown.width, grown.height, start[0], start[1], 0, 0];
-                    job.data.extend(words.map(|word| word as u32));
+                    job.data.extend([start[0], start[1], 0].map(|word| word as u32));
                 }
                 let size = [width, rows].map(|side| side as u32);
-                job.dispatches.push(Dispatch { text, base: base as u32, size, step: pass.step });
+                let planes = [grown.width as u32, grown.height as u32, 0];
+                job.dispatches.push(Dispatch { text, base: base as u32, size, step: pass.step, planes });
             }
         }
         let planes = self.wanted.iter().enumerate().filter(|(_, wanted)| **wanted);
@@ -166,8 +163,8 @@ pub(crate) fn text(prelude: &str, code: &str, function: &str) -> String {
         "{prelude}\n{code}\n\
         @compute @workgroup_size(8, 8) fn main(@builtin(global_invocation_id) id: vec3<u32>) {{\n\
         \x20   if (id.x >= frame.width || id.y >= frame.height) {{ return; }}\n\
-        \x20   let at = id.xy + vec2<u32>(data[frame.base + 2u], data[frame.base + 3u]);\n\
-        \x20   {function}(data[frame.base + 4u], vec2<i32>(at));\n\
+        \x20   let at = id.xy + vec2<u32>(data[frame.base], data[frame.base + 1u]);\n\
+        \x20   {function}(data[frame.base + 2u], vec2<i32>(at));\n\
         }}\n"
     )
 }

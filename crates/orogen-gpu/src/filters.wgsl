@@ -1,15 +1,14 @@
 // What the passes of all filters have in common: planes of one size, one after the other in `samples`.
 //
-// The words at `frame.base` are the columns and rows of the planes, the first column and row of this pass, where the filter's own words start, and the index of
-// the first sample of the planes.
+// The words at `frame.base` are the first column and row of this pass, and where the filter's own words start.
 
 // Columns and rows of the planes.
 fn size() -> vec2<i32> {
-    return vec2<i32>(i32(data[frame.base]), i32(data[frame.base + 1u]));
+    return vec2<i32>(i32(frame.columns), i32(frame.rows));
 }
 
 fn index_of(k: u32, at: vec2<i32>) -> u32 {
-    return data[frame.base + 5u] + (k * data[frame.base + 1u] + u32(at.y)) * data[frame.base] + u32(at.x);
+    return frame.first + (k * frame.rows + u32(at.y)) * frame.columns + u32(at.x);
 }
 
 // A sample of plane `k`; beyond the border, that of the border.

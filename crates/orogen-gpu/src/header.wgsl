@@ -15,6 +15,10 @@ struct Frame {
     step: u32,
     // Samples from row to row of what is copied, there and here.
     strides: vec2<u32>,
+    // Columns and rows of the planes that a pass works on, and the index of their first sample.
+    columns: u32,
+    rows: u32,
+    first: u32,
 }
 @group(0) @binding(2) var<uniform> frame: Frame;
 

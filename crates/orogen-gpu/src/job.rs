@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::gpu::{Gpu, Moved};
-use crate::pipelines::FRAME;
+use crate::pipelines::{FRAME, FRAME_WORDS};
 use crate::resident::{Resident, download};
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -13,7 +13,7 @@ use std::time::Instant;
 pub const GROUP: u32 = 8;
 
 /// One run of a shader.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Dispatch<'a> {
     /// The shader's text after the header. Its entry point is `main`, with workgroups of 8 x 8.
     pub text: &'a str,
@@ -23,6 +23,8 @@ pub struct Dispatch<'a> {
     pub size: [u32; 2],
     /// Any number, such as that of the iteration.
     pub step: u32,
+    /// For a pass over planes: their columns and rows, and the index of their first sample.
+    pub planes: [u32; 3],
 }
 
 /// A part of a grid that is on the device, and where it lies among the samples of a job.
@@ -172,16 +174,19 @@ impl Job<'_> {
     }
 }
 
+/// The words of a frame, without what fills it up.
+type Frame = [u32; FRAME_WORDS - 1];
+
 /// The frames of dispatches, equal ones once.
 #[derive(Default)]
 struct Frames {
     words: Vec<u32>,
-    known: HashMap<[u32; 6], u32>,
+    known: HashMap<Frame, u32>,
 }
 
 impl Frames {
     /// The offset of a frame, in bytes.
-    fn of(&mut self, frame: [u32; 6]) -> u32 {
+    fn of(&mut self, frame: Frame) -> u32 {
         *self.known.entry(frame).or_insert_with(|| {
             let start = self.words.len();
             self.words.extend(frame);
@@ -192,17 +197,18 @@ impl Frames {
 }
 
 impl Dispatch<'_> {
-    fn frame(&self) -> [u32; 6] {
-        [self.base, self.size[0], self.size[1], self.step, 0, 0]
+    fn frame(&self) -> Frame {
+        let [columns, rows, first] = self.planes;
+        [self.base, self.size[0], self.size[1], self.step, 0, 0, columns, rows, first]
     }
 }
 
 impl Part<'_> {
     /// The frame of copying it to the job's samples, or back.
-    fn frame(&self, is_brought: bool) -> [u32; 6] {
+    fn frame(&self, is_brought: bool) -> Frame {
         let ends = [(self.first, self.resident.window.width), (self.at, self.stride)];
         let [from, to] = if is_brought { ends } else { [ends[1], ends[0]] };
-        [from.0, self.size[0], self.size[1], to.0, from.1, to.1].map(|word| word as u32)
+        [from.0, self.size[0], self.size[1], to.0, from.1, to.1, 0, 0, 0].map(|word| word as u32)
     }
 }
 

@@ -114,9 +114,10 @@ impl<'a> Reader<'a> {
             let [left, top] = offset(&over);
             for (row, rows) in bands(over.height, over.width * pass.reads) {
                 let base = job.data.len() as u32;
-                job.data.extend([grown.width, grown.height, left, top + row, own, first].map(|word| word as u32));
+                job.data.extend([left, top + row, own].map(|word| word as u32));
                 let size = [over.width, rows].map(|side| side as u32);
-                job.dispatches.push(Dispatch { text, base, size, step: 0 });
+                let planes = [grown.width, grown.height, first].map(|word| word as u32);
+                job.dispatches.push(Dispatch { text, base, size, step: 0, planes });
             }
         }
     }

@@ -264,11 +264,11 @@ impl<'a> Level<'a> {
                 let start = [left, top + row];
                 let base = *bases.entry(start).or_insert(job.data.len());
                 if base == job.data.len() {
-                    let words = [grown.width, grown.height, start[0], start[1], own, first];
-                    job.data.extend(words.map(|word| word as u32));
+                    job.data.extend([start[0], start[1], own].map(|word| word as u32));
                 }
                 let size = [width, rows].map(|side| side as u32);
-                job.dispatches.push(Dispatch { text, base: base as u32, size, step });
+                let planes = [grown.width, grown.height, first].map(|word| word as u32);
+                job.dispatches.push(Dispatch { text, base: base as u32, size, step, planes });
             }
         };
         if before.is_some() {

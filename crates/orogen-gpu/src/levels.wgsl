@@ -6,7 +6,7 @@ const LEVEL_WORDS = 10u;
 
 // A word before the level's own.
 fn header(i: u32) -> u32 {
-    return data[data[frame.base + 4u] - LEVEL_WORDS + i];
+    return data[data[frame.base + 2u] - LEVEL_WORDS + i];
 }
 
 // Columns and rows of the planes of the level above.
@@ -16,7 +16,7 @@ fn above_size() -> vec2<i32> {
 
 fn index_above(k: u32, at: vec2<i32>) -> u32 {
     let columns_and_rows = vec2<u32>(above_size());
-    let first = data[frame.base + 5u] + header(0u) * data[frame.base] * data[frame.base + 1u];
+    let first = frame.first + header(0u) * frame.columns * frame.rows;
     return first + (k * columns_and_rows.y + u32(at.y)) * columns_and_rows.x + u32(at.x);
 }
 

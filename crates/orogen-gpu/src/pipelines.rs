@@ -20,8 +20,12 @@ pub(crate) struct Pipelines {
 /// Distance of the frames of dispatches, in bytes: that at which all devices allow uniforms.
 pub(crate) const FRAME: u64 = 256;
 
+/// Number of words of a frame.
+pub(crate) const FRAME_WORDS: usize = 10;
+
 /// Size of a frame, in bytes.
-pub(crate) const FRAME_SIZE: std::num::NonZero<u64> = std::num::NonZero::<u64>::MIN.saturating_add(23);
+pub(crate) const FRAME_SIZE: std::num::NonZero<u64> =
+    std::num::NonZero::<u64>::MIN.saturating_add(4 * FRAME_WORDS as u64 - 1);
 
 impl Pipelines {
     pub(crate) fn new(device: &wgpu::Device) -> Pipelines {

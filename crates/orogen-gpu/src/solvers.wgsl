@@ -1,21 +1,20 @@
 // What the passes of all solvers have in common: planes of words of one size, one after the other.
 //
-// The words at `frame.base` are those of filters: the columns and rows of the planes, the first column and row of this pass, where the solver's own words start,
-// and 0.
+// The words at `frame.base` are those of filters: the first column and row of this pass, and where the solver's own words start.
 
 // Columns and rows of the planes.
 fn size() -> vec2<i32> {
-    return vec2<i32>(i32(data[frame.base]), i32(data[frame.base + 1u]));
+    return vec2<i32>(i32(frame.columns), i32(frame.rows));
 }
 
 // Number of cells of a plane.
 fn cells() -> u32 {
-    return data[frame.base] * data[frame.base + 1u];
+    return frame.columns * frame.rows;
 }
 
 // The cell at a column and row.
 fn cell_at(at: vec2<i32>) -> u32 {
-    return u32(at.y) * data[frame.base] + u32(at.x);
+    return u32(at.y) * frame.columns + u32(at.x);
 }
 
 // A sample of plane `k`.

@@ -13,7 +13,7 @@ fn a_job_runs() {
         let at = id.y * frame.width + id.x;\n\
         samples[at] = samples[at] * number(frame.base, 0u) + f32(frame.step);\n}\n";
     let grid: Vec<f32> = (0..13 * 9).map(|k| k as f32).collect();
-    let dispatch = |step| Dispatch { text, base: 1, size: [13, 9], step };
+    let dispatch = |step| Dispatch { text, base: 1, size: [13, 9], step, ..Dispatch::default() };
     let job = Job {
         data: vec![0, 2.0f32.to_bits()],
         samples: grid.len(),

@@ -224,7 +224,7 @@ fn computed(gpu: &Gpu, noises: &[Noise], window: &Window, inputs: &[Vec<f32>]) -
     let size = window.size.map(|side| side as u32);
     let dispatches = noises.iter().zip(&texts).enumerate().map(|(n, (noise, text))| {
         let base = noise.shader.encode(&window.positions, window.is_displaced(), &mut data);
-        Dispatch { text, base, size, step: (count * (before + n)) as u32 }
+        Dispatch { text, base, size, step: (count * (before + n)) as u32, ..Dispatch::default() }
     });
     let dispatches = dispatches.collect();
     let downloads = (0..noises.len()).map(|n| (count * (before + n), count)).collect();
@@ -311,7 +311,7 @@ fn functions_of_one_kernel_have_different_names() {
         }
     }
     let text = parts.concat() + "@compute @workgroup_size(8, 8) fn main() { samples[0] = number(frame.base, 0u); }";
-    let dispatches = vec![Dispatch { text: &text, base: 0, size: [1, 1], step: 0 }];
+    let dispatches = vec![Dispatch { text: &text, size: [1, 1], ..Dispatch::default() }];
     let job = Job { data: vec![1.5f32.to_bits()], samples: 1, dispatches, downloads: vec![(0, 1)], ..Job::default() };
     assert_eq!(job.run(&gpu, || false).unwrap().unwrap(), [[1.5]]);
 }

@@ -88,11 +88,11 @@ fn finish(base: u32, at: vec2<i32>) {
     set_word(HEIGHT, cell, select(height, 0x7fc00000u, is_missing(filled)));
     set_word(FLOW_DISTANCE, cell, word(LENGTH + step_number(), cell));
     var nearest = square_of(0u, word(DOWN_COLUMN, cell));
-    for (var x = 1u; x < data[frame.base] && x * x < nearest; x += 1u) {
+    for (var x = 1u; x < frame.columns && x * x < nearest; x += 1u) {
         if (u32(at.x) >= x) {
             nearest = min(nearest, square_of(x, word(DOWN_COLUMN, cell - x)));
         }
-        if (u32(at.x) + x < data[frame.base]) {
+        if (u32(at.x) + x < frame.columns) {
             nearest = min(nearest, square_of(x, word(DOWN_COLUMN, cell + x)));
         }
     }

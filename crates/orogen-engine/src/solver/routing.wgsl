@@ -59,7 +59,7 @@ fn offset_of(code: u32) -> vec2<i32> {
 // The neighbour in a direction of a cell that is not on the border.
 fn neighbour(cell: u32, code: u32) -> u32 {
     let offset = offset_of(code);
-    return cell + u32(offset.y) * data[frame.base] + u32(offset.x);
+    return cell + u32(offset.y) * frame.columns + u32(offset.x);
 }
 
 // The direction from a cell to a neighbour.
@@ -105,7 +105,7 @@ fn shifted(a: vec2<u32>, by: u32) -> vec2<u32> {
 
 // A hash of a cell's position on the lattice of the world and a salt: that of `hydrology/direction.rs`.
 fn hashed(base: u32, cell: u32, with_salt: u32) -> u32 {
-    let at = vec2<u32>(cell % data[frame.base], cell / data[frame.base]);
+    let at = vec2<u32>(cell % frame.columns, cell / frame.columns);
     let low = vec2<u32>(data[base], data[base + 2u]) + at;
     let carry = select(vec2<u32>(0u), vec2<u32>(1u), low < at);
     let high = vec2<u32>(data[base + 1u], data[base + 3u]) + carry;

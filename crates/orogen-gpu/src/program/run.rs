@@ -141,7 +141,7 @@ impl<'a> Run<'a> {
                 text: &kernel.text,
                 base,
                 size: [tile.width as u32, tile.height as u32],
-                step: 0,
+                ..Dispatch::default()
             });
         }
         Ok(Job { data, ..job })

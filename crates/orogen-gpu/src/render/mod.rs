@@ -76,7 +76,7 @@ fn draw_band(
     let dispatches = tiles.iter().map(|tile| {
         let base = data.len() as u32;
         data.extend(tile.start);
-        Dispatch { text: &encoded.text, base, size: tile.size, step: 0 }
+        Dispatch { text: &encoded.text, base, size: tile.size, ..Dispatch::default() }
     });
     let dispatches: Vec<Dispatch> = dispatches.collect();
     let count = 3 * width * rows.len();

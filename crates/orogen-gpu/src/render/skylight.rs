@@ -87,8 +87,14 @@ pub fn skylight(
             strides[1] as u32,
         ]);
         let groups = (lines as u32).div_ceil(INVOCATIONS);
-        dispatches.push(Dispatch { text: &text, base, size: [groups * GROUP, GROUP], step: 0 });
-        dispatches.push(Dispatch { text: &text, base, size: [columns as u32, rows as u32], step: 1 });
+        dispatches.push(Dispatch { text: &text, base, size: [groups * GROUP, GROUP], ..Dispatch::default() });
+        dispatches.push(Dispatch {
+            text: &text,
+            base,
+            size: [columns as u32, rows as u32],
+            step: 1,
+            ..Dispatch::default()
+        });
     }
     let uploads = vec![(0, input.bed.as_slice().into()), (turned, input.turned.as_slice().into())];
     let job = Job { data, samples, uploads, dispatches, downloads: vec![(shed, 4 * count)], ..Job::default() };
