@@ -3,9 +3,9 @@
 use crate::failure::Failure;
 use crate::gpu::Gpu;
 use crate::job::{Dispatch, GROUP, Job};
-use crate::layers::{Layers, index};
-use crate::resident::Source;
-use crate::tiles::fitting;
+use crate::layers::Layers;
+use crate::source::Source;
+use crate::tiles::{fitting, index};
 use orogen_engine::device::{FilterExtent, PlanGrid};
 use orogen_engine::lower::Passes;
 use orogen_grid::grid::{Grid, Window};

@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use crate::gpu::Gpu;
 use crate::job::{Job, Part};
 use crate::resident::Resident;
+use crate::tiles::{index, offset};
 use orogen_engine::device::PlanGrid;
 use orogen_grid::grid::{Grid, Window};
 
@@ -81,15 +82,4 @@ impl Layers {
             Layers::Memory(grids) => grids.into_iter().map(PlanGrid::from).collect(),
         }
     }
-}
-
-/// The column and the row of a window's part in it.
-fn offset(window: &Window, part: &Window) -> (usize, usize) {
-    ((part.x - window.x) as usize, (part.y - window.y) as usize)
-}
-
-/// The index of the first sample of a window's part in it.
-pub(crate) fn index(window: &Window, part: &Window) -> usize {
-    let (left, top) = offset(window, part);
-    top * window.width + left
 }

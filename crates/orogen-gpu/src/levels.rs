@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::filters::{bands, inner, text};
 use crate::gpu::Gpu;
 use crate::job::{Dispatch, Job};
-use crate::resident::Source;
+use crate::source::Source;
 use crate::tiles::fitting;
 use orogen_engine::device::LevelStep;
 use orogen_engine::lower::LevelPasses;

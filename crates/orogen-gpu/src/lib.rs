@@ -24,6 +24,7 @@ mod resident;
 mod session;
 #[doc(hidden)]
 pub mod solvers;
+mod source;
 mod tiles;
 
 pub use adapters::{Adapter, Choice, adapters};

@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::filters::{Planes, Preludes};
 use crate::gpu::Gpu;
 use crate::layers::Layers;
-use crate::resident::Source;
+use crate::source::Source;
 use orogen_engine::lower::Passes;
 use orogen_grid::grid::{Grid, Window};
 

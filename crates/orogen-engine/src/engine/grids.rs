@@ -1,10 +1,9 @@
 //! The grids of a plan while its steps run.
 
-use super::run::missing;
 use crate::device::{Device, DeviceGrid, PlanGrid};
 use crate::ids::{GridId, IndexVec, StepId};
 use crate::plan::steps::Plan;
-use orogen_grid::error::Result;
+use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Grid;
 use orogen_grid::progress::Progress;
 
@@ -74,4 +73,9 @@ impl Grids {
         }
         Ok(true)
     }
+}
+
+/// A grid that steps before should have computed is not there.
+pub fn missing(what: &str) -> Error {
+    Error::new(ErrorKind::Internal, format!("{what} was not computed"))
 }

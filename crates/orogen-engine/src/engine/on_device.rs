@@ -1,7 +1,7 @@
 //! Steps of a plan on a device.
 
-use super::grids::Grids;
-use super::run::{Engine, Solutions, missing};
+use super::grids::{Grids, missing};
+use super::run::{Engine, Solutions};
 use crate::device::{Device, FilterExtent, PlanGrid};
 use crate::ids::GridId;
 use crate::lower::Lowering;

@@ -1,7 +1,7 @@
 //! Running the steps of a plan.
 
 use super::exactness::Exactness;
-use super::grids::Grids;
+use super::grids::{Grids, missing};
 use super::interpreter::{Bindings, Interpreter};
 use super::nodes::Nodes;
 use super::preview::Preview;
@@ -391,9 +391,4 @@ fn with_inputs<T>(step: &Step, grids: &Grids, work: impl FnOnce(&[Option<&Grid>]
         .map(|(input, cropped)| cropped.as_ref().or_else(|| input.and_then(|slot| grids.memory(slot))))
         .collect();
     work(&given)
-}
-
-/// A grid that steps before should have computed is not there.
-pub(super) fn missing(what: &str) -> Error {
-    Error::new(ErrorKind::Internal, format!("{what} was not computed"))
 }

@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::gpu::Gpu;
 use crate::job::{Dispatch, Job};
 use crate::layers::Layers;
-use crate::resident::Source;
+use crate::source::Source;
 use crate::tiles::fitting;
 use orogen_engine::device::{Lowered, LoweredProgram, PlanGrid};
 use orogen_grid::grid::Window;
