@@ -61,7 +61,7 @@ pub fn run(options: &Options) -> Result<Value, String> {
     if is_wanted("pipes") {
         let ours = bench.kernels(PIPES, 2048)?;
         let begun = Instant::now();
-        window(&bench.processor, PIPES, 2048)?;
+        window(&bench.processor, PIPES, 2048, 0)?;
         let other = Some(("the processor, all cores", begun.elapsed().as_secs_f64()));
         let case = "pipes, 100 iterations, 2048 x 2048: kernels".to_string();
         row(Figure { case, ours, unit: "s", other, target: Target::FasterBy(20.0) });
@@ -112,9 +112,10 @@ enum Part {
     Levels,
 }
 
-/// Makes the heights of a recipe.
-fn window(session: &Session, recipe: &str, side: usize) -> Result<(), String> {
-    let recipe = Recipe::parse(recipe, "bench").map_err(|e| e.to_string())?;
+/// Makes the heights of a recipe with another seed each time: grids of filters are kept.
+fn window(session: &Session, recipe: &str, side: usize, seed: u64) -> Result<(), String> {
+    let mut recipe = Recipe::parse(recipe, "bench").map_err(|e| e.to_string())?;
+    recipe.world.seed = seed;
     let world = session.open(recipe).map_err(|e| e.to_string())?;
     world.window("height", &Window::new(side, side, 10.0)).map(drop).map_err(|e| e.to_string())
 }
@@ -125,7 +126,7 @@ impl Bench {
         let mut times = Vec::new();
         for k in 0..=self.repetitions {
             let _ = self.gpu.take_seconds();
-            window(&self.card, recipe, side)?;
+            window(&self.card, recipe, side, k as u64)?;
             if k > 0 {
                 times.push(self.gpu.take_seconds());
             }

@@ -135,6 +135,8 @@ impl Job<'_> {
             if is_cancelled() {
                 return Ok(None);
             }
+            // Waiting for the part before has ended its time.
+            gpu.begin();
             let now = done..(done + together.unwrap_or_else(|| gpu.together())).min(self.dispatches.len());
             let (dispatches, offsets) = (&self.dispatches[now.clone()], &offsets[now.clone()]);
             let begun = Instant::now();
