@@ -8,7 +8,7 @@ use crate::source::Source;
 use crate::tiles::{fitting, index};
 use orogen_engine::device::{FilterExtent, PlanGrid};
 use orogen_engine::lower::Passes;
-use orogen_grid::grid::{Grid, Window};
+use orogen_grid::grid::Window;
 use std::collections::HashMap;
 
 /// What the passes of all filters have in common.
@@ -146,15 +146,6 @@ pub(crate) fn bands(height: usize, reads: usize) -> impl Iterator<Item = (usize,
     let group = GROUP as usize;
     let rows = (READS / reads.max(1) / group).max(1) * group;
     (0..height).step_by(rows).map(move |first| (first, rows.min(height - first)))
-}
-
-/// A tile from whole rows of its planes, of which each has `left` samples before it.
-pub(crate) fn inner(rows: &[f32], tile: &Window, width: usize, left: usize) -> Grid {
-    let mut grid = Grid::filled(*tile, 0.0f32);
-    for (out, row) in grid.data_mut().chunks_mut(tile.width).zip(rows.chunks(width)) {
-        out.copy_from_slice(&row[left..left + tile.width]);
-    }
-    grid
 }
 
 /// The text of a pass. It depends on the op and the function alone.

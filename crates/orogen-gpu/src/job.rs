@@ -54,13 +54,13 @@ pub struct Job<'a> {
     /// Grids that are copied to the device, with the index of their first sample.
     pub uploads: Vec<(usize, Cow<'a, [f32]>)>,
     /// Parts of grids on the device that are copied to the samples.
-    pub brought: Vec<Part<'a>>,
+    pub loads: Vec<Part<'a>>,
     /// What is run, in order.
     pub dispatches: Vec<Dispatch<'a>>,
     /// Grids that are copied back: the index of their first sample, and the number of samples.
     pub downloads: Vec<(usize, usize)>,
     /// Parts of the samples that are copied to grids on the device.
-    pub left: Vec<Part<'a>>,
+    pub stores: Vec<Part<'a>>,
 }
 
 impl Job<'_> {
@@ -68,7 +68,7 @@ impl Job<'_> {
     #[must_use]
     pub fn memory(&self) -> u64 {
         let downloads: usize = self.downloads.iter().map(|(_, count)| count).sum();
-        let frames = self.brought.len() + self.dispatches.len() + self.left.len();
+        let frames = self.loads.len() + self.dispatches.len() + self.stores.len();
         4 * (self.data.len() + self.samples + downloads) as u64 + FRAME * frames as u64
     }
 
@@ -105,9 +105,9 @@ impl Job<'_> {
         let data = gpu.buffer(self.data.len(), Usage::STORAGE | Usage::COPY_DST);
         let samples = gpu.buffer(self.samples, Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC);
         let mut frames = Frames::default();
-        let brought: Vec<u32> = self.brought.iter().map(|part| frames.of(part.frame(true))).collect();
+        let loads: Vec<u32> = self.loads.iter().map(|part| frames.of(part.frame(true))).collect();
         let offsets: Vec<u32> = self.dispatches.iter().map(|dispatch| frames.of(dispatch.frame())).collect();
-        let left: Vec<u32> = self.left.iter().map(|part| frames.of(part.frame(false))).collect();
+        let stores: Vec<u32> = self.stores.iter().map(|part| frames.of(part.frame(false))).collect();
         let frames = {
             let buffer = gpu.buffer(frames.words.len(), Usage::UNIFORM | Usage::COPY_DST);
             queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&frames.words));
@@ -122,11 +122,11 @@ impl Job<'_> {
         if is_cancelled() {
             return Ok(None);
         }
-        let brought = self.brought.iter().zip(brought);
-        let brought: Vec<Copy> = brought
+        let loads = self.loads.iter().zip(loads);
+        let loads: Vec<Copy> = loads
             .map(|(part, offset)| Copy::new(gpu, [&part.resident.buffer, &samples, &frames], offset, part.size))
             .collect();
-        copy(gpu, &brought)?;
+        copy(gpu, &loads)?;
         let bindings = gpu.pipelines().bind(device, [&data, &samples, &frames]);
         // The passes of a solver share few texts, and comparing texts takes longer than a dispatch.
         let mut pipelines = HashMap::new();
@@ -161,13 +161,13 @@ impl Job<'_> {
             }
             done = now.end;
         }
-        let left: Vec<Copy> = self
-            .left
+        let stores: Vec<Copy> = self
+            .stores
             .iter()
-            .zip(left)
+            .zip(stores)
             .map(|(part, offset)| Copy::new(gpu, [&samples, &part.resident.buffer, &frames], offset, part.size))
             .collect();
-        copy(gpu, &left)?;
+        copy(gpu, &stores)?;
         if self.downloads.is_empty() {
             return Ok(Some(Vec::new()));
         }
@@ -207,9 +207,9 @@ impl Dispatch<'_> {
 
 impl Part<'_> {
     /// The frame of copying it to the job's samples, or back.
-    fn frame(&self, is_brought: bool) -> Frame {
+    fn frame(&self, is_load: bool) -> Frame {
         let ends = [(self.first, self.resident.window.width), (self.at, self.stride)];
-        let [from, to] = if is_brought { ends } else { [ends[1], ends[0]] };
+        let [from, to] = if is_load { ends } else { [ends[1], ends[0]] };
         [from.0, self.size[0], self.size[1], to.0, from.1, to.1, 0, 0, 0].map(|word| word as u32)
     }
 }

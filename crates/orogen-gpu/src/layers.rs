@@ -49,7 +49,7 @@ impl Layers {
                     let first = index(&resident.window, tile);
                     Part { resident, first, at, stride, size: [tile.width, tile.height] }
                 });
-                Ok(Job { left: parts.collect(), ..job }.run(gpu, is_cancelled)?.is_some())
+                Ok(Job { stores: parts.collect(), ..job }.run(gpu, is_cancelled)?.is_some())
             }
             Layers::Memory(grids) => {
                 // Whole rows, but of the last one only what the tile has.

@@ -1,11 +1,12 @@
 //! Levels of levelled ops, by their passes.
 
 use crate::failure::Failure;
-use crate::filters::{bands, inner, text};
+use crate::filters::{bands, text};
 use crate::gpu::Gpu;
 use crate::job::{Dispatch, Job};
+use crate::layers::Layers;
 use crate::source::Source;
-use crate::tiles::fitting;
+use crate::tiles::{fitting, index};
 use orogen_engine::device::LevelStep;
 use orogen_engine::lower::LevelPasses;
 use orogen_grid::grid::{Grid, Window};
@@ -66,14 +67,13 @@ fn together(
     if let Some(level) = levels.iter().find(|level| level.window.is_empty()) {
         return Ok(Some((0..level.passes.planes).map(|_| Grid::filled(level.window, 0.0f32)).collect()));
     }
-    let (mut job, made) = job(levels, above)?;
+    let (job, made) = job(levels, above)?;
     let (Some(last), Some(Made { first, grown, window })) = (levels.last(), made) else { return Ok(None) };
-    // Whole rows are copied back: those of the window.
-    let (left, top) = ((window.x - grown.x) as usize, (window.y - grown.y) as usize);
-    let rows = window.height * grown.width;
-    job.downloads = (0..last.passes.planes).map(|k| (first + k * grown.len() + top * grown.width, rows)).collect();
-    let Some(back) = job.run(gpu, is_cancelled)? else { return Ok(None) };
-    Ok(Some(back.into_iter().map(|rows| inner(&rows, &window, grown.width, left)).collect()))
+    let mut planes = Layers::in_memory(&window, last.passes.planes);
+    let firsts: Vec<usize> =
+        (0..last.passes.planes).map(|k| first + k * grown.len() + index(&grown, &window)).collect();
+    let is_done = planes.run(gpu, job, &window, (&firsts, grown.width), is_cancelled)?;
+    Ok(is_done.then(|| planes.into_memory()).flatten())
 }
 
 /// The work that makes levels one from the other, and the last of them, if there is one.

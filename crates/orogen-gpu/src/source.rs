@@ -42,7 +42,7 @@ impl<'a> Source<'a> {
             }
             Source::Resident(resident) if resident.window.contains(part) => {
                 let (first, size) = (index(&resident.window, part), [part.width, part.height]);
-                job.brought.push(Part { resident, first, at, stride: part.width, size });
+                job.loads.push(Part { resident, first, at, stride: part.width, size });
             }
             Source::Resident(_) => return Err(uncovered()),
         }
