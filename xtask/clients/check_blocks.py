@@ -12,7 +12,7 @@ import nbtlib
 import numpy
 import trimesh
 from midvoxio.voxio import get_vox
-from orogen import NODE_BIN, ROOT, WORK, Checks, orogen
+from orogen import CLIENT, NODE_BIN, ROOT, WORK, Checks, orogen
 
 checks = Checks()
 # Names of nodes in Minetest Game and of block states in Minecraft, where they are not those of our blocks.
@@ -170,8 +170,10 @@ def glb():
 
 
 blocks = schem()
-vox(blocks)
-glb()
-for game in "minetest_game", "bare":
-    luanti(blocks, game)
+if CLIENT == "luanti":
+    for game in "minetest_game", "bare":
+        luanti(blocks, game)
+else:
+    vox(blocks)
+    glb()
 checks.end()

@@ -7,6 +7,8 @@ import sys
 from pathlib import Path
 
 BINARY = os.environ["OROGEN"]
+# The client whose step runs the script.
+CLIENT = os.environ["OROGEN_CLIENT"]
 ROOT = Path(os.environ["OROGEN_ROOT"])
 WORK = Path(os.environ["OROGEN_WORK"])
 NODE_BIN = Path(os.environ["OROGEN_NODE_BIN"])

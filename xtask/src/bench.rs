@@ -1,6 +1,5 @@
 //! `cargo xtask bench`: measures all published figures.
 
-mod host;
 mod peers;
 mod realism;
 mod report;

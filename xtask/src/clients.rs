@@ -8,11 +8,13 @@ mod blender;
 mod gpu;
 mod install;
 mod neon;
+mod passed;
 mod presets;
 mod studio;
 mod wasm;
 
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use crate::failure::{Failure, Result};
 use crate::shell::{cargo, program, root, run as sh, target_dir};
@@ -21,17 +23,17 @@ use crate::steps::{self, Step};
 pub const ABOUT: &str = "install other programs and check that they read our files";
 
 pub const HELP: &str = "
-Usage: cargo xtask clients [STEP...]
+Usage: cargo xtask clients [--all | STEP...]
 
-Builds `orogen` in release mode, installs missing clients and runs every step, or only the steps named:
+Builds `orogen` in release mode, installs missing clients and runs every step of the first list, only the steps named, or with
+--all those of both lists:
 
-  install   apt (as root on Debian); rustup's aarch64-unknown-linux-gnu and wasm32-unknown-unknown
+  install   apt (as root on Debian); rustup's wasm32-unknown-unknown
   packages  pip into target/clients/venv, npm into target/clients/node; versions pinned
   build     cargo build --release -p orogen-cli
-  wasm      the libraries built for WebAssembly, without threads; every preset under node
-  neon      the tests of every SIMD level, built for ARM, in QEMU: NEON gives the committed bits
-  presets   every preset against golden/presets.txt, on one thread and two, at every SIMD level of this machine
-  asan      the tests of the SIMD levels under AddressSanitizer: no kernel reads or writes outside its slices
+  window    clippy and build of the studio's window and of graphics cards
+  wasm      the libraries built for WebAssembly, without threads; four presets under node, and a world without files
+  presets   every preset against golden/presets.txt, at every SIMD level of this machine, on one thread or two
   numpy     NumPy reads .npy: the numbers of summary.json, and the orientation
   pillow    Pillow reads the pictures: grey values, the share of sea, animations
   rasterio  rasterio reads GeoTIFFs: samples and coordinates; rio-cogeo validates their layout
@@ -40,24 +42,33 @@ Builds `orogen` in release mode, installs missing clients and runs every step, o
   dems      orogen reads heights in every kind that rasterio writes: bit-equal samples, the same coordinates
   meshes    the glTF validator, trimesh, meshio and admesh read GLB, OBJ, PLY and STL: samples, orientation, closed solids
   tilemaps  Tiled, PyTMX, ldtkpy and godot_parser read tilemaps: the same tiles, wang sets and pictures
-  blocks    nbtlib, midvoxio and trimesh read blocks, and a Luanti server opens them: the same blocks, no cracks in the mesh
+  blocks    nbtlib, midvoxio and trimesh read blocks: no cracks in the mesh
   contours  gdal_contour of the same heights gives the same lines; GDAL reads our files
   water     GDAL, SQLite and Shapely read rivers, lakes and watersheds: valid, connected, never rising, at the coordinates of the GeoTIFF
   maps      Poppler and librsvg draw map sheets: they look like the .png
   formats   OpenEXR, GDAL, rasterio, Pillow and Godot read exported heights of every format, not mirrored, rotated or shifted
   relief    gdaldem computes the same hillshade, slope and aspect
-  layers    GRASS, WhiteboxTools and gdaldem compute the same derived layers: wetness, HAND, insolation, viewshed, landforms ...
+  layers    WhiteboxTools and traces along flow directions give the same layers of water
   taplo     taplo validates every recipe against the JSON Schema, and rejects broken ones
   studio    the studio's tests with Mesa's software Vulkan, and its window under Xvfb in both languages
   gpu       fields, filters, presets and pictures on a graphics card, or Mesa's software Vulkan, beside the processor's; and without any card
-  fuzz      libFuzzer on the readers of foreign files, 15 s each
 
-Only if named, because Blender is large and needs Python 3.11:
+Only if named or with --all, because they take long or need large programs:
 
-  blender   Blender imports meshes: size, summit and light are right
+  wasm-all  every preset under node
+  levels    every preset at every SIMD level on one thread and on two
+  neon      the tests of every SIMD level, built for ARM, in QEMU: NEON gives the committed bits
+  asan      the tests of the SIMD levels under AddressSanitizer: no kernel reads or writes outside its slices
+  fuzz      libFuzzer on the readers of foreign files, 60 s each
+  luanti    a Luanti server opens worlds of blocks: the same blocks
+  grass     GRASS and gdaldem compute the same derived layers: wetness, insolation, viewshed, landforms ...
+  blender   Blender imports meshes: size, summit and light are right; needs Python 3.11
 
-`install`, `packages` and `build` always run first. The last two run side by side, and then `wasm` to `taplo`, one for each core: each
-prints when it ends, and what it has printed so far is in target/steps. The others run alone. On systems other than Debian, or without root, the command prints what to install.
+xtask/clients/passed.txt says when each of these last passed; a run without them prints those that are older than 14 days.
+
+`install`, `packages` and `build` always run first, the last two side by side. Then `window` to `taplo` run side by side, one for
+each core: each prints when it ends, and what it has printed so far is in target/steps. The others run alone. On systems other
+than Debian, or without root, the command prints what to install.
 ";
 
 /// A foreign program, or several that one script runs.
@@ -75,10 +86,13 @@ struct Client {
 const NUMPY: &str = "numpy==2.4.6";
 const RASTERIO: &str = "rasterio==1.4.4";
 const PILLOW: &str = "pillow==12.2.0";
+const BLOCKS: &[&str] = &[NUMPY, "nbtlib==2.0.4", "midvoxio==0.1.6", "matplotlib==3.11.2", "trimesh==5.2.0"];
+const LAYERS: &[&str] = &[NUMPY, RASTERIO, "whitebox-workflows==2.0.6"];
 
 const CLIENTS: &[Client] = &[
     Client { name: "neon", apt: neon::APT, pip: &[], npm: &[] },
     Client { name: "wasm", apt: &[("node", "nodejs")], pip: &[], npm: &[] },
+    Client { name: "wasm-all", apt: &[("node", "nodejs")], pip: &[], npm: &[] },
     Client { name: "numpy", apt: &[], pip: &[NUMPY], npm: &[] },
     Client { name: "pillow", apt: &[], pip: &[NUMPY, PILLOW], npm: &[] },
     Client { name: "rasterio", apt: &[], pip: &[NUMPY, RASTERIO, "rio-cogeo==7.0.4"], npm: &[] },
@@ -104,10 +118,11 @@ const CLIENTS: &[Client] = &[
     },
     Client {
         name: "blocks",
-        apt: &[("node", "nodejs"), ("npm", "npm"), ("/usr/games/minetestserver", "minetest-server")],
-        pip: &[NUMPY, "nbtlib==2.0.4", "midvoxio==0.1.6", "matplotlib==3.11.2", "trimesh==5.2.0"],
+        apt: &[("node", "nodejs"), ("npm", "npm")],
+        pip: BLOCKS,
         npm: &["gltf-validator@2.0.0-dev.3.10"],
     },
+    Client { name: "luanti", apt: &[("/usr/games/minetestserver", "minetest-server")], pip: BLOCKS, npm: &[] },
     Client { name: "contours", apt: &[("gdal_contour", "gdal-bin")], pip: &[NUMPY], npm: &[] },
     Client {
         name: "water",
@@ -128,12 +143,8 @@ const CLIENTS: &[Client] = &[
         npm: &[],
     },
     Client { name: "relief", apt: &[("gdaldem", "gdal-bin")], pip: &[NUMPY, RASTERIO], npm: &[] },
-    Client {
-        name: "layers",
-        apt: &[("gdaldem", "gdal-bin"), ("grass", "grass-core")],
-        pip: &[NUMPY, RASTERIO, "whitebox-workflows==2.0.6"],
-        npm: &[],
-    },
+    Client { name: "layers", apt: &[], pip: LAYERS, npm: &[] },
+    Client { name: "grass", apt: &[("gdaldem", "gdal-bin"), ("grass", "grass-core")], pip: LAYERS, npm: &[] },
     Client {
         name: "studio",
         apt: &[
@@ -159,7 +170,7 @@ const CLIENTS: &[Client] = &[
     Client { name: "taplo", apt: &[("node", "nodejs"), ("npm", "npm")], pip: &[], npm: &["@taplo/cli@0.7.0"] },
 ];
 
-/// A step that runs by itself: it has time limits, or keeps all cores busy.
+/// A step that runs by itself: it keeps all cores busy.
 const fn alone(name: &'static str, about: &'static str, run: fn() -> Result) -> Step {
     Step { name, about, group: None, run }
 }
@@ -169,10 +180,20 @@ const fn beside(name: &'static str, about: &'static str, run: fn() -> Result) ->
     Step { name, about, group: Some(2), run }
 }
 
+/// The names of the steps of this run.
+static CHOSEN: OnceLock<Vec<&'static str>> = OnceLock::new();
+
+/// Whether a step is one of this run.
+fn is_chosen(name: &str) -> bool {
+    CHOSEN.get().is_some_and(|chosen| chosen.contains(&name))
+}
+
 /// First by itself: packages of the system may replace the linker.
 const INSTALL: Step = alone("install", "the programs of the clients, and the standard libraries of targets", || {
-    install::programs(CLIENTS)?;
-    neon::install()?;
+    install::programs(CLIENTS.iter().filter(|client| is_chosen(client.name)))?;
+    if is_chosen("neon") {
+        neon::install()?;
+    }
     wasm::install()
 });
 /// It waits for downloads most of the time, so something is built beside it.
@@ -194,13 +215,14 @@ const STEPS: &[&Step] = &[
     &INSTALL,
     &PACKAGES,
     &BUILD,
-    &beside("wasm", "every preset made by the libraries built for WebAssembly", wasm::check),
-    &beside("neon", "the tests of every SIMD level on an emulated ARM processor", neon::check),
-    &beside("presets", "the presets' golden hashes at every level and thread count", presets::check),
-    &beside("asan", "the tests of the SIMD levels under AddressSanitizer", asan::check),
+    &beside("window", "clippy and build of the studio's window and of graphics cards", studio::build),
+    &beside("wasm", "four presets made by the libraries built for WebAssembly", wasm::check_four),
+    &beside("presets", "the presets' golden hashes at every level", presets::check),
     &beside("meshes", "the glTF validator, trimesh, meshio and admesh read meshes", || script("meshes")),
     &beside("water", "GDAL, SQLite and Shapely read rivers, lakes and watersheds", || script("water")),
-    &beside("layers", "GRASS, WhiteboxTools and gdaldem compute the same derived layers", || script("layers")),
+    &beside("layers", "WhiteboxTools and traces along flow directions give the same layers of water", || {
+        script("layers")
+    }),
     &beside("maps", "Poppler and librsvg draw map sheets", || script("maps")),
     &beside("numpy", "NumPy reads .npy", || script("numpy")),
     &beside("pillow", "Pillow reads the pictures", || script("pillow")),
@@ -209,33 +231,70 @@ const STEPS: &[&Step] = &[
     &beside("tiles", "NumPy and Pillow read tiles", || script("tiles")),
     &beside("dems", "orogen reads what rasterio writes", || script("dems")),
     &beside("tilemaps", "Tiled, PyTMX, ldtkpy and godot_parser read tilemaps", || script("tilemaps")),
-    &beside("blocks", "nbtlib, midvoxio, trimesh and a Luanti server read worlds of blocks", || script("blocks")),
+    &beside("blocks", "nbtlib, midvoxio and trimesh read worlds of blocks", || script("blocks")),
     &beside("contours", "gdal_contour draws the same contours", || script("contours")),
     &beside("formats", "OpenEXR, GDAL, rasterio, Pillow and Godot read exports", || script("formats")),
     &beside("relief", "gdaldem computes the same hillshade, slope and aspect", || script("relief")),
     &beside("taplo", "taplo checks the recipes against the schema", || script("taplo")),
     &alone("studio", "the studio with software Vulkan, and its window under Xvfb", studio::check),
     &alone("gpu", "terrain and pictures on a graphics card, beside the processor's", gpu::check),
-    &alone("fuzz", "libFuzzer on the readers of foreign files", fuzz),
 ];
 
-/// Steps that run only if they are named.
-const ASKED: &[&Step] = &[&alone("blender", "Blender imports meshes", blender::check)];
+/// Steps that run only if they are named, or with `--all`. [`passed`] keeps when they last passed.
+const ON_REQUEST: &[&Step] = &[
+    &beside("wasm-all", "every preset made by the libraries built for WebAssembly", || {
+        noted("wasm-all", wasm::check_all)
+    }),
+    &beside("levels", "the presets' golden hashes at every level and thread count", || {
+        noted("levels", presets::check_all)
+    }),
+    &beside("neon", "the tests of every SIMD level on an emulated ARM processor", || noted("neon", neon::check)),
+    &beside("asan", "the tests of the SIMD levels under AddressSanitizer", || noted("asan", asan::check)),
+    &beside("luanti", "a Luanti server reads worlds of blocks", || noted("luanti", || script_for("luanti", "blocks"))),
+    &beside("grass", "GRASS and gdaldem compute the same derived layers", || {
+        noted("grass", || script_for("grass", "layers"))
+    }),
+    &beside("blender", "Blender imports meshes", || noted("blender", blender::check)),
+    &alone("fuzz", "libFuzzer on the readers of foreign files", || noted("fuzz", || crate::fuzz::run(&[]))),
+];
 
-/// A short run, which covers inputs close to the committed files; `cargo xtask fuzz` runs longer.
-fn fuzz() -> Result {
-    crate::fuzz::run(&["--seconds", "15"].map(str::to_owned))
+/// Runs a step on request, and keeps when it passed.
+fn noted(name: &str, check: impl Fn() -> Result) -> Result {
+    check()?;
+    passed::note(name)
 }
 
 /// Runs the clients.
 pub fn run(args: &[String]) -> Result {
-    let mut named = args.to_vec();
+    let is_all = args == ["--all"];
+    let mut named = if is_all { Vec::new() } else { args.to_vec() };
     let mut steps = STEPS.to_vec();
-    if !named.is_empty() {
-        steps.extend(ASKED);
-        named.extend([INSTALL, PACKAGES, BUILD].map(|step| step.name.to_owned()));
+    if is_all || !named.is_empty() {
+        // Before the steps that run alone, so that all that run side by side are neighbors.
+        let at = steps.iter().position(|step| step.name == "studio").unwrap_or(steps.len());
+        steps.splice(at..at, ON_REQUEST.iter().copied());
     }
-    steps::run("cargo xtask clients", &steps, &named)
+    if !named.is_empty() {
+        let needed = [INSTALL.name, PACKAGES.name, BUILD.name];
+        named.extend(needed.map(str::to_owned));
+    }
+    let chosen = steps::choose(&steps, &named)?;
+    CHOSEN.get_or_init(|| chosen.iter().map(|step| step.name).collect());
+    steps::run("cargo xtask clients", &steps, &named)?;
+    if args.is_empty() {
+        print_old()?;
+    }
+    Ok(())
+}
+
+/// Prints the steps on request that have not passed for too long.
+fn print_old() -> Result {
+    let names: Vec<&str> = ON_REQUEST.iter().map(|step| step.name).collect();
+    let old = passed::old(&names)?;
+    if !old.is_empty() {
+        println!("older than {} days (cargo xtask clients --all):\n  {}", passed::MAX_AGE, old.join("\n  "));
+    }
+    Ok(())
 }
 
 /// The folder of the clients: the venv, the Node packages, the files they open.
@@ -250,19 +309,25 @@ fn orogen() -> PathBuf {
 
 /// Runs a client's script in a new folder.
 fn script(name: &str) -> Result {
-    if !CLIENTS.iter().any(|c| c.name == name) {
-        return Err(Failure::new(format!("{name} is not in the table of clients: nothing installs it")));
+    script_for(name, name)
+}
+
+/// Runs a script for one of several clients: a script runs what needs the client that `OROGEN_CLIENT` names.
+fn script_for(client: &str, script: &str) -> Result {
+    if !CLIENTS.iter().any(|c| c.name == client) {
+        return Err(Failure::new(format!("{client} is not in the table of clients: nothing installs it")));
     }
-    script_by(&install::python(), name)
+    script_by(&install::python(), client, script)
 }
 
 /// The same with another Python.
-fn script_by(python: &Path, name: &str) -> Result {
-    let work = folder().join("work").join(name);
+fn script_by(python: &Path, client: &str, script: &str) -> Result {
+    let work = folder().join("work").join(client);
     crate::shell::empty_dir(&work)?;
     let mut command = program(python);
     command
-        .arg(format!("xtask/clients/check_{name}.py"))
+        .arg(format!("xtask/clients/check_{script}.py"))
+        .env("OROGEN_CLIENT", client)
         .env("OROGEN", orogen())
         .env("OROGEN_ROOT", root())
         .env("OROGEN_WORK", &work)

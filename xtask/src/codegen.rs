@@ -10,7 +10,7 @@ mod op;
 use std::path::{Path, PathBuf};
 
 use crate::failure::{Failure, Result, on_file};
-use crate::shell;
+use crate::{output, shell};
 use op::Op;
 
 pub const ABOUT: &str = "rewrite the lists of modules, nodes and formats, the JSON Schema and the ops' reference";
@@ -139,7 +139,7 @@ fn settle(path: &Path, text: &str, check: bool) -> Result {
     let shown = shell::relative(path);
     let current = if path.exists() { shell::read(path)? } else { String::new() };
     if current == text {
-        println!("    {shown} is current");
+        output::line(format_args!("    {shown} is current"));
         return Ok(());
     }
     if check {
@@ -147,6 +147,6 @@ fn settle(path: &Path, text: &str, check: bool) -> Result {
             "{shown} is not current; run `cargo xtask codegen` and commit what it writes"
         )));
     }
-    println!("    {shown} rewritten");
+    output::line(format_args!("    {shown} rewritten"));
     shell::write(path, text)
 }

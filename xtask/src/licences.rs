@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use crate::failure::{Failure, Result};
-use crate::shell;
+use crate::{output, shell};
 
 /// Accepted licences: permissive ones, MPL-2.0, which binds only its own files, and those of fonts that programs may contain.
 const ACCEPTED: &[&str] = &[
@@ -42,7 +42,7 @@ pub fn check() -> Result {
     if packages.is_empty() || !refused.is_empty() {
         return Err(Failure::new(format!("licences not on the accepted list:\n{}", refused.join("\n"))));
     }
-    println!("    {} packages, every licence accepted", packages.len());
+    output::line(format_args!("    {} packages, every licence accepted", packages.len()));
     Ok(())
 }
 

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};
 
 use crate::failure::{Failure, Result, on_file};
-use crate::shell;
+use crate::{output, shell};
 
 /// Checks every Markdown file that git tracks.
 pub fn check() -> Result {
@@ -16,7 +16,7 @@ pub fn check() -> Result {
     let (dead, links) = dead_links(shell::root(), &files)?;
     match dead.is_empty() {
         true => {
-            println!("    {links} relative links in {} files", files.len());
+            output::line(format_args!("    {links} relative links in {} files", files.len()));
             Ok(())
         }
         false => Err(Failure::new(format!("links that lead nowhere:\n{}", dead.join("\n")))),

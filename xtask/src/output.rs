@@ -1,11 +1,17 @@
-//! Where the output of a step goes: to ours, or to a log while other steps run beside it.
+//! Where the output of a step goes: to its log, which is followed while the step runs alone.
 
 use std::cell::RefCell;
 use std::fmt::Display;
 use std::fs::File;
-use std::io::Write as _;
+use std::io::{self, Write as _};
+use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+/// Time between two looks at a log that is followed.
+const POLLED: Duration = Duration::from_millis(100);
 
 thread_local! {
     static LOG: RefCell<Option<Arc<File>>> = const { RefCell::new(None) };
@@ -43,7 +49,41 @@ pub fn connect_errors(command: &mut Command) -> &mut Command {
     command.stderr(copy().unwrap_or_else(Stdio::inherit))
 }
 
+/// Prints what is appended to a log until `is_complete` holds and all of it is printed.
+pub fn follow(log: &Path, is_complete: &AtomicBool) {
+    let Ok(mut file) = File::open(log) else { return };
+    loop {
+        // Asked before the rest is read: what is appended before it holds is printed.
+        let is_last = is_complete.load(Ordering::Acquire);
+        // What cannot be printed is in the log.
+        drop(io::copy(&mut file, &mut io::stdout().lock()));
+        drop(io::stdout().flush());
+        if is_last {
+            return;
+        }
+        std::thread::sleep(POLLED);
+    }
+}
+
+/// The last lines of a text.
+pub fn tail(text: &str, lines: usize) -> String {
+    let all: Vec<&str> = text.lines().collect();
+    all[all.len().saturating_sub(lines)..].join("\n")
+}
+
 /// Another handle of the log.
 fn copy() -> Option<Stdio> {
     log().and_then(|log| log.try_clone().ok()).map(Stdio::from)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_tail_is_the_last_lines() {
+        assert_eq!(tail("a\nb\nc\n", 2), "b\nc");
+        assert_eq!(tail("a\n", 2), "a");
+        assert_eq!(tail("", 2), "");
+    }
 }

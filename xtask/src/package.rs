@@ -1,32 +1,53 @@
-//! Checks that every crate compiles from its own published archive.
+//! Checks that every crate compiles from its own published archive, and that the libraries are documented.
 
 use std::path::{Path, PathBuf};
 
+use crate::compiled::{LIBRARIES, WINDOW};
 use crate::failure::{Failure, Result, on_file};
 use crate::shell::{self, cargo, program, run as sh};
 
-/// Packs every crate as it would be published, unpacks the archives and compiles each from what is in them alone: paths that lead out of a
-/// crate's folder, and files that are missing in it, fail here.
+/// Packs every crate as it would be published, unpacks the archives and compiles what is in them alone: paths that lead out
+/// of a crate's folder, and files that are missing in it, fail here. Documents the libraries from there, too.
 ///
-/// `cargo package` itself would generate code for each crate and its dependencies. Here no code is generated, and the profile and the target folder are
-/// those of clippy, so that what clippy has compiled of other crates is used again. Each crate is compiled by itself: only then it has its own features.
+/// `cargo package` itself would generate code for each crate and its dependencies. Here no code is generated, and profile,
+/// features and target folder are those of clippy, so that dependencies are not compiled again. The crates for windows and
+/// graphics cards are not compiled here, see [`check_window`].
 pub fn check() -> Result {
     let folder = shell::target_dir().join("packages");
     // Archives of other versions.
     shell::empty_dir(&folder.join("package"))?;
-    let pack = "package --quiet --workspace --exclude xtask --exclude orogen-bench --allow-dirty --no-verify";
-    sh(cargo(pack).arg("--target-dir").arg(&folder))?;
-    let unpacked = folder.join("unpacked");
+    let left_out = "--exclude xtask --exclude orogen-bench --exclude orogen-features";
+    let pack = format!("package --quiet --workspace {left_out} --allow-dirty --no-verify");
+    sh(cargo(&pack).arg("--target-dir").arg(&folder))?;
+    let unpacked = unpacked();
     shell::empty_dir(&unpacked)?;
     let crates = unpack(&folder.join("package"), &unpacked)?;
+    write_features(&unpacked, &crates)?;
     write_workspace(&unpacked, &crates)?;
-    for name in crates.iter().map(|folder| name(folder)) {
-        // Compiling the window of the studio takes as long as all others.
-        let features = if name == "orogen-studio" { "--no-default-features" } else { "" };
-        let mut command = cargo(&format!("check --quiet --package {name} --lib --bins {features} --manifest-path"));
-        sh(command.arg(unpacked.join("Cargo.toml")).arg("--target-dir").arg(shell::target_dir()))?;
+    in_archives(&format!("check --quiet {LIBRARIES} --lib --bins"), "")?;
+    // Without the binary `orogen`, whose pages would overwrite those of the library of the same name, and without the studio.
+    let undocumented = "--exclude orogen-cli --exclude orogen-studio --exclude orogen-features";
+    in_archives(&format!("doc --quiet {LIBRARIES} --no-deps {undocumented}"), "-D warnings")
+}
+
+/// Compiles the archives of the crates for windows and graphics cards. [`check`] must have unpacked them.
+pub fn check_window() -> Result {
+    if !unpacked().join("Cargo.toml").is_file() {
+        check()?;
     }
-    Ok(())
+    in_archives(&format!("check --quiet {WINDOW} --lib --bins"), "")
+}
+
+/// Where the archives are unpacked.
+fn unpacked() -> PathBuf {
+    shell::target_dir().join("packages/unpacked")
+}
+
+/// Runs cargo on what is unpacked.
+fn in_archives(args: &str, rustdoc_flags: &str) -> Result {
+    let mut command = cargo(args);
+    command.arg("--manifest-path").arg(unpacked().join("Cargo.toml")).arg("--target-dir").arg(shell::target_dir());
+    sh(command.env("RUSTDOCFLAGS", rustdoc_flags))
 }
 
 /// Unpacks the archives of a folder; returns the folders of the crates, sorted.
@@ -45,6 +66,19 @@ fn unpack(archives: &Path, into: &Path) -> Result<Vec<String>> {
     Ok(archives.iter().filter_map(|path| Some(path.file_stem()?.to_string_lossy().into_owned())).collect())
 }
 
+/// Copies the package that selects features.
+fn write_features(folder: &Path, crates: &[String]) -> Result {
+    let (from, to) = (shell::root().join("xtask/features"), folder.join("features"));
+    shell::empty_dir(&to.join("src"))?;
+    let library = crates.iter().find(|folder| name(folder) == "orogen").map_or("orogen", String::as_str);
+    let manifest = shell::read(&from.join("Cargo.toml"))?.replace("../../crates/orogen", &format!("../{library}"));
+    shell::write(&to.join("Cargo.toml"), &manifest)?;
+    for file in ["build.rs", "src/lib.rs"] {
+        shell::write(&to.join(file), &shell::read(&from.join(file))?)?;
+    }
+    Ok(())
+}
+
 /// Makes a workspace of the unpacked crates, which are there what the registry would be to a user, with our profiles and versions of dependencies.
 fn write_workspace(folder: &Path, crates: &[String]) -> Result {
     let root = shell::read(&shell::root().join("Cargo.toml"))?;
@@ -57,7 +91,8 @@ fn write_workspace(folder: &Path, crates: &[String]) -> Result {
 fn manifest(root: &str, crates: &[String]) -> Result<String> {
     let (_, profiles) =
         root.split_once("[profile.dev]").ok_or_else(|| Failure::new("Cargo.toml has no section [profile.dev]"))?;
-    let mut text = format!("[workspace]\nresolver = \"3\"\nmembers = {crates:?}\n\n[patch.crates-io]\n");
+    let members = [crates, &["features".to_owned()]].concat();
+    let mut text = format!("[workspace]\nresolver = \"3\"\nmembers = {members:?}\n\n[patch.crates-io]\n");
     for folder in crates {
         text += &format!("{} = {{ path = \"{folder}\" }}\n", name(folder));
     }
@@ -77,7 +112,7 @@ mod tests {
     fn the_workspace_has_the_crates_and_our_profiles() {
         let crates = ["a-1.0.0", "a-b-1.0.0"].map(str::to_owned);
         let text = manifest("[workspace]\n\n[profile.dev]\nopt-level = 1\n", &crates).expect("a profile");
-        assert!(text.contains("members = [\"a-1.0.0\", \"a-b-1.0.0\"]"), "{text}");
+        assert!(text.contains("members = [\"a-1.0.0\", \"a-b-1.0.0\", \"features\"]"), "{text}");
         assert!(text.contains("\na = { path = \"a-1.0.0\" }\na-b = { path = \"a-b-1.0.0\" }\n"), "{text}");
         assert!(text.ends_with("\n[profile.dev]\nopt-level = 1\n"), "{text}");
         assert!(manifest("[workspace]\n", &crates).is_err());

@@ -1,7 +1,10 @@
-//! Named steps in order, each timed; the first failure ends the run. Neighbours of the same group run side by side.
+//! Named steps in order, each timed; the first failure ends the run. Neighbours of the same group run side by side. What a
+//! step prints is kept in `steps/NAME.log` in the target folder.
 
 use std::fs::File;
 use std::io::{self, Write as _};
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
@@ -14,11 +17,15 @@ pub struct Step {
     pub name: &'static str,
     /// The description in the list.
     pub about: &'static str,
-    /// Neighbours of the same group run side by side: none depends on another, shares a folder with it or has time limits. Without a group it runs alone.
+    /// Neighbours of the same group run side by side: none depends on another, shares a folder with it or has time limits.
+    /// Without a group it runs alone.
     pub group: Option<u32>,
     /// The function. It prints with [`output::line`] and starts programs with [`shell`].
     pub run: fn() -> Result,
 }
+
+/// Lines of a failed step's log that are printed again at the end.
+const LAST_LINES: usize = 60;
 
 /// A run of steps.
 struct Run<'a> {
@@ -26,18 +33,25 @@ struct Run<'a> {
     command: &'a str,
     /// The names and seconds of those that are done.
     done: Mutex<Vec<Vec<String>>>,
+    /// The names of those that failed.
+    failed: Mutex<Vec<&'static str>>,
 }
 
 /// Runs the named steps, or all of them, and prints the time of each. `command` is the command that runs a single step.
+/// If a step fails, the end of its log is printed last.
 pub fn run(command: &str, steps: &[&Step], named: &[String]) -> Result {
     let chosen = choose(steps, named)?;
     let begun = Instant::now();
-    let run = Run { command, done: Mutex::default() };
+    let run = Run { command, done: Mutex::default(), failed: Mutex::default() };
     for group in chosen.chunk_by(|a, b| a.group.is_some() && a.group == b.group) {
-        match group {
-            [step] => run.in_sight(step)?,
-            several => pool::run(several.to_vec(), |step| run.logged(step))?,
+        let result = match group {
+            [step] => run.in_sight(step),
+            several => pool::run(several.to_vec(), |step| run.logged(step)),
+        };
+        if result.is_err() {
+            run.print_failed();
         }
+        result?;
     }
     let done = run.done.into_inner().unwrap_or_else(PoisonError::into_inner);
     println!("\n{}", table::render(&["step", "seconds"], &done));
@@ -49,23 +63,22 @@ impl Run<'_> {
     /// Runs a step that prints as it goes.
     fn in_sight(&self, step: &Step) -> Result {
         println!("{}", title(step));
-        let seconds = self.timed(step)?;
+        let (path, is_complete) = (new_log(step)?, AtomicBool::new(false));
+        let seconds = std::thread::scope(|scope| {
+            scope.spawn(|| output::follow(&path, &is_complete));
+            let result = self.timed(step);
+            is_complete.store(true, Ordering::Release);
+            result
+        })?;
         println!("{}", self.end(step, seconds));
         Ok(())
     }
 
-    /// Runs a step beside others. What it prints goes to `steps/NAME.log` in the target folder, and from there to our output when it ends.
+    /// Runs a step beside others. What it prints goes to our output when it ends.
     fn logged(&self, step: &Step) -> Result {
-        let folder = shell::target_dir().join("steps");
-        let path = folder.join(format!("{}.log", step.name));
-        std::fs::create_dir_all(&folder).map_err(|cause| on_file("create", &folder, &cause))?;
-        // Emptied, then appended to: several programs write to it.
-        let log = File::create(&path).and_then(|_| File::options().append(true).open(&path));
-        let log = log.map_err(|cause| on_file("create", &path, &cause))?;
+        let path = new_log(step)?;
         println!("    {} started", step.name);
-        output::set_log(Some(Arc::new(log)));
         let result = self.timed(step);
-        output::set_log(None);
         let mut text = format!("{}\n", title(step)).into_bytes();
         text.extend(std::fs::read(&path).map_err(|cause| on_file("read", &path, &cause))?);
         if let Ok(seconds) = &result {
@@ -76,20 +89,35 @@ impl Run<'_> {
         result.map(drop)
     }
 
+    /// Prints the ends of the logs of the steps that failed.
+    fn print_failed(&self) {
+        for name in self.failed.lock().unwrap_or_else(PoisonError::into_inner).iter() {
+            // A log that cannot be read was printed before.
+            if let Ok(text) = std::fs::read(log_path(name)) {
+                let text = output::tail(&String::from_utf8_lossy(&text), LAST_LINES);
+                println!("\n==> {name} failed; its last {LAST_LINES} lines:\n{text}\n");
+            }
+        }
+    }
+
     /// Runs a step; returns its seconds.
     fn timed(&self, step: &Step) -> Result<String> {
         let start = Instant::now();
         let result = (step.run)();
+        output::set_log(None);
         let seconds = format!("{:.1}", start.elapsed().as_secs_f64());
         match result {
             Ok(()) => Ok(seconds),
-            Err(failure) => Err(Failure::new(format!(
-                "step '{}' failed after {seconds} s: {}\n       run it alone: {} {}",
-                step.name,
-                failure.message(),
-                self.command,
-                step.name
-            ))),
+            Err(failure) => {
+                self.failed.lock().unwrap_or_else(PoisonError::into_inner).push(step.name);
+                Err(Failure::new(format!(
+                    "step '{}' failed after {seconds} s: {}\n       run it alone: {} {}",
+                    step.name,
+                    failure.message(),
+                    self.command,
+                    step.name
+                )))
+            }
         }
     }
 
@@ -101,11 +129,27 @@ impl Run<'_> {
     }
 }
 
+/// Opens an empty log for a step that this thread runs; returns its path.
+fn new_log(step: &Step) -> Result<PathBuf> {
+    let path = log_path(step.name);
+    let folder = path.parent().unwrap_or(&path);
+    std::fs::create_dir_all(folder).map_err(|cause| on_file("create", folder, &cause))?;
+    // Emptied, then appended to: several programs write to it.
+    let log = File::create(&path).and_then(|_| File::options().append(true).open(&path));
+    output::set_log(Some(Arc::new(log.map_err(|cause| on_file("create", &path, &cause))?)));
+    Ok(path)
+}
+
+fn log_path(step: &str) -> PathBuf {
+    shell::target_dir().join("steps").join(format!("{step}.log"))
+}
+
 fn title(step: &Step) -> String {
     format!("==> {}: {}", step.name, step.about)
 }
 
-fn choose<'a>(steps: &[&'a Step], named: &[String]) -> Result<Vec<&'a Step>> {
+/// The named steps, or all of them.
+pub fn choose<'a>(steps: &[&'a Step], named: &[String]) -> Result<Vec<&'a Step>> {
     if let Some(unknown) = named.iter().find(|n| steps.iter().all(|s| s.name != n.as_str())) {
         let rows: Vec<Vec<String>> = steps.iter().map(|s| vec![format!("  {}", s.name), s.about.to_owned()]).collect();
         return Err(Failure::usage(format!("there is no step '{unknown}'; there are\n{}", table::render(&[], &rows))));
@@ -122,6 +166,7 @@ mod tests {
     }
 
     fn broken() -> Result {
+        (1..=100).for_each(|number| output::line(format_args!("line {number}")));
         Err(Failure::new("it broke"))
     }
 
@@ -133,6 +178,9 @@ mod tests {
         let failure = run("cargo xtask test", &[&FINE, &BROKEN], &[]).expect_err("the second step fails");
         assert!(failure.message().contains("step 'broken' failed"), "{}", failure.message());
         assert!(failure.message().ends_with("run it alone: cargo xtask test broken"), "{}", failure.message());
+        let log = shell::read(&log_path("broken")).expect("the log is kept");
+        assert!(output::tail(&log, LAST_LINES).starts_with("line 41\nline 42\n"), "{log}");
+        assert!(output::log().is_none());
     }
 
     #[test]
@@ -160,7 +208,7 @@ mod tests {
         let failure = run("cargo xtask test", &[&one, &other, &BROKEN], &[]).expect_err("one of the two fails");
         assert!(failure.message().contains("step 'other' failed"), "{}", failure.message());
         assert!(failure.message().ends_with("run it alone: cargo xtask test other"), "{}", failure.message());
-        let log = shell::read(&shell::target_dir().join("steps/other.log")).expect("the log is kept");
+        let log = shell::read(&log_path("other")).expect("the log is kept");
         assert_eq!(log, "a line of the log\n");
         assert!(output::log().is_none());
     }

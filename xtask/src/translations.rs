@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::failure::{Failure, Result};
-use crate::{links, shell};
+use crate::{links, output, shell};
 
 /// Originals and their translations, in the same folder.
 const PAIRS: &[[&str; 2]] = &[["README.md", "README.zh-CN.md"]];
@@ -20,7 +20,10 @@ pub fn check() -> Result {
         let parts = parts(&original.text, [original.name, translation.name]);
         let count = |kind| parts.iter().filter(|part| part.kind == kind).count();
         let (headings, code, links) = (count(Kind::Heading), count(Kind::Code), count(Kind::Link));
-        println!("    {}: {headings} headings, {code} lines of code, {links} links", translation.name);
+        output::line(format_args!(
+            "    {}: {headings} headings, {code} lines of code, {links} links",
+            translation.name
+        ));
         found.extend(faults(&original, &translation));
     }
     match found.is_empty() {

@@ -3,7 +3,8 @@
 //! a system (`cargo xtask clients wasm`).
 //!
 //! The exit code is 0 if all bits are equal, else the number of the first preset that differs, counted from 1; 255 for
-//! any other error.
+//! any other error. `OROGEN_PRESETS`, when it is compiled, names the presets to make, separated by blanks; without it, all
+//! are made.
 
 use std::process::ExitCode;
 
@@ -11,6 +12,9 @@ use orogen::analysis::summary::summary;
 use orogen::{Level, Options, Session, Window, presets};
 
 const GOLDEN: &str = include_str!("../../../golden/presets.txt");
+
+/// The presets to make; none stands for all.
+const CHOSEN: Option<&str> = option_env!("OROGEN_PRESETS");
 
 fn main() -> ExitCode {
     match first_difference() {
@@ -25,7 +29,14 @@ fn main() -> ExitCode {
 
 fn first_difference() -> Result<Option<u8>, Box<dyn std::error::Error>> {
     let level = Level::current();
+    let chosen: Vec<&str> = CHOSEN.unwrap_or_default().split_whitespace().collect();
+    if let Some(unknown) = chosen.iter().find(|name| presets::all().iter().all(|preset| preset.name != **name)) {
+        return Err(format!("there is no preset `{unknown}`").into());
+    }
     for (number, preset) in (1..).zip(presets::all()) {
+        if !chosen.is_empty() && !chosen.contains(&preset.name) {
+            continue;
+        }
         let world = Session::new(Options::default())?.open(preset.recipe()?)?;
         // A world without bounds: this number of samples at its own cell size.
         let window = world.window_fitting(256).unwrap_or(Window::new(256, 256, world.recipe().world.cell));

@@ -3,8 +3,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::host;
 use crate::failure::{Failure, Result, on_file};
+use crate::host;
 use crate::shell;
 use crate::table;
 

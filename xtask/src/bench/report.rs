@@ -2,8 +2,8 @@
 
 use serde_json::{Map, Value, json};
 
-use super::host;
 use crate::failure::{Failure, Result};
+use crate::host;
 
 /// The columns of the table.
 pub const HEAD: [&str; 7] = ["case", "ours", "unit", "peer", "theirs", "ratio", "target"];

@@ -23,7 +23,7 @@ pub fn check() -> Result {
         let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", MODULE];
         shell::run(shell::program(&python).args(install))?;
     }
-    super::script_by(&python, "blender")
+    super::script_by(&python, "blender", "blender")
 }
 
 fn venv() -> PathBuf {

@@ -12,12 +12,12 @@ use crate::{output, shell};
 const BACK_OFF: [Duration; 2] = [Duration::from_secs(5), Duration::from_secs(20)];
 
 /// Installs the missing programs of these clients.
-pub fn programs(clients: &[Client]) -> Result {
+pub fn programs<'a>(clients: impl Iterator<Item = &'a Client>) -> Result {
     let mut debian: Vec<&str> = Vec::new();
     if !shell::succeeds(shell::program("python3").args(["-c", "import venv, ensurepip"])) {
         debian.extend(["python3", "python3-venv"]);
     }
-    let wanted = clients.iter().flat_map(|c| c.apt);
+    let wanted = clients.flat_map(|c| c.apt);
     debian.extend(wanted.filter(|(program, _)| !on_path(program)).map(|(_, package)| *package));
     apt(&sorted(debian))
 }

@@ -1,13 +1,21 @@
 //! The studio: its tests with a software adapter, and its window on a display without a screen.
 
-use super::gpu::{PACKAGES, lint};
+use crate::compiled::WINDOW;
 use crate::failure::Result;
+use crate::package;
 use crate::shell::{cargo, run as sh};
+
+/// Compiles what needs the libraries of windows and graphics cards, with their tests.
+pub fn build() -> Result {
+    sh(&mut cargo(&format!("clippy --quiet {WINDOW} --all-targets -- -D warnings")))?;
+    package::check_window()?;
+    sh(&mut cargo(&format!("test --quiet {WINDOW} --no-run")))?;
+    sh(&mut cargo(&format!("build --quiet {WINDOW} --bins")))
+}
 
 /// Tests it as a person uses it, and opens its window in both languages.
 pub fn check() -> Result {
-    lint()?;
-    sh(&mut cargo(&format!("test {PACKAGES} --lib --test window")))?;
-    sh(&mut cargo(&format!("build --quiet {PACKAGES} --bins")))?;
+    sh(&mut cargo(&format!("test --quiet {WINDOW} --lib --test window")))?;
+    sh(&mut cargo(&format!("build --quiet {WINDOW} --bins")))?;
     super::script("studio")
 }

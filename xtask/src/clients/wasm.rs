@@ -1,5 +1,7 @@
-//! The libraries built for WebAssembly, without an operating system; every preset is made under node and must have the
-//! golden hash.
+//! The libraries built for WebAssembly, without an operating system; presets are made under node and must have the golden
+//! hash.
+
+use std::path::Path;
 
 use super::install;
 use crate::failure::{Failure, Result};
@@ -10,9 +12,7 @@ const TARGET: &str = "wasm32-unknown-unknown";
 /// Installs the target's standard library.
 pub fn install() -> Result {
     let ask = ["--print", "target-libdir", "--target", TARGET];
-    if shell::capture(shell::program("rustc").args(ask))
-        .is_ok_and(|folder| std::path::Path::new(folder.trim()).is_dir())
-    {
+    if shell::capture(shell::program("rustc").args(ask)).is_ok_and(|folder| Path::new(folder.trim()).is_dir()) {
         return Ok(());
     }
     output::line(format_args!("    rustup target add {TARGET}"));
@@ -23,28 +23,54 @@ pub fn install() -> Result {
     })
 }
 
-/// Builds without threads and without the feature `fs`, with 128-bit vectors, and makes every preset.
-pub fn check() -> Result {
+/// Of each kind of preset one: noise, levels, a volume, a solver.
+const FOUR: &str = "classic endless caves island";
+
+/// Makes four presets, and a world without files.
+pub fn check_four() -> Result {
+    check(FOUR)
+}
+
+/// The same with every preset.
+pub fn check_all() -> Result {
+    check("")
+}
+
+/// Builds without threads and without the feature `fs`, with 128-bit vectors, and makes these presets; without a name, all.
+fn check(presets: &str) -> Result {
     let folder = super::folder().join("wasm");
-    let mut build =
-        shell::cargo("build --quiet --package orogen --example golden_presets --no-default-features --release");
-    build
-        .env("CARGO_BUILD_TARGET", TARGET)
-        .env("CARGO_TARGET_DIR", &folder)
-        .env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", "-C target-feature=+simd128")
-        .env("CARGO_PROFILE_RELEASE_LTO", "off")
-        .env("CARGO_PROFILE_RELEASE_OPT_LEVEL", "2")
-        .env("CARGO_PROFILE_RELEASE_CODEGEN_UNITS", "16");
-    shell::run(&mut build)?;
-    let module = folder.join(TARGET).join("release/examples/golden_presets.wasm");
-    let mut run = shell::program("node");
-    run.arg(shell::root().join("xtask/clients/run_wasm.mjs")).arg(module);
-    match shell::status(&mut run)?.code() {
+    let build = |example: &str| {
+        let mut build = shell::cargo(&format!("build --quiet --release --no-default-features {example}"));
+        build
+            .env("CARGO_BUILD_TARGET", TARGET)
+            .env("CARGO_TARGET_DIR", &folder)
+            .env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", "-C target-feature=+simd128")
+            .env("CARGO_PROFILE_RELEASE_LTO", "off")
+            .env("CARGO_PROFILE_RELEASE_OPT_LEVEL", "2")
+            .env("CARGO_PROFILE_RELEASE_CODEGEN_UNITS", "16")
+            .env("OROGEN_PRESETS", presets);
+        shell::run(&mut build)
+    };
+    build("--package orogen-engine --example without_files")?;
+    build("--package orogen --example golden_presets")?;
+    if run(&folder, "without_files")? != Some(0) {
+        return Err(Failure::new("the example without_files of orogen-engine failed"));
+    }
+    match run(&folder, "golden_presets")? {
         Some(0) => {
-            output::line("    every preset at the level simd128: all as in golden/presets.txt");
+            let which = if presets.is_empty() { "every preset" } else { presets };
+            output::line(format_args!("    {which} at the level simd128: as in golden/presets.txt"));
             Ok(())
         }
         Some(number @ 1..=200) => Err(Failure::new(format!("preset number {number} differs from golden/presets.txt"))),
         code => Err(Failure::new(format!("the module did not get to its end: exit code {code:?}"))),
     }
+}
+
+/// Runs an example under node; returns its exit code.
+fn run(folder: &Path, example: &str) -> Result<Option<i32>> {
+    let module = folder.join(TARGET).join(format!("release/examples/{example}.wasm"));
+    let mut run = shell::program("node");
+    run.arg(shell::root().join("xtask/clients/run_wasm.mjs")).arg(module);
+    Ok(shell::status(&mut run)?.code())
 }

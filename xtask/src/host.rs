@@ -1,13 +1,31 @@
-//! Date and machine of a measurement, without which figures are meaningless.
+//! Date and machine of a measurement or a check.
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use crate::shell;
 
+/// Today in UTC, in days after 1970-01-01.
+pub fn today() -> i64 {
+    let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |d| d.as_secs());
+    i64::try_from(seconds / 86_400).unwrap_or(0)
+}
+
 /// Today in UTC, as year-month-day.
 pub fn date() -> String {
-    let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |d| d.as_secs());
-    let (year, month, day) = civil(i64::try_from(seconds / 86_400).unwrap_or(0));
+    shown(today())
+}
+
+/// The days after 1970-01-01 of a date written as year-month-day.
+pub fn parse_date(text: &str) -> Option<i64> {
+    let mut parts = text.split('-').map(|part| part.parse::<i64>().ok());
+    let [year, month, _] = [parts.next()??, parts.next()??, parts.next()??];
+    // Some day of the month before, from which the date is at most two months away.
+    let about = (year - 1970) * 365 + (month - 2) * 30;
+    (about..about + 200).find(|day| shown(*day) == text)
+}
+
+fn shown(days: i64) -> String {
+    let (year, month, day) = civil(days);
     format!("{year:04}-{month:02}-{day:02}")
 }
 
@@ -40,7 +58,18 @@ fn civil(days: i64) -> (i64, i64, i64) {
 
 #[cfg(test)]
 mod tests {
-    use super::civil;
+    use super::{civil, parse_date};
+
+    #[test]
+    fn dates_go_both_ways() {
+        for (text, days) in [("1970-01-01", 0), ("2026-12-31", 20_818), ("2100-02-28", 47_540), ("2100-03-01", 47_541)]
+        {
+            assert_eq!(parse_date(text), Some(days), "{text}");
+        }
+        for text in ["", "2026", "2026-02-30", "2026-1-1", "2026-13-01", "a-b-c"] {
+            assert_eq!(parse_date(text), None, "{text}");
+        }
+    }
 
     #[test]
     fn known_days() {

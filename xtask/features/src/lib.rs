@@ -1,0 +1,2 @@
+//! No code: Cargo.toml selects features of dependencies.
+#![forbid(unsafe_code)]

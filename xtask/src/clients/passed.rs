@@ -1,0 +1,79 @@
+//! When the steps that not every run includes last passed: a committed file, a line for each.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use crate::failure::Result;
+use crate::{host, shell};
+
+/// Days after which a step should be run again.
+pub const MAX_AGE: i64 = 14;
+
+/// The head of the file.
+const HEAD: &str = "# When each step of `cargo xtask clients --all` that is no part of every run last passed. The command writes this file.\n\
+    # step, date, commit (+ if files had changed since), processor\n";
+
+/// The last pass of a step: date, commit and processor, as in the file.
+type Passes = BTreeMap<String, String>;
+
+fn path() -> PathBuf {
+    shell::root().join("xtask/clients/passed.txt")
+}
+
+/// Notes that a step has passed now.
+pub fn note(step: &str) -> Result {
+    let mut passes = parse(&shell::read(&path())?);
+    let commit = shell::capture(shell::program("git").args(["describe", "--always", "--exclude=*", "--dirty=+"]))?;
+    passes.insert(step.to_owned(), format!("{} {} {}", host::date(), commit.trim(), host::processor()));
+    shell::write(&path(), &text(&passes))
+}
+
+/// The steps of these that have not passed for too long, each with its last pass.
+pub fn old(steps: &[&str]) -> Result<Vec<String>> {
+    Ok(older(&parse(&shell::read(&path())?), steps, host::today()))
+}
+
+fn older(passes: &Passes, steps: &[&str], today: i64) -> Vec<String> {
+    let line = |step: &&str| match passes.get(*step) {
+        None => Some(format!("{step}: never")),
+        Some(pass) => {
+            let date = pass.split(' ').next().and_then(host::parse_date);
+            let is_old = date.is_none_or(|date| today - date > MAX_AGE);
+            is_old.then(|| format!("{step}: {pass}"))
+        }
+    };
+    steps.iter().filter_map(line).collect()
+}
+
+fn parse(text: &str) -> Passes {
+    let lines = text.lines().filter(|line| !line.starts_with('#'));
+    lines.filter_map(|line| line.split_once(' ')).map(|(step, pass)| (step.to_owned(), pass.to_owned())).collect()
+}
+
+fn text(passes: &Passes) -> String {
+    let lines = passes.iter().map(|(step, pass)| format!("{step} {pass}\n"));
+    HEAD.to_owned() + &lines.collect::<String>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_that_passed_long_ago_are_listed() {
+        let passes = parse("# head\nfuzz 2026-01-10 0a1b2c3 some CPU\nneon 2026-01-20 0a1b2c3+ some CPU\nodd\n");
+        assert_eq!(parse(&text(&passes)), passes);
+        let today = host::parse_date("2026-01-25").expect("a date");
+        assert_eq!(
+            older(&passes, &["fuzz", "neon", "asan"], today),
+            ["fuzz: 2026-01-10 0a1b2c3 some CPU", "asan: never"]
+        );
+        assert!(older(&passes, &["fuzz"], host::parse_date("2026-01-24").expect("a date")).is_empty());
+    }
+
+    #[test]
+    fn the_file_is_as_it_is_written() {
+        let file = shell::read(&path()).expect("the file");
+        assert_eq!(text(&parse(&file)), file);
+    }
+}
