@@ -13,7 +13,6 @@ use orogen::autotile::mask::{Layout, SIMPLE_BLOB};
 use orogen::blocks::land::{Land, prepare};
 use orogen::blocks::levels::{DEFAULT_BELOW, Extent};
 use orogen::{Progress, Recipe, Window, World, presets};
-use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use crate::measure::median;
@@ -130,7 +129,8 @@ pub fn run(options: &Options) -> Result<Value, String> {
         for _ in 0..options.repetitions.div_ceil(2) {
             let begun = Instant::now();
             let class = |height: &f32| THRESHOLDS.iter().filter(|from| height >= from).count() as u8;
-            let mut classes = Classes::new([0, 0], SIDE, SIDE, grid.data().par_iter().map(class).collect());
+            let samples = orogen::parallel::samples(grid.data().len(), |at| class(&grid.data()[at]));
+            let mut classes = Classes::new([0, 0], SIDE, SIDE, samples);
             let classified = begun.elapsed().as_secs_f64();
             clean(&mut classes, &drawable, &Progress::none()).map_err(|e| e.to_string())?;
             let cleaned = begun.elapsed().as_secs_f64();

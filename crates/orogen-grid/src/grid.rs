@@ -2,7 +2,7 @@
 
 use std::ops::{Index, IndexMut};
 
-use rayon::prelude::*;
+use crate::parallel;
 use serde::{Deserialize, Serialize};
 
 /// A rectangle of samples of the infinite lattice with spacing `cell`.
@@ -315,7 +315,7 @@ pub fn transposed<T: Copy + Default + Send + Sync>(samples: &[T], columns: usize
     const SIDE: usize = 32;
     let rows = samples.len() / columns.max(1);
     let mut out = vec![T::default(); samples.len()];
-    out.par_chunks_mut(SIDE * rows.max(1)).enumerate().for_each(|(block, out)| {
+    parallel::for_each(out.chunks_mut(SIDE * rows.max(1)).enumerate(), |(block, out)| {
         let first = block * SIDE;
         for top in (0..rows).step_by(SIDE) {
             for (i, column) in out.chunks_exact_mut(rows.max(1)).enumerate() {

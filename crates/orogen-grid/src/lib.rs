@@ -68,6 +68,8 @@ pub mod hydrography;
 pub mod hydrology;
 mod interop;
 pub mod multiscale;
+#[doc(hidden)]
+pub mod parallel;
 pub mod poisson_discs;
 pub mod polylines;
 pub mod progress;

@@ -13,9 +13,10 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
+use rayon::slice::ParallelSliceMut;
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::parallel;
 use crate::progress::Progress;
 use crate::random::{Random, STEP, mix64};
 
@@ -132,16 +133,14 @@ impl PoissonDiscs {
         let blocks: Vec<[Range<i64>; 2]> =
             pieces(&rows).flat_map(|rows| pieces(&columns).map(move |columns| [columns, rows.clone()])).collect();
         progress.expect(blocks.len() as f64);
-        let made: Vec<Vec<([i64; 2], DiscPoint)>> = (blocks.par_iter())
-            .map(|[columns, rows]| {
-                progress.check()?;
-                let mut block = Block::new(self, columns, rows, &density);
-                block.decide();
-                let points = block.points(self, columns, rows, bounds);
-                progress.step(1.0)?;
-                Ok(points)
-            })
-            .collect::<Result<_>>()?;
+        let made = parallel::try_map(&blocks, |[columns, rows]| -> Result<Vec<([i64; 2], DiscPoint)>> {
+            progress.check()?;
+            let mut block = Block::new(self, columns, rows, &density);
+            block.decide();
+            let points = block.points(self, columns, rows, bounds);
+            progress.step(1.0)?;
+            Ok(points)
+        })?;
         let mut points: Vec<([i64; 2], DiscPoint)> = made.into_iter().flatten().collect();
         points.par_sort_unstable_by_key(|(cell, _)| *cell);
         Ok(points.into_iter().map(|(_, point)| point).collect())

@@ -54,6 +54,8 @@ pub use orogen_engine::{device, device_choice, lower};
 #[cfg(feature = "gpu")]
 #[doc(inline)]
 pub use orogen_gpu as gpu;
+#[doc(hidden)]
+pub use orogen_grid::parallel;
 #[doc(inline)]
 pub use orogen_grid::{
     aggregate, analysis, autotile, climate, contour, erosion, error, grid, hydrography, hydrology, poisson_discs,

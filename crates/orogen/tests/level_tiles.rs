@@ -10,7 +10,6 @@ use orogen::{
     Budget, Error, ErrorKind, FolderStore, Grid, MemoryStore, Options, Progress, Recipe, Result, Session,
     SolutionStore, Window, WorldSpec,
 };
-use rayon::prelude::*;
 use std::collections::HashMap;
 use std::fs;
 use std::io;
@@ -198,7 +197,7 @@ fn requests_at_once_make_each_tile_once() {
         assert_eq!(session.level_tiles_made(), tiles, "{threads} threads");
         let session = Session::new(options).unwrap();
         pool.install(|| {
-            (0..24).into_par_iter().for_each(|k: usize| {
+            orogen::parallel::for_each(0..24, |k: usize| {
                 let expect = &expect[k % 6];
                 assert!(same(&made(&session, HOOK, expect.window()), expect));
             });

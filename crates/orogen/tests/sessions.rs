@@ -105,12 +105,10 @@ fn sixteen_threads_that_want_one_tile_solve_once() {
 /// Threads of another pool can wait too, without a deadlock.
 #[test]
 fn threads_of_other_pools_solve_once() {
-    use rayon::prelude::*;
     let session = session(None);
     let world = session.open(recipe()).unwrap();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(4).build().unwrap();
-    let grids: Vec<_> =
-        pool.install(|| (0..12).into_par_iter().map(|_| world.window("height", &window()).unwrap()).collect());
+    let grids = pool.install(|| orogen::parallel::map(0..12, |_| world.window("height", &window()).unwrap()));
     assert!(grids.iter().all(|grid| *grid == grids[0]));
     assert_eq!(session.solutions_made(), 2);
 }

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
+use orogen::parallel;
 use orogen_noise::{Depth, Fractal, LengthMismatch, Points, TileError, Tiled};
-use rayon::prelude::*;
 
 use super::fit::{Fit, Lengths};
 
@@ -42,7 +42,7 @@ impl Slice {
     pub fn fill(&self, rows: Range<usize>, value: &mut [f32]) {
         let piece = self.rows_a_piece();
         let xs = self.columns();
-        value.par_chunks_mut(piece * self.width).enumerate().for_each(|(n, value)| {
+        parallel::for_each(value.chunks_mut(piece * self.width).enumerate(), |(n, value)| {
             let ys = self.southings(&rows, n * piece, value.len());
             let points = Points::Lattice { xs: &xs, ys: &ys };
             self.settle(value, |noise, value| match self.cut() {
@@ -57,8 +57,8 @@ impl Slice {
         let piece = self.rows_a_piece();
         let xs = self.columns();
         let [east, south, _] = self.fit().steps.map(|step| step as f32);
-        let pieces = dx.par_chunks_mut(piece * self.width).zip(dy.par_chunks_mut(piece * self.width));
-        pieces.enumerate().for_each(|(n, (dx, dy))| {
+        let pieces = dx.chunks_mut(piece * self.width).zip(dy.chunks_mut(piece * self.width));
+        parallel::for_each(pieces.enumerate(), |(n, (dx, dy))| {
             let ys = self.southings(&rows, n * piece, dx.len());
             let points = Points::Lattice { xs: &xs, ys: &ys };
             let (mut value, mut dz) = (vec![0.0; dx.len()], vec![0.0; dx.len()]);

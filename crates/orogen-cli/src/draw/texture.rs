@@ -8,8 +8,8 @@ use std::ops::Range;
 use clap::ValueEnum;
 use orogen::palette::color::Encoder;
 use orogen::palette::ramp::Ramp;
+use orogen::parallel;
 use orogen_noise::{Fractal, Kind};
-use rayon::prelude::*;
 
 use super::slice::Slice;
 
@@ -116,7 +116,7 @@ impl Painter {
             Texture::Wood => grain(slice, rows),
             _ => Vec::new(),
         };
-        bytes.par_chunks_exact_mut(3).zip(&value).enumerate().with_min_len(1 << 12).for_each(|(k, (pixel, &value))| {
+        let paint = |k: usize, value: f32, pixel: &mut [u8]| {
             let color = match texture {
                 Texture::Clouds => self.sky.at(1.0 - libm::expf(-DENSITY * (value - COVER).max(0.0))),
                 Texture::Marble => {
@@ -132,6 +132,12 @@ impl Painter {
                 }
             };
             pixel.copy_from_slice(&self.encoder.bytes(color));
+        };
+        let rows = bytes.chunks_mut((3 * slice.width).max(1)).zip(value.chunks(slice.width.max(1))).enumerate();
+        parallel::for_each(rows, |(j, (pixels, values))| {
+            for (i, (pixel, value)) in pixels.chunks_exact_mut(3).zip(values).enumerate() {
+                paint(j * slice.width + i, *value, pixel);
+            }
         });
     }
 }

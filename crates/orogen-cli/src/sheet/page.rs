@@ -3,7 +3,7 @@
 use orogen::Progress;
 use orogen::map::canvas::{Canvas, Ink};
 use orogen::map::text::{BuiltinFont, Face, Style};
-use rayon::prelude::*;
+use orogen::parallel;
 
 use super::panel::{self, Pictures};
 use super::row::{COLUMNS, Row, SIDE};
@@ -62,10 +62,7 @@ pub fn draw(rows: &[Row], side: usize, seed: u64, progress: &Progress) -> orogen
         progress.advance(1.0);
         Ok(pictures)
     };
-    let pictures: Vec<Vec<Pictures>> = rows
-        .par_iter()
-        .map(|row| row.noises.par_iter().map(picture).collect())
-        .collect::<orogen::Result<Vec<Vec<Pictures>>>>()?;
+    let pictures: Vec<Vec<Pictures>> = parallel::try_map(rows, |row| parallel::try_map(&row.noises, picture))?;
     let mut top = layout.header();
     let mut number = 1;
     for (row, pictures) in rows.iter().zip(&pictures) {

@@ -8,7 +8,7 @@ use crate::store::level_tile::LevelTile;
 use crate::store::level_tiles::Claim;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
-use rayon::prelude::*;
+use orogen_grid::parallel;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 
@@ -131,7 +131,7 @@ impl Engine<'_> {
                 Ok((at, planes))
             };
             let missing: Vec<(At, Claim)> = missing.into_iter().zip(claims).collect();
-            let made: Vec<(At, Vec<Grid>)> = missing.into_par_iter().map(make).collect::<Result<_>>()?;
+            let made: Vec<(At, Vec<Grid>)> = parallel::try_map(missing, make)?;
             found.extend(made);
             above = found;
         }

@@ -10,10 +10,10 @@ use crate::plan::levels::{self, Serving};
 use crate::recipe::graph::LayerRef;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
+use orogen_grid::parallel;
 use orogen_grid::progress::Progress;
 use orogen_grid::resample::{self, LayerKind};
 use orogen_noise::Points;
-use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
@@ -91,7 +91,7 @@ impl Engine<'_> {
             return Ok(made);
         }
         let make = |piece: &Window| refining.piece(tiled..=level, piece, &tiles);
-        let made: Vec<Vec<Option<Grid>>> = self.pool.install(|| pieces.par_iter().map(make).collect::<Result<_>>())?;
+        let made: Vec<Vec<Option<Grid>>> = self.pool.install(|| parallel::try_map(&pieces, make))?;
         let mut layers = refining.layers(&samples);
         for piece in made {
             for (layer, part) in layers.iter_mut().zip(piece) {
@@ -288,7 +288,7 @@ fn interpolated(grid: &Grid, kind: LayerKind, window: &Window, progress: &Progre
     let mut out = Grid::filled(*window, 0.0f32);
     let (xs, ys) = (window.eastings(), window.southings());
     const ROWS: usize = 16;
-    out.data_mut().par_chunks_mut(ROWS * window.width.max(1)).zip(ys.par_chunks(ROWS)).try_for_each(|(out, ys)| {
+    parallel::try_for_each(out.data_mut().chunks_mut(ROWS * window.width.max(1)).zip(ys.chunks(ROWS)), |(out, ys)| {
         progress.check()?;
         resample::read(grid, kind, &Points::Lattice { xs: &xs, ys }, out);
         Ok::<(), Error>(())

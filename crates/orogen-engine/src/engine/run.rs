@@ -21,8 +21,8 @@ use crate::store::level_tiles::LevelTiles;
 use crate::store::solutions::Store;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
+use orogen_grid::parallel;
 use orogen_grid::progress::Progress;
-use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -300,7 +300,7 @@ impl<'a> Engine<'a> {
         let solvers = |node| self.solver(node, solutions);
         let bindings = Bindings { world_params: self.world_params, fields: &fields, solvers: &solvers, grids };
         // Enough bands for all threads, but not so thin that rows of noise lattices are computed repeatedly.
-        let rows = window.height.div_ceil(2 * rayon::current_num_threads()).clamp(8, BLOCK_HEIGHT);
+        let rows = window.height.div_ceil(2 * parallel::threads()).clamp(8, BLOCK_HEIGHT);
         progress.expect(window.height as f64);
         let mut bands: Vec<Vec<&mut [f32]>> = (0..window.height.div_ceil(rows)).map(|_| Vec::new()).collect();
         for grid in &mut out {
@@ -308,7 +308,8 @@ impl<'a> Engine<'a> {
                 band.push(samples);
             }
         }
-        bands.into_par_iter().enumerate().try_for_each_init(
+        parallel::try_for_each_init(
+            bands.into_iter().enumerate(),
             || Interpreter::new(program),
             |interpreter, (band, mut out)| {
                 progress.check()?;

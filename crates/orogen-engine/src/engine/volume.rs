@@ -7,7 +7,7 @@ use crate::plan::program::{BLOCK_HEIGHT, BLOCK_WIDTH};
 use crate::plan::steps::Plan;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
-use rayon::prelude::*;
+use orogen_grid::parallel;
 
 impl Engine<'_> {
     /// Computes the samples of a plan for points at each sample of its window and each altitude, slice by slice, each row-major.
@@ -21,7 +21,7 @@ impl Engine<'_> {
         let bindings = Bindings { world_params: self.world_params, fields: &fields, solvers: &solvers, grids: &grids };
         let mut out = vec![0.0; window.len().saturating_mul(altitudes.len())];
         self.pool.install(|| {
-            let rows = window.height.div_ceil(2 * rayon::current_num_threads()).clamp(8, BLOCK_HEIGHT);
+            let rows = window.height.div_ceil(2 * parallel::threads()).clamp(8, BLOCK_HEIGHT);
             // Each band has its rows of every slice.
             let mut bands: Vec<Vec<&mut [f32]>> = (0..window.height.div_ceil(rows)).map(|_| Vec::new()).collect();
             for slice in out.chunks_mut(window.len()) {
@@ -29,7 +29,8 @@ impl Engine<'_> {
                     band.push(samples);
                 }
             }
-            bands.into_par_iter().enumerate().try_for_each_init(
+            parallel::try_for_each_init(
+                bands.into_iter().enumerate(),
                 || Interpreter::new(program),
                 |interpreter, (band, mut slices)| {
                     self.progress.check()?;

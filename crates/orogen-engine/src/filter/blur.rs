@@ -4,7 +4,7 @@ use crate::lower::{Lowering, Passes};
 use crate::op::{Context, Filter, WorldParams};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
-use rayon::prelude::*;
+use orogen_grid::parallel;
 
 op! {
     /// Gaussian blur: the mean of the surrounding samples, weighted by exp(-d^2 / 2 radius^2).
@@ -66,7 +66,8 @@ impl Filter for Blur {
         let weights = self.weights(window.cell);
         let band = band(reach);
         context.progress.expect(window.len() as f64);
-        out.data_mut().par_chunks_mut(band * window.width).enumerate().try_for_each_init(
+        parallel::try_for_each_init(
+            out.data_mut().chunks_mut(band * window.width).enumerate(),
             || vec![0.0f32; TILE * (band + 2 * reach)],
             |rows, (b, out)| {
                 let (top, height) = (b * band, out.len() / window.width);

@@ -1,6 +1,6 @@
 //! Indices of wetness and erosion from drainage area and slope.
 
-use rayon::prelude::*;
+use orogen_grid::parallel;
 
 use crate::lower::{Lowering, Passes};
 use crate::op::{Context, Filter, WorldParams};
@@ -55,7 +55,7 @@ impl Filter for FlowIndices {
         for (layer, index) in out.iter_mut().zip(indices) {
             let Some(layer) = layer.as_mut().filter(|_| !window.is_empty()) else { continue };
             context.progress.expect(window.height as f64);
-            layer.data_mut().par_chunks_mut(window.width).enumerate().try_for_each(|(j, row)| {
+            parallel::try_for_each(layer.data_mut().chunks_mut(window.width).enumerate(), |(j, row)| {
                 context.progress.step(1.0)?;
                 let rows = [source.row(j), source.row(j + 1), source.row(j + 2)];
                 let areas = &flow.row(j + 1)[1..];

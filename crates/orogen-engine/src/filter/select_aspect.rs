@@ -7,7 +7,7 @@ use orogen_grid::analysis::selection::Selection;
 use orogen_grid::analysis::slope::gradients_between;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
-use rayon::prelude::*;
+use orogen_grid::parallel;
 
 op! {
     /// A mask by aspect: 1 where the ground faces a direction, falling smoothly to 0 away from it.
@@ -54,7 +54,7 @@ impl Filter for SelectAspect {
         let slopes = Selection::new([self.least_slope, 90.0], [self.least_slope, 0.0]);
         let direction = self.direction as f32;
         context.progress.expect(window.height as f64);
-        out.data_mut().par_chunks_mut(window.width.max(1)).enumerate().try_for_each(|(j, row)| {
+        parallel::try_for_each(out.data_mut().chunks_mut(window.width.max(1)).enumerate(), |(j, row)| {
             context.progress.step(1.0)?;
             gradients_between([source.row(j), source.row(j + 1), source.row(j + 2)], window.cell, |i, gradient| {
                 let off = (aspect_of(gradient) - direction).abs() % 360.0;

@@ -6,7 +6,7 @@ use orogen_grid::analysis::curvature::{Curvature, bend};
 use orogen_grid::analysis::selection::Selection;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
-use rayon::prelude::*;
+use orogen_grid::parallel;
 
 choice! {
     /// Kind of curvature.
@@ -79,7 +79,7 @@ impl Filter for SelectCurvature {
             Bend::Plan => Curvature::Plan,
         };
         context.progress.expect(window.height as f64);
-        out.data_mut().par_chunks_mut(window.width.max(1)).enumerate().try_for_each(|(j, row)| {
+        parallel::try_for_each(out.data_mut().chunks_mut(window.width.max(1)).enumerate(), |(j, row)| {
             context.progress.step(1.0)?;
             let rows = [0, 1, 2].map(|k| source.row(j + k * apart));
             for (i, out) in row.iter_mut().enumerate() {

@@ -6,7 +6,7 @@ use orogen_grid::analysis::selection::Selection;
 use orogen_grid::analysis::slope::gradients_between;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
-use rayon::prelude::*;
+use orogen_grid::parallel;
 
 op! {
     /// A mask by slope: 1 inside a range, falling smoothly to 0 below and above it.
@@ -50,7 +50,7 @@ impl Filter for SelectSlope {
         let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
         let selection = Selection::new(self.range, self.falloff);
         context.progress.expect(window.height as f64);
-        out.data_mut().par_chunks_mut(window.width.max(1)).enumerate().try_for_each(|(j, row)| {
+        parallel::try_for_each(out.data_mut().chunks_mut(window.width.max(1)).enumerate(), |(j, row)| {
             context.progress.step(1.0)?;
             gradients_between([source.row(j), source.row(j + 1), source.row(j + 2)], window.cell, |i, gradient| {
                 row[i] = selection.of(libm::atanf(gradient.steepness()).to_degrees());

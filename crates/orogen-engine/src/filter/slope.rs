@@ -5,7 +5,7 @@ use crate::op::{Context, Filter, WorldParams};
 use orogen_grid::analysis::slope::{Gradient, gradients_between};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
-use rayon::prelude::*;
+use orogen_grid::parallel;
 
 choice! {
     /// Unit of a slope.
@@ -65,7 +65,7 @@ impl Filter for Slope {
         for (layer, value) in out.iter_mut().zip(values) {
             let Some(layer) = layer.as_mut().filter(|_| !window.is_empty()) else { continue };
             context.progress.expect(window.height as f64);
-            layer.data_mut().par_chunks_mut(window.width).enumerate().try_for_each(|(j, row)| {
+            parallel::try_for_each(layer.data_mut().chunks_mut(window.width).enumerate(), |(j, row)| {
                 context.progress.step(1.0)?;
                 let rows = [source.row(j), source.row(j + 1), source.row(j + 2)];
                 gradients_between(rows, window.cell, |i, gradient| row[i] = value(gradient));

@@ -6,7 +6,7 @@ use orogen_grid::analysis::position::{class, half_widths, positions_with};
 use orogen_grid::analysis::slope::degrees;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
-use rayon::prelude::*;
+use orogen_grid::parallel;
 
 op! {
     /// Topographic position index (TPI): the height above the mean of a surrounding disc, and the slope position derived from it (Weiss
@@ -79,8 +79,9 @@ impl Filter for TopographicPosition {
         }
         if let Some(classes) = classes {
             // Slopes of a few rows at a time.
-            let found = found.data().par_chunks(BAND * width);
-            classes.data_mut().par_chunks_mut(BAND * width).zip(found).enumerate().try_for_each(
+            let found = found.data().chunks(BAND * width);
+            parallel::try_for_each(
+                classes.data_mut().chunks_mut(BAND * width).zip(found).enumerate(),
                 |(b, (out, found))| {
                     context.progress.check()?;
                     let band = Window { y: window.y + (b * BAND) as i64, height: out.len() / width, ..*window };

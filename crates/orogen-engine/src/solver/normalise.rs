@@ -4,8 +4,8 @@ use crate::lower::{Lowering, Passes};
 use crate::op::{Context, Reading, Solution, Solver, Sources, WorldParams};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
+use orogen_grid::parallel;
 use orogen_noise::shader::function::Shader;
-use rayon::prelude::*;
 
 op! {
     /// The source scaled linearly so that its minimum over the whole world becomes `low` and its maximum becomes `high`.
@@ -93,5 +93,5 @@ fn range_of(tile: &Grid) -> (f32, f32) {
         let finite = samples.iter().filter(|sample| sample.is_finite());
         finite.fold(NOTHING, |range, sample| join(range, (*sample, *sample)))
     };
-    tile.data().par_chunks(SAMPLES).map(range).reduce(|| NOTHING, join)
+    parallel::map(tile.data().chunks(SAMPLES), range).into_iter().fold(NOTHING, join)
 }

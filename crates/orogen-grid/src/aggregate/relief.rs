@@ -2,9 +2,9 @@
 
 use super::tree::Tree;
 use crate::error::Result;
+use crate::parallel;
 use crate::progress::Progress;
 use crate::random::Random;
-use rayon::prelude::*;
 
 /// Parameters of a relief.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -100,7 +100,7 @@ pub fn heights(width: usize, height: usize, ridges: &Ridges, progress: &Progress
         weight *= ridges.gain as f32;
     }
     map = blurred(&map, across);
-    map.par_iter_mut().for_each(|h| *h /= total);
+    parallel::for_each(map.chunks_mut(across), |row| row.iter_mut().for_each(|h| *h /= total));
     Ok((across, down, map))
 }
 
@@ -108,7 +108,7 @@ pub fn heights(width: usize, height: usize, ridges: &Ridges, progress: &Progress
 fn doubled(map: &[f32], across: usize, finer_across: usize, finer_down: usize) -> Vec<f32> {
     let down = map.len() / across;
     let mut finer = vec![0.0f32; finer_across * finer_down];
-    finer.par_chunks_mut(finer_across).enumerate().for_each(|(j, row)| {
+    parallel::for_each(finer.chunks_mut(finer_across).enumerate(), |(j, row)| {
         // The centre of a fine cell is a quarter of a coarse cell away from the centre of its coarse cell.
         let near = (j / 2).min(down - 1);
         let far = if j % 2 == 0 { near.max(1) - 1 } else { (near + 1).min(down - 1) };
@@ -127,13 +127,13 @@ fn doubled(map: &[f32], across: usize, finer_across: usize, finer_down: usize) -
 fn blurred(map: &[f32], across: usize) -> Vec<f32> {
     let down = map.len() / across;
     let mut rows = vec![0.0f32; map.len()];
-    rows.par_chunks_mut(across).zip(map.par_chunks(across)).for_each(|(out, row)| {
+    parallel::for_each(rows.chunks_mut(across).zip(map.chunks(across)), |(out, row)| {
         for i in 0..across {
             out[i] = 0.25 * row[i.max(1) - 1] + 0.5 * row[i] + 0.25 * row[(i + 1).min(across - 1)];
         }
     });
     let mut out = vec![0.0f32; map.len()];
-    out.par_chunks_mut(across).enumerate().for_each(|(j, out)| {
+    parallel::for_each(out.chunks_mut(across).enumerate(), |(j, out)| {
         let row = |j: usize| &rows[j * across..(j + 1) * across];
         let (above, here, below) = (row(j.max(1) - 1), row(j), row((j + 1).min(down - 1)));
         for (((h, above), here), below) in out.iter_mut().zip(above).zip(here).zip(below) {

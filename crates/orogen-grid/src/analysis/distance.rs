@@ -3,8 +3,8 @@
 use crate::checks::{never, steps};
 use crate::error;
 use crate::grid::Grid;
+use crate::parallel;
 use crate::progress::Progress;
-use rayon::prelude::*;
 
 /// The exact Euclidean distance, in samples, to the nearest sample whose value is at least `threshold`; infinite if
 /// there is none within `reach`. The result is smaller than `grid` by a border of `reach` samples.
@@ -56,8 +56,8 @@ fn nearest_within<E: Send>(
         return Ok(out);
     }
     let columns = down_columns(grid, threshold, border, window.height, row)?;
-    let rows = out.data_mut().par_chunks_mut(window.width).zip(columns.par_chunks(grid.width()));
-    rows.try_for_each_init(Vec::new, |hull, (out, down)| {
+    let rows = out.data_mut().chunks_mut(window.width).zip(columns.chunks(grid.width()));
+    parallel::try_for_each_init(rows, Vec::new, |hull, (out, down)| {
         row()?;
         along_row(down, border, reach, hull, out);
         Ok(())

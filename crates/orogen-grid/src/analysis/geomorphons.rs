@@ -7,8 +7,8 @@
 use crate::checks::{never, steps};
 use crate::error;
 use crate::grid::{Grid, Window};
+use crate::parallel;
 use crate::progress::Progress;
-use rayon::prelude::*;
 
 /// The ten landforms, in the order of their codes from 1.
 pub const FORMS: [&str; 10] =
@@ -117,7 +117,7 @@ fn geomorphons_by_rows<E: Send>(
         return Ok(out);
     }
     let limit = libm::tan(look.flat.to_radians());
-    out.data_mut().par_chunks_mut(window.width).enumerate().try_for_each(|(j, forms)| {
+    parallel::try_for_each(out.data_mut().chunks_mut(window.width).enumerate(), |(j, forms)| {
         row()?;
         for (i, form) in forms.iter_mut().enumerate() {
             *form = form_at(grid, [i + radius, j + radius], look, limit).unwrap_or(0);

@@ -1,6 +1,6 @@
 //! Insolation over days: direct, diffuse and reflected light, with cast shadows.
 
-use rayon::prelude::*;
+use crate::parallel;
 
 use super::clear_sky::{ClearSky, Facet, Sunlight};
 use super::halo::Halo;
@@ -94,15 +94,15 @@ pub fn insolation(heights: &Grid, period: &Period, sky: &ClearSky, progress: &Pr
     // Shadows take about as long as the irradiance.
     progress.expect(2.0 * suns.len() as f64);
     for suns in suns.chunks(AT_ONCE) {
-        let lit = suns.par_iter().map(|(sun, _)| {
+        let lit = parallel::try_map(suns, |(sun, _)| {
             let lit = shadows.lit_by_rows(sun.towards, &|| progress.check())?;
             progress.advance(1.0);
-            Ok(lit)
-        });
-        let lit: Vec<Vec<bool>> = lit.collect::<Result<_>>()?;
+            Ok::<Vec<bool>, Error>(lit)
+        })?;
         progress.check()?;
         let work = suns.len() as f64 / window.height as f64;
-        out.data_mut().par_chunks_mut(window.width).enumerate().try_for_each_init(Vec::new, |wide, (j, row)| {
+        let rows = out.data_mut().chunks_mut(window.width).enumerate();
+        parallel::try_for_each_init(rows, Vec::new, |wide, (j, row)| {
             progress.step(work)?;
             gradients_between(beyond.rows(heights, j, wide), window.cell, |i, gradient| {
                 let facet = Facet::new(f64::from(gradient.east), -f64::from(gradient.north));

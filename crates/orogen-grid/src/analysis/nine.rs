@@ -1,6 +1,6 @@
 //! Functions of a sample and its eight neighbours.
 
-use rayon::prelude::*;
+use crate::parallel;
 
 use super::slope::inner;
 use crate::checks::{never, steps};
@@ -31,7 +31,7 @@ fn by_rows<E: Send>(
 ) -> Result<Grid, E> {
     let window = inner(grid.window());
     let mut out = Grid::filled(window, 0.0f32);
-    out.data_mut().par_chunks_mut(window.width.max(1)).enumerate().try_for_each(|(j, made)| {
+    parallel::try_for_each(out.data_mut().chunks_mut(window.width.max(1)).enumerate(), |(j, made)| {
         row()?;
         let rows = [grid.row(j), grid.row(j + 1), grid.row(j + 2)];
         for (i, out) in made.iter_mut().enumerate() {

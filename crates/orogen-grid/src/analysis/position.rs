@@ -4,7 +4,7 @@
 //! (Weiss, "Topographic position and landforms analysis", 2001; Wilson and Gallant, "Terrain Analysis", 2000, ch. 3).
 //! Heights are rounded to 1/256 m, so that all sums are exact and a tile equals the crop of the whole.
 
-use rayon::prelude::*;
+use crate::parallel;
 
 use crate::checks::{never, steps};
 use crate::error;
@@ -65,10 +65,10 @@ fn positions_by_rows<E: Send>(
         return Ok(out);
     }
     let sum = |j: usize| row().map(|()| prefix_sums(grid.row(j)));
-    let sums = (0..grid.height()).into_par_iter().map(sum).collect::<Result<Vec<Vec<[i64; 2]>>, E>>()?;
+    let sums = parallel::try_map(0..grid.height(), sum)?;
     let disc = half_widths(radius);
     let count = disc.iter().map(|half| 2 * half + 1).sum::<usize>() as f64;
-    out.data_mut().par_chunks_mut(window.width).enumerate().try_for_each(|(j, positions)| {
+    parallel::try_for_each(out.data_mut().chunks_mut(window.width).enumerate(), |(j, positions)| {
         row()?;
         for (i, position) in positions.iter_mut().enumerate() {
             let middle = i + radius;

@@ -1,6 +1,6 @@
 //! Viewsheds: the ground that is visible from a point.
 
-use rayon::prelude::*;
+use crate::parallel;
 
 use crate::error::Result;
 use crate::grid::{Grid, transposed};
@@ -72,7 +72,7 @@ pub fn hidden(heights: &Grid, observer: &Observer, check: Check) -> Result<Grid>
     let turned = MaxPyramid::new(transposed(heights.data(), window.width), window.height);
     check()?;
     let eye = ground.at(x, y) + observer.height;
-    out.data_mut().par_chunks_mut(window.width).enumerate().try_for_each(|(j, row)| {
+    parallel::try_for_each(out.data_mut().chunks_mut(window.width).enumerate(), |(j, row)| {
         check()?;
         for (i, out) in row.iter_mut().enumerate() {
             let (east, south) = (i as f64 - x, j as f64 - y);

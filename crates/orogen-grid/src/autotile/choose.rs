@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use rayon::prelude::*;
+use crate::parallel;
 
 use super::classes::Classes;
 use super::drawable::{Drawable, varied};
@@ -105,7 +105,7 @@ fn class_layers(classes: &Classes, drawable: &Drawable, tiles: &[ClassTiles], se
     let seeds: Vec<u64> =
         (0..tiles.len() as u64).map(|class| mix64(seed.wrapping_add(class.wrapping_mul(STEP)))).collect();
     let layout = drawable.layout();
-    rows.par_iter_mut().enumerate().for_each(|(y, layers)| {
+    parallel::for_each(rows.iter_mut().enumerate(), |(y, layers)| {
         let varied = varied(classes, y as i64, layout.is_on_corners());
         let own = classes.row(y as i64);
         for x in 0..width {
@@ -143,7 +143,7 @@ fn wang_layer(classes: &Classes, drawable: &Drawable, tiles: &WangTiles, seed: u
     let [width, height] = drawable.tiles(classes);
     let mut layer = vec![NONE; width * height];
     let seed = mix64(seed);
-    layer.par_chunks_mut(width.max(1)).enumerate().for_each(|(y, row)| {
+    parallel::for_each(layer.chunks_mut(width.max(1)).enumerate(), |(y, row)| {
         for (x, tile) in row.iter_mut().enumerate() {
             let id = drawable.wang_id(|x, y| classes.at(x, y), x as i64, y as i64);
             let place = [classes.x + x as i64, classes.y + y as i64];

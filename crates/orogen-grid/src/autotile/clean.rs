@@ -12,7 +12,7 @@
 
 use std::collections::HashMap;
 
-use rayon::prelude::*;
+use crate::parallel;
 
 use super::classes::{Classes, hash};
 use super::drawable::{Drawable, Gap, MissingTile};
@@ -102,7 +102,7 @@ fn gaps_again(classes: &Classes, drawable: &Drawable, gaps: &[Gap], changes: &[(
         Some(Gap { x: *x, y: *y, tile })
     };
     places.retain(|(y, x)| (0..width).contains(x) && (0..height).contains(y));
-    places.par_iter().filter_map(gap).collect()
+    parallel::map(&places, gap).into_iter().flatten().collect()
 }
 
 /// The tiles that see a cell.
@@ -120,7 +120,7 @@ fn seen(drawable: &Drawable, x: i64, y: i64) -> impl Iterator<Item = (i64, i64)>
 /// The changes of a round: the best proposals.
 fn changes(classes: &Classes, drawable: &Drawable, gaps: &[Gap]) -> Vec<(i64, i64, u8)> {
     let proposals: Vec<((i64, i64), Proposal)> =
-        gaps.par_iter().filter_map(|gap| propose(classes, drawable, gap)).collect();
+        parallel::map(gaps, |gap| propose(classes, drawable, gap)).into_iter().flatten().collect();
     let mut best: HashMap<(i64, i64), Proposal> = HashMap::with_capacity(proposals.len());
     for (place, proposal) in proposals {
         let kept = best.entry(place).or_insert(proposal);

@@ -4,6 +4,7 @@ use std::collections::HashSet;
 
 use super::classes::Classes;
 use super::mask::{CORNERS, Layout, OFFSETS};
+use crate::parallel;
 
 /// The tiles of a tileset: which surroundings of each class can be drawn.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -193,7 +194,6 @@ impl Drawable {
     /// All places without a tile, row by row.
     #[must_use]
     pub fn gaps(&self, classes: &Classes) -> Vec<Gap> {
-        use rayon::prelude::*;
         let [width, height] = self.tiles(classes);
         // A tile in the middle of one class needs only a full tile, but that may be missing, too.
         let lacks_full = match &self.tiles {
@@ -209,7 +209,7 @@ impl Drawable {
             };
             (0..width).filter(|x| lacks_full || varied[*x]).filter_map(gap).collect::<Vec<_>>()
         };
-        (0..height).into_par_iter().flat_map_iter(row).collect()
+        parallel::map(0..height, row).into_iter().flatten().collect()
     }
 }
 

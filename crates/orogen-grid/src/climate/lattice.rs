@@ -3,8 +3,8 @@
 use crate::analysis::fourier::Fourier;
 use crate::error::{Error, Result};
 use crate::grid::{Grid, Window};
+use crate::parallel;
 use crate::progress::Progress;
-use rayon::prelude::*;
 
 /// A periodic lattice around a window, whose sides are powers of two.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,7 +74,7 @@ impl Lattice {
         let mut rows = vec![[0.0; 2]; half * self.rows];
         let work = 2.0 / self.rows as f64;
         let scratch = || (vec![0.0; n], vec![0.0; n], vec![[0.0; 2]; n]);
-        rows.par_chunks_mut(2 * half).enumerate().try_for_each_init(scratch, |(a, b, both), (pair, out)| {
+        parallel::try_for_each_init(rows.chunks_mut(2 * half).enumerate(), scratch, |(a, b, both), (pair, out)| {
             progress.step(work)?;
             self.extended_row(heights, of, 2 * pair, a);
             self.extended_row(heights, of, 2 * pair + 1, b);
@@ -121,7 +121,7 @@ impl Lattice {
         let work = TOGETHER as f64 / half as f64;
         let (wave, scale) = (self.waves(), 1.0 / (self.columns as f64 * self.rows as f64));
         let scratch = || vec![[0.0; 2]; TOGETHER * self.rows];
-        columns.par_chunks_mut(TOGETHER * height).enumerate().try_for_each_init(scratch, |block, (at, out)| {
+        parallel::try_for_each_init(columns.chunks_mut(TOGETHER * height).enumerate(), scratch, |block, (at, out)| {
             progress.step(2.0 * work)?;
             let first = at * TOGETHER;
             let count = out.len() / height;
@@ -163,7 +163,8 @@ impl Lattice {
         let n = self.columns;
         let work = TOGETHER as f64 / height as f64;
         let scratch = || vec![[0.0; 2]; TOGETHER / 2 * n];
-        out.data_mut().par_chunks_mut(TOGETHER * width).enumerate().try_for_each_init(scratch, |pairs, (at, out)| {
+        let rows = out.data_mut().chunks_mut(TOGETHER * width).enumerate();
+        parallel::try_for_each_init(rows, scratch, |pairs, (at, out)| {
             progress.step(work)?;
             let (first, count) = (at * TOGETHER, out.len() / width);
             for (k, column) in columns.chunks_exact(height).enumerate() {

@@ -3,8 +3,8 @@
 use super::lattice::Lattice;
 use crate::error::Result;
 use crate::grid::{Grid, Window};
+use crate::parallel;
 use crate::progress::Progress;
-use rayon::prelude::*;
 
 /// The linear theory of orographic precipitation (Smith and Barstad 2004, J. Atmos. Sci. 61).
 ///
@@ -124,7 +124,9 @@ impl OrographicRain {
     pub fn over(&self, heights: &Grid, sea_level: f32, progress: &Progress) -> Result<Grid> {
         let mut rain = self.perturbation(heights, sea_level, progress)?;
         let background = self.background;
-        rain.data_mut().par_iter_mut().for_each(|rain| *rain = (background + f64::from(*rain)).max(0.0) as f32);
+        parallel::for_each(rain.data_mut().chunks_mut(parallel::SAMPLES), |rain| {
+            rain.iter_mut().for_each(|rain| *rain = (background + f64::from(*rain)).max(0.0) as f32);
+        });
         Ok(rain)
     }
 

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
+use crate::parallel;
 
 use super::band::{Band, Levels, NONE};
 use super::levels::given;
@@ -47,8 +47,7 @@ pub fn contours(grid: &Grid, levels: &[f64]) -> Result<Vec<Line>> {
         return Ok(Vec::new());
     }
     let ready = Levels::new(&levels);
-    let bands: Vec<Band> =
-        pieces(grid.height(), ROWS).into_par_iter().map(|rows| Band::of(grid, rows, &ready)).collect();
+    let bands = parallel::map(pieces(grid.height(), ROWS), |rows| Band::of(grid, rows, &ready));
     let crossings = joined(bands)?;
     Ok(follow(crossings, grid, &levels))
 }

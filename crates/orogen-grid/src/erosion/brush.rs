@@ -1,8 +1,8 @@
 //! A round brush that spreads a change over the ground around a point.
 
 use super::droplet_paths::UNIT;
+use crate::parallel;
 use orogen_simd::{Body, Simd, dispatch};
-use rayon::prelude::*;
 
 /// A Gaussian truncated at `radius`, in cells, with a standard deviation of half the radius. Its weights sum to 1 along
 /// each axis.
@@ -41,7 +41,8 @@ impl Brush {
         let reach = self.reach();
         let first = border - reach;
         let mut rows = vec![0.0f32; inner * (tall + 2 * reach)];
-        rows.par_chunks_mut(inner).enumerate().for_each_init(
+        parallel::for_each_init(
+            rows.chunks_mut(inner).enumerate(),
             || vec![0.0f32; inner + 2 * reach],
             |metres, (j, row)| {
                 let from = &sums[(first + j) * width + first..][..inner + 2 * reach];
@@ -52,7 +53,7 @@ impl Brush {
             },
         );
         let mut out = vec![0.0f32; inner * tall];
-        out.par_chunks_mut(inner).enumerate().for_each(|(j, row)| {
+        parallel::for_each(out.chunks_mut(inner).enumerate(), |(j, row)| {
             dispatch(Weighted { weights: &self.weights, from: &rows[j * inner..], apart: inner, out: row });
         });
         out

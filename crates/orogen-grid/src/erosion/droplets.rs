@@ -6,8 +6,8 @@ use super::loose::{LOOSE, Loose};
 use super::planes::Planes;
 use crate::error::Result;
 use crate::grid::Grid;
+use crate::parallel;
 use crate::progress::Progress;
-use rayon::prelude::*;
 
 /// Erosion by droplets after H. T. Beyer, "Implementation of a method for hydraulic erosion" (2015), in metres.
 ///
@@ -148,7 +148,7 @@ impl Droplets {
         let cut = brush.over(cut, window.width, border);
         let laid = Brush::new(0.5 * brush.radius()).over(laid, window.width, border);
         let mut planes = Planes::new(inner.width, inner.height);
-        planes.rows_mut(0, inner.height).into_par_iter().enumerate().for_each(|(j, [firm, loose])| {
+        parallel::for_each(planes.rows_mut(0, inner.height).into_iter().enumerate(), |(j, [firm, loose])| {
             let before = &heights.row(j + border)[border..border + inner.width];
             for ((firm, before), cut) in firm.iter_mut().zip(before).zip(&cut[j * inner.width..]) {
                 *firm = before - cut;
@@ -158,7 +158,7 @@ impl Droplets {
         let settled = Loose { stands: (LIES * window.cell) as f32 }.run(planes, SETTLED, &settling)?;
         let mut out = Grid::filled(window.shrunk(reach), 0.0f32);
         let width = out.width();
-        out.data_mut().par_chunks_mut(width).enumerate().for_each(|(j, row)| {
+        parallel::for_each(out.data_mut().chunks_mut(width).enumerate(), |(j, row)| {
             let before = &heights.row(j + reach)[reach..reach + width];
             let cut = &cut[(j + SETTLED) * inner.width + SETTLED..][..width];
             let loose = settled.row(j)[LOOSE];
@@ -178,7 +178,7 @@ impl Droplets {
         let reach = self.steps(window.cell) + 2;
         let step = self.step(window.cell, batch);
         // As many bands of each kind as give all threads equal shares.
-        let all = 2 * rayon::current_num_threads();
+        let all = 2 * parallel::threads();
         let most = (window.height / (2 * reach)).clamp(1, 8 * all);
         let bands = if most > all { most - most % all } else { most };
         let rows = window.height.div_ceil(bands).max(2 * reach);
@@ -187,7 +187,7 @@ impl Droplets {
                 *sums = vec![0; window.len()];
             }
             sums.truncate(window.len());
-            sums.par_chunks_mut(window.width.max(1)).for_each(|row| row.fill(0));
+            parallel::for_each(sums.chunks_mut(window.width.max(1)), |row| row.fill(0));
         }
         progress.expect(window.height as f64);
         for parity in [0, 1] {
@@ -202,7 +202,7 @@ impl Droplets {
                 bands.push((top..bottom, first, part(&mut cut, skip, size), part(&mut laid, skip, size)));
                 taken = last;
             }
-            bands.into_par_iter().with_max_len(1).try_for_each(|(rows, first, cut, laid)| {
+            parallel::try_for_each(bands, |(rows, first, cut, laid)| {
                 droplet_paths::run(heights, &step, rows, droplet_paths::Sums { first, cut, laid }, progress)
             })?;
         }

@@ -4,9 +4,9 @@ use super::pipe_rows::{AHEAD, BED, Constants, DEPTH, EAST, SOUTH, Sweep};
 use super::planes::Planes;
 use crate::error::Result;
 use crate::grid::{Grid, Window};
+use crate::parallel;
 use crate::progress::Progress;
 use orogen_simd::{Body, Simd, dispatch};
-use rayon::prelude::*;
 
 /// Hydraulic erosion with virtual pipes, after X. Mei, P. Decaudin and B. Hu, "Fast hydraulic erosion simulation and
 /// visualization on GPU" (2007) and O. Stava, B. Benes, M. Brisbin and J. Krivanek, "Interactive terrain modeling using
@@ -104,8 +104,8 @@ impl Wet {
     pub fn new(bed: &Grid) -> Wet {
         let window = *bed.window();
         let mut wet = Wet { planes: Planes::new(window.width + 2, window.height + 2), window };
-        let rows = wet.planes.rows_mut(1, window.height).into_par_iter().enumerate();
-        rows.for_each(|(j, row)| row[BED][1..=window.width].copy_from_slice(bed.row(j)));
+        let rows = wet.planes.rows_mut(1, window.height).into_iter().enumerate();
+        parallel::for_each(rows, |(j, row)| row[BED][1..=window.width].copy_from_slice(bed.row(j)));
         wet.wall();
         wet
     }
@@ -120,8 +120,8 @@ impl Wet {
     #[must_use]
     pub fn plane(&self, plane: usize) -> Grid {
         let mut out = Grid::filled(self.window, 0.0f32);
-        let rows = out.data_mut().par_chunks_mut(self.window.width.max(1)).enumerate();
-        rows.for_each(|(j, row)| row.copy_from_slice(&self.planes.row(j + 1)[plane][1..=self.window.width]));
+        let rows = out.data_mut().chunks_mut(self.window.width.max(1)).enumerate();
+        parallel::for_each(rows, |(j, row)| row.copy_from_slice(&self.planes.row(j + 1)[plane][1..=self.window.width]));
         out
     }
 
@@ -262,11 +262,11 @@ fn advance(
     let (width, height) = (to.window.width, to.window.height);
     to.planes.resize(width + 2, height + 2);
     let reach = stride.iterations * RADIUS;
-    let rows = height.div_ceil(rayon::current_num_threads()).max(4 * reach);
+    let rows = height.div_ceil(parallel::threads()).max(4 * reach);
     spare.resize_with(height.div_ceil(rows), || Planes::new(0, 0));
-    let bands = to.planes.bands_mut(1, height, rows).into_par_iter().zip(spare);
+    let bands = to.planes.bands_mut(1, height, rows).into_iter().zip(spare);
     let work = stride.iterations as f64 / bands.len().max(1) as f64;
-    bands.enumerate().try_for_each(|(band, (mut out, planes))| {
+    parallel::try_for_each(bands.enumerate(), |(band, (mut out, planes))| {
         let (top, bottom) = (lost + band * rows, lost + height.min((band + 1) * rows));
         let (first, last) = (top.saturating_sub(reach), window.height.min(bottom + reach));
         // The cells from first to last, and a row of walls on each side.

@@ -2,8 +2,8 @@
 
 use crate::error::Result;
 use crate::grid::{Grid, Window};
+use crate::parallel;
 use crate::progress::Progress;
-use rayon::prelude::*;
 
 /// N planes of one size. The rows of all planes are adjacent in memory, so that a pass down the rows reads one
 /// contiguous range.
@@ -51,15 +51,15 @@ impl<const N: usize> Planes<N> {
     #[must_use]
     pub fn grid(&self, plane: usize, window: Window) -> Grid {
         let mut grid = Grid::filled(window, 0.0f32);
-        let rows = grid.data_mut().par_chunks_mut(window.width.max(1)).enumerate();
-        rows.for_each(|(j, row)| row.copy_from_slice(self.row(j)[plane]));
+        let rows = grid.data_mut().chunks_mut(window.width.max(1)).enumerate();
+        parallel::for_each(rows, |(j, row)| row.copy_from_slice(self.row(j)[plane]));
         grid
     }
 
     /// Fills plane `plane` from a grid with as many samples.
     pub fn fill(&mut self, plane: usize, grid: &Grid) {
         let height = self.height;
-        self.rows_mut(0, height).into_par_iter().enumerate().for_each(|(j, row)| {
+        parallel::for_each(self.rows_mut(0, height).into_iter().enumerate(), |(j, row)| {
             row[plane].copy_from_slice(grid.row(j));
         });
     }
@@ -156,9 +156,10 @@ pub fn run<const N: usize, P: Pass<N>>(
         let (width, height) = (planes.width.saturating_sub(2 * inset), planes.height.saturating_sub(2 * inset));
         next.resize(width, height);
         let from = &planes;
-        let bands = next.bands_mut(0, height, BAND).into_par_iter().enumerate();
+        let bands = next.bands_mut(0, height, BAND).into_iter().enumerate();
         let work = now as f64 / bands.len().max(1) as f64;
-        bands.try_for_each_init(
+        parallel::try_for_each_init(
+            bands,
             || (Planes::new(0, 0), Planes::new(0, 0), Vec::new()),
             |(here, spare, scratch), (band, mut out)| {
                 progress.check()?;

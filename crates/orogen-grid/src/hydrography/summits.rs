@@ -1,6 +1,6 @@
 //! Summits with their prominence.
 
-use rayon::prelude::*;
+use rayon::slice::ParallelSliceMut;
 
 use super::water::Frame;
 use crate::grid::Grid;

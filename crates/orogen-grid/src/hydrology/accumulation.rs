@@ -5,8 +5,8 @@ use super::receivers::Receivers;
 use crate::checks::{checks, never, now_and_then, steps};
 use crate::error;
 use crate::grid::Grid;
+use crate::parallel;
 use crate::progress::Progress;
-use rayon::prelude::*;
 
 /// The weight of a cell where the factor of the rain is 1. Weights are integers, so that their sums do not depend on the order of addition.
 pub const UNIT_WEIGHT: u32 = 1 << 16;
@@ -149,7 +149,7 @@ fn discharge(receivers: &Receivers, accumulation: &Accumulation, rain: &Grid) ->
         shares.push((band, own));
         rest = after;
     }
-    shares.into_par_iter().for_each(|(band, own)| {
+    parallel::for_each(shares, |(band, own)| {
         let start = band.cells.start;
         own.iter_mut().enumerate().for_each(|(cell, sum)| *sum = weights(start + cell));
         for cell in band.order.iter().rev().map(|cell| *cell as usize - start) {
@@ -175,7 +175,7 @@ fn discharge(receivers: &Receivers, accumulation: &Accumulation, rain: &Grid) ->
 
 /// Rows of a band.
 fn band_rows(receivers: &Receivers) -> usize {
-    let threads = rayon::current_num_threads();
+    let threads = parallel::threads();
     // With one thread, one band; with more, three per thread to balance the load.
     let bands = if threads == 1 { 1 } else { 3 * threads };
     receivers.window().height.div_ceil(bands).max(FEWEST_ROWS)
@@ -204,12 +204,10 @@ fn accumulate_in<E: Send>(
     let donors = receivers.donors();
     check()?;
     let trunk = Trunk::new(receivers, rows);
-    let bands = area
-        .par_chunks_mut(size)
-        .zip(donors.par_chunks(size))
-        .enumerate()
-        .map(|(k, (area, donors))| Band::new(receivers, &trunk.order, k * size, donors, area, check))
-        .collect::<Result<Vec<Band>, E>>()?;
+    let bands = area.chunks_mut(size).zip(donors.chunks(size)).enumerate();
+    let bands = parallel::try_map(bands, |(k, (area, donors))| {
+        Band::new(receivers, &trunk.order, k * size, donors, area, check)
+    })?;
     let strides = strides(window.width);
     for cell in trunk.order.iter().rev().map(|cell| *cell as usize) {
         let flows_in = |k: &usize| donors[cell] & 1 << k != 0;

@@ -3,8 +3,8 @@
 use super::outlets::Outlets;
 use crate::error::Result;
 use crate::grid::{Grid, Window};
+use crate::parallel;
 use crate::progress::Progress;
-use rayon::prelude::*;
 
 /// Linear diffusion of the heights, dh/dt = D (d2h/dx2 + d2h/dy2) (Culling 1960). `amount` is D times the time, in m^2.
 /// Outlets keep their heights.
@@ -83,8 +83,8 @@ const LONGEST: f64 = 0.29;
 /// One stage: extrapolates from `last` to `here` by the first factor, and adds the inflow times the second.
 fn advance(here: &Grid, last: &Grid, outlets: &Outlets, [again, share]: [f32; 2], next: &mut Grid) {
     let (width, height) = (here.width(), here.height());
-    let rows = next.data_mut().par_chunks_mut(width).enumerate();
-    rows.filter(|(j, _)| *j > 0 && j + 1 < height).for_each(|(j, row)| {
+    let rows = next.data_mut().chunks_mut(width).enumerate().take(height.max(1) - 1).skip(1);
+    parallel::for_each(rows, |(j, row)| {
         let triples = here.row(j - 1).windows(3).zip(here.row(j).windows(3)).zip(here.row(j + 1).windows(3));
         let places = row[1..].iter_mut().zip(&outlets.mask().row(j)[1..]).zip(&last.row(j)[1..]);
         for (((new, outlet), last), ((n, m), s)) in places.zip(triples) {

@@ -5,7 +5,7 @@ use super::drainage;
 use super::outlets::Outlets;
 use super::steepest::Descent;
 use crate::grid::Grid;
-use rayon::prelude::*;
+use crate::parallel;
 
 /// The heights with every depression filled to its spill level: the lowest surface on which every cell has a path to an
 /// outlet that never rises. Equal to Priority-Flood without an epsilon (Barnes, Lehman and Mulla 2014), bit for bit;
@@ -22,8 +22,8 @@ pub fn fill(heights: &Grid, outlets: &Outlets) -> Grid {
 pub fn filled(heights: &Grid, basins: &Basins) -> Grid {
     let mut out = heights.clone();
     let width = heights.width().max(1);
-    let rows = out.data_mut().par_chunks_mut(width).zip(basins.labels.par_chunks(width));
-    rows.for_each(|(row, labels)| {
+    let rows = out.data_mut().chunks_mut(width).zip(basins.labels.chunks(width));
+    parallel::for_each(rows, |(row, labels)| {
         for (h, label) in row.iter_mut().zip(labels) {
             let level = basins.spills[*label as usize].level;
             if *h < level {

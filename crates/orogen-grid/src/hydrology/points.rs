@@ -9,7 +9,7 @@
 use super::direction::{STEPS, hashed, neighbour, opposite};
 use super::outlets::Outlets;
 use crate::grid::{Grid, Window};
-use rayon::prelude::*;
+use crate::parallel;
 
 /// A point for each cell of a map, and the distances between neighbours.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,9 +35,9 @@ impl Points {
         let mut points = Points { window, reach, salt, inverse_distance: std::array::from_fn(|_| vec![1.0; cells]) };
         let mut planes = std::mem::take(&mut points.inverse_distance);
         let [east, south_east, south, south_west] = &mut planes;
-        let rows = |plane| <[f32]>::par_chunks_mut(plane, width.max(1));
+        let rows = |plane| <[f32]>::chunks_mut(plane, width.max(1));
         let planes_of_rows = rows(east).zip(rows(south_east)).zip(rows(south).zip(rows(south_west)));
-        planes_of_rows.enumerate().for_each(|(j, ((east, south_east), (south, south_west)))| {
+        parallel::for_each(planes_of_rows.enumerate(), |(j, ((east, south_east), (south, south_west)))| {
             // From one column before the first to one after the last.
             let offsets = |j: usize| -> Vec<[f32; 2]> { (-1..=width as i64).map(|i| points.at(i, j as i64)).collect() };
             let (here, below) = (offsets(j), offsets(j + 1));
@@ -98,7 +98,7 @@ impl Points {
         let before = heights.clone();
         let h = before.data();
         // Each thread takes several rows, so that an offset is hashed once for the three rows that read it.
-        heights.data_mut().par_chunks_mut(width * ROWS).enumerate().for_each(|(band, rows)| {
+        parallel::for_each(heights.data_mut().chunks_mut(width * ROWS).enumerate(), |(band, rows)| {
             let first = band * ROWS;
             let mut offsets = [Offsets::default(), Offsets::default(), Offsets::default()];
             for (j, row) in (first..).zip(rows.chunks_mut(width)).filter(|(j, _)| *j > 0 && j + 1 < height) {

@@ -2,7 +2,7 @@
 
 use super::direction::{NONE, neighbour, opposite, strides};
 use crate::grid::{Grid, Window};
-use rayon::prelude::*;
+use crate::parallel;
 
 /// The receiver of every cell, as the code of a direction ([`NONE`] for outlets and pits).
 ///
@@ -59,7 +59,7 @@ impl Receivers {
     pub fn donors(&self) -> Vec<u8> {
         let (width, height) = (self.window().width, self.window().height);
         let mut donors = vec![0u8; width * height];
-        donors.par_chunks_mut(width.max(1)).enumerate().for_each(|(j, row)| {
+        parallel::for_each(donors.chunks_mut(width.max(1)).enumerate(), |(j, row)| {
             for (south, east) in [(-1, 7), (0, 0), (1, 1)] {
                 let Some(from) = j.checked_add_signed(south).filter(|from| *from < height) else { continue };
                 let from = self.codes.row(from);

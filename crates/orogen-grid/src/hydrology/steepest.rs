@@ -5,7 +5,7 @@ use super::outlets::Outlets;
 use super::points::Points;
 use super::receivers::Receivers;
 use crate::grid::Grid;
-use rayon::prelude::*;
+use crate::parallel;
 
 /// The rule that chooses the receiver.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,8 +32,9 @@ pub fn receivers(heights: &Grid, outlets: &Outlets, descent: Descent) -> Receive
     if window.width < 3 || window.height < 3 {
         return receivers;
     }
-    let rows = receivers.codes_mut().par_chunks_mut(window.width).enumerate();
-    rows.filter(|(j, _)| *j > 0 && j + 1 < window.height).for_each_init(
+    let rows = receivers.codes_mut().chunks_mut(window.width).enumerate().take(window.height - 1).skip(1);
+    parallel::for_each_init(
+        rows,
         || vec![std::f32::consts::FRAC_1_SQRT_2; window.width - 2],
         |diagonals, (j, codes)| {
             let y = window.y + j as i64;

@@ -24,8 +24,8 @@ use super::receivers::Receivers;
 use crate::checks::{checks, never, now_and_then, steps};
 use crate::error;
 use crate::grid::Grid;
+use crate::parallel;
 use crate::progress::Progress;
-use rayon::prelude::*;
 use std::ops::Range;
 
 /// Parameters of the stream power law.
@@ -175,7 +175,7 @@ impl StreamPower {
             shares.push((band, own, std::mem::replace(&mut above, last), below));
             rest = after;
         }
-        shares.into_par_iter().try_for_each(|(band, own, above, below)| {
+        parallel::try_for_each(shares, |(band, own, above, below)| {
             let Range { start, end } = band.cells;
             for (k, c) in band.order.iter().map(|c| *c as usize).enumerate() {
                 now_and_then(k, check)?;

@@ -8,7 +8,7 @@
 
 use std::io::{self, Write};
 
-use rayon::prelude::*;
+use orogen_grid::parallel;
 
 use super::{deflate, half};
 use crate::spool::Spool;
@@ -138,7 +138,7 @@ impl Writer {
             true => self.waiting.len(),
             false => self.waiting.len() / block * block,
         };
-        let packed: Vec<Vec<u8>> = self.waiting[..ready].par_chunks(block).map(pack).collect();
+        let packed: Vec<Vec<u8>> = parallel::map(self.waiting[..ready].chunks(block), pack);
         self.waiting.drain(..ready);
         for bytes in packed {
             self.blocks.push((self.spool.push(&bytes)?, bytes.len()));

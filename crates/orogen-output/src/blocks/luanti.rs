@@ -5,10 +5,10 @@
 use std::io::{self, Write};
 
 use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::parallel;
 use orogen_grid::progress::Progress;
 use orogen_io::format::luanti::{MAX_COORDINATE, NODES, SIDE, block, key, write_database};
 use orogen_io::format::png::{self, Picture, Pixel};
-use rayon::prelude::*;
 
 use super::hash::hash;
 use super::kind::{Block, KINDS};
@@ -119,7 +119,7 @@ impl<'a> LuantiWorld<'a> {
             blocks(2).flat_map(|z| blocks(1).flat_map(move |y| blocks(0).map(move |x| [x, y, z]))).collect();
         let name = |node: u8| NAMES[usize::from(node)];
         progress.expect(places.len() as f64);
-        let made = places.par_iter().map(|place| {
+        let mut blocks: Vec<(i64, Vec<u8>)> = parallel::try_map(&places, |place| -> Result<(i64, Vec<u8>)> {
             let (mut nodes, mut lights) = ([Block::Air as u8; NODES], [15; NODES]);
             let mut is_underground = true;
             for at in 0..NODES {
@@ -132,8 +132,7 @@ impl<'a> LuantiWorld<'a> {
             }
             progress.step(1.0)?;
             Ok((key(*place), block(&nodes, &lights, is_underground, &name)))
-        });
-        let mut blocks: Vec<(i64, Vec<u8>)> = made.collect::<Result<_>>()?;
+        })?;
         blocks.sort_unstable_by_key(|(key, _)| *key);
         Ok(blocks)
     }

@@ -8,9 +8,9 @@ use orogen_engine::Budget;
 use orogen_engine::budget::Reservation;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
+use orogen_grid::parallel;
 use orogen_grid::progress::Progress;
 use orogen_grid::surface_nets::Lattice;
-use rayon::prelude::*;
 use serde_json::Map;
 
 use super::kind::Block;
@@ -46,13 +46,13 @@ impl BlockMesh {
         let window = land.window;
         let parts: Vec<Window> = window.tiles(SIDE).collect();
         let samples = (SIDE + 2).pow(2) as u64 * land.levels.count as u64;
-        let at_once = rayon::current_num_threads().min(parts.len()).max(1);
+        let at_once = parallel::threads().min(parts.len()).max(1);
         let _parts = budget.reserve(samples.saturating_mul(SAMPLE).saturating_mul(at_once as u64))?;
         let (mut bodies, mut memory) = (Vec::new(), Vec::new());
         progress.expect(parts.len() as f64);
         for group in parts.chunks(at_once) {
             progress.check()?;
-            let made: Vec<BodyMesh> = group.par_iter().map(|part| body(land, part)).collect::<Result<_>>()?;
+            let made: Vec<BodyMesh> = parallel::try_map(group, |part| body(land, part))?;
             for body in made {
                 memory.push(budget.reserve(body.memory())?);
                 bodies.push(body);

@@ -1,6 +1,6 @@
 //! All blocks of a window.
 
-use rayon::prelude::*;
+use orogen_grid::parallel;
 
 use super::chunk::SIDE;
 use super::kind::{Block, KINDS};
@@ -52,7 +52,7 @@ impl BlockVolume {
                 Window { x: window.x + left as i64, y: window.y + top as i64, width, height, cell: window.cell }
             };
             let lefts: Vec<usize> = (0..window.width).step_by(SIDE).collect();
-            let chunks: Vec<Vec<u8>> = lefts.par_iter().map(|left| land.blocks(&part(*left))).collect::<Result<_>>()?;
+            let chunks: Vec<Vec<u8>> = parallel::try_map(&lefts, |left| land.blocks(&part(*left)))?;
             for (left, chunk) in lefts.iter().zip(&chunks) {
                 let width = part(*left).width;
                 for (k, row) in chunk.chunks(width).enumerate() {

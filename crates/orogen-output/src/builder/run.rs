@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use rayon::prelude::*;
+use orogen_grid::parallel;
 
 use super::blocks::{Block, union};
 use super::cog::Cog;
@@ -229,7 +229,7 @@ impl<'a> Build<'a> {
     /// The jobs whose files all exist and are unchanged.
     fn sound(&self, state: &JournalState, progress: &Progress) -> Result<BTreeSet<Job>> {
         let records: Vec<(&Job, &Record)> = state.records.iter().collect();
-        let checked = records.into_par_iter().map(|(job, record)| {
+        let checked = parallel::try_map(records, |(job, record)| -> Result<Option<Job>> {
             progress.check()?;
             let stage = self.stages.get(job.stage).filter(|stage| job.row < stage.rows && job.column < stage.columns);
             let places = if stage.is_some() { self.target.places(*job) } else { Vec::new() };
@@ -241,7 +241,7 @@ impl<'a> Build<'a> {
             };
             Ok((as_many && places.iter().zip(&record.digests).all(same)).then_some(*job))
         });
-        Ok(checked.collect::<Result<Vec<Option<Job>>>>()?.into_iter().flatten().collect())
+        Ok(checked?.into_iter().flatten().collect())
     }
 
     /// The report, if everything exists and is intact.
@@ -307,9 +307,9 @@ impl<'a> Build<'a> {
                 }
             } else {
                 let tiles: Vec<(usize, usize)> = tiles.collect();
-                tiles
-                    .into_par_iter()
-                    .try_for_each(|(row, column)| self.make_one(Job { stage: n, row, column }, &[], store, progress))?;
+                parallel::try_for_each(tiles, |(row, column)| {
+                    self.make_one(Job { stage: n, row, column }, &[], store, progress)
+                })?;
             }
         }
         Ok(count)
@@ -337,7 +337,7 @@ impl<'a> Build<'a> {
         };
         let layers: Vec<&str> = self.identity.layers.iter().map(String::as_str).collect();
         let grids = self.world.grids(&layers, &window, &progress.part(work))?;
-        group.par_iter().try_for_each(|&(row, column)| {
+        parallel::try_for_each(group, |&(row, column)| {
             let window = self.target.window(row, column);
             let tiles: Option<Vec<Grid>> = grids.iter().map(|grid| grid.crop(&window)).collect();
             let tiles = tiles.ok_or_else(|| Error::new(ErrorKind::Request, "a tile is outside its block"))?;

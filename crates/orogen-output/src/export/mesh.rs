@@ -18,6 +18,7 @@ use crate::mesh::surface::Surface;
 use orogen_grid::analysis::halo::Halo;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
+use orogen_grid::parallel;
 use orogen_grid::progress::Progress;
 use orogen_grid::words::{count, number};
 use orogen_io::format::dem::Georeference;
@@ -69,7 +70,7 @@ pub fn memory(window: &Window, options: &Options) -> u64 {
     let samples = whole(window);
     match options.has(MAX_ERROR.name) {
         true => {
-            let at_work = (TILE * TILE * rayon::current_num_threads() * size_of::<f32>()) as u64;
+            let at_work = (TILE * TILE * parallel::threads() * size_of::<f32>()) as u64;
             samples.saturating_mul(2).saturating_add(samples.min(at_work).saturating_mul(6))
         }
         false => samples.saturating_mul(2),

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::ops::Range;
 
-use rayon::prelude::*;
+use orogen_grid::parallel;
 
 use super::shade::Shade;
 use orogen_grid::analysis::slope::{beyond, extend_row, gradients_between};
@@ -55,7 +55,8 @@ impl Painter {
     pub fn shade(&self, grid: &Grid, bytes: &mut [u8]) {
         let width = grid.width();
         let table: Vec<f32> = (0..=u8::MAX).map(decode).collect();
-        bytes.par_chunks_exact_mut(4 * width).enumerate().for_each_init(
+        parallel::for_each_init(
+            bytes.chunks_exact_mut(4 * width).enumerate(),
             || vec![0.0; 3 * (width + 2)],
             |wide, (j, bytes)| {
                 gradients_between(around(grid, j, wide), grid.window().cell, |i, gradient| {
@@ -135,7 +136,8 @@ impl Painter {
     /// linearly.
     pub fn paint(&self, grid: &Grid, rows: Range<usize>, bytes: &mut [u8]) {
         let width = grid.width();
-        bytes.par_chunks_exact_mut(3 * width).zip(rows).for_each_init(
+        parallel::for_each_init(
+            bytes.chunks_exact_mut(3 * width).zip(rows),
             || vec![0.0; 3 * (width + 2)],
             |wide, (bytes, j)| self.row(around(grid, j, wide), grid.window().cell, bytes),
         );

@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use rayon::prelude::*;
+use orogen_grid::parallel;
 
 use super::packed::PackedTriangles;
 use super::shape::{Part, Shape, enough};
@@ -41,7 +41,8 @@ pub fn adaptive_with(grid: &Grid, max_error: f64, progress: &Progress) -> Result
     if !(max_error >= 0.0 && max_error.is_finite()) {
         return refuse(format!("the maximum error of a mesh must be at least 0 m, not {max_error}"));
     }
-    let holes = grid.data().par_iter().filter(|height| !height.is_finite()).count();
+    let holes_of = |heights: &[f32]| heights.iter().filter(|height| !height.is_finite()).count();
+    let holes: usize = parallel::map(grid.data().chunks(parallel::SAMPLES), holes_of).into_iter().sum();
     if holes > 0 {
         return refuse(format!(
             "{holes} of {} samples are nodata, and an adaptive mesh needs all samples; write the full grid instead (without --max-error), which omits triangles at nodata samples",
@@ -58,19 +59,16 @@ pub fn adaptive_with(grid: &Grid, max_error: f64, progress: &Progress) -> Result
     let free: Mutex<Vec<(Vec<f32>, Workspace)>> = Mutex::default();
     // A panic of a thread that holds the lock leaves the data usable.
     let lock = || free.lock().unwrap_or_else(PoisonError::into_inner);
-    let parts: Result<Vec<Part>> = tiles
-        .into_par_iter()
-        .map(|[[left, top], [right, bottom]]| {
-            let (memory, mut workspace) = lock().pop().unwrap_or_default();
-            let tile = Tile::of(grid, [left, top], [right - left + 1, bottom - top + 1], memory);
-            let triangles = triangulate(&tile, max_error, &mut workspace, progress)?;
-            // From clockwise in the picture, with y downward, to counter-clockwise from above.
-            let triangles = PackedTriangles::new(triangles.map(|[a, b, c]| [a, c, b]));
-            lock().push((tile.into_memory(), workspace));
-            progress.advance(1.0);
-            Ok(Part { corner: [left, top], triangles })
-        })
-        .collect();
+    let parts: Result<Vec<Part>> = parallel::try_map(tiles, |[[left, top], [right, bottom]]| {
+        let (memory, mut workspace) = lock().pop().unwrap_or_default();
+        let tile = Tile::of(grid, [left, top], [right - left + 1, bottom - top + 1], memory);
+        let triangles = triangulate(&tile, max_error, &mut workspace, progress)?;
+        // From clockwise in the picture, with y downward, to counter-clockwise from above.
+        let triangles = PackedTriangles::new(triangles.map(|[a, b, c]| [a, c, b]));
+        lock().push((tile.into_memory(), workspace));
+        progress.advance(1.0);
+        Ok(Part { corner: [left, top], triangles })
+    });
     drop(free);
     Ok(Shape::joined([grid.width(), grid.height()], parts?))
 }

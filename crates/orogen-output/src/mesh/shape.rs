@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
+use orogen_grid::parallel;
 
 use super::packed::{PIECE, PackedTriangles};
 use super::sample_set::{SampleSet, Word, columns, count};
@@ -220,12 +220,12 @@ impl Shape {
     /// The maximum vertical distance of a finite sample from the surface, in metres. Samples that are not covered by a
     /// triangle are ignored.
     pub fn deviation(&self, grid: &Grid) -> f64 {
-        let pieces = (0..self.pieces()).into_par_iter().map(|piece| {
+        let pieces = parallel::map(0..self.pieces(), |piece| {
             let mut worst: f64 = 0.0;
             self.piece(grid, piece, |triangle| worst = worst.max(distance(grid, triangle.map(|c| self.sample(c)))));
             worst
         });
-        pieces.reduce(|| 0.0, f64::max)
+        pieces.into_iter().fold(0.0, f64::max)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use rayon::prelude::*;
+use orogen_grid::parallel;
 
 use super::shape::Shape;
 use crate::map::paint::Painter;
@@ -75,15 +75,12 @@ impl Surface<'_> {
     ) -> io::Result<()> {
         let rows = self.shape.rows();
         for band in rows.chunks((BAND / self.grid.width().max(1)).clamp(8, 256)) {
-            let made: Vec<Vec<u8>> = band
-                .par_iter()
-                .map_init(Scratch::default, |scratch, corners| {
-                    self.prepare(corners.row, wanted, scratch);
-                    let mut bytes = Vec::with_capacity(40 * corners.len());
-                    corners.each(|column| emit(&self.corner(column, corners.row, scratch), &mut bytes));
-                    bytes
-                })
-                .collect();
+            let mut made = vec![Vec::new(); band.len()];
+            parallel::for_each_init(band.iter().zip(&mut made), Scratch::default, |scratch, (corners, bytes)| {
+                self.prepare(corners.row, wanted, scratch);
+                *bytes = Vec::with_capacity(40 * corners.len());
+                corners.each(|column| emit(&self.corner(column, corners.row, scratch), bytes));
+            });
             made.iter().try_for_each(|bytes| out.write_all(bytes))?;
         }
         Ok(())
@@ -96,14 +93,11 @@ impl Surface<'_> {
         let advance = |pieces: usize| self.progress.iter().for_each(|progress| progress.advance(pieces as f64));
         self.progress.iter().for_each(|progress| progress.expect(pieces.len() as f64));
         for band in pieces.chunks((BAND / each.max(1)).clamp(8, 256)) {
-            let made: Vec<Vec<u8>> = band
-                .par_iter()
-                .map(|&piece| {
-                    let mut bytes = Vec::new();
-                    self.shape.piece(self.grid, piece, |triangle| emit(triangle, &mut bytes));
-                    bytes
-                })
-                .collect();
+            let made: Vec<Vec<u8>> = parallel::map(band, |&piece| {
+                let mut bytes = Vec::new();
+                self.shape.piece(self.grid, piece, |triangle| emit(triangle, &mut bytes));
+                bytes
+            });
             made.iter().try_for_each(|bytes| out.write_all(bytes))?;
             advance(band.len());
         }
@@ -126,7 +120,7 @@ impl Surface<'_> {
             });
             bounds
         };
-        rows.par_iter().map(of_row).reduce(|| none, join)
+        parallel::map(&rows, of_row).into_iter().fold(none, join)
     }
 
     /// East, height and south of a sample, in metres.
@@ -163,7 +157,7 @@ impl Surface<'_> {
     pub(super) fn normals(&self) -> Vec<[f32; 3]> {
         let (width, cell) = (self.grid.width(), self.grid.window().cell);
         let mut normals = vec![[0.0; 3]; width * self.grid.height()];
-        normals.par_chunks_exact_mut(width).enumerate().for_each_init(Vec::new, |wide, (row, out)| {
+        parallel::for_each_init(normals.chunks_exact_mut(width).enumerate(), Vec::new, |wide, (row, out)| {
             let rows = self.halo.rows(self.grid, row, wide);
             gradients_between(rows, cell, |i, gradient| out[i] = self.normal(gradient));
         });

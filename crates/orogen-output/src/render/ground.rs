@@ -1,6 +1,6 @@
 //! Appearance of the ground: rock, scree, grass, forest, snow and sand by slope, height and aspect.
 
-use rayon::prelude::*;
+use orogen_grid::parallel;
 
 use super::albedo::{
     BEDS, CLAY, DESERT_WAVES, FARMLAND, GRAVEL, LUSH, NATURAL_WAVES, OCTAVES, ROCK, SAND, SCREE, SCRUB, SHORE, SNOW,
@@ -362,7 +362,7 @@ fn mix(from: Light, to: Light, share: f32) -> Light {
 
 /// Whether each sample has no finite height; empty if all have one.
 fn missing(heights: &Grid) -> Vec<bool> {
-    match heights.data().par_iter().all(|height| height.is_finite()) {
+    match heights.data().iter().all(|height| height.is_finite()) {
         true => Vec::new(),
         false => heights.data().iter().map(|height| !height.is_finite()).collect(),
     }
@@ -382,27 +382,24 @@ fn shape(land: &Land, relief: &Relief) -> Vec<[f32; 4]> {
     let (bed, scale) = (relief.bed(), 1.0 / relief.exaggeration() as f32);
     let flows = land.flow.map(Grid::data);
     let area = (relief.cell() * relief.cell()) as f32;
-    (0..rows * columns)
-        .into_par_iter()
-        .map(|at| {
-            let (i, j) = (at % columns, at / columns);
-            let (west, east) = (i.saturating_sub(1), (i + 1).min(columns - 1));
-            let (north, south) = (j.saturating_sub(1), (j + 1).min(rows - 1));
-            let z = |i: usize, j: usize| bed[j * columns + i] * scale;
-            let dx = (z(east, j) - z(west, j)) / (east - west) as f32;
-            let dy = (z(i, south) - z(i, north)) / (south - north) as f32;
-            // Over three cells along each axis: single samples would give spots.
-            let (w, e) = (i.saturating_sub(3), (i + 3).min(columns - 1));
-            let (n, s) = (j.saturating_sub(3), (j + 3).min(rows - 1));
-            let around = (z(w, j) + z(e, j) + z(i, n) + z(i, s)) * 0.25 - z(i, j);
-            let flow = flows.map_or(0.0, |flows| {
-                let cells = (flows[at] / area).max(1.0);
-                // 1 cell gives 0, a hundred thousand cells give 1.
-                if cells.is_finite() { (libm::log2f(cells) / 16.6).min(1.0) } else { 0.0 }
-            });
-            [dx, dy, (around * 0.8).clamp(-1.0, 1.0), flow]
-        })
-        .collect()
+    parallel::samples(rows * columns, |at| {
+        let (i, j) = (at % columns, at / columns);
+        let (west, east) = (i.saturating_sub(1), (i + 1).min(columns - 1));
+        let (north, south) = (j.saturating_sub(1), (j + 1).min(rows - 1));
+        let z = |i: usize, j: usize| bed[j * columns + i] * scale;
+        let dx = (z(east, j) - z(west, j)) / (east - west) as f32;
+        let dy = (z(i, south) - z(i, north)) / (south - north) as f32;
+        // Over three cells along each axis: single samples would give spots.
+        let (w, e) = (i.saturating_sub(3), (i + 3).min(columns - 1));
+        let (n, s) = (j.saturating_sub(3), (j + 3).min(rows - 1));
+        let around = (z(w, j) + z(e, j) + z(i, n) + z(i, s)) * 0.25 - z(i, j);
+        let flow = flows.map_or(0.0, |flows| {
+            let cells = (flows[at] / area).max(1.0);
+            // 1 cell gives 0, a hundred thousand cells give 1.
+            if cells.is_finite() { (libm::log2f(cells) / 16.6).min(1.0) } else { 0.0 }
+        });
+        [dx, dy, (around * 0.8).clamp(-1.0, 1.0), flow]
+    })
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The land as rays intersect it: bilinear patches between samples, water over some of them, and a pyramid of maxima.
 
-use rayon::prelude::*;
+use orogen_grid::parallel;
 
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Grid;
@@ -90,7 +90,7 @@ impl Relief {
         };
         relief.sea = land.sea_level.map(|level| relief.level_of(level));
         relief.flood(&heights, land);
-        relief.bed = heights.par_iter().map(|&height| relief.level_of(f64::from(height)) as f32).collect();
+        relief.bed = parallel::samples(heights.len(), |at| relief.level_of(f64::from(heights[at])) as f32);
         relief.pile();
         Ok(relief)
     }
@@ -109,41 +109,29 @@ impl Relief {
                 None => sea.filter(|sea| height <= *sea).unwrap_or(DRY),
             }
         };
-        let levels: Vec<f32> = (0..heights.len()).into_par_iter().map(level).collect();
-        if levels.par_iter().all(|level| *level == DRY) {
+        let levels = parallel::samples(heights.len(), level);
+        if levels.iter().all(|level| *level == DRY) {
             return;
         }
         let (columns, rows) = (self.columns, self.rows);
         let this = &*self;
-        self.water = (0..rows - 1)
-            .into_par_iter()
-            .flat_map_iter(|j| {
-                let levels = &levels;
-                (0..columns - 1).map(move |i| {
-                    let at = j * columns + i;
-                    let corners = [levels[at], levels[at + 1], levels[at + columns], levels[at + columns + 1]];
-                    match corners.into_iter().fold(DRY, f32::max) {
-                        DRY => DRY,
-                        level => this.level_of(f64::from(level)) as f32,
-                    }
-                })
-            })
-            .collect();
+        self.water = of_patches([columns, rows], |i, j| {
+            let at = j * columns + i;
+            let corners = [levels[at], levels[at + 1], levels[at + columns], levels[at + columns + 1]];
+            match corners.into_iter().fold(DRY, f32::max) {
+                DRY => DRY,
+                level => this.level_of(f64::from(level)) as f32,
+            }
+        });
     }
 
     /// Builds the pyramid.
     fn pile(&mut self) {
         let (columns, rows) = (self.columns - 1, self.rows - 1);
-        let this = &*self;
-        let highest = (0..rows)
-            .into_par_iter()
-            .flat_map_iter(|j| {
-                (0..columns).map(move |i| {
-                    let corners = this.corners(i, j).into_iter().fold(f32::NEG_INFINITY, f32::max);
-                    corners.max(this.water_of(i, j))
-                })
-            })
-            .collect();
+        let highest = of_patches([self.columns, self.rows], |i, j| {
+            let corners = self.corners(i, j).into_iter().fold(f32::NEG_INFINITY, f32::max);
+            corners.max(self.water_of(i, j))
+        });
         let mut tops = vec![Tops { columns, highest }];
         let (mut columns, mut rows) = (columns, rows);
         while let Some(below) = tops.last().filter(|_| columns > 1 || rows > 1) {
@@ -265,6 +253,15 @@ impl Relief {
         let ([i, j], _) = self.patch(x, y);
         self.ground(x, y).max(f64::from(self.water_of(i, j)))
     }
+}
+
+/// The values of `of` for each patch between columns and rows of samples.
+fn of_patches([columns, rows]: [usize; 2], of: impl Fn(usize, usize) -> f32 + Sync) -> Vec<f32> {
+    let mut patches = vec![0.0; (columns - 1) * (rows - 1)];
+    parallel::for_each(patches.chunks_mut((columns - 1).max(1)).enumerate(), |(j, row)| {
+        row.iter_mut().enumerate().for_each(|(i, patch)| *patch = of(i, j));
+    });
+    patches
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The land with its light, prepared for rendering.
 
-use rayon::prelude::*;
+use orogen_grid::parallel;
 
 use super::camera::{Camera, CameraSpec, Frame, folded};
 pub use super::ground::Colors;
@@ -241,7 +241,7 @@ impl Scene {
         let [width, height] = size;
         let pixel = camera.pixel(width);
         progress.expect(rows.len() as f64);
-        bytes.par_chunks_exact_mut(3 * width).zip(rows).try_for_each(|(bytes, j)| {
+        parallel::try_for_each(bytes.chunks_exact_mut(3 * width).zip(rows), |(bytes, j)| {
             progress.check()?;
             for (i, bytes) in bytes.chunks_exact_mut(3).enumerate() {
                 let mut sum = [0.0f32; 3];

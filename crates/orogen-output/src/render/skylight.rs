@@ -6,7 +6,7 @@
 //! horizon on the sample's slope is read from a table of sums, so there is neither noise nor a radius that limits the
 //! shade of mountains.
 
-use rayon::prelude::*;
+use orogen_grid::parallel;
 
 use super::relief::Relief;
 use super::sky::Sky;
@@ -105,10 +105,9 @@ impl SkylightInput {
         let [all_columns, all_rows] = relief.samples();
         let stride = all_columns.max(all_rows).div_ceil(MOST);
         let (columns, rows) = (all_columns.div_ceil(stride), all_rows.div_ceil(stride));
-        let bed: Vec<f32> = (0..rows * columns)
-            .into_par_iter()
-            .map(|at| relief.bed()[at / columns * stride * all_columns + at % columns * stride] / stride as f32)
-            .collect();
+        let bed = parallel::samples(rows * columns, |at| {
+            relief.bed()[at / columns * stride * all_columns + at % columns * stride] / stride as f32
+        });
         let turned = transposed(&bed, columns);
         let direction = |k: usize| {
             // Between the axes, with which ridges on grids often align.
@@ -137,7 +136,10 @@ impl SkylightInput {
             progress.advance(1.0);
         }
         let back = transposed(&shed_turned, rows);
-        shed.par_iter_mut().zip(back).for_each(|(shed, more)| shed.iter_mut().zip(more).for_each(|(s, m)| *s += m));
+        let pieces = shed.chunks_mut(parallel::SAMPLES).zip(back.chunks(parallel::SAMPLES));
+        parallel::for_each(pieces, |(shed, more)| {
+            shed.as_flattened_mut().iter_mut().zip(more.as_flattened()).for_each(|(s, m)| *s += m);
+        });
         Ok(shed)
     }
 }
@@ -256,12 +258,11 @@ impl Sweep<'_> {
         let first = (-drift.max(0.0)) as i64 - 1;
         let count = lines + drift.abs() as usize + 3;
         let mut horizons = vec![0.0f32; count * length];
-        horizons
-            .par_chunks_exact_mut(length)
-            .enumerate()
-            .for_each_init(Vec::new, |hull, (line, out)| self.horizon(first + line as i64, hull, out));
+        parallel::for_each_init(horizons.chunks_exact_mut(length).enumerate(), Vec::new, |hull, (line, out)| {
+            self.horizon(first + line as i64, hull, out);
+        });
         let [along, across] = self.towards.map(|part| part as f32);
-        shed.par_chunks_exact_mut(length).enumerate().for_each(|(j, shed)| {
+        parallel::for_each(shed.chunks_exact_mut(length).enumerate(), |(j, shed)| {
             let (above, below) = (j.saturating_sub(1), (j + 1).min(lines - 1));
             let rows = (below - above).max(1) as f32;
             for (i, shed) in shed.iter_mut().enumerate() {

@@ -1,7 +1,7 @@
 //! Resampling of a sheet's heights to the resolution of the page.
 
+use orogen_grid::parallel;
 use orogen_noise::Points;
-use rayon::prelude::*;
 
 use orogen_engine::layer::LayerKind;
 use orogen_grid::grid::{Grid, Window};
@@ -38,7 +38,7 @@ fn read(heights: &Grid, xs: &[f64], ys: &[f64]) -> Grid {
     if across.max(down) <= 1.0 {
         let own = Grid::from_data(Window::new(source.width, source.height, 1.0), heights.data().to_vec());
         if let Some(own) = own {
-            out.data_mut().par_chunks_mut(xs.len()).zip(ys).for_each(|(row, y)| {
+            parallel::for_each(out.data_mut().chunks_mut(xs.len()).zip(ys), |(row, y)| {
                 resample::read(&own, LayerKind::Height, &Points::Lattice { xs, ys: &[*y] }, row);
                 let j = (y.round() as usize).min(source.height - 1);
                 for (height, x) in row.iter_mut().zip(xs) {
@@ -58,7 +58,7 @@ fn read(heights: &Grid, xs: &[f64], ys: &[f64]) -> Grid {
         from.min(count - 1)..(to + 1).clamp(1, count)
     };
     let columns: Vec<std::ops::Range<usize>> = xs.iter().map(|x| around(*x, across, source.width)).collect();
-    out.data_mut().par_chunks_mut(xs.len()).zip(ys).for_each(|(row, y)| {
+    parallel::for_each(out.data_mut().chunks_mut(xs.len()).zip(ys), |(row, y)| {
         // Columns first, then rows.
         let rows = around(*y, down, source.height);
         let (mut sums, mut counts) = (vec![0.0f32; source.width], vec![0.0f32; source.width]);

@@ -1,7 +1,7 @@
 //! Colours of a layer other than height: along a linear or a logarithmic ramp, or one colour per number.
 
+use orogen_grid::parallel;
 use orogen_noise::Points;
-use rayon::prelude::*;
 
 use super::furniture::{Align, Desk, SMALL};
 use super::geometry::{Point, Rect};
@@ -110,7 +110,7 @@ impl Ramp {
         };
         let (xs, ys) = (at(pixels[0], window.width), at(pixels[1], window.height));
         if let Some(own) = own {
-            out.data_mut().par_chunks_mut(pixels[0]).zip(&ys).for_each(|(row, y)| {
+            parallel::for_each(out.data_mut().chunks_mut(pixels[0]).zip(&ys), |(row, y)| {
                 resample::read(&own, LayerKind::Label, &Points::Lattice { xs: &xs, ys: &[*y] }, row);
             });
         }

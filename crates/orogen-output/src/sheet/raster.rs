@@ -1,6 +1,6 @@
 //! Rasterisation of a sheet.
 
-use rayon::prelude::*;
+use orogen_grid::parallel;
 
 use super::geometry::{Point, Rect};
 use super::scene::{Item, Scene, Step};
@@ -22,15 +22,12 @@ pub fn draw(scene: &Scene, dpi: f64) -> Canvas {
     let scale = (dpi / 25.4) as f32;
     let [width, height] = pixels(scene, dpi);
     let shapes: Vec<Shape> = scene.items.iter().map(|item| Shape::of(item, scale)).collect();
-    let bands: Vec<Vec<Rgb>> = (0..height.div_ceil(BAND))
-        .into_par_iter()
-        .map(|k| {
-            let top = k * BAND;
-            let mut band = Band { top, width, rows: vec![[255; 3]; width * BAND.min(height - top)], cover: Vec::new() };
-            shapes.iter().for_each(|shape| band.draw(shape));
-            band.rows
-        })
-        .collect();
+    let bands: Vec<Vec<Rgb>> = parallel::map(0..height.div_ceil(BAND), |k| {
+        let top = k * BAND;
+        let mut band = Band { top, width, rows: vec![[255; 3]; width * BAND.min(height - top)], cover: Vec::new() };
+        shapes.iter().for_each(|shape| band.draw(shape));
+        band.rows
+    });
     Canvas::of(width, height, bands.concat())
 }
 

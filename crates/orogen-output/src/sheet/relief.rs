@@ -1,6 +1,6 @@
 //! The relief picture of a sheet: tint and shading.
 
-use rayon::prelude::*;
+use orogen_grid::parallel;
 
 use super::ground::{at_pixels, laid};
 use super::options::Shading;
@@ -72,7 +72,7 @@ pub fn paint(
     let wide = extended(&grid);
     let cell = grid.window().cell;
     let mut bytes = vec![0u8; 3 * width * height];
-    bytes.par_chunks_exact_mut(3 * width).enumerate().for_each(|(j, out)| {
+    parallel::for_each(bytes.chunks_exact_mut(3 * width).enumerate(), |(j, out)| {
         let rows = |grid: &'_ Grid| -> [Vec<f32>; 3] { [0, 1, 2].map(|k| grid.row(j + k).to_vec()) };
         let mut softly: Vec<Gradient> = Vec::new();
         if let Some(soft) = &soft {

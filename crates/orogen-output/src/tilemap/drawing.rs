@@ -10,11 +10,11 @@ use orogen_grid::autotile::drawable::{Drawable, Gap};
 use orogen_grid::autotile::mask::Layout;
 use orogen_grid::error::{Error, Result};
 use orogen_grid::grid::Window;
+use orogen_grid::parallel;
 use orogen_grid::progress::Progress;
 use orogen_io::file;
 use orogen_io::records::{Record, Recorder, Records};
 use orogen_io::spool::Spool;
-use rayon::prelude::*;
 
 use super::map::TileLayer;
 use super::tileset::{Tileset, parts};
@@ -220,7 +220,7 @@ impl<'a> Drawing<'a> {
             }
             layer.tiles.push(&own)
         };
-        let added: io::Result<()> = self.layers.par_iter_mut().zip(tiles).map(add).collect();
+        let added = parallel::try_for_each(self.layers.iter_mut().zip(tiles), add);
         added.map_err(|cause| self.stores.failed(&cause))
     }
 

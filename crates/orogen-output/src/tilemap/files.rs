@@ -3,7 +3,7 @@
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
-use rayon::prelude::*;
+use orogen_grid::parallel;
 
 use super::job::TilemapJob;
 use super::map::Tilemap;
@@ -88,7 +88,7 @@ fn write(map: &Tilemap, outputs: &[Output], progress: &Progress) -> Result<()> {
             false => file::stage(output, |out| write_file(map, name, &json, &mut Stopping { out, progress })).map(Some),
         }
     };
-    let staged: Vec<Result<Option<Staged>>> = NAMES.par_iter().zip(outputs).map(stage).collect();
+    let staged: Vec<Result<Option<Staged>>> = parallel::map(NAMES.iter().zip(outputs), stage);
     let staged: Vec<Option<Staged>> = staged.into_iter().collect::<Result<_>>()?;
     file::commit(staged.into_iter().flatten().collect())
 }

@@ -3,9 +3,9 @@
 use std::io::{self, Write};
 use std::sync::Arc;
 
+use orogen_grid::parallel;
 use orogen_io::format::png::{self, Picture, Pixel};
 use orogen_io::records::Reader;
-use rayon::prelude::*;
 
 use super::map::Tilemap;
 use super::tileset::{Fit, Rgba, Tile, Tileset, shown};
@@ -65,7 +65,7 @@ impl Tilemap {
                     lines.push((y * by % size, line));
                     tiles.push(tile_rows.row(y * by / size)?);
                 }
-                lines.into_par_iter().zip(&tiles).for_each(|((y, line), layers)| {
+                parallel::for_each(lines.into_iter().zip(&tiles), |((y, line), layers)| {
                     for layer in layers.iter() {
                         for (tile, place) in layer.iter().step_by(step).zip(line.chunks_exact_mut(side * depth)) {
                             let Some(tile) = shown(*tile) else { continue };
@@ -101,14 +101,12 @@ impl<'m> TileRows<'m> {
         if row >= self.next {
             let skipped = ((row - self.next) * self.map.width) as u64;
             self.next = row + 1;
-            let layers: Vec<Vec<u32>> = (self.readers.par_iter_mut())
-                .map(|reader| {
-                    let mut tiles = Vec::new();
-                    reader.skip(skipped)?;
-                    reader.read(self.map.width, &mut tiles)?;
-                    Ok(tiles)
-                })
-                .collect::<io::Result<_>>()?;
+            let layers = parallel::try_map(&mut self.readers, |reader| -> io::Result<Vec<u32>> {
+                let mut tiles = Vec::new();
+                reader.skip(skipped)?;
+                reader.read(self.map.width, &mut tiles)?;
+                Ok(tiles)
+            })?;
             self.row = Arc::new(layers);
         }
         Ok(self.row.clone())

@@ -1,6 +1,6 @@
 //! Overviews: half the samples along each side, each the mean over its own area.
 
-use rayon::prelude::*;
+use orogen_grid::parallel;
 
 /// Number of samples along a side of an overview, for a side of `n` samples.
 #[must_use]
@@ -60,7 +60,7 @@ pub struct Below<'a> {
 #[must_use]
 pub fn reduce(below: &Below, columns: &[Span], made: usize, until: usize, missing: Option<f32>) -> Vec<f32> {
     let mut out = vec![0.0; columns.len() * (until - made)];
-    out.par_chunks_exact_mut(columns.len()).enumerate().for_each(|(j, row)| {
+    parallel::for_each(out.chunks_exact_mut(columns.len()).enumerate(), |(j, row)| {
         let span = Span::of(made + j, below.height);
         // Rows and columns beyond the raster have no share; the last one is used in their place.
         let rows: [&[f32]; 3] = std::array::from_fn(|k| {

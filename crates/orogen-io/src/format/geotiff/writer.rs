@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use rayon::prelude::*;
+use orogen_grid::parallel;
 
 use super::options::Options;
 use super::overview::{Below, Span, half, reduce};
@@ -149,7 +149,7 @@ impl Level {
             return Some(self.height);
         }
         let across = self.width.div_ceil(tile);
-        let enough = (2 * rayon::current_num_threads()).div_ceil(across) * tile;
+        let enough = (2 * parallel::threads()).div_ceil(across) * tile;
         let whole = (arrived - self.packed) / tile * tile;
         (whole >= enough).then_some(self.packed + whole)
     }
@@ -161,13 +161,10 @@ impl Level {
         let rows = &self.rows[begin..(until - self.first) * self.width];
         let tiles = (until - self.packed).div_ceil(tile) * across;
         let band = tile * self.width;
-        let packed = (0..tiles)
-            .into_par_iter()
-            .map(|n| {
-                let start = n / across * band;
-                pack(&rows[start..rows.len().min(start + band)], self.width, n % across, tile)
-            })
-            .collect();
+        let packed = parallel::map(0..tiles, |n| {
+            let start = n / across * band;
+            pack(&rows[start..rows.len().min(start + band)], self.width, n % across, tile)
+        });
         self.packed = until;
         packed
     }

@@ -1,6 +1,6 @@
 //! Computation of a derived layer in bands of rows; only the rows of the current halo are held.
 
-use rayon::prelude::*;
+use orogen_grid::parallel;
 
 use super::layer::{Around, RowLayer};
 use orogen_engine::bands::Bands;
@@ -100,7 +100,7 @@ impl<'w> Rows<'w> {
             .collect();
         let derived = self.derived;
         let made: Vec<Vec<Grid>> =
-            self.world.install(|| strips.par_iter().map(|strip| (derived.make)(&around, strip)).collect());
+            self.world.install(|| parallel::map(&strips, |strip| (derived.make)(&around, strip)));
         let mut out = vec![Grid::filled(band, 0.0); self.channels];
         for strip in made {
             out.iter_mut().zip(&strip).for_each(|(out, strip)| out.paste(strip));

@@ -1,0 +1,248 @@
+//! Loops whose items are shared out to threads: those of the rayon pool that the caller runs in, otherwise of the global one.
+//!
+//! Tasks take items from a sequential iterator, in batches that become smaller towards the end. The only call of rayon is in a function that is not
+//! generic, so a loop takes little time to compile. With one thread, all items are done in order on the calling thread.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Samples of a piece of work on single samples.
+pub const SAMPLES: usize = 1 << 14;
+
+/// Number of threads that share the work of a loop.
+#[must_use]
+pub fn threads() -> usize {
+    rayon::current_num_threads()
+}
+
+/// Does the work of each item once.
+pub fn for_each<I>(items: I, work: impl Fn(I::Item) + Sync)
+where
+    I: IntoIterator<Item: Send, IntoIter: Send>,
+{
+    for_each_init(items, || (), |(), item| work(item));
+}
+
+/// [`for_each`] with a value of `init` for each task, which its items use one after the other.
+pub fn for_each_init<I, S>(items: I, init: impl Fn() -> S + Sync, work: impl Fn(&mut S, I::Item) + Sync)
+where
+    I: IntoIterator<Item: Send, IntoIter: Send>,
+{
+    let mut items = items.into_iter();
+    share(items.size_hint(), &NO_END, &mut || items.next(), &|next| {
+        let mut scratch = init();
+        while let Some((_, item)) = next() {
+            work(&mut scratch, item);
+        }
+    });
+}
+
+/// Does the work of each item once, as far as it succeeds: items before the first failure are done in any case, later
+/// ones are not begun once it is known.
+///
+/// # Errors
+/// The error of the first item that fails, whatever the threads do.
+pub fn try_for_each<I, E: Send>(items: I, work: impl Fn(I::Item) -> Result<(), E> + Sync) -> Result<(), E>
+where
+    I: IntoIterator<Item: Send, IntoIter: Send>,
+{
+    try_for_each_init(items, || (), |(), item| work(item))
+}
+
+/// [`try_for_each`] with a value of `init` for each task, which its items use one after the other.
+///
+/// # Errors
+/// The error of the first item that fails, whatever the threads do.
+pub fn try_for_each_init<I, S, E: Send>(
+    items: I,
+    init: impl Fn() -> S + Sync,
+    work: impl Fn(&mut S, I::Item) -> Result<(), E> + Sync,
+) -> Result<(), E>
+where
+    I: IntoIterator<Item: Send, IntoIter: Send>,
+{
+    let mut items = items.into_iter();
+    let first = FirstError::none();
+    share(items.size_hint(), &first.index, &mut || items.next(), &|next| {
+        let mut scratch = init();
+        while let Some((index, item)) = next() {
+            if let Err(error) = work(&mut scratch, item) {
+                first.or(index, error);
+            }
+        }
+    });
+    first.result()
+}
+
+/// The results of all items, in their order.
+pub fn map<I, R: Send>(items: I, work: impl Fn(I::Item) -> R + Sync) -> Vec<R>
+where
+    I: IntoIterator<Item: Send, IntoIter: ExactSizeIterator + Send>,
+{
+    let items = items.into_iter();
+    let mut results = slots(items.len());
+    for_each(items.zip(&mut results), |(item, result)| *result = Some(work(item)));
+    filled(results)
+}
+
+/// The results of all items, in their order, as far as the work succeeds (see [`try_for_each`]).
+///
+/// # Errors
+/// The error of the first item that fails, whatever the threads do.
+pub fn try_map<I, R: Send, E: Send>(items: I, work: impl Fn(I::Item) -> Result<R, E> + Sync) -> Result<Vec<R>, E>
+where
+    I: IntoIterator<Item: Send, IntoIter: ExactSizeIterator + Send>,
+{
+    let items = items.into_iter();
+    let mut results = slots(items.len());
+    try_for_each(items.zip(&mut results), |(item, result)| {
+        *result = Some(work(item)?);
+        Ok(())
+    })?;
+    Ok(filled(results))
+}
+
+/// The values of `of` at 0 .. `count`, computed in pieces of [`SAMPLES`].
+pub fn samples<R: Copy + Default + Send>(count: usize, of: impl Fn(usize) -> R + Sync) -> Vec<R> {
+    let mut samples = vec![R::default(); count];
+    for_each(samples.chunks_mut(SAMPLES).enumerate(), |(piece, samples)| {
+        (piece * SAMPLES..).zip(samples).for_each(|(at, sample)| *sample = of(at));
+    });
+    samples
+}
+
+/// Places for results.
+fn slots<R>(count: usize) -> Vec<Option<R>> {
+    let mut slots = Vec::new();
+    slots.resize_with(count, || None);
+    slots
+}
+
+/// The results in their places.
+fn filled<R>(slots: Vec<Option<R>>) -> Vec<R> {
+    let mut results = Vec::with_capacity(slots.len());
+    for result in slots.into_iter().flatten() {
+        results.push(result);
+    }
+    results
+}
+
+/// The error of the first item that has failed.
+struct FirstError<E> {
+    /// The index of the item.
+    index: AtomicUsize,
+    error: Mutex<Option<E>>,
+}
+
+impl<E> FirstError<E> {
+    fn none() -> FirstError<E> {
+        FirstError { index: AtomicUsize::new(usize::MAX), error: Mutex::new(None) }
+    }
+
+    /// Keeps the error of item `index` if it is the first.
+    fn or(&self, index: usize, error: E) {
+        let mut kept = lock(&self.error);
+        if self.index.fetch_min(index, Ordering::Relaxed) > index {
+            *kept = Some(error);
+        }
+    }
+
+    fn result(self) -> Result<(), E> {
+        self.error.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
+    }
+}
+
+/// The index at which a loop without errors ends.
+static NO_END: AtomicUsize = AtomicUsize::new(usize::MAX);
+
+/// A task of a loop: calls its argument for items, with their indices, until there are none. It is called only if there is an item.
+type Task<'a, T> = &'a (dyn Fn(&mut dyn FnMut() -> Option<(usize, T)>) + Sync);
+
+/// Runs `task` on as many threads as have time for it, and hands out to them all items of `next` whose index is below `end`.
+/// There are `least` to `most` items.
+fn share<T: Send>(
+    (least, most): (usize, Option<usize>),
+    end: &AtomicUsize,
+    next: &mut (dyn FnMut() -> Option<T> + Send),
+    task: Task<'_, T>,
+) {
+    let most = most.unwrap_or(usize::MAX);
+    let tasks = if most <= 1 { most } else { threads().min(most) };
+    let items = Mutex::new(Items { next: Some(next), taken: 0, left: least });
+    on_threads(tasks, &|| {
+        let Batch { first, items: mut batch } = lock(&items).batch(tasks);
+        let mut index = first;
+        if batch.len() > 0 {
+            task(&mut || {
+                if batch.len() == 0 {
+                    Batch { first: index, items: batch } = lock(&items).batch(tasks);
+                }
+                let this = index;
+                index += 1;
+                if this < end.load(Ordering::Relaxed) { batch.next().map(|item| (this, item)) } else { None }
+            });
+        }
+    });
+}
+
+/// Most items of a batch: locks are rare enough, and of items that take very different times no task takes all the long ones.
+const LARGEST: usize = 16;
+
+/// Items that follow each other.
+struct Batch<T> {
+    /// The index of the first of them.
+    first: usize,
+    /// Those that are not done.
+    items: std::vec::IntoIter<T>,
+}
+
+/// Items that no task has taken.
+struct Items<'a, T> {
+    /// The next of them, until there is none.
+    next: Option<&'a mut (dyn FnMut() -> Option<T> + Send)>,
+    /// Number of items before it.
+    taken: usize,
+    /// Number of items from it on, at least.
+    left: usize,
+}
+
+impl<T> Items<'_, T> {
+    /// Takes the next items: many while many are left, so that tasks rarely wait for each other, and in the end one by one, so that all
+    /// tasks end at about the same time.
+    fn batch(&mut self, tasks: usize) -> Batch<T> {
+        let count = (self.left / (4 * tasks)).clamp(1, LARGEST);
+        let mut batch = Vec::with_capacity(count);
+        while batch.len() < count
+            && let Some(next) = &mut self.next
+        {
+            match next() {
+                Some(item) => batch.push(item),
+                None => self.next = None,
+            }
+        }
+        let first = self.taken;
+        self.taken += batch.len();
+        self.left = self.left.saturating_sub(batch.len());
+        Batch { first, items: batch.into_iter() }
+    }
+}
+
+/// Calls `work` on at most `tasks` threads, as many as have time for it before it is done; returns when all calls have returned.
+fn on_threads(tasks: usize, work: &(dyn Fn() + Sync)) {
+    match tasks {
+        0 => {}
+        1 => work(),
+        _ => {
+            let half = tasks / 2;
+            rayon::join(|| on_threads(tasks - half, work), || on_threads(half, work));
+        }
+    }
+}
+
+/// Locks a value that no panic leaves half changed.
+fn lock<T>(value: &Mutex<T>) -> MutexGuard<'_, T> {
+    value.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+mod tests;
