@@ -7,13 +7,10 @@ use crate::shell::{cargo, run as sh};
 pub const PACKAGES: &str = "--package orogen-gpu --package orogen-studio --package orogen-cli \
     --features orogen-studio/kittest,orogen-cli/gpu";
 
-/// The tests of orogen-gpu.
-const TESTS: &str = "--test job --test noise --test programs --test filters --test realism --test derived --test levels --test level_layers --test solvers --test render";
-
 /// Compares fields, filters, solvers, presets and pictures with those of the processor, and runs commands without any card.
 pub fn check() -> Result {
     lint()?;
-    sh(&mut cargo(&format!("test {PACKAGES} {TESTS}")))?;
+    sh(&mut cargo(&format!("test {PACKAGES} --test suite")))?;
     sh(&mut cargo(&format!("build --quiet {PACKAGES} --bins")))?;
     super::script("gpu")
 }
