@@ -1,6 +1,6 @@
 //! Water of a recipe on a mosaic of tiles that are made apart. Prints a table; fails if a target is missed.
 
-#[path = "../../crates/orogen/tests/support/water/mod.rs"]
+#[path = "../../crates/orogen/tests/suite/support/water/mod.rs"]
 #[allow(dead_code, reason = "the tests use the rest")]
 mod support;
 

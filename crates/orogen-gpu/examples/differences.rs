@@ -4,7 +4,7 @@
 //! cargo run --release -p orogen-gpu --example differences
 //! ```
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/suite/common/mod.rs"]
 mod common;
 
 use common::{compare, gpu, session};

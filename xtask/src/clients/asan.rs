@@ -7,7 +7,7 @@ use crate::shell;
 /// Every level, every entry point, odd positions and parameters, empty and single samples.
 const TESTS: [&str; 2] = [
     "test --quiet --package orogen-simd --lib",
-    "test --quiet --package orogen-noise --test goldens --test odd --test ways",
+    "test --quiet --package orogen-noise --test suite -- goldens:: odd:: ways::",
 ];
 
 /// Builds the tests with the sanitizer, in their own target folder, and runs them.
@@ -28,4 +28,20 @@ pub fn check() -> Result {
         shell::run(&mut command)?;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clients::neon;
+
+    /// A filter that matches no test would be no failure.
+    #[test]
+    fn filters_of_tests_are_modules_of_the_suite() {
+        let suite = shell::root().join("crates/orogen-noise/tests/suite");
+        let words = TESTS.iter().chain(&neon::TESTS).flat_map(|test| test.split(' '));
+        let modules: Vec<&str> = words.filter_map(|word| word.strip_suffix("::")).collect();
+        assert_eq!(modules.len(), 5);
+        assert!(modules.iter().all(|module| suite.join(module).with_extension("rs").is_file()), "{modules:?}");
+    }
 }

@@ -4,12 +4,9 @@ use crate::compiled::WINDOW;
 use crate::failure::Result;
 use crate::shell::{cargo, run as sh};
 
-/// The tests of orogen-gpu.
-const TESTS: &str = "--test job --test noise --test programs --test filters --test realism --test derived --test levels --test level_layers --test solvers --test render";
-
 /// Compares fields, filters, solvers, presets and pictures with those of the processor, and runs commands without any card.
 pub fn check() -> Result {
-    sh(&mut cargo(&format!("test --quiet {WINDOW} {TESTS}")))?;
+    sh(&mut cargo(&format!("test --quiet {WINDOW} --test suite")))?;
     sh(&mut cargo(&format!("build --quiet {WINDOW} --bins")))?;
     super::script("gpu")
 }

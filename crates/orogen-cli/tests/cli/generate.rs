@@ -90,7 +90,7 @@ fn threads_and_memory_change_nothing() {
 #[test]
 fn every_preset_is_made() {
     let folder = Folder::new();
-    // Presets with river erosion take longer: tests/golden.rs of the library makes all presets.
+    // Presets with river erosion take longer: tests/suite/golden.rs of the library makes all presets.
     for name in [
         "archipelago",
         "caves",

@@ -1,6 +1,14 @@
-//! Tests of the `orogen` command: the built program, run in temporary folders.
+//! Tests of the `orogen` command: the built program, run in temporary folders, and its parsers.
 // Clippy detects test functions, but not that this whole file contains tests.
 #![allow(clippy::unwrap_used, clippy::panic)]
+
+// The parsers are no part of what the library offers, so they are compiled into the tests.
+#[allow(dead_code, reason = "the tests use a part")]
+#[path = "../../src/failure.rs"]
+mod failure;
+#[allow(dead_code, reason = "the tests use a part")]
+#[path = "../../src/values/mod.rs"]
+mod values;
 
 mod bad_places;
 mod bad_recipes;
@@ -25,6 +33,7 @@ mod others;
 mod outputs;
 mod palettes;
 mod parameters;
+mod parsers;
 mod places;
 mod progress;
 mod refine;

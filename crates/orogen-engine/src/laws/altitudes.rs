@@ -1,7 +1,8 @@
 //! The law of layers in space.
 
 use super::case::Case;
-use super::check::{FORCED, Laws};
+use super::check::Laws;
+use super::forced::at_level;
 use super::law::{Law, Verdict, Violation};
 use super::recipes::{NODE, output_of, unsoftened, world_of};
 use crate::declare::{Input, VERTICAL};
@@ -11,7 +12,6 @@ use crate::value::Value;
 use crate::volume::Volume;
 use orogen_grid::grid::{Grid, Window};
 use orogen_noise::Level;
-use std::sync::PoisonError;
 
 impl Laws<'_> {
     /// [`Law::Altitudes`], for a field that may read nodes that depend on the altitude. The op, its inputs and its mask are noises of space, as far
@@ -59,12 +59,10 @@ impl Laws<'_> {
             same("the whole and a part", &order, &case.of(other.volume(layer, &part, &few))?)?;
             let sampler = case.of(Sampler::new(&other, layer))?;
             same("the whole and a sampler", &order, &case.of(sampler.volume(&part, &few))?)?;
-            let _forced = FORCED.lock().unwrap_or_else(PoisonError::into_inner);
             let before = Level::current();
             for level in Level::available() {
-                Level::force(level).map_err(|error| case.violation(error.to_string()))?;
-                let made = other.volume(layer, &part, &altitudes);
-                Level::force(before).map_err(|error| case.violation(error.to_string()))?;
+                let made = at_level(level, || other.volume(layer, &part, &altitudes));
+                let made = made.map_err(|error| case.violation(error.to_string()))?;
                 same(&format!("{before:?} and {level:?}"), &[0, 1, 2, 3, 4], &case.of(made)?)?;
             }
         }

@@ -1,6 +1,7 @@
 //! The tests of the laws.
 
 use super::case::{Case, tiles_equal_crop};
+use super::forced::at_level;
 use super::law::{LONGEST_CANCEL, Law, Verdict, Violation};
 use super::recipes::{NODE, full, recipe_of, unsoftened, without_outputs, world_of};
 use crate::declare::Input;
@@ -14,7 +15,6 @@ use orogen_grid::error::ErrorKind;
 use orogen_grid::grid::Window;
 use orogen_grid::progress::Progress;
 use orogen_noise::Level;
-use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// The cells at which [`Laws::check`] computes tiles. None of them is exact in binary.
@@ -115,16 +115,13 @@ impl<'a> Laws<'a> {
         let window = Window::new(75, 63, CELLS[0]).at(5, 9);
         let case = self.case(Law::Levels).in_window(window);
         let recipe = (self.recipe)(world_of(CELLS[0]), false);
-        let _forced = FORCED.lock().unwrap_or_else(PoisonError::into_inner);
-        let before = Level::current();
         let made: Result<Vec<_>, Violation> = Level::available()
             .into_iter()
             .map(|level| {
-                Level::force(level).map_err(|error| case.violation(error.to_string()))?;
-                Ok((level, case.layers(&recipe, &window)?))
+                let made = at_level(level, || case.layers(&recipe, &window));
+                Ok((level, made.map_err(|error| case.violation(error.to_string()))??))
             })
             .collect();
-        Level::force(before).map_err(|error| case.violation(error.to_string()))?;
         let made = made?;
         for pair in made.windows(2) {
             for ((layer, one), other) in recipe.outputs().zip(&pair[0].1).zip(&pair[1].1) {
@@ -400,6 +397,3 @@ impl<'a> Laws<'a> {
 
 /// Samples along the sides of the world that [`Laws::check`] cancels.
 const CANCELLED_SIDE: usize = 384;
-
-/// Locked while SIMD levels are forced, because they apply to the whole process.
-pub(super) static FORCED: Mutex<()> = Mutex::new(());

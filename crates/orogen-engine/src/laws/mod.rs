@@ -25,9 +25,11 @@
 mod altitudes;
 mod case;
 mod check;
+mod forced;
 mod law;
 mod recipes;
 
 pub use check::{CELLS, Laws};
+pub use forced::at_level;
 pub use law::{LONGEST_CANCEL, Law, Verdict, Violation};
 pub use recipes::{NODE, recipe_of, world_of};

@@ -1,6 +1,6 @@
 // Numbers of the scene. Their indices in `data` are constants that stand before this text.
 //
-// The CPU twin of each of these files is the file of the same name in `orogen-output/src/render`; `tests/render.rs` compares their pictures. This file and those of
+// The CPU twin of each of these files is the file of the same name in `orogen-output/src/render`; `tests/suite/render.rs` compares their pictures. This file and those of
 // the sky, the water and tones are parts of other shaders, too, which have `word`, `triple_of` and `quad_of` of their own.
 
 const PI = 3.14159265358979;

@@ -1,4 +1,4 @@
-//! Independence of lattice points, chunks, and what is told of wrong lengths. (Statistics of what a user sees: tests/statistics.rs.)
+//! Independence of lattice points, chunks, and what is told of wrong lengths. (Statistics of what a user sees: tests/suite/statistics.rs.)
 
 use crate::{Basis, Depth, Falloff, Fractal, Kind, LengthMismatch, Perlin, Points, White};
 

@@ -1,0 +1,61 @@
+//! Solvers at a cell of their own.
+
+use orogen_engine::declare::Input;
+use orogen_engine::field::{fbm::Fbm, multiply::Multiply};
+use orogen_engine::node::Node;
+use orogen_engine::value::Value;
+use orogen_engine::{Grid, Progress, Recipe, Window, World, WorldSpec};
+
+const CELL: f64 = 10.0;
+
+/// A solver of rough land in a world with `cell`; its own cell is `own`.
+fn world_of(node: &Node, cell: f64, own: f64) -> World {
+    let mut node = node.clone();
+    let param = node.spec().params.iter().position(|param| param.name == "cell").unwrap();
+    node.set_param(param, &Value::Number(own)).unwrap();
+    node.set_input(0, "land".into());
+    let spec = WorldSpec::default().with_seed(5).with_size(Some([1200.0, 880.0])).with_cell(cell);
+    let mut recipe = Recipe::new(spec);
+    recipe.add("noise", Fbm { seed: 3, wavelength: 300.0, octaves: 4, ..Fbm::default() });
+    recipe.add("land", Multiply { a: "noise".into(), b: 200.0.into() });
+    let layers = node.layers();
+    recipe.add("node", node);
+    for layer in layers {
+        recipe.output(layer.name, Input::Node(format!("node.{}", layer.name)));
+    }
+    World::open(recipe).unwrap()
+}
+
+fn layers_of(world: &World, window: &Window) -> Vec<Grid> {
+    let layers: Vec<String> = world.recipe().outputs().map(str::to_string).collect();
+    let layers: Vec<&str> = layers.iter().map(String::as_str).collect();
+    world.grids(&layers, window, &Progress::none()).unwrap()
+}
+
+/// A solver at a cell of its own, read at its samples, is that of a world with this cell.
+#[test]
+fn a_solver_at_its_own_cell_is_that_of_a_coarser_world() {
+    let mut checked = Vec::new();
+    for node in Node::all() {
+        let is_solver = node.margin().is_some();
+        if !is_solver || !node.spec().params.iter().any(|param| param.name == "cell") {
+            continue;
+        }
+        let op = node.spec().op;
+        let window = Window::new(30, 22, 4.0 * CELL);
+        let own = layers_of(&world_of(&node, CELL, 4.0 * CELL), &window);
+        let coarse = layers_of(&world_of(&node, 4.0 * CELL, 0.0), &window);
+        for (own, coarse) in own.iter().zip(&coarse) {
+            assert_eq!(own.data(), coarse.data(), "`{op}`");
+        }
+        // Fields are the same at any cell, and so are shares of them, nearly.
+        if op != "bake" && op != "select-share" {
+            let fine = layers_of(&world_of(&node, CELL, 0.0), &window);
+            assert!(own.iter().zip(&fine).any(|(own, fine)| own.data() != fine.data()), "`{op}` ignores its cell");
+        }
+        checked.push(op);
+    }
+    let expected =
+        ["bake", "breach", "drainage", "fill", "lakes", "orographic-rain", "rivers", "select-share", "stream-power"];
+    assert_eq!(checked, expected);
+}

@@ -1,0 +1,12 @@
+//! Tests of recipes and worlds as a program uses them.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
+
+mod cells;
+mod drawings;
+mod levelled;
+mod lowering;
+mod margins;
+mod objects;
+mod previews;
+mod rain;
+mod shares;

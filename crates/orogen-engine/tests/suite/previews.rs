@@ -1,0 +1,275 @@
+//! Windows that a device computes, and what is kept of them.
+
+use orogen_engine::device::{Device, DeviceGrid, FilterExtent, LoweredProgram, PlanGrid};
+use orogen_engine::field::{fbm::Fbm, multiply::Multiply};
+use orogen_engine::filter::blur::Blur;
+use orogen_engine::filter::pipes::Pipes;
+use orogen_engine::levelled::amplify::Amplify;
+use orogen_engine::lower::{Lowering, Passes};
+use orogen_engine::op::{Context, Solution, Solver, Sources, WorldParams};
+use orogen_engine::solver::drainage::Drainage;
+use orogen_engine::solver::normalise::Normalise;
+use orogen_engine::{Grid, Options, Progress, Recipe, Result, Session, Window, WorldSpec};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+orogen_engine::op! {
+    /// Land that is solved, also by a device.
+    pub struct Solved = "test.solved", solver, revision 1;
+    inputs {
+        /// The heights.
+        source: required,
+    }
+    params {
+        /// Added to them.
+        raise: f64 = 0.0, unit "m", range -1e4 to 1e4;
+        /// Whether the device makes other land.
+        chaotic: bool = false;
+    }
+}
+
+impl Solver for Solved {
+    fn scratch(&self, padded: &Window) -> u64 {
+        4 * padded.len() as u64
+    }
+
+    fn solve(&self, sources: &dyn Sources, _: &Context) -> Result<Solution> {
+        let mut heights = sources.whole(0, sources.padded())?;
+        heights.data_mut().iter_mut().for_each(|height| *height += self.raise as f32);
+        Ok(Solution { layers: vec![sources.keep(heights)?], scalars: Vec::new() })
+    }
+
+    fn lower(&self, _: &Window, _: &[bool], _: &WorldParams) -> Lowering<Passes> {
+        let passes = Passes::new("", &[self.raise as f32]);
+        Lowering::Shader(if self.chaotic { passes.chaotic() } else { passes })
+    }
+}
+
+/// What the device adds to all that it solves and filters.
+const OFF: f32 = 1000.0;
+
+/// A device that is off by as much, so that what it made is recognised, and counts.
+#[derive(Default)]
+struct Off {
+    refuses: bool,
+    solved: AtomicUsize,
+    filtered: AtomicUsize,
+}
+
+impl Device for Off {
+    fn fill(&self, _: &LoweredProgram, _: &Window, _: &[&PlanGrid], _: &Progress) -> Result<Option<Vec<PlanGrid>>> {
+        Ok(None)
+    }
+
+    fn apply(
+        &self,
+        _: &Passes,
+        _: &[Option<&PlanGrid>],
+        extent: &FilterExtent,
+        _: &Progress,
+    ) -> Result<Option<Vec<Option<PlanGrid>>>> {
+        self.filtered.fetch_add(1, Ordering::Relaxed);
+        let layer = |wanted: &bool| wanted.then(|| Grid::filled(extent.window, OFF).into());
+        Ok((!self.refuses).then(|| extent.wanted.iter().map(layer).collect()))
+    }
+
+    fn solve(
+        &self,
+        passes: &Passes,
+        inputs: &[Option<&Grid>],
+        window: &Window,
+        _: &Progress,
+    ) -> Result<Option<Vec<Grid>>> {
+        if !passes.code.is_empty() {
+            // Built-in solvers are left to the processor.
+            return Ok(None);
+        }
+        self.solved.fetch_add(1, Ordering::Relaxed);
+        let mut heights = inputs[0].unwrap().clone();
+        assert_eq!(heights.window(), window);
+        let raise = f32::from_bits(passes.words[0]);
+        heights.data_mut().iter_mut().for_each(|height| *height += raise + OFF);
+        Ok((!self.refuses).then(|| vec![heights]))
+    }
+}
+
+const WINDOW: Window = Window { x: 3, y: 5, width: 40, height: 30, cell: 100.0 };
+
+fn recipe(chaotic: bool) -> Recipe {
+    let mut recipe = Recipe::new(WorldSpec::default().with_seed(2).with_size(Some([8000.0; 2])).with_cell(100.0));
+    recipe.add("noise", Fbm { seed: 3, wavelength: 3000.0, octaves: 4, ..Fbm::default() });
+    recipe.add("land", Multiply { a: "noise".into(), b: 200.0.into() });
+    recipe.add("solved", Solved { source: "land".into(), raise: 10.0, chaotic });
+    recipe.add("drained", Drainage { source: "solved".into(), ..Drainage::default() });
+    let refined = Amplify {
+        source: "solved".into(),
+        flow: "drained.flow".into(),
+        cell: 100.0,
+        halvings: 1,
+        ..Amplify::default()
+    };
+    recipe.add("refined", refined);
+    recipe.add("eroded", Pipes { source: "solved".into(), ..Pipes::default() });
+    recipe.add("even", Normalise { source: "land".into(), ..Normalise::default() });
+    recipe.output("height", "refined");
+    recipe
+}
+
+fn window(session: &Session, layer: &str) -> Grid {
+    session.open(recipe(false)).unwrap().window(layer, &WINDOW).unwrap()
+}
+
+const LAYERS: [&str; 5] = ["solved", "drained.flow", "refined", "eroded", "even"];
+
+fn session() -> Session {
+    Session::new(Options { threads: Some(2), ..Options::default() }).unwrap()
+}
+
+#[test]
+fn what_a_device_makes_is_never_taken_for_exact() {
+    let exact = LAYERS.map(|layer| window(&session(), layer));
+    let session = session();
+    let device = Arc::new(Off::default());
+    let preview = session.with_device(Arc::clone(&device) as Arc<dyn Device>);
+    for _ in 0..2 {
+        let made = LAYERS.map(|layer| window(&preview, layer));
+        // The land is as high as the device makes it, and what is made from it by the processor too.
+        let mut heights = made[0].data().iter().zip(exact[0].data());
+        assert!(heights.all(|(made, exact)| (made - exact - OFF).abs() < 0.01));
+        let mean = |grid: &Grid| grid.data().iter().sum::<f32>() / grid.data().len() as f32;
+        assert!((mean(&made[2]) - mean(&exact[2]) - OFF).abs() < 50.0, "{} {}", mean(&made[2]), mean(&exact[2]));
+        assert!(made[3].data().iter().all(|height| *height == OFF));
+        // What depends on nothing of the device is exact.
+        assert_eq!(made[4], exact[4]);
+    }
+    // Solutions and grids of filters are kept for later previews.
+    assert_eq!((device.solved.load(Ordering::Relaxed), device.filtered.load(Ordering::Relaxed)), (1, 1));
+    assert_eq!(session.solutions_made(), 1, "`even` alone is exact");
+    assert!(preview.kept_memory() > 0);
+    for (layer, exact) in LAYERS.iter().zip(&exact) {
+        assert_eq!(window(&preview.without_device(), layer), *exact, "{layer}");
+    }
+    assert_eq!(session.solutions_made(), 3);
+    // What is exact by now is taken for previews, too.
+    let made = window(&session.with_device(Arc::new(Off::default())), "solved");
+    assert_eq!(made, exact[0]);
+    // Points are always exact.
+    let world = preview.open(recipe(false)).unwrap();
+    assert_eq!(world.points("solved", &[1000.0], &[2000.0]).unwrap(), [exact[0][(7, 15)]]);
+}
+
+#[test]
+fn other_land_is_made_for_drafts_alone() {
+    let session = session();
+    let preview = session.with_device(Arc::new(Off::default()));
+    let window = |session: &Session, layer: &str| {
+        session.open(recipe(true)).unwrap().window(layer, &WINDOW).unwrap().data().to_vec()
+    };
+    let may_draft = |session: &Session| {
+        let world = session.open(recipe(true)).unwrap();
+        world.may_draft(&world.plan(&["eroded"], &WINDOW).unwrap()).unwrap()
+    };
+    assert!(may_draft(&preview) && !may_draft(&session));
+    let draft = window(&preview.drafting(), "solved");
+    let heights = window(&preview, "solved");
+    assert!(heights.iter().zip(&draft).all(|(height, draft)| (draft - height - OFF).abs() < 0.01));
+    assert_eq!(session.solutions_made(), 1);
+    // What is solved exactly by now needs no draft.
+    assert!(!may_draft(&preview) && window(&preview.drafting(), "solved") == heights);
+    assert_eq!(window(&session.drafting(), "solved"), heights);
+}
+
+#[test]
+fn what_a_device_refuses_is_made_by_the_processor() {
+    let device = Arc::new(Off { refuses: true, ..Off::default() });
+    let preview = session().with_device(Arc::clone(&device) as Arc<dyn Device>);
+    for layer in LAYERS {
+        assert_eq!(window(&preview, layer), window(&session(), layer), "{layer}");
+    }
+    assert!(device.solved.load(Ordering::Relaxed) > 0 && device.filtered.load(Ordering::Relaxed) > 0);
+}
+
+/// A device that filters and keeps what it has made, until it is lost.
+#[derive(Default)]
+struct Keeping {
+    is_lost: AtomicBool,
+    filtered: AtomicUsize,
+    read: AtomicUsize,
+}
+
+impl Keeping {
+    /// A grid, wherever it is.
+    fn grid<'a>(&self, grid: &'a PlanGrid) -> &'a Grid {
+        grid.memory().or_else(|| grid.on_device()?.samples::<Grid>()).unwrap()
+    }
+}
+
+impl Device for Keeping {
+    fn fill(&self, _: &LoweredProgram, _: &Window, _: &[&PlanGrid], _: &Progress) -> Result<Option<Vec<PlanGrid>>> {
+        Ok(None)
+    }
+
+    fn apply(
+        &self,
+        _: &Passes,
+        inputs: &[Option<&PlanGrid>],
+        extent: &FilterExtent,
+        _: &Progress,
+    ) -> Result<Option<Vec<Option<PlanGrid>>>> {
+        if self.is_lost.load(Ordering::Relaxed) {
+            return Ok(None);
+        }
+        self.filtered.fetch_add(1, Ordering::Relaxed);
+        let mut made = self.grid(inputs[0].unwrap()).crop(&extent.window).unwrap();
+        made.data_mut().iter_mut().for_each(|height| *height += OFF);
+        let grid = DeviceGrid::new(extent.window, made);
+        Ok(Some(extent.wanted.iter().map(|wanted| wanted.then(|| grid.clone().into())).collect()))
+    }
+
+    fn read(&self, grids: &[&DeviceGrid], _: &Progress) -> Result<Option<Vec<Grid>>> {
+        if self.is_lost.load(Ordering::Relaxed) {
+            return Ok(None);
+        }
+        self.read.fetch_add(grids.len(), Ordering::Relaxed);
+        Ok(Some(grids.iter().map(|grid| grid.samples::<Grid>().unwrap().clone()).collect()))
+    }
+}
+
+/// Two filters one after the other, and a field that reads both.
+fn filtered() -> Recipe {
+    let mut recipe = Recipe::new(WorldSpec::default().with_seed(2).with_cell(100.0));
+    recipe.add("noise", Fbm { seed: 3, wavelength: 3000.0, octaves: 4, ..Fbm::default() });
+    recipe.add("land", Multiply { a: "noise".into(), b: 200.0.into() });
+    recipe.add("soft", Blur { source: "land".into(), radius: 250.0 });
+    recipe.add("eroded", Pipes { source: "soft".into(), ..Pipes::default() });
+    recipe.add("both", Multiply { a: "soft".into(), b: "eroded".into() });
+    recipe.output("height", "both");
+    recipe
+}
+
+#[test]
+fn grids_stay_on_a_device_until_the_processor_reads_them() {
+    let device = Arc::new(Keeping::default());
+    let session = session();
+    let preview = session.with_device(Arc::clone(&device) as Arc<dyn Device>);
+    let window = |session: &Session, layer: &str| session.open(filtered()).unwrap().window(layer, &WINDOW).unwrap();
+    let count = |count: &AtomicUsize| count.swap(0, Ordering::Relaxed);
+    let land = window(&session, "land");
+    // The one between is not read.
+    let twice = window(&preview, "eroded");
+    assert!(twice.data().iter().zip(land.data()).all(|(made, land)| (made - land - 2.0 * OFF).abs() < 0.01));
+    assert_eq!((count(&device.filtered), count(&device.read)), (2, 1));
+    // It is kept on the device for a later window.
+    assert_eq!(window(&preview, "eroded"), twice);
+    assert_eq!((count(&device.filtered), count(&device.read)), (0, 1));
+    // The processor reads both for a field, and only once.
+    let both = window(&preview, "both");
+    let expect = |(both, land): (&f32, &f32)| (both / ((land + OFF) * (land + 2.0 * OFF)) - 1.0).abs() < 1e-5;
+    assert!(both.data().iter().zip(land.data()).all(expect));
+    assert_eq!(count(&device.read), 2);
+    // A device that is lost has lost what is kept on it; the processor makes it.
+    device.is_lost.store(true, Ordering::Relaxed);
+    for layer in ["eroded", "both"] {
+        assert_eq!(window(&preview, layer), window(&session, layer), "{layer}");
+    }
+}

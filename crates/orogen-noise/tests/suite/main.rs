@@ -1,0 +1,10 @@
+//! Tests of the noises as a program uses them.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
+
+mod goldens;
+mod noises;
+mod odd;
+mod paths;
+mod prepared;
+mod statistics;
+mod ways;

@@ -1,0 +1,404 @@
+//! Files of heights from other programs, intact and damaged. Source: `xtask/clients/dem_files.py`.
+
+use crate::support::Random;
+use orogen::dem::open;
+use orogen::dem::prepared::PreparedDem;
+use orogen::field::dem::{Dem as Node, Shows};
+use orogen::format::crs::keys::{self, GeoKeys};
+use orogen::format::crs::unit::Unit;
+use orogen::format::dem::{Dem, Request};
+use orogen::format::geotiff::options::Options as Layout;
+use orogen::format::geotiff::{reader, writer};
+use orogen::format::import;
+use orogen::format::sidecar::Sidecar;
+use orogen::spool::Spool;
+use orogen::test_folder::TestFolder;
+use orogen::{Budget, Options, Recipe, Window, World, WorldSpec};
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+
+fn corpus() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus/dem")
+}
+
+fn read(name: &str) -> Dem {
+    import::read(&corpus().join(name), 1 << 20).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn refused(name: &str) -> String {
+    import::read(&corpus().join(name), 1 << 20).unwrap_err().to_string()
+}
+
+/// The value that `dem_files.py` writes at column `i`, row `j`.
+fn formula(i: usize, j: usize) -> f32 {
+    30.0 + 2.0 * i as f32 - j as f32 + (i * j % 7) as f32
+}
+
+/// Compares with the formula; if `hole` is true, sample (5, 3) is a hole.
+fn same(name: &str, dem: &Dem, add: f32, within: f32, hole: bool) {
+    assert_eq!((dem.width, dem.height, dem.missing()), (37, 23, usize::from(hole)), "{name}");
+    for (k, height) in dem.heights.iter().enumerate() {
+        let (i, j) = (k % 37, k / 37);
+        if hole && (i, j) == (5, 3) {
+            assert!(height.is_nan(), "{name}");
+        } else {
+            let expect = formula(i, j) + add;
+            assert!((height - expect).abs() <= within, "{name} at ({i}, {j}): {height}, not {expect}");
+        }
+    }
+}
+
+#[test]
+fn every_kind_of_geotiff_is_read() {
+    let mut seen = 0;
+    for entry in std::fs::read_dir(corpus()).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        let kind = name.split('-').next().unwrap_or_default();
+        let add = match kind {
+            "f32" => 0.25,
+            "f64" => 0.125,
+            "i8" | "i16" | "i32" | "i64" | "u8" | "u16" | "u32" | "u64" => 0.0,
+            _ => continue,
+        };
+        let dem = read(&name);
+        same(&name, &dem, add, 0.0, true);
+        let place = dem.place.unwrap();
+        assert_eq!(
+            (place.origin, place.step, place.unit),
+            ([500015.0, 5199985.0], [30.0; 2], Unit::Metres(1.0)),
+            "{name}"
+        );
+        assert!(
+            place.keys.unwrap().directory.windows(4).any(|key| key == [3072, 0, 1, 32632]),
+            "{name}: EPSG code kept"
+        );
+        seen += 1;
+    }
+    assert_eq!(seen, 28);
+}
+
+#[test]
+fn other_formats_are_read() {
+    same("arc.asc", &read("arc.asc"), 0.25, 0.0, true);
+    let place = read("arc.asc").place.unwrap();
+    assert_eq!((place.origin, place.step), ([500015.0, 5199985.0], [30.0; 2]));
+    same("array.npy", &read("array.npy"), 0.25, 0.0, false);
+    same("floats.r32", &read("floats.r32"), 0.25, 0.0, false);
+    same("grey.png", &read("grey.png"), 0.0, 1e-3, false);
+    same("raw.r16", &read("raw.r16"), 0.0, 1e-3, false);
+    for name in ["array.npy", "floats.r32", "grey.png", "raw.r16"] {
+        assert_eq!(read(name).place.unwrap().step, [30.0; 2], "{name}");
+    }
+}
+
+#[test]
+fn a_band_of_several_is_chosen() {
+    let names = ["bands.tif", "bands-pixels-p3.tif", "bands-pixels-p2.tif", "bands-apart.tif", "bands-lerc.tif"];
+    for name in names {
+        let read = |band| import::read(&corpus().join(name), Request::new(1 << 20).with_band(band));
+        same(name, &read(Some(1)).unwrap(), 0.0, 0.0, false);
+        same(name, &read(Some(2)).unwrap(), 1000.0, 0.0, false);
+        assert_eq!(read(Some(3)).unwrap().heights[0], formula(36, 22), "{name}");
+        let why = read(None).unwrap_err().to_string();
+        assert!(why.contains("it has 3 bands") && why.contains("`band = 1`"), "{why}");
+        assert!(read(Some(4)).unwrap_err().to_string().contains("not a band 4"));
+        assert!(read(Some(0)).unwrap_err().to_string().contains("not a band 0"));
+    }
+    let why = import::read(&corpus().join("arc.asc"), Request::new(1 << 20).with_band(Some(2))).unwrap_err();
+    assert!(why.to_string().contains("one band, not a band 2"), "{why}");
+    same("lossy-lerc.tif", &read("lossy-lerc.tif"), 0.25, 0.5, false);
+    // In a recipe, and after a colon.
+    let of_node = world(Node { band: 2, ..node("bands.tif") }, None);
+    assert_eq!(of_node.height(30.0, 60.0).unwrap(), 1000.0 + formula(1, 2));
+    let ground = PreparedDem::read(&corpus().join("bands-lerc.tif:2"), None, 1 << 20).unwrap();
+    assert_eq!(ground.grid[(1, 2)], 1000.0 + formula(1, 2));
+}
+
+#[test]
+fn what_stands_beside_a_file_tells_its_place() {
+    for name in ["placed.asc", "world.png", "notes.png"] {
+        let dem = read(name);
+        let place = dem.place.unwrap();
+        assert_eq!((place.origin, place.step), ([500015.0, 5199985.0], [30.0; 2]), "{name}");
+        assert_eq!(keys::epsg(&place.keys.unwrap()), Some(32632), "{name}");
+        assert!(dem.notes.is_empty());
+    }
+    // Without a coordinate system the same numbers are metres; an unknown system is reported in a note.
+    let folder = TestFolder::new("dems-beside").unwrap();
+    std::fs::copy(corpus().join("arc.asc"), folder.join("a.asc")).unwrap();
+    std::fs::write(folder.join("a.prj"), "LOCAL_CS[\"mine\"]").unwrap();
+    let dem = import::read(&folder.join("a.asc"), 1 << 20).unwrap();
+    assert_eq!(dem.place.unwrap().keys, None);
+    assert!(
+        dem.notes[0].contains("its coordinate system is not known") && dem.notes[0].contains("LOCAL_CS"),
+        "{:?}",
+        dem.notes
+    );
+}
+
+#[test]
+fn tiles_are_one_place() {
+    for name in ["tiles", "tiles.vrt"] {
+        let dem = open::read(&corpus().join(name), (1 << 20).into()).unwrap();
+        assert_eq!((dem.width, dem.height), (37, 23), "{name}");
+        for (k, height) in dem.heights.iter().enumerate() {
+            let (i, j) = (k % 37, k / 37);
+            match i < 20 || j < 12 {
+                true => assert_eq!(*height, formula(i, j) + 0.25, "{name} at ({i}, {j})"),
+                false => assert!(height.is_nan(), "{name}: no tile lies at ({i}, {j})"),
+            }
+        }
+        let place = dem.place.unwrap();
+        assert_eq!((place.origin, keys::epsg(&place.keys.unwrap())), ([500015.0, 5199985.0], Some(32632)), "{name}");
+        // The whole file takes 3404 bytes, the largest tile 960.
+        assert!(open::read(&corpus().join(name), 4364.into()).is_ok(), "{name}");
+        let why = open::read(&corpus().join(name), 4300.into()).unwrap_err().to_string();
+        assert!(why.contains("is allowed"), "{name}: {why}");
+        let why = open::read(&corpus().join(name), 3000.into()).unwrap_err().to_string();
+        assert!(why.contains("37 x 23 samples"), "{name}: {why}");
+        assert!(open::is_dem(&corpus().join(name)));
+    }
+    let folder = TestFolder::new("dems-tiles").unwrap();
+    assert!(!open::is_dem(&folder));
+    let with = |name: &str| {
+        std::fs::copy(corpus().join(name), folder.join(name)).unwrap();
+        let read = open::read(&folder, (1 << 20).into());
+        std::fs::remove_file(folder.join(name)).unwrap();
+        read.unwrap_err().to_string()
+    };
+    std::fs::copy(corpus().join("f32-strips.tif"), folder.join("a.tif")).unwrap();
+    assert!(with("degrees.tif").contains("a.tif and degrees.tif are in different coordinate systems"));
+    assert!(with("oblong.tif").contains("have different cell sizes, 30 x 30 and 20 x 30"));
+    std::fs::copy(corpus().join("array.npy"), folder.join("b.tif")).unwrap();
+    assert!(with("sparse.tif").contains("b.tif: it is not a TIFF"));
+}
+
+#[test]
+fn files_that_lie_otherwise_are_understood_or_refused() {
+    // This file gives the position of the sample itself instead of its pixel's corner: the result is the same.
+    assert_eq!(read("point.tif").place.unwrap().origin, [500015.0, 5199985.0]);
+    let south_up = read("south-up.tif");
+    assert_eq!((south_up.heights[36], south_up.heights[22 * 37]), (formula(36, 22), formula(0, 0)));
+    assert_eq!(south_up.place.unwrap().origin, [500015.0, 5200000.0 + 22.5 * 30.0]);
+    assert!(refused("turned.tif").contains("its rows are rotated"));
+    assert!(refused("webp.tif").contains("it has 3 bands"));
+    let webp = Request::new(1 << 20).with_band(Some(1));
+    let why = import::read(&corpus().join("webp.tif"), webp).unwrap_err().to_string();
+    assert!(why.contains("compressed with WebP"), "{why}");
+    assert!(refused("all-nodata.tif").contains("37 x 23 samples are nodata"));
+    let sparse = read("sparse.tif");
+    assert_eq!((sparse.width, sparse.height, sparse.missing()), (64, 48, 64 * 48 - 256));
+    assert_eq!(sparse.heights[20 * 64 + 20], 7.0);
+    assert_eq!(read("scaled.tif").heights[3], 100.0 + formula(3, 0) / 2.0);
+    let why = import::read(&corpus().join("raw.toml"), 1 << 20).unwrap_err().to_string();
+    assert!(why.contains("is not that of a format for heights; supported are .tif"), "{why}");
+    let why = import::read(&corpus().join("f32-strips.tif"), 3000).unwrap_err().to_string();
+    assert!(why.contains("37 x 23 samples need 3.3 KiB of memory, and 2.9 KiB is allowed"), "{why}");
+}
+
+#[test]
+fn degrees_and_oblong_cells_become_square_metres() {
+    let ground = |name: &str| PreparedDem::read(&corpus().join(name), None, 1 << 20).unwrap();
+    let degrees = ground("degrees.tif");
+    // 3 arc seconds at 46 degrees north: 64.6 by 92.6 m.
+    let window = degrees.grid.window();
+    assert!((window.cell - 64.56).abs() < 0.05 && window.width == 37 && window.height == 32, "{window:?}");
+    assert!(
+        degrees.notes[0].contains("cells of 64.56 x 92.63 m, were resampled to squares of 64.56 m"),
+        "{:?}",
+        degrees.notes
+    );
+    let oblong = ground("oblong.tif");
+    assert_eq!((oblong.grid.window().cell, oblong.grid.width(), oblong.grid.height()), (20.0, 37, 34));
+    // Rows of 30 m: every third row of 20 m is a row of the file.
+    assert_eq!(oblong.grid[(9, 3)], formula(9, 2));
+    assert_eq!(oblong.georeference.unwrap().at(40.0, 60.0), [500010.0 + 40.0, 5199985.0 - 60.0]);
+}
+
+fn world(dem: Node, size: Option<[f64; 2]>) -> World {
+    let mut recipe = Recipe::new(WorldSpec::default().with_size(size).with_cell(30.0));
+    recipe.add("place", dem).output("height", "place");
+    World::with_options(recipe, Options { threads: Some(1), memory: Budget::of(64 << 20), ..Options::default() })
+        .unwrap()
+}
+
+fn node(name: &str) -> Node {
+    Node { path: corpus().join(name).to_str().unwrap().into(), ..Node::default() }
+}
+
+#[test]
+fn a_dem_is_a_field() {
+    let file = world(Node { at: [60.0, -30.0], scale: 2.0, offset: 5.0, ..node("f32-strips.tif") }, None);
+    let grid = file.window("height", &Window::new(20, 10, 30.0)).unwrap();
+    // Column 2 is the file's column 0, row 0 its row 1; its border goes on beyond it.
+    assert_eq!(grid[(6, 4)], 2.0 * (formula(4, 5) + 0.25) + 5.0);
+    assert_eq!(grid[(0, 4)], 2.0 * (formula(0, 5) + 0.25) + 5.0);
+    let faded = world(Node { fade: 100.0, outside: -50.0, ..node("f32-strips.tif") }, None);
+    assert_eq!(faded.height(-100.0, 30.0).unwrap(), -50.0);
+    let half = faded.height(-50.0, 30.0).unwrap();
+    assert!((half - (formula(0, 1) + 0.25 - 50.0) / 2.0).abs() < 1e-3, "{half}");
+    let inside = world(Node { fade: 100.0, shows: Shows::Inside, ..node("f32-strips.tif") }, None);
+    let at = |x: f64| inside.height(x, 30.0).unwrap();
+    assert_eq!((at(5.0), at(-50.0), at(-100.0)), (1.0, 0.5, 0.0));
+}
+
+#[test]
+fn what_is_in_the_file_is_the_key_and_not_its_name() {
+    let folder = TestFolder::new("dems").unwrap();
+    let (a, b) = (folder.join("a.tif"), folder.join("b.tif"));
+    std::fs::copy(corpus().join("f32-strips.tif"), &a).unwrap();
+    std::fs::copy(corpus().join("f32-tiles-deflate-p3.tif"), &b).unwrap();
+    let text = |name: &str| {
+        format!(
+            "orogen = 1\n[world]\nsize = 600\ncell = 30\n[nodes.a]\nop = \"dem\"\npath = \"{name}\"\n[outputs]\nheight = \"a\"\n"
+        )
+    };
+    let key = |name: &str| {
+        let recipe = folder.join("recipe.toml");
+        std::fs::write(&recipe, text(name)).unwrap();
+        World::open(Recipe::read(&recipe).unwrap()).unwrap().key("height").unwrap()
+    };
+    // The same heights, packed in two ways.
+    assert_eq!(key("a.tif"), key("b.tif"));
+    std::fs::copy(corpus().join("point.tif"), &b).unwrap();
+    assert_ne!(key("a.tif"), key("b.tif"));
+    // A recipe written to another folder still finds its file.
+    let written = Recipe::read(&folder.join("recipe.toml")).unwrap().to_toml();
+    assert!(World::open(Recipe::parse(&written, "elsewhere").unwrap()).is_ok(), "{written}");
+    let error = World::open(Recipe::parse(&text("gone.tif"), "t").unwrap()).err().unwrap().to_string();
+    assert!(error.contains("node `a`: cannot read gone.tif: no such file"), "{error}");
+    let error = Recipe::parse(&text(""), "t").unwrap_err().to_string();
+    assert!(error.contains("`path` is empty"), "{error}");
+}
+
+#[test]
+fn files_count_in_the_memory_of_a_plan() {
+    let world = world(node("f32-strips.tif"), Some([1080.0, 660.0]));
+    let window = Window::new(8, 8, 30.0);
+    let plan = world.plan(&["height"], &window).unwrap();
+    let bare =
+        World::open(Recipe::parse("orogen = 1\n[nodes.a]\nop = \"fbm\"\n[outputs]\nheight = \"a\"\n", "t").unwrap())
+            .unwrap();
+    let other = bare.plan(&["height"], &window).unwrap();
+    assert_eq!(world.recipe().held(), 37 * 23 * 4);
+    assert!(
+        world.memory_of(&plan).unwrap() >= 37 * 23 * 4
+            && bare.recipe().held() == 0
+            && bare.memory_of(&other).unwrap() > 0
+    );
+}
+
+#[test]
+fn what_a_file_says_of_its_map_is_kept_on_the_way_out() {
+    for name in ["f32-strips.tif", "point.tif", "degrees.tif", "arc.asc"] {
+        let mut recipe = Recipe::new(WorldSpec::default().with_cell(30.0));
+        // The corner of the file is two cells east and one cell north of the origin.
+        recipe.add("place", Node { at: [60.0, -30.0], ..node(name) }).output("height", "place");
+        let world = World::open(recipe).unwrap();
+        let grid = world.window("height", &Window::new(20, 10, 30.0).at(2, 3)).unwrap();
+        let map = world.recipe().georeference().unwrap();
+        let mut bytes = Vec::new();
+        let options = Layout::default().with_map(Some(map.clone()));
+        writer::write(&mut bytes, &grid, &options, Spool::in_memory()).unwrap();
+        let back = reader::read(&mut Cursor::new(&bytes), name, 1 << 20).unwrap();
+        assert_eq!(back.heights, grid.data());
+        let (place, file) = (back.place.unwrap(), read(name).place.unwrap());
+        assert_eq!(place.unit, file.unit, "{name}");
+        let expect = map.at(60.0, 90.0);
+        assert!((0..2).all(|k| (place.origin[k] - expect[k]).abs() < 1e-9), "{name}: {place:?}");
+        if name != "degrees.tif" {
+            assert_eq!((place.origin, place.step), ([500015.0, 5199985.0 - 120.0], [30.0; 2]), "{name}");
+        }
+        if let Some(keys) = file.keys {
+            let code = |keys: &GeoKeys| {
+                keys.directory.chunks_exact(4).find(|key| [2048, 3072].contains(&key[0])).map(|key| key[3])
+            };
+            let kept = place.keys.unwrap();
+            assert_eq!((code(&kept), &kept.text), (code(&keys), &keys.text), "{name}");
+            assert!(code(&keys).is_some() && usize::from(kept.directory[3]) * 4 + 4 == kept.directory.len());
+        }
+    }
+}
+
+/// Changes bytes of a file at random, as damage or an attack may do.
+fn damage(bytes: &mut Vec<u8>, random: &mut Random) {
+    for _ in 0..=random.below(3) {
+        let length = bytes.len() as u64;
+        if length == 0 {
+            return;
+        }
+        // Headers and directories are at either end and affect most of the parser.
+        let at = match random.below(4) {
+            0 => random.below(length),
+            1 => length - 1 - random.below(length.min(600)),
+            _ => random.below(length.min(600)),
+        } as usize;
+        match random.below(6) {
+            0 => bytes.truncate(at),
+            1 => bytes[at] ^= 1 << random.below(8),
+            2 => bytes[at] = random.below(256) as u8,
+            3 => {
+                let odd = [0u64, 1, 0x7fff_ffff, 0xffff_ffff, u64::MAX, 1 << 40][random.below(6) as usize];
+                let size = [2, 4, 8][random.below(3) as usize].min(bytes.len() - at);
+                bytes[at..at + size].copy_from_slice(&odd.to_le_bytes()[..size]);
+            }
+            4 => {
+                let from = random.below(length) as usize;
+                let size = (random.below(40) as usize).min(bytes.len() - at.max(from));
+                bytes.copy_within(from..from + size, at);
+            }
+            _ => bytes.insert(at, random.below(256) as u8),
+        }
+    }
+}
+
+#[test]
+fn damaged_files_are_heights_or_sentences() {
+    read_damaged(300);
+}
+
+#[test]
+#[ignore = "long: 30 000 damaged files of each kind"]
+fn many_damaged_files_are_heights_or_sentences() {
+    read_damaged(30_000);
+}
+
+/// Arbitrary bytes yield heights or an error, without a panic and within the memory limit.
+fn read_damaged(rounds: usize) {
+    let mut files: Vec<PathBuf> = std::fs::read_dir(corpus()).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    let (mut read, mut refused) = (0, 0);
+    let request = Request::new(1 << 20).with_band(Some(1));
+    for (k, path) in files.iter().filter(|path| import::is_dem(path)).enumerate() {
+        let whole = std::fs::read(path).unwrap();
+        let extension = path.extension().unwrap().to_str().unwrap();
+        let sidecar = Sidecar::beside(path).unwrap();
+        let mut random = Random(k as u64);
+        for round in 0..rounds {
+            let mut bytes = whole.clone();
+            damage(&mut bytes, &mut random);
+            let mut result = None;
+            let taken = allocation_counter::measure(|| {
+                result = Some(import::parse(&mut Cursor::new(&bytes), "it", extension, sidecar.clone(), request));
+            });
+            assert!(taken.bytes_max < 12 << 20, "{} round {round} takes {} bytes", path.display(), taken.bytes_max);
+            match result.unwrap() {
+                Ok(dem) => {
+                    assert!(dem.heights.len() == dem.width * dem.height && dem.missing() < dem.heights.len());
+                    read += 1;
+                }
+                Err(error) => {
+                    assert!(error.to_string().starts_with("cannot read it: "), "{error}");
+                    refused += 1;
+                }
+            }
+        }
+        // A truncated file never yields heights, unless only unused bytes are missing.
+        for n in (0..whole.len()).step_by(7) {
+            if let Ok(dem) = import::parse(&mut Cursor::new(&whole[..n]), "it", extension, sidecar.clone(), request) {
+                assert_eq!(dem.heights.len(), dem.width * dem.height, "{} cut at {n}", path.display());
+            }
+        }
+    }
+    assert!(read > 100 && refused > 1000, "{read} read, {refused} refused");
+}
