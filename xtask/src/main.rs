@@ -16,6 +16,7 @@ mod output;
 mod package;
 mod pool;
 mod resolution;
+mod scratch;
 mod shell;
 mod steps;
 mod table;

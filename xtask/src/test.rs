@@ -2,6 +2,7 @@
 
 use crate::compiled::LIBRARIES;
 use crate::failure::{Failure, Result};
+use crate::scratch::Scratch;
 use crate::shell::{self, cargo, run as sh};
 use crate::steps::{self, Step};
 use crate::{codegen, licences, links, package, translations, words};
@@ -61,12 +62,7 @@ const STEPS: &[&Step] = &[
             sh(&mut cargo(&format!("clippy --quiet {LIBRARIES} {flags}")))
         },
     },
-    &Step {
-        name: "tests",
-        about: "cargo test, the studio without its window",
-        group: None,
-        run: || sh(&mut cargo(&format!("test {LIBRARIES}"))),
-    },
+    &Step { name: "tests", about: "cargo test, the studio without its window", group: None, run: tests },
     &Step { name: "features", about: "the libraries without files and threads", group: None, run: features },
     &Step { name: "licences", about: "every dependency has a licence we accept", group: None, run: licences::check },
     &Step {
@@ -124,6 +120,16 @@ fn reasons() -> Result {
             others.join("\n")
         ))),
     }
+}
+
+/// Runs all tests. Clippy has checked that examples compile, so only those with tests are built.
+fn tests() -> Result {
+    let scratch = Scratch::new();
+    let mut command = cargo(&format!("test {LIBRARIES} --tests"));
+    // Not for doctests, which are programs in that folder: often nothing can be executed in memory.
+    command.envs(scratch.iter().map(|scratch| ("TMPDIR", scratch.path())));
+    sh(&mut command)?;
+    sh(&mut cargo(&format!("test {LIBRARIES} --doc")))
 }
 
 /// Checks the libraries without files and threads. No code of theirs, tests aside, may then name anything of the standard library's file

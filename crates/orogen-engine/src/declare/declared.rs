@@ -11,7 +11,7 @@ pub trait Declared {
     fn spec(&self) -> &'static Spec;
     /// The inputs: those declared, or the names in the expression.
     fn inputs(&self) -> Vec<InputName<'_>> {
-        self.spec().inputs.iter().map(|input| InputName { name: input.name, required: input.required }).collect()
+        self.spec().input_names()
     }
     /// Input `i`.
     fn input(&self, i: usize) -> &Input;

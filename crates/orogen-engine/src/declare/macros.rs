@@ -333,9 +333,7 @@ macro_rules! op {
             }
 
             fn files(&mut self) -> Vec<&mut $crate::declare::FileRef> {
-                let files: Vec<Option<&mut $crate::declare::FileRef>> =
-                    vec![$( $( $crate::declare::Param::file(&mut self.$param), )* )?];
-                files.into_iter().flatten().collect()
+                $crate::declare::present(vec![$( $( $crate::declare::Param::file(&mut self.$param), )* )?])
             }
 
             $(

@@ -188,20 +188,27 @@ impl Param for Vec<[f64; 2]> {
 
 /// Reads a parameter; the error describes the valid kind and range.
 pub fn read_param<T: Param>(spec: &ParamSpec, value: &Value) -> Result<T, String> {
-    match T::read(value) {
-        Some(param) if param.within(spec.range) => Ok(param),
-        _ => {
-            if let Some((_, message)) = spec.problem(value) {
-                return Err(message);
-            }
-            let mut message = format!("`{}` must be {}, not {}", spec.name, spec.expected(), value.describe());
-            if let (Shape::Choice(choices), Value::Text(text)) = (spec.shape, value) {
-                let names: Vec<&str> = choices().iter().map(|(name, _)| *name).collect();
-                if let Some(near) = orogen_grid::words::nearest(text, names) {
-                    message.push_str(&format!("; did you mean \"{near}\"?"));
-                }
-            }
-            Err(message)
+    T::read(value).filter(|param| param.within(spec.range)).ok_or_else(|| refusal(spec, value))
+}
+
+/// Why a value is not valid. Apart from [`read_param`], which is compiled for each type.
+#[cold]
+fn refusal(spec: &ParamSpec, value: &Value) -> String {
+    if let Some((_, message)) = spec.problem(value) {
+        return message;
+    }
+    let mut message = format!("`{}` must be {}, not {}", spec.name, spec.expected(), value.describe());
+    if let (Shape::Choice(choices), Value::Text(text)) = (spec.shape, value) {
+        let names: Vec<&str> = choices().iter().map(|(name, _)| *name).collect();
+        if let Some(near) = orogen_grid::words::nearest(text, names) {
+            message.push_str(&format!("; did you mean \"{near}\"?"));
         }
     }
+    message
+}
+
+/// The files among what parameters name. Apart from the ops' own code, which is compiled for each op.
+#[must_use]
+pub fn present(files: Vec<Option<&mut FileRef>>) -> Vec<&mut FileRef> {
+    files.into_iter().flatten().collect()
 }

@@ -1,5 +1,6 @@
 //! Declarations of ops, as data.
 
+use super::input::InputName;
 use super::point_lists::{Drawn, Reader};
 use crate::layer::Layer;
 use crate::value::{Span, Value};
@@ -59,6 +60,12 @@ pub struct Spec {
 }
 
 impl Spec {
+    /// The names of the declared inputs.
+    #[must_use]
+    pub fn input_names(&self) -> Vec<InputName<'static>> {
+        self.inputs.iter().map(|input| InputName { name: input.name, required: input.required }).collect()
+    }
+
     /// The input with this key or former key.
     #[must_use]
     pub fn input_named(&self, key: &str) -> Option<usize> {

@@ -1,9 +1,8 @@
 //! The start of the window.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use clap::Parser;
 use eframe::egui::ViewportBuilder;
@@ -75,24 +74,54 @@ pub fn run() -> ExitCode {
     let start = move |context: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, Box<dyn std::error::Error + Send + Sync>> {
         Ok(Box::new(App::new(context, begin)?))
     };
-    let begun = std::time::Instant::now();
-    // What draws the window panics when its device is gone, in the same frame; the text was kept before.
-    let ended = catch_unwind(AssertUnwindSafe(|| eframe::run_native("orogen-studio", options, Box::new(start))));
-    match (watch.lost(), ended) {
-        (Some(why), _) if arguments.after_loss && begun.elapsed() < SOON => fail(&format!(
-            "the graphics device was lost again ({why}). Changes that were not saved are kept, and offered at the next start. Check the driver of the \
-             graphics card; WGPU_BACKEND=gl or Mesa's software driver may help"
-        )),
-        (Some(_), _) => fail(&restart::again(watch.document().as_deref())),
-        (None, Ok(Ok(()))) => ExitCode::SUCCESS,
-        (None, Ok(Err(error))) => fail(&format!(
-            "cannot open a window: {error}. The studio needs a display and a driver for Vulkan, Metal, DirectX 12 or OpenGL; on Linux without a \
-             graphics card install Mesa's software driver (mesa-vulkan-drivers). All else works without it: `orogen generate`, `orogen map`"
-        )),
-        (None, Err(_)) => fail(
-            "the studio ended by a fault of its own, which is told above; please report it. Changes that were not saved are kept, and offered at the \
-             next start",
-        ),
+    let end = End { watch, is_after_loss: arguments.after_loss, begun: Instant::now() };
+    let at_panic = end.clone();
+    let print_panic = std::panic::take_hook();
+    // What draws the window panics when its device is gone, in the same frame; the text was kept before. A hook, because the
+    // release profile does not unwind.
+    std::panic::set_hook(Box::new(move |panic| {
+        print_panic(panic);
+        std::process::exit(at_panic.conclude(None));
+    }));
+    let ended = eframe::run_native("orogen-studio", options, Box::new(start));
+    if end.conclude(Some(ended.map_err(|error| error.to_string()))) == 0 {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    }
+}
+
+/// What is known where the window ends.
+#[derive(Clone)]
+struct End {
+    watch: DeviceWatch,
+    is_after_loss: bool,
+    /// When the window was opened.
+    begun: Instant,
+}
+
+impl End {
+    /// Starts the studio again if its device was lost, and otherwise says why it ended; returns the exit code. Nothing has
+    /// `ended` in a panic.
+    fn conclude(&self, ended: Option<Result<(), String>>) -> i32 {
+        let lost = self.watch.lost();
+        let message = match (lost, ended) {
+            (Some(why), _) if self.is_after_loss && self.begun.elapsed() < SOON => format!(
+                "the graphics device was lost again ({why}). Changes that were not saved are kept, and offered at the next start. Check the driver of the \
+                 graphics card; WGPU_BACKEND=gl or Mesa's software driver may help"
+            ),
+            (Some(_), _) => restart::again(self.watch.document().as_deref()),
+            (None, Some(Ok(()))) => return 0,
+            (None, Some(Err(error))) => format!(
+                "cannot open a window: {error}. The studio needs a display and a driver for Vulkan, Metal, DirectX 12 or OpenGL; on Linux without a \
+                 graphics card install Mesa's software driver (mesa-vulkan-drivers). All else works without it: `orogen generate`, `orogen map`"
+            ),
+            (None, None) => "the studio ended because of an internal error, which is printed above; please report it. Changes that were not saved are \
+                 kept, and offered at the next start"
+                .to_owned(),
+        };
+        note(&format!("error: {message}"));
+        1
     }
 }
 
