@@ -14,7 +14,8 @@ pub fn check() -> Result {
     let folder = shell::target_dir().join("packages");
     // Archives of other versions.
     shell::empty_dir(&folder.join("package"))?;
-    let pack = "package --quiet --workspace --exclude xtask --exclude orogen-bench --allow-dirty --no-verify";
+    let pack = "package --quiet --workspace --exclude xtask --exclude orogen-bench --exclude orogen-fuzz-targets \
+        --allow-dirty --no-verify";
     sh(cargo(pack).arg("--target-dir").arg(&folder))?;
     let unpacked = folder.join("unpacked");
     shell::empty_dir(&unpacked)?;

@@ -166,7 +166,8 @@ fn without_files() -> Result {
 /// Without the binary `orogen`, whose pages would overwrite those of the library of the same name, and without the studio.
 fn docs() -> Result {
     let mut command = cargo(
-        "doc --quiet --workspace --no-deps --exclude orogen-cli --exclude orogen-studio --exclude orogen-gpu --exclude orogen-bench --exclude xtask",
+        "doc --quiet --workspace --no-deps --exclude orogen-cli --exclude orogen-studio --exclude orogen-gpu \
+        --exclude orogen-bench --exclude orogen-fuzz-targets --exclude xtask",
     );
     sh(command.env("RUSTDOCFLAGS", "-D warnings"))
 }
