@@ -1,4 +1,5 @@
-//! SVG and GeoJSON: any text is a drawing, or refused with a message. The distance to it and its inside are known everywhere.
+//! SVG and GeoJSON: any text is a drawing, or refused with a message. The distance to it and its inside are known
+//! everywhere.
 
 use orogen::format::drawing::{Drawing, Format};
 use orogen::format::outlines::DrawingKind;

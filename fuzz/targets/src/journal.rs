@@ -1,7 +1,8 @@
-//! Journals of builds: any bytes are a journal or refused, and a build that is resumed from any journal ends with the same files.
+//! Journals of builds: any bytes are a journal or refused, and a build that is resumed from any journal ends with the
+//! same files.
 //!
-//! The first byte of the input chooses a file that is lost before the build is resumed, the others change the journal. Each line then gets its
-//! right checksum, so that the target reaches what it protects.
+//! The first byte of the input chooses a file that is lost before the build is resumed, the others change the journal.
+//! Each line then gets its right checksum, so that the target reaches what it protects.
 
 use crate::edits::edited;
 use crate::scratch::Scratch;

@@ -1,6 +1,7 @@
 //! Readers of files and texts, run on any bytes: each target panics if a reader breaks its promise.
 //!
-//! `cargo xtask fuzz` runs them with libFuzzer, and the tests run them on the files of `fuzz/corpus` and on changes of those.
+//! `cargo xtask fuzz` runs them with libFuzzer, and the tests run them on the files of `fuzz/corpus` and on changes of
+//! those.
 #![forbid(unsafe_code)]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a target that fails panics")]
 
@@ -19,7 +20,8 @@ pub mod solution;
 pub mod tileset;
 pub mod zarr;
 
-// The parsers of the program `orogen` are no part of what its library offers, so they are compiled into the target `options`.
+// The parsers of the program `orogen` are no part of what its library offers, so they are compiled into the target
+// `options`.
 #[allow(dead_code, reason = "the target uses a part")]
 #[path = "../../../crates/orogen-cli/src/failure.rs"]
 mod failure;

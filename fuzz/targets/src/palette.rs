@@ -1,4 +1,5 @@
-//! Palette files: any text is a palette in each of the formats, or refused with a message. A palette has a colour everywhere.
+//! Palette files: any text is a palette in each of the formats, or refused with a message. A palette has a colour
+//! everywhere.
 
 use orogen::palette::fitted::Fitted;
 use orogen::palette::read::parse;

@@ -1,7 +1,9 @@
-//! Files of stored solutions, and headers of stored tiles: any bytes are a solution or a tile, or refused with a message.
+//! Files of stored solutions, and headers of stored tiles: any bytes are a solution or a tile, or refused with a
+//! message.
 //!
-//! The input is the header after the magic and the key, which are those of a solution and then those of a tile; zeros up to the largest length
-//! that the target makes follow. The target puts the right checksums in their places, so that it reaches what they protect.
+//! The input is the header after the magic and the key, which are those of a solution and then those of a tile; zeros
+//! up to the largest length that the target makes follow. The target puts the right checksums in their places, so that
+//! it reaches what they protect.
 
 use orogen::store::fuzzing::{read, tile_windows, windows};
 use orogen::store::solution_store::EntryKey;

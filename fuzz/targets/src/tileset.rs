@@ -1,4 +1,5 @@
-//! Tilesets of Tiled and descriptions of tilesets: any text is a tileset, or refused with a message. What is drawn with it fits.
+//! Tilesets of Tiled and descriptions of tilesets: any text is a tileset, or refused with a message. What is drawn with
+//! it fits.
 
 use orogen::Progress;
 use orogen::autotile::choose::layers;

@@ -6,7 +6,8 @@ use crate::scratch::Scratch;
 use orogen::dem::open;
 use orogen::format::dem::Request;
 
-/// The metadata of the array, of version 3 or 2, and its attributes of version 2; that of the coordinates; chunks of the names of both versions.
+/// The metadata of the array, of version 3 or 2, and its attributes of version 2; that of the coordinates; chunks of
+/// the names of both versions.
 pub const NAMES: [&str; 10] = [
     "height/zarr.json",
     "height/.zarray",

@@ -1,5 +1,5 @@
-//! Every target on the files of `fuzz/corpus` and on changes of them, which are the same in every run. `cargo xtask fuzz` finds other inputs;
-//! these tests need no other compiler and take seconds.
+//! Every target on the files of `fuzz/corpus` and on changes of them, which are the same in every run. `cargo xtask
+//! fuzz` finds other inputs; these tests need no other compiler and take seconds.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that fails panics")]
 
 mod change;
