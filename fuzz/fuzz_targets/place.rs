@@ -1,21 +1,4 @@
-//! What stands beside heights and tells their place: any text is understood or refused with a message.
+//! The target `place` for libFuzzer.
 #![no_main]
 
-use libfuzzer_sys::fuzz_target;
-use orogen::format::crs::keys;
-use orogen::format::sidecar::Sidecar;
-use orogen::format::{aux_xml, vrt, world_file};
-
-fuzz_target!(|text: &str| {
-    if let Ok(keys) = keys::of_wkt(text) {
-        // A system that was understood can be told again, and is then the same.
-        let told = keys::to_wkt(&keys);
-        assert!(told.is_err() || told.is_ok_and(|told| keys::of_wkt(&told).is_ok()), "{text}");
-    }
-    let _ = (aux_xml::parse(text), vrt::parse(text), world_file::parse(text), keys::of_text(text));
-    for toml in [false, true] {
-        if let Ok(sidecar) = Sidecar::parse(text, toml) {
-            let _ = sidecar.place(10);
-        }
-    }
-});
+libfuzzer_sys::fuzz_target!(|input: &[u8]| orogen_fuzz_targets::place::run(input));

@@ -1,27 +1,4 @@
-//! Tilesets of Tiled and descriptions of tilesets: any text is a tileset, or refused with a message. What is drawn with it fits.
+//! The target `tileset` for libFuzzer.
 #![no_main]
 
-use libfuzzer_sys::fuzz_target;
-use orogen::Progress;
-use orogen::autotile::choose::layers;
-use orogen::autotile::classes::Classes;
-use orogen::autotile::clean::clean;
-use orogen::tilemap::load::any::parse;
-use orogen::tilemap::tileset::parts;
-
-fuzz_target!(|text: &str| {
-    for is_toml in [false, true] {
-        let Ok(set) = parse(text, is_toml, None, 32) else { continue };
-        let count = set.terrains.len();
-        let mut classes = Classes::new([-3, 5], 9, 7, (0..63).map(|cell| (cell * 5 % 11 % count) as u8).collect());
-        let drawable = set.drawable();
-        clean(&mut classes, &drawable, &Progress::none()).unwrap();
-        for layer in layers(&classes, &drawable, &set.choices(), 1) {
-            for tile in layer.into_iter().filter(|tile| *tile != orogen::autotile::choose::NONE) {
-                assert!((parts(tile).0 as usize) < set.count, "{text}");
-            }
-        }
-        let mut out = Vec::new();
-        set.write_tsx(&mut out, "tiles.png", "fuzz").unwrap();
-    }
-});
+libfuzzer_sys::fuzz_target!(|input: &[u8]| orogen_fuzz_targets::tileset::run(input));

@@ -1,6 +1,6 @@
 //! `cargo xtask fuzz`: libFuzzer on every reader of files and texts, with the stable compiler.
 
-use crate::failure::{Failure, Result};
+use crate::failure::{Failure, Result, on_file};
 use crate::{pool, shell};
 
 pub const ABOUT: &str = "run libFuzzer on the readers of files and texts";
@@ -13,11 +13,6 @@ each (default 60) or N executions, whichever comes first, starting with the file
 are written to fuzz/artifacts. Needs a C++ compiler for libFuzzer; cargo-fuzz is optional.
 ";
 
-const TARGETS: [&str; 12] = [
-    "dem", "drawing", "journal", "options", "palette", "place", "plan", "recipe", "sidecar", "solution", "tileset",
-    "zarr",
-];
-
 /// Flags for coverage instrumentation (those of cargo-fuzz).
 const FLAGS: &str = "--cfg fuzzing -Zsanitizer=address -Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
     -Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table \
@@ -25,6 +20,7 @@ const FLAGS: &str = "--cfg fuzzing -Zsanitizer=address -Cpasses=sancov-module -C
 
 /// Builds and runs.
 pub fn run(args: &[String]) -> Result {
+    let targets = targets()?;
     let (mut seconds, mut runs, mut named, mut args) = (60, None, Vec::new(), args.iter());
     while let Some(arg) = args.next() {
         match arg.as_str() {
@@ -33,21 +29,21 @@ pub fn run(args: &[String]) -> Result {
                 let number = number.ok_or_else(|| Failure::usage(format!("{arg} takes a whole number")))?;
                 if arg == "--runs" { runs = Some(number) } else { seconds = number }
             }
-            target if TARGETS.contains(&target) => named.push(target),
+            target if targets.iter().any(|name| name == target) => named.push(target.to_owned()),
             other => {
-                return Err(Failure::usage(format!("there is no target '{other}'; there are {}", TARGETS.join(", "))));
+                return Err(Failure::usage(format!("there is no target '{other}'; there are {}", targets.join(", "))));
             }
         }
     }
     if named.is_empty() {
-        named = TARGETS.to_vec();
+        named = targets;
     }
     let folder = shell::target_dir().join("fuzz");
     let artifacts = shell::root().join("fuzz/artifacts");
     let host = shell::host()?;
     let mut build = shell::cargo("build --quiet --release --manifest-path fuzz/Cargo.toml");
     build
-        .args(named.iter().flat_map(|target| ["--bin", target]))
+        .args(named.iter().flat_map(|target| ["--bin", target.as_str()]))
         // Sanitizers are unstable; this allows them in the stable compiler that builds everything else.
         .env("RUSTC_BOOTSTRAP", "1")
         .env("RUSTFLAGS", FLAGS)
@@ -58,16 +54,16 @@ pub fn run(args: &[String]) -> Result {
     shell::run(&mut build)?;
     let mut commands = Vec::with_capacity(named.len());
     for target in named {
-        let found = folder.join("found").join(target);
-        for folder in [&found, &artifacts.join(target)] {
-            std::fs::create_dir_all(folder).map_err(|cause| crate::failure::on_file("make", folder, &cause))?;
+        let found = folder.join("found").join(&target);
+        for folder in [&found, &artifacts.join(&target)] {
+            std::fs::create_dir_all(folder).map_err(|cause| on_file("make", folder, &cause))?;
         }
-        let mut command = shell::program(folder.join(&host).join("release").join(target));
+        let mut command = shell::program(folder.join(&host).join("release").join(&target));
         command
-            .args([&found, &shell::root().join("fuzz/corpus").join(target)])
+            .args([&found, &shell::root().join("fuzz/corpus").join(&target)])
             .arg(format!("-max_total_time={seconds}"))
             .args(runs.map(|runs| format!("-runs={runs}")))
-            .arg(format!("-artifact_prefix={}/", artifacts.join(target).display()))
+            .arg(format!("-artifact_prefix={}/", artifacts.join(&target).display()))
             .args([
                 "-rss_limit_mb=1024",
                 "-malloc_limit_mb=256",
@@ -78,4 +74,16 @@ pub fn run(args: &[String]) -> Result {
         commands.push(command);
     }
     pool::run(commands, |mut command| shell::run(&mut command))
+}
+
+/// The names of all targets, sorted: each is a program in fuzz/fuzz_targets.
+fn targets() -> Result<Vec<String>> {
+    let folder = shell::root().join("fuzz/fuzz_targets");
+    let entries = std::fs::read_dir(&folder).map_err(|cause| on_file("read", &folder, &cause))?;
+    let mut names: Vec<String> = entries
+        .flatten()
+        .filter_map(|entry| Some(entry.file_name().to_str()?.strip_suffix(".rs")?.to_owned()))
+        .collect();
+    names.sort();
+    Ok(names)
 }

@@ -3,7 +3,8 @@
 use orogen_noise::{Level, LevelError};
 use std::sync::{Mutex, PoisonError};
 
-/// Runs `work` at a SIMD level, which applies to the whole process, and restores the previous level. Another thread that calls this waits.
+/// Runs `work` at a SIMD level, which applies to the whole process, and restores the previous level. Another thread
+/// that calls this waits.
 ///
 /// # Errors
 /// This machine lacks the level.

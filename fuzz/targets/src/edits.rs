@@ -1,7 +1,7 @@
 //! Changes of a text that the target makes itself, so that its seeds stay valid when the format changes.
 
-/// The text after the changes that the input lists: each has a position (two bytes), how many bytes are cut, how many are inserted, and
-/// those bytes.
+/// The text after the changes that the input lists: each has a position (two bytes), how many bytes are cut, how many
+/// are inserted, and those bytes.
 pub fn edited(text: &[u8], mut edits: &[u8]) -> Vec<u8> {
     let mut text = text.to_vec();
     while let [low, high, cut, insert, rest @ ..] = edits {

@@ -1,0 +1,32 @@
+//! SVG and GeoJSON: any text is a drawing, or refused with a message. The distance to it and its inside are known
+//! everywhere.
+
+use orogen::format::drawing::{Drawing, Format};
+use orogen::format::outlines::DrawingKind;
+use orogen::polylines::outline::Outline;
+use orogen::polylines::segments::Segments;
+
+/// Runs the target on an input; one that is no text is skipped.
+pub fn run(input: &[u8]) {
+    let Ok(text) = std::str::from_utf8(input) else { return };
+    for format in [Format::Svg, Format::GeoJson] {
+        for kind in [DrawingKind::Lines, DrawingKind::Areas] {
+            let Ok(drawing) = Drawing::parse(text, format, kind) else { continue };
+            assert!(!drawing.outlines.is_empty());
+            for is_smooth in [false, true] {
+                let outlines = drawing.outlines.iter().map(|outline| match is_smooth {
+                    false => outline.placed([2.0, -3.0], [1e6, 5.0]),
+                    true => outline.smoothed(),
+                });
+                // A coarse tolerance: a run must not take seconds.
+                let segments = Segments::new(&outlines.collect::<Vec<Outline>>(), 1e5);
+                for at in [[0.0, 0.0], [-1e9, 1e9], [1e6, 5.0]] {
+                    let nearest = segments.nearest(at, f64::INFINITY).expect("the nearest point of a drawing");
+                    assert!(nearest.distance().is_finite() && nearest.height().is_finite());
+                    assert!((0.0..=1.0).contains(&nearest.position()));
+                    let _ = segments.is_inside(at);
+                }
+            }
+        }
+    }
+}

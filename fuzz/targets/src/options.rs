@@ -1,0 +1,76 @@
+//! Texts of the command line: any text is a value or refused with a message, and values are within their bounds.
+
+use crate::values::bytes::Bytes;
+use crate::values::number::{self, MOST, Numbers};
+use crate::values::region::{self, Bounds, Rectangle};
+use crate::values::size::Size;
+use crate::values::{arguments, seeds, time};
+use clap::{Args, Command, FromArgMatches};
+use orogen::export::derived::list;
+use orogen::export::options::Options;
+use orogen::export::registry;
+use orogen::expression::text::Expression;
+use orogen::format::crs::registry::Crs;
+use orogen::palette::names;
+use orogen::sheet::paper;
+
+/// Runs the target on an input; one that is no text is skipped.
+pub fn run(input: &[u8]) {
+    let Ok(text) = std::str::from_utf8(input) else { return };
+    if let Ok(size) = text.parse::<Size>() {
+        let sides = match size {
+            Size::Longer(side) => [side, side],
+            Size::Both(width, height) => [width, height],
+        };
+        assert!(sides.iter().all(|side| (1..=MOST as usize).contains(side)), "{text}");
+    }
+    assert!(!number::seed(text).is_ok_and(|seed| seed > i64::MAX as u64), "{text}");
+    for number in [number::cell(text), number::wavelength(text), number::positive(text)].into_iter().flatten() {
+        assert!(number.is_finite() && number > 0.0, "{text}");
+    }
+    assert!(!number::not_negative(text).is_ok_and(|number| !(number >= 0.0)), "{text}");
+    assert!(!time::clock(text).is_ok_and(|hours| !(0.0..24.0).contains(&hours)), "{text}");
+    assert!(!text.parse::<Bytes>().is_ok_and(|bytes| bytes.0 == 0), "{text}");
+    if let Ok(Numbers(numbers)) = text.parse() {
+        assert!(!numbers.is_empty() && numbers.iter().all(|number| number.is_finite()), "{text}");
+    }
+    if let Ok(paper) = text.parse::<paper::Paper>() {
+        let [width, height] = paper.sides(true);
+        assert!(width >= height && height >= 50.0 && width <= 2000.0, "{text}");
+    }
+    match text.parse::<Rectangle>() {
+        Ok(Rectangle::Samples(x, y, width, height)) => {
+            assert!(x.abs() <= 1 << 52 && y.abs() <= 1 << 52 && width >= 1 && height >= 1, "{text}");
+        }
+        Ok(Rectangle::Metres(numbers)) => {
+            assert!(numbers.iter().all(|number| number.is_finite()) && numbers[2] > 0.0 && numbers[3] > 0.0, "{text}");
+        }
+        Err(_) => {}
+    }
+    if let Ok(bounds) = text.parse::<Bounds>() {
+        assert!(bounds.west < bounds.east && bounds.south < bounds.north, "{text}");
+    }
+    let _ = (region::place(text), text.parse::<seeds::Seeds>());
+    let command = arguments::Arguments::augment_args(Command::new("it").no_binary_name(true));
+    let given = command.try_get_matches_from(["--set", text]);
+    if let Ok(given) = given.and_then(|matches| arguments::Arguments::from_arg_matches(&matches)) {
+        assert!(given.values().iter().all(|(_, value)| value.is_finite()), "{text}");
+    }
+    let _ = (names::named(text), names::hexadecimal(text));
+    if let Ok(crs) = text.parse::<Crs>() {
+        assert_eq!(format!("EPSG:{}", crs.code()).parse::<Crs>(), Ok(crs));
+    }
+    let expression = Expression::from(text);
+    if expression.error().is_none() {
+        let values = vec![0.5; expression.names().len()];
+        assert!(expression.value(&values).is_some(), "{text}");
+    }
+    let mut options = Options::default();
+    for (spec, _) in registry::options()
+        .into_iter()
+        .map(|(spec, _)| (spec, ()))
+        .chain(list::options().into_iter().map(|(spec, _)| (spec, ())))
+    {
+        let _ = options.give(spec, text);
+    }
+}
