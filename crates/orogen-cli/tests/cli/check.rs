@@ -156,6 +156,8 @@ fn the_cache_is_listed_and_cleared_and_foreign_files_stay() {
             "export",
             "slow.toml",
             "-q",
+            "--threads",
+            "1",
             "--window",
             "0,0,4,4",
             "-o",

@@ -1,8 +1,11 @@
 //! Temporary folders, and a way to run the program there.
 
 use std::fs;
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Child, Command, Output, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::time::{Duration, Instant};
 
 use orogen::test_folder::TestFolder;
 
@@ -27,6 +30,15 @@ high = 200
 height = "land"
 noise = "noise"
 "#;
+
+/// [`SMALL`] with noise that takes a hundred times as long for each sample.
+pub fn slow() -> String {
+    let fractal = |k| format!("[nodes.n{k}]\nop = \"fbm\"\nseed = {k}\nwavelength = 300\noctaves = 24\n");
+    let fractals: String = (0..16).map(fractal).collect();
+    let sum = (0..16).map(|k| format!("n{k}")).collect::<Vec<_>>().join(" + ");
+    let noise = format!("{fractals}[nodes.noise]\nop = \"expr\"\nexpr = \"{sum}\"\n");
+    SMALL.replace("[nodes.noise]\nop = \"fbm\"\nwavelength = 300\noctaves = 4\n", &noise)
+}
 
 /// Whether the tests write what they would compare: `OROGEN_BLESS=1`.
 pub fn bless() -> bool {
@@ -59,6 +71,13 @@ impl Folder {
 
     pub fn write(&self, name: &str, content: impl AsRef<[u8]>) {
         fs::write(self.path(name), content).unwrap();
+    }
+
+    /// Replaces a file at once: whoever reads it sees the old content or the new.
+    pub fn replace(&self, name: &str, content: impl AsRef<[u8]>) {
+        let other = format!("{name}.new");
+        self.write(&other, content);
+        fs::rename(self.path(&other), self.path(name)).unwrap();
     }
 
     pub fn read(&self, name: &str) -> Vec<u8> {
@@ -113,6 +132,92 @@ impl Folder {
         assert_eq!((outcome.code, outcome.out.len()), (code, 0), "{arguments:?}: {}", outcome.err);
         outcome
     }
+}
+
+/// Deadline of everything that a test waits for. It only ends a test that would hang, however busy the machine is.
+pub const DEADLINE: Duration = Duration::from_secs(300);
+
+/// Waits until something is so.
+pub fn until(what: &str, mut is_so: impl FnMut() -> bool) {
+    let begun = Instant::now();
+    while !is_so() {
+        assert!(begun.elapsed() < DEADLINE, "{what}: not after {DEADLINE:?}");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// A command that runs, whose lines on standard error are read. It is killed when dropped.
+pub struct Running {
+    pub child: Child,
+    lines: Receiver<String>,
+}
+
+impl Running {
+    pub fn start(folder: &Folder, arguments: &[&str]) -> Running {
+        let mut child = folder.command(arguments).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+        let stderr = BufReader::new(child.stderr.take().unwrap());
+        let (sender, lines) = channel();
+        std::thread::spawn(move || stderr.lines().map_while(Result::ok).try_for_each(|line| sender.send(line)));
+        Running { child, lines }
+    }
+
+    /// Starts a command with `--progress json`, and waits until it has done more than a share of its work.
+    pub fn start_and_wait(folder: &Folder, arguments: &[&str], done: f64) -> Running {
+        let running = Running::start(folder, &[arguments, &["--progress", "json"]].concat());
+        running.wait_for("progress", |line| share(line).is_some_and(|share| share > done));
+        running
+    }
+
+    /// Waits for a line.
+    pub fn wait_for(&self, what: &str, is_it: impl Fn(&str) -> bool) {
+        let until = Instant::now() + DEADLINE;
+        let mut said = Vec::new();
+        while let Ok(line) = self.lines.recv_timeout(until.saturating_duration_since(Instant::now())) {
+            assert!(!line.contains("panicked"), "{line}");
+            if is_it(&line) {
+                return;
+            }
+            said.push(line);
+        }
+        panic!("never said {what:?}, but {said:?}");
+    }
+
+    /// Waits for a line that contains `expect`.
+    pub fn says(&self, expect: &str) {
+        self.wait_for(expect, |line| line.contains(expect));
+    }
+
+    /// Sends a signal, such as `-INT`, which Ctrl-C sends.
+    #[cfg(unix)]
+    pub fn signal(&self, signal: &str) {
+        let status = Command::new("kill").args([signal, &self.child.id().to_string()]).status().unwrap();
+        assert!(status.success());
+    }
+
+    /// Waits until it ends. Returns its exit code, if it ended by itself, and the lines that were not waited for.
+    pub fn ended(&mut self) -> (Option<i32>, Vec<String>) {
+        let (until, mut lines) = (Instant::now() + DEADLINE, Vec::new());
+        loop {
+            match self.lines.recv_timeout(until.saturating_duration_since(Instant::now())) {
+                Ok(line) => lines.push(line),
+                Err(RecvTimeoutError::Disconnected) => return (self.child.wait().unwrap().code(), lines),
+                Err(RecvTimeoutError::Timeout) => panic!("it has not ended after {DEADLINE:?}: {lines:?}"),
+            }
+        }
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// The share of the work in a line of `--progress json`.
+pub fn share(line: &str) -> Option<f64> {
+    let line = Some(line).filter(|line| line.starts_with('{'))?;
+    serde_json::from_str::<serde_json::Value>(line).ok()?.get("share")?.as_f64()
 }
 
 /// The outcome of a run.

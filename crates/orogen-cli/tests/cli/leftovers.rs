@@ -1,9 +1,8 @@
 //! Leftovers of killed commands: the next command that writes there removes them, and nothing else.
 
 use std::process::{Child, Stdio};
-use std::time::Duration;
 
-use crate::harness::{Folder, SMALL};
+use crate::harness::{Folder, SMALL, until};
 
 fn start(folder: &Folder, arguments: &[&str]) -> Child {
     folder.command(arguments).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
@@ -19,14 +18,11 @@ fn files_of(folder: &Folder, child: &Child) -> Vec<String> {
 /// Starts a command and waits until it has a temporary file.
 fn busy(folder: &Folder, arguments: &[&str]) -> Child {
     let mut child = start(folder, arguments);
-    for _ in 0..2000 {
-        if !files_of(folder, &child).is_empty() {
-            return child;
-        }
+    until("a temporary file", || {
         assert!(child.try_wait().unwrap().is_none(), "{arguments:?} ended before it was killed");
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    panic!("{arguments:?} never began a file");
+        !files_of(folder, &child).is_empty()
+    });
+    child
 }
 
 #[test]

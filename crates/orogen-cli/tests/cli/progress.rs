@@ -1,6 +1,6 @@
 //! Progress for other programs, and the files of a cancelled run.
 
-use crate::harness::Folder;
+use crate::harness::{Folder, share};
 
 const RIVERS: &str = r#"
 orogen = 1
@@ -25,8 +25,7 @@ height = "terrain"
 /// The shares that a command reports.
 fn shares(folder: &Folder, arguments: &[&str]) -> Vec<f64> {
     let outcome = folder.good(&[arguments, &["--progress", "json"]].concat());
-    let lines = outcome.err.lines().filter(|line| line.starts_with('{'));
-    lines.map(|line| serde_json::from_str::<serde_json::Value>(line).unwrap()["share"].as_f64().unwrap()).collect()
+    outcome.err.lines().filter_map(share).collect()
 }
 
 #[test]
@@ -76,14 +75,13 @@ fn arrays_that_no_disk_holds_are_refused_before_they_are_begun() {
 #[cfg(unix)]
 #[test]
 fn a_block_that_is_interrupted_leaves_nothing() {
+    use crate::harness::Running;
     let folder = Folder::new();
-    let mut command = folder.command(&["noise", "worley", "--volume", "3000", "--size", "512", "-o", "block.npy"]);
-    let mut child = command.stderr(std::process::Stdio::piped()).spawn().unwrap();
-    let begun = std::time::Instant::now();
-    while folder.names("").is_empty() && begun.elapsed().as_secs() < 60 {
-        std::thread::sleep(std::time::Duration::from_millis(5));
-    }
-    let status = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
-    assert!(status.success() && child.wait().unwrap().code() == Some(130));
+    let arguments = ["noise", "worley", "--volume", "3000", "--size", "512", "-o", "block.npy"];
+    let mut running = Running::start_and_wait(&folder, &arguments, 0.0);
+    assert_eq!(folder.names("").len(), 2, "the file and its lock");
+    running.signal("-INT");
+    let (code, said) = running.ended();
+    assert_eq!(code, Some(130), "{said:?}");
     assert_eq!(folder.names(""), [] as [&str; 0]);
 }

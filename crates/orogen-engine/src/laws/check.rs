@@ -15,6 +15,8 @@ use orogen_grid::error::ErrorKind;
 use orogen_grid::grid::Window;
 use orogen_grid::progress::Progress;
 use orogen_noise::Level;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// The cells at which [`Laws::check`] computes tiles. None of them is exact in binary.
@@ -40,7 +42,8 @@ impl<'a> Laws<'a> {
         Laws { node, recipe: Box::new(recipe) }
     }
 
-    /// All laws. [`Law::Levels`] forces SIMD levels for the whole process while it runs.
+    /// All laws, without [`Laws::cancel`], which measures time. [`Law::Levels`] forces SIMD levels for the whole process
+    /// while it runs.
     pub fn check(&self) -> Vec<Violation> {
         let at_cells = CELLS
             .into_iter()
@@ -54,7 +57,7 @@ impl<'a> Laws<'a> {
             self.unbounded(),
             self.content_keys().map(drop),
             self.margin(CELLS[0]),
-            self.cancel(CANCELLED_SIDE).map(drop),
+            self.stops(CANCELLED_SIDE).map(drop),
         ];
         at_cells.chain(others).filter_map(|verdict| verdict.err()).collect()
     }
@@ -343,22 +346,82 @@ impl<'a> Laws<'a> {
         Ok(())
     }
 
-    /// [`Law::Cancel`], in a world of `side` x `side` samples. Cancels the work at five different times and returns the longest time for which it
-    /// continued. For fields the engine checks between blocks.
+    /// [`Law::Cancel`] without a clock, in a world of `side` x `side` samples on one thread: the result does not depend on
+    /// how busy the machine is. Times are those of the costs that the ops state. Cancels the work at five different shares
+    /// of it. Returns the longest time for which it continued, or between two reports of progress, if that is longer.
+    ///
+    /// # Errors
+    /// If the time is longer than [`LONGEST_CANCEL`], or if the work ended with another error than
+    /// [`ErrorKind::Cancelled`].
+    pub fn stops(&self, side: usize) -> Result<Duration, Violation> {
+        let (case, recipe, window) = self.cancelled(side);
+        let layers: Vec<&str> = recipe.outputs().collect();
+        let world = case.open(&recipe, 1)?;
+        let work = case.of(world.work(&case.of(world.plan(&layers, &window))?))?;
+        let time = |share: f64| Duration::from_secs_f64(share * work * 1e-9);
+        // The reported shares and the result of work that is cancelled at the first report of `moment` or more.
+        let run = |moment: f64| {
+            let (stop, told) = (Arc::new(AtomicBool::new(false)), Arc::new(Mutex::new(Vec::new())));
+            let (stopped, heard) = (Arc::clone(&stop), Arc::clone(&told));
+            let progress = Progress::new(move |share| {
+                heard.lock().unwrap_or_else(PoisonError::into_inner).push(share);
+                stop.fetch_or(share >= moment, Ordering::Relaxed);
+            });
+            let made = case.open(&recipe, 1)?.grids(&layers, &window, &progress.stopped_by(stopped));
+            let shares = std::mem::take(&mut *told.lock().unwrap_or_else(PoisonError::into_inner));
+            match made {
+                Err(error) if error.kind() != ErrorKind::Cancelled => {
+                    case.breaks(format!("cancelled work ended with another error: {error}"))
+                }
+                made => Ok((made.is_ok(), shares)),
+            }
+        };
+        let (_, shares) = run(f64::INFINITY)?;
+        let ends = || shares.iter().copied().chain([1.0]);
+        let step = std::iter::once(0.0).chain(ends()).zip(ends()).map(|(one, next)| next - one).fold(0.0, f64::max);
+        if time(step) > LONGEST_CANCEL {
+            let (step, all) = (time(step), time(1.0));
+            return case
+                .breaks(format!("{step:.1?} of {all:.1?} pass without a report, by the costs that the ops state"));
+        }
+        let mut longest = step;
+        for moment in MOMENTS {
+            let (is_made, shares) = run(moment)?;
+            let asked = shares.iter().copied().find(|share| *share >= moment).unwrap_or(1.0);
+            let ended = if is_made { 1.0 } else { shares.last().copied().unwrap_or(1.0) };
+            longest = f64::max(longest, ended - asked);
+        }
+        match time(longest) {
+            late if late <= LONGEST_CANCEL => Ok(late),
+            late => case.breaks(format!(
+                "it went on for {late:.1?} of {:.1?} after it was asked to stop, by the costs that the ops state",
+                time(1.0)
+            )),
+        }
+    }
+
+    /// The case, the recipe and the window of work that is cancelled.
+    fn cancelled(&self, side: usize) -> (Case, Recipe, Window) {
+        let length = (side.max(2) - 1) as f64 * 10.0;
+        let window = Window::new(side, side, 10.0);
+        let recipe = (self.recipe)(WorldSpec { size: Some([length, length]), ..world_of(10.0) }, false);
+        (self.case(Law::Cancel).in_window(window), recipe, window)
+    }
+
+    /// [`Law::Cancel`], in a world of `side` x `side` samples, by the clock. Cancels the work at five different times and
+    /// returns the longest time for which it continued. For fields the engine checks between blocks. Other work on the
+    /// machine may break this law: [`Laws::stops`] does not depend on it.
     ///
     /// # Errors
     /// If it continued for longer than [`LONGEST_CANCEL`] in three runs, or did not end with [`ErrorKind::Cancelled`].
     pub fn cancel(&self, side: usize) -> Result<Duration, Violation> {
-        let length = (side.max(2) - 1) as f64 * 10.0;
-        let window = Window::new(side, side, 10.0);
-        let case = self.case(Law::Cancel).in_window(window);
-        let recipe = (self.recipe)(WorldSpec { size: Some([length, length]), ..world_of(10.0) }, false);
+        let (case, recipe, window) = self.cancelled(side);
         let layers: Vec<&str> = recipe.outputs().collect();
         let begun = Instant::now();
         case.layers(&recipe, &window)?;
         let all = begun.elapsed();
         let mut longest = Duration::ZERO;
-        for share in [0.05, 0.27, 0.48, 0.71, 0.93] {
+        for share in MOMENTS {
             // Other processes can delay a run, so the best of three counts.
             let mut late = Duration::MAX;
             for _ in 0..3 {
@@ -394,6 +457,9 @@ impl<'a> Laws<'a> {
         }
     }
 }
+
+/// The shares of the work after which it is cancelled.
+const MOMENTS: [f64; 5] = [0.05, 0.27, 0.48, 0.71, 0.93];
 
 /// Samples along the sides of the world that [`Laws::check`] cancels.
 const CANCELLED_SIDE: usize = 384;

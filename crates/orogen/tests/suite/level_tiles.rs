@@ -239,11 +239,11 @@ fn solvers_and_windows_at_once_do_not_wait_for_each_other() {
     }
 }
 
-/// Waits for a condition.
+/// Waits for a condition. The deadline only ends a test that would hang.
 fn until(what: &str, is_met: impl Fn() -> bool) {
     let begun = Instant::now();
     while !is_met() {
-        assert!(begun.elapsed() < Duration::from_secs(20), "{what}");
+        assert!(begun.elapsed() < Duration::from_secs(300), "{what}");
         thread::sleep(Duration::from_millis(1));
     }
 }

@@ -346,5 +346,6 @@ fn long_and_deep_texts_end_in_a_sentence_soon() {
     let many: String = (0..300).map(|k| format!("p{k} = {k}\n")).collect();
     let error = Recipe::parse(&recipe(&format!("[parameters]\n{many}"), "op = \"fbm\""), "r").unwrap_err();
     assert!(error.to_string().contains("more than 256 parameters"), "{error}");
-    assert!(begun.elapsed().as_secs() < 20, "{:?}", begun.elapsed());
+    // Work that grows with the square of the length would take hours.
+    assert!(begun.elapsed().as_secs() < 300, "{:?}", begun.elapsed());
 }

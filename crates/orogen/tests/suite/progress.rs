@@ -1,28 +1,14 @@
 //! Progress is reported correctly and work can be cancelled, for every node. New nodes are included automatically.
 
-/// See [`side`].
-static SIDE: AtomicUsize = AtomicUsize::new(384);
-
 use crate::support::{Random, laws_of, open, recipe_of, world_of};
 use orogen::node::Node;
 use orogen::op::Op;
 use orogen::{ErrorKind, Grid, Progress, Recipe, Result, Window, World};
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-#[test]
-#[ignore = "long: every node at 1024 x 1024 samples"]
-fn progress_of_larger_work() {
-    SIDE.store(1024, Ordering::Relaxed);
-    shares_grow_from_nothing_to_all_without_long_silences();
-    whatever_is_cancelled_at_any_moment_ends_at_once();
-}
-
-/// Samples along a side of the test worlds.
-fn side() -> usize {
-    SIDE.load(Ordering::Relaxed)
-}
+/// Samples along a side of the worlds in the tests of every run.
+const SIDE: usize = 384;
 
 /// A node in a world large enough to take some time.
 fn recipe(node: &Node, side: usize) -> Recipe {
@@ -54,38 +40,85 @@ fn silence(told: &Told, all: Duration) -> Duration {
 }
 
 #[test]
-fn shares_grow_from_nothing_to_all_without_long_silences() {
+fn shares_grow_from_nothing_to_all_in_small_steps() {
     for node in Node::all() {
+        let world = open(&recipe(&node, SIDE), 2);
+        let layers: Vec<&str> = world.recipe().outputs().collect();
+        let plan = world.plan(&layers, &Window::new(SIDE, SIDE, 10.0)).unwrap();
+        let all = Duration::from_secs_f64(world.work(&plan).unwrap() * 1e-9);
+        let (told, _) = recorded(&world, SIDE);
+        let shares = checked_shares(&node, &told);
+        let largest = std::iter::once(0.0).chain(shares.clone()).zip(shares).map(|(one, next)| next - one);
+        let step = largest.fold(0.0, f64::max);
         let name = node.spec().op;
-        // A busy machine may delay reports: the best of three runs counts.
-        let mut runs = Vec::new();
-        for _ in 0..3 {
-            let (told, all) = recorded(&open(&recipe(&node, side()), 2), side());
-            let shares: Vec<f64> = told.iter().map(|(_, share)| *share).collect();
-            assert!(shares.windows(2).all(|pair| pair[0] < pair[1]), "{name}: never backwards: {shares:?}");
-            assert!(shares.first().is_some_and(|share| *share > 0.0), "{name}: {shares:?}");
-            assert_eq!(shares.last(), Some(&1.0), "{name}: ends at all");
-            runs.push((silence(&told, all), all, told.len()));
-            if is_short(runs[runs.len() - 1]) {
-                break;
+        println!("{name:24} {:4} reports, steps of up to {:5.1} % of {all:.1?}", told.len(), 100.0 * step);
+        // Short work needs no reports. Times are those that the ops state: no clock is read.
+        assert!(step < 1.0 / 3.0 || all.mul_f64(step) < LONGEST_SILENCE, "{name}: {step} of {all:?}");
+    }
+}
+
+/// The longest time without a report, of work that takes longer than three times that.
+const LONGEST_SILENCE: Duration = Duration::from_millis(100);
+
+/// The reported shares, which only grow, from more than nothing to all.
+fn checked_shares(node: &Node, told: &Told) -> impl Iterator<Item = f64> + Clone {
+    let name = node.spec().op;
+    let shares: Vec<f64> = told.iter().map(|(_, share)| *share).collect();
+    assert!(shares.windows(2).all(|pair| pair[0] < pair[1]), "{name}: never backwards: {shares:?}");
+    assert!(shares.first().is_some_and(|share| *share > 0.0), "{name}: {shares:?}");
+    assert_eq!(shares.last(), Some(&1.0), "{name}: ends at all");
+    shares.into_iter()
+}
+
+#[test]
+#[ignore = "long: every node, and the time between its reports"]
+fn there_are_no_long_silences() {
+    for side in [SIDE, 1024] {
+        for node in Node::all() {
+            let name = node.spec().op;
+            // A busy machine may delay reports: the best of three runs counts.
+            let mut runs = Vec::new();
+            for _ in 0..3 {
+                let (told, all) = recorded(&open(&recipe(&node, side), 2), side);
+                let _ = checked_shares(&node, &told);
+                runs.push((silence(&told, all), all, told.len()));
+                if is_short(runs[runs.len() - 1]) {
+                    break;
+                }
             }
+            let (silence, all, reports) = runs[runs.len() - 1];
+            println!("{name:20} {reports:4} reports in {all:8.1?}, the longest silence {silence:7.1?}");
+            assert!(runs.into_iter().any(is_short), "{name}: {silence:?} of {all:?}");
         }
-        let (silence, all, reports) = runs[runs.len() - 1];
-        println!("{name:20} {reports:4} reports in {all:8.1?}, the longest silence {silence:7.1?}");
-        assert!(runs.into_iter().any(is_short), "{name}: {silence:?} of {all:?}");
     }
 }
 
 /// Short work needs no reports.
 fn is_short((silence, all, _): (Duration, Duration, usize)) -> bool {
-    silence < all / 3 || silence < Duration::from_millis(100)
+    silence < all / 3 || silence < LONGEST_SILENCE
+}
+
+/// All nodes but those whose work the engine itself divides into blocks.
+fn divided_by_themselves() -> impl Iterator<Item = Node> {
+    Node::all().into_iter().filter(|node| !matches!(node.op(), Op::Field(_)))
 }
 
 #[test]
+fn whatever_is_cancelled_at_any_share_ends_soon_after_it() {
+    for node in divided_by_themselves() {
+        let late = laws_of(&node).stops(SIDE).unwrap_or_else(|violation| panic!("{violation}"));
+        println!("{:24} stopped within {late:7.1?}", node.spec().op);
+    }
+}
+
+#[test]
+#[ignore = "long: every filter and solver, cancelled at 384 x 384 and 1024 x 1024, and the time until it ends"]
 fn whatever_is_cancelled_at_any_moment_ends_at_once() {
-    for node in Node::all().iter().filter(|node| !matches!(node.op(), Op::Field(_))) {
-        let late = laws_of(node).cancel(side()).unwrap_or_else(|violation| panic!("{violation}"));
-        println!("{:20} stopped within {late:7.1?}", node.spec().op);
+    for side in [SIDE, 1024] {
+        for node in divided_by_themselves() {
+            let late = laws_of(&node).cancel(side).unwrap_or_else(|violation| panic!("{violation}"));
+            println!("{:24} stopped within {late:7.1?}", node.spec().op);
+        }
     }
 }
 
@@ -133,14 +166,14 @@ fn large_work_that_is_cancelled_at_random_moments_ends_soon() {
     let chosen = |node: &Node| only.is_empty() || only.split(',').any(|name| name == node.spec().op);
     let mut broken = Vec::new();
     println!("{:24} {:>6} {:>9} {:>8} {:>9} {:>9}", "op", "side", "work", "reports", "silence", "stopped");
-    for node in Node::all().iter().filter(|node| !matches!(node.op(), Op::Field(_)) && chosen(node)) {
+    for node in divided_by_themselves().filter(&chosen) {
         let name = node.spec().op;
         let mut all = Duration::ZERO;
         for (side, limit, moments) in LARGE {
             let mut told = Told::new();
             // Sixteen times the samples take about sixteen times as long; one more run would take as long as all others.
             match all.is_zero() {
-                true => (told, all) = recorded(&open(&recipe(node, side), 2), side),
+                true => (told, all) = recorded(&open(&recipe(&node, side), 2), side),
                 false => all *= 16,
             }
             let quiet = silence(&told, all);
@@ -151,7 +184,7 @@ fn large_work_that_is_cancelled_at_random_moments_ends_soon() {
                 // A busy machine may be late by itself: the best of three runs counts.
                 let mut best = None;
                 for _ in 0..3 {
-                    let Some(late) = late(node, side, after) else { break };
+                    let Some(late) = late(&node, side, after) else { break };
                     best = Some(best.map_or(late, |best: Duration| best.min(late)));
                     if late <= limit * slack {
                         break;

@@ -35,11 +35,36 @@ filter! {
     Tiled = "lawless.tiled", |window, _| window.width as f32;
     Infinite = "lawless.infinite", |_, _| f32::NAN;
     Sea = "lawless.sea", |_, context| context.world_params.sea_level as f32;
-    Deaf = "lawless.deaf", |window, _| {
+    Asleep = "lawless.asleep", |window, _| {
         std::thread::sleep(Duration::from_millis(if window.width > 300 { 400 } else { 0 }));
         0.0
     };
     Leveled = "lawless.leveled", |_, _| Level::current().lanes() as f32;
+}
+
+orogen::op! {
+    /// Neither reports nor checks, although it takes its time.
+    pub struct Deaf = "lawless.deaf", filter, revision 1;
+    inputs {
+        /// What it reads.
+        source: required,
+    }
+}
+
+impl Filter for Deaf {
+    fn halo(&self, _: f64) -> usize {
+        0
+    }
+
+    fn apply(&self, inputs: &[Option<&Grid>], _: &Window, out: &mut [Option<Grid>], _: &Context) -> Result<()> {
+        let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
+        out.data_mut().copy_from_slice(source.data());
+        Ok(())
+    }
+
+    fn cost(&self, _: f64) -> f64 {
+        5000.0
+    }
 }
 
 orogen::op! {
@@ -189,11 +214,20 @@ fn broken_laws_are_found_and_name_the_op() {
     assert!(broken.law == Law::Finite && broken.message.contains("NaN"), "{broken}");
     let broken = Laws::of(|_| Sea::default()).content_keys().unwrap_err();
     assert!(broken.law == Law::ContentKeys && broken.message.contains("the sea level"), "{broken}");
-    let broken = Laws::of(|_| Deaf::default()).cancel(320).unwrap_err();
-    assert!(broken.law == Law::Cancel && broken.message.contains("it went on for"), "{broken}");
+    let broken = Laws::of(|_| Deaf::default()).stops(320).unwrap_err();
+    assert!(broken.law == Law::Cancel && broken.message.contains("pass without a report"), "{broken}");
     assert!(Laws::of(|_| Counted::default()).stored(1.0 / 3.0).is_err_and(|broken| broken.law == Law::Stored));
     let broken = Laws::of(|_| Celled::default()).resolutions(10.24).unwrap_err();
     assert_eq!(broken.law, Law::Resolutions, "{broken}");
+}
+
+#[test]
+#[ignore = "long: an op that sleeps, and the time until it stops"]
+fn an_op_that_takes_longer_than_it_says_is_found_by_the_clock() {
+    let laws = Laws::of(|_| Asleep::default());
+    assert!(laws.stops(320).is_ok(), "by its costs it is quick");
+    let broken = laws.cancel(320).unwrap_err();
+    assert!(broken.law == Law::Cancel && broken.message.contains("it went on for"), "{broken}");
 }
 
 /// A halo that is one sample too small is found, for a filter and for a levelled op; one that is just enough breaks no law.
