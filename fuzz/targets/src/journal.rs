@@ -78,7 +78,7 @@ impl Site {
 
     /// Begins or goes on with the build.
     fn resume(&self, start: Start) -> orogen::Result<()> {
-        let build = Build::new(&self.world, &spec(), &OutputPolicy::default().output(&self.out())?)?;
+        let build = Build::new(&self.world, &spec(), &OutputPolicy::default().output(self.out())?)?;
         let _ = build.disk();
         build.run(start, &Progress::none()).map(drop)
     }

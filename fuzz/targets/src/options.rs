@@ -28,7 +28,7 @@ pub fn run(input: &[u8]) {
     for number in [number::cell(text), number::wavelength(text), number::positive(text)].into_iter().flatten() {
         assert!(number.is_finite() && number > 0.0, "{text}");
     }
-    assert!(!number::not_negative(text).is_ok_and(|number| !(number >= 0.0)), "{text}");
+    assert!(!number::not_negative(text).is_ok_and(|number| number.is_nan() || number < 0.0), "{text}");
     assert!(!time::clock(text).is_ok_and(|hours| !(0.0..24.0).contains(&hours)), "{text}");
     assert!(!text.parse::<Bytes>().is_ok_and(|bytes| bytes.0 == 0), "{text}");
     if let Ok(Numbers(numbers)) = text.parse() {
