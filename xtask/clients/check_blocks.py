@@ -125,7 +125,7 @@ def luanti(blocks, game):
     settings.write_text("server_announce = false\nbind_address = 127.0.0.1\n")
     server = shutil.which("minetestserver", path=f"{os.environ['PATH']}:/usr/games") or "minetestserver"
     command = [server, "--world", world, "--gameid", game, "--config", settings, "--port", "30917", "--logfile", WORK / "log.txt"]
-    done = subprocess.run(list(map(str, command)), env=environment, capture_output=True, stdin=subprocess.DEVNULL, timeout=60)
+    done = subprocess.run(list(map(str, command)), env=environment, capture_output=True, stdin=subprocess.DEVNULL, timeout=300)
     told = done.stdout.decode() + done.stderr.decode()
     checks.equal(f"{name}: ends well", done.returncode, 0)
     checks.equal(f"{name}: errors", [line for line in told.splitlines() if "ERROR" in line], [])

@@ -165,7 +165,7 @@ fn with_slow() -> Folder {
 fn ctrl_c_stops_cleanly() {
     let folder = with_slow();
     for signal in ["-INT", "-TERM"] {
-        let mut build = Running::start_and_wait(&folder, &arguments("a.zarr", &SLOW, &["--resume"]), 0.0);
+        let mut build = Running::start_and_wait(&folder, &arguments("a.zarr", &SLOW, &["--resume"]));
         assert!(folder.path("a.zarr/height").exists());
         build.signal(signal);
         let (code, said) = build.ended();
@@ -177,7 +177,7 @@ fn ctrl_c_stops_cleanly() {
         &["export", "slow.toml", "--cell", "0.1", "-o", "a.npy"][..],
         &["generate", "slow.toml", "--cell", "0.1", "-o", "made"],
     ] {
-        let mut running = Running::start_and_wait(&folder, arguments, 0.0);
+        let mut running = Running::start_and_wait(&folder, arguments);
         running.signal("-INT");
         let (code, said) = running.ended();
         assert_eq!((code, said.last().unwrap().as_str()), (Some(130), "stopped: nothing was written"), "{arguments:?}");
@@ -204,7 +204,7 @@ fn a_limit_on_files_leaves_a_build_to_go_on_with() {
 #[test]
 fn two_builds_do_not_work_on_one_place() {
     let folder = with_slow();
-    let mut build = Running::start_and_wait(&folder, &arguments("a.zarr", &SLOW, &[]), 0.0);
+    let mut build = Running::start_and_wait(&folder, &arguments("a.zarr", &SLOW, &[]));
     for more in [&["-q"][..], &["-q", "--resume"], &["-q", "--force"]] {
         folder.bad(&arguments("a.zarr", &SLOW, more), 1, "another build of ");
     }

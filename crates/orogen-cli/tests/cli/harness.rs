@@ -161,10 +161,10 @@ impl Running {
         Running { child, lines }
     }
 
-    /// Starts a command with `--progress json`, and waits until it has done more than a share of its work.
-    pub fn start_and_wait(folder: &Folder, arguments: &[&str], done: f64) -> Running {
+    /// Starts a command with `--progress json`, and waits until it has done a part of its work.
+    pub fn start_and_wait(folder: &Folder, arguments: &[&str]) -> Running {
         let running = Running::start(folder, &[arguments, &["--progress", "json"]].concat());
-        running.wait_for("progress", |line| share(line).is_some_and(|share| share > done));
+        running.wait_for("progress", |line| share(line).is_some_and(|share| share > 0.0));
         running
     }
 

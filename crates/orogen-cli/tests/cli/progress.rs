@@ -78,7 +78,7 @@ fn a_block_that_is_interrupted_leaves_nothing() {
     use crate::harness::Running;
     let folder = Folder::new();
     let arguments = ["noise", "worley", "--volume", "3000", "--size", "512", "-o", "block.npy"];
-    let mut running = Running::start_and_wait(&folder, &arguments, 0.0);
+    let mut running = Running::start_and_wait(&folder, &arguments);
     assert_eq!(folder.names("").len(), 2, "the file and its lock");
     running.signal("-INT");
     let (code, said) = running.ended();

@@ -28,7 +28,7 @@ fn a_change_cancels_work_that_is_outdated() {
     let folder = Folder::new();
     folder.write("small.toml", slow().replace("cell = 10", "cell = 0.05"));
     let arguments = ["generate", "small.toml", "--watch", "--memory", "100GiB"];
-    let watcher = Running::start_and_wait(&folder, &arguments, 0.0);
+    let watcher = Running::start_and_wait(&folder, &arguments);
     folder.replace("small.toml", SMALL);
     watcher.says("watching small.toml");
     // A finished first run would have printed so, and its 12 800 samples per row would be here.

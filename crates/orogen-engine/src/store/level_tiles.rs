@@ -171,6 +171,7 @@ mod tests {
                 assert!(tiles.find(&tile(2)).is_none());
                 assert!(claim(&tiles, &[2], true).is_some());
             });
+            // Whether it waits by now or not, it cannot have passed.
             std::thread::sleep(Duration::from_millis(30));
             assert!(!other.is_finished());
             let [first, second] = claims.try_into().ok().unwrap();
@@ -188,12 +189,12 @@ mod tests {
         let claims = claim(&tiles, &[0], true).unwrap();
         std::thread::scope(|scope| {
             let other = scope.spawn(|| {
-                assert!(claim(&tiles, &[0], true).is_none(), "the other has ended");
-                assert!(claim(&tiles, &[0], true).is_some());
+                // It may come too late to wait: then it may make the tile at once.
+                let made = claim(&tiles, &[0], true).or_else(|| claim(&tiles, &[0], true));
+                assert!(made.is_some());
             });
             drop(claims);
-            // It may come too late to wait.
-            let _ = other.join();
+            other.join().unwrap();
         });
         assert!(tiles.making().is_empty());
     }

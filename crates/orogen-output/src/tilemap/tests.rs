@@ -6,6 +6,7 @@ use orogen_grid::autotile::mask::{CORNERS, Layout, OFFSETS, SIMPLE_BLOB};
 use orogen_grid::grid::Window;
 use orogen_grid::progress::Progress;
 use orogen_grid::random::Random;
+use orogen_io::test_folder::TestFolder;
 
 use super::art::set::SETS;
 use super::job::{AtOnce, TilemapJob};
@@ -171,7 +172,8 @@ fn files(map: &Tilemap) -> Vec<Vec<u8>> {
 /// The bits of all files of a map are the same, wherever its tiles are, and in however many pieces they were drawn.
 #[test]
 fn a_streamed_map_is_the_map_in_memory() {
-    let path = std::env::temp_dir().join("map.tmx");
+    let folder = TestFolder::new("tilemap-streamed").unwrap();
+    let path = folder.join("map.tmx");
     let unbounded = Window::new(200, 260, 10.0).at(-300, 5);
     let bounded = Window::new(151, 251, 10.0);
     let cases = [

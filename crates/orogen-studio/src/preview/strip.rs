@@ -106,7 +106,7 @@ mod tests {
         strip.ask(&session, recipes("alpine", 9), "height".into()).unwrap();
         strip.ask(&session, recipes("classic", 3), "height".into()).unwrap();
         let (begun, mut made) = (Instant::now(), Vec::new());
-        while made.len() < 3 && begun.elapsed() < Duration::from_secs(60) {
+        while made.len() < 3 && begun.elapsed() < Duration::from_secs(300) {
             made.extend(strip.made().into_iter().map(|(k, picture)| (k, picture.unwrap())));
             std::thread::sleep(Duration::from_millis(2));
         }

@@ -103,7 +103,7 @@ mod tests {
         let request = Request::new(presets::find("hills").unwrap().recipe().unwrap());
         worker.ask(Request { finest: 256, ..request });
         let (begun, mut survey, mut frame) = (Instant::now(), Survey::new(Arc::new(|| ())), None);
-        while survey.outcome().is_none() && begun.elapsed() < Duration::from_secs(120) {
+        while survey.outcome().is_none() && begun.elapsed() < Duration::from_secs(300) {
             for event in worker.events() {
                 if let Event::Frame(made) = event {
                     frame = Some(Arc::<Frame>::from(made));

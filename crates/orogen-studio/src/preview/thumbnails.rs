@@ -214,7 +214,7 @@ mod tests {
         thumbnails.ask(session, recipe.clone(), Region::of(recipe.world.size, recipe.world.cell)).unwrap();
         let begun = Instant::now();
         while thumbnails.is_busy() {
-            assert!(begun.elapsed() < Duration::from_secs(60), "no pictures after a minute");
+            assert!(begun.elapsed() < Duration::from_secs(300), "no pictures");
             std::thread::sleep(Duration::from_millis(2));
             thumbnails.poll();
         }
