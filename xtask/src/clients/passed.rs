@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
 
 use crate::failure::Result;
 use crate::{host, shell};
@@ -22,10 +23,21 @@ fn path() -> PathBuf {
 
 /// Notes that a step has passed now.
 pub fn note(step: &str) -> Result {
+    // Steps run side by side.
+    static WRITING: Mutex<()> = Mutex::new(());
+    let pass = format!("{} {} {}", host::date(), commit()?, host::processor());
+    let _writing = WRITING.lock().unwrap_or_else(PoisonError::into_inner);
     let mut passes = parse(&shell::read(&path())?);
-    let commit = shell::capture(shell::program("git").args(["describe", "--always", "--exclude=*", "--dirty=+"]))?;
-    passes.insert(step.to_owned(), format!("{} {} {}", host::date(), commit.trim(), host::processor()));
+    passes.insert(step.to_owned(), pass);
     shell::write(&path(), &text(&passes))
+}
+
+/// The commit, with a `+` if files have changed since, apart from the one that is written here.
+fn commit() -> Result<String> {
+    let commit = shell::capture(shell::program("git").args(["rev-parse", "--short", "HEAD"]))?;
+    let changes = ["status", "--porcelain", "--", ".", ":!xtask/clients/passed.txt"];
+    let is_clean = shell::capture(shell::program("git").args(changes))?.is_empty();
+    Ok(format!("{}{}", commit.trim(), if is_clean { "" } else { "+" }))
 }
 
 /// The steps of these that have not passed for too long, each with its last pass.
