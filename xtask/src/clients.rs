@@ -242,12 +242,6 @@ const STEPS: &[&Step] = &[
 
 /// Steps that run only if they are named, or with `--all`. [`passed`] keeps when they last passed.
 const ON_REQUEST: &[&Step] = &[
-    &beside("wasm-all", "every preset made by the libraries built for WebAssembly", || {
-        noted("wasm-all", wasm::check_all)
-    }),
-    &beside("levels", "the presets' golden hashes at every level and thread count", || {
-        noted("levels", presets::check_all)
-    }),
     &beside("neon", "the tests of every SIMD level on an emulated ARM processor", || noted("neon", neon::check)),
     &beside("asan", "the tests of the SIMD levels under AddressSanitizer", || noted("asan", asan::check)),
     &beside("luanti", "a Luanti server reads worlds of blocks", || noted("luanti", || script_for("luanti", "blocks"))),
@@ -255,6 +249,13 @@ const ON_REQUEST: &[&Step] = &[
         noted("grass", || script_for("grass", "layers"))
     }),
     &beside("blender", "Blender imports meshes", || noted("blender", blender::check)),
+    // These two share their folders with `wasm` and `presets`.
+    &alone("wasm-all", "every preset made by the libraries built for WebAssembly", || {
+        noted("wasm-all", wasm::check_all)
+    }),
+    &alone("levels", "the presets' golden hashes at every level and thread count", || {
+        noted("levels", presets::check_all)
+    }),
     &alone("fuzz", "libFuzzer on the readers of foreign files", || noted("fuzz", || crate::fuzz::run(&[]))),
 ];
 

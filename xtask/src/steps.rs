@@ -66,9 +66,9 @@ impl Run<'_> {
         let (path, is_complete) = (new_log(step)?, AtomicBool::new(false));
         let seconds = std::thread::scope(|scope| {
             scope.spawn(|| output::follow(&path, &is_complete));
-            let result = self.timed(step);
-            is_complete.store(true, Ordering::Release);
-            result
+            // Also if the step panics: the scope waits for the thread that follows its log.
+            let _end = Complete(&is_complete);
+            self.timed(step)
         })?;
         println!("{}", self.end(step, seconds));
         Ok(())
@@ -126,6 +126,15 @@ impl Run<'_> {
         let line = format!("    {} done in {seconds} s", step.name);
         self.done.lock().unwrap_or_else(PoisonError::into_inner).push(vec![step.name.to_owned(), seconds]);
         line
+    }
+}
+
+/// Sets its value when it is dropped.
+struct Complete<'a>(&'a AtomicBool);
+
+impl Drop for Complete<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Release);
     }
 }
 

@@ -61,8 +61,7 @@ pub struct Spec {
 
 impl Spec {
     /// The names of the declared inputs.
-    #[must_use]
-    pub fn input_names(&self) -> Vec<InputName<'static>> {
+    pub(crate) fn input_names(&self) -> Vec<InputName<'static>> {
         self.inputs.iter().map(|input| InputName { name: input.name, required: input.required }).collect()
     }
 

@@ -30,6 +30,7 @@ mod law;
 mod recipes;
 
 pub use check::{CELLS, Laws};
+#[doc(hidden)]
 pub use forced::at_level;
 pub use law::{LONGEST_CANCEL, Law, Verdict, Violation};
 pub use recipes::{NODE, recipe_of, world_of};
