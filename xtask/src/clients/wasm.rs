@@ -23,8 +23,8 @@ pub fn install() -> Result {
     })
 }
 
-/// Of each kind of preset one: noise, levels, a volume, a solver.
-const FOUR: &str = "classic endless caves island";
+/// Of each kind of preset one: noise, levels, a volume, stream power.
+const FOUR: &str = "classic endless caves volcano";
 
 /// Makes four presets, and a world without files.
 pub fn check_four() -> Result {
