@@ -185,7 +185,8 @@ fn share<T: Send>(
     });
 }
 
-/// Most items of a batch: locks are rare enough, and of items that take very different times no task takes all the long ones.
+/// Maximum number of items of a batch. Larger batches would not lock less often by a measurable amount, and one task could get
+/// most of the long items.
 const LARGEST: usize = 16;
 
 /// Items that follow each other.

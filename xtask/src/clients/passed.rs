@@ -1,4 +1,4 @@
-//! When the steps that not every run includes last passed: a committed file, a line for each.
+//! A committed file that says when each step on request last passed, one line a step.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -11,7 +11,7 @@ use crate::{host, shell};
 pub const MAX_AGE: i64 = 14;
 
 /// The head of the file.
-const HEAD: &str = "# When each step of `cargo xtask clients --all` that is no part of every run last passed. The command writes this file.\n\
+const HEAD: &str = "# When each step of `cargo xtask clients --all` on request last passed. The command writes this file.\n\
     # step, date, commit (+ if files had changed since), processor\n";
 
 /// The last pass of a step: date, commit and processor, as in the file.

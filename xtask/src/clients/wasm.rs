@@ -23,7 +23,7 @@ pub fn install() -> Result {
     })
 }
 
-/// Of each kind of preset one: noise, levels, a volume, stream power.
+/// One preset of each kind: noise, levels, a volume, stream power.
 const FOUR: &str = "classic endless caves volcano";
 
 /// Makes four presets, and a world without files.

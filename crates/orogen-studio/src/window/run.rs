@@ -101,8 +101,8 @@ struct End {
 }
 
 impl End {
-    /// Starts the studio again if its device was lost, and otherwise says why it ended; returns the exit code. Nothing has
-    /// `ended` in a panic.
+    /// Starts the studio again if its device was lost, and otherwise says why it ended; returns the exit code. `ended`
+    /// is `None` after a panic.
     fn conclude(&self, ended: Option<Result<(), String>>) -> i32 {
         let lost = self.watch.lost();
         let message = match (lost, ended) {
