@@ -185,8 +185,7 @@ fn share<T: Send>(
     });
 }
 
-/// Maximum number of items of a batch. Larger batches would not lock less often by a measurable amount, and one task could get
-/// most of the long items.
+/// Maximum number of items of a batch: in larger ones a task could get most of the long items.
 const LARGEST: usize = 16;
 
 /// Items that follow each other.
