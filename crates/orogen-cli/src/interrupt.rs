@@ -11,8 +11,12 @@ use crate::failure::{Failure, INTERRUPTED};
 /// The flag that an interruption sets. The first one cancels the work, which cleans up; a second one ends the process
 /// at once.
 pub fn flag() -> Arc<AtomicBool> {
+    Arc::clone(shared())
+}
+
+fn shared() -> &'static Arc<AtomicBool> {
     static FLAG: OnceLock<Arc<AtomicBool>> = OnceLock::new();
-    let flag = FLAG.get_or_init(|| {
+    FLAG.get_or_init(|| {
         let flag = Arc::new(AtomicBool::new(false));
         let handled = Arc::clone(&flag);
         // If no handler can be set, Ctrl-C keeps its default effect.
@@ -22,13 +26,12 @@ pub fn flag() -> Arc<AtomicBool> {
             }
         });
         flag
-    });
-    Arc::clone(flag)
+    })
 }
 
 /// Whether an interruption was requested.
 pub fn asked() -> bool {
-    flag().load(Ordering::Relaxed)
+    shared().load(Ordering::Relaxed)
 }
 
 /// Converts a failure caused by an interruption; `then` describes the state that it leaves behind.

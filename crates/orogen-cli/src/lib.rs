@@ -9,10 +9,8 @@
 mod bar;
 mod cli;
 mod command;
-mod contact;
 mod device;
 mod disk;
-mod draw;
 mod export_options;
 mod failure;
 mod finite;
@@ -28,7 +26,6 @@ mod pictures;
 mod replace;
 mod report;
 mod say;
-mod sheet;
 mod sink;
 mod source;
 mod values;

@@ -100,7 +100,7 @@ impl Moving<'_> {
                         return fill(frame, bytes);
                     }
                     fill(frame, &mut own)?;
-                    bytes.chunks_exact_mut(3).zip(&own).for_each(|(rgb, grey)| rgb.fill(*grey));
+                    gif::rgb_of_grey(&own, bytes);
                     Ok(())
                 })
             })?,
@@ -127,7 +127,12 @@ impl Moving<'_> {
 
 /// The pixels as three bytes each.
 fn colors(sample: Vec<u8>, pixel: Pixel) -> Vec<u8> {
-    if pixel == Pixel::Grey8 { sample.iter().flat_map(|grey| [*grey; 3]).collect() } else { sample }
+    if pixel != Pixel::Grey8 {
+        return sample;
+    }
+    let mut rgb = vec![0; 3 * sample.len()];
+    gif::rgb_of_grey(&sample, &mut rgb);
+    rgb
 }
 
 #[cfg(test)]

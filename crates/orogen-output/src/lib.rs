@@ -24,6 +24,8 @@ pub mod jobs;
 pub mod map;
 mod markup;
 pub mod mesh;
+#[doc(hidden)]
+pub mod noise_pictures;
 pub mod render;
 pub mod sheet;
 pub mod survey;

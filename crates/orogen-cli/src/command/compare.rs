@@ -2,13 +2,14 @@
 
 use std::path::PathBuf;
 
+use orogen::noise_pictures::{page, row};
+
 use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::format::Format;
 use crate::interrupt;
 use crate::options::DrawOptions;
 use crate::say;
-use crate::sheet::{page, row};
 use crate::sink::{Sink, is_stdout};
 use crate::values::number::seed;
 

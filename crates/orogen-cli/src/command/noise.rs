@@ -4,18 +4,17 @@ use std::f64::consts::TAU;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use orogen::Progress;
 use orogen::format::png::{Animation, Picture};
 use orogen::format::{npy, png};
+use orogen::noise_pictures::look::{Drawing, Look};
+use orogen::noise_pictures::slice::Slice;
+use orogen::noise_pictures::texture::Texture;
 use orogen::words;
 use orogen_noise::{Basis, Fractal, MAX_OCTAVES, TileError};
 
 use crate::bar::Bar;
-use crate::draw::look::{Drawing, Look};
-use crate::draw::slice::Slice;
-use crate::draw::sum;
-use crate::draw::texture::Texture;
 use crate::failure::Failure;
 use crate::format::Format;
 use crate::moving::{AnimationTarget, Moving};
@@ -23,6 +22,7 @@ use crate::options::DrawOptions;
 use crate::sink::{Sink, is_stdout};
 use crate::values::number::{MOST, finite, positive, seed, wavelength};
 use crate::values::size::Size;
+use crate::values::sum;
 use crate::{disk, interrupt, say};
 
 /// Duration of a frame, in milliseconds.
@@ -83,7 +83,7 @@ pub struct Args {
     #[arg(long, conflicts_with_all = ["texture", "volume"])]
     gradient: bool,
     /// Draw a textbook texture made from the noise
-    #[arg(long, conflicts_with = "volume")]
+    #[arg(long, value_parser = texture(), conflicts_with = "volume")]
     texture: Option<Texture>,
     /// Bits per grey value, or per component of a normal
     #[arg(long, value_name = "8|16", value_parser = ["8", "16"], default_value = "8")]
@@ -107,6 +107,13 @@ pub struct Args {
 fn basis() -> impl TypedValueParser<Value = Basis> {
     let names = PossibleValuesParser::new(Basis::all().iter().map(|basis| basis.name()));
     names.try_map(|name| Basis::from_name(&name).ok_or("it is not known"))
+}
+
+/// Parser of the textures of the library.
+fn texture() -> impl TypedValueParser<Value = Texture> {
+    let names = Texture::ALL.map(|texture| PossibleValue::new(texture.name()).help(texture.about()));
+    PossibleValuesParser::new(names)
+        .try_map(|name| Texture::ALL.into_iter().find(|texture| texture.name() == name).ok_or("it is not known"))
 }
 
 fn octaves() -> impl TypedValueParser<Value = u32> {
@@ -320,7 +327,6 @@ impl Task<'_> {
 
     /// The depth of a frame. Tileable noise is passed once; in other noise a circular path would need a fourth
     /// dimension, so the path goes forward and back along a cosine.
-    /// this one goes there and back on a cosine.
     fn depth(&self, frame: u32, frames: u32) -> f64 {
         let turn = f64::from(frame) / f64::from(frames);
         let way = match self.args.tileable {
@@ -380,7 +386,7 @@ impl Task<'_> {
     fn description(&self) -> String {
         let Fractal { basis, seed, octaves, .. } = self.noise;
         let sum = match self.look {
-            Look::Texture(texture) => texture.name(),
+            Look::Texture(texture) => texture.name().into(),
             _ => self.args.sum.sum().name(),
         };
         let depth = self.args.z.map(|z| format!(", depth {z}")).unwrap_or_default();

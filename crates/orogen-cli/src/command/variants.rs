@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use orogen::budget::Reservation;
+use orogen::map::contact::{self, Sheet, Variant};
 use orogen::world::HEIGHT;
 use orogen::{Budget, Grid, Progress, Recipe, Window, World};
 
 use crate::bar::Bar;
-use crate::contact::{self, Sheet, Variant};
 use crate::failure::Failure;
 use crate::format::Format;
 use crate::options::RunOptions;

@@ -7,5 +7,6 @@ pub mod number;
 pub mod region;
 pub mod seeds;
 pub mod size;
+pub mod sum;
 pub mod sweep;
 pub mod time;

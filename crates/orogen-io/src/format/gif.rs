@@ -164,6 +164,16 @@ pub fn write_animation(
     animation: Animation,
     mut fill: impl FnMut(u32, &mut [u8]) -> io::Result<()>,
 ) -> io::Result<()> {
+    write_frames(out, size, palette, animation, &mut fill)
+}
+
+fn write_frames(
+    out: &mut dyn Write,
+    size: [usize; 2],
+    palette: &Palette,
+    animation: Animation,
+    fill: &mut dyn FnMut(u32, &mut [u8]) -> io::Result<()>,
+) -> io::Result<()> {
     let [width, height] = size;
     let side = |side: usize| match u16::try_from(side) {
         Ok(n) if n > 0 => Ok(n.to_le_bytes()),
@@ -204,6 +214,11 @@ pub fn write_animation(
         before.clone_from(&indices);
     }
     out.write_all(b"\x3b")
+}
+
+/// Grey values as pixels of three bytes.
+pub fn rgb_of_grey(greys: &[u8], rgb: &mut [u8]) {
+    rgb.chunks_exact_mut(3).zip(greys).for_each(|(rgb, grey)| rgb.fill(*grey));
 }
 
 /// Maximum number of bits of a code.

@@ -102,6 +102,15 @@ pub fn write(
     picture: &Picture,
     mut fill: impl FnMut(Range<usize>, &mut [u8]) -> io::Result<()>,
 ) -> io::Result<()> {
+    write_bands(out, picture, &mut fill)
+}
+
+// Behind `dyn`: the encoder is compiled once, not in every crate that writes pictures.
+fn write_bands(
+    out: &mut dyn Write,
+    picture: &Picture,
+    fill: &mut dyn FnMut(Range<usize>, &mut [u8]) -> io::Result<()>,
+) -> io::Result<()> {
     write_through(out, picture, |rows| {
         let row_bytes = picture.width * picture.pixel.bytes();
         let rows_a_band = (BAND / row_bytes).clamp(1, picture.height);
@@ -124,6 +133,15 @@ pub fn write_through(
     picture: &Picture,
     body: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
+    let mut body = Some(body);
+    write_stream(out, picture, &mut |rows| body.take().map_or(Ok(()), |body| body(rows)))
+}
+
+fn write_stream(
+    out: &mut dyn Write,
+    picture: &Picture,
+    body: &mut dyn FnMut(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
     let mut writer = encoder(out, picture)?.write_header().map_err(plain)?;
     let mut rows = writer.stream_writer_with_size(BAND).map_err(plain)?;
     body(&mut rows)?;
@@ -141,6 +159,15 @@ pub fn write_animation(
     picture: &Picture,
     animation: Animation,
     mut fill: impl FnMut(u32, &mut [u8]) -> io::Result<()>,
+) -> io::Result<()> {
+    write_frames(out, picture, animation, &mut fill)
+}
+
+fn write_frames(
+    out: &mut dyn Write,
+    picture: &Picture,
+    animation: Animation,
+    fill: &mut dyn FnMut(u32, &mut [u8]) -> io::Result<()>,
 ) -> io::Result<()> {
     let mut encoder = encoder(out, picture)?;
     encoder.set_animated(animation.frames, 0).map_err(plain)?;

@@ -1,6 +1,7 @@
 //! Maps: pictures of grids.
 
 pub mod canvas;
+pub mod contact;
 pub mod paint;
 pub(crate) mod shade;
 pub mod swatches;

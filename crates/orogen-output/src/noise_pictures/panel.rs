@@ -1,8 +1,8 @@
 //! The two pictures of a noise.
 
-use orogen::analysis::hillshade::{Light, hillshade};
-use orogen::format::levels::Levels;
-use orogen::{Grid, Window};
+use orogen_grid::analysis::hillshade::{Light, hillshade};
+use orogen_grid::grid::{Grid, Window};
+use orogen_io::format::levels::Levels;
 
 use super::row::{SIDE, Shown};
 
@@ -51,7 +51,7 @@ fn levels(grid: &Grid) -> Levels {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sheet::row::rows;
+    use crate::noise_pictures::row::rows;
 
     #[test]
     fn pictures_use_all_greys_and_the_light_comes_from_the_north_west() {

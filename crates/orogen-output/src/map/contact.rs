@@ -1,10 +1,12 @@
 //! The page of `orogen variants`: pictures of worlds side by side, with the same colors and light.
 
-use orogen::map::canvas::{Canvas, Ink};
-use orogen::map::paint::Painter;
-use orogen::map::text::{BuiltinFont, Face, Style};
-use orogen::words::shortened;
-use orogen::{Grid, Window};
+use orogen_grid::error::Result;
+use orogen_grid::grid::{Grid, Window};
+use orogen_grid::words::shortened;
+
+use super::canvas::{Canvas, Ink};
+use super::paint::Painter;
+use super::text::{BuiltinFont, Face, Style};
 
 const PAPER: Ink = [253, 252, 249];
 const INK: Ink = [28; 3];
@@ -54,6 +56,7 @@ fn layout(variants: &[Variant], columns: Option<usize>) -> Layout {
 }
 
 /// The size of the page.
+#[must_use]
 pub fn size(variants: &[Variant], columns: Option<usize>) -> [usize; 2] {
     let Layout { columns, rows, cell } = layout(variants, columns);
     [2 * MARGIN + columns * cell[0] + (columns - 1) * GUTTER, 2 * MARGIN + HEADER + rows * (cell[1] + CAPTION) + FOOTER]
@@ -63,7 +66,7 @@ pub fn size(variants: &[Variant], columns: Option<usize>) -> [usize; 2] {
 ///
 /// # Errors
 /// If the font cannot be loaded.
-pub fn draw(sheet: &Sheet, variants: &[Variant], columns: Option<usize>) -> orogen::Result<Canvas> {
+pub fn draw(sheet: &Sheet, variants: &[Variant], columns: Option<usize>) -> Result<Canvas> {
     let [width, height] = size(variants, columns);
     let layout = layout(variants, columns);
     let font = BuiltinFont::new()?;

@@ -5,32 +5,54 @@
 use std::f32::consts::TAU;
 use std::ops::Range;
 
-use clap::ValueEnum;
-use orogen::palette::color::Encoder;
-use orogen::palette::ramp::Ramp;
-use orogen::parallel;
+use orogen_grid::parallel;
+use orogen_io::palette::color::Encoder;
+use orogen_io::palette::ramp::Ramp;
 use orogen_noise::{Fractal, Kind};
 
 use super::slice::Slice;
 
 /// A material.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Texture {
-    /// Clouds: fBm mapped to blue sky below a threshold and to increasingly dense white above it
+    /// White clouds in a blue sky.
     Clouds,
-    /// Marble: a sine wave distorted by turbulence, the sum of the octaves' absolute values
+    /// Veined stone.
     Marble,
-    /// Wood: rings from the fractional part of a multiplied and stretched noise, with a fine grain
+    /// Wood with its rings.
     Wood,
 }
 
 impl Texture {
-    /// The name on the command line.
-    pub fn name(self) -> String {
-        self.to_possible_value().map(|value| value.get_name().to_string()).unwrap_or_default()
+    /// All textures.
+    pub const ALL: [Texture; 3] = [Texture::Clouds, Texture::Marble, Texture::Wood];
+
+    /// The name, as on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Texture::Clouds => "clouds",
+            Texture::Marble => "marble",
+            Texture::Wood => "wood",
+        }
+    }
+
+    /// How it is made, in a phrase.
+    #[must_use]
+    pub fn about(self) -> &'static str {
+        match self {
+            Texture::Clouds => {
+                "Clouds: fBm mapped to blue sky below a threshold and to increasingly dense white above it"
+            }
+            Texture::Marble => "Marble: a sine wave distorted by turbulence, the sum of the octaves' absolute values",
+            Texture::Wood => {
+                "Wood: rings from the fractional part of a multiplied and stretched noise, with a fine grain"
+            }
+        }
     }
 
     /// The default number of octaves.
+    #[must_use]
     pub fn octaves(self) -> u32 {
         match self {
             Texture::Clouds => 8,
@@ -40,6 +62,7 @@ impl Texture {
     }
 
     /// The default wavelength for a picture of 512 samples.
+    #[must_use]
     pub fn wavelength(self) -> f64 {
         match self {
             Texture::Clouds => 200.0,
@@ -49,6 +72,7 @@ impl Texture {
     }
 
     /// The noise of the texture, which determines how octaves are summed.
+    #[must_use]
     pub fn made_of(self, slice: &Slice) -> Slice {
         let (kind, stretch) = match self {
             Texture::Clouds => (Kind::Fbm, 1.0),

@@ -1,8 +1,8 @@
 //! The rows of the page and their noises.
 
-use orogen::Progress;
-use orogen::aggregate::relief::{self, Ridges};
-use orogen::aggregate::single;
+use orogen_grid::aggregate::relief::{self, Ridges};
+use orogen_grid::aggregate::single;
+use orogen_grid::progress::Progress;
 use orogen_noise::{Basis, Falloff, Feature, Fractal, Kind, LengthMismatch, Points, Worley};
 
 /// A row of related noises.
@@ -105,6 +105,7 @@ pub const COLUMNS: usize = 6;
 pub const SIDE: f64 = 200.0;
 
 /// The rows, with every noise from `seed`.
+#[must_use]
 pub fn rows(seed: u64) -> Vec<Row> {
     let single = |basis, wavelength| {
         Fractal::new(seed, wavelength)

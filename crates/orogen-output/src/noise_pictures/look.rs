@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use orogen::format::levels::Levels;
-use orogen::format::png::Pixel;
+use orogen_io::format::levels::Levels;
+use orogen_io::format::png::Pixel;
 
 use super::slice::Slice;
 use super::texture::{Painter, Texture};
@@ -33,6 +33,7 @@ pub struct Drawing {
 
 impl Look {
     /// The slice to draw: a texture changes how octaves are summed, and may stretch the noise.
+    #[must_use]
     pub fn made_of(self, slice: &Slice) -> Slice {
         match self {
             Look::Texture(texture) => texture.made_of(slice),
@@ -43,11 +44,13 @@ impl Look {
 
 impl Drawing {
     /// A drawing of a slice, with 16 bits per component if `deep` and not a texture.
+    #[must_use]
     pub fn new(slice: Slice, look: Look, deep: bool) -> Drawing {
         Drawing { slice, deep, look, painter: Painter::default() }
     }
 
     /// The type of its pixels.
+    #[must_use]
     pub fn pixel(&self) -> Pixel {
         match (self.look, self.deep) {
             (Look::Grey, false) => Pixel::Grey8,

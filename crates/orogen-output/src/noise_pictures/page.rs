@@ -1,12 +1,13 @@
 //! The page: headings, pictures and captions on a grid.
 
-use orogen::Progress;
-use orogen::map::canvas::{Canvas, Ink};
-use orogen::map::text::{BuiltinFont, Face, Style};
-use orogen::parallel;
+use orogen_grid::error::Result;
+use orogen_grid::parallel;
+use orogen_grid::progress::Progress;
 
 use super::panel::{self, Pictures};
 use super::row::{COLUMNS, Row, SIDE};
+use crate::map::canvas::{Canvas, Ink};
+use crate::map::text::{BuiltinFont, Face, Style};
 
 /// All inks are grey, so that the page is written as greyscale, in half the bytes.
 const PAPER: Ink = [253; 3];
@@ -35,6 +36,7 @@ struct Layout<'a> {
 }
 
 /// The size of a page with pictures of `side` samples per side.
+#[must_use]
 pub fn size(rows: usize, side: usize) -> [usize; 2] {
     let at = |measure: f64| measure * scale(side);
     let width = 2.0 * at(MARGIN) + COLUMNS as f64 * side as f64 + (COLUMNS - 1) as f64 * at(GUTTER);
@@ -51,7 +53,7 @@ fn scale(side: usize) -> f64 {
 ///
 /// # Errors
 /// If the font cannot be loaded, or the work is cancelled.
-pub fn draw(rows: &[Row], side: usize, seed: u64, progress: &Progress) -> orogen::Result<Canvas> {
+pub fn draw(rows: &[Row], side: usize, seed: u64, progress: &Progress) -> Result<Canvas> {
     let [width, height] = size(rows.len(), side);
     let canvas = Canvas::new(width, height, PAPER);
     let mut layout = Layout { rows, side, scale: scale(side), font: BuiltinFont::new()?, canvas };

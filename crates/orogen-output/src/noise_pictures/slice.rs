@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use orogen::parallel;
+use orogen_grid::parallel;
 use orogen_noise::{Depth, Fractal, LengthMismatch, Points, TileError, Tiled};
 
 use super::fit::{Fit, Lengths};
@@ -28,6 +28,7 @@ pub struct Slice {
 
 impl Slice {
     /// The adjusted wavelengths.
+    #[must_use]
     pub fn fit(&self) -> Fit {
         let [x, y, depth] = self.repeat;
         Fit::new(self.noise.wavelength, [x, y * self.stretch, depth])

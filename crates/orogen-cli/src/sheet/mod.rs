@@ -1,5 +1,0 @@
-//! The page of `orogen compare`.
-
-pub mod page;
-pub mod panel;
-pub mod row;
