@@ -105,12 +105,11 @@ pub fn write(
     write_bands(out, picture, &mut fill)
 }
 
+/// What makes the bytes of a range of rows.
+type Fill<'a> = dyn FnMut(Range<usize>, &mut [u8]) -> io::Result<()> + 'a;
+
 // Behind `dyn`: the encoder is compiled once, not in every crate that writes pictures.
-fn write_bands(
-    out: &mut dyn Write,
-    picture: &Picture,
-    fill: &mut dyn FnMut(Range<usize>, &mut [u8]) -> io::Result<()>,
-) -> io::Result<()> {
+fn write_bands(out: &mut dyn Write, picture: &Picture, fill: &mut Fill) -> io::Result<()> {
     write_through(out, picture, |rows| {
         let row_bytes = picture.width * picture.pixel.bytes();
         let rows_a_band = (BAND / row_bytes).clamp(1, picture.height);
