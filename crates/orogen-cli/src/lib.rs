@@ -15,6 +15,7 @@ mod export_options;
 mod failure;
 mod finite;
 mod format;
+mod fractal_options;
 mod graph;
 mod interrupt;
 mod layer_file;

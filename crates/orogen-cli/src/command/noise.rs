@@ -17,12 +17,12 @@ use orogen_noise::{Basis, Fractal, MAX_OCTAVES, TileError};
 use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::format::Format;
+use crate::fractal_options;
 use crate::moving::{AnimationTarget, Moving};
 use crate::options::DrawOptions;
 use crate::sink::{Sink, is_stdout};
 use crate::values::number::{MOST, finite, positive, seed, wavelength};
 use crate::values::size::Size;
-use crate::values::sum;
 use crate::{disk, interrupt, say};
 
 /// Duration of a frame, in milliseconds.
@@ -70,7 +70,7 @@ pub struct Args {
     #[arg(long, value_name = "L", value_parser = positive, default_value = "2", allow_negative_numbers = true)]
     lacunarity: f64,
     #[command(flatten)]
-    sum: sum::Options,
+    sum: fractal_options::Options,
     /// Make the noise tileable horizontally and vertically, and through the frames or the slices of a volume. Wavelengths are adjusted
     /// slightly so that a whole number of them fits
     #[arg(long)]

@@ -7,6 +7,5 @@ pub mod number;
 pub mod region;
 pub mod seeds;
 pub mod size;
-pub mod sum;
 pub mod sweep;
 pub mod time;
