@@ -15,7 +15,7 @@ use crate::{interrupt, say};
 /// How progress is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
 pub enum Mode {
-    /// A bar if standard error is a terminal, otherwise nothing
+    /// A bar if standard error is a terminal, otherwise one line if the work takes more than a minute
     #[default]
     Auto,
     /// A line on standard error every second: "12 %, 34 s left"
@@ -42,6 +42,10 @@ const INTERVAL: Duration = Duration::from_millis(100);
 /// Interval of lines for logs.
 const LOGGED: Duration = Duration::from_secs(1);
 
+/// Work is announced where no bar is shown if it takes longer; how long it runs before that is estimated.
+const LONG: Duration = Duration::from_secs(60);
+const TRIAL: Duration = Duration::from_secs(5);
+
 /// Resolution of the bar.
 const STEPS: u64 = 1000;
 
@@ -65,7 +69,6 @@ impl Bar {
         let watch = Arc::new(Watch { begun: Instant::now(), share: AtomicU64::new(0), ended: AtomicBool::new(false) });
         let mode = match MODE.get().copied().unwrap_or_default() {
             _ if quiet => Mode::None,
-            Mode::Auto if !io::stderr().is_terminal() => Mode::None,
             mode => mode,
         };
         if mode == Mode::None {
@@ -84,6 +87,7 @@ impl Bar {
                 let left = at.left().map_or("null".to_string(), |left| format!("{left:.1}"));
                 format!(r#"{{"share":{:.5},"seconds":{:.2},"left":{left}}}"#, at.share, at.elapsed)
             }),
+            Mode::Auto if !io::stderr().is_terminal() => seen.announce(),
             Mode::Auto | Mode::None => seen.paint(),
         });
         (Bar { watch, painter: Some(painter) }, progress.stopped_by(interrupt::flag()))
@@ -145,6 +149,24 @@ impl Watch {
         }
         // The last line tells how the work ended.
         say::error(&line(&self.moment()));
+    }
+
+    /// Prints one line if the work takes long.
+    fn announce(&self) {
+        while !self.has_ended() {
+            std::thread::park_timeout(LOGGED);
+            let at = self.moment();
+            let told = at.elapsed >= TRIAL.as_secs_f64() && !self.has_ended();
+            if let Some(left) = at.left().filter(|_| told) {
+                if left + at.elapsed > LONG.as_secs_f64() {
+                    say::error(&format!(
+                        "note: about {} left; --progress plain reports it each second",
+                        duration(left)
+                    ));
+                }
+                return;
+            }
+        }
     }
 
     /// Shows a bar until the end.

@@ -10,6 +10,7 @@ use orogen::words::number;
 use orogen::{Budget, Recipe, Window, World};
 
 use crate::failure::Failure;
+use crate::say;
 use crate::source::Source;
 use crate::values::arguments::Arguments;
 use crate::values::number::cell;
@@ -27,7 +28,8 @@ pub struct View {
     pub seed: Option<Seeds>,
     #[command(flatten)]
     pub arguments: Arguments,
-    /// Cell size in metres [default: the world's cell]
+    /// Cell size in metres [default: the world's cell; if a whole world of a recipe then has more than 16384 samples along a side, twice that
+    /// or more, with at most 4096 samples]
     #[arg(long, value_name = "M", value_parser = cell, allow_negative_numbers = true)]
     pub cell: Option<f64>,
     /// Window of the world: column and row of its first sample, width and height, in samples; or in metres, such as 0m,500m,2km,2km
@@ -62,6 +64,10 @@ pub struct SizedView {
 
 /// Default number of samples per side of an unbounded world.
 const UNBOUNDED: usize = 1024;
+
+/// Maximum number of samples along a side of a whole world that is shown at its own cell, and of one that is not.
+const LARGE: f64 = 16_384.0;
+const OVERVIEW: f64 = 4096.0;
 
 /// Tolerance, in cells, for coordinates that are meant to be those of a sample.
 const NEAR: f64 = 1e-6;
@@ -131,7 +137,8 @@ impl View {
     }
 
     /// The requested window: a part, or the whole world. A world of length L has round(L / cell) samples. For an
-    /// unbounded world it starts at the origin and has the default size.
+    /// unbounded world it starts at the origin and has the default size. A world that is too large for its own cell is shown as a whole with
+    /// a larger one, and a note says so.
     pub fn window(&self, world: &World) -> Result<Window, Failure> {
         self.sized(world, None)
     }
@@ -143,7 +150,10 @@ impl View {
             return Ok(part);
         }
         match (spec.size, size) {
-            (Some(_), None) => Ok(world.full_window(cell)?),
+            (Some(extent), None) => {
+                let cell = self.cell.or_else(|| overview(world, extent)).unwrap_or(cell);
+                Ok(world.full_window(cell)?)
+            }
             (Some(extent), Some(size)) => {
                 let [width, height] = extent.map(number);
                 let (width, height, cell) = fit(extent, size, &format!("the world of {width} x {height} m"))?;
@@ -233,6 +243,28 @@ impl View {
     }
 }
 
+/// The cell that shows a whole world which has too many samples at its own cell: a power of two times as large. A file of heights is always
+/// shown at its own. Prints a note.
+fn overview(world: &World, extent: [f64; 2]) -> Option<f64> {
+    let cell = world.recipe().world.cell;
+    let samples = |cell: f64| extent[0].max(extent[1]) / cell;
+    if samples(cell) <= LARGE || world.recipe().is_dem() {
+        return None;
+    }
+    let mut larger = cell;
+    while samples(larger) > OVERVIEW {
+        larger *= 2.0;
+    }
+    say::error(&format!(
+        "note: a cell of {} m, because the whole world has {:.0} samples along a side at its own cell of {} m; --cell, --size, --window or \
+         --bounds select others",
+        number(larger),
+        samples(cell),
+        number(cell)
+    ));
+    Some(larger)
+}
+
 /// The extent of a world, as text.
 fn reach(map: Option<Georeference>, [width, height]: [f64; 2]) -> String {
     let Some(map) = map else {
@@ -315,6 +347,14 @@ mod tests {
             assert_eq!(look(world, &view(size, cell)), Ok(Window::new(width, height, expect)), "{size:?} {cell:?}");
         }
         assert_eq!(look("size = [4000, 8000]", &view(Some("500x1000"), None)), Ok(Window::new(500, 1000, 8.0)));
+    }
+
+    #[test]
+    fn a_huge_world_is_shown_with_a_larger_cell() {
+        let world = "size = [400000, 200000]";
+        assert_eq!(look(world, &view(None, None)), Ok(Window::new(2500, 1250, 160.0)));
+        assert_eq!(look(world, &view(None, Some(10.0))), Ok(Window::new(40_000, 20_000, 10.0)));
+        assert_eq!(look("size = [163840, 10]", &view(None, None)), Ok(Window::new(16_384, 1, 10.0)));
     }
 
     #[test]

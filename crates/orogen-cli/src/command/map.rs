@@ -54,6 +54,12 @@ pub struct Args {
     /// Contour interval in metres [default: a round number that suits relief and scale]
     #[arg(long, value_name = "M", value_parser = positive, allow_negative_numbers = true)]
     contours: Option<f64>,
+    /// Minimum drainage area of rivers in m^2 [default: depends on the scale, at least 100000; none on bare noise, which has no rivers]
+    #[arg(long, value_name = "M2", value_parser = positive, allow_negative_numbers = true)]
+    river_area: Option<f64>,
+    /// Minimum area of lakes in m^2 [default: depends on the scale; none on bare noise, which has no lakes]
+    #[arg(long, value_name = "M2", value_parser = positive, allow_negative_numbers = true)]
+    lake_area: Option<f64>,
     /// Title [default: the recipe's name]
     #[arg(long, value_name = "TEXT")]
     title: Option<String>,
@@ -269,6 +275,8 @@ fn job(args: &Args) -> Result<MapJob, Failure> {
         Shade::None => Shading::None,
     };
     job.interval = args.contours;
+    job.river_area = args.river_area;
+    job.lake_area = args.lake_area;
     job.title = args.title.clone().unwrap_or_else(|| title(&args.recipe));
     job.paper = args.paper.map(|paper| paper.sides(args.landscape));
     job.resolution = match (args.dpi, args.size) {

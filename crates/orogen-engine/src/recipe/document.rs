@@ -485,6 +485,13 @@ impl Recipe {
         recipe
     }
 
+    /// Whether its heights are those of a file, without changes.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn is_dem(&self) -> bool {
+        matches!(self.nodes.as_slice(), [only] if matches!(only.node, Node::Dem(_)))
+    }
+
     /// Memory of its files after they are read, in bytes.
     #[must_use]
     pub fn held(&self) -> u64 {

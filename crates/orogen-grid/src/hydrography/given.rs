@@ -75,11 +75,14 @@ impl Water {
         let in_lake: Vec<bool> = receiver.data().iter().map(|code| *code >= f32::from(LAKE)).collect();
         let mut receivers = inside(&receiver);
         drop(receiver);
-        if let Some(sea) = sea_level {
-            // Below the sea rivers have no courses.
-            let codes = receivers.codes_mut().iter_mut().zip(bed.data());
-            codes.filter(|(_, height)| **height <= sea).for_each(|(code, _)| *code = NONE);
-        }
+        // Rivers have no courses in the sea, and none beyond it.
+        let sea = at_sea(&heights, &bed, offset.is_some(), sea_level);
+        let drowned = match sea_level {
+            Some(_) => beyond(&receivers, &sea, progress)?,
+            None => vec![false; window.len()],
+        };
+        let codes = receivers.codes_mut().iter_mut().zip(&drowned);
+        codes.filter(|(_, drowned)| **drowned).for_each(|(code, _)| *code = NONE);
         let drained = accumulate_with(&receivers, &progress.part(0.0))?;
         // A cycle has no first node, so its nodes and those below it are not visited. No level has one, but a recipe may.
         let mut visited = vec![false; window.len()];
@@ -95,7 +98,7 @@ impl Water {
             let is_border = is_border(&window, node);
             let order = &mut river[node];
             // An area may fall a little downstream where areas are carried down from level to level: a river goes on.
-            order.is_river |= flow.data()[node] >= spring;
+            order.is_river |= flow.data()[node] >= spring && !drowned[node];
             if !order.is_river {
                 continue;
             }
@@ -114,7 +117,7 @@ impl Water {
                 *below = if receivers.code(to) == NONE { *below } else { below.min(height) };
             }
         }
-        drop(drained);
+        drop((drained, drowned));
         let mut streams = Streams::default();
         for (node, order) in river.iter().enumerate().filter(|(_, order)| order.is_river) {
             let known = if order.is_unknown { 0 } else { order.order };
@@ -123,7 +126,7 @@ impl Water {
         drop(river);
         let reaches = streams.network();
         progress.check()?;
-        let covers = offset.is_some().then(|| covers_of(&receivers, &in_lake, &bed, &labels, sea_level));
+        let covers = offset.is_some().then(|| covers_of(&receivers, &in_lake, &sea, &labels));
         let mut water = Water {
             heights,
             surface: bed,
@@ -174,6 +177,29 @@ struct Stream {
 fn is_border(window: &Window, sample: usize) -> bool {
     let (i, j) = (sample % window.width.max(1), sample / window.width.max(1));
     i == 0 || j == 0 || i + 1 == window.width || j + 1 == window.height
+}
+
+/// Which nodes are in the sea: those that are not above its level, and those between samples that are all below it, where the land around a
+/// valley of a coarser level has drowned.
+fn at_sea(heights: &Grid, bed: &Grid, is_between: bool, sea_level: Option<f32>) -> Vec<bool> {
+    let Some(sea) = sea_level else { return vec![false; bed.data().len()] };
+    let (width, height) = (heights.width(), heights.height());
+    let is_below = |i: usize, j: usize| heights[(i.min(width - 1), j.min(height - 1))] <= sea;
+    let node = |k: usize| {
+        let (i, j) = (k % width, k / width);
+        let around = || is_below(i, j) && is_below(i + 1, j) && is_below(i, j + 1) && is_below(i + 1, j + 1);
+        bed.data()[k] <= sea || is_between && around()
+    };
+    (0..bed.data().len()).map(node).collect()
+}
+
+/// Which nodes are in the sea, or receive water that has been in the sea.
+fn beyond(receivers: &Receivers, sea: &[bool], progress: &Progress) -> Result<Vec<bool>> {
+    let mut beyond = sea.to_vec();
+    for node in accumulate_with(receivers, &progress.part(0.0))?.upstream_first() {
+        beyond[receivers.of(node)] |= beyond[node];
+    }
+    Ok(beyond)
 }
 
 /// The receivers that lead to nodes of the grid.
@@ -244,19 +270,13 @@ fn lakes_of(
 
 /// The standing water of each node: the sea, a lake next to it, or 0 on land. A lake without an outlet that no sample shows has the number
 /// after the last.
-fn covers_of(
-    receivers: &Receivers,
-    in_lake: &[bool],
-    bed: &Grid,
-    labels: &Grid<u32>,
-    sea_level: Option<f32>,
-) -> Grid<u32> {
-    let window = *bed.window();
+fn covers_of(receivers: &Receivers, in_lake: &[bool], sea: &[bool], labels: &Grid<u32>) -> Grid<u32> {
+    let window = *labels.window();
     let unseen = AT_SEA - 1;
     let mut covers = Grid::filled(window, 0u32);
     for (k, &in_lake) in in_lake.iter().enumerate() {
         let (i, j) = (k % window.width, k / window.width);
-        if sea_level.is_some_and(|sea| bed.data()[k] <= sea) {
+        if sea[k] {
             covers.data_mut()[k] = AT_SEA;
         } else if (in_lake || receivers.code(k) == NONE) && !is_border(&window, k) {
             // The corners of the node's cell first, then the samples around them.
@@ -309,6 +329,27 @@ mod tests {
             offset: None,
         };
         GivenWater { heights, standing, nodes }
+    }
+
+    #[test]
+    fn a_river_ends_in_the_sea_and_does_not_rise_again_on_an_island() {
+        let mut land = given(20);
+        // A channel of the sea with an island in it, which the valley crosses.
+        for j in 0..9 {
+            land.heights.row_mut(j)[6..15].fill(-5.0);
+            land.nodes.height.row_mut(j)[6..15].fill(if j == 4 { 3.0 } else { -5.0 });
+        }
+        land.heights.row_mut(4)[9..12].fill(8.0);
+        land.nodes.offset = Some([0, 1].map(|_| Grid::filled(*land.heights.window(), 0.5)));
+        let water = Water::given(land, Some(0.0), Least::new(20, 1000), &Progress::none()).unwrap();
+        let frame = Frame { columns: 2..18, rows: 1..8 };
+        let rectangle = Rectangle { sides: [1.5, 0.5, 17.5, 7.5] };
+        let mut shores = Shores::of(&water, &Frame::whole(&water), 1).unwrap();
+        let rivers = rivers_within(&water, &frame, &rectangle, 3, &mut shores);
+        assert!(rivers.iter().any(|river| river.mouth == Mouth::Sea));
+        for river in &rivers {
+            assert!(river.points.iter().all(|point| point[0] < 8.0 || point[0] > 14.0), "{:?}", river.points);
+        }
     }
 
     #[test]

@@ -2,8 +2,8 @@
 
 use std::io::{self, Write};
 
-use super::finite;
 use super::sheet_format::SheetFormat;
+use super::{finite, map_water};
 use crate::export::derived::list;
 use crate::export::files::Stopping;
 use crate::export::layer_source::LayerSource;
@@ -12,7 +12,7 @@ use crate::export::options::Options;
 use crate::export::{biome_cover, place, sheet_cover};
 use crate::sheet::draw::{Sheet, draw};
 use crate::sheet::geometry::{Rect, Size};
-use crate::sheet::linework::lines_at;
+use crate::sheet::linework::{SMALLEST, least_areas, lines_at};
 use crate::sheet::options::{Coloring, Layer, Page, Parts, Resolution, Scale, Shading, SheetOptions};
 use crate::sheet::{pdf, raster, vector};
 use orogen_engine::budget::Reservation;
@@ -95,6 +95,11 @@ pub struct MapJob {
     pub shading: Shading,
     /// Contour interval in metres; by default a round number that suits relief and scale.
     pub interval: Option<f64>,
+    /// Minimum drainage area of rivers in m^2; by default it depends on the scale, and is at least 100 000. With
+    /// one, rivers are also searched for in land that nothing drains, such as bare noise.
+    pub river_area: Option<f64>,
+    /// Minimum area of lakes in m^2; by default it depends on the scale.
+    pub lake_area: Option<f64>,
     /// The heading.
     pub title: String,
     /// Width and height of the paper in millimetres; by default the page fits the map.
@@ -143,6 +148,8 @@ impl MapJob {
             palette: None,
             shading: Shading::default(),
             interval: None,
+            river_area: None,
+            lake_area: None,
             title: String::new(),
             paper: None,
             resolution: None,
@@ -253,11 +260,18 @@ impl MapJob {
         let work = world.work(&plan)?;
         let layered = if self.layer == HEIGHT && !self.is_covered() { 0.0 } else { work };
         let pixels = self.side() * self.side();
-        let [making, layering, drawing, writing] =
-            progress.parts([work, layered, DRAWING * window.len() as f64, WRITING * pixels]);
+        let is_known = (options.parts.rivers || options.parts.lakes) && map_water::is_known(world.recipe(), &window);
+        let watering = if is_known { work } else { 0.0 };
+        let [making, watering, layering, drawing, writing] =
+            progress.parts([work, watering, layered, DRAWING * window.len() as f64, WRITING * pixels]);
         let mut warnings = Vec::new();
         let heights = world.run(&plan, &making)?.pop().unwrap_or_else(|| Grid::filled(window, f32::NAN));
         finite::check(HEIGHT, &heights, &mut warnings)?;
+        if is_known {
+            let [river, lake] = least_areas(&window, options.page, SMALLEST);
+            let least = [options.river_area.unwrap_or(river), options.lake_area.unwrap_or(lake)];
+            options.water = Some(map_water::of(world, &window, least, 4 * window.len() as u64, &watering)?);
+        }
         if self.layer != HEIGHT {
             options.coloring = Coloring::Layer(self.layer(world, &window, &mut warnings, &layering)?);
         }
@@ -351,6 +365,9 @@ impl MapJob {
         // Most depressions of a real place are gorges dammed by coarse samples, and its lakes are level in the data
         // already.
         parts.lakes &= is_height && !self.is_place;
+        let is_drained = self.is_place || map_water::is_drained(recipe);
+        parts.rivers &= is_drained || self.river_area.is_some();
+        parts.lakes &= is_drained || self.lake_area.is_some();
         let about = match recipe.about.as_str() {
             about if self.is_place => about.to_string(),
             "" => format!("Seed {}", recipe.world.seed),
@@ -361,6 +378,8 @@ impl MapJob {
         options.about = about;
         options.shading = self.shading;
         options.interval = self.interval;
+        options.river_area = self.river_area;
+        options.lake_area = self.lake_area;
         options.parts = parts;
         options.page = self.page();
         options.resolution = self.resolution();

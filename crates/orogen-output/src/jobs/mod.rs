@@ -5,5 +5,6 @@
 
 mod finite;
 pub mod map;
+mod map_water;
 pub mod render;
 pub mod sheet_format;

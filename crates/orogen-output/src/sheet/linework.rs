@@ -1,4 +1,4 @@
-//! Lines of a map: contours, rivers, lakes, shores and summits, found in the heights at the scale of the map.
+//! Lines of a map: contours, rivers, lakes, shores and summits, found in the heights at the scale of the map, unless the water is known.
 
 use super::furniture::{Entry, Sign};
 use super::ground::laid;
@@ -11,12 +11,15 @@ use orogen_grid::contour::chaikin::smooth;
 use orogen_grid::contour::line::Line;
 use orogen_grid::contour::trace;
 use orogen_grid::error::Result;
-use orogen_grid::grid::Grid;
+use orogen_grid::grid::{Grid, Window};
 use orogen_io::format::levels::Levels;
 
 /// Width of a sample for finding lines, in millimetres, and the maximum number of samples along a side.
 const SAMPLE: f64 = 0.25;
 const MOST: usize = 2400;
+
+/// Minimum area that drains to the start of a river in m^2: gullies that a large scale shows are no rivers.
+pub const SMALLEST: f64 = 1e5;
 
 /// Thresholds: area that drains to the start of a river and minimum area of a lake, in square millimetres; minimum
 /// depth of a lake, as a share of the relief.
@@ -35,6 +38,28 @@ const SUMMITS: usize = 24;
 #[must_use]
 pub fn lines_at(longer: f64) -> usize {
     ((longer / SAMPLE).ceil() as usize).clamp(8, MOST)
+}
+
+/// Approximate length of the longer side of a map in millimetres; the exact length depends on its legend.
+fn longer_side(window: &Window, page: Page) -> f64 {
+    let [width, height] = [window.width, window.height].map(|samples| samples.saturating_sub(1).max(1) as f64);
+    let aspect = width / height;
+    match page {
+        Page::Fitted(longer) => longer,
+        Page::Paper([width, height]) => {
+            let (width, height) = ((width - 36.0).max(10.0), (height - 60.0).max(10.0));
+            if width / height > aspect { height * aspect.max(1.0) } else { width / aspect.min(1.0) }
+        }
+    }
+}
+
+/// Minimum drainage area of rivers and minimum area of lakes on a map of this window, in m^2. `smallest` is the minimum for rivers at large
+/// scales.
+#[must_use]
+pub fn least_areas(window: &Window, page: Page, smallest: f64) -> [f64; 2] {
+    let longer = window.width.max(window.height).saturating_sub(1).max(1) as f64 * window.cell;
+    let metres = longer / longer_side(window, page);
+    [(SPRING * metres * metres).max(smallest), LAKE * metres * metres]
 }
 
 /// The heights at the resolution of lines, and the lines.
@@ -66,14 +91,7 @@ impl Linework {
         let window = heights.window();
         let sides = [window.width - 1, window.height - 1].map(|side| side as f64);
         let aspect = sides[0] / sides[1];
-        // The exact size of the map depends on its legend; this is close enough.
-        let longer = match options.page {
-            Page::Fitted(longer) => longer,
-            Page::Paper([width, height]) => {
-                let (width, height) = ((width - 36.0).max(10.0), (height - 60.0).max(10.0));
-                if width / height > aspect { height * aspect.max(1.0) } else { width / aspect.min(1.0) }
-            }
-        };
+        let longer = longer_side(window, options.page);
         let samples = lines_at(longer);
         let size = sides.map(|side| ((samples as f64 * side / sides[0].max(sides[1])).round() as usize).max(1) + 1);
         let sample = longer / samples as f64;
@@ -82,16 +100,20 @@ impl Linework {
         let relief = f64::from(levels.high()) - f64::from(levels.low());
         let parts = &options.parts;
         let sea = options.sea_level.map(|sea| sea as f32);
-        let cells = |millimetres: f64| (millimetres / (sample * sample)).ceil().max(1.0) as u32;
-        let water = match (parts.rivers || parts.lakes) && relief > 0.0 {
-            true => {
+        let wanted = (parts.rivers || parts.lakes) && relief > 0.0;
+        let water = match &options.water {
+            Some(known) if wanted => known.on(&grid),
+            None if wanted => {
+                let [river, lake] = least_areas(window, options.page, SMALLEST);
+                let [river, lake] = [options.river_area.unwrap_or(river), options.lake_area.unwrap_or(lake)];
+                let cells = |area: f64| (area / grid.window().cell.powi(2)).ceil().max(1.0) as u32;
                 // Rivers continue through lakes that are not drawn.
-                let lake = if parts.lakes { cells(LAKE) } else { u32::MAX };
+                let lake = if parts.lakes { cells(lake) } else { u32::MAX };
                 let scattered = grid.window().cell < ENLARGED * window.cell;
                 let depth = (relief * DEPTH) as f32;
-                find(&grid, sea, Least::new(cells(SPRING), lake).with_depth(depth).with_scattered(scattered))?
+                find(&grid, sea, Least::new(cells(river), lake).with_depth(depth).with_scattered(scattered))?
             }
-            false => Water { rivers: Vec::new(), lakes: Vec::new(), surface: grid.clone() },
+            _ => Water { rivers: Vec::new(), lakes: Vec::new(), surface: grid.clone() },
         };
         let interval =
             parts.contours.then(|| options.interval.unwrap_or_else(|| interval(&grid, options.sea_level, sample)));

@@ -1,5 +1,6 @@
 //! Options of a sheet.
 
+use super::water::KnownWater;
 use orogen_grid::grid::Grid;
 use orogen_io::format::dem::Georeference;
 use orogen_io::palette::color::Rgb;
@@ -208,6 +209,12 @@ pub struct SheetOptions {
     /// The heights at the ends of the palette, which make several sheets comparable; by default the minimum and maximum
     /// of this one.
     pub range: Option<[f32; 2]>,
+    /// Minimum drainage area of rivers that are found in the heights, in m^2; by default it depends on the scale.
+    pub river_area: Option<f64>,
+    /// Minimum area of lakes that are found in the heights, in m^2; by default it depends on the scale.
+    pub lake_area: Option<f64>,
+    /// Rivers and lakes, if they are known; by default they are found in the heights.
+    pub water: Option<KnownWater>,
     /// The position of the ground on a map of the Earth, if it has one.
     pub map: Option<Georeference>,
 }
@@ -228,6 +235,9 @@ impl SheetOptions {
             sea_level: None,
             coloring: Coloring::default(),
             range: None,
+            river_area: None,
+            lake_area: None,
+            water: None,
             map: None,
         }
     }

@@ -163,8 +163,8 @@ impl Linework {
 
     /// The width of a river with this many samples of drainage area, in millimetres: linear in the square root of the
     /// area, in visible steps.
-    fn width(&self, drained: u32) -> f32 {
-        let share = (f64::from(drained) / self.grid.data().len() as f64).sqrt() as f32;
+    fn width(&self, drained: f64) -> f32 {
+        let share = (drained / self.grid.data().len() as f64).sqrt() as f32;
         let width = RIVERS[0] + (RIVERS[1] - RIVERS[0]) * (share * 1.3).min(1.0);
         (width / 0.06).round() * 0.06
     }

@@ -1,4 +1,4 @@
-//! Rivers and lakes of a sheet, from its heights.
+//! Rivers and lakes of a sheet: those of a known network, or found in its heights.
 
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -15,7 +15,7 @@ pub struct River {
     /// Columns and rows, downstream.
     pub points: Vec<[f64; 2]>,
     /// Number of samples that drain to its end.
-    pub drained: u32,
+    pub drained: f64,
 }
 
 /// The water of a grid.
@@ -27,6 +27,40 @@ pub struct Water {
     pub lakes: Vec<Vec<[f64; 2]>>,
     /// The heights, level in lakes.
     pub surface: Grid,
+}
+
+/// Water that is known, in columns and rows of the heights of a sheet.
+#[derive(Debug, Clone)]
+pub struct KnownWater {
+    /// Stretches of river outside of lakes and the sea, with their drainage area in samples of the heights.
+    pub rivers: Vec<River>,
+    /// The shores of lakes, as rings.
+    pub lakes: Vec<Vec<[f64; 2]>>,
+    /// The height of the surface of lakes over the window of the heights; NaN elsewhere.
+    pub levels: Grid,
+}
+
+impl KnownWater {
+    /// The same in columns and rows of a grid that covers the same land.
+    #[must_use]
+    pub fn on(&self, grid: &Grid) -> Water {
+        let sides = [self.levels.width(), self.levels.height()];
+        let across = |axis: usize, count: usize| (count - 1) as f64 / (sides[axis].max(2) - 1) as f64;
+        let [x, y] = [across(0, grid.width()), across(1, grid.height())];
+        let moved = |points: &[[f64; 2]]| points.iter().map(|at| [at[0] * x, at[1] * y]).collect();
+        let rivers =
+            self.rivers.iter().map(|river| River { points: moved(&river.points), drained: river.drained * x * y });
+        let mut surface = grid.clone();
+        let near = |at: usize, ratio: f64, count: usize| ((at as f64 / ratio).round() as usize).min(count - 1);
+        for j in 0..grid.height() {
+            let levels = self.levels.row(near(j, y, sides[1]));
+            for (i, height) in surface.row_mut(j).iter_mut().enumerate() {
+                // Not a number where there is no lake: then the ground is the larger one.
+                *height = height.max(levels[near(i, x, sides[0])]);
+            }
+        }
+        Water { rivers: rivers.collect(), lakes: self.lakes.iter().map(|ring| moved(ring)).collect(), surface }
+    }
 }
 
 /// Smoothing rounds of rivers, and of shores.
@@ -47,10 +81,9 @@ pub fn find(heights: &Grid, sea_level: Option<f32>, least: Least) -> Result<Wate
     let found = water::Water::of(grid, sea_level, least, &Progress::none())?;
     let frame = Frame::whole(&found);
     let mut shores = Shores::of(&found, &frame, CUT)?;
-    let rivers = rivers(&found, &frame, EVEN, &mut shores).into_iter().map(|river| River {
-        points: river.points.iter().map(|[x, y, _]| [*x, *y]).collect(),
-        drained: river.drained as u32,
-    });
+    let rivers = rivers(&found, &frame, EVEN, &mut shores)
+        .into_iter()
+        .map(|river| River { points: river.points.iter().map(|[x, y, _]| [*x, *y]).collect(), drained: river.drained });
     let rivers = rivers.collect();
     let lakes =
         shores.lines.into_iter().zip(shores.waters).filter(|(_, lake)| *lake > 0).map(|(line, _)| line).collect();
@@ -102,6 +135,18 @@ mod tests {
         ] {
             assert!(find(&heights, None, least).unwrap().lakes.is_empty());
         }
+    }
+
+    #[test]
+    fn known_water_is_moved_to_another_lattice() {
+        let mut levels = Grid::filled(Window::new(5, 3, 30.0), f32::NAN);
+        levels[(2, 1)] = 7.0;
+        let river = River { points: vec![[0.0, 0.0], [4.0, 2.0]], drained: 10.0 };
+        let known = KnownWater { rivers: vec![river], lakes: vec![vec![[2.0, 1.0], [3.0, 1.0]]], levels };
+        let water = known.on(&Grid::filled(Window::new(9, 5, 15.0), 5.0));
+        assert_eq!(water.rivers, [River { points: vec![[0.0, 0.0], [8.0, 4.0]], drained: 40.0 }]);
+        assert_eq!(water.lakes, [[[4.0, 2.0], [6.0, 2.0]]]);
+        assert_eq!((water.surface[(4, 2)], water.surface[(0, 0)]), (7.0, 5.0));
     }
 
     #[test]
