@@ -94,9 +94,9 @@ mod tests {
         let world = World::open(preset("endless")).unwrap();
         let whole = Window::new(96, 80, 240.0).at(100, -60);
         assert!(is_known(world.recipe(), &whole));
-        let of = |window: &Window| super::of(&world, window, [2e7, 1e5], 0, &Progress::none()).unwrap();
-        let [all, west, east] =
-            [whole, Window { width: 48, ..whole }, Window { x: 148, width: 48, ..whole }].map(|w| of(&w));
+        let water_of = |window: &Window| of(&world, window, [2e7, 1e5], 0, &Progress::none()).unwrap();
+        let [all, west, east] = [whole, Window { width: 48, ..whole }, Window { x: 148, width: 48, ..whole }]
+            .map(|window| water_of(&window));
         assert!(!all.rivers.is_empty());
         for j in 0..80 {
             let parts: Vec<u32> =

@@ -106,7 +106,8 @@ impl Linework {
             None if wanted => {
                 let [river, lake] = least_areas(window, options.page, SMALLEST);
                 let [river, lake] = [options.river_area.unwrap_or(river), options.lake_area.unwrap_or(lake)];
-                let cells = |area: f64| (area / grid.window().cell.powi(2)).ceil().max(1.0) as u32;
+                let cell_area = grid.window().cell * grid.window().cell;
+                let cells = |area: f64| (area / cell_area).ceil().max(1.0) as u32;
                 // Rivers continue through lakes that are not drawn.
                 let lake = if parts.lakes { cells(lake) } else { u32::MAX };
                 let scattered = grid.window().cell < ENLARGED * window.cell;
