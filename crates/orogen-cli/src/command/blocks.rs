@@ -13,7 +13,7 @@ use orogen::blocks::schem::write_schem;
 use orogen::blocks::volume::BlockVolume;
 use orogen::blocks::vox::write_vox;
 use orogen::file::{self, Existing, Output, OutputFolder, OutputPolicy};
-use orogen::format::schem;
+use orogen::format::{schem, vox};
 use orogen::words::{count, number};
 use orogen::world::HEIGHT;
 use orogen::{Error, ErrorKind, Progress, Window, World};
@@ -132,11 +132,15 @@ fn make(args: &Args, format: BlockFormat, progress: &Progress) -> Result<(), Fai
     land::prepare(&mut recipe, window.cell)?;
     let world = args.run.limits.open(recipe, &budget)?;
     let target = Target::new(args, format, &policy)?;
+    // The sides are known before the heights are.
+    let one = Levels { bottom: Levels::of(world.recipe().world.sea_level, window.cell), count: 1 };
+    fits(format, &window, one, &world)?;
     let _columns = budget.reserve(window.grown(HALO).len() as u64 * COLUMN_BYTES + ENCODERS)?;
     let [reading, making, writing] = progress.parts([2.0, 3.0, 5.0]);
     let land = Land::of(&world, &window, Extent::Below(args.below), &reading)?;
     finite::tell(HEIGHT, land.finite)?;
     let mut levels = land.levels;
+    fits(format, &window, levels, &world)?;
     let text = match target {
         Target::Mesh(sink) => {
             let mesh = world.install(|| BlockMesh::of(&land, &budget, &making))?;
@@ -157,6 +161,21 @@ fn make(args: &Args, format: BlockFormat, progress: &Progress) -> Result<(), Fai
     match args.run.quiet || is_stdout(&args.out) {
         true => Ok(()),
         false => say::out(&format!("{}{text}", words(&args.out, &window, levels, &world))),
+    }
+}
+
+/// Checks that the format can hold the blocks of a window.
+fn fits(format: BlockFormat, window: &Window, levels: Levels, world: &World) -> orogen::Result<()> {
+    let (width, height) = (window.width, window.height);
+    match format {
+        BlockFormat::Vox => vox::check([width, height, levels.count]),
+        BlockFormat::Schem => schem::check([width, levels.count, height]),
+        BlockFormat::Png => Isometric::new([width, levels.count, height]).map(drop),
+        BlockFormat::Luanti => {
+            LuantiWorld::start([width, levels.count, height], levels, world.recipe().world.sea_level, window.cell)
+                .map(drop)
+        }
+        BlockFormat::Glb => Ok(()),
     }
 }
 
@@ -209,10 +228,7 @@ impl VolumeTarget {
         let blocks = volume.blocks.len() as u64;
         match self {
             VolumeTarget::Vox(sink) => sink.write(|out| write_vox(out, volume)),
-            VolumeTarget::Schem(sink) => {
-                schem::check(volume.size())?;
-                sink.write(|out| write_schem(out, volume))
-            }
+            VolumeTarget::Schem(sink) => sink.write(|out| write_schem(out, volume)),
             VolumeTarget::Png(sink) => {
                 let picture = Isometric::new(volume.size())?;
                 let _picture = budget.reserve(picture.memory())?;

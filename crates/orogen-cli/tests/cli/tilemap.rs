@@ -210,6 +210,11 @@ fn infinite_maps_have_chunks_at_the_cells_of_the_world() {
         let layers = map["layers"].as_array().unwrap();
         layers.iter().find(|layer| layer["name"] == "water").unwrap().clone()
     };
+    // Readers such as Phaser's make room for what lies between the start of a layer and its end.
+    for (key, value) in [("startx", 0), ("starty", 0), ("width", 32), ("height", 16)] {
+        assert_eq!(water(&part)[key], value, "{key}");
+    }
+    assert!(folder.text("part/map.tmx").contains(" tiledversion=\"") && part["tiledversion"].is_string());
     let (whole, part) = (water(&whole), water(&part));
     let chunks = part["chunks"].as_array().unwrap();
     let places: Vec<_> =

@@ -5,8 +5,13 @@
 
 use std::io::{self, Write};
 
+use orogen_grid::error::{Error, ErrorKind, Result};
+
 /// Maximum number of voxels along a side of a model.
 pub const MAX_SIDE: usize = 256;
+
+/// Maximum number of voxels along a side of a scene: `MagicaVoxel` has positions from -1000 to 999.
+pub const MAX_SCENE: usize = 2000;
 
 /// Bytes of the head of a chunk.
 const HEAD: u64 = 12;
@@ -51,11 +56,27 @@ impl Model {
     }
 }
 
+/// Checks that a scene of this size is not larger than `MagicaVoxel`'s.
+///
+/// # Errors
+/// If it is.
+pub fn check([x, y, z]: [usize; 3]) -> Result<()> {
+    if x.max(y).max(z) <= MAX_SCENE {
+        return Ok(());
+    }
+    let message = format!(
+        "a scene of MagicaVoxel has at most {MAX_SCENE} voxels along a side, and this one needs {x} x {y} x {z}; use a smaller window, a larger cell, or \
+         another format"
+    );
+    Err(Error::new(ErrorKind::Request, message))
+}
+
 /// Writes a scene.
 ///
 /// # Errors
-/// If `out` fails, or if the file would have more than 4 GiB.
+/// If `out` fails, if the scene is too large for `MagicaVoxel`, or if the file would have more than 4 GiB.
 pub fn write(out: &mut dyn Write, scene: &Scene) -> io::Result<()> {
+    check(scene.size)?;
     let models = models(scene)?;
     let graph = graph(scene, &models);
     let length = models.iter().map(Model::bytes).sum::<u64>() + graph.len() as u64 + HEAD + 1024;

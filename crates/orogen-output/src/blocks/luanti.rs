@@ -50,23 +50,30 @@ impl<'a> LuantiWorld<'a> {
     /// # Errors
     /// If they do not fit into a world of Luanti, or `progress` is cancelled.
     pub fn new(volume: &'a BlockVolume, progress: &Progress) -> Result<LuantiWorld<'a>> {
-        let [width, count, height] = volume.size();
-        let sea = Levels::of(volume.sea_level, volume.window.cell);
-        let bottom = i64::from(volume.levels.bottom) - i64::from(sea);
-        let start = [-(width as i64 / 2), bottom, height as i64 - 1 - height as i64 / 2];
-        let ends = [start[0] + width as i64, bottom + count as i64, height as i64];
-        let is_inside = |at: &i64| at.abs() <= MAX_COORDINATE;
-        if !start.iter().chain(&ends).all(is_inside) {
-            let message = format!(
-                "a world of Luanti ends {MAX_COORDINATE} blocks from its middle, and this map has {width} x {height} columns from {bottom} to {} blocks above \
-                 the sea; use a smaller window or a larger cell",
-                bottom + count as i64
-            );
-            return Err(Error::new(ErrorKind::Request, message));
-        }
+        let start = LuantiWorld::start(volume.size(), volume.levels, volume.sea_level, volume.window.cell)?;
         let mut world = LuantiWorld { volume, start, blocks: Vec::new() };
         world.blocks = world.map_blocks(progress)?;
         Ok(world)
+    }
+
+    /// The node of the north-west corner of the lowest level of a number of blocks to the east, up and to the south.
+    ///
+    /// # Errors
+    /// If they do not fit into a world of Luanti.
+    pub fn start([width, count, height]: [usize; 3], levels: Levels, sea_level: f64, cell: f64) -> Result<[i64; 3]> {
+        let bottom = i64::from(levels.bottom) - i64::from(Levels::of(sea_level, cell));
+        let start = [-(width as i64 / 2), bottom, height as i64 - 1 - height as i64 / 2];
+        let ends = [start[0] + width as i64, bottom + count as i64, height as i64];
+        let is_inside = |at: &i64| at.abs() <= MAX_COORDINATE;
+        if start.iter().chain(&ends).all(is_inside) {
+            return Ok(start);
+        }
+        let message = format!(
+            "a world of Luanti ends {MAX_COORDINATE} blocks from its middle, and this map has {width} x {height} columns from {bottom} to {} blocks above \
+             the sea; use a smaller window or a larger cell",
+            bottom + count as i64
+        );
+        Err(Error::new(ErrorKind::Request, message))
     }
 
     /// Memory for writing it beside the blocks, in bytes: their light, and the map blocks.

@@ -18,6 +18,9 @@ use crate::markup::{Base64, escaped};
 /// The version of the formats.
 const VERSION: &str = "1.8";
 
+/// The version of Tiled that writes it: readers choose by it how they read an infinite map.
+const TILED: &str = "1.8.6";
+
 /// The first number of the tileset's tiles in a map; 0 is no tile.
 const FIRST: u32 = 1;
 
@@ -186,6 +189,19 @@ impl Tileset {
 const CHUNK: usize = 16;
 
 impl Tilemap {
+    /// The first tile and the size of what the chunks of an infinite map span; of another map, its size.
+    fn span(&self) -> ([i64; 2], [usize; 2]) {
+        if !self.is_infinite {
+            return ([0, 0], [self.width, self.height]);
+        }
+        let axis = |from: i64, length: usize| {
+            let start = from.div_euclid(CHUNK as i64) * CHUNK as i64;
+            (start, ((from - start) as usize + length).div_ceil(CHUNK) * CHUNK)
+        };
+        let ((x, width), (y, height)) = (axis(self.window.x, self.width), axis(self.window.y, self.height));
+        ([x, y], [width, height])
+    }
+
     /// Gives the chunks of a layer that have a tile, at the positions of the world's cells: where each begins, and its tiles.
     fn each_chunk(
         &self,
@@ -257,13 +273,14 @@ impl Tilemap {
     /// # Errors
     /// If `out` fails.
     pub fn write_tmx(&self, out: &mut dyn Write, tileset: &str, made_by: &str) -> io::Result<()> {
-        let (width, height, size) = (self.width, self.height, self.tileset.size);
+        let (_, [width, height]) = self.span();
+        let size = self.tileset.size;
         let layers: Vec<_> = self.used().collect();
         let objects = layers.len() + 1;
         writeln!(out, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{}", mark(made_by))?;
         writeln!(
             out,
-            "<map version=\"{VERSION}\" orientation=\"orthogonal\" renderorder=\"right-down\" width=\"{width}\" height=\"{height}\" tilewidth=\"{size}\" \
+            "<map version=\"{VERSION}\" tiledversion=\"{TILED}\" orientation=\"orthogonal\" renderorder=\"right-down\" width=\"{width}\" height=\"{height}\" tilewidth=\"{size}\" \
              tileheight=\"{size}\" infinite=\"{}\" nextlayerid=\"{}\" nextobjectid=\"{}\">",
             u8::from(self.is_infinite),
             layers.len() + 2,
@@ -315,12 +332,13 @@ impl Tilemap {
     /// # Errors
     /// If `out` fails.
     pub fn write_tmj(&self, out: &mut dyn Write, image: &str, made_by: &str) -> io::Result<()> {
-        let (width, height, size) = (self.width, self.height, self.tileset.size);
+        let ([left, top], [width, height]) = self.span();
+        let size = self.tileset.size;
         let layers: Vec<_> = self.used().collect();
         writeln!(out, "{{\n\"made_by\": {},", json!(made_by))?;
         writeln!(
             out,
-            "\"type\": \"map\", \"version\": \"{VERSION}\", \"orientation\": \"orthogonal\", \"renderorder\": \"right-down\","
+            "\"type\": \"map\", \"version\": \"{VERSION}\", \"tiledversion\": \"{TILED}\", \"orientation\": \"orthogonal\", \"renderorder\": \"right-down\","
         )?;
         writeln!(out, "\"width\": {width}, \"height\": {height}, \"tilewidth\": {size}, \"tileheight\": {size},")?;
         writeln!(
@@ -342,8 +360,7 @@ impl Tilemap {
                 "\"width\": {width}, \"height\": {height}, \"x\": 0, \"y\": 0, \"opacity\": 1, \"visible\": true, "
             )?;
             if self.is_infinite {
-                let [x, y] = self.place();
-                write!(out, "\"startx\": {x}, \"starty\": {y}, \"chunks\": [")?;
+                write!(out, "\"startx\": {left}, \"starty\": {top}, \"chunks\": [")?;
                 let mut comma = "";
                 self.each_chunk(tiles, |[x, y], tiles| {
                     writeln!(
