@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::band::BandMetadata;
 use super::dem::{Dem, Input, Placement, Request, refused};
 use super::noted::noted;
 use super::raw::Sample;
@@ -45,7 +46,7 @@ pub fn head(path: &Path) -> Result<([usize; 2], Option<Placement>)> {
         _ => geotiff::reader::head(file, &name),
     })?;
     if let (Some(place), Some(told)) = (&mut place, Sidecar::beside(path)?) {
-        told.complete(place);
+        told.complete(place).map_err(|why| refused(&name, why))?;
     }
     Ok((size, place))
 }
@@ -56,13 +57,35 @@ pub fn head(path: &Path) -> Result<([usize; 2], Option<Placement>)> {
 /// If the format is unknown, or the file cannot be read, or is too large.
 pub fn read(path: &Path, request: impl Into<Request>) -> Result<Dem> {
     let name = path.display().to_string();
-    if !is_dem(path) {
-        let known = "supported are .tif, .asc, .hgt, .png, .r16, .r32, .npy, .exr and .vrt, folders of .tif, .hgt or .asc, and Zarr";
-        return Err(refused(&name, format!("its extension is not that of a format for heights; {known}")));
-    }
+    known(path, &name)?;
     let mut file = open::regular(path, "read")?;
     let sidecar = Sidecar::beside(path)?;
     parse(&mut file, &name, &extension(path).unwrap_or_default(), sidecar, request)
+}
+
+/// [`read`] with metadata of the band that replaces what the file and its sidecars state, as virtual rasters do.
+///
+/// # Errors
+/// The errors of [`read`].
+pub fn read_with(path: &Path, request: Request, metadata: &BandMetadata) -> Result<Dem> {
+    if metadata.is_empty() {
+        return read(path, request);
+    }
+    let name = path.display().to_string();
+    known(path, &name)?;
+    let mut file = open::regular(path, "read")?;
+    let mut told = Sidecar::beside(path)?.unwrap_or_default();
+    told.replaced = metadata.clone();
+    parse(&mut file, &name, &extension(path).unwrap_or_default(), Some(told), request)
+}
+
+/// An error for a file whose extension is not that of a format for heights.
+fn known(path: &Path, name: &str) -> Result<()> {
+    if is_dem(path) {
+        return Ok(());
+    }
+    let known = "supported are .tif, .asc, .hgt, .png, .r16, .r32, .npy, .exr and .vrt, folders of .tif, .hgt or .asc, and Zarr";
+    Err(refused(name, format!("its extension is not that of a format for heights; {known}")))
 }
 
 /// [`read`] for bytes in memory: `extension` determines the format.
@@ -81,12 +104,16 @@ pub fn parse(
 
 fn band(input: &mut dyn Input, name: &str, extension: &str, sidecar: Option<Sidecar>, request: Request) -> Result<Dem> {
     let Request { allowed, .. } = request;
-    let told = sidecar.unwrap_or_default();
+    let mut told = sidecar.unwrap_or_default();
     if !SEVERAL_BANDS.contains(&extension) {
         request.choose(1).map_err(|why| refused(name, why))?;
     }
+    if matches!(extension, "png" | "r16" | "r32") {
+        // These compare nodata with stored samples.
+        told.nodata = told.nodata.or(told.band(request.band).nodata.first().copied());
+    }
     let mut dem = match extension {
-        "tif" | "tiff" => geotiff::reader::read(input, name, request)?,
+        "tif" | "tiff" => geotiff::reader::read_with(input, name, request, &told)?,
         "asc" => asc::read(input, name, allowed)?,
         "hgt" => hgt::read(input, name, allowed)?,
         "png" => grey::read(input, name, &told, allowed)?,
@@ -107,11 +134,49 @@ fn band(input: &mut dyn Input, name: &str, extension: &str, sidecar: Option<Side
         dem.heights = told.north_first(heights, dem.width).map_err(|why| refused(name, why))?;
         dem.place = told.place(dem.height).map_err(|why| refused(name, why))?;
     }
+    if !matches!(extension, "tif" | "tiff") {
+        // Samples between `low` and `high` are metres, and their nodata is known.
+        let metadata = match extension {
+            "png" | "r16" => BandMetadata::default(),
+            _ => told.band(request.band).with_nodata(told.nodata),
+        };
+        let vertical = told.vertical.filter(|_| !matches!(extension, "png" | "r16"));
+        convert(&mut dem, &told, request, &metadata, vertical).map_err(|why| refused(name, why))?;
+    }
     if let Some(place) = &mut dem.place {
-        told.complete(place);
+        told.complete(place).map_err(|why| refused(name, why))?;
         if place.keys.is_none() {
             dem.notes.extend(told.notes);
         }
     }
     Ok(dem)
+}
+
+/// Applies the mask beside a file, and the nodata, scale, offset and unit that GDAL's sidecar and a vertical coordinate
+/// system state.
+fn convert(
+    dem: &mut Dem,
+    told: &Sidecar,
+    request: Request,
+    metadata: &BandMetadata,
+    vertical: Option<f64>,
+) -> std::result::Result<(), String> {
+    if let Some(mask) = &told.mask {
+        if told.first_row.as_deref() == Some("south") {
+            return Err(
+                "it has a .msk and rows from the south, which is not supported; save it with rows from the north"
+                    .into(),
+            );
+        }
+        let mut file = open::regular(mask, "read the mask").map_err(|error| error.to_string())?;
+        let size = [dem.width as u64, dem.height as u64];
+        geotiff::mask::external(&mut file, size, request, &mut dem.heights)?;
+    }
+    let mut conversion = metadata.conversion(vertical)?;
+    conversion.apply(&mut dem.heights);
+    dem.notes.extend(conversion.notes());
+    match dem.heights.iter().all(|height| height.is_nan()) {
+        true => Err(format!("all of its {} x {} samples are nodata", dem.width, dem.height)),
+        false => Ok(()),
+    }
 }

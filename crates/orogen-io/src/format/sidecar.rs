@@ -14,8 +14,10 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use super::affine::Affine;
+use super::band::BandMetadata;
 use super::crs::keys::{self, GeoKeys};
 use super::crs::unit::Unit;
+use super::crs::vertical;
 use super::crs::wkt::MAX_LENGTH;
 use super::dem::{Placement, refused, turn_rows};
 use super::{aux_xml, world_file};
@@ -57,6 +59,18 @@ pub struct Sidecar {
     /// The coordinate system in other sidecars, for a format that stores its position itself.
     #[serde(skip)]
     pub keys: Option<GeoKeys>,
+    /// Metres per unit of the vertical coordinate system in other sidecars, if they have one.
+    #[serde(skip)]
+    pub vertical: Option<f64>,
+    /// What GDAL's sidecar states about each band, in the order of the bands.
+    #[serde(skip)]
+    pub bands: Vec<BandMetadata>,
+    /// What replaces the metadata of the band that is read, as virtual rasters state it.
+    #[serde(skip)]
+    pub replaced: BandMetadata,
+    /// The mask file beside the file: NAME.EXT.msk.
+    #[serde(skip)]
+    pub mask: Option<PathBuf>,
     /// Messages about sidecars that could not be interpreted.
     #[serde(skip)]
     pub notes: Vec<String>,
@@ -82,16 +96,19 @@ impl Sidecar {
         }
         let (notes, projection) = (aux_xml(path), path.with_extension("prj"));
         if fs::is_file(&projection) {
-            match text(&projection, MAX_LENGTH as u64, keys::of_wkt) {
-                Ok(keys) => all.keys = Some(keys),
+            match text(&projection, MAX_LENGTH as u64, |wkt| Ok((keys::of_wkt(wkt)?, vertical::metres_of_text(wkt)))) {
+                Ok((keys, vertical)) => (all.keys, all.vertical) = (Some(keys), vertical),
                 Err(why) => all.notes.push(format!("its coordinate system is not known: {why}")),
             }
         }
+        all.mask = Some(beside(path, ".msk")).filter(|mask| fs::is_file(mask));
         if fs::is_file(&notes) {
             let notes = text(&notes, aux_xml::MAX_LENGTH, aux_xml::parse)?;
             all.geotransform = all.geotransform.or(notes.affine.map(|affine| affine.geotransform()));
+            all.vertical = all.vertical.or(notes.system.as_deref().and_then(vertical::metres_of_text));
             // An unknown system in GDAL's sidecar is no reason to reject the heights.
-            all.keys = all.keys.or(notes.system.and_then(|system| keys::of_wkt(&system).ok()));
+            all.keys = all.keys.or(notes.system.and_then(|system| keys::of_text(&system).ok()));
+            all.bands = notes.bands;
         }
         Ok((told.is_some() || all != Sidecar::default()).then_some(all))
     }
@@ -154,6 +171,13 @@ impl Sidecar {
         Ok(samples)
     }
 
+    /// What GDAL's sidecar states about a band, from 1, or what replaces it.
+    #[must_use]
+    pub fn band(&self, band: Option<u32>) -> BandMetadata {
+        let index = band.unwrap_or(1).saturating_sub(1) as usize;
+        self.bands.get(index).cloned().unwrap_or_default().replaced_by(&self.replaced)
+    }
+
     /// The heights, in metres, of the smallest and the largest sample.
     ///
     /// # Errors
@@ -177,7 +201,7 @@ impl Sidecar {
         };
         let lattice = Affine::of_geotransform(numbers).lattice(rows)?;
         let keys = self.system()?;
-        let unit = keys.as_ref().map_or(Unit::guess(lattice.origin, lattice.step), keys::unit);
+        let unit = keys.as_ref().map_or(Ok(Unit::guess(lattice.origin, lattice.step)), keys::unit)?;
         Ok(Some(Placement { origin: lattice.origin, step: lattice.step, unit, cell: self.cell, keys }))
     }
 
@@ -191,11 +215,15 @@ impl Sidecar {
     }
 
     /// Adds the coordinate system of a `.prj` or `.aux.xml` to a position without one.
-    pub fn complete(&self, place: &mut Placement) {
+    ///
+    /// # Errors
+    /// A message if the system has a unit that is not supported.
+    pub fn complete(&self, place: &mut Placement) -> std::result::Result<(), String> {
         if let (None, Some(keys)) = (&place.keys, &self.keys) {
-            place.unit = keys::unit(keys);
+            place.unit = keys::unit(keys)?;
             place.keys = Some(keys.clone());
         }
+        Ok(())
     }
 }
 
@@ -210,16 +238,19 @@ fn text<T>(path: &Path, most: u64, parse: impl Fn(&str) -> std::result::Result<T
 /// GDAL's sidecar of a raster: NAME.EXT.aux.xml.
 #[must_use]
 pub fn aux_xml(path: &Path) -> PathBuf {
-    let mut name = path.file_name().unwrap_or_default().to_os_string();
-    name.push(".aux.xml");
-    path.with_file_name(name)
+    beside(path, ".aux.xml")
 }
 
 /// The sidecar that belongs to this file only, not to other files called NAME: NAME.r16.json.
 #[must_use]
 pub fn own(path: &Path) -> PathBuf {
+    beside(path, ".json")
+}
+
+/// The path with more after its extension.
+fn beside(path: &Path, more: &str) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_os_string();
-    name.push(".json");
+    name.push(more);
     path.with_file_name(name)
 }
 

@@ -145,6 +145,8 @@ fn tiles_are_one_place() {
             let (i, j) = (k % 37, k / 37);
             match i < 20 || j < 12 {
                 true => assert_eq!(*height, formula(i, j) + 0.25, "{name} at ({i}, {j})"),
+                // No tile lies here: the virtual raster has no nodata value, so GDAL reads 0.
+                false if name == "tiles.vrt" => assert_eq!(*height, 0.0, "({i}, {j})"),
                 false => assert!(height.is_nan(), "{name}: no tile lies at ({i}, {j})"),
             }
         }
