@@ -22,7 +22,7 @@ pub struct BandMetadata {
 }
 
 /// Nodata values that programs use most; files often do not declare them.
-const USUAL_NODATA: [f64; 3] = [-32768.0, -9999.0, -32767.0];
+const COMMON_NODATA: [f64; 3] = [-32768.0, -9999.0, -32767.0];
 
 /// Stored values above this are nodata, whatever a file declares: some programs write the largest float.
 const HIGHEST: f64 = 1e30;
@@ -131,7 +131,7 @@ pub struct Conversion {
 /// Undeclared nodata values among samples.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct Seen {
-    usual: [bool; USUAL_NODATA.len()],
+    common: [bool; COMMON_NODATA.len()],
     huge: bool,
 }
 
@@ -147,8 +147,8 @@ impl Conversion {
             self.seen.huge = true;
             return f32::NAN;
         }
-        if value <= USUAL_NODATA[1] {
-            USUAL_NODATA.iter().zip(&mut self.seen.usual).for_each(|(usual, seen)| *seen |= value == *usual);
+        if value <= COMMON_NODATA[1] {
+            COMMON_NODATA.iter().zip(&mut self.seen.common).for_each(|(common, seen)| *seen |= value == *common);
         }
         if self.scale == 1.0 && self.offset == 0.0 && self.metres == 1.0 {
             return value as f32;
@@ -181,7 +181,7 @@ impl Conversion {
                 unit.escape_debug()
             ));
         }
-        for (value, _) in USUAL_NODATA.iter().zip(self.seen.usual).filter(|(_, seen)| *seen) {
+        for (value, _) in COMMON_NODATA.iter().zip(self.seen.common).filter(|(_, seen)| *seen) {
             notes.push(format!(
                 "some of its samples are {value}, a common nodata value that it does not declare, and were read as heights; if they are missing, declare it, for example with gdal_translate -a_nodata {value}"
             ));

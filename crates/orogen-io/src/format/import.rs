@@ -1,18 +1,22 @@
 //! The list of all readers of heights.
 
+use std::io::Cursor;
 use std::path::Path;
 
 use super::band::BandMetadata;
 use super::dem::{Dem, Input, Placement, Request, refused};
+use super::foreign::foreign;
 use super::noted::noted;
 use super::raw::Sample;
 use super::sidecar::Sidecar;
-use super::{asc, exr_reader, geotiff, grey, hgt, npy, raw};
+use super::{asc, dted, ehdr, exr_reader, geotiff, grey, hgt, npy, raw, xyz, zip};
 use crate::open;
 use orogen_grid::error::Result;
 
 /// Extensions of readable files.
-pub const EXTENSIONS: [&str; 9] = ["tif", "tiff", "asc", "hgt", "png", "r16", "r32", "npy", "exr"];
+pub const EXTENSIONS: [&str; 16] = [
+    "tif", "tiff", "asc", "hgt", "hgt.zip", "png", "r16", "r32", "npy", "exr", "bil", "flt", "xyz", "dt0", "dt1", "dt2",
+];
 
 /// Extensions of files that may have several bands.
 const SEVERAL_BANDS: [&str; 3] = ["tif", "tiff", "exr"];
@@ -24,6 +28,10 @@ pub fn is_dem(path: &Path) -> bool {
 }
 
 fn extension(path: &Path) -> Option<String> {
+    let name = path.file_name()?.to_str()?.to_ascii_lowercase();
+    if name.ends_with(".hgt.zip") {
+        return Some("hgt.zip".into());
+    }
     Some(path.extension()?.to_str()?.to_ascii_lowercase())
 }
 
@@ -84,7 +92,10 @@ fn known(path: &Path, name: &str) -> Result<()> {
     if is_dem(path) {
         return Ok(());
     }
-    let known = "supported are .tif, .asc, .hgt, .png, .r16, .r32, .npy, .exr and .vrt, folders of .tif, .hgt or .asc, and Zarr";
+    if let Some(why) = foreign(path) {
+        return Err(refused(name, why));
+    }
+    let known = "supported are .tif, .asc, .hgt, .hgt.zip, .bil, .flt, .xyz, .dt0 to .dt2, .png, .r16, .r32, .npy, .exr and .vrt, folders of .tif, .hgt or .asc, and Zarr";
     Err(refused(name, format!("its extension is not that of a format for heights; {known}")))
 }
 
@@ -116,9 +127,21 @@ fn band(input: &mut dyn Input, name: &str, extension: &str, sidecar: Option<Side
         "tif" | "tiff" => geotiff::reader::read_with(input, name, request, &told)?,
         "asc" => asc::read(input, name, allowed)?,
         "hgt" => hgt::read(input, name, allowed)?,
+        "hgt.zip" => {
+            // The largest tile has 3601 x 3601 samples of two bytes, and its heights need twice as much.
+            let most = (2 * 3601 * 3601).min(allowed / 2);
+            let tile = zip::only_file(input, most).map_err(|why| refused(name, why))?;
+            hgt::read(&mut Cursor::new(tile), name, allowed)?
+        }
         "png" => grey::read(input, name, &told, allowed)?,
         "r16" => raw::read(input, name, Sample::U16, &told, allowed)?,
         "r32" => raw::read(input, name, Sample::F32, &told, allowed)?,
+        "bil" | "flt" => {
+            let (header, metadata) = (told.header.as_deref(), told.band(None));
+            ehdr::read(input, name, header, extension == "flt", &metadata, told.vertical, allowed)?
+        }
+        "xyz" => xyz::read(input, name, allowed)?,
+        "dt0" | "dt1" | "dt2" => dted::read(input, name, allowed)?,
         "exr" => exr_reader::read(input, name, &told, request)?,
         "npy" => {
             let grid = npy::read_within(input, name, told.cell.unwrap_or(1.0), allowed)?;
@@ -137,10 +160,11 @@ fn band(input: &mut dyn Input, name: &str, extension: &str, sidecar: Option<Side
     if !matches!(extension, "tif" | "tiff") {
         // Samples between `low` and `high` are metres, and their nodata is known.
         let metadata = match extension {
-            "png" | "r16" => BandMetadata::default(),
+            "png" | "r16" | "bil" | "flt" => BandMetadata::default(),
             _ => told.band(request.band).with_nodata(told.nodata),
         };
-        let vertical = told.vertical.filter(|_| !matches!(extension, "png" | "r16"));
+        // The reader of headers converts their heights itself.
+        let vertical = told.vertical.filter(|_| !matches!(extension, "png" | "r16" | "bil" | "flt"));
         convert(&mut dem, &told, request, &metadata, vertical).map_err(|why| refused(name, why))?;
     }
     if let Some(place) = &mut dem.place {

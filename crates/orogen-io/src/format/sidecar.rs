@@ -2,7 +2,8 @@
 //!
 //! Keys: `width`, `height` (samples); `cell` (metres between samples); `low`, `high` (heights in metres of 0 and 65535,
 //! or of 0 and 255); `byte_order` ("little", the default, or "big"); `first_row` ("north", the default, or "south");
-//! `nodata` (the value of missing samples); `geotransform` (six numbers in GDAL's order: west edge, column step, 0,
+//! `nodata` (the value of missing samples); `encoding` ("terrarium" or "terrain-rgb", for heights in the colours of a
+//! picture); `geotransform` (six numbers in GDAL's order: west edge, column step, 0,
 //! north edge, 0, row step, which is negative); `crs` ("EPSG:32632"); `wkt` (the coordinate system as well-known text).
 //! Other keys are ignored, so that the `summary.json` that `orogen generate` writes beside `height.png` is a sidecar
 //! too.
@@ -20,7 +21,8 @@ use super::crs::unit::Unit;
 use super::crs::vertical;
 use super::crs::wkt::MAX_LENGTH;
 use super::dem::{Placement, refused, turn_rows};
-use super::{aux_xml, world_file};
+use super::encoding::Encoding;
+use super::{aux_xml, ehdr, world_file};
 use crate::fs;
 use crate::open;
 use orogen_grid::error::Result;
@@ -50,6 +52,10 @@ pub struct Sidecar {
     pub first_row: Option<String>,
     /// The value of missing samples.
     pub nodata: Option<f64>,
+    /// The encoding of heights in the colours of a picture: "terrarium" or "terrain-rgb".
+    pub encoding: Option<String>,
+    /// The type of the samples as exports state it; of a picture, its encoding.
+    pub sample: Option<String>,
     /// The transform from columns and rows to coordinates, in GDAL's order, for pixel corners.
     pub geotransform: Option<[f64; 6]>,
     /// The EPSG code of the coordinate system, with the prefix `EPSG:`.
@@ -65,6 +71,9 @@ pub struct Sidecar {
     /// What GDAL's sidecar states about each band, in the order of the bands.
     #[serde(skip)]
     pub bands: Vec<BandMetadata>,
+    /// The text of NAME.hdr beside a `.bil` or `.flt`.
+    #[serde(skip)]
+    pub header: Option<String>,
     /// What replaces the metadata of the band that is read, as virtual rasters state it.
     #[serde(skip)]
     pub replaced: BandMetadata,
@@ -100,6 +109,12 @@ impl Sidecar {
                 Ok((keys, vertical)) => (all.keys, all.vertical) = (Some(keys), vertical),
                 Err(why) => all.notes.push(format!("its coordinate system is not known: {why}")),
             }
+        }
+        let header = path.with_extension("hdr");
+        if path.extension().is_some_and(|own| own.eq_ignore_ascii_case("bil") || own.eq_ignore_ascii_case("flt"))
+            && fs::is_file(&header)
+        {
+            all.header = Some(text(&header, ehdr::MAX_LENGTH, |text| Ok(text.to_string()))?);
         }
         all.mask = Some(beside(path, ".msk")).filter(|mask| fs::is_file(mask));
         if fs::is_file(&notes) {
@@ -169,6 +184,13 @@ impl Sidecar {
             turn_rows(&mut samples, width);
         }
         Ok(samples)
+    }
+
+    /// The encoding of heights in the colours of a picture, if it is stated.
+    #[must_use]
+    pub fn encoding(&self) -> Option<Encoding> {
+        let stated = |name: &str| [&self.encoding, &self.sample].into_iter().flatten().any(|own| own == name);
+        Encoding::ALL.into_iter().find(|encoding| stated(encoding.name()))
     }
 
     /// What GDAL's sidecar states about a band, from 1, or what replaces it.
