@@ -56,8 +56,8 @@ impl Affine {
         }
         let from_south = e > 0.0;
         let north = if from_south { f + e * (rows as f64 - 1.0) } else { f };
-        if let Some(far) = [c, north].into_iter().find(|at| at.is_nan() || at.abs() > MAX_COORDINATE) {
-            return Err(format!("its georeference is invalid: a coordinate of {far:e} is not on a map"));
+        if let Some(far) = [c, north, a, e].into_iter().find(|at| at.is_nan() || at.abs() > MAX_COORDINATE) {
+            return Err(format!("its georeference is invalid: a coordinate or cell size of {far:e} is not on a map"));
         }
         Ok(Lattice { origin: [c, north], step: [a, e.abs()], from_south })
     }

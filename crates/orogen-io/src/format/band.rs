@@ -166,6 +166,12 @@ impl Conversion {
         }
     }
 
+    /// The heights of the stored samples 0 and `most`.
+    #[must_use]
+    pub fn range(&self, most: f64) -> [f64; 2] {
+        [0.0, most].map(|value| (value * self.scale + self.offset) * self.metres)
+    }
+
     /// Converts samples that a reader has stored as f32.
     pub fn apply(&mut self, samples: &mut [f32]) {
         samples.iter_mut().for_each(|sample| *sample = self.height(f64::from(*sample), 4));

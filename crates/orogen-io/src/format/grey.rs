@@ -52,8 +52,8 @@ fn open(input: &mut dyn Input, sidecar: &Sidecar, allowed: u64) -> std::result::
         return Err("it is interlaced; save it without interlacing".into());
     }
     let encoding = encoding.filter(|_| size > 2);
-    let [low, high] = if encoding.is_some() { [0.0; 2] } else { sidecar.range()? };
     let most = if size == 1 { 255.0 } else { 65535.0 };
+    let [low, high] = if encoding.is_some() { [0.0; 2] } else { sidecar.range(most)? };
     let mut heights: Vec<f32> = Vec::new();
     while let Some(row) = reader.next_row().map_err(broken)? {
         heights.extend(row.data().chunks_exact(size).map(|bytes| {

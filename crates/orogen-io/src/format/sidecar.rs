@@ -200,13 +200,20 @@ impl Sidecar {
         self.bands.get(index).cloned().unwrap_or_default().replaced_by(&self.replaced)
     }
 
-    /// The heights, in metres, of the smallest and the largest sample.
+    /// The heights, in metres, of a sample of 0 and of the largest possible one, `most`: `low` and `high`, otherwise those
+    /// that the scale, offset and unit in GDAL's sidecar give.
     ///
     /// # Errors
-    /// If they are missing.
-    pub fn range(&self) -> std::result::Result<[f64; 2], String> {
+    /// If neither is stated, or a virtual raster replaces the metadata of a file with `low` and `high`.
+    pub fn range(&self, most: f64) -> std::result::Result<[f64; 2], String> {
+        let band = self.band(None);
+        let has_scale = |band: &BandMetadata| band.scale.is_some() || band.offset.is_some();
         match (self.low, self.high) {
+            (Some(_), Some(_)) if has_scale(&self.replaced) || self.replaced.unit.is_some() => Err(
+                "a virtual raster states its scale, offset or unit, and `low` and `high` beside it state other heights; remove one of them".into(),
+            ),
             (Some(low), Some(high)) => Ok([low, high]),
+            _ if has_scale(&band) => Ok(band.conversion(self.vertical)?.range(most)),
             _ => Err(needs("low and high, the heights in metres of its lowest and highest sample value")),
         }
     }
@@ -293,7 +300,7 @@ mod tests {
         let json =
             "{\"width\": 3, \"height\": 2, \"cell\": 10.0, \"height_min\": -5, \"height_max\": 95.5, \"seed\": 7}";
         assert_eq!(toml, Sidecar::parse(json, false).unwrap());
-        assert_eq!((toml.range(), toml.big_endian()), (Ok([-5.0, 95.5]), Ok(false)));
+        assert_eq!((toml.range(255.0), toml.big_endian()), (Ok([-5.0, 95.5]), Ok(false)));
         assert_eq!(toml.place(2).unwrap().unwrap().origin, [0.0, 10.0]);
     }
 
@@ -327,6 +334,16 @@ mod tests {
     }
 
     #[test]
+    fn scale_and_offset_of_the_band_state_the_range() {
+        let band = BandMetadata { scale: Some(0.5), offset: Some(10.0), unit: Some("ft".into()), ..Default::default() };
+        let scaled = Sidecar { bands: vec![band.clone()], ..Sidecar::default() };
+        assert_eq!(scaled.range(200.0), Ok([3.048, 33.528]));
+        let both = Sidecar { low: Some(0.0), high: Some(1.0), ..scaled };
+        assert_eq!(both.range(200.0), Ok([0.0, 1.0]));
+        assert!(Sidecar { replaced: band, ..both }.range(200.0).unwrap_err().contains("a virtual raster"));
+    }
+
+    #[test]
     fn wrong_ones_are_sentences() {
         for (text, expect) in [
             ("width = 'a'", "not a valid sidecar for heights"),
@@ -341,6 +358,6 @@ mod tests {
         assert!(across.north_first(vec![1.0], 1).unwrap_err().contains("\"east\""));
         let middle = Sidecar { byte_order: Some("middle".into()), ..Sidecar::default() };
         assert!(middle.big_endian().unwrap_err().contains("\"middle\""));
-        assert!(middle.range().unwrap_err().contains("low and high"));
+        assert!(middle.range(255.0).unwrap_err().contains("low and high"));
     }
 }

@@ -8,6 +8,9 @@ use super::wkt::Node;
 /// The key of a projection by its EPSG code, without its geographic system.
 const PROJECTION: u16 = 3074;
 
+/// Maximum number of numbers, and length of all texts: keys refer to them with 16 bits.
+const MAX_LENGTH: usize = 1 << 16;
+
 /// The keys of the horizontal system, as a new directory: sorted, each once, without padding, with the texts and
 /// numbers that they refer to. The raster type belongs to the samples, and the vertical system to heights in its unit,
 /// so both are left out. A UTM zone that is known by its projection alone gets its EPSG code.
@@ -29,17 +32,18 @@ pub fn rebuilt(found: &GeoKeys) -> Result<GeoKeys, String> {
                     return Err(format!("its coordinate system is invalid: its GeoKey {key} is {number}"));
                 }
                 let entry = [key, DOUBLES, numbers.len() as u16, keys.doubles.len() as u16];
-                keys.doubles.extend(numbers);
-                (!numbers.is_empty()).then_some(entry)
+                let fits = !numbers.is_empty() && keys.doubles.len() + numbers.len() < MAX_LENGTH;
+                keys.doubles.extend(numbers.iter().filter(|_| fits));
+                fits.then_some(entry)
             }
             TEXTS => {
                 let end = (from + count).min(found.text.len());
                 let text = found.text.get(from..end).unwrap_or_default().trim_end_matches(['|', '\0']);
-                let text = text_of(text);
-                let entry = [key, TEXTS, text.len() as u16 + 1, keys.text.len() as u16];
-                keys.text.push_str(&text);
-                keys.text.push('|');
-                Some(entry)
+                let text = text_of(text) + "|";
+                let entry = [key, TEXTS, text.len() as u16, keys.text.len() as u16];
+                let fits = keys.text.len() + text.len() < MAX_LENGTH;
+                keys.text.push_str(if fits { &text } else { "" });
+                fits.then_some(entry)
             }
             _ => None,
         };
@@ -138,6 +142,10 @@ mod tests {
         assert_eq!(rebuilt(&GeoKeys { directory: vec![1, 1, 0, 9], ..GeoKeys::default() }).unwrap().directory[3], 0);
         assert_eq!(rebuilt(&keys(&[[3080, DOUBLES, 1, 7]])).unwrap().directory, [1, 1, 0, 0]);
         assert_eq!(rebuilt(&GeoKeys::default()).unwrap().directory, [1, 1, 0, 0]);
+        // A text that is too long to be referred to.
+        let long =
+            GeoKeys { text: "a".repeat(1 << 17), ..keys(&[[1026, TEXTS, u16::MAX, 0], [3073, TEXTS, u16::MAX, 9]]) };
+        assert_eq!(rebuilt(&long).unwrap().directory, [1, 1, 0, 0]);
         let nan = GeoKeys { doubles: vec![f64::NAN], ..keys(&[[3080, DOUBLES, 1, 0]]) };
         assert!(rebuilt(&nan).unwrap_err().contains("GeoKey 3080 is NaN"));
     }

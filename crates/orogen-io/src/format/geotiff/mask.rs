@@ -6,12 +6,17 @@ use super::entries::Tiff;
 use super::unpack::Packing;
 use crate::format::dem::{Input, Request};
 
-/// Sets heights to NaN where the file's own mask is 0. Without a mask nothing changes.
-pub fn internal(tiff: &mut Tiff, size: [u64; 2], allowed: u64, heights: &mut [f32]) -> Result<(), String> {
-    if !tiff.seek_mask(size)? {
-        return Ok(());
+/// Sets heights to NaN where the file's own mask is 0. Without a mask nothing changes. Returns a note if the file is
+/// damaged after its raster: the heights are there, and a mask may not be.
+pub fn internal(tiff: &mut Tiff, size: [u64; 2], allowed: u64, heights: &mut [f32]) -> Result<Option<String>, String> {
+    match tiff.seek_mask(size) {
+        Ok(false) => Ok(None),
+        Err(why) => Ok(Some(format!("a mask or overviews after its raster cannot be read: {why}"))),
+        Ok(true) => {
+            apply(tiff, size, 1, allowed, heights).map_err(|why| format!("its mask cannot be read: {why}"))?;
+            Ok(None)
+        }
     }
-    apply(tiff, size, 1, allowed, heights).map_err(|why| format!("its mask cannot be read: {why}"))
 }
 
 /// Sets heights to NaN where the mask file beside them is 0. A mask file has one band for all bands, or one for each.

@@ -111,7 +111,7 @@ fn heights(
             }
         }
     })?;
-    mask::internal(tiff, size, request.allowed, &mut heights)?;
+    let damaged = mask::internal(tiff, size, request.allowed, &mut heights)?;
     if let Some(external) = external {
         mask::external(external, size, request, &mut heights)?;
     }
@@ -120,6 +120,7 @@ fn heights(
     }
     let mut dem = Dem::new([width as usize, height as usize], heights, found.place)?;
     dem.notes = conversion.notes();
+    dem.notes.extend(damaged);
     Ok(dem)
 }
 

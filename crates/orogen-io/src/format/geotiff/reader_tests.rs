@@ -202,6 +202,13 @@ fn masked_samples_are_missing() {
     let error = open(&tiff(&data, &[fields(Vec::new()), mask(4, 4, 1, 72, 2)])).unwrap_err().to_string();
     assert!(error.contains("its mask cannot be read"), "{error}");
 
+    // A chain of directories that leads nowhere does not hide the raster.
+    let mut broken = tiff(&samples(), &[fields(Vec::new())]);
+    let end = broken.len();
+    broken[end - 4..].copy_from_slice(&u32::MAX.to_le_bytes());
+    let dem = open(&broken).unwrap();
+    assert!(dem.missing() == 0 && dem.notes[0].contains("after its raster cannot be read"), "{:?}", dem.notes);
+
     let folder = crate::test_folder::TestFolder::new("geotiff-mask").unwrap();
     let path = folder.join("a.tif");
     std::fs::write(&path, tiff(&samples(), &[fields(Vec::new())])).unwrap();
