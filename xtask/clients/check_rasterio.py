@@ -60,7 +60,8 @@ for name, recipe, cell, window, tile in [
         checks.that(f"{name}: bit-equal to the .npy", same_bits(tiff.read(1), heights))
         checks.equal(f"{name}: points, not areas", tiff.tags().get("AREA_OR_POINT"), "Point")
         checks.equal(f"{name}: layout", tiff.tags(ns="IMAGE_STRUCTURE").get("LAYOUT"), "COG")
-        checks.equal(f"{name}: no value stands for none", tiff.nodata, None)
+        checks.equal(f"{name}: only NaN stands for none", str(tiff.nodata), "nan")
+        checks.equal(f"{name}: heights are in metres", tiff.units[0], "m")
         checks.that(f"{name}: a system of its own, in metres", "metre" in tiff.crs.to_wkt() and not tiff.crs.to_epsg())
         # The centre of a pixel is the position of its sample: x east, y south of the origin.
         for row, column in [(0, 0), (height - 1, 0), (0, width - 1), (height // 2, width // 3)]:

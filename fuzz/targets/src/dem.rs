@@ -7,14 +7,19 @@ use std::io::Cursor;
 
 /// Runs the target on an input.
 pub fn run(bytes: &[u8]) {
-    let sidecar = Sidecar::parse("width = 37\nheight = 23\ncell = 30\nlow = 8\nhigh = 117.225", true).ok();
+    let mut sidecar = Sidecar::parse("width = 37\nheight = 23\ncell = 30\nlow = 8\nhigh = 117.225", true).ok();
+    if let Some(sidecar) = &mut sidecar {
+        sidecar.header = Some("nrows 23\nncols 37\nnbits 16".into());
+    }
     // What the bytes begin with tells most formats apart; the others take any bytes.
     let extensions: &[&str] = match bytes {
         [b'I', b'I', ..] | [b'M', b'M', ..] => &["tif"],
         [0x93, b'N', ..] => &["npy"],
         [0x89, b'P', ..] => &["png"],
         [0x76, 0x2f, ..] => &["exr"],
-        _ => &["asc", "hgt", "r16", "r32"],
+        [b'P', b'K', ..] => &["hgt.zip"],
+        [b'U', b'H', ..] => &["dt1"],
+        _ => &["asc", "hgt", "r16", "r32", "bil", "flt", "xyz"],
     };
     for extension in extensions {
         let request = Request::new(1 << 22).with_band(Some(1));

@@ -78,10 +78,11 @@ impl WorldSpec {
         let (crs, origin) = (self.crs?, self.origin?);
         let per_metre = match crs.unit() {
             Unit::Metres(unit) => [1.0 / unit; 2],
-            Unit::Degrees => {
+            unit @ (Unit::Degrees | Unit::Grads) => {
+                let degrees = unit.degrees().unwrap_or(1.0);
                 let half = self.size.map_or(0.0, |size| size[1] / 2.0);
-                let middle = origin[1] - half / metres_of_degrees(origin[1])[1];
-                metres_of_degrees(middle).map(|metres| 1.0 / metres)
+                let middle = origin[1] * degrees - half / metres_of_degrees(origin[1] * degrees)[1];
+                metres_of_degrees(middle).map(|metres| 1.0 / (metres * degrees))
             }
         };
         Some(Georeference { origin, per_metre, keys: Some(crs.keys()) })

@@ -1,5 +1,6 @@
 //! The latitude of a position on a map.
 
+use crate::format::crs::unit::Unit;
 use crate::format::dem::Georeference;
 
 /// The semi-major axis in metres, and the square of the eccentricity (WGS 84).
@@ -11,7 +12,8 @@ const SQUARED: f64 = 0.006_694_379_990_14;
 #[must_use]
 pub fn latitude(map: &Georeference, x: f64, y: f64) -> Option<f64> {
     let [east, north] = map.at(x, y);
-    if map.is_degrees() {
+    if let Some(degrees) = map.unit().and_then(Unit::degrees) {
+        let north = north * degrees;
         return (-90.0..=90.0).contains(&north).then_some(north);
     }
     let northing = match map.epsg()? {

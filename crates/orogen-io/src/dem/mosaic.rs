@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use crate::format::affine::Affine;
-use crate::format::crs::keys;
+use crate::format::band::BandMetadata;
 use crate::format::crs::unit::Unit;
+use crate::format::crs::{keys, vertical};
 use crate::format::dem::{Dem, Placement, Request, afford, refused};
 use crate::format::import;
-use crate::format::vrt::{self, Virtual};
+use crate::format::vrt::{self, Band, Virtual};
 use crate::fs;
 use orogen_grid::error::{Error, Result};
 
@@ -25,7 +26,8 @@ struct Part {
     to: [usize; 2],
     /// Columns and rows; `None` means all.
     size: Option<[usize; 2]>,
-    nodata: Option<f64>,
+    /// What replaces the metadata of the file.
+    metadata: BandMetadata,
 }
 
 /// The files of a folder that can be tiles, sorted by name.
@@ -72,11 +74,11 @@ pub fn folder(folder: &Path, request: Request) -> Result<Dem> {
         from: [0; 2],
         to,
         size: None,
-        nodata: None,
+        metadata: BandMetadata::default(),
     });
     // Later parts cover earlier ones.
     let parts: Vec<Part> = parts.rev().collect();
-    lay(&name, size, Some(place), &parts, request)
+    lay(&name, size, Some(place), &parts, f32::NAN, request)
 }
 
 /// Size and position of the mosaic, and the first column and row of each tile.
@@ -132,8 +134,13 @@ pub fn virtual_raster(path: &Path, request: Request) -> Result<Dem> {
     let read = parsed(path)?;
     let band = request.choose(read.bands.len()).map_err(refuse)?;
     let place = place(&read).map_err(refuse)?;
-    let Virtual { size, mut bands, .. } = read;
-    let sources = bands.swap_remove(band);
+    let vertical = read.system.as_deref().and_then(vertical::metres_of_text);
+    let Virtual { size, mut bands, has_mask, .. } = read;
+    let Band { sources, mut metadata } = bands.swap_remove(band);
+    if metadata.unit.is_none() {
+        metadata.metres = vertical;
+    }
+    let absent = if has_mask { f32::NAN } else { metadata.conversion(None).map_err(refuse)?.absent() };
     if sources.len() > MAX_FILES {
         return Err(refuse(format!("it has {} sources, and at most {MAX_FILES} are supported", sources.len())));
     }
@@ -145,10 +152,10 @@ pub fn virtual_raster(path: &Path, request: Request) -> Result<Dem> {
             from: source.from.map(|at| at as usize),
             to: source.to.map(|at| at as usize),
             size: source.size.map(|size| size.map(|samples| samples as usize)),
-            nodata: source.nodata,
+            metadata: metadata.clone().with_nodata(source.nodata),
         })
         .collect();
-    lay(&name, size, place, &parts, request)
+    lay(&name, size, place, &parts, absent, request)
 }
 
 /// The parsed text of a virtual raster.
@@ -170,7 +177,7 @@ fn lies_at(path: &Path, source: &vrt::Source) -> PathBuf {
 /// The source files of a virtual raster; empty if it cannot be read.
 pub fn sources(path: &Path) -> Vec<PathBuf> {
     let bands = parsed(path).map_or(Vec::new(), |read| read.bands);
-    bands.iter().flatten().map(|source| lies_at(path, source)).collect()
+    bands.iter().flat_map(|band| &band.sources).map(|source| lies_at(path, source)).collect()
 }
 
 /// The position of a virtual raster.
@@ -184,19 +191,27 @@ fn place(read: &Virtual) -> std::result::Result<Option<Placement>, String> {
         None => None,
         Some(text) => Some(keys::of_text(text)?),
     };
-    let unit = keys.as_ref().map_or(Unit::guess(lattice.origin, lattice.step), keys::unit);
+    let unit = keys.as_ref().map_or(Ok(Unit::guess(lattice.origin, lattice.step)), keys::unit)?;
     Ok(Some(Placement { origin: lattice.origin, step: lattice.step, unit, cell: None, keys }))
 }
 
-/// Composes parts in order, reading one file at a time: the memory of one file is needed beside the mosaic.
-fn lay(name: &str, size: [u64; 2], place: Option<Placement>, parts: &[Part], request: Request) -> Result<Dem> {
+/// Composes parts in order, reading one file at a time: the memory of one file is needed beside the mosaic. Samples
+/// without a part have the height `absent`.
+fn lay(
+    name: &str,
+    size: [u64; 2],
+    place: Option<Placement>,
+    parts: &[Part],
+    absent: f32,
+    request: Request,
+) -> Result<Dem> {
     let count = afford(size[0], size[1], request.allowed).map_err(|why| refused(name, why))?;
     let [width, height] = size.map(|side| side as usize);
     let left = request.allowed.saturating_sub(4 * count as u64);
-    let mut heights = vec![f32::NAN; count];
+    let mut heights = vec![absent; count];
     let mut notes = Vec::new();
     for part in parts {
-        let dem = import::read(&part.path, Request { band: part.band, allowed: left })?;
+        let dem = import::read_with(&part.path, Request { band: part.band, allowed: left }, &part.metadata)?;
         let outside = || {
             let path = part.path.display();
             refused(
@@ -217,7 +232,8 @@ fn lay(name: &str, size: [u64; 2], place: Option<Placement>, parts: &[Part], req
             let source = (part.from[1] + j) * dem.width + part.from[0];
             let to = (part.to[1] + j) * width + part.to[0];
             for (height, own) in heights[to..to + size[0]].iter_mut().zip(&dem.heights[source..source + size[0]]) {
-                if !own.is_nan() && part.nodata.is_none_or(|nodata| f64::from(*own) != nodata) {
+                // A missing sample shows the part below. Where there may be none, it must not become a height.
+                if !own.is_nan() || !absent.is_nan() {
                     *height = *own;
                 }
             }

@@ -97,7 +97,7 @@ impl PreparedDem {
             let (holes, share) = (count(missing, "sample"), percent(missing as u64, samples as u64));
             notes.push(format!("filled {holes} without height ({share}) from the surrounding heights"));
         }
-        let degrees = dem.place.as_ref().is_some_and(|place| place.unit == Unit::Degrees) && cell.is_none();
+        let degrees = dem.place.as_ref().is_some_and(|place| place.unit.degrees().is_some()) && cell.is_none();
         if !layout.is_square() {
             let what = if degrees { "its degrees, at the middle latitude cells" } else { "its cells" };
             notes.push(format!(
@@ -107,7 +107,7 @@ impl PreparedDem {
         }
         let georeference = dem.place.as_ref().map(|place| Georeference {
             origin: place.origin,
-            per_metre: [place.step[0] / steps[0], place.step[1] / steps[1]],
+            per_metre: layout.per_metre(place.step, steps),
             // Degrees remain degrees even if their datum is unknown.
             keys: place.keys.clone().or((place.unit == Unit::Degrees).then(|| keys::of_epsg(USER_DEFINED, true))),
         });

@@ -26,10 +26,11 @@ pub fn metres_of_degrees(latitude: f64) -> [f64; 2] {
 pub fn steps(place: &Placement, rows: usize) -> [f64; 2] {
     match place.unit {
         Unit::Metres(unit) => place.step.map(|step| step * unit),
-        Unit::Degrees if let Some(cell) = place.cell => [cell; 2],
-        Unit::Degrees => {
+        Unit::Degrees | Unit::Grads if let Some(cell) = place.cell => [cell; 2],
+        Unit::Degrees | Unit::Grads => {
+            let degrees = place.unit.degrees().unwrap_or(1.0);
             let middle = place.origin[1] - 0.5 * place.step[1] * (rows as f64 - 1.0);
-            let [east, south] = metres_of_degrees(middle);
+            let [east, south] = metres_of_degrees(middle * degrees).map(|metres| metres * degrees);
             [place.step[0] * east, place.step[1] * south]
         }
     }
@@ -59,6 +60,19 @@ impl Layout {
         let ratio = [cell / east, cell / south];
         let count = |samples: usize, ratio: f64| ((samples as f64 - 1.0) / ratio + 1e-9) as usize + 1;
         Layout { size: [count(size[0], ratio[0]), count(size[1], ratio[1])], cell, ratio }
+    }
+
+    /// Map units per metre of the lattice, for a DEM with these steps in map units and in metres. Sides that count as
+    /// equal keep their own sizes, so that no sample moves on the map; only differences below a thousandth of a cell over
+    /// the whole raster are left out.
+    #[must_use]
+    pub fn per_metre(&self, steps: [f64; 2], metres: [f64; 2]) -> [f64; 2] {
+        let longest = self.size[0].max(self.size[1]) as f64;
+        let exact = !self.is_square() || (metres[0] - metres[1]).abs() * longest < 1e-3 * metres[1];
+        match exact {
+            true => [steps[0] / metres[0], steps[1] / metres[1]],
+            false => steps.map(|step| step / self.cell),
+        }
     }
 
     /// Whether samples need no resampling.
@@ -110,5 +124,12 @@ mod tests {
             assert!((grid[(i, j)] - expect).abs() < 0.6, "{i} {j}: {} {expect}", grid[(i, j)]);
         }
         assert!(Layout::new([5, 5], [30.0, 30.01]).is_square());
+        // Column 2993 of 3000 is 27 m further east than with cells of 10 m.
+        let nearly = Layout::new([3000, 4], [10.009, 10.0]);
+        let per_metre = nearly.per_metre([10.009, 10.0], [10.009, 10.0]);
+        assert!(nearly.is_square() && (2993.0 * nearly.cell * per_metre[0] - 2993.0 * 10.009).abs() < 1e-6);
+        assert_eq!(per_metre[1], 1.0);
+        let equal = Layout::new([30, 4], [10.000_000_001, 10.0]);
+        assert_eq!(equal.per_metre([10.000_000_001, 10.0], [10.000_000_001, 10.0]), [1.0; 2]);
     }
 }

@@ -4,6 +4,9 @@
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Affine(pub [f64; 6]);
 
+/// Coordinates beyond this are damage: the circumference of the Earth is 4e10 mm.
+const MAX_COORDINATE: f64 = 1e12;
+
 /// The samples of a north-up raster.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lattice {
@@ -53,6 +56,9 @@ impl Affine {
         }
         let from_south = e > 0.0;
         let north = if from_south { f + e * (rows as f64 - 1.0) } else { f };
+        if let Some(far) = [c, north, a, e].into_iter().find(|at| at.is_nan() || at.abs() > MAX_COORDINATE) {
+            return Err(format!("its georeference is invalid: a coordinate or cell size of {far:e} is not on a map"));
+        }
         Ok(Lattice { origin: [c, north], step: [a, e.abs()], from_south })
     }
 }
@@ -74,5 +80,7 @@ mod tests {
         assert_eq!((turned.origin, turned.from_south), ([105.0, 550.0], true));
         assert!(Affine([10.0, 1.0, 0.0, 0.0, -10.0, 0.0]).lattice(4).unwrap_err().contains("rotated"));
         assert!(Affine([-10.0, 0.0, 0.0, 0.0, -10.0, 0.0]).lattice(4).is_err());
+        assert!(Affine([10.0, 0.0, 1e300, 0.0, -10.0, 0.0]).lattice(4).unwrap_err().contains("1e300 is not on a map"));
+        assert!(Affine([10.0, 0.0, f64::NAN, 0.0, -10.0, 0.0]).lattice(4).is_err());
     }
 }

@@ -6,6 +6,7 @@
 
 use std::io::{self, BufRead, Write};
 
+use super::affine::{Affine, Lattice};
 use super::crs::unit::Unit;
 use super::dem::{Dem, Georeference, Input, Placement, afford, refused};
 use orogen_grid::error::Result;
@@ -73,6 +74,8 @@ struct Head {
     south: Option<(f64, bool)>,
     step: [Option<f64>; 2],
     nodata: Option<f64>,
+    /// Whether the nodata value was stated, also as `null`: none.
+    has_nodata: bool,
 }
 
 /// The size and position of a grid, without reading its samples.
@@ -82,7 +85,8 @@ struct Head {
 pub fn head(input: &mut dyn Input, name: &str) -> Result<([usize; 2], Option<Placement>)> {
     let mut words = Words { input: &mut io::BufReader::new(input), word: Vec::new() };
     let (head, [columns, rows], _) = read_head(&mut words).map_err(|why| refused(name, why))?;
-    Ok(([columns as usize, rows as usize], head.place(rows)))
+    let place = head.place(rows).map_err(|why| refused(name, why))?;
+    Ok(([columns as usize, rows as usize], place))
 }
 
 /// The header, the size it states, and the first word after it.
@@ -125,7 +129,7 @@ fn open(input: &mut dyn Input, allowed: u64) -> std::result::Result<Dem, String>
     if let Some(word) = words.next()? {
         return Err(format!("it continues with `{}` after its {columns} x {rows} heights", word.escape_debug()));
     }
-    let place = head.place(rows);
+    let place = head.place(rows)?;
     Dem::new([columns as usize, rows as usize], heights, place)
 }
 
@@ -136,6 +140,26 @@ fn number(word: &str) -> Option<f64> {
 
 impl Head {
     fn take(&mut self, key: &str, value: &str) -> std::result::Result<(), String> {
+        let given = match key {
+            "ncols" => self.columns.is_some(),
+            "nrows" => self.rows.is_some(),
+            "xllcorner" | "xllcenter" => self.west.is_some(),
+            "yllcorner" | "yllcenter" => self.south.is_some(),
+            "cellsize" => self.step.iter().any(Option::is_some),
+            "dx" => self.step[0].is_some(),
+            "dy" => self.step[1].is_some(),
+            "nodata_value" => self.has_nodata,
+            _ => false,
+        };
+        if given {
+            return Err(format!(
+                "its header states `{key}` after it, or another key with the same meaning, was stated"
+            ));
+        }
+        self.has_nodata |= key == "nodata_value";
+        if key == "nodata_value" && value.eq_ignore_ascii_case("null") {
+            return Ok(());
+        }
         let number =
             number(value).ok_or_else(|| format!("`{key}` is `{}`, which is not a number", value.escape_debug()))?;
         let whole = || {
@@ -159,24 +183,26 @@ impl Head {
             "nodata_value" => self.nodata = Some(number),
             _ => return Err(format!("its header has an unknown key `{}`", key.escape_debug())),
         }
+        if matches!(key, "xllcorner" | "xllcenter" | "yllcorner" | "yllcenter") && !number.is_finite() {
+            return Err(format!("`{key}` is {number}, which is not a coordinate"));
+        }
         if matches!(key, "cellsize" | "dx" | "dy") && !(number.is_finite() && number > 0.0) {
             return Err(format!("`{key}` is {number}, and must be greater than 0"));
         }
         Ok(())
     }
 
-    fn place(&self, rows: u64) -> Option<Placement> {
-        let ([Some(dx), Some(dy)], Some(west), Some(south)) = (self.step, self.west, self.south) else { return None };
+    /// The position of the samples, if the header states it.
+    fn place(&self, rows: u64) -> std::result::Result<Option<Placement>, String> {
+        let ([Some(dx), Some(dy)], Some(west), Some(south)) = (self.step, self.west, self.south) else {
+            return Ok(None);
+        };
         let middle = |(at, is_middle): (f64, bool), step: f64| if is_middle { at } else { at + 0.5 * step };
         let (east, bottom) = (middle(west, dx), middle(south, dy));
-        let unit = Unit::guess([east, bottom], [dx, dy]);
-        Some(Placement {
-            origin: [east, bottom + (rows as f64 - 1.0) * dy],
-            step: [dx, dy],
-            unit,
-            cell: None,
-            keys: None,
-        })
+        let Lattice { origin, step, .. } =
+            Affine([dx, 0.0, east, 0.0, -dy, bottom + (rows as f64 - 1.0) * dy]).lattice(rows as usize)?;
+        let unit = Unit::guess([east, bottom], step);
+        Ok(Some(Placement { origin, step, unit, cell: None, keys: None }))
     }
 }
 
@@ -247,6 +273,7 @@ mod tests {
         assert_eq!((degrees.unit, degrees.step), (Unit::Degrees, [0.1, 0.05]));
         assert_eq!(parse(&head("")).unwrap().place, None);
         assert_eq!(parse(&head("nodata_value 3")).unwrap().missing(), 1);
+        assert_eq!(parse(&head("NODATA_value null")).unwrap().missing(), 0);
         assert_eq!(parse("ncols 2\nnrows 1\n1,5 -2,5").unwrap().heights, [1.5, -2.5]);
     }
 
@@ -263,6 +290,14 @@ mod tests {
             ("ncols 2\nnrows 2\ncellsize 0\n1 2 3 4", "must be greater than 0"),
             ("ncols 2\nnrows 1\nnodata_value -9999\n-9999 -9999", "samples are nodata"),
             ("colour 2\n", "unknown key `colour`"),
+            (
+                "ncols 2\nnrows 1\nxllcorner nan\nyllcorner 0\ncellsize 1\n1 2",
+                "`xllcorner` is NaN, which is not a coordinate",
+            ),
+            ("ncols 2\nnrows 1\nxllcorner 1e308\nyllcorner 0\ncellsize 1\n1 2", "1e308 is not on a map"),
+            ("ncols 2\nncols 2\nnrows 1\n1 2", "states `ncols` after it"),
+            ("ncols 2\nnrows 1\nxllcorner 0\nxllcenter 0\n1 2", "states `xllcenter` after it"),
+            ("ncols 2\nnrows 1\ndx 1\ncellsize 1\n1 2", "states `cellsize` after it"),
             ("\u{89}PNG\r\n", "not an ASCII grid"),
         ] {
             let error = parse(text).unwrap_err().to_string();

@@ -1,11 +1,12 @@
-//! GDAL's sidecar files `NAME.EXT.aux.xml` (PAM): coordinate system and geotransform. GDAL reads the coordinate system
-//! of a picture from them.
+//! GDAL's sidecar files `NAME.EXT.aux.xml` (PAM): coordinate system, geotransform, and nodata, scale, offset
+//! and unit of the bands. GDAL reads the coordinate system of a picture from them.
 
 use std::io::{self, Write};
 
 use roxmltree::Document;
 
 use super::affine::Affine;
+use super::band::BandMetadata;
 
 /// Maximum length of a file, in bytes.
 pub const MAX_LENGTH: u64 = 1 << 20;
@@ -17,7 +18,12 @@ pub struct Notes {
     pub affine: Option<Affine>,
     /// The coordinate system as well-known text, or as a code such as EPSG:32632.
     pub system: Option<String>,
+    /// Nodata, scale, offset and unit of each band, in the order of the bands.
+    pub bands: Vec<BandMetadata>,
 }
+
+/// Maximum number of bands.
+const MAX_BANDS: usize = 4096;
 
 /// Writes a transform and its coordinate system as well-known text.
 ///
@@ -38,7 +44,15 @@ pub fn parse(text: &str) -> Result<Notes, String> {
     let child = |name: &str| root.children().find(|node| node.has_tag_name(name)).and_then(|node| node.text());
     let affine = child("GeoTransform").and_then(numbers).map(Affine::of_geotransform);
     let system = child("SRS").map(str::trim).filter(|text| !text.is_empty()).map(String::from);
-    Ok(Notes { affine, system })
+    let mut bands = Vec::new();
+    for band in root.children().filter(|node| node.has_tag_name("PAMRasterBand")) {
+        let number = band.attribute("band").and_then(|text| text.trim().parse().ok()).unwrap_or(1);
+        if (1..=MAX_BANDS).contains(&number) {
+            bands.resize(bands.len().max(number), BandMetadata::default());
+            bands[number - 1] = BandMetadata::of_xml(band);
+        }
+    }
+    Ok(Notes { affine, system, bands })
 }
 
 /// Six numbers separated by commas.
@@ -64,6 +78,10 @@ mod tests {
         let again = parse(&String::from_utf8(bytes).unwrap()).unwrap();
         assert_eq!((again.affine, again.system.as_deref()), (notes.affine, Some("PROJCS[\"<a&b>\"]")));
         assert_eq!(parse("<PAMDataset/>"), Ok(Notes::default()));
+        let bands = "<PAMDataset><PAMRasterBand band=\"2\"><NoDataValue>-9.99900E+03</NoDataValue><UnitType>ft</UnitType>\
+                     </PAMRasterBand></PAMDataset>";
+        let bands = parse(bands).unwrap().bands;
+        assert!(bands[0].is_empty() && bands[1].nodata == [-9999.0] && bands[1].unit.as_deref() == Some("ft"));
         assert!(parse("<PAMDataset>").unwrap_err().contains("not valid XML"));
     }
 }

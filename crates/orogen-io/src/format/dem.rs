@@ -134,14 +134,21 @@ impl Georeference {
     #[must_use]
     pub fn fits(&self, crs: &Crs) -> bool {
         match crs.unit() {
-            Unit::Degrees => self.counts_degrees(),
+            Unit::Degrees | Unit::Grads => self.counts_degrees(),
             Unit::Metres(unit) => unit == 1.0 && !self.counts_degrees(),
         }
     }
 
+    /// The unit of its coordinates, if it has keys that state it.
+    #[must_use]
+    pub fn unit(&self) -> Option<Unit> {
+        keys::unit(self.keys.as_ref()?).ok()
+    }
+
     /// Whether its coordinates are degrees of longitude and latitude.
+    #[must_use]
     pub fn is_degrees(&self) -> bool {
-        self.keys.as_ref().is_some_and(keys::is_degrees)
+        self.unit() == Some(Unit::Degrees)
     }
 
     /// The transform from columns and rows of a window to coordinates; rows start in the south if `from_south`.

@@ -1,11 +1,12 @@
-//! Reading heights from a greyscale PNG of 8 or 16 bits, with a [`Sidecar`] that states the heights of black and white.
+//! Reading heights from a greyscale PNG of 8 or 16 bits, with a [`Sidecar`] that states the heights of black and white,
+//! and from a colour PNG of 8 bits whose sidecar states the [`Encoding`].
 
 use std::io::BufReader;
 
 use ::png::{BitDepth, ColorType, Decoder, DecodingError, Limits, Transformations};
 
 use super::dem::{Dem, Input, afford, refused};
-use super::sidecar::Sidecar;
+use super::sidecar::{Sidecar, needs};
 use orogen_grid::error::Result;
 
 /// Reads a greyscale picture. `name` is the file's name in errors.
@@ -31,23 +32,36 @@ fn open(input: &mut dyn Input, sidecar: &Sidecar, allowed: u64) -> std::result::
     let (width, height) = (u64::from(reader.info().width), u64::from(reader.info().height));
     let count = afford(width, height, allowed)?;
     let (color, depth) = (reader.info().color_type, reader.info().bit_depth);
+    let encoding = sidecar.encoding();
     let size = match (color, depth) {
         (ColorType::Grayscale, BitDepth::Eight) => 1,
         (ColorType::Grayscale, BitDepth::Sixteen) => 2,
+        (ColorType::Rgb, BitDepth::Eight) if encoding.is_some() => 3,
+        (ColorType::Rgba, BitDepth::Eight) if encoding.is_some() => 4,
+        // With the heights of black and white, grey is expected.
+        (ColorType::Rgb | ColorType::Rgba, BitDepth::Eight) if sidecar.low.is_none() => {
+            return Err(needs("the encoding of heights in its colours, `encoding` (\"terrarium\" or \"terrain-rgb\")"));
+        }
         _ => {
             return Err(format!(
-                "its pixels are {color:?} with {depth:?} bits; only grey with 8 or 16 bits is supported"
+                "its pixels are {color:?} with {depth:?} bits; only grey with 8 or 16 bits, and colours of 8 bits with `encoding`, are supported"
             ));
         }
     };
     if reader.info().interlaced {
         return Err("it is interlaced; save it without interlacing".into());
     }
-    let [low, high] = sidecar.range()?;
+    let encoding = encoding.filter(|_| size > 2);
     let most = if size == 1 { 255.0 } else { 65535.0 };
+    let [low, high] = if encoding.is_some() { [0.0; 2] } else { sidecar.range(most)? };
     let mut heights: Vec<f32> = Vec::new();
     while let Some(row) = reader.next_row().map_err(broken)? {
         heights.extend(row.data().chunks_exact(size).map(|bytes| {
+            if let (Some(encoding), [red, green, blue, rest @ ..]) = (encoding, bytes) {
+                // Transparent pixels have no height, nor has 0, 0, 0.
+                let color = [*red, *green, *blue];
+                return if rest == [0] || color == [0; 3] { f32::NAN } else { encoding.height(color) as f32 };
+            }
             let number = bytes.iter().fold(0u32, |number, byte| number << 8 | u32::from(*byte));
             let number = f64::from(number);
             if sidecar.nodata == Some(number) { f32::NAN } else { (low + number / most * (high - low)) as f32 }
@@ -66,10 +80,28 @@ fn open(input: &mut dyn Input, sidecar: &Sidecar, allowed: u64) -> std::result::
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::format::encoding::Encoding;
     use crate::format::levels::Levels;
     use crate::format::png;
     use orogen_grid::grid::{Grid, Window};
     use std::io::Cursor;
+
+    #[test]
+    fn heights_in_colours_are_read_back() {
+        let heights = [f32::NAN, 100.5, -12.25, 8848.0];
+        for encoding in Encoding::ALL {
+            let mut bytes = Vec::new();
+            let picture = png::Picture::new(2, 2, png::Pixel::Data8);
+            let samples: Vec<u8> = heights.iter().flat_map(|height| encoding.bytes(*height)).collect();
+            png::write_through(&mut bytes, &picture, |out| out.write_all(&samples)).unwrap();
+            let named = Sidecar { sample: Some(encoding.name().into()), cell: Some(1.0), ..Sidecar::default() };
+            let dem = read(&mut Cursor::new(&bytes), "a.png", &named, 1 << 20).unwrap();
+            assert!(dem.heights[0].is_nan());
+            assert!((1..4).all(|k| (dem.heights[k] - heights[k]).abs() <= 0.051), "{:?}", dem.heights);
+            let why = read(&mut Cursor::new(&bytes), "a.png", &Sidecar::default(), 1 << 20).unwrap_err().to_string();
+            assert!(why.contains("`encoding`"), "{why}");
+        }
+    }
 
     #[test]
     fn what_is_written_is_read_back() {

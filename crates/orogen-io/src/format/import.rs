@@ -1,17 +1,22 @@
 //! The list of all readers of heights.
 
+use std::io::Cursor;
 use std::path::Path;
 
+use super::band::BandMetadata;
 use super::dem::{Dem, Input, Placement, Request, refused};
+use super::foreign::foreign;
 use super::noted::noted;
 use super::raw::Sample;
 use super::sidecar::Sidecar;
-use super::{asc, exr_reader, geotiff, grey, hgt, npy, raw};
+use super::{asc, dted, ehdr, exr_reader, geotiff, grey, hgt, npy, raw, xyz, zip};
 use crate::open;
 use orogen_grid::error::Result;
 
 /// Extensions of readable files.
-pub const EXTENSIONS: [&str; 9] = ["tif", "tiff", "asc", "hgt", "png", "r16", "r32", "npy", "exr"];
+pub const EXTENSIONS: [&str; 16] = [
+    "tif", "tiff", "asc", "hgt", "hgt.zip", "png", "r16", "r32", "npy", "exr", "bil", "flt", "xyz", "dt0", "dt1", "dt2",
+];
 
 /// Extensions of files that may have several bands.
 const SEVERAL_BANDS: [&str; 3] = ["tif", "tiff", "exr"];
@@ -23,6 +28,10 @@ pub fn is_dem(path: &Path) -> bool {
 }
 
 fn extension(path: &Path) -> Option<String> {
+    let name = path.file_name()?.to_str()?.to_ascii_lowercase();
+    if name.ends_with(".hgt.zip") {
+        return Some("hgt.zip".into());
+    }
     Some(path.extension()?.to_str()?.to_ascii_lowercase())
 }
 
@@ -45,7 +54,7 @@ pub fn head(path: &Path) -> Result<([usize; 2], Option<Placement>)> {
         _ => geotiff::reader::head(file, &name),
     })?;
     if let (Some(place), Some(told)) = (&mut place, Sidecar::beside(path)?) {
-        told.complete(place);
+        told.complete(place).map_err(|why| refused(&name, why))?;
     }
     Ok((size, place))
 }
@@ -56,13 +65,38 @@ pub fn head(path: &Path) -> Result<([usize; 2], Option<Placement>)> {
 /// If the format is unknown, or the file cannot be read, or is too large.
 pub fn read(path: &Path, request: impl Into<Request>) -> Result<Dem> {
     let name = path.display().to_string();
-    if !is_dem(path) {
-        let known = "supported are .tif, .asc, .hgt, .png, .r16, .r32, .npy, .exr and .vrt, folders of .tif, .hgt or .asc, and Zarr";
-        return Err(refused(&name, format!("its extension is not that of a format for heights; {known}")));
-    }
+    known(path, &name)?;
     let mut file = open::regular(path, "read")?;
     let sidecar = Sidecar::beside(path)?;
     parse(&mut file, &name, &extension(path).unwrap_or_default(), sidecar, request)
+}
+
+/// [`read`] with metadata of the band that replaces what the file and its sidecars state, as virtual rasters do.
+///
+/// # Errors
+/// The errors of [`read`].
+pub fn read_with(path: &Path, request: Request, metadata: &BandMetadata) -> Result<Dem> {
+    if metadata.is_empty() {
+        return read(path, request);
+    }
+    let name = path.display().to_string();
+    known(path, &name)?;
+    let mut file = open::regular(path, "read")?;
+    let mut told = Sidecar::beside(path)?.unwrap_or_default();
+    told.replaced = metadata.clone();
+    parse(&mut file, &name, &extension(path).unwrap_or_default(), Some(told), request)
+}
+
+/// An error for a file whose extension is not that of a format for heights.
+fn known(path: &Path, name: &str) -> Result<()> {
+    if is_dem(path) {
+        return Ok(());
+    }
+    if let Some(why) = foreign(path) {
+        return Err(refused(name, why));
+    }
+    let known = "supported are .tif, .asc, .hgt, .hgt.zip, .bil, .flt, .xyz, .dt0 to .dt2, .png, .r16, .r32, .npy, .exr and .vrt, folders of .tif, .hgt or .asc, and Zarr";
+    Err(refused(name, format!("its extension is not that of a format for heights; {known}")))
 }
 
 /// [`read`] for bytes in memory: `extension` determines the format.
@@ -81,17 +115,33 @@ pub fn parse(
 
 fn band(input: &mut dyn Input, name: &str, extension: &str, sidecar: Option<Sidecar>, request: Request) -> Result<Dem> {
     let Request { allowed, .. } = request;
-    let told = sidecar.unwrap_or_default();
+    let mut told = sidecar.unwrap_or_default();
     if !SEVERAL_BANDS.contains(&extension) {
         request.choose(1).map_err(|why| refused(name, why))?;
     }
+    if matches!(extension, "png" | "r16" | "r32") {
+        // These compare nodata with stored samples.
+        told.nodata = told.nodata.or(told.band(request.band).nodata.first().copied());
+    }
     let mut dem = match extension {
-        "tif" | "tiff" => geotiff::reader::read(input, name, request)?,
+        "tif" | "tiff" => geotiff::reader::read_with(input, name, request, &told)?,
         "asc" => asc::read(input, name, allowed)?,
         "hgt" => hgt::read(input, name, allowed)?,
+        "hgt.zip" => {
+            // The largest tile has 3601 x 3601 samples of two bytes, and its heights need twice as much.
+            let most = (2 * 3601 * 3601).min(allowed / 2);
+            let tile = zip::only_file(input, most).map_err(|why| refused(name, why))?;
+            hgt::read(&mut Cursor::new(tile), name, allowed)?
+        }
         "png" => grey::read(input, name, &told, allowed)?,
         "r16" => raw::read(input, name, Sample::U16, &told, allowed)?,
         "r32" => raw::read(input, name, Sample::F32, &told, allowed)?,
+        "bil" | "flt" => {
+            let (header, metadata) = (told.header.as_deref(), told.band(None));
+            ehdr::read(input, name, header, extension == "flt", &metadata, told.vertical, allowed)?
+        }
+        "xyz" => xyz::read(input, name, allowed)?,
+        "dt0" | "dt1" | "dt2" => dted::read(input, name, allowed)?,
         "exr" => exr_reader::read(input, name, &told, request)?,
         "npy" => {
             let grid = npy::read_within(input, name, told.cell.unwrap_or(1.0), allowed)?;
@@ -107,11 +157,50 @@ fn band(input: &mut dyn Input, name: &str, extension: &str, sidecar: Option<Side
         dem.heights = told.north_first(heights, dem.width).map_err(|why| refused(name, why))?;
         dem.place = told.place(dem.height).map_err(|why| refused(name, why))?;
     }
+    if !matches!(extension, "tif" | "tiff") {
+        // Samples between `low` and `high` are metres, and their nodata is known.
+        let metadata = match extension {
+            "png" | "r16" | "bil" | "flt" => BandMetadata::default(),
+            _ => told.band(request.band).with_nodata(told.nodata),
+        };
+        // The reader of headers converts their heights itself.
+        let vertical = told.vertical.filter(|_| !matches!(extension, "png" | "r16" | "bil" | "flt"));
+        convert(&mut dem, &told, request, &metadata, vertical).map_err(|why| refused(name, why))?;
+    }
     if let Some(place) = &mut dem.place {
-        told.complete(place);
+        told.complete(place).map_err(|why| refused(name, why))?;
         if place.keys.is_none() {
             dem.notes.extend(told.notes);
         }
     }
     Ok(dem)
+}
+
+/// Applies the mask beside a file, and the nodata, scale, offset and unit that GDAL's sidecar and a vertical coordinate
+/// system state.
+fn convert(
+    dem: &mut Dem,
+    told: &Sidecar,
+    request: Request,
+    metadata: &BandMetadata,
+    vertical: Option<f64>,
+) -> std::result::Result<(), String> {
+    if let Some(mask) = &told.mask {
+        if told.first_row.as_deref() == Some("south") {
+            return Err(
+                "it has a .msk and rows from the south, which is not supported; save it with rows from the north"
+                    .into(),
+            );
+        }
+        let mut file = open::regular(mask, "read the mask").map_err(|error| error.to_string())?;
+        let size = [dem.width as u64, dem.height as u64];
+        geotiff::mask::external(&mut file, size, request, &mut dem.heights)?;
+    }
+    let mut conversion = metadata.conversion(vertical)?;
+    conversion.apply(&mut dem.heights);
+    dem.notes.extend(conversion.notes());
+    match dem.heights.iter().all(|height| height.is_nan()) {
+        true => Err(format!("all of its {} x {} samples are nodata", dem.width, dem.height)),
+        false => Ok(()),
+    }
 }

@@ -60,7 +60,7 @@ fn open(input: &mut dyn Input, sample: Sample, sidecar: &Sidecar, allowed: u64) 
         return Err(needs("its width and height in samples"));
     };
     let big = sidecar.big_endian()?;
-    let [low, high] = if sample == Sample::U16 { sidecar.range()? } else { [0.0, 1.0] };
+    let [low, high] = if sample == Sample::U16 { sidecar.range(65535.0)? } else { [0.0, 1.0] };
     let count = afford(width, height, allowed)?;
     let size = if sample == Sample::U16 { 2 } else { 4 };
     let there = length(input)?;

@@ -2,7 +2,8 @@
 //!
 //! Keys: `width`, `height` (samples); `cell` (metres between samples); `low`, `high` (heights in metres of 0 and 65535,
 //! or of 0 and 255); `byte_order` ("little", the default, or "big"); `first_row` ("north", the default, or "south");
-//! `nodata` (the value of missing samples); `geotransform` (six numbers in GDAL's order: west edge, column step, 0,
+//! `nodata` (the value of missing samples); `encoding` ("terrarium" or "terrain-rgb", for heights in the colours of a
+//! picture); `geotransform` (six numbers in GDAL's order: west edge, column step, 0,
 //! north edge, 0, row step, which is negative); `crs` ("EPSG:32632"); `wkt` (the coordinate system as well-known text).
 //! Other keys are ignored, so that the `summary.json` that `orogen generate` writes beside `height.png` is a sidecar
 //! too.
@@ -14,11 +15,14 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use super::affine::Affine;
+use super::band::BandMetadata;
 use super::crs::keys::{self, GeoKeys};
 use super::crs::unit::Unit;
+use super::crs::vertical;
 use super::crs::wkt::MAX_LENGTH;
 use super::dem::{Placement, refused, turn_rows};
-use super::{aux_xml, world_file};
+use super::encoding::Encoding;
+use super::{aux_xml, ehdr, world_file};
 use crate::fs;
 use crate::open;
 use orogen_grid::error::Result;
@@ -48,6 +52,10 @@ pub struct Sidecar {
     pub first_row: Option<String>,
     /// The value of missing samples.
     pub nodata: Option<f64>,
+    /// The encoding of heights in the colours of a picture: "terrarium" or "terrain-rgb".
+    pub encoding: Option<String>,
+    /// The type of the samples as exports state it; of a picture, its encoding.
+    pub sample: Option<String>,
     /// The transform from columns and rows to coordinates, in GDAL's order, for pixel corners.
     pub geotransform: Option<[f64; 6]>,
     /// The EPSG code of the coordinate system, with the prefix `EPSG:`.
@@ -57,6 +65,21 @@ pub struct Sidecar {
     /// The coordinate system in other sidecars, for a format that stores its position itself.
     #[serde(skip)]
     pub keys: Option<GeoKeys>,
+    /// Metres per unit of the vertical coordinate system in other sidecars, if they have one.
+    #[serde(skip)]
+    pub vertical: Option<f64>,
+    /// What GDAL's sidecar states about each band, in the order of the bands.
+    #[serde(skip)]
+    pub bands: Vec<BandMetadata>,
+    /// The text of NAME.hdr beside a `.bil` or `.flt`.
+    #[serde(skip)]
+    pub header: Option<String>,
+    /// What replaces the metadata of the band that is read, as virtual rasters state it.
+    #[serde(skip)]
+    pub replaced: BandMetadata,
+    /// The mask file beside the file: NAME.EXT.msk.
+    #[serde(skip)]
+    pub mask: Option<PathBuf>,
     /// Messages about sidecars that could not be interpreted.
     #[serde(skip)]
     pub notes: Vec<String>,
@@ -82,16 +105,25 @@ impl Sidecar {
         }
         let (notes, projection) = (aux_xml(path), path.with_extension("prj"));
         if fs::is_file(&projection) {
-            match text(&projection, MAX_LENGTH as u64, keys::of_wkt) {
-                Ok(keys) => all.keys = Some(keys),
+            match text(&projection, MAX_LENGTH as u64, |wkt| Ok((keys::of_wkt(wkt)?, vertical::metres_of_text(wkt)))) {
+                Ok((keys, vertical)) => (all.keys, all.vertical) = (Some(keys), vertical),
                 Err(why) => all.notes.push(format!("its coordinate system is not known: {why}")),
             }
         }
+        let header = path.with_extension("hdr");
+        if path.extension().is_some_and(|own| own.eq_ignore_ascii_case("bil") || own.eq_ignore_ascii_case("flt"))
+            && fs::is_file(&header)
+        {
+            all.header = Some(text(&header, ehdr::MAX_LENGTH, |text| Ok(text.to_string()))?);
+        }
+        all.mask = Some(beside(path, ".msk")).filter(|mask| fs::is_file(mask));
         if fs::is_file(&notes) {
             let notes = text(&notes, aux_xml::MAX_LENGTH, aux_xml::parse)?;
             all.geotransform = all.geotransform.or(notes.affine.map(|affine| affine.geotransform()));
+            all.vertical = all.vertical.or(notes.system.as_deref().and_then(vertical::metres_of_text));
             // An unknown system in GDAL's sidecar is no reason to reject the heights.
-            all.keys = all.keys.or(notes.system.and_then(|system| keys::of_wkt(&system).ok()));
+            all.keys = all.keys.or(notes.system.and_then(|system| keys::of_text(&system).ok()));
+            all.bands = notes.bands;
         }
         Ok((told.is_some() || all != Sidecar::default()).then_some(all))
     }
@@ -154,13 +186,34 @@ impl Sidecar {
         Ok(samples)
     }
 
-    /// The heights, in metres, of the smallest and the largest sample.
+    /// The encoding of heights in the colours of a picture, if it is stated.
+    #[must_use]
+    pub fn encoding(&self) -> Option<Encoding> {
+        let stated = |name: &str| [&self.encoding, &self.sample].into_iter().flatten().any(|own| own == name);
+        Encoding::ALL.into_iter().find(|encoding| stated(encoding.name()))
+    }
+
+    /// What GDAL's sidecar states about a band, from 1, or what replaces it.
+    #[must_use]
+    pub fn band(&self, band: Option<u32>) -> BandMetadata {
+        let index = band.unwrap_or(1).saturating_sub(1) as usize;
+        self.bands.get(index).cloned().unwrap_or_default().replaced_by(&self.replaced)
+    }
+
+    /// The heights, in metres, of a sample of 0 and of the largest possible one, `most`: `low` and `high`, otherwise those
+    /// that the scale, offset and unit in GDAL's sidecar give.
     ///
     /// # Errors
-    /// If they are missing.
-    pub fn range(&self) -> std::result::Result<[f64; 2], String> {
+    /// If neither is stated, or a virtual raster replaces the metadata of a file with `low` and `high`.
+    pub fn range(&self, most: f64) -> std::result::Result<[f64; 2], String> {
+        let band = self.band(None);
+        let has_scale = |band: &BandMetadata| band.scale.is_some() || band.offset.is_some();
         match (self.low, self.high) {
+            (Some(_), Some(_)) if has_scale(&self.replaced) || self.replaced.unit.is_some() => Err(
+                "a virtual raster states its scale, offset or unit, and `low` and `high` beside it state other heights; remove one of them".into(),
+            ),
             (Some(low), Some(high)) => Ok([low, high]),
+            _ if has_scale(&band) => Ok(band.conversion(self.vertical)?.range(most)),
             _ => Err(needs("low and high, the heights in metres of its lowest and highest sample value")),
         }
     }
@@ -177,7 +230,7 @@ impl Sidecar {
         };
         let lattice = Affine::of_geotransform(numbers).lattice(rows)?;
         let keys = self.system()?;
-        let unit = keys.as_ref().map_or(Unit::guess(lattice.origin, lattice.step), keys::unit);
+        let unit = keys.as_ref().map_or(Ok(Unit::guess(lattice.origin, lattice.step)), keys::unit)?;
         Ok(Some(Placement { origin: lattice.origin, step: lattice.step, unit, cell: self.cell, keys }))
     }
 
@@ -191,11 +244,15 @@ impl Sidecar {
     }
 
     /// Adds the coordinate system of a `.prj` or `.aux.xml` to a position without one.
-    pub fn complete(&self, place: &mut Placement) {
+    ///
+    /// # Errors
+    /// A message if the system has a unit that is not supported.
+    pub fn complete(&self, place: &mut Placement) -> std::result::Result<(), String> {
         if let (None, Some(keys)) = (&place.keys, &self.keys) {
-            place.unit = keys::unit(keys);
+            place.unit = keys::unit(keys)?;
             place.keys = Some(keys.clone());
         }
+        Ok(())
     }
 }
 
@@ -210,16 +267,19 @@ fn text<T>(path: &Path, most: u64, parse: impl Fn(&str) -> std::result::Result<T
 /// GDAL's sidecar of a raster: NAME.EXT.aux.xml.
 #[must_use]
 pub fn aux_xml(path: &Path) -> PathBuf {
-    let mut name = path.file_name().unwrap_or_default().to_os_string();
-    name.push(".aux.xml");
-    path.with_file_name(name)
+    beside(path, ".aux.xml")
 }
 
 /// The sidecar that belongs to this file only, not to other files called NAME: NAME.r16.json.
 #[must_use]
 pub fn own(path: &Path) -> PathBuf {
+    beside(path, ".json")
+}
+
+/// The path with more after its extension.
+fn beside(path: &Path, more: &str) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_os_string();
-    name.push(".json");
+    name.push(more);
     path.with_file_name(name)
 }
 
@@ -240,7 +300,7 @@ mod tests {
         let json =
             "{\"width\": 3, \"height\": 2, \"cell\": 10.0, \"height_min\": -5, \"height_max\": 95.5, \"seed\": 7}";
         assert_eq!(toml, Sidecar::parse(json, false).unwrap());
-        assert_eq!((toml.range(), toml.big_endian()), (Ok([-5.0, 95.5]), Ok(false)));
+        assert_eq!((toml.range(255.0), toml.big_endian()), (Ok([-5.0, 95.5]), Ok(false)));
         assert_eq!(toml.place(2).unwrap().unwrap().origin, [0.0, 10.0]);
     }
 
@@ -274,6 +334,16 @@ mod tests {
     }
 
     #[test]
+    fn scale_and_offset_of_the_band_state_the_range() {
+        let band = BandMetadata { scale: Some(0.5), offset: Some(10.0), unit: Some("ft".into()), ..Default::default() };
+        let scaled = Sidecar { bands: vec![band.clone()], ..Sidecar::default() };
+        assert_eq!(scaled.range(200.0), Ok([3.048, 33.528]));
+        let both = Sidecar { low: Some(0.0), high: Some(1.0), ..scaled };
+        assert_eq!(both.range(200.0), Ok([0.0, 1.0]));
+        assert!(Sidecar { replaced: band, ..both }.range(200.0).unwrap_err().contains("a virtual raster"));
+    }
+
+    #[test]
     fn wrong_ones_are_sentences() {
         for (text, expect) in [
             ("width = 'a'", "not a valid sidecar for heights"),
@@ -288,6 +358,6 @@ mod tests {
         assert!(across.north_first(vec![1.0], 1).unwrap_err().contains("\"east\""));
         let middle = Sidecar { byte_order: Some("middle".into()), ..Sidecar::default() };
         assert!(middle.big_endian().unwrap_err().contains("\"middle\""));
-        assert!(middle.range().unwrap_err().contains("low and high"));
+        assert!(middle.range(255.0).unwrap_err().contains("low and high"));
     }
 }

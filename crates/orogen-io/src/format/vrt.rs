@@ -5,6 +5,7 @@ use roxmltree::{Document, Node};
 
 use super::affine::Affine;
 use super::aux_xml::numbers;
+use super::band::BandMetadata;
 
 /// Maximum length of a file, in bytes.
 pub const MAX_LENGTH: u64 = 64 << 20;
@@ -18,8 +19,19 @@ pub struct Virtual {
     pub affine: Option<Affine>,
     /// The coordinate system as well-known text.
     pub system: Option<String>,
-    /// The sources of each band; later ones cover earlier ones.
-    pub bands: Vec<Vec<Source>>,
+    /// The bands.
+    pub bands: Vec<Band>,
+    /// Whether it has a mask, so that samples without a source are missing.
+    pub has_mask: bool,
+}
+
+/// A band of a virtual raster.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Band {
+    /// Its sources; later ones cover earlier ones.
+    pub sources: Vec<Source>,
+    /// Its nodata value, scale, offset and unit.
+    pub metadata: BandMetadata,
 }
 
 /// A part of a file, placed without resampling.
@@ -57,22 +69,23 @@ pub fn parse(text: &str) -> Result<Virtual, String> {
     let side =
         |name: &str| root.attribute(name).and_then(|text| text.trim().parse().ok()).ok_or(format!("it has no {name}"));
     let child = |name: &str| root.children().find(|node| node.has_tag_name(name)).and_then(|node| node.text());
-    let bands = root.children().filter(|node| node.has_tag_name("VRTRasterBand")).map(sources);
+    let bands = root.children().filter(|node| node.has_tag_name("VRTRasterBand")).map(band);
     Ok(Virtual {
         size: [side("rasterXSize")?, side("rasterYSize")?],
         affine: child("GeoTransform").and_then(numbers).map(Affine::of_geotransform),
         system: child("SRS").map(str::trim).filter(|text| !text.is_empty()).map(String::from),
         bands: bands.collect::<Result<_, _>>()?,
+        has_mask: root.children().any(|node| node.has_tag_name("MaskBand")),
     })
 }
 
-/// The sources of a band.
-fn sources(band: Node) -> Result<Vec<Source>, String> {
+fn band(band: Node) -> Result<Band, String> {
     if let Some(kind) = band.attribute("subClass") {
         return Err(format!("it has a {kind}, which is not supported; convert it to GeoTIFF with gdal_translate"));
     }
     let all = band.children().filter(|node| node.is_element() && node.tag_name().name().ends_with("Source"));
-    all.map(source).collect()
+    let sources = all.map(source).collect::<Result<_, _>>()?;
+    Ok(Band { sources, metadata: BandMetadata::of_xml(band) })
 }
 
 fn source(node: Node) -> Result<Source, String> {
@@ -157,7 +170,8 @@ mod tests {
             size: Some([5, 4]),
             nodata: Some(-1.0),
         };
-        assert_eq!(read.bands, [[expect]]);
+        assert_eq!(read.bands[0].sources, [expect]);
+        assert_eq!((read.bands[0].metadata.nodata.as_slice(), read.has_mask), (&[-1.0][..], false));
     }
 
     #[test]

@@ -16,6 +16,7 @@ pub mod names;
 pub mod own;
 #[allow(clippy::module_inception, reason = "the room is about palettes, the file about the one")]
 pub mod palette;
+pub(crate) mod qgis;
 pub mod ramp;
 pub mod read;
 pub mod tint;

@@ -3,15 +3,15 @@
 use std::path::Path;
 
 use super::palette::Palette;
-use super::{cpt, gdaldem, gpl, own};
+use super::{cpt, gdaldem, gpl, own, qgis};
 use crate::open;
 use orogen_grid::error::{Error, ErrorKind, Result};
 
 /// Maximum size of a palette file, in bytes.
 const MOST: u64 = 1 << 20;
 
-/// Reads a palette: GMT's `.cpt`, GIMP's `.gpl`, our own `.toml`, and any other extension as a colour file of
-/// `gdaldem`.
+/// Reads a palette: GMT's `.cpt`, GIMP's `.gpl`, our own `.toml`, and any other extension as a colour map of QGIS or a
+/// colour file of `gdaldem`.
 ///
 /// # Errors
 /// If the file cannot be read, or cannot be parsed: the message contains the line.
@@ -36,6 +36,7 @@ pub fn parse(name: &str, extension: &str, text: &str) -> std::result::Result<Pal
         "cpt" => cpt::parse(name, text),
         "gpl" => gpl::parse(name, text),
         "toml" => own::parse(name, text),
+        _ if qgis::is_qgis(text) => qgis::parse(name, text),
         _ => gdaldem::parse(name, text),
     }
 }
@@ -45,7 +46,11 @@ mod tests {
     use super::super::fitted::Fitted;
     use super::*;
 
-    const TEXTS: [(&str, &str); 4] = [
+    const TEXTS: [(&str, &str); 5] = [
+        (
+            "txt",
+            "# QGIS Generated Color Map Export File\nINTERPOLATION:DISCRETE\n0,0,97,71,255,0\ninf,255,25,5,255,1, 500\n",
+        ),
         (
             "cpt",
             "# COLOR_MODEL = +HSV\n# HINGE = 0\n# RANGE = -5/9\n-1 120-1-1 0 240 1 0.5 L\n0 #fed 1 4/3/2/1 ; sea\nB red\nF 7\nN -\n",

@@ -98,7 +98,8 @@ impl Cog {
     /// # Errors
     /// If a GeoTIFF cannot have these sides or tiles.
     pub fn new(identity: &Identity) -> Result<Cog> {
-        let options = Options::default().with_tile(Some(identity.tile)).with_map(identity.map.clone());
+        let unit = identity.units.first().map_or("", String::as_str);
+        let options = Options::of_unit(unit).with_tile(Some(identity.tile)).with_map(identity.map.clone());
         Ok(Cog { window: identity.window, pyramid: pyramid(&identity.window, &options)? })
     }
 

@@ -170,7 +170,7 @@ fn a_geotiff_is_the_one_that_export_writes() {
             let spec = BuildSpec { form: Form::Cog, window, tile: Some(tile), layers: vec!["height".into()] };
             run(&world, &spec, &folder.out(), Start::Fresh);
             let mut expect = Vec::new();
-            let options = options::Options::default().with_tile(Some(tile));
+            let options = options::Options::of_unit("m").with_tile(Some(tile));
             writer::write(&mut expect, &world.window("height", &window).unwrap(), &options, Spool::in_memory())
                 .unwrap();
             assert!(fs::read(folder.out()).unwrap() == expect, "{width} x {height} in {tile}");

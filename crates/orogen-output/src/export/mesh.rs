@@ -211,7 +211,10 @@ impl Prepared {
             ("map_units_per_metre".to_string(), json!(map.per_metre)),
         ];
         extras.extend(map.epsg().map(|code| ("crs".to_string(), json!(format!("EPSG:{code}")))));
-        extras.extend(map.wkt().ok().map(|wkt| ("wkt".to_string(), json!(wkt))));
+        extras.push(match map.wkt() {
+            Ok(wkt) => ("wkt".to_string(), json!(wkt)),
+            Err(why) => ("crs_missing".to_string(), json!(why)),
+        });
         extras
     }
 

@@ -1,7 +1,8 @@
 //! GeoTIFF keys (OGC 19-008r4) to and from well-known text.
 
+use super::registry::Crs;
 use super::system::{Geographic, Method, System};
-use super::unit::Unit;
+use super::unit::{Unit, code_of_length, length_of_code};
 use super::wkt::Node;
 use super::{arc_info, epsg};
 use serde::{Deserialize, Serialize};
@@ -18,55 +19,53 @@ pub struct GeoKeys {
 }
 
 /// The prefix of ESRI's programs and GDAL for well-known text that no other key can express.
-const ESRI_TEXT: &str = "ESRI PE String = ";
+pub(crate) const ESRI_TEXT: &str = "ESRI PE String = ";
 
-const MODEL: u16 = 1024;
+pub(crate) const MODEL: u16 = 1024;
 const CITATION: u16 = 1026;
-const GEOGRAPHIC: u16 = 2048;
-const PROJECTED: u16 = 3072;
+pub(crate) const GEOGRAPHIC: u16 = 2048;
+pub(crate) const PROJECTED: u16 = 3072;
+const ANGULAR_UNIT: u16 = 2054;
+const ANGULAR_UNIT_SIZE: u16 = 2055;
 const DATUM: u16 = 2050;
 const SEMI_MAJOR: u16 = 2057;
 const SEMI_MINOR: u16 = 2058;
 const FLATTENING: u16 = 2059;
 const PROJECTED_CITATION: u16 = 3073;
 const LINEAR_UNIT: u16 = 3076;
+const LINEAR_UNIT_SIZE: u16 = 3077;
 /// GeoTIFF's code for values without a code.
 pub const USER_DEFINED: u16 = 32767;
-const TEXTS: u16 = 34737;
-const DOUBLES: u16 = 34736;
+pub(crate) const TEXTS: u16 = 34737;
+pub(crate) const DOUBLES: u16 = 34736;
+
+/// The entries of the directory: as many as its header declares, because some programs pad it.
+pub(crate) fn entries(keys: &GeoKeys) -> impl Iterator<Item = [u16; 4]> + '_ {
+    let count = keys.directory.get(3).copied().unwrap_or_default();
+    let entry = |key: &[u16]| [key[0], key[1], key[2], key[3]];
+    keys.directory.chunks_exact(4).skip(1).take(usize::from(count)).map(entry)
+}
 
 /// The value of a key with a single short.
 #[must_use]
 pub fn short(keys: &GeoKeys, wanted: u16) -> Option<u16> {
-    keys.directory.chunks_exact(4).skip(1).find(|key| key[0] == wanted && key[1] == 0).map(|key| key[3])
+    entries(keys).find(|key| key[0] == wanted && key[1] == 0).map(|key| key[3])
 }
 
 /// The value of a text key.
-fn text(keys: &GeoKeys, wanted: u16) -> Option<&str> {
-    let key = keys.directory.chunks_exact(4).skip(1).find(|key| key[0] == wanted && key[1] == TEXTS)?;
+pub(crate) fn text(keys: &GeoKeys, wanted: u16) -> Option<&str> {
+    let key = entries(keys).find(|key| key[0] == wanted && key[1] == TEXTS)?;
     let (from, length) = (usize::from(key[3]), usize::from(key[2]));
     Some(keys.text.get(from..(from + length).min(keys.text.len()))?.trim_end_matches(['|', '\0']))
 }
 
 /// The value of a numeric key.
 fn double(keys: &GeoKeys, wanted: u16) -> Option<f64> {
-    let key = keys.directory.chunks_exact(4).skip(1).find(|key| key[0] == wanted && key[1] == DOUBLES)?;
+    let key = entries(keys).find(|key| key[0] == wanted && key[1] == DOUBLES)?;
     keys.doubles.get(usize::from(key[3])).copied()
 }
 
-/// Metres per unit of length, by its EPSG code.
-#[must_use]
-pub fn length_unit(code: u16) -> Option<f64> {
-    match code {
-        9001 => Some(1.0),
-        9002 => Some(0.3048),
-        9003 => Some(1200.0 / 3937.0),
-        9036 => Some(1000.0),
-        _ => None,
-    }
-}
-
-/// Whether coordinates are degrees of longitude and latitude.
+/// Whether coordinates are longitude and latitude, in degrees or another unit of angles.
 #[must_use]
 pub fn is_degrees(keys: &GeoKeys) -> bool {
     short(keys, MODEL) == Some(2)
@@ -83,15 +82,67 @@ pub fn is_named(keys: &GeoKeys) -> bool {
 }
 
 /// The unit of the coordinates.
-#[must_use]
-pub fn unit(keys: &GeoKeys) -> Unit {
-    if is_degrees(keys) { Unit::Degrees } else { Unit::Metres(metres(keys)) }
+///
+/// # Errors
+/// A message if the keys state a unit that is not supported.
+pub fn unit(keys: &GeoKeys) -> Result<Unit, String> {
+    if is_degrees(keys) { angle(keys) } else { metres(keys).map(Unit::Metres) }
 }
 
-/// Metres per unit of projected coordinates; 1 if the keys do not state it.
-pub fn metres(keys: &GeoKeys) -> f64 {
-    let told = || Some(Node::parse(esri_text(keys)?).ok()?.metres());
-    short(keys, LINEAR_UNIT).and_then(length_unit).or_else(told).unwrap_or(1.0)
+/// Metres per unit of projected coordinates: as the keys state it, otherwise that of the EPSG code; 1 if neither is
+/// known.
+///
+/// # Errors
+/// A message if the keys state a unit that is not a known length.
+pub fn metres(keys: &GeoKeys) -> Result<f64, String> {
+    let of_text = || Some(Node::parse(esri_text(keys)?).ok()?.metres());
+    let of_code = || match Crs::from_epsg(epsg(keys)?).ok()?.unit() {
+        Unit::Metres(metres) => Some(metres),
+        Unit::Degrees | Unit::Grads => None,
+    };
+    match short(keys, LINEAR_UNIT) {
+        None | Some(0) => Ok(of_text().or_else(of_code).unwrap_or(1.0)),
+        Some(USER_DEFINED) => match double(keys, LINEAR_UNIT_SIZE) {
+            Some(metres) if metres.is_finite() && metres > 0.0 => Ok(metres),
+            Some(metres) => Err(format!("the unit of its coordinates has {metres} metres (GeoKey 3077)")),
+            None => Ok(of_text().or_else(of_code).unwrap_or(1.0)),
+        },
+        Some(code) => length_of_code(code).ok_or_else(|| {
+            format!("the unit of its coordinates, EPSG:{code} (GeoKey 3076), is not a known length; reproject it, for example with gdalwarp")
+        }),
+    }
+}
+
+/// The unit of longitude and latitude: as the keys state it, otherwise that of the EPSG code or of the text; degrees if
+/// none is known.
+fn angle(keys: &GeoKeys) -> Result<Unit, String> {
+    let of_radians = |radians: f64| {
+        let is = |degrees: f64| (radians - degrees.to_radians()).abs() < 1e-9;
+        match (is(1.0), is(0.9)) {
+            (true, _) => Ok(Unit::Degrees),
+            (_, true) => Ok(Unit::Grads),
+            _ => Err(format!(
+                "its longitudes and latitudes are in units of {radians} radians; only degrees and grads are supported; reproject it, for example with gdalwarp -t_srs EPSG:4326"
+            )),
+        }
+    };
+    let stated = match short(keys, ANGULAR_UNIT) {
+        Some(9102 | 9122) => return Ok(Unit::Degrees),
+        Some(9105 | 9106) => return Ok(Unit::Grads),
+        Some(9101) => Some(1.0),
+        Some(9103) => Some((1.0f64 / 60.0).to_radians()),
+        Some(9104) => Some((1.0f64 / 3600.0).to_radians()),
+        Some(USER_DEFINED) => double(keys, ANGULAR_UNIT_SIZE),
+        None | Some(0) => None,
+        Some(code) => {
+            return Err(format!(
+                "the unit of its longitudes and latitudes, EPSG:{code} (GeoKey 2054), is not supported; reproject it, for example with gdalwarp -t_srs EPSG:4326"
+            ));
+        }
+    };
+    let of_code = || Node::parse(crs_definitions::from_code(epsg(keys)?)?.wkt).ok()?.radians();
+    let of_text = || Node::parse(esri_text(keys)?).ok()?.radians();
+    stated.or_else(of_code).or_else(of_text).map_or(Ok(Unit::Degrees), of_radians)
 }
 
 /// The EPSG code of the system, if the keys have one.
@@ -134,6 +185,8 @@ pub fn of_wkt(wkt: &str) -> Result<GeoKeys, String> {
         }
         return Ok(keys);
     }
+    // Heights are converted to metres, so the vertical part is left out.
+    let wkt = wkt.get(node.horizontal().span.clone()).unwrap_or(wkt);
     let text = format!("{ESRI_TEXT}{wkt}|");
     // A bar would end the text, and GeoTIFF texts are ASCII.
     if wkt.contains('|') || !wkt.is_ascii() {
@@ -169,9 +222,7 @@ pub fn of_text(text: &str) -> Result<GeoKeys, String> {
 
 /// Adds the unit of length. Keys are sorted, and this one is the last.
 fn push_unit(keys: &mut GeoKeys, metres: f64) {
-    let code = [9001u16, 9002, 9003, 9036]
-        .into_iter()
-        .find(|code| length_unit(*code).is_some_and(|unit| (unit - metres).abs() < 1e-9));
+    let code = code_of_length(metres);
     if let Some(code) = code {
         keys.directory.extend([LINEAR_UNIT, 0, 1, code]);
         keys.directory[3] += 1;
@@ -179,7 +230,7 @@ fn push_unit(keys: &mut GeoKeys, metres: f64) {
 }
 
 /// The well-known text that these keys contain in ESRI's form.
-fn esri_text(keys: &GeoKeys) -> Option<&str> {
+pub(crate) fn esri_text(keys: &GeoKeys) -> Option<&str> {
     let mut texts = [PROJECTED_CITATION, CITATION, 2049].into_iter().filter_map(|key| text(keys, key));
     texts.find_map(|text| Some(text.split_once(ESRI_TEXT)?.1))
 }
@@ -245,7 +296,7 @@ fn geographic(keys: &GeoKeys) -> Option<Geographic> {
 
 /// A projection that the keys define by parameters.
 fn user_defined(keys: &GeoKeys) -> Option<System> {
-    if short(keys, MODEL) != Some(1) {
+    if short(keys, MODEL) != Some(1) || short(keys, ANGULAR_UNIT).is_some_and(|unit| !matches!(unit, 9102 | 9122)) {
         return None;
     }
     let geographic = geographic(keys)?;
@@ -256,6 +307,9 @@ fn user_defined(keys: &GeoKeys) -> Option<System> {
     let scale = first(&[3092, 3093]).unwrap_or(1.0);
     let (method, rest) = match short(keys, 3075)? {
         1 => (Method::TransverseMercator, vec![scale, latitude]),
+        7 if scale == 1.0 || double(keys, 3078).is_some() => {
+            (Method::Mercator, vec![double(keys, 3078).unwrap_or(0.0)])
+        }
         8 => (Method::Lambert, vec![double(keys, 3078)?, double(keys, 3079)?, latitude]),
         9 => (Method::LambertOne, vec![latitude, scale, latitude]),
         10 => (Method::AzimuthalEqualArea, vec![latitude]),
@@ -264,12 +318,16 @@ fn user_defined(keys: &GeoKeys) -> Option<System> {
         15 if latitude.abs() == 90.0 => (Method::Stereographic, vec![scale, latitude]),
         15 if latitude > 0.0 && scale == 1.0 => (Method::NorthPole, vec![latitude]),
         15 if latitude < 0.0 && scale == 1.0 => (Method::SouthPole, vec![latitude]),
+        14 => (Method::Stereographic, vec![scale, latitude]),
+        16 => (Method::DoubleStereographic, vec![scale, latitude]),
+        17 => (Method::EquidistantCylindrical, vec![double(keys, 3078).unwrap_or(latitude)]),
+        24 => (Method::Sinusoidal, Vec::new()),
         _ => return None,
     };
     // ESRI's name would not match; the citation is the file's own name.
     let name = text(keys, PROJECTED_CITATION).or_else(|| text(keys, CITATION)).unwrap_or("Unknown");
     let name: String = name.chars().filter(|c| c.is_ascii_graphic() && !"\"[]|".contains(*c) || *c == ' ').collect();
-    let unit = short(keys, LINEAR_UNIT).map_or(Some(1.0), length_unit)?;
+    let unit = metres(keys).ok()?;
     let parameters = [vec![east, north, longitude], rest].concat();
     Some(System { name: name.trim().replace(' ', "_"), geographic, projection: Some((method, parameters)), unit })
 }
@@ -303,7 +361,7 @@ mod tests {
                     PRIMEM[\"Greenwich\",0.0],UNIT[\"Degree\",0.0174532925199433]],PROJECTION[\"Sinusoidal\"],\
                     PARAMETER[\"False_Easting\",1.5],UNIT[\"Foot\",0.3048]]";
         let keys = of_wkt(&format!("\u{feff}{text}\r\n")).unwrap();
-        assert_eq!((to_wkt(&keys).as_deref(), epsg(&keys), metres(&keys)), (Ok(text), None, 0.3048));
+        assert_eq!((to_wkt(&keys).as_deref(), epsg(&keys), metres(&keys)), (Ok(text), None, Ok(0.3048)));
         assert_eq!(usize::from(keys.directory[3]) * 4 + 4, keys.directory.len());
         assert!(of_wkt("LOCAL_CS[\"here\"]").unwrap_err().contains("LOCAL_CS"));
     }

@@ -49,6 +49,10 @@ pub enum Method {
     SouthPole,
     /// Oblique stereographic.
     DoubleStereographic,
+    /// Equidistant cylindrical (equirectangular) with a standard parallel.
+    EquidistantCylindrical,
+    /// Sinusoidal.
+    Sinusoidal,
     /// Hotine oblique Mercator with its centre on the initial line (variant B).
     ObliqueMercator,
 }
@@ -81,6 +85,8 @@ impl Method {
             Method::Stereographic => ("Stereographic", SCALED),
             Method::NorthPole => ("Stereographic_North_Pole", PARALLEL),
             Method::SouthPole => ("Stereographic_South_Pole", PARALLEL),
+            Method::EquidistantCylindrical => ("Equidistant_Cylindrical", PARALLEL),
+            Method::Sinusoidal => ("Sinusoidal", &CENTRE),
             Method::DoubleStereographic => ("Double_Stereographic", SCALED),
             Method::ObliqueMercator => (
                 "Hotine_Oblique_Mercator_Azimuth_Center",

@@ -3,8 +3,11 @@
 //! OGC 01-009 (WKT 1) and ESRI's dialect of it are compared by parameters. Of WKT 2 (OGC 18-010) only the EPSG code is
 //! used.
 
+use std::ops::Range;
+
 use super::epsg;
 use super::system::System;
+use super::vertical;
 
 /// Maximum length of a text, in bytes.
 pub const MAX_LENGTH: usize = 1 << 15;
@@ -19,6 +22,8 @@ pub struct Node {
     pub keyword: String,
     /// The values between the brackets.
     pub values: Vec<Value>,
+    /// The bytes of the text that it takes.
+    pub span: Range<usize>,
 }
 
 /// A value between brackets.
@@ -44,8 +49,14 @@ impl Node {
             return Err(format!("the definition of its coordinate system has {} bytes, which is too long", text.len()));
         }
         let mut reader = Reader { bytes: text.as_bytes(), at: 0 };
-        let keyword = reader.word();
-        let node = reader.node(keyword, 0)?;
+        let mut node = reader.next_node(0)?;
+        // ESRI writes a vertical system after the horizontal one: together they are a compound system.
+        if reader.eat(b",") {
+            let vertical = reader.next_node(0)?;
+            let span = node.span.start..vertical.span.end;
+            let values = vec![Value::Node(node), Value::Node(vertical)];
+            node = Node { keyword: "COMPD_CS".into(), values, span };
+        }
         reader.blanks();
         match reader.at == reader.bytes.len() {
             true => Ok(node),
@@ -94,8 +105,27 @@ impl Node {
         }
     }
 
+    /// Metres per unit of the vertical part of a compound system; `None` if it has none.
+    pub fn vertical_metres(&self) -> Option<f64> {
+        const VERTICAL: &[&str] = &["VERT_CS", "VERTCS", "VERTCRS", "VERTICALCRS"];
+        let mut node = self;
+        while !VERTICAL.contains(&node.keyword.as_str()) {
+            node = match node.keyword.as_str() {
+                "COMPD_CS" | "COMPOUNDCRS" => node.child(VERTICAL).or_else(|| node.child(&["BOUNDCRS"]))?,
+                "BOUNDCRS" => node.child(&["SOURCECRS"])?,
+                "SOURCECRS" => node.children().next()?,
+                _ => return None,
+            };
+        }
+        match (node.stated_metres(), node.code()) {
+            (Some(metres), _) => Some(metres),
+            (None, Some(code)) => Some(vertical::metres_of_code(code)),
+            (None, None) => Some(1.0),
+        }
+    }
+
     /// The horizontal part of a compound system.
-    fn horizontal(&self) -> &Node {
+    pub fn horizontal(&self) -> &Node {
         const HORIZONTAL: &[&str] =
             &["PROJCS", "GEOGCS", "PROJCRS", "PROJECTEDCRS", "GEOGCRS", "GEOGRAPHICCRS", "GEODCRS", "GEODETICCRS"];
         let mut node = self;
@@ -126,16 +156,32 @@ impl Node {
 
     /// Metres per unit of a projected system; 1 if it does not state the unit.
     pub fn metres(&self) -> f64 {
-        let node = self.horizontal();
         if self.is_geographic() {
             return 1.0;
         }
-        let unit = node.child(&["UNIT", "LENGTHUNIT"]).or_else(|| {
-            node.children()
+        self.horizontal().stated_metres().unwrap_or(1.0)
+    }
+
+    /// Metres per unit of length that the node states, itself or in its axes.
+    fn stated_metres(&self) -> Option<f64> {
+        self.stated_unit(&["UNIT", "LENGTHUNIT"])
+    }
+
+    /// Radians per unit of a geographic system, if it states the unit.
+    pub fn radians(&self) -> Option<f64> {
+        if !self.is_geographic() {
+            return None;
+        }
+        self.horizontal().stated_unit(&["UNIT", "ANGLEUNIT"])
+    }
+
+    fn stated_unit(&self, keywords: &[&str]) -> Option<f64> {
+        let unit = self.child(keywords).or_else(|| {
+            self.children()
                 .filter(|node| matches!(node.keyword.as_str(), "CS" | "AXIS"))
-                .find_map(|node| node.child(&["LENGTHUNIT"]))
+                .find_map(|node| node.child(keywords))
         });
-        unit.and_then(|unit| unit.number(1)).filter(|metres| metres.is_finite() && *metres > 0.0).unwrap_or(1.0)
+        unit.and_then(|unit| unit.number(1)).filter(|size| size.is_finite() && *size > 0.0)
     }
 
     /// The EPSG code of the system: the stated one, otherwise that of the known system with the same parameters.
@@ -150,6 +196,10 @@ impl Node {
         let (radius, flattening) = (spheroid.number(1)?, spheroid.number(2)?);
         let meridian = degrees.child(&["PRIMEM"]).and_then(|node| node.number(1)).unwrap_or(0.0);
         if meridian != 0.0 {
+            return None;
+        }
+        // Known systems are in degrees.
+        if node.radians().is_some_and(|radians| (radians - 1f64.to_radians()).abs() > 1e-6) {
             return None;
         }
         let metres = self.metres();
@@ -242,7 +292,15 @@ impl Reader<'_> {
         }
     }
 
-    fn node(&mut self, keyword: String, depth: usize) -> Result<Node, String> {
+    /// The node that begins after blanks.
+    fn next_node(&mut self, depth: usize) -> Result<Node, String> {
+        self.blanks();
+        let start = self.at;
+        let keyword = self.word();
+        self.node(keyword, start, depth)
+    }
+
+    fn node(&mut self, keyword: String, start: usize, depth: usize) -> Result<Node, String> {
         let known = !keyword.is_empty() && keyword.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
         if !known || depth > MAX_DEPTH || !self.eat(b"[(") {
             return Err("it is not the well-known text of a coordinate system".into());
@@ -252,10 +310,12 @@ impl Reader<'_> {
             if self.eat(b"\"") {
                 values.push(Value::Text(self.quoted()?));
             } else {
+                self.blanks();
+                let start = self.at;
                 let word = self.word();
                 self.blanks();
                 if self.bytes.get(self.at).is_some_and(|byte| b"[(".contains(byte)) {
-                    values.push(Value::Node(self.node(word, depth + 1)?));
+                    values.push(Value::Node(self.node(word, start, depth + 1)?));
                 } else {
                     values.push(match word.parse() {
                         Ok(number) => Value::Number(number),
@@ -264,7 +324,7 @@ impl Reader<'_> {
                 }
             }
             if self.eat(b"])") {
-                return Ok(Node { keyword: keyword.to_ascii_uppercase(), values });
+                return Ok(Node { keyword: keyword.to_ascii_uppercase(), values, span: start..self.at });
             }
             if !self.eat(b",") {
                 return Err("its well-known text lacks a comma or a bracket".into());

@@ -1,6 +1,6 @@
 //! All parts of the file except the samples: header, ghost area, and a directory per level.
 
-use crate::format::crs::keys::GeoKeys;
+use crate::format::crs::rebuilt::with_short;
 use crate::format::dem::Georeference;
 use orogen_grid::grid::Window;
 
@@ -13,6 +13,10 @@ const PROMISES: &str = "LAYOUT=IFDS_BEFORE_DATA\n\
 
 /// The citation of the coordinate system, terminated as GeoTIFF requires.
 const CITATION: &str = "Local metres|";
+
+/// The key of the raster type, and pixel-is-point.
+const RASTER_TYPE: u16 = 1025;
+const POINT: u16 = 2;
 
 /// Bytes before and after each tile.
 pub const LEADER: u64 = 4;
@@ -39,6 +43,8 @@ pub struct Description {
     pub tile: usize,
     /// The nodata value.
     pub nodata: Option<f32>,
+    /// The unit of the samples; empty if they have none.
+    pub unit: String,
     /// The position of metres on a map.
     pub map: Option<Georeference>,
 }
@@ -134,7 +140,7 @@ impl Field {
 
 /// The entries of level `k`, sorted by tag. Only the full raster has the tags of position; overviews share it.
 fn fields(description: &Description, level: &Level, offsets: &[u64], k: usize, form: Form) -> Vec<Field> {
-    let Description { window, tile, nodata, map } = description;
+    let Description { window, tile, nodata, unit, map } = description;
     let (width, height, tile) = (level.width as u32, level.height as u32, *tile as u32);
     let mut fields = vec![
         // Subfile type: 1 marks a reduced copy of the first.
@@ -164,7 +170,7 @@ fn fields(description: &Description, level: &Level, offsets: &[u64], k: usize, f
         fields.push(Field::doubles(33922, &[0.0, 0.0, 0.0, east, north, 0.0]));
         match map.as_ref().and_then(|map| map.keys.as_ref()) {
             Some(keys) => {
-                fields.push(Field::shorts(34735, &of_points(keys)));
+                fields.push(Field::shorts(34735, &with_short(keys, RASTER_TYPE, POINT)));
                 if !keys.doubles.is_empty() {
                     fields.push(Field::doubles(34736, &keys.doubles));
                 }
@@ -178,6 +184,11 @@ fn fields(description: &Description, level: &Level, offsets: &[u64], k: usize, f
             }
         }
     }
+    if k == 0 && !unit.is_empty() {
+        let unit = unit.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+        let item = format!("<Item name=\"UNITTYPE\" sample=\"0\" role=\"unittype\">{unit}</Item>");
+        fields.push(Field::text(42112, &format!("<GDALMetadata>{item}</GDALMetadata>")));
+    }
     if let Some(nodata) = nodata {
         // As f64, whose digits every reader parses to exactly this number.
         fields.push(Field::text(42113, &f64::from(*nodata).to_string().to_lowercase()));
@@ -188,23 +199,15 @@ fn fields(description: &Description, level: &Level, offsets: &[u64], k: usize, f
 /// The GeoKey directory of a user-defined system in metres, with pixel-is-point.
 fn geo_keys() -> Vec<u16> {
     const USER_DEFINED: u16 = 32767;
-    const POINT: u16 = 2;
     const TEXTS: u16 = 34737;
     const METRE: u16 = 9001;
-    let keys =
-        [[1024, 0, 1, USER_DEFINED], [1025, 0, 1, POINT], [1026, TEXTS, CITATION.len() as u16, 0], [3076, 0, 1, METRE]];
+    let keys = [
+        [1024, 0, 1, USER_DEFINED],
+        [RASTER_TYPE, 0, 1, POINT],
+        [1026, TEXTS, CITATION.len() as u16, 0],
+        [3076, 0, 1, METRE],
+    ];
     [[1, 1, 0, keys.len() as u16]].iter().chain(&keys).flatten().copied().collect()
-}
-
-/// A foreign GeoKey directory, changed to pixel-is-point. Keys are sorted by number.
-fn of_points(keys: &GeoKeys) -> Vec<u16> {
-    const RASTER_TYPE: u16 = 1025;
-    let head = keys.directory.get(..3).unwrap_or(&[1, 1, 0]);
-    let mut entries: Vec<&[u16]> = keys.directory.chunks_exact(4).skip(1).filter(|key| key[0] != RASTER_TYPE).collect();
-    let at = entries.partition_point(|key| key[0] < RASTER_TYPE);
-    entries.insert(at, &[RASTER_TYPE, 0, 1, 2]);
-    let count = [entries.len() as u16];
-    head.iter().chain(&count).chain(entries.into_iter().flatten()).copied().collect()
 }
 
 fn put_directory(out: &mut Vec<u8>, fields: &[Field], last: bool, form: Form) {
@@ -308,7 +311,8 @@ mod tests {
 
     #[test]
     fn a_file_past_four_gibibytes_is_big() {
-        let description = Description { window: Window::new(1, 1, 1.0), tile: 512, nodata: None, map: None };
+        let description =
+            Description { window: Window::new(1, 1, 1.0), tile: 512, nodata: None, unit: String::new(), map: None };
         let classic = |levels: &[Level]| head(&description, levels, false)[2] == 42;
         let mut levels = levels(4, 1 << 30);
         assert!(!classic(&levels));
@@ -324,7 +328,8 @@ mod tests {
     #[test]
     fn the_ghost_area_is_as_long_as_it_says() {
         assert_eq!(PROMISES.len(), 140);
-        let description = Description { window: Window::new(1, 1, 1.0), tile: 512, nodata: None, map: None };
+        let description =
+            Description { window: Window::new(1, 1, 1.0), tile: 512, nodata: None, unit: String::new(), map: None };
         for (big, start, first) in [(false, 8, 192), (true, 16, 200)] {
             let head = head(&description, &levels(1, 9), big);
             assert!(

@@ -10,6 +10,10 @@ const MAX_ENTRIES: u64 = 4096;
 /// Maximum number of directories searched for the full raster.
 const MAX_DIRECTORIES: usize = 64;
 
+/// Bits of the subfile type.
+const REDUCED: u64 = 1;
+const MASK: u64 = 4;
+
 /// An opened TIFF: the entries of the directory of its full raster.
 pub struct Tiff<'a> {
     input: &'a mut dyn Input,
@@ -18,6 +22,8 @@ pub struct Tiff<'a> {
     /// Whether numbers are big-endian.
     pub big_endian: bool,
     big: bool,
+    /// Position of the first directory.
+    first: u64,
     entries: Vec<Entry>,
 }
 
@@ -35,7 +41,7 @@ impl<'a> Tiff<'a> {
     /// Reads the header and the directory.
     pub fn open(input: &'a mut dyn Input) -> Fallible<Tiff<'a>> {
         let length = dem::length(input)?;
-        let mut tiff = Tiff { input, length, big_endian: false, big: false, entries: Vec::new() };
+        let mut tiff = Tiff { input, length, big_endian: false, big: false, first: 0, entries: Vec::new() };
         let head = tiff.bytes(0, length.min(8), "header")?;
         let (big_endian, version) = match head.get(..4) {
             Some([b'I', b'I', low, 0]) => (false, *low),
@@ -47,19 +53,35 @@ impl<'a> Tiff<'a> {
             43 => (big_endian, true),
             _ => return Err("it is not a TIFF".into()),
         };
-        let mut at = if tiff.big { tiff.number(8, 8)? } else { tiff.number(4, 4)? };
+        tiff.first = if tiff.big { tiff.number(8, 8)? } else { tiff.number(4, 4)? };
+        match tiff.seek(|_, kind| Ok(kind & (REDUCED | MASK) == 0))? {
+            true => Ok(tiff),
+            false => Err("it has no full raster, only overviews or masks".into()),
+        }
+    }
+
+    /// Moves on to the directory of the mask of the full raster, which has `size` samples; false if there is none.
+    pub fn seek_mask(&mut self, size: [u64; 2]) -> Fallible<bool> {
+        self.seek(
+            |tiff, kind| Ok(kind & (REDUCED | MASK) == MASK && [tiff.one(256)?, tiff.one(257)?] == size.map(Some)),
+        )
+    }
+
+    /// Moves to the first directory that is wanted by its subfile type.
+    fn seek(&mut self, wanted: impl Fn(&mut Self, u64) -> Fallible<bool>) -> Fallible<bool> {
+        let mut at = self.first;
         for _ in 0..MAX_DIRECTORIES {
             if at == 0 {
                 break;
             }
-            let next = tiff.directory(at)?;
-            // Bit 0 marks a reduced copy, bit 2 a mask.
-            if tiff.one(254)?.unwrap_or(0) & 5 == 0 {
-                return Ok(tiff);
+            let next = self.directory(at)?;
+            let kind = self.one(254)?.unwrap_or(0);
+            if wanted(self, kind)? {
+                return Ok(true);
             }
             at = next;
         }
-        Err("it has no full raster, only overviews or masks".into())
+        Ok(false)
     }
 
     /// `count` bytes at `at`.

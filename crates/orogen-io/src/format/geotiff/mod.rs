@@ -23,8 +23,10 @@
 //! The bytes depend on the samples, the window and the options, but not on the number of threads or the pieces in which
 //! rows arrive.
 
+mod blocks;
 mod directory;
 mod entries;
+pub(crate) mod mask;
 pub mod options;
 #[doc(hidden)]
 pub mod overview;
@@ -37,5 +39,7 @@ pub mod tile;
 pub(crate) mod unpack;
 pub mod writer;
 
+#[cfg(test)]
+mod reader_tests;
 #[cfg(test)]
 mod tests;

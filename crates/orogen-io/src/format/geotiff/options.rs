@@ -11,6 +11,8 @@ pub struct Options {
     pub tile: Option<usize>,
     /// The nodata value, if there is one. Overviews exclude it from their means.
     pub nodata: Option<f32>,
+    /// The unit of the samples, such as "m"; empty if they have none.
+    pub unit: String,
     /// The position of metres on a map; `None` for local metres from the origin.
     pub map: Option<Georeference>,
     /// Write BigTIFF even if the file is smaller than 4 GiB.
@@ -18,6 +20,13 @@ pub struct Options {
 }
 
 impl Options {
+    /// The layout for samples of a unit, such as "m", or "" for none. Missing samples are NaN: readers treat them as
+    /// missing only if the file declares it.
+    #[must_use]
+    pub fn of_unit(unit: &str) -> Options {
+        Options { nodata: Some(f32::NAN), unit: unit.to_string(), ..Options::default() }
+    }
+
     /// Sets the side of a tile, in samples: a multiple of 16.
     #[must_use]
     pub fn with_tile(self, tile: Option<usize>) -> Options {

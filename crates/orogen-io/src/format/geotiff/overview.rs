@@ -83,7 +83,7 @@ fn mean(rows: [&[f32]; 3], at: [usize; 3], down: [f64; 3], across: [f64; 3], mis
         let along: f64 = at.iter().zip(across).map(|(&i, share)| f64::from(row[i]) * share).sum();
         sum += along * down;
     }
-    if missing.is_none() && !sum.is_nan() {
+    if missing.is_none_or(f32::is_nan) && !sum.is_nan() {
         return sum as f32;
     }
     let (mut sum, mut total) = (0.0, 0.0);

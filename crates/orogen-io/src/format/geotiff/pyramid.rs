@@ -37,7 +37,8 @@ impl Pyramid {
                 "the tiles of a GeoTIFF must have 16 to 8192 samples per side, a multiple of 16, not {tile}"
             ));
         }
-        let description = Description { window: *window, tile, nodata: options.nodata, map: options.map.clone() };
+        let Options { nodata, unit, map, .. } = options.clone();
+        let description = Description { window: *window, tile, nodata, unit, map };
         Ok(Pyramid { description, big: options.big, sizes: sizes(window, tile).collect() })
     }
 

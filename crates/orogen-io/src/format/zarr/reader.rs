@@ -10,6 +10,7 @@ use serde_json::Value;
 
 use super::unpack::Codec;
 use crate::format::affine::Affine;
+use crate::format::band::BandMetadata;
 use crate::format::crs::keys::{self, GeoKeys};
 use crate::format::crs::unit::Unit;
 use crate::format::dem::{Dem, Placement, Request, afford, afford_beside, refused, turn_rows};
@@ -316,14 +317,17 @@ fn open(folder: &Path, request: Request) -> std::result::Result<Dem, ReadFault> 
     let count = afford(width, height, request.allowed)?;
     let band = request.choose(usize::try_from(bands).unwrap_or(usize::MAX))? as u64;
     let place = place(&array, group.as_deref(), request.allowed)?;
-    let nodata = array.attribute("_FillValue").or(array.attribute("missing_value"));
-    // Absent chunks consist of the fill value: for floats it means no height, for integers it is a value.
-    let (scale, offset) =
-        (array.attribute("scale_factor").unwrap_or(1.0), array.attribute("add_offset").unwrap_or(0.0));
-    let sample = |value: f64| match nodata == Some(value) {
-        true => f32::NAN,
-        false => (value * scale + offset) as f32,
+    let unit = array.attributes["units"].as_str().map(str::trim).filter(|unit| !matches!(*unit, "" | "1"));
+    let metadata = BandMetadata {
+        nodata: [array.attribute("_FillValue"), array.attribute("missing_value")].into_iter().flatten().collect(),
+        scale: array.attribute("scale_factor"),
+        offset: array.attribute("add_offset"),
+        unit: unit.map(String::from),
+        metres: None,
     };
+    let mut conversion = metadata.conversion(None)?;
+    // Absent chunks consist of the fill value: for floats it means no height, for integers it is a value.
+    let mut sample = |value: f64| conversion.height(value, array.size);
     let [chunk_height, chunk_width] = [array.chunk[array.chunk.len() - 2], array.chunk[array.chunk.len() - 1]];
     let (first, layer) = match array.chunk[..] {
         [bands, ..] if array.chunk.len() == 3 => (Some(band / bands), (band % bands) * chunk_height * chunk_width),
@@ -348,7 +352,9 @@ fn open(folder: &Path, request: Request) -> std::result::Result<Dem, ReadFault> 
     if from_south {
         turn_rows(&mut heights, width as usize);
     }
-    Ok(Dem::new([width as usize, height as usize], heights, place)?)
+    let mut dem = Dem::new([width as usize, height as usize], heights, place)?;
+    dem.notes = conversion.notes();
+    Ok(dem)
 }
 
 /// The array of heights in a group.
@@ -401,7 +407,7 @@ fn place(
             let lattice = Affine([across, 0.0, x, 0.0, down, y]).lattice(rows as usize)?;
             let degrees = east.to_ascii_lowercase().starts_with("lon");
             let unit = match &keys {
-                Some(keys) => keys::unit(keys),
+                Some(keys) => keys::unit(keys)?,
                 None if degrees => Unit::Degrees,
                 None => Unit::Metres(1.0),
             };

@@ -14,7 +14,7 @@ use crate::export::vectors;
 use orogen_grid::analysis::finite::FiniteCount;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_io::format::dem::Georeference;
-use orogen_io::format::features::{Crs, FeatureLayer};
+use orogen_io::format::features::{Crs, Definition, FeatureLayer};
 
 /// Layers with their coordinate system.
 pub struct Drawing {
@@ -107,6 +107,18 @@ impl Drawing {
                 let message = format!("a .{format} file holds one layer; choose one with --layer, or write a .gpkg");
                 Err(Error::new(ErrorKind::Request, message).into())
             }
+        }
+    }
+
+    /// [`Drawing::words`], and the reason if the file lacks the coordinate system of the map.
+    pub fn words_with_crs(&self) -> String {
+        let words = self.words();
+        match (self.crs().definition(), &self.map) {
+            (Definition::Unknown { .. }, Some(map)) => {
+                let why = map.wkt().err().unwrap_or_default();
+                format!("{words}; without its coordinate system: {why}")
+            }
+            _ => words,
         }
     }
 

@@ -35,7 +35,15 @@ fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::
     drawing.place();
     let layer = drawing.only("csv")?;
     files.write(|out| csv::write(out, layer, decimals(drawing.step())))?;
-    Ok(drawing.words())
+    Ok(drawing.words() + without_crs(source))
+}
+
+/// The end of the message for a world on a map.
+fn without_crs(source: &LayerSource) -> &'static str {
+    match source.map() {
+        Some(map) if map.is_on_map() => "; without its coordinate system, which .csv cannot hold",
+        _ => "",
+    }
 }
 
 /// A line for each sample, row by row from the north. A sample that is not finite has no value.
@@ -68,5 +76,5 @@ fn samples(source: &mut LayerSource, files: &mut Files) -> io::Result<String> {
             Ok(())
         })
     })?;
-    Ok(format!("{lines} lines"))
+    Ok(format!("{lines} lines{}", without_crs(source)))
 }

@@ -18,5 +18,5 @@ fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::
     drawing.place();
     let layer = drawing.only("fgb")?;
     files.write(|out| fgb::write(out, layer, drawing.crs()))?;
-    Ok(drawing.words())
+    Ok(drawing.words_with_crs())
 }

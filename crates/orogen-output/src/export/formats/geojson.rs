@@ -18,5 +18,5 @@ fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::
     drawing.place();
     let layer = drawing.only("geojson")?;
     files.write(|out| geojson::write(out, layer, drawing.crs(), drawing.step()))?;
-    Ok(drawing.words())
+    Ok(drawing.words_with_crs())
 }

@@ -20,5 +20,5 @@ fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::
     let mut drawing = Drawing::of(source, options)?;
     drawing.place();
     files.write(|out| gpkg::write(out, drawing.layers.iter().map(|(layer, _)| layer), drawing.crs()))?;
-    Ok(drawing.words())
+    Ok(drawing.words_with_crs())
 }

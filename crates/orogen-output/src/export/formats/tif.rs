@@ -30,7 +30,7 @@ fn memory(window: &Window, _: &Options) -> u64 {
 }
 
 fn write(source: &mut LayerSource, _: &Options, files: &mut Files) -> io::Result<String> {
-    let layout = Layout::default().with_map(source.map());
+    let layout = Layout::of_unit(source.unit()).with_map(source.map());
     let mut writer = Writer::new(source.window(), &layout, files.spool())?;
     files.write(|out| {
         source.rows(|band| writer.rows(band[0].data()))?;
