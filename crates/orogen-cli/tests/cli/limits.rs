@@ -132,7 +132,7 @@ fn interrupted(writer: &Writer) -> Option<Duration> {
         "15" if writer.arguments[0] == "refine" => "0.25",
         "32" if writer.arguments[0] == "noise" => "1024",
         "64x36" => "4000x3000",
-        "32x24" if writer.arguments[0] == "blocks" => "3000x2000",
+        "32x24" if writer.arguments[0] == "blocks" => "1998x1332",
         "32x24" => "6000x4000",
         "30" if writer.arguments[0] == "map" => "300",
         "64" if writer.arguments[0] == "variants" => "2000",
