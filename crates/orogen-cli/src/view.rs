@@ -28,8 +28,8 @@ pub struct View {
     pub seed: Option<Seeds>,
     #[command(flatten)]
     pub arguments: Arguments,
-    /// Cell size in metres [default: the world's cell; if a whole world of a recipe then has more than 16384 samples along a side, twice that
-    /// or more, with at most 4096 samples]
+    /// Cell size in metres [default: the world's cell; except for `build`, a whole world of more than 16384 samples along a side is shown with
+    /// at most 4096]
     #[arg(long, value_name = "M", value_parser = cell, allow_negative_numbers = true)]
     pub cell: Option<f64>,
     /// Window of the world: column and row of its first sample, width and height, in samples; or in metres, such as 0m,500m,2km,2km

@@ -26,6 +26,7 @@ mod markup;
 pub mod mesh;
 #[doc(hidden)]
 pub mod noise_pictures;
+mod proportions;
 pub mod render;
 pub mod sheet;
 pub mod survey;

@@ -125,3 +125,19 @@ fn noises_move_in_a_gif_too() {
     folder.bad(&["noise", "perlin", "--frames", "3", "--bits", "16", "-o", "c.gif"], 2, "a GIF has 8 bits");
     folder.bad(&["noise", "perlin", "-o", "c.gif"], 2, ".gif");
 }
+
+#[test]
+fn land_that_is_higher_than_wide_is_told_with_the_factor_to_use() {
+    let folder = Folder::with_small();
+    folder.write(
+        "high.toml",
+        "orogen = 1\nworld = { size = [64, 48], cell = 2 }\noutputs = { height = \"h\" }\nnodes.n = { op = \"perlin\", wavelength = 40 }\nnodes.h = { op = \"expr\", expr = \"1000 * n\" }\n",
+    );
+    let render = |recipe: &'static str| ["render", recipe, "--size", "32x18", "--samples", "1"];
+    let said = folder.good(&render("high.toml")).err;
+    assert!(said.contains("m high but only 64 m wide; use an exaggeration of about 0.01"), "{said}");
+    assert!(!folder.good(&[&render("high.toml")[..], &["--exaggeration", "0.01"]].concat()).err.contains("wide"));
+    assert_eq!(folder.good(&render("small.toml")).err, "");
+    let solid = folder.good(&["export", "high.toml", "-o", "high.stl"]);
+    assert!(solid.text().contains("\nwarning: the land is "), "{}", solid.text());
+}

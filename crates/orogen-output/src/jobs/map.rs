@@ -12,7 +12,7 @@ use crate::export::options::Options;
 use crate::export::{biome_cover, place, sheet_cover};
 use crate::sheet::draw::{Sheet, draw};
 use crate::sheet::geometry::{Rect, Size};
-use crate::sheet::linework::{SMALLEST, least_areas, lines_at};
+use crate::sheet::linework::{least_areas, lines_at};
 use crate::sheet::options::{Coloring, Layer, Page, Parts, Resolution, Scale, Shading, SheetOptions};
 use crate::sheet::{pdf, raster, vector};
 use orogen_engine::budget::Reservation;
@@ -268,7 +268,7 @@ impl MapJob {
         let heights = world.run(&plan, &making)?.pop().unwrap_or_else(|| Grid::filled(window, f32::NAN));
         finite::check(HEIGHT, &heights, &mut warnings)?;
         if is_known {
-            let [river, lake] = least_areas(&window, options.page, SMALLEST);
+            let [river, lake] = least_areas(&window, options.page);
             let least = [options.river_area.unwrap_or(river), options.lake_area.unwrap_or(lake)];
             options.water = Some(map_water::of(world, &window, least, 4 * window.len() as u64, &watering)?);
         }

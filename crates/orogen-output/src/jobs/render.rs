@@ -11,6 +11,7 @@ use crate::export::derived::{albedo, list, roughness};
 use crate::export::files::Stopping;
 use crate::export::notes::SOFTWARE;
 use crate::export::options::Options;
+use crate::proportions;
 use crate::render::camera::{Camera, CameraSpec, View};
 use crate::render::device::{Painted, RenderDevice};
 use crate::render::relief::Land;
@@ -24,6 +25,7 @@ use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 use orogen_grid::words::number;
 use orogen_io::file::{self, Output};
+use orogen_io::format::levels::{NO_SAMPLES, extremes};
 use orogen_io::format::png::{self, Picture, Pixel};
 use orogen_io::palette::palette::Palette;
 
@@ -226,6 +228,10 @@ impl RenderJob {
         let mut warnings = Vec::new();
         layers.iter().zip(&grids).try_for_each(|(layer, grid)| finite::check(layer, grid, &mut warnings))?;
         let layer = |name: &str| layers.iter().position(|layer| *layer == name).and_then(|at| grids.get(at));
+        if let Some([low, high]) = layer(HEIGHT).map(|heights| extremes(NO_SAMPLES, heights.data())) {
+            let width = window.width.max(window.height) as f64 * window.cell;
+            warnings.extend(proportions::warning(f64::from(high) - f64::from(low), width, self.exaggeration));
+        }
         let nothing = Grid::filled(window, 0.0);
         let land = Land {
             heights: layer(HEIGHT).unwrap_or(&nothing),
@@ -287,7 +293,7 @@ pub struct Rendering {
     pub scene: Scene,
     /// The camera of the job.
     pub spec: CameraSpec,
-    /// Messages about samples that are NaN or infinite.
+    /// Messages about samples that are NaN or infinite, and about land that is higher than wide.
     pub warnings: Vec<String>,
     /// Progress of painting.
     pub painting: Progress,

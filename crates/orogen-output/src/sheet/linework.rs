@@ -19,7 +19,7 @@ const SAMPLE: f64 = 0.25;
 const MOST: usize = 2400;
 
 /// Minimum area that drains to the start of a river in m^2: gullies that a large scale shows are no rivers.
-pub const SMALLEST: f64 = 1e5;
+const SMALLEST: f64 = 1e5;
 
 /// Thresholds: area that drains to the start of a river and minimum area of a lake, in square millimetres; minimum
 /// depth of a lake, as a share of the relief.
@@ -53,13 +53,12 @@ fn longer_side(window: &Window, page: Page) -> f64 {
     }
 }
 
-/// Minimum drainage area of rivers and minimum area of lakes on a map of this window, in m^2. `smallest` is the minimum for rivers at large
-/// scales.
+/// Minimum drainage area of rivers and minimum area of lakes on a map of this window, in m^2.
 #[must_use]
-pub fn least_areas(window: &Window, page: Page, smallest: f64) -> [f64; 2] {
+pub fn least_areas(window: &Window, page: Page) -> [f64; 2] {
     let longer = window.width.max(window.height).saturating_sub(1).max(1) as f64 * window.cell;
     let metres = longer / longer_side(window, page);
-    [(SPRING * metres * metres).max(smallest), LAKE * metres * metres]
+    [(SPRING * metres * metres).max(SMALLEST), LAKE * metres * metres]
 }
 
 /// The heights at the resolution of lines, and the lines.
@@ -104,7 +103,7 @@ impl Linework {
         let water = match &options.water {
             Some(known) if wanted => known.on(&grid),
             None if wanted => {
-                let [river, lake] = least_areas(window, options.page, SMALLEST);
+                let [river, lake] = least_areas(window, options.page);
                 let [river, lake] = [options.river_area.unwrap_or(river), options.lake_area.unwrap_or(lake)];
                 let cell_area = grid.window().cell * grid.window().cell;
                 let cells = |area: f64| (area / cell_area).ceil().max(1.0) as u32;

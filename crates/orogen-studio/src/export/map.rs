@@ -86,6 +86,10 @@ pub struct MapExport {
     pub shading: Shading,
     /// The interval of contours in metres; a round number if `None`.
     pub interval: Option<f64>,
+    /// The minimum drainage area of rivers in m^2; one that suits the scale if `None`.
+    pub river_area: Option<f64>,
+    /// The minimum area of lakes in m^2, likewise.
+    pub lake_area: Option<f64>,
     /// The heading.
     pub title: String,
     /// The heading that a command line gives by itself.
@@ -116,6 +120,8 @@ impl MapExport {
             range: None,
             shading: Shading::Multi,
             interval: None,
+            river_area: None,
+            lake_area: None,
             title: title.into(),
             own_title: title.into(),
             paper: None,
@@ -165,6 +171,8 @@ impl MapExport {
         job.range = self.range;
         job.shading = self.shading;
         job.interval = self.interval;
+        job.river_area = self.river_area;
+        job.lake_area = self.lake_area;
         job.paper = self
             .paper
             .map(|name| name.parse::<Paper>().map_err(|message| Error::new(ErrorKind::Request, message)))
@@ -200,6 +208,11 @@ impl MapExport {
         }
         if let Some(interval) = self.interval {
             line.option("contours", interval);
+        }
+        for (option, area) in [("river-area", self.river_area), ("lake-area", self.lake_area)] {
+            if let Some(area) = area {
+                line.option(option, area);
+            }
         }
         line.differing("title", self.title.as_str(), &self.own_title.as_str());
         if let Some(paper) = self.paper {

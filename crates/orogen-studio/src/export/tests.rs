@@ -97,12 +97,14 @@ fn a_map_is_that_of_the_job() {
     export.map.shading = Shading::Swiss;
     export.map.set_colors(MapColors::Surfaces);
     export.map.parts.rivers = false;
+    export.map.lake_area = Some(5e4);
     let words = run(&export);
     assert!(words.starts_with("surfaces, ") && words.contains("80 x 80 samples"), "{words}");
     let mut job = MapJob::new(SheetFormat::Png).with_colors(MapColors::Surfaces).with_title("classic");
     job.resolution = Some(Resolution::Longer(300));
     job.shading = Shading::Swiss;
     job.parts.rivers = false;
+    job.lake_area = Some(5e4);
     let mut recipe = recipe();
     job.prepare(&mut recipe).unwrap();
     let world = session().open(recipe).unwrap();
@@ -111,7 +113,9 @@ fn a_map_is_that_of_the_job() {
     job.to_file(&world, &output, &Progress::none()).unwrap();
     assert!(std::fs::read(export.path()).unwrap() == std::fs::read(output.path()).unwrap());
     let cell = 0.0125 * super::tests::recipe().world.size.unwrap()[0];
-    let end = format!("classic-map.png --color surfaces --shade swiss --size 300 --no-rivers --cell {cell}");
+    let end = format!(
+        "classic-map.png --color surfaces --shade swiss --lake-area 50000 --size 300 --no-rivers --cell {cell}"
+    );
     assert!(line(&export).ends_with(&end), "{}", line(&export));
     // Its extension chooses the kind of file.
     export.set_path(&folder.join("a.pdf").to_string_lossy());

@@ -8,6 +8,8 @@ use crate::export::layer_source::LayerSource;
 use crate::export::mesh::{EXAGGERATION, HEIGHT_CURVE, MAX_ERROR, Prepared, memory};
 use crate::export::options::{OptionSpec, Options, ValueKind};
 use crate::mesh::stl::{Print, write as write_solid};
+use crate::proportions;
+use orogen_io::format::levels::{NO_SAMPLES, extremes};
 
 const PRINT_SIZE: OptionSpec = OptionSpec {
     name: "print-size",
@@ -44,5 +46,10 @@ fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::
         height = write_solid(out, &mesh.surface(0, false), &print)?;
         Ok(())
     })?;
-    Ok(format!("{} and a base, {size} mm along and {height:.1} mm high", mesh.words()))
+    let [low, high] = extremes(NO_SAMPLES, mesh.grid.data());
+    let window = mesh.grid.window();
+    let width = window.width.max(window.height) as f64 * window.cell;
+    let warning = proportions::warning(f64::from(high) - f64::from(low), width, f64::from(mesh.exaggeration()));
+    let warning = warning.map_or(String::new(), |warning| format!("\nwarning: {warning}"));
+    Ok(format!("{} and a base, {size} mm along and {height:.1} mm high{warning}", mesh.words()))
 }

@@ -30,6 +30,11 @@ pub fn show(ui: &mut Ui, export: &mut Export, studio: &Studio, language: Languag
             SHADINGS.iter().map(|(shading, _, key)| (*shading, language.text(key).to_owned())).collect();
         rows::choice(ui, language.text("export.shading"), &mut own.shading, &shadings);
         rows::optional(ui, language.text("export.interval"), &mut own.interval, 100.0, 0.01..=10_000.0, language);
+        for (key, area, first) in
+            [("export.river_area", &mut own.river_area, 1e6), ("export.lake_area", &mut own.lake_area, 1e5)]
+        {
+            rows::optional(ui, language.text(key), area, first, 1.0..=1e15, language);
+        }
         rows::text(ui, language.text("export.sheet_title"), &mut own.title);
         let fitted = language.text("export.paper_fitted");
         rows::optional_name(
