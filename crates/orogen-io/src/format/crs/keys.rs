@@ -1,6 +1,5 @@
 //! GeoTIFF keys (OGC 19-008r4) to and from well-known text.
 
-use super::registry::Crs;
 use super::system::{Geographic, Method, System};
 use super::unit::{Unit, code_of_length, length_of_code};
 use super::wkt::Node;
@@ -96,10 +95,7 @@ pub fn unit(keys: &GeoKeys) -> Result<Unit, String> {
 /// A message if the keys state a unit that is not a known length.
 pub fn metres(keys: &GeoKeys) -> Result<f64, String> {
     let of_text = || Some(Node::parse(esri_text(keys)?).ok()?.metres());
-    let of_code = || match Crs::from_epsg(epsg(keys)?).ok()?.unit() {
-        Unit::Metres(metres) => Some(metres),
-        Unit::Degrees | Unit::Grads => None,
-    };
+    let of_code = || Some(Node::parse(crs_definitions::from_code(epsg(keys)?)?.wkt).ok()?.metres());
     match short(keys, LINEAR_UNIT) {
         None | Some(0) => Ok(of_text().or_else(of_code).unwrap_or(1.0)),
         Some(USER_DEFINED) => match double(keys, LINEAR_UNIT_SIZE) {

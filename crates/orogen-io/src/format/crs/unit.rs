@@ -96,6 +96,31 @@ pub fn length_of_name(name: &str) -> Option<f64> {
     }
 }
 
+/// The vertical systems of the EPSG registry that are not in metres, and metres per unit.
+const NOT_METRES: &[(u16, f64)] = &[
+    (5614, 0.3048),
+    (5702, US_FOOT),
+    (5754, 0.304_800_749_1),
+    (6130, 0.3048),
+    (6131, 0.3048),
+    (6132, 0.3048),
+    (6358, US_FOOT),
+    (6359, US_FOOT),
+    (6360, US_FOOT),
+    (8050, 0.3048),
+    (8051, 0.3048),
+    (8052, US_FOOT),
+    (8053, US_FOOT),
+    (8228, 0.3048),
+    (8897, 0.3048),
+];
+
+/// Metres per unit of a vertical system, by its EPSG code.
+#[must_use]
+pub fn metres_of_vertical(code: u16) -> f64 {
+    NOT_METRES.iter().find(|row| row.0 == code).map_or(1.0, |row| row.1)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

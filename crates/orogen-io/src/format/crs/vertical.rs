@@ -1,37 +1,12 @@
 //! Units of vertical coordinate systems.
 
 use super::keys::{GeoKeys, USER_DEFINED, short};
-use super::unit::{US_FOOT, length_of_code};
+use super::unit::{length_of_code, metres_of_vertical};
 use super::wkt::Node;
 
 /// GeoTIFF keys of the vertical system and its unit.
 const SYSTEM: u16 = 4096;
 const UNIT: u16 = 4099;
-
-/// The vertical systems of the EPSG registry that are not in metres, and metres per unit.
-const NOT_METRES: &[(u16, f64)] = &[
-    (5614, 0.3048),
-    (5702, US_FOOT),
-    (5754, 0.304_800_749_1),
-    (6130, 0.3048),
-    (6131, 0.3048),
-    (6132, 0.3048),
-    (6358, US_FOOT),
-    (6359, US_FOOT),
-    (6360, US_FOOT),
-    (8050, 0.3048),
-    (8051, 0.3048),
-    (8052, US_FOOT),
-    (8053, US_FOOT),
-    (8228, 0.3048),
-    (8897, 0.3048),
-];
-
-/// Metres per unit of a vertical system, by its EPSG code.
-#[must_use]
-pub fn metres_of_code(code: u16) -> f64 {
-    NOT_METRES.iter().find(|row| row.0 == code).map_or(1.0, |row| row.1)
-}
 
 /// Metres per unit of height that GeoTIFF keys state: by the unit's code, otherwise by that of the vertical system;
 /// `None` if they state neither.
@@ -47,7 +22,7 @@ pub fn metres_of_keys(keys: &GeoKeys) -> Result<Option<f64>, String> {
                 "the unit of its heights, EPSG:{unit} (GeoKey 4099), is not a known length; convert them to metres first, for example with gdal_calc.py"
             )),
         },
-        (None, Some(system)) => Ok(Some(metres_of_code(system))),
+        (None, Some(system)) => Ok(Some(metres_of_vertical(system))),
         (None, None) => Ok(None),
     }
 }
@@ -62,6 +37,7 @@ pub fn metres_of_text(text: &str) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::format::crs::unit::US_FOOT;
 
     fn keys(more: &[u16]) -> GeoKeys {
         let count = 1 + more.len() as u16 / 4;

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use super::epsg;
 use super::system::System;
-use super::vertical;
+use super::unit::metres_of_vertical;
 
 /// Maximum length of a text, in bytes.
 pub const MAX_LENGTH: usize = 1 << 15;
@@ -119,7 +119,7 @@ impl Node {
         }
         match (node.stated_metres(), node.code()) {
             (Some(metres), _) => Some(metres),
-            (None, Some(code)) => Some(vertical::metres_of_code(code)),
+            (None, Some(code)) => Some(metres_of_vertical(code)),
             (None, None) => Some(1.0),
         }
     }
