@@ -28,7 +28,8 @@ def validate(*paths):
 
 def admesh(path):
     """Returns the number of repairs that admesh reports in its table."""
-    done = subprocess.run(["admesh", path], capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    # admesh prints the 80 bytes of the header without an end, so bytes of its memory may follow them.
+    done = subprocess.run(["admesh", path], capture_output=True, text=True, errors="replace", stdin=subprocess.DEVNULL)
     if done.returncode != 0:
         return {"refused": done.returncode}
     counts = {}
