@@ -17,7 +17,7 @@ use orogen_noise::{Basis, Fractal, MAX_OCTAVES, TileError};
 use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::format::Format;
-use crate::fractal_options;
+use crate::fractal_options::{self, Sum};
 use crate::moving::{AnimationTarget, Moving};
 use crate::options::DrawOptions;
 use crate::sink::{Sink, is_stdout};
@@ -57,7 +57,8 @@ pub struct Args {
     /// Seed of the noise
     #[arg(long, value_name = "N", value_parser = seed, default_value = "0", allow_negative_numbers = true)]
     seed: u64,
-    /// Wavelength in samples: the approximate distance between hills [default: 64; textures have their own]
+    /// Wavelength in samples: the approximate distance between hills, or the side of the squares of white noise [default: 64, of white
+    /// noise 1; textures have their own]
     #[arg(long, value_name = "N", value_parser = wavelength, allow_negative_numbers = true)]
     wavelength: Option<f64>,
     /// Number of octaves, each finer and weaker than the one before [default: 1, with --fractal 6; textures have their own]
@@ -182,7 +183,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 }
 
 fn noise(args: &Args) -> Result<Fractal, Failure> {
-    Ok(Fractal::new(args.seed, args.wavelength.or(args.texture.map(Texture::wavelength)).unwrap_or(64.0))
+    // Textbooks show white noise with one value per sample.
+    let usual = if args.basis == Basis::White { 1.0 } else { 64.0 };
+    Ok(Fractal::new(args.seed, args.wavelength.or(args.texture.map(Texture::wavelength)).unwrap_or(usual))
         .with_basis(args.basis)
         .with_kind(args.sum.kind().map_err(Failure::Usage)?)
         .with_octaves(args.octaves.or(args.texture.map(Texture::octaves)).unwrap_or(args.sum.octaves()))
@@ -385,17 +388,18 @@ impl Task<'_> {
     /// A one-line description of the drawing.
     fn description(&self) -> String {
         let Fractal { basis, seed, octaves, .. } = self.noise;
+        let plural = if octaves == 1 { "" } else { "s" };
+        let made_of = |sum: &str| format!("{sum} of {octaves} octave{plural} of ");
         let sum = match self.look {
-            Look::Texture(texture) => texture.name().into(),
-            _ => self.args.sum.sum().name(),
+            Look::Texture(texture) => made_of(texture.name()),
+            // One octave of fBm is the noise itself.
+            _ if self.args.sum.sum() == Sum::Fbm && octaves == 1 => String::new(),
+            _ => made_of(&self.args.sum.sum().name()),
         };
         let depth = self.args.z.map(|z| format!(", depth {z}")).unwrap_or_default();
-        let plural = if octaves == 1 { "" } else { "s" };
         let repeating = if self.args.tileable { ", repeating" } else { "" };
         let (basis, wavelength) = (basis.name(), self.wavelength());
-        words::readable(format!(
-            "{sum} of {octaves} octave{plural} of {basis} noise, wavelength {wavelength}{depth}, seed {seed}{repeating}"
-        ))
+        words::readable(format!("{sum}{basis} noise, wavelength {wavelength}{depth}, seed {seed}{repeating}"))
     }
 
     /// The actual wavelength: per axis, if they differ.

@@ -29,7 +29,8 @@ fn every_basis_is_drawn_with_the_librarys_own_samples() {
     let folder = Folder::new();
     for &basis in Basis::all() {
         folder.good(&["noise", basis.name(), "-o", "a.npy", "--size", "70x40", "--seed", "9", "-q"]);
-        let noise = Fractal::new(9, 64.0).with_basis(basis).with_octaves(1);
+        let wavelength = if basis == Basis::White { 1.0 } else { 64.0 };
+        let noise = Fractal::new(9, wavelength).with_basis(basis).with_octaves(1);
         let grid = npy(&folder.read("a.npy"));
         assert_eq!((grid.width(), grid.height()), (70, 40));
         assert_eq!(grid.data(), samples(&noise, 70, 40, None), "{}", basis.name());
@@ -87,7 +88,7 @@ fn every_parameter_reaches_the_noise() {
 fn greys_span_minus_one_to_one() {
     let folder = Folder::new();
     let outcome = folder.good(&["noise", "perlin", "--size", "64x48"]);
-    assert_eq!(outcome.text(), "noise.png: fbm of 1 octave of perlin noise, wavelength 64, seed 0; 64 x 48 samples\n");
+    assert_eq!(outcome.text(), "noise.png: perlin noise, wavelength 64, seed 0; 64 x 48 samples\n");
     folder.good(&["noise", "perlin", "--size", "64x48", "-o", "b.PNG", "--bits", "16"]);
     let (a, b) = (png(&folder.read("noise.png")), png(&folder.read("b.PNG")));
     assert_eq!((a.width, a.height, a.bits, a.channels), (64, 48, 8, 1));
@@ -96,6 +97,18 @@ fn greys_span_minus_one_to_one() {
         assert!((f32::from(grey) - (value + 1.0) * 127.5).abs() <= 0.501);
         assert!((f32::from(deep) - (value + 1.0) * 32767.5).abs() <= 0.52);
     }
+}
+
+#[test]
+fn white_noise_has_a_value_per_sample() {
+    let folder = Folder::new();
+    let outcome = folder.good(&["noise", "white", "-o", "a.npy", "--size", "33"]);
+    assert_eq!(outcome.text(), "a.npy: white noise, wavelength 1, seed 0; 33 x 33 samples\n");
+    let expect = Fractal::default().with_basis(Basis::White).with_wavelength(1.0).with_octaves(1);
+    assert_eq!(npy(&folder.read("a.npy")).data(), samples(&expect, 33, 33, None));
+    let outcome =
+        folder.good(&["noise", "white", "-o", "b.npy", "--size", "33", "--wavelength", "4", "--fractal", "ridged"]);
+    assert_eq!(outcome.text(), "b.npy: ridged of 6 octaves of white noise, wavelength 4, seed 0; 33 x 33 samples\n");
 }
 
 #[test]
