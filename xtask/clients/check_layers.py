@@ -4,6 +4,7 @@ Files of heights on the command line replace the presets: at most the middle 400
 printed as a table.
 """
 
+import json
 import os
 import shutil
 import subprocess
@@ -12,8 +13,9 @@ import warnings
 
 import numpy
 import rasterio
+import rasterio.features
 import whitebox_workflows
-from d8 import accumulated, below_border, downstream, flooded, to_border, torn
+from d8 import accumulated, below_border, downstream, flooded, receivers, to_border, torn
 from orogen import CLIENT, WORK, Checks, export
 
 warnings.filterwarnings("ignore")
@@ -160,7 +162,34 @@ def walked(place):
     cells = accumulated(codes)
     to, length, known = downstream(codes, cells * place.cell**2 >= STREAM)
     filled = flooded(place.z)
-    return beside("walked", place, cells, to, length, filled - filled.ravel()[to], known)
+    found = beside("walked", place, cells, to, length, filled - filled.ravel()[to], known)
+    return found | {
+        "filled (walked)": (unlike(place.ours("filled"), filled), 0),
+        "watershed (walked)": (watershed(place, receivers(codes)[0]), 0),
+    }
+
+
+def watershed(place, to):
+    """Compares the watershed of a chosen outlet with all cells that lead to it; `to` has the cell that each cell drains to."""
+    area = place.ours("drainage-area")
+    # The cell that drains the most, away from the border.
+    drained = numpy.where(to_border(area.shape) > 20, area, 0)
+    row, column = numpy.unravel_index(drained.argmax(), area.shape)
+    east, north = place.transform * (column + 0.5, row + 0.5)
+    options = ("--layer", "watershed", "--outlet", f"{east + 1.2 * place.cell},{north - 0.7 * place.cell}", "--river-area", drained.max(), "--smooth", 0)
+    path = export(place.heights, "basin.geojson", *options, "--no-cache", "-q")
+    (feature,) = json.loads(path.read_text())["features"]
+    found = [feature["properties"][name] for name in ("outlet_x", "outlet_y")]
+    checks.that("the outlet is on the stream", numpy.allclose(found, (east, north), rtol=0, atol=1e-3), f"{found}, not {east}, {north}")
+    ours = rasterio.features.rasterize([(feature["geometry"], 1)], out_shape=area.shape, transform=place.transform) == 1
+    end = row * area.shape[1] + column
+    to = to.copy()
+    to[end] = end
+    while not (to[to] == to).all():
+        to = to[to]
+    theirs = (to == end).reshape(area.shape)
+    checks.that("the watershed has many cells", theirs.sum() > 1000, theirs.sum())
+    return unlike(ours.astype("f8"), theirs.astype("f8"))
 
 
 def whitebox(place):

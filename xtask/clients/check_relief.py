@@ -20,9 +20,9 @@ def gdaldem(mode, source, *options):
         return raster.read(1)[1:-1, 1:-1].astype("f8")
 
 
-def ours(recipe, layer):
+def ours(recipe, layer, *options):
     """Returns a layer of orogen without the same border."""
-    return numpy.load(export(recipe, f"{recipe}-{layer}.npy", "--layer", layer, *WINDOW))[1:-1, 1:-1].astype("f8")
+    return numpy.load(export(recipe, f"{recipe}-{layer}.npy", "--layer", layer, *options, *WINDOW))[1:-1, 1:-1].astype("f8")
 
 
 for recipe in ["alpine", "canyon", "classic"]:
@@ -33,6 +33,11 @@ for recipe in ["alpine", "canyon", "classic"]:
     checks.that(f"{recipe}: hillshade within a grey level", off.max() <= 1, off.max())
     wrong = numpy.abs(greys - gdaldem("hillshade", heights, "-az", "135"))
     checks.that(f"{recipe}: light from the other side is told apart", wrong.max() > 20, wrong.max())
+
+    for az, alt, z in [(135, 30, 1), (20, 60, 2.5), (250, 5, 0.5)]:
+        greys = 1 + 254 * ours(recipe, "hillshade", "--azimuth", az, "--altitude", alt, "--z-factor", z)
+        off = numpy.abs(greys - gdaldem("hillshade", heights, "-az", str(az), "-alt", str(alt), "-z", str(z)))
+        checks.that(f"{recipe}: hillshade with light from {az} and {alt} degrees, heights times {z}", off.max() <= 1, off.max())
 
     slope = gdaldem("slope", heights)
     off = numpy.abs(ours(recipe, "slope") - slope)

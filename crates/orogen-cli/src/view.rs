@@ -195,9 +195,9 @@ impl View {
             }
             (Some(Rectangle::Metres([x, y, width, height])), _) => [x, y, x + width, y + height],
             (None, Some(Bounds { west, south, east, north })) => {
-                let Georeference { origin, per_metre, .. } = map.clone().unwrap_or_else(local);
-                let [x, y] = [0, 1].map(|axis| move |at: f64| (at - origin[axis]) / per_metre[axis]);
-                [x(west), -y(north), x(east), -y(south)]
+                let place = map.clone().unwrap_or_else(local);
+                let ([left, top], [right, bottom]) = (place.metres(west, north), place.metres(east, south));
+                [left, top, right, bottom]
             }
             (None, None) => return Ok(None),
         };

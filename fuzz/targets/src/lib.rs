@@ -13,6 +13,7 @@ pub mod options;
 pub mod palette;
 pub mod place;
 pub mod plan;
+pub mod points;
 pub mod recipe;
 mod scratch;
 pub mod sidecar;
@@ -41,6 +42,7 @@ pub const TARGETS: &[(&str, Target)] = &[
     ("palette", palette::run),
     ("place", place::run),
     ("plan", plan::run),
+    ("points", points::run),
     ("recipe", recipe::run),
     ("sidecar", sidecar::run),
     ("solution", solution::run),

@@ -99,7 +99,7 @@ fn export(args: &Args) -> Result<(), Failure> {
     let source = Source::find(&args.recipe)?;
     let budget = args.run.limits.budget();
     let mut recipe = args.samples.recipe(&source, &budget)?;
-    let policy = args.run.replace.policy(source.inputs(&recipe));
+    let policy = args.run.replace.policy(source.inputs(&recipe)).protecting(job.files());
     job.prepare(&mut recipe)?;
     let world = args.run.limits.open(recipe, &budget)?;
     if let Some(target) = args.target.and_then(targets::list::named) {
@@ -142,7 +142,11 @@ fn engine_job(
         Size::Longer(count) => [count, count],
         Size::Both(across, down) => [across, down],
     });
-    Ok(EngineJob::new(target, job.format).with_layer(&job.layer).with_samples(samples))
+    let layer_options = job.layer_options.clone();
+    Ok(EngineJob::new(target, job.format)
+        .with_layer(&job.layer)
+        .with_layer_options(layer_options)
+        .with_samples(samples))
 }
 
 /// Writes the layer for an engine.

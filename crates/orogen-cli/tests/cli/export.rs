@@ -558,3 +558,56 @@ fn what_a_layer_cannot_do_is_a_sentence() {
     // Layers that need no bounds work without them.
     folder.good(&["export", "endless.toml", "-o", "x.npy", "--layer", "landforms", "--window", "0,0,9,9", "-q"]);
 }
+
+#[test]
+fn the_light_of_a_hillshade_is_chosen() {
+    let folder = Folder::new();
+    // A plane that rises at 45 degrees to the east.
+    let row = (0..6).map(|column| (10 * column).to_string()).collect::<Vec<_>>().join(" ");
+    let rows = vec![row; 6].join("\n");
+    folder.write("plane.asc", format!("ncols 6\nnrows 6\nxllcorner 0\nyllcorner 100\ncellsize 10\n{rows}\n"));
+    let middle = |args: &[&str]| {
+        folder.good(&[&["export", "plane.asc", "-o", "x.npy", "--force", "--layer", "hillshade"], args].concat());
+        npy(&folder.read("x.npy"))[(3, 3)]
+    };
+    let half = 0.5f32.sqrt();
+    for (args, expect) in [
+        // From the north-west at 45 degrees: half from the side.
+        (&[][..], half * half * half + half * half),
+        (&["--azimuth", "270"], 1.0),
+        (&["--azimuth", "-90", "--altitude", "45"], 1.0),
+        (&["--azimuth", "90"], 0.0),
+        (&["--altitude", "90"], half),
+        (&["--azimuth", "0", "--altitude", "30"], 0.5 * half),
+        (&["--z-factor", "0", "--altitude", "30"], 0.5),
+        (&["--azimuth", "270", "--altitude", "0", "--z-factor", "2"], (4.0f32 / 5.0).sqrt()),
+    ] {
+        let found = middle(args);
+        assert!((found - expect).abs() < 1e-6, "{args:?}: {found}, not {expect}");
+    }
+    // The light is that of the pictures for engines, too.
+    let engine = |args: &[&str]| {
+        let line = [
+            "export",
+            "plane.asc",
+            "-o",
+            "e.png",
+            "--force",
+            "--layer",
+            "hillshade",
+            "--target",
+            "unity",
+            "--size",
+            "33",
+        ];
+        folder.good(&[&line, args].concat());
+        folder.read("e.png")
+    };
+    assert!(engine(&[]) != engine(&["--azimuth", "20"]));
+    for (args, expect) in [
+        (["hillshade", "--altitude", "91"], "it must be a number from 0 to 90"),
+        (["slope", "--azimuth", "20"], "--azimuth does not apply to the layer slope; it applies to: hillshade"),
+    ] {
+        folder.bad(&[&["export", "plane.asc", "-o", "y.npy", "--layer"][..], &args].concat(), 2, expect);
+    }
+}

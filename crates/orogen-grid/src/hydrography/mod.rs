@@ -9,6 +9,7 @@ pub mod given;
 pub mod joints;
 pub mod network;
 pub mod outlines;
+pub mod pour_points;
 pub mod rings;
 pub mod rivers;
 pub mod shores;

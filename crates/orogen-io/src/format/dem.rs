@@ -107,6 +107,12 @@ impl Georeference {
         [self.origin[0] + x * self.per_metre[0], self.origin[1] - y * self.per_metre[1]]
     }
 
+    /// Metres of the lattice, east and south, of a position in map units.
+    #[must_use]
+    pub fn metres(&self, east: f64, north: f64) -> [f64; 2] {
+        [(east - self.origin[0]) / self.per_metre[0], (self.origin[1] - north) / self.per_metre[1]]
+    }
+
     /// The same map, with the lattice's origin moved to this position of the world.
     #[must_use]
     pub fn moved(&self, x: f64, y: f64) -> Georeference {

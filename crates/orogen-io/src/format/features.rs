@@ -287,6 +287,7 @@ mod tests {
         let mut point = samples::layer("a", GeometryType::Point, 2);
         point.place(Some(&map));
         assert_eq!(point.features[1].geometry, Geometry::Point([100.0 + 740.0, 2000.0 - 1060.0, 1.0]));
+        assert_eq!(map.metres(100.0 + 740.0, 2000.0 - 1060.0), [370.0, 530.0]);
         assert_eq!(samples::layer("a", GeometryType::MultiPolygon, 0).bounds(), None);
     }
 }

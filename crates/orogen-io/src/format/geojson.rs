@@ -38,7 +38,7 @@ pub fn write(out: &mut dyn Write, layer: &FeatureLayer, crs: Crs, step: f64) -> 
                 Value::Integer(number) => write!(text, "{number}"),
                 Value::Real(number) if number.is_finite() => write!(text, "{number}"),
                 Value::Boolean(is) => write!(text, "{is}"),
-                Value::Text(word) => write!(text, "\"{word}\""),
+                Value::Text(word) => write!(text, "{}", serde_json::Value::from(word.as_ref())),
                 Value::Null | Value::Real(_) => write!(text, "null"),
             };
         }

@@ -40,6 +40,7 @@ pub mod outlines;
 pub(crate) mod packed_tree;
 pub mod pgm;
 pub mod png;
+pub mod points;
 pub mod raw;
 pub mod schem;
 pub mod sidecar;

@@ -1,8 +1,10 @@
 //! An export as one job: what is exported, how, and where to.
 
 use std::io::{self, Write};
+use std::path::Path;
 
 use super::derived::list;
+use super::features;
 use super::format::Format;
 use super::layer_source::LayerSource;
 use super::mesh_cover;
@@ -82,6 +84,11 @@ impl ExportJob {
         registry::check(self.format, &self.options)
     }
 
+    /// The files that its options name, which are read.
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
+        self.options.files().chain(self.layer_options.files())
+    }
+
     /// Appends to a recipe the nodes that the job needs; call it before the world is opened. Layers of the recipe need
     /// none.
     ///
@@ -89,7 +96,11 @@ impl ExportJob {
     /// The errors of [`check`](ExportJob::check) and of [`list::prepare`].
     pub fn prepare(&self, recipe: &mut Recipe) -> Result<()> {
         self.check()?;
-        list::prepare(recipe, &self.layer, &self.layer_options)?;
+        // Vector features take precedence over a derived layer of the same name.
+        match features::list::listed(&self.layer) {
+            Some(_) if self.format.features => list::check(&self.layer, &[], &self.layer_options)?,
+            _ => list::prepare(recipe, &self.layer, &self.layer_options)?,
+        }
         mesh_cover::prepare(recipe, &self.options);
         Ok(())
     }
@@ -118,6 +129,6 @@ impl ExportJob {
             Some(window) => window,
             None => world.full_window(world.recipe().world.cell)?,
         };
-        run::source(self.format, world, &self.layer, window, progress)
+        Ok(run::source(self.format, world, &self.layer, window, progress)?.with_options(self.layer_options.clone()))
     }
 }

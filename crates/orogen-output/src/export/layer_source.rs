@@ -7,6 +7,7 @@ use super::derived::list;
 use super::derived::rows::Rows;
 use super::features::layer::VectorLayer;
 use super::features::list as vector_list;
+use super::options::Options;
 use orogen_engine::layer::LayerKind;
 use orogen_engine::world::{HEIGHT, World};
 use orogen_grid::analysis::finite::FiniteCount;
@@ -30,6 +31,8 @@ pub struct LayerSource<'w> {
     derived: Option<&'static RowLayer>,
     /// Layers of vector features in place of samples.
     vectors: Vec<&'static VectorLayer>,
+    /// The options of the derived layer.
+    options: Options,
     window: Window,
     progress: Progress,
     /// Memory held beside the current rows, in bytes.
@@ -79,6 +82,7 @@ impl<'w> LayerSource<'w> {
             layer,
             derived,
             vectors: Vec::new(),
+            options: Options::default(),
             window,
             progress: progress.clone(),
             reserved: 0,
@@ -86,6 +90,18 @@ impl<'w> LayerSource<'w> {
             range: NO_SAMPLES,
             count: FiniteCount::default(),
         })
+    }
+
+    /// The same with these options of a derived layer that is made of rows.
+    #[must_use]
+    pub fn with_options(self, options: Options) -> LayerSource<'w> {
+        LayerSource { options, ..self }
+    }
+
+    /// The options of the derived layer.
+    #[must_use]
+    pub fn options(&self) -> &Options {
+        &self.options
     }
 
     /// Layers of vector features over a window, in place of samples.
@@ -130,7 +146,8 @@ impl<'w> LayerSource<'w> {
 
     fn source(&self, window: &Window) -> Result<Source<'w>> {
         if let Some(derived) = self.derived {
-            return Ok(Box::new(Rows::new(derived, self.world, window, self.reserved, &self.progress)?));
+            let rows = Rows::new(derived, self.world, window, self.reserved, &self.progress)?;
+            return Ok(Box::new(rows.with_options(self.options.clone())));
         }
         let bands = self.world.bands(&[&self.layer], window, self.reserved, &self.progress)?;
         let counted = |grids: Vec<Grid>| {

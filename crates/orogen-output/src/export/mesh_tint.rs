@@ -40,7 +40,8 @@ fn overview(source: &LayerSource) -> io::Result<Grid> {
     let window = window(source.world())?;
     let progress = source.progress().part(0.0);
     let mut overview = Grid::filled(window, f32::NAN);
-    LayerSource::new(source.world(), source.layer(), window, &progress)?.rows(|band| {
+    let layer = LayerSource::new(source.world(), source.layer(), window, &progress)?;
+    layer.with_options(source.options().clone()).rows(|band| {
         overview.paste(&band[0]);
         Ok(())
     })?;

@@ -1,6 +1,7 @@
 //! Options of formats: declared once beside the format, checked here.
 
 use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 use orogen_grid::error::{Error, ErrorKind, Result};
 
@@ -34,6 +35,8 @@ pub enum ValueKind {
     Word(&'static [&'static str]),
     /// Any text.
     Text,
+    /// The path of a file that is read.
+    File,
 }
 
 /// A given value.
@@ -46,6 +49,7 @@ enum Value {
     Point([f64; 2]),
     Word(&'static str),
     Text(String),
+    File(PathBuf),
 }
 
 impl OptionSpec {
@@ -75,6 +79,8 @@ impl OptionSpec {
                 None => Err(format!("it must be {}", one_of(words))),
             },
             ValueKind::Text => Ok(Value::Text(text.to_string())),
+            ValueKind::File if text.is_empty() => Err("it must be the path of a file".into()),
+            ValueKind::File => Ok(Value::File(text.into())),
         }
     }
 }
@@ -188,6 +194,23 @@ impl Options {
             _ => None,
         }
     }
+
+    /// The value of a file option.
+    #[must_use]
+    pub fn file(&self, name: &str) -> Option<&Path> {
+        match self.given.get(name)? {
+            Value::File(path) => Some(path),
+            _ => None,
+        }
+    }
+
+    /// The files of all given options.
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
+        self.given.values().filter_map(|value| match value {
+            Value::File(path) => Some(path.as_path()),
+            _ => None,
+        })
+    }
 }
 
 #[cfg(test)]
@@ -212,6 +235,8 @@ mod tests {
         assert_eq!(given(ValueKind::Word(&["half", "float"]), "HALF").unwrap().word("x"), Some("half"));
         assert_eq!(given(ValueKind::Point, "7, -5").unwrap().point("x"), Some([7.0, -5.0]));
         assert_eq!(given(ValueKind::Text, "any").unwrap().text("x"), Some("any"));
+        let file = given(ValueKind::File, "a.csv").unwrap();
+        assert!(file.file("x") == Some(Path::new("a.csv")) && file.files().eq(file.file("x")));
         let flag = given(ValueKind::Nothing, "").unwrap();
         assert!(flag.has("x") && !flag.has("y") && flag.whole("x").is_none());
     }
@@ -225,6 +250,7 @@ mod tests {
             (ValueKind::Range, "7", "two numbers"),
             (ValueKind::Point, "7", "two numbers"),
             (ValueKind::Point, "7,inf", "two numbers"),
+            (ValueKind::File, " ", "it must be the path of a file"),
             (ValueKind::Word(&["a", "b", "c"]), "d", "it must be a, b or c"),
         ] {
             let why = given(value_kind, text).unwrap_err();

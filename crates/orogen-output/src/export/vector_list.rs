@@ -6,5 +6,6 @@
     &vectors::rivers::LAYER,
     &vectors::scatter::LAYER,
     &vectors::summits::LAYER,
+    &vectors::watershed::LAYER,
     &vectors::watersheds::LAYER,
 ]

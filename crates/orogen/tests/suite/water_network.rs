@@ -25,7 +25,7 @@ fn source(world: &World, window: &Window) -> FeatureSource {
 fn layer(world: &World, source: &FeatureSource, name: &str) -> FeatureLayer {
     let none = Options::default();
     let options = FeatureOptions::new(&none, world.recipe()).unwrap();
-    list::named(name).unwrap().of_ground(source, &options).unwrap().unwrap()
+    list::named(name).unwrap().of_ground(source, &options, &Progress::none()).unwrap().unwrap()
 }
 
 fn quarters(window: &Window) -> Vec<Window> {

@@ -32,6 +32,7 @@ replays! {
     palette: 60000,
     place: 40000,
     plan: 60000,
+    points: 60000,
     recipe: 40000,
     sidecar: 8000,
     solution: 8000,

@@ -1,9 +1,10 @@
-//! Layers of drainage: area, direction, order, watersheds.
+//! Layers of drainage: filled heights, area, direction, order, watersheds.
 
 use super::appended::STREAM;
 use super::layer::{Derived, Made, NodeLayer};
 use crate::export::options::{OptionSpec, ValueKind};
 use orogen_engine::filter::flow_direction::{Codes, FlowDirection};
+use orogen_engine::solver::fill::Fill;
 
 /// Option for the codes of directions: esri (1 east, 2 south-east, 4 south ...), grass, taudem, whitebox or pcraster.
 const CODES: OptionSpec = OptionSpec {
@@ -61,4 +62,20 @@ pub static WATERSHED: Derived = Derived {
     palette: "",
     options: &[],
     made: Made::Nodes(NodeLayer { bounded: true, network: false, append: |to| Ok(to.drainage().layer("watershed")) }),
+};
+
+/// The layer `filled`.
+pub static FILLED: Derived = Derived {
+    name: "filled",
+    about: "depression-free heights: every depression filled to its spill level; filled ground is level",
+    palette: "batlow",
+    options: &[],
+    made: Made::Nodes(NodeLayer {
+        bounded: true,
+        network: false,
+        append: |to| {
+            let source = to.heights();
+            Ok(to.add(Fill { source, ..Fill::default() }).layer("filled"))
+        },
+    }),
 };

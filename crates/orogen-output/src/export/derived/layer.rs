@@ -1,7 +1,7 @@
 //! Definition of derived layers.
 
 use super::appended::Appended;
-use crate::export::options::OptionSpec;
+use crate::export::options::{OptionSpec, Options};
 use orogen_engine::declare::Input;
 use orogen_engine::lower::Passes;
 use orogen_engine::recipe::document::Recipe;
@@ -89,8 +89,8 @@ pub struct RowLayer {
 
 /// How a graphics card computes a row layer in place of [`RowLayer::make`].
 pub struct LoweredRows {
-    /// The passes for a cell in metres. They read the heights as plane 0, and write the channels as the next planes.
-    pub passes: fn(f64) -> Passes,
+    /// The passes for a cell in metres and the options of the layer. They read the heights as plane 0, and write the channels as the next planes.
+    pub passes: fn(f64, &Options) -> Passes,
     /// The heights over a window grown by the reach of the layer.
     pub heights: fn(&Around, &Window) -> Grid,
 }
@@ -103,6 +103,8 @@ pub struct Around<'a> {
     pub layers: &'a [Grid],
     /// The recipe.
     pub recipe: &'a Recipe,
+    /// The options of the layer.
+    pub options: &'a Options,
 }
 
 /// The `prepare` of a layer that reads only the heights.
@@ -167,7 +169,8 @@ mod tests {
             let window = Window::new(width, height, 5.0);
             let data = (0..width * height).map(|k| (k * k % 23) as f32).collect();
             let ground = Grid::from_data(window, data).unwrap();
-            let around = Around { heights: &ground, layers: &[], recipe: &Recipe::new(WorldSpec::default()) };
+            let (recipe, options) = (Recipe::new(WorldSpec::default()), Options::default());
+            let around = Around { heights: &ground, layers: &[], recipe: &recipe, options: &options };
             let whole = around.bordered(&window);
             assert_eq!(whole, extended(&ground), "{width} x {height}");
             for part in window.tiles(2) {

@@ -12,7 +12,7 @@ use orogen_engine::recipe::network::OwnNetwork;
 use orogen_engine::world::HEIGHT;
 use orogen_grid::error::{Error, ErrorKind, Result};
 
-static ALL: [&Derived; 26] = [
+static ALL: [&Derived; 27] = [
     &slope::LAYER,
     &aspect::LAYER,
     &curvature::LAYER,
@@ -26,6 +26,7 @@ static ALL: [&Derived; 26] = [
     &position::POSITION,
     &position::CLASS,
     &geomorphons::LAYER,
+    &drainage::FILLED,
     &drainage::AREA,
     &drainage::DIRECTION,
     &drainage::STRAHLER,
@@ -69,16 +70,7 @@ pub fn options() -> Vec<(&'static OptionSpec, Vec<&'static str>)> {
 pub fn prepare(recipe: &mut Recipe, layer: &str, options: &Options) -> Result<()> {
     let has = recipe.outputs().any(|name| name == layer) || recipe.nodes().iter().any(|named| named.name == layer);
     let derived = if has { None } else { named(layer) };
-    let known = derived.map_or(&[][..], |derived| derived.options);
-    if let Some(name) = options.names().find(|name| !known.iter().any(|spec| spec.name == *name)) {
-        let layers: Vec<&str> = ALL
-            .iter()
-            .filter(|other| other.options.iter().any(|spec| spec.name == name))
-            .map(|other| other.name)
-            .collect();
-        let message = format!("--{name} does not apply to the layer {layer}; it applies to: {}", layers.join(", "));
-        return Err(Error::new(ErrorKind::Request, message));
-    }
+    check(layer, derived.map_or(&[], |derived| derived.options), options)?;
     let heights = recipe.output_inputs().iter().find(|(name, _)| name == HEIGHT).map(|(_, heights)| heights.clone());
     let (Some(derived), Some(heights)) = (derived, heights) else { return Ok(()) };
     let bounded = recipe.world.size.is_some();
@@ -98,6 +90,22 @@ pub fn prepare(recipe: &mut Recipe, layer: &str, options: &Options) -> Result<()
         }
     }
     Ok(())
+}
+
+/// Checks that all given options are among those that a layer has.
+///
+/// # Errors
+/// If one is not: the message names the layers that have it.
+pub(crate) fn check(layer: &str, known: &[OptionSpec], options: &Options) -> Result<()> {
+    match options.names().find(|name| !known.iter().any(|spec| spec.name == *name)) {
+        None => Ok(()),
+        Some(name) => {
+            let has = |other: &&&Derived| other.options.iter().any(|spec| spec.name == name);
+            let layers: Vec<&str> = ALL.iter().filter(has).map(|other| other.name).collect();
+            let message = format!("--{name} does not apply to the layer {layer}; it applies to: {}", layers.join(", "));
+            Err(Error::new(ErrorKind::Request, message))
+        }
+    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! The layer `normal`.
 
 use super::layer::{Derived, LoweredRows, Made, Nature, RowLayer, none, nothing};
+use crate::export::options::Options;
 use orogen_engine::lower::{HORN, Passes};
 use orogen_grid::analysis::slope::gradients_between;
 use orogen_grid::grid::Grid;
@@ -37,7 +38,7 @@ pub static LAYER: Derived = Derived {
 };
 
 /// The passes of a graphics card.
-fn passes(cell: f64) -> Passes {
+fn passes(cell: f64, _: &Options) -> Passes {
     static CODE: LazyLock<String> = LazyLock::new(|| format!("{HORN}{}", include_str!("normal.wgsl")));
     Passes::new(&CODE, &[(1.0 / (8.0 * cell)) as f32]).then("normal", 0, [1; 2])
 }

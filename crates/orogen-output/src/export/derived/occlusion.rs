@@ -1,6 +1,7 @@
 //! The layer `occlusion`.
 
 use super::layer::{Around, Derived, LoweredRows, Made, Nature, RowLayer, none, nothing};
+use crate::export::options::Options;
 use orogen_engine::lower::Passes;
 use orogen_grid::analysis::sky;
 use orogen_grid::grid::{Grid, Window};
@@ -32,7 +33,7 @@ pub static LAYER: Derived = Derived {
 };
 
 /// The passes of a graphics card.
-fn passes(cell: f64) -> Passes {
+fn passes(cell: f64, _: &Options) -> Passes {
     let reach = reach(cell);
     let steps = sky::steps_of_view(reach, cell);
     let words = [steps.len() as u32].into_iter().chain(steps.iter().flat_map(|step| {

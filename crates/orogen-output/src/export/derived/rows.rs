@@ -3,6 +3,7 @@
 use orogen_grid::parallel;
 
 use super::layer::{Around, RowLayer};
+use crate::export::options::Options;
 use orogen_engine::bands::Bands;
 use orogen_engine::device::{FilterExtent, PlanGrid};
 use orogen_engine::world::{HEIGHT, World};
@@ -28,6 +29,7 @@ pub struct Rows<'w> {
     window: Window,
     world: &'w World,
     source: Source<'w>,
+    options: Options,
     /// The next row.
     next: usize,
 }
@@ -64,7 +66,13 @@ impl<'w> Rows<'w> {
         let reserved = reserved.saturating_add(4 * (held + 2 * made));
         let bands = world.bands(&layers, &wide, reserved, progress)?;
         let source = Source { bands, wide, rows: vec![Vec::new(); layers.len()], first: 0 };
-        Ok(Rows { derived, channels, window: *window, world, source, next: 0 })
+        Ok(Rows { derived, channels, window: *window, world, source, options: Options::default(), next: 0 })
+    }
+
+    /// The same with these options of the layer.
+    #[must_use]
+    pub fn with_options(self, options: Options) -> Rows<'w> {
+        Rows { options, ..self }
     }
 
     /// All rows at once: one grid per channel.
@@ -87,7 +95,7 @@ impl<'w> Rows<'w> {
         let reach = (self.derived.reach)(band.cell);
         let grids = self.source.around(&band.grown(reach))?;
         let Some((heights, layers)) = grids.split_first() else { return Ok((Vec::new(), FiniteCount::default())) };
-        let around = Around { heights, layers, recipe: self.world.recipe() };
+        let around = Around { heights, layers, recipe: self.world.recipe(), options: &self.options };
         let beneath = heights.crop(&band.intersection(heights.window()));
         // Shades and weights are finite even if the heights are not.
         let finite = beneath.map_or_else(FiniteCount::default, |beneath| FiniteCount::of(beneath.data()));
@@ -111,7 +119,8 @@ impl<'w> Rows<'w> {
     /// The channels over a band, made by the device of the world; `None` if there is none, or the processor is to do it.
     fn on_device(&self, around: &Around, band: &Window) -> Result<Option<Vec<Grid>>> {
         let Some((device, lowered)) = self.world.device().zip(self.derived.lowered.as_ref()) else { return Ok(None) };
-        let (passes, heights) = ((lowered.passes)(band.cell), PlanGrid::from((lowered.heights)(around, band)));
+        let (passes, heights) =
+            ((lowered.passes)(band.cell, around.options), PlanGrid::from((lowered.heights)(around, band)));
         let halo = (self.derived.reach)(band.cell);
         let extent = FilterExtent { window: *band, halo, wanted: vec![true; self.channels] };
         let progress = Progress::none();
@@ -172,7 +181,6 @@ impl Iterator for Rows<'_> {
 mod tests {
     use super::*;
     use crate::export::derived::list;
-    use crate::export::options::Options;
     use orogen_engine::recipe::document::Recipe;
 
     /// A world with a sea, steep ground and rivers, bounded or unbounded.

@@ -67,7 +67,9 @@ impl Drawing {
                 let mut layers = Vec::with_capacity(asked.len());
                 for layer in asked {
                     match (&layer.make, &ground) {
-                        (Maker::Ground(make), Some(ground)) => layers.push((make(ground, &wanted)?, layer.style)),
+                        (Maker::Ground(make), Some(ground)) => {
+                            layers.push((make(ground, &wanted, &progress)?, layer.style))
+                        }
                         (Maker::Ground(_), None) => {}
                         (Maker::World(make), _) => {
                             // Objects are closer to each other than samples.

@@ -25,9 +25,14 @@ pub struct VectorLayer {
 impl VectorLayer {
     /// Its features from the heights and the water of a window; `None` if it is not made of these.
     #[must_use]
-    pub fn of_ground(&self, ground: &FeatureSource, options: &FeatureOptions) -> Option<Result<FeatureLayer>> {
+    pub fn of_ground(
+        &self,
+        ground: &FeatureSource,
+        options: &FeatureOptions,
+        progress: &Progress,
+    ) -> Option<Result<FeatureLayer>> {
         match self.make {
-            Maker::Ground(make) => Some(make(ground, options)),
+            Maker::Ground(make) => Some(make(ground, options, progress)),
             Maker::World(_) => None,
         }
     }
@@ -36,7 +41,7 @@ impl VectorLayer {
 /// What features are computed from.
 pub enum Maker {
     /// The heights and the water of a window.
-    Ground(fn(&FeatureSource, &FeatureOptions) -> Result<FeatureLayer>),
+    Ground(fn(&FeatureSource, &FeatureOptions, &Progress) -> Result<FeatureLayer>),
     /// A world and a window of it.
     World(fn(&World, &Window, &Progress) -> Result<FeatureLayer>),
 }

@@ -1,9 +1,10 @@
-//! Vector features from heights: options (`options`, `layer`), the terrain that they are made of (`source`), and layers
+//! Vector features from heights: options (`options`, `outlets`, `layer`), the terrain that they are made of (`source`), and layers
 //! prepared for writing (`drawing`). The layers are in `vectors`.
 
 pub(crate) mod drawing;
 pub(crate) mod layer;
 pub mod list;
 pub mod options;
+pub mod outlets;
 pub mod source;
 pub(crate) mod svg;

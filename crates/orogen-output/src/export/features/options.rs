@@ -1,5 +1,6 @@
 //! Options of vector features, and defaults from the recipe's own water.
 
+use super::outlets::{OUTLET, OUTLETS, Outlets, SNAP};
 use crate::export::contour_options;
 use crate::export::options::{OptionSpec, Options, ValueKind};
 use orogen_engine::node::Node;
@@ -48,6 +49,9 @@ pub const OPTIONS: &[OptionSpec] = &[
     LAKE_AREA,
     RUNOFF,
     PROMINENCE,
+    OUTLET,
+    OUTLETS,
+    SNAP,
 ];
 
 /// The names of the options that affect water.
@@ -68,6 +72,8 @@ pub struct FeatureOptions<'a> {
     pub sea: bool,
     /// Width and depth of rivers.
     pub channel: Channel,
+    /// The chosen outlets of watersheds.
+    pub outlets: Option<Outlets>,
 }
 
 /// Minimum number of samples that drain to a source, unless a drainage area is given.
@@ -77,7 +83,7 @@ impl<'a> FeatureOptions<'a> {
     /// The given values, otherwise those of the recipe's own water, otherwise the defaults.
     ///
     /// # Errors
-    /// If options contradict each other.
+    /// If options contradict each other, or a file of outlets cannot be read.
     pub fn new(given: &'a Options, recipe: &Recipe) -> Result<FeatureOptions<'a>> {
         contour_options::check(given)?;
         let mut options = FeatureOptions {
@@ -86,6 +92,7 @@ impl<'a> FeatureOptions<'a> {
             lake: 2e4,
             sea: true,
             channel: Channel::default().with_runoff(0.5).with_width(5.0).with_depth(0.3),
+            outlets: Outlets::of(given, recipe)?,
         };
         for named in recipe.nodes() {
             match &named.node {

@@ -253,6 +253,12 @@ impl FeatureSource {
         [(self.window.x as f64 + x) * self.window.cell, (self.window.y as f64 + y) * self.window.cell]
     }
 
+    /// The column and row, with fractions, of metres east and south of the world's origin.
+    #[must_use]
+    pub fn sample_at(&self, [east, south]: [f64; 2]) -> [f64; 2] {
+        [east / self.window.cell - self.window.x as f64, south / self.window.cell - self.window.y as f64]
+    }
+
     /// The parts of a polygon, in metres.
     #[must_use]
     pub fn parts(&self, parts: &[Vec<Vec<[f64; 2]>>]) -> Vec<Vec<Vec<[f64; 2]>>> {

@@ -5,6 +5,7 @@ use crate::export::features::layer::{Maker, Style, VectorLayer};
 use crate::export::features::options::FeatureOptions;
 use crate::export::features::source::FeatureSource;
 use orogen_grid::error::Result;
+use orogen_grid::progress::Progress;
 use orogen_io::format::features::{Feature, FeatureLayer, Field, FieldType, Geometry, GeometryType, Value, length};
 
 /// The layer.
@@ -23,7 +24,7 @@ const FIELDS: &[Field] = &[
     Field { name: "closed", kind: FieldType::Boolean, about: "whether the line is closed" },
 ];
 
-fn make(ground: &FeatureSource, _: &FeatureOptions) -> Result<FeatureLayer> {
+fn make(ground: &FeatureSource, _: &FeatureOptions, _: &Progress) -> Result<FeatureLayer> {
     let level = f64::from(ground.water.sea_level.unwrap_or_default());
     let coast = |(id, line): (i64, &Vec<[f64; 2]>)| {
         let points: Vec<[f64; 3]> = (line.iter())

@@ -7,6 +7,7 @@ use crate::export::features::options::FeatureOptions;
 use crate::export::features::source::FeatureSource;
 use orogen_grid::contour::levels::is_index;
 use orogen_grid::error::Result;
+use orogen_grid::progress::Progress;
 use orogen_io::format::features::{Feature, FeatureLayer, Field, FieldType, Geometry, GeometryType, Value};
 
 /// The layer.
@@ -23,7 +24,7 @@ const FIELDS: &[Field] = &[
     Field { name: "index", kind: FieldType::Boolean, about: "whether it is an index contour (every fifth contour)" },
 ];
 
-fn make(ground: &FeatureSource, options: &FeatureOptions) -> Result<FeatureLayer> {
+fn make(ground: &FeatureSource, options: &FeatureOptions, _: &Progress) -> Result<FeatureLayer> {
     let found = match ground.heights() {
         Some(heights) => contours::on(&heights, options.given)?,
         None => Contours { lines: Vec::new(), interval: None },

@@ -6,6 +6,7 @@ use crate::export::features::source::FeatureSource;
 use orogen_grid::contour::line::twice_area;
 use orogen_grid::error::Result;
 use orogen_grid::hydrography::rivers::Source;
+use orogen_grid::progress::Progress;
 use orogen_io::format::features::{Feature, FeatureLayer, Field, FieldType, Geometry, GeometryType, Value};
 
 /// The layer.
@@ -30,7 +31,7 @@ const FIELDS: &[Field] = &[
     },
 ];
 
-fn make(ground: &FeatureSource, _: &FeatureOptions) -> Result<FeatureLayer> {
+fn make(ground: &FeatureSource, _: &FeatureOptions, _: &Progress) -> Result<FeatureLayer> {
     let water = &ground.water;
     let cell_area = ground.cell() * ground.cell();
     let mut volumes = vec![0.0f64; water.lakes.len() + 1];

@@ -8,4 +8,5 @@ pub mod lakes;
 pub mod rivers;
 pub mod scatter;
 pub mod summits;
+pub mod watershed;
 pub mod watersheds;

@@ -5,6 +5,7 @@ use crate::export::features::options::{FeatureOptions, WATER};
 use crate::export::features::source::FeatureSource;
 use orogen_grid::error::Result;
 use orogen_grid::hydrography::rivers::{Mouth, Source};
+use orogen_grid::progress::Progress;
 use orogen_io::format::features::{Feature, FeatureLayer, Field, FieldType, Geometry, GeometryType, Value, length};
 
 /// The layer.
@@ -40,7 +41,7 @@ const FIELDS: &[Field] = &[
     Field { name: "mouth_lake", kind: FieldType::Integer, about: "id of the lake that it ends in" },
 ];
 
-fn make(ground: &FeatureSource, options: &FeatureOptions) -> Result<FeatureLayer> {
+fn make(ground: &FeatureSource, options: &FeatureOptions, _: &Progress) -> Result<FeatureLayer> {
     let cell_area = ground.cell() * ground.cell();
     let mut features = Vec::with_capacity(ground.rivers.len());
     for (id, river) in (1..).zip(&ground.rivers) {

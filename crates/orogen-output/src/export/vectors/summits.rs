@@ -5,6 +5,7 @@ use crate::export::features::options::{FeatureOptions, PROMINENCE};
 use crate::export::features::source::FeatureSource;
 use orogen_grid::error::Result;
 use orogen_grid::hydrography::summits::summits;
+use orogen_grid::progress::Progress;
 use orogen_io::format::features::{Feature, FeatureLayer, Field, FieldType, Geometry, GeometryType, Value};
 
 /// The layer.
@@ -34,7 +35,7 @@ const FIELDS: &[Field] = &[
 /// Minimum prominence of a summit, as a share of the relief.
 const SHARE: f64 = 1.0 / 25.0;
 
-fn make(ground: &FeatureSource, options: &FeatureOptions) -> Result<FeatureLayer> {
+fn make(ground: &FeatureSource, options: &FeatureOptions, _: &Progress) -> Result<FeatureLayer> {
     let water = &ground.water;
     let in_frame = |row: usize| &water.heights.row(row)[ground.frame.columns.clone()];
     let finite = || ground.frame.rows.clone().flat_map(in_frame).copied().filter(|height| height.is_finite());

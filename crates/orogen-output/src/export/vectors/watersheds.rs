@@ -8,6 +8,7 @@ use orogen_grid::grid::{Grid, Window};
 use orogen_grid::hydrography::outlines::outlines;
 use orogen_grid::hydrography::rivers::Mouth;
 use orogen_grid::hydrography::watersheds::watersheds;
+use orogen_grid::progress::Progress;
 use orogen_io::format::features::{Feature, FeatureLayer, Field, FieldType, Geometry, GeometryType, Value};
 
 /// The layer.
@@ -42,7 +43,7 @@ struct Measures {
     sum: f64,
 }
 
-fn make(ground: &FeatureSource, options: &FeatureOptions) -> Result<FeatureLayer> {
+fn make(ground: &FeatureSource, options: &FeatureOptions, _: &Progress) -> Result<FeatureLayer> {
     let found = watersheds(&ground.water, &ground.frame, &ground.rivers);
     // Labels of the requested samples, which may be finer or coarser than those of the water.
     let window = ground.requested;

@@ -1,0 +1,215 @@
+//! Watersheds of chosen outlets (pour points), which are moved to the nearest stream first.
+
+use super::water::{Cover, Water};
+use crate::error::Result;
+use crate::progress::Progress;
+
+/// No outlet.
+pub const NONE: u32 = u32::MAX;
+
+/// The node of a stream near a place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Snapped {
+    /// The node.
+    pub node: usize,
+    /// Its distance from the place, in samples.
+    pub moved: f64,
+}
+
+/// The stream node within `radius` samples of a place that is nearest to it: a node on land or in a lake through which
+/// at least `least` samples drain (Jenson 1991). Of equally near ones, the one that drains the most. `at` is a column and a row of the grid;
+/// only nodes of samples that `inside` accepts are considered. Costs O(distance^2).
+///
+/// # Errors
+/// If the work was cancelled.
+pub fn nearest_stream(
+    water: &Water,
+    at: [f64; 2],
+    least: f64,
+    radius: f64,
+    inside: impl Fn([usize; 2]) -> bool,
+    progress: &Progress,
+) -> Result<Option<Snapped>> {
+    let (width, height) = (water.heights.width() as i64, water.heights.height() as i64);
+    let column = (at[0].round() as i64).clamp(0, width.max(1) - 1);
+    let row = (at[1].round() as i64).clamp(0, height.max(1) - 1);
+    let farthest = radius.min((width + height) as f64).ceil() as i64 + 2;
+    let mut best: Option<Snapped> = None;
+    for ring in 0..=farthest {
+        // A node is at most a sample from its own, and the place half of one from that of the ring's centre.
+        if best.is_some_and(|best| best.moved < ring as f64 - 2.0) {
+            break;
+        }
+        progress.check()?;
+        for j in (row - ring).max(0)..=(row + ring).min(height - 1) {
+            let whole = (j - row).abs() == ring;
+            let step = if whole || ring == 0 { 1 } else { 2 * ring };
+            for i in (column - ring..=column + ring).step_by(step as usize).filter(|i| (0..width).contains(i)) {
+                let node = (j * width + i) as usize;
+                let is_stream = water.drained(node) >= least
+                    && matches!(water.node_cover(node), Cover::Land | Cover::Lake(_))
+                    && water.heights.data()[node].is_finite();
+                if !is_stream || !inside([i as usize, j as usize]) {
+                    continue;
+                }
+                let [x, y] = water.node_place(node);
+                let moved = libm::hypot(x - at[0], y - at[1]);
+                let is_better = best.is_none_or(|best| {
+                    moved < best.moved || moved == best.moved && water.drained(node) > water.drained(best.node)
+                });
+                if moved <= radius && is_better {
+                    best = Some(Snapped { node, moved });
+                }
+            }
+        }
+    }
+    Ok(best)
+}
+
+/// The land that drains to chosen nodes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PourPoints {
+    /// For each node, the index of the first outlet that its water passes; [`NONE`] if it passes none.
+    pub labels: Vec<u32>,
+    /// For each outlet, the index of the next one downstream.
+    pub downstream: Vec<Option<u32>>,
+}
+
+impl PourPoints {
+    /// The land that drains to each of these nodes. Of equal nodes, the water passes the later one first. Costs O(nodes).
+    ///
+    /// # Errors
+    /// If the work was cancelled.
+    pub fn of(water: &Water, outlets: &[usize], progress: &Progress) -> Result<PourPoints> {
+        const UNKNOWN: u32 = NONE - 1;
+        let mut labels = vec![UNKNOWN; water.heights.data().len()];
+        // The next outlet at the same node.
+        let mut same = vec![None; outlets.len()];
+        for (k, node) in outlets.iter().enumerate() {
+            if labels[*node] != UNKNOWN {
+                same[k] = Some(labels[*node]);
+            }
+            labels[*node] = k as u32;
+        }
+        let mut way: Vec<usize> = Vec::new();
+        for start in 0..labels.len() {
+            if start.is_multiple_of(1 << 20) {
+                progress.check()?;
+            }
+            let mut at = start;
+            while labels[at] == UNKNOWN {
+                way.push(at);
+                let next = water.receivers.of(at);
+                if next == at {
+                    labels[at] = NONE;
+                    break;
+                }
+                at = next;
+            }
+            let label = labels[at];
+            way.drain(..).for_each(|node| labels[node] = label);
+        }
+        let next = |node: usize| match water.receivers.of(node) {
+            next if next == node => None,
+            next => Some(labels[next]).filter(|label| *label != NONE),
+        };
+        let downstream = outlets.iter().zip(same).map(|(node, same)| same.or_else(|| next(*node))).collect();
+        Ok(PourPoints { labels, downstream })
+    }
+
+    /// For each outlet, itself and those upstream of it.
+    #[must_use]
+    pub fn upstream(&self) -> Vec<Vec<u32>> {
+        let mut all: Vec<Vec<u32>> = vec![Vec::new(); self.downstream.len()];
+        for k in 0..self.downstream.len() {
+            let mut at = Some(k as u32);
+            while let Some(outlet) = at {
+                all[outlet as usize].push(k as u32);
+                at = self.downstream[outlet as usize];
+            }
+        }
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::{Grid, Window};
+    use crate::hydrography::water::Least;
+    use crate::hydrology::samples;
+
+    fn water(seed: i64, sea: Option<f32>) -> Water {
+        Water::of(samples::hills(60, 50, seed), sea, Least::new(12, 4), &Progress::none()).unwrap()
+    }
+
+    #[test]
+    fn a_watershed_is_all_that_flows_through_its_outlet() {
+        for seed in 0..5 {
+            let water = water(seed, Some(250.0));
+            let drains_much = (0..water.area.data().len()).filter(|node| water.area.data()[*node] >= 40);
+            let mut outlets: Vec<usize> = drains_much.step_by(7).collect();
+            // Two outlets at one node.
+            outlets.push(outlets[0]);
+            let found = PourPoints::of(&water, &outlets, &Progress::none()).unwrap();
+            let passes = |start: usize, outlet: usize| {
+                let mut at = start;
+                loop {
+                    let next = water.receivers.of(at);
+                    if at == outlet || next == at {
+                        return at == outlet;
+                    }
+                    at = next;
+                }
+            };
+            assert!(found.downstream.iter().any(Option::is_some));
+            assert_eq!(found.downstream[outlets.len() - 1], Some(0));
+            for (k, upstream) in found.upstream().iter().enumerate() {
+                let mut count = 0;
+                for node in 0..found.labels.len() {
+                    let is_inside = upstream.contains(&found.labels[node]);
+                    assert_eq!(is_inside, passes(node, outlets[k]));
+                    count += u32::from(is_inside);
+                }
+                assert_eq!(count, water.area.data()[outlets[k]], "{seed}: {k}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_nearest_stream_is_that_of_a_search_through_all_nodes() {
+        let mut moved = 0;
+        for seed in 0..4 {
+            let water = water(seed, Some(250.0));
+            let is_stream = |node: usize| {
+                water.area.data()[node] >= 20 && matches!(water.cover(node), Cover::Land | Cover::Lake(_))
+            };
+            for k in 0..60 {
+                let at = [f64::from(k * 37 % 590) / 10.0, f64::from(k * 53 % 490) / 10.0];
+                let inside = |[i, j]: [usize; 2]| i > 3 && j < 45;
+                let far = |node: usize| libm::hypot((node % 60) as f64 - at[0], (node / 60) as f64 - at[1]);
+                let expect = (0..3000)
+                    .filter(|node| is_stream(*node) && inside([node % 60, node / 60]) && far(*node) <= 6.5)
+                    .min_by(|a, b| far(*a).total_cmp(&far(*b)).then(water.area.data()[*b].cmp(&water.area.data()[*a])));
+                let found = nearest_stream(&water, at, 20.0, 6.5, inside, &Progress::none()).unwrap();
+                assert_eq!(found.map(|found| found.moved), expect.map(far), "{seed}: {at:?}");
+                moved += u32::from(found.is_some_and(|found| found.moved > 2.0));
+            }
+        }
+        assert!(moved > 20, "{moved}");
+    }
+
+    #[test]
+    fn land_that_passes_no_outlet_has_no_label() {
+        let mut slope = Grid::filled(Window::new(9, 5, 1.0), 0.0);
+        for j in 0..5 {
+            for i in 0..9 {
+                slope.row_mut(j)[i] = 9.0 - i as f32 + (j as f32 - 2.0).abs() * 0.1;
+            }
+        }
+        let water = Water::of(slope, None, Least::new(1, 1), &Progress::none()).unwrap();
+        let found = PourPoints::of(&water, &[2 * 9 + 4], &Progress::none()).unwrap();
+        assert_eq!((found.labels[2 * 9 + 3], found.labels[2 * 9 + 5]), (0, NONE));
+        assert_eq!((found.downstream, found.labels[0]), (vec![None], NONE));
+    }
+}
