@@ -21,7 +21,7 @@ use crate::fractal_options::{self, Sum};
 use crate::moving::{AnimationTarget, Moving};
 use crate::options::DrawOptions;
 use crate::sink::{Sink, is_stdout};
-use crate::values::number::{MOST, finite, positive, seed, wavelength};
+use crate::values::number::{MOST, finite, frequency, positive, range, seed, wavelength};
 use crate::values::size::Size;
 use crate::{disk, interrupt, say};
 
@@ -59,13 +59,17 @@ pub struct Args {
     seed: u64,
     /// Wavelength in samples: the approximate distance between hills, or the side of the squares of white noise [default: 64, of white
     /// noise 1; textures have their own]
-    #[arg(long, value_name = "N", value_parser = wavelength, allow_negative_numbers = true)]
+    #[arg(long, visible_alias = "scale", value_name = "N", value_parser = wavelength, allow_negative_numbers = true)]
     wavelength: Option<f64>,
+    /// Frequency of the noise in waves per sample: 1 / wavelength
+    #[arg(long, value_name = "F", value_parser = frequency, conflicts_with = "wavelength", allow_negative_numbers = true)]
+    frequency: Option<f64>,
     /// Number of octaves, each finer and weaker than the one before [default: 1, with --fractal 6; textures have their own]
     #[arg(long, value_name = "N", value_parser = octaves(), allow_negative_numbers = true)]
     octaves: Option<u32>,
     /// Amplitude ratio between successive octaves
-    #[arg(long, value_name = "G", value_parser = finite, default_value = "0.5", allow_negative_numbers = true)]
+    #[arg(long, visible_alias = "persistence", value_name = "G", value_parser = finite, default_value = "0.5",
+          allow_negative_numbers = true)]
     gain: f64,
     /// Frequency ratio between successive octaves
     #[arg(long, value_name = "L", value_parser = positive, default_value = "2", allow_negative_numbers = true)]
@@ -83,6 +87,9 @@ pub struct Args {
     /// slopes along x and y per sample, of shape (2, H, W)
     #[arg(long, conflicts_with_all = ["texture", "volume"])]
     gradient: bool,
+    /// Values of an array in place of -1 and 1: the noise is mapped linearly, so that -1 becomes A and 1 becomes B
+    #[arg(long, value_name = "A,B", value_parser = range, allow_hyphen_values = true, conflicts_with_all = ["gradient", "texture"])]
+    range: Option<[f64; 2]>,
     /// Draw a textbook texture made from the noise
     #[arg(long, value_parser = texture(), conflicts_with = "volume")]
     texture: Option<Texture>,
@@ -185,7 +192,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 fn noise(args: &Args) -> Result<Fractal, Failure> {
     // Textbooks show white noise with one value per sample.
     let usual = if args.basis == Basis::White { 1.0 } else { 64.0 };
-    Ok(Fractal::new(args.seed, args.wavelength.or(args.texture.map(Texture::wavelength)).unwrap_or(usual))
+    let wavelength = args.wavelength.or(args.frequency.map(|frequency| 1.0 / frequency));
+    Ok(Fractal::new(args.seed, wavelength.or(args.texture.map(Texture::wavelength)).unwrap_or(usual))
         .with_basis(args.basis)
         .with_kind(args.sum.kind().map_err(Failure::Usage)?)
         .with_octaves(args.octaves.or(args.texture.map(Texture::octaves)).unwrap_or(args.sum.octaves()))
@@ -207,6 +215,10 @@ impl Task<'_> {
                     "the slope of {} is not implemented; use perlin, value or simplex, or leave out --gradient",
                     basis.name()
                 )
+            }
+            () if self.args.range.is_some() && png => {
+                "--range sets the values of an array; use the extension .npy (in a picture -1 is black and 1 is white)"
+                    .into()
             }
             () if volume.is_some() && png => "--volume writes an array; use the extension .npy".into(),
             () if frames.is_some() && !png => "--frames writes pictures; use the extension .png or .gif".into(),
@@ -352,7 +364,7 @@ impl Task<'_> {
             let first = self.args.z.unwrap_or(0.0);
             return (0..slices).try_for_each(|n| {
                 let slice = Slice { depth: Some(first + n as f64), ..slice };
-                self.bands(out, |rows, value| slice.fill(rows, value))
+                self.bands(out, |rows, value| self.fill(&slice, rows, value))
             });
         }
         if self.args.gradient {
@@ -368,7 +380,18 @@ impl Task<'_> {
             });
         }
         npy::write_header(out, width, height)?;
-        self.bands(out, |rows, value| slice.fill(rows, value))
+        self.bands(out, |rows, value| self.fill(&slice, rows, value))
+    }
+
+    /// The values of some rows, mapped to the range.
+    fn fill(&self, slice: &Slice, rows: std::ops::Range<usize>, value: &mut [f32]) {
+        slice.fill(rows, value);
+        if let Some([low, high]) = self.args.range {
+            for value in value {
+                let share = (f64::from(*value) + 1.0) / 2.0;
+                *value = (low * (1.0 - share) + high * share) as f32;
+            }
+        }
     }
 
     /// Writes all rows in bands that `fill` computes.
@@ -399,7 +422,8 @@ impl Task<'_> {
         let depth = self.args.z.map(|z| format!(", depth {z}")).unwrap_or_default();
         let repeating = if self.args.tileable { ", repeating" } else { "" };
         let (basis, wavelength) = (basis.name(), self.wavelength());
-        words::readable(format!("{sum}{basis} noise, wavelength {wavelength}{depth}, seed {seed}{repeating}"))
+        let range = self.args.range.map(|[low, high]| format!(", {low} to {high}")).unwrap_or_default();
+        words::readable(format!("{sum}{basis} noise, wavelength {wavelength}{depth}, seed {seed}{repeating}{range}"))
     }
 
     /// The actual wavelength: per axis, if they differ.

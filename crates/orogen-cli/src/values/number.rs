@@ -32,6 +32,25 @@ pub fn wavelength(text: &str) -> Result<f64, String> {
     length(text, "a wavelength", ["0 samples", "samples, such as 64 or 2.5"])
 }
 
+/// `--frequency`: waves of a noise per sample.
+pub fn frequency(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(frequency) if frequency > 0.0 && frequency.is_finite() && (1.0 / frequency).is_finite() => Ok(frequency),
+        Ok(_) => Err("a frequency must be greater than 0 waves per sample".into()),
+        Err(_) => Err("a frequency must be a number of waves per sample, such as 0.02".into()),
+    }
+}
+
+/// `--range`: the values that -1 and 1 become.
+pub fn range(text: &str) -> Result<[f64; 2], String> {
+    let parts: Option<Vec<f64>> = text.split(',').map(|part| finite(part).ok()).collect();
+    match parts.as_deref() {
+        Some(&[low, high]) if low != high && low.abs().max(high.abs()) <= f64::from(f32::MAX) => Ok([low, high]),
+        Some(&[_, _]) => Err("the values of a range must be different 32-bit numbers".into()),
+        _ => Err("a range must be A,B: the values that -1 and 1 become, such as 0,1".into()),
+    }
+}
+
 /// A positive length; `zero` and `of` are the parts of its messages.
 fn length(text: &str, what: &str, [zero, of]: [&str; 2]) -> Result<f64, String> {
     match text.trim().parse::<f64>() {

@@ -85,6 +85,56 @@ fn every_parameter_reaches_the_noise() {
 }
 
 #[test]
+fn words_of_textbooks_are_the_same_options() {
+    let folder = Folder::new();
+    let made = |args: &[&str]| {
+        folder.good(&[&["noise", "perlin", "-o", "a.npy", "--size", "33", "--octaves", "3"], args].concat());
+        npy(&folder.read("a.npy"))
+    };
+    let expect = made(&["--wavelength", "20", "--gain", "0.7"]);
+    assert_eq!(made(&["--scale", "20", "--persistence", "0.7"]), expect);
+    assert_eq!(made(&["--frequency", "0.05", "--persistence", "0.7"]), expect);
+    for (args, expect) in [
+        (&["--frequency", "0.05", "--wavelength", "20"][..], "cannot be used with"),
+        (&["--frequency", "0"], "a frequency must be greater than 0"),
+        (&["--frequency", "1e-320"], "a frequency must be greater than 0"),
+        (&["--frequency", "slow"], "a frequency must be a number of waves per sample"),
+    ] {
+        folder.bad(&[&["noise", "perlin", "-o", "b.npy"], args].concat(), 2, expect);
+    }
+}
+
+#[test]
+fn an_array_has_the_range_that_is_asked_for() {
+    let folder = Folder::new();
+    let made = |args: &[&str], count: usize| {
+        let line = [&["noise", "perlin", "-o", "a.npy", "--size", "24x16", "--wavelength", "9"], args].concat();
+        let outcome = folder.good(&line);
+        (array(&folder.read("a.npy"), count * 24 * 16).0, outcome.text().to_string())
+    };
+    let (plain, _) = made(&[], 1);
+    for ([low, high], text) in [([0.0, 1.0], "0,1"), ([-250.0, 1750.0], "-250, 1750"), ([1.0, -1.0], "1,-1")] {
+        let (found, told) = made(&["--range", text], 1);
+        assert!(told.contains(&format!(", {low} to {high}")), "{told}");
+        for (found, plain) in found.iter().zip(&plain) {
+            let expect = low + (f64::from(*plain) + 1.0) / 2.0 * (high - low);
+            assert!((f64::from(*found) - expect).abs() <= 1e-6 * (high - low).abs(), "{found}, not {expect}");
+        }
+    }
+    let (slices, _) = made(&["--volume", "2", "--range", "0,1"], 2);
+    assert!(slices.iter().all(|value| (0.0..=1.0).contains(value)) && slices[..384] != slices[384..]);
+    for (args, expect) in [
+        (&["-o", "b.png", "--range", "0,1"][..], "--range sets the values of an array; use the extension .npy"),
+        (&["-o", "b.npy", "--range", "1,1"], "the values of a range must be different"),
+        (&["-o", "b.npy", "--range", "0,1e39"], "32-bit numbers"),
+        (&["-o", "b.npy", "--range", "1"], "a range must be A,B"),
+        (&["-o", "b.npy", "--range", "0,1", "--gradient"], "cannot be used with"),
+    ] {
+        folder.bad(&[&["noise", "perlin"], args].concat(), 2, expect);
+    }
+}
+
+#[test]
 fn greys_span_minus_one_to_one() {
     let folder = Folder::new();
     let outcome = folder.good(&["noise", "perlin", "--size", "64x48"]);

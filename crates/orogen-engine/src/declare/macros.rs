@@ -66,7 +66,7 @@ macro_rules! choice {
 ///   between samples (`height`, `label`, `flow`, or as its `source`).
 /// - `check |op| Ok(());`: what a single parameter cannot see, a key and a message if parameters contradict each other.
 ///
-/// After an input's need, or at the end of a parameter, `alias "former"` names a former key. With `octaves;` after its name the op is a fractal: it
+/// After an input's need, or at the end of a parameter, `alias "other"` names another key that recipes may use: a former one, or the word of textbooks. With `octaves;` after its name the op is a fractal: it
 /// gets the parameters all fractals share, beside its own. With `margin;` after its name the op is a solver with the parameter `margin`: its domain
 /// extends beyond the world by that length on each side, and it need not know it ([`Sources::domain`](crate::op::Sources::domain) is the domain).
 /// With `space;` (`octaves in space;` for a fractal) the op is a noise with the parameter `vertical` and a method `depth`: the third coordinate of the
@@ -123,13 +123,13 @@ macro_rules! op {
                 /// Seed of the node, hashed with the world's seed. Two nodes with equal seeds make the same noise.
                 seed: u64 = 0;
                 /// Wavelength of the first octave, which is about the distance between its hills.
-                wavelength: f64 = 1000.0, unit "m", range 1e-3 to 1e9;
+                wavelength: f64 = 1000.0, unit "m", range 1e-3 to 1e9, alias "scale";
                 /// Number of octaves. Each octave is finer than the one before.
                 octaves: u32 = 6, range 1 to $crate::declare::noise::MAX_OCTAVES;
                 /// Frequency ratio between successive octaves.
                 lacunarity: f64 = 2.0, range 1.0 to 16.0;
                 /// Amplitude ratio between successive octaves (also called persistence).
-                gain: f64 = 0.5, range 0.0 to 1.0;
+                gain: f64 = 0.5, range 0.0 to 1.0, alias "persistence";
                 $($($params)*)?
             }
         }

@@ -65,19 +65,19 @@ impl Spec {
         self.inputs.iter().map(|input| InputName { name: input.name, required: input.required }).collect()
     }
 
-    /// The input with this key or former key.
+    /// The input with this key, also its other one.
     #[must_use]
     pub fn input_named(&self, key: &str) -> Option<usize> {
         self.inputs.iter().position(|input| input.name == key || (!key.is_empty() && input.alias == key))
     }
 
-    /// The parameter with this key or former key.
+    /// The parameter with this key, also its other one.
     #[must_use]
     pub fn param_named(&self, key: &str) -> Option<usize> {
         self.params.iter().position(|param| param.name == key || (!key.is_empty() && param.alias == key))
     }
 
-    /// The former keys of inputs and parameters, each with today's key.
+    /// The other keys of inputs and parameters (former ones, and words of textbooks), each with the key.
     pub fn aliases(&self) -> impl Iterator<Item = (&'static str, &'static str)> + '_ {
         let inputs = self.inputs.iter().map(|input| (input.alias, input.name));
         inputs.chain(self.params.iter().map(|param| (param.alias, param.name))).filter(|(alias, _)| !alias.is_empty())
@@ -89,7 +89,7 @@ impl Spec {
 pub struct InputSpec {
     /// The key.
     pub name: &'static str,
-    /// A former key, which recipes may still use; or empty.
+    /// Another key that recipes may use: a former one, or the word of textbooks; or empty.
     pub alias: &'static str,
     /// The documentation.
     pub doc: &'static str,
@@ -102,7 +102,7 @@ pub struct InputSpec {
 pub struct ParamSpec {
     /// The key.
     pub name: &'static str,
-    /// A former key, which recipes may still use; or empty.
+    /// Another key that recipes may use: a former one, or the word of textbooks; or empty.
     pub alias: &'static str,
     /// The documentation.
     pub doc: &'static str,

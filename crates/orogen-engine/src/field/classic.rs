@@ -36,7 +36,7 @@ op! {
         /// Seed of the node, hashed with the world's seed. If both are 0, the permutation table is used as published.
         seed: u64 = 0;
         /// Distance between lattice points.
-        wavelength: f64 = 1000.0, unit "m", range 1e-3 to 1e9;
+        wavelength: f64 = 1000.0, unit "m", range 1e-3 to 1e9, alias "scale";
         /// The gradient set.
         variant: Variant = Variant::Diagonal;
     }

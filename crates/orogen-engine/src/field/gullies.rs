@@ -30,13 +30,13 @@ op! {
         /// Seed of the node, hashed with the world's seed. Two nodes with equal seeds make the same noise.
         seed: u64 = 0;
         /// Distance between the largest gullies.
-        wavelength: f64 = 1500.0, unit "m", range 1e-3 to 1e9;
+        wavelength: f64 = 1500.0, unit "m", range 1e-3 to 1e9, alias "scale";
         /// Number of octaves. Each octave is finer than the one before.
         octaves: u32 = 5, range 1.0 to 16.0;
         /// Frequency ratio between successive octaves.
         lacunarity: f64 = 2.0, range 1.0 to 16.0;
         /// Depth ratio between successive octaves.
-        gain: f64 = 0.5, range 0.0 to 1.0;
+        gain: f64 = 0.5, range 0.0 to 1.0, alias "persistence";
         /// Depth of the largest gullies, as a multiple of their wavelength.
         strength: f64 = 0.22, range 0.0 to 10.0;
         /// Share of the strength that goes into gullies; the rest raises crests and lowers valleys according to the fade. Higher values

@@ -35,7 +35,7 @@ op! {
         /// Seed of the node, hashed with the world's seed. Two nodes with equal seeds make the same noise.
         seed: u64 = 0;
         /// Side of the squares that are skewed into the triangular lattice.
-        wavelength: f64 = 1000.0, unit "m", range 1e-3 to 1e9;
+        wavelength: f64 = 1000.0, unit "m", range 1e-3 to 1e9, alias "scale";
         /// Fast or smooth variant.
         smoothness: Smoothness = Smoothness::Fast;
     }

@@ -14,7 +14,7 @@ op! {
         /// Seed of the node, hashed with the world's seed. Two nodes with equal seeds make the same noise.
         seed: u64 = 0;
         /// Side of a square.
-        wavelength: f64 = 10.0, unit "m", range 1e-3 to 1e9;
+        wavelength: f64 = 10.0, unit "m", range 1e-3 to 1e9, alias "scale";
     }
 }
 

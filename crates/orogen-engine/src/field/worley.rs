@@ -72,7 +72,7 @@ op! {
         /// Seed of the node, hashed with the world's seed. Two nodes with equal seeds make the same noise.
         seed: u64 = 0;
         /// Side of a cell, which is about the distance between points.
-        wavelength: f64 = 1000.0, unit "m", range 1e-3 to 1e9;
+        wavelength: f64 = 1000.0, unit "m", range 1e-3 to 1e9, alias "scale";
         /// The feature to compute.
         feature: Feature = Feature::F1;
         /// Distance metric.

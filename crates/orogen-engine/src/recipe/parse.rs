@@ -37,6 +37,7 @@ fn unknown_key(key: &str, node: &Node) -> String {
     let params = node.spec().params.iter().map(|param| param.name);
     let known = inputs.iter().map(|input| input.name).chain(params);
     match ALIASES.iter().find(|(alias, name)| *alias == key && known.clone().any(|known| known == *name)) {
+        Some(("frequency", name)) => format!("write `{name}`, which is 1 / frequency"),
         Some((_, name)) => format!("it is called `{name}` here"),
         None => suggestion(key, known.chain(["op", "mask"])),
     }

@@ -323,7 +323,7 @@ fn op_schema(node: &Node) -> Json {
     }
     for (alias, name) in spec.aliases() {
         if let Some(mut schema) = properties.get(name).cloned() {
-            schema["description"] = json!(format!("The former name of `{name}`."));
+            schema["description"] = json!(format!("Another name of `{name}`."));
             schema["deprecated"] = json!(true);
             properties.insert(alias.into(), schema);
         }

@@ -55,7 +55,13 @@ fn wrong_recipes_are_told_where_and_what() {
     complains(&node("op = \"fbn\""), "3:6", &["unknown op `fbn`", "did you mean `fbm`?"]);
     complains(&node("op = \"quux\""), "3:6", &["unknown op `quux`", "`fbm`", "`normalise`"]);
     complains(&node("op = \"fbm\"\noctavs = 3"), "4:1", &["`octavs`", "did you mean `octaves`?"]);
-    complains(&node("op = \"fbm\"\npersistence = 0.5"), "4:1", &["`persistence`", "called `gain`"]);
+    complains(
+        &node("op = \"fbm\"\nfrequency = 0.5"),
+        "4:1",
+        &["`frequency`", "write `wavelength`, which is 1 / frequency"],
+    );
+    complains(&node("op = \"fbm\"\npersistence = 2"), "4:15", &["`gain`", "0 to 1"]);
+    complains(&node("op = \"fbm\"\ngain = 0.5\npersistence = 0.5"), "5:1", &["`gain`", "twice"]);
     complains(&node("op = \"fbm\"\noctaves = 2.5"), "4:11", &["whole number from 1 to", "2.5"]);
     complains(&node("op = \"fbm\"\noctaves = 0"), "4:11", &["from 1", "not 0"]);
     complains(&node("op = \"fbm\"\nwavelength = \"far\""), "4:14", &["finite number", "\"far\"", "(m)"]);
