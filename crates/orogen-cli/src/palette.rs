@@ -8,8 +8,14 @@ use orogen::palette::{named, read};
 
 use crate::failure::Failure;
 
+/// The palette of `--palette`, with its colors not mixed if `nearest`.
+pub fn chosen(argument: Option<&Path>, nearest: bool) -> Result<Option<Palette>, Failure> {
+    let palette = argument.map(find).transpose()?;
+    Ok(if nearest { palette.map(Palette::nearest) } else { palette })
+}
+
 /// The palette with this name, otherwise the one in this file.
-pub fn find(argument: &Path) -> Result<Palette, Failure> {
+fn find(argument: &Path) -> Result<Palette, Failure> {
     let name = argument.to_string_lossy();
     if let Some(named) = named::find(&name) {
         return Ok(named.palette());

@@ -48,6 +48,10 @@ pub struct Args {
     /// other layers the palette with the layer's name, else viridis]
     #[arg(long, value_name = "NAME|FILE")]
     palette: Option<PathBuf>,
+    /// Give each value the color of the nearest stop of the palette, without mixing (as gdaldem's -nearest_color_entry); with --shade none pixels have
+    /// exactly these colors
+    #[arg(long, requires = "palette")]
+    nearest_color: bool,
     /// Relief shading
     #[arg(long, value_name = "HOW", default_value = "multi")]
     shade: Shade,
@@ -249,7 +253,7 @@ fn job(args: &Args) -> Result<MapJob, Failure> {
     job.colors = args.color.into();
     job.layer.clone_from(&args.layer);
     job.layer_options = args.layer_options.read()?;
-    job.palette = args.palette.as_deref().map(palette::find).transpose()?;
+    job.palette = palette::chosen(args.palette.as_deref(), args.nearest_color)?;
     if args.layer == HEIGHT && args.ramp.is_some() {
         return usage("--ramp needs a --layer other than height".into());
     }

@@ -91,6 +91,9 @@ pub struct Args {
     /// Palette of --color map: a name or a file (.cpt, .gpl, .toml, gdaldem .txt) [default: that of the relief map]
     #[arg(long, value_name = "NAME|FILE")]
     palette: Option<PathBuf>,
+    /// Give each value the color of the nearest stop of the palette, without mixing (as gdaldem's -nearest_color_entry)
+    #[arg(long, requires = "palette")]
+    nearest_color: bool,
     #[command(flatten)]
     view: View,
     #[command(flatten)]
@@ -181,7 +184,7 @@ fn job(args: &Args) -> Result<RenderJob, Failure> {
             "a picture of {width} x {height} pixels is too large; a side may have at most {MAX_SIDE} pixels"
         ));
     }
-    job.palette = args.palette.as_deref().map(palette::find).transpose()?;
+    job.palette = palette::chosen(args.palette.as_deref(), args.nearest_color)?;
     if job.palette.is_some() && !matches!(args.color, Dress::Map) {
         return usage("--palette applies to --color map".into());
     }

@@ -39,6 +39,20 @@ fn colours_by_name_and_from_files() {
             picture.data.chunks(3).filter(|pixel| pixel.iter().max().unwrap() - pixel.iter().min().unwrap() > 20);
         assert_eq!(colored.count() > 1000, palette == "viridis", "{palette}");
     }
+    // Only the colors of the stops, from 0 to 1.
+    folder.write("classes.txt", "0% 0.2 0.4 1\n50% 1 0 0.6\n100% 0.0 0.8 0\n");
+    let line = |out: &str, more: &[&str]| {
+        let plain =
+            ["map", "small.toml", "-o", out, "--palette", "classes.txt", "--size", "300", "--shade", "none", "-q"];
+        let without = ["--no-contours", "--no-rivers", "--no-lakes", "--no-summits"];
+        folder.good(&[&plain[..], &without, more].concat());
+        png(&folder.read(out))
+    };
+    let is_stop = |pixel: &&[u8]| [[51, 102, 255], [255, 0, 153], [0, 204, 0]].iter().any(|color| pixel == color);
+    let exact = |picture: &crate::harness::Picture| picture.data.chunks(3).filter(is_stop).count();
+    let (mixed, nearest) = (line("mixed.png", &[]), line("nearest.png", &["--nearest-color"]));
+    assert!(exact(&mixed) < 1000 && exact(&nearest) > 40_000, "{} {}", exact(&mixed), exact(&nearest));
+    folder.bad(&["map", "small.toml", "-o", "b.png", "--nearest-color"], 2, "--palette");
     for (palette, expect) in [
         ("viridiss", "did you mean `viridis`?"),
         ("nothing", "`orogen palettes` lists them"),

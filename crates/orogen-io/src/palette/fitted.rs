@@ -52,6 +52,9 @@ impl Fitted {
         stops.retain(|(at, _)| at.is_finite());
         // A file may mix kinds of positions; the sort is stable at equal positions.
         stops.sort_by(|a, b| a.0.total_cmp(&b.0));
+        if palette.mix == Mix::Nearest {
+            stops = stepped(&stops);
+        }
         let missing = palette.missing.unwrap_or(NO_DATA).map(decode);
         let mut pieces: Vec<Segment> = Vec::new();
         if let Some(below) = palette.below {
@@ -98,6 +101,17 @@ impl Fitted {
     }
 }
 
+/// Stops with a hard step halfway between each two.
+fn stepped(stops: &[(f64, Rgb)]) -> Vec<(f64, Rgb)> {
+    let mut steps: Vec<(f64, Rgb)> = stops.first().copied().into_iter().collect();
+    for pair in stops.windows(2) {
+        let ((start, from), (end, to)) = (pair[0], pair[1]);
+        let middle = start + (end - start) / 2.0;
+        steps.extend([(middle, from), (middle, to), (end, to)]);
+    }
+    steps
+}
+
 /// The smallest f32 at or above a height.
 fn reached(height: f64) -> f32 {
     let near = height as f32;
@@ -137,6 +151,7 @@ fn mixed(from: Rgb, to: Rgb, share: f32, how: Mix) -> Light {
     match how {
         Mix::Oklab => linear(mix(oklab(from.map(decode)), oklab(to.map(decode)), share)),
         Mix::Rgb => mix(from.map(f32::from), to.map(f32::from), share).map(light),
+        Mix::Nearest => if share < 0.5 { from } else { to }.map(decode),
         Mix::Hsv => {
             let ([h0, s0, v0], [mut h1, s1, v1]) = (hsv(from), hsv(to));
             let h0 = if s0 == 0.0 { h1 } else { h0 };
@@ -203,6 +218,24 @@ mod tests {
     const BLUE: Rgb = [0, 0, 255];
     const LIME: Rgb = [0, 255, 0];
     const WHITE: Rgb = [255; 3];
+
+    #[test]
+    fn the_nearest_stop_has_the_color() {
+        let stop = |at, color| Stop { at: Position::Value(at), color };
+        let stops = vec![stop(0.0, [10, 20, 30]), stop(100.0, [200, 0, 0]), stop(110.0, [0, 7, 0])];
+        let fitted = Fitted::new(&Palette::new("t", stops).nearest(), -500.0, 900.0, 0.0);
+        let encoder = Encoder::new();
+        for (height, expect) in [
+            (-300.0, [10, 20, 30]),
+            (49.9, [10, 20, 30]),
+            (50.0, [200, 0, 0]),
+            (104.9, [200, 0, 0]),
+            (105.1, [0, 7, 0]),
+            (800.0, [0, 7, 0]),
+        ] {
+            assert_eq!(encoder.bytes(fitted.at(height)), expect, "{height}");
+        }
+    }
 
     #[test]
     fn stops_are_met_and_steps_are_hard() {

@@ -2,6 +2,9 @@
 //!
 //! A line has a height and three numbers from 0 to 255, or a colour name, separated by blanks, tabs, commas or colons.
 //! A fourth number, the opacity, is ignored. The height may be a percentage of the range, or `nv` for missing samples.
+//!
+//! Two kinds of files of other programs are read, too: colors from 0 to 1, if no number of the file is larger and one has a decimal point, and lines of
+//! three such numbers without heights (matplotlib's color maps, Scientific Colour Maps), which are evenly spaced over the range.
 
 use super::color::Rgb;
 use super::names::named;
@@ -13,11 +16,24 @@ use super::palette::{Mix, Palette, Position, Stop};
 /// A message with the line that cannot be parsed.
 pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
     let mut palette = Palette { name: name.to_string(), mix: Mix::Rgb, ..Palette::default() };
-    for (number, line) in text.lines().enumerate().map(|(k, line)| (k + 1, line)) {
-        let line = line.split('#').next().unwrap_or_default();
-        let words: Vec<&str> = line.split([' ', '\t', ',', ':', '\r']).filter(|word| !word.is_empty()).collect();
+    let lines: Vec<(usize, Vec<&str>)> = (text.lines().enumerate())
+        .map(|(k, line)| (k + 1, line.split('#').next().unwrap_or_default()))
+        .map(|(k, line)| (k, line.split([' ', '\t', ',', ':', '\r']).filter(|word| !word.is_empty()).collect()))
+        .filter(|(_, words): &(usize, Vec<&str>)| !words.is_empty())
+        .collect();
+    if let Some(colors) = colors_alone(&lines) {
+        let last = (colors.len() - 1).max(1) as f64;
+        let stop = |(k, color)| Stop { at: Position::Share(k as f64 / last), color };
+        palette.stops = colors.into_iter().enumerate().map(stop).collect();
+        return Ok(palette);
+    }
+    let scale = scale_of(lines.iter().flat_map(|(_, words)| match words.get(1..) {
+        Some(color @ [_, _, _, ..]) => color[..3].iter().copied(),
+        _ => [].iter().copied(),
+    }));
+    for (number, words) in &lines {
         let [at, rest @ ..] = &words[..] else { continue };
-        let color = color(rest).map_err(|why| format!("line {number}: {why}"))?;
+        let color = color(rest, scale).map_err(|why| format!("line {number}: {why}"))?;
         if at.eq_ignore_ascii_case("nv") {
             palette.missing = Some(color);
             continue;
@@ -40,16 +56,34 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
     }
 }
 
-fn color(words: &[&str]) -> Result<Rgb, String> {
+/// The colors of a file whose lines all are three numbers from 0 to 1.
+fn colors_alone(lines: &[(usize, Vec<&str>)]) -> Option<Vec<Rgb>> {
+    let is_alone = lines.len() > 1 && lines.iter().all(|(_, words)| words.len() == 3);
+    let scale = scale_of(lines.iter().flat_map(|(_, words)| words.iter().copied()));
+    let colors = || lines.iter().map(|(_, words)| color(words, scale).ok()).collect();
+    if is_alone && scale == 255.0 { colors() } else { None }
+}
+
+/// The factor that makes bytes of components: 255 if none is larger than 1 and one has a decimal point, else 1.
+fn scale_of<'a>(components: impl Iterator<Item = &'a str> + Clone) -> f64 {
+    let is_small = |text: &str| text.parse::<f64>().is_ok_and(|value| (0.0..=1.0).contains(&value));
+    match components.clone().any(|text| text.contains('.')) && components.clone().all(is_small) {
+        true => 255.0,
+        false => 1.0,
+    }
+}
+
+fn color(words: &[&str], scale: f64) -> Result<Rgb, String> {
     match words {
         [name] => named(name).ok_or_else(|| format!("`{name}` is not a colour; write a name or three numbers")),
         [red, green, blue] | [red, green, blue, _] => {
             let mut color = [0; 3];
             for (part, text) in color.iter_mut().zip([red, green, blue]) {
                 let value = text.parse::<f64>().ok().filter(|value| (0.0..=255.0).contains(value));
-                *part = value
-                    .ok_or_else(|| format!("`{text}` is not a colour component; write a number from 0 to 255"))?
-                    as u8;
+                let value = value.ok_or_else(|| {
+                    format!("`{text}` is not a colour component; write numbers from 0 to 255, or all from 0 to 1")
+                })?;
+                *part = if scale > 1.0 { (value * scale).round() as u8 } else { value as u8 };
             }
             Ok(color)
         }
@@ -88,11 +122,39 @@ mod tests {
     }
 
     #[test]
+    fn colors_from_0_to_1() {
+        let stop = |at, color| Stop { at, color };
+        let palette = parse("t", "nv .5 .5 .5\n0 0 0.5 1\n1200, 1.0, 0.2, 0, 0.9\n3e3 white\n").unwrap();
+        let value = Position::Value;
+        let expect = [stop(value(0.0), [0, 128, 255]), stop(value(1200.0), [255, 51, 0]), stop(value(3e3), [255; 3])];
+        assert_eq!((&palette.stops[..], palette.missing), (&expect[..], Some([128; 3])));
+        // Whole numbers are bytes, and so is each number beside one above 1.
+        for text in ["0 0 1 1\n5 1 1 0", "0 0.5 1 1\n5 1 2 1"] {
+            assert!(
+                parse("t", text).unwrap().stops.iter().all(|stop| stop.color.iter().all(|part| *part < 3)),
+                "{text}"
+            );
+        }
+        // Lines without heights.
+        let palette = parse("t", "0.0 0.5 1.0\n0.2 0.2 0.2\n1.000000 0.000000 0.000000\n").unwrap();
+        let share = Position::Share;
+        assert_eq!(
+            palette.stops,
+            [stop(share(0.0), [0, 128, 255]), stop(share(0.5), [51; 3]), stop(share(1.0), [255, 0, 0])]
+        );
+    }
+
+    #[test]
     fn what_is_wrong_is_told_with_its_line() {
         for (text, expect) in [
             ("10 1 2 3\nhigh 1 2 3", "line 2: `high` is not a height"),
             ("10 1 2", "line 1: the height must be followed"),
             ("10 1 2 256", "line 1: `256` is not a colour component"),
+            (
+                "10 0.1 0.2 -0.3",
+                "line 1: `-0.3` is not a colour component; write numbers from 0 to 255, or all from 0 to 1",
+            ),
+            ("0.1 0.2 0.3\n0.1 0.2 3", "line 1: the height must be followed"),
             ("10 blurple", "line 1: `blurple` is not a colour"),
             ("1e300 1 2 3", "line 1: `1e300`"),
             ("# nothing\n", "no line of a height"),

@@ -3,10 +3,12 @@
 //! ```toml
 //! name = "Autumn"
 //! unit = "m"              # or "range" (0 the lowest, 1 the highest) or "sea" (-1 the deepest, 0 the shore, 1 the highest)
-//! mix = "oklab"           # or "rgb" or "hsv"
-//! stops = [[0, "#2c5f2d"], [900, "#97bc62"], [1800, "white"]]
+//! mix = "oklab"           # or "rgb", "hsv", or "nearest" (the colour of the nearest stop)
+//! stops = [[0, "#2c5f2d"], [900, [0.59, 0.74, 0.38]], [1800, "white"]]
 //! missing = "#dddddd"
 //! ```
+//!
+//! A color is #rrggbb, a name, or red, green and blue: from 0 to 1 if a number of the list has a decimal point, else whole numbers from 0 to 255.
 
 use std::mem::discriminant;
 
@@ -22,10 +24,10 @@ struct File {
     name: Option<String>,
     unit: Option<String>,
     mix: Option<String>,
-    stops: Vec<(f64, String)>,
-    below: Option<String>,
-    above: Option<String>,
-    missing: Option<String>,
+    stops: Vec<(f64, toml::Value)>,
+    below: Option<toml::Value>,
+    above: Option<toml::Value>,
+    missing: Option<toml::Value>,
 }
 
 /// Parses a palette.
@@ -45,22 +47,26 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
         None | Some("oklab") => Mix::Oklab,
         Some("rgb") => Mix::Rgb,
         Some("hsv") => Mix::Hsv,
-        Some(other) => return Err(format!("unknown mix \"{other}\"; supported are \"oklab\", \"rgb\" and \"hsv\"")),
+        Some("nearest") => Mix::Nearest,
+        Some(other) => {
+            let known = "supported are \"oklab\", \"rgb\", \"hsv\" and \"nearest\"";
+            return Err(format!("unknown mix \"{other}\"; {known}"));
+        }
     };
     if file.stops.is_empty() {
         return Err("it has no stops, such as stops = [[0, \"#2c5f2d\"], [1800, \"white\"]]".into());
     }
     let mut stops = Vec::new();
-    for (at, text) in &file.stops {
+    for (at, value) in &file.stops {
         if !(-1e9..=1e9).contains(at) {
             return Err(format!("{at} is not a valid position of a colour"));
         }
-        stops.push(Stop { at: place(*at), color: color(text)? });
+        stops.push(Stop { at: place(*at), color: color(value)? });
     }
     if !file.stops.is_sorted_by(|a, b| a.0 <= b.0) {
         return Err("its stops are not in ascending order".into());
     }
-    let optional = |text: &Option<String>| text.as_deref().map(color).transpose();
+    let optional = |value: &Option<toml::Value>| value.as_ref().map(color).transpose();
     Ok(Palette {
         name: file.name.unwrap_or_else(|| name.to_string()),
         stops,
@@ -89,6 +95,7 @@ pub fn write(palette: &Palette) -> Option<String> {
         Mix::Oklab => "oklab",
         Mix::Rgb => "rgb",
         Mix::Hsv => "hsv",
+        Mix::Nearest => "nearest",
     };
     let mut text = format!(
         "name = {}\nunit = \"{unit}\"\nmix = \"{mix}\"\nstops = [\n",
@@ -107,9 +114,43 @@ pub fn write(palette: &Palette) -> Option<String> {
     Some(text)
 }
 
-fn color(text: &str) -> Result<Rgb, String> {
-    let found = hexadecimal(text).or_else(|| named(text));
-    found.ok_or_else(|| format!("`{text}` is not a colour; write #rrggbb or a name such as white"))
+fn color(value: &toml::Value) -> Result<Rgb, String> {
+    let found = match value {
+        toml::Value::String(text) => hexadecimal(text).or_else(|| named(text)),
+        toml::Value::Array(parts) => components(parts),
+        _ => None,
+    };
+    let text = match value {
+        toml::Value::Array(parts) => format!("[{}]", parts.iter().map(written).collect::<Vec<_>>().join(", ")),
+        value => written(value),
+    };
+    found.ok_or_else(|| {
+        format!("`{text}` is not a colour; write #rrggbb, a name such as white, or red, green and blue such as [0.2, 0.5, 1.0] or [51, 128, 255]")
+    })
+}
+
+/// A text or a number as it is written; of other values, their type.
+fn written(value: &toml::Value) -> String {
+    match value {
+        toml::Value::String(text) => text.clone(),
+        toml::Value::Integer(number) => number.to_string(),
+        toml::Value::Float(number) => number.to_string(),
+        other => other.type_str().to_string(),
+    }
+}
+
+/// Red, green and blue.
+fn components(parts: &[toml::Value]) -> Option<Rgb> {
+    let of_one = parts.iter().any(toml::Value::is_float);
+    let part = |value: &toml::Value| {
+        let number = value.as_float().or(value.as_integer().map(|whole| whole as f64))?;
+        let [most, scale] = if of_one { [1.0, 255.0] } else { [255.0, 1.0] };
+        (0.0..=most).contains(&number).then(|| (number * scale).round() as u8)
+    };
+    match parts {
+        [red, green, blue] => Some([part(red)?, part(green)?, part(blue)?]),
+        _ => None,
+    }
 }
 
 #[cfg(test)]
@@ -123,6 +164,8 @@ mod tests {
             let mut palette =
                 Palette { follows_relief: false, mix: Mix::Hsv, above: Some([1, 2, 3]), ..named.palette() };
             assert_eq!(parse("", &write(&palette).unwrap()), Ok(palette.clone()));
+            let nearest = palette.clone().nearest();
+            assert_eq!(parse("", &write(&nearest).unwrap()), Ok(nearest));
             palette.stops[0].at = Position::Value(-3.25e-5);
             assert_eq!(write(&palette).is_some(), matches!(palette.stops[1].at, Position::Value(_)));
         }
@@ -138,6 +181,10 @@ mod tests {
         assert_eq!(palette.stops, [stop(-1.0, [0, 0, 128]), stop(0.5, [255, 170, 0])]);
         assert_eq!((palette.name.as_str(), palette.mix, palette.above), ("Autumn", Mix::Hsv, Some([255; 3])));
         assert_eq!(parse("file", "stops = [[0, \"red\"]]").unwrap().name, "file");
+        let text = "stops = [[0, [0, 0.5, 1]], [1, [0, 1, 255]], [2, [1.0, 1.0, 1.0]]]\nmissing = [0.2, 0.2, 0.2]";
+        let palette = parse("file", text).unwrap();
+        let colors: Vec<Rgb> = palette.stops.iter().map(|stop| stop.color).collect();
+        assert_eq!((colors, palette.missing), (vec![[0, 128, 255], [0, 1, 255], [255; 3]], Some([51; 3])));
     }
 
     #[test]
@@ -146,6 +193,13 @@ mod tests {
             ("stops = []", "no stops"),
             ("name = \"x\"", "stops"),
             ("stops = [[0, \"#12\"]]", "`#12` is not a colour"),
+            (
+                "stops = [[0, [1.5, 0, 0]]]",
+                "`[1.5, 0, 0]` is not a colour; write #rrggbb, a name such as white, or red",
+            ),
+            ("stops = [[0, [0, 0, 256]]]", "`[0, 0, 256]` is not a colour"),
+            ("stops = [[0, [0, 0]]]", "is not a colour"),
+            ("stops = [[0, 7]]", "`7` is not a colour"),
             ("stops = [[1, \"red\"], [0, \"red\"]]", "ascending"),
             ("stops = [[inf, \"red\"]]", "inf is not a valid position"),
             ("unit = \"feet\"\nstops = [[0, \"red\"]]", "unknown unit \"feet\""),

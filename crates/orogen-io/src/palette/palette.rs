@@ -37,6 +37,8 @@ pub enum Mix {
     Rgb,
     /// Hue, saturation and value; the hue takes the shorter way.
     Hsv,
+    /// Not mixed: the colour of the nearest stop.
+    Nearest,
 }
 
 /// Colours for a map.
@@ -64,6 +66,12 @@ impl Palette {
     #[must_use]
     pub fn new(name: &str, stops: Vec<Stop>) -> Palette {
         Palette { name: name.to_string(), stops, ..Palette::default() }
+    }
+
+    /// The same with only the colours of its stops: each value has that of the nearest one. The atlas tint is then not fitted to the relief.
+    #[must_use]
+    pub fn nearest(self) -> Palette {
+        Palette { mix: Mix::Nearest, follows_relief: false, ..self }
     }
 
     /// Whether it distinguishes sea from land: its stops are not all shares of the range.
