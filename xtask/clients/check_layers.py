@@ -163,33 +163,34 @@ def walked(place):
     to, length, known = downstream(codes, cells * place.cell**2 >= STREAM)
     filled = flooded(place.z)
     found = beside("walked", place, cells, to, length, filled - filled.ravel()[to], known)
-    return found | {
-        "filled (walked)": (unlike(place.ours("filled"), filled), 0),
-        "watershed (walked)": (watershed(place, receivers(codes)[0]), 0),
-    }
-
-
-def watershed(place, to):
-    """Compares the watershed of a chosen outlet with all cells that lead to it; `to` has the cell that each cell drains to."""
-    area = place.ours("drainage-area")
-    # The cell that drains the most, away from the border.
-    drained = numpy.where(to_border(area.shape) > 20, area, 0)
-    row, column = numpy.unravel_index(drained.argmax(), area.shape)
-    east, north = place.transform * (column + 0.5, row + 0.5)
-    options = ("--layer", "watershed", "--outlet", f"{east + 1.2 * place.cell},{north - 0.7 * place.cell}", "--river-area", drained.max(), "--smooth", 0)
-    path = export(place.heights, "basin.geojson", *options, "--no-cache", "-q")
-    (feature,) = json.loads(path.read_text())["features"]
-    found = [feature["properties"][name] for name in ("outlet_x", "outlet_y")]
-    checks.that("the outlet is on the stream", numpy.allclose(found, (east, north), rtol=0, atol=1e-3), f"{found}, not {east}, {north}")
-    ours = rasterio.features.rasterize([(feature["geometry"], 1)], out_shape=area.shape, transform=place.transform) == 1
-    end = row * area.shape[1] + column
-    to = to.copy()
+    ours, row, column = watershed(place)
+    end, (to, _) = row * codes.shape[1] + column, receivers(codes)
     to[end] = end
     while not (to[to] == to).all():
         to = to[to]
-    theirs = (to == end).reshape(area.shape)
-    checks.that("the watershed has many cells", theirs.sum() > 1000, theirs.sum())
-    return unlike(ours.astype("f8"), theirs.astype("f8"))
+    return found | {
+        "filled (walked)": (unlike(place.ours("filled"), filled), 0),
+        "watershed (walked)": (unlike(ours.astype("f8"), (to == end).reshape(codes.shape).astype("f8")), 0),
+    }
+
+
+def watershed(place):
+    """Returns the watershed of a chosen outlet beside the stream that drains the most of the inner map, and the outlet's row and column."""
+    area = place.ours("drainage-area")
+    drained = numpy.where(to_border(area.shape) > 20, area, 0)
+    row, column = numpy.unravel_index(drained.argmax(), area.shape)
+    east, north = place.transform * (column + 0.5, row + 0.5)
+    beside = f"{east + 1.2 * place.cell},{north - 0.7 * place.cell}"
+    options = ("--layer", "watershed", "--outlet", beside, "--river-area", drained.max(), "--smooth", 0, "--no-cache", "-q")
+    path = export(place.heights, "basin.geojson", *options)
+    (feature,) = json.loads(path.read_text())["features"]
+    # The nearest cell of the stream may be one further downstream.
+    across, down = ~place.transform * [feature["properties"][name] for name in ("outlet_x", "outlet_y")]
+    found = int(down), int(across)
+    checks.that("the outlet is on the stream", area[found] >= drained.max() and numpy.hypot(found[0] - row, found[1] - column) < 3, found)
+    ours = rasterio.features.rasterize([(feature["geometry"], 1)], out_shape=area.shape, transform=place.transform) == 1
+    checks.that("the watershed has many cells", ours.sum() > 1000, ours.sum())
+    return ours, *found
 
 
 def whitebox(place):
@@ -217,13 +218,23 @@ def whitebox(place):
     drawn = env.read_raster(str(place.write("wb-streams.tif", streams)))
     above = get(env.hydrology.elevation_above_stream(dem=dem, streams=drawn), "wb-above.tif")
     length = get(env.hydrology.downslope_distance_to_stream(dem=dem, streams=drawn), "wb-length.tif") / place.cell
-    pointer = get(env.hydrology.d8_pointer(dem=dem), "wb-pointer.tif")
+    pointers = env.hydrology.d8_pointer(dem=dem)
+    pointer = get(pointers, "wb-pointer.tif")
+    basin, row, column = watershed(place)
+    outlet = numpy.zeros(place.z.shape)
+    outlet[row, column] = 1
+    outlet = env.read_raster(str(place.write("wb-outlet.tif", outlet)))
+    theirs = get(env.hydrology.watershed_from_raster_pour_points(d8_pntr=pointers, pour_pts=outlet), "wb-basin.tif") == 1
     codes = place.ours("flow-direction").astype("int64")
     to, _, known = downstream(codes, streams)
     found = beside("WhiteboxTools", place, cells, to, length, above, known)
     # WhiteboxTools ends at the border; orogen continues beyond it.
     ours = place.ours("flow-direction", "--codes", "whitebox")
-    return {"flow-direction (WhiteboxTools)": (unlike(inner(ours, 1), inner(pointer, 1)), 0)} | found
+    return found | {
+        "flow-direction (WhiteboxTools)": (unlike(inner(ours, 1), inner(pointer, 1)), 0),
+        # Cells of the border lead out of the map there.
+        "watershed (WhiteboxTools)": (unlike(inner(basin.astype("f8"), 1), inner(theirs.astype("f8"), 1)), 0),
+    }
 
 
 def middle(source):
