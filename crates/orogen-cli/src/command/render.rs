@@ -94,6 +94,10 @@ pub struct Args {
     /// Give each value the color of the nearest stop of the palette, without mixing (as gdaldem's -nearest_color_entry)
     #[arg(long, requires = "palette")]
     nearest_color: bool,
+    /// Heights at the ends of the palette of --color map, for example to use the same range for several pictures [default: the lowest and the
+    /// highest]
+    #[arg(long, value_name = "LOW,HIGH", allow_hyphen_values = true)]
+    range: Option<Numbers>,
     #[command(flatten)]
     view: View,
     #[command(flatten)]
@@ -188,6 +192,12 @@ fn job(args: &Args) -> Result<RenderJob, Failure> {
     if job.palette.is_some() && !matches!(args.color, Dress::Map) {
         return usage("--palette applies to --color map".into());
     }
+    job.range = match args.range.as_ref().map(|range| range.0.as_slice()) {
+        None => None,
+        Some(_) if !matches!(args.color, Dress::Map) => return usage("--range applies to --color map".into()),
+        Some(&[low, high]) if low < high => Some([low, high]),
+        Some(_) => return usage("--range must be two heights, the lower first, such as 0,2500".into()),
+    };
     if !FOV.contains(&args.fov) {
         return usage(format!("--fov must be from {} to {} degrees, not {}", FOV.start(), FOV.end(), args.fov));
     }
@@ -277,6 +287,12 @@ fn shot(args: &Args) -> Result<Shot, Failure> {
             _ => usage("--look must be X,Y in metres, such as 5000,5000".into()),
         };
     }
+    around(camera)
+}
+
+/// The view around the centre of the land.
+pub(super) fn around(camera: Option<&[f64]>) -> Result<Shot, Failure> {
+    let usage = |message: String| Err(Failure::Usage(message));
     let (azimuth, elevation, distance) = match camera {
         None => return Ok(RenderJob::default().view),
         Some(&[azimuth, elevation]) => (azimuth, elevation, None),

@@ -3,20 +3,24 @@
 use std::path::{Path, PathBuf};
 
 use orogen::budget::Reservation;
-use orogen::map::contact::{self, Sheet, Variant};
+use orogen::jobs::render::RenderJob;
+use orogen::map::contact::{self, Drawn, Sheet, Variant};
+use orogen::palette::palette::Palette;
+use orogen::render::scene::Colors;
 use orogen::world::HEIGHT;
 use orogen::{Budget, Grid, Progress, Recipe, Window, World};
 
 use crate::bar::Bar;
+use crate::command::render;
 use crate::failure::Failure;
 use crate::format::Format;
 use crate::options::RunOptions;
 use crate::sink::{Sink, is_stdout};
 use crate::source::{Source, title};
 use crate::values::arguments::Arguments;
-use crate::values::number::seed;
+use crate::values::number::{Numbers, seed};
 use crate::values::sweep::Sweep;
-use crate::{finite, interrupt, say};
+use crate::{finite, interrupt, palette, say};
 
 /// Arguments of the command.
 #[derive(Debug, clap::Args)]
@@ -27,14 +31,27 @@ pub struct Args {
     /// Number of seeds to show, starting with the recipe's seed or --seed [default: 9]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=64), conflicts_with = "sweep")]
     seeds: Option<u8>,
-    /// Show N values of a parameter, evenly spaced from A to B, such as relief=200..2000:9
-    #[arg(long, value_name = "NAME=A..B:N", allow_hyphen_values = true)]
+    /// Show values of a parameter: N, evenly spaced from A to B, such as relief=200..2000:9, or a list, such as relief=200,500,2000
+    #[arg(long, value_name = "NAME=A..B:N|A,B,...", allow_hyphen_values = true)]
     sweep: Option<Sweep>,
     /// The first seed, or with --sweep the seed of all pictures [default: the recipe's]
     #[arg(long, value_name = "N", value_parser = seed, allow_negative_numbers = true)]
     seed: Option<u64>,
     #[command(flatten)]
     arguments: Arguments,
+    /// Palette: a name (`orogen palettes` lists them) or a file (.cpt, .gpl, .toml, or gdaldem) [default: hypsometric]
+    #[arg(long, value_name = "NAME|FILE")]
+    palette: Option<PathBuf>,
+    /// Give each value the color of the nearest stop of the palette, without mixing (as gdaldem's -nearest_color_entry)
+    #[arg(long, requires = "palette")]
+    nearest_color: bool,
+    /// Show the land in perspective, as `orogen render` does, instead of a map; with --palette in the colors of the map, over the heights of all
+    /// pictures
+    #[arg(long)]
+    render: bool,
+    /// Camera position around the centre of the land, as in `orogen render`: AZIMUTH,ELEVATION[,DISTANCE] [default: 200,24]
+    #[arg(long, value_name = "A,E[,D]", requires = "render", allow_hyphen_values = true)]
+    camera: Option<Numbers>,
     /// Picture to write (.png)
     #[arg(short, long, value_name = "FILE", default_value = "variants.png")]
     out: PathBuf,
@@ -55,6 +72,7 @@ const DEFAULT_SEEDS: u8 = 9;
 const UNBOUNDED: f64 = 1024.0;
 
 /// A picture to make.
+#[derive(Clone)]
 struct Asked {
     label: String,
     seed: Option<u64>,
@@ -75,17 +93,30 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     let budget = args.run.limits.budget();
     let recipe = source.read(&budget, &args.arguments)?;
-    let sink = Sink::new(&args.out, &args.run.replace.policy(source.inputs(&recipe)))?;
+    let palette = palette::chosen(args.palette.as_deref(), args.nearest_color)?;
+    let policy = args.run.replace.policy(source.inputs(&recipe)).protecting(&args.palette);
+    let sink = Sink::new(&args.out, &policy)?;
     let asked = asked(args, &recipe)?;
     let (bar, progress) = Bar::new(args.run.quiet);
     let stopped = |failure: Failure| interrupt::explain(failure, "nothing was written");
-    let [making, writing] = progress.parts([19.0, 1.0]);
+    let job = if args.render { Some(job(args, palette.as_ref())?) } else { None };
+    let [making, rendering, writing] = progress.parts([19.0, if args.render { 60.0 } else { 0.0 }, 1.0]);
     making.expect(asked.len() as f64);
+    rendering.expect(asked.len() as f64);
     let (mut variants, mut held) = (Vec::with_capacity(asked.len()), Vec::with_capacity(asked.len()));
-    for one in asked {
+    for one in &asked {
         let (variant, memory) = make(args, &source, one, &budget, &making.part(1.0)).map_err(stopped)?;
         variants.push(variant);
         held.push(memory);
+    }
+    if let Some(mut job) = job {
+        // One palette over the heights of all pictures.
+        job.range = contact::range(&variants).filter(|_| job.colors == Colors::Map);
+        for (variant, one) in variants.iter_mut().zip(&asked) {
+            let made = picture(args, &job, &source, one, &budget, &rendering.part(1.0));
+            variant.picture = Some(made.map_err(stopped)?);
+            held.push(budget.charge(3 * (job.size[0] * job.size[1]) as u64));
+        }
     }
     let words = words(args, &recipe);
     let sheet = Sheet {
@@ -93,6 +124,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         about: recipe.about.clone(),
         footer: words,
         sea_level: recipe.world.sea_level,
+        palette,
     };
     let columns = args.columns.map(usize::from);
     let [width, height] = contact::size(&variants, columns);
@@ -122,7 +154,7 @@ fn asked(args: &Args, recipe: &Recipe) -> Result<Vec<Asked>, Failure> {
         .find(|parameter| parameter.name == sweep.name)
         .map(|parameter| parameter.unit.clone());
     let unit = unit.unwrap_or_default();
-    let asked = sweep.values().map(|value| Asked {
+    let asked = sweep.values.iter().map(|&value| Asked {
         label: format!("{} {} {unit}", sweep.name, orogen::words::number(value)).trim_end().to_string(),
         seed: args.seed,
         set: Some((sweep.name.clone(), value)),
@@ -130,23 +162,57 @@ fn asked(args: &Args, recipe: &Recipe) -> Result<Vec<Asked>, Failure> {
     Ok(asked.collect())
 }
 
-/// Makes one picture.
+/// The recipe of one picture.
+fn recipe(args: &Args, source: &Source, asked: &Asked, budget: &Budget) -> Result<Recipe, Failure> {
+    let mut recipe = source.read(budget, &args.arguments.with(asked.set.clone()))?;
+    recipe.world.seed = asked.seed.unwrap_or(recipe.world.seed);
+    Ok(recipe)
+}
+
+/// What the rendered pictures have in common.
+fn job(args: &Args, palette: Option<&Palette>) -> Result<RenderJob, Failure> {
+    let mut job = RenderJob::default();
+    let width = usize::from(args.size);
+    job.size = [width, width * 3 / 4];
+    job.view = render::around(args.camera.as_ref().map(|camera| camera.0.as_slice()))?;
+    if palette.is_some() {
+        (job.colors, job.palette) = (Colors::Map, palette.cloned());
+    }
+    job.check()?;
+    Ok(job)
+}
+
+/// Renders one picture.
+fn picture(
+    args: &Args,
+    job: &RenderJob,
+    source: &Source,
+    asked: &Asked,
+    budget: &Budget,
+    progress: &Progress,
+) -> Result<Drawn, Failure> {
+    let mut recipe = recipe(args, source, asked, budget)?;
+    job.prepare(&mut recipe)?;
+    let world = args.run.limits.open(recipe, budget)?;
+    let job = job.clone().with_window(window(&world, usize::from(args.size))?);
+    Ok(Drawn { size: job.size, bytes: job.scene(&world, 1.0, 0, progress)?.to_bytes()? })
+}
+
+/// Computes the heights of one picture.
 fn make(
     args: &Args,
     source: &Source,
-    asked: Asked,
+    asked: &Asked,
     budget: &Budget,
     progress: &Progress,
 ) -> Result<(Variant, Reservation), Failure> {
-    let mut recipe = source.read(budget, &args.arguments.with(asked.set))?;
-    recipe.world.seed = asked.seed.unwrap_or(recipe.world.seed);
-    let world = args.run.limits.open(recipe, budget)?;
+    let world = args.run.limits.open(recipe(args, source, asked, budget)?, budget)?;
     let window = window(&world, usize::from(args.size))?;
     let plan = world.plan(&[HEIGHT], &window)?;
     let grid = world.run(&plan, progress)?.pop().unwrap_or_else(|| Grid::filled(window, 0.0));
     finite::check(HEIGHT, &grid)?;
     let held = budget.charge(4 * grid.data().len() as u64);
-    Ok((Variant { label: asked.label, grid }, held))
+    Ok((Variant { label: asked.label.clone(), grid, picture: None }, held))
 }
 
 /// The window of the whole world, or of an unbounded world the part that other commands show.
@@ -161,14 +227,22 @@ fn window(world: &World, samples: usize) -> Result<Window, Failure> {
 fn words(args: &Args, recipe: &Recipe) -> String {
     let name = if is_stdout(&args.recipe) { Path::new("-") } else { &args.recipe };
     let what = match &args.sweep {
-        Some(Sweep { name, ends, count }) => {
+        Some(Sweep { name, text, .. }) => {
             let seed = args.seed.map_or_else(String::new, |seed| format!("--seed {seed} "));
-            format!("{seed}--sweep {name}={}..{}:{count}", ends[0], ends[1])
+            format!("{seed}--sweep {name}={text}")
         }
         None => {
             format!("--seed {} --seeds {}", args.seed.unwrap_or(recipe.world.seed), args.seeds.unwrap_or(DEFAULT_SEEDS))
         }
     };
     let set: String = args.arguments.values().iter().map(|(name, value)| format!(" --set {name}={value}")).collect();
-    format!("Orogen {}: orogen variants {} {what}{set} --size {}", env!("CARGO_PKG_VERSION"), name.display(), args.size)
+    let palette = args.palette.as_ref().map_or_else(String::new, |palette| format!(" --palette {}", palette.display()));
+    let nearest = if args.nearest_color { " --nearest-color" } else { "" };
+    let render = if args.render { " --render" } else { "" };
+    let camera = args.camera.as_ref().map_or_else(String::new, |Numbers(camera)| {
+        let numbers: Vec<String> = camera.iter().map(f64::to_string).collect();
+        format!(" --camera {}", numbers.join(","))
+    });
+    let (version, name, size) = (env!("CARGO_PKG_VERSION"), name.display(), args.size);
+    format!("Orogen {version}: orogen variants {name} {what}{set} --size {size}{palette}{nearest}{render}{camera}")
 }

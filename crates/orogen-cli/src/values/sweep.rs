@@ -1,18 +1,18 @@
-//! `--sweep NAME=A..B:N`: values of a parameter.
+//! `--sweep NAME=A..B:N` or `NAME=A,B,...`: values of a parameter.
 
 use std::str::FromStr;
 
 use super::number::finite;
 
-/// Values of a parameter, evenly spaced.
+/// Values of a parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sweep {
     /// The name of the parameter.
     pub name: String,
-    /// The first and the last value.
-    pub ends: [f64; 2],
-    /// The number of values.
-    pub count: u8,
+    /// The values, in order.
+    pub values: Vec<f64>,
+    /// The values as they were given.
+    pub text: String,
 }
 
 impl FromStr for Sweep {
@@ -21,27 +21,30 @@ impl FromStr for Sweep {
     fn from_str(text: &str) -> Result<Sweep, String> {
         let parts = || {
             let (name, rest) = text.split_once('=')?;
-            let (range, count) = rest.rsplit_once(':')?;
-            let (first, last) = range.split_once("..")?;
             let number = |text: &str| finite(text).ok();
-            Some((name.trim().to_string(), [number(first)?, number(last)?], count.trim().parse::<u8>().ok()?))
+            let values = match rest.split_once("..") {
+                Some((first, rest)) => {
+                    let (last, count) = rest.rsplit_once(':')?;
+                    spaced([number(first)?, number(last)?], count.trim().parse::<u8>().ok()?)
+                }
+                None => rest.split(',').map(number).collect::<Option<Vec<f64>>>()?,
+            };
+            Some(Sweep { name: name.trim().to_string(), values, text: rest.replace(char::is_whitespace, "") })
         };
         match parts() {
-            Some((name, ends, count)) if !name.is_empty() && (2..=64).contains(&count) => Ok(Sweep { name, ends, count }),
-            _ => Err("a sweep must be a parameter with its first and last value and a number of values from 2 to 64, such as relief=200..2000:9".into()),
+            Some(sweep) if !sweep.name.is_empty() && (2..=64).contains(&sweep.values.len()) => Ok(sweep),
+            _ => Err("a sweep must be a parameter with its first and last value and a number of values from 2 to 64, such as \
+                      relief=200..2000:9, or with 2 to 64 values, such as relief=200,500,2000"
+                .into()),
         }
     }
 }
 
-impl Sweep {
-    /// The values, in order.
-    pub fn values(&self) -> impl Iterator<Item = f64> + '_ {
-        let [first, last] = self.ends;
-        let steps = f64::from(self.count - 1);
-        // The last value is exactly the given one, without summation errors.
-        (0..self.count)
-            .map(move |k| if k + 1 == self.count { last } else { first + (last - first) * f64::from(k) / steps })
-    }
+/// Values at even distances, with both ends.
+fn spaced([first, last]: [f64; 2], count: u8) -> Vec<f64> {
+    let steps = f64::from(count.max(2) - 1);
+    // The last value is exactly the given one, without summation errors.
+    (0..count).map(|k| if k + 1 == count { last } else { first + (last - first) * f64::from(k) / steps }).collect()
 }
 
 #[cfg(test)]
@@ -51,9 +54,11 @@ mod tests {
     #[test]
     fn sweeps() {
         let sweep: Sweep = "relief=200..2000:3".parse().unwrap();
-        assert_eq!(sweep.values().collect::<Vec<f64>>(), [200.0, 1100.0, 2000.0]);
+        assert_eq!(sweep.values, [200.0, 1100.0, 2000.0]);
         let sweep: Sweep = "a = 1 .. -0.7 : 2".parse().unwrap();
-        assert_eq!((sweep.name.as_str(), sweep.values().last()), ("a", Some(-0.7)));
+        assert_eq!((sweep.name.as_str(), &sweep.values[..]), ("a", &[1.0, -0.7][..]));
+        let sweep: Sweep = "k=0.5, 1,-4e1".parse().unwrap();
+        assert_eq!((&sweep.values[..], sweep.text.as_str()), (&[0.5, 1.0, -40.0][..], "0.5,1,-4e1"));
         for text in [
             "relief",
             "relief=1",
@@ -63,6 +68,9 @@ mod tests {
             "relief=1..x:3",
             "=1..2:3",
             "a=1..inf:3",
+            "a=1,",
+            "a=1,nan",
+            "a=1,2..3",
         ] {
             assert!(text.parse::<Sweep>().is_err(), "{text}");
         }

@@ -47,6 +47,7 @@ fn rows(side: usize) -> Vec<Vec<String>> {
         "analyze land.toml -q".into(),
         "analyze dem.tif -o page.png -q".into(),
         "variants land.toml --seeds 2 -q".into(),
+        "variants land.toml --seeds 2 --render --size 256 -q".into(),
         "render land.toml --size 480x270 --samples 1 -q".into(),
         "grow rising.toml --frames 2 -q".into(),
         "grow rising.toml --frames 2 -o grow.gif -q".into(),

@@ -1,7 +1,7 @@
 //! `--set`: on every command that takes a recipe.
 
 use crate::commands::{WRITERS, prepare, workplace};
-use crate::harness::Folder;
+use crate::harness::{Folder, png};
 
 const RECIPE: &str = r#"
 orogen = 1
@@ -56,6 +56,33 @@ fn variants_on_one_sheet() {
     assert_eq!(size("seeds.png")[1], size("sweep.png")[1]);
     folder.good(&["variants", "a.toml", "--seeds", "4", "--size", "96", "-o", "again.png", "-q", "--threads", "1"]);
     assert_eq!(std::fs::read(folder.path("seeds.png")).unwrap(), std::fs::read(folder.path("again.png")).unwrap());
+    // The same values as a list; a palette over the heights of all pictures, in the plane and in space.
+    let draw = |more: &[&str]| {
+        folder.good(&[&["variants", "a.toml", "--size", "96", "-o", "x.png", "--force", "-q"], more].concat());
+        png(&folder.read("x.png"))
+    };
+    let evenly = draw(&["--sweep", "relief=100..900:3"]);
+    let listed = draw(&["--sweep", "relief=100,500,900"]);
+    let above_footer = 3 * evenly.width as usize * (evenly.height as usize - 60);
+    assert_eq!(evenly.data[..above_footer], listed.data[..above_footer]);
+    folder.write("two.toml", "unit = \"range\"\nstops = [[0, [1.0, 0, 0]], [1, [0, 0, 1.0]]]\n");
+    let palette = ["--sweep", "relief=2,900", "--palette", "two.toml", "--nearest-color"];
+    let colored = |picture: &crate::harness::Picture| {
+        let is = |pixel: &&[u8], c: usize| i32::from(pixel[c]) > 60 + i32::from(pixel[2 - c]);
+        [0, 2].map(|c| picture.data.chunks(3).filter(|pixel| is(pixel, c)).count())
+    };
+    for more in [&[][..], &["--render"], &["--render", "--camera", "120,40"]] {
+        let [red, blue] = colored(&draw(&[&palette[..], more].concat()));
+        // Low land fills the first picture, and a part of the second.
+        assert!(red > blue && blue > 200, "{more:?}: {red} red, {blue} blue");
+    }
+    assert_ne!(
+        draw(&["--seeds", "1", "--render"]).data,
+        draw(&["--seeds", "1", "--render", "--camera", "120,40"]).data
+    );
+    folder.bad(&["variants", "a.toml", "--camera", "1,2"], 2, "--render");
+    folder.bad(&["variants", "a.toml", "--render", "--camera", "1,-2"], 2, "above the horizon");
+    folder.bad(&["variants", "a.toml", "--sweep", "relief=1,x"], 2, "with 2 to 64 values, such as relief=200,500,2000");
     folder.bad(&["variants", "a.toml", "--sweep", "relif=100..900:6"], 1, "did you mean `relief`?");
     folder.bad(&["variants", "a.toml", "--sweep", "relief=100..9000:6"], 1, "from 1 to 1000");
     folder.bad(&["variants", "a.toml", "--sweep", "relief=100"], 2, "relief=200..2000:9");

@@ -74,6 +74,8 @@ pub struct RenderJob {
     pub colors: Colors,
     /// The palette of [`Colors::Map`]; by default that of the relief map.
     pub palette: Option<Palette>,
+    /// The heights at the ends of the palette of [`Colors::Map`]; by default the lowest and the highest.
+    pub range: Option<[f64; 2]>,
     /// Height of the snow line in metres; by default chosen by the relief.
     pub snow_line: Option<f64>,
     /// Number of samples per pixel.
@@ -97,6 +99,7 @@ impl Default for RenderJob {
             edge: style.edge,
             colors: style.colors,
             palette: None,
+            range: None,
             snow_line: style.snow_line,
             samples: style.samples,
             window: None,
@@ -166,6 +169,15 @@ impl RenderJob {
         }
         if self.palette.is_some() && self.colors != Colors::Map {
             return refuse("a palette applies to the colours of the map only".into());
+        }
+        match self.range {
+            Some(_) if self.colors != Colors::Map => {
+                return refuse("the ends of a palette apply to the colours of the map only".into());
+            }
+            Some([low, high]) if !(low.is_finite() && high.is_finite() && low < high) => {
+                return refuse("the ends of the palette must be two heights, the lower first".into());
+            }
+            _ => {}
         }
         Ok(())
     }
@@ -247,6 +259,7 @@ impl RenderJob {
             edge: self.edge,
             colors: self.colors,
             palette: self.palette.as_ref(),
+            range: self.range,
             cover: match cover.as_slice() {
                 [red, green, blue, roughness] => Some([red, green, blue, roughness]),
                 _ => None,
@@ -360,6 +373,19 @@ impl Rendering {
         self.scene.paint(camera, size, rows, bytes, progress)
     }
 
+    /// Paints the picture of the job: three bytes for each pixel.
+    ///
+    /// # Errors
+    /// If the work was cancelled.
+    pub fn to_bytes(&self) -> Result<Vec<u8>> {
+        let [width, height] = self.spec.size;
+        let mut bytes = vec![0; 3 * width * height];
+        let camera = self.scene.camera(&self.spec);
+        self.painting.expect(height as f64);
+        self.paint(&camera, self.spec.size, 0..height, &mut bytes, &self.painting.part(height as f64))?;
+        Ok(bytes)
+    }
+
     /// Paints the picture of the job and writes it to a PNG file, atomically.
     ///
     /// # Errors
@@ -373,17 +399,14 @@ impl Rendering {
     /// # Errors
     /// If the stream fails, or the work was cancelled.
     pub fn to_stream(&self, out: &mut dyn Write) -> io::Result<()> {
-        let camera = self.scene.camera(&self.spec);
-        self.painting.expect(self.spec.size[1] as f64);
         let stopping = &mut Stopping { out, progress: &self.painting };
         if self.device.is_some() {
             // At once: a device receives the scene for each call.
-            let [width, height] = self.spec.size;
-            let mut bytes = vec![0; 3 * width * height];
-            let part = self.painting.part(height as f64);
-            self.paint(&camera, self.spec.size, 0..height, &mut bytes, &part)?;
+            let bytes = self.to_bytes()?;
             return png::write_through(stopping, &self.picture(), |out| out.write_all(&bytes));
         }
+        let camera = self.scene.camera(&self.spec);
+        self.painting.expect(self.spec.size[1] as f64);
         png::write(stopping, &self.picture(), |rows, bytes| {
             let part = self.painting.part(rows.len() as f64);
             Ok(self.scene.paint(&camera, self.spec.size, rows, bytes, &part)?)

@@ -3,6 +3,8 @@
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::words::shortened;
+use orogen_io::palette::palette::Palette;
+use orogen_io::palette::tint::Tint;
 
 use super::canvas::{Canvas, Ink};
 use super::paint::Painter;
@@ -30,6 +32,8 @@ pub struct Sheet {
     pub footer: String,
     /// Height of the sea level, in metres.
     pub sea_level: f64,
+    /// The palette, over the heights of all pictures; by default that of the relief map.
+    pub palette: Option<Palette>,
 }
 
 /// A picture of the page.
@@ -38,6 +42,31 @@ pub struct Variant {
     pub label: String,
     /// The heights.
     pub grid: Grid,
+    /// A picture of them in place of the relief map.
+    pub picture: Option<Drawn>,
+}
+
+/// A picture that was made elsewhere.
+pub struct Drawn {
+    /// Width and height in pixels.
+    pub size: [usize; 2],
+    /// Red, green and blue of each pixel.
+    pub bytes: Vec<u8>,
+}
+
+impl Variant {
+    /// Width and height of the picture.
+    fn size(&self) -> [usize; 2] {
+        self.picture.as_ref().map_or([self.grid.width(), self.grid.height()], |picture| picture.size)
+    }
+}
+
+/// The lowest and the highest of all heights; `None` if there are none.
+#[must_use]
+pub fn range(variants: &[Variant]) -> Option<[f64; 2]> {
+    let all = variants.iter().flat_map(|variant| variant.grid.data()).copied().filter(|height| height.is_finite());
+    let [low, high] = all.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)]);
+    (low < high).then_some([f64::from(low), f64::from(high)])
 }
 
 /// Pictures per row, and the size of the largest.
@@ -51,8 +80,8 @@ fn layout(variants: &[Variant], columns: Option<usize>) -> Layout {
     let count = variants.len().max(1);
     let square = (1..=count).find(|columns| columns * columns >= count).unwrap_or(1);
     let columns = columns.unwrap_or(square).min(count);
-    let largest = |side: fn(&Grid) -> usize| variants.iter().map(|variant| side(&variant.grid)).max().unwrap_or(1);
-    Layout { columns, rows: count.div_ceil(columns), cell: [largest(Grid::width), largest(Grid::height)] }
+    let largest = |side: usize| variants.iter().map(|variant| variant.size()[side]).max().unwrap_or(1);
+    Layout { columns, rows: count.div_ceil(columns), cell: [largest(0), largest(1)] }
 }
 
 /// The size of the page.
@@ -79,22 +108,27 @@ pub fn draw(sheet: &Sheet, variants: &[Variant], columns: Option<usize>) -> Resu
     let about = style(Face::Regular, 15.0, SOFT);
     font.write(&mut canvas, MARGIN as f32, (MARGIN + 22) as i64, &fitted(&sheet.title, heading, inner), heading);
     font.write(&mut canvas, MARGIN as f32, (MARGIN + 48) as i64, &fitted(&sheet.about, about, inner), about);
-    let painter = Painter::fit(&together(variants), sheet.sea_level);
-    for (k, Variant { label, grid, .. }) in variants.iter().enumerate() {
+    let all = together(variants);
+    let painter = match &sheet.palette {
+        Some(palette) => Painter::with_tint(Tint::of(palette, &all, sheet.sea_level as f32), &all, sheet.sea_level),
+        None => Painter::fit(&all, sheet.sea_level),
+    };
+    for (k, variant) in variants.iter().enumerate() {
+        let (Variant { label, grid, .. }, [across, down]) = (variant, variant.size());
         let (row, column) = (k / layout.columns, k % layout.columns);
         let left = MARGIN + column * (layout.cell[0] + GUTTER);
         let top = MARGIN + HEADER + row * (layout.cell[1] + CAPTION);
-        picture(&mut canvas, &painter, grid, [left, top]);
-        let baseline = top + grid.height();
-        let label = fitted(label, bold, grid.width());
+        picture(&mut canvas, &painter, variant, [left, top]);
+        let baseline = top + down;
+        let label = fitted(label, bold, across);
         let end = font.write(&mut canvas, left as f32, (baseline + 21) as i64, &label, bold);
         let heights = heights(grid, sheet.sea_level);
-        let room = grid.width() as f32 - font.width(&heights, plain);
+        let room = across as f32 - font.width(&heights, plain);
         // Beside the label if there is room, otherwise below it.
         match end - left as f32 + 12.0 <= room {
             true => font.write(&mut canvas, left as f32 + room, (baseline + 21) as i64, &heights, plain),
             false => {
-                let heights = fitted(&heights, plain, grid.width());
+                let heights = fitted(&heights, plain, across);
                 font.write(&mut canvas, left as f32, (baseline + 38) as i64, &heights, plain)
             }
         };
@@ -118,11 +152,20 @@ fn together(variants: &[Variant]) -> Grid {
     all
 }
 
-fn picture(canvas: &mut Canvas, painter: &Painter, grid: &Grid, [left, top]: [usize; 2]) {
-    let mut bytes = vec![0; 3 * grid.width() * grid.height()];
-    painter.paint(grid, 0..grid.height(), &mut bytes);
+fn picture(canvas: &mut Canvas, painter: &Painter, variant: &Variant, [left, top]: [usize; 2]) {
+    let (grid, [width, _]) = (&variant.grid, variant.size());
+    let map;
+    let bytes = match &variant.picture {
+        Some(picture) => &picture.bytes,
+        None => {
+            let mut painted = vec![0; 3 * grid.width() * grid.height()];
+            painter.paint(grid, 0..grid.height(), &mut painted);
+            map = painted;
+            &map
+        }
+    };
     for (k, pixel) in bytes.chunks_exact(3).enumerate() {
-        let (i, j) = (k % grid.width(), k / grid.width());
+        let (i, j) = (k % width, k / width);
         canvas.set((left + i) as i64, (top + j) as i64, [pixel[0], pixel[1], pixel[2]]);
     }
 }

@@ -34,6 +34,7 @@ pub enum Colors {
 pub(super) struct Dress<'a> {
     pub colors: Colors,
     pub palette: Option<&'a Palette>,
+    pub range: Option<[f64; 2]>,
     pub cover: Option<[&'a Grid; 4]>,
     pub snow_line: Option<f64>,
 }
@@ -93,10 +94,10 @@ pub(super) const PAPER: f32 = 0.55;
 const MISSING: f32 = 0.3;
 
 impl GroundCover {
-    /// Prepares the ground of a land. The map's tint uses `palette`. Snow starts at `snow_line`, in metres, or at a
+    /// Prepares the ground of a land. The map's tint uses `palette`, over `range` or the heights of the land. Snow starts at `snow_line`, in metres, or at a
     /// share of the relief.
     pub fn new(land: &Land, relief: &Relief, dress: &Dress) -> GroundCover {
-        let Dress { colors, palette, cover, snow_line } = *dress;
+        let Dress { colors, palette, range, cover, snow_line } = *dress;
         let [columns, rows] = relief.samples();
         let (base, top) = (relief.height_of(0.0), relief.height_of(relief.highest()));
         let base = land.sea_level.map_or(base, |sea| base.max(sea));
@@ -106,9 +107,11 @@ impl GroundCover {
         let sea = land.sea_level.unwrap_or(f64::MIN) as f32;
         GroundCover {
             colors,
-            tint: match palette {
-                Some(palette) => Tint::of(palette, land.heights, sea),
-                None => Tint::fit(land.heights, sea),
+            tint: match (palette, range.map(|ends| ends.map(|end| end as f32))) {
+                (Some(palette), Some(ends)) => Tint::between(palette, ends, sea),
+                (None, Some([low, high])) => Tint::hypsometric(low, high, sea),
+                (Some(palette), None) => Tint::of(palette, land.heights, sea),
+                (None, None) => Tint::fit(land.heights, sea),
             },
             shape: shape(land, relief),
             cover: covered(cover, columns * rows),
@@ -416,7 +419,7 @@ mod tests {
         GroundCover::new(
             &land,
             &Relief::new(&land, 1.0).unwrap(),
-            &Dress { colors, palette: None, cover: None, snow_line },
+            &Dress { colors, palette: None, range: None, cover: None, snow_line },
         )
     }
 
@@ -430,7 +433,7 @@ mod tests {
         let land = Land { heights: &heights, surface: None, flow: None, sea_level: None };
         let relief = Relief::new(&land, 1.0).unwrap();
         for colors in [Colors::Natural, Colors::Desert, Colors::Surfaces, Colors::Map, Colors::Clay] {
-            let dress = Dress { colors, palette: None, cover: Some([&layer; 4]), snow_line: None };
+            let dress = Dress { colors, palette: None, range: None, cover: Some([&layer; 4]), snow_line: None };
             let ground = GroundCover::new(&land, &relief, &dress);
             let albedo = |x: f64, y: f64| ground.look(&GroundPoint { x, y, height: 3600.0, footprint: 1e6 }).albedo;
             let [red, green, blue] = albedo(4.3, 3.7);

@@ -45,6 +45,8 @@ pub struct Style<'a> {
     pub colors: Colors,
     /// The palette of [`Colors::Map`]; by default that of the relief map.
     pub palette: Option<&'a Palette>,
+    /// The heights at the ends of the palette; by default the lowest and the highest of the land.
+    pub range: Option<[f64; 2]>,
     /// Albedo (red, green and blue in linear light) and roughness for [`Colors::Surfaces`], over the land's window.
     pub cover: Option<[&'a Grid; 4]>,
     /// Height at which snow starts, in metres; by default chosen by the relief.
@@ -62,6 +64,7 @@ impl Default for Style<'_> {
             edge: None,
             colors: Colors::Natural,
             palette: None,
+            range: None,
             cover: None,
             snow_line: None,
             samples: 5,
@@ -153,8 +156,8 @@ impl Scene {
             let message = "a picture of surfaces needs their albedo and roughness over the window of the heights";
             return Err(Error::new(ErrorKind::Request, message));
         }
-        let Style { colors, palette, cover, snow_line, .. } = *style;
-        let dress = Dress { colors, palette, cover, snow_line };
+        let Style { colors, palette, range, cover, snow_line, .. } = *style;
+        let dress = Dress { colors, palette, range, cover, snow_line };
         let ground = GroundCover::new(land, &relief, &dress);
         painting.finish();
         progress.check()?;
