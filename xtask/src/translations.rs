@@ -5,8 +5,8 @@ use std::fmt;
 use crate::failure::{Failure, Result};
 use crate::{links, output, shell};
 
-/// Originals and their translations, in the same folder.
-const PAIRS: &[[&str; 2]] = &[["README.md", "README.zh-CN.md"]];
+/// Folders with an original and its translation.
+const PAIRS: &[[&str; 3]] = &[["", "README.md", "README.zh-CN.md"], ["docs", "jobs.md", "jobs.zh-CN.md"]];
 
 /// The number of lines at the start of a file that must contain the link to the other file.
 const NEAR: usize = 5;
@@ -14,8 +14,8 @@ const NEAR: usize = 5;
 /// Checks every translation.
 pub fn check() -> Result {
     let mut found = Vec::new();
-    for [original, translation] in PAIRS {
-        let read = |name: &'static str| Ok(Page { name, text: shell::read(&shell::root().join(name))? });
+    for [folder, original, translation] in PAIRS {
+        let read = |name: &'static str| Ok(Page { name, text: shell::read(&shell::root().join(folder).join(name))? });
         let (original, translation) = (read(original)?, read(translation)?);
         let parts = parts(&original.text, [original.name, translation.name]);
         let count = |kind| parts.iter().filter(|part| part.kind == kind).count();

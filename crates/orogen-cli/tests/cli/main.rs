@@ -22,6 +22,7 @@ mod documents;
 mod export;
 mod generate;
 mod harness;
+mod jobs;
 mod leftovers;
 #[cfg(unix)]
 mod limits;

@@ -1,0 +1,63 @@
+//! The jobs of docs/jobs.md, done with its commands.
+
+use crate::harness::Folder;
+
+const PAGE: &str = include_str!("../../../../docs/jobs.md");
+
+/// A test for each job, and one for their number.
+macro_rules! jobs {
+    ($($name:ident: $title:literal,)*) => {
+        $(#[test]
+        fn $name() {
+            do_job($title);
+        })*
+
+        #[test]
+        fn every_job_has_a_test() {
+            let titles: Vec<&str> = PAGE.lines().filter_map(|line| line.strip_prefix("## ")).collect();
+            assert_eq!(titles, [$($title),*]);
+        }
+    };
+}
+
+jobs! {
+    a_paper: "show noises and fractals in a paper",
+    a_unity_island: "bring an island into Unity",
+    a_dem: "analyse a DEM",
+    a_campaign_map: "draw the map of a campaign",
+    a_valley_of_blocks: "build a valley of blocks",
+    a_print: "print a mountain",
+}
+
+/// Writes the files of a job, runs its commands, and looks for what they should have written.
+fn do_job(title: &str) {
+    let (_, job) = PAGE.split_once(&format!("## {title}\n")).expect("the job is on the page");
+    let job = job.split("\n## ").next().unwrap_or_default();
+    let folder = Folder::new();
+    for block in job.split("```toml\n# ").skip(1) {
+        let (name, _) = block.split_once(':').expect("the first comment names the file");
+        let (content, _) = block.split_once("```").expect("the block ends");
+        folder.write(name, format!("# {content}"));
+    }
+    let commands = job.lines().filter_map(|line| line.strip_prefix("    orogen "));
+    let mut done = 0;
+    for command in commands {
+        let arguments = words(command);
+        folder.good(&arguments.iter().map(String::as_str).collect::<Vec<_>>());
+        let out = arguments.iter().position(|argument| argument == "-o").map(|at| &arguments[at + 1]);
+        let out = folder.path(out.expect("every command names its file"));
+        assert!(out.is_dir() || out.metadata().is_ok_and(|file| file.len() > 100), "{command}: {}", out.display());
+        done += 1;
+    }
+    assert!(done >= 3, "{title}: {done} commands");
+}
+
+/// The arguments of a command line; those in double quotes may contain spaces.
+fn words(line: &str) -> Vec<String> {
+    let quoted = line.split('"').enumerate();
+    let pieces = quoted.flat_map(|(n, text)| match n % 2 {
+        0 => text.split_whitespace().map(str::to_owned).collect(),
+        _ => vec![text.to_owned()],
+    });
+    pieces.collect()
+}
