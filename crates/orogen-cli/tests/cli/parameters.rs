@@ -63,7 +63,7 @@ fn variants_on_one_sheet() {
     };
     let evenly = draw(&["--sweep", "relief=100..900:3"]);
     let listed = draw(&["--sweep", "relief=100,500,900"]);
-    let above_footer = 3 * evenly.width as usize * (evenly.height as usize - 60);
+    let above_footer = 3 * evenly.width * (evenly.height - 60);
     assert_eq!(evenly.data[..above_footer], listed.data[..above_footer]);
     folder.write("two.toml", "unit = \"range\"\nstops = [[0, [1.0, 0, 0]], [1, [0, 0, 1.0]]]\n");
     let palette = ["--sweep", "relief=2,900", "--palette", "two.toml", "--nearest-color"];

@@ -97,7 +97,8 @@ impl LayerExport {
         job.prepare(&mut work.recipe)?;
         let world = work.open()?;
         let window = Samples::of(region, self.size, &work.recipe.world).window(&world)?;
-        let written = job.with_window(window).to_file(&world, &work.output()?, work.progress)?;
+        let output = work.policy().protecting(job.files()).output(&work.path)?;
+        let written = job.with_window(window).to_file(&world, &output, work.progress)?;
         let warning = written.count.check(&format!("the layer `{}`", self.layer))?;
         Ok(lines(&written.words, warning))
     }
@@ -147,9 +148,8 @@ fn given(specs: &[OptionSpec], given: &Given, line: &mut CommandLine) {
 
 /// Whether a format holds a layer by its kind.
 fn holds(format: &Format, layer: &str) -> bool {
-    let derived = derived::named(layer).and_then(|derived| derived.rows()).map(|rows| rows.nature);
-    match (derived, features::named(layer)) {
-        (Some(nature), _) => nature == Nature::Numbers || format.channels > 1,
+    match (derived::named(layer), features::named(layer)) {
+        (Some(derived), _) => derived.rows().is_none_or(|rows| rows.nature == Nature::Numbers || format.channels > 1),
         (None, Some(_)) => format.features,
         (None, None) => true,
     }

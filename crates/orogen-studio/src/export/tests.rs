@@ -184,6 +184,12 @@ fn command_lines_name_the_part_of_the_world() {
         line(&export),
         "orogen export classic --out 'my map'\\''s.png' --layer viewshed --size 300 --bits 8 --observer=-5,7"
     );
+    // Watersheds are samples in one format, and areas in another.
+    for (path, layers) in [("a.tif", ["watershed", "filled"]), ("a.geojson", ["watershed", "watersheds"])] {
+        let format = registry::of_path(Path::new(path)).unwrap();
+        let known = crate::export::layer::layers(format, &recipe());
+        assert!(layers.iter().all(|layer| known.iter().any(|name| name == layer)), "{path}: {known:?}");
+    }
     // A name that was given stays.
     export.set_kind(Kind::Render);
     assert_eq!(export.path(), Path::new("my map's.png"));

@@ -219,7 +219,7 @@ fn polygon(labels: &Grid<u32>, upstream: &[u32], all: &Measures, (cut, cell): (u
         return Vec::new();
     }
     let window = labels.window();
-    // With samples around it, as far as there are any: a corner of the grid is not cut.
+    // Grown by a sample within the window, because a corner of the grid is not cut.
     let span = |[first, last]: [usize; 2], count: usize| (first.saturating_sub(1), (last + 2).min(count));
     let ((left, right), (top, bottom)) = (span(all.columns, window.width), span(all.rows, window.height));
     let part = Window {
