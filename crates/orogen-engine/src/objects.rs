@@ -146,7 +146,14 @@ impl World {
                 && !near.iter().any(|near| near.is_within(position));
             if is_free { density } else { 0.0 }
         };
-        let points = self.install(|| discs.within(bounds, at, &progress.part(1.0)))?;
+        // There are no points outside the world, however far the bounds extend.
+        let bounds = match recipe.world.size {
+            Some(size) => {
+                [0, 1].map(|k| bounds[k].start.max(-entry.spacing)..bounds[k].end.min(size[k] + entry.spacing))
+            }
+            None => bounds.clone(),
+        };
+        let points = self.install(|| discs.within(&bounds, at, &progress.part(1.0)))?;
         let points = points.into_iter().map(|point| (point.position, point.bits)).collect();
         Ok(Placed { points, _held: held })
     }

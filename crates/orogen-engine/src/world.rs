@@ -80,6 +80,22 @@ pub const HEIGHT: &str = "height";
 /// The output with the depth of lakes, in metres, where a recipe has one.
 pub const LAKES: &str = "lakes";
 
+/// The smallest and the largest distance between samples, in metres.
+pub const CELLS: [f64; 2] = [1e-6, 1e12];
+
+/// Checks a distance between samples.
+///
+/// # Errors
+/// If it is not in the range of [`CELLS`].
+pub fn check_cell(cell: f64) -> Result<()> {
+    let [least, most] = CELLS;
+    if (least..=most).contains(&cell) {
+        return Ok(());
+    }
+    let message = format!("the cell size must be {} to {} m, not {}", number(least), number(most), cell);
+    Err(Error::new(ErrorKind::Request, message))
+}
+
 impl World {
     /// Opens a recipe.
     ///
@@ -572,9 +588,7 @@ impl World {
     #[doc(hidden)]
     pub fn check(&self, window: &Window) -> Result<()> {
         let fault = |message: String| Err(Error::new(ErrorKind::Request, message));
-        if !(window.cell.is_finite() && window.cell >= 1e-6) {
-            return fault(format!("the cell size must be at least 0.000001 m, not {}", window.cell));
-        }
+        check_cell(window.cell)?;
         if window.is_empty() {
             return fault(format!("a window of {} x {} samples is empty", window.width, window.height));
         }

@@ -5,6 +5,10 @@ use std::ops::{Index, IndexMut};
 use crate::parallel;
 use serde::{Deserialize, Serialize};
 
+/// Columns and rows of a lattice are counted up to this many samples from the origin. Sums of them do not overflow; no memory holds a window of so many
+/// samples.
+pub const FARTHEST: i64 = 1 << 60;
+
 /// A rectangle of samples of the infinite lattice with spacing `cell`.
 ///
 /// Sample (i, j) of a window is *at* x = (self.x + i) * cell, y = (self.y + j) * cell in metres: a lattice point, not
@@ -36,10 +40,10 @@ impl Window {
         Window { x, y, ..self }
     }
 
-    /// The number of samples.
+    /// The number of samples; `usize::MAX` if there are more.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.width * self.height
+        self.width.saturating_mul(self.height)
     }
 
     /// Whether it has no samples.
@@ -60,16 +64,18 @@ impl Window {
         self.y + self.height as i64
     }
 
-    /// The window extended by `halo` samples on each side.
+    /// The window extended by `halo` samples on each side, up to [`FARTHEST`] samples from the origin.
     #[must_use]
     pub fn grown(&self, halo: usize) -> Window {
-        Window {
-            x: self.x - halo as i64,
-            y: self.y - halo as i64,
-            width: self.width + 2 * halo,
-            height: self.height + 2 * halo,
-            cell: self.cell,
-        }
+        let halo = i64::try_from(halo).unwrap_or(FARTHEST).min(FARTHEST);
+        let side = |first: i64, samples: usize| {
+            let (start, end) =
+                (first.saturating_sub(halo), first.saturating_add_unsigned(samples as u64).saturating_add(halo));
+            let start = start.clamp(-FARTHEST, FARTHEST);
+            (start, (end.clamp(-FARTHEST, FARTHEST) - start) as usize)
+        };
+        let ((x, width), (y, height)) = (side(self.x, self.width), side(self.y, self.height));
+        Window { x, y, width, height, cell: self.cell }
     }
 
     /// The window without `border` samples on each side; possibly empty.

@@ -19,6 +19,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::parallel;
 use crate::progress::Progress;
 use crate::random::{Random, STEP, mix64};
+use crate::words::number;
 
 /// Cells of the lattice along a spacing. A power of two, so that a cell is exact.
 const CELLS: i64 = 4;
@@ -32,6 +33,12 @@ const HALO: i64 = (2 * ROUNDS - 1) * CELLS + 1;
 
 /// Cells of a block that is made at once, along each side: the halo of a block takes two fifths more.
 const BLOCK: i64 = 384;
+
+/// Number of blocks that are listed at once.
+const BLOCKS: usize = 4096;
+
+/// Maximum number of cells of a window: some hours of work.
+const MAX_CELLS: f64 = (1u64 << 40) as f64;
 
 /// Maximum column and row of a cell: beyond it positions would no longer be exact enough to keep the spacing.
 const MAX_CELL: f64 = (1u64 << 31) as f64;
@@ -99,7 +106,7 @@ impl PoissonDiscs {
     /// as long as `density` is the same function.
     ///
     /// # Errors
-    /// If the bounds are more than 2^29 spacings from the origin, or the work was cancelled.
+    /// If the bounds are more than 2^29 spacings from the origin or have more than 2^40 cells, or the work was cancelled.
     pub fn within(
         &self,
         bounds: &[Range<f64>; 2],
@@ -130,18 +137,37 @@ impl PoissonDiscs {
             (range.start.div_euclid(BLOCK)..=(range.end - 1).div_euclid(BLOCK))
                 .map(move |k| (k * BLOCK).max(range.start)..((k + 1) * BLOCK).min(range.end))
         };
-        let blocks: Vec<[Range<i64>; 2]> =
-            pieces(&rows).flat_map(|rows| pieces(&columns).map(move |columns| [columns, rows.clone()])).collect();
-        progress.expect(blocks.len() as f64);
-        let made = parallel::try_map(&blocks, |[columns, rows]| -> Result<Vec<([i64; 2], DiscPoint)>> {
-            progress.check()?;
-            let mut block = Block::new(self, columns, rows, &density);
-            block.decide();
-            let points = block.points(self, columns, rows, bounds);
-            progress.step(1.0)?;
-            Ok(points)
-        })?;
-        let mut points: Vec<([i64; 2], DiscPoint)> = made.into_iter().flatten().collect();
+        let cells = (columns.end - columns.start) as f64 * (rows.end - rows.start) as f64;
+        if cells > MAX_CELLS {
+            let sides = [0, 1].map(|k| number(bounds[k].end - bounds[k].start));
+            return Err(Error::new(
+                ErrorKind::Request,
+                format!(
+                    "points with a spacing of {} m over {} x {} m would have {cells:.0} candidates; at most {MAX_CELLS:.0} are allowed. Use a larger spacing, a smaller \
+                     window or a smaller clearance",
+                    number(self.spacing),
+                    sides[0],
+                    sides[1]
+                ),
+            ));
+        }
+        progress.expect(pieces(&rows).count() as f64 * pieces(&columns).count() as f64);
+        let mut blocks =
+            pieces(&rows).flat_map(|rows| pieces(&columns).map(move |columns| [columns, rows.clone()])).peekable();
+        let mut points: Vec<([i64; 2], DiscPoint)> = Vec::new();
+        // Piece by piece: a list of all blocks of a large window with few points would take more memory than they do.
+        while blocks.peek().is_some() {
+            let piece: Vec<[Range<i64>; 2]> = blocks.by_ref().take(BLOCKS).collect();
+            let made = parallel::try_map(&piece, |[columns, rows]| -> Result<Vec<([i64; 2], DiscPoint)>> {
+                progress.check()?;
+                let mut block = Block::new(self, columns, rows, &density);
+                block.decide();
+                let points = block.points(self, columns, rows, bounds);
+                progress.step(1.0)?;
+                Ok(points)
+            })?;
+            points.extend(made.into_iter().flatten());
+        }
         points.par_sort_unstable_by_key(|(cell, _)| *cell);
         Ok(points.into_iter().map(|(_, point)| point).collect())
     }
@@ -376,6 +402,16 @@ mod tests {
     fn positions_too_far_away_are_an_error() {
         let error = PoissonDiscs::new(1e-3, 1).within(&[1e7..1e7 + 1.0, 0.0..1.0], |_| 1.0, &Progress::none());
         assert!(error.unwrap_err().to_string().contains("can be placed up to"));
+    }
+
+    #[test]
+    fn too_many_points_are_an_error() {
+        let error = PoissonDiscs::new(0.5, 1).within(&[0.0..2e5, 0.0..2e5], |_| 0.0, &Progress::none());
+        let error = error.unwrap_err().to_string();
+        assert!(
+            error.contains("a spacing of 0.5 m over 200000 x 200000 m would have 2560004800002 candidates"),
+            "{error}"
+        );
     }
 
     #[test]

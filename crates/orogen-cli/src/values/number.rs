@@ -3,6 +3,7 @@
 use std::str::FromStr;
 
 use clap::builder::TypedValueParser;
+use orogen::world::check_cell;
 
 /// Maximum number of samples per side: far beyond any memory, and small enough to avoid overflow.
 pub const MOST: u64 = 1_000_000_000;
@@ -24,7 +25,8 @@ pub fn seed(text: &str) -> Result<u64, String> {
 
 /// `--cell`: distance between samples, in metres.
 pub fn cell(text: &str) -> Result<f64, String> {
-    length(text, "a cell size", ["0 m", "metres, such as 10 or 2.5"])
+    let cell = length(text, "a cell size", ["0 m", "metres, such as 10 or 2.5"])?;
+    check_cell(cell).map(|()| cell).map_err(|error| error.to_string())
 }
 
 /// `--wavelength`: wavelength of a noise in samples.

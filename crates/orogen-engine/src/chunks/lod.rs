@@ -2,6 +2,7 @@
 
 use super::id::ChunkId;
 use crate::plan::domain::world_windows;
+use crate::world::check_cell;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
 
@@ -73,9 +74,7 @@ impl LodConfig {
                 self.cells
             ));
         }
-        if !(self.cell.is_finite() && self.cell >= 1e-6) {
-            return fault(format!("the cell size must be at least 0.000001 m, not {}", self.cell));
-        }
+        check_cell(self.cell)?;
         if !(1..=24).contains(&self.levels) {
             return fault(format!("the number of levels of detail must be from 1 to 24, not {}", self.levels));
         }

@@ -81,7 +81,8 @@ impl Engine<'_> {
             return Ok(in_memory(refining.layers(&samples)));
         }
         // A device is best used by one piece at a time.
-        let pieces = serving.pieces(if refining.device.is_some() { 1 } else { self.pool.threads() });
+        let threads = if refining.device.is_some() { 1 } else { self.pool.threads() };
+        let pieces: Vec<Window> = serving.pieces(threads).collect();
         let tiled = levels::tiled(refining.op, refining.wanted, serving);
         let tiles = self.level_tiles(refining, tiled..=level, &pieces)?;
         if let ([piece], true) = (pieces.as_slice(), keeps)

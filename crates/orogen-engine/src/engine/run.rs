@@ -49,6 +49,15 @@ pub struct Engine<'a> {
     pub observer: Option<(NodeId, &'a (dyn StepObserver + Sync))>,
 }
 
+/// Maximum time of a block on one core, in nanoseconds: cancellation is checked between blocks.
+const BLOCK_TIME: f64 = 1e8;
+
+/// Columns and rows of a block of a program that takes `cost` nanoseconds per sample, at most `rows` rows.
+fn block_of(cost: f64, rows: usize) -> (usize, usize) {
+    let samples = (BLOCK_TIME / cost.max(1.0)) as usize;
+    (BLOCK_WIDTH.min(samples.max(8)), rows.min((samples / BLOCK_WIDTH).max(1)))
+}
+
 /// A program to be run over a window.
 struct Filling<'a> {
     program: &'a Program,
@@ -301,6 +310,7 @@ impl<'a> Engine<'a> {
         let bindings = Bindings { world_params: self.world_params, fields: &fields, solvers: &solvers, grids };
         // Enough bands for all threads, but not so thin that rows of noise lattices are computed repeatedly.
         let rows = window.height.div_ceil(2 * parallel::threads()).clamp(8, BLOCK_HEIGHT);
+        let (columns, rows) = block_of(cost::program(program, self.recipe), rows);
         progress.expect(window.height as f64);
         let mut bands: Vec<Vec<&mut [f32]>> = (0..window.height.div_ceil(rows)).map(|_| Vec::new()).collect();
         for grid in &mut out {
@@ -312,14 +322,14 @@ impl<'a> Engine<'a> {
             bands.into_iter().enumerate(),
             || Interpreter::new(program),
             |interpreter, (band, mut out)| {
-                progress.check()?;
                 let top = band * rows;
                 let height = rows.min(window.height - top);
-                for left in (0..window.width).step_by(BLOCK_WIDTH) {
+                for left in (0..window.width).step_by(columns) {
+                    progress.check()?;
                     let block = Window {
                         x: window.x + left as i64,
                         y: window.y + top as i64,
-                        width: BLOCK_WIDTH.min(window.width - left),
+                        width: columns.min(window.width - left),
                         height,
                         cell: window.cell,
                     };

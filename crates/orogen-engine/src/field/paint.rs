@@ -1,9 +1,10 @@
 //! Strokes of a brush on the map.
 
-use super::positions::change;
+use super::positions::{SEGMENT_COST, change};
 use crate::declare::{Stroke, StrokeMode, Strokes};
 use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
+use orogen_grid::polylines::buffers::Buffers;
 use orogen_noise::Points;
 use orogen_noise::shader::function::Shader;
 
@@ -63,11 +64,11 @@ impl Field for Paint {
     }
 
     fn cost(&self) -> f64 {
-        100.0
+        (SEGMENT_COST * self.strokes.with_buffers(Buffers::visits)).max(100.0)
     }
 
     fn cost_in_rows(&self) -> f64 {
-        100.0
+        self.cost()
     }
 
     fn memory(&self) -> u64 {

@@ -1,6 +1,6 @@
 //! Lines drawn on the map.
 
-use super::positions::{each, smoothstep};
+use super::positions::{SEGMENT_COST, each, smoothstep};
 use crate::declare::{LineFile, LinePoints, OutlineOptions};
 use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
@@ -111,11 +111,11 @@ impl Field for Path {
     }
 
     fn cost(&self) -> f64 {
-        300.0
+        (SEGMENT_COST * self.with_segments(Segments::visits)).max(300.0)
     }
 
     fn cost_in_rows(&self) -> f64 {
-        300.0
+        self.cost()
     }
 
     fn memory(&self) -> u64 {

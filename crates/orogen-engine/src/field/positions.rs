@@ -3,6 +3,9 @@
 use orogen_grid::resample::NOWHERE;
 use orogen_noise::Points;
 
+/// Time for looking at a segment of a drawing, in nanoseconds.
+pub(super) const SEGMENT_COST: f64 = 10.0;
+
 /// Writes `value(x, y)` of each position, in metres.
 pub(super) fn each(at: &Points, out: &mut [f32], mut value: impl FnMut(f64, f64) -> f32) {
     change(at, out, |x, y, _| value(x, y));

@@ -1,6 +1,6 @@
 //! The samples of one lattice around those of another.
 
-use orogen_grid::grid::Window;
+use orogen_grid::grid::{FARTHEST, Window};
 use orogen_grid::resample::split;
 
 /// Samples that the interpolating cubic reads around a position.
@@ -13,9 +13,10 @@ pub fn samples_around(window: &Window, cell: f64) -> Window {
         return Window { cell, ..*window };
     }
     let span = |first: f64, last: f64| {
-        let start = split(first, cell).0.saturating_sub(MARGIN);
-        let end = split(last, cell).0.saturating_add(1 + MARGIN);
-        (start, end.saturating_sub(start).saturating_add(1).max(0) as usize)
+        // A window beyond any lattice is refused later; here it must only not overflow.
+        let [start, end] = [first, last].map(|at| split(at, cell).0.clamp(-FARTHEST, FARTHEST));
+        let (start, end) = (start - MARGIN, end + 1 + MARGIN);
+        (start, (end - start + 1).max(0) as usize)
     };
     let (x, width) = span(window.east(0), window.east(window.width - 1));
     let (y, height) = span(window.south(0), window.south(window.height - 1));

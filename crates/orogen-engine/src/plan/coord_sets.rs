@@ -3,7 +3,7 @@
 use super::program::Instruction;
 use crate::ids::{CoordSetId, IndexVec, NodeId, RequestId};
 use crate::op::{Affine, CoordMap, Stencil};
-use orogen_grid::grid::Window;
+use orogen_grid::grid::{FARTHEST, Window};
 use std::collections::HashMap;
 
 /// Coordinate sets and what they are for: each exists once.
@@ -41,7 +41,9 @@ impl CoordSets {
     pub fn enter(&mut self, node: NodeId, from: CoordSetId, map: &CoordMap) -> CoordSetId {
         let around = self.windows[from];
         let to = self.windows.push(match map {
-            CoordMap::Displaced { reach, .. } => around.grown((reach / around.cell).ceil() as usize + MARGIN),
+            CoordMap::Displaced { reach, .. } => {
+                around.grown(((reach / around.cell).ceil() as usize).saturating_add(MARGIN))
+            }
             CoordMap::Mapped { map, .. } => mapped(&around, map),
         });
         self.entered.insert((node, from), to);
@@ -82,7 +84,7 @@ fn mapped(window: &Window, map: &Affine) -> Window {
         let low = values.iter().copied().fold(f64::INFINITY, f64::min) / window.cell;
         let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max) / window.cell;
         // Positions beyond any lattice are rejected later for their memory; here they must only not overflow.
-        const FAR: f64 = (1u64 << 60) as f64;
+        const FAR: f64 = FARTHEST as f64;
         let start = low.floor().clamp(-FAR, FAR) as i64 - MARGIN as i64;
         let end = high.ceil().clamp(-FAR, FAR) as i64 + MARGIN as i64 + 1;
         (start, (end - start).max(0) as usize)

@@ -54,6 +54,11 @@ pub fn needed(plan: &Plan, recipe: &Recipe) -> f64 {
     plan.solves.iter().map(Solve::work).sum::<f64>() + steps(plan, recipe)
 }
 
+/// Time of a program for a sample of its own lattice on one core, in nanoseconds.
+pub fn program(program: &Program, recipe: &Recipe) -> f64 {
+    program_cost(program, false, recipe, &|_| true)
+}
+
 /// Nanoseconds per sample.
 fn program_cost(program: &Program, scattered: bool, recipe: &Recipe, on_lattice: &dyn Fn(&GridId) -> bool) -> f64 {
     let mut moved: IndexVec<CoordSetId, bool> = vec![false; program.coord_sets.max(1)].into();

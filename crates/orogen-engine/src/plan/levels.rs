@@ -7,7 +7,10 @@
 use super::around::samples_around;
 use super::steps::grid_bytes;
 use crate::op::{Levelled, Levels};
+use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
+use orogen_grid::words::number;
+use std::ops::Range;
 
 /// Samples along the sides of the tiles of coarse levels.
 const TILE: usize = 64;
@@ -27,6 +30,12 @@ const FEW_TILES: usize = TILE + TILE / 2;
 /// Largest and smallest number of rows and columns of a piece, if the window has as many.
 const PIECE: [usize; 2] = [1024, 128];
 
+/// Maximum number of samples of a level for one window: 64 GiB for each of its planes.
+const MAX_SAMPLES: u64 = 1 << 34;
+
+/// Number of pieces of a window whose memory is estimated.
+const MEASURED_PIECES: usize = 1024;
+
 /// The samples of a level that a window is read from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Serving {
@@ -44,28 +53,65 @@ impl Serving {
         Serving { level, samples: samples_around(window, levels.cell(level)) }
     }
 
+    /// Checks that the samples are not far more than those of any picture: a window with large cells far above those of the coarsest level needs a lot of
+    /// them for each of its own samples.
+    ///
+    /// # Errors
+    /// If they are; the message has the largest cell for a window of so many samples.
+    pub fn check(&self, levels: &Levels, window: &Window, node: &str) -> Result<()> {
+        let Window { width, height, cell, .. } = self.samples;
+        if (width as u64).saturating_mul(height as u64) <= MAX_SAMPLES {
+            return Ok(());
+        }
+        let coarsest = levels.cell(0);
+        // Twice the cell needs four times as many samples.
+        let share = MAX_SAMPLES as f64 / (window.width as f64 * window.height as f64);
+        let largest = (coarsest * share.sqrt()).floor();
+        let message = if self.level == 0 && window.cell > coarsest && largest >= coarsest {
+            format!(
+                "a window of {} x {} samples at a cell of {} m needs {:.0} x {:.0} samples of the coarsest level of node `{node}`, which has a cell of {} m; use \
+                 a cell of at most {} m",
+                window.width,
+                window.height,
+                number(window.cell),
+                width,
+                height,
+                number(cell),
+                number(largest)
+            )
+        } else {
+            format!(
+                "a window of {} x {} samples at a cell of {} m needs {width} x {height} samples of node `{node}`, more than {MAX_SAMPLES}; use fewer samples at once",
+                window.width,
+                window.height,
+                number(window.cell)
+            )
+        };
+        Err(Error::new(ErrorKind::Request, message))
+    }
+
     /// Parts of the samples that are made side by side: at least one a thread, unless they would be slivers.
-    #[must_use]
-    pub fn pieces(&self, threads: usize) -> Vec<Window> {
+    pub fn pieces(&self, threads: usize) -> impl Iterator<Item = Window> + use<> {
         let [most, least] = PIECE;
-        let Window { width, height, .. } = self.samples;
+        let samples = self.samples;
+        let Window { width, height, .. } = samples;
         let columns = width.div_ceil(most).max(1);
         let rows = height.div_ceil(most).max(threads.div_ceil(columns).min(height / least)).max(1);
         let rows = height.div_ceil(rows).max(1);
         let columns = width.div_ceil(columns).max(1);
-        let bands = (0..height.div_ceil(rows)).map(|band| Window {
-            y: self.samples.y + (band * rows) as i64,
+        let bands = (0..height.div_ceil(rows)).map(move |band| Window {
+            y: samples.y + (band * rows) as i64,
             height: rows.min(height - band * rows),
-            ..self.samples
+            ..samples
         });
-        let across = |band: Window| {
+        let across = move |band: Window| {
             (0..width.div_ceil(columns)).map(move |piece| Window {
                 x: band.x + (piece * columns) as i64,
                 width: columns.min(width - piece * columns),
                 ..band
             })
         };
-        bands.flat_map(across).collect()
+        bands.flat_map(across)
     }
 }
 
@@ -116,21 +162,25 @@ pub fn covering(op: &dyn Levelled, wanted: &[bool], window: &Window) -> Vec<Wind
 
 /// The window of all tiles that cover a window.
 fn of_tiles(level: usize, window: &Window) -> Window {
-    let mut covering = tiles(level, window);
-    let tile = |at| tile(level, at, window.cell);
-    match (covering.next(), covering.last()) {
-        (Some(first), last) => tile(first).union(&tile(last.unwrap_or(first))),
-        (None, _) => *window,
+    let (columns, rows) = tile_ranges(level, window);
+    if columns.is_empty() || rows.is_empty() {
+        return *window;
     }
+    let tile = |column, row| tile(level, (column, row), window.cell);
+    tile(columns.start, rows.start).union(&tile(columns.end - 1, rows.end - 1))
 }
 
 /// The tiles that cover a window, by their column and row.
 pub fn tiles(level: usize, window: &Window) -> impl Iterator<Item = (i64, i64)> + use<> {
+    let (columns, rows) = tile_ranges(level, window);
+    rows.flat_map(move |row| columns.clone().map(move |column| (column, row)))
+}
+
+/// The columns and rows of the tiles that cover a window.
+fn tile_ranges(level: usize, window: &Window) -> (Range<i64>, Range<i64>) {
     let (side, start) = shape(level);
     let index = |sample: i64| (sample + start).div_euclid(side as i64);
-    let columns = index(window.x)..index(window.right() - 1) + 1;
-    let rows = index(window.y)..index(window.bottom() - 1) + 1;
-    rows.flat_map(move |row| columns.clone().map(move |column| (column, row)))
+    (index(window.x)..index(window.right() - 1) + 1, index(window.y)..index(window.bottom() - 1) + 1)
 }
 
 /// The window of a tile.
@@ -159,8 +209,9 @@ pub fn memory(op: &dyn Levelled, wanted: &[bool], window: &Window, threads: usiz
         let made = grid_bytes(piece).saturating_mul(layers);
         pair.unwrap_or_else(|| windows.iter().map(held).sum()).saturating_add(scratch.unwrap_or(0)).saturating_add(made)
     };
-    let pieces = serving.pieces(threads);
-    let largest = pieces.iter().map(piece).max().unwrap_or(0);
+    // Of pieces of the same size, those at other places need at most a row and a column more.
+    let largest = serving.pieces(threads).take(MEASURED_PIECES).map(|window| piece(&window)).max().unwrap_or(0);
+    let pieces = serving.pieces(threads).take(threads).count() as u64;
     let all = windows(op, wanted, tiled, level, &samples).first().map_or(0, of_tiles);
     let one = |level: usize| {
         let window = tile(level, (0, 0), op.levels().cell(level));
@@ -172,7 +223,7 @@ pub fn memory(op: &dyn Levelled, wanted: &[bool], window: &Window, threads: usiz
     let tile = (0..=tiled).map(one).max().unwrap_or(0);
     let threads = threads as u64;
     let apart = if samples.cell == window.cell { 0 } else { grid_bytes(&samples).saturating_mul(layers) };
-    let working = largest.saturating_mul(threads.min(pieces.len() as u64)).max(tile.saturating_mul(threads));
+    let working = largest.saturating_mul(pieces).max(tile.saturating_mul(threads));
     all.saturating_add(working).saturating_add(apart)
 }
 
@@ -218,7 +269,7 @@ mod tests {
             [(1, 1, 8), (1024, 1024, 2), (3000, 10, 4), (5000, 2500, 3), (300, 300, 64), (0, 3, 2)]
         {
             let samples = Window::new(width, height, 60.0).at(-7, 1000);
-            let pieces = Serving { level: 0, samples }.pieces(threads);
+            let pieces: Vec<Window> = Serving { level: 0, samples }.pieces(threads).collect();
             assert_eq!(pieces.iter().map(Window::len).sum::<usize>(), samples.len(), "{width} x {height}");
             for (k, piece) in pieces.iter().enumerate() {
                 assert!(samples.contains(piece) && piece.width <= 1024 && piece.height <= 1024, "{piece:?}");

@@ -3,7 +3,7 @@
 use super::compile::{Scope, compile};
 use super::grid_merge::{Cluster, clusters};
 use super::keep::Evaluations;
-use super::levels;
+use super::levels::{self, Serving};
 use super::request::{GridRequest, Requests};
 use super::steps::{Step, wanted};
 use crate::ids::{GridId, Id, IndexVec, NodeId, RequestId};
@@ -169,6 +169,7 @@ impl Scheduler<'_> {
 
     /// A step that makes layers of a levelled op, with its inputs at each level.
     fn refine(&mut self, node: NodeId, op: &dyn Levelled, window: Window, out: Vec<Option<GridId>>) -> Result<()> {
+        Serving::of(&op.levels(), &window).check(&op.levels(), &window, &self.recipe.nodes()[node.index()].name)?;
         let (mut inputs, mut constants) = (Vec::new(), Vec::new());
         if self.graph.links[node].iter().any(|link| *link != Link::None) {
             let windows = levels::covering(op, &wanted(&out), &window);

@@ -1,73 +1,86 @@
 //! Lines with a distance around each, as buffers of geographic information systems: which of them contain a position.
 
-use super::segments::distance;
+use super::outline::Outline;
+use super::segments::{Segments, TRIALS, trials};
 
-/// Number of segments of a piece.
-const PIECE: usize = 4;
-
-/// Number of pieces that a search finds at once.
+/// Number of lines that a search finds at once.
 const BATCH: usize = 16;
+
+/// Number of batches after which lines are searched in their order.
+const MAX_BATCHES: usize = 4;
+
+/// Number of boxes that one of the next level contains, among those in the order of lines.
+const GROUP: usize = 16;
 
 /// The points within a distance of a line, for many lines, in a tree of boxes.
 ///
 /// A search visits the boxes around a position and few others, so it takes as long with many lines far away as without them. It finds lines in their
-/// order, whatever the tree is, and allocates nothing.
+/// order, whatever the tree is, and allocates nothing. Of a line it visits the segments near the position.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Buffers {
     /// The distance around each line.
     radii: Vec<f64>,
-    /// Start and end of each segment.
-    segments: Vec<[[f64; 2]; 2]>,
-    /// In the order of lines.
-    pieces: Vec<Piece>,
+    /// The segments of all lines, a tree for each.
+    segments: Segments,
+    /// In their order.
+    lines: Vec<Line>,
     nodes: Vec<Node>,
+    /// The boxes of the lines in their order, then boxes around groups of these, and so on.
+    ordered: Vec<Vec<Bounds>>,
+    /// See [`Buffers::visits`].
+    visits: f64,
 }
 
-/// Segments of a line that follow each other.
+/// A line that has points.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Piece {
-    line: u32,
-    first: u32,
-    count: u32,
+struct Line {
+    /// Its number among those that were given.
+    index: u32,
+    /// The node of its segments.
+    root: u32,
 }
 
-/// A box around pieces, with the distance around their lines.
+/// A box: its lowest and its highest coordinates.
+type Bounds = [[f64; 2]; 2];
+
+fn contains([low, high]: &Bounds, at: [f64; 2]) -> bool {
+    (0..2).all(|k| low[k] <= at[k] && at[k] <= high[k])
+}
+
+fn union([low, high]: Bounds, [other_low, other_high]: Bounds) -> Bounds {
+    [[0, 1].map(|k| low[k].min(other_low[k])), [0, 1].map(|k| high[k].max(other_high[k]))]
+}
+
+/// A box around lines, with the distances around them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Node {
-    low: [f64; 2],
-    high: [f64; 2],
-    /// The first and the last piece in it.
-    pieces: [u32; 2],
-    /// The second of two nodes, of which the first follows this one; `None` for a single piece.
+    bounds: Bounds,
+    /// The first and the last line in it.
+    lines: [u32; 2],
+    /// The second of two nodes, of which the first follows this one; `None` for a single line.
     second: Option<u32>,
 }
 
-impl Node {
-    fn contains(&self, at: [f64; 2]) -> bool {
-        (0..2).all(|k| self.low[k] <= at[k] && at[k] <= self.high[k])
-    }
-}
-
-/// The first pieces of those that a search finds, from `from` on, in their order.
+/// The first lines of those that a search finds, from `from` on, in their order.
 struct Batch {
     from: u32,
-    pieces: [u32; BATCH],
+    lines: [u32; BATCH],
     count: usize,
 }
 
 impl Batch {
-    /// Whether a node may have pieces that belong to it.
+    /// Whether a node may have lines that belong to it.
     fn wants(&self, node: &Node) -> bool {
-        let [first, last] = node.pieces;
-        last >= self.from && (self.count < BATCH || first < self.pieces[BATCH - 1])
+        let [first, last] = node.lines;
+        last >= self.from && (self.count < BATCH || first < self.lines[BATCH - 1])
     }
 
-    fn insert(&mut self, piece: u32) {
-        let place = self.pieces[..self.count].partition_point(|other| *other < piece);
+    fn insert(&mut self, line: u32) {
+        let place = self.lines[..self.count].partition_point(|other| *other < line);
         if place < BATCH {
             self.count = (self.count + 1).min(BATCH);
-            self.pieces[place..self.count].rotate_right(1);
-            self.pieces[place] = piece;
+            self.lines[place..self.count].rotate_right(1);
+            self.lines[place] = line;
         }
     }
 }
@@ -78,67 +91,68 @@ impl Buffers {
     #[must_use]
     pub fn new<'a>(lines: impl IntoIterator<Item = (&'a [[f64; 2]], f64)>) -> Buffers {
         let mut made = Buffers::default();
-        let mut boxes = Vec::new();
-        for (line, (points, radius)) in lines.into_iter().enumerate() {
+        let mut boxes: Vec<Bounds> = Vec::new();
+        for (index, (points, radius)) in lines.into_iter().enumerate() {
             made.radii.push(radius);
             let is_valid = radius >= 0.0 && radius.is_finite() && points.iter().flatten().all(|part| part.is_finite());
-            if is_valid {
-                made.add(line as u32, points, radius, &mut boxes);
+            if !is_valid || points.is_empty() {
+                continue;
+            }
+            let points: Vec<[f64; 3]> = points.iter().map(|[x, y]| [*x, *y, 0.0]).collect();
+            if let Some((root, [low, high])) = made.segments.add_line(&Outline::of_points(&points)) {
+                made.lines.push(Line { index: index as u32, root: root as u32 });
+                boxes.push([low.map(|part| part - radius), high.map(|part| part + radius)]);
             }
         }
-        let mut order: Vec<u32> = (0..made.pieces.len() as u32).collect();
+        let mut order: Vec<u32> = (0..made.lines.len() as u32).collect();
         if !order.is_empty() {
             made.group(&mut order, &boxes);
+        }
+        while boxes.len() > 1 {
+            let next = boxes.chunks(GROUP).filter_map(|group| group.iter().copied().reduce(union)).collect();
+            made.ordered.push(std::mem::replace(&mut boxes, next));
+        }
+        if let Some(root) = made.nodes.first() {
+            let mut visited = 0;
+            trials(root.bounds).for_each(|at| made.visit_counted(at, |_, _| {}, &mut visited));
+            made.visits = visited as f64 / TRIALS as f64;
         }
         made
     }
 
-    fn add(&mut self, line: u32, points: &[[f64; 2]], radius: f64, boxes: &mut Vec<[[f64; 2]; 2]>) {
-        let start = self.segments.len();
-        self.segments.extend(points.windows(2).map(|pair| [pair[0], pair[1]]).filter(|[a, b]| a != b));
-        // A line whose points coincide is a point.
-        if self.segments.len() == start {
-            self.segments.extend(points.first().map(|point| [*point, *point]));
-        }
-        for first in (start..self.segments.len()).step_by(PIECE) {
-            let count = PIECE.min(self.segments.len() - first);
-            let ends = || self.segments[first..first + count].iter().flatten();
-            let low = [0, 1].map(|k| ends().map(|end| end[k]).fold(f64::MAX, f64::min) - radius);
-            let high = [0, 1].map(|k| ends().map(|end| end[k]).fold(f64::MIN, f64::max) + radius);
-            self.pieces.push(Piece { line, first: first as u32, count: count as u32 });
-            boxes.push([low, high]);
-        }
+    /// The mean number of boxes and segments that a search looks at, at some positions: a measure of its time.
+    #[must_use]
+    pub fn visits(&self) -> f64 {
+        self.visits
     }
 
-    /// The tree over pieces: halves by the middles of their boxes along the longer side.
-    fn group(&mut self, pieces: &mut [u32], boxes: &[[[f64; 2]; 2]]) -> Node {
+    /// The tree over lines: halves by the middles of their boxes along the longer side.
+    fn group(&mut self, lines: &mut [u32], boxes: &[Bounds]) -> Node {
         let at = self.nodes.len();
-        if let [piece] = *pieces {
-            let [low, high] = boxes[piece as usize];
-            let node = Node { low, high, pieces: [piece; 2], second: None };
+        if let [line] = *lines {
+            let node = Node { bounds: boxes[line as usize], lines: [line; 2], second: None };
             self.nodes.push(node);
             return node;
         }
-        let middle = |piece: u32, k: usize| {
-            let [low, high] = boxes[piece as usize];
+        let middle = |line: u32, k: usize| {
+            let [low, high] = boxes[line as usize];
             0.5 * low[k] + 0.5 * high[k]
         };
         let side = |k: usize| {
-            let along = || pieces.iter().map(|piece| middle(*piece, k));
+            let along = || lines.iter().map(|line| middle(*line, k));
             along().fold(f64::MIN, f64::max) - along().fold(f64::MAX, f64::min)
         };
         let axis = usize::from(side(1) > side(0));
-        pieces.sort_by(|a, b| middle(*a, axis).total_cmp(&middle(*b, axis)).then(a.cmp(b)));
-        let (left, right) = pieces.split_at_mut(pieces.len() / 2);
+        lines.sort_by(|a, b| middle(*a, axis).total_cmp(&middle(*b, axis)).then(a.cmp(b)));
+        let (left, right) = lines.split_at_mut(lines.len() / 2);
         // Its place is before those of its halves.
-        self.nodes.push(Node { low: [0.0; 2], high: [0.0; 2], pieces: [0; 2], second: None });
+        self.nodes.push(Node { bounds: [[0.0; 2]; 2], lines: [0; 2], second: None });
         let left = self.group(left, boxes);
         let second = self.nodes.len() as u32;
         let right = self.group(right, boxes);
         let node = Node {
-            low: [0, 1].map(|k| left.low[k].min(right.low[k])),
-            high: [0, 1].map(|k| left.high[k].max(right.high[k])),
-            pieces: [left.pieces[0].min(right.pieces[0]), left.pieces[1].max(right.pieces[1])],
+            bounds: union(left.bounds, right.bounds),
+            lines: [left.lines[0].min(right.lines[0]), left.lines[1].max(right.lines[1])],
             second: Some(second),
         };
         self.nodes[at] = node;
@@ -155,43 +169,58 @@ impl Buffers {
         if self.nodes.is_empty() {
             return;
         }
-        let mut report = |nearest: Option<(u32, f64)>| {
-            if let Some((line, square)) = nearest {
-                let (line, distance) = (line as usize, square.sqrt());
-                if distance <= self.radii[line] {
-                    visit(line, distance);
-                }
+        let mut found = |line: u32, visited: &mut usize| {
+            let Line { index, root } = self.lines[line as usize];
+            let radius = self.radii[index as usize];
+            // Rounding must not leave out what is exactly at the radius.
+            let within = radius * radius * (1.0 + 4.0 * f64::EPSILON);
+            let square = self.segments.square_to(root as usize, at, within, visited);
+            if let Some(distance) = square.map(f64::sqrt).filter(|distance| *distance <= radius) {
+                visit(index as usize, distance);
             }
         };
-        // The line whose pieces are being looked at, and the square of the distance from it.
-        let mut nearest = None;
-        let mut batch = Batch { from: 0, pieces: [0; BATCH], count: 0 };
-        loop {
+        let mut batch = Batch { from: 0, lines: [0; BATCH], count: 0 };
+        for _ in 0..MAX_BATCHES {
             self.search(0, at, &mut batch, visited);
-            for piece in &batch.pieces[..batch.count] {
-                let Piece { line, first, count } = self.pieces[*piece as usize];
-                *visited += count as usize;
-                let segments = &self.segments[first as usize..(first + count) as usize];
-                let square = segments.iter().map(|ends| distance(*ends, at).0).fold(f64::INFINITY, f64::min);
-                nearest = match nearest {
-                    Some((own, least)) if own == line => Some((line, square.min(least))),
-                    before => {
-                        report(before);
-                        Some((line, square))
-                    }
-                };
-            }
+            batch.lines[..batch.count].iter().for_each(|line| found(*line, visited));
             if batch.count < BATCH {
-                return report(nearest);
+                return;
             }
-            batch = Batch { from: batch.pieces[BATCH - 1] + 1, count: 0, ..batch };
+            batch = Batch { from: batch.lines[BATCH - 1] + 1, count: 0, ..batch };
         }
+        // So many lines that searching batch by batch would visit most boxes many times.
+        let top = self.ordered.len().saturating_sub(1);
+        let boxes = self.ordered.get(top).map_or(0, Vec::len);
+        (0..boxes).for_each(|k| self.in_order((top, k), at, batch.from, visited, &mut found));
+    }
+
+    /// Calls `found` with the lines in a box of the `ordered` ones whose own boxes contain a position, from `from` on.
+    fn in_order(
+        &self,
+        (level, k): (usize, usize),
+        at: [f64; 2],
+        from: u32,
+        visited: &mut usize,
+        found: &mut impl FnMut(u32, &mut usize),
+    ) {
+        *visited += 1;
+        if !contains(&self.ordered[level][k], at) {
+            return;
+        }
+        if level == 0 {
+            if k as u32 >= from {
+                found(k as u32, visited);
+            }
+            return;
+        }
+        let below = k * GROUP..((k + 1) * GROUP).min(self.ordered[level - 1].len());
+        below.for_each(|k| self.in_order((level - 1, k), at, from, visited, found));
     }
 
     fn search(&self, node: usize, at: [f64; 2], batch: &mut Batch, visited: &mut usize) {
         let found = &self.nodes[node];
         *visited += 1;
-        if !(batch.wants(found) && found.contains(at)) {
+        if !(batch.wants(found) && contains(&found.bounds, at)) {
             return;
         }
         match found.second {
@@ -199,23 +228,22 @@ impl Buffers {
                 self.search(node + 1, at, batch, visited);
                 self.search(second as usize, at, batch, visited);
             }
-            None => batch.insert(found.pieces[0]),
+            None => batch.insert(found.lines[0]),
         }
     }
 
     /// Memory that they take, in bytes.
     #[must_use]
     pub fn memory(&self) -> u64 {
-        let bytes = size_of_val(&*self.radii)
-            + size_of_val(&*self.segments)
-            + size_of_val(&*self.pieces)
-            + size_of_val(&*self.nodes);
-        bytes as u64
+        let ordered: usize = self.ordered.iter().map(|level| size_of_val(level.as_slice())).sum();
+        let bytes = size_of_val(&*self.radii) + size_of_val(&*self.lines) + size_of_val(&*self.nodes) + ordered;
+        bytes as u64 + self.segments.memory()
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::segments::distance;
     use super::*;
     use crate::random::Random;
 
@@ -263,7 +291,7 @@ mod tests {
 
     #[test]
     fn the_tree_finds_what_a_look_at_every_segment_finds() {
-        let lines = random(300);
+        let lines = random(1500);
         let buffers = Buffers::new(lines.iter().map(|(points, radius)| (points.as_slice(), *radius)));
         let mut most = 0;
         for k in 0..400 {
@@ -282,7 +310,7 @@ mod tests {
             assert_eq!(found(&buffers, at), expect, "{at:?}");
             most = most.max(expect.len());
         }
-        assert!(most > BATCH, "{most} lines at a position: a search has several batches");
+        assert!(most > BATCH * MAX_BATCHES, "{most} lines at a position: a search goes on in the order of lines");
     }
 
     #[test]
@@ -302,5 +330,20 @@ mod tests {
         let ((alone, _), (among, segments)) = (cost(0), cost(2000));
         assert_eq!(alone, 2, "a box and a segment");
         assert!(among <= 2 * 17 && segments > 30_000, "{among} visits of {segments} segments");
+    }
+
+    #[test]
+    fn many_points_and_many_lines_at_a_position_are_looked_at_once() {
+        // A line to and fro, whose segments all lie within the distance, and as many discs.
+        let fro: Vec<[f64; 2]> = (0..20_000).map(|k| [0.05 * f64::from(k), f64::from(k % 2) * 600.0]).collect();
+        let line = Buffers::new([(fro.as_slice(), 2000.0)]);
+        let (mut visited, mut distances) = (0, Vec::new());
+        line.visit_counted([500.0, -30.0], |_, distance| distances.push(distance), &mut visited);
+        assert!(distances.len() == 1 && (distances[0] - 30.0).abs() < 1e-3 && visited < 100, "{distances:?} {visited}");
+        let discs = Buffers::new(fro.iter().map(|point| (std::slice::from_ref(point), 2000.0)));
+        let (mut visited, mut found) = (0, Vec::new());
+        discs.visit_counted([500.0, -30.0], |line, _| found.push(line), &mut visited);
+        assert_eq!(found, (0..fro.len()).collect::<Vec<_>>());
+        assert!(visited < 10 * fro.len(), "{visited}");
     }
 }

@@ -8,6 +8,9 @@ pub const MAX_SEGMENTS: usize = 1 << 20;
 /// Number of segments of a leaf of the tree.
 const LEAF: usize = 4;
 
+/// Number of segments from which a box may have a slanted one beside it.
+const SLANTED: usize = 4 * LEAF;
+
 /// A straight segment of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Segment {
@@ -34,6 +37,41 @@ struct Node {
     /// y of the first and of the last point of segments that follow each other; equal for whole rings.
     ends: [f64; 2],
     content: Content,
+    /// The index of its slanted box; [`NONE`] if that would not be much smaller.
+    slanted: u32,
+}
+
+/// The index of no slanted box.
+const NONE: u32 = u32::MAX;
+
+/// A box that is turned to the direction of the segments in it. Long parallel segments, such as those of a zigzag line, have boxes along the axes that all
+/// overlap; a search would visit all of them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Slanted {
+    /// A unit vector along it.
+    along: [f64; 2],
+    low: [f64; 2],
+    high: [f64; 2],
+    /// The largest coordinate, for rounding.
+    largest: f64,
+    /// The first and the last point of segments that follow each other; equal for whole rings.
+    ends: [[f64; 2]; 2],
+}
+
+impl Slanted {
+    /// A position along the box and across it.
+    fn turned(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let [u, v] = self.along;
+        [x * u + y * v, y * u - x * v]
+    }
+
+    /// A number that is not larger than the square of the distance from a position to the box: 0 in it.
+    fn square_to(&self, at: [f64; 2]) -> f64 {
+        let turned = self.turned(at);
+        let rounding = 4.0 * f64::EPSILON * (self.largest + at[0].abs() + at[1].abs());
+        let [x, y] = [0, 1].map(|k| ((self.low[k] - turned[k]).max(turned[k] - self.high[k]) - rounding).max(0.0));
+        x * x + y * y
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,6 +92,9 @@ pub struct Segments {
     /// The length of each line.
     lengths: Vec<f64>,
     nodes: Vec<Node>,
+    slanted: Vec<Slanted>,
+    /// See [`Segments::visits`].
+    visits: f64,
 }
 
 /// The point of a drawing that is nearest to a position.
@@ -106,19 +147,36 @@ impl Segments {
         let mut made = Segments::default();
         let mut lines = Vec::with_capacity(outlines.len());
         for outline in outlines {
-            let first = made.segments.len();
-            made.add(outline, tolerance);
-            if made.segments.len() > first {
-                lines.push((first, made.segments.len()));
-            }
+            lines.extend(made.add(outline, tolerance));
         }
         if !lines.is_empty() {
-            made.group(&mut lines);
+            let root = made.group(&mut lines);
+            let mut visited = 0;
+            for at in trials([root.low, root.high]) {
+                let _ =
+                    (made.nearest_counted(at, f64::INFINITY, &mut visited), made.is_inside_counted(at, &mut visited));
+            }
+            made.visits = visited as f64 / TRIALS as f64;
         }
         made
     }
 
-    fn add(&mut self, outline: &Outline, tolerance: f64) {
+    /// The mean number of segments that a search looks at, at some positions: a measure of its time.
+    #[must_use]
+    pub fn visits(&self) -> f64 {
+        self.visits
+    }
+
+    /// Adds a line of straight pieces with a tree of its own. Returns the node of all of it, and its box; `None` if it has no point with coordinates.
+    pub(super) fn add_line(&mut self, outline: &Outline) -> Option<(usize, [[f64; 2]; 2])> {
+        let (first, end) = self.add(outline, 0.0)?;
+        let root = self.nodes.len();
+        let Node { low, high, .. } = self.chain(first, end);
+        Some((root, [low, high]))
+    }
+
+    /// Adds the segments of a line. Returns their range; `None` if there are none.
+    fn add(&mut self, outline: &Outline, tolerance: f64) -> Option<(usize, usize)> {
         let (first, line) = (self.segments.len(), self.lengths.len() as u32);
         let (mut from, mut chainage) = (outline.start, 0.0);
         let mut push = |to: [f64; 3]| {
@@ -138,6 +196,7 @@ impl Segments {
             self.segments.push(Segment { ends, chainage: 0.0, length: 0.0, line });
         }
         self.lengths.push(chainage);
+        (self.segments.len() > first).then_some((first, self.segments.len()))
     }
 
     /// The tree over lines, given as ranges of segments: halves by the middles of their boxes along the longer side.
@@ -169,7 +228,8 @@ impl Segments {
             let (low, high) = bounds(segments);
             let y = |segment: Option<&Segment>, side: usize| segment.map_or(0.0, |segment| segment.ends[side][1]);
             let ends = [y(segments.first(), 0), y(segments.last(), 1)];
-            let node = Node { low, high, ends, content: Content::Leaf(first as u32, (end - first) as u32) };
+            let node =
+                Node { low, high, ends, content: Content::Leaf(first as u32, (end - first) as u32), slanted: NONE };
             self.nodes.push(node);
             return node;
         }
@@ -184,19 +244,57 @@ impl Segments {
         right: impl FnOnce(&mut Segments) -> Node,
         ends: Option<[f64; 2]>,
     ) -> Node {
-        let empty = Node { low: [0.0; 2], high: [0.0; 2], ends: [0.0; 2], content: Content::Leaf(0, 0) };
+        let empty = Node { low: [0.0; 2], high: [0.0; 2], ends: [0.0; 2], content: Content::Leaf(0, 0), slanted: NONE };
         self.nodes.push(empty);
         let left = left(self);
         let second = self.nodes.len();
         let right = right(self);
-        let node = Node {
+        let mut node = Node {
             low: [0, 1].map(|k| left.low[k].min(right.low[k])),
             high: [0, 1].map(|k| left.high[k].max(right.high[k])),
             ends: ends.unwrap_or([left.ends[0], right.ends[1]]),
             content: Content::Pair(second as u32),
+            slanted: NONE,
         };
+        if let Some(slanted) = self.slanted(at, &node, ends.is_none()) {
+            node.slanted = self.slanted.len() as u32;
+            self.slanted.push(slanted);
+        }
         self.nodes[at] = node;
         node
+    }
+
+    /// The slanted box of the segments of the nodes after `at`, which are those of `node`, if it is less than half as large. Segments of a chain follow
+    /// each other.
+    fn slanted(&self, at: usize, node: &Node, is_chain: bool) -> Option<Slanted> {
+        let segments = || {
+            self.nodes[at + 1..].iter().flat_map(|node| match node.content {
+                Content::Leaf(first, count) => &self.segments[first as usize..(first + count) as usize],
+                Content::Pair(_) => &[],
+            })
+        };
+        let area = |low: [f64; 2], high: [f64; 2]| (high[0] - low[0]) * (high[1] - low[1]);
+        let longest = segments().max_by(|a, b| a.length.total_cmp(&b.length)).filter(|longest| longest.length > 0.0)?;
+        let [[ax, ay], [bx, by]] = longest.flat();
+        let along = [(bx - ax) / longest.length, (by - ay) / longest.length];
+        let ends = match (is_chain, segments().next(), segments().last()) {
+            (true, Some(first), Some(last)) => [first.flat()[0], last.flat()[1]],
+            _ => [[0.0; 2]; 2],
+        };
+        let (low, high) = ([f64::MAX; 2], [f64::MIN; 2]);
+        let mut slanted = Slanted { along, low, high, largest: 0.0, ends };
+        let mut count = 0;
+        for segment in segments() {
+            count += 1;
+            for end in segment.flat() {
+                let turned = slanted.turned(end);
+                slanted.low = [0, 1].map(|k| slanted.low[k].min(turned[k]));
+                slanted.high = [0, 1].map(|k| slanted.high[k].max(turned[k]));
+                slanted.largest = slanted.largest.max(end[0].abs() + end[1].abs());
+            }
+        }
+        let is_smaller = area(slanted.low, slanted.high) < 0.5 * area(node.low, node.high);
+        (count >= SLANTED && is_smaller).then_some(slanted)
     }
 
     /// The number of segments.
@@ -216,6 +314,7 @@ impl Segments {
     pub fn memory(&self) -> u64 {
         let bytes = self.segments.len() * size_of::<Segment>()
             + self.nodes.len() * size_of::<Node>()
+            + self.slanted.len() * size_of::<Slanted>()
             + self.lengths.len() * size_of::<f64>();
         bytes as u64
     }
@@ -228,16 +327,34 @@ impl Segments {
 
     /// The same; adds the number of segments looked at to `visited`.
     fn nearest_counted(&self, at: [f64; 2], within: f64, visited: &mut usize) -> Option<Nearest> {
-        if !(at[0].is_finite() && at[1].is_finite() && within >= 0.0) || self.nodes.is_empty() {
-            return None;
-        }
-        let mut best = Best { square: within * within, found: None };
-        self.search(0, at, &mut best, visited);
+        let best = self.nearest_of(0, at, within * within, visited)?;
         best.found.map(|(index, share)| {
             let segment = self.segments[index];
             let line_length = self.lengths.get(segment.line as usize).copied().unwrap_or(0.0);
             Nearest { segment, share, square: best.square, line_length }
         })
+    }
+
+    /// The square of the distance from the line of a node, if it is at most `square`; adds the number of segments looked at to `visited`.
+    pub(super) fn square_to(&self, node: usize, at: [f64; 2], square: f64, visited: &mut usize) -> Option<f64> {
+        let best = self.nearest_of(node, at, square, visited)?;
+        best.found.map(|_| best.square)
+    }
+
+    fn nearest_of(&self, node: usize, at: [f64; 2], square: f64, visited: &mut usize) -> Option<Best> {
+        if !(at[0].is_finite() && at[1].is_finite() && square >= 0.0) || self.nodes.is_empty() {
+            return None;
+        }
+        let mut best = Best { square, found: None };
+        self.search(node, at, &mut best, visited);
+        Some(best)
+    }
+
+    /// A number that is not larger than the square of the distance from a position to the segments of a node.
+    fn square_to_node(&self, node: usize, at: [f64; 2]) -> f64 {
+        let node = &self.nodes[node];
+        let square = node.square_to(at);
+        self.slanted.get(node.slanted as usize).map_or(square, |slanted| slanted.square_to(at).max(square))
     }
 
     fn search(&self, node: usize, at: [f64; 2], best: &mut Best, visited: &mut usize) {
@@ -257,7 +374,7 @@ impl Segments {
             }
             Content::Pair(second) => {
                 let nodes = [node + 1, second as usize];
-                let squares = nodes.map(|node| self.nodes[node].square_to(at));
+                let squares = nodes.map(|node| self.square_to_node(node, at));
                 let order = if squares[1] < squares[0] { [1, 0] } else { [0, 1] };
                 for k in order {
                     if squares[k] <= best.square {
@@ -291,6 +408,12 @@ impl Segments {
         if x < found.low[0] {
             return (found.ends[0] <= y) != (found.ends[1] <= y);
         }
+        // Outside a convex area around a chain, the number is odd for all chains in it with the same ends, or for none: also for a straight line.
+        if let Some(slanted) = self.slanted.get(found.slanted as usize)
+            && slanted.square_to(at) > 0.0
+        {
+            return crosses(slanted.ends, at);
+        }
         match found.content {
             Content::Pair(second) => {
                 self.crossings_odd(node + 1, at, visited) != self.crossings_odd(second as usize, at, visited)
@@ -298,10 +421,22 @@ impl Segments {
             Content::Leaf(first, count) => {
                 *visited += count as usize;
                 let segments = &self.segments[first as usize..(first + count) as usize];
-                segments.iter().filter(|segment| crosses(segment, at)).count() % 2 == 1
+                segments.iter().filter(|segment| crosses(segment.flat(), at)).count() % 2 == 1
             }
         }
     }
+}
+
+/// Number of positions at which the work of a search is measured.
+pub(super) const TRIALS: usize = 16;
+
+/// These positions in a box.
+pub(super) fn trials([low, high]: [[f64; 2]; 2]) -> impl Iterator<Item = [f64; 2]> {
+    (0..TRIALS).map(move |k| {
+        // An irrational step: no pattern of the drawing repeats with it.
+        let shares = [(k as f64 + 0.5) / TRIALS as f64, (0.5 + 0.618_033_988_75 * k as f64).fract()];
+        [0, 1].map(|axis| low[axis] + shares[axis] * (high[axis] - low[axis]))
+    })
 }
 
 struct Best {
@@ -347,8 +482,7 @@ pub(super) fn distance([[ax, ay], [bx, by]]: [[f64; 2]; 2], [x, y]: [f64; 2]) ->
 }
 
 /// Whether a line from a position to the east crosses a segment. A point of the drawing at exactly this y counts as above.
-fn crosses(segment: &Segment, [x, y]: [f64; 2]) -> bool {
-    let [[ax, ay, _], [bx, by, _]] = segment.ends;
+fn crosses([[ax, ay], [bx, by]]: [[f64; 2]; 2], [x, y]: [f64; 2]) -> bool {
     if (ay <= y) == (by <= y) {
         return false;
     }

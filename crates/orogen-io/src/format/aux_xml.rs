@@ -3,10 +3,9 @@
 
 use std::io::{self, Write};
 
-use roxmltree::Document;
-
 use super::affine::Affine;
 use super::band::BandMetadata;
+use super::xml;
 
 /// Maximum length of a file, in bytes.
 pub const MAX_LENGTH: u64 = 1 << 20;
@@ -39,7 +38,7 @@ pub fn write(out: &mut dyn Write, affine: &Affine, wkt: &str) -> io::Result<()> 
 /// # Errors
 /// A message if it is not XML.
 pub fn parse(text: &str) -> Result<Notes, String> {
-    let document = Document::parse(text).map_err(|fault| format!("it is not valid XML ({fault})"))?;
+    let document = xml::parse(text, false)?;
     let root = document.root_element();
     let child = |name: &str| root.children().find(|node| node.has_tag_name(name)).and_then(|node| node.text());
     let affine = child("GeoTransform").and_then(numbers).map(Affine::of_geotransform);

@@ -4,6 +4,7 @@
 use roxmltree::Node;
 
 use super::crs::unit::length_of_name;
+use super::xml;
 
 /// What a file, a virtual raster or a sidecar states about a band.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -50,7 +51,7 @@ impl BandMetadata {
     /// states nothing.
     #[must_use]
     pub fn of_tiff(metadata: &str, band: usize) -> BandMetadata {
-        let Ok(document) = roxmltree::Document::parse(metadata) else { return BandMetadata::default() };
+        let Ok(document) = xml::parse(metadata, false) else { return BandMetadata::default() };
         let text = |role: &str| {
             let own = |node: &Node| {
                 node.attribute("role") == Some(role) && node.attribute("sample").map_or(Ok(0), str::parse) == Ok(band)

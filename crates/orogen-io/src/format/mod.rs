@@ -52,6 +52,7 @@ pub mod tres;
 pub mod vox;
 pub mod vrt;
 pub mod world_file;
+pub mod xml;
 pub(crate) mod xyz;
 pub mod zarr;
 pub(crate) mod zip;

@@ -5,15 +5,13 @@
 //! and `viewBox` of the document do not matter.
 
 use orogen_grid::polylines::outline::{Outline, Piece};
-use roxmltree::{Document, Node, ParsingOptions};
+use roxmltree::{Document, Node};
 
 use super::outlines::{Collector, DrawingKind};
 use super::svg_path::{self, Numbers, Pen};
+use super::xml;
 
 const NAMESPACE: &str = "http://www.w3.org/2000/svg";
-
-/// Maximum number of elements, texts and comments.
-const MAX_NODES: u32 = 1 << 20;
 
 /// Elements whose content is not drawn where it stands.
 const NOT_DRAWN: [&str; 6] = ["defs", "clipPath", "mask", "pattern", "symbol", "marker"];
@@ -24,9 +22,7 @@ pub(super) fn read(text: &str, collector: &mut Collector) -> Result<(), String> 
     if text.contains("<!ENTITY") {
         return Err("it defines XML entities, which are not read; save it as plain SVG".into());
     }
-    let options = ParsingOptions { allow_dtd: true, nodes_limit: MAX_NODES, ..ParsingOptions::default() };
-    let document =
-        Document::parse_with_options(text, options).map_err(|cause| format!("it is not valid XML ({cause})"))?;
+    let document = xml::parse(text, true)?;
     let root = document.root_element();
     if root.tag_name().name() != "svg" {
         return Err(format!("it is not SVG: its root is `{}`", root.tag_name().name()));

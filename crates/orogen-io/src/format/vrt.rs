@@ -1,11 +1,12 @@
 //! GDAL's virtual rasters, `.vrt`: a raster composed of parts of others. Only simple sources without resampling are
 //! supported.
 
-use roxmltree::{Document, Node};
+use roxmltree::Node;
 
 use super::affine::Affine;
 use super::aux_xml::numbers;
 use super::band::BandMetadata;
+use super::xml;
 
 /// Maximum length of a file, in bytes.
 pub const MAX_LENGTH: u64 = 64 << 20;
@@ -58,7 +59,7 @@ pub struct Source {
 /// # Errors
 /// A message if it is not a virtual raster, or changes the samples of its sources.
 pub fn parse(text: &str) -> Result<Virtual, String> {
-    let document = Document::parse(text).map_err(|fault| format!("it is not valid XML ({fault})"))?;
+    let document = xml::parse(text, false)?;
     let root = document.root_element();
     if !root.has_tag_name("VRTDataset") {
         return Err("it is not a virtual raster: its root is not VRTDataset".into());

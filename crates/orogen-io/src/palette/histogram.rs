@@ -10,6 +10,12 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 /// Levels of lightness in the histogram.
 const LEVELS: usize = 4096;
 
+/// Maximum number of pixels of a picture.
+const MAX_PIXELS: u64 = 1 << 27;
+
+/// Number of pixels of a picture up to which all are counted. Of a larger one every second row is, or every third, and so on.
+const COUNTED: u64 = 1 << 24;
+
 /// Reads a `.png` and returns `count` colors in linear light, from dark to light: each is the mean color of an equal
 /// share of the pixels, ordered by their lightness in Oklab. Transparent pixels are ignored. The picture is read row by
 /// row and never held as a whole.
@@ -35,12 +41,25 @@ pub fn parse(input: impl BufRead + Seek, count: usize) -> std::result::Result<Ve
     let mut decoder = ::png::Decoder::new(input);
     decoder.set_transformations(::png::Transformations::EXPAND | ::png::Transformations::STRIP_16);
     let mut reader = decoder.read_info().map_err(|cause| format!("it is not a PNG picture: {cause}"))?;
+    let (width, height) = (reader.info().width, reader.info().height);
+    let pixels = u64::from(width) * u64::from(height);
+    if pixels > MAX_PIXELS {
+        return Err(format!(
+            "it has {width} x {height} pixels, more than {MAX_PIXELS}; scale it down, which changes its colors little"
+        ));
+    }
+    let every = pixels.div_ceil(COUNTED).max(1);
     let (color, _) = reader.output_color_type();
     let channels = color.samples();
     let light: Vec<f32> = (0..=255).map(decode).collect();
     // Counts and sums in f64, in the order of the file: the same on every machine.
     let mut levels = vec![[0.0f64; 4]; LEVELS];
+    let mut rows = 0;
     while let Some(row) = reader.next_row().map_err(|cause| format!("it is damaged: {cause}"))? {
+        rows += 1;
+        if (rows - 1) % every != 0 {
+            continue;
+        }
         for pixel in row.data().chunks_exact(channels) {
             let (rgb, alpha) = match *pixel {
                 [grey] => ([grey; 3], 255),

@@ -82,7 +82,7 @@ fn the_tree_finds_what_a_search_of_all_segments_finds() {
             let nearest = drawing.nearest(at, f64::INFINITY).unwrap();
             let apart = (nearest.distance() - best.1.0.sqrt()).abs();
             assert!(apart <= 1e-12 * extent, "{at:?}: {} and {}", nearest.distance(), best.1.0.sqrt());
-            let crossed = drawing.segments.iter().filter(|segment| crosses(segment, at)).count();
+            let crossed = drawing.segments.iter().filter(|segment| crosses(segment.flat(), at)).count();
             assert_eq!(drawing.is_inside(at), crossed % 2 == 1, "{at:?}");
         }
     }
@@ -192,4 +192,47 @@ fn drawings_of_any_kind_do_no_harm() {
     let many = Segments::new(&many, 1e-3);
     assert!(many.len() <= MAX_SEGMENTS && many.len() > MAX_SEGMENTS / 8, "{}", many.len());
     assert!(many.memory() > 50 * many.len() as u64);
+}
+
+#[test]
+fn of_long_segments_side_by_side_only_those_nearby_are_visited() {
+    type Shape = fn(f64, bool) -> [f64; 2];
+    let shapes: [(&str, Shape); 4] = [
+        ("across", |t, there| [t, if there { 480.0 } else { 0.0 }]),
+        ("diagonal", |t, there| if there { [t, t + 50.0] } else { [t + 50.0, t] }),
+        ("slanted", |t, there| if there { [t, 0.0] } else { [t + 300.0, 480.0] }),
+        ("fan", |t, there| if there { [t, 480.0] } else { [480.0, t] }),
+    ];
+    let count = 20_000;
+    for (name, shape) in shapes {
+        for smooth in [false, true] {
+            let points: Vec<[f64; 3]> = (0..count)
+                .map(|k| {
+                    let [x, y] = shape(f64::from(k) * 480.0 / f64::from(count), k % 2 == 0);
+                    [x, y, 0.0]
+                })
+                .collect();
+            let open = Outline::of_points(&points);
+            let drawing = Segments::new(&[if smooth { open.smoothed() } else { open }.closed()], 1e-3);
+            let (mut visits, samples) = (0, 100);
+            for k in 0..samples {
+                let at = [f64::from(k % 10) * 61.0 - 40.7, f64::from(k / 10) * 48.0 + 5.1];
+                let nearest = drawing.nearest_counted(at, f64::INFINITY, &mut visits).unwrap();
+                let inside = drawing.is_inside_counted(at, &mut visits);
+                if k % 9 == 0 {
+                    let squares = drawing.segments.iter().map(|segment| distance(segment.flat(), at).0);
+                    assert_eq!(nearest.distance(), squares.fold(f64::MAX, f64::min).sqrt(), "{name} {at:?}");
+                    let crossed = drawing.segments.iter().filter(|segment| crosses(segment.flat(), at)).count();
+                    assert_eq!(inside, crossed % 2 == 1, "{name} {at:?}");
+                }
+            }
+            let most = drawing.len() as u32 / 40;
+            assert!(
+                visits as u32 / samples < most,
+                "{name} {smooth}: {} of {}",
+                visits as u32 / samples,
+                drawing.len()
+            );
+        }
+    }
 }

@@ -9,7 +9,8 @@ use std::path::Path;
 use orogen_grid::autotile::flip::{Flip, Flips};
 use orogen_grid::autotile::mask::Layout;
 use orogen_grid::error::Result;
-use roxmltree::{Document, Node};
+use orogen_io::format::xml;
+use roxmltree::Node;
 
 use super::loaded::{Loaded, text, unusable};
 use super::picture::{Cut, Grid, color, cut};
@@ -42,7 +43,7 @@ pub(super) fn read(
     cut: impl Fn(&Path, &Grid) -> Result<Cut>,
 ) -> Result<Loaded> {
     let failed = |why: String| unusable(path, &why);
-    let document = Document::parse(text).map_err(|cause| failed(format!("it is no XML ({cause})")))?;
+    let document = xml::parse(text, false).map_err(&failed)?;
     let root = document.root_element();
     if root.tag_name().name() != "tileset" {
         return Err(failed(format!("its content is a `{}`, not a tileset of Tiled", root.tag_name().name())));
