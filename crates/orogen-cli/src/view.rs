@@ -143,7 +143,14 @@ impl View {
         self.sized(world, None)
     }
 
+    /// A window that the world can be asked for: estimates of its memory and time are numbers.
     fn sized(&self, world: &World, size: Option<Size>) -> Result<Window, Failure> {
+        let window = self.asked(world, size)?;
+        world.check(&window)?;
+        Ok(window)
+    }
+
+    fn asked(&self, world: &World, size: Option<Size>) -> Result<Window, Failure> {
         let spec = &world.recipe().world;
         let cell = self.cell.unwrap_or(spec.cell);
         if let Some(part) = self.part(world, size, cell)? {

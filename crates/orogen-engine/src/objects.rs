@@ -117,7 +117,7 @@ impl World {
             self.check(&window)?;
         }
         let grids = self.grids_beside(&layers, &window, 0, &progress.part(1.0))?;
-        let _grids = self.budget().reserve((window.len() * layers.len() * size_of::<f32>()) as u64)?;
+        let _grids = self.budget().reserve((window.len().saturating_mul(layers.len() * size_of::<f32>())) as u64)?;
         let Some((density, water)) = grids.split_first() else { return Err(missing()) };
         // All points around the bounds, which are more than those within.
         let area = window.len() as f64 * window.cell * window.cell;

@@ -592,10 +592,14 @@ impl World {
         if window.is_empty() {
             return fault(format!("a window of {} x {} samples is empty", window.width, window.height));
         }
+        if window.width.max(window.height) as f64 > MAX_SAMPLES {
+            return fault(format!(
+                "a window of {} x {} samples is too large: it may have {MAX_SAMPLES:.0} along a side; use a smaller window or a larger cell",
+                window.width, window.height
+            ));
+        }
         const FAR: i64 = 1 << 53;
-        let inside = |start: i64, count: usize| {
-            (-FAR..=FAR).contains(&start) && count as u64 <= FAR as u64 && start + count as i64 <= FAR
-        };
+        let inside = |start: i64, count: usize| (-FAR..=FAR).contains(&start) && start + count as i64 <= FAR;
         if !(inside(window.x, window.width) && inside(window.y, window.height)) {
             return fault(
                 "the window is more than 2^53 samples from the origin, where positions are no longer exact".to_string(),

@@ -373,4 +373,16 @@ mod tests {
             assert!((0..samples.len()).all(|k| turned[k % columns * rows + k / columns] == k), "{columns} x {rows}");
         }
     }
+
+    #[test]
+    fn a_window_grows_to_the_end_of_the_lattice() {
+        let window = Window::new(10, 20, 1.0).at(-5, 7);
+        assert_eq!(window.grown(3), Window::new(16, 26, 1.0).at(-8, 4));
+        let side = 2 * FARTHEST as usize;
+        for halo in [usize::MAX, 1 << 62, FARTHEST as usize + 30] {
+            let all = window.grown(halo);
+            assert_eq!(all, Window::new(side, side, 1.0).at(-FARTHEST, -FARTHEST));
+            assert_eq!((all.grown(halo), all.len()), (all, usize::MAX));
+        }
+    }
 }

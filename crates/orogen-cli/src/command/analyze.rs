@@ -143,7 +143,7 @@ impl Held {
     fn of(args: &Args, world: &World, window: &Window) -> Result<Held, Error> {
         let page = if args.out.is_some() { page::MEMORY } else { 0 };
         // The heights count in the plan and in the memory for measuring.
-        let measuring = Measures::memory(window.len() as u64).saturating_sub(4 * window.len() as u64);
+        let measuring = Measures::memory(window.len() as u64).saturating_sub((window.len() as u64).saturating_mul(4));
         if let Ok(reserved) = world.budget().reserve(measuring.saturating_add(page))
             && let Ok(plan) = world.plan(&[&args.layer], window)
             && world.budget().afford(world.memory_of(&plan)?).is_ok()

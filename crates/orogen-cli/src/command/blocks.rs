@@ -134,13 +134,14 @@ fn make(args: &Args, format: BlockFormat, progress: &Progress) -> Result<(), Fai
     let target = Target::new(args, format, &policy)?;
     // The sides are known before the heights are.
     let one = Levels { bottom: Levels::of(world.recipe().world.sea_level, window.cell), count: 1 };
-    fits(format, &window, one, &world)?;
-    let _columns = budget.reserve(window.grown(HALO).len() as u64 * COLUMN_BYTES + ENCODERS)?;
+    let fits = |levels: Levels| fits(format, &window, levels, &world);
+    fits(one)?;
+    let _columns =
+        budget.reserve((window.grown(HALO).len() as u64).saturating_mul(COLUMN_BYTES).saturating_add(ENCODERS))?;
     let [reading, making, writing] = progress.parts([2.0, 3.0, 5.0]);
-    let land = Land::of(&world, &window, Extent::Below(args.below), &reading)?;
+    let land = Land::of(&world, &window, Extent::Below(args.below), &fits, &reading)?;
     finite::tell(HEIGHT, land.finite)?;
     let mut levels = land.levels;
-    fits(format, &window, levels, &world)?;
     let text = match target {
         Target::Mesh(sink) => {
             let mesh = world.install(|| BlockMesh::of(&land, &budget, &making))?;
@@ -175,7 +176,7 @@ fn fits(format: BlockFormat, window: &Window, levels: Levels, world: &World) -> 
             LuantiWorld::start([width, levels.count, height], levels, world.recipe().world.sea_level, window.cell)
                 .map(drop)
         }
-        BlockFormat::Glb => Ok(()),
+        BlockFormat::Glb => world.budget().afford(world.install(|| BlockMesh::memory(window, levels))),
     }
 }
 

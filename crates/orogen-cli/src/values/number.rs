@@ -114,6 +114,12 @@ mod tests {
         for (text, expect) in [
             ("2.5", Some(2.5)),
             ("1e3", Some(1000.0)),
+            ("1e-6", Some(1e-6)),
+            ("9e-7", None),
+            ("1e-300", None),
+            ("1e12", Some(1e12)),
+            ("1.1e12", None),
+            ("1e300", None),
             ("0", None),
             ("-1", None),
             ("nan", None),

@@ -91,5 +91,18 @@ fn what_a_format_cannot_hold_is_refused_before_the_work() {
     folder.bad(&["blocks", "wide.toml", "--cell", "1", "-o", "wide.vox", "-q"], 2, message);
     folder.write("tall.toml", HILLS.replace("24 + 2", "2400 + 2"));
     folder.bad(&["blocks", "tall.toml", "--cell", "1", "-o", "tall.vox"], 2, "at most 2000 voxels along a side");
-    assert_eq!(folder.names("."), ["tall.toml", "wide.toml"]);
+    // The levels are known before the density of the ground is computed, which would take minutes here.
+    let deep = HILLS
+        .replace("24 + 2", "2400000 + 2")
+        .replace("height = \"height\" }", "height = \"height\", density = \"density\" }");
+    folder.write("deep.toml", deep + "nodes.altitude = { op = \"altitude\" }\nnodes.density = { op = \"expr\", expr = \"height - altitude\" }\n");
+    folder.bad(&["blocks", "deep.toml", "--cell", "1", "-o", "deep.vox"], 2, "at most 2000 voxels along a side");
+    for height in ["1e29", "-1e29"] {
+        folder.write("far.toml", HILLS.replace("* 24", &format!("* {height}")));
+        for out in ["far.vox", "far.schem", "far.glb", "far.png", "far"] {
+            let message = "blocks of 1 m reach up to 4194304 m from height 0; scale the heights, or use a larger cell";
+            folder.bad(&["blocks", "far.toml", "--cell", "1", "-o", out], 2, message);
+        }
+    }
+    assert_eq!(folder.names("."), ["deep.toml", "far.toml", "tall.toml", "wide.toml"]);
 }

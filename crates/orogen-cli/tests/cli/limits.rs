@@ -250,3 +250,105 @@ fn bad_input(writer: &Writer) -> bool {
     }
     true
 }
+
+/// Values at and beyond the ends of the ranges of options.
+const HOSTILE: [(&str, &[&str]); 8] = [
+    (
+        "--window",
+        &[
+            "0,0,1000000000,1000000000",
+            "4503599627370496,0,9,9",
+            "-4503599627370496,-4503599627370496,9,9",
+            "0m,0m,1000000000km,1000000000km",
+            "1000000000km,0m,1km,1km",
+        ],
+    ),
+    ("--bounds", &["0,-1e300,1e300,0", "-1e12,-1e12,1e12,1e12", "1e15,1e15,2e15,2e15"]),
+    ("--size", &["0", "1000000000", "1000000000x1000000000", "18446744073709551616"]),
+    ("--observer", &["1e300,0", "nan,0"]),
+    ("--range", &["1,1", "nan,1"]),
+    ("--camera", &["nan,0", "0,0,-1"]),
+    ("--cell", &["1e300", "1e-300", "1e12", "1e-6", "0", "nan"]),
+    // All others.
+    ("", &["nan", "-1e300", "18446744073709551616"]),
+];
+
+/// Options whose values are no numbers, or that say where and how the work is done.
+const NO_NUMBERS: [&str; 5] = ["--out", "--memory", "--cache", "--title", "--set"];
+
+/// The options with a value that a command lists.
+fn options(folder: &Folder, command: &str) -> Vec<String> {
+    let help = folder.good(&[command, "--help"]).text().to_string();
+    let named = |line: &str| {
+        let (_, rest) = line.split_once("--").filter(|(before, _)| before.trim().len() <= 3)?;
+        rest.split_once(" <").map(|(name, _)| format!("--{name}"))
+    };
+    help.lines().filter_map(named).filter(|name| !NO_NUMBERS.contains(&name.as_str())).collect()
+}
+
+/// Commands with an unbounded world, or without one: what a window of a bounded one may be is known.
+const UNBOUNDED: [&[&str]; 10] = [
+    &["export", "endless", "-o", "e.tif"],
+    &["map", "endless", "-o", "m.png"],
+    &["render", "endless", "-o", "r.png"],
+    &["generate", "endless", "-o", "made"],
+    &["blocks", "endless", "-o", "b.glb"],
+    &["blocks", "endless", "-o", "b.png"],
+    &["tilemap", "endless", "-o", "tiles"],
+    &["analyze", "endless", "-o", "a.png"],
+    &["build", "endless", "-o", "b.tif"],
+    &["explain", "endless"],
+];
+
+#[test]
+fn no_value_of_an_option_ends_a_command_without_a_sentence() {
+    let folder = workplace();
+    for arguments in UNBOUNDED {
+        for option in ["--cell", "--window", "--bounds", "--size"] {
+            let values = HOSTILE.iter().find(|(name, _)| *name == option).map_or(&[][..], |(_, values)| *values);
+            if !options(&folder, arguments[0]).iter().any(|name| name == option) {
+                continue;
+            }
+            for value in values {
+                // Few samples, so that what is allowed is done at once.
+                let few: &[&str] = if option == "--cell" { &["--window", "0,0,9,9"] } else { &[] };
+                answered(&folder, arguments, few, option, value);
+            }
+        }
+    }
+}
+
+#[test]
+#[ignore = "long: every option of every command at the ends of its range and beyond"]
+fn no_value_of_any_option_ends_a_command_without_a_sentence() {
+    let folder = workplace();
+    WRITERS.iter().for_each(|writer| prepare(&folder, writer));
+    let writers = WRITERS.iter().map(|writer| writer.arguments);
+    for arguments in UNBOUNDED.into_iter().chain(writers) {
+        for option in options(&folder, arguments[0]) {
+            let known = HOSTILE.iter().find(|(name, _)| *name == option || name.is_empty());
+            for value in known.map_or(&[][..], |(_, values)| *values) {
+                let few: &[&str] =
+                    if option == "--cell" && arguments.contains(&"endless") { &["--window", "0,0,9,9"] } else { &[] };
+                answered(&folder, arguments, few, &option, value);
+            }
+        }
+    }
+}
+
+/// Runs a command with a value of an option: it does its work, or says in a sentence why not.
+fn answered(folder: &Folder, arguments: &[&str], more: &[&str], option: &str, value: &str) {
+    let option = format!("{option}={value}");
+    let all = [arguments, more, &[&option], &["--memory", "64MiB"]].concat();
+    let takes_memory = !matches!(arguments[0], "palettes" | "graph");
+    // What a run before has written.
+    if let Some(at) = arguments.iter().position(|argument| *argument == "-o") {
+        let out = folder.path(arguments[at + 1]);
+        let _ = if out.is_dir() { std::fs::remove_dir_all(out) } else { std::fs::remove_file(out) };
+    }
+    let mut running = Running::start(folder, if takes_memory { &all } else { &all[..all.len() - 2] });
+    let (code, said) = running.ended();
+    // 2 and 1 come with a sentence, anything else is an abort or a panic.
+    let is_told = said.iter().any(|line| line.starts_with("error: "));
+    assert!(code == Some(0) || matches!(code, Some(1 | 2)) && is_told, "{all:?}: {code:?} {said:?}");
+}

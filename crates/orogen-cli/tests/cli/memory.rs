@@ -247,6 +247,46 @@ fn a_file_that_unpacks_to_more_than_is_allowed_is_refused() {
 }
 
 #[test]
+#[cfg(target_os = "linux")]
+fn what_does_not_fit_is_refused_before_it_takes_memory() {
+    let folder = Folder::with_small();
+    let endless = |cell: &str| format!("export endless --window 0,0,32,32 --cell {cell} -o a.tif");
+    let level =
+        "samples of the coarsest level of node `land`, which has a cell of 122880 m; use a cell of at most 503316480 m";
+    let small = folder.text("small.toml");
+    let dense =
+        "[[scatter]]\nname = \"tree\"\nspacing = 0.5\n[[scatter]]\nname = \"rock\"\nspacing = 0.5\nclearance = 1e6\n";
+    folder.write("dense.toml", small.clone() + dense);
+    folder.write("sparse.toml", small + &dense.replace("name = \"tree\"", "name = \"tree\"\ndensity = 0"));
+    for (arguments, code, expect) in [
+        (endless("3e10"), 2, level),
+        (endless("1e12"), 2, level),
+        (
+            endless("1e300"),
+            2,
+            "invalid value '1e300' for '--cell <M>': the cell size must be 0.000001 to 1000000000000 m",
+        ),
+        (endless("1e-300"), 2, "for '--cell <M>': the cell size must be 0.000001 to"),
+        ("export endless --window 0m,0m,1000000000km,1000000000km --size 32 -o a.tif".into(), 2, level),
+        (
+            "export endless --window 0m,0m,1000000000km,1000000000km -o a.tif".into(),
+            2,
+            "it may have 2147483648 along a side; use a smaller window or a larger cell",
+        ),
+        ("export dense.toml --layer scatter -o a.csv".into(), 1, "of memory, and 64 MiB is allowed"),
+    ] {
+        let arguments: Vec<&str> = arguments.split(' ').collect();
+        let (ended, said, peak) = measured(folder.command(&[&arguments[..], &["-q", "--memory", "64MiB"]].concat()));
+        assert!(ended == code && said.contains(expect), "{arguments:?}: {ended} {said}");
+        assert!(peak < 70 << 20, "{arguments:?}: {peak}");
+    }
+    // The distance reaches far beyond the world, where there is nothing to keep away from.
+    let sparse = ["export", "sparse.toml", "--layer", "scatter", "-o", "a.csv", "-q"];
+    let (ended, said, peak) = measured(folder.command(&sparse));
+    assert!(ended == 0 && peak < 400 << 20, "{said}: {peak}");
+}
+
+#[test]
 #[cfg(unix)]
 fn what_may_never_end_is_refused() {
     let folder = Folder::with_small();

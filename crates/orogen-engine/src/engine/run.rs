@@ -403,3 +403,16 @@ fn with_inputs<T>(step: &Step, grids: &Grids, work: impl FnOnce(&[Option<&Grid>]
         .collect();
     work(&given)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_blocks_of_a_slow_program_are_small() {
+        for (cost, block) in [(0.0, (256, 64)), (5000.0, (256, 64)), (5e4, (256, 7)), (4e5, (250, 1)), (1e12, (8, 1))] {
+            assert_eq!(block_of(cost, 64), block, "{cost}");
+        }
+        assert_eq!(block_of(100.0, 8), (256, 8));
+    }
+}

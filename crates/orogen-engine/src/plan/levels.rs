@@ -290,4 +290,32 @@ mod tests {
         assert_eq!(tile(0, (0, 1), 8.0), Window::new(128, 128, 8.0).at(-64, 64));
         assert_eq!(tiles(5, &Window::new(0, 0, 8.0)).count(), 0);
     }
+
+    #[test]
+    fn a_window_of_far_larger_cells_than_the_coarsest_level_is_refused() {
+        let levels = Levels { finest: 60.0, count: 4 };
+        let check = |window: &Window| Serving::of(&levels, window).check(&levels, window, "land");
+        assert!(check(&Window::new(32, 32, 1.9e6)).is_ok() && check(&Window::new(32, 32, 60.0)).is_ok());
+        let error = check(&Window::new(32, 32, 3e10)).unwrap_err().to_string();
+        assert!(
+            error.contains("needs 1937500006 x 1937500006 samples of the coarsest level of node `land`"),
+            "{error}"
+        );
+        assert!(error.contains("use a cell of at most 1966080 m"), "{error}");
+        assert!(check(&Window::new(32, 32, 1966080.0)).is_ok());
+        let far = Window::new(32, 32, 1e12).at(1 << 53, -(1 << 53));
+        assert!(check(&far).is_err());
+        assert!(
+            check(&Window::new(1 << 30, 1 << 30, 60.0)).unwrap_err().to_string().contains("use fewer samples at once")
+        );
+    }
+
+    #[test]
+    fn estimates_of_a_huge_window_take_no_time_and_no_memory() {
+        let samples = Window::new(1 << 40, 1 << 40, 60.0).at(-(1 << 39), 1 << 45);
+        let pieces: Vec<Window> = Serving { level: 0, samples }.pieces(4).take(3).collect();
+        assert_eq!(pieces[2], Window::new(1024, 1024, 60.0).at(samples.x + 2048, samples.y));
+        let covering = of_tiles(3, &samples);
+        assert!(covering.contains(&samples) && covering.width == 1 << 40, "{covering:?}");
+    }
 }

@@ -158,4 +158,15 @@ mod tests {
         cut.truncate(60);
         assert!(parse(std::io::Cursor::new(cut), 3).is_err());
     }
+
+    #[test]
+    fn a_picture_with_too_many_pixels_is_refused_by_its_header() {
+        let mut bytes = Vec::new();
+        let mut encoder = ::png::Encoder::new(&mut bytes, 30_000, 30_000);
+        encoder.set_color(::png::ColorType::Grayscale);
+        // The picture ends before its first row.
+        drop(encoder.write_header().unwrap());
+        let error = parse(std::io::Cursor::new(bytes), 3).unwrap_err();
+        assert!(error.contains("it has 30000 x 30000 pixels, more than 134217728; scale it down"), "{error}");
+    }
 }

@@ -2,7 +2,7 @@
 
 use super::cover::Cover;
 use super::density::{DENSITY, Offsets};
-use super::levels::{Extent, Levels, MAX_BELOW};
+use super::levels::{Extent, Levels, MAX_BELOW, MAX_LEVEL};
 use super::reach::{ABOVE, SOIL_REACH, TREE_HEIGHT};
 use crate::export::biome_cover;
 use crate::tilemap::named::number;
@@ -14,6 +14,7 @@ use orogen_grid::analysis::finite::FiniteCount;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
+use orogen_grid::words;
 
 /// Columns around a window that its blocks depend on: those of trees whose crowns reach into it.
 pub const HALO: usize = 4;
@@ -90,11 +91,19 @@ pub fn prepare(recipe: &mut Recipe, cell: f64) -> Result<()> {
 }
 
 impl Land {
-    /// The columns of a window. `world` is of a [prepared](prepare) recipe.
+    /// The columns of a window. `world` is of a [prepared](prepare) recipe. `fits` checks the levels once they are known, before the density of the ground
+    /// is computed.
     ///
     /// # Errors
-    /// If the window is not in the world or has no height, if a class is no number from 0 to 5, or if `progress` is cancelled.
-    pub fn of(world: &World, window: &Window, extent: Extent, progress: &Progress) -> Result<Land> {
+    /// If the window is not in the world or has no height, if a class is no number from 0 to 5, if heights are more than [`MAX_LEVEL`] blocks from 0, if
+    /// `fits` fails, or if `progress` is cancelled.
+    pub fn of(
+        world: &World,
+        window: &Window,
+        extent: Extent,
+        fits: &dyn Fn(Levels) -> Result<()>,
+        progress: &Progress,
+    ) -> Result<Land> {
         world.check(window)?;
         let [reading, shaping] = progress.parts([1.0, 1.0]);
         let around = world.surroundings(window, HALO);
@@ -145,12 +154,25 @@ impl Land {
             land.levels = levels;
         }
         // Without a height there are no blocks.
-        let Some([low, high]) = land.range(&around) else { return Ok(land) };
-        if let (Extent::Below(below), Some([low, high])) = (extent, land.range(window)) {
+        let Some(range) = land.range(&around) else { return Ok(land) };
+        if range.iter().any(|altitude| (f64::from(*altitude) / window.cell).abs() >= f64::from(MAX_LEVEL)) {
+            let message = format!(
+                "the heights are {} to {} m, and blocks of {} m reach up to {} m from height 0; scale the heights, or use a larger cell",
+                words::number(range[0].into()),
+                words::number(range[1].into()),
+                words::number(window.cell),
+                words::number(f64::from(MAX_LEVEL) * window.cell)
+            );
+            return Err(Error::new(ErrorKind::Request, message));
+        }
+        let levels_of = |range: [f32; 2]| range.map(|altitude| Levels::of(f64::from(altitude), window.cell));
+        let [low, high] = levels_of(range);
+        if let (Extent::Below(below), Some([low, high])) = (extent, land.range(window).map(levels_of)) {
             let room = TREE_HEIGHT + if has_density { ROOM } else { 0 };
             land.levels = Levels::between(low - below.min(MAX_BELOW) as i32, high + 1 + room);
         }
         let levels = land.levels;
+        fits(levels)?;
         // Whether a tree stands depends on the ground around its foot.
         let reach = Levels::between(low - SOIL_REACH, high + SOIL_REACH + 1);
         land.has_trees = levels.top() > reach.bottom && levels.bottom < reach.top() + TREE_HEIGHT;
@@ -173,8 +195,8 @@ impl Land {
         is_inside.then(|| &self.columns[y as usize * self.around.width + x as usize])
     }
 
-    /// The lowest level of the ground in a part of the land, and the highest of ground or water; `None` if there is neither.
-    fn range(&self, part: &Window) -> Option<[i32; 2]> {
+    /// The lowest altitude of the ground in a part of the land, and the highest of ground or water; `None` if there is neither.
+    fn range(&self, part: &Window) -> Option<[f32; 2]> {
         let left = (part.x - self.around.x) as usize;
         let rows = ((part.y - self.around.y) as usize..).take(part.height).map(|row| row * self.around.width + left);
         let columns = rows.flat_map(|start| &self.columns[start..start + part.width]);
@@ -184,7 +206,7 @@ impl Land {
             let [lowest, highest] = range.unwrap_or([low, high]);
             range = Some([lowest.min(low), highest.max(high)]);
         }
-        range.map(|range| range.map(|altitude| Levels::of(f64::from(altitude), self.window.cell)))
+        range
     }
 }
 

@@ -37,7 +37,20 @@ pub struct BlockMesh {
     _memory: Vec<Reservation>,
 }
 
+/// Number of parts of a window that are made at once.
+fn at_once(window: &Window) -> usize {
+    let parts = window.width.div_ceil(SIDE).saturating_mul(window.height.div_ceil(SIDE));
+    parallel::threads().min(parts).max(1)
+}
+
 impl BlockMesh {
+    /// Memory for the parts that are made at once, in bytes, without the mesh.
+    #[must_use]
+    pub fn memory(window: &Window, levels: Levels) -> u64 {
+        let samples = (SIDE + 2).pow(2) as u64 * levels.count as u64;
+        samples.saturating_mul(SAMPLE).saturating_mul(at_once(window) as u64)
+    }
+
     /// The surface of the window of a land, from its memory budget.
     ///
     /// # Errors
@@ -45,9 +58,8 @@ impl BlockMesh {
     pub fn of(land: &Land, budget: &Budget, progress: &Progress) -> Result<BlockMesh> {
         let window = land.window;
         let parts: Vec<Window> = window.tiles(SIDE).collect();
-        let samples = (SIDE + 2).pow(2) as u64 * land.levels.count as u64;
-        let at_once = parallel::threads().min(parts.len()).max(1);
-        let _parts = budget.reserve(samples.saturating_mul(SAMPLE).saturating_mul(at_once as u64))?;
+        let at_once = at_once(&window);
+        let _parts = budget.reserve(BlockMesh::memory(&window, land.levels))?;
         let (mut bodies, mut memory) = (Vec::new(), Vec::new());
         progress.expect(parts.len() as f64);
         for group in parts.chunks(at_once) {

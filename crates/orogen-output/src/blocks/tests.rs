@@ -20,7 +20,7 @@ fn caves(has_density: bool) -> World {
 }
 
 fn land(world: &World, window: Window, extent: Extent) -> Land {
-    Land::of(world, &window, extent, &Progress::none()).unwrap()
+    Land::of(world, &window, extent, &|_| Ok(()), &Progress::none()).unwrap()
 }
 
 #[test]
