@@ -31,12 +31,13 @@ jobs! {
 
 /// Writes the files of a job, runs its commands, and looks for what they should have written.
 fn do_job(title: &str) {
-    let (_, job) = PAGE.split_once(&format!("## {title}\n")).expect("the job is on the page");
+    let Some((_, job)) = PAGE.split_once(&format!("## {title}\n")) else { panic!("{title} is not on the page") };
     let job = job.split("\n## ").next().unwrap_or_default();
     let folder = Folder::new();
     for block in job.split("```toml\n# ").skip(1) {
-        let (name, _) = block.split_once(':').expect("the first comment names the file");
-        let (content, _) = block.split_once("```").expect("the block ends");
+        let (Some((name, _)), Some((content, _))) = (block.split_once(':'), block.split_once("```")) else {
+            panic!("the first comment of a block is `NAME.toml: TEXT`")
+        };
         folder.write(name, format!("# {content}"));
     }
     let commands = job.lines().filter_map(|line| line.strip_prefix("    orogen "));
@@ -44,8 +45,8 @@ fn do_job(title: &str) {
     for command in commands {
         let arguments = words(command);
         folder.good(&arguments.iter().map(String::as_str).collect::<Vec<_>>());
-        let out = arguments.iter().position(|argument| argument == "-o").map(|at| &arguments[at + 1]);
-        let out = folder.path(out.expect("every command names its file"));
+        let Some(at) = arguments.iter().position(|argument| argument == "-o") else { panic!("{command} has no -o") };
+        let out = folder.path(&arguments[at + 1]);
         assert!(out.is_dir() || out.metadata().is_ok_and(|file| file.len() > 100), "{command}: {}", out.display());
         done += 1;
     }
