@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 use orogen::file;
+use orogen::format::points::NamedPoints;
 use orogen::jobs::map::{MapColors, MapJob};
 use orogen::jobs::sheet_format::SheetFormat;
 use orogen::sheet::options::{Parts, Resolution, Scale, Shading};
@@ -64,6 +65,13 @@ pub struct Args {
     /// Minimum area of lakes in m^2 [default: depends on the scale; none on bare noise, which has no lakes]
     #[arg(long, value_name = "M2", value_parser = positive, allow_negative_numbers = true)]
     lake_area: Option<f64>,
+    /// Names of places: a .csv file with columns x, y and name, or a .geojson file of points with names, in the CRS of the heights; without a CRS, in metres
+    /// east and north of the world's north-west corner (points south of it are negative). Names without room are left out, the last of the file first
+    #[arg(long, value_name = "FILE")]
+    names: Option<PathBuf>,
+    /// Scale of the map, 1 : N, which sets the size of the page [default: the map is 240 mm long, or as large as --paper allows]
+    #[arg(long, value_name = "N", value_parser = positive, conflicts_with = "paper", allow_negative_numbers = true)]
+    scale: Option<f64>,
     /// Title [default: the recipe's name]
     #[arg(long, value_name = "TEXT")]
     title: Option<String>,
@@ -204,6 +212,9 @@ enum Kind {
 
 const KINDS: [(Kind, &[&str]); 3] = [(Kind::Png, &["png"]), (Kind::Svg, &["svg"]), (Kind::Pdf, &["pdf"])];
 
+/// Maximum number of names.
+const MOST_NAMES: usize = 10_000;
+
 /// Draws the sheet.
 pub fn run(args: &Args) -> Result<(), Failure> {
     args.view.each_output(&args.out, |view, out| map(&Args { view, out, ..args.clone() }))
@@ -215,7 +226,11 @@ fn map(args: &Args) -> Result<(), Failure> {
     job.is_place = matches!(source, Source::Dem(_));
     let budget = args.limits.budget();
     let mut recipe = args.view.recipe(&source, &budget)?;
-    let sink = Sink::new(&args.out, &args.replace.policy(source.inputs(&recipe)).protecting(&args.palette))?;
+    let policy = args.replace.policy(source.inputs(&recipe)).protecting(&args.palette).protecting(&args.names);
+    let sink = Sink::new(&args.out, &policy)?;
+    if let Some(path) = &args.names {
+        job.names = NamedPoints::read_on(path, recipe.georeference().as_ref(), "the heights", MOST_NAMES)?.points;
+    }
     job.prepare(&mut recipe)?;
     let world = args.limits.open(recipe, &budget)?;
     job.window = Some(args.view.window(&world)?);
@@ -281,6 +296,7 @@ fn job(args: &Args) -> Result<MapJob, Failure> {
     job.interval = args.contours;
     job.river_area = args.river_area;
     job.lake_area = args.lake_area;
+    job.map_scale = args.scale;
     job.title = args.title.clone().unwrap_or_else(|| title(&args.recipe));
     job.paper = args.paper.map(|paper| paper.sides(args.landscape));
     job.resolution = match (args.dpi, args.size) {

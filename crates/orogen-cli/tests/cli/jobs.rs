@@ -34,9 +34,9 @@ fn do_job(title: &str) {
     let Some((_, job)) = PAGE.split_once(&format!("## {title}\n")) else { panic!("{title} is not on the page") };
     let job = job.split("\n## ").next().unwrap_or_default();
     let folder = Folder::new();
-    for block in job.split("```toml\n# ").skip(1) {
+    for block in job.split("```toml\n# ").flat_map(|part| part.split("```csv\n# ")).skip(1) {
         let (Some((name, _)), Some((content, _))) = (block.split_once(':'), block.split_once("```")) else {
-            panic!("the first comment of a block is `NAME.toml: TEXT`")
+            panic!("the first comment of a block is `NAME: TEXT`")
         };
         folder.write(name, format!("# {content}"));
     }

@@ -224,3 +224,52 @@ fn a_range_colors_maps_alike() {
     assert_ne!(map(&[]), map(&["--range", "-500,4000"]));
     assert_ne!(map(&["--palette", "viridis"]), map(&["--palette", "viridis", "--range", "-500,4000"]));
 }
+
+#[test]
+fn names_of_places_are_drawn_and_those_left_out_are_listed() {
+    let folder = Folder::new();
+    let map = ["map", "hills", "--window", "0,0,101,81", "--cell", "10", "--no-contours", "-o"];
+    let with = |more: &[&str]| [&map[..], more].concat();
+    folder.write("places.csv", "\u{feff}x;y;name\n500;-400;Ford\n-5;-400;Beyond\n700;-200;\n");
+    folder.good(&with(&["plain.svg"]));
+    let outcome = folder.good(&with(&["named.svg", "--names", "places.csv"]));
+    let expect = "warning: `Beyond` is outside the map, which extends from 0 to 1000 east and from -800 to 0 north\n";
+    assert_eq!(outcome.err, expect);
+    assert!(folder.text("named.svg").len() > folder.text("plain.svg").len() + 500, "the name, its dot and the legend");
+    // The same points as GeoJSON give the same sheet.
+    let points = r#"{"type":"FeatureCollection","features":[{"type":"Feature","properties":{"name":"Ford"},
+        "geometry":{"type":"Point","coordinates":[500,-400]}}]}"#;
+    folder.write("places.geojson", points);
+    folder.good(&with(&["again.svg", "--names", "places.geojson"]));
+    assert_eq!(folder.text("again.svg"), folder.text("named.svg"));
+    // Twenty places within a few metres have no room for all names.
+    let crowd: String = (0..20).map(|k| format!("{},-400,Crowded town {k}\n", 500 + k)).collect();
+    folder.write("crowd.csv", format!("x,y,name\n{crowd}"));
+    let outcome = folder.good(&with(&["crowd.svg", "--names", "crowd.csv"]));
+    assert!(outcome.err.starts_with("warning: there is no room for `Crowded town"), "{}", outcome.err);
+    for (name, content, why) in [
+        ("empty.csv", "x,y,name\n", "it has no points"),
+        ("bad.csv", "x,y,name\n1,two,A\n", "line 2"),
+        ("places.txt.gz", "", "points are read from .csv and .geojson"),
+    ] {
+        folder.write(name, content);
+        folder.bad(&with(&["no.svg", "--names", name]), 1, why);
+    }
+    folder.bad(&with(&["places.csv", "--format", "svg", "--force", "--names", "places.csv"]), 1, "places.csv");
+}
+
+#[test]
+fn a_scale_sets_the_size_of_the_page() {
+    let folder = Folder::new();
+    let map = |more: &[&str]| [&["map", "hills", "--window", "0,0,101,81", "--cell", "10"][..], more].concat();
+    // 1000 m are 200 mm at 1 : 5000, and 100 mm at 1 : 10 000.
+    let width = |scale: &str| {
+        folder.good(&map(&["-o", "a.svg", "--scale", scale]));
+        let text = folder.text("a.svg");
+        let width = text.split("width=\"").nth(1).unwrap().split("mm").next().unwrap().parse::<f64>().unwrap();
+        width
+    };
+    assert!((width("5000") - width("1e4") - 100.0).abs() < 0.5, "{} {}", width("5000"), width("1e4"));
+    folder.bad(&map(&["-o", "b.svg", "--scale", "10"]), 1, "choose a scale from 1 : 200 to 1 : 50000");
+    folder.bad(&map(&["-o", "b.svg", "--scale", "1e4", "--paper", "a4"]), 2, "--paper");
+}

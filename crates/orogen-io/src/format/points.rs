@@ -7,7 +7,7 @@ use orogen_grid::words::bytes;
 use serde_json::Value;
 
 use super::crs::registry::Crs;
-use super::dem::refused;
+use super::dem::{Georeference, refused};
 use crate::open;
 
 /// Maximum length of a file, in bytes.
@@ -60,6 +60,25 @@ impl NamedPoints {
         match found.points.len() {
             0 => Err(refused(&name, "it has no points")),
             count if count > most => Err(refused(&name, format!("it has {count} points, and at most {most} are read"))),
+            _ => Ok(found),
+        }
+    }
+
+    /// [Reads](NamedPoints::read) points that must be in the coordinate system of a map, if both are known. `of` names what the map is of.
+    ///
+    /// # Errors
+    /// Those of [`read`](NamedPoints::read), or if the points are in another coordinate system.
+    pub fn read_on(path: &Path, map: Option<&Georeference>, of: &str, most: usize) -> Result<NamedPoints> {
+        let found = NamedPoints::read(path, most)?;
+        match (found.epsg, map.and_then(Georeference::epsg)) {
+            (Some(own), Some(epsg)) if own != epsg => {
+                let name = path.display().to_string();
+                let why = format!(
+                    "its points are in EPSG:{own}, and {of} are in EPSG:{epsg}; convert them first, such as with `ogr2ogr -t_srs EPSG:{epsg} \
+                     points.geojson FILE`"
+                );
+                Err(refused(&name, why))
+            }
             _ => Ok(found),
         }
     }

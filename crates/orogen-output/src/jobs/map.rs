@@ -13,7 +13,7 @@ use crate::export::{biome_cover, place, sheet_cover};
 use crate::sheet::draw::{Sheet, draw};
 use crate::sheet::geometry::{Rect, Size};
 use crate::sheet::linework::{least_areas, lines_at};
-use crate::sheet::options::{Coloring, Layer, Page, Parts, Resolution, Scale, Shading, SheetOptions};
+use crate::sheet::options::{Coloring, Layer, Page, Parts, PlaceName, Resolution, Scale, Shading, SheetOptions};
 use crate::sheet::{pdf, raster, vector};
 use orogen_engine::budget::Reservation;
 use orogen_engine::layer::LayerKind;
@@ -26,6 +26,7 @@ use orogen_grid::words::number;
 use orogen_io::file::{self, Output};
 use orogen_io::format::affine::Affine;
 use orogen_io::format::dem::Georeference;
+use orogen_io::format::points::NamedPoint;
 use orogen_io::palette::named;
 use orogen_io::palette::palette::Palette;
 
@@ -100,6 +101,11 @@ pub struct MapJob {
     pub river_area: Option<f64>,
     /// Minimum area of lakes in m^2; by default it depends on the scale.
     pub lake_area: Option<f64>,
+    /// Places whose names are shown, in map coordinates, or in metres east and north of the world's origin; the most important first. Those without room
+    /// are left out.
+    pub names: Vec<NamedPoint>,
+    /// The denominator of the map's scale, such as 100 000, which sets the size of the page. Paper has a size of its own.
+    pub map_scale: Option<f64>,
     /// The heading.
     pub title: String,
     /// Width and height of the paper in millimetres; by default the page fits the map.
@@ -126,6 +132,9 @@ const LONGER: f64 = 240.0;
 const SCREEN: f64 = 150.0;
 const PRINT: f64 = 220.0;
 
+/// Longer sides of a map at a scale, in millimetres.
+const PAGES: std::ops::RangeInclusive<f64> = 20.0..=5000.0;
+
 /// Maximum number of pixels of a page.
 const MOST: f64 = 4e8;
 
@@ -150,6 +159,8 @@ impl MapJob {
             interval: None,
             river_area: None,
             lake_area: None,
+            names: Vec::new(),
+            map_scale: None,
             title: String::new(),
             paper: None,
             resolution: None,
@@ -195,6 +206,21 @@ impl MapJob {
         }
         if self.scale.is_some() && self.layer == HEIGHT {
             return refuse("heights are always mapped to colours on a linear scale; leave out the scale".into());
+        }
+        if self.map_scale.is_some() && self.paper.is_some() {
+            return refuse("the scale sets the size of the page; leave out the paper".into());
+        }
+        if let (Some(scale), Page::Fitted(longer)) = (self.map_scale, self.page())
+            && !PAGES.contains(&longer)
+        {
+            let suits = |millimetres: f64| number(scale * longer / millimetres);
+            return refuse(format!(
+                "at a scale of 1 : {} the map is {} mm long; choose a scale from 1 : {} to 1 : {}",
+                number(scale),
+                number(longer),
+                suits(*PAGES.end()),
+                suits(*PAGES.start())
+            ));
         }
         if self.is_too_large() {
             return refuse(format!(
@@ -249,12 +275,13 @@ impl MapJob {
     /// The errors of [`check`](MapJob::check); if the world has no such layer, surfaces or classes, or cannot make the window; if memory does not suffice (then nothing
     /// was started); or the work was cancelled.
     pub fn draw(&self, world: &World, progress: &Progress) -> Result<DrawnMap> {
-        self.check()?;
-        let window = match self.window {
-            Some(window) => window,
-            None => world.full_window(world.recipe().world.cell)?,
+        let Some(window) = self.window else {
+            return self.clone().with_window(world.full_window(world.recipe().world.cell)?).draw(world, progress);
         };
+        self.check()?;
         let mut options = self.options(world);
+        let mut warnings = Vec::new();
+        options.names = names_within(&self.names, &options.map, &window, &mut warnings);
         let reserved = world.budget().reserve(self.memory(&window))?;
         let plan = world.plan(&[HEIGHT], &window)?;
         let work = world.work(&plan)?;
@@ -264,7 +291,6 @@ impl MapJob {
         let watering = if is_known { work } else { 0.0 };
         let [making, watering, layering, drawing, writing] =
             progress.parts([work, watering, layered, DRAWING * window.len() as f64, WRITING * pixels]);
-        let mut warnings = Vec::new();
         let heights = world.run(&plan, &making)?.pop().unwrap_or_else(|| Grid::filled(window, f32::NAN));
         finite::check(HEIGHT, &heights, &mut warnings)?;
         if is_known {
@@ -289,6 +315,11 @@ impl MapJob {
             options.coloring = Coloring::Surfaces(cover.map_err(made)?);
         }
         let sheet = draw(&heights, &options, &drawing)?;
+        if !sheet.left_out.is_empty() {
+            let names = listed(&sheet.left_out);
+            warnings
+                .push(format!("there is no room for {names}; use a larger --paper, a larger scale, or fewer names"));
+        }
         drawing.finish();
         Ok(DrawnMap {
             format: self.format,
@@ -347,7 +378,9 @@ impl MapJob {
     }
 
     fn page(&self) -> Page {
-        self.paper.map_or(Page::Fitted(LONGER), Page::Paper)
+        let at_scale = |scale: f64| self.window.map(|window| 1000.0 * longer_side(&window) / scale);
+        let fitted = self.map_scale.and_then(at_scale).unwrap_or(LONGER);
+        self.paper.map_or(Page::Fitted(fitted), Page::Paper)
     }
 
     fn resolution(&self) -> Resolution {
@@ -382,6 +415,7 @@ impl MapJob {
         options.river_area = self.river_area;
         options.lake_area = self.lake_area;
         options.parts = parts;
+        options.map_scale = self.map_scale;
         options.page = self.page();
         options.resolution = self.resolution();
         options.range = self.range.filter(|_| is_height);
@@ -408,6 +442,61 @@ impl MapJob {
         };
         (page + layer + cover) as u64
     }
+}
+
+/// The longer side of a map of a window, in metres, between the first and the last samples.
+fn longer_side(window: &Window) -> f64 {
+    (window.width.max(window.height) - 1) as f64 * window.cell
+}
+
+/// The named points inside a window, with a warning about others.
+fn names_within(
+    points: &[NamedPoint],
+    map: &Option<Georeference>,
+    window: &Window,
+    warnings: &mut Vec<String>,
+) -> Vec<PlaceName> {
+    let map = map.clone().unwrap_or(Georeference { origin: [0.0; 2], per_metre: [1.0; 2], keys: None });
+    let (mut names, mut outside) = (Vec::new(), Vec::new());
+    for point in points {
+        let Some(name) = point.name.clone() else { continue };
+        let [east, south] = map.metres(point.at[0], point.at[1]);
+        let share = |metres: f64, first: i64, count: usize| (metres / window.cell - first as f64) / (count - 1) as f64;
+        let at = [share(east, window.x, window.width), share(south, window.y, window.height)];
+        match at.iter().all(|share| (0.0..=1.0).contains(share)) {
+            true => names.push(PlaceName { name, at }),
+            false => outside.push(name),
+        }
+    }
+    if !outside.is_empty() {
+        let ([west, north], [east, south]) = (
+            map.at(window.east(0), window.south(0)),
+            map.at(window.east(window.width - 1), window.south(window.height - 1)),
+        );
+        let [west, east, south, north] = [west, east, south, north].map(number);
+        warnings.push(format!(
+            "{} outside the map, which extends from {west} to {east} east and from {south} to {north} north",
+            match outside.as_slice() {
+                [one] => format!("{} is", quoted(one)),
+                _ => format!("{} are", listed(&outside)),
+            }
+        ));
+    }
+    names
+}
+
+/// The first names of a list, and how many more there are.
+fn listed(names: &[String]) -> String {
+    const SHOWN: usize = 5;
+    let shown: Vec<String> = names.iter().take(SHOWN).map(|name| quoted(name)).collect();
+    match names.len().saturating_sub(SHOWN) {
+        0 => shown.join(", "),
+        more => format!("{} and {more} more", shown.join(", ")),
+    }
+}
+
+fn quoted(name: &str) -> String {
+    format!("`{}`", name.escape_debug())
 }
 
 /// Approximate longer side of a page, in millimetres.

@@ -24,6 +24,8 @@ pub struct Sheet {
     pub scene: Scene,
     /// Characters of its texts that no installed font has; they are omitted.
     pub lacking: Vec<char>,
+    /// Names that have no room on the map; they are left out.
+    pub left_out: Vec<String>,
     /// Distance between contours, in metres, if there are contours.
     pub interval: Option<f64>,
     /// Resolution in pixels per inch, for [`raster::draw`](super::raster::draw).
@@ -48,7 +50,11 @@ pub fn draw(heights: &Grid, options: &SheetOptions, progress: &Progress) -> Resu
         return Err(Error::new(ErrorKind::Request, message));
     }
     let [water, painting, drawing] = progress.parts([4.0, 1.0, 1.0]);
-    let letters = FontSet::for_texts([options.title.as_str(), options.about.as_str()])?;
+    let letters = FontSet::for_texts(
+        [options.title.as_str(), options.about.as_str()]
+            .into_iter()
+            .chain(options.names.iter().map(|place| place.name.as_str())),
+    )?;
     let linework = Linework::of(heights, options)?;
     water.finish();
     progress.check()?;
@@ -87,7 +93,7 @@ pub fn draw(heights: &Grid, options: &SheetOptions, progress: &Progress) -> Resu
     painting.finish();
     progress.check()?;
     let below = if is_tint { Below::Tint(&tint) } else { Below::Picture(size[0], &pixels) };
-    linework.draw(&mut desk, map, options, &below);
+    let left_out = linework.draw(&mut desk, map, options, &below);
     desk.scene.items.insert(0, Item::Picture { area: map, width: size[0], height: size[1], pixels });
     drawing.finish();
     progress.check()?;
@@ -132,6 +138,7 @@ pub fn draw(heights: &Grid, options: &SheetOptions, progress: &Progress) -> Resu
     Ok(Sheet {
         scene,
         lacking: letters.lacking().to_vec(),
+        left_out,
         interval: linework.interval,
         dpi: layout.dpi,
         ground: layout.map,
@@ -190,7 +197,9 @@ fn facts(metres: [f64; 2], [low, high]: [f64; 2], scale: f64, options: &SheetOpt
     };
     let decimals = if high - low < 20.0 { 1 } else { 0 };
     let mut text = format!("{size}, heights {} to {} m", grouped(low, decimals), grouped(high, decimals));
-    if let Page::Paper(_) = options.page {
+    if let Some(ratio) = options.map_scale {
+        text += &format!(", scale 1 : {}", grouped(ratio, 0));
+    } else if let Page::Paper(_) = options.page {
         let ratio = scale * 1000.0;
         let power = libm::pow(10.0, libm::log10(ratio).floor() - 2.0);
         text += &format!(", scale about 1 : {}", grouped((ratio / power).round() * power, 0));

@@ -203,6 +203,7 @@ impl Desk<'_> {
                     self.scene.items.push(Item::Picture { area, width: pixels.len() / 3, height: 1, pixels });
                     self.scene.frame(area, 0.15, INK);
                 }
+                Sign::Place => self.scene.area(super::marks::dot(Point::new(x + SIGN / 2.0, y)), INK, 1.0),
                 Sign::Summit => self.scene.area(super::marks::triangle(Point::new(x + SIGN / 2.0, y)), INK, 1.0),
             }
             self.small(&entry.text, Point::new(x + SIGN + 1.8, y + 0.95), Align::Start);
@@ -226,6 +227,8 @@ pub enum Sign {
     Line(f32, Rgb),
     /// A lake: its water and its shore.
     Water(Rgb, Rgb),
+    /// A place with a name.
+    Place,
     /// A summit.
     Summit,
     /// A patch of one color, or of several along a gradient.

@@ -162,6 +162,9 @@ impl Linework {
         if options.parts.lakes && !self.water.lakes.is_empty() {
             entries.push(Entry { sign: Sign::Water(LAKES, SHORE), text: "Lake".into() });
         }
+        if !options.names.is_empty() {
+            entries.push(Entry { sign: Sign::Place, text: "Place".into() });
+        }
         if !self.summits.is_empty() {
             entries.push(Entry { sign: Sign::Summit, text: "Summit, height in m".into() });
         }

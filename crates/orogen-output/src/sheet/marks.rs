@@ -9,6 +9,10 @@ use crate::map::text::Face;
 /// Size of a summit's label, the em in millimetres.
 const SIZE: f32 = 2.5;
 
+/// Size of a place's name, and radius of its mark.
+const NAME: f32 = 3.1;
+const DOT: f32 = 0.7;
+
 /// A small triangle around a point.
 pub fn triangle(Point { x, y }: Point) -> Vec<Step> {
     polygon([[x, y - 0.95], [x + 0.85, y + 0.6], [x - 0.85, y + 0.6]])
@@ -31,6 +35,48 @@ pub fn summit(scene: &mut Scene, letters: &FontSet, taken: &mut Taken, at: Point
     scene.area(outline, INK, 1.0);
     taken.take(at, 1.3);
     shares().for_each(|share| taken.take(middle(start, share), SIZE * 0.75));
+}
+
+/// A dot at a place.
+pub fn dot(Point { x, y }: Point) -> Vec<Step> {
+    let corner = |k: i32| {
+        let (sin, cos) = libm::sincosf(std::f32::consts::TAU * k as f32 / 24.0);
+        [x + DOT * cos, y + DOT * sin]
+    };
+    polygon((0..24).map(corner))
+}
+
+/// Draws a place and its name, if there is room: to the right, otherwise to the left, above or below. Marks the room as occupied. Returns whether there was
+/// room.
+pub fn place_name(scene: &mut Scene, letters: &FontSet, taken: &mut Taken, at: Point, text: &str) -> bool {
+    let width = letters.width(text, Face::Bold, NAME);
+    let beside = DOT + 0.8;
+    let above = beside + NAME * 0.5;
+    let slant = [beside * 0.7, above * 0.8];
+    let starts = [
+        [beside, 0.0],
+        [-beside - width, 0.0],
+        [slant[0], -slant[1]],
+        [slant[0], slant[1]],
+        [-slant[0] - width, -slant[1]],
+        [-slant[0] - width, slant[1]],
+        [-width / 2.0, -above],
+        [-width / 2.0, above],
+    ];
+    let parts = (width / (NAME * 0.5)).ceil().max(1.0);
+    let middles =
+        |start: [f32; 2]| (0..=parts as i32).map(move |k| at.moved(start[0] + width * k as f32 / parts, start[1]));
+    let free = |start: &[f32; 2]| middles(*start).all(|middle| taken.is_free(middle, NAME * 0.45));
+    let Some(start) = starts.into_iter().find(free) else { return false };
+    let outline = letters.write(text, Face::Bold, NAME, at.moved(start[0], start[1] + NAME * 0.35), 0.0);
+    let mark = dot(at);
+    let edge: Vec<Vec<Point>> = rings(&outline).into_iter().chain(rings(&mark)).collect();
+    scene.lines(edge, 0.8, [255; 3], 0.7);
+    scene.area(mark, INK, 1.0);
+    scene.area(outline, INK, 1.0);
+    taken.take(at, 1.0);
+    middles(start).for_each(|middle| taken.take(middle, NAME * 0.6));
+    true
 }
 
 /// The parts of an outline as closed lines; curves are replaced by their ends, which suffices at this size.
@@ -66,5 +112,24 @@ mod tests {
         summit(&mut scene, &letters, &mut taken, Point::new(47.0, 10.0), "1999");
         assert_eq!(scene.items.len(), 6);
         assert!(!taken.is_free(Point::new(43.0, 10.0), 0.3));
+    }
+
+    #[test]
+    fn names_stand_on_a_free_side_of_their_place() {
+        let letters = FontSet::for_texts(["Port Varn"]).unwrap();
+        let mut scene = Scene { size: Size::new(60.0, 60.0), title: String::new(), items: Vec::new() };
+        let mut taken = Taken::none(Rect::new(0.0, 0.0, 60.0, 60.0));
+        let mut name = |x: f32, y: f32| {
+            let has_room = place_name(&mut scene, &letters, &mut taken, Point::new(x, y), "Port Varn");
+            (has_room, scene.items.len())
+        };
+        // To the right; at the right edge to the left; beside the first one above or below it.
+        assert_eq!(name(20.0, 30.0), (true, 3));
+        assert_eq!(name(58.0, 10.0), (true, 6));
+        assert_eq!(name(20.5, 30.5), (true, 9));
+        assert!(!taken.is_free(Point::new(26.0, 30.0), 0.3) && !taken.is_free(Point::new(52.0, 10.0), 0.3));
+        // Around a place with many neighbours there is no room.
+        let more: Vec<bool> = (0..12).map(|k| name(20.0 + 0.1 * k as f32, 30.0).0).collect();
+        assert!(more.contains(&false), "{more:?}");
     }
 }

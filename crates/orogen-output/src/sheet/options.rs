@@ -142,6 +142,15 @@ impl Layer {
     }
 }
 
+/// A place with a name.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlaceName {
+    /// The name.
+    pub name: String,
+    /// The position in shares of the ground's width and height, from its north-west corner.
+    pub at: [f64; 2],
+}
+
 /// A surface in the legend of a sheet.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SurfaceEntry {
@@ -215,6 +224,10 @@ pub struct SheetOptions {
     pub lake_area: Option<f64>,
     /// Rivers and lakes, if they are known; by default they are found in the heights.
     pub water: Option<KnownWater>,
+    /// Names of places, the most important first: those without room are left out.
+    pub names: Vec<PlaceName>,
+    /// The denominator of the scale, if the page was chosen for one.
+    pub map_scale: Option<f64>,
     /// The position of the ground on a map of the Earth, if it has one.
     pub map: Option<Georeference>,
 }
@@ -238,6 +251,8 @@ impl SheetOptions {
             river_area: None,
             lake_area: None,
             water: None,
+            names: Vec::new(),
+            map_scale: None,
             map: None,
         }
     }

@@ -51,8 +51,8 @@ impl Below<'_> {
 }
 
 impl Linework {
-    /// Draws all lines on the map.
-    pub fn draw(&self, desk: &mut Desk, map: Rect, options: &SheetOptions, below: &Below) {
+    /// Draws all lines on the map. Returns the names that have no room.
+    pub fn draw(&self, desk: &mut Desk, map: Rect, options: &SheetOptions, below: &Below) -> Vec<String> {
         let across = map.width / (self.grid.width() - 1) as f32;
         let down = map.height / (self.grid.height() - 1) as f32;
         let on_map = Affine::scaling(map.corner(), across, down);
@@ -74,13 +74,21 @@ impl Linework {
             false => Vec::new(),
         };
         let shore: Vec<Vec<Point>> = self.shore.iter().map(path).collect();
-        rivers.iter().for_each(|(width, line)| taken.take_line(line, 0.35 + width / 2.0));
-        lakes.iter().chain(&shore).for_each(|line| taken.take_line(line, 0.5));
-        // Summits are drawn last, on top of the lines, but reserve their room first.
+        // Names and summits are drawn last, on top of the lines, but reserve their room first; names may cross rivers and shores, because harbours and towns
+        // at rivers have no other room.
         let mut over = Desk {
             scene: Scene { size: desk.scene.size, title: String::new(), items: Vec::new() },
             letters: desk.letters,
         };
+        let mut left_out = Vec::new();
+        for place in &options.names {
+            let at = map.at(place.at[0] as f32, place.at[1] as f32);
+            if !marks::place_name(&mut over.scene, desk.letters, &mut taken, at, &place.name) {
+                left_out.push(place.name.clone());
+            }
+        }
+        rivers.iter().for_each(|(width, line)| taken.take_line(line, 0.35 + width / 2.0));
+        lakes.iter().chain(&shore).for_each(|line| taken.take_line(line, 0.5));
         for summit in &self.summits {
             let share = |at: usize, samples: usize| at as f32 / (samples - 1) as f32;
             let place = map.at(share(summit.x, self.samples[0]), share(summit.y, self.samples[1]));
@@ -139,6 +147,7 @@ impl Linework {
             desk.scene.area(outline, inks.words, 1.0);
         }
         desk.scene.items.append(&mut over.scene.items);
+        left_out
     }
 
     /// Labels of the index contours, the longest lines first, with their inks.

@@ -5,7 +5,7 @@ use orogen_engine::recipe::document::Recipe;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
 use orogen_grid::words::number;
-use orogen_io::format::dem::{Georeference, refused};
+use orogen_io::format::dem::Georeference;
 use orogen_io::format::points::NamedPoints;
 
 /// `--outlet`.
@@ -74,16 +74,7 @@ impl Outlets {
             }
             (Some(at), None) => vec![(None, at)],
             (None, Some(path)) => {
-                let found = NamedPoints::read(path, MOST)?;
-                if let (Some(own), Some(epsg)) = (found.epsg, map.as_ref().and_then(Georeference::epsg))
-                    && own != epsg
-                {
-                    let why = format!(
-                        "its points are in EPSG:{own}, and the heights are in EPSG:{epsg}; convert them first, such as with `ogr2ogr -t_srs \
-                         EPSG:{epsg} outlets.geojson FILE`"
-                    );
-                    return Err(refused(&path.display().to_string(), why));
-                }
+                let found = NamedPoints::read_on(path, map.as_ref(), "the heights", MOST)?;
                 found.points.into_iter().map(|point| (point.name, point.at)).collect()
             }
         };
