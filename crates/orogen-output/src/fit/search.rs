@@ -224,7 +224,10 @@ impl Trial<'_> {
         let far = |land: &Grid| {
             Measures::of(land, None).map_or(FARTHEST, |made| FeatureVector::of(&made).distance(&self.target.middle))
         };
-        Ok((stretch, windows.iter().map(far).sum::<f64>() / windows.len().max(1) as f64))
+        if windows.is_empty() {
+            return Ok((stretch, FARTHEST));
+        }
+        Ok((stretch, windows.iter().map(far).sum::<f64>() / windows.len() as f64))
     }
 
     /// The final candidate with the smallest mean distance over its worlds, with the mean stretching.
@@ -267,7 +270,15 @@ impl Trial<'_> {
         let mut grids = world.grids(&["soft"], &inside, progress)?;
         let soft =
             grids.pop().ok_or_else(|| Error::new(ErrorKind::Request, "no window of the world could be measured"))?;
+        // Extreme parameters may lead to heights beyond all numbers.
+        if soft.data().iter().any(|height| !height.is_finite()) {
+            return Ok((plain, Vec::new()));
+        }
         let from = [quantile(&soft, 0.001), quantile(&soft, 0.999)];
+        // So little relief at so great a height would be lost in the digits of the curve.
+        if from[1] - from[0] < 2e-3 * from[0].abs().max(from[1].abs()) {
+            return Ok((plain, Vec::new()));
+        }
         let windows: Vec<Grid> = inside.tiles(side).filter_map(|window| soft.crop(&window)).collect();
         if from[1] - from[0] < 1e-3 {
             return Ok((plain, windows));

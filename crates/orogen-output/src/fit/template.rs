@@ -164,6 +164,16 @@ pub(super) fn trial(values: &ParamValues, stretch: &Stretch, world: &FittedWorld
 /// Width of the border of a solved world that is affected by its edge, in samples.
 pub(super) const MARGIN: usize = 48;
 
+/// Cell from which the whole range of creep is searched, in metres.
+const CREEP_CELL: f64 = 10.0;
+
+/// The factor of creep at a cell. Creep over a number of cells takes time with the inverse of the cell: what it rounds on cells of a metre in the same way as
+/// on cells of 10 m is a hundredth of it.
+fn creep_factor(cell: f64) -> f64 {
+    let share = (cell / CREEP_CELL).min(1.0);
+    share * share
+}
+
 fn written(values: &ParamValues, stretch: &Stretch, world: &FittedWorld, view: Option<View>) -> Recipe {
     let FittedWorld { size, cell, seed } = *world;
     let value = |k: usize| round(value(values, k));
@@ -190,7 +200,7 @@ fn written(values: &ParamValues, stretch: &Stretch, world: &FittedWorld, view: O
         erodibility: value(3),
         uplift: value(4),
         talus_angle: value(5),
-        creep: value(7),
+        creep: round(value(7) * creep_factor(cell)),
         sea: false,
         ..StreamPower::default()
     };
@@ -216,4 +226,21 @@ fn written(values: &ParamValues, stretch: &Stretch, world: &FittedWorld, view: O
     recipe.add("land", stretch.curve());
     recipe.output("height", "land");
     recipe
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn creep_of_small_cells_takes_no_longer_than_that_of_large_ones() {
+        let stretch = Stretch { from: [0.0, 1.0], to: [0.0, 1.0], bend: 0.0 };
+        let creep = |cell: f64| {
+            let recipe =
+                trial(&[1.0; PARAMS.len()], &stretch, &FittedWorld { size: [100; 2], cell, seed: 1 }).to_toml();
+            let line = recipe.lines().find(|line| line.starts_with("creep = ")).unwrap_or_default();
+            line["creep = ".len()..].parse::<f64>().unwrap()
+        };
+        assert_eq!([90.0, 30.0, 10.0, 1.0, 0.2].map(creep), [1.0, 1.0, 1.0, 0.01, 0.0004]);
+    }
 }

@@ -30,6 +30,25 @@ fn every_setting_is_a_valid_recipe() {
 }
 
 #[test]
+fn a_place_of_any_cell_is_fitted() {
+    // At cells of decimetres many parameters make land without relief, or heights beyond all numbers.
+    for cell in [0.1, 0.3, 1000.0] {
+        let mut place = Grid::filled(Window::new(72, 72, cell), 0.0f32);
+        for (k, height) in place.data_mut().iter_mut().enumerate() {
+            let (x, y) = ((k % 72) as f64, (k / 72) as f64);
+            *height =
+                ((libm::sin(x * 0.3) + libm::sin(y * 0.2 + x * 0.1) + 0.2 * libm::sin(x * y)) * 3.0 * cell) as f32;
+        }
+        let target = FitTarget::of(&place).unwrap();
+        let found = search(&target, &Effort::new(16, 4), &options(), &Progress::none()).unwrap();
+        assert!(
+            found.distance < 100.0 && found.stretch.to.iter().all(|height| height.is_finite()),
+            "{cell}: {found:?}"
+        );
+    }
+}
+
+#[test]
 fn the_search_comes_nearer_and_meets_slope_and_hypsometry() {
     // A target that the template can make: another seed of one of its candidates.
     let hidden: ParamValues = [0.6, 0.55, 0.5, 0.4, 0.6, 0.6, 0.5, 0.4, 0.4];
