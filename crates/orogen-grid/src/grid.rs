@@ -67,7 +67,7 @@ impl Window {
     /// The window extended by `halo` samples on each side, up to [`FARTHEST`] samples from the origin.
     #[must_use]
     pub fn grown(&self, halo: usize) -> Window {
-        let halo = i64::try_from(halo).unwrap_or(FARTHEST).min(FARTHEST);
+        let halo = i64::try_from(halo).map_or(2 * FARTHEST, |halo| halo.min(2 * FARTHEST));
         let side = |first: i64, samples: usize| {
             let (start, end) =
                 (first.saturating_sub(halo), first.saturating_add_unsigned(samples as u64).saturating_add(halo));
@@ -379,7 +379,7 @@ mod tests {
         let window = Window::new(10, 20, 1.0).at(-5, 7);
         assert_eq!(window.grown(3), Window::new(16, 26, 1.0).at(-8, 4));
         let side = 2 * FARTHEST as usize;
-        for halo in [usize::MAX, 1 << 62, FARTHEST as usize + 30] {
+        for halo in [usize::MAX, 1 << 62, 2 * FARTHEST as usize] {
             let all = window.grown(halo);
             assert_eq!(all, Window::new(side, side, 1.0).at(-FARTHEST, -FARTHEST));
             assert_eq!((all.grown(halo), all.len()), (all, usize::MAX));

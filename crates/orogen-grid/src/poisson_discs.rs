@@ -409,7 +409,7 @@ mod tests {
         let error = PoissonDiscs::new(0.5, 1).within(&[0.0..2e5, 0.0..2e5], |_| 0.0, &Progress::none());
         let error = error.unwrap_err().to_string();
         assert!(
-            error.contains("a spacing of 0.5 m over 200000 x 200000 m would have 2560004800002 candidates"),
+            error.contains("a spacing of 0.5 m over 200000 x 200000 m would have 2560009600009 candidates"),
             "{error}"
         );
     }

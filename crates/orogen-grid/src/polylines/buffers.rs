@@ -291,7 +291,7 @@ mod tests {
 
     #[test]
     fn the_tree_finds_what_a_look_at_every_segment_finds() {
-        let lines = random(1500);
+        let lines = random(2500);
         let buffers = Buffers::new(lines.iter().map(|(points, radius)| (points.as_slice(), *radius)));
         let mut most = 0;
         for k in 0..400 {

@@ -58,7 +58,7 @@ mod tests {
     use super::*;
 
     fn element(count: usize) -> String {
-        let attributes: String = (0..count).map(|k| format!(" a{k}='<{k}>'")).collect();
+        let attributes: String = (0..count).map(|k| format!(" a{k}='>{k}'")).collect();
         format!("<svg><g{attributes}/></svg>")
     }
 
