@@ -59,7 +59,15 @@ impl Serving {
     /// # Errors
     /// If they are; the message has the largest cell for a window of so many samples.
     pub fn check(&self, levels: &Levels, window: &Window, node: &str) -> Result<()> {
-        let Window { width, height, cell, .. } = self.samples;
+        let Window { x, y, width, height, cell } = self.samples;
+        // Where whole numbers are no longer exact, samples fall together.
+        if [x, y].iter().any(|first| first.unsigned_abs() > 1 << 53) {
+            let message = format!(
+                "the window is too far from the origin for node `{node}`; use a window within {} m of it",
+                number(cell * (1u64 << 53) as f64)
+            );
+            return Err(Error::new(ErrorKind::Request, message));
+        }
         if (width as u64).saturating_mul(height as u64) <= MAX_SAMPLES {
             return Ok(());
         }
@@ -304,7 +312,12 @@ mod tests {
         assert!(error.contains("use a cell of at most 1966080 m"), "{error}");
         assert!(check(&Window::new(32, 32, 1966080.0)).is_ok());
         let far = Window::new(32, 32, 1e12).at(1 << 53, -(1 << 53));
-        assert!(check(&far).is_err());
+        assert!(
+            check(&far)
+                .unwrap_err()
+                .to_string()
+                .contains("too far from the origin for node `land`; use a window within 4.3")
+        );
         assert!(
             check(&Window::new(1 << 30, 1 << 30, 60.0)).unwrap_err().to_string().contains("use fewer samples at once")
         );

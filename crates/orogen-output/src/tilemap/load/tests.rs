@@ -207,7 +207,7 @@ fn wrong_tilesets_of_tiled_are_explained() {
     let sets = |content: String| tsx(&format!("<wangsets>{content}</wangsets>"));
     for (text, expected) in [
         ("<map/>".to_string(), "its content is a `map`"),
-        ("<tileset".to_string(), "no XML"),
+        ("<tileset".to_string(), "not valid XML"),
         (tsx(""), "no wang set"),
         (tsx("").replace("<image source=\"tiles.png\" width=\"46\" height=\"12\"/>", ""), "collections of pictures"),
         (tsx("").replace("tileheight=\"4\"", "tileheight=\"8\""), "4 x 8 pixels; they must be squares"),
