@@ -4,9 +4,14 @@
 //! separated by blanks. Colours are red/green/blue, hue-saturation-value, cyan/magenta/yellow/black, #rrggbb, a grey
 //! level or a name. `B`, `F` and `N` are the colours below, above, and for missing samples. `# COLOR_MODEL`, `# RANGE`
 //! and `# HINGE` are supported.
+//!
+//! The colour model tells what three or four numbers mean. Written in small letters (`hsv`) or with a plus sign (`+HSV`), it
+//! is also the one in which GMT mixes colours: hue, saturation and value each change linearly, and the hue does not take the
+//! shorter way, so that `0-1-1` to `360-1-1` passes through all hues. Such a slice becomes several stops, between which
+//! red, green and blue change linearly.
 
 use super::color::Rgb;
-use super::fitted::of_hsv;
+use super::fitted::{hsv, of_hsv};
 use super::names::{hexadecimal, named};
 use super::palette::{Mix, Palette, Position, Stop};
 
@@ -15,6 +20,62 @@ enum Model {
     Rgb,
     Hsv,
     Cmyk,
+}
+
+/// A colour as it was written: hues of 0 and 360 degrees differ.
+#[derive(Clone, Copy, PartialEq)]
+enum Color {
+    Rgb([f64; 3]),
+    Hsv([f64; 3]),
+}
+
+impl Color {
+    fn rgb(self) -> Rgb {
+        let parts = match self {
+            Color::Rgb(rgb) => rgb,
+            Color::Hsv(hsv) => of_hsv(hsv.map(|part| part as f32)).map(f64::from),
+        };
+        parts.map(|part| (part * 255.0).round().clamp(0.0, 255.0) as u8)
+    }
+
+    /// Hue in degrees, saturation and value from 0 to 1. The hue of a grey is 0.
+    fn hsv(self) -> [f64; 3] {
+        match self {
+            Color::Hsv(hsv) => hsv,
+            Color::Rgb(_) => hsv(self.rgb()).map(f64::from),
+        }
+    }
+}
+
+/// The stops of a slice that is mixed by hue, saturation and value. Between multiples of 60 degrees, where red, green and blue
+/// have kinks, they are at most quadratic, and pieces of them differ by less than half a level of 255 from straight lines.
+fn hsv_stops([start, end]: [(f64, Color); 2]) -> Vec<(f64, Rgb)> {
+    let (from, to) = (start.1.hsv(), end.1.hsv());
+    let at = |share: f64| std::array::from_fn(|k| from[k] + share * (to[k] - from[k]));
+    let [turn, saturation, value] = [0, 1, 2].map(|k| to[k] - from[k]);
+    let mut shares = vec![0.0];
+    let (low, high) = (from[0].min(to[0]), from[0].max(to[0]));
+    let kinks = (1..6).map(|sixth| 60.0 * f64::from(sixth)).filter(|hue| *hue > low && *hue < high);
+    shares.extend(kinks.map(|hue| (hue - from[0]) / turn));
+    shares.push(1.0);
+    shares.sort_by(f64::total_cmp);
+    let mut stops = vec![(start.0, start.1.rgb())];
+    for pair in shares.windows(2) {
+        let [first, last] = [pair[0], pair[1]];
+        // Bound of the second derivative along the piece.
+        let part = last - first;
+        let [turn, saturation, value] = [turn / 60.0, saturation, value].map(|change| (change * part).abs());
+        let bend = 2.0 * (value * saturation + value * turn + saturation * turn);
+        let pieces = (bend / 8.0 * 2.0 * 255.0).sqrt().ceil().max(1.0) as usize;
+        stops.extend((1..=pieces).map(|piece| {
+            let share = first + part * piece as f64 / pieces as f64;
+            (start.0 + share * (end.0 - start.0), Color::Hsv(at(share)).rgb())
+        }));
+    }
+    if let Some(last) = stops.last_mut() {
+        *last = (end.0, end.1.rgb());
+    }
+    stops
 }
 
 /// Parses a table.
@@ -26,7 +87,7 @@ enum Model {
 /// A message with the line that cannot be parsed.
 pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
     let mut palette = Palette { name: name.to_string(), mix: Mix::Rgb, ..Palette::default() };
-    let (mut model, mut range, mut hinge) = (Model::Rgb, None, false);
+    let (mut model, mut mixed, mut range, mut hinge) = (Model::Rgb, Model::Rgb, None, false);
     let mut stops: Vec<(f64, Rgb)> = Vec::new();
     for (number, line) in text.lines().enumerate().map(|(k, line)| (k + 1, line.trim())) {
         let at = |why: String| format!("line {number}: {why}");
@@ -36,7 +97,7 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
                 continue;
             };
             match key.trim() {
-                "COLOR_MODEL" => (model, palette.mix) = color_model(value.trim()).map_err(at)?,
+                "COLOR_MODEL" => (model, mixed) = color_model(value.trim()).map_err(at)?,
                 "RANGE" => range = span(value.trim()),
                 "HINGE" | "SOFT_HINGE" | "HARD_HINGE" => hinge = true,
                 _ => {}
@@ -49,14 +110,20 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
             [] => {}
             [which @ ("B" | "F" | "N"), color @ ..] => {
                 // A minus sign means that nothing is painted.
-                let color = if color == ["-"] { None } else { Some(colors(color, model).map_err(at)?) };
+                let color = if color == ["-"] { None } else { Some(colors(color, model).map_err(at)?.rgb()) };
                 match *which {
                     "B" => palette.below = color,
                     "F" => palette.above = color,
                     _ => palette.missing = color,
                 }
             }
-            words => stops.extend(slice(words, model).map_err(at)?),
+            words => {
+                let slice = slice(words, model).map_err(at)?;
+                match mixed {
+                    Model::Hsv => stops.extend(hsv_stops(slice)),
+                    Model::Rgb | Model::Cmyk => stops.extend(slice.map(|(at, color)| (at, color.rgb()))),
+                }
+            }
         }
     }
     if stops.is_empty() {
@@ -79,15 +146,17 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
     Ok(palette)
 }
 
-fn color_model(text: &str) -> Result<(Model, Mix), String> {
-    // A plus sign means that colours are also mixed in this model.
-    match text.to_ascii_uppercase().as_str() {
-        "RGB" | "+RGB" => Ok((Model::Rgb, Mix::Rgb)),
-        "HSV" => Ok((Model::Hsv, Mix::Rgb)),
-        "+HSV" => Ok((Model::Hsv, Mix::Hsv)),
-        "CMYK" | "+CMYK" => Ok((Model::Cmyk, Mix::Rgb)),
-        _ => Err(format!("unknown colour model {text}; supported are RGB, HSV and CMYK")),
-    }
+/// The model of colours, and that in which they are mixed.
+fn color_model(text: &str) -> Result<(Model, Model), String> {
+    let name = text.strip_prefix('+').unwrap_or(text);
+    let model = match name.to_ascii_uppercase().as_str() {
+        "RGB" => Model::Rgb,
+        "HSV" => Model::Hsv,
+        "CMYK" => Model::Cmyk,
+        _ => return Err(format!("unknown colour model `{text}`; supported are RGB, HSV and CMYK")),
+    };
+    let mixes = name != text || !name.contains(|c: char| c.is_ascii_uppercase());
+    Ok((model, if mixes { model } else { Model::Rgb }))
 }
 
 fn span(text: &str) -> Option<[f64; 2]> {
@@ -97,7 +166,7 @@ fn span(text: &str) -> Option<[f64; 2]> {
 }
 
 /// The two stops of a line.
-fn slice(words: &[&str], model: Model) -> Result<[(f64, Rgb); 2], String> {
+fn slice(words: &[&str], model: Model) -> Result<[(f64, Color); 2], String> {
     // L, U and B at the end request annotations on GMT's colour bar.
     let words = match words {
         [init @ .., "L" | "U" | "B"] if init.len() > 2 => init,
@@ -111,18 +180,18 @@ fn slice(words: &[&str], model: Model) -> Result<[(f64, Rgb); 2], String> {
     let stop = |words: &[&str]| {
         let height = words[0].parse::<f64>().ok().filter(|height| height.abs() <= 1e9);
         let height = height.ok_or_else(|| format!("`{}` is not a height", words[0]))?;
-        Ok::<(f64, Rgb), String>((height, colors(&words[1..], model)?))
+        Ok::<(f64, Color), String>((height, colors(&words[1..], model)?))
     };
     Ok([stop(start)?, stop(end)?])
 }
 
-fn colors(words: &[&str], model: Model) -> Result<Rgb, String> {
+fn colors(words: &[&str], model: Model) -> Result<Color, String> {
     let text = words.join(" ");
     let wrong = || format!("`{text}` is not a colour");
     if let [word] = words
         && let Some(color) = hexadecimal(word).or_else(|| named(word))
     {
-        return Ok(color);
+        return Ok(Color::Rgb(color.map(|part| f64::from(part) / 255.0)));
     }
     let (separator, model) = match words {
         [word] if word.contains('/') && word.split('/').count() == 4 => ('/', Model::Cmyk),
@@ -134,15 +203,12 @@ fn colors(words: &[&str], model: Model) -> Result<Rgb, String> {
     let parts: Vec<f64> =
         text.split(separator).map(|part| part.parse().map_err(|_| wrong())).collect::<Result<_, _>>()?;
     let within = |parts: &[f64], most: &[f64]| parts.iter().zip(most).all(|(part, most)| (0.0..=*most).contains(part));
-    let bytes = |color: [f64; 3]| color.map(|part| (part * 255.0).round().clamp(0.0, 255.0) as u8);
     match (&parts[..], model) {
-        ([grey], _) if within(&parts, &[255.0]) => Ok(bytes([grey / 255.0; 3])),
-        ([r, g, b], Model::Rgb) if within(&parts, &[255.0; 3]) => Ok(bytes([r / 255.0, g / 255.0, b / 255.0])),
-        ([h, s, v], Model::Hsv) if within(&parts, &[360.0, 1.0, 1.0]) => {
-            Ok(bytes(of_hsv([*h as f32, *s as f32, *v as f32]).map(f64::from)))
-        }
+        ([grey], _) if within(&parts, &[255.0]) => Ok(Color::Rgb([grey / 255.0; 3])),
+        ([r, g, b], Model::Rgb) if within(&parts, &[255.0; 3]) => Ok(Color::Rgb([r, g, b].map(|part| part / 255.0))),
+        ([h, s, v], Model::Hsv) if within(&parts, &[360.0, 1.0, 1.0]) => Ok(Color::Hsv([*h, *s, *v])),
         ([c, m, y, k], Model::Cmyk) if within(&parts, &[100.0; 4]) => {
-            Ok(bytes([c, m, y].map(|part| (1.0 - part / 100.0) * (1.0 - k / 100.0))))
+            Ok(Color::Rgb([c, m, y].map(|part| (1.0 - part / 100.0) * (1.0 - k / 100.0))))
         }
         _ => Err(wrong()),
     }
@@ -150,6 +216,8 @@ fn colors(words: &[&str], model: Model) -> Result<Rgb, String> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::color::Encoder;
+    use super::super::fitted::Fitted;
     use super::*;
 
     fn stops(text: &str) -> Vec<(Position, Rgb)> {
@@ -179,14 +247,52 @@ mod tests {
     #[test]
     fn other_models_and_normalised_tables() {
         use Position::{Sea, Share, Value};
-        let hsv = parse("t", "# COLOR_MODEL = +HSV\n0 120-1-1 5 240-1-0.5\nN -\n").unwrap();
-        assert_eq!((hsv.mix, hsv.stops[0].color, hsv.stops[1].color), (Mix::Hsv, [0, 255, 0], [0, 0, 128]));
         assert_eq!(stops("0 0/100/0/0 10 0/0/0/50")[1].1, [128; 3]);
         assert_eq!(stops("# HINGE = 0\n-1 navy 0 aqua\n0 green 1 white")[1].0, Sea(0.0));
         assert_eq!(stops("-1 navy 1 white")[0].0, Share(0.0));
         assert_eq!(stops("# RANGE = -8000/4000\n0 navy 1 white")[1].0, Value(4000.0));
         // Adjacent slices with equal colours have no step between them.
         assert_eq!(stops("0 red 1 blue\n1 blue 2 red").len(), 3);
+    }
+
+    /// The colours that GMT 6 has at 0, 1/12, ... 1: hue, saturation and value change linearly.
+    #[test]
+    fn hues_are_mixed_as_gmt_mixes_them() {
+        let at = |text: &str, height: f32| {
+            let fitted = Fitted::new(&parse("t", text).unwrap(), 0.0, 1.0, 0.0);
+            Encoder::new().bytes(fitted.at(height))
+        };
+        let near = |a: Rgb, b: Rgb| a.iter().zip(b).all(|(a, b)| a.abs_diff(b) <= 1);
+        for model in ["hsv", "+hsv", "+HSV"] {
+            let cycle = format!("# COLOR_MODEL = {model}\n0\t0-1-1\t1\t360-1-1\n");
+            let expect =
+                [[255, 0, 0], [255, 255, 0], [0, 255, 0], [0, 255, 255], [0, 0, 255], [255, 0, 255], [255, 0, 0]];
+            for (k, expect) in expect.into_iter().enumerate() {
+                let found = at(&cycle, k as f32 / 6.0);
+                assert!(near(found, expect), "{model} {k}: {found:?}");
+            }
+            assert!(near(at(&cycle, 0.25), [128, 255, 0]) && near(at(&cycle, 0.875), [255, 0, 191]));
+            // Backwards, with columns, and with all three parts changing: 180 0.5 0.75 in the middle.
+            let text = format!("# COLOR_MODEL = {model}\n0 300 1 1 1 60 0 0.5\nB 240-1-1\n");
+            assert!(near(at(&text, 0.5), [96, 191, 191]), "{:?}", at(&text, 0.5));
+            for step in 0..=100 {
+                let share = f64::from(step) / 100.0;
+                let hsv = [300.0 - 240.0 * share, 1.0 - share, 1.0 - 0.5 * share];
+                let found = at(&text, share as f32);
+                assert!(near(found, Color::Hsv(hsv).rgb()), "{share}: {found:?}");
+            }
+            assert_eq!(at(&text, -1.0), [0, 0, 255]);
+            // Names have hues as well; 240 is reached by way of 120, not of 300.
+            assert!(near(at(&format!("# COLOR_MODEL = {model}\n0 red 1 blue"), 0.5), [0, 255, 0]));
+        }
+        // In capitals without a plus sign, colours are read as hues and mixed as red, green and blue.
+        assert!(near(at("# COLOR_MODEL = HSV\n0 0-1-1 1 120-1-1", 0.5), [128, 128, 0]));
+        for model in ["rgb", "+RGB", "RGB"] {
+            assert!(near(at(&format!("# COLOR_MODEL = {model}\n0 255/0/0 1 0/0/255"), 0.5), [128, 0, 128]));
+        }
+        for model in ["cmyk", "+cmyk", "CMYK"] {
+            assert!(near(at(&format!("# COLOR_MODEL = {model}\n0 0 100 0 0 1 100 100 0 0"), 1.0), [0, 0, 255]));
+        }
     }
 
     #[test]
@@ -197,7 +303,7 @@ mod tests {
             ("0 red 1 blurple", "line 1: `blurple` is not a colour"),
             ("# x\n0 red 1 1/2/256", "line 2: `1/2/256`"),
             ("x red 1 blue", "line 1: `x` is not a height"),
-            ("# COLOR_MODEL = LAB", "line 1: unknown colour model LAB"),
+            ("# COLOR_MODEL = LAB", "line 1: unknown colour model `LAB`; supported are RGB, HSV and CMYK"),
             ("5 red 9 blue\n0 red 5 blue", "ascending"),
             ("0 400-1-1 1 red", "`400-1-1`"),
             ("B", "line 1: `` is not a colour"),

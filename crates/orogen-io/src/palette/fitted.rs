@@ -171,8 +171,8 @@ fn light(byte: f32) -> f32 {
     if c <= 0.04045 { c / 12.92 } else { libm::powf((c + 0.055) / 1.055, 2.4) }
 }
 
-/// Hue in degrees, saturation and value from 0 to 1.
-fn hsv(color: Rgb) -> [f32; 3] {
+/// Hue in degrees, saturation and value from 0 to 1. The hue of a grey is 0.
+pub(super) fn hsv(color: Rgb) -> [f32; 3] {
     let [r, g, b] = color.map(|byte| f32::from(byte) / 255.0);
     let (most, least) = (r.max(g).max(b), r.min(g).min(b));
     let chroma = most - least;
