@@ -5,18 +5,17 @@ use std::process::ExitCode;
 
 use orogen::{Error, ErrorKind, file};
 
-/// Exit code of an interrupted process: 128 plus the number of the signal, as in shells.
-pub const INTERRUPTED: u8 = 130;
-
 /// The failure of a command.
 #[derive(Debug)]
 pub enum Failure {
     /// The command line is not valid: exit code 2, like errors of clap.
     Usage(String),
+    /// The command line could not be parsed: exit code 2.
+    CommandLine(Box<clap::Error>),
     /// The command failed: exit code 1.
     Engine(Error),
-    /// The command was interrupted: exit code [`INTERRUPTED`].
-    Interrupted(String),
+    /// The command was interrupted by a signal, which determines the exit code.
+    Interrupted { message: String, code: u8 },
     /// Everything has been reported already: exit code 1.
     Told,
     /// The reader of our output has closed the pipe: no error, and nothing to report.
@@ -41,10 +40,10 @@ impl Failure {
     /// The exit code of the process. A request that the world cannot satisfy counts as a usage error.
     pub fn code(&self) -> ExitCode {
         match self {
-            Failure::Usage(_) => ExitCode::from(2),
+            Failure::Usage(_) | Failure::CommandLine(_) => ExitCode::from(2),
             Failure::Engine(error) if error.kind() == ErrorKind::Request => ExitCode::from(2),
             Failure::Engine(_) | Failure::Told => ExitCode::FAILURE,
-            Failure::Interrupted(_) => ExitCode::from(INTERRUPTED),
+            Failure::Interrupted { code, .. } => ExitCode::from(*code),
             Failure::BrokenPipe => ExitCode::SUCCESS,
         }
     }

@@ -29,6 +29,7 @@ mod report;
 mod say;
 mod sink;
 mod source;
+mod usage;
 mod values;
 mod view;
 mod watch;
@@ -44,10 +45,10 @@ pub fn run() -> ExitCode {
     run_with(std::env::args_os())
 }
 
-/// Runs the command with these words, the first of which is the name of the program. A word that is not valid ends the process with a message.
+/// Runs the command with these words, the first of which is the name of the program.
 #[must_use]
 pub fn run_with(words: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> ExitCode {
-    match cli::Cli::parse_from(words).run() {
+    match cli::Cli::try_parse_from(words).map_or_else(usage::answer, cli::Cli::run) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             report::report(&failure);

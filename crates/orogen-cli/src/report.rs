@@ -7,19 +7,20 @@ use orogen::error::{Diagnostic, Location};
 use orogen::words;
 
 use crate::failure::Failure;
-use crate::say;
+use crate::{say, usage};
 
 /// Reports a failure: every diagnostic, with its location in the text.
 pub fn report(failure: &Failure) {
     let paint = Paint(colours());
     match failure {
-        Failure::Usage(message) => say::error(&paint.diagnostic(message, None)),
+        Failure::Usage(message) => say::painted(&paint.diagnostic(message, None)),
         Failure::Engine(error) => {
             for Diagnostic { message, place, .. } in error.diagnostics() {
-                say::error(&paint.diagnostic(message, place.as_ref()));
+                say::painted(&paint.diagnostic(message, place.as_ref()));
             }
         }
-        Failure::Interrupted(message) => say::error(&printable(message)),
+        Failure::CommandLine(error) => usage::report(error),
+        Failure::Interrupted { message, .. } => say::error(&printable(message)),
         Failure::Told | Failure::BrokenPipe => {}
     }
 }
@@ -75,22 +76,17 @@ impl Paint {
 fn one_column(c: char) -> char {
     if c == '\t' {
         ' '
-    } else if is_harmful(c) {
+    } else if say::is_harmful(c) {
         '\u{fffd}'
     } else {
         c
     }
 }
 
-/// Characters that could move a terminal's cursor, change its colours or reverse its text direction.
-fn is_harmful(c: char) -> bool {
-    c.is_control() || matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
-}
-
 /// Maximum length of a message; longer ones quote overlong input.
 const SENTENCE: usize = 2000;
 
-/// A message without control characters, shortened in the middle if it is too long.
+/// A message with control characters escaped, shortened in the middle if it is too long.
 fn printable(text: &str) -> String {
     let text = &words::readable(text.to_string());
     let count = text.chars().count();
@@ -100,7 +96,7 @@ fn printable(text: &str) -> String {
         let end: String = text.chars().skip(count - part).collect();
         return printable(&format!("{start} ... {end}"));
     }
-    text.chars().map(|c| if c != '\n' && is_harmful(c) { '\u{fffd}' } else { c }).collect()
+    say::harmless(text).into_owned()
 }
 
 #[cfg(test)]
@@ -135,6 +131,7 @@ mod tests {
     #[test]
     fn nothing_in_a_file_commands_the_terminal() {
         let text = Paint(false).diagnostic("bad \x1b[31m key", Some(&place(1, 2, "\x1b]0;title\x07 = 1")));
+        assert!(text.starts_with("error: a.toml:12:1: bad \\u{1b}[31m key\n"), "{text:?}");
         assert!(!text.contains('\x1b') && !text.contains('\x07'), "{text:?}");
     }
 }

@@ -1,5 +1,6 @@
 //! Standard output and standard error, without panics on closed pipes.
 
+use std::borrow::Cow;
 use std::io::{self, Write};
 
 /// The program and its version, for the metadata of files.
@@ -7,13 +8,56 @@ pub const SOFTWARE: &str = concat!("Orogen ", env!("CARGO_PKG_VERSION"));
 
 use crate::failure::Failure;
 
-/// Writes text to standard output.
+/// Writes text to standard output. Names in it do not control a terminal: see [`harmless`].
 pub fn out(text: &str) -> Result<(), Failure> {
     let mut stdout = io::stdout().lock();
-    stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()).map_err(|cause| Failure::stdout(&cause))
+    stdout.write_all(harmless(text).as_bytes()).and_then(|()| stdout.flush()).map_err(|cause| Failure::stdout(&cause))
 }
 
-/// Writes a line to standard error. Failures are ignored, because they cannot be reported.
+/// Writes a line to standard error, [`harmless`]. Failures are ignored, because they cannot be reported.
 pub fn error(line: &str) {
+    painted(&harmless(line));
+}
+
+/// Writes a line to standard error that has colors of its own.
+pub fn painted(line: &str) {
     let _ = writeln!(io::stderr().lock(), "{line}");
+}
+
+/// A text with control characters escaped, except line ends and tabs: names of files and keys in it could move a terminal's
+/// cursor, change its colors or reverse the direction of its text.
+pub fn harmless(text: &str) -> Cow<'_, str> {
+    if !text.contains(|c| is_harmful(c) && !matches!(c, '\n' | '\t')) {
+        return Cow::Borrowed(text);
+    }
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '\n' | '\t' => out.push(c),
+            c if is_harmful(c) => out.extend(c.escape_unicode()),
+            c => out.push(c),
+        }
+    }
+    Cow::Owned(out)
+}
+
+/// Whether a character could control a terminal.
+pub fn is_harmful(c: char) -> bool {
+    c.is_control() || matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_do_not_control_the_terminal() {
+        for (text, expect) in [
+            ("a plain line, with ä and ±\n\tand a tab\n", "a plain line, with ä and ±\n\tand a tab\n"),
+            ("a\x1b[31mb.tif", "a\\u{1b}[31mb.tif"),
+            ("\r\x07\u{9b}2J\u{202e}fit.png", "\\u{d}\\u{7}\\u{9b}2J\\u{202e}fit.png"),
+        ] {
+            assert_eq!(harmless(text), expect);
+        }
+    }
 }

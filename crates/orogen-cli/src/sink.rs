@@ -21,23 +21,65 @@ pub enum Sink {
 /// The name of standard output and, as a recipe, of standard input.
 pub const DASH: &str = "-";
 
-/// Whether a path means standard output.
+/// Whether a path is a name of standard output. Names have no extension: see [`kind`].
 pub fn is_stdout(path: &Path) -> bool {
-    path == Path::new(DASH)
+    const NAMES: [&str; 4] = [DASH, "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"];
+    NAMES.iter().any(|name| path == Path::new(name))
+}
+
+#[cfg(unix)]
+mod stdout {
+    use rustix::fs::{FileType, OFlags, Stat, fcntl_getfl, fstat, stat};
+    use std::io;
+    use std::path::Path;
+
+    /// Whether a path leads to the pipe or device that is standard output, such as a link to `/dev/stdout`.
+    pub fn is_behind(path: &Path) -> bool {
+        let is_stream = |there: &Stat| {
+            let kind = FileType::from_raw_mode(there.st_mode);
+            !matches!(kind, FileType::RegularFile | FileType::Directory)
+        };
+        match (stat(path), fstat(io::stdout())) {
+            (Ok(there), Ok(ours)) => is_stream(&there) && (there.st_dev, there.st_ino) == (ours.st_dev, ours.st_ino),
+            _ => false,
+        }
+    }
+
+    /// Whether the process was started without standard output. In its place Rust's runtime opens the null device for reading
+    /// and writing, which shells open for writing only.
+    pub fn is_closed() -> bool {
+        let is_null = |ours: Stat| stat("/dev/null").is_ok_and(|null| null.st_rdev == ours.st_rdev);
+        let is_opened_for_both = |flags: OFlags| flags & OFlags::RWMODE == OFlags::RDWR;
+        fstat(io::stdout()).is_ok_and(is_null) && fcntl_getfl(io::stdout()).is_ok_and(is_opened_for_both)
+    }
+}
+
+#[cfg(not(unix))]
+mod stdout {
+    pub fn is_behind(_: &std::path::Path) -> bool {
+        false
+    }
+
+    pub fn is_closed() -> bool {
+        false
+    }
 }
 
 impl Sink {
     /// The output for `out`.
     ///
     /// # Errors
-    /// If it is a file that may not be replaced, or a terminal, which cannot show binary data.
+    /// If it is a file that may not be replaced, or a terminal, which cannot show binary data, or if standard output is closed.
     pub fn new(out: &Path, policy: &OutputPolicy) -> Result<Sink, Failure> {
-        match is_stdout(out) {
+        match is_stdout(out) || stdout::is_behind(out) {
             false => Ok(Sink::File(policy.output(out)?)),
             true if io::stdout().is_terminal() => Err(Failure::Usage(
                 "standard output is a terminal, which cannot show binary data; name a file with -o, or redirect the output"
                     .into(),
             )),
+            true if stdout::is_closed() => Err(Failure::stdout(&io::Error::other(
+                "it is closed, so the data would be lost; redirect it, or name a file with -o",
+            ))),
             true => Ok(Sink::Stdout),
         }
     }
@@ -57,7 +99,7 @@ impl Sink {
                 // Buffered data must not be written again after a failure.
                 let (piped, _) = out.into_parts();
                 written.map_err(|cause| match (interrupt::asked(), piped.broken) {
-                    (true, _) => Failure::Interrupted("interrupted: the output is incomplete".to_string()),
+                    (true, _) => interrupt::stopped("interrupted: the output is incomplete"),
                     (false, true) => Failure::BrokenPipe,
                     (false, false) => Failure::stdout(&cause),
                 })

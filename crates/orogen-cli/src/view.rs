@@ -11,6 +11,7 @@ use orogen::{Budget, Recipe, Window, World};
 
 use crate::failure::Failure;
 use crate::say;
+use crate::sink::{DASH, is_stdout};
 use crate::source::Source;
 use crate::values::arguments::Arguments;
 use crate::values::number::cell;
@@ -114,6 +115,8 @@ impl View {
         out: Option<&Path>,
         mut work: impl FnMut(View, Option<PathBuf>) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
+        // Other names of standard output, such as /dev/stdout, cannot have a seed in them.
+        let out = out.map(|out| if is_stdout(out) { Path::new(DASH) } else { out });
         Seeds::each(self.seed.as_ref(), out, |seed, out| work(View { seed, ..self.clone() }, out))
     }
 

@@ -50,7 +50,7 @@ pub fn watch(
             std::thread::sleep(INTERVAL);
         }
         if interrupt::asked() {
-            return Err(Failure::Interrupted("stopped watching".into()));
+            return Err(interrupt::stopped("stopped watching"));
         }
         seen.settle(path);
     }

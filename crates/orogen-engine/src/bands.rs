@@ -68,7 +68,7 @@ impl World {
                 Err(error) if error.kind() == ErrorKind::Memory => {
                     let tile = Window { width: rows.min(window.width), height: rows, ..*window };
                     let tiles = 4 * (layers.len() * tile.len()) as u64;
-                    let making = self.memory_of(&self.plan(layers, &tile)?)?.saturating_add(tiles);
+                    let making = self.memory_of(&self.plan_within(layers, &tile, Some(0))?)?.saturating_add(tiles);
                     let what = format!("making {} at a time", count(rows, "row"));
                     return Err(self.budget().refusal(&what, making.saturating_add(held), "allow more"));
                 }

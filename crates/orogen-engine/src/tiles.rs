@@ -1,6 +1,7 @@
 //! Streams of tiles of a large window.
 
 use crate::budget::Budget;
+use crate::plan::steps::Plan;
 use crate::world::World;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
@@ -201,7 +202,7 @@ impl<'w> Tiles<'w> {
         }
         let layers: Vec<&str> = self.layers.iter().map(String::as_str).collect();
         let window = self.tiling.run(&self.window, [0, 0], self.at_once);
-        let [solving, making] = self.world.work_of(&self.world.plan(&layers, &window)?)?;
+        let [solving, making] = self.world.work_of(&self.plan(&layers, &window)?)?;
         let each = making / window.len().max(1) as f64;
         let samples = self.strips.iter().filter_map(|(first, count)| Some(self.wanted(*first, *count)?.1.len() as f64));
         self.progress.expect(solving + each * samples.sum::<f64>());
@@ -226,7 +227,7 @@ impl<'w> Tiles<'w> {
         self.work = Some([0.0, each]);
         let part = self.progress.part(solving + each * window.len() as f64);
         let layers: Vec<&str> = self.layers.iter().map(String::as_str).collect();
-        let grids = self.world.grids(&layers, &window, &part)?;
+        let grids = self.world.run(&self.plan(&layers, &window)?, &part)?;
         let cut = |[column, row]: [usize; 2]| {
             let tile = self.tiling.tile(&self.window, column, row);
             Tile { column, row, grids: grids.iter().filter_map(|grid| grid.crop(&tile)).collect() }
@@ -242,7 +243,7 @@ impl<'w> Tiles<'w> {
             let window = self.tiling.run(&self.window, [0, 0], [wide, tall]);
             window.width.saturating_mul(window.height)
         };
-        let allowed = self.tiling.memory.or(self.world.memory_limit());
+        let allowed = self.allowed();
         let mut at_once = [columns, rows];
         loop {
             if at_once == [1, 1] || samples(at_once) <= AT_ONCE {
@@ -271,9 +272,24 @@ impl<'w> Tiles<'w> {
     fn needed(&self, at_once: [usize; 2]) -> Result<u64> {
         let layers: Vec<&str> = self.layers.iter().map(String::as_str).collect();
         let window = self.tiling.run(&self.window, [0, 0], at_once);
-        let plan = self.world.plan(&layers, &window)?;
-        let cut = (window.len() as u64).saturating_mul(4).saturating_mul(layers.len() as u64);
-        Ok(self.world.memory_of(&plan)?.saturating_add(cut))
+        let plan = self.plan(&layers, &window)?;
+        Ok(self.world.memory_of(&plan)?.saturating_add(self.cut(&window)))
+    }
+
+    /// Memory of the tiles cut from what is made over a window, in bytes.
+    fn cut(&self, window: &Window) -> u64 {
+        (window.len() as u64).saturating_mul(4).saturating_mul(self.layers.len() as u64)
+    }
+
+    /// Memory limit of the stream, in bytes; `None` for no limit.
+    fn allowed(&self) -> Option<u64> {
+        self.tiling.memory.or(self.world.memory_limit())
+    }
+
+    /// The plan for what is made over a window at once.
+    fn plan(&self, layers: &[&str], window: &Window) -> Result<Plan> {
+        let allowed = self.allowed().map(|allowed| allowed.saturating_sub(self.cut(window)));
+        self.world.plan_within(layers, window, allowed)
     }
 }
 

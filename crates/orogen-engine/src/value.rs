@@ -62,6 +62,17 @@ impl Value {
         }
     }
 
+    /// The description of a value where only an integer is valid: a float without a fraction keeps its point.
+    #[must_use]
+    pub fn describe_as_integer(&self) -> String {
+        match self {
+            Value::Number(number) if number.fract() == 0.0 && number.abs() < 1e15 => {
+                format!("{number:.1}, which is not written as a whole number")
+            }
+            other => other.describe(),
+        }
+    }
+
     /// The value as a number; includes integers.
     #[must_use]
     pub fn number(&self) -> Option<f64> {

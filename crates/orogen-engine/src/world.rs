@@ -155,7 +155,7 @@ impl World {
     /// A plan that only solves nodes and their sources.
     pub(crate) fn plan_to_solve(&self, nodes: &[NodeId]) -> Result<Plan> {
         let links: Vec<Link> = nodes.iter().map(|&node| Link::Node(LayerRef { node, layer: 0 })).collect();
-        self.planned(&links, Window::new(1, 1, self.world_params.cell), false)
+        self.planned(&links, Window::new(1, 1, self.world_params.cell), false, self.memory_limit())
     }
 
     /// Runs a plan with an observer of the steps of a node's solver.
@@ -257,9 +257,18 @@ impl World {
     /// # Errors
     /// If there is no such layer, or the window is not valid for this world.
     pub fn plan(&self, layers: &[&str], window: &Window) -> Result<Plan> {
+        self.plan_within(layers, window, self.memory_limit())
+    }
+
+    /// [`World::plan`] for `allowed` bytes of memory, if possible; `None` for no limit.
+    ///
+    /// # Errors
+    /// The errors of [`World::plan`].
+    #[doc(hidden)]
+    pub fn plan_within(&self, layers: &[&str], window: &Window, allowed: Option<u64>) -> Result<Plan> {
         let targets = layers.iter().map(|layer| self.target(layer)).collect::<Result<Vec<Link>>>()?;
         self.check(window)?;
-        self.planned(&targets, *window, false)
+        self.planned(&targets, *window, false, allowed)
     }
 
     /// The session of the world.
@@ -282,15 +291,14 @@ impl World {
         self.session.budget.left()
     }
 
-    fn planned(&self, targets: &[Link], window: Window, scattered: bool) -> Result<Plan> {
-        let threads = self.threads();
-        Planner::new(&self.recipe, &self.graph, &self.keys).fitting(
-            targets,
-            window,
-            scattered,
-            threads,
-            self.memory_limit(),
-        )
+    fn planned(&self, targets: &[Link], window: Window, scattered: bool, allowed: Option<u64>) -> Result<Plan> {
+        let planner = Planner::new(&self.recipe, &self.graph, &self.keys);
+        planner.fitting(targets, window, scattered, self.threads(), allowed)
+    }
+
+    /// Memory limit of a request beside `bytes` that its caller holds.
+    fn limit_beside(&self, bytes: u64) -> Option<u64> {
+        self.memory_limit().map(|limit| limit.saturating_sub(bytes))
     }
 
     /// Maximum disk space for running a plan, in bytes, without the cache.
@@ -446,9 +454,20 @@ impl World {
         progress: &Progress,
     ) -> Result<Vec<Grid>> {
         let targets = layers.iter().map(|layer| self.target(layer)).collect::<Result<Vec<_>>>()?;
-        let plan = self.planned(&targets, *window, false)?;
+        let plan = self.planned(&targets, *window, false, self.limit_beside(beside))?;
         self.session.budget.afford(self.memory_of(&plan)?.saturating_add(beside))?;
         self.run(&plan, progress)
+    }
+
+    /// A plan for layers over a window, and `bytes` that are reserved beside it.
+    ///
+    /// # Errors
+    /// The errors of [`World::plan`]. If both do not fit together, the message has what both need, so that a limit of that suffices.
+    #[doc(hidden)]
+    pub fn plan_beside(&self, layers: &[&str], window: &Window, bytes: u64) -> Result<(Plan, Reservation)> {
+        let plan = self.plan_within(layers, window, self.limit_beside(bytes))?;
+        self.session.budget.afford(self.memory_of(&plan)?.saturating_add(bytes))?;
+        Ok((plan, self.session.budget.reserve(bytes)?))
     }
 
     /// Makes one layer over a window.
@@ -487,7 +506,7 @@ impl World {
         let plan = match known {
             Some(plan) => plan,
             None => {
-                let plan = self.planned(&[target], self.around(x, y), true)?;
+                let plan = self.planned(&[target], self.around(x, y), true, self.memory_limit())?;
                 let plan = Arc::new(plan);
                 if plan.is_pointwise() {
                     let mut plans = self.pointwise.lock().unwrap_or_else(PoisonError::into_inner);
@@ -518,7 +537,7 @@ impl World {
 
     /// A plan for points of a layer within `around`, with everything that it needs computed.
     pub(crate) fn ready(&self, layer: &str, around: Window) -> Result<PreparedProgram> {
-        let plan = self.planned(&[self.target(layer)?], around, true)?;
+        let plan = self.planned(&[self.target(layer)?], around, true, self.memory_limit())?;
         let progress = Progress::none();
         let _running = self.admit(&plan, &progress)?;
         let ready = self.engine(&progress).ready(&plan)?;
@@ -547,7 +566,7 @@ impl World {
     /// The samples of a target over a window at each altitude, slice by slice, which take `bytes` of memory.
     pub(crate) fn in_space(&self, target: Link, window: &Window, altitudes: &[f64], bytes: u64) -> Result<Vec<f32>> {
         let progress = Progress::none();
-        let plan = self.planned(&[target], *window, true)?;
+        let plan = self.planned(&[target], *window, true, self.limit_beside(bytes))?;
         self.session.budget.afford(self.memory_of(&plan)?.saturating_add(bytes))?;
         let _running = self.admit(&plan, &progress)?;
         self.engine(&progress).volume(&plan, altitudes)
@@ -601,9 +620,14 @@ impl World {
         const FAR: i64 = 1 << 53;
         let inside = |start: i64, count: usize| (-FAR..=FAR).contains(&start) && start + count as i64 <= FAR;
         if !(inside(window.x, window.width) && inside(window.y, window.height)) {
-            return fault(
-                "the window is more than 2^53 samples from the origin, where positions are no longer exact".to_string(),
-            );
+            return fault(format!(
+                "the window of {} x {} samples at ({}, {}) is more than 2^53 samples, {} m, from the origin, where positions are no longer exact",
+                window.width,
+                window.height,
+                window.x,
+                window.y,
+                number(FAR as f64 * window.cell)
+            ));
         }
         if let Some(size) = self.world_params.size {
             let (world, _) = world_windows(size, window.cell);

@@ -1,7 +1,7 @@
 //! Text for messages: suggestions, lists, numbers.
 
-/// The candidate that a misspelt `word` most likely means: at most a third of its letters differ (insertions,
-/// deletions, substitutions and transpositions count one each), ignoring case. `None` if there is none.
+/// The candidate that a misspelt `word` most likely means: at most a third of its letters differ, or one of three
+/// (insertions, deletions, substitutions and transpositions count one each), ignoring case. `None` if there is none.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let word: Vec<char> = word.chars().flat_map(char::to_lowercase).take(64).collect();
     candidates
@@ -10,7 +10,7 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
             let letters: Vec<char> = candidate.chars().flat_map(char::to_lowercase).collect();
             (distance(&word, &letters), letters.len(), candidate)
         })
-        .filter(|(distance, length, _)| *distance <= (word.len().max(*length) / 3).max(1) && *distance < *length)
+        .filter(|(distance, length, _)| *distance <= word.len().max(*length) / 3 && 2 * distance <= *length)
         .min_by_key(|(distance, _, _)| *distance)
         .map(|(_, _, candidate)| candidate)
 }
@@ -171,26 +171,27 @@ fn short_numbers(text: &str, out: &mut String) {
 /// A number of bytes: "1.5 GiB".
 #[must_use]
 pub fn bytes(n: u64) -> String {
-    bytes_with(n, 0).0
+    bytes_with(n, 0, f64::round).0
 }
 
-/// Two numbers of bytes, with enough digits that both texts differ if the numbers do: "1.003 GiB" and "1.000 GiB". For
-/// messages about a need that exceeds a limit.
+/// A need of bytes and a limit that it exceeds, with enough digits that both texts differ: "1.1 GiB" and "1.0 GiB". The need is
+/// rounded up, so that a limit of what its text shows suffices.
 #[must_use]
-pub fn bytes_apart(a: u64, b: u64) -> [String; 2] {
+pub fn bytes_apart(need: u64, limit: u64) -> [String; 2] {
     // More digits would be harder to read than the number itself.
     const MOST: usize = 3;
     for more in 0..=MOST {
-        let [(one, one_rounded), (other, other_rounded)] = [a, b].map(|n| bytes_with(n, more));
-        if a == b || one_rounded != other_rounded {
+        let (one, one_rounded) = bytes_with(need, more, f64::ceil);
+        let (other, other_rounded) = bytes_with(limit, more, f64::round);
+        if need == limit || one_rounded != other_rounded {
             return [one, other];
         }
     }
-    [a, b].map(|n| format!("{n} bytes"))
+    [need, limit].map(|n| format!("{n} bytes"))
 }
 
-/// A number of bytes with this many decimals beyond the usual ones, and the number that the text shows.
-fn bytes_with(n: u64, more: usize) -> (String, f64) {
+/// A number of bytes with this many decimals beyond the usual ones, rounded so, and the number that the text shows.
+fn bytes_with(n: u64, more: usize, round: impl Fn(f64) -> f64) -> (String, f64) {
     const UNITS: [&str; 6] = ["bytes", "KiB", "MiB", "GiB", "TiB", "PiB"];
     let (mut value, mut unit, mut scale) = (n as f64, 0, 1.0);
     while value >= 1024.0 && unit + 1 < UNITS.len() {
@@ -202,7 +203,8 @@ fn bytes_with(n: u64, more: usize) -> (String, f64) {
         return (count(n as usize, "byte"), value);
     }
     let decimals = more + usize::from(value < 10.0);
-    let text = format!("{value:.decimals$}");
+    let digit = [1.0, 10.0, 100.0, 1e3, 1e4][decimals.min(4)];
+    let text = format!("{:.decimals$}", round(value * digit) / digit);
     let shown = text.parse().unwrap_or(value) * scale;
     (format!("{text} {}", UNITS[unit]), shown)
 }
@@ -271,6 +273,22 @@ mod tests {
         ] {
             assert_eq!(nearest(word, names), expect, "{word}");
         }
+        for (word, candidate, near) in [
+            ("scale", "cache", false),
+            ("fmb", "fbm", true),
+            ("ab", "cb", false),
+            ("ab", "abc", true),
+            ("abcd", "ab", false),
+            ("layer", "player", true),
+            ("size", "side", true),
+            ("spacing", "scaling", true),
+            ("seed", "speed", true),
+            ("width", "height", false),
+            ("format", "front", false),
+            ("tile", "tiles", true),
+        ] {
+            assert_eq!(nearest(word, [candidate]).is_some(), near, "{word} {candidate}");
+        }
     }
 
     #[test]
@@ -311,13 +329,15 @@ mod tests {
         const GIB: u64 = 1 << 30;
         for (needed, limit, expect) in [
             (2 * GIB, GIB, ["2.0 GiB", "1.0 GiB"]),
-            (GIB + (GIB >> 8), GIB, ["1.004 GiB", "1.000 GiB"]),
-            (GIB + (GIB >> 5), GIB, ["1.03 GiB", "1.00 GiB"]),
-            ((200 << 20) + (300 << 10), 200 << 20, ["200.3 MiB", "200.0 MiB"]),
-            (GIB + 1, GIB, ["1073741825 bytes", "1073741824 bytes"]),
+            (GIB + (GIB >> 8), GIB, ["1.1 GiB", "1.0 GiB"]),
+            ((200 << 20) + (300 << 10), 200 << 20, ["201 MiB", "200 MiB"]),
+            (GIB + 1, GIB, ["1.1 GiB", "1.0 GiB"]),
+            (GIB + (GIB >> 8), GIB + (GIB >> 9), ["1.1 GiB", "1.0 GiB"]),
+            ((1 << 30) + (150 << 20), (1 << 30) + (100 << 20), ["1.2 GiB", "1.1 GiB"]),
+            (GIB + (65 << 20), GIB + (60 << 20), ["1.07 GiB", "1.06 GiB"]),
             // The same figure in two units.
             (GIB, GIB - (100 << 10), ["1.00 GiB", "1023.9 MiB"]),
-            (1025, 1024, ["1.001 KiB", "1.000 KiB"]),
+            (1025, 1024, ["1.1 KiB", "1.0 KiB"]),
             (1001, 1000, ["1001 bytes", "1000 bytes"]),
             (GIB, GIB, ["1.0 GiB", "1.0 GiB"]),
             (u64::MAX, 3 * GIB, ["16384 PiB", "3.0 GiB"]),

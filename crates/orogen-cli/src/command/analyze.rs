@@ -157,6 +157,8 @@ impl Held {
         // The page is drawn after the measurement.
         let drawing = if page > 0 { page + page::rows_memory(window) } else { 0 };
         let working = Measures::memory_on_disk(window).max(drawing);
+        // The heights are made in bands first; measuring follows.
+        world.bands(&[&args.layer], window, Raster::memory_on_disk(window), &Progress::none()).map(drop)?;
         world.budget().afford(working.saturating_add(Raster::memory_on_disk(window)))?;
         Ok(Held::OnDisk(working))
     }

@@ -39,8 +39,8 @@ pub struct Args {
     /// Samples along each side of a tile [default: 512; 513 for tiles that share their edges; 256 for an XYZ tree]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65536), allow_negative_numbers = true)]
     tile: Option<u32>,
-    /// Resume an interrupted build, and repair damaged parts of a finished one
-    #[arg(long, conflicts_with_all = ["force", "no_clobber"])]
+    /// Resume an interrupted build, and repair damaged parts of a finished one; with --force, also over an existing file of another kind
+    #[arg(long, conflicts_with = "no_clobber")]
     resume: bool,
     #[command(flatten)]
     replace: Replace,

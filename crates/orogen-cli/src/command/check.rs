@@ -86,8 +86,8 @@ fn described(recipe: &Path, found: &Result<World, Failure>) -> Value {
         Err(failure) => {
             let errors: Vec<Value> = match failure {
                 Failure::Engine(error) => error.diagnostics().iter().map(fault).collect(),
-                Failure::Usage(message) | Failure::Interrupted(message) => vec![json!({ "message": message })],
-                Failure::Told | Failure::BrokenPipe => Vec::new(),
+                Failure::Usage(message) | Failure::Interrupted { message, .. } => vec![json!({ "message": message })],
+                Failure::CommandLine(_) | Failure::Told | Failure::BrokenPipe => Vec::new(),
             };
             json!({ "recipe": name, "valid": false, "errors": errors })
         }

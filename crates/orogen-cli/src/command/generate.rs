@@ -93,10 +93,9 @@ fn make(source: &Source, args: &Args, progress: &Progress) -> Result<String, Fai
     let outputs = pictures::outputs(&args.out, &policy)?;
     let mut layers = vec![HEIGHT];
     layers.extend(world.recipe().outputs().find(|name| *name == LAKES));
-    let plan = world.plan(&layers, &window)?;
-    let folder = OutputFolder::ready(&args.out)?;
     // The pictures are encoded in parallel, in bands of rows.
-    let _pictures = budget.reserve(ENCODERS)?;
+    let (plan, _pictures) = world.plan_beside(&layers, &window, ENCODERS)?;
+    let folder = OutputFolder::ready(&args.out)?;
     let [making, writing] = progress.parts([world.work(&plan)?, WRITING * window.len() as f64]);
     let mut grids = world.run(&plan, &making)?.into_iter();
     let card = card.used();

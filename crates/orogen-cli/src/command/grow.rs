@@ -106,11 +106,11 @@ fn write(
     let (width, height) = (window.width, window.height);
     let pixels = (width * height) as u64;
     // Memory of two frames' heights and their interpolation; of the picture; and of the encoder.
-    let _frames = budget.reserve(pixels.saturating_mul(3 + 12).saturating_add(target.reserved(pixels)))?;
+    let held = pixels.saturating_mul(3 + 12).saturating_add(target.reserved(pixels));
+    let (plan, _frames) = world.plan_beside(&[HEIGHT], &window, held)?;
     let growth = Growth::new(&world, HEIGHT, window)?;
     let growth = if args.exact { growth.in_full() } else { growth };
     let frames = Frames::new(args.frames, growth.steps());
-    let plan = world.plan(&[HEIGHT], &window)?;
     // Growing takes the time of the terrain, and for each frame the work after its step, about a twentieth of that.
     let growing = world.work(&plan)? * (1.0 + frames.steps.len() as f64 / 20.0);
     let [growing, painting] = progress.parts([growing, PAINTING * pixels as f64 * f64::from(args.frames)]);

@@ -1,6 +1,6 @@
 //! `orogen variants`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use orogen::budget::Reservation;
 use orogen::jobs::render::RenderJob;
@@ -225,7 +225,7 @@ fn window(world: &World, samples: usize) -> Result<Window, Failure> {
 
 /// The command line that reproduces the sheet.
 fn words(args: &Args, recipe: &Recipe) -> String {
-    let name = if is_stdout(&args.recipe) { Path::new("-") } else { &args.recipe };
+    let name = &args.recipe;
     let what = match &args.sweep {
         Some(Sweep { name, text, .. }) => {
             let seed = args.seed.map_or_else(String::new, |seed| format!("--seed {seed} "));

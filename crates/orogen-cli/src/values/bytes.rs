@@ -1,8 +1,8 @@
-//! `--memory` and other numbers of bytes.
+//! `--memory`, `--cache-limit` and other numbers of bytes.
 
 use std::str::FromStr;
 
-/// `--memory`: bytes, with or without a unit.
+/// Bytes, with or without a unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bytes(pub u64);
 
@@ -32,12 +32,12 @@ impl FromStr for Bytes {
         let unit = text[digits..].trim().to_lowercase();
         let unit = UNITS.iter().find(|(name, _)| *name == unit);
         let (Ok(number), Some((_, unit))) = (text[..digits].parse::<f64>(), unit) else {
-            return Err("the memory limit must be a number of bytes, such as 512MiB, 2GiB or 1.5GB".into());
+            return Err("it must be a number of bytes, such as 512MiB, 2GiB or 1.5GB".into());
         };
         match number * *unit as f64 {
             bytes if bytes >= 1.0 && bytes < u64::MAX as f64 => Ok(Bytes(bytes as u64)),
-            bytes if bytes < 1.0 => Err("the memory limit must be at least 1 byte".into()),
-            _ => Err("the memory limit is too large".into()),
+            bytes if bytes < 1.0 => Err("it must be at least 1 byte".into()),
+            _ => Err("it must be less than 16384 PiB".into()),
         }
     }
 }
@@ -45,6 +45,17 @@ impl FromStr for Bytes {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn messages_name_no_option_because_several_have_such_values() {
+        for (text, expect) in [
+            ("0", "it must be at least 1 byte"),
+            ("5 parsecs", "it must be a number of bytes, such as 512MiB, 2GiB or 1.5GB"),
+            ("99999999TiB", "it must be less than 16384 PiB"),
+        ] {
+            assert_eq!(text.parse::<Bytes>(), Err(expect.to_string()));
+        }
+    }
 
     #[test]
     fn memory() {

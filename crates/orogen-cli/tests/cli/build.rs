@@ -82,7 +82,7 @@ fn what_cannot_be_built_is_usage() {
         (&["-o", "a.zarr", "--window", "60,0,10,10"], 2, "not inside the world"),
         (&["-o", "a.zarr", "--tile", "0"], 2, "invalid value"),
         (&["-o", "a.tif", "--tile", "100"], 2, "a multiple of 16"),
-        (&["-o", "a.tif", "--resume", "--force"], 2, "cannot be used with"),
+        (&["-o", "a.tif", "--resume", "--no-clobber"], 2, "cannot be used with"),
         (&["-o", "none/a.tif"], 1, "cannot write into none: the folder does not exist"),
         (&["-o", "a.zarr", "--memory", "1kB"], 1, "of memory"),
         (&["-o", "small.toml", "--tiles", "png"], 1, "this command reads that file"),
@@ -160,16 +160,39 @@ fn with_slow() -> Folder {
     folder
 }
 
+/// What each message names works.
+#[cfg(unix)]
+#[test]
+fn a_build_over_a_file_of_another_kind_can_be_resumed() {
+    let folder = with_slow();
+    folder.write("a.tif", "a text");
+    folder.bad(
+        &arguments("a.tif", &SLOW, &["--resume", "-q"]),
+        1,
+        "it exists and is text, not a TIFF picture; choose another name, or replace it with --force",
+    );
+    let mut running = Running::start_and_wait(&folder, &arguments("a.tif", &SLOW, &["--force"]));
+    running.signal("-INT");
+    let (code, said) = running.ended();
+    assert_eq!(code, Some(130), "{said:?}");
+    assert_eq!(said.last().unwrap(), "stopped: run the same command with --resume to continue", "{said:?}");
+    assert_eq!(folder.text("a.tif"), "a text");
+    let mut running = Running::start_and_wait(&folder, &arguments("a.tif", &SLOW, &["--force", "--resume"]));
+    running.signal("-TERM");
+    let (code, said) = running.ended();
+    assert_eq!(code, Some(143), "it goes on: {said:?}");
+}
+
 #[cfg(unix)]
 #[test]
 fn ctrl_c_stops_cleanly() {
     let folder = with_slow();
-    for signal in ["-INT", "-TERM"] {
+    for (signal, expect) in [("-INT", 130), ("-TERM", 143)] {
         let mut build = Running::start_and_wait(&folder, &arguments("a.zarr", &SLOW, &["--resume"]));
         assert!(folder.path("a.zarr/height").exists());
         build.signal(signal);
         let (code, said) = build.ended();
-        assert_eq!(code, Some(130), "{said:?}");
+        assert_eq!(code, Some(expect), "{said:?}");
         assert_eq!(said.last().unwrap(), "stopped: run the same command with --resume to continue", "{said:?}");
         fs::remove_dir_all(folder.path("a.zarr")).unwrap();
     }

@@ -330,3 +330,31 @@ fn many_threads_are_no_more_than_there_is_work_for() {
         assert!(code == 0 && peak < 24 << 20, "{peak}: {said}");
     }
 }
+
+/// The memory that a refusal names suffices, and one step less does not.
+#[test]
+fn what_a_refusal_names_is_enough() {
+    let folder = Folder::new();
+    for line in [
+        "export alpine --size 1500 -o a.npy",
+        "export hills --layer albedo --size 1024 -o a.npy",
+        "export hills --layer slope --size 1024 -o a.tif",
+        "export island --size 512 --layer rivers -o a.geojson",
+        "build hills --cell 40 -o b.tif",
+        "generate hills --size 512 -o made",
+        "map hills --size 400 -o a.png",
+        "render hills --size 128x64 --samples 1 -o view.png",
+        "tilemap hills --size 128 -o tiles",
+        "analyze hills --size 512",
+    ] {
+        let words: Vec<&str> = line.split(' ').collect();
+        let run = |memory: &str| folder.run(&[&words[..], &["-q", "--memory", memory]].concat());
+        let refused = run("18MiB");
+        let named = refused.err.split("needs up to ").nth(1).and_then(|rest| rest.split(" of memory").next());
+        let named = named.unwrap_or_else(|| panic!("{line}: {}", refused.err)).replace(' ', "");
+        let mib: u64 = named.strip_suffix("MiB").unwrap_or_else(|| panic!("{line}: {named}")).parse().unwrap();
+        assert_eq!(run(&format!("{}MiB", mib - 1)).code, 1, "{line}: less than {named} is enough");
+        let enough = run(&named);
+        assert_eq!(enough.code, 0, "{line}: {named}: {}", enough.err);
+    }
+}

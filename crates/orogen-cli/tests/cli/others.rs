@@ -262,3 +262,41 @@ fn the_studio_is_found_or_it_is_said_how_to_get_it() {
     folder.bad(&["studio", "messa"], 2, "did you mean `mesa`?");
     folder.bad(&["studio", "-"], 2, "not standard input");
 }
+
+#[test]
+fn only_options_that_are_alike_are_suggested() {
+    let folder = Folder::with_small();
+    let export = |option: &str| folder.bad(&["export", "small.toml", "-o", "a.npy", option, "3"], 2, "").err;
+    let scale = export("--scale");
+    assert!(scale.starts_with("error: unexpected argument '--scale' found") && !scale.contains("cache"), "{scale}");
+    assert!(export("--fomat").contains("a similar argument exists: '--format'"));
+    let command = folder.bad(&["gnerate"], 2, "a similar subcommand exists: 'generate'").err;
+    assert!(command.contains("unrecognized subcommand 'gnerate'"), "{command}");
+    let command = folder.bad(&["treasure"], 2, "unrecognized subcommand 'treasure'").err;
+    assert!(!command.contains("similar"), "{command}");
+    folder.bad(&["noise", "perln"], 2, "a similar value exists: 'perlin'");
+    let value = folder.bad(&["noise", "whirl"], 2, "invalid value 'whirl'").err;
+    assert!(!value.contains("similar"), "{value}");
+}
+
+#[test]
+fn names_do_not_control_the_terminal() {
+    let folder = Folder::with_small();
+    let name = "\u{1b}[31m\u{202e}a.npy";
+    let outcome = folder.bad(&["export", name, "-o", "b.npy"], 1, "\\u{1b}[31m\\u{202e}a.npy");
+    assert!(!outcome.err.contains('\u{1b}') && !outcome.err.contains('\u{202e}'), "{}", outcome.err);
+    if cfg!(unix) {
+        let told = folder.good(&["export", "small.toml", "-o", name]).text().to_string();
+        assert!(told.starts_with("\\u{1b}[31m\\u{202e}a.npy: height, 64 x 48 samples"), "{told}");
+    }
+}
+
+#[test]
+fn numbers_of_bytes_are_refused_without_another_options_name() {
+    let folder = Folder::with_small();
+    for option in ["--cache-limit", "--memory"] {
+        let said =
+            folder.bad(&["export", "small.toml", "-o", "a.npy", option, "0"], 2, "it must be at least 1 byte").err;
+        assert!(said.starts_with(&format!("error: invalid value '0' for '{option} <BYTES>': it must")), "{said}");
+    }
+}

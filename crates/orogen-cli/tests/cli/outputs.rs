@@ -199,3 +199,48 @@ fn pipes_and_devices_are_written_through() {
         folder.good(&[&["export", "small.toml", "--format", "png", "-o", "/dev/null", "-q"][..], more].concat());
     }
 }
+
+/// The output of a shell's line, in which `$0` is the program.
+#[cfg(target_os = "linux")]
+fn shell(folder: &Folder, line: &str) -> std::process::Output {
+    let mut shell = std::process::Command::new("sh");
+    shell.args(["-c", line, env!("CARGO_BIN_EXE_orogen")]).current_dir(&folder.0).env("OROGEN_CACHE", "");
+    shell.output().unwrap()
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn standard_output_by_any_name_holds_the_data_alone() {
+    let folder = Folder::with_small();
+    folder.good(&["export", "small.toml", "-o", "a.png", "-q"]);
+    let expect = folder.read("a.png");
+    std::os::unix::fs::symlink("/dev/stdout", folder.path("link.png")).unwrap();
+    for out in ["-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1", "link.png"] {
+        let found = folder.good(&["export", "small.toml", "--format", "png", "-o", out]).out;
+        assert!(found == expect, "{out}: {} bytes, not {}", found.len(), expect.len());
+    }
+    for line in ["-o /dev/stdout >b.png", "-o - >b.png", "-o /dev/stdout | cat >b.png"] {
+        let output = shell(&folder, &format!("\"$0\" export small.toml --format png {line}"));
+        assert!(output.status.success() && folder.read("b.png") == expect, "{line}: {output:?}");
+        fs::remove_file(folder.path("b.png")).unwrap();
+    }
+    folder.bad(&["export", "small.toml", "--seed", "1,2", "-o", "/dev/stdout"], 2, "cannot be written to one stream");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn standard_output_that_takes_nothing_is_an_error() {
+    let folder = Folder::with_small();
+    for line in ["--help", "--version", "export --help", "presets", "export small.toml -o -"] {
+        let output = shell(&folder, &format!("exec \"$0\" {line} >/dev/full"));
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(1), "{line}: {said}");
+        assert!(said.contains("error: cannot write to standard output: no space left on device"), "{line}: {said}");
+    }
+    let output = shell(&folder, "exec \"$0\" export small.toml -o - >&-");
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.starts_with("error: cannot write to standard output: it is closed"), "{said}");
+    assert!(shell(&folder, "exec \"$0\" export small.toml -o - >/dev/null").status.success());
+    assert!(shell(&folder, "exec \"$0\" export small.toml -o a.npy >&-").status.success(), "nothing is lost");
+}

@@ -156,6 +156,11 @@ fn wrong_classes_and_sizes_are_explained() {
     folder.write("land.toml", CLASSES);
     folder.bad(&["tilemap", "land.toml", "--size", "0", "-o", "x"], 2, "--size");
     folder.bad(&["tilemap", "land.toml", "--tileset", "none", "-o", "x"], 2, "fields-16");
+    for command in ["tilemap", "blocks"] {
+        let out = ["-o", if command == "blocks" { "x.vox" } else { "x" }];
+        let said = "the standard terrain classes need a cell of 0.0001 m to 400000 m, not 1000000000 m";
+        folder.bad(&[&[command, "endless", "--cell", "1e9"][..], &out].concat(), 2, said);
+    }
     assert!(!folder.path("x").exists(), "nothing is left behind");
 }
 

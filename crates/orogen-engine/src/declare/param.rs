@@ -197,7 +197,11 @@ fn refusal(spec: &ParamSpec, value: &Value) -> String {
     if let Some((_, message)) = spec.problem(value) {
         return message;
     }
-    let mut message = format!("`{}` must be {}, not {}", spec.name, spec.expected(), value.describe());
+    let given = match spec.shape {
+        Shape::Integer | Shape::Seed => value.describe_as_integer(),
+        _ => value.describe(),
+    };
+    let mut message = format!("`{}` must be {}, not {given}", spec.name, spec.expected());
     if let (Shape::Choice(choices), Value::Text(text)) = (spec.shape, value) {
         let names: Vec<&str> = choices().iter().map(|(name, _)| *name).collect();
         if let Some(near) = orogen_grid::words::nearest(text, names) {

@@ -50,7 +50,7 @@ impl<'a> Planner<'a> {
     /// solutions are moved to disk, and solvers' sources are made in smaller tiles.
     ///
     /// # Errors
-    /// The errors of [`Planner::plan`]. A plan that does not fit is not an error; its memory tells.
+    /// The errors of [`Planner::plan`]. A plan that does not fit is not an error; it is the one that needs least memory.
     pub fn fitting(
         self,
         targets: &[Link],
@@ -60,10 +60,10 @@ impl<'a> Planner<'a> {
         allowed: Option<u64>,
     ) -> Result<Plan> {
         let mut planner = Planner { threads, ..self };
-        let mut first = planner.plan(targets, window, scattered)?;
-        let Some(allowed) = allowed else { return Ok(first) };
-        if memory::fit(&mut first, planner.recipe, threads, allowed) || first.solves.is_empty() {
-            return Ok(first);
+        let mut smallest = planner.plan(targets, window, scattered)?;
+        let Some(allowed) = allowed else { return Ok(smallest) };
+        if memory::fit(&mut smallest, planner.recipe, threads, allowed) || smallest.solves.is_empty() {
+            return Ok(smallest);
         }
         for side in TILES.into_iter().skip(1) {
             planner.side = side;
@@ -71,8 +71,12 @@ impl<'a> Planner<'a> {
             if memory::fit(&mut plan, planner.recipe, threads, allowed) {
                 return Ok(plan);
             }
+            let needed = |plan: &Plan| memory::needed(plan, planner.recipe, threads);
+            if needed(&plan) < needed(&smallest) {
+                smallest = plan;
+            }
         }
-        Ok(first)
+        Ok(smallest)
     }
 
     /// A plan for layers over a window.

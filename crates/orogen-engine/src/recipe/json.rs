@@ -97,10 +97,17 @@ fn convert(value: &ast::Value) -> Spanned<Value> {
     Spanned { value: converted, span: span(value) }
 }
 
+/// A number without a fraction as an integer. Beyond 2^53 the text is not exact; zero may have a sign.
+fn whole(number: f64) -> Option<i64> {
+    let is_whole = number.fract() == 0.0 && number.abs() <= (1u64 << 53) as f64;
+    (is_whole && !(number == 0.0 && number.is_sign_negative())).then_some(number as i64)
+}
+
 fn number_value(text: &str) -> Value {
     match (text.parse::<i64>(), text.parse::<f64>()) {
         (Ok(integer), _) => Value::Integer(integer),
-        (_, Ok(number)) => Value::Number(number),
+        // JSON has one kind of number: `1.0` and `1e0` are the integer 1, and programs write them.
+        (_, Ok(number)) => whole(number).map_or(Value::Number(number), Value::Integer),
         _ => Value::Other("an invalid number"),
     }
 }

@@ -1,5 +1,6 @@
 //! Conversion of a tree of values to a recipe, with diagnostics at their keys.
 
+use super::condition::read::Places;
 use super::document::{MAX_NODES, Recipe, VERSION, WorldSpec};
 use super::graph::{At, Graph, MAX_FAULTS};
 use super::parameters::{Formula, Parameters, Step, resolve};
@@ -141,7 +142,9 @@ fn parse(text: &str, name: &str, set: &[(String, f64)], origin: &Origin) -> Resu
     if text.len() as u64 > LONGEST_TEXT {
         return Err(too_long(name));
     }
-    if text.trim_start_matches('\u{feff}').trim().is_empty() {
+    // A mark of the byte order, which some editors write.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    if text.trim().is_empty() {
         return Err(Error::new(
             ErrorKind::Recipe,
             format!(
@@ -150,7 +153,7 @@ fn parse(text: &str, name: &str, set: &[(String, f64)], origin: &Origin) -> Resu
         ));
     }
     let text = Text { name, text };
-    let is_json = text.text.trim_start_matches('\u{feff}').trim_start().starts_with('{');
+    let is_json = text.text.trim_start().starts_with('{');
     let tree = if is_json { json::read(&text)? } else { toml::read(&text)? };
     let walk = Walk {
         text: &text,
@@ -250,15 +253,15 @@ impl Walk<'_> {
         }
         let places = match top.iter().find(|(key, _)| key.value == "surface") {
             Some((_, value)) => self.surfaces(value, &mut recipe),
-            None => Vec::new(),
+            None => Places::default(),
         };
         let scattered = match top.iter().find(|(key, _)| key.value == "scatter") {
             Some((_, value)) => self.scatter(value, &mut recipe),
-            None => Vec::new(),
+            None => Places::default(),
         };
         let classes = match top.iter().find(|(key, _)| key.value == "class") {
             Some((key, value)) => self.classes(&key.span, value, &mut recipe),
-            None => Vec::new(),
+            None => Places::default(),
         };
         if let Some(folder) = &origin.folder {
             recipe.set_base_dir(folder);
@@ -291,13 +294,13 @@ impl Walk<'_> {
                 self.complain(&span, diagnostic.message);
             }
         }
-        if self.is_sound() && !places.is_empty() {
+        if self.is_sound() && !places.tables.is_empty() {
             self.check_surfaces(&recipe, &places);
         }
-        if self.is_sound() && !scattered.is_empty() {
+        if self.is_sound() && !scattered.tables.is_empty() {
             self.check_scatter(&recipe, &scattered);
         }
-        if self.is_sound() && !classes.is_empty() {
+        if self.is_sound() && !classes.tables.is_empty() {
             self.check_classes(&recipe, &classes);
         }
         match self.is_sound() {
@@ -332,7 +335,7 @@ impl Walk<'_> {
     }
 
     /// Reads the surfaces, and returns their positions.
-    fn surfaces(&mut self, value: &Spanned<Value>, recipe: &mut Recipe) -> Vec<Span> {
+    fn surfaces(&mut self, value: &Spanned<Value>, recipe: &mut Recipe) -> Places {
         let read = surface::read::read(value, recipe.world.size.is_some());
         read.diagnostics.into_iter().for_each(|(span, message)| self.complain(&span, message));
         read.surfaces.into_iter().for_each(|surface| {
@@ -342,7 +345,7 @@ impl Walk<'_> {
     }
 
     /// Reads the kinds of objects, and returns their positions.
-    fn scatter(&mut self, value: &Spanned<Value>, recipe: &mut Recipe) -> Vec<Span> {
+    fn scatter(&mut self, value: &Spanned<Value>, recipe: &mut Recipe) -> Places {
         let read = scatter::read::read(value, recipe.world.size.is_some());
         read.diagnostics.into_iter().for_each(|(span, message)| self.complain(&span, message));
         read.entries.into_iter().for_each(|entry| {
@@ -352,7 +355,7 @@ impl Walk<'_> {
     }
 
     /// Reads the terrain classes, and returns their positions.
-    fn classes(&mut self, key: &Span, value: &Spanned<Value>, recipe: &mut Recipe) -> Vec<Span> {
+    fn classes(&mut self, key: &Span, value: &Spanned<Value>, recipe: &mut Recipe) -> Places {
         let read = class::read::read(value, recipe.world.size.is_some());
         read.diagnostics.into_iter().for_each(|(span, message)| self.complain(&span, message));
         let output = |name: &str| recipe.outputs().any(|output| output == name);
@@ -368,44 +371,63 @@ impl Walk<'_> {
     }
 
     /// Problems of classes appear in the nodes that compute them.
-    fn check_classes(&mut self, recipe: &Recipe, places: &[Span]) {
+    fn check_classes(&mut self, recipe: &Recipe, places: &Places) {
         let mut whole = recipe.clone();
         if class::expand::expand(&mut whole).is_ok() {
             let nodes: Vec<Range<usize>> = whole.expanded_classes().iter().map(|class| class.nodes.clone()).collect();
-            self.check_expanded(&whole, &nodes, |at| format!("class `{}`", recipe.classes()[at].name), places);
+            self.check_expanded(
+                [recipe, &whole],
+                &nodes,
+                |at| format!("class `{}`", recipe.classes()[at].name),
+                places,
+            );
         }
     }
 
     /// Problems of scatter appear in the nodes that compute its densities.
-    fn check_scatter(&mut self, recipe: &Recipe, places: &[Span]) {
+    fn check_scatter(&mut self, recipe: &Recipe, places: &Places) {
         let mut whole = recipe.clone();
         scatter::expand::expand(&mut whole);
         let nodes: Vec<Range<usize>> = whole.expanded_scatter().iter().map(|entry| entry.nodes.clone()).collect();
-        self.check_expanded(&whole, &nodes, |at| format!("scatter `{}`", recipe.scatter()[at].name), places);
+        self.check_expanded([recipe, &whole], &nodes, |at| format!("scatter `{}`", recipe.scatter()[at].name), places);
     }
 
     /// Problems of surfaces appear in the nodes that compute them.
-    fn check_surfaces(&mut self, recipe: &Recipe, places: &[Span]) {
+    fn check_surfaces(&mut self, recipe: &Recipe, places: &Places) {
         let mut whole = recipe.clone();
         surface::expand::expand(&mut whole);
         let nodes: Vec<Range<usize>> = whole.expanded().iter().map(|surface| surface.nodes.clone()).collect();
-        self.check_expanded(&whole, &nodes, |at| format!("surface `{}`", recipe.surfaces()[at].name), places);
+        self.check_expanded([recipe, &whole], &nodes, |at| format!("surface `{}`", recipe.surfaces()[at].name), places);
     }
 
-    /// Reports problems of generated nodes: `nodes` are those of each table, `name` describes it, `places` are the positions.
+    /// Reports problems of generated nodes of `whole`, to which `written` was expanded: `nodes` are those of each table, `name`
+    /// describes it, `places` are the positions.
     fn check_expanded(
         &mut self,
-        whole: &Recipe,
+        [written, whole]: [&Recipe; 2],
         nodes: &[Range<usize>],
         name: impl Fn(usize) -> String,
-        places: &[Span],
+        places: &Places,
     ) {
         for diagnostic in Graph::resolve(whole).err().unwrap_or_default() {
             let at = match diagnostic.at {
                 At::Node(node, _) => nodes.iter().position(|nodes| nodes.contains(&node)),
                 _ => None,
             };
-            let span = at.and_then(|at| places.get(at)).cloned().unwrap_or(0..0);
+            // A name that is wrong, with a suggestion from the nodes that were written.
+            let is_told = |name: &str| {
+                let node = name.split('.').next().unwrap_or_default();
+                diagnostic.message.contains(&format!("`{node}`"))
+            };
+            let wrong = at.and_then(|at| {
+                let mut names = places.names_in(at).filter(|(name, _)| is_told(name));
+                names.find_map(|(name, span)| Some((at, span, Graph::find(written, name).err()?)))
+            });
+            if let Some((at, span, what)) = wrong {
+                self.complain(span, format!("{}: {what}", name(at)));
+                continue;
+            }
+            let span = at.and_then(|at| places.tables.get(at)).cloned().unwrap_or(0..0);
             // Names of generated nodes would not help the user.
             let message = match (at, diagnostic.message.split_once("`: ")) {
                 (Some(at), Some((_, what))) => format!("{}: {what}", name(at)),
@@ -429,7 +451,7 @@ impl Walk<'_> {
             )),
             Some((_, value)) => Err(self.text.error(
                 &value.span,
-                format!("`orogen` is the version of the recipe format and must be {VERSION}, not {}", value.value.describe()),
+                format!("`orogen` is the version of the recipe format and must be {VERSION}, not {}", value.value.describe_as_integer()),
             )),
         }
     }

@@ -251,7 +251,7 @@ fn asked<'v>(name: &Spanned<String>, value: &'v Spanned<Value>) -> std::result::
             ("seed", other) => {
                 return Err(here(
                     &value.span,
-                    format!("`seed` must be a whole number of at least 0, not {}", other.describe()),
+                    format!("`seed` must be a whole number of at least 0, not {}", other.describe_as_integer()),
                 ));
             }
             ("parameters" | "inputs", other) => {

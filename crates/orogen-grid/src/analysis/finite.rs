@@ -38,7 +38,7 @@ impl FiniteCount {
             missing if missing == samples => Err(Error::new(
                 ErrorKind::Request,
                 format!(
-                    "{what} has no finite sample: all {samples} are NaN or infinite. Values have exceeded 3.4e38; look for factors in the recipe that are too large"
+                    "{what} has no finite sample: all {samples} are NaN or infinite. Look in the recipe for values beyond 3.4e38, and for what has no result: 0 / 0, and roots and logarithms of negative numbers"
                 ),
             )),
             missing => {
@@ -63,6 +63,7 @@ mod tests {
         assert_eq!(check(&[]), Ok(None));
         assert!(check(&[1.0, nan, -inf]).unwrap().unwrap().starts_with("2 of 3 samples of it (66.67 %) are NaN"));
         assert!(check(&[inf, nan]).unwrap_err().starts_with("it has no finite sample: all 2 are"));
+        assert!(check(&[nan, nan]).unwrap_err().ends_with("0 / 0, and roots and logarithms of negative numbers"));
         let many = FiniteCount { samples: 1_000_000, finite: 999_999 };
         assert!(many.check("it").unwrap().unwrap().contains("(less than 0.01 %)"));
         assert_eq!(many.and(FiniteCount::of(&[nan])), FiniteCount { samples: 1_000_001, finite: 999_999 });

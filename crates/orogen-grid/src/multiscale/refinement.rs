@@ -3,6 +3,7 @@
 use super::level::invalid;
 use crate::error::Result;
 use crate::grid::Window;
+use crate::words::number;
 
 /// Levels of land, each made from the one above it: rivers keep their course, and branches and slopes grow between them.
 ///
@@ -155,9 +156,23 @@ impl Refinement {
         if window.cell != self.cell_of(depth) {
             return Err(invalid(format!("level {depth} has a cell of {} m, not {}", self.cell_of(depth), window.cell)));
         }
-        let near = |x: i64| (-FURTHEST..=FURTHEST).contains(&x);
-        if window.is_empty() || window.width.max(window.height) > MAX_SIDE || !near(window.x) || !near(window.y) {
-            return Err(invalid("the window of a level is empty, too large or too far away"));
+        let Window { x, y, width, height, cell } = *window;
+        if window.is_empty() {
+            return Err(invalid(format!("a window of {width} x {height} samples is empty")));
+        }
+        if width.max(height) > MAX_SIDE {
+            return Err(invalid(format!(
+                "the level with a cell of {} m is needed over {width} x {height} samples; a level is made over at most {MAX_SIDE} samples a side",
+                number(cell)
+            )));
+        }
+        if let Some(far) = [x, y].into_iter().find(|at| !(-FURTHEST..=FURTHEST).contains(at)) {
+            return Err(invalid(format!(
+                "the level with a cell of {} m is needed {} m from the origin; levels end {} m from it, after 2^50 samples",
+                number(cell),
+                number(far.unsigned_abs() as f64 * cell),
+                number(FURTHEST as f64 * cell)
+            )));
         }
         Ok(())
     }

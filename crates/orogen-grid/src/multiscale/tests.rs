@@ -157,6 +157,21 @@ fn parameters_out_of_range_and_wrong_windows_are_errors() {
     for wrong in [empty, far, Window { cell: 1.0, ..good }] {
         assert_eq!(land.coarsest(&Given::default(), &wrong, &none).unwrap_err().kind(), ErrorKind::Request);
     }
+    let (cell, wide) = (good.cell, window(&land, 0, (0, 0), (1 << 25, 2)));
+    for (wrong, expect) in [
+        (empty, "a window of 0 x 2 samples is empty".to_string()),
+        (
+            wide,
+            format!(
+                "the level with a cell of {cell} m is needed over 33554432 x 2 samples; a level is made over at most 16777216 samples a side"
+            ),
+        ),
+        (window(&land, 0, (0, -(1 << 51)), (2, 2)), "levels end".to_string()),
+        (far, "after 2^50 samples".to_string()),
+    ] {
+        let said = land.coarsest(&Given::default(), &wrong, &none).unwrap_err().to_string();
+        assert!(said.contains(&expect), "{said}");
+    }
     let wrong = [
         land.with_land(1.5),
         land.with_refinement(land.refinement.with_cell(f64::NAN)),

@@ -79,10 +79,15 @@ impl Block {
 fn memory(world: &World, target: &dyn BuildTarget, layers: &[&str], columns: usize, rows: usize) -> Result<u64> {
     let window = union(target, (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))));
     let Some(window) = window else { return Ok(0) };
-    let plan = world.memory_of(&world.plan(layers, &window)?)?;
-    // Beside the block: for each thread a tile cut out of it, and its encoding.
+    let beside = memory_beside(world, target, layers);
+    let allowed = world.memory_limit().map(|limit| limit.saturating_sub(beside));
+    Ok(world.memory_of(&world.plan_within(layers, &window, allowed)?)?.saturating_add(beside))
+}
+
+/// Memory beside a block, in bytes: for each thread a tile cut out of it, and its encoding.
+pub fn memory_beside(world: &World, target: &dyn BuildTarget, layers: &[&str]) -> u64 {
     let tile = target.window(0, 0).len() as u64 * 4 + target.scratch_memory();
-    Ok(plan.saturating_add(tile.saturating_mul((layers.len() * world.threads()) as u64)))
+    tile.saturating_mul((layers.len() * world.threads()) as u64)
 }
 
 /// The window that contains the windows of all these tiles.

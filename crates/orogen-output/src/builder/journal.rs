@@ -61,7 +61,7 @@ impl JournalState {
         };
         JournalState::parse(&bytes).map(Some).ok_or_else(|| {
             let message = format!(
-                "the header of {} is damaged, so the build cannot be resumed; use --force to start again",
+                "the header of {} is damaged, so the build cannot be resumed; use --force, without --resume, to start again",
                 path.display()
             );
             Error::new(ErrorKind::File, message)
@@ -216,7 +216,13 @@ mod tests {
         }
         for end in 0..first {
             fs::write(&path, &bytes[..end]).unwrap();
-            assert!(JournalState::read(&path).unwrap_err().to_string().contains("use --force to start again"), "{end}");
+            assert!(
+                JournalState::read(&path)
+                    .unwrap_err()
+                    .to_string()
+                    .contains("use --force, without --resume, to start again"),
+                "{end}"
+            );
         }
         // A flipped bit invalidates its own line only.
         for at in first + 1..bytes.len() {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use orogen_grid::parallel;
 
-use super::blocks::{Block, union};
+use super::blocks::{Block, memory_beside, union};
 use super::cog::Cog;
 use super::digest::FileDigest;
 use super::folder::Folder;
@@ -189,23 +189,31 @@ impl<'a> Build<'a> {
         };
         let refuse = |message: String| Err(Error::new(ErrorKind::File, message));
         let out = self.work_dir.out().display();
+        let taken = self.work_dir.is_taken();
         match (start, state) {
-            (Start::Fresh, Some(JournalState { finished: Some(_), .. })) => {
-                refuse(format!("{out} is already complete; use --resume to check it, or --force to build it again"))
-            }
-            (Start::Fresh, Some(_)) => {
-                refuse(format!("{out} is an unfinished build; use --resume to continue it, or --force to start again"))
-            }
-            (Start::Fresh | Start::Resume, None) if self.work_dir.is_taken() => match start {
-                Start::Fresh => refuse(format!("{out} already exists; use --force to replace it")),
-                _ => refuse(format!(
-                    "{out} exists, but the journal of its build ({}) is missing, so it cannot be resumed; use --force to build it again",
+            // Each message names only what will work.
+            (Start::Fresh, Some(state)) => match (self.identity.difference(&state.identity), state.finished) {
+                (Some(difference), _) => refuse(format!(
+                    "{out} is another build: it was started {difference}; choose another output, or replace it with --force"
+                )),
+                (None, Some(_)) => {
+                    refuse(format!("{out} is already complete; use --resume to check it, or --force to build it again"))
+                }
+                (None, None) => refuse(format!(
+                    "{out} is an unfinished build; use --resume to continue it, or --force to start again"
+                )),
+            },
+            (Start::Fresh | Start::Resume, None) if taken => match (self.work_dir.foreign(), start) {
+                (Some(foreign), _) => Err(foreign),
+                (None, Start::Fresh) => refuse(format!("{out} already exists; use --force to replace it")),
+                (None, _) => refuse(format!(
+                    "{out} exists, but the journal of its build ({}) is missing, so it cannot be resumed; use --force, without --resume, to build it again",
                     self.work_dir.journal().display()
                 )),
             },
             (_, Some(state)) => match self.identity.difference(&state.identity) {
                 Some(difference) => refuse(format!(
-                    "{out} cannot be resumed: it was started {difference}; use the same arguments, or start again with --force"
+                    "{out} cannot be resumed: it was started {difference}; use the same arguments, or start again with --force and without --resume"
                 )),
                 None => {
                     let sound = self.world.install(|| self.sound(&state, progress))?;
@@ -336,7 +344,8 @@ impl<'a> Build<'a> {
             return Ok(FiniteCount::default());
         };
         let layers: Vec<&str> = self.identity.layers.iter().map(String::as_str).collect();
-        let grids = self.world.grids(&layers, &window, &progress.part(work))?;
+        let beside = memory_beside(self.world, self.target.as_ref(), &layers);
+        let grids = self.world.grids_beside(&layers, &window, beside, &progress.part(work))?;
         parallel::try_for_each(group, |&(row, column)| {
             let window = self.target.window(row, column);
             let tiles: Option<Vec<Grid>> = grids.iter().map(|grid| grid.crop(&window)).collect();

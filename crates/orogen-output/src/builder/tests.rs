@@ -317,7 +317,11 @@ fn what_is_there_is_not_overwritten() {
     let other = BuildSpec { tile: Some(64), ..spec.clone() };
     assert_eq!(
         build(&other, Start::Resume).unwrap_err(),
-        "~/out cannot be resumed: it was started with tiles of 40, not 64; use the same arguments, or start again with --force"
+        "~/out cannot be resumed: it was started with tiles of 40, not 64; use the same arguments, or start again with --force and without --resume"
+    );
+    assert_eq!(
+        build(&other, Start::Fresh).unwrap_err(),
+        "~/out is another build: it was started with tiles of 40, not 64; choose another output, or replace it with --force"
     );
     assert!(result(&folder.out()) == expect);
     build(&other, Start::Force).unwrap();
@@ -331,13 +335,20 @@ fn what_is_there_is_not_overwritten() {
     assert!(
         build(&spec, Start::Resume)
             .unwrap_err()
-            .contains("is missing, so it cannot be resumed; use --force to build it again")
+            .contains("is missing, so it cannot be resumed; use --force, without --resume, to build it again")
     );
+    let fresh = build(&other, Start::Fresh);
+    assert_eq!(fresh.unwrap_err(), "~/out already exists; use --force to replace it");
     // `--force` does not remove files that no build has made.
     fs::remove_dir_all(folder.out()).unwrap();
     fs::create_dir_all(folder.out()).unwrap();
     fs::write(folder.out().join("diary"), "mine").unwrap();
-    assert!(build(&spec, Start::Force).unwrap_err().contains("which --force does not remove"));
+    for start in [Start::Fresh, Start::Resume, Start::Force] {
+        assert_eq!(
+            build(&spec, start).unwrap_err(),
+            "~/out holds files that were not made by a build, which --force does not remove; empty the folder, or choose another output"
+        );
+    }
     assert_eq!(result(&folder.out()).len(), 1);
 }
 

@@ -175,6 +175,18 @@ impl WorkDir {
         }
     }
 
+    /// The error for a folder that is not the result of a build; `None` if it is one, or a file.
+    pub fn foreign(&self) -> Option<Error> {
+        let is_built = self.file || MARKS.iter().any(|mark| fs::is_file(&self.out.join(mark)));
+        let message = || {
+            format!(
+                "{} holds files that were not made by a build, which --force does not remove; empty the folder, or choose another output",
+                self.out.display()
+            )
+        };
+        (!is_built).then(|| Error::new(ErrorKind::File, message()))
+    }
+
     /// A file in the folder beside the result that is not a build's.
     fn foreign_beside(&self) -> Option<OsString> {
         let names = fs::read_dir(&self.beside).ok()?.flatten().map(|entry| entry.file_name());
@@ -194,11 +206,8 @@ impl WorkDir {
         let mut foreign = Vec::new();
         if !self.file && self.is_taken() {
             let refuse = |message: String| Err(Error::new(ErrorKind::File, message));
-            if !known && !MARKS.iter().any(|mark| fs::is_file(&self.out.join(mark))) {
-                return refuse(format!(
-                    "{} holds files that were not made by a build, which --force does not remove; empty the folder, or choose another output",
-                    self.out.display()
-                ));
+            if let Some(foreign) = self.foreign().filter(|_| !known) {
+                return Err(foreign);
             }
             let (files, folders) = self.contents()?;
             let policy = self.output.policy();

@@ -282,8 +282,7 @@ impl MapJob {
         let mut options = self.options(world);
         let mut warnings = Vec::new();
         options.names = names_within(&self.names, &options.map, &window, &mut warnings);
-        let reserved = world.budget().reserve(self.memory(&window))?;
-        let plan = world.plan(&[HEIGHT], &window)?;
+        let (plan, reserved) = world.plan_beside(&[HEIGHT], &window, self.memory(&window))?;
         let work = world.work(&plan)?;
         let layered = if self.layer == HEIGHT && !self.is_covered() { 0.0 } else { work };
         let pixels = self.side() * self.side();

@@ -227,10 +227,10 @@ impl RenderJob {
         let land = (window.len() as u64).saturating_mul(LAND);
         // A device's picture is whole before it is copied.
         let copies = if self.device.is_some() { 2 } else { 1 };
-        let reserved = world.budget().reserve(land.saturating_add(copies * 3 * pixels).saturating_add(writing))?;
         let has = |layer: &&str| world.recipe().outputs().any(|name| name == *layer);
         let layers: Vec<&str> = LAYERS.into_iter().filter(|layer| *layer == HEIGHT || has(layer)).collect();
-        let plan = world.plan(&layers, &window)?;
+        let held = land.saturating_add(copies * 3 * pixels).saturating_add(writing);
+        let (plan, reserved) = world.plan_beside(&layers, &window, held)?;
         let [making, preparing, painting] = progress.parts([
             world.work(&plan)?,
             PREPARING * window.len() as f64,

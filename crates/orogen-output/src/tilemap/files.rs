@@ -61,6 +61,7 @@ impl TilemapJob {
     ) -> Result<WrittenMap> {
         let outputs: Vec<Output> = NAMES.iter().map(|name| policy.output(folder.join(name))).collect::<Result<_>>()?;
         let ready = OutputFolder::ready(folder)?;
+        self.afford(world, window, ENCODERS)?;
         let _writing = world.budget().reserve(ENCODERS)?;
         let [making, writing] = progress.parts([3.0, 1.0]);
         let map = self.stream(world, window, &folder.join(SUMMARY), &making)?;

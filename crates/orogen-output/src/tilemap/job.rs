@@ -136,8 +136,17 @@ impl TilemapJob {
     /// # Errors
     /// Also if memory does not suffice, or if the disk is full or fails.
     pub fn stream(&self, world: &World, window: &Window, path: &Path, progress: &Progress) -> Result<Tilemap> {
+        self.afford(world, window, 0)?;
         let _held = world.budget().reserve(self.memory(window))?;
         self.draw(world, window, Some(path), progress)
+    }
+
+    /// Checks that a map, the classes of its cells while they are computed, and `beside` bytes fit into memory together.
+    ///
+    /// # Errors
+    /// If they do not; the message has what all of it needs.
+    pub(super) fn afford(&self, world: &World, window: &Window, beside: u64) -> Result<()> {
+        world.bands(&[CLASS], window, self.memory(window).saturating_add(beside), &Progress::none()).map(drop)
     }
 
     fn draw(&self, world: &World, window: &Window, path: Option<&Path>, progress: &Progress) -> Result<Tilemap> {

@@ -17,6 +17,7 @@ use orogen_engine::filter::slope::Slope;
 use orogen_engine::recipe::class::document::CLASS;
 use orogen_engine::world::{HEIGHT, LAKES};
 use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::words::number;
 
 /// The names of the classes, by their numbers.
 pub const NAMES: [&str; 6] = ["water", "sand", "grass", "forest", "rock", "snow"];
@@ -30,10 +31,13 @@ const BEACH: f64 = 1.5;
 /// Wavelength of the patches of forest, in cells.
 const PATCH: f64 = 16.0;
 
+/// The cells for which beaches and patches of forest are within the bounds of the ops that make them, in metres.
+const CELLS: [f64; 2] = [1e-4, 4e5];
+
 /// Adds the output [`CLASS`] to a recipe that has none. `cell` is the cell of the map in metres.
 ///
 /// # Errors
-/// If the recipe has neither this output nor the output `height`.
+/// If the recipe has neither this output nor the output `height`, or the cell is too small or too large for beaches and forests.
 pub fn classify(recipe: &mut Recipe, cell: f64) -> Result<()> {
     let input =
         |name: &str| recipe.output_inputs().iter().find(|(output, _)| output == name).map(|(_, input)| input.clone());
@@ -45,6 +49,14 @@ pub fn classify(recipe: &mut Recipe, cell: f64) -> Result<()> {
                        [outputs], or the number of each sample's terrain class";
         return Err(Error::new(ErrorKind::Recipe, message));
     };
+    let [least, most] = CELLS;
+    if !(least..=most).contains(&cell) {
+        let message = format!(
+            "the standard terrain classes need a cell of {least} m to {most} m, not {} m; give the recipe classes of its own, or use another cell",
+            number(cell)
+        );
+        return Err(Error::new(ErrorKind::Request, message));
+    }
     let lakes = input(LAKES);
     let sea = recipe.world.sea_level;
     let free = |name: &str| {

@@ -32,6 +32,12 @@ fn wrong_recipes_are_told_where_and_what() {
     complains("[outputs]\nheight = \"a\"", "1:1", &["orogen = 1"]);
     complains("orogen = 2\n", "1:10", &["version 2", "newer"]);
     complains("orogen = \"one\"\n", "1:10", &["must be 1", "\"one\""]);
+    complains("orogen = 1.0\n", "1:10", &["must be 1, not 1.0, which is not written as a whole number"]);
+    complains(
+        &format!("orogen = 1\n[nodes.a]\nop = \"fbm\"\noctaves = 4.0\n{OUT}"),
+        "4:11",
+        &["`octaves` must be a whole number from 1 to 32, not 4.0,"],
+    );
     complains("orogen = 1\n", "1:1", &["no outputs"]);
     complains("orogen = 1\nwrld = 3\n", "2:1", &["unknown key `wrld`", "did you mean `world`?"]);
     complains("orogen = 1\nabout = 5\n", "2:9", &["`about`", "string"]);
@@ -150,6 +156,19 @@ fn columns_count_characters_not_bytes() {
         "orogen = 1\nabout = \"Höhenzüge — 山\"\n[nodes.a]\nop = \"fbm\" # Größe\n[outputs]\nheight = { \"ü\" = 1 }\n";
     let error = Recipe::parse(text, "r").unwrap_err();
     assert_eq!(error.diagnostics()[0].place.as_ref().unwrap().column, 10, "{error}");
+}
+
+#[test]
+fn json_has_one_kind_of_number_and_texts_may_have_a_mark_of_the_byte_order() {
+    let json = "{\"orogen\":1e0,\"world\":{\"seed\":7.0},\"nodes\":{\"a\":{\"op\":\"fbm\",\"octaves\":4.0}},\"outputs\":{\"height\":\"a\"}}";
+    let toml = format!("orogen = 1\n[world]\nseed = 7\n[nodes.a]\nop = \"fbm\"\noctaves = 4\n{OUT}");
+    let expect = Recipe::parse(&toml, "r").unwrap();
+    for text in [json, &format!("\u{feff}{json}"), &format!("\u{feff}{toml}")] {
+        assert_eq!(Recipe::parse(text, "r").unwrap(), expect, "{text}");
+    }
+    // The mark is no column.
+    complains("\u{feff}{\"orogen\":1.5}", "1:11", &["must be 1, not 1.5"]);
+    complains("\u{feff}orogen = 3", "1:10", &["version 3"]);
 }
 
 #[test]

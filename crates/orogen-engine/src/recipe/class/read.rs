@@ -1,7 +1,7 @@
 //! Conversion of `[[class]]` tables.
 
 use super::document::{End, HEIGHT, MAX_CLASSES, Share, TerrainClass};
-use crate::recipe::condition::read::{CONDITIONS, ValueReader};
+use crate::recipe::condition::read::{CONDITIONS, Places, ValueReader};
 use crate::value::{Span, Spanned, Value};
 use orogen_grid::words::suggestion;
 
@@ -16,8 +16,8 @@ const SHARE_KEYS: [&str; 3] = ["of", "lowest", "highest"];
 pub struct Read {
     /// The classes.
     pub classes: Vec<TerrainClass>,
-    /// The position of each.
-    pub places: Vec<Span>,
+    /// The positions of their tables and of the names in those.
+    pub places: Places,
     /// The problems, with positions.
     pub diagnostics: Vec<(Span, String)>,
 }
@@ -45,7 +45,7 @@ pub fn read(value: &Spanned<Value>, bounded: bool) -> Read {
                     values.diagnostic(&item.span, message);
                 }
                 out.classes.push(class);
-                out.places.push(item.span.clone());
+                out.places.tables.push(item.span.clone());
             }
         }
         other => values.diagnostic(
@@ -53,6 +53,7 @@ pub fn read(value: &Spanned<Value>, bounded: bool) -> Read {
             format!("`class` must be a list of tables, `[[class]]`, not {}", other.describe()),
         ),
     }
+    out.places.names = values.names;
     Read { diagnostics: values.diagnostics, ..out }
 }
 
@@ -103,7 +104,10 @@ fn share(values: &mut ValueReader, value: &Spanned<Value>, bounded: bool) -> Opt
     for (key, value) in entries {
         let end = End::ALL.iter().find(|(name, _)| *name == key.value);
         match (key.value.as_str(), end, &value.value) {
-            ("of", _, Value::Text(name)) if !name.is_empty() => of = Some(name.clone()),
+            ("of", _, Value::Text(name)) if !name.is_empty() => {
+                values.names.push((name.clone(), value.span.clone()));
+                of = Some(name.clone());
+            }
             ("of", _, other) => {
                 let message = format!("`of` must be \"{HEIGHT}\" or name a node or a layer, not {}", other.describe());
                 values.diagnostic(&value.span, message);

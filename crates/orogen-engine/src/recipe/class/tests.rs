@@ -106,7 +106,8 @@ fn faults_stand_at_their_keys() {
         (", highest = 0.125", "", "{ of", "needs either `lowest` or `highest`"),
         ("of = \"hills\", highest", "highest", "{ highest", "`share` needs `of`, what cells are ordered by"),
         ("of = \"hills\"", "of = 3", "3", "`of` must be \"height\" or name a node or a layer"),
-        ("of = \"hills\"", "of = \"hils\"", "[[class]]", "class `wood`: "),
+        ("of = \"hills\"", "of = \"hils\"", "\"hils\"", "class `wood`: unknown node `hils`; did you mean `hills`?"),
+        ("of = \"hills\"", "of = \"zz\"", "\"zz\"", "class `wood`: unknown node `zz`; available: `hills` and `land`"),
         ("share = { of = \"hills\", highest = 0.125 }", "share = 0.125", "0.125", "`share` must be a table such as"),
     ] {
         assert!(CLASSES.contains(from), "{from}");
@@ -117,6 +118,17 @@ fn faults_stand_at_their_keys() {
         let from: String = place.text.chars().skip(place.column - 1).collect();
         assert!(from.starts_with(column), "{from} / {column}: {error}");
     }
+}
+
+#[test]
+fn a_class_may_have_many_conditions() {
+    let nodes: String = (0..100).map(|k| format!("[nodes.n{k}]\nop = \"constant\"\nvalue = {k}\n")).collect();
+    let layers: Vec<String> = (0..100).map(|k| format!("n{k} = {{ min = {k} }}")).collect();
+    let classes =
+        format!("{nodes}[[class]]\nname = \"a\"\n[[class]]\nname = \"b\"\nlayers = {{ {} }}\n", layers.join(", "));
+    let mut recipe = Recipe::parse(&recipe(&classes), "test").unwrap();
+    expand_at(&mut recipe, 10.0, &[1, 2]).unwrap();
+    assert!(codes(recipe, 10.0).iter().all(|code| *code == 2.0), "all conditions hold");
 }
 
 #[test]

@@ -44,11 +44,13 @@ impl<'r> ShareNodes<'r> {
         ShareNodes { recipe, names, height, flow }
     }
 
-    /// Adds a node, and returns it as an input.
+    /// Adds a node, and returns it as an input. Its name is this one, with a number if there is a node of that name.
     pub fn add(&mut self, name: &str, node: impl Into<Node>) -> Input {
         let mut free = name.to_string();
+        let mut number = 1;
         while !self.names.insert(free.clone()) {
-            free.push('_');
+            number += 1;
+            free = format!("{name}-{number}");
         }
         self.recipe.add(&free, node);
         Input::Node(free)

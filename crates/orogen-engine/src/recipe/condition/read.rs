@@ -24,17 +24,37 @@ const SCALE: f64 = 50.0;
 /// The keys of conditions.
 pub const CONDITIONS: [&str; 6] = ["height", "slope", "curvature", "flow", "noise", "layers"];
 
+/// The positions of what a list of tables has, for problems that appear only in the nodes that compute it.
+#[derive(Debug, Default)]
+pub struct Places {
+    /// The position of each table, in the order of the text.
+    pub tables: Vec<Span>,
+    /// The names of nodes and layers in the tables, and the position of each.
+    pub names: Vec<(String, Span)>,
+}
+
+impl Places {
+    /// The names in a table.
+    pub fn names_in(&self, table: usize) -> impl Iterator<Item = &(String, Span)> {
+        let start = |table: usize| self.tables.get(table).map_or(usize::MAX, |span| span.start);
+        let within = start(table)..start(table + 1);
+        self.names.iter().filter(move |(_, span)| within.contains(&span.start))
+    }
+}
+
 /// Reads values, and collects their problems.
 pub struct ValueReader {
     /// The problems, with positions.
     pub diagnostics: Vec<(Span, String)>,
+    /// The names of nodes and layers, with positions.
+    pub names: Vec<(String, Span)>,
     bounded: bool,
 }
 
 impl ValueReader {
     /// `bounded` tells whether the world is bounded: only then are drainage areas known.
     pub fn new(bounded: bool) -> ValueReader {
-        ValueReader { diagnostics: Vec::new(), bounded }
+        ValueReader { diagnostics: Vec::new(), names: Vec::new(), bounded }
     }
 
     /// Reports a problem.
@@ -117,6 +137,7 @@ impl ValueReader {
     pub fn condition(&mut self, key: &str, value: &Spanned<Value>) -> Vec<Condition> {
         if key == "layers" {
             let Some(entries) = self.table("`layers`", value) else { return Vec::new() };
+            self.names.extend(entries.iter().map(|(name, _)| (name.value.clone(), name.span.clone())));
             return (entries.iter())
                 .map(|(name, value)| self.range(Quantity::Layer(name.value.clone()), "layers", value, LAYERS))
                 .collect();
@@ -236,8 +257,10 @@ impl ValueReader {
         match value.value {
             Value::Integer(number) if (0..=most).contains(&number) => number,
             _ => {
-                let message =
-                    format!("`{key}` must be a whole number from 0 to {most}, not {}", value.value.describe());
+                let message = format!(
+                    "`{key}` must be a whole number from 0 to {most}, not {}",
+                    value.value.describe_as_integer()
+                );
                 self.diagnostic(&value.span, message);
                 1
             }
@@ -266,7 +289,10 @@ impl ValueReader {
     /// A node, a layer or a number.
     pub fn input(&mut self, key: &str, value: &Spanned<Value>) -> Input {
         match (&value.value, value.value.number()) {
-            (Value::Text(name), _) => Input::Node(name.clone()),
+            (Value::Text(name), _) => {
+                self.names.push((name.clone(), value.span.clone()));
+                Input::Node(name.clone())
+            }
             (_, Some(number)) if number.is_finite() => Input::Value(number),
             (other, _) => {
                 let message = format!("`{key}` must name a node or a layer, or be a number, not {}", other.describe());

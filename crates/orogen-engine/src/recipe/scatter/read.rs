@@ -1,7 +1,7 @@
 //! Conversion of `[[scatter]]` tables.
 
 use super::document::{InWater, MAX_SCATTERS, SIZES, SPACINGS, Scatter, Turn};
-use crate::recipe::condition::read::{CONDITIONS, ValueReader};
+use crate::recipe::condition::read::{CONDITIONS, Places, ValueReader};
 use crate::value::{Span, Spanned, Value};
 use orogen_grid::words::suggestion;
 
@@ -18,8 +18,8 @@ const CELLS: [f64; 2] = [1e-4, 1e7];
 pub struct Read {
     /// The entries.
     pub entries: Vec<Scatter>,
-    /// The position of each.
-    pub places: Vec<Span>,
+    /// The positions of their tables and of the names in those.
+    pub places: Places,
     /// The problems, with positions.
     pub diagnostics: Vec<(Span, String)>,
 }
@@ -36,7 +36,7 @@ pub fn read(value: &Spanned<Value>, bounded: bool) -> Read {
         Value::List(items) => {
             for (seed, item) in (0..).zip(items) {
                 out.entries.extend(entry(&mut values, item, seed));
-                out.places.push(item.span.clone());
+                out.places.tables.push(item.span.clone());
             }
         }
         other => values.diagnostic(
@@ -44,6 +44,7 @@ pub fn read(value: &Spanned<Value>, bounded: bool) -> Read {
             format!("`scatter` must be a list of tables, `[[scatter]]`, not {}", other.describe()),
         ),
     }
+    out.places.names = values.names;
     Read { diagnostics: values.diagnostics, ..out }
 }
 

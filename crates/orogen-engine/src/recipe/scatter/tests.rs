@@ -61,7 +61,12 @@ fn faults_stand_at_their_keys() {
         ("name = \"tree\"", "name = \"t r\"", "\"t r\"", "`name` must be 1 to 64 letters"),
         ("name = \"tree\"\n", "", "[[scatter]]", "needs a `name`, such as \"tree\""),
         ("density = \"hills\"", "density = 1.5", "1.5", "`density` must be a number from 0.0 to 1.0"),
-        ("density = \"hills\"", "density = \"hils\"", "[[scatter]]", "scatter `tree`: "),
+        (
+            "density = \"hills\"",
+            "density = \"hils\"",
+            "\"hils\"",
+            "scatter `tree`: unknown node `hils`; did you mean `hills`?",
+        ),
         ("density = \"hills\"", "densty = 1", "densty", "did you mean `density`?"),
         ("[0.8, 1.3]", "[1.8, 1.3]", "[1.8", "the smallest `size`"),
         ("[0.8, 1.3]", "[1.3]", "[1.3]", "[SMALLEST, LARGEST]"),

@@ -1,7 +1,7 @@
 //! Conversion of `[[surface]]` tables to surfaces.
 
 use super::document::{Along, Coloring, DEFAULT_GRAIN, MAX_COLORS, MAX_SURFACES, Surface};
-use crate::recipe::condition::read::{CONDITIONS, Entry, ValueReader};
+use crate::recipe::condition::read::{CONDITIONS, Entry, Places, ValueReader};
 use crate::value::{Span, Spanned, Value};
 use orogen_grid::words::suggestion;
 use orogen_io::dem::file_ref::FileRef;
@@ -15,8 +15,8 @@ pub const KEYS: [&str; 11] =
 pub struct Read {
     /// The surfaces.
     pub surfaces: Vec<Surface>,
-    /// The position of each.
-    pub places: Vec<Span>,
+    /// The positions of their tables and of the names in those.
+    pub places: Places,
     /// The problems, with positions.
     pub diagnostics: Vec<(Span, String)>,
 }
@@ -37,6 +37,7 @@ pub fn read(value: &Spanned<Value>, bounded: bool) -> Read {
             format!("`surface` must be a list of tables, `[[surface]]`, not {}", other.describe()),
         ),
     }
+    reader.out.places.names = reader.values.names;
     Read { diagnostics: reader.values.diagnostics, ..reader.out }
 }
 
@@ -80,7 +81,7 @@ impl Reader {
             }
         }
         self.out.surfaces.push(surface);
-        self.out.places.push(value.span.clone());
+        self.out.places.tables.push(value.span.clone());
     }
 
     fn coloring(&mut self, table: &Spanned<Value>, entries: &[Entry]) -> Coloring {
@@ -184,7 +185,11 @@ impl Reader {
                 match along {
                     "height" => Along::Height(span),
                     "slope" => Along::Slope(span),
-                    layer => Along::Layer(layer.to_string(), span),
+                    layer => {
+                        let place = find("along").map_or(0..0, |(_, value)| value.span.clone());
+                        self.values.names.push((layer.to_string(), place));
+                        Along::Layer(layer.to_string(), span)
+                    }
                 }
             }
         }

@@ -72,7 +72,8 @@ fn faults_stand_at_their_keys() {
         ("picture = \"snow.png\"\ngrain = 50", "", "[[surface]]", "a surface needs a `color`"),
         ("any = [{", "any = [{}, {", "{}", "an alternative needs a condition"),
         ("roughness = 0.7", "rougness = 0.7", "rougness", "did you mean `roughness`?"),
-        ("hills = { min = 0 }", "hils = { min = 0 }", "[[surface]]", "hils"),
+        ("hills = { min = 0 }", "hils = { min = 0 }", "hils", "unknown node `hils`; did you mean `hills`?"),
+        ("mask = \"hills\"", "mask = \"zz.x\"", "\"zz.x\"", "unknown node `zz`; available: `"),
         ("mask = \"hills\"", "mask = true", "true", "`mask` must name a node"),
     ] {
         let surfaces = SURFACES.replace(", \"land.a\" = [0, 5]", "");

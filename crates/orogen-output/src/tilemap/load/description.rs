@@ -15,6 +15,7 @@
 //! ```
 
 use std::collections::BTreeMap;
+use std::fmt;
 use std::path::Path;
 
 use orogen_grid::autotile::flip::{Flip, Flips};
@@ -22,6 +23,8 @@ use orogen_grid::autotile::mask::Layout;
 use orogen_grid::autotile::rule::{Pattern, first_matches};
 use orogen_grid::error::Result;
 use serde::Deserialize;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{self, Deserializer, MapAccess, Unexpected, Visitor};
 
 use super::loaded::{Loaded, text, unusable};
 use super::picture::{Cut, Grid, color, cut};
@@ -83,20 +86,43 @@ struct Rule {
     turns: Vec<Turn>,
 }
 
-/// A tile, by its number or with a weight.
-#[derive(Deserialize, Clone, Copy)]
-#[serde(untagged)]
-enum Choice {
-    Plain(u32),
-    Weighted { tile: u32, weight: f32 },
+/// A tile and its weight, which is 1 if only the tile's number is given.
+#[derive(Clone, Copy)]
+struct Choice {
+    tile: u32,
+    weight: f32,
 }
 
-impl Choice {
-    fn parts(self) -> (u32, f32) {
-        match self {
-            Choice::Plain(tile) => (tile, 1.0),
-            Choice::Weighted { tile, weight } => (tile, weight),
+/// By hand, because errors of untagged enums do not tell what is wrong.
+impl<'de> Deserialize<'de> for Choice {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Choice, D::Error> {
+        deserializer.deserialize_any(ChoiceVisitor)
+    }
+}
+
+struct ChoiceVisitor;
+
+impl<'de> Visitor<'de> for ChoiceVisitor {
+    type Value = Choice;
+
+    fn expecting(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        out.write_str("the number of a tile, or a table such as { tile = 0, weight = 5 }")
+    }
+
+    fn visit_i64<E: de::Error>(self, number: i64) -> std::result::Result<Choice, E> {
+        let tile = u32::try_from(number).map_err(|_| E::invalid_value(Unexpected::Signed(number), &self))?;
+        Ok(Choice { tile, weight: 1.0 })
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> std::result::Result<Choice, A::Error> {
+        #[derive(Deserialize)]
+        #[serde(deny_unknown_fields)]
+        struct Weighted {
+            tile: u32,
+            weight: Option<f32>,
         }
+        let Weighted { tile, weight } = Weighted::deserialize(MapAccessDeserializer::new(map))?;
+        Ok(Choice { tile, weight: weight.unwrap_or(1.0) })
     }
 }
 
@@ -193,7 +219,7 @@ impl Made {
         let layout = self.layout;
         let mut tiles = Vec::new();
         let mut add = |choice: Choice, flip: Flip, mask: u8| -> std::result::Result<(), String> {
-            let (tile, weight) = choice.parts();
+            let Choice { tile, weight } = choice;
             if tile as usize >= self.count {
                 return Err(format!("has the tile {tile}, but the picture has the tiles 0 to {}", self.count - 1));
             }
@@ -248,7 +274,7 @@ impl Made {
                     (*mask == layout.full() && !class.full.is_empty()) || class.tiles.contains_key(&mask.to_string())
                 };
                 for (tile, mask) in (first..).zip(layout.masks()).filter(|(_, mask)| !given(mask)) {
-                    add(Choice::Plain(tile), Flip::NONE, mask)?;
+                    add(Choice { tile, weight: 1.0 }, Flip::NONE, mask)?;
                 }
             }
             for (mask, choices) in &class.tiles {

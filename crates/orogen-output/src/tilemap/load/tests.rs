@@ -136,6 +136,18 @@ fn wrong_descriptions_are_explained() {
             format!("{HEAD}layout = \"blob\"\n[[class]]\nname = \"a\"\nfull = [{{ tile = 1, weight = 0 }}]"),
             "weight of 0",
         ),
+        (
+            format!("{HEAD}layout = \"blob\"\n[[class]]\nname = \"a\"\nfull = [\"x\"]"),
+            "invalid type: string \"x\", expected the number of a tile, or a table such as { tile = 0, weight = 5 }",
+        ),
+        (
+            format!("{HEAD}layout = \"blob\"\n[[class]]\nname = \"a\"\nfull = [-1]"),
+            "invalid value: integer `-1`, expected the number of a tile",
+        ),
+        (
+            format!("{HEAD}layout = \"blob\"\n[[class]]\nname = \"a\"\nfull = [{{ tile = 1, wight = 2 }}]"),
+            "unknown field `wight`, expected `tile` or `weight`",
+        ),
         ("picture = \"none.png\"\nsize = 4\nlayout = \"blob\"\n".into(), "none.png"),
         ("picture = \"tiles.png\"\nsize = 400\nlayout = \"blob\"\n".into(), "hold no tile of 400 x 400 pixels"),
         ("picture = \"tiles.png\"\nsize = 0\nlayout = \"blob\"\n".into(), "`size` must be 1 to 65536"),
@@ -190,6 +202,13 @@ fn wang_sets_of_tiled_are_layers_or_wang_tiles() {
     let names: Vec<&str> = found.terrains.iter().map(|terrain| terrain.name.as_str()).collect();
     assert_eq!(names, ["none", "dirt", "grass"], "a path needs something below it");
     assert_eq!((found.tiles[0].fit, found.tiles[0].weight), (Fit::Layer { class: 1, mask: 0x55 }, 0.5));
+
+    for weight in ["nan", "-5", "inf", "1,5", ""] {
+        let tile = format!("<tile id=\"4\" probability=\"{weight}\"/><wangsets>{single}</wangsets>");
+        let message = error(&folder, "w.tsx", &tsx(&tile));
+        let expect = format!("the probability of its tile 4 is `{weight}`; it must be a number of at least 0");
+        assert!(message.contains(&expect), "{message}");
+    }
 
     let both = write(&folder, "c.tsx", &tsx(&format!("<wangsets>{several}{single}</wangsets>")));
     let message = load(&both, None, None).unwrap_err().to_string();

@@ -88,7 +88,7 @@ pub(super) fn read(
         return Err(failed(format!("it has several wang sets; choose one with --wang-set: {names}")));
     }
     let layout = sets[0].layout;
-    let weights = weights(&root);
+    let weights = weights(&root).map_err(&failed)?;
     let weight = |tile: u32| weights.iter().find(|(of, _)| *of == tile).map_or(1.0, |(_, weight)| *weight);
     let (terrains, mut tiles) = if is_wang { wang(&sets[0]) } else { layered(&sets, layout) };
     if terrains.len() > MAX_CLASSES {
@@ -97,7 +97,9 @@ pub(super) fn read(
     tiles.retain(|tile| weight(tile.picture) > 0.0);
     tiles.iter_mut().for_each(|tile| tile.weight = weight(tile.picture));
     if tiles.is_empty() {
-        return Err(failed("its wang set has no tile with all its sides and corners set".into()));
+        return Err(failed(
+            "its wang set has no tile with all its sides and corners set and a probability above 0".into(),
+        ));
     }
     let tileset = Tileset {
         name: root.attribute("name").unwrap_or("tiles").into(),
@@ -186,11 +188,15 @@ fn sets(root: &Node, count: usize) -> std::result::Result<Vec<Set>, String> {
 }
 
 /// How often tiles are drawn, where it is not once.
-fn weights(root: &Node) -> Vec<(u32, f32)> {
+fn weights(root: &Node) -> std::result::Result<Vec<(u32, f32)>, String> {
     let tiles = root.children().filter(|node| node.has_tag_name("tile"));
     let weight = |node: Node| {
-        let weight: f32 = node.attribute("probability")?.parse().ok()?;
-        Some((node.attribute("id")?.parse().ok()?, if weight.is_finite() { weight.max(0.0) } else { 1.0 }))
+        let text = node.attribute("probability")?;
+        let id: u32 = node.attribute("id")?.parse().ok()?;
+        let weight = text.parse().ok().filter(|weight: &f32| weight.is_finite() && *weight >= 0.0);
+        Some(weight.map(|weight| (id, weight)).ok_or_else(|| {
+            format!("the probability of its tile {id} is `{}`; it must be a number of at least 0", text.escape_debug())
+        }))
     };
     tiles.filter_map(weight).collect()
 }

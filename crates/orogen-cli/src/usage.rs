@@ -1,0 +1,56 @@
+//! Errors of the command line, and the texts that `--help` and `--version` ask for.
+
+use std::io::Write;
+
+use clap::error::{ContextKind, ContextValue};
+use orogen::words;
+
+use crate::failure::Failure;
+use crate::say;
+
+/// What clap returned in place of arguments: help is printed, anything else is a failure.
+pub fn answer(error: clap::Error) -> Result<(), Failure> {
+    if error.use_stderr() {
+        return Err(Failure::CommandLine(Box::new(sensible(error))));
+    }
+    error.print().and_then(|()| std::io::stdout().flush()).map_err(|cause| Failure::stdout(&cause))
+}
+
+/// Prints an error of the command line on standard error.
+pub fn report(error: &clap::Error) {
+    let plain = error.render().to_string();
+    match say::harmless(&plain) {
+        // With clap's colors.
+        text if text == plain => drop(error.print()),
+        text => say::painted(text.trim_end()),
+    }
+}
+
+/// The suggestions of clap, and what each is suggested for.
+const SUGGESTIONS: [(ContextKind, ContextKind); 3] = [
+    (ContextKind::InvalidArg, ContextKind::SuggestedArg),
+    (ContextKind::InvalidSubcommand, ContextKind::SuggestedSubcommand),
+    (ContextKind::InvalidValue, ContextKind::SuggestedValue),
+];
+
+/// The error without suggestions of words that only share some letters: clap suggests `--cache` for `--scale`.
+fn sensible(mut error: clap::Error) -> clap::Error {
+    for (wrong, suggested) in SUGGESTIONS {
+        let Some(ContextValue::String(word)) = error.get(wrong) else { continue };
+        let bare = |word: &str| word.trim_start_matches('-').to_string();
+        let word = bare(word);
+        let is_near = |candidate: &String| words::nearest(&word, [bare(candidate).as_str()]).is_some();
+        let near: Vec<String> = match error.get(suggested) {
+            Some(ContextValue::String(candidate)) if is_near(candidate) => continue,
+            Some(ContextValue::Strings(all)) => all.iter().filter(|candidate| is_near(candidate)).cloned().collect(),
+            _ => Vec::new(),
+        };
+        if !near.is_empty() {
+            error.insert(suggested, ContextValue::Strings(near));
+        } else if error.remove(suggested).is_some() {
+            // It would list the suggestion as well.
+            error.remove(ContextKind::Usage);
+        }
+    }
+    error
+}
