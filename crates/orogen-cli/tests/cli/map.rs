@@ -229,7 +229,7 @@ fn a_range_colors_maps_alike() {
 fn names_of_places_are_drawn_and_those_left_out_are_listed() {
     let folder = Folder::new();
     let map = ["map", "hills", "--window", "0,0,101,81", "--cell", "10", "--no-contours", "-o"];
-    let with = |more: &[&str]| [&map[..], more].concat();
+    let with = |more: &[&'static str]| [&map[..], more].concat();
     folder.write("places.csv", "\u{feff}x;y;name\n500;-400;Ford\n-5;-400;Beyond\n700;-200;\n");
     folder.good(&with(&["plain.svg"]));
     let outcome = folder.good(&with(&["named.svg", "--names", "places.csv"]));
@@ -261,13 +261,12 @@ fn names_of_places_are_drawn_and_those_left_out_are_listed() {
 #[test]
 fn a_scale_sets_the_size_of_the_page() {
     let folder = Folder::new();
-    let map = |more: &[&str]| [&["map", "hills", "--window", "0,0,101,81", "--cell", "10"][..], more].concat();
+    let map = |more: &[&'static str]| [&["map", "hills", "--window", "0,0,101,81", "--cell", "10"][..], more].concat();
     // 1000 m are 200 mm at 1 : 5000, and 100 mm at 1 : 10 000.
-    let width = |scale: &str| {
+    let width = |scale: &'static str| {
         folder.good(&map(&["-o", "a.svg", "--scale", scale]));
         let text = folder.text("a.svg");
-        let width = text.split("width=\"").nth(1).unwrap().split("mm").next().unwrap().parse::<f64>().unwrap();
-        width
+        text.split("width=\"").nth(1).unwrap().split("mm").next().unwrap().parse::<f64>().unwrap()
     };
     assert!((width("5000") - width("1e4") - 100.0).abs() < 0.5, "{} {}", width("5000"), width("1e4"));
     folder.bad(&map(&["-o", "b.svg", "--scale", "10"]), 1, "choose a scale from 1 : 200 to 1 : 50000");

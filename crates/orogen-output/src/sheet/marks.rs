@@ -119,17 +119,17 @@ mod tests {
         let letters = FontSet::for_texts(["Port Varn"]).unwrap();
         let mut scene = Scene { size: Size::new(60.0, 60.0), title: String::new(), items: Vec::new() };
         let mut taken = Taken::none(Rect::new(0.0, 0.0, 60.0, 60.0));
-        let mut name = |x: f32, y: f32| {
-            let has_room = place_name(&mut scene, &letters, &mut taken, Point::new(x, y), "Port Varn");
+        let name = |scene: &mut Scene, taken: &mut Taken, x: f32, y: f32| {
+            let has_room = place_name(scene, &letters, taken, Point::new(x, y), "Port Varn");
             (has_room, scene.items.len())
         };
         // To the right; at the right edge to the left; beside the first one above or below it.
-        assert_eq!(name(20.0, 30.0), (true, 3));
-        assert_eq!(name(58.0, 10.0), (true, 6));
-        assert_eq!(name(20.5, 30.5), (true, 9));
+        assert_eq!(name(&mut scene, &mut taken, 20.0, 30.0), (true, 3));
+        assert_eq!(name(&mut scene, &mut taken, 58.0, 10.0), (true, 6));
+        assert_eq!(name(&mut scene, &mut taken, 20.5, 30.5), (true, 9));
         assert!(!taken.is_free(Point::new(26.0, 30.0), 0.3) && !taken.is_free(Point::new(52.0, 10.0), 0.3));
         // Around a place with many neighbours there is no room.
-        let more: Vec<bool> = (0..12).map(|k| name(20.0 + 0.1 * k as f32, 30.0).0).collect();
+        let more: Vec<bool> = (0..12).map(|k| name(&mut scene, &mut taken, 20.0 + 0.1 * k as f32, 30.0).0).collect();
         assert!(more.contains(&false), "{more:?}");
     }
 }
