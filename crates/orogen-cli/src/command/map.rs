@@ -213,7 +213,7 @@ enum Kind {
 const KINDS: [(Kind, &[&str]); 3] = [(Kind::Png, &["png"]), (Kind::Svg, &["svg"]), (Kind::Pdf, &["pdf"])];
 
 /// Maximum number of names.
-const MOST_NAMES: usize = 10_000;
+const MAX_NAMES: usize = 10_000;
 
 /// Draws the sheet.
 pub fn run(args: &Args) -> Result<(), Failure> {
@@ -229,7 +229,7 @@ fn map(args: &Args) -> Result<(), Failure> {
     let policy = args.replace.policy(source.inputs(&recipe)).protecting(&args.palette).protecting(&args.names);
     let sink = Sink::new(&args.out, &policy)?;
     if let Some(path) = &args.names {
-        job.names = NamedPoints::read_on(path, recipe.georeference().as_ref(), "the heights", MOST_NAMES)?.points;
+        job.names = NamedPoints::read_on(path, recipe.georeference().as_ref(), "the heights", MAX_NAMES)?.points;
     }
     job.prepare(&mut recipe)?;
     let world = args.limits.open(recipe, &budget)?;
