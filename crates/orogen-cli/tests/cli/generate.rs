@@ -157,7 +157,7 @@ fn what_cannot_be_asked_for_is_usage() {
         (&["--cell", "nan"], "greater than 0 m"),
         (&["--cell", "inf"], "greater than 0 m"),
         (&["--cell", "5000"], "smaller cell"),
-        (&["--cell", "1e-9"], "larger cell"),
+        (&["--cell", "1e-9"], "0.000001 to 1000000000000 m"),
         (&["--seed", "-1"], "a whole number from 0"),
         (&["--seed", "9223372036854775808"], "a whole number from 0"),
         (&["--seed", "1.5"], "a whole number from 0"),

@@ -34,11 +34,13 @@ fn do_job(title: &str) {
     let Some((_, job)) = PAGE.split_once(&format!("## {title}\n")) else { panic!("{title} is not on the page") };
     let job = job.split("\n## ").next().unwrap_or_default();
     let folder = Folder::new();
-    for block in job.split("```toml\n# ").flat_map(|part| part.split("```csv\n# ")).skip(1) {
-        let (Some((name, _)), Some((content, _))) = (block.split_once(':'), block.split_once("```")) else {
-            panic!("the first comment of a block is `NAME: TEXT`")
+    // The last name before a block is that of its file.
+    let parts: Vec<&str> = job.split("\n```").collect();
+    for pair in parts.chunks_exact(2) {
+        let (Some(name), Some((_, content))) = (pair[0].split('`').nth_back(1), pair[1].split_once('\n')) else {
+            panic!("a block of {title} has no file")
         };
-        folder.write(name, format!("# {content}"));
+        folder.write(name, content);
     }
     let commands = job.lines().filter_map(|line| line.strip_prefix("    orogen "));
     let mut done = 0;

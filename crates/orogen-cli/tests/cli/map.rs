@@ -269,6 +269,6 @@ fn a_scale_sets_the_size_of_the_page() {
         text.split("width=\"").nth(1).unwrap().split("mm").next().unwrap().parse::<f64>().unwrap()
     };
     assert!((width("5000") - width("1e4") - 100.0).abs() < 0.5, "{} {}", width("5000"), width("1e4"));
-    folder.bad(&map(&["-o", "b.svg", "--scale", "10"]), 1, "choose a scale from 1 : 200 to 1 : 50000");
+    folder.bad(&map(&["-o", "b.svg", "--scale", "10"]), 2, "choose a scale from 1 : 200 to 1 : 50000");
     folder.bad(&map(&["-o", "b.svg", "--scale", "1e4", "--paper", "a4"]), 2, "--paper");
 }
