@@ -17,10 +17,38 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! A program beside a clone of Orogen depends on it with `cargo add orogen --path ../orogen/crates/orogen`. Build it with `--release`: code without
+//! optimisation is slow.
+//!
+//! # Reading a grid
+//!
+//! A grid holds the samples of a window row by row from the north-west corner: `tile[(i, j)]` is column `i` from the west and row `j` from the north, and
+//! `tile.data()[j * tile.width() + i]` is the same sample. [`Window::east`] and [`Window::south`] tell its position in metres from the origin of the world. Heights
+//! are `f32` metres; samples without a value, such as those of a file with gaps, are NaN.
+//!
+//! ```
+//! use orogen::{Window, World};
+//!
+//! let world = World::open(orogen::presets::find("hills").ok_or("no such preset")?.recipe()?)?;
+//! let grid = world.window("height", &Window::new(4, 3, 30.0).at(100, 50))?;
+//! for (row, j) in grid.data().chunks(grid.width()).zip(0..) {
+//!     for (height, i) in row.iter().zip(0..) {
+//!         let (east, south) = (grid.window().east(i), grid.window().south(j));
+//!         assert_eq!((east, south), (30.0 * (100 + i) as f64, 30.0 * (50 + j) as f64));
+//!         assert_eq!(*height, grid[(i, j)]);
+//!     }
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Locality
+//!
 //! Ops have one of three localities. A **field** depends on one position and the seed (noise, curves, warps). A
 //! **filter** depends on a finite halo (blur, slope). A **solver** depends on the whole bounded world and runs once
 //! (normalise, bake). Therefore any tile equals the crop of the whole, bit for bit, for any tile size, number of
 //! threads, SIMD level and machine.
+//!
+//! # Where to look
 //!
 //! | task | entry point |
 //! |---|---|
