@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use super::sheet_format::SheetFormat;
-use super::{finite, map_water};
+use super::{finite, map_names, map_water};
 use crate::export::derived::list;
 use crate::export::files::Stopping;
 use crate::export::layer_source::LayerSource;
@@ -13,7 +13,7 @@ use crate::export::{biome_cover, place, sheet_cover};
 use crate::sheet::draw::{Sheet, draw};
 use crate::sheet::geometry::{Rect, Size};
 use crate::sheet::linework::{least_areas, lines_at};
-use crate::sheet::options::{Coloring, Layer, Page, Parts, PlaceName, Resolution, Scale, Shading, SheetOptions};
+use crate::sheet::options::{Coloring, Layer, Page, Parts, Resolution, Scale, Shading, SheetOptions};
 use crate::sheet::{pdf, raster, vector};
 use orogen_engine::budget::Reservation;
 use orogen_engine::layer::LayerKind;
@@ -281,7 +281,7 @@ impl MapJob {
         self.check()?;
         let mut options = self.options(world);
         let mut warnings = Vec::new();
-        options.names = names_within(&self.names, &options.map, &window, &mut warnings);
+        options.names = map_names::within(&self.names, options.map.as_ref(), &window, &mut warnings);
         let (plan, reserved) = world.plan_beside(&[HEIGHT], &window, self.memory(&window))?;
         let work = world.work(&plan)?;
         let layered = if self.layer == HEIGHT && !self.is_covered() { 0.0 } else { work };
@@ -315,7 +315,7 @@ impl MapJob {
         }
         let sheet = draw(&heights, &options, &drawing)?;
         if !sheet.left_out.is_empty() {
-            let names = listed(&sheet.left_out);
+            let names = map_names::listed(&sheet.left_out);
             warnings
                 .push(format!("there is no room for {names}; use a larger --paper, a larger scale, or fewer names"));
         }
@@ -446,56 +446,6 @@ impl MapJob {
 /// The longer side of a map of a window, in metres, between the first and the last samples.
 fn longer_side(window: &Window) -> f64 {
     (window.width.max(window.height) - 1) as f64 * window.cell
-}
-
-/// The named points inside a window, with a warning about others.
-fn names_within(
-    points: &[NamedPoint],
-    map: &Option<Georeference>,
-    window: &Window,
-    warnings: &mut Vec<String>,
-) -> Vec<PlaceName> {
-    let map = map.clone().unwrap_or(Georeference { origin: [0.0; 2], per_metre: [1.0; 2], keys: None });
-    let (mut names, mut outside) = (Vec::new(), Vec::new());
-    for point in points {
-        let Some(name) = point.name.clone() else { continue };
-        let [east, south] = map.metres(point.at[0], point.at[1]);
-        let share = |metres: f64, first: i64, count: usize| (metres / window.cell - first as f64) / (count - 1) as f64;
-        let at = [share(east, window.x, window.width), share(south, window.y, window.height)];
-        match at.iter().all(|share| (0.0..=1.0).contains(share)) {
-            true => names.push(PlaceName { name, at }),
-            false => outside.push(name),
-        }
-    }
-    if !outside.is_empty() {
-        let ([west, north], [east, south]) = (
-            map.at(window.east(0), window.south(0)),
-            map.at(window.east(window.width - 1), window.south(window.height - 1)),
-        );
-        let [west, east, south, north] = [west, east, south, north].map(number);
-        warnings.push(format!(
-            "{} outside the map, which extends from {west} to {east} east and from {south} to {north} north",
-            match outside.as_slice() {
-                [one] => format!("{} is", quoted(one)),
-                _ => format!("{} are", listed(&outside)),
-            }
-        ));
-    }
-    names
-}
-
-/// The first names of a list, and how many more there are.
-fn listed(names: &[String]) -> String {
-    const SHOWN: usize = 5;
-    let shown: Vec<String> = names.iter().take(SHOWN).map(|name| quoted(name)).collect();
-    match names.len().saturating_sub(SHOWN) {
-        0 => shown.join(", "),
-        more => format!("{} and {more} more", shown.join(", ")),
-    }
-}
-
-fn quoted(name: &str) -> String {
-    format!("`{}`", name.escape_debug())
 }
 
 /// Approximate longer side of a page, in millimetres.

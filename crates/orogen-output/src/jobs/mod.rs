@@ -5,6 +5,7 @@
 
 mod finite;
 pub mod map;
+mod map_names;
 mod map_water;
 pub mod render;
 pub mod sheet_format;
