@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 use orogen::file;
-use orogen::format::points::NamedPoints;
 use orogen::jobs::map::{MapColors, MapJob};
 use orogen::jobs::sheet_format::SheetFormat;
 use orogen::sheet::options::{Parts, Resolution, Scale, Shading};
@@ -212,9 +211,6 @@ enum Kind {
 
 const KINDS: [(Kind, &[&str]); 3] = [(Kind::Png, &["png"]), (Kind::Svg, &["svg"]), (Kind::Pdf, &["pdf"])];
 
-/// Maximum number of names.
-const MAX_NAMES: usize = 10_000;
-
 /// Draws the sheet.
 pub fn run(args: &Args) -> Result<(), Failure> {
     args.view.each_output(&args.out, |view, out| map(&Args { view, out, ..args.clone() }))
@@ -229,7 +225,7 @@ fn map(args: &Args) -> Result<(), Failure> {
     let policy = args.replace.policy(source.inputs(&recipe)).protecting(&args.palette).protecting(&args.names);
     let sink = Sink::new(&args.out, &policy)?;
     if let Some(path) = &args.names {
-        job.names = NamedPoints::read_on(path, recipe.georeference().as_ref(), "the heights", MAX_NAMES)?.points;
+        job = job.with_names_of(path, &recipe)?;
     }
     job.prepare(&mut recipe)?;
     let world = args.limits.open(recipe, &budget)?;

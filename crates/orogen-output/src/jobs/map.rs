@@ -1,6 +1,7 @@
 //! A map sheet as one job.
 
 use std::io::{self, Write};
+use std::path::Path;
 
 use super::sheet_format::SheetFormat;
 use super::{finite, map_names, map_water};
@@ -26,7 +27,7 @@ use orogen_grid::words::number;
 use orogen_io::file::{self, Output};
 use orogen_io::format::affine::Affine;
 use orogen_io::format::dem::Georeference;
-use orogen_io::format::points::NamedPoint;
+use orogen_io::format::points::{NamedPoint, NamedPoints};
 use orogen_io::palette::named;
 use orogen_io::palette::palette::Palette;
 
@@ -135,6 +136,9 @@ const PRINT: f64 = 220.0;
 /// Longer sides of a map at a scale, in millimetres.
 const PAGES: std::ops::RangeInclusive<f64> = 20.0..=5000.0;
 
+/// Maximum number of names in a file.
+const MAX_NAMES: usize = 10_000;
+
 /// Maximum number of pixels of a page.
 const MOST: f64 = 4e8;
 
@@ -193,6 +197,15 @@ impl MapJob {
     #[must_use]
     pub fn with_window(self, window: Window) -> MapJob {
         MapJob { window: Some(window), ..self }
+    }
+
+    /// The same with the names in a file of points (`.csv` or `.geojson`), in the coordinates of a recipe's world.
+    ///
+    /// # Errors
+    /// Those of [`NamedPoints::read_on`].
+    pub fn with_names_of(self, path: &Path, recipe: &Recipe) -> Result<MapJob> {
+        let names = NamedPoints::read_on(path, recipe.georeference().as_ref(), "the heights", MAX_NAMES)?.points;
+        Ok(MapJob { names, ..self })
     }
 
     /// Checks that the options do not contradict each other.
@@ -302,7 +315,7 @@ impl MapJob {
         }
         let (sea, made) = (options.sea_level, |cause: io::Error| {
             // The path is not known, and the causes are messages.
-            file::explain("make", std::path::Path::new(self.colors.plural()), &cause)
+            file::explain("make", Path::new(self.colors.plural()), &cause)
         });
         let cover = match self.colors {
             MapColors::Palette => None,
@@ -370,7 +383,7 @@ impl MapJob {
             _ => Scale::Linear,
         });
         let unit = source.unit();
-        let made = source.whole().map_err(|cause| file::explain("make", std::path::Path::new(&self.layer), &cause))?;
+        let made = source.whole().map_err(|cause| file::explain("make", Path::new(&self.layer), &cause))?;
         let values = made.into_iter().next().unwrap_or_else(|| Grid::filled(*window, f32::NAN));
         finite::check(&self.layer, &values, warnings)?;
         Ok(Layer::new(&self.layer, values).with_unit(unit).with_scale(scale).with_range(self.range))

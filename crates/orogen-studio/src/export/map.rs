@@ -6,6 +6,7 @@ use orogen::export::derived::list as derived;
 use orogen::jobs::map::{MapColors, MapJob};
 use orogen::jobs::sheet_format::SheetFormat;
 use orogen::palette::named;
+use orogen::palette::palette::Palette;
 use orogen::recipe::document::Recipe;
 use orogen::sheet::options::{Parts, Resolution, Scale, Shading};
 use orogen::sheet::paper::Paper;
@@ -78,6 +79,8 @@ pub struct MapExport {
     pub layer: String,
     /// The palette by name; that of the layer if `None`.
     pub palette: Option<&'static str>,
+    /// Whether the palette's colors are not mixed.
+    pub nearest_color: bool,
     /// How values of another layer than the heights are mapped to colors.
     pub scale: Option<Scale>,
     /// The values at the ends of the palette.
@@ -90,6 +93,10 @@ pub struct MapExport {
     pub river_area: Option<f64>,
     /// The minimum area of lakes in m^2, likewise.
     pub lake_area: Option<f64>,
+    /// A file of points with names; none if it is empty.
+    pub names: String,
+    /// The denominator of the scale, which sets the size of the page; only a page without paper has one.
+    pub map_scale: Option<f64>,
     /// The heading.
     pub title: String,
     /// The heading that a command line gives by itself.
@@ -116,12 +123,15 @@ impl MapExport {
             colors: MapColors::Palette,
             layer: HEIGHT.into(),
             palette: None,
+            nearest_color: false,
             scale: None,
             range: None,
             shading: Shading::Multi,
             interval: None,
             river_area: None,
             lake_area: None,
+            names: String::new(),
+            map_scale: None,
             title: title.into(),
             own_title: title.into(),
             paper: None,
@@ -136,7 +146,7 @@ impl MapExport {
     pub fn set_colors(&mut self, colors: MapColors) {
         self.colors = colors;
         if colors != MapColors::Palette {
-            (self.palette, self.range) = (None, None);
+            (self.palette, self.range, self.nearest_color) = (None, None, false);
             self.set_layer(HEIGHT);
         }
     }
@@ -159,10 +169,15 @@ impl MapExport {
         names
     }
 
+    /// The scale; paper has a size of its own.
+    fn map_scale(&self) -> Option<f64> {
+        self.map_scale.filter(|_| self.paper.is_none())
+    }
+
     fn job(&self) -> Result<MapJob> {
         let mut job = MapJob::new(self.format).with_colors(self.colors).with_layer(&self.layer);
         job = job.with_title(&self.title);
-        job.palette = self.palette.and_then(named::find).map(|palette| palette.palette());
+        job.palette = palette(self.palette, self.nearest_color);
         job.scale = self.scale;
         if self.range.is_some_and(|[low, high]| low >= high) {
             let message = "the lower end of the range of colors must be below the upper one";
@@ -173,6 +188,7 @@ impl MapExport {
         job.interval = self.interval;
         job.river_area = self.river_area;
         job.lake_area = self.lake_area;
+        job.map_scale = self.map_scale();
         job.paper = self
             .paper
             .map(|name| name.parse::<Paper>().map_err(|message| Error::new(ErrorKind::Request, message)))
@@ -196,6 +212,9 @@ impl MapExport {
         line.differing("layer", self.layer.as_str(), &HEIGHT);
         if let Some(palette) = self.palette {
             line.option("palette", palette);
+            if self.nearest_color {
+                line.flag("nearest-color");
+            }
         }
         if let Some((_, name, _)) = SCALES.iter().find(|(scale, ..)| Some(*scale) == self.scale) {
             line.option("ramp", name);
@@ -213,6 +232,12 @@ impl MapExport {
             if let Some(area) = area {
                 line.option(option, area);
             }
+        }
+        if !self.names.is_empty() {
+            line.option("names", &self.names);
+        }
+        if let Some(scale) = self.map_scale() {
+            line.option("scale", scale);
         }
         line.differing("title", self.title.as_str(), &self.own_title.as_str());
         if let Some(paper) = self.paper {
@@ -240,7 +265,10 @@ impl MapExport {
     /// # Errors
     /// If options are not valid, or the export fails; then there is no file, or that which was there.
     pub fn make(&self, mut work: Work, region: Region) -> Result<String> {
-        let job = self.job()?;
+        let mut job = self.job()?;
+        if !self.names.is_empty() {
+            job = job.with_names_of(Path::new(&self.names), &work.recipe)?;
+        }
         job.prepare(&mut work.recipe)?;
         let world = work.open()?;
         let window = Samples::of(region, self.samples, &work.recipe.world).window(&world)?;
@@ -249,4 +277,10 @@ impl MapExport {
         let letters = (!lacking.is_empty()).then(|| format!("no installed font has the letters {lacking}"));
         Ok(lines(&drawn.words(), drawn.warnings().iter().cloned().chain(letters)))
     }
+}
+
+/// A palette by name, with its colors not mixed if `is_nearest`.
+pub fn palette(name: Option<&str>, is_nearest: bool) -> Option<Palette> {
+    let palette = name.and_then(named::find)?.palette();
+    Some(if is_nearest { palette.nearest() } else { palette })
 }

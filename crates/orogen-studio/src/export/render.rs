@@ -1,13 +1,13 @@
 //! A rendered picture.
 
 use orogen::jobs::render::RenderJob;
-use orogen::palette::named;
 use orogen::render::camera::View;
 use orogen::render::scene::{Colors, Edge};
 use orogen::{Result, WorldSpec};
 
 use super::command_line::CommandLine;
 use super::layer::ending;
+use super::map::palette;
 use super::samples::Samples;
 use super::work::{Work, lines};
 use crate::preview::region::Region;
@@ -50,6 +50,10 @@ pub struct RenderExport {
     pub colors: Colors,
     /// The palette of [`Colors::Map`], by name.
     pub palette: Option<&'static str>,
+    /// Whether its colors are not mixed.
+    pub nearest_color: bool,
+    /// The heights at its ends.
+    pub range: Option<[f64; 2]>,
     /// Height of the snow line in metres.
     pub snow_line: Option<f64>,
     /// Samples of a pixel.
@@ -75,6 +79,8 @@ impl Default for RenderExport {
             edge: job.edge,
             colors: job.colors,
             palette: None,
+            nearest_color: false,
+            range: None,
             snow_line: job.snow_line,
             rays: job.samples,
         }
@@ -85,7 +91,9 @@ impl RenderExport {
     /// Other colors; only those of the map have a palette.
     pub fn set_colors(&mut self, colors: Colors) {
         self.colors = colors;
-        self.palette = self.palette.filter(|_| colors == Colors::Map);
+        if colors != Colors::Map {
+            (self.palette, self.nearest_color, self.range) = (None, false, None);
+        }
     }
 
     fn job(&self) -> Result<RenderJob> {
@@ -99,7 +107,8 @@ impl RenderExport {
         job.exaggeration = self.exaggeration;
         job.edge = self.edge;
         job.colors = self.colors;
-        job.palette = self.palette.and_then(named::find).map(|palette| palette.palette());
+        job.palette = palette(self.palette, self.nearest_color);
+        job.range = self.range;
         job.snow_line = self.snow_line;
         job.samples = self.rays;
         job.check()?;
@@ -128,6 +137,12 @@ impl RenderExport {
         }
         if let Some(palette) = self.palette {
             line.option("palette", palette);
+            if self.nearest_color {
+                line.flag("nearest-color");
+            }
+        }
+        if let Some(ends) = self.range {
+            line.option("range", pair(ends));
         }
         if let Some(metres) = self.snow_line {
             line.option("snow-line", metres);

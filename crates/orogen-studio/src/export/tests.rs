@@ -8,8 +8,10 @@ use orogen::file::OutputPolicy;
 use orogen::jobs::map::{MapColors, MapJob};
 use orogen::jobs::render::RenderJob;
 use orogen::jobs::sheet_format::SheetFormat;
+use orogen::palette::named;
 use orogen::recipe::document::Recipe;
 use orogen::render::camera::View;
+use orogen::render::scene::Colors;
 use orogen::sheet::options::{Resolution, Shading};
 use orogen::test_folder::TestFolder;
 use orogen::tilemap::art::set::SETS;
@@ -98,6 +100,9 @@ fn a_map_is_that_of_the_job() {
     export.map.set_colors(MapColors::Surfaces);
     export.map.parts.rivers = false;
     export.map.lake_area = Some(5e4);
+    export.map.names = folder.join("places.csv").to_string_lossy().into_owned();
+    std::fs::write(&export.map.names, "x,y,name\n200,-300,Ford\n").unwrap();
+    export.map.map_scale = Some(1e5);
     let words = run(&export);
     assert!(words.starts_with("surfaces, ") && words.contains("80 x 80 samples"), "{words}");
     let mut job = MapJob::new(SheetFormat::Png).with_colors(MapColors::Surfaces).with_title("classic");
@@ -105,7 +110,10 @@ fn a_map_is_that_of_the_job() {
     job.shading = Shading::Swiss;
     job.parts.rivers = false;
     job.lake_area = Some(5e4);
+    job.map_scale = Some(1e5);
     let mut recipe = recipe();
+    let job = job.with_names_of(Path::new(&export.map.names), &recipe).unwrap();
+    assert_eq!(job.names.len(), 1);
     job.prepare(&mut recipe).unwrap();
     let world = session().open(recipe).unwrap();
     let job = job.with_window(world.window_fitting(80).unwrap());
@@ -114,12 +122,19 @@ fn a_map_is_that_of_the_job() {
     assert!(std::fs::read(export.path()).unwrap() == std::fs::read(output.path()).unwrap());
     let cell = 0.0125 * super::tests::recipe().world.size.unwrap()[0];
     let end = format!(
-        "classic-map.png --color surfaces --shade swiss --lake-area 50000 --size 300 --no-rivers --cell {cell}"
+        "classic-map.png --color surfaces --shade swiss --lake-area 50000 --names {} --scale 100000 --size 300 --no-rivers --cell {cell}",
+        export.map.names
     );
     assert!(line(&export).ends_with(&end), "{}", line(&export));
     // Its extension chooses the kind of file.
     export.set_path(&folder.join("a.pdf").to_string_lossy());
     assert_eq!(export.map.format, SheetFormat::Pdf);
+    // Paper has a size of its own.
+    export.map.paper = Some("a4");
+    assert!(
+        !line(&export).contains("--scale")
+            && export.run(&session(), super::tests::recipe(), None, &Progress::none()).is_ok()
+    );
     export.map.range = Some([3.0, 1.0]);
     let error = export.run(&session(), super::tests::recipe(), None, &Progress::none()).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::Request);
@@ -133,18 +148,26 @@ fn a_render_is_that_of_the_job() {
     export.render.size = [64, 40];
     export.render.camera = [120.5, 40.0];
     export.render.rays = 1;
+    export.render.set_colors(Colors::Map);
+    export.render.palette = Some("swiss");
+    (export.render.nearest_color, export.render.range) = (true, Some([0.0, 900.0]));
     let words = run(&export);
     assert!(words.starts_with("64 x 40 pixels, of 48 x 48 samples"), "{words}");
     let mut job = RenderJob::default();
     job.size = [64, 40];
     job.view = View::Around { azimuth: 120.5, elevation: 40.0, distance: None };
     job.samples = 1;
+    job.colors = Colors::Map;
+    job.palette = named::find("swiss").map(|palette| palette.palette().nearest());
+    job.range = Some([0.0, 900.0]);
     let world = session().open(recipe()).unwrap();
     let job = job.with_window(world.window_fitting(48).unwrap());
     let output = OutputPolicy::default().output(folder.join("job.png")).unwrap();
     job.to_file(&world, &output, &Progress::none()).unwrap();
     assert!(std::fs::read(export.path()).unwrap() == std::fs::read(output.path()).unwrap());
-    assert!(line(&export).contains(" --size 64x40 --camera 120.5,40 --samples 1 --cell "), "{}", line(&export));
+    let options =
+        " --size 64x40 --camera 120.5,40 --color map --palette swiss --nearest-color --range 0,900 --samples 1 --cell ";
+    assert!(line(&export).contains(options), "{}", line(&export));
     export.render.haze = 101.0;
     let error = export.run(&session(), recipe(), None, &Progress::none()).unwrap_err();
     assert!(error.to_string().contains("the haze must be from 0 to 100"), "{error}");

@@ -1,6 +1,7 @@
 //! Watersheds of chosen outlets.
 
 use crate::export::contour_options;
+use crate::export::features::ground::{Ground, HIGHEST, LOWEST, MEAN};
 use crate::export::features::layer::{Maker, Style, VectorLayer};
 use crate::export::features::options::{FeatureOptions, RIVER_AREA};
 use crate::export::features::outlets::{OUTLET, OUTLETS, Outlet, Outlets, SNAP};
@@ -41,48 +42,36 @@ const FIELDS: &[Field] = &[
         kind: FieldType::Boolean,
         about: "whether it reaches the border of the window or land without heights, beyond which more land may drain to it",
     },
-    Field { name: "lowest", kind: FieldType::Real, about: "lowest height, m" },
-    Field { name: "highest", kind: FieldType::Real, about: "highest height, m" },
-    Field { name: "mean", kind: FieldType::Real, about: "mean height, m" },
+    LOWEST,
+    HIGHEST,
+    MEAN,
 ];
 
 /// Default distance to the stream, in samples.
 const SNAP_SAMPLES: f64 = 5.0;
 
-/// What is known of the samples of a label.
+/// The samples of a label.
 #[derive(Clone, Copy)]
-struct Measures {
-    count: u64,
-    low: f32,
-    high: f32,
-    sum: f64,
+struct Part {
+    ground: Ground,
     /// The first and last columns and rows.
     columns: [usize; 2],
     rows: [usize; 2],
     at_border: bool,
 }
 
-impl Measures {
-    const EMPTY: Measures = Measures {
-        count: 0,
-        low: f32::INFINITY,
-        high: f32::NEG_INFINITY,
-        sum: 0.0,
-        columns: [usize::MAX, 0],
-        rows: [usize::MAX, 0],
-        at_border: false,
-    };
+impl Part {
+    const EMPTY: Part =
+        Part { ground: Ground::EMPTY, columns: [usize::MAX, 0], rows: [usize::MAX, 0], at_border: false };
 
-    fn join(self, other: &Measures) -> Measures {
+    fn join(mut self, other: &Part) -> Part {
         let span = |a: [usize; 2], b: [usize; 2]| [a[0].min(b[0]), a[1].max(b[1])];
-        Measures {
-            count: self.count + other.count,
-            low: self.low.min(other.low),
-            high: self.high.max(other.high),
-            sum: self.sum + other.sum,
+        self.ground.join(&other.ground);
+        Part {
             columns: span(self.columns, other.columns),
             rows: span(self.rows, other.rows),
             at_border: self.at_border || other.at_border,
+            ..self
         }
     }
 }
@@ -96,30 +85,27 @@ fn make(ground: &FeatureSource, options: &FeatureOptions, progress: &Progress) -
     let snapped: Vec<Snapped> = snapped.collect::<Result<_>>()?;
     let nodes: Vec<usize> = snapped.iter().map(|snapped| snapped.node).collect();
     let found = PourPoints::of(&ground.water, &nodes, progress)?;
-    let (labels, measures) = within(ground, &found, nodes.len());
+    let (labels, parts) = within(ground, &found, nodes.len());
     let window = ground.requested;
     let [_, cut] = options.rounds();
     let mut features = Vec::with_capacity(nodes.len());
     for (k, upstream) in found.upstream().iter().enumerate() {
         progress.check()?;
-        let all = upstream.iter().fold(Measures::EMPTY, |all, label| all.join(&measures[*label as usize]));
+        let all = upstream.iter().fold(Part::EMPTY, |all, label| all.join(&parts[*label as usize]));
         let (outlet, snapped) = (&outlets.all[k], &snapped[k]);
         let [east, north] = outlets.coordinates(ground.place(ground.water.node_place(snapped.node)));
-        let known = |value: f64| if all.count > 0 { Value::Real(value) } else { Value::Null };
-        let values = vec![
+        let mut values = vec![
             Value::Integer(k as i64 + 1),
             outlet.name.clone().map_or(Value::Null, |name| Value::Text(Cow::Owned(name))),
-            Value::Real(all.count as f64 * window.cell * window.cell),
+            all.ground.area(window.cell),
             Value::Real(ground.water.drained(snapped.node) * ground.cell() * ground.cell()),
             Value::Real(east),
             Value::Real(north),
             Value::Real(snapped.moved * ground.cell()),
             Value::id(found.downstream[k].map(|next| next + 1)),
             Value::Boolean(all.at_border),
-            known(f64::from(all.low)),
-            known(f64::from(all.high)),
-            known(all.sum / all.count as f64),
         ];
+        values.extend(all.ground.values());
         features.push(Feature {
             geometry: Geometry::MultiPolygon(polygon(&labels, upstream, &all, (cut, window.cell))),
             values,
@@ -178,11 +164,11 @@ fn snap(
     }
 }
 
-/// The label of each requested sample on land, and what is known of the samples of each.
-fn within(ground: &FeatureSource, found: &PourPoints, count: usize) -> (Grid<u32>, Vec<Measures>) {
+/// The label of each requested sample on land, and the samples of each.
+fn within(ground: &FeatureSource, found: &PourPoints, count: usize) -> (Grid<u32>, Vec<Part>) {
     let (window, water) = (ground.requested, &ground.water);
     let mut labels = Grid::filled(Window { cell: 1.0, ..window }, NONE);
-    let mut measures = vec![Measures::EMPTY; count];
+    let mut parts = vec![Part::EMPTY; count];
     let is_missing = |i: usize, j: usize| water.cover(ground.nearest(i, j)) == Cover::Missing;
     for j in 0..window.height {
         for i in 0..window.width {
@@ -192,13 +178,10 @@ fn within(ground: &FeatureSource, found: &PourPoints, count: usize) -> (Grid<u32
                 continue;
             }
             labels.row_mut(j)[i] = label;
-            let height = water.heights.data()[at];
-            let known = &mut measures[label as usize];
-            *known = known.join(&Measures {
-                count: 1,
-                low: height,
-                high: height,
-                sum: f64::from(height),
+            let known = &mut parts[label as usize];
+            known.ground.add(water.heights.data()[at]);
+            *known = known.join(&Part {
+                ground: Ground::EMPTY,
                 columns: [i; 2],
                 rows: [j; 2],
                 at_border: known.at_border
@@ -210,12 +193,12 @@ fn within(ground: &FeatureSource, found: &PourPoints, count: usize) -> (Grid<u32
             });
         }
     }
-    (labels, measures)
+    (labels, parts)
 }
 
 /// The squares of the samples of these labels, as polygons in metres.
-fn polygon(labels: &Grid<u32>, upstream: &[u32], all: &Measures, (cut, cell): (usize, f64)) -> Vec<Vec<Vec<[f64; 2]>>> {
-    if all.count == 0 {
+fn polygon(labels: &Grid<u32>, upstream: &[u32], all: &Part, (cut, cell): (usize, f64)) -> Vec<Vec<Vec<[f64; 2]>>> {
+    if all.ground.count == 0 {
         return Vec::new();
     }
     let window = labels.window();

@@ -1,5 +1,6 @@
 //! Watersheds.
 
+use crate::export::features::ground::{Ground, HIGHEST, LOWEST, MEAN};
 use crate::export::features::layer::{Maker, Style, VectorLayer};
 use crate::export::features::options::{FeatureOptions, WATER};
 use crate::export::features::source::FeatureSource;
@@ -29,19 +30,10 @@ const FIELDS: &[Field] = &[
     },
     Field { name: "area", kind: FieldType::Real, about: "area of its samples, m^2" },
     Field { name: "mouth", kind: FieldType::Text, about: "end of its river: sea, border, or a lake without an outlet" },
-    Field { name: "lowest", kind: FieldType::Real, about: "lowest height, m" },
-    Field { name: "highest", kind: FieldType::Real, about: "highest height, m" },
-    Field { name: "mean", kind: FieldType::Real, about: "mean height, m" },
+    LOWEST,
+    HIGHEST,
+    MEAN,
 ];
-
-/// Attributes of a watershed.
-#[derive(Clone, Copy)]
-struct Measures {
-    count: u64,
-    low: f32,
-    high: f32,
-    sum: f64,
-}
 
 fn make(ground: &FeatureSource, options: &FeatureOptions, _: &Progress) -> Result<FeatureLayer> {
     let found = watersheds(&ground.water, &ground.frame, &ground.rivers);
@@ -49,8 +41,7 @@ fn make(ground: &FeatureSource, options: &FeatureOptions, _: &Progress) -> Resul
     let window = ground.requested;
     let (across, frame) = (ground.water.heights.width(), &ground.frame);
     let mut labels = Grid::filled(Window { cell: 1.0, ..window }, 0u32);
-    let none = Measures { count: 0, low: f32::INFINITY, high: f32::NEG_INFINITY, sum: 0.0 };
-    let mut measures = vec![none; found.rivers.len() + 1];
+    let mut grounds = vec![Ground::EMPTY; found.rivers.len() + 1];
     for j in 0..window.height {
         for i in 0..window.width {
             let at = ground.nearest(i, j);
@@ -61,23 +52,18 @@ fn make(ground: &FeatureSource, options: &FeatureOptions, _: &Progress) -> Resul
                 continue;
             }
             labels.row_mut(j)[i] = label;
-            let height = ground.water.heights[(x, y)];
-            let known = &mut measures[label as usize];
-            known.count += 1;
-            known.sum += f64::from(height);
-            (known.low, known.high) = (known.low.min(height), known.high.max(height));
+            grounds[label as usize].add(ground.water.heights[(x, y)]);
         }
     }
     let [_, cut] = options.rounds();
     let areas = outlines(&labels, found.rivers.len(), cut);
-    let cell_area = window.cell * window.cell;
     let mut features = Vec::with_capacity(areas.len());
     let metres = |parts: &[Vec<Vec<[f64; 2]>>]| -> Vec<Vec<Vec<[f64; 2]>>> {
         let ring = |ring: &Vec<[f64; 2]>| ring.iter().map(|at| at.map(|at| at * window.cell)).collect();
         parts.iter().map(|part| part.iter().map(ring).collect()).collect()
     };
     for (k, parts) in areas.iter().enumerate() {
-        let (river, known) = (found.rivers[k], measures[k + 1]);
+        let (river, known) = (found.rivers[k], grounds[k + 1]);
         if known.count == 0 {
             // A river whose last sample is beyond the window.
             continue;
@@ -88,15 +74,13 @@ fn make(ground: &FeatureSource, options: &FeatureOptions, _: &Progress) -> Resul
                 Mouth::Lake(_) => Value::text("lake"),
                 _ => Value::text("border"),
             });
-        let values = vec![
+        let mut values = vec![
             Value::Integer(features.len() as i64 + 1),
             Value::id(river.map(|river| river + 1)),
-            Value::Real(known.count as f64 * cell_area),
+            known.area(window.cell),
             mouth,
-            Value::Real(f64::from(known.low)),
-            Value::Real(f64::from(known.high)),
-            Value::Real(known.sum / known.count as f64),
         ];
+        values.extend(known.values());
         features.push(Feature { geometry: Geometry::MultiPolygon(metres(parts)), values });
     }
     Ok(FeatureLayer {

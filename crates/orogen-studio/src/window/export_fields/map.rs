@@ -29,12 +29,14 @@ pub fn show(ui: &mut Ui, export: &mut Export, studio: &Studio, language: Languag
         let shadings: Vec<_> =
             SHADINGS.iter().map(|(shading, _, key)| (*shading, language.text(key).to_owned())).collect();
         rows::choice(ui, language.text("export.shading"), &mut own.shading, &shadings);
-        rows::optional(ui, language.text("export.interval"), &mut own.interval, 100.0, 0.01..=10_000.0, language);
+        let interval = language.text("export.interval");
+        rows::optional(ui, interval, &mut own.interval, (100.0, 0.01..=10_000.0), ["", " m"], language);
         for (key, area, first) in
             [("export.river_area", &mut own.river_area, 1e6), ("export.lake_area", &mut own.lake_area, 1e5)]
         {
-            rows::optional(ui, language.text(key), area, first, 1.0..=1e15, language);
+            rows::optional(ui, language.text(key), area, (first, 1.0..=1e15), ["", " m²"], language);
         }
+        rows::text(ui, language.text("export.names"), &mut own.names);
         rows::text(ui, language.text("export.sheet_title"), &mut own.title);
         let fitted = language.text("export.paper_fitted");
         rows::optional_name(
@@ -46,6 +48,9 @@ pub fn show(ui: &mut Ui, export: &mut Export, studio: &Studio, language: Languag
         );
         if own.paper.is_some() {
             rows::switch(ui, language.text("export.landscape"), &mut own.is_landscape);
+        } else {
+            let scale = language.text("export.map_scale");
+            rows::optional(ui, scale, &mut own.map_scale, (100_000.0, 1.0..=1e9), ["1 : ", ""], language);
         }
         resolution(ui, &mut own.resolution, language);
         rows::samples(ui, &mut own.samples, language);
@@ -82,6 +87,9 @@ fn colors(ui: &mut Ui, own: &mut MapExport, studio: &Studio, language: Language)
     let palettes = named::all().iter().map(|palette| palette.name);
     let none = language.text("menu.own_palette");
     rows::optional_name(ui, language.text("export.palette"), &mut own.palette, none, palettes);
+    if own.palette.is_some() {
+        rows::switch(ui, language.text("export.nearest_color"), &mut own.nearest_color);
+    }
     if own.layer != HEIGHT {
         let automatic = (None, language.text("export.automatic").to_owned());
         let scales: Vec<_> = std::iter::once(automatic)
@@ -89,18 +97,7 @@ fn colors(ui: &mut Ui, own: &mut MapExport, studio: &Studio, language: Language)
             .collect();
         rows::choice(ui, language.text("export.scale"), &mut own.scale, &scales);
     }
-    ui.label(language.text("export.range"));
-    ui.horizontal(|ui| {
-        let mut is_given = own.range.is_some();
-        if ui.checkbox(&mut is_given, "").changed() {
-            own.range = is_given.then_some([0.0, 1000.0]);
-        }
-        match &mut own.range {
-            Some(ends) => ends.iter_mut().for_each(|end| drop(ui.add(DragValue::new(end)))),
-            None => drop(ui.weak(language.text("export.automatic"))),
-        }
-    });
-    ui.end_row();
+    rows::optional_ends(ui, language.text("export.range"), &mut own.range, [0.0, 1000.0], language);
 }
 
 /// The resolution: pixels per inch, or pixels of the page.

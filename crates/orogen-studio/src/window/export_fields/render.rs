@@ -36,7 +36,9 @@ pub fn show(ui: &mut Ui, export: &mut Export, view: &ShownView, language: Langua
         }
         ui.end_row();
         rows::pair(ui, language.text("export.camera"), &mut own.camera, [0.0..=360.0, ELEVATION], language);
-        rows::optional(ui, language.text("export.distance"), &mut own.distance, 10_000.0, 0.1..=1e7, language);
+        let metres = ["", " m"];
+        let distance = language.text("export.distance");
+        rows::optional(ui, distance, &mut own.distance, (10_000.0, 0.1..=1e7), metres, language);
         rows::number(ui, language.text("export.fov"), &mut own.fov, FOV, "°");
         rows::pair(ui, language.text("relief.sun"), &mut own.sun, [0.0..=360.0, 0.0..=90.0], language);
         rows::number(ui, language.text("export.exaggeration"), &mut own.exaggeration, EXAGGERATION, "×");
@@ -50,13 +52,18 @@ pub fn show(ui: &mut Ui, export: &mut Export, view: &ShownView, language: Langua
             let palettes = named::all().iter().map(|palette| palette.name);
             let none = language.text("menu.own_palette");
             rows::optional_name(ui, language.text("export.palette"), &mut own.palette, none, palettes);
+            if own.palette.is_some() {
+                rows::switch(ui, language.text("export.nearest_color"), &mut own.nearest_color);
+            }
+            rows::optional_ends(ui, language.text("export.range"), &mut own.range, [0.0, 1000.0], language);
         }
         let automatic = (None, language.text("export.automatic").to_owned());
         let edges: Vec<_> = std::iter::once(automatic)
             .chain(EDGES.iter().map(|(edge, _, key)| (Some(*edge), language.text(key).to_owned())))
             .collect();
         rows::choice(ui, language.text("export.edge"), &mut own.edge, &edges);
-        rows::optional(ui, language.text("export.snow_line"), &mut own.snow_line, 2000.0, -1e5..=1e5, language);
+        let snow_line = language.text("export.snow_line");
+        rows::optional(ui, snow_line, &mut own.snow_line, (2000.0, -1e5..=1e5), metres, language);
         ui.label(language.text("export.rays"));
         ui.add(DragValue::new(&mut own.rays).range(SAMPLES).speed(0.1));
         ui.end_row();

@@ -2,6 +2,7 @@
 
 use std::ops::RangeInclusive;
 
+use eframe::egui::emath::Numeric;
 use eframe::egui::{ComboBox, DragValue, Role, TextEdit, Ui, WidgetInfo};
 use orogen::export::options::{OptionSpec, ValueKind};
 
@@ -90,13 +91,13 @@ pub fn pair(ui: &mut Ui, name: &str, values: &mut [f64; 2], ranges: [RangeInclus
     ui.end_row();
 }
 
-/// A number that is chosen by itself unless it is given; `usual` is its first value.
+/// A number that is chosen by itself unless it is given; `usual` is its first value, and the last texts stand before and after it.
 pub fn optional(
     ui: &mut Ui,
     name: &str,
     value: &mut Option<f64>,
-    usual: f64,
-    range: RangeInclusive<f64>,
+    (usual, range): (f64, RangeInclusive<f64>),
+    [prefix, suffix]: [&str; 2],
     language: Language,
 ) {
     ui.label(name);
@@ -106,7 +107,29 @@ pub fn optional(
             *value = is_given.then_some(usual);
         }
         match value {
-            Some(value) => drop(ui.add(DragValue::new(value).range(range).suffix(" m"))),
+            Some(value) => drop(ui.add(DragValue::new(value).range(range).prefix(prefix).suffix(suffix))),
+            None => drop(ui.weak(language.text("export.automatic"))),
+        }
+    });
+    ui.end_row();
+}
+
+/// Two ends that are chosen by themselves unless they are given.
+pub fn optional_ends<T: Numeric>(
+    ui: &mut Ui,
+    name: &str,
+    value: &mut Option<[T; 2]>,
+    usual: [T; 2],
+    language: Language,
+) {
+    ui.label(name);
+    ui.horizontal(|ui| {
+        let mut is_given = value.is_some();
+        if ui.checkbox(&mut is_given, "").changed() {
+            *value = is_given.then_some(usual);
+        }
+        match value {
+            Some(ends) => ends.iter_mut().for_each(|end| drop(ui.add(DragValue::new(end)))),
             None => drop(ui.weak(language.text("export.automatic"))),
         }
     });
