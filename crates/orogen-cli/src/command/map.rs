@@ -225,7 +225,7 @@ fn map(args: &Args) -> Result<(), Failure> {
     let policy = args.replace.policy(source.inputs(&recipe)).protecting(&args.palette).protecting(&args.names);
     let sink = Sink::new(&args.out, &policy)?;
     if let Some(path) = &args.names {
-        job = job.with_names_of(path, &recipe)?;
+        job = job.with_names_from(path, &recipe)?;
     }
     job.prepare(&mut recipe)?;
     let world = args.limits.open(recipe, &budget)?;

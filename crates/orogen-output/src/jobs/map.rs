@@ -203,7 +203,7 @@ impl MapJob {
     ///
     /// # Errors
     /// Those of [`NamedPoints::read_on`].
-    pub fn with_names_of(self, path: &Path, recipe: &Recipe) -> Result<MapJob> {
+    pub fn with_names_from(self, path: &Path, recipe: &Recipe) -> Result<MapJob> {
         let names = NamedPoints::read_on(path, recipe.georeference().as_ref(), "the heights", MAX_NAMES)?.points;
         Ok(MapJob { names, ..self })
     }

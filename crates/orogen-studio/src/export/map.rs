@@ -267,7 +267,7 @@ impl MapExport {
     pub fn make(&self, mut work: Work, region: Region) -> Result<String> {
         let mut job = self.job()?;
         if !self.names.is_empty() {
-            job = job.with_names_of(Path::new(&self.names), &work.recipe)?;
+            job = job.with_names_from(Path::new(&self.names), &work.recipe)?;
         }
         job.prepare(&mut work.recipe)?;
         let world = work.open()?;

@@ -112,7 +112,7 @@ fn a_map_is_that_of_the_job() {
     job.lake_area = Some(5e4);
     job.map_scale = Some(1e5);
     let mut recipe = recipe();
-    let job = job.with_names_of(Path::new(&export.map.names), &recipe).unwrap();
+    let job = job.with_names_from(Path::new(&export.map.names), &recipe).unwrap();
     assert_eq!(job.names.len(), 1);
     job.prepare(&mut recipe).unwrap();
     let world = session().open(recipe).unwrap();
