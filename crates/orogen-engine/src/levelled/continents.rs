@@ -25,10 +25,10 @@ op! {
     ///
     /// Related: hydrology-based terrain (Génevaux and others 2013), Dendry (Gaillard and others 2019), multi-scale terrain amplification
     /// (Schott and others 2024).
-    pub struct Continents = "continents", levelled, revision 2;
+    pub struct Continents = "continents", levelled, revision 3;
     inputs {
-        /// Distance to the shore in metres, positive on land, in place of the op's own continents. Lakes and rivers keep what they need; where it is NaN, the op's own
-        /// is used.
+        /// Distance to the shore in metres, positive on land, in place of the op's own continents. Lakes and rivers keep what they need; rivers end in its sea or, where
+        /// a coarse level saw a sea that is not there, in a lake. Where it is NaN, the op's own is used.
         shore: optional,
         /// Uplift over erodibility in place of the op's own ranges and plains: about 1.5 in high mountains, 0.5 in hills, 0.1 in plains. Where it is NaN, the op's own is used.
         uplift: optional,

@@ -14,6 +14,7 @@ macro_rules! code {
 }
 pub(super) use code;
 
+const MOUTHS: &str = code!("link.wgsl", "mouths.wgsl");
 const CHILDREN: &str = code!("children.wgsl");
 const LINKS: &str = code!("link.wgsl", "links.wgsl");
 const SHORES: &str = code!("link.wgsl", "shores.wgsl");
@@ -105,7 +106,7 @@ pub fn lower(
         inputs,
         ahead,
         reach: refinement.reach(level),
-        passes: List::of(&schedule).passes,
+        passes: List::of(&schedule, shore.is_some()).passes,
     })
 }
 
@@ -140,7 +141,7 @@ impl Turns {
 }
 
 impl List {
-    fn of(schedule: &Schedule) -> List {
+    fn of(schedule: &Schedule, has_shore: bool) -> List {
         let growth = schedule.first_passes + schedule.rounds;
         let heights = growth + schedule.creep_passes + schedule.bank_rounds * schedule.bank_passes;
         let areas = schedule.rounds * schedule.area_passes
@@ -154,6 +155,10 @@ impl List {
             // And the pass that bounds them.
             areas: Turns { planes: AREAS, left: areas + 1 },
         };
+        if has_shore {
+            list.pass_above(MOUTHS, "decide_mouths", 1, LINKS_AROUND);
+            list.pass_above(MOUTHS, "move_mouths", 1, FEW);
+        }
         list.carve(schedule);
         list.inset = schedule.carved + schedule.straightened;
         if let Some(rim) = schedule.rims {

@@ -76,13 +76,19 @@ impl Water {
         let mut receivers = inside(&receiver);
         drop(receiver);
         // Rivers have no courses in the sea, and none beyond it.
-        let sea = at_sea(&heights, &bed, offset.is_some(), sea_level);
+        let sea = at_sea(&heights, &bed, offset.as_ref(), &receivers, sea_level);
         let drowned = match sea_level {
-            Some(_) => beyond(&receivers, &sea, progress)?,
+            Some(level) => {
+                // A bed that is lower is under a river that is not.
+                let beds = bed.data_mut().iter_mut().zip(&sea);
+                beds.filter(|(_, at_sea)| !**at_sea).for_each(|(bed, _)| *bed = bed.max(level));
+                beyond(&receivers, &sea, progress)?
+            }
             None => vec![false; window.len()],
         };
-        let codes = receivers.codes_mut().iter_mut().zip(&drowned);
-        codes.filter(|(_, drowned)| **drowned).for_each(|(code, _)| *code = NONE);
+        // Another river may join beyond the sea, and goes on.
+        let codes = receivers.codes_mut().iter_mut().zip(&sea);
+        codes.filter(|(_, at_sea)| **at_sea).for_each(|(code, _)| *code = NONE);
         let drained = accumulate_with(&receivers, &progress.part(0.0))?;
         // A cycle has no first node, so its nodes and those below it are not visited. No level has one, but a recipe may.
         let mut visited = vec![false; window.len()];
@@ -179,18 +185,46 @@ fn is_border(window: &Window, sample: usize) -> bool {
     i == 0 || j == 0 || i + 1 == window.width || j + 1 == window.height
 }
 
-/// Which nodes are in the sea: those that are not above its level, and those between samples that are all below it, where the land around a
-/// valley of a coarser level has drowned.
-fn at_sea(heights: &Grid, bed: &Grid, is_between: bool, sea_level: Option<f32>) -> Vec<bool> {
+/// Nodes along its course that lie in the sea where a river ends in a narrow bay; fewer than the samples beyond a window.
+const COURSE: usize = 16;
+
+/// Samples on each side of a node, and how many of all of them are sea where it is wide.
+const WIDE: (usize, usize) = (2, 15);
+
+/// Which nodes are in the sea: where the ground between the samples is not above its level, if the sea is wide there or the course goes on in it. A bed on a
+/// plain may be lower than the sea far inland, and the land around a valley of a coarser level may have drowned.
+fn at_sea(
+    heights: &Grid,
+    bed: &Grid,
+    offset: Option<&[Grid; 2]>,
+    receivers: &Receivers,
+    sea_level: Option<f32>,
+) -> Vec<bool> {
     let Some(sea) = sea_level else { return vec![false; bed.data().len()] };
     let (width, height) = (heights.width(), heights.height());
-    let is_below = |i: usize, j: usize| heights[(i.min(width - 1), j.min(height - 1))] <= sea;
-    let node = |k: usize| {
+    let is_drowned = |k: usize| {
         let (i, j) = (k % width, k / width);
-        let around = || is_below(i, j) && is_below(i + 1, j) && is_below(i, j + 1) && is_below(i + 1, j + 1);
-        bed.data()[k] <= sea || is_between && around()
+        let [east, south] = offset.map_or([0.0; 2], |offset| [offset[0].data()[k], offset[1].data()[k]]);
+        let sample = |i: usize, j: usize| heights[(i.min(width - 1), j.min(height - 1))];
+        let row = |j: usize| sample(i, j) * (1.0 - east) + sample(i + 1, j) * east;
+        let ground = row(j) * (1.0 - south) + row(j + 1) * south;
+        // Standing water of the network whose shore the samples show is the sea, whatever the recipe adds to its level.
+        let touches = || [(i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)].into_iter().any(|(i, j)| sample(i, j) <= sea);
+        ground <= sea || receivers.code(k) == NONE && (bed.data()[k] <= sea || touches())
     };
-    (0..bed.data().len()).map(node).collect()
+    let drowned: Vec<bool> = (0..bed.data().len()).map(is_drowned).collect();
+    let is_wide = |k: usize| {
+        let near = |at: usize, count: usize| at.saturating_sub(WIDE.0)..(at + WIDE.0 + 1).min(count);
+        let rows = near(k / width, height);
+        let low = rows.map(|j| near(k % width, width).filter(|i| heights[(*i, j)] <= sea).count());
+        low.sum::<usize>() >= WIDE.1
+    };
+    let goes_on = |k: usize| {
+        let course = std::iter::successors(Some(k), |at| Some(receivers.of(*at)));
+        course.take(COURSE).all(|at| drowned[at])
+    };
+    let is_at_sea = |k: usize| drowned[k] && (goes_on(k) || is_wide(k));
+    (0..drowned.len()).map(is_at_sea).collect()
 }
 
 /// Which nodes are in the sea, or receive water that has been in the sea.

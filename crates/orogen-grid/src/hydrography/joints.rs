@@ -7,6 +7,21 @@ use super::given::snapped;
 /// A shore: an open line or a ring, whose last point repeats its first.
 pub type Path = Vec<[f64; 2]>;
 
+/// Land between two stretches of water, in samples, that a line which ends in the water does not cross again.
+const SPIT: f64 = 1.0;
+
+/// A crossing of a segment with a shore.
+#[derive(Clone, Copy)]
+struct Crossing {
+    /// The position along the segment, 0 to 1.
+    along: f64,
+    /// The line of the shore, its segment, and the position along that.
+    line: u32,
+    segment: u32,
+    other: f64,
+    at: [f64; 2],
+}
+
 /// An index of lines by the squares of one sample that their segments touch, and the points to insert into them.
 pub struct Joints<'a> {
     lines: &'a [Path],
@@ -39,45 +54,59 @@ impl<'a> Joints<'a> {
         Joints { is_snapped: true, ..self }
     }
 
-    /// The first crossing of a path with the shore of a water: the index of the path's segment, the position along it
-    /// (0 to 1), and the point. The point is also inserted into the shore.
-    pub fn first(&mut self, path: &[[f64; 3]], water: u32) -> Option<(usize, f64, [f64; 2])> {
-        for (k, pair) in path.windows(2).enumerate() {
-            let [a, b] = [pair[0], pair[1]].map(|[x, y, _]| [x, y]);
-            let mut best: Option<(f64, u32, u32, f64)> = None;
-            touched(a, b, |square| {
-                for (line, segment) in self.squares.get(&square).into_iter().flatten() {
-                    if self.waters[*line as usize] != water {
-                        continue;
-                    }
-                    let path = &self.lines[*line as usize];
-                    let (c, d) = (path[*segment as usize], path[*segment as usize + 1]);
-                    if let Some([along, other]) = crossing(a, b, c, d)
-                        && best.is_none_or(|best| (along, *line, *segment) < (best.0, best.1, best.2))
-                    {
-                        best = Some((along, *line, *segment, other));
-                    }
-                }
-            });
-            if let Some((along, line, segment, other)) = best {
-                let ends = &self.lines[line as usize][segment as usize..segment as usize + 2];
-                let at = match other {
-                    // A crossing at an end of the segment: the point exists already.
-                    0.0 => ends[0],
-                    1.0 => ends[1],
-                    other => {
-                        let at = [0, 1].map(|c| ends[0][c] + (ends[1][c] - ends[0][c]) * other);
-                        let at = if self.is_snapped { at.map(snapped) } else { at };
-                        if at != ends[0] && at != ends[1] {
-                            self.found.push((line, segment, other, at));
-                        }
-                        at
-                    }
-                };
-                return Some((k, along, at));
+    /// The crossing with the shore of a water at which a path that ends in it enters it: the last one, or an earlier one if the path leaves the water for
+    /// less than [`SPIT`] after it. The index of the path's segment, the position along it (0 to 1), and the point, which is also inserted into the shore.
+    pub fn entry(&mut self, path: &[[f64; 3]], water: u32) -> Option<(usize, f64, [f64; 2])> {
+        let pairs = path.windows(2).enumerate();
+        let crossings: Vec<_> =
+            pairs.flat_map(|(k, pair)| self.crossings(pair, water).map(move |found| (k, found))).collect();
+        let mut entry = crossings.len().checked_sub(1)?;
+        while let Some(earlier) = entry.checked_sub(2) {
+            let [out, into] = [entry - 1, entry].map(|k| crossings[k].1.at);
+            if libm::hypot(into[0] - out[0], into[1] - out[1]) >= SPIT {
+                break;
             }
+            entry = earlier;
         }
-        None
+        let (k, Crossing { along, line, segment, other, at }) = crossings[entry];
+        let ends = &self.lines[line as usize][segment as usize..segment as usize + 2];
+        if at != ends[0] && at != ends[1] {
+            self.found.push((line, segment, other, at));
+        }
+        Some((k, along, at))
+    }
+
+    /// The crossings of a segment with the shore of a water, along it.
+    fn crossings(&self, pair: &[[f64; 3]], water: u32) -> impl Iterator<Item = Crossing> {
+        let [a, b] = [pair[0], pair[1]].map(|[x, y, _]| [x, y]);
+        let mut found: Vec<(f64, u32, u32, f64)> = Vec::new();
+        touched(a, b, |square| {
+            for (line, segment) in self.squares.get(&square).into_iter().flatten() {
+                let path = &self.lines[*line as usize];
+                let (c, d) = (path[*segment as usize], path[*segment as usize + 1]);
+                if self.waters[*line as usize] == water
+                    && let Some([along, other]) = crossing(a, b, c, d)
+                {
+                    found.push((along, *line, *segment, other));
+                }
+            }
+        });
+        found.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+        // Squares may name a segment twice, and two segments meet in one point.
+        found.dedup_by_key(|found| found.0);
+        found.into_iter().map(|(along, line, segment, other)| {
+            let ends = &self.lines[line as usize][segment as usize..segment as usize + 2];
+            let at = match other {
+                // A crossing at an end of the segment: the point exists already.
+                0.0 => ends[0],
+                1.0 => ends[1],
+                other => {
+                    let at = [0, 1].map(|c| ends[0][c] + (ends[1][c] - ends[0][c]) * other);
+                    if self.is_snapped { at.map(snapped) } else { at }
+                }
+            };
+            Crossing { along, line, segment, other, at }
+        })
     }
 
     /// The nearest point of a water's shore within a few samples.
@@ -157,15 +186,27 @@ mod tests {
         let mut lines = vec![vec![[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0], [0.0, 0.0]]];
         let mut joints = Joints::new(&lines, &[7]);
         let river = [[5.0, -4.0, 9.0], [5.5, -1.0, 8.0], [4.5, 1.0, 7.0], [5.0, 4.0, 7.0]];
-        let (segment, along, at) = joints.first(&river, 7).unwrap();
+        let (segment, along, at) = joints.entry(&river, 7).unwrap();
         assert_eq!((segment, along, at), (1, 0.5, [5.0, 0.0]));
-        let other = joints.first(&[[2.0, -1.0, 0.0], [2.0, 1.0, 0.0]], 7).unwrap();
+        let other = joints.entry(&[[2.0, -1.0, 0.0], [2.0, 1.0, 0.0]], 7).unwrap();
         assert_eq!(other.2, [2.0, 0.0]);
-        assert_eq!(joints.first(&[[2.0, 2.0, 0.0], [3.0, 8.0, 0.0]], 7), None);
-        assert_eq!(joints.first(&river, 8), None);
+        assert_eq!(joints.entry(&[[2.0, 2.0, 0.0], [3.0, 8.0, 0.0]], 7), None);
+        assert_eq!(joints.entry(&river, 8), None);
         assert_eq!(joints.nearest([10.5, 11.0], 7), Some([10.0, 10.0]));
         joints.into_points().insert(&mut lines);
         assert_eq!(lines[0][..4], [[0.0, 0.0], [2.0, 0.0], [5.0, 0.0], [10.0, 0.0]]);
         assert_eq!(lines[0].len(), 7);
+    }
+
+    #[test]
+    fn a_line_enters_the_water_that_it_ends_in() {
+        let square = |x: f64, side: f64| vec![[x, -5.0], [x + side, -5.0], [x + side, 5.0], [x, 5.0], [x, -5.0]];
+        // A pond, a strip of land, and the sea; and the same with a spit between.
+        for (width, expected) in [(2.0, 20.0), (17.5, 2.0)] {
+            let lines = vec![square(2.0, width), square(20.0, 40.0)];
+            let mut joints = Joints::new(&lines, &[0, 0]);
+            let river: Vec<[f64; 3]> = (0..30).map(|k| [f64::from(k) + 0.25, 0.5, 0.0]).collect();
+            assert_eq!(joints.entry(&river, 0).unwrap().2, [expected, 0.5]);
+        }
     }
 }

@@ -290,14 +290,14 @@ fn end_at(points: &mut Vec<[f64; 3]>, raw: &[[f64; 3]], joints: &mut Joints, wat
     // Only the part near the end is searched: a smoothed line stays close to its cells.
     const NEAR: usize = 12;
     let start = points.len().saturating_sub(NEAR);
-    if let Some((k, along, at)) = joints.first(&points[start..], water) {
+    if let Some((k, along, at)) = joints.entry(&points[start..], water) {
         // At least one point of the line itself remains.
         let keep = (start + k + usize::from(along > 0.0)).max(1);
         points.truncate(keep);
         points.push([at[0], at[1], level]);
         return;
     }
-    let straight = joints.first(&[*land, *wet], water).map(|(_, _, at)| at);
+    let straight = joints.entry(&[*land, *wet], water).map(|(_, _, at)| at);
     let at = straight.or_else(|| joints.nearest([land[0], land[1]], water));
     if let Some(at) = at {
         points.pop();

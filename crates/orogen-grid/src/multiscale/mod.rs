@@ -35,6 +35,7 @@ pub mod level;
 mod links;
 #[doc(hidden)]
 pub mod lowered;
+mod mouths;
 mod nearest;
 mod refine;
 pub mod refinement;

@@ -13,6 +13,7 @@ use super::lakes;
 use super::law::{Law, has_floors};
 use super::level::{LAKE, Level, cropped, invalid};
 use super::links::Links;
+use super::mouths;
 use super::refinement::Refinement;
 use super::shores::standing_water;
 use super::straighten::{self, straighten};
@@ -127,6 +128,7 @@ impl Refinement {
         }
         let may_begin = lakes::begin_at(self, parent.depth);
         let new_lakes = if may_begin { lakes::begin(self, &mut parent) } else { Vec::new() };
+        mouths::lead(&mut parent, given);
         let parent = &parent;
         let finest = self.is_finest(depth);
         let growing = (FIRST_PASSES + ROUNDS) as f64 + if finest { FINEST_WORK } else { 0.0 };

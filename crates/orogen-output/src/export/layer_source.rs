@@ -66,6 +66,8 @@ impl<'w> LayerSource<'w> {
                         .chain(vector_list::all().iter().map(|layer| layer.name))
                         .collect();
                     let hint = match nearest(layer, names.iter().copied()) {
+                        // The recipe has it, and the error names it.
+                        Some(near) if world.unit(near).is_ok() => return Err(error),
                         Some(near) => format!("did you mean `{near}`, which is derived from the heights?"),
                         None => format!("layers derived from the heights: {}", names.join(", ")),
                     };

@@ -112,7 +112,14 @@ fn beds_never_rise_and_reaches_join() {
         ("endless", windows()),
         ("island", vec![Window::new(500, 500, 20.0).at(250, 250), Window::new(200, 200, 80.0)]),
         ("archipelago", vec![Window::new(600, 600, 40.0).at(200, 200), Window::new(250, 250, 160.0)]),
-        ("continent", vec![Window::new(256, 256, 15360.0), Window::new(200, 200, 60.0).at(30000, 30000)]),
+        (
+            "continent",
+            vec![
+                Window::new(256, 256, 15360.0),
+                Window::new(512, 512, 7680.0),
+                Window::new(200, 200, 60.0).at(30000, 30000),
+            ],
+        ),
     ] {
         let world = world(preset);
         let (mut shores, mut mouths) = (0, 0);
@@ -341,4 +348,63 @@ fn it_can_be_cancelled_and_needs_its_memory() {
     assert_eq!(why.kind(), ErrorKind::Memory, "{why}");
     let far = Window::new(200, 200, 60.0).at(1 << 53, 0);
     assert!(FeatureSource::of(&endless, &far, &options, 0, &Progress::none()).is_err());
+}
+
+/// Samples around the end of a river where its sea has to be, as a bay may be narrower than a sample; how many of them are sea, and samples of a lake.
+const AROUND: usize = 6;
+const SEA_SAMPLES: usize = 4;
+const LAKE_SAMPLES: usize = 2;
+
+/// Number of samples of the sea around the end of a river.
+fn sea_around(source: &FeatureSource, sea_level: f32, end: [f64; 3]) -> usize {
+    let heights = &source.water.heights;
+    let near = |at: f64, count: usize| (at as usize).saturating_sub(AROUND)..(at as usize + AROUND + 1).min(count);
+    let row = |j: usize| near(end[0], heights.width()).filter(|i| heights[(*i, j)] <= sea_level).count();
+    near(end[1], heights.height()).map(row).sum()
+}
+
+#[test]
+fn rivers_end_in_a_sea_or_a_lake_that_is_there() {
+    // Cells at which the land has coasts, and the seeds.
+    let cases = [
+        ("biomes", 6400.0, 10..=21),
+        ("continent", 15360.0, 1..=2),
+        ("endless", 7680.0, 1..=2),
+        ("island", 80.0, 1..=3),
+        ("archipelago", 160.0, 1..=3),
+        ("tile-continent", 400.0, 1..=3),
+    ];
+    let mut wrong = Vec::new();
+    for (preset, cell, seeds) in cases {
+        let mut ends = 0;
+        for seed in seeds {
+            let mut recipe = presets::find(preset).unwrap().recipe().unwrap();
+            recipe.world.seed = seed;
+            let world = World::open(recipe).unwrap();
+            let size = world.recipe().world.size.unwrap_or([2e6; 2]);
+            let count = |side: f64| (side / cell) as usize;
+            let source = source(&world, &Window::new(count(size[0]), count(size[1]), cell));
+            let sea_level = world.recipe().world.sea_level as f32;
+            for river in source.rivers.iter().filter(|river| river.drained >= 64.0) {
+                let end = *river.points.last().unwrap();
+                let (samples, least) = match river.mouth {
+                    Mouth::Lake(lake) => {
+                        (source.water.lakes.get(lake as usize - 1).map_or(0, |lake| lake.cells as usize), LAKE_SAMPLES)
+                    }
+                    Mouth::Sea => (sea_around(&source, sea_level, end), SEA_SAMPLES),
+                    Mouth::Reach(_) | Mouth::Border => continue,
+                };
+                ends += 1;
+                if samples < least {
+                    let [east, south] = source.place([end[0], end[1]]);
+                    let (mouth, drained) = (river.mouth, river.drained * cell * cell * 1e-6);
+                    wrong.push(format!(
+                        "{preset} {seed}: {drained:.0} km2 ends at {east:.0}, {south:.0}: {mouth:?} of {samples}"
+                    ));
+                }
+            }
+        }
+        assert!(ends > 10, "{preset}: {ends} rivers end");
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }

@@ -78,6 +78,11 @@ fn shore_of(base: u32, at: vec2<i32>, uplift: f32) -> f32 {
     if (is_missing(value)) {
         return blended(shores) + irregular;
     }
+    let inland = (nearest(RECEIVER, at) == vec4<f32>(NONE)) & (nearest(HEIGHT, at) > vec4<f32>(0.0));
+    if (any(inland)) {
+        // Half of a cell of the level above.
+        return min(value * 1e-3, blended(min(shores, vec4<f32>(kilometres(base)))) + irregular);
+    }
     return value * 1e-3;
 }
 

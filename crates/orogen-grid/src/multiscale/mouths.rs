@@ -1,0 +1,243 @@
+//! Mouths of rivers where shores are given: the water that a coarse level sees in one sample of the shore leads on to the sea that finer samples have, or stays as
+//! an inland lake.
+
+use super::children::heir;
+use super::given::Given;
+use super::level::{Level, direction};
+use super::refinement::Refinement;
+use crate::hydrology::direction::{NONE, STEPS, is_diagonal, opposite};
+
+/// The least size of an inland lake where a mouth has no sea, as the distance from its node to its shore, in cells.
+const INLAND: f32 = 1.0;
+
+/// The largest distance to the shore that nodes beside an inland lake have for its shore, in cells.
+const BESIDE: f32 = 0.5;
+
+/// The height of the water of an inland lake, relative to that of the lowest river that ends there.
+const INLAND_HEIGHT: f32 = 0.5;
+
+/// The height of land between a river and the sea, relative to that of the lowest river that passes.
+const PASSED_HEIGHT: f32 = 0.5;
+
+/// Whether a node is in an inland lake: water without an outlet above the sea.
+#[inline(always)]
+pub fn is_inland(level: &Level, q: usize) -> bool {
+    level.receiver[q] == NONE && level.height[q] > 0.0
+}
+
+/// The largest distance to the shore that nodes beside an inland lake have for its shore, in km.
+pub fn beside(land: &Refinement, depth: usize) -> f32 {
+    BESIDE * land.kilometres(depth) as f32
+}
+
+/// What the given shore says of the children of a node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Below {
+    /// The shore is not given for all of them.
+    Unknown,
+    /// All are land.
+    Land,
+    /// At least one is sea: the one nearest to the heir, and its distance from the shore, negative, in km.
+    Sea(u8, f32),
+}
+
+/// Leads mouths to the sea of the next level. A node of the sea moves to a child that is sea; if it has none, its rivers go on to one beside it that does, and if
+/// there is none, they end in an inland lake. A node of land whose heir is sea becomes sea if its river ends there. Nodes at the edge are left as they are.
+pub fn lead(level: &mut Level, given: &Given) {
+    if given.shore.is_none() {
+        return;
+    }
+    let (width, height) = (level.window.width, level.window.height);
+    let below: Vec<Below> = (0..level.window.len()).map(|q| below(level, given, q)).collect();
+    let at_sea = |level: &Level, q: usize| level.receiver[q] == NONE && level.height[q] == 0.0;
+    let sea = |level: &Level, q: usize| match below[q] {
+        Below::Sea(_, shore) if at_sea(level, q) => Some(shore),
+        _ => None,
+    };
+    let mut changes = Vec::new();
+    for q in (1..height.saturating_sub(1)).flat_map(|j| j * width + 1..(j + 1) * width - 1) {
+        let Some(lowest) = lowest_donor(level, q) else { continue };
+        match below[q] {
+            Below::Sea(corner, _) if at_sea(level, q) => changes.push((q, Change::Move(corner))),
+            Below::Land if at_sea(level, q) => {
+                let code = way(level, |near| sea(level, near), q);
+                changes.push((q, code.map_or(Change::Inland(lowest), |code| Change::Lead(code, lowest))));
+            }
+            Below::Sea(corner, _) if corner == heir(level, q) => {
+                let ends = level.downstream(q).is_some_and(|to| sea(level, to).is_some());
+                changes.extend(ends.then_some((q, Change::Drown)));
+            }
+            _ => {}
+        }
+    }
+    for (q, change) in changes {
+        change.apply(level, q);
+    }
+}
+
+/// What becomes of a node at which rivers end, or nearly.
+enum Change {
+    /// It moves to a child.
+    Move(u8),
+    /// It becomes land with a receiver, lower than its lowest donor.
+    Lead(u8, f32),
+    /// It becomes an inland lake, lower than its lowest donor.
+    Inland(f32),
+    /// It becomes sea.
+    Drown,
+}
+
+impl Change {
+    fn apply(&self, level: &mut Level, q: usize) {
+        match *self {
+            Change::Move(corner) => {
+                level.east[q] = inside(level.east[q], corner & 1 == 1);
+                level.south[q] = inside(level.south[q], corner & 2 == 2);
+            }
+            Change::Lead(code, lowest) => (level.receiver[q], level.height[q]) = (code, PASSED_HEIGHT * lowest),
+            Change::Inland(lowest) => {
+                let cell = (level.window.cell * 1e-3) as f32;
+                (level.height[q], level.shore[q]) = (INLAND_HEIGHT * lowest, level.shore[q].min(-INLAND * cell));
+            }
+            Change::Drown => (level.receiver[q], level.height[q]) = (NONE, 0.0),
+        }
+    }
+}
+
+/// A share of a cell in its first or second half: mirrored if it is in the other one.
+fn inside(share: f32, second: bool) -> f32 {
+    if (share >= 0.5) == second { share } else { 1.0 - share }
+}
+
+fn below(level: &Level, given: &Given, q: usize) -> Below {
+    let (i, j) = ((q % level.window.width) as i64, (q / level.window.width) as i64);
+    let (x, y) = (2 * (level.window.x + i), 2 * (level.window.y + j));
+    let own = heir(level, q);
+    let mut found = Below::Land;
+    // The heir, those beside it, and the one across.
+    for flip in [0, 1, 2, 3] {
+        let corner = own ^ flip;
+        let Some(shore) = given.shore(x + i64::from(corner & 1), y + i64::from(corner >> 1)) else {
+            return Below::Unknown;
+        };
+        let is_better = match found {
+            Below::Sea(best, other) => flip == 2 && best != own && shore < other,
+            _ => true,
+        };
+        if shore < 0.0 && is_better {
+            found = Below::Sea(corner, shore);
+        }
+    }
+    found
+}
+
+/// The height of the lowest river that ends at an inner node.
+fn lowest_donor(level: &Level, q: usize) -> Option<f32> {
+    let donors = STEPS.iter().zip(0u8..).filter_map(|(step, code)| {
+        let donor = level.neighbour(q, *step)?;
+        (direction(level.receiver[donor]) == opposite(code)).then(|| level.height[donor])
+    });
+    donors.reduce(f32::min)
+}
+
+/// The direction from a node to the sea beside it that is furthest from its shore; across a side if possible, and across no river.
+fn way(level: &Level, sea: impl Fn(usize) -> Option<f32>, q: usize) -> Option<u8> {
+    let mut best: Option<(bool, f32, u8)> = None;
+    for (code, &step) in (0u8..).zip(&STEPS) {
+        let Some(shore) = level.neighbour(q, step).and_then(&sea) else { continue };
+        let found = (is_diagonal(code), shore, code);
+        if best.is_none_or(|best| (found.0, found.1) < (best.0, best.1)) && !(found.0 && is_crossed(level, q, step)) {
+            best = Some(found);
+        }
+    }
+    best.map(|(_, _, code)| code)
+}
+
+/// Whether a river passes between the two cells beside a step across a corner.
+fn is_crossed(level: &Level, q: usize, (east, south): (isize, isize)) -> bool {
+    let leads = |from: (isize, isize), by: (isize, isize)| {
+        let code = level.neighbour(q, from).map_or(NONE, |near| direction(level.receiver[near]));
+        STEPS.get(usize::from(code)) == Some(&by)
+    };
+    leads((east, 0), (-east, south)) || leads((0, south), (east, -south))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::{Grid, Window};
+
+    /// The middle of five rows of five nodes, of which those from column `coast` on are sea. Land drains to the east.
+    const MIDDLE: usize = 12;
+
+    fn level(coast: usize) -> Level {
+        let window = Window::new(5, 5, 1000.0).at(-2, -2);
+        let plane = |value: &dyn Fn(usize) -> f32| (0..25).map(|q| value(q % 5)).collect::<Vec<f32>>();
+        Level {
+            depth: 0,
+            window,
+            east: plane(&|_| 0.3),
+            south: plane(&|_| 0.3),
+            height: plane(&|i| if i < coast { 100.0 - 10.0 * i as f32 } else { 0.0 }),
+            area: plane(&|_| 1.0),
+            receiver: (0..25).map(|q| if q % 5 < coast { 0 } else { NONE }).collect(),
+            variation: plane(&|_| 0.0),
+            uplift: plane(&|_| 0.0),
+            shore: plane(&|i| if i < coast { 0.5 } else { -0.2 }),
+        }
+    }
+
+    /// The level after its mouths are led to the sea of children at which `is_sea` holds.
+    fn led(mut level: Level, is_sea: impl Fn(usize, usize) -> bool) -> Level {
+        let window = Window { x: -4, y: -4, width: 10, height: 10, cell: 500.0 };
+        let metres = (0..100).map(|q| if is_sea(q % 10, q / 10) { -300.0 } else { 300.0 }).collect();
+        let shore = Grid::from_data(window, metres).unwrap();
+        lead(&mut level, &Given { shore: Some(&shore), ..Given::default() });
+        level
+    }
+
+    #[test]
+    fn a_mouth_moves_to_the_child_that_is_sea() {
+        let found = led(level(2), |i, _| i >= 5);
+        assert_eq!((found.east[MIDDLE], found.south[MIDDLE]), (0.7, 0.3));
+        assert_eq!((found.receiver[MIDDLE], heir(&found, MIDDLE)), (NONE, 1));
+        // One across is taken if there is no other, and none moves from the sea.
+        let found = led(level(2), |i, j| i == 5 && j == 5 || i > 5);
+        assert_eq!(heir(&found, MIDDLE), 3);
+        assert_eq!(led(level(2), |i, _| i >= 4), level(2));
+    }
+
+    #[test]
+    fn a_river_goes_on_to_the_sea_beside_or_ends_in_a_lake() {
+        let found = led(level(2), |i, _| i >= 6);
+        assert_eq!((found.receiver[MIDDLE], found.height[MIDDLE]), (0, 45.0));
+        // Sea across a corner only, with no river between.
+        let found = led(level(2), |i, j| i >= 6 && j >= 6);
+        assert_eq!(found.receiver[MIDDLE], 1);
+        let found = led(level(2), |_, _| false);
+        assert!(is_inland(&found, MIDDLE) && found.receiver[MIDDLE] == NONE);
+        assert_eq!((found.height[MIDDLE], found.shore[MIDDLE]), (45.0, -1.0));
+        // Sea without rivers, and what is at the edge, stay as they are.
+        assert_eq!((found.height[MIDDLE + 1], found.height[22]), (0.0, 0.0));
+    }
+
+    #[test]
+    fn land_before_the_sea_drowns_where_the_shore_is_behind_it() {
+        let found = led(level(3), |i, _| i >= 4);
+        assert_eq!((found.receiver[MIDDLE], found.height[MIDDLE]), (NONE, 0.0));
+        // Not where its heir is land, nor two nodes before the sea.
+        assert_eq!(led(level(3), |i, _| i >= 5), level(3));
+        assert_eq!(led(level(4), |i, _| i >= 4).receiver[MIDDLE], 0);
+    }
+
+    #[test]
+    fn without_a_shore_nothing_changes() {
+        let mut found = level(2);
+        lead(&mut found, &Given::default());
+        assert_eq!(found, level(2));
+        // Nor where it has no values.
+        let shore = Grid::filled(Window { x: -4, y: -4, width: 10, height: 10, cell: 500.0 }, f32::NAN);
+        lead(&mut found, &Given { shore: Some(&shore), ..Given::default() });
+        assert_eq!(found, level(2));
+    }
+}
