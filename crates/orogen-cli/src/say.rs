@@ -1,7 +1,9 @@
 //! Standard output and standard error, without panics on closed pipes.
 
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 use std::io::{self, Write};
+use std::sync::{Mutex, PoisonError};
 
 /// The program and its version, for the metadata of files.
 pub const SOFTWARE: &str = concat!("Orogen ", env!("CARGO_PKG_VERSION"));
@@ -17,6 +19,14 @@ pub fn out(text: &str) -> Result<(), Failure> {
 /// Writes a line to standard error, [`harmless`]. Failures are ignored, because they cannot be reported.
 pub fn error(line: &str) {
     painted(&harmless(line));
+}
+
+/// Writes a line to standard error, like [`error`], unless it was written before.
+pub fn once(line: &str) {
+    static WRITTEN: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
+    if WRITTEN.lock().unwrap_or_else(PoisonError::into_inner).insert(line.to_string()) {
+        error(line);
+    }
 }
 
 /// Writes a line to standard error that has colors of its own.

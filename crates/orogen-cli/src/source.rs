@@ -72,18 +72,29 @@ impl Source {
             Source::File(path) => Recipe::read_with(path, &set)?,
             Source::Preset(preset) => preset.recipe_with(&set)?,
             Source::Stdin => piped(&set)?,
-            Source::Dem(path) if !set.is_empty() => {
-                return Err(Failure::Usage(format!(
-                    "--set gives values to a recipe's parameters, and {} is a file of heights, which has none",
-                    path.display()
-                )));
-            }
             Source::Dem(path) => {
+                no_values(path, arguments)?;
                 let ground = PreparedDem::read(path, None, budget.left().unwrap_or(DEFAULT_MEMORY))?;
-                ground.notes.iter().for_each(|note| say::error(&format!("note: {}: {note}", path.display())));
-                Recipe::from_dem(path, &Arc::new(ground))
+                of_dem(path, ground)
             }
         })
+    }
+}
+
+/// The recipe of heights that were read from a file. Prints their notes.
+pub fn of_dem(path: &Path, ground: PreparedDem) -> Recipe {
+    ground.notes.iter().for_each(|note| say::once(&format!("note: {}: {note}", path.display())));
+    Recipe::from_dem(path, &Arc::new(ground))
+}
+
+/// Checks that a file of heights is given no values for parameters.
+pub fn no_values(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
+    match arguments.values().is_empty() {
+        true => Ok(()),
+        false => Err(Failure::Usage(format!(
+            "--set gives values to a recipe's parameters, and {} is a file of heights, which has none",
+            path.display()
+        ))),
     }
 }
 

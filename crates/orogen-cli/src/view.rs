@@ -4,15 +4,16 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use orogen::dem::prepared::{DEFAULT_MEMORY, PreparedDem};
 use orogen::format::crs::registry::Crs;
 use orogen::format::dem::Georeference;
 use orogen::words::number;
-use orogen::{Budget, Recipe, Window, World};
+use orogen::{Budget, ErrorKind, Recipe, Window, World};
 
 use crate::failure::Failure;
 use crate::say;
 use crate::sink::{DASH, is_stdout};
-use crate::source::Source;
+use crate::source::{Source, no_values, of_dem};
 use crate::values::arguments::Arguments;
 use crate::values::number::cell;
 use crate::values::region::{Bounds, Rectangle, place};
@@ -49,6 +50,9 @@ pub struct View {
     /// Position of the world's north-west corner in the CRS: easting and northing, or longitude and latitude
     #[arg(long, value_name = "E,N", value_parser = place, allow_hyphen_values = true)]
     pub origin: Option<[f64; 2]>,
+    /// Whether only the part of a file of heights that the window needs is read.
+    #[arg(skip)]
+    pub reads_part: bool,
 }
 
 /// The same where samples may also be counted.
@@ -69,6 +73,9 @@ const UNBOUNDED: usize = 1024;
 /// Maximum number of samples along a side of a whole world that is shown at its own cell, and of one that is not.
 const LARGE: f64 = 16_384.0;
 const OVERVIEW: f64 = 4096.0;
+
+/// Samples of a file of heights that are read around a window: as many as layers derived from heights usually need.
+const SURROUNDINGS: usize = 64;
 
 /// Tolerance, in cells, for coordinates that are meant to be those of a sample.
 const NEAR: f64 = 1e-6;
@@ -117,7 +124,18 @@ impl View {
     ) -> Result<(), Failure> {
         // Other names of standard output, such as /dev/stdout, cannot have a seed in them.
         let out = out.map(|out| if is_stdout(out) { Path::new(DASH) } else { out });
-        Seeds::each(self.seed.as_ref(), out, |seed, out| work(View { seed, ..self.clone() }, out))
+        Seeds::each(self.seed.as_ref(), out, |seed, out| {
+            // What was written to a stream cannot be written again.
+            let reads_part = out.as_deref() != Some(Path::new(DASH));
+            let view = View { seed, reads_part, ..self.clone() };
+            match work(view.clone(), out.clone()) {
+                // Some work reads further than the surroundings of its window.
+                Err(Failure::Engine(error)) if error.kind() == ErrorKind::Part && reads_part => {
+                    work(View { reads_part: false, ..view }, out)
+                }
+                done => done,
+            }
+        })
     }
 
     /// [`View::each_seed`] of a command that always has an output.
@@ -131,12 +149,41 @@ impl View {
 
     /// Reads a recipe with these options for its parameters and its world. Its memory counts in `budget`.
     pub fn recipe(&self, source: &Source, budget: &Budget) -> Result<Recipe, Failure> {
-        let mut recipe = source.read(budget, &self.arguments)?;
+        if let Source::Dem(path) = source
+            && self.reads_part
+            && (self.window.is_some() || self.bounds.is_some() || self.projwin.is_some())
+            && let Some(outline) = PreparedDem::outline(path)?
+        {
+            no_values(path, &self.arguments)?;
+            let outline = self.placed(of_dem(path, outline));
+            let part = match self.around(&outline) {
+                Some(window) => PreparedDem::part(path, &window, budget.left().unwrap_or(DEFAULT_MEMORY))?,
+                None => None,
+            };
+            return Ok(part.map_or(outline, |part| self.placed(of_dem(path, part))));
+        }
+        Ok(self.placed(source.read(budget, &self.arguments)?))
+    }
+
+    /// A recipe with these options for its world.
+    fn placed(&self, mut recipe: Recipe) -> Recipe {
         let world = &mut recipe.world;
         world.seed = self.seed.as_ref().map_or(world.seed, Seeds::first);
         world.crs = self.crs.or(world.crs);
         world.origin = self.origin.or(world.origin);
-        Ok(recipe)
+        recipe
+    }
+
+    /// The requested part of a file of heights with its surroundings, on the lattice of the file. `None` if it cannot be
+    /// told without `--size`.
+    fn around(&self, recipe: &Recipe) -> Option<Window> {
+        let lattice = recipe.world.cell;
+        let Ok(Some(part)) = self.part(recipe, None, self.cell.unwrap_or(lattice)) else { return None };
+        let first = |at: f64| (at / lattice).floor() as i64;
+        let (x, y) = (first(part.east(0)), first(part.south(0)));
+        let count = |start: i64, last: f64| (first(last).saturating_sub(start).max(0) as usize).saturating_add(2);
+        let (width, height) = (count(x, part.east(part.width - 1)), count(y, part.south(part.height - 1)));
+        Some(Window { x, y, width, height, cell: lattice }.grown(SURROUNDINGS))
     }
 
     /// The requested window: a part, or the whole world. A world of length L has round(L / cell) samples. For an
@@ -156,7 +203,7 @@ impl View {
     fn asked(&self, world: &World, size: Option<Size>) -> Result<Window, Failure> {
         let spec = &world.recipe().world;
         let cell = self.cell.unwrap_or(spec.cell);
-        if let Some(part) = self.part(world, size, cell)? {
+        if let Some(part) = self.part(world.recipe(), size, cell)? {
             return Ok(part);
         }
         match (spec.size, size) {
@@ -180,7 +227,7 @@ impl View {
     /// Bounds include samples at their west and north edges, and exclude those at their east and south edges. Adjacent
     /// parts therefore share no samples, and bounds along pixel edges of a GeoTIFF select the same pixels as
     /// gdal_translate.
-    pub fn part(&self, world: &World, size: Option<Size>, cell: f64) -> Result<Option<Window>, Failure> {
+    pub fn part(&self, recipe: &Recipe, size: Option<Size>, cell: f64) -> Result<Option<Window>, Failure> {
         if size.is_some() && self.cell.is_some() {
             let message = "--size and --cell both set the cell size; leave out one of them";
             return Err(Failure::Usage(message.into()));
@@ -189,7 +236,7 @@ impl View {
             (Some(corners), _) => Some(Bounds::of_corners(corners).map_err(Failure::Usage)?),
             (None, bounds) => bounds,
         };
-        let map = world.recipe().georeference();
+        let map = recipe.georeference();
         let local = || Georeference { origin: [0.0; 2], per_metre: [1.0; 2], keys: None };
         // West, north, east and south in metres from the north-west corner.
         let ends = match (self.window, bounds) {
@@ -211,7 +258,7 @@ impl View {
             }
             (None, None) => return Ok(None),
         };
-        if let Some([width, height]) = world.recipe().world.size {
+        if let Some([width, height]) = recipe.world.size {
             // A pixel of a GeoTIFF extends half a cell beyond its sample.
             let spare = (0.5 + NEAR) * cell;
             let inside =

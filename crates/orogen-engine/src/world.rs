@@ -13,6 +13,7 @@ use crate::plan::domain::world_windows;
 use crate::plan::explain::explain;
 use crate::plan::key::{Key, identity, keys, link_key};
 use crate::plan::memory;
+use crate::plan::parts;
 use crate::plan::planner::Planner;
 use crate::plan::steps::Plan;
 use crate::recipe::document::Recipe;
@@ -293,7 +294,9 @@ impl World {
 
     fn planned(&self, targets: &[Link], window: Window, scattered: bool, allowed: Option<u64>) -> Result<Plan> {
         let planner = Planner::new(&self.recipe, &self.graph, &self.keys);
-        planner.fitting(targets, window, scattered, self.threads(), allowed)
+        let plan = planner.fitting(targets, window, scattered, self.threads(), allowed)?;
+        parts::check(&plan, &self.recipe)?;
+        Ok(plan)
     }
 
     /// Memory limit of a request beside `bytes` that its caller holds.

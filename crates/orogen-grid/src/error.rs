@@ -20,6 +20,8 @@ pub enum ErrorKind {
     Memory,
     /// A file could not be read or written.
     File,
+    /// The heights of a file were read in part, and the work needs others.
+    Part,
     /// The work was cancelled by its caller.
     Cancelled,
     /// The library violated one of its own invariants: a bug, whatever the request.

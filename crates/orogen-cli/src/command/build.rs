@@ -68,7 +68,11 @@ enum Tiles {
 
 /// Runs the build.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    args.samples.each_output(&args.out, |samples, out| build(&Args { samples, out, ..args.clone() }))
+    args.samples.each_output(&args.out, |mut samples, out| {
+        // A build is resumed by the content of its files, and is too large for parts of them.
+        samples.view.reads_part = false;
+        build(&Args { samples, out, ..args.clone() })
+    })
 }
 
 fn build(args: &Args) -> Result<(), Failure> {
@@ -144,7 +148,7 @@ fn window(args: &Args, world: &World, form: Form) -> Result<Window, Failure> {
     if let (Form::Xyz(_), Some(_)) = (form, size) {
         return Err(Failure::Usage("an XYZ tree has fixed cell sizes; leave out --size, or use --cell".into()));
     }
-    if let Some(part) = view.part(world, *size, cell)? {
+    if let Some(part) = view.part(world.recipe(), *size, cell)? {
         return Ok(part);
     }
     let whole = match size {

@@ -137,7 +137,7 @@ fn engine_job(
         }
     };
     samples.cell = view.cell;
-    samples.window = view.part(world, None, view.cell.unwrap_or(world.recipe().world.cell))?;
+    samples.window = view.part(world.recipe(), None, view.cell.unwrap_or(world.recipe().world.cell))?;
     samples.tiles = args.tiles.map(|tiles| match tiles {
         Size::Longer(count) => [count, count],
         Size::Both(across, down) => [across, down],

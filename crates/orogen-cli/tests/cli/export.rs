@@ -44,6 +44,40 @@ fn a_file_of_heights_is_a_recipe() {
 }
 
 #[test]
+fn a_window_of_a_file_of_heights_reads_its_blocks_alone() {
+    let folder = Folder::with_small();
+    folder.good(&["export", "small.toml", "-o", "a.tif", "--cell", "0.5", "-q"]);
+    let asked = |file: &str, out: &str, layer: &str| {
+        folder.good(&["export", file, "-o", out, "--layer", layer, "--window", "300,200,40,30", "-q"]);
+        npy(&folder.read(out))
+    };
+    folder.good(&["export", "a.tif", "-o", "all.npy", "-q"]);
+    let (all, part) = (npy(&folder.read("all.npy")), asked("a.tif", "part.npy", "height"));
+    assert_eq!((part.width(), part.height()), (40, 30));
+    assert!((0..30).all(|j| (0..40).all(|i| part[(i, j)] == all[(i + 300, j + 200)])));
+    // Layers of the surroundings, and of the whole drainage area, for which the rest of the file is read.
+    for layer in ["slope", "filled"] {
+        folder.good(&["export", "a.tif", "-o", "all.npy", "--layer", layer, "-q"]);
+        let (all, part) = (npy(&folder.read("all.npy")), asked("a.tif", "part.npy", layer));
+        assert!((0..30).all(|j| (0..40).all(|i| part[(i, j)] == all[(i + 300, j + 200)])), "{layer}");
+    }
+    // The last blocks of the file are those of its south-east: without them the window is the same.
+    let bytes = folder.read("a.tif");
+    folder.write("cut.tif", &bytes[..bytes.len() - 20_000]);
+    assert_eq!(asked("cut.tif", "cut.npy", "height").data(), asked("a.tif", "part.npy", "height").data());
+    folder.bad(&["export", "cut.tif", "-o", "all.npy", "-q"], 1, "cannot read cut.tif: it ends within its samples");
+    folder.bad(
+        &["export", "cut.tif", "-o", "b.npy", "--layer", "filled", "--window", "300,200,40,30"],
+        1,
+        "it ends within",
+    );
+    folder.bad(&["export", "cut.tif", "-o", "b.npy", "--window", "30000,0,5,5"], 2, "is not inside the world");
+    // What is written to a stream cannot be begun again.
+    let streamed = folder.run(&["export", "a.tif", "-o", "-", "--format", "npy", "--window", "300,200,40,30"]);
+    assert_eq!(npy(&streamed.out).data(), asked("a.tif", "part.npy", "height").data());
+}
+
+#[test]
 fn what_does_not_fit_in_memory_is_written_as_it_is_made() {
     let folder = Folder::with_small();
     // 3200 x 2400 samples are 29 MiB.

@@ -3,6 +3,7 @@
 use crate::layer::LayerKind;
 use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
+use orogen_grid::grid::Window;
 use orogen_grid::resample::{self, NOWHERE};
 use orogen_io::dem::file_ref::FileRef;
 use orogen_io::format::dem::Georeference;
@@ -60,6 +61,26 @@ op! {
 }
 
 impl Dem {
+    /// Whether the heights of the file that a window reads are there. They are not, if only a part of the file was read
+    /// and the window is not inside it.
+    pub(crate) fn holds(&self, window: &Window) -> bool {
+        let Some(ground) = self.path.ground().filter(|ground| ground.is_part() && self.shows == Shows::Height) else {
+            return true;
+        };
+        let cell = ground.grid.window().cell;
+        // The interpolating cubic reads one sample before and two after a position.
+        let span = |first: f64, last: f64, samples: usize| {
+            let [first, last] = [first, last].map(|at| (at / cell).floor() as i64);
+            let (start, end) = (first.saturating_sub(2).max(0), last.saturating_add(4).min(samples as i64));
+            (start, end.saturating_sub(start).max(0) as usize)
+        };
+        let [left, top] = self.at;
+        let (right, bottom) = (window.east(window.width.max(1) - 1), window.south(window.height.max(1) - 1));
+        let (x, width) = span(window.east(0) - left, right - left, ground.size[0]);
+        let (y, height) = span(window.south(0) - top, bottom - top, ground.size[1]);
+        width > 0 && height > 0 && ground.grid.window().contains(&Window { x, y, width, height, cell })
+    }
+
     /// The share of `outside`, 0 to 1, at a position in the file's own metres.
     fn beyond(&self, x: f64, y: f64, [width, height]: [f64; 2]) -> f64 {
         let past = |at: f64, end: f64| (-at).max(at - end).max(0.0);
@@ -77,8 +98,8 @@ impl Field for Dem {
         // A world is not opened without its files; a plan that runs without a world has nothing to show.
         let Some(ground) = self.path.ground() else { return out.fill(f32::NAN) };
         let [left, top] = self.at;
-        let window = ground.grid.window();
-        let size = [window.width, window.height].map(|samples| (samples as f64 - 1.0) * window.cell);
+        let cell = ground.grid.window().cell;
+        let size = ground.size.map(|samples| (samples as f64 - 1.0) * cell);
         let finish = |xs: &[f64], ys: &[f64], points: &Points, out: &mut [f32]| {
             if self.shows == Shows::Height {
                 resample::read(&ground.grid, LayerKind::Height, points, out);

@@ -14,6 +14,7 @@ mod keep;
 pub(crate) mod key;
 pub(crate) mod levels;
 pub(crate) mod memory;
+pub(crate) mod parts;
 pub mod planner;
 pub mod program;
 mod request;

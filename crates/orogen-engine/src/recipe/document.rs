@@ -473,9 +473,9 @@ impl Recipe {
     /// A recipe that consists of a real place, with its exact samples.
     #[must_use]
     pub fn from_dem(path: &Path, ground: &Arc<PreparedDem>) -> Recipe {
-        let window = *ground.grid.window();
-        let size = [window.width, window.height].map(|samples| samples as f64 * window.cell);
-        let mut recipe = Recipe::new(WorldSpec { size: Some(size), cell: window.cell, ..WorldSpec::default() });
+        let cell = ground.grid.window().cell;
+        let size = ground.size.map(|samples| samples as f64 * cell);
+        let mut recipe = Recipe::new(WorldSpec { size: Some(size), cell, ..WorldSpec::default() });
         let (path, band) = open::split(path);
         let mut file = FileRef::from(path.to_string_lossy().as_ref());
         file.set_base_dir(Path::new(""));

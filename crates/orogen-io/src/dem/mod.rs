@@ -5,5 +5,6 @@ pub mod fill;
 pub mod latitude;
 pub(crate) mod mosaic;
 pub mod open;
+pub mod part;
 pub mod prepared;
 pub mod square;

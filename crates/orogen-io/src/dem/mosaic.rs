@@ -211,7 +211,7 @@ fn lay(
     let mut heights = vec![absent; count];
     let mut notes = Vec::new();
     for part in parts {
-        let dem = import::read_with(&part.path, Request { band: part.band, allowed: left }, &part.metadata)?;
+        let dem = import::read_with(&part.path, Request::new(left).with_band(part.band), &part.metadata)?;
         let outside = || {
             let path = part.path.display();
             refused(

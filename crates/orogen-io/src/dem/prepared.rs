@@ -7,9 +7,7 @@ use sha2::{Digest, Sha256};
 use super::fill::fill;
 use super::open;
 use super::square::{Layout, steps};
-use crate::format::crs::keys::{self, USER_DEFINED};
-use crate::format::crs::unit::Unit;
-use crate::format::dem::{Dem, Georeference, Request, afford, afford_beside, refused};
+use crate::format::dem::{Dem, Georeference, Placement, Request, afford, afford_beside, refused};
 use crate::format::import;
 use crate::format::sidecar::Sidecar;
 use crate::open::regular;
@@ -24,11 +22,13 @@ pub const DEFAULT_MEMORY: u64 = 4 << 30;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct PreparedDem {
-    /// The heights; the first sample is the north-west corner, at the origin.
+    /// The heights; the north-west corner of the place is at the origin.
     pub grid: Grid,
-    /// Number of samples without a height in the file, which were interpolated.
+    /// Columns and rows of the whole place, of which the heights may be a part ([`PreparedDem::part`]).
+    pub size: [usize; 2],
+    /// Number of samples without a height in what was read, which were interpolated.
     pub missing: usize,
-    /// Number of samples in the file.
+    /// Number of samples that were read.
     pub samples: usize,
     /// The position on a map, if the file states it.
     pub georeference: Option<Georeference>,
@@ -74,17 +74,7 @@ impl PreparedDem {
     /// # Errors
     /// The errors of [`PreparedDem::read`], as a message.
     pub fn of(mut dem: Dem, cell: Option<f64>, allowed: u64) -> std::result::Result<PreparedDem, String> {
-        let steps = match (cell, &dem.place) {
-            (Some(cell), _) => [cell; 2],
-            (None, Some(place)) => steps(place, dem.height),
-            (None, None) => {
-                return Err("its cell size is unknown; set `cell`, in metres".into());
-            }
-        };
-        if !steps.iter().all(|step| (1e-3..=1e6).contains(step)) {
-            return Err(format!("its cell size of {} x {} m is out of range", steps[0], steps[1]));
-        }
-        let layout = Layout::new([dem.width, dem.height], steps);
+        let (steps, layout) = lattice([dem.width, dem.height], dem.place.as_ref(), cell)?;
         afford(layout.size[0] as u64, layout.size[1] as u64, allowed)?;
         let samples = dem.heights.len();
         // Memory of the pyramid for filling holes; during resampling, the samples before and after.
@@ -94,26 +84,20 @@ impl PreparedDem {
         let mut notes = std::mem::take(&mut dem.notes);
         let missing = fill(&mut dem.heights, dem.width, dem.height);
         if missing > 0 {
-            let (holes, share) = (count(missing, "sample"), percent(missing as u64, samples as u64));
-            notes.push(format!("filled {holes} without height ({share}) from the surrounding heights"));
+            notes.push(filled(missing, samples));
         }
         let degrees = dem.place.as_ref().is_some_and(|place| place.unit.degrees().is_some()) && cell.is_none();
-        if !layout.is_square() {
-            let what = if degrees { "its degrees, at the middle latitude cells" } else { "its cells" };
-            notes.push(format!(
-                "{what} of {:.2} x {:.2} m, were resampled to squares of {:.2} m",
-                steps[0], steps[1], layout.cell
-            ));
-        }
-        let georeference = dem.place.as_ref().map(|place| Georeference {
-            origin: place.origin,
-            per_metre: layout.per_metre(place.step, steps),
-            // Degrees remain degrees even if their datum is unknown.
-            keys: place.keys.clone().or((place.unit == Unit::Degrees).then(|| keys::of_epsg(USER_DEFINED, true))),
-        });
+        notes.extend(layout.note(steps, degrees));
+        let georeference = dem.place.as_ref().map(|place| layout.georeference(place, steps));
         let grid = layout.apply(dem).ok_or("its number of samples differs from its header")?;
         let hash = hash(&grid);
-        Ok(PreparedDem { grid, missing, samples, georeference, notes, hash })
+        Ok(PreparedDem { grid, size: layout.size, missing, samples, georeference, notes, hash })
+    }
+
+    /// Whether its heights are those of a part of the place.
+    #[must_use]
+    pub fn is_part(&self) -> bool {
+        [self.grid.width(), self.grid.height()] != self.size
     }
 
     /// Memory that it takes, in bytes.
@@ -123,7 +107,30 @@ impl PreparedDem {
     }
 }
 
-fn hash(grid: &Grid) -> [u8; 32] {
+/// The distances between the samples of a raster in metres, and the lattice of its heights.
+pub(super) fn lattice(
+    size: [usize; 2],
+    place: Option<&Placement>,
+    cell: Option<f64>,
+) -> std::result::Result<([f64; 2], Layout), String> {
+    let steps = match (cell, place) {
+        (Some(cell), _) => [cell; 2],
+        (None, Some(place)) => steps(place, size[1]),
+        (None, None) => return Err("its cell size is unknown; set `cell`, in metres".into()),
+    };
+    match steps.iter().all(|step| (1e-3..=1e6).contains(step)) {
+        true => Ok((steps, Layout::new(size, steps))),
+        false => Err(format!("its cell size of {} x {} m is out of range", steps[0], steps[1])),
+    }
+}
+
+/// The message that holes were filled.
+pub(super) fn filled(missing: usize, samples: usize) -> String {
+    let (holes, share) = (count(missing, "sample"), percent(missing as u64, samples as u64));
+    format!("filled {holes} without height ({share}) from the surrounding heights")
+}
+
+pub(super) fn hash(grid: &Grid) -> [u8; 32] {
     let mut hash = Sha256::new();
     hash.update((grid.width() as u64).to_le_bytes());
     hash.update((grid.height() as u64).to_le_bytes());

@@ -1,7 +1,8 @@
 //! Resampling of degrees and oblong cells to square cells in metres.
 
+use crate::format::crs::keys::{self, USER_DEFINED};
 use crate::format::crs::unit::Unit;
-use crate::format::dem::{Dem, Placement};
+use crate::format::dem::{Dem, Georeference, Part, Placement};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::resample;
 use orogen_grid::resample::LayerKind;
@@ -75,23 +76,65 @@ impl Layout {
         }
     }
 
+    /// The position of the lattice on a map, for a DEM at `place` with these steps in metres.
+    #[must_use]
+    pub fn georeference(&self, place: &Placement, metres: [f64; 2]) -> Georeference {
+        Georeference {
+            origin: place.origin,
+            per_metre: self.per_metre(place.step, metres),
+            // Degrees remain degrees even if their datum is unknown.
+            keys: place.keys.clone().or((place.unit == Unit::Degrees).then(|| keys::of_epsg(USER_DEFINED, true))),
+        }
+    }
+
+    /// The message that samples are resampled, if they are.
+    #[must_use]
+    pub fn note(&self, steps: [f64; 2], degrees: bool) -> Option<String> {
+        let what = if degrees { "its degrees, at the middle latitude cells" } else { "its cells" };
+        (!self.is_square()).then(|| {
+            let [east, south] = steps;
+            format!("{what} of {east:.2} x {south:.2} m, were resampled to squares of {:.2} m", self.cell)
+        })
+    }
+
     /// Whether samples need no resampling.
     #[must_use]
     pub fn is_square(&self) -> bool {
         self.ratio == [1.0; 2]
     }
 
+    /// The samples of a DEM of `size` columns and rows that a part of the lattice is made of.
+    #[must_use]
+    pub fn sources(&self, size: [usize; 2], part: Part) -> Part {
+        if self.is_square() {
+            return part;
+        }
+        // The cubic reads one sample before and two after a position.
+        let first = |k: usize| ((part.from[k] as f64 * self.ratio[k]) as usize).saturating_sub(2);
+        let end = |k: usize| ((part.end()[k] as f64 * self.ratio[k]) as usize).saturating_add(4).min(size[k]);
+        let from = [first(0), first(1)];
+        Part { from, size: [end(0) - from[0], end(1) - from[1]] }
+    }
+
     /// The heights of a DEM without holes on this lattice, from its north-west corner.
     #[must_use]
     pub fn apply(&self, dem: Dem) -> Option<Grid> {
-        let [width, height] = self.size;
-        let window = Window::new(width, height, self.cell);
+        self.apply_part(dem, [0; 2], Part::whole(self.size))
+    }
+
+    /// The heights of a part of the lattice, of a part of a DEM without holes that starts at column and row `from`.
+    #[must_use]
+    pub fn apply_part(&self, dem: Dem, from: [usize; 2], part: Part) -> Option<Grid> {
+        let at = |[x, y]: [usize; 2]| [x as i64, y as i64];
+        let ([x, y], [width, height]) = (at(part.from), part.size);
+        let window = Window::new(width, height, self.cell).at(x, y);
         if self.is_square() {
             return Grid::from_data(window, dem.heights);
         }
-        let own = Grid::from_data(Window::new(dem.width, dem.height, 1.0), dem.heights)?;
-        let xs: Vec<f64> = (0..width).map(|i| i as f64 * self.ratio[0]).collect();
-        let ys: Vec<f64> = (0..height).map(|j| j as f64 * self.ratio[1]).collect();
+        let [left, top] = at(from);
+        let own = Grid::from_data(Window::new(dem.width, dem.height, 1.0).at(left, top), dem.heights)?;
+        let xs: Vec<f64> = (0..width).map(|i| (part.from[0] + i) as f64 * self.ratio[0]).collect();
+        let ys: Vec<f64> = (0..height).map(|j| (part.from[1] + j) as f64 * self.ratio[1]).collect();
         let mut out = Grid::filled(window, 0.0);
         resample::read(&own, LayerKind::Height, &Points::Lattice { xs: &xs, ys: &ys }, out.data_mut());
         Some(out)

@@ -24,6 +24,45 @@ pub struct Request {
     pub band: Option<u32>,
     /// Maximum size of the heights, in bytes.
     pub allowed: u64,
+    /// The part to read; `None` for all. Files that cannot be [read in parts](super::import::reads_parts) are read whole
+    /// and then cropped.
+    #[doc(hidden)]
+    pub part: Option<Part>,
+}
+
+/// A rectangle of a raster's samples, counted from its north-west corner.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Part {
+    /// The first column and row.
+    pub from: [usize; 2],
+    /// Number of columns and rows.
+    pub size: [usize; 2],
+}
+
+impl Part {
+    /// All samples of a raster.
+    #[must_use]
+    pub const fn whole(size: [usize; 2]) -> Part {
+        Part { from: [0; 2], size }
+    }
+
+    /// The column and row after the last.
+    #[must_use]
+    pub fn end(&self) -> [usize; 2] {
+        [self.from[0] + self.size[0], self.from[1] + self.size[1]]
+    }
+
+    /// Whether it has samples, all within a raster of this size.
+    #[must_use]
+    pub fn is_within(&self, size: [usize; 2]) -> bool {
+        (0..2).all(|k| self.size[k] > 0 && self.from[k].checked_add(self.size[k]).is_some_and(|end| end <= size[k]))
+    }
+
+    /// The same samples where rows are counted from the south of a raster with `height` rows.
+    #[must_use]
+    pub fn from_south(self, height: usize) -> Part {
+        Part { from: [self.from[0], height - self.end()[1]], ..self }
+    }
 }
 
 impl From<u64> for Request {
@@ -32,13 +71,13 @@ impl From<u64> for Request {
     }
 }
 
-orogen_noise::builder!(Request: with_band(band: Option<u32>), with_allowed(allowed: u64));
+orogen_noise::builder!(Request: with_band(band: Option<u32>), with_allowed(allowed: u64), with_part(part: Option<Part>));
 
 impl Request {
     /// Heights of up to this many bytes, of a file with one band.
     #[must_use]
     pub const fn new(allowed: u64) -> Request {
-        Request { band: None, allowed }
+        Request { band: None, allowed, part: None }
     }
 
     /// The index, from 0, of the band to read among `bands`.
@@ -194,7 +233,40 @@ impl Dem {
     ///
     /// # Errors
     /// If no sample has a height.
-    pub fn new(size: [usize; 2], mut heights: Vec<f32>, place: Option<Placement>) -> Result<Dem, String> {
+    pub fn new(size: [usize; 2], heights: Vec<f32>, place: Option<Placement>) -> Result<Dem, String> {
+        match Dem::checked(size, heights, place) {
+            (dem, true) => Ok(dem),
+            (_, false) => Err(format!("all of its {} x {} samples are nodata", size[0], size[1])),
+        }
+    }
+
+    /// A part of a raster, which may be without any height; `place` is that of the raster.
+    #[must_use]
+    pub fn part(part: Part, heights: Vec<f32>, place: Option<Placement>) -> Dem {
+        let place = place.map(|mut place| {
+            place.origin[0] += part.from[0] as f64 * place.step[0];
+            place.origin[1] -= part.from[1] as f64 * place.step[1];
+            place
+        });
+        Dem::checked(part.size, heights, place).0
+    }
+
+    /// A part of a whole raster.
+    ///
+    /// # Errors
+    /// A message if the part is not within it.
+    pub fn cropped(self, part: Part) -> Result<Dem, String> {
+        if !part.is_within([self.width, self.height]) {
+            return Err(beyond([self.width, self.height]));
+        }
+        let ([left, top], [width, height]) = (part.from, part.size);
+        let rows = self.heights.chunks_exact(self.width).skip(top).take(height);
+        let heights = rows.flat_map(|row| &row[left..left + width]).copied().collect();
+        Ok(Dem { notes: self.notes, ..Dem::part(part, heights, self.place) })
+    }
+
+    /// A DEM of the samples read, and whether there is any height.
+    fn checked(size: [usize; 2], mut heights: Vec<f32>, place: Option<Placement>) -> (Dem, bool) {
         let [width, height] = size;
         let mut found = false;
         for sample in &mut heights {
@@ -204,10 +276,7 @@ impl Dem {
                 *sample = f32::NAN;
             }
         }
-        match found {
-            true => Ok(Dem { width, height, heights, place, notes: Vec::new() }),
-            false => Err(format!("all of its {width} x {height} samples are nodata")),
-        }
+        (Dem { width, height, heights, place, notes: Vec::new() }, found)
     }
 
     /// Number of samples without a height.
@@ -220,6 +289,11 @@ impl Dem {
 /// An error about a rejected file, with its name.
 pub fn refused(name: &str, why: impl AsRef<str>) -> Error {
     Error::new(ErrorKind::File, format!("cannot read {name}: {}", why.as_ref()))
+}
+
+/// The message for a part that is not within a raster.
+pub(super) fn beyond(size: [usize; 2]) -> String {
+    format!("it has {} x {} samples, and others were asked for", size[0], size[1])
 }
 
 /// Checks, before allocation, that heights of this size fit in `allowed` bytes. Returns their number.

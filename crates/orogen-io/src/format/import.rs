@@ -4,7 +4,7 @@ use std::io::Cursor;
 use std::path::Path;
 
 use super::band::BandMetadata;
-use super::dem::{Dem, Input, Placement, Request, refused};
+use super::dem::{Dem, Input, Part, Placement, Request, refused};
 use super::foreign::foreign;
 use super::noted::noted;
 use super::raw::Sample;
@@ -41,7 +41,17 @@ pub fn has_head(path: &Path) -> bool {
     extension(path).is_some_and(|extension| matches!(extension.as_str(), "tif" | "tiff" | "asc" | "hgt"))
 }
 
-/// The size and position of a file that [has a head](has_head).
+/// Whether a part of a file can be read without the rest of it.
+#[must_use]
+pub fn reads_parts(path: &Path) -> bool {
+    extension(path).is_some_and(|extension| is_read_in_parts(&extension))
+}
+
+fn is_read_in_parts(extension: &str) -> bool {
+    matches!(extension, "tif" | "tiff")
+}
+
+/// The size and position of a file that [has a head](has_head), or can be [read in parts](reads_parts).
 ///
 /// # Errors
 /// If it cannot be read.
@@ -114,8 +124,16 @@ pub fn parse(
 }
 
 fn band(input: &mut dyn Input, name: &str, extension: &str, sidecar: Option<Sidecar>, request: Request) -> Result<Dem> {
-    let Request { allowed, .. } = request;
     let mut told = sidecar.unwrap_or_default();
+    // What stands beside a file applies to all of it.
+    let is_tiff = matches!(extension, "tif" | "tiff");
+    if let Some(part) = request.part
+        && !(is_read_in_parts(extension) && (is_tiff || told.mask.is_none()))
+    {
+        let whole = band(input, name, extension, Some(told), request.with_part(None))?;
+        return whole.cropped(part).map_err(|why| refused(name, why));
+    }
+    let Request { allowed, .. } = request;
     if !SEVERAL_BANDS.contains(&extension) {
         request.choose(1).map_err(|why| refused(name, why))?;
     }
@@ -157,7 +175,7 @@ fn band(input: &mut dyn Input, name: &str, extension: &str, sidecar: Option<Side
         dem.heights = told.north_first(heights, dem.width).map_err(|why| refused(name, why))?;
         dem.place = told.place(dem.height).map_err(|why| refused(name, why))?;
     }
-    if !matches!(extension, "tif" | "tiff") {
+    if !is_tiff {
         // Samples between `low` and `high` are metres, and their nodata is known.
         let metadata = match extension {
             "png" | "r16" | "bil" | "flt" => BandMetadata::default(),
@@ -193,13 +211,19 @@ fn convert(
             );
         }
         let mut file = open::regular(mask, "read the mask").map_err(|error| error.to_string())?;
-        let size = [dem.width as u64, dem.height as u64];
-        geotiff::mask::external(&mut file, size, request, &mut dem.heights)?;
+        let size = [dem.width, dem.height];
+        geotiff::mask::external(
+            &mut file,
+            size.map(|samples| samples as u64),
+            Part::whole(size),
+            request,
+            &mut dem.heights,
+        )?;
     }
     let mut conversion = metadata.conversion(vertical)?;
     conversion.apply(&mut dem.heights);
     dem.notes.extend(conversion.notes());
-    match dem.heights.iter().all(|height| height.is_nan()) {
+    match request.part.is_none() && dem.heights.iter().all(|height| height.is_nan()) {
         true => Err(format!("all of its {} x {} samples are nodata", dem.width, dem.height)),
         false => Ok(()),
     }

@@ -4,16 +4,17 @@ use crate::support::Random;
 use orogen::dem::open;
 use orogen::dem::prepared::PreparedDem;
 use orogen::field::dem::{Dem as Node, Shows};
+use orogen::filter::blur::Blur;
 use orogen::format::crs::keys::{self, GeoKeys};
 use orogen::format::crs::unit::Unit;
-use orogen::format::dem::{Dem, Request};
+use orogen::format::dem::{Dem, Part, Request};
 use orogen::format::geotiff::options::Options as Layout;
 use orogen::format::geotiff::{reader, writer};
 use orogen::format::import;
 use orogen::format::sidecar::Sidecar;
 use orogen::spool::Spool;
 use orogen::test_folder::TestFolder;
-use orogen::{Budget, Options, Recipe, Window, World, WorldSpec};
+use orogen::{Budget, Error, ErrorKind, Options, Recipe, Window, World, WorldSpec};
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
@@ -134,6 +135,176 @@ fn what_stands_beside_a_file_tells_its_place() {
         "{:?}",
         dem.notes
     );
+}
+
+/// The bits of heights: NaN is a value like others.
+fn bits(heights: &[f32]) -> Vec<u32> {
+    heights.iter().map(|height| height.to_bits()).collect()
+}
+
+/// The samples of a whole file in a part of it.
+fn crop(whole: &Dem, part: Part) -> Vec<f32> {
+    let rows = whole.heights.chunks(whole.width).skip(part.from[1]).take(part.size[1]);
+    rows.flat_map(|row| &row[part.from[0]..part.from[0] + part.size[0]]).copied().collect()
+}
+
+#[test]
+fn a_part_of_a_file_has_the_bits_of_the_whole() {
+    let mut seen = 0;
+    for entry in std::fs::read_dir(corpus()).unwrap() {
+        let path = entry.unwrap().path();
+        let bands = path.file_stem().unwrap().to_str().unwrap().starts_with("bands").then_some(2);
+        let request = Request::new(1 << 20).with_band(bands);
+        let Ok(whole) = import::read(&path, request) else { continue };
+        if !import::reads_parts(&path) {
+            continue;
+        }
+        seen += 1;
+        let [width, height] = [whole.width, whole.height];
+        for (from, size) in [
+            ([0, 0], [width, height]),
+            ([0, 0], [1, 1]),
+            ([width - 1, height - 1], [1, 1]),
+            ([3, 2], [7, 5]),
+            ([width / 2, 0], [width - width / 2, height]),
+            ([0, height / 2], [width, 1]),
+        ] {
+            let part = Part { from, size };
+            if !part.is_within([width, height]) {
+                continue;
+            }
+            let read = import::read(&path, request.with_part(Some(part))).unwrap();
+            assert_eq!([read.width, read.height], size, "{}", path.display());
+            assert_eq!(bits(&read.heights), bits(&crop(&whole, part)), "{} {part:?}", path.display());
+        }
+        let beyond = request.with_part(Some(Part { from: [1, 0], size: [width, 1] }));
+        assert!(import::read(&path, beyond).unwrap_err().to_string().contains("others were asked for"));
+        // Filled, and on square cells.
+        let name = bands.map_or(path.clone(), |band| format!("{}:{band}", path.display()).into());
+        let whole = PreparedDem::read(&name, None, 1 << 20).unwrap();
+        if whole.georeference.is_none() {
+            continue;
+        }
+        let outline = PreparedDem::outline(&name).unwrap().unwrap();
+        assert_eq!((outline.size, &outline.georeference), (whole.size, &whole.georeference), "{}", name.display());
+        let all = *whole.grid.window();
+        for window in
+            [all, Window { width: 3, height: 4, ..all }.at(4, 1), all.at(all.width as i64 - 2, 5), all.grown(9)]
+        {
+            let inside = window.intersection(&all);
+            let Some(part) = PreparedDem::part(&name, &window, 1 << 20).unwrap() else {
+                assert!(inside.is_empty(), "{} {window:?}", name.display());
+                continue;
+            };
+            assert_eq!(*part.grid.window(), inside);
+            assert_eq!(
+                bits(part.grid.data()),
+                bits(whole.grid.crop(&inside).unwrap().data()),
+                "{} {window:?}",
+                name.display()
+            );
+        }
+        assert!(PreparedDem::part(&name, &all.at(9999, 0), 1 << 20).unwrap().is_none());
+    }
+    assert!(seen > 40, "{seen}");
+    assert!(PreparedDem::outline(&corpus().join("arc.asc")).unwrap().is_none());
+}
+
+/// A file whose bytes are counted as they are read.
+struct Counted<'a>(Cursor<&'a [u8]>, usize);
+
+impl std::io::Read for Counted<'_> {
+    fn read(&mut self, to: &mut [u8]) -> std::io::Result<usize> {
+        let count = self.0.read(to)?;
+        self.1 += count;
+        Ok(count)
+    }
+}
+
+impl std::io::Seek for Counted<'_> {
+    fn seek(&mut self, to: std::io::SeekFrom) -> std::io::Result<u64> {
+        self.0.seek(to)
+    }
+}
+
+/// A file of 640 x 500 samples in tiles of 64 with overviews, with holes of one sample and of 40 x 40 samples.
+fn with_holes() -> (Vec<u8>, orogen::Grid) {
+    let window = Window::new(640, 500, 30.0);
+    let hole = |i: usize, j: usize| (400..440).contains(&i) && (300..340).contains(&j) || (i, j) == (70, 80);
+    let heights = (0..640 * 500).map(|k| match (k % 640, k / 640) {
+        (i, j) if hole(i, j) => f32::NAN,
+        (i, j) => formula(i, j) + ((i * 7919 + j * 104_729) % 10_007) as f32 * 1e-3,
+    });
+    let grid = orogen::Grid::from_data(window, heights.collect()).unwrap();
+    let mut bytes = Vec::new();
+    writer::write(&mut bytes, &grid, &Layout::of_unit("m").with_tile(Some(64)), Spool::in_memory()).unwrap();
+    (bytes, grid)
+}
+
+#[test]
+fn a_part_of_a_file_takes_its_blocks_alone() {
+    let (bytes, grid) = with_holes();
+    let taken = |part: Option<Part>| {
+        let mut file = Counted(Cursor::new(&bytes), 0);
+        // Memory for a tenth of the file.
+        let request = Request::new(if part.is_some() { 128 << 10 } else { 8 << 20 }).with_part(part);
+        let dem = reader::read(&mut file, "a.tif", request).unwrap();
+        (dem, file.1)
+    };
+    let (_, whole) = taken(None);
+    let part = Part { from: [250, 130], size: [100, 60] };
+    let (dem, some) = taken(Some(part));
+    let inside = Window { width: 100, height: 60, ..*grid.window() }.at(250, 130);
+    assert_eq!(dem.heights, grid.crop(&inside).unwrap().data());
+    // Three by one of ten by eight tiles, and the directories.
+    assert!(some < whole / 8, "{some} of {whole} bytes");
+
+    let folder = TestFolder::new("dems-part").unwrap();
+    let path = folder.join("a.tif");
+    std::fs::write(&path, &bytes).unwrap();
+    let whole = PreparedDem::read(&path, None, 8 << 20).unwrap();
+    for (x, y, side) in [(60, 75, 30), (405, 310, 20), (430, 290, 30), (0, 0, 10), (600, 460, 100)] {
+        let window = Window::new(side, side, 30.0).at(x, y);
+        let part = PreparedDem::part(&path, &window, 8 << 20).unwrap().unwrap();
+        let inside = window.intersection(grid.window());
+        assert_eq!(bits(part.grid.data()), bits(whole.grid.crop(&inside).unwrap().data()), "{window:?}");
+    }
+    // A small hole is filled from its surroundings alone.
+    assert!(PreparedDem::part(&path, &Window::new(30, 30, 30.0).at(60, 75), 300 << 10).is_ok());
+}
+
+#[test]
+fn a_world_of_a_part_has_the_bits_of_the_whole_or_asks_for_it() {
+    let (bytes, _) = with_holes();
+    let folder = TestFolder::new("dems-part-world").unwrap();
+    let path = folder.join("a.tif");
+    std::fs::write(&path, &bytes).unwrap();
+    let open = |ground: PreparedDem| {
+        let mut recipe = Recipe::from_dem(&path, &std::sync::Arc::new(ground));
+        recipe.add("soft", Blur { source: "place".into(), radius: 90.0 });
+        recipe.add("wide", Blur { source: "place".into(), radius: 3000.0 });
+        recipe.output("soft", "soft").output("wide", "wide");
+        World::open(recipe).unwrap()
+    };
+    let held = Window::new(120, 100, 30.0).at(520, 20);
+    let part = open(PreparedDem::part(&path, &held, 8 << 20).unwrap().unwrap());
+    let whole = open(PreparedDem::read(&path, None, 8 << 20).unwrap());
+    assert_eq!(part.full_window(30.0).unwrap(), whole.full_window(30.0).unwrap());
+    // At the cell of the file and at others, and at its eastern end.
+    for (layer, window) in [
+        ("height", held.shrunk(4)),
+        ("height", Window::new(20, 12, 100.0).at(158, 10)),
+        ("height", Window::new(40, 40, 30.0).at(600, 40)),
+        ("soft", Window::new(40, 40, 30.0).at(590, 50)),
+    ] {
+        assert_eq!(part.window(layer, &window).unwrap(), whole.window(layer, &window).unwrap(), "{layer} {window:?}");
+    }
+    let asks = |error: Error| assert_eq!(error.kind(), ErrorKind::Part, "{error}");
+    asks(part.window("height", &held.at(515, 20)).unwrap_err());
+    asks(part.window("wide", &Window::new(4, 4, 30.0).at(580, 70)).unwrap_err());
+    asks(part.points("height", &[17_000.0], &[1500.0]).unwrap_err());
+    let outline = open(PreparedDem::outline(&path).unwrap().unwrap());
+    asks(outline.window("height", &held).unwrap_err());
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::entries::Tiff;
 use super::unpack::Packing;
-use crate::format::dem::afford_beside;
+use crate::format::dem::{Part, afford_beside};
 
 /// The blocks of a raster.
 pub struct Blocks {
@@ -17,15 +17,15 @@ pub struct Blocks {
     tiled: bool,
 }
 
-/// The part of a block inside the raster.
+/// What is read of a block: its samples inside the part of the raster that is read.
 #[derive(Debug, Clone, Copy)]
 pub struct Block {
-    /// The first column and row.
-    pub left: u64,
-    pub top: u64,
+    /// The first column and row in the block.
+    pub from: [usize; 2],
+    /// The first column and row in the part.
+    pub to: [usize; 2],
     /// Number of columns and rows.
-    pub columns: u64,
-    pub rows: u64,
+    pub size: [usize; 2],
 }
 
 /// Limits of the memory of decompression.
@@ -37,6 +37,8 @@ pub struct Limits {
     pub allowed: u64,
     /// Samples per pixel in a block.
     pub bands: usize,
+    /// The part of the raster that is read.
+    pub part: Part,
 }
 
 impl Blocks {
@@ -70,8 +72,8 @@ impl Blocks {
         Ok(Blocks { width: block_width, height: block_height, size, offsets, lengths, tiled })
     }
 
-    /// Decompresses all blocks of a plane, row by row. `row` is the length of a row of a block in bytes. `visit` gets
-    /// each block with its bytes; an absent block has none.
+    /// Decompresses the blocks of a plane that have samples of the part, row by row. `row` is the length of a row of a
+    /// block in bytes. `visit` gets each block with its bytes; an absent block has none.
     pub fn each(
         &self,
         tiff: &mut Tiff,
@@ -84,12 +86,14 @@ impl Blocks {
         let [width, height] = self.size;
         let across = width.div_ceil(self.width);
         let first = (across * height.div_ceil(self.height)).saturating_mul(plane as u64);
+        let [begin, end] = [limits.part.from, limits.part.end()].map(|at| at.map(|at| at as u64));
         // A block may exceed the limit only as much as the tiles around a small raster.
         let largest = limits.allowed.saturating_mul(2 * limits.bands as u64).saturating_add(4 << 20);
-        for (down, top) in (0..height).step_by(self.height as usize).enumerate() {
+        for down in begin[1] / self.height..end[1].div_ceil(self.height) {
+            let top = down * self.height;
             let rows = self.height.min(height - top);
-            for column in 0..across {
-                let k = first.saturating_add(down as u64 * across + column) as usize;
+            for column in begin[0] / self.width..end[0].div_ceil(self.width) {
+                let k = first.saturating_add(down * across + column) as usize;
                 let (Some(&at), Some(&packed)) = (self.offsets.get(k), self.lengths.get(k)) else {
                     return Err(format!("it declares {} blocks but has more", self.offsets.len()));
                 };
@@ -108,7 +112,16 @@ impl Blocks {
                     }
                 };
                 let left = column * self.width;
-                visit(Block { left, top, columns: self.width.min(width - left), rows }, &mut bytes);
+                let (from, until) = (
+                    [left.max(begin[0]), top.max(begin[1])],
+                    [(left + self.width).min(end[0]), (top + rows).min(end[1])],
+                );
+                let block = Block {
+                    from: [from[0] - left, from[1] - top].map(|at| at as usize),
+                    to: [from[0] - begin[0], from[1] - begin[1]].map(|at| at as usize),
+                    size: [until[0] - from[0], until[1] - from[1]].map(|count| count as usize),
+                };
+                visit(block, &mut bytes);
             }
         }
         Ok(())

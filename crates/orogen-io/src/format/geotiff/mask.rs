@@ -4,23 +4,35 @@
 use super::blocks::{Blocks, Limits};
 use super::entries::Tiff;
 use super::unpack::Packing;
-use crate::format::dem::{Input, Request};
+use crate::format::dem::{Input, Part, Request};
 
 /// Sets heights to NaN where the file's own mask is 0. Without a mask nothing changes. Returns a note if the file is
 /// damaged after its raster: the heights are there, and a mask may not be.
-pub fn internal(tiff: &mut Tiff, size: [u64; 2], allowed: u64, heights: &mut [f32]) -> Result<Option<String>, String> {
+pub fn internal(
+    tiff: &mut Tiff,
+    size: [u64; 2],
+    part: Part,
+    allowed: u64,
+    heights: &mut [f32],
+) -> Result<Option<String>, String> {
     match tiff.seek_mask(size) {
         Ok(false) => Ok(None),
         Err(why) => Ok(Some(format!("a mask or overviews after its raster cannot be read: {why}"))),
         Ok(true) => {
-            apply(tiff, size, 1, allowed, heights).map_err(|why| format!("its mask cannot be read: {why}"))?;
+            apply(tiff, size, part, 1, allowed, heights).map_err(|why| format!("its mask cannot be read: {why}"))?;
             Ok(None)
         }
     }
 }
 
 /// Sets heights to NaN where the mask file beside them is 0. A mask file has one band for all bands, or one for each.
-pub fn external(input: &mut dyn Input, size: [u64; 2], request: Request, heights: &mut [f32]) -> Result<(), String> {
+pub fn external(
+    input: &mut dyn Input,
+    size: [u64; 2],
+    part: Part,
+    request: Request,
+    heights: &mut [f32],
+) -> Result<(), String> {
     let mut read = |input| {
         let tiff = &mut Tiff::open(input)?;
         let own = [tiff.one(256)?.unwrap_or(0), tiff.one(257)?.unwrap_or(0)];
@@ -30,12 +42,19 @@ pub fn external(input: &mut dyn Input, size: [u64; 2], request: Request, heights
                 own[0], own[1], size[0], size[1]
             ));
         }
-        apply(tiff, size, request.band.unwrap_or(1), request.allowed, heights)
+        apply(tiff, size, part, request.band.unwrap_or(1), request.allowed, heights)
     };
     read(input).map_err(|why| format!("the .msk beside it cannot be read: {why}"))
 }
 
-fn apply(tiff: &mut Tiff, size: [u64; 2], band: u32, allowed: u64, heights: &mut [f32]) -> Result<(), String> {
+fn apply(
+    tiff: &mut Tiff,
+    size: [u64; 2],
+    part: Part,
+    band: u32,
+    allowed: u64,
+    heights: &mut [f32],
+) -> Result<(), String> {
     let bands = tiff.one(277)?.unwrap_or(1).clamp(1, 4096) as usize;
     let band = (band as usize).saturating_sub(1).min(bands - 1);
     let bits = tiff.one(258)?.unwrap_or(1);
@@ -55,18 +74,17 @@ fn apply(tiff: &mut Tiff, size: [u64; 2], band: u32, allowed: u64, heights: &mut
         _ => blocks.width.saturating_mul(together as u64),
     };
     let (plane, inner) = if apart { (band, 0) } else { (0, band) };
-    let limits = Limits { count: heights.len(), allowed, bands: together };
+    let limits = Limits { count: heights.len(), allowed, bands: together, part };
     blocks.each(tiff, plane, row, &packing, &limits, |block, bytes| {
-        for j in 0..block.rows {
-            for i in 0..block.columns {
+        let row = row as usize;
+        for j in 0..block.size[1] {
+            for i in 0..block.size[0] {
+                let (column, line) = (block.from[0] + i, (block.from[1] + j) * row);
                 let valid = match bits {
-                    1 => bytes.get((j * row + i / 8) as usize).is_some_and(|byte| byte >> (7 - i % 8) & 1 == 1),
-                    _ => {
-                        let at = (j * row + i * together as u64) as usize + inner;
-                        bytes.get(at).is_some_and(|byte| *byte != 0)
-                    }
+                    1 => bytes.get(line + column / 8).is_some_and(|byte| byte >> (7 - column % 8) & 1 == 1),
+                    _ => bytes.get(line + column * together + inner).is_some_and(|byte| *byte != 0),
                 };
-                let at = ((block.top + j) * size[0] + block.left + i) as usize;
+                let at = (block.to[1] + j) * part.size[0] + block.to[0] + i;
                 if let (false, Some(height)) = (valid, heights.get_mut(at)) {
                     *height = f32::NAN;
                 }

@@ -10,7 +10,7 @@ use super::entries::Tiff;
 use super::unpack::{Layout, Packing};
 use super::{mask, place};
 use crate::format::band::BandMetadata;
-use crate::format::dem::{Dem, Input, Placement, Request, afford, refused, turn_rows};
+use crate::format::dem::{Dem, Input, Part, Placement, Request, afford, beyond, refused, turn_rows};
 use crate::format::sidecar::Sidecar;
 use crate::open;
 use orogen_grid::error::Result;
@@ -81,10 +81,16 @@ fn heights(
 ) -> std::result::Result<Dem, String> {
     let tiff = &mut Tiff::open(input)?;
     let size = [side(tiff, 256, "width")?, side(tiff, 257, "height")?];
-    let [width, height] = size;
+    let [width, height] = request.part.map_or(size, |part| part.size.map(|samples| samples as u64));
     let count = afford(width, height, request.allowed)?;
+    let whole = size.map(|samples| samples as usize);
+    let wanted = request.part.unwrap_or(Part::whole(whole));
+    if !wanted.is_within(whole) {
+        return Err(beyond(whole));
+    }
     let samples = samples(tiff, request)?;
-    let found = place::find(tiff, height as usize)?;
+    let found = place::find(tiff, whole[1])?;
+    let part = if found.from_south { wanted.from_south(whole[1]) } else { wanted };
     let metadata = samples.metadata.clone().replaced_by(&told.band(request.band));
     // A `.prj` beside the file applies to files without a coordinate system.
     let has_system = found.place.as_ref().is_some_and(|place| place.keys.is_some());
@@ -92,33 +98,39 @@ fn heights(
     let mut conversion = metadata.conversion(vertical)?;
     let blocks = Blocks::read(tiff, size)?;
     let row = blocks.width.saturating_mul((samples.layout.size * samples.layout.bands) as u64);
-    let limits = Limits { count, allowed: request.allowed, bands: samples.layout.bands };
+    let limits = Limits { count, allowed: request.allowed, bands: samples.layout.bands, part };
     let mut heights: Vec<f32> = Vec::new();
     let mut bits = Vec::new();
     blocks.each(tiff, samples.plane, row, &samples.packing, &limits, |block, bytes| {
-        if block.left == 0 {
+        let [left, top] = block.to;
+        if left == 0 {
             // Allocate only for this row of blocks: a file with a wrong size fails early.
-            let grown = heights.len() + (block.rows * width) as usize;
-            heights.reserve(if block.top == 0 { count.min(2 * grown) } else { grown - heights.len() });
+            let grown = heights.len() + block.size[1] * part.size[0];
+            heights.reserve(if top == 0 { count.min(2 * grown) } else { grown - heights.len() });
             heights.resize(grown, conversion.absent());
         }
-        for (j, line) in bytes.chunks_exact_mut(row as usize).take(block.rows as usize).enumerate() {
+        let lines = bytes.chunks_exact_mut(row as usize).skip(block.from[1]).take(block.size[1]);
+        for (j, line) in lines.enumerate() {
             samples.layout.row(line, &mut bits);
-            let begin = ((block.top + j as u64) * width + block.left) as usize;
-            let own = bits.iter().skip(samples.band).step_by(samples.layout.bands);
-            for (height, bits) in heights[begin..begin + block.columns as usize].iter_mut().zip(own) {
+            let begin = (top + j) * part.size[0] + left;
+            let bands = samples.layout.bands;
+            let own = bits.iter().skip(block.from[0] * bands + samples.band).step_by(bands);
+            for (height, bits) in heights[begin..begin + block.size[0]].iter_mut().zip(own) {
                 *height = conversion.height(samples.value(*bits), samples.layout.size);
             }
         }
     })?;
-    let damaged = mask::internal(tiff, size, request.allowed, &mut heights)?;
+    let damaged = mask::internal(tiff, size, part, request.allowed, &mut heights)?;
     if let Some(external) = external {
-        mask::external(external, size, request, &mut heights)?;
+        mask::external(external, size, part, request, &mut heights)?;
     }
     if found.from_south {
-        turn_rows(&mut heights, width as usize);
+        turn_rows(&mut heights, part.size[0]);
     }
-    let mut dem = Dem::new([width as usize, height as usize], heights, found.place)?;
+    let mut dem = match request.part {
+        Some(part) => Dem::part(part, heights, found.place),
+        None => Dem::new(whole, heights, found.place)?,
+    };
     dem.notes = conversion.notes();
     dem.notes.extend(damaged);
     Ok(dem)

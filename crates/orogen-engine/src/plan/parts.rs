@@ -1,0 +1,46 @@
+//! Whether the heights that a plan reads are there: those of a large file may have been read in part.
+
+use super::program::Instruction;
+use super::steps::{Plan, Step};
+use crate::ids::{CoordSetId, Id, NodeId};
+use crate::node::Node;
+use crate::recipe::document::Recipe;
+use orogen_grid::error::{Error, ErrorKind, Result};
+
+/// Checks that a plan reads only heights that were read from their files. Solvers read the whole world, and points may
+/// be anywhere in it, so they need whole files.
+///
+/// # Errors
+/// [`ErrorKind::Part`] if it needs others.
+pub fn check(plan: &Plan, recipe: &Recipe) -> Result<()> {
+    let is_part =
+        |node: &Node| matches!(node, Node::Dem(dem) if dem.path.ground().is_some_and(|ground| ground.is_part()));
+    if !recipe.nodes().iter().any(|named| is_part(&named.node)) {
+        return Ok(());
+    }
+    let held = plan.solves.is_empty() && !plan.scattered && plan.steps.iter().all(|step| holds(step, recipe));
+    match held {
+        true => Ok(()),
+        false => Err(Error::new(
+            ErrorKind::Part,
+            "the heights of a file were read in part, and others are needed; read the whole file",
+        )),
+    }
+}
+
+fn holds(step: &Step, recipe: &Recipe) -> bool {
+    let Step::Fill { program, window, .. } = step else { return true };
+    program.instructions.iter().all(|instruction| match instruction {
+        Instruction::Field { node, coords, .. } => match &node_of(recipe, *node) {
+            // Positions of other sets are not known before the program runs.
+            Some(Node::Dem(dem)) if *coords == CoordSetId::BLOCK => dem.holds(window),
+            Some(Node::Dem(dem)) => !dem.path.ground().is_some_and(|ground| ground.is_part()),
+            _ => true,
+        },
+        _ => true,
+    })
+}
+
+fn node_of(recipe: &Recipe, node: NodeId) -> Option<&Node> {
+    recipe.nodes().get(node.index()).map(|named| &named.node)
+}
