@@ -60,9 +60,9 @@ enum Tiles {
     R16,
     /// Headerless f32, little-endian; adjacent tiles share their edge samples
     R32,
-    /// XYZ tree of Terrarium PNG tiles with TileJSON, for web maps
+    /// XYZ tree of Terrarium PNG tiles with TileJSON, for web maps; in EPSG:3857 those of OpenStreetMap
     Terrarium,
-    /// XYZ tree of Terrain-RGB PNG tiles with TileJSON, for web maps
+    /// XYZ tree of Terrain-RGB PNG tiles with TileJSON, for web maps; in EPSG:3857 those of OpenStreetMap
     TerrainRgb,
 }
 
@@ -141,7 +141,7 @@ fn window(args: &Args, world: &World, form: Form) -> Result<Window, Failure> {
     let cell = view.cell.unwrap_or(match form {
         Form::Xyz(_) => {
             let tile = args.tile.map(|tile| tile as usize).or(form.usual_tile()).unwrap_or(1);
-            xyz::cell_near(world.recipe().world.cell, tile)
+            xyz::cell_near(world.recipe().world.cell, tile, world.recipe().georeference().as_ref())
         }
         _ => world.recipe().world.cell,
     });

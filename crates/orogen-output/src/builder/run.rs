@@ -413,6 +413,6 @@ fn target(world: &World, identity: &Identity, form: Form) -> Result<Box<dyn Buil
         Form::Cog => Box::new(Cog::new(identity)?),
         Form::Zarr => Box::new(Zarr::new(identity, about)?),
         Form::Tiles(samples) => Box::new(Folder::new(identity, samples, about, sea_level)?),
-        Form::Xyz(encoding) => Box::new(Tree::new(identity, about, encoding)?),
+        Form::Xyz(encoding) => Box::new(Tree::new(world, identity, encoding)?),
     })
 }

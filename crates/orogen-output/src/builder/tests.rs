@@ -20,6 +20,8 @@ use orogen_grid::progress::Progress;
 use orogen_io::file::{Existing, Output, OutputPolicy};
 use orogen_io::format::encoding::Encoding;
 use orogen_io::format::geotiff::{options, writer};
+use orogen_io::format::import;
+use orogen_io::format::sidecar::Sidecar;
 use orogen_io::spool::Spool;
 use orogen_io::test_folder::TestFolder;
 
@@ -381,6 +383,67 @@ fn only_one_builds_at_a_time() {
     }
     drop(held);
     build.run(Start::Fresh, &Progress::none()).unwrap();
+}
+
+/// The heights in a tile.
+fn tile(out: &Path, zoom: u32, [column, row]: [u32; 2]) -> Vec<f32> {
+    let bytes = fs::read(out.join(format!("{zoom}/{column}/{row}.png"))).unwrap();
+    let told = Sidecar { encoding: Some("terrarium".into()), cell: Some(1.0), ..Sidecar::default() };
+    import::parse(&mut io::Cursor::new(bytes), "tile", "png", Some(told), 1 << 22).unwrap().heights
+}
+
+/// The tile of a web map and the pixel in it at a longitude and latitude, by the formula of OpenStreetMap's wiki.
+fn slippy(longitude: f64, latitude: f64, zoom: u32) -> [f64; 2] {
+    let (count, latitude) = (f64::from(1 << zoom), latitude.to_radians());
+    let down = libm::log(libm::tan(latitude) + 1.0 / libm::cos(latitude)) / std::f64::consts::PI;
+    [(longitude + 180.0) / 360.0 * count, (1.0 - down) / 2.0 * count]
+}
+
+#[test]
+fn a_world_on_the_web_map_is_in_its_real_tiles() {
+    const RADIUS: f64 = 6_378_137.0;
+    const ZOOM: u32 = 15;
+    let pixel = super::xyz::cell_near(5.0, 256, None);
+    // Vienna, with pixels between the samples and on them.
+    let first = |at: f64| ((at / pixel).floor() + 0.5) * pixel;
+    for (origin, is_exact) in [([1_822_000.0, 6_141_000.0], false), ([first(1_822_000.0), first(6_141_000.0)], true)] {
+        let map = format!("cell = 5\ncrs = \"EPSG:3857\"\norigin = [{:?}, {:?}]", origin[0], origin[1]);
+        let world = World::open(Recipe::parse(&BOUNDED.replace("cell = 5", &map), "test").unwrap()).unwrap();
+        let folder = Folder::new();
+        let spec = BuildSpec::new(Form::Xyz(Encoding::Terrarium), Window::new(180, 150, pixel).at(10, 5));
+        run(&world, &spec, &folder.out(), Start::Fresh);
+        let tiles: serde_json::Value =
+            serde_json::from_slice(&fs::read(folder.out().join("tiles.json")).unwrap()).unwrap();
+        assert_eq!((&tiles["maxzoom"], &tiles["map_metres_per_metre"]), (&ZOOM.into(), &1.0.into()));
+        let samples = world.window("height", &Window::new(200, 160, pixel)).unwrap();
+        for [x, y] in [[100.0, 80.0], [500.0, 430.0], [700.0, 600.0]] {
+            let [east, north] = [origin[0] + x, origin[1] - y];
+            let longitude = (east / RADIUS).to_degrees();
+            let latitude = libm::atan(libm::sinh(north / RADIUS)).to_degrees();
+            let at = slippy(longitude, latitude, ZOOM);
+            let number = at.map(|at| at as u32);
+            let [i, j] = at.map(|at| (at.fract() * 256.0) as usize);
+            let height = tile(&folder.out(), ZOOM, number)[j * 256 + i];
+            // The middle of that pixel in the world.
+            let middle = |k: usize, inside: usize| (f64::from(number[k]) * 256.0 + inside as f64 + 0.5) * pixel;
+            let half = std::f64::consts::PI * RADIUS;
+            let (x, y) = (middle(0, i) - half - origin[0], middle(1, j) - half + origin[1]);
+            let expect = world.height(x, y).unwrap();
+            assert!((height - expect).abs() < 0.05, "{height} {expect}");
+            if is_exact {
+                let sample = samples[((x / pixel).round() as usize, (y / pixel).round() as usize)];
+                assert!((height - sample).abs() <= 0.5 / 256.0, "{height} {sample}");
+            }
+        }
+        let bounds = tiles["bounds"].as_array().unwrap().iter().map(|at| at.as_f64().unwrap()).collect::<Vec<_>>();
+        let west = (origin[0] + 10.0 * pixel) / RADIUS;
+        assert!((bounds[0] - west.to_degrees()).abs() < 2.0 * pixel / 111_000.0, "{bounds:?}");
+    }
+    let far = BOUNDED.replace("cell = 5", "cell = 5\ncrs = \"EPSG:3857\"\norigin = [20037400, 0]");
+    let world = World::open(Recipe::parse(&far, "test").unwrap()).unwrap();
+    let spec = BuildSpec::new(Form::Xyz(Encoding::Terrarium), Window::new(100, 50, 5.0));
+    let error = Build::new(&world, &spec, &output(&Folder::new().out())).err().unwrap().to_string();
+    assert!(error.contains("is not on the map of EPSG:3857"), "{error}");
 }
 
 #[test]

@@ -1,10 +1,13 @@
 //! An XYZ tree of PNG tiles with encoded heights ([`Encoding`]), with TileJSON.
 //!
-//! **Position.** Web Mercator, with the world's origin at 0 degrees east and north. Pixels are areas, and samples are
-//! at their centres. Near the equator Mercator is true to scale: one metre of the world is one metre of the map if the
-//! cell equals a pixel of some zoom (see [`cell_near`]); otherwise the map is scaled by a factor that TileJSON states.
-//! Tiles are those of the whole map, so that windows of one world fit together; the part of a tile outside the window
-//! repeats its edge.
+//! **Position.** Web Mercator. Pixels are areas, and samples are at their centres. Tiles are those of the whole map, so
+//! that windows of one world fit together; the part of a tile outside the window repeats its edge.
+//!
+//! - A world in EPSG:3857 is at its place, in the tiles of all web maps. Pixels between its samples are interpolated, with samples beyond the
+//!   window where the world has any, so that adjacent windows have the pixels of one.
+//! - Any other world has its origin at 0 degrees east and north. Near the equator Mercator is true to scale: one metre of
+//!   the world is one metre of the map if the cell equals a pixel of some zoom (see [`cell_near`]); otherwise the map is
+//!   scaled by a factor that TileJSON states.
 //!
 //! **Lower zooms.** Each pixel is the mean of the four below it in full precision, rounded once when it is written.
 
@@ -18,10 +21,14 @@ use super::job::{Job, JobFile, Made, Stage};
 use super::output_store::OutputStore;
 use super::samples;
 use super::target::{BuildTarget, Disk};
+use orogen_engine::world::{HEIGHT, World};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
+use orogen_grid::resample::{self, LayerKind};
+use orogen_io::format::dem::Georeference;
 use orogen_io::format::encoding::Encoding;
 use orogen_io::format::png::{self, Picture, Pixel};
+use orogen_noise::Points;
 
 /// The TileJSON file.
 const TILEJSON: &str = "tiles.json";
@@ -41,10 +48,59 @@ fn pixel(zoom: u32, tile: usize) -> f64 {
     EQUATOR / (tile as f64 * f64::from(1 << zoom))
 }
 
-/// The cell closest to `cell` with which the map is true to scale.
+/// The cell closest to `cell` with which the map is true to scale: that of a zoom's pixels.
 #[must_use]
-pub fn cell_near(cell: f64, tile: usize) -> f64 {
-    pixel(zoom_near(cell, tile), tile)
+pub fn cell_near(cell: f64, tile: usize, map: Option<&Georeference>) -> f64 {
+    let unit = web_map(map).map_or(1.0, |map| map.per_metre[0]);
+    pixel(zoom_near(cell * unit, tile), tile) / unit
+}
+
+/// The position of a world in Web Mercator.
+fn web_map(map: Option<&Georeference>) -> Option<&Georeference> {
+    map.filter(|map| map.epsg() == Some(WEB_MERCATOR))
+}
+
+/// The EPSG code of Web Mercator.
+const WEB_MERCATOR: u16 = 3857;
+
+/// The largest distance of a pixel from a sample at which it is that sample, in cells.
+const SAME: f64 = 1e-3;
+
+/// Samples around a position that the interpolation reads.
+const AROUND: usize = 2;
+
+/// The samples at the pixels of an axis: pixel k is at sample `first + k * step`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Axis {
+    first: f64,
+    step: f64,
+}
+
+impl Axis {
+    fn at(&self, pixel: u64) -> f64 {
+        self.first + pixel as f64 * self.step
+    }
+
+    /// Whether every pixel is a sample.
+    fn is_exact(&self) -> bool {
+        self.step == 1.0 && self.first == self.first.floor()
+    }
+
+    /// The first and last of `most` pixels whose middles are in the cells of `count` samples from sample `from` on, without the last edge.
+    fn pixels(&self, from: i64, count: usize, most: u64) -> Option<[u64; 2]> {
+        let first = |edge: f64| ((edge - 0.5 - self.first) / self.step).ceil();
+        let (first, end) = (first(from as f64), first(from as f64 + count as f64));
+        (first >= 0.0 && end <= most as f64 && end > first).then_some([first as u64, end as u64 - 1])
+    }
+
+    /// The same with whole samples, if those of all pixels from `from` on are as near.
+    fn rounded(self, from: i64, count: usize) -> Axis {
+        let pixel = ((from as f64 - self.first) / self.step).round();
+        let shift = (self.first + pixel * self.step).round() - pixel;
+        let whole = Axis { first: shift, step: 1.0 };
+        let differ = |pixel: f64| (self.first + pixel * self.step - shift - pixel).abs() > SAME;
+        if differ(pixel) || differ(pixel + count as f64) { self } else { whole }
+    }
 }
 
 /// The tree. Each zoom is a stage, from the highest zoom down.
@@ -54,8 +110,14 @@ pub struct Tree {
     about: String,
     /// The highest zoom.
     zoom: u32,
+    /// The samples at the pixels of the whole map, across and down.
+    axes: [Axis; 2],
     /// The window's first and last pixel on the whole map, across and down.
     pixels: [[u64; 2]; 2],
+    /// The window with the samples around it that may be read.
+    reach: Window,
+    /// How samples are interpolated.
+    kind: LayerKind,
     stages: Vec<Stage>,
 }
 
@@ -64,30 +126,50 @@ impl Tree {
     ///
     /// # Errors
     /// If tiles do not have 256 or 512 pixels, or the window is outside the map.
-    pub fn new(identity: &Identity, about: &str, encoding: Encoding) -> Result<Tree> {
+    pub fn new(world: &World, identity: &Identity, encoding: Encoding) -> Result<Tree> {
         let refuse = |message: String| Err(Error::new(ErrorKind::Request, message));
         let (window, tile) = (identity.window, identity.tile);
         if !matches!(tile, 256 | 512) {
             return refuse(format!("the tiles of an XYZ tree must have 256 or 512 samples per side, not {tile}"));
         }
-        let zoom = zoom_near(window.cell, tile);
+        let map = web_map(identity.map.as_ref());
+        let zoom = zoom_near(window.cell * map.map_or(1.0, |map| map.per_metre[0]), tile);
         let most = (tile as u64) << zoom;
-        let side = |first: i64, samples: usize| -> Option<[u64; 2]> {
-            let first = u64::try_from(first.checked_add(most as i64 / 2)?).ok()?;
-            let last = first + samples as u64 - 1;
-            (last < most).then_some([first, last])
+        let axes = match map {
+            None => [Axis { first: -(most as f64 / 2.0), step: 1.0 }; 2],
+            Some(Georeference { origin: [east, north], per_metre, .. }) => {
+                let (pixel, [across, down]) = (pixel(zoom, tile), per_metre.map(|unit| unit * window.cell));
+                // The middle of the first pixel is half a pixel within the map.
+                let corner = 0.5 * (pixel - EQUATOR);
+                let x = Axis { first: (corner - east) / across, step: pixel / across };
+                let y = Axis { first: (corner + north) / down, step: pixel / down };
+                [x.rounded(window.x, window.width), y.rounded(window.y, window.height)]
+            }
         };
-        let (Some(across), Some(down)) = (side(window.x, window.width), side(window.y, window.height)) else {
-            return refuse(format!(
-                "the window does not fit on the map, which has {most} x {most} samples at zoom {zoom} with the origin in the middle; use a smaller window or a larger cell"
-            ));
+        let across = axes[0].pixels(window.x, window.width, most);
+        let down = axes[1].pixels(window.y, window.height, most);
+        let (Some(across), Some(down)) = (across, down) else {
+            return refuse(match map {
+                None => format!(
+                    "the window does not fit on the map, which has {most} x {most} samples at zoom {zoom} with the origin in the middle; use a smaller window or a larger cell"
+                ),
+                Some(_) => format!(
+                    "the window is not on the map of EPSG:3857, which extends {0} m from 0, 0 in each direction, or is smaller than its pixels at zoom {zoom}",
+                    (0.5 * EQUATOR) as u64
+                ),
+            });
         };
+        let is_exact = axes.iter().all(Axis::is_exact);
+        let layer = identity.layers.first().map_or(HEIGHT, String::as_str);
         let mut tree = Tree {
             encoding,
             identity: identity.clone(),
-            about: about.to_string(),
+            about: world.recipe().about.clone(),
             zoom,
+            axes,
             pixels: [across, down],
+            reach: if is_exact { window } else { world.surroundings(&window, 2 * AROUND) },
+            kind: world.kind(layer)?,
             stages: Vec::new(),
         };
         for stage in 0..=zoom as usize {
@@ -126,30 +208,48 @@ impl Tree {
         JobFile::Scratch(format!("half/{zoom}/{column}/{row}").into())
     }
 
-    /// The part of the window in a tile, and the position of the tile on the lattice.
-    fn inside(&self, row: usize, column: usize) -> (Window, i64, i64) {
+    /// The positions, in samples, of the pixels of a tile of the highest zoom along an axis. Those outside the window are
+    /// at its edge.
+    fn positions(&self, axis: usize, tile: u64) -> impl Iterator<Item = f64> {
+        let (side, [first, last]) = (self.tile() as u64, self.pixels[axis]);
+        (tile * side..(tile + 1) * side).map(move |pixel| self.axes[axis].at(pixel.clamp(first, last)))
+    }
+
+    /// Whether every pixel is a sample.
+    fn is_exact(&self) -> bool {
+        self.axes.iter().all(Axis::is_exact)
+    }
+
+    /// The samples that a tile of the highest zoom is made of.
+    fn inside(&self, row: usize, column: usize) -> Window {
         let (_, column, row) = self.address(Job { stage: 0, row, column });
-        let (tile, middle) = (self.tile() as i64, ((self.tile() as u64) << self.zoom) as i64 / 2);
-        let (left, top) = (column as i64 * tile - middle, row as i64 * tile - middle);
-        let window = self.identity.window;
-        let (x, y) = (window.x.max(left), window.y.max(top));
-        let inside = Window {
-            x,
-            y,
-            width: (window.right().min(left + tile) - x) as usize,
-            height: (window.bottom().min(top + tile) - y) as usize,
-            cell: window.cell,
+        let span = |axis: usize, tile: u64| {
+            let (first, last) = self
+                .positions(axis, tile)
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
+            (first.floor() as i64, (last.ceil() - first.floor()) as usize + 1)
         };
-        (inside, left, top)
+        let ((x, width), (y, height)) = (span(0, column), span(1, row));
+        let window = Window { x, y, width, height, cell: self.identity.window.cell };
+        if self.is_exact() { window } else { window.grown(AROUND).intersection(&self.reach) }
     }
 
     /// The samples of a tile of the highest zoom.
     fn full(&self, job: Job, grid: &Grid) -> Vec<f32> {
-        let (_, left, top) = self.inside(job.row, job.column);
-        let (tile, window) = (self.tile() as i64, grid.window());
-        let column = |i: i64| (left + i - window.x).clamp(0, window.width as i64 - 1) as usize;
-        let row = |j: i64| (top + j - window.y).clamp(0, window.height as i64 - 1) as usize;
-        (0..tile).flat_map(|j| (0..tile).map(move |i| (i, j))).map(|(i, j)| grid[(column(i), row(j))]).collect()
+        let (_, column, row) = self.address(job);
+        let (columns, rows) = (self.positions(0, column), self.positions(1, row));
+        let window = grid.window();
+        if self.is_exact() {
+            let columns: Vec<usize> = columns.map(|at| (at as i64 - window.x) as usize).collect();
+            return rows
+                .flat_map(|at| columns.iter().map(move |i| grid[(*i, (at as i64 - window.y) as usize)]))
+                .collect();
+        }
+        let xs: Vec<f64> = columns.map(|at| at * window.cell).collect();
+        let ys: Vec<f64> = rows.map(|at| at * window.cell).collect();
+        let mut out = vec![0.0; xs.len() * ys.len()];
+        resample::read(grid, self.kind, &Points::Lattice { xs: &xs, ys: &ys }, &mut out);
+        out
     }
 
     /// The samples of a tile derived from those below it; where there is none, the edge of its neighbour is repeated.
@@ -226,7 +326,7 @@ impl BuildTarget for Tree {
     }
 
     fn window(&self, row: usize, column: usize) -> Window {
-        self.inside(row, column).0
+        self.inside(row, column)
     }
 
     fn places(&self, job: Job) -> Vec<JobFile> {
@@ -275,7 +375,10 @@ impl BuildTarget for Tree {
             "made_by": format!("Orogen {}", self.identity.version),
             "recipe_sha256": self.identity.recipe,
             "cell": self.identity.window.cell,
-            "map_metres_per_metre": pixel(self.zoom, self.tile()) / self.identity.window.cell,
+            "map_metres_per_metre": match web_map(self.identity.map.as_ref()) {
+                Some(map) => map.per_metre[0],
+                None => pixel(self.zoom, self.tile()) / self.identity.window.cell,
+            },
             "window": {
                 "x": self.identity.window.x, "y": self.identity.window.y,
                 "width": self.identity.window.width, "height": self.identity.window.height,
@@ -309,8 +412,8 @@ mod tests {
         assert_eq!(zoom_near(156_543.0, 256), 0);
         assert_eq!(zoom_near(10.0, 256), 14);
         assert_eq!(zoom_near(10.0, 512), 13);
-        assert!((cell_near(10.0, 256) - 9.554_628_535_647_032).abs() < 1e-12);
-        assert_eq!(cell_near(cell_near(10.0, 256), 256), cell_near(10.0, 256));
+        assert!((cell_near(10.0, 256, None) - 9.554_628_535_647_032).abs() < 1e-12);
+        assert_eq!(cell_near(cell_near(10.0, 256, None), 256, None), cell_near(10.0, 256, None));
     }
 
     #[test]
