@@ -1,6 +1,6 @@
 //! Every reader of heights: any bytes are heights or a message.
 
-use orogen::format::dem::Request;
+use orogen::format::dem::{Dem, Part, Request};
 use orogen::format::import;
 use orogen::format::sidecar::Sidecar;
 use std::io::Cursor;
@@ -19,12 +19,22 @@ pub fn run(bytes: &[u8]) {
         [0x76, 0x2f, ..] => &["exr"],
         [b'P', b'K', ..] => &["hgt.zip"],
         [b'U', b'H', ..] => &["dt1"],
+        [b'C', b'D', b'F', ..] => &["nc"],
         _ => &["asc", "hgt", "r16", "r32", "bil", "flt", "xyz"],
     };
     for extension in extensions {
         let request = Request::new(1 << 22).with_band(Some(1));
-        if let Ok(dem) = import::parse(&mut Cursor::new(bytes), "it", extension, sidecar.clone(), request) {
+        let read = |part| {
+            let request = request.with_part(part);
+            import::parse(&mut Cursor::new(bytes), "it", extension, sidecar.clone(), request)
+        };
+        if let Ok(dem) = read(None) {
             assert_eq!(dem.heights.len(), dem.width * dem.height);
+            // A part has the bits of the whole.
+            let [from, size] = [[dem.width / 3, dem.height / 2], [dem.width.div_ceil(3), dem.height.div_ceil(2)]];
+            let part = Part { from, size };
+            let bits = |dem: Dem| dem.heights.iter().map(|height| height.to_bits()).collect::<Vec<u32>>();
+            assert_eq!(bits(read(Some(part)).unwrap()), bits(dem.cropped(part).unwrap()));
         }
     }
 }

@@ -61,7 +61,7 @@ pub fn folder(folder: &Path, request: Request) -> Result<Dem> {
     let heads: Vec<(PathBuf, [usize; 2], Placement)> = tiles
         .into_iter()
         .map(|path| {
-            let (size, place) = import::head(&path)?;
+            let (size, place) = import::head(&path, request.band)?;
             let place = place
                 .ok_or_else(|| refused(&path.display().to_string(), "it has no georeferencing, which a tile needs"))?;
             Ok((path, size, place))

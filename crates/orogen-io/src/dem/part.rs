@@ -30,11 +30,11 @@ impl Outline {
     /// `None` if the file cannot be read in parts.
     fn read(path: &Path) -> Result<Option<Outline>> {
         let name = path.display().to_string();
-        let (path, _) = open::split(path);
+        let (path, band) = open::split(path);
         if !import::reads_parts(&path) || crate::fs::is_dir(&path) {
             return Ok(None);
         }
-        let (size, Some(place)) = import::head(&path)? else { return Ok(None) };
+        let (size, Some(place)) = import::head(&path, band)? else { return Ok(None) };
         let (steps, layout) = lattice(size, Some(&place), None).map_err(|why| refused(&name, why))?;
         Ok(Some(Outline { size, place, steps, layout }))
     }

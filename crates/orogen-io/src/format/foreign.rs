@@ -4,14 +4,14 @@ use std::path::Path;
 
 /// Extensions, the name of the format, and the command that converts a file to GeoTIFF; `FILE` stands for its name.
 const FORMATS: &[(&[&str], &str, &str)] = &[
-    (&["nc", "nc4", "cdf"], "NetCDF", "gdal_translate NETCDF:FILE:VARIABLE out.tif"),
+    (&["nc4"], "NetCDF-4", "gdal_translate NETCDF:FILE:VARIABLE out.tif"),
     (&["h5", "hdf5", "he5", "hdf", "hdf4"], "HDF", "gdal_translate HDF5:FILE://DATASET out.tif"),
     (&["grib", "grb", "grib2", "grb2"], "GRIB", "gdal_translate FILE out.tif"),
     (&["jp2", "j2k", "jpx"], "JPEG 2000", "gdal_translate FILE out.tif"),
     (&["jpg", "jpeg", "webp", "jxl"], "a lossy picture", "gdal_translate FILE out.tif"),
     (&["img", "ige"], "ERDAS Imagine", "gdal_translate FILE out.tif"),
     (&["adf"], "ArcInfo binary grid", "gdal_translate FILE out.tif"),
-    (&["grd", "gsb", "gtx"], "a binary grid", "gdal_translate FILE out.tif"),
+    (&["gsb", "gtx"], "a binary grid", "gdal_translate FILE out.tif"),
     (&["bag"], "Bathymetry Attributed Grid", "gdal_translate FILE out.tif"),
     (&["dem", "ddf"], "USGS DEM", "gdal_translate FILE out.tif"),
     (&["bip", "bsq", "ers", "rst", "kea", "mbtiles"], "a raster", "gdal_translate FILE out.tif"),
@@ -40,8 +40,11 @@ mod tests {
 
     #[test]
     fn formats_that_are_not_read_are_named() {
-        let why = foreign(Path::new("d/sea.NC")).unwrap();
-        assert!(why.contains("NetCDF (.nc)") && why.contains("gdal_translate NETCDF:sea.NC:VARIABLE out.tif"), "{why}");
+        let why = foreign(Path::new("d/sea.NC4")).unwrap();
+        assert!(
+            why.contains("NetCDF-4 (.nc4)") && why.contains("gdal_translate NETCDF:sea.NC4:VARIABLE out.tif"),
+            "{why}"
+        );
         assert_eq!((foreign(Path::new("a.toml")), foreign(Path::new("a"))), (None, None));
         assert!(FORMATS.iter().flat_map(|row| row.0).all(|own| !import::EXTENSIONS.contains(own)));
         let error = import::read(Path::new("a.jp2"), 1 << 20).unwrap_err().to_string();

@@ -9,17 +9,18 @@ use super::foreign::foreign;
 use super::noted::noted;
 use super::raw::Sample;
 use super::sidecar::Sidecar;
-use super::{asc, dted, ehdr, exr_reader, geotiff, grey, hgt, npy, raw, xyz, zip};
+use super::{asc, dted, ehdr, exr_reader, geotiff, grey, hgt, netcdf, npy, raw, xyz, zip};
 use crate::open;
 use orogen_grid::error::Result;
 
 /// Extensions of readable files.
-pub const EXTENSIONS: [&str; 16] = [
-    "tif", "tiff", "asc", "hgt", "hgt.zip", "png", "r16", "r32", "npy", "exr", "bil", "flt", "xyz", "dt0", "dt1", "dt2",
+pub const EXTENSIONS: [&str; 19] = [
+    "tif", "tiff", "asc", "hgt", "hgt.zip", "png", "r16", "r32", "npy", "exr", "bil", "flt", "xyz", "dt0", "dt1",
+    "dt2", "nc", "cdf", "grd",
 ];
 
 /// Extensions of files that may have several bands.
-const SEVERAL_BANDS: [&str; 3] = ["tif", "tiff", "exr"];
+const SEVERAL_BANDS: [&str; 6] = ["tif", "tiff", "exr", "nc", "cdf", "grd"];
 
 /// Whether a file's name has one of these extensions.
 #[must_use]
@@ -48,19 +49,20 @@ pub fn reads_parts(path: &Path) -> bool {
 }
 
 fn is_read_in_parts(extension: &str) -> bool {
-    matches!(extension, "tif" | "tiff")
+    matches!(extension, "tif" | "tiff" | "nc" | "cdf" | "grd")
 }
 
 /// The size and position of a file that [has a head](has_head), or can be [read in parts](reads_parts).
 ///
 /// # Errors
 /// If it cannot be read.
-pub fn head(path: &Path) -> Result<([usize; 2], Option<Placement>)> {
+pub fn head(path: &Path, band: Option<u32>) -> Result<([usize; 2], Option<Placement>)> {
     let name = path.display().to_string();
     let mut file = open::regular(path, "read")?;
     let (size, mut place) = noted(&mut file, |file| match extension(path).unwrap_or_default().as_str() {
         "asc" => asc::head(file, &name),
         "hgt" => hgt::head(file, &name),
+        "nc" | "cdf" | "grd" => netcdf::reader::head(file, &name, band),
         _ => geotiff::reader::head(file, &name),
     })?;
     if let (Some(place), Some(told)) = (&mut place, Sidecar::beside(path)?) {
@@ -105,7 +107,7 @@ fn known(path: &Path, name: &str) -> Result<()> {
     if let Some(why) = foreign(path) {
         return Err(refused(name, why));
     }
-    let known = "supported are .tif, .asc, .hgt, .hgt.zip, .bil, .flt, .xyz, .dt0 to .dt2, .png, .r16, .r32, .npy, .exr and .vrt, folders of .tif, .hgt or .asc, and Zarr";
+    let known = "supported are .tif, .asc, .hgt, .hgt.zip, .nc, .grd, .bil, .flt, .xyz, .dt0 to .dt2, .png, .r16, .r32, .npy, .exr and .vrt, folders of .tif, .hgt or .asc, and Zarr";
     Err(refused(name, format!("its extension is not that of a format for heights; {known}")))
 }
 
@@ -161,6 +163,7 @@ fn band(input: &mut dyn Input, name: &str, extension: &str, sidecar: Option<Side
         "xyz" => xyz::read(input, name, allowed)?,
         "dt0" | "dt1" | "dt2" => dted::read(input, name, allowed)?,
         "exr" => exr_reader::read(input, name, &told, request)?,
+        "nc" | "cdf" | "grd" => netcdf::reader::read(input, name, request)?,
         "npy" => {
             let grid = npy::read_within(input, name, told.cell.unwrap_or(1.0), allowed)?;
             let size = [grid.width(), grid.height()];

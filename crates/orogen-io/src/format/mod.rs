@@ -34,6 +34,7 @@ pub mod lerc;
 pub mod levels;
 pub mod luanti;
 pub(crate) mod nbt;
+pub(crate) mod netcdf;
 mod noted;
 pub mod npy;
 pub mod outlines;

@@ -392,6 +392,24 @@ fn what_other_files_state_is_read_as_gdal_reads_it() {
 }
 
 #[test]
+fn netcdf_is_read_as_gdal_writes_it() {
+    for (name, of) in [("gdal-classic.nc", "f32-strips.tif"), ("gdal-offset.nc", "degrees.tif")] {
+        let (own, other) = (read(name), read(of));
+        assert_eq!(bits(&own.heights), bits(&other.heights), "{name}");
+        let [own, other] = [own.place.unwrap(), other.place.unwrap()];
+        let near = |a: [f64; 2], b: [f64; 2]| (0..2).all(|k| (a[k] - b[k]).abs() < 1e-9);
+        assert!(near(own.origin, other.origin) && near(own.step, other.step), "{name}: {own:?}");
+        assert_eq!(own.keys.as_ref().map(keys::epsg), other.keys.as_ref().map(keys::epsg), "{name}");
+    }
+    for name in ["gmt-gridline.nc", "gmt-pixel.grd"] {
+        assert_eq!(read(name).heights, read("lines.xyz").heights, "{name}");
+    }
+    assert!(refused("netcdf4.nc").contains("convert it, for example with gdal_translate netcdf4.nc out.tif"));
+    let why = refused("records.nc");
+    assert!(why.contains("it has 4 bands; choose one with `band = 1` in the node, or with FILE:1"), "{why}");
+}
+
+#[test]
 fn degrees_and_oblong_cells_become_square_metres() {
     let ground = |name: &str| PreparedDem::read(&corpus().join(name), None, 1 << 20).unwrap();
     let degrees = ground("degrees.tif");
