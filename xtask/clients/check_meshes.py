@@ -336,8 +336,8 @@ checks.equal("a height that differs is noticed", int(different.sum()), 1)
 # Solids are closed, face outwards, and need no repair.
 nothing = {"Degenerate facets": 0, "Edges fixed": 0, "Facets removed": 0, "Facets added": 0, "Facets reversed": 0,
            "Backwards edges": 0, "Normals fixed": 0, "parts": 1, "disconnected": 0}
-for kind, options in (("full", ()), ("adaptive", ADAPTIVE)):
-    path = export(BUMP, f"bump-{kind}.stl", "--print-size", "120", "--base", "2", *options)
+for kind, options in (("full.stl", ()), ("adaptive.stl", ADAPTIVE), ("full.3mf", ()), ("adaptive.3mf", ADAPTIVE)):
+    path = export(BUMP, f"bump-{kind}", "--print-size", "120", "--base", "2", *options)
     solid = trimesh.load_mesh(path)
     checks.that(f"{path.name}: watertight", bool(solid.is_watertight))
     checks.that(f"{path.name}: wound the same way", bool(solid.is_winding_consistent))
@@ -345,14 +345,20 @@ for kind, options in (("full", ()), ("adaptive", ADAPTIVE)):
     sides = [120.0, CELL * (heights.shape[0] - 1) * scale, 2 + float(numpy.ptp(heights)) * scale]
     # In an adaptive mesh both the highest and the lowest sample may be off by the allowed error.
     off = numpy.abs(solid.bounds - [[0, 0, 0], sides])
-    most = [1e-3, 1e-3, 1e-3 if kind == "full" else 8 * scale]
+    most = [1e-3, 1e-3, 1e-3 if not options else 8 * scale]
     checks.that(f"{path.name}: its size", bool((off <= most).all()), f"({solid.bounds})")
     mean = float(heights.astype("f8").mean() - heights.min())
     checks.near(f"{path.name}: its volume", float(solid.volume), sides[0] * sides[1] * (2 + mean * scale), 0.03 * solid.volume)
     top = solid.vertices[solid.vertices[:, 2].argmax()]
     checks.that(f"{path.name}: the bump is in the north-east", bool(top[0] > 60 and top[1] > sides[1] / 2), f"({top})")
+    if path.suffix == ".3mf":
+        checks.equal(f"{path.name}: its unit", solid.units, "millimeter")
+        stl = trimesh.load_mesh(path.with_suffix(".stl"))
+        checks.near(f"{path.name}: the volume of the .stl", float(solid.volume), float(stl.volume), 1e-3)
+        continue
     checks.equal(f"{path.name}: what admesh would mend", admesh(path), nothing)
     checks.equal(f"{path.name}: meshio reads as many triangles", len(meshio.read(path).cells_dict["triangle"]), len(solid.faces))
+path = WORK / "bump-adaptive.stl"
 data = bytearray(path.read_bytes())
 data[80:84] = (int.from_bytes(data[80:84], "little") - 1).to_bytes(4, "little")
 broken = WORK / "broken.stl"

@@ -40,7 +40,7 @@ Builds `orogen` in release mode, installs missing clients and runs every step of
   xarray    xarray and zarr-python read Zarr groups: samples and coordinates
   tiles     NumPy and Pillow read tiles: shared edges, one scale; Terrarium heights at the right map positions
   dems      orogen reads heights in every kind that rasterio writes: bit-equal samples, the same coordinates
-  meshes    the glTF validator, trimesh, meshio and admesh read GLB, OBJ, PLY and STL: samples, orientation, closed solids
+  meshes    the glTF validator, trimesh, meshio and admesh read GLB, OBJ, PLY, STL and 3MF: samples, orientation, closed solids
   tilemaps  Tiled, PyTMX, ldtkpy and godot_parser read tilemaps: the same tiles, wang sets and pictures
   blocks    nbtlib, midvoxio and trimesh read blocks: no cracks in the mesh
   contours  gdal_contour of the same heights gives the same lines; GDAL reads our files
@@ -107,7 +107,7 @@ const CLIENTS: &[Client] = &[
     Client {
         name: "meshes",
         apt: &[("node", "nodejs"), ("npm", "npm"), ("admesh", "admesh")],
-        pip: &[NUMPY, PILLOW, "trimesh==5.2.0", "meshio==5.3.5"],
+        pip: &[NUMPY, PILLOW, "trimesh==5.2.0", "meshio==5.3.5", "networkx==3.6.1", "lxml==6.1.3"],
         npm: &["gltf-validator@2.0.0-dev.3.10"],
     },
     Client {

@@ -3,7 +3,7 @@
 //! - [`map`]: colours on the ground, shaded relief.
 //! - [`sheet`]: map sheets with contours, grid, scale and legend, as PNG, SVG and PDF.
 //! - [`render`]: perspective pictures with sky, water and shadows.
-//! - [`mesh`]: triangles of a grid, as GLB, OBJ, PLY and STL.
+//! - [`mesh`]: triangles of a grid, as GLB, OBJ, PLY, STL and 3MF.
 //! - [`export`]: a registry of layers and formats, for every front end.
 //! - [`jobs`]: a map sheet or a rendered picture of a world as one job.
 //! - [`builder`]: worlds of any size into files, with resume.

@@ -34,6 +34,7 @@ pub const WRITERS: &[Writer] = &[
     writer(&["export", "small.toml", "-o", "a.obj"], &["a.obj", "a.mtl", "a-texture.png"]),
     writer(&["export", "small.toml", "-o", "a.ply"], &["a.ply"]),
     writer(&["export", "small.toml", "-o", "a.stl"], &["a.stl"]),
+    writer(&["export", "small.toml", "-o", "a.3mf"], &["a.3mf"]),
     writer(&["export", "small.toml", "-o", "a.glb"], &["a.glb"]),
     writer(&["export", "small.toml", "-o", "a.svg"], &["a.svg"]),
     writer(&["export", "small.toml", "-o", "a.geojson"], &["a.geojson"]),

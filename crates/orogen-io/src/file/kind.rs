@@ -58,6 +58,11 @@ const KINDS: &[Kind] = &[
         begins: |head| head.starts_with(b"SQLite format 3\0"),
     },
     Kind { name: "a FlatGeobuf file", extensions: &["fgb"], begins: |head| head.starts_with(b"fgb") },
+    Kind {
+        name: "a 3MF model",
+        extensions: &["3mf"],
+        begins: |head| head.starts_with(b"PK\x03\x04") && holds(head.get(..64).unwrap_or(head), "[Content_Types].xml"),
+    },
     Kind { name: "a ZIP archive", extensions: &["zip", "npz", "kmz"], begins: |head| head.starts_with(b"PK\x03\x04") },
     Kind {
         name: "a gzip archive, such as a schematic",
@@ -272,7 +277,7 @@ mod tests {
 
     #[test]
     fn every_kind_takes_its_own_place_and_no_other() {
-        let samples: [(&str, &[u8]); 19] = [
+        let samples: [(&str, &[u8]); 21] = [
             ("png", b"\x89PNG\r\n\x1a\n...."),
             ("gif", b"GIF89a...."),
             ("tif", b"II*\0...."),
@@ -287,6 +292,8 @@ mod tests {
             ("svg", b"<?xml version=\"1.0\"?>\n<svg xmlns=\"\">"),
             ("schem", b"\x1f\x8b\x08\0"),
             ("vox", b"VOX \x96\0\0\0MAIN"),
+            ("3mf", b"PK\x03\x04\x14\0\x08\x08\x08\0\0\0\x21\0\0\0\0\0\0\0\0\0\0\0\0\0\x13\0\0\0[Content_Types].xml"),
+            ("zip", b"PK\x03\x04\x14\0\x08\x08\x08\0\0\0\x21\0\0\0\0\0\0\0\0\0\0\0\0\0\x05\0\0\0a.txt"),
             ("csv", b"x,y,z,kind\n1,2,3,tree\n"),
             ("asc", b"NCOLS 4\nNROWS 4\n"),
             ("geojson", b"{\"type\": \"FeatureCollection\"}"),

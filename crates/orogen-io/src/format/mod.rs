@@ -57,3 +57,4 @@ pub mod xml;
 pub(crate) mod xyz;
 pub mod zarr;
 pub(crate) mod zip;
+pub mod zip_writer;

@@ -17,6 +17,7 @@
     &formats::r32::FORMAT,
     &formats::stl::FORMAT,
     &formats::svg::FORMAT,
+    &formats::three_mf::FORMAT,
     &formats::tif::FORMAT,
     &formats::tres::FORMAT,
 ]

@@ -43,5 +43,6 @@ pub mod registry;
 pub(crate) mod run;
 pub mod sheet_cover;
 pub(crate) mod sidecar;
+pub(crate) mod solid;
 pub mod targets;
 pub(crate) mod vectors;

@@ -13,9 +13,9 @@ use orogen::map::paint::Painter;
 use orogen::mesh::adaptive::adaptive;
 use orogen::mesh::glb::{self, Model};
 use orogen::mesh::shape::Shape;
-use orogen::mesh::stl::{self, Print};
+use orogen::mesh::solid::{Print, Solid};
 use orogen::mesh::surface::Surface;
-use orogen::mesh::{obj, ply};
+use orogen::mesh::{obj, ply, stl, three_mf};
 use orogen::test_folder::TestFolder;
 use orogen::{Grid, Progress, Recipe, Window, World};
 use serde_json::Value;
@@ -374,41 +374,50 @@ fn colours_of_corners_are_those_of_the_map() {
     }
 }
 
+/// Checks that a solid, as an .stl file holds it, is closed and faces outwards; returns its volume and its bounds.
+fn closed(solid: &Solid) -> (f64, [V3; 2]) {
+    let mut bytes = Vec::new();
+    stl::write(&mut bytes, solid, &Progress::none()).unwrap();
+    let count = u32::from_le_bytes(bytes[80..84].try_into().unwrap()) as usize;
+    assert_eq!(bytes.len(), 84 + 50 * count);
+    let mut edges: BTreeMap<[[u32; 3]; 2], i32> = BTreeMap::new();
+    let (mut volume, mut least, mut greatest) = (0.0, [f64::MAX; 3], [f64::MIN; 3]);
+    for facet in bytes[84..].chunks_exact(50) {
+        let numbers = f32s(&facet[..48]);
+        let corners: [[f32; 3]; 3] = std::array::from_fn(|k| numbers[3 + 3 * k..6 + 3 * k].try_into().unwrap());
+        for k in 0..3 {
+            let [from, to] = [corners[k], corners[(k + 1) % 3]].map(|corner| corner.map(f32::to_bits));
+            *edges.entry([from, to]).or_default() += 1;
+            least = std::array::from_fn(|i| least[i].min(f64::from(corners[k][i])));
+            greatest = std::array::from_fn(|i| greatest[i].max(f64::from(corners[k][i])));
+        }
+        let [a, b, c] = corners.map(wide);
+        let normal = cross(minus(b, a), minus(c, a));
+        assert!(dot(normal, wide(numbers[..3].try_into().unwrap())) > 0.0);
+        volume += dot(a, cross(b, c)) / 6.0;
+    }
+    for ([from, to], times) in &edges {
+        assert_eq!((*times, edges.get(&[*to, *from])), (1, Some(&1)), "an edge is shared by two");
+    }
+    assert_eq!(solid.bounds().map(wide), [least, greatest]);
+    (volume, [least, greatest])
+}
+
 #[test]
 fn a_solid_is_closed_and_faces_outwards() {
     for (width, height) in [(37, 23), (2, 2), (2, 40), (120, 100)] {
         let grid = land(width, height);
         for shape in shapes(&grid) {
             let exaggerated = Surface { exaggeration: 2.0, ..surface(&grid, &shape) };
-            let mut bytes = Vec::new();
             let print = Print::new(150.0).with_base(3.0);
-            let high = stl::write(&mut bytes, &exaggerated, &print).unwrap();
-            let count = u32::from_le_bytes(bytes[80..84].try_into().unwrap()) as usize;
-            assert_eq!(bytes.len(), 84 + 50 * count);
-            let mut edges: BTreeMap<[[u32; 3]; 2], i32> = BTreeMap::new();
-            let (mut volume, mut least, mut greatest) = (0.0, [f64::MAX; 3], [f64::MIN; 3]);
-            for facet in bytes[84..].chunks_exact(50) {
-                let numbers = f32s(&facet[..48]);
-                let corners: [[f32; 3]; 3] = std::array::from_fn(|k| numbers[3 + 3 * k..6 + 3 * k].try_into().unwrap());
-                for k in 0..3 {
-                    let [from, to] = [corners[k], corners[(k + 1) % 3]].map(|corner| corner.map(f32::to_bits));
-                    *edges.entry([from, to]).or_default() += 1;
-                    least = std::array::from_fn(|i| least[i].min(f64::from(corners[k][i])));
-                    greatest = std::array::from_fn(|i| greatest[i].max(f64::from(corners[k][i])));
-                }
-                let [a, b, c] = corners.map(wide);
-                let normal = cross(minus(b, a), minus(c, a));
-                assert!(dot(normal, wide(numbers[..3].try_into().unwrap())) > 0.0);
-                volume += dot(a, cross(b, c)) / 6.0;
-            }
-            for ([from, to], times) in &edges {
-                assert_eq!((*times, edges.get(&[*to, *from])), (1, Some(&1)), "an edge is shared by two");
-            }
+            let solid = Solid::new(&exaggerated, &print).unwrap();
+            let (volume, [least, greatest]) = closed(&solid);
             let scale = 150.0 / (12.5 * (width.max(height) - 1) as f64);
             let sides = [width, height].map(|samples| (samples - 1) as f64 * 12.5 * scale);
             assert!((0..2).all(|i| (greatest[i] - sides[i]).abs() < 1e-4), "{greatest:?}");
             assert_eq!(least, [0.0; 3]);
-            assert!((greatest[2] - high).abs() < 1e-4);
+            let relief = exaggerated.bounds()[1][1] - exaggerated.bounds()[0][1];
+            assert!((greatest[2] - 3.0 - f64::from(relief) * scale).abs() < 1e-4);
             // The mean height above the base, by the trapezoidal rule on the grid.
             if shape == Shape::lattice(&grid, 1).unwrap() && width * height > 1000 {
                 let lowest = grid.data().iter().copied().fold(f32::MAX, f32::min);
@@ -434,7 +443,7 @@ fn holes_are_left_out_or_refused() {
     let glb = Glb::read(&glb_bytes(&[surface(&grid, &shape)], None));
     assert_eq!(glb.mesh(0).triangles, mesh.triangles);
     let print = Print::new(100.0).with_base(1.0);
-    let error = stl::write(&mut Vec::new(), &surface(&grid, &shape), &print).unwrap_err().to_string();
+    let error = Solid::new(&surface(&grid, &shape), &print).unwrap_err().to_string();
     assert!(error.contains("1 of 400 samples are nodata"), "{error}");
 }
 
@@ -462,7 +471,8 @@ fn a_writer_that_fails_is_an_error_wherever_it_fails() {
     let surface = surface(&grid, &shape);
     type Writing<'a> = &'a dyn Fn(&mut dyn Write) -> io::Result<()>;
     let levels = [surface];
-    let writers: [Writing; 4] = [
+    let solid = Solid::new(&surface, &Print::new(10.0).with_base(1.0)).unwrap();
+    let writers: [Writing; 5] = [
         &|out| {
             glb::write(
                 out,
@@ -480,7 +490,8 @@ fn a_writer_that_fails_is_an_error_wherever_it_fails() {
         },
         &|out| ply::write(out, &surface, &[]),
         &|out| obj::write(out, &surface, &[], Some("a.mtl")),
-        &|out| stl::write(out, &surface, &Print::new(10.0).with_base(1.0)).map(|_| ()),
+        &|out| stl::write(out, &solid, &Progress::none()),
+        &|out| three_mf::write(out, &solid, &Progress::none()),
     ];
     for write in writers {
         let mut bytes = Vec::new();
@@ -523,7 +534,7 @@ fn exports_are_whole_and_the_same_on_any_number_of_threads() {
     let folder = TestFolder::new("meshes").unwrap();
     let (world, window) = (world(), Window::new(150, 90, 20.0).at(100, 100));
     type Given<'a> = &'a [(&'a str, &'a str)];
-    let cases: [(&str, Given, &str); 6] = [
+    let cases: [(&str, Given, &str); 7] = [
         ("a.glb", &[], "26522 triangles"),
         (
             "b.glb",
@@ -532,8 +543,9 @@ fn exports_are_whole_and_the_same_on_any_number_of_threads() {
         ),
         ("c.obj", &[("max-error", "2"), ("height-curve", "0:0,0.5:0.2,1:1")], "no sample more than 2 m"),
         ("d.ply", &[("exaggeration", "1.5")], "26522 triangles"),
-        ("e.stl", &[("print-size", "80"), ("base", "2")], "26522 triangles and a base, 80 mm along"),
+        ("e.stl", &[("print-size", "80"), ("base", "2")], "26522 triangles and a base, 80 x 47.8 x "),
         ("f.obj", &[("color", "none")], "26522 triangles"),
+        ("g.3mf", &[("max-error", "1")], "150 x 89.6 x "),
     ];
     let all = |threads: usize| -> BTreeMap<String, Vec<u8>> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -548,7 +560,7 @@ fn exports_are_whole_and_the_same_on_any_number_of_threads() {
     };
     let one = all(1);
     let names: Vec<&str> = one.keys().map(String::as_str).collect();
-    assert_eq!(names, ["a.glb", "b.glb", "c-texture.png", "c.mtl", "c.obj", "d.ply", "e.stl", "f.obj"]);
+    assert_eq!(names, ["a.glb", "b.glb", "c-texture.png", "c.mtl", "c.obj", "d.ply", "e.stl", "f.obj", "g.3mf"]);
     assert!(one == all(3));
     let obj = String::from_utf8(one["c.obj"].clone()).unwrap();
     assert!(
@@ -570,7 +582,7 @@ fn exports_are_whole_and_the_same_on_any_number_of_threads() {
         let why = export(&world, window, &folder.join(name), given).unwrap_err();
         assert!(why.contains(expect), "{why}");
     }
-    assert_eq!(folder.names().len(), 8);
+    assert_eq!(folder.names().len(), 9);
 }
 
 #[test]

@@ -18,5 +18,6 @@ pub mod r16;
 pub mod r32;
 pub mod stl;
 pub mod svg;
+pub mod three_mf;
 pub mod tif;
 pub mod tres;

@@ -1,0 +1,175 @@
+//! Closed solids of surfaces, to print.
+//!
+//! Millimetres; x east, y north, z up, with the south-western corner of the window at the origin. The surface is closed by walls and a flat base, so that the
+//! solid is watertight: every edge has a triangle on both sides, and every normal points outward.
+
+use super::outline::sides;
+use super::surface::Surface;
+use orogen_grid::error::{Error, ErrorKind, Result};
+
+/// Dimensions of a solid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Print {
+    /// Length of the longer side in millimetres, between the centres of its first and last sample.
+    pub size: f64,
+    /// Thickness of the base in millimetres, below the lowest sample; 3 by default.
+    pub base: f64,
+}
+
+impl Print {
+    /// A solid with a longer side of this many millimetres.
+    #[must_use]
+    pub fn new(size: f64) -> Print {
+        Print { size, base: 3.0 }
+    }
+
+    /// The same with a base of this thickness, in millimetres.
+    #[must_use]
+    pub fn with_base(self, base: f64) -> Print {
+        Print { base, ..self }
+    }
+}
+
+/// A closed solid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solid {
+    /// The vertices in millimetres: east, north, up.
+    pub corners: Vec<[f32; 3]>,
+    /// Triangles, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+impl Solid {
+    /// The solid of a surface.
+    ///
+    /// # Errors
+    /// If there are holes, or more vertices than 32 bits can number.
+    pub fn new(surface: &Surface, print: &Print) -> Result<Solid> {
+        let grid = surface.grid;
+        let holes = grid.data().iter().filter(|height| !height.is_finite()).count();
+        if holes > 0 {
+            let message = format!(
+                "{holes} of {} samples are nodata, and a solid must not have holes; choose a window or a layer without nodata",
+                grid.data().len()
+            );
+            return Err(Error::new(ErrorKind::Request, message));
+        }
+        let scale = Scale::new(surface, print);
+        let mut solid = Solid::top(surface, &scale);
+        let around = sides(surface).concat();
+        solid.numbered(around.len() + 1)?;
+        solid.close(&around);
+        Ok(solid)
+    }
+
+    /// The surface alone.
+    fn top(surface: &Surface, scale: &Scale) -> Solid {
+        let shape = surface.shape;
+        let mut corners = Vec::with_capacity(shape.corners());
+        for row in shape.rows() {
+            row.each(|column| corners.push(scale.place(surface, column, row.row)));
+        }
+        let mut triangles = Vec::with_capacity(shape.triangles());
+        for piece in 0..shape.pieces() {
+            shape.piece(surface.grid, piece, |triangle| triangles.push(triangle));
+        }
+        Solid { corners, triangles }
+    }
+
+    /// Checks that more vertices can be numbered.
+    fn numbered(&self, more: usize) -> Result<()> {
+        match u32::try_from(self.corners.len() + more) {
+            Ok(_) => Ok(()),
+            Err(_) => Err(Error::new(
+                ErrorKind::Request,
+                "a solid holds at most 4294967295 vertices, and this one has more; use --max-error, a smaller window or a larger cell",
+            )),
+        }
+    }
+
+    /// Adds walls below a surface, whose border is this line around it, counter-clockwise from above, and a base.
+    fn close(&mut self, around: &[u32]) {
+        let below = self.drop(around);
+        self.wall(around, &below);
+        // All of the border is visible from a point in the middle of the base.
+        let [_, [east, north, _]] = self.bounds();
+        let middle = self.push([0.5 * east, 0.5 * north, 0.0]);
+        for (from, to) in pairs(&below) {
+            self.triangles.push([to, from, middle]);
+        }
+    }
+
+    /// Adds the points of the ground below vertices.
+    fn drop(&mut self, corners: &[u32]) -> Vec<u32> {
+        corners
+            .iter()
+            .map(|corner| {
+                let [x, y, _] = self.corners[*corner as usize];
+                self.push([x, y, 0.0])
+            })
+            .collect()
+    }
+
+    /// Adds the wall between a closed line and the one below it. Its outside is to the right of the line.
+    fn wall(&mut self, above: &[u32], below: &[u32]) {
+        for ((from, to), (from_below, to_below)) in pairs(above).zip(pairs(below)) {
+            self.triangles.extend([[from, from_below, to_below], [from, to_below, to]]);
+        }
+    }
+
+    fn push(&mut self, corner: [f32; 3]) -> u32 {
+        self.corners.push(corner);
+        (self.corners.len() - 1) as u32
+    }
+
+    /// The least and the greatest of each coordinate.
+    #[must_use]
+    pub fn bounds(&self) -> [[f32; 3]; 2] {
+        let bound = |pick: fn(f32, f32) -> f32, start: f32| {
+            self.corners
+                .iter()
+                .fold([start; 3], |all, corner| std::array::from_fn(|axis| pick(all[axis], corner[axis])))
+        };
+        [bound(f32::min, f32::INFINITY), bound(f32::max, f32::NEG_INFINITY)]
+    }
+
+    /// The size in millimetres: east, north, up.
+    #[must_use]
+    pub fn size(&self) -> [f64; 3] {
+        let [least, greatest] = self.bounds();
+        std::array::from_fn(|axis| f64::from(greatest[axis]) - f64::from(least[axis]))
+    }
+}
+
+/// The edges of a closed line.
+fn pairs(line: &[u32]) -> impl Iterator<Item = (u32, u32)> {
+    line.iter().copied().zip(line.iter().copied().cycle().skip(1))
+}
+
+/// Conversion from samples to millimetres.
+struct Scale {
+    /// Millimetres per metre.
+    scale: f64,
+    /// The height at the top of the base, in metres.
+    lowest: f64,
+    base: f64,
+}
+
+impl Scale {
+    fn new(surface: &Surface, print: &Print) -> Scale {
+        let window = surface.grid.window();
+        let [east, south] = [window.width, window.height].map(|samples| (samples - 1) as f64 * window.cell);
+        let [least, _] = surface.bounds();
+        Scale { scale: print.size / east.max(south), lowest: f64::from(least[1]), base: print.base }
+    }
+
+    /// The position of a sample of the surface.
+    fn place(&self, surface: &Surface, column: usize, row: usize) -> [f32; 3] {
+        let grid = surface.grid;
+        let [_, height, _] = surface.place(column, row);
+        let along = |steps: usize| (steps as f64 * grid.window().cell * self.scale) as f32;
+        let up = self.base + (f64::from(height) - self.lowest) * self.scale;
+        [along(column), along(grid.height() - 1 - row), up as f32]
+    }
+}
