@@ -38,6 +38,7 @@ pub(crate) mod mesh_water;
 pub mod notes;
 pub mod options;
 pub mod place;
+pub(crate) mod print_bed;
 pub mod quantizer;
 pub mod registry;
 pub(crate) mod run;

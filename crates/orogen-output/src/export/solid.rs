@@ -6,11 +6,12 @@ use super::layer_source::LayerSource;
 use super::memory::whole;
 use super::mesh::{self, EXAGGERATION, HEIGHT_CURVE, MAX_ERROR, Prepared};
 use super::options::{OptionSpec, Options, ValueKind};
+use super::print_bed::{BED, Bed, ModelSize, flatness, shown};
 use crate::mesh::solid::{Print, Solid};
 use crate::proportions;
 use orogen_grid::grid::Window;
 use orogen_grid::progress::Progress;
-use orogen_grid::words::number;
+use orogen_grid::words::{count, number};
 use orogen_io::format::levels::{NO_SAMPLES, extremes};
 
 /// `--print-size`.
@@ -29,15 +30,26 @@ pub const BASE: OptionSpec = OptionSpec {
     value_kind: ValueKind::Number(0.1, 1e4),
 };
 
-/// The options of solids.
-pub const OPTIONS: &[OptionSpec] = &[MAX_ERROR, EXAGGERATION, HEIGHT_CURVE, PRINT_SIZE, BASE];
+/// `--cut`.
+pub const CUT: OptionSpec = OptionSpec {
+    name: "cut",
+    value: "M",
+    about: "Print only the land above M metres, with its outline; its base begins there [default: all of the window]",
+    value_kind: ValueKind::Number(-1e6, 1e6),
+};
 
-/// Memory of the solid of a window, in bytes, beside that of writing the file: the mesh, and 12 bytes for each vertex and triangle.
+/// The options of solids.
+pub const OPTIONS: &[OptionSpec] = &[MAX_ERROR, EXAGGERATION, HEIGHT_CURVE, PRINT_SIZE, BASE, CUT, BED];
+
+/// Memory of the solid of a window, in bytes, beside that of writing the file: the mesh, and 12 bytes for each vertex and triangle. A cut takes the whole surface, what
+/// it leaves of that (of white noise, two vertices for each), and a copy for the base.
 #[must_use]
 pub fn memory(window: &Window, options: &Options) -> u64 {
     // Of an adaptive mesh, one sample in five becomes a vertex.
     let corners = if options.has(MAX_ERROR.name) { whole(window) / 5 } else { whole(window) };
-    mesh::memory(window, options).saturating_add(corners.saturating_mul(9))
+    let copies = if options.has(CUT.name) { 6 } else { 1 };
+    let solid = corners.saturating_mul(9 * copies);
+    mesh::memory(window, options).saturating_add(solid)
 }
 
 /// A solid that is ready to be written.
@@ -54,18 +66,33 @@ impl PrintJob {
     ///
     /// Fails if the source fails, or if no solid can be made of it.
     pub fn new(source: &mut LayerSource, options: &Options) -> io::Result<PrintJob> {
+        let bed = options.text(BED.name).map(Bed::parse).transpose()?;
         let mesh = Prepared::new(source, options, 1)?;
-        let print = Print::new(options.number(PRINT_SIZE.name).unwrap_or(150.0))
-            .with_base(options.number(BASE.name).unwrap_or(3.0));
+        let print_size = options.number(PRINT_SIZE.name).unwrap_or(150.0);
+        let base = options.number(BASE.name).unwrap_or(3.0);
+        let mut print = Print::new(print_size).with_base(base);
+        if let Some(level) = options.number(CUT.name) {
+            let mut level = [level as f32];
+            mesh.bend(&mut level);
+            print = print.with_cut(f64::from(level[0]));
+        }
         let surface = mesh.surface(0, false);
         let solid = Solid::new(&surface, &print)?;
+        let exaggeration = f64::from(mesh.exaggeration());
+        let model = ModelSize { size: solid.size(), fixed: [0.0, 0.0, base], print_size, exaggeration };
+        bed.map_or(Ok(()), |bed| bed.check(&model))?;
         let [low, high] = extremes(NO_SAMPLES, mesh.grid.data());
         let window = mesh.grid.window();
         let width = window.width.max(window.height) as f64 * window.cell;
-        let warning = proportions::warning(f64::from(high) - f64::from(low), width, f64::from(mesh.exaggeration()));
-        let warning = warning.map_or(String::new(), |warning| format!("\nwarning: {warning}"));
-        let size = solid.size().map(|side| number((side * 10.0).round() / 10.0)).join(" x ");
-        let words = format!("{} and a base, {size} mm{warning}", mesh.words());
+        let steep = proportions::warning(f64::from(high) - f64::from(low), width, exaggeration);
+        let warnings = [steep, flatness(&model)].into_iter().flatten().map(|warning| format!("\nwarning: {warning}"));
+        let shape = match options.number(CUT.name) {
+            Some(level) => {
+                format!("{} of the land above {} m", count(solid.triangles.len(), "triangle"), number(level))
+            }
+            None => mesh.words(),
+        };
+        let words = format!("{shape} and a base, {} mm{}", shown(model.size), warnings.collect::<String>());
         Ok(PrintJob { solid, writing: surface.progress.cloned().unwrap_or_else(Progress::none), words })
     }
 

@@ -3,9 +3,11 @@
 //! Millimetres; x east, y north, z up, with the south-western corner of the window at the origin. The surface is closed by walls and a flat base, so that the
 //! solid is watertight: every edge has a triangle on both sides, and every normal points outward.
 
+use super::clip::{Clipped, clip};
 use super::outline::sides;
 use super::surface::Surface;
 use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::words::number;
 
 /// Dimensions of a solid.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,21 +15,29 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 pub struct Print {
     /// Length of the longer side in millimetres, between the centres of its first and last sample.
     pub size: f64,
-    /// Thickness of the base in millimetres, below the lowest sample; 3 by default.
+    /// Thickness of the base in millimetres, below the lowest sample or the level of the cut; 3 by default.
     pub base: f64,
+    /// The level in metres, before exaggeration, above which the land is kept; all of it by default.
+    pub cut: Option<f64>,
 }
 
 impl Print {
     /// A solid with a longer side of this many millimetres.
     #[must_use]
     pub fn new(size: f64) -> Print {
-        Print { size, base: 3.0 }
+        Print { size, base: 3.0, cut: None }
     }
 
     /// The same with a base of this thickness, in millimetres.
     #[must_use]
     pub fn with_base(self, base: f64) -> Print {
         Print { base, ..self }
+    }
+
+    /// The same of the land above a level in metres alone: its outline is that of the land, and its base begins there.
+    #[must_use]
+    pub fn with_cut(self, level: f64) -> Print {
+        Print { cut: Some(level), ..self }
     }
 }
 
@@ -44,7 +54,7 @@ impl Solid {
     /// The solid of a surface.
     ///
     /// # Errors
-    /// If there are holes, or more vertices than 32 bits can number.
+    /// If there are holes, no land above the cut, or more vertices than 32 bits can number.
     pub fn new(surface: &Surface, print: &Print) -> Result<Solid> {
         let grid = surface.grid;
         let holes = grid.data().iter().filter(|height| !height.is_finite()).count();
@@ -58,9 +68,43 @@ impl Solid {
         let scale = Scale::new(surface, print);
         let mut solid = Solid::top(surface, &scale);
         let around = sides(surface).concat();
+        let level = scale.base as f32;
+        if let Some(cut) = print.cut.filter(|_| solid.corners.iter().any(|[_, _, up]| *up <= level)) {
+            // Every edge is cut at most once, and all vertices have a copy.
+            solid.numbered(7 * solid.corners.len())?;
+            let around: Vec<[u32; 2]> = pairs(&around).map(|(from, to)| [from, to]).collect();
+            let clipped = clip(&solid.corners, &solid.triangles, &around, level);
+            if clipped.triangles.is_empty() {
+                let [_, [_, highest, _]] = surface.bounds();
+                let message = format!(
+                    "no land is above the cut: its level is {} m, and the highest sample is at {} m",
+                    number(cut),
+                    number((highest / surface.exaggeration).into())
+                );
+                return Err(Error::new(ErrorKind::Request, message));
+            }
+            drop(solid);
+            let mut solid = Solid { corners: Vec::new(), triangles: Vec::new() };
+            solid.extrude(&clipped, |[x, y, _]| [x, y, 0.0]);
+            return Ok(solid);
+        }
         solid.numbered(around.len() + 1)?;
         solid.close(&around);
         Ok(solid)
+    }
+
+    /// Adds a surface, its copy at the positions of `back`, and the walls between them.
+    fn extrude(&mut self, front: &Clipped, back: impl Fn([f32; 3]) -> [f32; 3]) {
+        let (first, count) = (self.corners.len() as u32, front.corners.len() as u32);
+        self.reserve(2 * front.corners.len(), 2 * (front.triangles.len() + front.around.len()));
+        self.corners.extend_from_slice(&front.corners);
+        self.corners.extend(front.corners.iter().map(|corner| back(*corner)));
+        self.triangles.extend(front.triangles.iter().map(|triangle| triangle.map(|corner| first + corner)));
+        let behind = first + count;
+        self.triangles.extend(front.triangles.iter().map(|[a, b, c]| [behind + a, behind + c, behind + b]));
+        for [from, to] in &front.around {
+            self.wall_piece([first + from, first + to], [behind + from, behind + to]);
+        }
     }
 
     /// The surface alone.
@@ -90,6 +134,7 @@ impl Solid {
 
     /// Adds walls below a surface, whose border is this line around it, counter-clockwise from above, and a base.
     fn close(&mut self, around: &[u32]) {
+        self.reserve(around.len() + 1, 3 * around.len());
         let below = self.drop(around);
         self.wall(around, &below);
         // All of the border is visible from a point in the middle of the base.
@@ -98,6 +143,12 @@ impl Solid {
         for (from, to) in pairs(&below) {
             self.triangles.push([to, from, middle]);
         }
+    }
+
+    /// Makes room for more vertices and triangles, and no more than that.
+    fn reserve(&mut self, corners: usize, triangles: usize) {
+        self.corners.reserve_exact(corners);
+        self.triangles.reserve_exact(triangles);
     }
 
     /// Adds the points of the ground below vertices.
@@ -114,8 +165,12 @@ impl Solid {
     /// Adds the wall between a closed line and the one below it. Its outside is to the right of the line.
     fn wall(&mut self, above: &[u32], below: &[u32]) {
         for ((from, to), (from_below, to_below)) in pairs(above).zip(pairs(below)) {
-            self.triangles.extend([[from, from_below, to_below], [from, to_below, to]]);
+            self.wall_piece([from, to], [from_below, to_below]);
         }
+    }
+
+    fn wall_piece(&mut self, [from, to]: [u32; 2], [from_below, to_below]: [u32; 2]) {
+        self.triangles.extend([[from, from_below, to_below], [from, to_below, to]]);
     }
 
     fn push(&mut self, corner: [f32; 3]) -> u32 {
@@ -161,7 +216,8 @@ impl Scale {
         let window = surface.grid.window();
         let [east, south] = [window.width, window.height].map(|samples| (samples - 1) as f64 * window.cell);
         let [least, _] = surface.bounds();
-        Scale { scale: print.size / east.max(south), lowest: f64::from(least[1]), base: print.base }
+        let lowest = print.cut.map_or(f64::from(least[1]), |level| level * f64::from(surface.exaggeration));
+        Scale { scale: print.size / east.max(south), lowest, base: print.base }
     }
 
     /// The position of a sample of the surface.

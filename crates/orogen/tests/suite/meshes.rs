@@ -430,6 +430,57 @@ fn a_solid_is_closed_and_faces_outwards() {
     }
 }
 
+/// Two hills with a pass at 10 m between them, on level ground of 0 m.
+fn two_hills() -> Grid {
+    let mut grid = Grid::filled(Window::new(61, 41, 10.0), 0.0);
+    for j in 0..41 {
+        for i in 0..61 {
+            let hill = |x: f32| 40.0 - 3.0 * libm::hypotf(i as f32 - x, j as f32 - 20.0);
+            grid.row_mut(j)[i] = hill(20.0).max(hill(40.0)).max(0.0);
+        }
+    }
+    grid
+}
+
+#[test]
+fn land_above_a_cut_has_its_outline_and_a_base_there() {
+    let grid = two_hills();
+    for shape in shapes(&grid) {
+        let surface = Surface { exaggeration: 2.0, ..surface(&grid, &shape) };
+        let cut = |level: f64| Solid::new(&surface, &Print::new(120.0).with_base(2.0).with_cut(level));
+        // 120 mm are 600 m; the hills are cones of radius 13.3 samples at 0 m, and of 6.7 at 20 m.
+        let (volume, [least, greatest]) = closed(&cut(20.0).unwrap());
+        let near = |a: f64, b: f64, off: f64| assert!((a - b).abs() < off, "{a} {b}");
+        let coarse = if shape == Shape::lattice(&grid, 1).unwrap() { 0.3 } else { 4.0 };
+        near(least[0], 2.0 * (20.0 - 6.67), coarse);
+        near(greatest[0], 2.0 * (40.0 + 6.67), coarse);
+        near(greatest[2], 2.0 + 2.0 * 20.0 * 0.2, coarse);
+        assert_eq!(least[2], 0.0);
+        if coarse < 1.0 {
+            // Two cones of 8 mm on cylinders of 2 mm with a radius of 13.3 mm.
+            near(volume, 2.0 * std::f64::consts::PI * 13.33 * 13.33 * (2.0 + 8.0 / 3.0), 60.0);
+        }
+        // At the level of the ground and at that of the pass, where vertices are on the cut; below all of it, and above.
+        for level in [0.0, 10.0, 25.0, -5.0] {
+            closed(&cut(level).unwrap());
+        }
+        let below = closed(&cut(-5.0).unwrap()).1;
+        near(below[1][2], 2.0 + 2.0 * 45.0 * 0.2, coarse);
+        assert_eq!(below[0], [0.0; 3]);
+        let why = cut(40.0).unwrap_err().to_string();
+        assert!(why.contains("its level is 40 m, and the highest sample is at 40 m"), "{why}");
+    }
+    // White noise: many small parts, holes, and land that touches the border.
+    let mut noise = Grid::filled(Window::new(57, 43, 1.0), 0.0);
+    for k in 0..57 * 43 {
+        noise.row_mut(k / 57)[k % 57] = (k * 7919 % 101) as f32;
+    }
+    let shape = Shape::lattice(&noise, 1).unwrap();
+    for level in [10.0, 50.0, 90.0] {
+        closed(&Solid::new(&surface(&noise, &shape), &Print::new(100.0).with_cut(level)).unwrap());
+    }
+}
+
 #[test]
 fn holes_are_left_out_or_refused() {
     let mut grid = land(20, 20);
@@ -534,7 +585,7 @@ fn exports_are_whole_and_the_same_on_any_number_of_threads() {
     let folder = TestFolder::new("meshes").unwrap();
     let (world, window) = (world(), Window::new(150, 90, 20.0).at(100, 100));
     type Given<'a> = &'a [(&'a str, &'a str)];
-    let cases: [(&str, Given, &str); 7] = [
+    let cases: [(&str, Given, &str); 9] = [
         ("a.glb", &[], "26522 triangles"),
         (
             "b.glb",
@@ -546,6 +597,8 @@ fn exports_are_whole_and_the_same_on_any_number_of_threads() {
         ("e.stl", &[("print-size", "80"), ("base", "2")], "26522 triangles and a base, 80 x 47.8 x "),
         ("f.obj", &[("color", "none")], "26522 triangles"),
         ("g.3mf", &[("max-error", "1")], "150 x 89.6 x "),
+        ("h.stl", &[("bed", "100x150.5x90")], "and a base, 150 x 89.6 x "),
+        ("i.3mf", &[("cut", "200"), ("exaggeration", "0.01")], "less than a layer of 0.2 mm; use an exaggeration of"),
     ];
     let all = |threads: usize| -> BTreeMap<String, Vec<u8>> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -560,7 +613,10 @@ fn exports_are_whole_and_the_same_on_any_number_of_threads() {
     };
     let one = all(1);
     let names: Vec<&str> = one.keys().map(String::as_str).collect();
-    assert_eq!(names, ["a.glb", "b.glb", "c-texture.png", "c.mtl", "c.obj", "d.ply", "e.stl", "f.obj", "g.3mf"]);
+    assert_eq!(
+        names,
+        ["a.glb", "b.glb", "c-texture.png", "c.mtl", "c.obj", "d.ply", "e.stl", "f.obj", "g.3mf", "h.stl", "i.3mf"]
+    );
     assert!(one == all(3));
     let obj = String::from_utf8(one["c.obj"].clone()).unwrap();
     assert!(
@@ -578,11 +634,13 @@ fn exports_are_whole_and_the_same_on_any_number_of_threads() {
         ("x.glb", &[][..], Window::new(1, 9, 20.0), "at least 2 x 2 samples, and there are 1 x 9"),
         ("x.obj", &[("height-curve", "0:0,0:1")], window, "0 follows 0"),
         ("x.ply", &[("color", "texture")], window, "cannot hold a texture; use --color vertex"),
+        ("x.stl", &[("bed", "220x220")], window, "such as 220x220x250"),
+        ("x.3mf", &[("bed", "100x100x100")], window, "has room for 100 x 100 x 100 mm; use --print-size 100 or less"),
     ] {
         let why = export(&world, window, &folder.join(name), given).unwrap_err();
         assert!(why.contains(expect), "{why}");
     }
-    assert_eq!(folder.names().len(), 9);
+    assert_eq!(folder.names().len(), 11);
 }
 
 #[test]
