@@ -2,6 +2,7 @@
 
 use std::io;
 
+use super::format::refuse;
 use super::layer_source::LayerSource;
 use super::memory::whole;
 use super::mesh::{self, EXAGGERATION, HEIGHT_CURVE, MAX_ERROR, Prepared};
@@ -38,18 +39,27 @@ pub const CUT: OptionSpec = OptionSpec {
     value_kind: ValueKind::Number(-1e6, 1e6),
 };
 
+/// `--hollow`.
+pub const HOLLOW: OptionSpec = OptionSpec {
+    name: "hollow",
+    value: "MM",
+    about: "Hollow model, open below, with walls and a ceiling of at least MM millimetres, less than the base [default: full]",
+    value_kind: ValueKind::Number(0.8, 1e3),
+};
+
 /// The options of solids.
-pub const OPTIONS: &[OptionSpec] = &[MAX_ERROR, EXAGGERATION, HEIGHT_CURVE, PRINT_SIZE, BASE, CUT, BED];
+pub const OPTIONS: &[OptionSpec] = &[MAX_ERROR, EXAGGERATION, HEIGHT_CURVE, PRINT_SIZE, BASE, CUT, HOLLOW, BED];
 
 /// Memory of the solid of a window, in bytes, beside that of writing the file: the mesh, and 12 bytes for each vertex and triangle. A cut takes the whole surface, what
-/// it leaves of that (of white noise, two vertices for each), and a copy for the base.
+/// it leaves of that (of white noise, two vertices for each), and a copy for the base. A cavity has two vertices for each sample at most.
 #[must_use]
 pub fn memory(window: &Window, options: &Options) -> u64 {
     // Of an adaptive mesh, one sample in five becomes a vertex.
     let corners = if options.has(MAX_ERROR.name) { whole(window) / 5 } else { whole(window) };
     let copies = if options.has(CUT.name) { 6 } else { 1 };
     let solid = corners.saturating_mul(9 * copies);
-    mesh::memory(window, options).saturating_add(solid)
+    let ceiling = if options.has(HOLLOW.name) { whole(window).saturating_mul(20) } else { 0 };
+    mesh::memory(window, options).saturating_add(solid).saturating_add(ceiling)
 }
 
 /// A solid that is ready to be written.
@@ -70,7 +80,14 @@ impl PrintJob {
         let mesh = Prepared::new(source, options, 1)?;
         let print_size = options.number(PRINT_SIZE.name).unwrap_or(150.0);
         let base = options.number(BASE.name).unwrap_or(3.0);
+        if options.has(CUT.name) && options.has(HOLLOW.name) {
+            return refuse(format!(
+                "--{} does not apply with --{}: a model with the outline of its land is full",
+                HOLLOW.name, CUT.name
+            ));
+        }
         let mut print = Print::new(print_size).with_base(base);
+        print.hollow = options.number(HOLLOW.name);
         if let Some(level) = options.number(CUT.name) {
             let mut level = [level as f32];
             mesh.bend(&mut level);

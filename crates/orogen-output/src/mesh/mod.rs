@@ -17,6 +17,7 @@
 pub mod adaptive;
 pub mod body;
 mod border;
+mod cavity;
 mod clip;
 pub mod glb;
 pub(crate) mod normal_map;

@@ -3,6 +3,7 @@
 //! Millimetres; x east, y north, z up, with the south-western corner of the window at the origin. The surface is closed by walls and a flat base, so that the
 //! solid is watertight: every edge has a triangle on both sides, and every normal points outward.
 
+use super::cavity::Ceiling;
 use super::clip::{Clipped, clip};
 use super::outline::sides;
 use super::surface::Surface;
@@ -19,13 +20,15 @@ pub struct Print {
     pub base: f64,
     /// The level in metres, before exaggeration, above which the land is kept; all of it by default.
     pub cut: Option<f64>,
+    /// Least thickness of the walls and the ceiling around a cavity that is open below, in millimetres; without it the solid is full. A solid that is cut is full.
+    pub hollow: Option<f64>,
 }
 
 impl Print {
     /// A solid with a longer side of this many millimetres.
     #[must_use]
     pub fn new(size: f64) -> Print {
-        Print { size, base: 3.0, cut: None }
+        Print { size, base: 3.0, cut: None, hollow: None }
     }
 
     /// The same with a base of this thickness, in millimetres.
@@ -38,6 +41,12 @@ impl Print {
     #[must_use]
     pub fn with_cut(self, level: f64) -> Print {
         Print { cut: Some(level), ..self }
+    }
+
+    /// The same with a cavity, and walls of at least this thickness in millimetres.
+    #[must_use]
+    pub fn with_hollow(self, wall: f64) -> Print {
+        Print { hollow: Some(wall), ..self }
     }
 }
 
@@ -54,7 +63,7 @@ impl Solid {
     /// The solid of a surface.
     ///
     /// # Errors
-    /// If there are holes, no land above the cut, or more vertices than 32 bits can number.
+    /// If there are holes, no land above the cut, no room for a cavity, or more vertices than 32 bits can number.
     pub fn new(surface: &Surface, print: &Print) -> Result<Solid> {
         let grid = surface.grid;
         let holes = grid.data().iter().filter(|height| !height.is_finite()).count();
@@ -67,7 +76,8 @@ impl Solid {
         }
         let scale = Scale::new(surface, print);
         let mut solid = Solid::top(surface, &scale);
-        let around = sides(surface).concat();
+        let sides = sides(surface);
+        let around = sides.concat();
         let level = scale.base as f32;
         if let Some(cut) = print.cut.filter(|_| solid.corners.iter().any(|[_, _, up]| *up <= level)) {
             // Every edge is cut at most once, and all vertices have a copy.
@@ -88,8 +98,17 @@ impl Solid {
             solid.extrude(&clipped, |[x, y, _]| [x, y, 0.0]);
             return Ok(solid);
         }
-        solid.numbered(around.len() + 1)?;
-        solid.close(&around);
+        match print.hollow {
+            Some(wall) => {
+                let ceiling = Ceiling::of(surface, &scale, wall)?;
+                solid.numbered(around.len() + 3 * ceiling.heights.len())?;
+                solid.close_hollow(&sides, &ceiling);
+            }
+            None => {
+                solid.numbered(around.len() + 1)?;
+                solid.close(&around);
+            }
+        }
         Ok(solid)
     }
 
@@ -142,6 +161,68 @@ impl Solid {
         let middle = self.push([0.5 * east, 0.5 * north, 0.0]);
         for (from, to) in pairs(&below) {
             self.triangles.push([to, from, middle]);
+        }
+    }
+
+    /// Adds walls below a surface with these sides, and a cavity that is open below.
+    fn close_hollow(&mut self, sides: &[Vec<u32>; 4], ceiling: &Ceiling) {
+        let around = sides.concat();
+        let vertices = ceiling.heights.len();
+        self.reserve(around.len() + 2 * vertices, 4 * around.len() + 4 * vertices);
+        let below = self.drop(&around);
+        self.wall(&around, &below);
+        let first = self.corners.len() as u32;
+        let width = ceiling.xs.len();
+        let vertices = ceiling.heights.iter().enumerate();
+        self.corners.extend(vertices.map(|(k, up)| [ceiling.xs[k % width], ceiling.ys[k / width], *up]));
+        for row in 0..ceiling.ys.len() - 1 {
+            for column in 0..width - 1 {
+                let nw = first + (row * width + column) as u32;
+                let [ne, sw, se] = [nw + 1, nw + width as u32, nw + width as u32 + 1];
+                self.triangles.extend([[nw, se, sw], [nw, ne, se]]);
+            }
+        }
+        // The rim on the ground, side by side: its outer line, and its inner one below the ceiling's border.
+        let inner = ceiling
+            .sides()
+            .map(|side| side[..side.len() - 1].iter().map(|corner| first + corner).collect::<Vec<u32>>());
+        let inner_above = inner.concat();
+        let inner_below = self.drop(&inner_above);
+        for ((from, to), (from_below, to_below)) in pairs(&inner_above).zip(pairs(&inner_below)) {
+            self.wall_piece([to, from], [to_below, from_below]);
+        }
+        let [mut outer_start, mut inner_start] = [0; 2];
+        for side in 0..4 {
+            let line = |all: &[u32], start: usize, count: usize| -> Vec<u32> {
+                (start..=start + count).map(|k| all[k % all.len()]).collect()
+            };
+            let outer = line(&below, outer_start, sides[side].len());
+            let inside = line(&inner_below, inner_start, inner[side].len());
+            self.rim(&outer, &inside);
+            outer_start += sides[side].len();
+            inner_start += inner[side].len();
+        }
+    }
+
+    /// Adds the triangles between a side of the base and the parallel one of the cavity, facing down.
+    fn rim(&mut self, outer: &[u32], inner: &[u32]) {
+        let share = |solid: &Solid, line: &[u32], k: usize| {
+            let [start, end, here] =
+                [line[0], line[line.len() - 1], line[k]].map(|corner| solid.corners[corner as usize]);
+            let along = |to: [f32; 3]| (to[0] - start[0]).abs() + (to[1] - start[1]).abs();
+            along(here) / along(end)
+        };
+        let [mut i, mut j] = [0; 2];
+        while i + 1 < outer.len() || j + 1 < inner.len() {
+            let is_outer =
+                j + 1 == inner.len() || i + 1 < outer.len() && share(self, outer, i + 1) <= share(self, inner, j + 1);
+            if is_outer {
+                self.triangles.push([outer[i + 1], outer[i], inner[j]]);
+                i += 1;
+            } else {
+                self.triangles.push([inner[j], inner[j + 1], outer[i]]);
+                j += 1;
+            }
         }
     }
 
@@ -203,12 +284,13 @@ fn pairs(line: &[u32]) -> impl Iterator<Item = (u32, u32)> {
 }
 
 /// Conversion from samples to millimetres.
-struct Scale {
+pub(super) struct Scale {
     /// Millimetres per metre.
-    scale: f64,
+    pub scale: f64,
     /// The height at the top of the base, in metres.
     lowest: f64,
-    base: f64,
+    /// Thickness of the base in millimetres.
+    pub base: f64,
 }
 
 impl Scale {
@@ -221,7 +303,7 @@ impl Scale {
     }
 
     /// The position of a sample of the surface.
-    fn place(&self, surface: &Surface, column: usize, row: usize) -> [f32; 3] {
+    pub fn place(&self, surface: &Surface, column: usize, row: usize) -> [f32; 3] {
         let grid = surface.grid;
         let [_, height, _] = surface.place(column, row);
         let along = |steps: usize| (steps as f64 * grid.window().cell * self.scale) as f32;

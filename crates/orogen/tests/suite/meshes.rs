@@ -482,6 +482,45 @@ fn land_above_a_cut_has_its_outline_and_a_base_there() {
 }
 
 #[test]
+fn a_hollow_solid_has_walls_and_a_ceiling_everywhere() {
+    for (width, height) in [(37, 23), (12, 90), (120, 100)] {
+        let grid = land(width, height);
+        for shape in [Shape::lattice(&grid, 1).unwrap(), adaptive(&grid, 1.5).unwrap()] {
+            let surface = surface(&grid, &shape);
+            let full = Solid::new(&surface, &Print::new(150.0)).unwrap();
+            let hollow = Solid::new(&surface, &Print::new(150.0).with_hollow(2.0)).unwrap();
+            let ((all, bounds), (left, hollow_bounds)) = (closed(&full), closed(&hollow));
+            assert_eq!(bounds, hollow_bounds);
+            assert!(left < 0.85 * all, "{left} {all}");
+            // Vertices of the cavity are those that are not below, on or beside the surface.
+            let top = full.corners.len() - 1;
+            let inside =
+                |[x, y, _]: [f32; 3]| x > 0.0 && y > 0.0 && f64::from(x) < bounds[1][0] && f64::from(y) < bounds[1][1];
+            let outer = &full.corners[..top];
+            let mut ceilings = 0;
+            for corner in hollow.corners[shape.corners()..].iter().filter(|corner| inside(**corner) && corner[2] > 0.0)
+            {
+                let near = outer.iter().map(|other| {
+                    let apart = minus(wide(*other), wide(*corner));
+                    dot(apart, apart).sqrt()
+                });
+                assert!(near.fold(f64::MAX, f64::min) > 2.0 - 1e-4, "{corner:?}");
+                assert!((0..2).all(|i| (2.0 - 1e-4..=bounds[1][i] - 2.0 + 1e-4).contains(&f64::from(corner[i]))));
+                ceilings += 1;
+            }
+            assert!(ceilings > 100, "{ceilings}");
+        }
+    }
+    let grid = land(60, 40);
+    let shape = Shape::lattice(&grid, 1).unwrap();
+    let refused = |print: Print| Solid::new(&surface(&grid, &shape), &print).unwrap_err().to_string();
+    let why = refused(Print::new(150.0).with_hollow(3.0));
+    assert!(why.contains("walls of 3 mm need a base that is thicker than 3 mm"), "{why}");
+    let why = refused(Print::new(15.0).with_base(9.0).with_hollow(4.0));
+    assert!(why.contains("a solid of 15 x 9.9 mm is too small for walls of 4 mm"), "{why}");
+}
+
+#[test]
 fn holes_are_left_out_or_refused() {
     let mut grid = land(20, 20);
     grid.row_mut(7)[9] = f32::NAN;
@@ -597,7 +636,7 @@ fn exports_are_whole_and_the_same_on_any_number_of_threads() {
         ("e.stl", &[("print-size", "80"), ("base", "2")], "26522 triangles and a base, 80 x 47.8 x "),
         ("f.obj", &[("color", "none")], "26522 triangles"),
         ("g.3mf", &[("max-error", "1")], "150 x 89.6 x "),
-        ("h.stl", &[("bed", "100x150.5x90")], "and a base, 150 x 89.6 x "),
+        ("h.stl", &[("hollow", "1"), ("bed", "100x150.5x90")], "and a base, 150 x 89.6 x "),
         ("i.3mf", &[("cut", "200"), ("exaggeration", "0.01")], "less than a layer of 0.2 mm; use an exaggeration of"),
     ];
     let all = |threads: usize| -> BTreeMap<String, Vec<u8>> {
@@ -636,6 +675,7 @@ fn exports_are_whole_and_the_same_on_any_number_of_threads() {
         ("x.ply", &[("color", "texture")], window, "cannot hold a texture; use --color vertex"),
         ("x.stl", &[("bed", "220x220")], window, "such as 220x220x250"),
         ("x.3mf", &[("bed", "100x100x100")], window, "has room for 100 x 100 x 100 mm; use --print-size 100 or less"),
+        ("x.3mf", &[("cut", "10"), ("hollow", "2")], window, "--hollow does not apply with --cut"),
     ] {
         let why = export(&world, window, &folder.join(name), given).unwrap_err();
         assert!(why.contains(expect), "{why}");
