@@ -354,10 +354,24 @@ for kind, options in (("full.stl", ()), ("adaptive.stl", ADAPTIVE), ("full.3mf",
     if path.suffix == ".3mf":
         checks.equal(f"{path.name}: its unit", solid.units, "millimeter")
         stl = trimesh.load_mesh(path.with_suffix(".stl"))
-        checks.near(f"{path.name}: the volume of the .stl", float(solid.volume), float(stl.volume), 1e-3)
+        checks.near(f"{path.name}: the volume of the .stl", float(solid.volume), float(stl.volume), 1e-6 * float(stl.volume))
         continue
     checks.equal(f"{path.name}: what admesh would mend", admesh(path), nothing)
     checks.equal(f"{path.name}: meshio reads as many triangles", len(meshio.read(path).cells_dict["triangle"]), len(solid.faces))
+middle = f"{(heights.min() + heights.max()) / 2:.2f}"
+for kind, base, options in (("cut", "2", ("--cut", middle)), ("hollow", "2", ("--hollow", "1.2")), ("text", "8", ("--text", "Bump & 8")),
+                            ("all", "8", ("--hollow", "1.2", "--text", "öß%", *ADAPTIVE))):
+    path, other = (export(BUMP, f"bump-{kind}.{suffix}", "--print-size", "120", "--base", base, *options) for suffix in ("stl", "3mf"))
+    solid, same = trimesh.load_mesh(path), trimesh.load_mesh(other)
+    checks.that(f"{path.name}: watertight, as {other.name}", bool(solid.is_watertight and same.is_watertight))
+    checks.that(f"{path.name}: wound the same way", bool(solid.is_winding_consistent and same.is_winding_consistent))
+    checks.near(f"{other.name}: the volume of {path.name}", float(same.volume), float(solid.volume), 1e-3 * float(solid.volume))
+    found = admesh(path)
+    checks.that(f"{path.name}: its parts", found.pop("parts") == solid.body_count)
+    checks.equal(f"{path.name}: what admesh would mend", found, {name: count for name, count in nothing.items() if name != "parts"})
+    if base == "2":
+        share = solid.volume / trimesh.load_mesh(WORK / "bump-full.stl").volume
+        checks.that(f"{path.name}: less volume than the full solid", 0.01 < share < 0.9, f"({share})")
 path = WORK / "bump-adaptive.stl"
 data = bytearray(path.read_bytes())
 data[80:84] = (int.from_bytes(data[80:84], "little") - 1).to_bytes(4, "little")

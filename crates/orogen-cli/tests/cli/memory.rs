@@ -83,7 +83,7 @@ fn rows(side: usize) -> Vec<Vec<String>> {
         }
     }
     rows.push("export land.toml --size 400 -o cut.3mf --cut 700 -q".into());
-    rows.push("export land.toml --size 400 -o hollow.stl --hollow 1 -q".into());
+    rows.push("export land.toml --size 400 -o hollow.stl --hollow 1 --text Land -q".into());
     rows.extend(["csv", "tres", "gpkg"].map(|kind| format!("export trees.toml -o trees.{kind} --layer scatter -q")));
     rows.push("export trees.toml -o trees.glb --objects -q".into());
     for layer in derived::all() {

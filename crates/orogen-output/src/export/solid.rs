@@ -8,7 +8,7 @@ use super::memory::whole;
 use super::mesh::{self, EXAGGERATION, HEIGHT_CURVE, MAX_ERROR, Prepared};
 use super::options::{OptionSpec, Options, ValueKind};
 use super::print_bed::{BED, Bed, ModelSize, flatness, shown};
-use crate::mesh::solid::{Print, Solid};
+use crate::mesh::solid::{LEGIBLE, Print, RAISED, Solid};
 use crate::proportions;
 use orogen_grid::grid::Window;
 use orogen_grid::progress::Progress;
@@ -47,8 +47,19 @@ pub const HOLLOW: OptionSpec = OptionSpec {
     value_kind: ValueKind::Number(0.8, 1e3),
 };
 
+/// `--text`.
+pub const TEXT: OptionSpec = OptionSpec {
+    name: "text",
+    value: "TEXT",
+    about: "Raised letters on the southern side of the base, as large as it has room for [default: none]",
+    value_kind: ValueKind::Text,
+};
+
 /// The options of solids.
-pub const OPTIONS: &[OptionSpec] = &[MAX_ERROR, EXAGGERATION, HEIGHT_CURVE, PRINT_SIZE, BASE, CUT, HOLLOW, BED];
+pub const OPTIONS: &[OptionSpec] = &[MAX_ERROR, EXAGGERATION, HEIGHT_CURVE, PRINT_SIZE, BASE, CUT, HOLLOW, TEXT, BED];
+
+/// Memory for drawing a letter, in bytes.
+const LETTER: u64 = 160 << 10;
 
 /// Memory of the solid of a window, in bytes, beside that of writing the file: the mesh, and 12 bytes for each vertex and triangle. A cut takes the whole surface, what
 /// it leaves of that (of white noise, two vertices for each), and a copy for the base. A cavity has two vertices for each sample at most.
@@ -59,7 +70,8 @@ pub fn memory(window: &Window, options: &Options) -> u64 {
     let copies = if options.has(CUT.name) { 6 } else { 1 };
     let solid = corners.saturating_mul(9 * copies);
     let ceiling = if options.has(HOLLOW.name) { whole(window).saturating_mul(20) } else { 0 };
-    mesh::memory(window, options).saturating_add(solid).saturating_add(ceiling)
+    let letters = options.text(TEXT.name).map_or(0, |text| LETTER * text.chars().count() as u64);
+    mesh::memory(window, options).saturating_add(solid).saturating_add(ceiling).saturating_add(letters)
 }
 
 /// A solid that is ready to be written.
@@ -86,6 +98,12 @@ impl PrintJob {
                 HOLLOW.name, CUT.name
             ));
         }
+        if options.has(CUT.name) && options.has(TEXT.name) {
+            return refuse(format!(
+                "--{} does not apply with --{}: there is no straight side for letters",
+                TEXT.name, CUT.name
+            ));
+        }
         let mut print = Print::new(print_size).with_base(base);
         print.hollow = options.number(HOLLOW.name);
         if let Some(level) = options.number(CUT.name) {
@@ -94,15 +112,20 @@ impl PrintJob {
             print = print.with_cut(f64::from(level[0]));
         }
         let surface = mesh.surface(0, false);
-        let solid = Solid::new(&surface, &print)?;
+        let mut solid = Solid::new(&surface, &print)?;
+        let letters = options.text(TEXT.name).map(|text| solid.letter(text)).transpose()?;
         let exaggeration = f64::from(mesh.exaggeration());
-        let model = ModelSize { size: solid.size(), fixed: [0.0, 0.0, base], print_size, exaggeration };
+        let raised = if letters.is_some() { f64::from(RAISED) } else { 0.0 };
+        let model = ModelSize { size: solid.size(), fixed: [0.0, raised, base], print_size, exaggeration };
         bed.map_or(Ok(()), |bed| bed.check(&model))?;
         let [low, high] = extremes(NO_SAMPLES, mesh.grid.data());
         let window = mesh.grid.window();
         let width = window.width.max(window.height) as f64 * window.cell;
         let steep = proportions::warning(f64::from(high) - f64::from(low), width, exaggeration);
-        let warnings = [steep, flatness(&model)].into_iter().flatten().map(|warning| format!("\nwarning: {warning}"));
+        let warnings = [steep, flatness(&model), letters.and_then(small_letters)]
+            .into_iter()
+            .flatten()
+            .map(|warning| format!("\nwarning: {warning}"));
         let shape = match options.number(CUT.name) {
             Some(level) => {
                 format!("{} of the land above {} m", count(solid.triangles.len(), "triangle"), number(level))
@@ -118,4 +141,16 @@ impl PrintJob {
     pub fn words(self) -> String {
         self.words
     }
+}
+
+/// A warning about letters of this size that hardly can be printed.
+fn small_letters(size: f64) -> Option<String> {
+    let told = |size: f64| number((size * 10.0).round() / 10.0);
+    (size < LEGIBLE).then(|| {
+        format!(
+            "the letters of --text have a size of {} mm, and those below {} mm are hard to print; use a thicker --base or a shorter text",
+            told(size),
+            told(LEGIBLE)
+        )
+    })
 }

@@ -81,6 +81,12 @@ impl BuiltinFont {
         })
     }
 
+    /// The first letter that the font has not.
+    #[must_use]
+    pub fn lacking(&self, text: &str) -> Option<char> {
+        text.chars().find(|letter| self.face(Face::Regular).glyph_id(*letter).0 == 0)
+    }
+
     /// Breaks text at spaces into lines of at most `width` pixels. A longer word gets its own line.
     #[must_use]
     pub fn wrap(&self, text: &str, style: Style, width: f32) -> Vec<String> {
@@ -214,5 +220,6 @@ mod tests {
                 assert_ne!(font.face(face).glyph_id(letter).0, 0, "{letter}");
             }
         }
+        assert_eq!((font.lacking("Höhe 12 m"), font.lacking("the 山 of")), (None, Some('山')));
     }
 }

@@ -26,6 +26,7 @@ pub(crate) mod objects;
 mod outline;
 mod packed;
 pub mod ply;
+mod raised_text;
 pub(crate) mod relief;
 mod sample_set;
 mod scan;

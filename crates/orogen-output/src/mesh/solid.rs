@@ -6,9 +6,17 @@
 use super::cavity::Ceiling;
 use super::clip::{Clipped, clip};
 use super::outline::sides;
+use super::raised_text::RaisedText;
 use super::surface::Surface;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::words::number;
+
+/// How far letters stand out of their wall, and how far they reach into it, in millimetres.
+pub const RAISED: f32 = 0.6;
+const SUNK: f32 = 0.4;
+
+/// Letters below this size are hard to print, in millimetres per em.
+pub const LEGIBLE: f64 = 4.0;
 
 /// Dimensions of a solid.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -110,6 +118,23 @@ impl Solid {
             }
         }
         Ok(solid)
+    }
+
+    /// Adds raised letters in the middle of the southern wall; returns their size in millimetres per em.
+    ///
+    /// They are bodies of their own that reach into the wall, which printers' programs join with it.
+    ///
+    /// # Errors
+    /// If the font lacks a letter, if there are none or too many, or if the wall has no room for them.
+    pub fn letter(&mut self, text: &str) -> Result<f64> {
+        let [_, [length, ..]] = self.bounds();
+        let wall = self.corners.iter().filter(|[_, north, up]| *north == 0.0 && *up > 0.0);
+        let height = wall.fold(f32::INFINITY, |least, [_, _, up]| least.min(*up));
+        let RaisedText { mut front, size } = RaisedText::new(text, length.into(), height.into())?;
+        self.numbered(2 * front.corners.len())?;
+        front.corners.iter_mut().for_each(|corner| *corner = [corner[0], -RAISED, corner[1]]);
+        self.extrude(&front, |[x, _, z]| [x, SUNK, z]);
+        Ok(size)
     }
 
     /// Adds a surface, its copy at the positions of `back`, and the walls between them.

@@ -521,6 +521,50 @@ fn a_hollow_solid_has_walls_and_a_ceiling_everywhere() {
 }
 
 #[test]
+fn letters_stand_out_of_the_southern_wall() {
+    let grid = land(60, 40);
+    let shape = Shape::lattice(&grid, 1).unwrap();
+    let print = Print::new(150.0).with_base(10.0);
+    let plain = Solid::new(&surface(&grid, &shape), &print).unwrap();
+    let (before, _) = closed(&plain);
+    let mut solid = plain.clone();
+    // Eight of the ten millimetres of the base.
+    assert!((solid.letter("L").unwrap() - 8.0).abs() < 0.01);
+    let (volume, [least, _]) = closed(&solid);
+    assert!((least[1] + 0.6).abs() < 1e-6);
+    let letter: Vec<V3> = solid.corners[plain.corners.len()..].iter().copied().map(wide).collect();
+    let range = |axis: usize| {
+        letter.iter().fold([f64::MAX, f64::MIN], |[low, high], at| [low.min(at[axis]), high.max(at[axis])])
+    };
+    let ([west, east], [south, north], [low, high]) = (range(0), range(1), range(2));
+    assert!(west > 70.0 && east < 80.0 && (north - 0.4).abs() < 1e-6 && (south + 0.6).abs() < 1e-6, "{west} {east}");
+    // A capital is about .72 em high; its middle is that of the base.
+    assert!((high - low - 0.72 * 8.0).abs() < 0.3 && (high + low - 10.0).abs() < 0.6, "{low} {high}");
+    // The stem of an L is in its west, and its arm is at the bottom.
+    let stem = letter.iter().filter(|at| at[2] > 6.0).all(|at| at[0] < 0.5 * (west + east));
+    let arm = letter.iter().filter(|at| at[0] > 0.5 * (west + east)).all(|at| at[2] < 5.0);
+    assert!(stem && arm);
+    let area = volume - before;
+    assert!((5.0..20.0).contains(&area), "{area}");
+    // Letters with holes, several, and one of several parts.
+    for text in ["BØ8%&", "Alpine 2026", "i"] {
+        closed(&{
+            let mut solid = plain.clone();
+            solid.letter(text).unwrap();
+            solid
+        });
+    }
+    let refused = |print: Print, text: &str| {
+        let mut solid = Solid::new(&surface(&grid, &shape), &print).unwrap();
+        solid.letter(text).unwrap_err().to_string()
+    };
+    assert!(refused(print, "the 山").contains("the built-in font has no letter for `山` of --text"));
+    assert!(refused(print, "  ").contains("--text must have 1 to 200 letters"));
+    let why = refused(Print::new(5000.0), "a");
+    assert!(why.contains("would have a size of 2.4 mm on a model of 5000 mm"), "{why}");
+}
+
+#[test]
 fn holes_are_left_out_or_refused() {
     let mut grid = land(20, 20);
     grid.row_mut(7)[9] = f32::NAN;
@@ -636,7 +680,11 @@ fn exports_are_whole_and_the_same_on_any_number_of_threads() {
         ("e.stl", &[("print-size", "80"), ("base", "2")], "26522 triangles and a base, 80 x 47.8 x "),
         ("f.obj", &[("color", "none")], "26522 triangles"),
         ("g.3mf", &[("max-error", "1")], "150 x 89.6 x "),
-        ("h.stl", &[("hollow", "1"), ("bed", "100x150.5x90")], "and a base, 150 x 89.6 x "),
+        (
+            "h.stl",
+            &[("hollow", "1"), ("text", "H"), ("bed", "100x150.5x90")],
+            "letters of --text have a size of 2.7 mm",
+        ),
         ("i.3mf", &[("cut", "200"), ("exaggeration", "0.01")], "less than a layer of 0.2 mm; use an exaggeration of"),
     ];
     let all = |threads: usize| -> BTreeMap<String, Vec<u8>> {
@@ -676,6 +724,7 @@ fn exports_are_whole_and_the_same_on_any_number_of_threads() {
         ("x.stl", &[("bed", "220x220")], window, "such as 220x220x250"),
         ("x.3mf", &[("bed", "100x100x100")], window, "has room for 100 x 100 x 100 mm; use --print-size 100 or less"),
         ("x.3mf", &[("cut", "10"), ("hollow", "2")], window, "--hollow does not apply with --cut"),
+        ("x.stl", &[("cut", "10"), ("text", "A")], window, "--text does not apply with --cut"),
     ] {
         let why = export(&world, window, &folder.join(name), given).unwrap_err();
         assert!(why.contains(expect), "{why}");
