@@ -64,7 +64,7 @@ fn chunks(options: &Options) -> Result<Vec<Value>, String> {
                 .map(|step| 16 * ((k as u64 + 1).wrapping_mul(step) >> 44) as i64);
             let window = Window::new(16, 16, 1.0).at(place[0], place[1]);
             let begun = Instant::now();
-            let land = Land::of(&world, &window, Extent::Below(DEFAULT_BELOW), &|_| Ok(()), &Progress::none())
+            let land = Land::of(&world, &window, Extent::Below(DEFAULT_BELOW), 1.0, &|_| Ok(()), &Progress::none())
                 .map_err(|e| e.to_string())?;
             std::hint::black_box(land.blocks(&window).map_err(|e| e.to_string())?);
             times.push(begun.elapsed().as_secs_f64() * 1e6);

@@ -3,17 +3,20 @@
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use orogen::blocks::kind::KINDS;
+use orogen::blocks::caves;
+use orogen::blocks::kind::{Block, KINDS};
 use orogen::blocks::land::{self, COLUMN_BYTES, HALO, Land};
 use orogen::blocks::levels::{DEFAULT_BELOW, Extent, Levels, MAX_BELOW};
 use orogen::blocks::luanti::{FILES, LuantiWorld, OPENED};
 use orogen::blocks::mesh::BlockMesh;
 use orogen::blocks::picture::Isometric;
 use orogen::blocks::schem::write_schem;
+use orogen::blocks::section::Section;
 use orogen::blocks::volume::BlockVolume;
 use orogen::blocks::vox::write_vox;
 use orogen::file::{self, Existing, Output, OutputFolder, OutputPolicy};
 use orogen::format::{schem, vox};
+use orogen::jobs::render::EXAGGERATION;
 use orogen::words::{count, number};
 use orogen::world::HEIGHT;
 use orogen::{Error, ErrorKind, Progress, Window, World};
@@ -26,6 +29,7 @@ use crate::options::RunOptions;
 use crate::say::{self, SOFTWARE};
 use crate::sink::{Sink, is_stdout};
 use crate::source::Source;
+use crate::values::number::positive;
 use crate::values::size::Size;
 use crate::view::SizedView;
 
@@ -37,10 +41,18 @@ pub struct Args {
     recipe: PathBuf,
     #[command(flatten)]
     samples: SizedView,
-    /// Levels of blocks below the lowest ground
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_BELOW)), default_value_t = DEFAULT_BELOW,
-          allow_negative_numbers = true)]
-    below: u32,
+    /// Levels of blocks below the lowest ground [default: 16; with --caves 48]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_BELOW)), allow_negative_numbers = true)]
+    below: Option<u32>,
+    /// Vertical exaggeration of the ground and the water
+    #[arg(long, value_name = "N", value_parser = positive, default_value = "1", allow_negative_numbers = true)]
+    exaggeration: f64,
+    /// Carve caves into the ground, away from water; not for recipes with an output `density`
+    #[arg(long)]
+    caves: bool,
+    /// Draw a vertical cut along a row or a column of the window, counted from 0 in the north and in the west, as a .png
+    #[arg(long, value_name = "row=N|column=N", value_parser = Section::parse)]
+    section: Option<Section>,
     /// Format [default: by the extension of the output; a Luanti world if it has none]
     #[arg(long, value_enum)]
     format: Option<BlockFormat>,
@@ -82,6 +94,13 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 
 fn blocks(args: &Args) -> Result<(), Failure> {
     let format = format(args)?;
+    if !EXAGGERATION.contains(&args.exaggeration) {
+        let (from, to) = (EXAGGERATION.start(), EXAGGERATION.end());
+        return Err(Failure::Usage(format!("--exaggeration must be from {from} to {to}, not {}", args.exaggeration)));
+    }
+    if args.section.is_some() && format != BlockFormat::Png {
+        return Err(Failure::Usage("--section draws a picture: name a .png with -o, or use --format png".into()));
+    }
     if format == BlockFormat::Luanti && is_stdout(&args.out) {
         return Err(Failure::Usage("a Luanti world has several files: name a folder with -o".into()));
     }
@@ -130,16 +149,24 @@ fn make(args: &Args, format: BlockFormat, progress: &Progress) -> Result<(), Fai
     // The classes of a recipe without any depend on the cell of the map.
     let window = samples.window(&args.run.limits.open(recipe.clone(), &budget)?)?;
     land::prepare(&mut recipe, window.cell)?;
+    if args.caves {
+        caves::add(&mut recipe, window.cell)?;
+    }
     let world = args.run.limits.open(recipe, &budget)?;
     let target = Target::new(args, format, &policy)?;
     // The sides are known before the heights are.
-    let one = Levels { bottom: Levels::of(world.recipe().world.sea_level, window.cell), count: 1 };
-    let fits = |levels: Levels| fits(format, &window, levels, &world);
+    let sea_level = world.recipe().world.sea_level * args.exaggeration;
+    let one = Levels { bottom: Levels::of(sea_level, window.cell), count: 1 };
+    let fits = |levels: Levels| match args.section {
+        Some(section) => section.check(&window, levels.count).map(drop),
+        None => fits(format, &window, levels, sea_level, &world),
+    };
     fits(one)?;
     let _columns =
         budget.reserve((window.grown(HALO).len() as u64).saturating_mul(COLUMN_BYTES).saturating_add(ENCODERS))?;
     let [reading, making, writing] = progress.parts([2.0, 3.0, 5.0]);
-    let land = Land::of(&world, &window, Extent::Below(args.below), &fits, &reading)?;
+    let below = args.below.unwrap_or(if args.caves { caves::BELOW } else { DEFAULT_BELOW });
+    let land = Land::of(&world, &window, Extent::Below(below), args.exaggeration, &fits, &reading)?;
     finite::tell(HEIGHT, land.finite)?;
     let mut levels = land.levels;
     let text = match target {
@@ -155,7 +182,7 @@ fn make(args: &Args, format: BlockFormat, progress: &Progress) -> Result<(), Fai
             drop(land);
             levels = volume.levels;
             target.write(&volume, &world, &writing)?;
-            shares(&volume)
+            world.install(|| shares(&volume))
         }
     };
     writing.finish();
@@ -166,15 +193,14 @@ fn make(args: &Args, format: BlockFormat, progress: &Progress) -> Result<(), Fai
 }
 
 /// Checks that the format can hold the blocks of a window.
-fn fits(format: BlockFormat, window: &Window, levels: Levels, world: &World) -> orogen::Result<()> {
+fn fits(format: BlockFormat, window: &Window, levels: Levels, sea_level: f64, world: &World) -> orogen::Result<()> {
     let (width, height) = (window.width, window.height);
     match format {
         BlockFormat::Vox => vox::check([width, height, levels.count]),
         BlockFormat::Schem => schem::check([width, levels.count, height]),
         BlockFormat::Png => Isometric::new([width, levels.count, height]).map(drop),
         BlockFormat::Luanti => {
-            LuantiWorld::start([width, levels.count, height], levels, world.recipe().world.sea_level, window.cell)
-                .map(drop)
+            LuantiWorld::start([width, levels.count, height], levels, sea_level, window.cell).map(drop)
         }
         BlockFormat::Glb => world.budget().afford(world.install(|| BlockMesh::memory(window, levels))),
     }
@@ -191,6 +217,7 @@ enum VolumeTarget {
     Vox(Sink),
     Schem(Sink),
     Png(Sink),
+    Section(Sink, Section),
     Luanti(OutputFolder, Vec<Output>),
 }
 
@@ -201,7 +228,10 @@ impl Target {
             BlockFormat::Glb => return Ok(Target::Mesh(sink()?)),
             BlockFormat::Vox => VolumeTarget::Vox(sink()?),
             BlockFormat::Schem => VolumeTarget::Schem(sink()?),
-            BlockFormat::Png => VolumeTarget::Png(sink()?),
+            BlockFormat::Png => match args.section {
+                Some(section) => VolumeTarget::Section(sink()?, section),
+                None => VolumeTarget::Png(sink()?),
+            },
             BlockFormat::Luanti => {
                 if policy.existing() != Existing::Replace && args.out.join(OPENED).exists() {
                     let message = format!(
@@ -235,6 +265,9 @@ impl VolumeTarget {
                 let _picture = budget.reserve(picture.memory())?;
                 sink.write(|out| picture.write(out, volume, &[("Software", SOFTWARE)]))
             }
+            VolumeTarget::Section(sink, section) => {
+                sink.write(|out| section.write(out, volume, &[("Software", SOFTWARE)]))
+            }
             VolumeTarget::Luanti(folder, outputs) => {
                 let _map = budget.reserve(LuantiWorld::memory(blocks))?;
                 let luanti = world.install(|| LuantiWorld::new(volume, progress))?;
@@ -263,12 +296,15 @@ fn words(out: &Path, window: &Window, levels: Levels, world: &World) -> String {
     )
 }
 
-/// The kinds of blocks and their shares.
+/// The kinds of blocks with their numbers and shares, and the air.
 fn shares(volume: &BlockVolume) -> String {
     let counts = volume.counts();
     let all: u64 = counts[1..].iter().sum();
     let shares = KINDS.iter().zip(counts).skip(1).filter(|(_, blocks)| *blocks > 0);
-    let shares: Vec<String> =
-        shares.map(|(kind, blocks)| format!("{:.1} % {}", 100.0 * blocks as f64 / all as f64, kind.name)).collect();
-    format!("{} blocks: {}\n", all, shares.join(", "))
+    let shares: Vec<String> = shares
+        .map(|(kind, blocks)| format!("{:.1} % {} ({blocks})", 100.0 * blocks as f64 / all as f64, kind.name))
+        .collect();
+    let air = counts[Block::Air as usize];
+    let enclosed = volume.enclosed();
+    format!("{all} blocks: {}\n{air} of air, {enclosed} of them in caves and below overhangs\n", shares.join(", "))
 }

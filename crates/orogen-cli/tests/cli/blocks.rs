@@ -42,11 +42,44 @@ fn every_format_tells_what_it_made_and_another_seed_is_another_map() {
     folder.write("hills.toml", HILLS);
     for out in ["b.schem", "b.vox", "b.png", "b"] {
         let text = folder.good(&["blocks", "hills.toml", "-o", out]).text().to_string();
-        assert!(text.contains("% stone") && text.contains("% water") && text.contains("% sand,"), "{text}");
+        assert!(text.contains("% stone (") && text.contains("% water (") && text.contains("% sand ("), "{text}");
     }
     assert!(folder.good(&["blocks", "hills.toml", "-o", "b.glb"]).text().contains(" triangles in 1 part"));
     folder.good(&["blocks", "hills.toml", "--seed", "1..2", "-o", "b.schem", "-q"]);
     assert_ne!(folder.read("b-1.schem"), folder.read("b-2.schem"));
+}
+
+#[test]
+fn exaggeration_caves_and_sections_are_of_any_recipe() {
+    let folder = Folder::new();
+    folder.write("hills.toml", HILLS);
+    let levels = |arguments: &[&str]| {
+        let outcome = folder.good(&[&["blocks", "hills.toml"], arguments].concat());
+        let text = outcome.text();
+        let words: Vec<&str> = text.split(' ').collect();
+        let at = words.iter().position(|word| *word == "levels,").unwrap();
+        (words[at - 1].parse::<u32>().unwrap(), text.to_string())
+    };
+    let (plain, text) = levels(&["-o", "a.vox"]);
+    assert!(text.contains(" of air, 0 of them in caves and below overhangs\n"), "{text}");
+    let blocks: u64 = text.lines().nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+    let counts = text.lines().nth(1).unwrap().split('(').skip(1);
+    assert_eq!(counts.map(|part| part.split(')').next().unwrap().parse::<u64>().unwrap()).sum::<u64>(), blocks);
+    let air: u64 = text.lines().nth(2).unwrap().split(' ').next().unwrap().parse().unwrap();
+    assert_eq!(blocks + air, 60 * 40 * u64::from(plain));
+    assert!(levels(&["-o", "a.vox", "--exaggeration", "2"]).0 > plain * 5 / 4);
+    let (deep, text) = levels(&["--caves", "--section", "row=12", "-o", "caves.png"]);
+    assert!(deep >= plain + 28 && text.contains(" of them in caves") && !text.contains(" air, 0 of them"), "{text}");
+    let picture = png(&folder.read("caves.png"));
+    assert_eq!([picture.width, picture.height], [60 * 8, deep as usize * 8]);
+    let section = |arguments: &[&str], expect: &str| {
+        folder.bad(&[&["blocks", "hills.toml", "--section"], arguments].concat(), 2, expect);
+    };
+    section(&["row=12", "-o", "a.vox"], "--section draws a picture: name a .png");
+    section(&["column=60", "-o", "b.png"], "there is no column 60 to cut along; the window has the columns 0 to 59");
+    section(&["12", "-o", "b.png"], "it must be row=N or column=N");
+    folder.bad(&["blocks", "hills.toml", "--exaggeration", "1000"], 2, "--exaggeration must be from 0.01 to 100");
+    folder.bad(&["blocks", "caves", "--caves"], 2, "the recipe has an output `density`");
 }
 
 #[test]

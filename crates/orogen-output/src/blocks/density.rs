@@ -35,10 +35,16 @@ pub(super) struct Offsets {
 }
 
 impl Offsets {
-    /// The offsets over a window of columns and a range of levels.
+    /// The offsets over a window of columns and a range of levels, of a density in land whose altitudes are exaggerated.
     ///
     /// Fails if the layers cannot be made, or `progress` is cancelled.
-    pub(super) fn of(world: &World, columns: &Window, levels: Levels, progress: &Progress) -> Result<Offsets> {
+    pub(super) fn of(
+        world: &World,
+        columns: &Window,
+        levels: Levels,
+        exaggeration: f64,
+        progress: &Progress,
+    ) -> Result<Offsets> {
         let cell = columns.cell;
         let range = |from: i64, to: i64| (from.div_euclid(STEP), (to - 1).div_euclid(STEP) + 2);
         let ((west, east), (north, south)) = (range(columns.x, columns.right()), range(columns.y, columns.bottom()));
@@ -48,7 +54,8 @@ impl Offsets {
         let nodes = world.surroundings(&Window { x: west, y: north, width, height, cell: cell * STEP as f64 }, 0);
         let count = (highest - lowest) as usize;
         let memory = world.budget().reserve((nodes.len() as u64).saturating_mul(4 * count as u64))?;
-        let altitudes: Vec<f64> = (lowest..highest).map(|node| Levels::middle((node * STEP) as i32, cell)).collect();
+        let altitudes: Vec<f64> =
+            (lowest..highest).map(|node| Levels::middle((node * STEP) as i32, cell) / exaggeration).collect();
         let mut offsets = vec![0.0; nodes.len() * count];
         progress.expect(nodes.height as f64);
         let rows = (AT_ONCE / (nodes.width * count).max(1)).max(1);
@@ -59,7 +66,7 @@ impl Offsets {
             for (k, altitude) in altitudes.iter().enumerate() {
                 let samples = densities.slice(k).iter().zip(heights.iter().flat_map(|grid| grid.data()));
                 for (at, (density, height)) in samples.enumerate() {
-                    let offset = f64::from(*density) - (f64::from(*height) - altitude);
+                    let offset = exaggeration * (f64::from(*density) - (f64::from(*height) - altitude));
                     // Where there is no density the ground is as it is.
                     offsets[(top * nodes.width + at) * count + k] =
                         if offset.is_finite() { offset as f32 } else { 0.0 };

@@ -73,6 +73,7 @@ pub struct Land {
     pub(super) offsets: Option<Offsets>,
     pub(super) has_trees: bool,
     pub(super) seed: u64,
+    /// The sea level in metres, exaggerated.
     pub(super) sea_level: f64,
 }
 
@@ -91,7 +92,7 @@ pub fn prepare(recipe: &mut Recipe, cell: f64) -> Result<()> {
 }
 
 impl Land {
-    /// The columns of a window. `world` is of a [prepared](prepare) recipe. `fits` checks the levels once they are known, before the density of the ground
+    /// The columns of a window, with heights and water times `exaggeration`. `world` is of a [prepared](prepare) recipe. `fits` checks the levels once they are known, before the density of the ground
     /// is computed.
     ///
     /// # Errors
@@ -101,6 +102,7 @@ impl Land {
         world: &World,
         window: &Window,
         extent: Extent,
+        exaggeration: f64,
         fits: &dyn Fn(Levels) -> Result<()>,
         progress: &Progress,
     ) -> Result<Land> {
@@ -119,7 +121,8 @@ impl Land {
         };
         let lakes = has_lakes.then(|| grids.next()).flatten();
         let biomes = biome.and_then(|(_, scheme)| Some((grids.next()?, scheme)));
-        let sea = recipe.world.sea_level as f32;
+        let sea_level = recipe.world.sea_level * exaggeration;
+        let (sea, steep) = (sea_level as f32, exaggeration as f32);
         let mut columns = Vec::with_capacity(heights.data().len());
         for (k, height) in heights.data().iter().copied().enumerate() {
             let mut cover = cover(&classes, k)?;
@@ -127,8 +130,9 @@ impl Land {
                 cover = cover.in_biome(*scheme, biomes.data()[k] as u8);
             }
             let lake = lakes.as_ref().map_or(0.0, |lakes| lakes.data()[k]);
+            let height = height * steep;
             let water = match lake > DEPTH {
-                true => height + lake,
+                true => height + lake * steep,
                 false if height < sea => sea,
                 false => f32::NEG_INFINITY,
             };
@@ -148,7 +152,7 @@ impl Land {
             offsets: None,
             has_trees: true,
             seed: recipe.world.seed,
-            sea_level: recipe.world.sea_level,
+            sea_level,
         };
         if let Extent::Levels(levels) = extent {
             land.levels = levels;
@@ -181,7 +185,7 @@ impl Land {
             if land.has_trees {
                 shaped = Levels::between(shaped.bottom.min(reach.bottom), shaped.top().max(reach.top()));
             }
-            land.offsets = Some(Offsets::of(world, &around, shaped, &shaping)?);
+            land.offsets = Some(Offsets::of(world, &around, shaped, exaggeration, &shaping)?);
         }
         shaping.finish();
         Ok(land)

@@ -1,8 +1,9 @@
 //! Worlds of blocks: columns of soil, stone, ore and water, as files for block games and voxel editors.
 //!
 //! [`land::Land`] has the columns of a window, from which [`land::Land::blocks`] makes the blocks of any part, and [`volume::BlockVolume`] all of them; [`vox`], [`schem`],
-//! [`luanti`] and [`picture`] write these. [`mesh`] makes a smooth surface of a land.
+//! [`luanti`], [`picture`] and [`section`] write these. [`caves`] carves caves into any land. [`mesh`] makes a smooth surface of a land.
 
+pub mod caves;
 pub mod chunk;
 pub mod cover;
 pub mod density;
@@ -16,6 +17,7 @@ pub mod mesh;
 pub mod picture;
 mod reach;
 pub mod schem;
+pub mod section;
 mod solid;
 pub mod trees;
 pub mod volume;

@@ -19,7 +19,7 @@ const WIDTH: usize = 2048;
 const MAX_SIDE: usize = 8192;
 
 /// Color of what is around the blocks.
-const SKY: [u8; 3] = [222, 232, 240];
+pub(super) const SKY: [u8; 3] = [222, 232, 240];
 
 /// Light of the upper, the southern and the eastern face, and of a face in the shadow.
 const LIGHT: [f32; 3] = [1.0, 0.66, 0.82];

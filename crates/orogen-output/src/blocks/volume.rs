@@ -88,6 +88,30 @@ impl BlockVolume {
         Block::of(self.blocks[(level as usize * height + row as usize) * width + column as usize])
     }
 
+    /// The level of the highest solid block of a column and a row that is no tree, above the bottom: what is free below it is in a cave or below an overhang.
+    #[must_use]
+    pub fn ground(&self, [column, row]: [usize; 2]) -> Option<usize> {
+        let is_ground = |level: &usize| {
+            let block = self.block([column as i64, row as i64, *level as i64]);
+            block.is_solid() && block < Block::Log
+        };
+        (0..self.levels.count).rev().find(is_ground)
+    }
+
+    /// How many blocks of air are in caves and below overhangs.
+    #[must_use]
+    pub fn enclosed(&self) -> u64 {
+        let row = |row: usize| -> u64 {
+            let columns = (0..self.window.width).filter_map(|column| Some((column, self.ground([column, row])?)));
+            let free = |(column, ground): (usize, usize)| {
+                let is_free = |level: &usize| self.block([column as i64, row as i64, *level as i64]) == Block::Air;
+                (0..ground).filter(is_free).count() as u64
+            };
+            columns.map(free).sum()
+        };
+        parallel::map(0..self.window.height, row).into_iter().sum()
+    }
+
     /// How many blocks of each kind there are.
     #[must_use]
     pub fn counts(&self) -> [u64; KINDS.len()] {

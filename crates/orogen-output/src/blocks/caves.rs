@@ -1,0 +1,99 @@
+//! Caves in any land: winding tubes below its surface, as an output `density`.
+//!
+//! They are nodes of the recipe, so they are the same in every part of the world, at one size of blocks.
+
+use super::density::DENSITY;
+use orogen_engine::Recipe;
+use orogen_engine::field::altitude::Altitude;
+use orogen_engine::field::expr::Expr;
+use orogen_engine::field::fbm::Fbm;
+use orogen_engine::field::resample::Resample;
+use orogen_engine::filter::distance::Distance;
+use orogen_engine::recipe::class::document::CLASS;
+use orogen_engine::world::{HEIGHT, LAKES};
+use orogen_grid::error::{Error, ErrorKind, Result};
+
+/// Levels below the lowest ground that leave room for caves.
+pub const BELOW: u32 = 48;
+
+/// Wavelength of the tubes and of the areas where they open to the surface, in blocks, and how much flatter than wide the tubes wind.
+const WAVELENGTH: f64 = 60.0;
+const OPENINGS: f64 = 90.0;
+const FLATTENED: f64 = 0.7;
+
+/// Distance from water, in blocks, below which there is no cave, and from which they are as wide as elsewhere. Density is sampled at every fourth column, so less than six
+/// blocks would reach into the columns of water.
+const DRY: [f64; 2] = [7.0, 14.0];
+
+/// Depth of the lowest caves, in blocks: where they become narrow, and where they end.
+const DEEP: [f64; 2] = [32.0, 44.0];
+
+/// Depth of the roof where caves do not open to the surface, in blocks.
+const ROOF: [f64; 2] = [2.0, 7.0];
+
+/// Adds caves to a recipe whose blocks are of `cell` metres and whose columns have a class.
+///
+/// # Errors
+/// If the recipe has no output `height` or `class`, or a density of its own.
+pub fn add(recipe: &mut Recipe, cell: f64) -> Result<()> {
+    let input =
+        |name: &str| recipe.output_inputs().iter().find(|(output, _)| output == name).map(|(_, input)| input.clone());
+    let (Some(height), Some(class)) = (input(HEIGHT), input(CLASS)) else {
+        return Err(Error::new(ErrorKind::Recipe, "caves need the outputs `height` and `class`"));
+    };
+    if input(DENSITY).is_some() {
+        let message = "the recipe has an output `density`, which shapes its ground in space, also its caves; caves are added to recipes without one";
+        return Err(Error::new(ErrorKind::Request, message));
+    }
+    let lakes = input(LAKES);
+    let sea = recipe.world.sea_level;
+    let free = |name: &str| {
+        let mut free = format!("caves-{name}");
+        while recipe.nodes().iter().any(|named| named.name == free) {
+            free.push('_');
+        }
+        free
+    };
+    let [altitude, wet, shore, away, one, other, openings, tubes, ground, open] =
+        ["altitude", "wet", "shore", "away", "one", "other", "openings", "tubes", "ground", "density"].map(free);
+    let is_wet = match lakes {
+        Some(lakes) => Expr::new(&format!("max(max(class < 0.5, height <= {sea}), lakes > 0)")).with("lakes", lakes),
+        None => Expr::new(&format!("max(class < 0.5, height <= {sea})")),
+    };
+    recipe.add(&wet, is_wet.with("class", class).with("height", height.clone()));
+    let [near, far] = DRY.map(|blocks| blocks * cell);
+    recipe.add(&shore, Distance { source: wet.as_str().into(), threshold: 0.5, reach: far });
+    // Densities are sampled at a larger cell, at which narrow rivers would be lost.
+    recipe.add(&away, Resample { source: shore.as_str().into(), cell, ..Resample::default() });
+    recipe.add(&altitude, Altitude {});
+    for (name, seed) in [(&one, 1), (&other, 2)] {
+        let wavelength = WAVELENGTH * cell;
+        recipe.add(name, Fbm { seed, wavelength, octaves: 2, vertical: FLATTENED, ..Fbm::default() });
+    }
+    recipe.add(&openings, Fbm { seed: 3, wavelength: OPENINGS * cell, octaves: 2, ..Fbm::default() });
+    // 1 in the middle of a tube, where two noises are near 0 together, and 0 beside it.
+    let [deep, deepest] = DEEP.map(|blocks| blocks * cell);
+    let [thin, thick] = ROOF.map(|blocks| blocks * cell);
+    let carved = Expr::new(&format!(
+        "(1 - smoothstep(0.005, 0.018, one * one + other * other)) * smoothstep({near}, {far}, away) \
+         * (1 - smoothstep({deep}, {deepest}, height - altitude)) \
+         * max(smoothstep({thin}, {thick}, height - altitude), smoothstep(0.1, 0.25, openings))"
+    ))
+    .with("one", one.as_str())
+    .with("other", other.as_str())
+    .with("away", away.as_str())
+    .with("height", height.clone())
+    .with("altitude", altitude.as_str())
+    .with("openings", openings.as_str());
+    recipe.add(&tubes, carved);
+    let above = Expr::new("height - altitude").with("height", height).with("altitude", altitude.as_str());
+    recipe.add(&ground, above);
+    // Free in the middle of a tube, however deep it is.
+    let room = 8.0 * cell;
+    let carve = Expr::new(&format!("ground - tubes * (max(ground, 0) + {room})"))
+        .with("ground", ground.as_str())
+        .with("tubes", tubes.as_str());
+    recipe.add(&open, carve);
+    recipe.output(DENSITY, open.as_str());
+    Ok(())
+}
