@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use orogen::file;
 use orogen::jobs::map::{MapColors, MapJob};
 use orogen::jobs::sheet_format::SheetFormat;
-use orogen::sheet::options::{Parts, Resolution, Scale, Shading};
+use orogen::sheet::options::{Labels, Parts, Resolution, Scale, Shading};
 use orogen::sheet::paper::Paper;
 use orogen::world::HEIGHT;
 
@@ -58,6 +58,12 @@ pub struct Args {
     /// Contour interval in metres [default: a round number that suits relief and scale]
     #[arg(long, value_name = "M", value_parser = positive, allow_negative_numbers = true)]
     contours: Option<f64>,
+    /// Contour heights in metres, instead of an interval, such as 100,250,500; all of them are labelled
+    #[arg(long, value_name = "A,B,...", conflicts_with = "contours", allow_hyphen_values = true)]
+    levels: Option<Numbers>,
+    /// Contours that have labels, as far as there is room for them [default: index; all with --levels]
+    #[arg(long, value_name = "WHICH")]
+    labels: Option<Labelled>,
     /// Minimum drainage area of rivers in m^2 [default: depends on the scale, at least 100000; none on bare noise, which has no rivers]
     #[arg(long, value_name = "M2", value_parser = positive, allow_negative_numbers = true)]
     river_area: Option<f64>,
@@ -118,8 +124,8 @@ struct Without {
     /// Contours and their labels
     #[arg(long)]
     no_contours: bool,
-    /// Labels of the contours
-    #[arg(long)]
+    /// Labels of the contours, as --labels none
+    #[arg(long, conflicts_with = "labels")]
     no_labels: bool,
     /// Summits and their heights
     #[arg(long)]
@@ -160,6 +166,17 @@ enum Shade {
     /// Three lights, with soft hazy lowlands and crisp summits
     Swiss,
     /// No shading
+    None,
+}
+
+/// The contours that have labels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Labelled {
+    /// Index contours
+    Index,
+    /// All contours
+    All,
+    /// No contours
     None,
 }
 
@@ -290,6 +307,12 @@ fn job(args: &Args) -> Result<MapJob, Failure> {
         Shade::None => Shading::None,
     };
     job.interval = args.contours;
+    job.levels = args.levels.as_ref().map(|levels| levels.0.clone());
+    job.labels = args.labels.and_then(|labels| match labels {
+        Labelled::Index => Some(Labels::Index),
+        Labelled::All => Some(Labels::All),
+        Labelled::None => None,
+    });
     job.river_area = args.river_area;
     job.lake_area = args.lake_area;
     job.map_scale = args.scale;
@@ -300,6 +323,7 @@ fn job(args: &Args) -> Result<MapJob, Failure> {
         (None, size) => size.map(Resolution::Longer),
     };
     job.parts = parts(&args.without);
+    job.parts.labels &= args.labels != Some(Labelled::None);
     job.has_sidecars = !args.no_sidecar;
     if job.is_too_large() {
         return usage(format!(

@@ -272,3 +272,43 @@ fn a_scale_sets_the_size_of_the_page() {
     folder.bad(&map(&["-o", "b.svg", "--scale", "10"]), 2, "choose a scale from 1 : 200 to 1 : 50000");
     folder.bad(&map(&["-o", "b.svg", "--scale", "1e4", "--paper", "a4"]), 2, "--paper");
 }
+
+#[test]
+fn contours_at_given_heights() {
+    let folder = Folder::new();
+    let map = |more: &[&'static str]| {
+        [&["map", "hills", "--window", "0,0,101,81", "--cell", "40", "--no-summits", "--no-rivers"][..], more].concat()
+    };
+    let told = folder.good(&map(&["-o", "a.png", "--levels", "250,100,9000,100"]));
+    assert!(told.text().ends_with(", contours at 100, 250 m\n"), "{}", told.text());
+    assert_eq!(told.err, "warning: there is no contour at 9000 m\n");
+    folder.good(&map(&["-o", "b.svg", "--levels", "200", "-q"]));
+    folder.good(&map(&["-o", "c.svg", "--levels", "200,201", "-q"]));
+    folder.good(&map(&["-o", "d.svg", "--no-contours", "-q"]));
+    let [one, two, none] = ["b.svg", "c.svg", "d.svg"].map(|name| folder.text(name).matches("stroke=").count());
+    assert!(none < one && one <= two, "{none} {one} {two}");
+    // Contours of the heights on a map of another layer.
+    let told = folder.good(&map(&["-o", "e.png", "--layer", "slope", "--levels", "200"]));
+    assert!(told.text().ends_with(", contours at 200 m\n"), "{}", told.text());
+    for (more, why) in [
+        (&["--levels", "100", "--contours", "50"][..], "--contours"),
+        (&["--levels", "100,high"], "is not a list of numbers"),
+        (&["--levels", ""], "is not a list of numbers"),
+        (&["--levels", "100", "--labels", "index"], "no index contours"),
+        (&["--labels", "all", "--no-labels"], "--no-labels"),
+    ] {
+        folder.bad(&[&map(&["-o", "x.png"])[..], more].concat(), 2, why);
+    }
+}
+
+#[test]
+fn every_contour_with_room_has_a_label() {
+    let folder = Folder::new();
+    let areas = |labels: &'static str| {
+        let map = ["map", "hills", "--window", "0,0,201,161", "--cell", "40", "--contours", "20", "-o", "a.svg", "-q"];
+        folder.good(&[&map[..], &["--labels", labels, "--no-summits", "--no-legend", "--force"]].concat());
+        folder.text("a.svg").matches("<path fill=\"#").count()
+    };
+    let [none, index, all] = ["none", "index", "all"].map(areas);
+    assert!(none < index && all > none + 2 * (index - none), "{none} {index} {all}");
+}

@@ -14,12 +14,13 @@ use crate::export::{biome_cover, place, sheet_cover};
 use crate::sheet::draw::{Sheet, draw};
 use crate::sheet::geometry::{Rect, Size};
 use crate::sheet::linework::{least_areas, lines_at};
-use crate::sheet::options::{Coloring, Layer, Page, Parts, Resolution, Scale, Shading, SheetOptions};
+use crate::sheet::options::{Coloring, Labels, Layer, Page, Parts, Resolution, Scale, Shading, SheetOptions};
 use crate::sheet::{pdf, raster, vector};
 use orogen_engine::budget::Reservation;
 use orogen_engine::layer::LayerKind;
 use orogen_engine::recipe::document::Recipe;
 use orogen_engine::world::{HEIGHT, World};
+use orogen_grid::contour::levels;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
@@ -97,6 +98,10 @@ pub struct MapJob {
     pub shading: Shading,
     /// Contour interval in metres; by default a round number that suits relief and scale.
     pub interval: Option<f64>,
+    /// The heights of contours in metres, in place of an interval.
+    pub levels: Option<Vec<f64>>,
+    /// The contours that have labels: by default index contours, or all if their heights are given.
+    pub labels: Option<Labels>,
     /// Minimum drainage area of rivers in m^2; by default it depends on the scale, and is at least 100 000. With
     /// one, rivers are also searched for in land that nothing drains, such as bare noise.
     pub river_area: Option<f64>,
@@ -161,6 +166,8 @@ impl MapJob {
             palette: None,
             shading: Shading::default(),
             interval: None,
+            levels: None,
+            labels: None,
             river_area: None,
             lake_area: None,
             names: Vec::new(),
@@ -219,6 +226,18 @@ impl MapJob {
         }
         if self.scale.is_some() && self.layer == HEIGHT {
             return refuse("heights are always mapped to colours on a linear scale; leave out the scale".into());
+        }
+        if let Some(levels) = &self.levels {
+            if self.interval.is_some() {
+                return refuse("contours have an interval or given heights; leave out one of them".into());
+            }
+            if levels.is_empty() {
+                return refuse("the list of contour heights is empty".into());
+            }
+            levels::given(levels)?;
+            if self.labels == Some(Labels::Index) {
+                return refuse("contours at given heights have no index contours; label all of them, or none".into());
+            }
         }
         if self.map_scale.is_some() && self.paper.is_some() {
             return refuse("the scale sets the size of the page; leave out the paper".into());
@@ -332,6 +351,14 @@ impl MapJob {
             warnings
                 .push(format!("there is no room for {names}; use a larger --paper, a larger scale, or fewer names"));
         }
+        let is_missing = |level: &&f64| !sheet.levels.contains(level);
+        let missing: Vec<f64> = match &self.levels {
+            Some(levels) if options.parts.contours => levels.iter().filter(is_missing).copied().collect(),
+            _ => Vec::new(),
+        };
+        if !missing.is_empty() {
+            warnings.push(format!("there is no contour at {} m", numbers(&missing)));
+        }
         drawing.finish();
         Ok(DrawnMap {
             format: self.format,
@@ -405,7 +432,7 @@ impl MapJob {
         // Lines and water would hide the other layer.
         let is_height = self.layer == HEIGHT;
         let mut parts = self.parts;
-        parts.contours &= is_height || self.interval.is_some();
+        parts.contours &= is_height || self.interval.is_some() || self.levels.is_some();
         parts.summits &= is_height;
         parts.rivers &= is_height;
         // Most depressions of a real place are gorges dammed by coarse samples, and its lakes are level in the data
@@ -424,6 +451,8 @@ impl MapJob {
         options.about = about;
         options.shading = self.shading;
         options.interval = self.interval;
+        options.levels.clone_from(&self.levels);
+        options.labels = self.labels;
         options.river_area = self.river_area;
         options.lake_area = self.lake_area;
         options.parts = parts;
@@ -459,6 +488,16 @@ impl MapJob {
 /// The longer side of a map of a window, in metres, between the first and the last samples.
 fn longer_side(window: &Window) -> f64 {
     (window.width.max(window.height) - 1) as f64 * window.cell
+}
+
+/// The first numbers of a list, and how many more there are.
+fn numbers(list: &[f64]) -> String {
+    const SHOWN: usize = 8;
+    let shown: Vec<String> = list.iter().take(SHOWN).map(|value| number(*value)).collect();
+    match list.len().saturating_sub(SHOWN) {
+        0 => shown.join(", "),
+        more => format!("{} and {more} more", shown.join(", ")),
+    }
 }
 
 /// Approximate longer side of a page, in millimetres.
@@ -508,8 +547,11 @@ impl DrawnMap {
             }
             _ => format!("{width:.0} x {height:.0} mm"),
         };
-        let contours =
-            self.sheet.interval.map_or(String::new(), |interval| format!(", contours {} m apart", number(interval)));
+        let contours = match (self.sheet.interval, self.sheet.levels.as_slice()) {
+            (Some(interval), _) => format!(", contours {} m apart", number(interval)),
+            (None, []) => String::new(),
+            (None, levels) => format!(", contours at {} m", numbers(levels)),
+        };
         let Window { width, height, cell, .. } = self.window;
         format!("{}{size}, {width} x {height} samples of {} m{contours}", self.what, number(cell))
     }

@@ -26,8 +26,10 @@ pub struct Sheet {
     pub lacking: Vec<char>,
     /// Names that have no room on the map; they are left out.
     pub left_out: Vec<String>,
-    /// Distance between contours, in metres, if there are contours.
+    /// Distance between contours, in metres, if there are contours at an interval.
     pub interval: Option<f64>,
+    /// The heights of its contours in metres, ascending.
+    pub levels: Vec<f64>,
     /// Resolution in pixels per inch, for [`raster::draw`](super::raster::draw).
     pub dpi: f64,
     /// The rectangle of the ground on the page, between the centres of its first and its last samples.
@@ -140,6 +142,7 @@ pub fn draw(heights: &Grid, options: &SheetOptions, progress: &Progress) -> Resu
         lacking: letters.lacking().to_vec(),
         left_out,
         interval: linework.interval,
+        levels: linework.levels(),
         dpi: layout.dpi,
         ground: layout.map,
     })

@@ -2,6 +2,7 @@
 
 use super::font_set::FontSet;
 use super::geometry::{Point, Rect};
+use super::labels::Label;
 use super::layout::{BLOCK_GAP, Block, MARGIN, ROW};
 use super::scene::{INK, Item, Scene, line, polygon};
 use super::ticks::{Count, grouped, step, ticks};
@@ -47,6 +48,19 @@ impl Desk<'_> {
         let outline = self.letters.write(text, face, size, at.moved(-shift, 0.0), 0.0);
         self.scene.area(outline, ink, 1.0);
         width
+    }
+
+    /// Draws a label along its path: the path runs through the middle of the letters instead of along their baseline.
+    pub fn along(&mut self, label: &Label, face: Face, ink: Rgb) {
+        let width = self.letters.width(&label.text, face, label.size);
+        let length: f32 = label.path.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+        let start = (length - width) / 2.0;
+        let outline = self.letters.each(&label.text, face, label.size, |along| {
+            let (at, angle) = label.at(start + along);
+            let sink = label.size * 0.34;
+            (at.moved(sink * libm::sinf(angle), sink * libm::cosf(angle)), angle)
+        });
+        self.scene.area(outline, ink, 1.0);
     }
 
     /// Draws small print.

@@ -20,6 +20,9 @@ pub const THIN: f32 = 0.12;
 /// Width of index contours, in millimetres.
 pub const THICK: f32 = 0.24;
 
+/// Width of contours whose heights were given, in millimetres.
+pub const GIVEN: f32 = 0.18;
+
 /// The inks of contours and their labels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Inks {

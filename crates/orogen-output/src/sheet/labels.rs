@@ -1,70 +1,15 @@
 //! Labels along contour lines, each in a gap of its line.
 
-use super::geometry::{Point, Rect};
-
-/// The occupied parts of a sheet, where no label may be placed.
-#[derive(Debug, Clone)]
-pub struct Taken {
-    columns: usize,
-    rows: usize,
-    /// Whether each square of [`SQUARE`] millimetres is occupied.
-    squares: Vec<bool>,
-    origin: Point,
-}
-
-/// Side of a square in millimetres.
-const SQUARE: f32 = 0.4;
-
-impl Taken {
-    /// Nothing occupied in a rectangle. Everything outside counts as occupied.
-    pub fn none(area: Rect) -> Taken {
-        let [columns, rows] = [area.width, area.height].map(|side| (side / SQUARE).floor().max(0.0) as usize);
-        Taken { columns, rows, squares: vec![false; columns * rows], origin: area.corner() }
-    }
-
-    fn square(&self, place: Point) -> Option<usize> {
-        let way = self.origin.to(place);
-        let [i, j] = [way.x, way.y].map(|side| (side / SQUARE).floor());
-        let inside = (0.0..self.columns as f32).contains(&i) && (0.0..self.rows as f32).contains(&j);
-        inside.then(|| j as usize * self.columns + i as usize)
-    }
-
-    fn squares_around(&self, place: Point, reach: f32) -> impl Iterator<Item = Option<usize>> + '_ {
-        let steps = (reach / SQUARE).ceil() as i32;
-        (-steps..=steps)
-            .flat_map(move |v| (-steps..=steps).map(move |u| [u as f32 * SQUARE, v as f32 * SQUARE]))
-            .filter(move |[u, v]| u * u + v * v <= reach * reach)
-            .map(move |[u, v]| self.square(place.moved(u, v)))
-    }
-
-    /// Marks all within `reach` of a point as occupied.
-    pub fn take(&mut self, place: Point, reach: f32) {
-        let found: Vec<usize> = self.squares_around(place, reach).flatten().collect();
-        found.into_iter().for_each(|square| self.squares[square] = true);
-    }
-
-    /// Marks a line as occupied.
-    pub fn take_line(&mut self, line: &[Point], reach: f32) {
-        for pair in line.windows(2) {
-            let steps = (pair[0].distance(pair[1]) / SQUARE).ceil().clamp(1.0, 1e4) as usize;
-            for k in 0..=steps {
-                let share = k as f32 / steps as f32;
-                self.take(pair[0].toward(pair[1], share), reach);
-            }
-        }
-    }
-
-    /// Whether everything within `reach` of a point is free.
-    pub fn is_free(&self, place: Point, reach: f32) -> bool {
-        self.squares_around(place, reach).all(|square| square.is_some_and(|square| !self.squares[square]))
-    }
-}
+use super::geometry::Point;
+use super::taken::Taken;
 
 /// A label along a line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Label {
     /// The text.
     pub text: String,
+    /// Height of the letters, in millimetres.
+    pub size: f32,
     /// Points along its centre line, at most a letter's width apart, in reading order.
     pub path: Vec<Point>,
 }
@@ -101,8 +46,15 @@ pub struct LabelStyle {
 /// Finds positions for a line's labels. `line` has higher ground to its left, so a text along it points uphill. Where
 /// such a text would be upside down it is reversed, if there is no better position.
 ///
-/// The area of the labels is marked as occupied.
-pub fn place(line: &[Point], text: &str, width: f32, style: LabelStyle, taken: &mut Taken) -> Vec<Label> {
+/// A label lies where `is_clear` holds for all points of its path. The area of the labels is marked as occupied.
+pub fn place(
+    line: &[Point],
+    text: &str,
+    width: f32,
+    style: LabelStyle,
+    taken: &mut Taken,
+    is_clear: impl Fn(Point, f32) -> bool,
+) -> Vec<Label> {
     let along = Along::new(line);
     let (need, step) = (width + style.size, style.size * 0.6);
     let count = ((along.length() - need) / step).floor();
@@ -126,7 +78,7 @@ pub fn place(line: &[Point], text: &str, width: f32, style: LabelStyle, taken: &
         }
         let mut path = along.part(start, start + need, style.size * 0.25);
         let reach = style.size * 0.62;
-        if !path.iter().all(|place| taken.is_free(*place, reach)) {
+        if !path.iter().all(|place| taken.is_free(*place, reach) && is_clear(*place, reach)) {
             continue;
         }
         if path.last().zip(path.first()).is_some_and(|(last, first)| last.x < first.x) {
@@ -134,7 +86,7 @@ pub fn place(line: &[Point], text: &str, width: f32, style: LabelStyle, taken: &
         }
         path.iter().for_each(|place| taken.take(*place, reach + style.apart / 2.0));
         middles.push(middle);
-        labels.push(Label { text: text.to_string(), path });
+        labels.push(Label { text: text.to_string(), size: style.size, path });
     }
     labels
 }
@@ -204,23 +156,24 @@ impl<'a> Along<'a> {
 }
 
 /// The lines without the parts under labels: gaps as wide as the text plus `margin`.
-pub fn gaps(lines: &[Vec<Point>], labels: &[Label], reach: f32, margin: f32) -> Vec<Vec<Point>> {
+pub fn gaps(lines: &[Vec<Point>], labels: &[&Label], margin: f32) -> Vec<Vec<Point>> {
     if labels.is_empty() {
         return lines.to_vec();
     }
     // Labels indexed by squares, so that each point tests only a few.
     let near = 12.0f32;
     let key = |place: Point| ((place.x / near).floor() as i32, (place.y / near).floor() as i32);
-    let mut known: std::collections::BTreeMap<(i32, i32), Vec<Point>> = std::collections::BTreeMap::new();
-    for place in labels.iter().flat_map(|label| &label.path) {
-        known.entry(key(*place)).or_default().push(*place);
+    let mut known: std::collections::BTreeMap<(i32, i32), Vec<(Point, f32)>> = std::collections::BTreeMap::new();
+    for label in labels {
+        let reach = label.size * 0.5 + margin;
+        for place in &label.path {
+            known.entry(key(*place)).or_default().push((*place, reach * reach));
+        }
     }
     let hidden = |place: Point| {
         let (i, j) = key(place);
         (j - 1..=j + 1).flat_map(|j| (i - 1..=i + 1).map(move |i| (i, j))).any(|square| {
-            known.get(&square).is_some_and(|places| {
-                places.iter().any(|p| place.to(*p).square() < (reach + margin) * (reach + margin))
-            })
+            known.get(&square).is_some_and(|places| places.iter().any(|(p, reach)| place.to(*p).square() < *reach))
         })
     };
     let mut left = Vec::new();
@@ -241,6 +194,7 @@ pub fn gaps(lines: &[Vec<Point>], labels: &[Label], reach: f32, margin: f32) -> 
 
 #[cfg(test)]
 mod tests {
+    use super::super::geometry::Rect;
     use super::super::scene::line;
     use super::*;
 
@@ -258,7 +212,7 @@ mod tests {
                 line.reverse();
             }
             let mut taken = Taken::none(Rect::new(0.0, 0.0, 100.0, 100.0));
-            let labels = place(&line, "1200", 5.0, SETTING, &mut taken);
+            let labels = place(&line, "1200", 5.0, SETTING, &mut taken, |_, _| true);
             assert_eq!(labels.len(), 2);
             for label in &labels {
                 let (start, angle) = label.at(0.5);
@@ -269,7 +223,7 @@ mod tests {
             // The area of the label and the area outside the page are occupied now.
             assert!(!taken.is_free(labels[0].at(2.0).0, 0.5) && !taken.is_free(Point::new(99.9, 5.0), 0.5));
             assert!(taken.is_free(Point::new(50.0, 5.0), 0.5));
-            let left = gaps(&[line.clone()], &labels, 1.2, 0.3);
+            let left = gaps(&[line.clone()], &labels.iter().collect::<Vec<_>>(), 0.5);
             assert_eq!(left.len(), 3);
             let length = |lines: &[Vec<Point>]| lines.iter().map(|line| Along::new(line).length()).sum::<f32>();
             let gone = length(&[line]) - length(&left);
@@ -281,15 +235,15 @@ mod tests {
     fn no_label_where_there_is_no_room() {
         let mut taken = Taken::none(Rect::new(0.0, 0.0, 100.0, 100.0));
         taken.take_line(&line([[0.0, 50.0], [100.0, 50.0]]), 12.0);
-        assert!(place(&wave(), "1200", 5.0, SETTING, &mut taken).is_empty());
+        assert!(place(&wave(), "1200", 5.0, SETTING, &mut taken, |_, _| true).is_empty());
         let mut taken = Taken::none(Rect::new(0.0, 0.0, 100.0, 100.0));
-        assert!(place(&line([[5.0, 5.0], [7.0, 5.0]]), "1200", 5.0, SETTING, &mut taken).is_empty());
+        assert!(place(&line([[5.0, 5.0], [7.0, 5.0]]), "1200", 5.0, SETTING, &mut taken, |_, _| true).is_empty());
         // A tight coil has no straight part.
         let coil: Vec<Point> = (0..400)
             .map(|k| k as f32 * 0.1)
             .map(|a| Point::new(50.0 + 1.5 * libm::cosf(a), 50.0 + 1.5 * libm::sinf(a)))
             .collect();
-        assert!(place(&coil, "1200", 5.0, SETTING, &mut taken).is_empty());
-        assert!(place(&[], "1", 1.0, SETTING, &mut taken).is_empty());
+        assert!(place(&coil, "1200", 5.0, SETTING, &mut taken, |_, _| true).is_empty());
+        assert!(place(&[], "1", 1.0, SETTING, &mut taken, |_, _| true).is_empty());
     }
 }

@@ -60,8 +60,16 @@ pub fn lines(heights: &Grid, interval: f64, sea_level: Option<f64>, sample: f64)
     let (low, high) = ends.fold((f32::MAX, f32::MIN), |(low, high), height| (low.min(height), high.max(height)));
     let mut levels = every(interval, f64::from(low), f64::from(high))?;
     levels.retain(|level| sea_level != Some(*level));
+    lines_at(heights, &levels, sample)
+}
+
+/// The contours at these levels, in ascending order, likewise.
+///
+/// # Errors
+/// If there are too many lines.
+pub fn lines_at(heights: &Grid, levels: &[f64], sample: f64) -> Result<Vec<Line>> {
     let cell = heights.window().cell;
-    let mut lines = contours(heights, &levels)?;
+    let mut lines = contours(heights, levels)?;
     lines.retain(|line| !line.closed || line.length() / cell * sample >= SHORTEST);
     Ok(lines.iter().map(|line| smooth(line, 1)).collect())
 }
@@ -206,6 +214,10 @@ mod tests {
         let grid = hills(1000.0);
         let all = lines(&grid, 100.0, Some(200.0), 0.25).unwrap();
         assert!(all.iter().all(|line| line.elevation != 200.0) && all.iter().any(|line| line.elevation == 300.0));
+        // A level that was asked for is drawn, also at sea level.
+        let given = lines_at(&grid, &[200.0, 450.0], 0.25).unwrap();
+        let heights: Vec<f64> = given.iter().map(|line| line.elevation).collect();
+        assert_eq!((heights.first(), heights.last()), (Some(&200.0), Some(&450.0)));
         let small = lines(&grid, 100.0, None, 0.005).unwrap();
         assert!(small.iter().all(|line| !line.closed));
     }

@@ -2,12 +2,13 @@
 
 use super::furniture::{Entry, Sign};
 use super::ground::laid;
-use super::inks::{BLUE, LAKES, SHORE, THICK, THIN, of_contours};
-use super::lines::{Summit, interval, lines, summits, thick_interval};
+use super::inks::{BLUE, GIVEN, LAKES, SHORE, THICK, THIN, of_contours};
+use super::lines::{self, Summit, interval, is_thick, lines, summits, thick_interval};
 use super::options::{Page, SheetOptions};
 use super::ticks::grouped;
 use super::water::{Least, Water, find};
 use orogen_grid::contour::chaikin::smooth;
+use orogen_grid::contour::levels::given;
 use orogen_grid::contour::line::Line;
 use orogen_grid::contour::trace;
 use orogen_grid::error::Result;
@@ -71,7 +72,7 @@ pub struct Linework {
     pub water: Water,
     /// Contours.
     pub contours: Vec<Line>,
-    /// Distance between contours in metres, if there are contours.
+    /// Distance between contours in metres, if there are contours at an interval.
     pub interval: Option<f64>,
     /// The coast.
     pub shore: Vec<Line>,
@@ -115,14 +116,15 @@ impl Linework {
             }
             _ => Water { rivers: Vec::new(), lakes: Vec::new(), surface: grid.clone() },
         };
-        let interval =
-            parts.contours.then(|| options.interval.unwrap_or_else(|| interval(&grid, options.sea_level, sample)));
+        let levels = options.levels.as_ref().filter(|_| parts.contours);
+        let interval = (parts.contours && levels.is_none())
+            .then(|| options.interval.unwrap_or_else(|| interval(&grid, options.sea_level, sample)));
         // Contours end at lakes that are drawn, and continue under those that are not.
         let ground = Grid::from_data(*grid.window(), water.surface.data().to_vec()).filter(|_| parts.lakes);
-        let contours = match interval {
-            Some(interval) if relief > 0.0 => {
-                lines(ground.as_ref().unwrap_or(&grid), interval, options.sea_level, sample)?
-            }
+        let ground = ground.as_ref().unwrap_or(&grid);
+        let contours = match (interval, levels) {
+            (_, Some(levels)) => lines::lines_at(ground, &given(levels)?, sample)?,
+            (Some(interval), _) if relief > 0.0 => lines(ground, interval, options.sea_level, sample)?,
             _ => Vec::new(),
         };
         let shore = match (options.sea_level, options.palette.has_sea()) {
@@ -144,15 +146,40 @@ impl Linework {
         Ok(Linework { grid, aspect, water, contours, interval, shore, summits, samples })
     }
 
+    /// Whether a line is an index contour.
+    pub fn is_index(&self, line: &Line) -> bool {
+        self.interval.is_some_and(|interval| is_thick(line, interval))
+    }
+
+    /// The width of a contour in millimetres.
+    pub fn contour_width(&self, line: &Line) -> f32 {
+        match self.interval {
+            Some(_) if self.is_index(line) => THICK,
+            Some(_) => THIN,
+            None => GIVEN,
+        }
+    }
+
+    /// The heights of its contours, ascending.
+    pub fn levels(&self) -> Vec<f64> {
+        let mut levels: Vec<f64> = self.contours.iter().map(|line| line.elevation).collect();
+        levels.sort_by(f64::total_cmp);
+        levels.dedup();
+        levels
+    }
+
     /// The legend entries of its lines.
     #[must_use]
     pub fn legend(&self, options: &SheetOptions) -> Vec<Entry> {
         let mut entries = Vec::new();
+        let sea = options.sea_level.unwrap_or(f64::NEG_INFINITY);
+        let ink = of_contours(self.contours.iter().any(|line| line.elevation > sea));
+        let entry = |width, text| Entry { sign: Sign::Line(width, ink), text };
+        if self.interval.is_none() && !self.contours.is_empty() {
+            entries.push(entry(GIVEN, listed(&self.levels())));
+        }
         if let Some(interval) = self.interval.filter(|_| !self.contours.is_empty()) {
-            let metres = |value: f64| format!("{} m", grouped(value, if value.fract() == 0.0 { 0 } else { 1 }));
-            let sea = options.sea_level.unwrap_or(f64::NEG_INFINITY);
-            let ink = of_contours(self.contours.iter().any(|line| line.elevation > sea));
-            let entry = |width, text| Entry { sign: Sign::Line(width, ink), text };
+            let metres = |value: f64| format!("{} m", height(value));
             entries.push(entry(THIN, format!("Contours, {} apart", metres(interval))));
             entries.push(entry(THICK, format!("Index contours, {} apart", metres(thick_interval(interval)))));
         }
@@ -169,5 +196,24 @@ impl Linework {
             entries.push(Entry { sign: Sign::Summit, text: "Summit, height in m".into() });
         }
         entries
+    }
+}
+
+/// A height as it stands in labels, without its unit.
+pub fn height(value: f64) -> String {
+    grouped(value, if value.fract() == 0.0 { 0 } else { 1 })
+}
+
+/// Maximum number of heights in the legend.
+const LISTED: usize = 4;
+
+/// The legend of contours at these heights.
+fn listed(levels: &[f64]) -> String {
+    let heights: Vec<String> = levels.iter().map(|level| height(*level)).collect();
+    match heights.as_slice() {
+        [one] => format!("Contour at {one} m"),
+        [start @ .., last] if heights.len() <= LISTED => format!("Contours at {} and {last} m", start.join(", ")),
+        [low, .., high] => format!("Contours at {} heights, {low} to {high} m", heights.len()),
+        [] => String::new(),
     }
 }

@@ -2,8 +2,8 @@
 
 use super::font_set::FontSet;
 use super::geometry::Point;
-use super::labels::Taken;
 use super::scene::{INK, Scene, Step, polygon};
+use super::taken::Taken;
 use crate::map::text::Face;
 
 /// Size of a summit's label, the em in millimetres.

@@ -1,6 +1,7 @@
 //! Map sheets: heights with contours, rivers, lakes and other map elements, as a display list ([`scene`]), and the
 //! output of that list as pixels ([`raster`]), SVG ([`vector`]) and PDF ([`pdf`]).
 
+mod contour_lines;
 pub mod draw;
 pub mod font_set;
 pub(crate) mod furniture;
@@ -21,6 +22,7 @@ pub(crate) mod ramp;
 pub mod raster;
 pub(crate) mod relief;
 pub mod scene;
+mod taken;
 pub(crate) mod ticks;
 pub mod vector;
 pub(crate) mod water;

@@ -49,7 +49,7 @@ pub struct Parts {
     pub axes: bool,
     /// Contours.
     pub contours: bool,
-    /// Labels along index contours.
+    /// Labels along contours.
     pub labels: bool,
     /// The highest summits with their heights.
     pub summits: bool,
@@ -87,6 +87,15 @@ impl Default for Parts {
             profile: true,
         }
     }
+}
+
+/// The contours that have labels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Labels {
+    /// Index contours.
+    Index,
+    /// All contours with room for a label.
+    All,
 }
 
 /// The mapping from values of a layer to colours.
@@ -205,6 +214,10 @@ pub struct SheetOptions {
     pub shading: Shading,
     /// Contour interval in metres; by default chosen by relief and scale.
     pub interval: Option<f64>,
+    /// The heights of contours in metres, in place of an interval.
+    pub levels: Option<Vec<f64>>,
+    /// The contours that have labels: by default index contours, or all if their heights are given.
+    pub labels: Option<Labels>,
     /// The parts that are drawn; all by default.
     pub parts: Parts,
     /// The page; by default fitted to a map with a longer side of 240 mm.
@@ -242,6 +255,8 @@ impl SheetOptions {
             palette,
             shading: Shading::default(),
             interval: None,
+            levels: None,
+            labels: None,
             parts: Parts::default(),
             page: Page::Fitted(240.0),
             resolution: Resolution::Inch(150.0),

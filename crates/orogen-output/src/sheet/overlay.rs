@@ -1,26 +1,21 @@
 //! Drawing of the lines on the map, each in an ink that is visible on the ground below it.
 
-use super::font_set::FontSet;
+use super::contour_lines::ContourLines;
 use super::furniture::Desk;
 use super::geometry::{Affine, Point, Rect};
-use super::inks::{BLUE, Inks, LAKES, SHORE, THICK, THIN};
-use super::labels::{Label, LabelStyle, Taken, gaps, place};
-use super::lines::is_thick;
+use super::inks::{BLUE, Inks, LAKES, SHORE};
 use super::linework::Linework;
 use super::marks;
 use super::options::SheetOptions;
 use super::scene::{Scene, Step};
+use super::taken::Taken;
 use super::ticks::grouped;
-use crate::map::text::Face;
 use orogen_grid::contour::line::Line;
-use orogen_io::palette::color::{Light, Rgb, decode};
+use orogen_io::palette::color::{Light, decode};
 use orogen_io::palette::tint::Tint;
 
 /// Widths of the smallest and the largest river, in millimetres.
 const RIVERS: [f32; 2] = [0.16, 0.95];
-
-/// Style of contour labels; `size` is the em in millimetres.
-const LABEL: LabelStyle = LabelStyle { size: 2.1, apart: 7.0, every: 95.0 };
 
 /// The background of the lines: colors by height, or a picture.
 pub enum Below<'a> {
@@ -95,33 +90,13 @@ impl Linework {
             let text = grouped(f64::from(summit.height), 0);
             marks::summit(&mut over.scene, desk.letters, &mut taken, place, &text);
         }
-        let sea = options.sea_level.unwrap_or(f64::NEG_INFINITY);
-        let interval = self.interval.unwrap_or(1.0);
-        // Grouped by ink and width, in the order of first use.
-        let ink =
-            |line: &Line, places: &[Point]| Inks::over(below.color(map, line.elevation, places), line.elevation > sea);
-        let mut kinds: Vec<(Rgb, f32, f32, Vec<Vec<Point>>)> = Vec::new();
-        let mut thick: Vec<(&Line, Vec<Point>)> = Vec::new();
-        let mut sort = |line: &Line, places: Vec<Point>| {
-            let inks = ink(line, &places);
-            let (width, cover) = if is_thick(line, interval) { (THICK, inks.cover + 0.18) } else { (THIN, inks.cover) };
-            match kinds.iter_mut().find(|kind| (kind.0, kind.1) == (inks.line, width)) {
-                Some(kind) => kind.3.push(places),
-                None => kinds.push((inks.line, width, cover, vec![places])),
-            }
+        let ink = |line: &Line, places: &[Point]| {
+            let is_land = line.elevation > options.sea_level.unwrap_or(f64::NEG_INFINITY);
+            Inks::over(below.color(map, line.elevation, places), is_land)
         };
-        for line in &self.contours {
-            match is_thick(line, interval) {
-                true => thick.push((line, path(line))),
-                false => sort(line, path(line)),
-            }
-        }
-        let labels = if options.parts.labels { self.labels(desk.letters, &thick, &mut taken, ink) } else { Vec::new() };
-        thick.into_iter().for_each(|(line, places)| sort(line, places));
-        let words: Vec<Label> = labels.iter().map(|(_, label)| label.clone()).collect();
-        for (ink, width, cover, lines) in kinds {
-            desk.scene.lines(gaps(&lines, &words, LABEL.size * 0.5, 0.25), width, ink, cover);
-        }
+        let contours: Vec<(&Line, Vec<Point>)> = self.contours.iter().map(|line| (line, path(line))).collect();
+        let contours = ContourLines::new(self, contours, options, desk.letters, map, &mut taken, ink);
+        contours.draw_lines(&mut desk.scene);
         // Thin rivers first, so that they end under the rivers that they flow into.
         let mut widths: Vec<f32> = rivers.iter().map(|river| river.0).collect();
         widths.sort_by(f32::total_cmp);
@@ -134,40 +109,9 @@ impl Linework {
         desk.scene.area(outline, LAKES, 1.0);
         desk.scene.lines(lakes, 0.18, SHORE, 1.0);
         desk.scene.lines(shore, 0.22, SHORE, 0.9);
-        for (inks, label) in &labels {
-            let width = desk.letters.width(&label.text, Face::Bold, LABEL.size);
-            let length: f32 = label.path.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
-            let start = (length - width) / 2.0;
-            let outline = desk.letters.each(&label.text, Face::Bold, LABEL.size, |along| {
-                let (at, angle) = label.at(start + along);
-                // The line runs through the middle of the letters instead of their baseline.
-                let sink = LABEL.size * 0.34;
-                (at.moved(sink * libm::sinf(angle), sink * libm::cosf(angle)), angle)
-            });
-            desk.scene.area(outline, inks.words, 1.0);
-        }
+        contours.draw_labels(desk);
         desk.scene.items.append(&mut over.scene.items);
         left_out
-    }
-
-    /// Labels of the index contours, the longest lines first, with their inks.
-    fn labels(
-        &self,
-        letters: &FontSet,
-        thick: &[(&Line, Vec<Point>)],
-        taken: &mut Taken,
-        ink: impl Fn(&Line, &[Point]) -> Inks,
-    ) -> Vec<(Inks, Label)> {
-        let mut order: Vec<&(&Line, Vec<Point>)> = thick.iter().collect();
-        order.sort_by(|a, b| b.0.length().total_cmp(&a.0.length()));
-        let mut labels = Vec::new();
-        for (line, places) in order {
-            let text = grouped(line.elevation, if line.elevation.fract() == 0.0 { 0 } else { 1 });
-            let width = letters.width(&text, Face::Bold, LABEL.size);
-            let inks = ink(line, places);
-            labels.extend(place(places, &text, width, LABEL, taken).into_iter().map(|label| (inks, label)));
-        }
-        labels
     }
 
     /// The width of a river with this many samples of drainage area, in millimetres: linear in the square root of the

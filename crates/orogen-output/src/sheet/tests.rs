@@ -4,7 +4,7 @@
 use super::draw::{self, Sheet};
 use super::geometry::{Point, Rect, Size};
 use super::options::Shading;
-use super::options::{Coloring, Page, Parts, Resolution, SheetOptions, SurfaceCover, SurfaceEntry};
+use super::options::{Coloring, Labels, Page, Parts, Resolution, SheetOptions, SurfaceCover, SurfaceEntry};
 use super::scene::{Item, Scene, Step};
 use super::{pdf, raster, vector};
 use orogen_grid::error::Result;
@@ -189,4 +189,48 @@ fn sheets_with_one_range_agree_along_their_common_edge() {
     };
     let (fixed, fitted) = (apart(Some([-500.0, 1500.0])), apart(None));
     assert!(fixed <= 6 && fitted > 30, "{fixed} {fitted}");
+}
+
+#[test]
+fn all_contours_of_a_slope_have_labels_that_do_not_touch() {
+    // A cone: a ring for each level.
+    let mut cone = Grid::filled(Window::new(161, 161, 10.0), 0.0);
+    for j in 0..161 {
+        for i in 0..161 {
+            cone.row_mut(j)[i] = (800.0 - 10.0 * libm::hypot(i as f64 - 80.0, j as f64 - 80.0)) as f32;
+        }
+    }
+    let mut plain = SheetOptions { sea_level: None, interval: Some(50.0), ..options() };
+    (plain.parts.summits, plain.parts.rivers, plain.parts.lakes) = (false, false, false);
+    let labels = |labels: Option<Labels>, levels: Option<Vec<f64>>| {
+        let some =
+            SheetOptions { labels, interval: plain.interval.filter(|_| levels.is_none()), levels, ..plain.clone() };
+        let mut none = some.clone();
+        none.parts.labels = false;
+        let boxes = |options: &SheetOptions| -> Vec<[f32; 4]> {
+            let items = draw(&cone, options).unwrap().scene.items;
+            let of = |item: &Item| match item {
+                Item::Area { outline, .. } => {
+                    let ends = [f32::MAX, f32::MAX, f32::MIN, f32::MIN];
+                    let add = |[l, t, r, b]: [f32; 4], Point { x, y }: Point| [l.min(x), t.min(y), r.max(x), b.max(y)];
+                    Some(outline.iter().fold(ends, |ends, step| match *step {
+                        Step::Move(place) | Step::Line(place) | Step::Curve(_, _, place) => add(ends, place),
+                    }))
+                }
+                _ => None,
+            };
+            items.iter().filter_map(of).collect()
+        };
+        let without = boxes(&none);
+        boxes(&some).into_iter().filter(|area| !without.contains(area)).collect::<Vec<_>>()
+    };
+    let apart = |a: &[f32; 4], b: &[f32; 4]| a[2] < b[0] || b[2] < a[0] || a[3] < b[1] || b[3] < a[1];
+    let index = labels(None, None);
+    let all = labels(Some(Labels::All), None);
+    assert!(index.len() < all.len() && all.len() >= 12, "{} {}", index.len(), all.len());
+    for (k, a) in all.iter().enumerate() {
+        assert!(all[..k].iter().all(|b| apart(a, b)), "{a:?}");
+    }
+    assert_eq!(labels(None, Some(vec![300.0, 512.5])).len(), labels(Some(Labels::All), Some(vec![300.0, 512.5])).len());
+    assert!(labels(None, Some(vec![300.0, 512.5])).len() >= 2);
 }
