@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use orogen::file;
 use orogen::jobs::map::{MapColors, MapJob};
 use orogen::jobs::sheet_format::SheetFormat;
-use orogen::sheet::options::{Labels, Parts, Resolution, Scale, Shading};
+use orogen::sheet::options::{GridStep, Labels, Parts, Resolution, Scale, Shading};
 use orogen::sheet::paper::Paper;
 use orogen::world::HEIGHT;
 
@@ -64,6 +64,10 @@ pub struct Args {
     /// Contours that have labels, as far as there is room for them [default: index; all with --levels]
     #[arg(long, value_name = "WHICH")]
     labels: Option<Labelled>,
+    /// Coordinate grid, with its numbers along all four sides: STEP metres apart, or degrees on a map in degrees [default STEP: a round distance of at
+    /// least 20 mm on the page]
+    #[arg(long, value_name = "STEP", num_args = 0..=1, default_missing_value = "auto", value_parser = grid_step, allow_negative_numbers = true)]
+    grid: Option<GridStep>,
     /// Minimum drainage area of rivers in m^2 [default: depends on the scale, at least 100000; none on bare noise, which has no rivers]
     #[arg(long, value_name = "M2", value_parser = positive, allow_negative_numbers = true)]
     river_area: Option<f64>,
@@ -313,6 +317,7 @@ fn job(args: &Args) -> Result<MapJob, Failure> {
         Labelled::All => Some(Labels::All),
         Labelled::None => None,
     });
+    job.grid = args.grid;
     job.river_area = args.river_area;
     job.lake_area = args.lake_area;
     job.map_scale = args.scale;
@@ -332,6 +337,18 @@ fn job(args: &Args) -> Result<MapJob, Failure> {
         ));
     }
     Ok(job)
+}
+
+/// `--grid`: a distance, or `auto`.
+fn grid_step(text: &str) -> Result<GridStep, String> {
+    match text {
+        "auto" => Ok(GridStep::Automatic),
+        _ => positive(text).map(GridStep::Every).map_err(|_| {
+            "the distance between the lines of a grid must be a number of metres or degrees above 0, such as 1000; leave it out for a distance that suits the \
+             scale, with --grid after the recipe"
+                .into()
+        }),
+    }
 }
 
 /// The parts that are not left out.

@@ -312,3 +312,25 @@ fn every_contour_with_room_has_a_label() {
     let [none, index, all] = ["none", "index", "all"].map(areas);
     assert!(none < index && all > none + 2 * (index - none), "{none} {index} {all}");
 }
+
+#[test]
+fn a_grid_has_lines_at_round_coordinates() {
+    let folder = Folder::new();
+    // 4000 m are 160 mm at 1 : 25 000, so that 500 m are 20 mm.
+    let map = |more: &[&'static str]| {
+        let map = ["map", "hills", "--window", "0,0,101,81", "--cell", "40", "--scale", "25000", "-q", "-o"];
+        [&map[..], more].concat()
+    };
+    let lines = |file: &'static str, more: &[&'static str]| {
+        folder.good(&map(&[&[file], more].concat()));
+        let text = folder.text(file);
+        let grid = text.split("stroke-width=\"0.150\"").nth(1).unwrap_or_default();
+        grid.split("/>").next().unwrap_or_default().matches('M').count()
+    };
+    // 9 lines from west to east and 7 from north to south, with those at both ends of the first.
+    assert_eq!(lines("a.svg", &["--grid"]), 9 + 7);
+    assert_eq!(lines("b.svg", &["--grid", "1000"]), 5 + 4);
+    assert_eq!(lines("c.svg", &[]), 0);
+    folder.bad(&map(&["x.svg", "--grid", "2"]), 2, "less than 1 mm apart on this map; use at least 50 m");
+    folder.bad(&map(&["x.svg", "--grid", "no"]), 2, "leave it out for a distance that suits the scale");
+}

@@ -14,7 +14,7 @@ use crate::export::{biome_cover, place, sheet_cover};
 use crate::sheet::draw::{Sheet, draw};
 use crate::sheet::geometry::{Rect, Size};
 use crate::sheet::linework::{least_areas, lines_at};
-use crate::sheet::options::{Coloring, Labels, Layer, Page, Parts, Resolution, Scale, Shading, SheetOptions};
+use crate::sheet::options::{Coloring, GridStep, Labels, Layer, Page, Parts, Resolution, Scale, Shading, SheetOptions};
 use crate::sheet::{pdf, raster, vector};
 use orogen_engine::budget::Reservation;
 use orogen_engine::layer::LayerKind;
@@ -102,6 +102,8 @@ pub struct MapJob {
     pub levels: Option<Vec<f64>>,
     /// The contours that have labels: by default index contours, or all if their heights are given.
     pub labels: Option<Labels>,
+    /// The coordinate grid; none by default.
+    pub grid: Option<GridStep>,
     /// Minimum drainage area of rivers in m^2; by default it depends on the scale, and is at least 100 000. With
     /// one, rivers are also searched for in land that nothing drains, such as bare noise.
     pub river_area: Option<f64>,
@@ -168,6 +170,7 @@ impl MapJob {
             interval: None,
             levels: None,
             labels: None,
+            grid: None,
             river_area: None,
             lake_area: None,
             names: Vec::new(),
@@ -453,6 +456,7 @@ impl MapJob {
         options.interval = self.interval;
         options.levels.clone_from(&self.levels);
         options.labels = self.labels;
+        options.grid = self.grid;
         options.river_area = self.river_area;
         options.lake_area = self.lake_area;
         options.parts = parts;

@@ -3,8 +3,9 @@
 use super::font_set::FontSet;
 use super::furniture::{COLORS, Desk, Entry, LEGEND_ROWS, Sign, colors_block, legend_block, north_block, scale_block};
 use super::geometry::Rect;
+use super::grid_lines::GridLines;
 use super::layout::{Block, Layout};
-use super::linework::Linework;
+use super::linework::{Linework, longer_side};
 use super::options::{Coloring, Page, SheetOptions, SurfaceEntry};
 use super::overlay::Below;
 use super::profile::{Direction, Profile};
@@ -60,7 +61,15 @@ pub fn draw(heights: &Grid, options: &SheetOptions, progress: &Progress) -> Resu
     let linework = Linework::of(heights, options)?;
     water.finish();
     progress.check()?;
-    let entries = linework.legend(options);
+    let mut entries = linework.legend(options);
+    let (spans, counts) = spans(heights, options);
+    let grid = options.grid.map(|step| {
+        let longer = longer_side(window, options.page);
+        let [width, height] = [linework.aspect.min(1.0), (1.0 / linework.aspect).min(1.0)];
+        GridLines::new(step, spans, counts, [longer * width, longer * height])
+    });
+    let grid = grid.transpose()?;
+    entries.extend(grid.as_ref().map(|grid| Entry { sign: Sign::Grid, text: grid.words() }));
     let cover = match &options.coloring {
         Coloring::Surfaces(cover) => cover.entries.iter().map(surface_entry).collect(),
         _ => Vec::new(),
@@ -95,6 +104,9 @@ pub fn draw(heights: &Grid, options: &SheetOptions, progress: &Progress) -> Resu
     painting.finish();
     progress.check()?;
     let below = if is_tint { Below::Tint(&tint) } else { Below::Picture(size[0], &pixels) };
+    if let Some(grid) = &grid {
+        grid.draw(&mut desk, map);
+    }
     let left_out = linework.draw(&mut desk, map, options, &below);
     desk.scene.items.insert(0, Item::Picture { area: map, width: size[0], height: size[1], pixels });
     drawing.finish();
@@ -103,8 +115,10 @@ pub fn draw(heights: &Grid, options: &SheetOptions, progress: &Progress) -> Resu
     let metres = [window.width, window.height].map(|samples| (samples - 1) as f64 * window.cell);
     let scale = metres[0] / f64::from(map.width);
     if options.parts.axes {
-        let (spans, counts) = spans(heights, options);
-        desk.axes(map, spans, counts);
+        match &grid {
+            Some(grid) => grid.frame(&mut desk, map),
+            None => desk.axes(map, spans, counts),
+        }
     }
     let levels = Levels::of(heights);
     let ends = [levels.low(), levels.high()].map(f64::from);

@@ -217,6 +217,11 @@ impl Desk<'_> {
                     self.scene.items.push(Item::Picture { area, width: pixels.len() / 3, height: 1, pixels });
                     self.scene.frame(area, 0.15, INK);
                 }
+                Sign::Grid => {
+                    let down = [0.3, 0.7].map(|share| x + SIGN * share).map(|x| line([[x, y - 1.5], [x, y + 1.5]]));
+                    let across = line([[x, y], [x + SIGN, y]]);
+                    self.scene.lines(down.into_iter().chain([across]).collect(), 0.14, INK, 0.8);
+                }
                 Sign::Place => self.scene.area(super::marks::dot(Point::new(x + SIGN / 2.0, y)), INK, 1.0),
                 Sign::Summit => self.scene.area(super::marks::triangle(Point::new(x + SIGN / 2.0, y)), INK, 1.0),
             }
@@ -241,6 +246,8 @@ pub enum Sign {
     Line(f32, Rgb),
     /// A lake: its water and its shore.
     Water(Rgb, Rgb),
+    /// Lines of a coordinate grid.
+    Grid,
     /// A place with a name.
     Place,
     /// A summit.

@@ -9,6 +9,8 @@ pub const MARGIN: f32 = 9.0;
 const HEADING: f32 = 17.5;
 /// Room for coordinates at the left, the right, the top and the bottom.
 const AXES: [f32; 4] = [12.5, 5.0, 1.0, 6.0];
+/// The same with the numbers of a grid on all sides.
+const GRID: [f32; 4] = [12.5, 12.5, 5.2, 6.0];
 /// Distance between the map and the blocks below or beside it.
 const FOOT_GAP: f32 = 5.0;
 /// The height of a row of blocks.
@@ -66,7 +68,11 @@ impl Layout {
     pub fn new(aspect: f64, blocks: &[Block], options: &SheetOptions) -> Layout {
         let aspect = aspect.clamp(1e-3, 1e3) as f32;
         let head = if options.parts.title { HEADING } else { 0.0 };
-        let [left, right, top, bottom] = if options.parts.axes { AXES } else { [0.0; 4] };
+        let [left, right, top, bottom] = match (options.parts.axes, options.grid) {
+            (true, None) => AXES,
+            (true, Some(_)) => GRID,
+            (false, _) => [0.0; 4],
+        };
         let beside = 2.0 * MARGIN + left + right;
         let (page, draft) = match options.page {
             Page::Fitted(longer) => {

@@ -42,7 +42,7 @@ pub fn lines_at(longer: f64) -> usize {
 }
 
 /// Approximate length of the longer side of a map in millimetres; the exact length depends on its legend.
-fn longer_side(window: &Window, page: Page) -> f64 {
+pub fn longer_side(window: &Window, page: Page) -> f64 {
     let [width, height] = [window.width, window.height].map(|samples| samples.saturating_sub(1).max(1) as f64);
     let aspect = width / height;
     match page {

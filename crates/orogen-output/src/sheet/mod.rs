@@ -6,6 +6,7 @@ pub mod draw;
 pub mod font_set;
 pub(crate) mod furniture;
 pub mod geometry;
+mod grid_lines;
 pub(crate) mod ground;
 pub(crate) mod inks;
 pub(crate) mod labels;

@@ -98,6 +98,15 @@ pub enum Labels {
     All,
 }
 
+/// The distance between the lines of a coordinate grid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum GridStep {
+    /// A round distance that suits the scale.
+    Automatic,
+    /// A distance in the unit of the coordinates: metres or degrees.
+    Every(f64),
+}
+
 /// The mapping from values of a layer to colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scale {
@@ -218,6 +227,8 @@ pub struct SheetOptions {
     pub levels: Option<Vec<f64>>,
     /// The contours that have labels: by default index contours, or all if their heights are given.
     pub labels: Option<Labels>,
+    /// The coordinate grid; none by default.
+    pub grid: Option<GridStep>,
     /// The parts that are drawn; all by default.
     pub parts: Parts,
     /// The page; by default fitted to a map with a longer side of 240 mm.
@@ -257,6 +268,7 @@ impl SheetOptions {
             interval: None,
             levels: None,
             labels: None,
+            grid: None,
             parts: Parts::default(),
             page: Page::Fitted(240.0),
             resolution: Resolution::Inch(150.0),

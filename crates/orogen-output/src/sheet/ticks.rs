@@ -14,13 +14,18 @@ pub enum Count {
 /// At most `most` round values between two ends, each with its label.
 pub fn ticks([from, to]: [f64; 2], most: usize, count: Count) -> Vec<(f64, String)> {
     let (low, high) = (from.min(to), from.max(to));
-    let step = step(high - low, most);
+    ticks_every([from, to], step(high - low, most), count)
+}
+
+/// The multiples of `step` between two ends, each with its label.
+pub fn ticks_every([from, to]: [f64; 2], step: f64, count: Count) -> Vec<(f64, String)> {
+    let (low, high) = (from.min(to), from.max(to));
     if step <= 0.0 {
         return Vec::new();
     }
     let kilometres = count == Count::Metres && high - low >= 4000.0 && step >= 100.0;
     let (divide, unit) = if kilometres { (1000.0, " km") } else { (1.0, " m") };
-    let decimals = (-libm::log10(step / divide * 1.000_001).floor()).clamp(0.0, 9.0) as usize;
+    let decimals = decimals(step / divide);
     let name = |value: f64| match count {
         Count::Metres => format!("{}{unit}", grouped(value / divide, decimals)),
         Count::Longitude => degrees(value, decimals, ["W", "E"]),
@@ -31,6 +36,28 @@ pub fn ticks([from, to]: [f64; 2], most: usize, count: Count) -> Vec<(f64, Strin
         return Vec::new();
     }
     (first as i64..=last as i64).map(|k| k as f64 * step).map(|value| (value, name(value))).collect()
+}
+
+/// The number of decimals of the multiples of a step.
+fn decimals(step: f64) -> usize {
+    let first = (-libm::log10(step * 1.000_001).floor()).clamp(0.0, 9.0) as usize;
+    let is_whole = |decimals: &usize| {
+        let scaled = step * libm::pow(10.0, *decimals as f64);
+        (scaled - scaled.round()).abs() < 1e-6 * scaled
+    };
+    (first..=9).find(is_whole).unwrap_or(first)
+}
+
+/// A step with its unit.
+pub fn step_words(step: f64, count: Count) -> String {
+    let kilometres = count == Count::Metres && step >= 1000.0;
+    let value = if kilometres { step / 1000.0 } else { step };
+    let unit = match count {
+        Count::Metres if kilometres => " km",
+        Count::Metres => " m",
+        Count::Longitude | Count::Latitude => "°",
+    };
+    format!("{}{unit}", grouped(value, decimals(value)))
 }
 
 /// The smallest round step (1, 2 or 5 times a power of ten) with at most `most` values in a length; 0 if there is none.
