@@ -6,7 +6,8 @@ use clap::ValueEnum;
 use orogen::file;
 use orogen::jobs::map::{MapColors, MapJob};
 use orogen::jobs::sheet_format::SheetFormat;
-use orogen::sheet::options::{GridStep, Labels, Parts, Resolution, Scale, Shading};
+use orogen::palette::color::Rgb;
+use orogen::sheet::options::{GridStep, Labels, PageColors, Parts, Resolution, Scale, Shading};
 use orogen::sheet::paper::Paper;
 use orogen::world::HEIGHT;
 
@@ -17,6 +18,7 @@ use crate::options::Limits;
 use crate::replace::Replace;
 use crate::sink::{Sink, kind};
 use crate::source::{Source, title};
+use crate::values::color::color;
 use crate::values::number::{Numbers, dpi, positive};
 use crate::view::View;
 use crate::{interrupt, palette, say};
@@ -103,6 +105,8 @@ pub struct Args {
     #[command(flatten)]
     view: View,
     #[command(flatten)]
+    page_colors: PageColorArgs,
+    #[command(flatten)]
     without: Without,
     #[command(flatten)]
     replace: Replace,
@@ -113,6 +117,24 @@ pub struct Args {
     /// Print no progress and no summary
     #[arg(short, long, help_heading = "Output")]
     quiet: bool,
+}
+
+/// Colors of the page and of its lines.
+#[derive(Debug, Clone, Copy, clap::Args)]
+#[command(next_help_heading = "Colors of the page, as #rrggbb or a name")]
+struct PageColorArgs {
+    /// The page [default: white]
+    #[arg(long, value_name = "COLOR", value_parser = color)]
+    page_color: Option<Rgb>,
+    /// Texts, frames and symbols [default: almost black]
+    #[arg(long, value_name = "COLOR", value_parser = color)]
+    ink_color: Option<Rgb>,
+    /// Rivers, lakes, shores and contours under water [default: shades of blue]; the sea has the colors of the palette
+    #[arg(long, value_name = "COLOR", value_parser = color)]
+    water_color: Option<Rgb>,
+    /// Contours on land [default: brown, bright on dark ground]
+    #[arg(long, value_name = "COLOR", value_parser = color)]
+    contour_color: Option<Rgb>,
 }
 
 /// Parts that are left out.
@@ -317,6 +339,7 @@ fn job(args: &Args) -> Result<MapJob, Failure> {
         Labelled::All => Some(Labels::All),
         Labelled::None => None,
     });
+    job.page_colors = page_colors(&args.page_colors);
     job.grid = args.grid;
     job.river_area = args.river_area;
     job.lake_area = args.lake_area;
@@ -349,6 +372,16 @@ fn grid_step(text: &str) -> Result<GridStep, String> {
                 .into()
         }),
     }
+}
+
+/// The colors of the page.
+fn page_colors(args: &PageColorArgs) -> PageColors {
+    let mut colors = PageColors::default();
+    colors.page = args.page_color.unwrap_or(colors.page);
+    colors.ink = args.ink_color.unwrap_or(colors.ink);
+    colors.water = args.water_color;
+    colors.contours = args.contour_color;
+    colors
 }
 
 /// The parts that are not left out.

@@ -61,7 +61,7 @@ pub fn draw(diagram: &Diagram, title: &str) -> Result<Scene> {
     let heading = letters.width(title, Face::Bold, TITLE);
     let width = layout.size.width.max(key).max(heading) + 2.0 * MARGIN;
     let height = layout.size.height + 2.0 * MARGIN + HEADING + FOOT;
-    let scene = Scene { size: Size::new(width, height), title: title.to_string(), items: Vec::new() };
+    let scene = Scene::new(Size::new(width, height), title);
     let mut page = Page { scene, letters: &letters };
     page.scene.block(Rect::new(0.0, 0.0, width, height), PAPER);
     page.words(title, Face::Bold, TITLE, INK, Point::new(MARGIN, MARGIN + TITLE * 0.8), 1.0);

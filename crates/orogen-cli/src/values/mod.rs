@@ -2,6 +2,7 @@
 
 pub mod arguments;
 pub mod bytes;
+pub mod color;
 pub mod name_of;
 pub mod number;
 pub mod region;

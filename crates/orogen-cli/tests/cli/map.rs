@@ -318,7 +318,8 @@ fn a_grid_has_lines_at_round_coordinates() {
     let folder = Folder::new();
     // 4000 m are 160 mm at 1 : 25 000, so that 500 m are 20 mm.
     let map = |more: &[&'static str]| {
-        let map = ["map", "hills", "--window", "0,0,101,81", "--cell", "40", "--scale", "25000", "-q", "-o"];
+        let map =
+            ["map", "hills", "--window", "0,0,101,81", "--cell", "40", "--scale", "25000", "--no-color", "-q", "-o"];
         [&map[..], more].concat()
     };
     let lines = |file: &'static str, more: &[&'static str]| {
@@ -333,4 +334,29 @@ fn a_grid_has_lines_at_round_coordinates() {
     assert_eq!(lines("c.svg", &[]), 0);
     folder.bad(&map(&["x.svg", "--grid", "2"]), 2, "less than 1 mm apart on this map; use at least 50 m");
     folder.bad(&map(&["x.svg", "--grid", "no"]), 2, "leave it out for a distance that suits the scale");
+}
+
+#[test]
+fn colors_of_the_page_and_its_lines() {
+    let folder = Folder::with_small();
+    let colors =
+        ["--page-color", "#102030", "--ink-color", "ivory", "--water-color", "#00ff80", "--contour-color", "red"];
+    let map = |file: &'static str| {
+        let map = ["map", "hills", "--window", "0,0,201,161", "--cell", "40", "--size", "500", "-q", "-o", file];
+        folder.good(&[&map[..], &colors].concat());
+        folder.read(file)
+    };
+    let picture = png(&map("a.png"));
+    assert_eq!(picture.data[..3], [0x10, 0x20, 0x30], "the page");
+    let text = String::from_utf8(map("a.svg")).unwrap();
+    for part in ["height=\"100%\" fill=\"#102030\"", "stroke=\"#00ff80\"", "stroke=\"#ff0000\"", "fill=\"#fffff0\""] {
+        assert!(text.contains(part), "{part}");
+    }
+    assert!(!text.contains("#262422"), "the ink of other pages");
+    assert!(map("a.pdf").starts_with(b"%PDF-1.4"));
+    folder.bad(
+        &["map", "small.toml", "-o", "b.png", "--page-color", "papyrus"],
+        2,
+        "a color must be #rrggbb or a name",
+    );
 }

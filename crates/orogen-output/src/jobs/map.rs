@@ -14,7 +14,9 @@ use crate::export::{biome_cover, place, sheet_cover};
 use crate::sheet::draw::{Sheet, draw};
 use crate::sheet::geometry::{Rect, Size};
 use crate::sheet::linework::{least_areas, lines_at};
-use crate::sheet::options::{Coloring, GridStep, Labels, Layer, Page, Parts, Resolution, Scale, Shading, SheetOptions};
+use crate::sheet::options::{
+    Coloring, GridStep, Labels, Layer, Page, PageColors, Parts, Resolution, Scale, Shading, SheetOptions,
+};
 use crate::sheet::{pdf, raster, vector};
 use orogen_engine::budget::Reservation;
 use orogen_engine::layer::LayerKind;
@@ -102,6 +104,8 @@ pub struct MapJob {
     pub levels: Option<Vec<f64>>,
     /// The contours that have labels: by default index contours, or all if their heights are given.
     pub labels: Option<Labels>,
+    /// The colors of the page and of its lines.
+    pub page_colors: PageColors,
     /// The coordinate grid; none by default.
     pub grid: Option<GridStep>,
     /// Minimum drainage area of rivers in m^2; by default it depends on the scale, and is at least 100 000. With
@@ -170,6 +174,7 @@ impl MapJob {
             interval: None,
             levels: None,
             labels: None,
+            page_colors: PageColors::default(),
             grid: None,
             river_area: None,
             lake_area: None,
@@ -456,6 +461,7 @@ impl MapJob {
         options.interval = self.interval;
         options.levels.clone_from(&self.levels);
         options.labels = self.labels;
+        options.page_colors = self.page_colors;
         options.grid = self.grid;
         options.river_area = self.river_area;
         options.lake_area = self.lake_area;

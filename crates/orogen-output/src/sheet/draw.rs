@@ -11,7 +11,7 @@ use super::overlay::Below;
 use super::profile::{Direction, Profile};
 use super::ramp::Ramp;
 use super::relief::{Paint, paint};
-use super::scene::{INK, Item, Scene};
+use super::scene::{Item, Scene};
 use super::ticks::{Count, grouped};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Grid;
@@ -84,8 +84,9 @@ pub fn draw(heights: &Grid, options: &SheetOptions, progress: &Progress) -> Resu
     let (parts, blocks): (Vec<Part>, Vec<Block>) =
         parts.into_iter().filter(|part| part.0).map(|(_, part, block)| (part, block)).unzip();
     let layout = Layout::new(linework.aspect, &blocks, options);
-    let scene = Scene { size: layout.page, title: options.title.clone(), items: Vec::new() };
-    let mut desk = Desk { scene, letters: &letters };
+    let colors = options.page_colors;
+    let scene = Scene { page: colors.page, ..Scene::new(layout.page, &options.title) };
+    let mut desk = Desk { scene, letters: &letters, colors };
     let sea = options.sea_level.map_or(f32::NEG_INFINITY, |sea| sea as f32);
     let ramp = match &options.coloring {
         Coloring::Layer(layer) => Some(Ramp::new(layer, &options.palette)?),
@@ -111,7 +112,7 @@ pub fn draw(heights: &Grid, options: &SheetOptions, progress: &Progress) -> Resu
     desk.scene.items.insert(0, Item::Picture { area: map, width: size[0], height: size[1], pixels });
     drawing.finish();
     progress.check()?;
-    desk.scene.frame(map, 0.3, INK);
+    desk.scene.frame(map, 0.3, desk.colors.ink);
     let metres = [window.width, window.height].map(|samples| (samples - 1) as f64 * window.cell);
     let scale = metres[0] / f64::from(map.width);
     if options.parts.axes {

@@ -4,15 +4,14 @@ use super::font_set::FontSet;
 use super::geometry::{Point, Rect};
 use super::labels::Label;
 use super::layout::{BLOCK_GAP, Block, MARGIN, ROW};
-use super::scene::{INK, Item, Scene, line, polygon};
+use super::options::PageColors;
+use super::scene::{Item, Scene, line, polygon};
 use super::ticks::{Count, grouped, step, ticks};
 use crate::map::text::Face;
 use orogen_grid::words;
 use orogen_io::palette::color::{Encoder, Rgb, decode, linear, mix, oklab};
 use orogen_io::palette::tint::Tint;
 
-/// Ink of small print.
-pub const SOFT: Rgb = [92, 90, 88];
 /// Size of small print, the em in millimetres.
 pub const SMALL: f32 = 2.7;
 const HEADING: f32 = 7.0;
@@ -23,6 +22,8 @@ pub struct Desk<'a> {
     pub scene: Scene,
     /// Its fonts.
     pub letters: &'a FontSet,
+    /// The colors of the page.
+    pub colors: PageColors,
 }
 
 /// Horizontal alignment of a text relative to its anchor.
@@ -65,7 +66,7 @@ impl Desk<'_> {
 
     /// Draws small print.
     pub fn small(&mut self, text: &str, at: Point, align: Align) -> f32 {
-        self.text(text, Face::Regular, SMALL, SOFT, at, align)
+        self.text(text, Face::Regular, SMALL, self.colors.soft(), at, align)
     }
 
     /// The part of a text that fits in a width.
@@ -80,7 +81,7 @@ impl Desk<'_> {
         let natural = self.letters.width(title, Face::Bold, HEADING).max(1e-3);
         let size = HEADING * (width / natural).clamp(0.55, 1.0);
         let title = self.shortened(title, Face::Bold, size, width);
-        self.text(&title, Face::Bold, size, INK, Point::new(MARGIN, MARGIN + 5.2), Align::Start);
+        self.text(&title, Face::Bold, size, self.colors.ink, Point::new(MARGIN, MARGIN + 5.2), Align::Start);
         for (k, line) in lines.iter().enumerate() {
             let line = self.shortened(line, Face::Regular, SMALL, width);
             self.small(&line, Point::new(MARGIN, MARGIN + 9.9 + 3.7 * k as f32), Align::Start);
@@ -113,7 +114,7 @@ impl Desk<'_> {
             marks.push(line([[right, y], [right + mark, y]]));
             self.small(&name, Point::new(left - mark - 0.9, y + 0.95), Align::End);
         }
-        self.scene.lines(marks, 0.2, INK, 1.0);
+        self.scene.lines(marks, 0.2, self.colors.ink, 1.0);
     }
 
     /// A colour bar with heights; `width` includes its unit.
@@ -128,7 +129,7 @@ impl Desk<'_> {
         });
         let area = Rect::new(at.x, at.y, width - 10.0, 3.6);
         self.scene.items.push(Item::Picture { area, width: STEPS, height: 1, pixels: pixels.collect() });
-        self.scene.frame(area, 0.15, INK);
+        self.scene.frame(area, 0.15, self.colors.ink);
         let mut marks: Vec<Vec<Point>> = Vec::new();
         let mut free = f32::MIN;
         let step = step(high - low, 6);
@@ -143,7 +144,7 @@ impl Desk<'_> {
                 free = x + half + 1.0;
             }
         }
-        self.scene.lines(marks, 0.2, INK, 1.0);
+        self.scene.lines(marks, 0.2, self.colors.ink, 1.0);
         self.small("m", Point::new(at.x + area.width + 2.0, at.y + 2.8), Align::Start);
     }
 
@@ -159,9 +160,9 @@ impl Desk<'_> {
         let (kilometres, unit) = if length >= 1000.0 { (1000.0, "km") } else { (1.0, "m") };
         for k in 0..4 {
             let part = Rect::new(left + width * k as f32 / 4.0, top + 1.0, width / 4.0, 1.4);
-            self.scene.block(part, if k % 2 == 0 { INK } else { [255; 3] });
+            self.scene.block(part, if k % 2 == 0 { self.colors.ink } else { self.colors.page });
         }
-        self.scene.frame(Rect::new(left, top + 1.0, width, 1.4), 0.18, INK);
+        self.scene.frame(Rect::new(left, top + 1.0, width, 1.4), 0.18, self.colors.ink);
         for share in [0.0, 0.5, 1.0] {
             let value = length / kilometres * share;
             let decimals =
@@ -180,11 +181,11 @@ impl Desk<'_> {
     /// A north arrow, which points to the top of the page.
     pub fn north(&mut self, Point { x: left, y: top }: Point) {
         let (x, foot) = (left + NORTH / 2.0, top + 8.2);
-        self.scene.area(polygon([[x, top + 0.2], [x + 2.1, foot], [x, foot - 1.5]]), INK, 1.0);
+        self.scene.area(polygon([[x, top + 0.2], [x + 2.1, foot], [x, foot - 1.5]]), self.colors.ink, 1.0);
         let light = [[x, top + 0.2], [x - 2.1, foot], [x, foot - 1.5], [x, top + 0.2]];
-        self.scene.area(polygon(light), [255; 3], 1.0);
-        self.scene.lines(vec![line(light)], 0.18, INK, 1.0);
-        self.text("N", Face::Bold, 2.9, INK, Point::new(x + 2.8, top + 2.6), Align::Start);
+        self.scene.area(polygon(light), self.colors.page, 1.0);
+        self.scene.lines(vec![line(light)], 0.18, self.colors.ink, 1.0);
+        self.text("N", Face::Bold, 2.9, self.colors.ink, Point::new(x + 2.8, top + 2.6), Align::Start);
     }
 
     /// The legend, in `rows` rows.
@@ -215,15 +216,17 @@ impl Desk<'_> {
                     let area = Rect::new(x, y - 1.5, SIGN, 3.0);
                     let pixels = swatch(colors);
                     self.scene.items.push(Item::Picture { area, width: pixels.len() / 3, height: 1, pixels });
-                    self.scene.frame(area, 0.15, INK);
+                    self.scene.frame(area, 0.15, self.colors.ink);
                 }
                 Sign::Grid => {
                     let down = [0.3, 0.7].map(|share| x + SIGN * share).map(|x| line([[x, y - 1.5], [x, y + 1.5]]));
                     let across = line([[x, y], [x + SIGN, y]]);
-                    self.scene.lines(down.into_iter().chain([across]).collect(), 0.14, INK, 0.8);
+                    self.scene.lines(down.into_iter().chain([across]).collect(), 0.14, self.colors.ink, 0.8);
                 }
-                Sign::Place => self.scene.area(super::marks::dot(Point::new(x + SIGN / 2.0, y)), INK, 1.0),
-                Sign::Summit => self.scene.area(super::marks::triangle(Point::new(x + SIGN / 2.0, y)), INK, 1.0),
+                Sign::Place => self.scene.area(super::marks::dot(Point::new(x + SIGN / 2.0, y)), self.colors.ink, 1.0),
+                Sign::Summit => {
+                    self.scene.area(super::marks::triangle(Point::new(x + SIGN / 2.0, y)), self.colors.ink, 1.0)
+                }
             }
             self.small(&entry.text, Point::new(x + SIGN + 1.8, y + 0.95), Align::Start);
         }

@@ -3,7 +3,7 @@
 use super::furniture::{Align, Desk, SMALL};
 use super::geometry::{Point, Rect};
 use super::options::GridStep;
-use super::scene::{INK, line};
+use super::scene::line;
 use super::ticks::{Count, step, step_words, ticks_every};
 use crate::map::text::Face;
 use orogen_grid::error::{Error, ErrorKind, Result};
@@ -77,8 +77,8 @@ impl GridLines {
             lines.push(vec![map.at(0.0, share), map.at(1.0, share)]);
         }
         // A bright edge for visibility on dark ground.
-        desk.scene.lines(lines.clone(), 0.4, [255; 3], 0.25);
-        desk.scene.lines(lines, 0.15, INK, 0.8);
+        desk.scene.lines(lines.clone(), 0.4, desk.colors.page, 0.25);
+        desk.scene.lines(lines, 0.15, desk.colors.ink, 0.8);
     }
 
     /// Draws ticks and coordinates along all sides of the map.
@@ -111,7 +111,7 @@ impl GridLines {
                 free = y + SMALL * 1.2;
             }
         }
-        desk.scene.lines(marks, 0.2, INK, 1.0);
+        desk.scene.lines(marks, 0.2, desk.colors.ink, 1.0);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::furniture::{Entry, Sign};
 use super::ground::laid;
-use super::inks::{BLUE, GIVEN, LAKES, SHORE, THICK, THIN, of_contours};
+use super::inks::{GIVEN, THICK, THIN};
 use super::lines::{self, Summit, interval, is_thick, lines, summits, thick_interval};
 use super::options::{Page, SheetOptions};
 use super::ticks::grouped;
@@ -173,7 +173,8 @@ impl Linework {
     pub fn legend(&self, options: &SheetOptions) -> Vec<Entry> {
         let mut entries = Vec::new();
         let sea = options.sea_level.unwrap_or(f64::NEG_INFINITY);
-        let ink = of_contours(self.contours.iter().any(|line| line.elevation > sea));
+        let colors = &options.page_colors;
+        let ink = colors.of_contours(self.contours.iter().any(|line| line.elevation > sea));
         let entry = |width, text| Entry { sign: Sign::Line(width, ink), text };
         if self.interval.is_none() && !self.contours.is_empty() {
             entries.push(entry(GIVEN, listed(&self.levels())));
@@ -184,10 +185,10 @@ impl Linework {
             entries.push(entry(THICK, format!("Index contours, {} apart", metres(thick_interval(interval)))));
         }
         if options.parts.rivers && !self.water.rivers.is_empty() {
-            entries.push(Entry { sign: Sign::Line(0.45, BLUE), text: "River".into() });
+            entries.push(Entry { sign: Sign::Line(0.45, colors.rivers()), text: "River".into() });
         }
         if options.parts.lakes && !self.water.lakes.is_empty() {
-            entries.push(Entry { sign: Sign::Water(LAKES, SHORE), text: "Lake".into() });
+            entries.push(Entry { sign: Sign::Water(colors.lakes(), colors.shores()), text: "Lake".into() });
         }
         if !options.names.is_empty() {
             entries.push(Entry { sign: Sign::Place, text: "Place".into() });

@@ -1,8 +1,8 @@
 //! Symbols on the map.
 
-use super::font_set::FontSet;
+use super::furniture::Desk;
 use super::geometry::Point;
-use super::scene::{INK, Scene, Step, polygon};
+use super::scene::{Step, polygon};
 use super::taken::Taken;
 use crate::map::text::Face;
 
@@ -19,20 +19,20 @@ pub fn triangle(Point { x, y }: Point) -> Vec<Step> {
 }
 
 /// Draws a summit and its height, if there is room: to the right, otherwise to the left. Marks the room as occupied.
-pub fn summit(scene: &mut Scene, letters: &FontSet, taken: &mut Taken, at: Point, text: &str) {
-    let width = letters.width(text, Face::Bold, SIZE);
+pub fn summit(desk: &mut Desk, taken: &mut Taken, at: Point, text: &str) {
+    let width = desk.letters.width(text, Face::Bold, SIZE);
     let starts = [at.x + 1.5, at.x - 1.5 - width];
     let middle = |start: f32, share: f32| Point::new(start + width * share, at.y);
     let shares = || (0..=6).map(|k| k as f32 / 6.0);
     let free = |start: &f32| shares().all(|share| taken.is_free(middle(*start, share), SIZE * 0.5));
     let Some(start) = starts.iter().copied().find(free).filter(|_| taken.is_free(at, 0.8)) else { return };
-    let outline = letters.write(text, Face::Bold, SIZE, Point::new(start, at.y + SIZE * 0.35), 0.0);
+    let outline = desk.letters.write(text, Face::Bold, SIZE, Point::new(start, at.y + SIZE * 0.35), 0.0);
     let mark = triangle(at);
     // A bright edge for visibility on dark ground.
     let edge: Vec<Vec<Point>> = rings(&outline).into_iter().chain(rings(&mark)).collect();
-    scene.lines(edge, 0.75, [255; 3], 0.55);
-    scene.area(mark, INK, 1.0);
-    scene.area(outline, INK, 1.0);
+    desk.scene.lines(edge, 0.75, desk.colors.page, 0.55);
+    desk.scene.area(mark, desk.colors.ink, 1.0);
+    desk.scene.area(outline, desk.colors.ink, 1.0);
     taken.take(at, 1.3);
     shares().for_each(|share| taken.take(middle(start, share), SIZE * 0.75));
 }
@@ -48,8 +48,8 @@ pub fn dot(Point { x, y }: Point) -> Vec<Step> {
 
 /// Draws a place and its name, if there is room: to the right, otherwise to the left, above or below. Marks the room as occupied. Returns whether there was
 /// room.
-pub fn place_name(scene: &mut Scene, letters: &FontSet, taken: &mut Taken, at: Point, text: &str) -> bool {
-    let width = letters.width(text, Face::Bold, NAME);
+pub fn place_name(desk: &mut Desk, taken: &mut Taken, at: Point, text: &str) -> bool {
+    let width = desk.letters.width(text, Face::Bold, NAME);
     let beside = DOT + 0.8;
     let above = beside + NAME * 0.5;
     let slant = [beside * 0.7, above * 0.8];
@@ -68,12 +68,12 @@ pub fn place_name(scene: &mut Scene, letters: &FontSet, taken: &mut Taken, at: P
         |start: [f32; 2]| (0..=parts as i32).map(move |k| at.moved(start[0] + width * k as f32 / parts, start[1]));
     let free = |start: &[f32; 2]| middles(*start).all(|middle| taken.is_free(middle, NAME * 0.45));
     let Some(start) = starts.into_iter().find(free) else { return false };
-    let outline = letters.write(text, Face::Bold, NAME, at.moved(start[0], start[1] + NAME * 0.35), 0.0);
+    let outline = desk.letters.write(text, Face::Bold, NAME, at.moved(start[0], start[1] + NAME * 0.35), 0.0);
     let mark = dot(at);
     let edge: Vec<Vec<Point>> = rings(&outline).into_iter().chain(rings(&mark)).collect();
-    scene.lines(edge, 0.8, [255; 3], 0.7);
-    scene.area(mark, INK, 1.0);
-    scene.area(outline, INK, 1.0);
+    desk.scene.lines(edge, 0.8, desk.colors.page, 0.7);
+    desk.scene.area(mark, desk.colors.ink, 1.0);
+    desk.scene.area(outline, desk.colors.ink, 1.0);
     taken.take(at, 1.0);
     middles(start).for_each(|middle| taken.take(middle, NAME * 0.6));
     true
@@ -96,40 +96,45 @@ fn rings(outline: &[Step]) -> Vec<Vec<Point>> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::font_set::FontSet;
     use super::super::geometry::{Rect, Size};
+    use super::super::options::PageColors;
+    use super::super::scene::Scene;
     use super::*;
 
     #[test]
     fn summits_find_room_or_are_left_out() {
         let letters = FontSet::for_texts([]).unwrap();
-        let mut scene = Scene { size: Size::new(50.0, 50.0), title: String::new(), items: Vec::new() };
+        let scene = Scene::new(Size::new(50.0, 50.0), String::new());
+        let mut desk = Desk { scene, letters: &letters, colors: PageColors::default() };
         let mut taken = Taken::none(Rect::new(0.0, 0.0, 50.0, 50.0));
-        summit(&mut scene, &letters, &mut taken, Point::new(25.0, 25.0), "2345");
-        assert_eq!(scene.items.len(), 3);
+        summit(&mut desk, &mut taken, Point::new(25.0, 25.0), "2345");
+        assert_eq!(desk.scene.items.len(), 3);
         // A second mark next to it has no room; a mark at the right edge is labelled on its left.
-        summit(&mut scene, &letters, &mut taken, Point::new(26.0, 25.5), "2344");
-        assert_eq!(scene.items.len(), 3);
-        summit(&mut scene, &letters, &mut taken, Point::new(47.0, 10.0), "1999");
-        assert_eq!(scene.items.len(), 6);
+        summit(&mut desk, &mut taken, Point::new(26.0, 25.5), "2344");
+        assert_eq!(desk.scene.items.len(), 3);
+        summit(&mut desk, &mut taken, Point::new(47.0, 10.0), "1999");
+        assert_eq!(desk.scene.items.len(), 6);
         assert!(!taken.is_free(Point::new(43.0, 10.0), 0.3));
     }
 
     #[test]
     fn names_stand_on_a_free_side_of_their_place() {
         let letters = FontSet::for_texts(["Port Varn"]).unwrap();
-        let mut scene = Scene { size: Size::new(60.0, 60.0), title: String::new(), items: Vec::new() };
+        let scene = Scene::new(Size::new(60.0, 60.0), String::new());
+        let mut desk = Desk { scene, letters: &letters, colors: PageColors::default() };
         let mut taken = Taken::none(Rect::new(0.0, 0.0, 60.0, 60.0));
-        let name = |scene: &mut Scene, taken: &mut Taken, x: f32, y: f32| {
-            let has_room = place_name(scene, &letters, taken, Point::new(x, y), "Port Varn");
-            (has_room, scene.items.len())
+        let name = |desk: &mut Desk, taken: &mut Taken, x: f32, y: f32| {
+            let has_room = place_name(desk, taken, Point::new(x, y), "Port Varn");
+            (has_room, desk.scene.items.len())
         };
         // To the right; at the right edge to the left; beside the first one above or below it.
-        assert_eq!(name(&mut scene, &mut taken, 20.0, 30.0), (true, 3));
-        assert_eq!(name(&mut scene, &mut taken, 58.0, 10.0), (true, 6));
-        assert_eq!(name(&mut scene, &mut taken, 20.5, 30.5), (true, 9));
+        assert_eq!(name(&mut desk, &mut taken, 20.0, 30.0), (true, 3));
+        assert_eq!(name(&mut desk, &mut taken, 58.0, 10.0), (true, 6));
+        assert_eq!(name(&mut desk, &mut taken, 20.5, 30.5), (true, 9));
         assert!(!taken.is_free(Point::new(26.0, 30.0), 0.3) && !taken.is_free(Point::new(52.0, 10.0), 0.3));
         // Around a place with many neighbours there is no room.
-        let more: Vec<bool> = (0..12).map(|k| name(&mut scene, &mut taken, 20.0 + 0.1 * k as f32, 30.0).0).collect();
+        let more: Vec<bool> = (0..12).map(|k| name(&mut desk, &mut taken, 20.0 + 0.1 * k as f32, 30.0).0).collect();
         assert!(more.contains(&false), "{more:?}");
     }
 }

@@ -1,5 +1,6 @@
 //! Options of a sheet.
 
+use super::scene::{INK, WHITE};
 use super::water::KnownWater;
 use orogen_grid::grid::Grid;
 use orogen_io::format::dem::Georeference;
@@ -96,6 +97,26 @@ pub enum Labels {
     Index,
     /// All contours with room for a label.
     All,
+}
+
+/// The colors of a page, and of the lines on its map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct PageColors {
+    /// The page; white by default.
+    pub page: Rgb,
+    /// Texts, frames and symbols; almost black by default.
+    pub ink: Rgb,
+    /// Rivers, shores, lakes and contours under water; shades of blue by default. The sea has the colors of the palette.
+    pub water: Option<Rgb>,
+    /// Contours on land, on any ground; by default brown, and bright on dark ground.
+    pub contours: Option<Rgb>,
+}
+
+impl Default for PageColors {
+    fn default() -> PageColors {
+        PageColors { page: WHITE, ink: INK, water: None, contours: None }
+    }
 }
 
 /// The distance between the lines of a coordinate grid.
@@ -227,6 +248,8 @@ pub struct SheetOptions {
     pub levels: Option<Vec<f64>>,
     /// The contours that have labels: by default index contours, or all if their heights are given.
     pub labels: Option<Labels>,
+    /// The colors of the page and of its lines.
+    pub page_colors: PageColors,
     /// The coordinate grid; none by default.
     pub grid: Option<GridStep>,
     /// The parts that are drawn; all by default.
@@ -268,6 +291,7 @@ impl SheetOptions {
             interval: None,
             levels: None,
             labels: None,
+            page_colors: PageColors::default(),
             grid: None,
             parts: Parts::default(),
             page: Page::Fitted(240.0),

@@ -3,7 +3,7 @@
 use super::contour_lines::ContourLines;
 use super::furniture::Desk;
 use super::geometry::{Affine, Point, Rect};
-use super::inks::{BLUE, Inks, LAKES, SHORE};
+use super::inks::Inks;
 use super::linework::Linework;
 use super::marks;
 use super::options::SheetOptions;
@@ -71,14 +71,12 @@ impl Linework {
         let shore: Vec<Vec<Point>> = self.shore.iter().map(path).collect();
         // Names and summits are drawn last, on top of the lines, but reserve their room first; names may cross rivers and shores, because harbours and towns
         // at rivers have no other room.
-        let mut over = Desk {
-            scene: Scene { size: desk.scene.size, title: String::new(), items: Vec::new() },
-            letters: desk.letters,
-        };
+        let mut over =
+            Desk { scene: Scene::new(desk.scene.size, String::new()), letters: desk.letters, colors: desk.colors };
         let mut left_out = Vec::new();
         for place in &options.names {
             let at = map.at(place.at[0] as f32, place.at[1] as f32);
-            if !marks::place_name(&mut over.scene, desk.letters, &mut taken, at, &place.name) {
+            if !marks::place_name(&mut over, &mut taken, at, &place.name) {
                 left_out.push(place.name.clone());
             }
         }
@@ -88,11 +86,11 @@ impl Linework {
             let share = |at: usize, samples: usize| at as f32 / (samples - 1) as f32;
             let place = map.at(share(summit.x, self.samples[0]), share(summit.y, self.samples[1]));
             let text = grouped(f64::from(summit.height), 0);
-            marks::summit(&mut over.scene, desk.letters, &mut taken, place, &text);
+            marks::summit(&mut over, &mut taken, place, &text);
         }
         let ink = |line: &Line, places: &[Point]| {
             let is_land = line.elevation > options.sea_level.unwrap_or(f64::NEG_INFINITY);
-            Inks::over(below.color(map, line.elevation, places), is_land)
+            Inks::over(below.color(map, line.elevation, places), is_land, &options.page_colors)
         };
         let contours: Vec<(&Line, Vec<Point>)> = self.contours.iter().map(|line| (line, path(line))).collect();
         let contours = ContourLines::new(self, contours, options, desk.letters, map, &mut taken, ink);
@@ -103,12 +101,12 @@ impl Linework {
         widths.dedup();
         for width in widths {
             let same = rivers.iter().filter(|river| river.0 == width).map(|river| river.1.clone());
-            desk.scene.lines(same.collect(), width, BLUE, 0.95);
+            desk.scene.lines(same.collect(), width, desk.colors.rivers(), 0.95);
         }
         let outline = lakes.iter().flat_map(|ring| super::scene::polygon(ring.iter().copied())).collect::<Vec<Step>>();
-        desk.scene.area(outline, LAKES, 1.0);
-        desk.scene.lines(lakes, 0.18, SHORE, 1.0);
-        desk.scene.lines(shore, 0.22, SHORE, 0.9);
+        desk.scene.area(outline, desk.colors.lakes(), 1.0);
+        desk.scene.lines(lakes, 0.18, desk.colors.shores(), 1.0);
+        desk.scene.lines(shore, 0.22, desk.colors.shores(), 0.9);
         contours.draw_labels(desk);
         desk.scene.items.append(&mut over.scene.items);
         left_out

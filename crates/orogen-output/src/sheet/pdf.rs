@@ -6,8 +6,8 @@ use std::io::{self, Write};
 
 use miniz_oxide::deflate::compress_to_vec_zlib;
 
-use super::geometry::{Point, Size};
-use super::scene::{Item, Scene, Step};
+use super::geometry::{Point, Rect, Size};
+use super::scene::{Item, Scene, Step, WHITE, polygon};
 
 /// Points per millimetre.
 const POINT: f32 = 72.0 / 25.4;
@@ -22,6 +22,10 @@ const EFFORT: u8 = 6;
 pub fn write(out: &mut dyn Write, scene: &Scene) -> io::Result<()> {
     let mut file = File { bytes: b"%PDF-1.4\n%\xe2\xe3\xcf\xd3\n".to_vec(), starts: Vec::new() };
     let mut page = Drawn { text: String::new(), height: scene.size.height, pictures: Vec::new(), covers: Vec::new() };
+    if scene.page != WHITE {
+        let corners = Rect::new(0.0, 0.0, scene.size.width, scene.size.height).corners();
+        page.area(&polygon(corners), scene.page, 1.0);
+    }
     scene.items.iter().for_each(|item| page.draw(item));
     let Size { width, height } = scene.size.map(|side| side * POINT);
     // Objects: 1 catalogue, 2 pages, 3 the page, 4 its content, 5 information, then pictures.
@@ -132,28 +136,30 @@ impl<'a> Drawn<'a> {
                 }
                 self.text.push_str("S Q\n");
             }
-            Item::Area { outline, ink, cover } => {
-                self.inks(*ink, *cover, "rg");
-                for (k, step) in outline.iter().enumerate() {
-                    match step {
-                        Step::Move(place) => {
-                            self.text.push_str(if k > 0 { "h\n" } else { "" });
-                            self.spot(*place);
-                            self.text.push_str("m\n");
-                        }
-                        Step::Line(place) => {
-                            self.spot(*place);
-                            self.text.push_str("l\n");
-                        }
-                        Step::Curve(a, b, end) => {
-                            [a, b, end].into_iter().for_each(|place| self.spot(*place));
-                            self.text.push_str("c\n");
-                        }
-                    }
+            Item::Area { outline, ink, cover } => self.area(outline, *ink, *cover),
+        }
+    }
+
+    fn area(&mut self, outline: &[Step], ink: [u8; 3], cover: f32) {
+        self.inks(ink, cover, "rg");
+        for (k, step) in outline.iter().enumerate() {
+            match step {
+                Step::Move(place) => {
+                    self.text.push_str(if k > 0 { "h\n" } else { "" });
+                    self.spot(*place);
+                    self.text.push_str("m\n");
                 }
-                self.text.push_str("h f Q\n");
+                Step::Line(place) => {
+                    self.spot(*place);
+                    self.text.push_str("l\n");
+                }
+                Step::Curve(a, b, end) => {
+                    [a, b, end].into_iter().for_each(|place| self.spot(*place));
+                    self.text.push_str("c\n");
+                }
             }
         }
+        self.text.push_str("h f Q\n");
     }
 
     fn inks(&mut self, ink: [u8; 3], cover: f32, operator: &str) {
@@ -193,7 +199,7 @@ mod tests {
             Item::Area { outline: polygon([[0.0; 2], [1.0, 0.0], [1.0; 2]]), ink: [0; 3], cover: 1.0 },
         ];
         let mut out = Vec::new();
-        write(&mut out, &Scene { size: Size::new(100.0, 50.0), title: "Höhe".into(), items }).unwrap();
+        write(&mut out, &Scene { items, ..Scene::new(Size::new(100.0, 50.0), "Höhe".into()) }).unwrap();
         let find = |wanted: &[u8]| out.windows(wanted.len()).position(|window| window == wanted);
         let text = String::from_utf8_lossy(&out).to_string();
         let table: usize = text.rsplit("startxref\n").next().unwrap().lines().next().unwrap().parse().unwrap();

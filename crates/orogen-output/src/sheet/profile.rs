@@ -1,10 +1,10 @@
 //! Profiles of the land through its highest sample, from west to east and from north to south, for free space on a
 //! sheet.
 
-use super::furniture::{Align, Desk, SMALL, SOFT};
+use super::furniture::{Align, Desk, SMALL};
 use super::geometry::{Point, Rect};
 use super::options::SheetOptions;
-use super::scene::{INK, Item, line, polygon};
+use super::scene::{Item, line, polygon};
 use super::ticks::{Count, grouped, ticks};
 use crate::map::text::Face;
 use orogen_grid::grid::Grid;
@@ -29,9 +29,6 @@ const FOOT: f64 = 0.12;
 
 /// Ink of rock: below the sea, and everywhere if the map shows another layer than the heights.
 const LAND_INK: Rgb = [196, 192, 186];
-
-/// Ink of a section through the sea.
-const SEA: Rgb = [150, 192, 222];
 
 /// Direction of a profile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -155,7 +152,7 @@ impl Profile {
             lines.push(line([[left, y], [right, y]]));
             desk.small(&name, Point::new(left - 2.2, y + 0.95), Align::End);
         }
-        desk.scene.lines(lines, 0.1, INK, 0.25);
+        desk.scene.lines(lines, 0.1, desk.colors.ink, 0.25);
         for (value, name) in ticks([0.0, self.length], (width / 16.0).max(1.0) as usize, Count::Metres) {
             let x = left + width * (value / self.length) as f32;
             marks.push(line([[x, bottom], [x, bottom + 1.3]]));
@@ -164,7 +161,7 @@ impl Profile {
                 desk.small(&name, Point::new(x, bottom + 4.2), Align::Middle);
             }
         }
-        desk.scene.lines(marks, 0.2, INK, 1.0);
+        desk.scene.lines(marks, 0.2, desk.colors.ink, 1.0);
         let place = |(k, height): (usize, &f32)| {
             let x = left + width * k as f32 / (self.heights.len() - 1) as f32;
             height.is_finite().then(|| Point::new(x, up(f64::from(*height))))
@@ -172,8 +169,8 @@ impl Profile {
         // One line for each part without holes.
         let places: Vec<Option<Point>> = self.heights.iter().enumerate().map(place).collect();
         let stretches = places.split(Option::is_none).map(|stretch| stretch.iter().copied().flatten().collect());
-        desk.scene.lines(stretches.collect(), 0.22, INK, 1.0);
-        desk.scene.lines(vec![line([[left, top], [left, bottom], [right, bottom]])], 0.2, INK, 1.0);
+        desk.scene.lines(stretches.collect(), 0.22, desk.colors.ink, 1.0);
+        desk.scene.lines(vec![line([[left, top], [left, bottom], [right, bottom]])], 0.2, desk.colors.ink, 1.0);
         let [start, end] = self.direction.names();
         let words = format!(
             "Profile {start}–{end}, vertical exaggeration {} ×",
@@ -182,7 +179,7 @@ impl Profile {
         desk.small(&words, Point::new(left, top - 2.4), Align::Start);
         for (name, x, align) in [(start, left, Align::Start), (end, right, Align::End)] {
             let x = if align == Align::Start { x + 0.8 } else { x - 0.8 };
-            desk.text(name, Face::Bold, SMALL, SOFT, Point::new(x, top + 2.6), align);
+            desk.text(name, Face::Bold, SMALL, desk.colors.soft(), Point::new(x, top + 2.6), align);
         }
         self.mark(desk, map);
     }
@@ -209,9 +206,9 @@ impl Profile {
             let (across, down) = (wide / 2.0 + 0.3, 1.5);
             let corners = [[-across, -down], [across, -down], [across, down], [-across, down]];
             let patch = corners.map(|[dx, dy]| middle.moved(dx, dy));
-            desk.scene.area(polygon(patch), [255; 3], 0.6);
-            desk.scene.area(polygon([feet[0], tip, feet[1]]), INK, 1.0);
-            desk.text(name, Face::Bold, SMALL, INK, middle.moved(0.0, 0.95), Align::Middle);
+            desk.scene.area(polygon(patch), desk.colors.page, 0.6);
+            desk.scene.area(polygon([feet[0], tip, feet[1]]), desk.colors.ink, 1.0);
+            desk.text(name, Face::Bold, SMALL, desk.colors.ink, middle.moved(0.0, 0.95), Align::Middle);
         }
     }
 
@@ -238,13 +235,13 @@ impl Profile {
                 let [a, b] = [self.heights[k], self.heights[(k + 1).min(self.heights.len() - 1)]];
                 let ground = f64::from(a + (b - a) * share);
                 let cover = |level: f64| ((level - metres) / rise + 0.5).clamp(0.0, 1.0) as f32;
-                let mut pixel = [255.0f32; 3];
+                let mut pixel = desk.colors.page.map(f32::from);
                 let mut lay = |ink: Rgb, cover: f32| {
                     pixel.iter_mut().zip(ink).for_each(|(pixel, ink)| *pixel += (f32::from(ink) - *pixel) * cover);
                 };
                 let land = if ground.is_finite() { cover(ground) } else { 0.0 };
                 if let Some(sea) = self.sea_level.filter(|sea| ground < *sea) {
-                    lay(SEA, cover(sea) * (1.0 - land));
+                    lay(desk.colors.sea(), cover(sea) * (1.0 - land));
                 }
                 lay(color, land * 0.85);
                 pixels.extend(pixel.map(|part| part.round() as u8));

@@ -7,7 +7,7 @@ use super::furniture::{Align, Desk, SMALL};
 use super::geometry::{Point, Rect};
 use super::ground::at_pixels;
 use super::options::{Layer, Scale};
-use super::scene::{INK, Item, line};
+use super::scene::{Item, line};
 use super::ticks::{Count, grouped, step, ticks};
 use crate::map::text::Face;
 use orogen_engine::layer::LayerKind;
@@ -184,7 +184,7 @@ impl Desk<'_> {
                 let color = encoder.bytes(label(f32::from(k) + 1.0));
                 let part = Rect::new(left + sample * f32::from(k), top, sample, 3.6);
                 self.scene.block(part, color);
-                self.scene.frame(part, 0.15, INK);
+                self.scene.frame(part, 0.15, self.colors.ink);
             }
             self.small(&format!("{named}, one colour each"), Point::new(left, top + 7.4), Align::Start);
             return;
@@ -198,7 +198,7 @@ impl Desk<'_> {
             encoder.bytes(ramp.at(value as f32))
         });
         self.scene.items.push(Item::Picture { area, width: STEPS, height: 1, pixels: pixels.collect() });
-        self.scene.frame(area, 0.15, INK);
+        self.scene.frame(area, 0.15, self.colors.ink);
         let mut lines: Vec<Vec<Point>> = Vec::new();
         let mut free = f32::MIN;
         for (share, name) in ramp.marks() {
@@ -210,7 +210,7 @@ impl Desk<'_> {
                 free = x + half + 1.0;
             }
         }
-        self.scene.lines(lines, 0.2, INK, 1.0);
+        self.scene.lines(lines, 0.2, self.colors.ink, 1.0);
         self.small(unit, Point::new(left + area.width + 2.0, top + 2.8), Align::Start);
         self.small(&named, Point::new(left, top + 11.0), Align::Start);
     }

@@ -13,7 +13,7 @@ const PIECES: usize = 8;
 /// Rows per band; bands are drawn in parallel.
 const BAND: usize = 64;
 
-/// Draws a scene on white paper at `dpi` pixels per inch.
+/// Draws a scene at `dpi` pixels per inch.
 ///
 /// Edges are antialiased: areas by pixel coverage, lines by distance. Bands of rows are drawn in parallel and
 /// independently, so their number does not affect the result.
@@ -24,7 +24,7 @@ pub fn draw(scene: &Scene, dpi: f64) -> Canvas {
     let shapes: Vec<Shape> = scene.items.iter().map(|item| Shape::of(item, scale)).collect();
     let bands: Vec<Vec<Rgb>> = parallel::map(0..height.div_ceil(BAND), |k| {
         let top = k * BAND;
-        let mut band = Band { top, width, rows: vec![[255; 3]; width * BAND.min(height - top)], cover: Vec::new() };
+        let mut band = Band { top, width, rows: vec![scene.page; width * BAND.min(height - top)], cover: Vec::new() };
         shapes.iter().for_each(|shape| band.draw(shape));
         band.rows
     });
@@ -303,7 +303,7 @@ mod tests {
 
     fn drawn(items: Vec<Item>) -> Canvas {
         // 100 x 100 pixels of one millimetre each.
-        draw(&Scene { size: Size::new(100.0, 100.0), title: String::new(), items }, 25.4)
+        draw(&Scene { items, ..Scene::new(Size::new(100.0, 100.0), String::new()) }, 25.4)
     }
 
     fn dark(canvas: &Canvas) -> f64 {

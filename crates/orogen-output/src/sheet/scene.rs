@@ -6,6 +6,9 @@ use orogen_io::palette::color::Rgb;
 /// Ink of text and frames.
 pub const INK: Rgb = [38, 36, 34];
 
+/// The page of a sheet without a color.
+pub const WHITE: Rgb = [255; 3];
+
 /// A part of an outline, continuing from the end of the previous one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
@@ -58,6 +61,8 @@ pub enum Item {
 pub struct Scene {
     /// Its size.
     pub size: Size,
+    /// The color of the page.
+    pub page: Rgb,
     /// The title in the metadata of files.
     pub title: String,
     /// The items, from bottom to top.
@@ -65,6 +70,12 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// A white page without items.
+    #[must_use]
+    pub fn new(size: Size, title: impl Into<String>) -> Scene {
+        Scene { size, page: WHITE, title: title.into(), items: Vec::new() }
+    }
+
     /// Adds lines, unless there are none.
     pub fn lines(&mut self, lines: Vec<Vec<Point>>, width: f32, ink: Rgb, cover: f32) {
         let lines: Vec<Vec<Point>> = lines.into_iter().filter(|line| line.len() > 1).collect();

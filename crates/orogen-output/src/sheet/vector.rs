@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 
 use super::geometry::{Point, Rect, Size};
-use super::scene::{Item, Scene, Step};
+use super::scene::{Item, Scene, Step, WHITE};
 use crate::markup::{base64, escaped};
 use orogen_io::format::png::{self, Picture, Pixel};
 use orogen_io::format::svg::{self, MAX_PATH};
@@ -29,7 +29,8 @@ pub fn write(out: &mut dyn Write, scene: &Scene) -> io::Result<()> {
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.3}mm\" height=\"{height:.3}mm\" viewBox=\"0 0 {width:.3} {height:.3}\">"
     )?;
     writeln!(out, "<title>{}</title>", escaped(&scene.title))?;
-    writeln!(out, "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>")?;
+    let page = if scene.page == WHITE { "#fff".into() } else { hex(scene.page) };
+    writeln!(out, "<rect width=\"100%\" height=\"100%\" fill=\"{page}\"/>")?;
     let mut text = String::new();
     for item in &scene.items {
         text.clear();
@@ -197,7 +198,7 @@ mod tests {
             },
         ];
         let mut out = Vec::new();
-        write(&mut out, &Scene { size: Size::new(210.0, 297.0), title: "A & <B>".into(), items }).unwrap();
+        write(&mut out, &Scene { items, ..Scene::new(Size::new(210.0, 297.0), "A & <B>".into()) }).unwrap();
         let text = String::from_utf8(out).unwrap();
         for expect in [
             "width=\"210.000mm\"",
@@ -226,7 +227,7 @@ mod tests {
         let wave = |k: usize| line((0..400).map(|i| [i as f32 * 0.37, (k * i % 97) as f32 * 0.123]));
         let lines = Item::Lines { lines: (0..90).map(wave).collect(), width: 0.1, ink: [0; 3], cover: 0.5 };
         let mut out = Vec::new();
-        write(&mut out, &Scene { size: Size::new(110.0, 70.0), title: String::new(), items: vec![picture, lines] })
+        write(&mut out, &Scene { items: vec![picture, lines], ..Scene::new(Size::new(110.0, 70.0), String::new()) })
             .unwrap();
         let text = String::from_utf8(out).unwrap();
         let longest = |tag: &str| {
