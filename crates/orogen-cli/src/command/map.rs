@@ -76,7 +76,8 @@ pub struct Args {
     /// Minimum area of lakes in m^2 [default: depends on the scale; none on bare noise, which has no lakes]
     #[arg(long, value_name = "M2", value_parser = positive, allow_negative_numbers = true)]
     lake_area: Option<f64>,
-    /// Names of places: a .csv file with columns x, y and name, or a .geojson file of points with names, in the CRS of the heights; without a CRS, in metres
+    /// Names on the map: a .csv file with columns x, y and name, and optionally kind (place, summit, river or lake) and height, or a .geojson file of points
+    /// with these properties, and of lines that names follow; in the CRS of the heights; without a CRS, in metres
     /// east and north of the world's north-west corner (points south of it are negative). Names without room are left out, the last of the file first
     #[arg(long, value_name = "FILE")]
     names: Option<PathBuf>,

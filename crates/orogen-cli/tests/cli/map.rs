@@ -360,3 +360,37 @@ fn colors_of_the_page_and_its_lines() {
         "a color must be #rrggbb or a name",
     );
 }
+
+#[test]
+fn names_of_summits_rivers_and_lines() {
+    let folder = Folder::new();
+    let map = |file: &'static str, more: &[&'static str]| {
+        let map = ["map", "hills", "--cell", "60", "--no-contours", "--no-legend", "-o", file];
+        folder.good(&[&map[..], more].concat()).err
+    };
+    map("plain.svg", &[]);
+    folder.write("names.csv", "name,kind,x,y,height\nHorn,summit,5450,-9570,\nTarn,lake,4750,-6700,\nAshburn,river,6300,-2400,\nDry Brook,river,400,-6300,\n");
+    assert_eq!(map("named.svg", &["--names", "names.csv"]), "");
+    assert_eq!(
+        map("dry.svg", &["--names", "names.csv", "--no-rivers"]),
+        "warning: no river is drawn near `Ashburn`, `Dry Brook`\n"
+    );
+    // The names of water are blue, like rivers.
+    let blue = |file: &str| folder.text(file).matches("fill=\"#225c9c\"").count();
+    assert_eq!((blue("plain.svg"), blue("named.svg"), blue("dry.svg")), (0, 3, 1));
+    folder.write(
+        "lines.geojson",
+        r#"{"type":"FeatureCollection","features":[
+        {"type":"Feature","properties":{"name":"Long Water"},"geometry":{"type":"LineString","coordinates":[[2000,-5500],[6000,-5600]]}},
+        {"type":"Feature","properties":{"name":"Old Road","kind":"road"},"geometry":{"type":"LineString","coordinates":[[2000,-9500],[6000,-9600]]}},
+        {"type":"Feature","properties":{"name":"Far"},"geometry":{"type":"LineString","coordinates":[[-2000,500],[-60,600]]}}]}"#,
+    );
+    let told = map("lines.svg", &["--names", "lines.geojson"]);
+    assert!(told.starts_with("warning: `Far` is outside the map") && told.lines().count() == 1, "{told}");
+    assert_eq!(blue("lines.svg"), 1);
+    folder.bad(
+        &["export", "hills", "--layer", "watershed", "--outlets", "lines.geojson", "-o", "a.geojson"],
+        1,
+        "outlets are points",
+    );
+}

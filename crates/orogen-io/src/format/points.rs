@@ -1,4 +1,4 @@
-//! Points with names, from CSV and GeoJSON.
+//! Points and lines with names, from CSV and GeoJSON.
 
 use std::path::Path;
 
@@ -18,15 +18,32 @@ const MAX_LENGTH: u64 = 4 << 20;
 pub struct NamedPoint {
     /// The name, if it has one.
     pub name: Option<String>,
+    /// What it is, such as `summit`, if that is stated.
+    pub kind: Option<String>,
+    /// Its height in metres, if that is stated.
+    pub height: Option<f64>,
     /// East and north, or longitude and latitude.
     pub at: [f64; 2],
 }
 
-/// The points of a file.
+/// A line of a file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedLine {
+    /// The name, if it has one.
+    pub name: Option<String>,
+    /// What it is, such as `river`, if that is stated.
+    pub kind: Option<String>,
+    /// Positions, likewise.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// The points and lines of a file.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct NamedPoints {
     /// The points, in the order of the file.
     pub points: Vec<NamedPoint>,
+    /// The lines, likewise; only GeoJSON has any.
+    pub lines: Vec<NamedLine>,
     /// The EPSG code of their coordinate system, if the file states it.
     pub epsg: Option<u16>,
 }
@@ -35,9 +52,11 @@ pub struct NamedPoints {
 const EAST: &[&str] = &["x", "e", "east", "easting", "lon", "long", "longitude"];
 const NORTH: &[&str] = &["y", "n", "north", "northing", "lat", "latitude"];
 const NAME: &[&str] = &["name", "label", "title", "station", "id"];
+const KIND: &[&str] = &["kind", "type", "class", "natural", "waterway", "place"];
+const HEIGHT: &[&str] = &["height", "elevation", "ele", "z"];
 
 impl NamedPoints {
-    /// Reads at most `most` points of a file; its extension is its format: .csv, .txt or .tsv, .geojson or .json.
+    /// Reads at most `most` points and lines of a file; its extension is its format: .csv, .txt or .tsv, .geojson or .json.
     ///
     /// # Errors
     /// If the file cannot be read, is not valid, or has none or too many points.
@@ -57,7 +76,7 @@ impl NamedPoints {
         };
         let text = String::from_utf8(content).map_err(|_| refused(&name, "it is not text in UTF-8"))?;
         let found = parse(text.trim_start_matches('\u{feff}')).map_err(|why| refused(&name, why))?;
-        match found.points.len() {
+        match found.points.len() + found.lines.len() {
             0 => Err(refused(&name, "it has no points")),
             count if count > most => Err(refused(&name, format!("it has {count} points, and at most {most} are read"))),
             _ => Ok(found),
@@ -97,14 +116,15 @@ impl NamedPoints {
             let text = if separator == ';' { text.replace(',', ".") } else { text.into() };
             text.parse::<f64>().ok().filter(|number| number.is_finite())
         };
-        let mut columns: Option<[usize; 3]> = None;
+        let mut columns: Option<Columns> = None;
         let mut points = Vec::new();
         for (line, record) in records(text, separator)? {
-            let Some([east, north, name]) = columns else {
+            let Some(known) = columns else {
                 let is_number = |k: usize| record.get(k).is_some_and(|text| number(text).is_some());
                 if is_number(0) && is_number(1) {
-                    columns = Some([0, 1, 2]);
-                    points.push(point(&record, [0, 1, 2], number, line)?);
+                    let known = Columns { east: 0, north: 1, name: Some(2), kind: None, height: None };
+                    columns = Some(known);
+                    points.push(point(&record, known, number, line)?);
                     continue;
                 }
                 let named = |names: &[&str]| {
@@ -115,15 +135,16 @@ impl NamedPoints {
                         "line {line} must name the columns with the coordinates: `x` and `y`, `easting` and `northing`, or `lon` and `lat`"
                     ));
                 };
-                columns = Some([east, north, named(NAME).unwrap_or(usize::MAX)]);
+                columns = Some(Columns { east, north, name: named(NAME), kind: named(KIND), height: named(HEIGHT) });
                 continue;
             };
-            points.push(point(&record, [east, north, name], number, line)?);
+            points.push(point(&record, known, number, line)?);
         }
-        Ok(NamedPoints { points, epsg: None })
+        Ok(NamedPoints { points, ..NamedPoints::default() })
     }
 
-    /// The points of GeoJSON: `Point` and `MultiPoint`, with the property `name`, `label`, `title`, `station` or `id` as the name.
+    /// The points and lines of GeoJSON: `Point`, `MultiPoint`, `LineString` and `MultiLineString`, with the property `name`, `label`, `title`, `station`
+    /// or `id` as the name, `kind`, `type`, `class`, `natural`, `waterway` or `place` as the kind, and `height`, `elevation`, `ele` or `z` as the height.
     ///
     /// # Errors
     /// A message if it is not valid.
@@ -136,37 +157,68 @@ impl NamedPoints {
             None | Some("urn:ogc:def:crs:OGC:1.3:CRS84") => None,
             Some(name) => name.parse::<Crs>().ok().map(|crs| crs.code()),
         };
-        let mut found = NamedPoints { points: Vec::new(), epsg };
+        let mut found = NamedPoints { epsg, ..NamedPoints::default() };
         let alone = std::slice::from_ref(&value);
         for feature in value["features"].as_array().map_or(alone, Vec::as_slice) {
             let geometry = if feature["geometry"].is_object() { &feature["geometry"] } else { feature };
             let coordinates = &geometry["coordinates"];
+            let properties = feature["properties"].as_object();
+            let property = |names: &[&str]| {
+                let of = |known: &&str| {
+                    properties?
+                        .iter()
+                        .find(|(key, _)| key.eq_ignore_ascii_case(known))
+                        .and_then(|(_, value)| text_of(value))
+                };
+                names.iter().find_map(of)
+            };
+            let (name, kind) = (property(NAME), property(KIND));
+            let alone = std::slice::from_ref(coordinates);
+            let lines = match geometry["type"].as_str() {
+                Some("LineString") => alone,
+                Some("MultiLineString") => coordinates.as_array().map_or(&[][..], Vec::as_slice),
+                _ => &[][..],
+            };
+            for line in lines {
+                let points = line.as_array().map_or(&[][..], Vec::as_slice).iter().map(position);
+                let points = points.collect::<std::result::Result<Vec<[f64; 2]>, String>>()?;
+                found.lines.push(NamedLine { name: name.clone(), kind: kind.clone(), points });
+            }
             let places = match geometry["type"].as_str() {
-                Some("Point") => std::slice::from_ref(coordinates),
+                Some("Point") => alone,
                 Some("MultiPoint") => coordinates.as_array().map_or(&[][..], Vec::as_slice),
                 _ => continue,
             };
-            let properties = &feature["properties"];
-            let name = NAME.iter().find_map(|known| match properties.as_object() {
-                Some(all) => {
-                    all.iter().find(|(key, _)| key.eq_ignore_ascii_case(known)).and_then(|(_, value)| text_of(value))
-                }
-                None => None,
-            });
+            let height = property(HEIGHT).and_then(|text| text.parse().ok()).filter(|height: &f64| height.is_finite());
             for place in places {
-                let (Some(east), Some(north)) = (place[0].as_f64(), place[1].as_f64()) else {
-                    return Err("a position is not a list of two or three numbers".into());
-                };
-                found.points.push(NamedPoint { name: name.clone(), at: [east, north] });
+                let at = position(place)?;
+                found.points.push(NamedPoint { name: name.clone(), kind: kind.clone(), height, at });
             }
         }
         Ok(found)
     }
 }
 
+/// Which columns hold what.
+#[derive(Clone, Copy)]
+struct Columns {
+    east: usize,
+    north: usize,
+    name: Option<usize>,
+    kind: Option<usize>,
+    height: Option<usize>,
+}
+
+fn position(place: &Value) -> std::result::Result<[f64; 2], String> {
+    match (place[0].as_f64(), place[1].as_f64()) {
+        (Some(east), Some(north)) => Ok([east, north]),
+        _ => Err("a position is not a list of two or three numbers".into()),
+    }
+}
+
 fn point(
     record: &[String],
-    [east, north, name]: [usize; 3],
+    columns: Columns,
     number: impl Fn(&str) -> Option<f64>,
     line: usize,
 ) -> std::result::Result<NamedPoint, String> {
@@ -174,8 +226,15 @@ fn point(
         Some(text) => number(text).ok_or_else(|| format!("line {line}: `{}` is not a coordinate", text.escape_debug())),
         None => Err(format!("line {line} has fewer columns than the first")),
     };
-    let name = record.get(name).map(|name| name.trim()).filter(|name| !name.is_empty());
-    Ok(NamedPoint { name: name.map(str::to_owned), at: [read(east)?, read(north)?] })
+    let text = |column: Option<usize>| {
+        column.and_then(|at| record.get(at)).map(|text| text.trim()).filter(|text| !text.is_empty()).map(str::to_owned)
+    };
+    Ok(NamedPoint {
+        name: text(columns.name),
+        kind: text(columns.kind),
+        height: text(columns.height).and_then(|text| number(&text)),
+        at: [read(columns.east)?, read(columns.north)?],
+    })
 }
 
 fn text_of(value: &Value) -> Option<String> {
@@ -268,6 +327,7 @@ mod tests {
         assert_eq!(found.epsg, Some(32611));
         let points: Vec<_> = found.points.into_iter().map(|point| (point.name, point.at)).collect();
         assert_eq!(points, [some("Gauge", [1.0, 2.0]), some("8", [3.0, 4.0]), some("8", [5.0, 6.0])]);
+        assert_eq!(found.lines, [NamedLine { name: None, kind: None, points: vec![[3.0, 4.0], [5.0, 6.0]] }]);
         let alone = NamedPoints::from_geojson(r#"{"type":"Point","coordinates":[1,2]}"#).unwrap();
         assert_eq!((alone.points[0].at, alone.epsg), ([1.0, 2.0], None));
         for (text, expect) in [
@@ -277,6 +337,19 @@ mod tests {
         ] {
             assert!(NamedPoints::from_geojson(text).unwrap_err().contains(expect), "{text}");
         }
+    }
+
+    #[test]
+    fn kinds_and_heights() {
+        let found = NamedPoints::from_csv("name;kind;x;y;ele\nHorn;Summit;1;2;2345,5\nFord;;3;4;\n").unwrap().points;
+        assert_eq!((found[0].kind.as_deref(), found[0].height), (Some("Summit"), Some(2345.5)));
+        assert_eq!((found[1].kind.as_deref(), found[1].height), (None, None));
+        let text = r#"{"type":"FeatureCollection","features":[
+            {"type":"Feature","properties":{"name":"Horn","natural":"peak","ele":"2345"},"geometry":{"type":"Point","coordinates":[1,2]}},
+            {"type":"Feature","properties":{"name":"Aa","kind":"river"},"geometry":{"type":"MultiLineString","coordinates":[[[3,4],[5,6]],[[7,8]]]}}]}"#;
+        let found = NamedPoints::from_geojson(text).unwrap();
+        assert_eq!((found.points[0].kind.as_deref(), found.points[0].height), (Some("peak"), Some(2345.0)));
+        assert_eq!((found.lines.len(), found.lines[0].kind.as_deref()), (2, Some("river")));
     }
 
     #[test]

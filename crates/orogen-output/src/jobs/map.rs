@@ -30,7 +30,7 @@ use orogen_grid::words::number;
 use orogen_io::file::{self, Output};
 use orogen_io::format::affine::Affine;
 use orogen_io::format::dem::Georeference;
-use orogen_io::format::points::{NamedPoint, NamedPoints};
+use orogen_io::format::points::{NamedLine, NamedPoint, NamedPoints};
 use orogen_io::palette::named;
 use orogen_io::palette::palette::Palette;
 
@@ -116,6 +116,8 @@ pub struct MapJob {
     /// Places whose names are shown, in map coordinates, or in metres east and north of the world's origin; the most important first. Those without room
     /// are left out.
     pub names: Vec<NamedPoint>,
+    /// Names along lines, likewise.
+    pub line_names: Vec<NamedLine>,
     /// The denominator of the map's scale, such as 100 000, which sets the size of the page. Paper has a size of its own.
     pub map_scale: Option<f64>,
     /// The heading.
@@ -179,6 +181,7 @@ impl MapJob {
             river_area: None,
             lake_area: None,
             names: Vec::new(),
+            line_names: Vec::new(),
             map_scale: None,
             title: String::new(),
             paper: None,
@@ -214,13 +217,13 @@ impl MapJob {
         MapJob { window: Some(window), ..self }
     }
 
-    /// The same with the names in a file of points (`.csv` or `.geojson`), in the coordinates of a recipe's world.
+    /// The same with the names in a file of points and lines (`.csv` or `.geojson`), in the coordinates of a recipe's world.
     ///
     /// # Errors
     /// Those of [`NamedPoints::read_on`].
     pub fn with_names_from(self, path: &Path, recipe: &Recipe) -> Result<MapJob> {
-        let names = NamedPoints::read_on(path, recipe.georeference().as_ref(), "the heights", MAX_NAMES)?.points;
-        Ok(MapJob { names, ..self })
+        let read = NamedPoints::read_on(path, recipe.georeference().as_ref(), "the heights", MAX_NAMES)?;
+        Ok(MapJob { names: read.points, line_names: read.lines, ..self })
     }
 
     /// Checks that the options do not contradict each other.
@@ -321,7 +324,8 @@ impl MapJob {
         self.check()?;
         let mut options = self.options(world);
         let mut warnings = Vec::new();
-        options.names = map_names::within(&self.names, options.map.as_ref(), &window, &mut warnings);
+        let map = options.map.clone();
+        map_names::add(&mut options, (&self.names, &self.line_names), map.as_ref(), &window, &mut warnings);
         let (plan, reserved) = world.plan_beside(&[HEIGHT], &window, self.memory(&window))?;
         let work = world.work(&plan)?;
         let layered = if self.layer == HEIGHT && !self.is_covered() { 0.0 } else { work };
@@ -358,6 +362,10 @@ impl MapJob {
             let names = map_names::listed(&sheet.left_out);
             warnings
                 .push(format!("there is no room for {names}; use a larger --paper, a larger scale, or fewer names"));
+        }
+        if !sheet.without_river.is_empty() {
+            let names = map_names::listed(&sheet.without_river);
+            warnings.push(format!("no river is drawn near {names}"));
         }
         let is_missing = |level: &&f64| !sheet.levels.contains(level);
         let missing: Vec<f64> = match &self.levels {

@@ -1,30 +1,58 @@
-//! Names of places on a map.
+//! Names on a map, from points and lines with names.
 
-use crate::sheet::options::PlaceName;
+use crate::sheet::options::{LineName, PlaceKind, PlaceName, SheetOptions};
 use orogen_grid::grid::Window;
 use orogen_grid::words::number;
 use orogen_io::format::dem::Georeference;
-use orogen_io::format::points::NamedPoint;
+use orogen_io::format::points::{NamedLine, NamedPoint};
 
 /// Maximum number of names in a message.
 const SHOWN: usize = 5;
 
-/// The named points inside a window, with a warning about others.
-pub fn within(
-    points: &[NamedPoint],
+/// What the words of a file name, in lower case.
+const KINDS: [(PlaceKind, &[&str]); 3] = [
+    (PlaceKind::Summit, &["summit", "peak", "mountain", "hill", "volcano"]),
+    (PlaceKind::River, &["river", "stream", "creek", "brook", "canal"]),
+    (PlaceKind::Water, &["water", "lake", "pond", "reservoir", "sea", "ocean", "bay", "gulf", "strait"]),
+];
+
+/// What a word names; a place if it is none of these.
+fn kind(word: Option<&String>) -> PlaceKind {
+    let word = word.map(|word| word.to_lowercase()).unwrap_or_default();
+    KINDS.iter().find(|(_, words)| words.contains(&word.as_str())).map_or(PlaceKind::Place, |(kind, _)| *kind)
+}
+
+/// Adds the named points and lines inside a window to the options of its sheet, with a warning about others.
+pub fn add(
+    options: &mut SheetOptions,
+    (points, lines): (&[NamedPoint], &[NamedLine]),
     map: Option<&Georeference>,
     window: &Window,
     warnings: &mut Vec<String>,
-) -> Vec<PlaceName> {
+) {
     let map = map.cloned().unwrap_or(Georeference { origin: [0.0; 2], per_metre: [1.0; 2], keys: None });
-    let (mut names, mut outside) = (Vec::new(), Vec::new());
+    let mut outside = Vec::new();
+    let shares = |at: [f64; 2]| {
+        let [east, south] = map.metres(at[0], at[1]);
+        let share = |metres: f64, first: i64, count: usize| (metres / window.cell - first as f64) / (count - 1) as f64;
+        [share(east, window.x, window.width), share(south, window.y, window.height)]
+    };
+    let is_inside = |at: &[f64; 2]| at.iter().all(|share| (0.0..=1.0).contains(share));
     for point in points {
         let Some(name) = point.name.clone() else { continue };
-        let [east, south] = map.metres(point.at[0], point.at[1]);
-        let share = |metres: f64, first: i64, count: usize| (metres / window.cell - first as f64) / (count - 1) as f64;
-        let at = [share(east, window.x, window.width), share(south, window.y, window.height)];
-        match at.iter().all(|share| (0.0..=1.0).contains(share)) {
-            true => names.push(PlaceName { name, at }),
+        let at = shares(point.at);
+        let kind = kind(point.kind.as_ref());
+        match is_inside(&at) {
+            true => options.names.push(PlaceName { name, kind, height: point.height, at }),
+            false => outside.push(name),
+        }
+    }
+    for line in lines {
+        let Some(name) = line.name.clone() else { continue };
+        let points: Vec<[f64; 2]> = line.points.iter().map(|at| shares(*at)).collect();
+        let is_water = line.kind.is_none() || matches!(kind(line.kind.as_ref()), PlaceKind::River | PlaceKind::Water);
+        match points.iter().any(is_inside) {
+            true => options.line_names.push(LineName { name, is_water, points }),
             false => outside.push(name),
         }
     }
@@ -42,7 +70,6 @@ pub fn within(
             }
         ));
     }
-    names
 }
 
 /// The first names of a list, and how many more there are.

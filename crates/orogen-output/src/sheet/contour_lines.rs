@@ -14,10 +14,12 @@ use orogen_grid::contour::line::Line;
 use orogen_io::palette::color::Rgb;
 
 /// Style of the labels of index contours, and of contours whose heights were given.
-const LABEL: LabelStyle = LabelStyle { size: 2.1, apart: 7.0, every: 95.0 };
+const LABEL: LabelStyle =
+    LabelStyle { size: 2.1, spacing: 1.0, reach: 0.62, turn: 0.5, straight: 0.9, apart: 7.0, every: 95.0 };
 
 /// Style of the labels of other contours.
-const SMALL: LabelStyle = LabelStyle { size: 1.75, apart: APART, every: 110.0 };
+const SMALL: LabelStyle =
+    LabelStyle { size: 1.75, spacing: 1.0, reach: 0.62, turn: 0.5, straight: 0.9, apart: APART, every: 110.0 };
 
 /// Minimum distance between two labels if all contours have labels, in millimetres.
 const APART: f32 = 3.0;

@@ -27,6 +27,8 @@ pub struct Sheet {
     pub lacking: Vec<char>,
     /// Names that have no room on the map; they are left out.
     pub left_out: Vec<String>,
+    /// Names of rivers at points without a river nearby; they are left out.
+    pub without_river: Vec<String>,
     /// Distance between contours, in metres, if there are contours at an interval.
     pub interval: Option<f64>,
     /// The heights of its contours in metres, ascending.
@@ -56,7 +58,8 @@ pub fn draw(heights: &Grid, options: &SheetOptions, progress: &Progress) -> Resu
     let letters = FontSet::for_texts(
         [options.title.as_str(), options.about.as_str()]
             .into_iter()
-            .chain(options.names.iter().map(|place| place.name.as_str())),
+            .chain(options.names.iter().map(|place| place.name.as_str()))
+            .chain(options.line_names.iter().map(|line| line.name.as_str())),
     )?;
     let linework = Linework::of(heights, options)?;
     water.finish();
@@ -155,7 +158,8 @@ pub fn draw(heights: &Grid, options: &SheetOptions, progress: &Progress) -> Resu
     Ok(Sheet {
         scene,
         lacking: letters.lacking().to_vec(),
-        left_out,
+        left_out: left_out.crowded,
+        without_river: left_out.without_river,
         interval: linework.interval,
         levels: linework.levels(),
         dpi: layout.dpi,

@@ -5,7 +5,7 @@ use super::geometry::{Point, Rect};
 use super::labels::Label;
 use super::layout::{BLOCK_GAP, Block, MARGIN, ROW};
 use super::options::PageColors;
-use super::scene::{Item, Scene, line, polygon};
+use super::scene::{Item, Scene, Step, line, polygon};
 use super::ticks::{Count, grouped, step, ticks};
 use crate::map::text::Face;
 use orogen_grid::words;
@@ -53,15 +53,20 @@ impl Desk<'_> {
 
     /// Draws a label along its path: the path runs through the middle of the letters instead of along their baseline.
     pub fn along(&mut self, label: &Label, face: Face, ink: Rgb) {
-        let width = self.letters.width(&label.text, face, label.size);
+        let outline = self.outline_along(label, face);
+        self.scene.area(outline, ink, 1.0);
+    }
+
+    /// The outline of a label along its path.
+    pub fn outline_along(&self, label: &Label, face: Face) -> Vec<Step> {
+        let width = self.letters.width(&label.text, face, label.size) * label.spacing;
         let length: f32 = label.path.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
         let start = (length - width) / 2.0;
-        let outline = self.letters.each(&label.text, face, label.size, |along| {
-            let (at, angle) = label.at(start + along);
+        self.letters.each(&label.text, face, label.size, |along| {
+            let (at, angle) = label.at(start + along * label.spacing);
             let sink = label.size * 0.34;
             (at.moved(sink * libm::sinf(angle), sink * libm::cosf(angle)), angle)
-        });
-        self.scene.area(outline, ink, 1.0);
+        })
     }
 
     /// Draws small print.

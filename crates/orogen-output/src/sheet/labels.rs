@@ -10,6 +10,8 @@ pub struct Label {
     pub text: String,
     /// Height of the letters, in millimetres.
     pub size: f32,
+    /// Factor of the distances between letters.
+    pub spacing: f32,
     /// Points along its centre line, at most a letter's width apart, in reading order.
     pub path: Vec<Point>,
 }
@@ -37,6 +39,14 @@ impl Label {
 pub struct LabelStyle {
     /// Height of the letters, in millimetres.
     pub size: f32,
+    /// Factor of the distances between letters.
+    pub spacing: f32,
+    /// Room on both sides of the middle of the letters, in heights of letters.
+    pub reach: f32,
+    /// Maximum angle between two quarters of a text, in radians.
+    pub turn: f32,
+    /// Minimum distance between the ends of a text, in lengths of it.
+    pub straight: f32,
     /// Minimum distance between two labels, in millimetres.
     pub apart: f32,
     /// Distance between two labels of one line, in millimetres.
@@ -44,7 +54,7 @@ pub struct LabelStyle {
 }
 
 /// Finds positions for a line's labels. `line` has higher ground to its left, so a text along it points uphill. Where
-/// such a text would be upside down it is reversed, if there is no better position.
+/// such a text would be upside down it is reversed, if there is no better position. `width` includes the distances between letters.
 ///
 /// A label lies where `is_clear` holds for all points of its path. The area of the labels is marked as occupied.
 pub fn place(
@@ -62,7 +72,7 @@ pub fn place(
         return Vec::new();
     }
     let mut candidates: Vec<(f32, usize)> =
-        (0..=count as usize).filter_map(|k| Some((along.score(k as f32 * step, need)?, k))).collect();
+        (0..=count as usize).filter_map(|k| Some((along.score(k as f32 * step, need, style)?, k))).collect();
     candidates.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let wanted = ((along.length() / style.every).ceil() as usize).max(1);
     let mut labels: Vec<Label> = Vec::new();
@@ -77,7 +87,7 @@ pub fn place(
             continue;
         }
         let mut path = along.part(start, start + need, style.size * 0.25);
-        let reach = style.size * 0.62;
+        let reach = style.size * style.reach;
         if !path.iter().all(|place| taken.is_free(*place, reach) && is_clear(*place, reach)) {
             continue;
         }
@@ -86,7 +96,7 @@ pub fn place(
         }
         path.iter().for_each(|place| taken.take(*place, reach + style.apart / 2.0));
         middles.push(middle);
-        labels.push(Label { text: text.to_string(), size: style.size, path });
+        labels.push(Label { text: text.to_string(), size: style.size, spacing: style.spacing, path });
     }
     labels
 }
@@ -136,7 +146,7 @@ impl<'a> Along<'a> {
 
     /// The cost of a position for a text, from 0: for bends, and for upside-down text; `None` if it bends too much to
     /// be legible.
-    fn score(&self, start: f32, need: f32) -> Option<f32> {
+    fn score(&self, start: f32, need: f32, style: LabelStyle) -> Option<f32> {
         let places = [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| self.at(start + need * share));
         let way = places[0].to(places[4]);
         let straight = way.length() / need;
@@ -146,7 +156,7 @@ impl<'a> Along<'a> {
             turn.min(2.0 * std::f32::consts::PI - turn)
         });
         let turn = turns.fold(0.0f32, f32::max);
-        if straight < 0.9 || turn > 0.5 {
+        if straight < style.straight || turn > style.turn {
             return None;
         }
         let tilt = (way.y / need).abs();
@@ -198,7 +208,8 @@ mod tests {
     use super::super::scene::line;
     use super::*;
 
-    const SETTING: LabelStyle = LabelStyle { size: 2.0, apart: 8.0, every: 60.0 };
+    const SETTING: LabelStyle =
+        LabelStyle { size: 2.0, spacing: 1.0, reach: 0.62, turn: 0.5, straight: 0.9, apart: 8.0, every: 60.0 };
 
     fn wave() -> Vec<Point> {
         (0..=400).map(|k| k as f32 * 0.25).map(|x| Point::new(x, 50.0 + 10.0 * libm::sinf(x / 12.0))).collect()

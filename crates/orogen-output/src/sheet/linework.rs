@@ -4,7 +4,7 @@ use super::furniture::{Entry, Sign};
 use super::ground::laid;
 use super::inks::{GIVEN, THICK, THIN};
 use super::lines::{self, Summit, interval, is_thick, lines, summits, thick_interval};
-use super::options::{Page, SheetOptions};
+use super::options::{Page, PlaceKind, SheetOptions};
 use super::ticks::grouped;
 use super::water::{Least, Water, find};
 use orogen_grid::contour::chaikin::smooth;
@@ -190,10 +190,11 @@ impl Linework {
         if options.parts.lakes && !self.water.lakes.is_empty() {
             entries.push(Entry { sign: Sign::Water(colors.lakes(), colors.shores()), text: "Lake".into() });
         }
-        if !options.names.is_empty() {
+        let is_named = |kind: PlaceKind| options.names.iter().any(|place| place.kind == kind);
+        if is_named(PlaceKind::Place) {
             entries.push(Entry { sign: Sign::Place, text: "Place".into() });
         }
-        if !self.summits.is_empty() {
+        if !self.summits.is_empty() || is_named(PlaceKind::Summit) {
             entries.push(Entry { sign: Sign::Summit, text: "Summit, height in m".into() });
         }
         entries

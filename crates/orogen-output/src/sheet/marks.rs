@@ -5,6 +5,7 @@ use super::geometry::Point;
 use super::scene::{Step, polygon};
 use super::taken::Taken;
 use crate::map::text::Face;
+use orogen_io::palette::color::Rgb;
 
 /// Size of a summit's label, the em in millimetres.
 const SIZE: f32 = 2.5;
@@ -77,6 +78,71 @@ pub fn place_name(desk: &mut Desk, taken: &mut Taken, at: Point, text: &str) -> 
     taken.take(at, 1.0);
     middles(start).for_each(|middle| taken.take(middle, NAME * 0.6));
     true
+}
+
+/// Draws a summit with its name, and its height below it, if there is room. Marks the room as occupied. Returns whether there was room.
+pub fn named_summit(desk: &mut Desk, taken: &mut Taken, at: Point, name: &str, height: Option<&str>) -> bool {
+    let lines: Vec<(&str, Face, f32)> =
+        std::iter::once((name, Face::Bold, NAME)).chain(height.map(|height| (height, Face::Regular, SIZE))).collect();
+    let widths: Vec<f32> = lines.iter().map(|(text, face, size)| desk.letters.width(text, *face, *size)).collect();
+    let rise = if lines.len() > 1 { NAME * 0.49 } else { 0.0 };
+    // The middle of the first line from the summit; 0 if lines start there, 1 if they end there.
+    let beside = [([1.7, -rise], 0.0), ([-1.7, -rise], 1.0), ([0.0, -3.0 - 2.0 * rise], 0.5), ([0.0, 2.8], 0.5)];
+    let start = |[x, y]: [f32; 2], share: f32, k: usize| at.moved(x - share * widths[k], y + 2.0 * rise * k as f32);
+    let middles = |offset: [f32; 2], share: f32| {
+        let line = |k: usize| {
+            let (first, wide) = (start(offset, share, k), widths[k]);
+            let parts = (wide / (SIZE * 0.5)).ceil().max(1.0);
+            (0..=parts as i32).map(move |n| first.moved(wide * n as f32 / parts, 0.0))
+        };
+        (0..lines.len()).flat_map(line).collect::<Vec<Point>>()
+    };
+    let is_free = |(offset, share): &([f32; 2], f32)| {
+        middles(*offset, *share).iter().all(|middle| taken.is_free(*middle, NAME * 0.42))
+    };
+    let Some((offset, share)) = beside.into_iter().find(is_free).filter(|_| taken.is_free(at, 0.8)) else {
+        return false;
+    };
+    let mark = triangle(at);
+    let mut outlines = vec![mark];
+    for (k, (text, face, size)) in lines.iter().enumerate() {
+        let foot = start(offset, share, k).moved(0.0, size * 0.35);
+        outlines.push(desk.letters.write(text, *face, *size, foot, 0.0));
+    }
+    let edge: Vec<Vec<Point>> = outlines.iter().flat_map(|outline| rings(outline)).collect();
+    desk.scene.lines(edge, 0.8, desk.colors.page, 0.7);
+    outlines.into_iter().for_each(|outline| desk.scene.area(outline, desk.colors.ink, 1.0));
+    taken.take(at, 1.3);
+    middles(offset, share).into_iter().for_each(|middle| taken.take(middle, NAME * 0.6));
+    true
+}
+
+/// Draws the name of a lake or a sea around a point, or a little above or below it, if there is room, and marks the room as occupied. Returns whether there
+/// was room.
+pub fn water_name(desk: &mut Desk, taken: &mut Taken, at: Point, text: &str) -> bool {
+    let width = desk.letters.width(text, Face::Italic, NAME);
+    let parts = (width / (NAME * 0.5)).ceil().max(1.0);
+    let middles = |down: f32| {
+        (0..=parts as i32).map(move |k| at.moved(width * (k as f32 / parts - 0.5), down)).collect::<Vec<Point>>()
+    };
+    let is_free = |down: &f32| middles(*down).iter().all(|middle| taken.is_free(*middle, NAME * 0.45));
+    let Some(down) = [0.0, -NAME, NAME].into_iter().find(is_free) else { return false };
+    let foot = at.moved(-width / 2.0, down + NAME * 0.3);
+    let outline = desk.letters.write(text, Face::Italic, NAME, foot, 0.0);
+    water_text(desk, outline);
+    middles(down).into_iter().for_each(|middle| taken.take(middle, NAME * 0.6));
+    true
+}
+
+/// Draws text in the ink of water, with an edge for visibility on any ground.
+pub fn water_text(desk: &mut Desk, outline: Vec<Step>) {
+    edged_text(desk, outline, desk.colors.rivers());
+}
+
+/// Draws text with an edge for visibility on any ground.
+pub fn edged_text(desk: &mut Desk, outline: Vec<Step>, ink: Rgb) {
+    desk.scene.lines(rings(&outline), 0.7, desk.colors.page, 0.65);
+    desk.scene.area(outline, ink, 1.0);
 }
 
 /// The parts of an outline as closed lines; curves are replaced by their ends, which suffices at this size.

@@ -14,6 +14,7 @@ pub(crate) mod layout;
 pub(crate) mod lines;
 pub mod linework;
 pub(crate) mod marks;
+pub(crate) mod names;
 pub mod options;
 mod overlay;
 pub mod paper;

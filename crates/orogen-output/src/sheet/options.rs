@@ -181,13 +181,42 @@ impl Layer {
     }
 }
 
+/// What a place with a name is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum PlaceKind {
+    /// A place: a dot.
+    #[default]
+    Place,
+    /// A summit: a triangle, and its height.
+    Summit,
+    /// A point near a river that is drawn: the name follows the river.
+    River,
+    /// A lake or a sea.
+    Water,
+}
+
 /// A place with a name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlaceName {
     /// The name.
     pub name: String,
+    /// What it is.
+    pub kind: PlaceKind,
+    /// The height of a summit in metres; by default that of the heights.
+    pub height: Option<f64>,
     /// The position in shares of the ground's width and height, from its north-west corner.
     pub at: [f64; 2],
+}
+
+/// A name along a line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LineName {
+    /// The name.
+    pub name: String,
+    /// Whether it is a river or other water.
+    pub is_water: bool,
+    /// Positions in shares of the ground's width and height, from its north-west corner.
+    pub points: Vec<[f64; 2]>,
 }
 
 /// A surface in the legend of a sheet.
@@ -273,6 +302,8 @@ pub struct SheetOptions {
     pub water: Option<KnownWater>,
     /// Names of places, the most important first: those without room are left out.
     pub names: Vec<PlaceName>,
+    /// Names along lines, likewise.
+    pub line_names: Vec<LineName>,
     /// The denominator of the scale, if the page was chosen for one.
     pub map_scale: Option<f64>,
     /// The position of the ground on a map of the Earth, if it has one.
@@ -303,6 +334,7 @@ impl SheetOptions {
             lake_area: None,
             water: None,
             names: Vec::new(),
+            line_names: Vec::new(),
             map_scale: None,
             map: None,
         }

@@ -6,6 +6,7 @@ use super::geometry::{Affine, Point, Rect};
 use super::inks::Inks;
 use super::linework::Linework;
 use super::marks;
+use super::names::LeftOut;
 use super::options::SheetOptions;
 use super::scene::{Scene, Step};
 use super::taken::Taken;
@@ -46,8 +47,8 @@ impl Below<'_> {
 }
 
 impl Linework {
-    /// Draws all lines on the map. Returns the names that have no room.
-    pub fn draw(&self, desk: &mut Desk, map: Rect, options: &SheetOptions, below: &Below) -> Vec<String> {
+    /// Draws all lines on the map. Returns the names that are not on it.
+    pub fn draw(&self, desk: &mut Desk, map: Rect, options: &SheetOptions, below: &Below) -> LeftOut {
         let across = map.width / (self.grid.width() - 1) as f32;
         let down = map.height / (self.grid.height() - 1) as f32;
         let on_map = Affine::scaling(map.corner(), across, down);
@@ -73,20 +74,15 @@ impl Linework {
         // at rivers have no other room.
         let mut over =
             Desk { scene: Scene::new(desk.scene.size, String::new()), letters: desk.letters, colors: desk.colors };
-        let mut left_out = Vec::new();
-        for place in &options.names {
-            let at = map.at(place.at[0] as f32, place.at[1] as f32);
-            if !marks::place_name(&mut over, &mut taken, at, &place.name) {
-                left_out.push(place.name.clone());
-            }
-        }
+        let mut left_out = LeftOut::default();
+        let named = self.draw_names(&mut over, map, options, &mut taken, &mut left_out);
+        let names = taken.clone();
         rivers.iter().for_each(|(width, line)| taken.take_line(line, 0.35 + width / 2.0));
         lakes.iter().chain(&shore).for_each(|line| taken.take_line(line, 0.5));
-        for summit in &self.summits {
-            let share = |at: usize, samples: usize| at as f32 / (samples - 1) as f32;
-            let place = map.at(share(summit.x, self.samples[0]), share(summit.y, self.samples[1]));
+        self.draw_line_names(&mut over, map, options, &rivers, names, &mut taken, &mut left_out);
+        for summit in self.summits.iter().filter(|summit| !named.contains(summit)) {
             let text = grouped(f64::from(summit.height), 0);
-            marks::summit(&mut over, &mut taken, place, &text);
+            marks::summit(&mut over, &mut taken, self.summit_at(summit, map), &text);
         }
         let ink = |line: &Line, places: &[Point]| {
             let is_land = line.elevation > options.sea_level.unwrap_or(f64::NEG_INFINITY);

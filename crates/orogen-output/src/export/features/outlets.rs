@@ -75,6 +75,10 @@ impl Outlets {
             (Some(at), None) => vec![(None, at)],
             (None, Some(path)) => {
                 let found = NamedPoints::read_on(path, map.as_ref(), "the heights", MOST)?;
+                if found.points.is_empty() {
+                    let message = format!("{}: it has no points, and outlets are points", path.display());
+                    return Err(Error::new(ErrorKind::File, message));
+                }
                 found.points.into_iter().map(|point| (point.name, point.at)).collect()
             }
         };
