@@ -98,6 +98,9 @@ pub struct Args {
     /// highest]
     #[arg(long, value_name = "LOW,HIGH", allow_hyphen_values = true)]
     range: Option<Numbers>,
+    /// Draw a colour bar with the heights of --color map in the lower left corner
+    #[arg(long, aliases = ["colour-bar"])]
+    color_bar: bool,
     #[command(flatten)]
     view: View,
     #[command(flatten)]
@@ -198,6 +201,10 @@ fn job(args: &Args) -> Result<RenderJob, Failure> {
         Some(&[low, high]) if low < high => Some([low, high]),
         Some(_) => return usage("--range must be two heights, the lower first, such as 0,2500".into()),
     };
+    if args.color_bar && !matches!(args.color, Dress::Map) {
+        return usage("--color-bar applies to --color map".into());
+    }
+    job.color_bar = args.color_bar;
     if !FOV.contains(&args.fov) {
         return usage(format!("--fov must be from {} to {} degrees, not {}", FOV.start(), FOV.end(), args.fov));
     }

@@ -3,6 +3,7 @@
 //! Prepare a recipe with a job, open its world, then write to a file. Layers and packages for game engines have jobs of their own in [`export`](crate::export), and
 //! maps of tiles in [`tilemap`](crate::tilemap).
 
+mod color_bar;
 mod finite;
 pub mod map;
 mod map_names;

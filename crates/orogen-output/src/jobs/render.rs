@@ -4,6 +4,7 @@ use std::io::{self, Write};
 use std::ops::{Range, RangeInclusive};
 use std::sync::{Arc, OnceLock};
 
+use super::color_bar::ColorBar;
 use super::finite;
 use crate::export::derived::layer::Derived;
 use crate::export::derived::rows::Rows;
@@ -76,6 +77,8 @@ pub struct RenderJob {
     pub palette: Option<Palette>,
     /// The heights at the ends of the palette of [`Colors::Map`]; by default the lowest and the highest.
     pub range: Option<[f64; 2]>,
+    /// Whether a colour bar of [`Colors::Map`] is in the lower left corner.
+    pub color_bar: bool,
     /// Height of the snow line in metres; by default chosen by the relief.
     pub snow_line: Option<f64>,
     /// Number of samples per pixel.
@@ -100,6 +103,7 @@ impl Default for RenderJob {
             colors: style.colors,
             palette: None,
             range: None,
+            color_bar: false,
             snow_line: style.snow_line,
             samples: style.samples,
             window: None,
@@ -169,6 +173,9 @@ impl RenderJob {
         }
         if self.palette.is_some() && self.colors != Colors::Map {
             return refuse("a palette applies to the colours of the map only".into());
+        }
+        if self.color_bar && self.colors != Colors::Map {
+            return refuse("a colour bar applies to the colours of the map only".into());
         }
         match self.range {
             Some(_) if self.colors != Colors::Map => {
@@ -240,7 +247,8 @@ impl RenderJob {
         let mut warnings = Vec::new();
         layers.iter().zip(&grids).try_for_each(|(layer, grid)| finite::check(layer, grid, &mut warnings))?;
         let layer = |name: &str| layers.iter().position(|layer| *layer == name).and_then(|at| grids.get(at));
-        if let Some([low, high]) = layer(HEIGHT).map(|heights| extremes(NO_SAMPLES, heights.data())) {
+        let ends = layer(HEIGHT).map(|heights| extremes(NO_SAMPLES, heights.data()));
+        if let Some([low, high]) = ends {
             let width = window.width.max(window.height) as f64 * window.cell;
             warnings.extend(proportions::warning(f64::from(high) - f64::from(low), width, self.exaggeration));
         }
@@ -274,6 +282,8 @@ impl RenderJob {
             &preparing,
         )?;
         preparing.finish();
+        let ends = self.range.or(ends.map(|ends| ends.map(f64::from))).unwrap_or([0.0; 2]);
+        let color_bar = self.color_bar.then(|| ColorBar::new(scene.tint(), ends)).transpose()?;
         let spec = CameraSpec::new(self.view, self.size).with_fov(self.fov);
         Ok(Rendering {
             scene,
@@ -281,6 +291,7 @@ impl RenderJob {
             window,
             warnings,
             painting,
+            color_bar,
             device: self.device.clone(),
             refused: OnceLock::new(),
             _reserved: reserved,
@@ -311,6 +322,7 @@ pub struct Rendering {
     /// Progress of painting.
     pub painting: Progress,
     window: Window,
+    color_bar: Option<ColorBar>,
     device: Option<Arc<dyn RenderDevice>>,
     refused: OnceLock<String>,
     _reserved: Reservation,
@@ -356,6 +368,22 @@ impl Rendering {
     /// # Errors
     /// If the work is cancelled.
     pub fn paint(
+        &self,
+        camera: &Camera,
+        size: [usize; 2],
+        rows: Range<usize>,
+        bytes: &mut [u8],
+        progress: &Progress,
+    ) -> Result<()> {
+        let top = rows.start;
+        self.paint_land(camera, size, rows, bytes, progress)?;
+        if let Some(bar) = &self.color_bar {
+            bar.draw(size, top, bytes);
+        }
+        Ok(())
+    }
+
+    fn paint_land(
         &self,
         camera: &Camera,
         size: [usize; 2],
@@ -409,7 +437,7 @@ impl Rendering {
         self.painting.expect(self.spec.size[1] as f64);
         png::write(stopping, &self.picture(), |rows, bytes| {
             let part = self.painting.part(rows.len() as f64);
-            Ok(self.scene.paint(&camera, self.spec.size, rows, bytes, &part)?)
+            Ok(self.paint(&camera, self.spec.size, rows, bytes, &part)?)
         })
     }
 }
@@ -460,6 +488,42 @@ mod tests {
         let mut bytes = Vec::new();
         rendering.to_stream(&mut bytes).unwrap();
         (bytes, rendering.refused().map(str::to_string))
+    }
+
+    #[test]
+    fn a_color_bar_is_in_the_lower_left_corner() {
+        let recipe = || orogen_engine::presets::find("hills").unwrap().recipe().unwrap();
+        let mut job = RenderJob { size: [400, 240], samples: 1, colors: Colors::Map, ..RenderJob::default() };
+        job = job.with_window(Window::new(50, 40, 40.0)).with_device(Arc::new(Device(Some(0))));
+        job.range = Some([0.0, 500.0]);
+        let picture = |job: &RenderJob| {
+            let world = World::open(recipe()).unwrap();
+            job.scene(&world, 1.0, 0, &Progress::none()).unwrap().to_bytes().unwrap()
+        };
+        let plain = picture(&job);
+        job.color_bar = true;
+        let bar = picture(&job);
+        let differs = |x: usize, y: usize| plain[3 * (400 * y + x)..][..3] != bar[3 * (400 * y + x)..][..3];
+        let inside: Vec<(usize, usize)> =
+            (0..240).flat_map(|y| (0..400).map(move |x| (x, y))).filter(|(x, y)| differs(*x, *y)).collect();
+        let [left, right] = [inside.iter().map(|p| p.0).min().unwrap(), inside.iter().map(|p| p.0).max().unwrap()];
+        let [top, bottom] = [inside.iter().map(|p| p.1).min().unwrap(), inside.iter().map(|p| p.1).max().unwrap()];
+        assert!(
+            left < 20 && (300..380).contains(&right) && top > 150 && (220..235).contains(&bottom),
+            "{left} {right} {top} {bottom}"
+        );
+        // In bands as at once.
+        let world = World::open(recipe()).unwrap();
+        let rendering = job.scene(&world, 1.0, 0, &Progress::none()).unwrap();
+        let camera = rendering.scene.camera(&rendering.spec);
+        let mut rows = vec![0; 3 * 400 * 240];
+        for (k, band) in rows.chunks_mut(3 * 400 * 48).enumerate() {
+            rendering.paint(&camera, [400, 240], 48 * k..48 * (k + 1), band, &Progress::none()).unwrap();
+        }
+        assert!(rows == bar);
+        job.colors = Colors::Clay;
+        job.range = None;
+        assert!(job.check().unwrap_err().to_string().contains("a colour bar applies to the colours of the map only"));
     }
 
     #[test]

@@ -18,6 +18,7 @@ use orogen_grid::grid::Grid;
 use orogen_grid::progress::Progress;
 use orogen_io::palette::color::{Encoder, Light};
 use orogen_io::palette::palette::Palette;
+use orogen_io::palette::tint::Tint;
 
 /// The surroundings of the land in the picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -126,6 +127,11 @@ pub(super) enum Seen {
 }
 
 impl Scene {
+    /// The tint of [`Colors::Map`].
+    pub(crate) fn tint(&self) -> &Tint {
+        &self.ground.tint
+    }
+
     /// Prepares a scene.
     ///
     /// # Errors

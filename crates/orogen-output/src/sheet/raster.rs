@@ -21,7 +21,7 @@ const BAND: usize = 64;
 pub fn draw(scene: &Scene, dpi: f64) -> Canvas {
     let scale = (dpi / 25.4) as f32;
     let [width, height] = pixels(scene, dpi);
-    let shapes: Vec<Shape> = scene.items.iter().map(|item| Shape::of(item, scale)).collect();
+    let shapes: Vec<Shape> = scene.items.iter().map(|item| Shape::of(item, scale, Point::default())).collect();
     let bands: Vec<Vec<Rgb>> = parallel::map(0..height.div_ceil(BAND), |k| {
         let top = k * BAND;
         let mut band = Band { top, width, rows: vec![scene.page; width * BAND.min(height - top)], cover: Vec::new() };
@@ -29,6 +29,17 @@ pub fn draw(scene: &Scene, dpi: f64) -> Canvas {
         band.rows
     });
     Canvas::of(width, height, bands.concat())
+}
+
+/// Draws the items of a scene over rows of a picture from `top`, with `pixels` for each millimetre and the scene's upper left corner at `corner`, in pixels.
+pub fn draw_over(scene: &Scene, pixels: f32, corner: Point, top: usize, width: usize, bytes: &mut [u8]) {
+    let rows: Vec<Rgb> = bytes.as_chunks::<3>().0.to_vec();
+    if width == 0 || rows.len() < width {
+        return;
+    }
+    let mut band = Band { top, width, rows, cover: Vec::new() };
+    scene.items.iter().for_each(|item| band.draw(&Shape::of(item, pixels, corner)));
+    bytes.as_chunks_mut::<3>().0.copy_from_slice(&band.rows);
 }
 
 /// The size of the page in pixels.
@@ -51,21 +62,25 @@ struct Line {
 }
 
 impl<'a> Shape<'a> {
-    fn of(item: &'a Item, scale: f32) -> Shape<'a> {
+    /// A shape at `scale` pixels for a millimetre, from `corner` in pixels.
+    fn of(item: &'a Item, scale: f32, corner: Point) -> Shape<'a> {
         match item {
             Item::Picture { area, width, height, pixels } => {
-                Shape::Picture { area: area.scaled(scale), width: *width, height: *height, pixels }
+                let area = area.scaled(scale);
+                let area = Rect { left: area.left + corner.x, top: area.top + corner.y, ..area };
+                Shape::Picture { area, width: *width, height: *height, pixels }
             }
             Item::Lines { lines, width, ink, cover } => {
                 let lines = lines.iter().map(|line| {
-                    let places: Vec<Point> = line.iter().map(|place| place.scaled(scale)).collect();
+                    let places: Vec<Point> =
+                        line.iter().map(|place| place.scaled(scale).moved(corner.x, corner.y)).collect();
                     let (top, bottom) = span(places.iter().map(|place| place.y));
                     Line { places, top, bottom }
                 });
                 Shape::Lines { lines: lines.collect(), half: width * scale / 2.0, ink: *ink, cover: *cover }
             }
             Item::Area { outline, ink, cover } => {
-                let edges = edges(outline, scale);
+                let edges = edges(outline, |place| place.scaled(scale).moved(corner.x, corner.y));
                 let (top, bottom) = span(edges.iter().flatten().map(|place| place.y));
                 Shape::Area { edges, top, bottom, ink: *ink, cover: *cover }
             }
@@ -78,21 +93,21 @@ fn span(values: impl Iterator<Item = f32>) -> (f32, f32) {
 }
 
 /// An outline as straight edges, with every part closed.
-fn edges(outline: &[Step], scale: f32) -> Vec<[Point; 2]> {
+fn edges(outline: &[Step], at: impl Fn(Point) -> Point) -> Vec<[Point; 2]> {
     let mut edges = Vec::new();
     let (mut first, mut here) = (Point::default(), Point::default());
     for step in outline {
         match *step {
             Step::Move(place) => {
                 edges.push([here, first]);
-                (first, here) = (place.scaled(scale), place.scaled(scale));
+                (first, here) = (at(place), at(place));
             }
             Step::Line(place) => {
-                edges.push([here, place.scaled(scale)]);
-                here = place.scaled(scale);
+                edges.push([here, at(place)]);
+                here = at(place);
             }
             Step::Curve(a, b, end) => {
-                let [a, b, end] = [a, b, end].map(|place| place.scaled(scale));
+                let [a, b, end] = [a, b, end].map(&at);
                 let start = here;
                 for k in 1..=PIECES {
                     let t = k as f32 / PIECES as f32;
