@@ -2,13 +2,15 @@
 
 use std::path::Path;
 
+use orogen::export::contour_options;
 use orogen::export::derived::list as derived;
 use orogen::jobs::map::{MapColors, MapJob};
 use orogen::jobs::sheet_format::SheetFormat;
+use orogen::palette::color::hex;
 use orogen::palette::named;
 use orogen::palette::palette::Palette;
 use orogen::recipe::document::Recipe;
-use orogen::sheet::options::{Parts, Resolution, Scale, Shading};
+use orogen::sheet::options::{GridStep, Labels, PageColors, Parts, Resolution, Scale, Shading};
 use orogen::sheet::paper::Paper;
 use orogen::world::HEIGHT;
 use orogen::{Error, ErrorKind, Result, WorldSpec};
@@ -60,6 +62,10 @@ pub const SCALES: [(Scale, &str, &str); 3] = [
     (Scale::Labels, "labels", "export.scale_labels"),
 ];
 
+/// The contours that have labels, likewise.
+pub const LABELS: [(Labels, &str, &str); 2] =
+    [(Labels::Index, "index", "export.labels_index"), (Labels::All, "all", "export.labels_all")];
+
 /// Pixels per inch that a sheet may have.
 pub const DPI: std::ops::RangeInclusive<u16> = 20..=1200;
 
@@ -89,6 +95,16 @@ pub struct MapExport {
     pub shading: Shading,
     /// The interval of contours in metres; a round number if `None`.
     pub interval: Option<f64>,
+    /// The heights of contours in metres, separated by commas, in place of an interval; none if it is empty.
+    pub levels: String,
+    /// The contours that have labels; index contours, or all of given heights, if `None`.
+    pub labels: Option<Labels>,
+    /// Whether there is a coordinate grid.
+    pub has_grid: bool,
+    /// The distance between its lines, in metres or degrees; one that suits the scale if `None`.
+    pub grid_step: Option<f64>,
+    /// The colors of the page and of its lines.
+    pub page_colors: PageColors,
     /// The minimum drainage area of rivers in m^2; one that suits the scale if `None`.
     pub river_area: Option<f64>,
     /// The minimum area of lakes in m^2, likewise.
@@ -128,6 +144,11 @@ impl MapExport {
             range: None,
             shading: Shading::Multi,
             interval: None,
+            levels: String::new(),
+            labels: None,
+            has_grid: false,
+            grid_step: None,
+            page_colors: PageColors::default(),
             river_area: None,
             lake_area: None,
             names: String::new(),
@@ -174,6 +195,11 @@ impl MapExport {
         self.map_scale.filter(|_| self.paper.is_none())
     }
 
+    /// The contours that have labels; those at given heights are all alike.
+    fn labels(&self) -> Option<Labels> {
+        self.labels.filter(|labels| self.parts.labels && (self.levels.is_empty() || *labels == Labels::All))
+    }
+
     fn job(&self) -> Result<MapJob> {
         let mut job = MapJob::new(self.format).with_colors(self.colors).with_layer(&self.layer);
         job = job.with_title(&self.title);
@@ -185,7 +211,13 @@ impl MapExport {
         }
         job.range = self.range;
         job.shading = self.shading;
-        job.interval = self.interval;
+        match self.levels.as_str() {
+            "" => job.interval = self.interval,
+            levels => job.levels = Some(contour_options::parse(levels)?),
+        }
+        job.labels = self.labels();
+        job.grid = self.has_grid.then(|| self.grid_step.map_or(GridStep::Automatic, GridStep::Every));
+        job.page_colors = self.page_colors;
         job.river_area = self.river_area;
         job.lake_area = self.lake_area;
         job.map_scale = self.map_scale();
@@ -225,8 +257,26 @@ impl MapExport {
         if let Some((_, name, _)) = SHADINGS.iter().find(|(shading, ..)| *shading == self.shading) {
             line.differing("shade", *name, &"multi");
         }
-        if let Some(interval) = self.interval {
-            line.option("contours", interval);
+        match (self.levels.as_str(), self.interval) {
+            ("", None) => {}
+            ("", Some(interval)) => line.option("contours", interval),
+            (levels, _) => line.option("levels", levels),
+        }
+        if let Some((_, name, _)) = LABELS.iter().find(|(labels, ..)| Some(*labels) == self.labels()) {
+            line.option("labels", name);
+        }
+        match (self.has_grid, self.grid_step) {
+            (false, _) => {}
+            (true, None) => line.flag("grid"),
+            (true, Some(step)) => line.option("grid", step),
+        }
+        let (own, colors) = (PageColors::default(), &self.page_colors);
+        line.differing("page-color", hex(colors.page), &hex(own.page));
+        line.differing("ink-color", hex(colors.ink), &hex(own.ink));
+        for (option, color) in [("water-color", colors.water), ("contour-color", colors.contours)] {
+            if let Some(color) = color {
+                line.option(option, hex(color));
+            }
         }
         for (option, area) in [("river-area", self.river_area), ("lake-area", self.lake_area)] {
             if let Some(area) = area {

@@ -54,6 +54,8 @@ pub struct RenderExport {
     pub nearest_color: bool,
     /// The heights at its ends.
     pub range: Option<[f64; 2]>,
+    /// Whether the picture has a color bar of them.
+    pub color_bar: bool,
     /// Height of the snow line in metres.
     pub snow_line: Option<f64>,
     /// Samples of a pixel.
@@ -81,6 +83,7 @@ impl Default for RenderExport {
             palette: None,
             nearest_color: false,
             range: None,
+            color_bar: false,
             snow_line: job.snow_line,
             rays: job.samples,
         }
@@ -92,7 +95,7 @@ impl RenderExport {
     pub fn set_colors(&mut self, colors: Colors) {
         self.colors = colors;
         if colors != Colors::Map {
-            (self.palette, self.nearest_color, self.range) = (None, false, None);
+            (self.palette, self.nearest_color, self.range, self.color_bar) = (None, false, None, false);
         }
     }
 
@@ -109,6 +112,7 @@ impl RenderExport {
         job.colors = self.colors;
         job.palette = palette(self.palette, self.nearest_color);
         job.range = self.range;
+        job.color_bar = self.color_bar;
         job.snow_line = self.snow_line;
         job.samples = self.rays;
         job.check()?;
@@ -143,6 +147,9 @@ impl RenderExport {
         }
         if let Some(ends) = self.range {
             line.option("range", pair(ends));
+        }
+        if self.color_bar {
+            line.flag("color-bar");
         }
         if let Some(metres) = self.snow_line {
             line.option("snow-line", metres);

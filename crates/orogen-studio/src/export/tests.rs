@@ -12,7 +12,7 @@ use orogen::palette::named;
 use orogen::recipe::document::Recipe;
 use orogen::render::camera::View;
 use orogen::render::scene::Colors;
-use orogen::sheet::options::{Resolution, Shading};
+use orogen::sheet::options::{GridStep, Resolution, Shading};
 use orogen::test_folder::TestFolder;
 use orogen::tilemap::art::set::SETS;
 use orogen::tilemap::job::TilemapJob;
@@ -103,6 +103,8 @@ fn a_map_is_that_of_the_job() {
     export.map.names = folder.join("places.csv").to_string_lossy().into_owned();
     std::fs::write(&export.map.names, "x,y,name\n200,-300,Ford\n").unwrap();
     export.map.map_scale = Some(1e5);
+    (export.map.levels, export.map.interval) = ("300, 450.5".into(), Some(7.0));
+    (export.map.has_grid, export.map.page_colors.page) = (true, [250, 240, 220]);
     let words = run(&export);
     assert!(words.starts_with("surfaces, ") && words.contains("80 x 80 samples"), "{words}");
     let mut job = MapJob::new(SheetFormat::Png).with_colors(MapColors::Surfaces).with_title("classic");
@@ -111,6 +113,9 @@ fn a_map_is_that_of_the_job() {
     job.parts.rivers = false;
     job.lake_area = Some(5e4);
     job.map_scale = Some(1e5);
+    job.levels = Some(vec![300.0, 450.5]);
+    job.grid = Some(GridStep::Automatic);
+    job.page_colors.page = [250, 240, 220];
     let mut recipe = recipe();
     let job = job.with_names_from(Path::new(&export.map.names), &recipe).unwrap();
     assert_eq!(job.names.len(), 1);
@@ -122,7 +127,7 @@ fn a_map_is_that_of_the_job() {
     assert!(std::fs::read(export.path()).unwrap() == std::fs::read(output.path()).unwrap());
     let cell = 0.0125 * super::tests::recipe().world.size.unwrap()[0];
     let end = format!(
-        "classic-map.png --color surfaces --shade swiss --lake-area 50000 --names {} --scale 100000 --size 300 --no-rivers --cell {cell}",
+        "classic-map.png --color surfaces --shade swiss --levels '300, 450.5' --grid --page-color '#faf0dc' --lake-area 50000 --names {} --scale 100000 --size 300 --no-rivers --cell {cell}",
         export.map.names
     );
     assert!(line(&export).ends_with(&end), "{}", line(&export));
@@ -151,6 +156,7 @@ fn a_render_is_that_of_the_job() {
     export.render.set_colors(Colors::Map);
     export.render.palette = Some("swiss");
     (export.render.nearest_color, export.render.range) = (true, Some([0.0, 900.0]));
+    export.render.color_bar = true;
     let words = run(&export);
     assert!(words.starts_with("64 x 40 pixels, of 48 x 48 samples"), "{words}");
     let mut job = RenderJob::default();
@@ -160,13 +166,13 @@ fn a_render_is_that_of_the_job() {
     job.colors = Colors::Map;
     job.palette = named::find("swiss").map(|palette| palette.palette().nearest());
     job.range = Some([0.0, 900.0]);
+    job.color_bar = true;
     let world = session().open(recipe()).unwrap();
     let job = job.with_window(world.window_fitting(48).unwrap());
     let output = OutputPolicy::default().output(folder.join("job.png")).unwrap();
     job.to_file(&world, &output, &Progress::none()).unwrap();
     assert!(std::fs::read(export.path()).unwrap() == std::fs::read(output.path()).unwrap());
-    let options =
-        " --size 64x40 --camera 120.5,40 --color map --palette swiss --nearest-color --range 0,900 --samples 1 --cell ";
+    let options = " --size 64x40 --camera 120.5,40 --color map --palette swiss --nearest-color --range 0,900 --color-bar --samples 1 --cell ";
     assert!(line(&export).contains(options), "{}", line(&export));
     export.render.haze = 101.0;
     let error = export.run(&session(), recipe(), None, &Progress::none()).unwrap_err();

@@ -10,7 +10,7 @@ use orogen::export::registry;
 use orogen::export::targets::list;
 use orogen::jobs::map::MapColors;
 use orogen::render::scene::{Colors, Edge};
-use orogen::sheet::options::{Resolution, Scale, Shading};
+use orogen::sheet::options::{Labels, Resolution, Scale, Shading};
 use orogen::test_folder::TestFolder;
 use orogen::{Progress, Session};
 use orogen_studio::catalogue::Language;
@@ -151,6 +151,9 @@ fn the_copied_command_line_makes_the_same_files() {
         (export.map.paper, export.map.is_landscape) = (Some("a5"), true);
         export.map.title = "-x 'Höhe'".into();
         export.map.shading = Shading::Swiss;
+        export.map.labels = Some(Labels::All);
+        (export.map.has_grid, export.map.grid_step) = (true, Some(200.0));
+        export.map.page_colors.water = Some([10, 120, 130]);
     });
     same(&mine, Region::Whole, &folder, |export| {
         map("pdf")(export);

@@ -10,7 +10,7 @@ use orogen::world::HEIGHT;
 
 use super::rows;
 use crate::catalogue::Language;
-use crate::export::map::{COLORS, DPI, MapExport, PARTS, SCALES, SHADINGS, SIDE};
+use crate::export::map::{COLORS, DPI, LABELS, MapExport, PARTS, SCALES, SHADINGS, SIDE};
 use crate::export::request::Export;
 use crate::studio::Studio;
 
@@ -30,7 +30,25 @@ pub fn show(ui: &mut Ui, export: &mut Export, studio: &Studio, language: Languag
             SHADINGS.iter().map(|(shading, _, key)| (*shading, language.text(key).to_owned())).collect();
         rows::choice(ui, language.text("export.shading"), &mut own.shading, &shadings);
         let interval = language.text("export.interval");
-        rows::optional(ui, interval, &mut own.interval, (100.0, 0.01..=10_000.0), ["", " m"], language);
+        if own.levels.is_empty() {
+            rows::optional(ui, interval, &mut own.interval, (100.0, 0.01..=10_000.0), ["", " m"], language);
+        }
+        rows::text(ui, language.text("export.levels"), &mut own.levels);
+        let automatic = (None, language.text("export.automatic").to_owned());
+        let labels: Vec<_> = std::iter::once(automatic)
+            .chain(LABELS.iter().map(|(labels, _, key)| (Some(*labels), language.text(key).to_owned())))
+            .collect();
+        rows::choice(ui, language.text("export.labels"), &mut own.labels, &labels);
+        rows::switch(ui, language.text("export.grid"), &mut own.has_grid);
+        if own.has_grid {
+            let step = language.text("export.grid_step");
+            rows::optional(ui, step, &mut own.grid_step, (1000.0, 1e-6..=1e7), ["", ""], language);
+        }
+        let colors = &mut own.page_colors;
+        rows::color(ui, language.text("export.page_color"), &mut colors.page);
+        rows::color(ui, language.text("export.ink_color"), &mut colors.ink);
+        rows::optional_color(ui, language.text("export.water_color"), &mut colors.water, [34, 92, 156], language);
+        rows::optional_color(ui, language.text("export.contour_color"), &mut colors.contours, [126, 82, 42], language);
         for (key, area, first) in
             [("export.river_area", &mut own.river_area, 1e6), ("export.lake_area", &mut own.lake_area, 1e5)]
         {

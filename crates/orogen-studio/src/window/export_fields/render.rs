@@ -56,6 +56,7 @@ pub fn show(ui: &mut Ui, export: &mut Export, view: &ShownView, language: Langua
                 rows::switch(ui, language.text("export.nearest_color"), &mut own.nearest_color);
             }
             rows::optional_ends(ui, language.text("export.range"), &mut own.range, [0.0, 1000.0], language);
+            rows::switch(ui, language.text("export.color_bar"), &mut own.color_bar);
         }
         let automatic = (None, language.text("export.automatic").to_owned());
         let edges: Vec<_> = std::iter::once(automatic)

@@ -144,6 +144,29 @@ pub fn text(ui: &mut Ui, name: &str, value: &mut String) {
     ui.end_row();
 }
 
+/// A color.
+pub fn color(ui: &mut Ui, name: &str, value: &mut [u8; 3]) {
+    ui.label(name);
+    ui.color_edit_button_srgb(value);
+    ui.end_row();
+}
+
+/// A color that is chosen by itself unless it is given; `usual` is its first value.
+pub fn optional_color(ui: &mut Ui, name: &str, value: &mut Option<[u8; 3]>, usual: [u8; 3], language: Language) {
+    ui.label(name);
+    ui.horizontal(|ui| {
+        let mut is_given = value.is_some();
+        if ui.checkbox(&mut is_given, "").changed() {
+            *value = is_given.then_some(usual);
+        }
+        match value {
+            Some(color) => drop(ui.color_edit_button_srgb(color)),
+            None => drop(ui.weak(language.text("export.automatic"))),
+        }
+    });
+    ui.end_row();
+}
+
 /// A switch.
 pub fn switch(ui: &mut Ui, name: &str, value: &mut bool) {
     ui.label(name);
