@@ -176,6 +176,30 @@ fn biomes_color_a_map() {
     assert!(told.text().starts_with("a.png: biomes, "), "{}", told.text());
     folder.good(&["map", "biomes.toml", "-o", "b.png", "--size", "400", "--color", "biomes", "--threads", "1", "-q"]);
     assert_eq!(folder.read("a.png"), folder.read("b.png"));
+    // As a layer they have their own colors and names, unless other ones are chosen.
+    let layer = |more: &[&str]| {
+        let map = ["map", "biomes.toml", "-o", "l.svg", "--size", "400", "--layer", "cover", "--force", "-q"];
+        folder.good(&[&map[..], more].concat());
+        folder.text("l.svg")
+    };
+    let own = layer(&[]);
+    assert!(own != layer(&["--ramp", "labels"]) && own != layer(&["--palette", "viridis"]));
+    folder.good(&[
+        "map",
+        "biomes.toml",
+        "-o",
+        "b.svg",
+        "--size",
+        "400",
+        "--color",
+        "biomes",
+        "--no-summits",
+        "--no-contours",
+        "--no-rivers",
+        "--no-lakes",
+        "-q",
+    ]);
+    assert!(own == folder.text("b.svg"));
     folder.write("none.toml", biomes(""));
     folder.bad(
         &["map", "none.toml", "-o", "c.png", "--size", "400", "--color", "biomes"],
@@ -277,7 +301,7 @@ fn a_scale_sets_the_size_of_the_page() {
 fn contours_at_given_heights() {
     let folder = Folder::new();
     let map = |more: &[&'static str]| {
-        [&["map", "hills", "--window", "0,0,101,81", "--cell", "40", "--no-summits", "--no-rivers"][..], more].concat()
+        [&["map", "hills", "--window", "0,0,101,81", "--cell", "150", "--no-summits", "--no-rivers"][..], more].concat()
     };
     let told = folder.good(&map(&["-o", "a.png", "--levels", "250,100,9000,100"]));
     assert!(told.text().ends_with(", contours at 100, 250 m\n"), "{}", told.text());
@@ -369,15 +393,15 @@ fn names_of_summits_rivers_and_lines() {
         folder.good(&[&map[..], more].concat()).err
     };
     map("plain.svg", &[]);
-    folder.write("names.csv", "name,kind,x,y,height\nHorn,summit,5450,-9570,\nTarn,lake,4750,-6700,\nAshburn,river,6300,-2400,\nDry Brook,river,400,-6300,\n");
-    assert_eq!(map("named.svg", &["--names", "names.csv"]), "");
-    assert_eq!(
-        map("dry.svg", &["--names", "names.csv", "--no-rivers"]),
-        "warning: no river is drawn near `Ashburn`, `Dry Brook`\n"
+    folder.write(
+        "names.csv",
+        "name,kind,x,y,height\nHorn,summit,5450,-9570,\nTarn,lake,4750,-6700,\nAshburn,river,6300,-2400,\n",
     );
+    assert_eq!(map("named.svg", &["--names", "names.csv"]), "");
+    assert_eq!(map("dry.svg", &["--names", "names.csv", "--no-rivers"]), "warning: no river is drawn near `Ashburn`\n");
     // The names of water are blue, like rivers.
     let blue = |file: &str| folder.text(file).matches("fill=\"#225c9c\"").count();
-    assert_eq!((blue("plain.svg"), blue("named.svg"), blue("dry.svg")), (0, 3, 1));
+    assert_eq!((blue("plain.svg"), blue("named.svg"), blue("dry.svg")), (0, 2, 1));
     folder.write(
         "lines.geojson",
         r#"{"type":"FeatureCollection","features":[

@@ -326,7 +326,8 @@ impl MapJob {
         let mut warnings = Vec::new();
         let map = options.map.clone();
         map_names::add(&mut options, (&self.names, &self.line_names), map.as_ref(), &window, &mut warnings);
-        let (plan, reserved) = world.plan_beside(&[HEIGHT], &window, self.memory(&window))?;
+        let shows_biomes = self.shows_biomes(world.recipe());
+        let (plan, reserved) = world.plan_beside(&[HEIGHT], &window, self.memory(&window, shows_biomes))?;
         let work = world.work(&plan)?;
         let layered = if self.layer == HEIGHT && !self.is_covered() { 0.0 } else { work };
         let pixels = self.side() * self.side();
@@ -341,7 +342,7 @@ impl MapJob {
             let least = [options.river_area.unwrap_or(river), options.lake_area.unwrap_or(lake)];
             options.water = Some(map_water::of(world, &window, least, 4 * window.len() as u64, &watering)?);
         }
-        if self.layer != HEIGHT {
+        if self.layer != HEIGHT && !shows_biomes {
             options.coloring = Coloring::Layer(self.layer(world, &window, &mut warnings, &layering)?);
         }
         let (sea, made) = (options.sea_level, |cause: io::Error| {
@@ -349,6 +350,7 @@ impl MapJob {
             file::explain("make", Path::new(self.colors.plural()), &cause)
         });
         let cover = match self.colors {
+            MapColors::Palette if shows_biomes => Some(biome_cover::of(world, &heights, sea, &layering)),
             MapColors::Palette => None,
             MapColors::Surfaces => Some(sheet_cover::of(world, &heights, sea, &layering)),
             MapColors::Biomes => Some(biome_cover::of(world, &heights, sea, &layering)),
@@ -397,14 +399,20 @@ impl MapJob {
         self.colors != MapColors::Palette
     }
 
+    /// Whether the layer is that of the biomes, which have colors and names of their own, unless a palette or a mapping to colours was chosen.
+    fn shows_biomes(&self, recipe: &Recipe) -> bool {
+        let has_own = self.palette.is_some() || self.range.is_some() || self.scale.is_some();
+        !self.is_covered() && !has_own && biome_cover::classes(recipe).is_some_and(|(name, _)| name == self.layer)
+    }
+
     /// The palette: the given one, otherwise that of the layer.
-    fn palette(&self) -> Palette {
+    fn palette(&self, recipe: &Recipe) -> Palette {
         if let Some(palette) = &self.palette {
             return palette.clone();
         }
         let derived = list::named(&self.layer).map(|derived| derived.palette).filter(|palette| !palette.is_empty());
         let own = derived.or(named::find(&self.layer).map(|named| named.name)).unwrap_or(LAYER_PALETTE);
-        let name = if self.layer == HEIGHT { named::DEFAULT } else { own };
+        let name = if self.layer == HEIGHT || self.shows_biomes(recipe) { named::DEFAULT } else { own };
         named::find(name).unwrap_or(&named::all()[0]).palette()
     }
 
@@ -462,7 +470,7 @@ impl MapJob {
             "" => format!("Seed {}", recipe.world.seed),
             about => format!("{}; seed {}", about.trim_end_matches('.'), recipe.world.seed),
         };
-        let mut options = SheetOptions::new(self.palette());
+        let mut options = SheetOptions::new(self.palette(recipe));
         options.title.clone_from(&self.title);
         options.about = about;
         options.shading = self.shading;
@@ -485,7 +493,7 @@ impl MapJob {
     }
 
     /// Memory of drawing beside the heights, in bytes.
-    fn memory(&self, window: &Window) -> u64 {
+    fn memory(&self, window: &Window, shows_biomes: bool) -> u64 {
         let pixels = self.side() * self.side();
         let lines = lines_at(longer(self.page())) as f64;
         // First the water and the contours are computed; then they are held beside the page twice, the picture and its
@@ -495,6 +503,7 @@ impl MapJob {
         let layer = if self.layer == HEIGHT { 0.0 } else { 8.0 * window.len() as f64 };
         // The albedo of the surfaces is also held at the resolution of the page.
         let cover = match self.colors {
+            MapColors::Palette if shows_biomes => biome_cover::memory(window) as f64 + 12.0 * pixels,
             MapColors::Palette => 0.0,
             MapColors::Surfaces => sheet_cover::memory(window) as f64 + 12.0 * pixels,
             MapColors::Biomes | MapColors::Classes => biome_cover::memory(window) as f64 + 12.0 * pixels,

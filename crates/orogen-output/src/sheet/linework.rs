@@ -42,7 +42,7 @@ pub fn lines_at(longer: f64) -> usize {
 }
 
 /// Approximate length of the longer side of a map in millimetres; the exact length depends on its legend.
-pub fn longer_side(window: &Window, page: Page) -> f64 {
+pub(super) fn longer_side(window: &Window, page: Page) -> f64 {
     let [width, height] = [window.width, window.height].map(|samples| samples.saturating_sub(1).max(1) as f64);
     let aspect = width / height;
     match page {
@@ -147,12 +147,12 @@ impl Linework {
     }
 
     /// Whether a line is an index contour.
-    pub fn is_index(&self, line: &Line) -> bool {
+    pub(super) fn is_index(&self, line: &Line) -> bool {
         self.interval.is_some_and(|interval| is_thick(line, interval))
     }
 
     /// The width of a contour in millimetres.
-    pub fn contour_width(&self, line: &Line) -> f32 {
+    pub(super) fn contour_width(&self, line: &Line) -> f32 {
         match self.interval {
             Some(_) if self.is_index(line) => THICK,
             Some(_) => THIN,
@@ -161,7 +161,7 @@ impl Linework {
     }
 
     /// The heights of its contours, ascending.
-    pub fn levels(&self) -> Vec<f64> {
+    pub(super) fn levels(&self) -> Vec<f64> {
         let mut levels: Vec<f64> = self.contours.iter().map(|line| line.elevation).collect();
         levels.sort_by(f64::total_cmp);
         levels.dedup();
@@ -202,7 +202,7 @@ impl Linework {
 }
 
 /// A height as it stands in labels, without its unit.
-pub fn height(value: f64) -> String {
+pub(super) fn height(value: f64) -> String {
     grouped(value, if value.fract() == 0.0 { 0 } else { 1 })
 }
 

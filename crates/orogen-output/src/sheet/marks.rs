@@ -129,14 +129,9 @@ pub fn water_name(desk: &mut Desk, taken: &mut Taken, at: Point, text: &str) -> 
     let Some(down) = [0.0, -NAME, NAME].into_iter().find(is_free) else { return false };
     let foot = at.moved(-width / 2.0, down + NAME * 0.3);
     let outline = desk.letters.write(text, Face::Italic, NAME, foot, 0.0);
-    water_text(desk, outline);
+    edged_text(desk, outline, desk.colors.rivers());
     middles(down).into_iter().for_each(|middle| taken.take(middle, NAME * 0.6));
     true
-}
-
-/// Draws text in the ink of water, with an edge for visibility on any ground.
-pub fn water_text(desk: &mut Desk, outline: Vec<Step>) {
-    edged_text(desk, outline, desk.colors.rivers());
 }
 
 /// Draws text with an edge for visibility on any ground.

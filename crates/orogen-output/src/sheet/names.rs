@@ -44,7 +44,7 @@ pub struct LeftOut {
 
 impl Linework {
     /// Draws the names of places, summits and lakes. Returns the summits of the heights that are named now.
-    pub fn draw_names(
+    pub(super) fn draw_names(
         &self,
         desk: &mut Desk,
         map: Rect,
@@ -75,7 +75,7 @@ impl Linework {
     }
 
     /// The position of a summit on the map.
-    pub fn summit_at(&self, summit: &Summit, map: Rect) -> Point {
+    pub(super) fn summit_at(&self, summit: &Summit, map: Rect) -> Point {
         let share = |at: usize, samples: usize| at as f32 / (samples - 1) as f32;
         map.at(share(summit.x, self.samples[0]), share(summit.y, self.samples[1]))
     }
@@ -92,24 +92,22 @@ impl Linework {
             .or_else(|| Some(ground()).filter(|h| h.is_finite()))
     }
 
-    /// Draws the names along lines, and those of rivers at points. `rivers` are the drawn stretches with their widths, `names` is the room that names
-    /// take, and `taken` all room.
-    pub fn draw_line_names(
+    /// Draws the names along lines, and those of rivers at points. `rivers` are the drawn stretches with their widths.
+    pub(super) fn draw_line_names(
         &self,
         desk: &mut Desk,
         map: Rect,
         options: &SheetOptions,
         rivers: &[(f32, Vec<Point>)],
-        mut names: Taken,
-        taken: &mut Taken,
+        room: &mut Room,
         left_out: &mut LeftOut,
     ) {
-        rivers.iter().filter(|river| river.0 > WIDE).for_each(|(width, line)| names.take_line(line, width / 2.0));
-        let mut room = Room { names, all: taken };
+        rivers.iter().filter(|river| river.0 > WIDE).for_each(|(width, line)| room.names.take_line(line, width / 2.0));
         for line in &options.line_names {
             let points: Vec<Point> = line.points.iter().map(|at| on_map(map, *at)).collect();
+            let points = longest_within(&points, map);
             let ink = if line.is_water { desk.colors.rivers() } else { desk.colors.ink };
-            if !name_along(desk, &mut room, &points, 0.6, &line.name, ink) {
+            if !name_along(desk, room, &points, 0.6, &line.name, ink) {
                 left_out.crowded.push(line.name.clone());
             }
         }
@@ -122,7 +120,7 @@ impl Linework {
             let ink = desk.colors.rivers();
             let is_drawn = NEAR.iter().any(|reach| {
                 let part = part_near(&course, at, *reach);
-                name_along(desk, &mut room, &part, width, &place.name, ink)
+                name_along(desk, room, &part, width, &place.name, ink)
             });
             if !is_drawn {
                 left_out.crowded.push(place.name.clone());
@@ -136,11 +134,11 @@ fn on_map(map: Rect, at: [f64; 2]) -> Point {
 }
 
 /// The room for names along lines.
-struct Room<'a> {
+pub struct Room<'a> {
     /// Without names and wide rivers.
-    names: Taken,
+    pub names: Taken,
     /// Without anything else.
-    all: &'a mut Taken,
+    pub all: &'a mut Taken,
 }
 
 /// Draws a name beside a line of this width, if there is room on one of its sides: first where nothing else is, then across lines.
@@ -150,14 +148,14 @@ fn name_along(desk: &mut Desk, room: &mut Room, line: &[Point], width: f32, name
     // Above the line first.
     let is_eastward = even.first().zip(even.last()).is_some_and(|(first, last)| last.x >= first.x);
     let sides = if is_eastward { [-1.0, 1.0] } else { [1.0, -1.0] };
-    let mut across = room.names.clone();
-    across.take_line(line, width / 2.0);
+    let own = around(line, width / 2.0);
     let find = |taken: &mut Taken| {
         let beside = BESIDE.into_iter().flat_map(|beside| sides.map(|side| side * (beside + width / 2.0)));
-        let mut labels = beside.map(|by| place(&moved(&even, by), name, wide, ALONG, taken, |_, _| true));
+        let is_clear = |place: Point, reach: f32| own.is_free(place, reach);
+        let mut labels = beside.map(|by| place(&moved(&even, by), name, wide, ALONG, taken, is_clear));
         labels.find(|labels| !labels.is_empty())
     };
-    let found: Option<Vec<Label>> = find(&mut *room.all).or_else(|| find(&mut across));
+    let found: Option<Vec<Label>> = find(&mut *room.all).or_else(|| find(&mut room.names));
     for label in found.iter().flatten() {
         let outline = desk.outline_along(label, Face::Italic);
         marks::edged_text(desk, outline, ink);
@@ -168,15 +166,59 @@ fn name_along(desk: &mut Desk, room: &mut Room, line: &[Point], width: f32, name
     found.is_some()
 }
 
+/// The room around a line, without the line.
+fn around(line: &[Point], reach: f32) -> Taken {
+    /// More than the reach of any text beside the line.
+    const FREE: f32 = 12.0;
+    let corner = line.iter().fold(Point::new(f32::MAX, f32::MAX), |a, b| Point::new(a.x.min(b.x), a.y.min(b.y)));
+    let far = line.iter().fold(corner, |a, b| Point::new(a.x.max(b.x), a.y.max(b.y)));
+    let size = corner.to(far);
+    let mut own = Taken::none(Rect::new(corner.x, corner.y, size.x, size.y).inset(-FREE));
+    own.take_line(line, reach);
+    own
+}
+
+/// The longest part of a line within a rectangle.
+fn longest_within(line: &[Point], area: Rect) -> Vec<Point> {
+    let mut parts: Vec<Vec<Point>> = vec![Vec::new()];
+    for pair in line.windows(2) {
+        let way = pair[0].to(pair[1]);
+        // Shares of the way between which it is inside (Liang and Barsky 1984).
+        let mut inside = [0.0f32, 1.0];
+        for (at, way, ends) in
+            [(pair[0].x, way.x, [area.left, area.right()]), (pair[0].y, way.y, [area.top, area.bottom()])]
+        {
+            let shares = ends.map(|end| (end - at) / way);
+            let is_within = (ends[0]..=ends[1]).contains(&at);
+            inside = match (way == 0.0, is_within) {
+                (true, true) => inside,
+                (true, false) => [1.0, 0.0],
+                _ => [inside[0].max(shares[0].min(shares[1])), inside[1].min(shares[0].max(shares[1]))],
+            };
+        }
+        let [from, to] = inside.map(|share| pair[0].toward(pair[1], share));
+        if inside[0] <= inside[1] && from.is_finite() && to.is_finite() {
+            match parts.last_mut() {
+                Some(part) if !part.is_empty() && inside[0] == 0.0 => part.push(to),
+                _ => parts.push(vec![from, to]),
+            }
+        }
+        if inside[1] < 1.0 {
+            parts.push(Vec::new());
+        }
+    }
+    let length = |part: &Vec<Point>| part.windows(2).map(|pair| pair[0].distance(pair[1])).sum::<f32>();
+    parts.into_iter().max_by(|a, b| length(a).total_cmp(&length(b))).unwrap_or_default()
+}
+
 /// A line with points at even distances, without bends that are shorter than a few letters.
 fn smoothed(line: &[Point]) -> Vec<Point> {
     let mut even: Vec<Point> = line.first().copied().into_iter().collect();
     let mut left = STEP;
     for pair in line.windows(2) {
         let length = pair[0].distance(pair[1]);
-        // A page has at most some metres of any line.
         let mut along = left;
-        while along <= length && even.len() < 100_000 {
+        while along <= length {
             even.push(pair[0].toward(pair[1], along / length));
             along += STEP;
         }
@@ -210,7 +252,7 @@ fn moved(line: &[Point], by: f32) -> Vec<Point> {
 fn course(rivers: &[(f32, Vec<Point>)], at: Point) -> Option<(f32, Vec<Point>)> {
     /// Maximum distance between the ends of stretches, in millimetres.
     const JOINED: f32 = 0.6;
-    let distance = |nth: &usize| rivers[*nth].1.iter().map(|point| point.distance(at)).fold(f32::MAX, f32::min);
+    let distance = |nth: &usize| distance_to(&rivers[*nth].1, at);
     let nearest = (0..rivers.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
     if distance(&nearest) > RIVER {
         return None;
@@ -220,10 +262,10 @@ fn course(rivers: &[(f32, Vec<Point>)], at: Point) -> Option<(f32, Vec<Point>)> 
         let (first, last) = (stretches.front()?, stretches.back()?);
         let (start, end) = (rivers[*first].1.first()?, rivers[*last].1.last()?);
         let is_next = |nth: &usize| {
-            !stretches.contains(nth) && rivers[*nth].1.first().is_some_and(|point| point.distance(*end) < JOINED)
+            rivers[*nth].1.first().is_some_and(|point| point.distance(*end) < JOINED) && !stretches.contains(nth)
         };
         let is_before = |nth: &usize| {
-            !stretches.contains(nth) && rivers[*nth].1.last().is_some_and(|point| point.distance(*start) < JOINED)
+            rivers[*nth].1.last().is_some_and(|point| point.distance(*start) < JOINED) && !stretches.contains(nth)
         };
         let next = (0..rivers.len()).find(is_next);
         let before = (0..rivers.len()).filter(is_before).max_by(|a, b| rivers[*a].0.total_cmp(&rivers[*b].0));
@@ -236,6 +278,16 @@ fn course(rivers: &[(f32, Vec<Point>)], at: Point) -> Option<(f32, Vec<Point>)> 
     }
     let width = stretches.iter().map(|nth| rivers[*nth].0).fold(0.0, f32::max);
     Some((width, stretches.iter().flat_map(|nth| rivers[*nth].1.iter().copied()).collect()))
+}
+
+/// The distance from a line to a point.
+fn distance_to(line: &[Point], at: Point) -> f32 {
+    let distance = |pair: &[Point]| {
+        let (way, to) = (pair[0].to(pair[1]), pair[0].to(at));
+        let share = ((to.x * way.x + to.y * way.y) / way.square().max(1e-12)).clamp(0.0, 1.0);
+        pair[0].toward(pair[1], share).distance(at)
+    };
+    line.windows(2).map(distance).fold(f32::MAX, f32::min)
 }
 
 /// The part of a line within a distance along it from the point of it that is nearest to a place.
@@ -277,6 +329,18 @@ mod tests {
         let (_, points) = course(&rivers, Point::new(0.0, 1.0)).unwrap();
         assert_eq!((points[0], points[points.len() - 1]), (Point::new(0.0, 0.0), Point::new(10.0, 40.0)));
         assert_eq!(course(&rivers, Point::new(60.0, 20.0)), None);
+    }
+
+    #[test]
+    fn lines_are_cut_at_the_map() {
+        let area = Rect::new(0.0, 0.0, 100.0, 50.0);
+        let cut = |points: &[[f32; 2]]| longest_within(&line(points.iter().copied()), area);
+        assert_eq!(cut(&[[-10.0, 20.0], [110.0, 20.0]]), line([[0.0, 20.0], [100.0, 20.0]]));
+        // Twice inside: the longer part.
+        let twice = [[10.0, 10.0], [10.0, 90.0], [60.0, 90.0], [60.0, 5.0], [40.0, 5.0]];
+        assert_eq!(cut(&twice), line([[60.0, 50.0], [60.0, 5.0], [40.0, 5.0]]));
+        assert!(cut(&[[-10.0, 60.0], [110.0, 60.0]]).is_empty() && cut(&[[5.0, 5.0]]).is_empty());
+        assert!(cut(&[[f32::INFINITY, 5.0], [f32::NAN, 7.0], [-1e30, 1e30]]).is_empty());
     }
 
     #[test]

@@ -6,7 +6,7 @@ use super::geometry::{Affine, Point, Rect};
 use super::inks::Inks;
 use super::linework::Linework;
 use super::marks;
-use super::names::LeftOut;
+use super::names::{LeftOut, Room};
 use super::options::SheetOptions;
 use super::scene::{Scene, Step};
 use super::taken::Taken;
@@ -79,7 +79,8 @@ impl Linework {
         let names = taken.clone();
         rivers.iter().for_each(|(width, line)| taken.take_line(line, 0.35 + width / 2.0));
         lakes.iter().chain(&shore).for_each(|line| taken.take_line(line, 0.5));
-        self.draw_line_names(&mut over, map, options, &rivers, names, &mut taken, &mut left_out);
+        let mut room = Room { names, all: &mut taken };
+        self.draw_line_names(&mut over, map, options, &rivers, &mut room, &mut left_out);
         for summit in self.summits.iter().filter(|summit| !named.contains(summit)) {
             let text = grouped(f64::from(summit.height), 0);
             marks::summit(&mut over, &mut taken, self.summit_at(summit, map), &text);

@@ -199,7 +199,7 @@ mod tests {
             Item::Area { outline: polygon([[0.0; 2], [1.0, 0.0], [1.0; 2]]), ink: [0; 3], cover: 1.0 },
         ];
         let mut out = Vec::new();
-        write(&mut out, &Scene { items, ..Scene::new(Size::new(100.0, 50.0), "Höhe".into()) }).unwrap();
+        write(&mut out, &Scene { items, ..Scene::new(Size::new(100.0, 50.0), "Höhe") }).unwrap();
         let find = |wanted: &[u8]| out.windows(wanted.len()).position(|window| window == wanted);
         let text = String::from_utf8_lossy(&out).to_string();
         let table: usize = text.rsplit("startxref\n").next().unwrap().lines().next().unwrap().parse().unwrap();

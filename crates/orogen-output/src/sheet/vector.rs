@@ -198,7 +198,7 @@ mod tests {
             },
         ];
         let mut out = Vec::new();
-        write(&mut out, &Scene { items, ..Scene::new(Size::new(210.0, 297.0), "A & <B>".into()) }).unwrap();
+        write(&mut out, &Scene { items, ..Scene::new(Size::new(210.0, 297.0), "A & <B>") }).unwrap();
         let text = String::from_utf8(out).unwrap();
         for expect in [
             "width=\"210.000mm\"",
