@@ -57,7 +57,7 @@ pub const BEYOND: f32 = -1.0;
 /// Exact lines of sight (R3; Franklin and Ray, "Higher isn't necessarily better: visibility algorithms and
 /// experiments", 1994) from the eye to every sample. The ground is interpolated linearly between samples where a line
 /// crosses a column (or a row, whichever there are more of). Squares whose maximum cannot rise above the horizon so far
-/// are skipped, which does not change the result. Holds 15 bytes per sample. Rows are computed in parallel.
+/// are skipped, which does not change the result. There is no ground outside the grid: an observer there stands as high as its nearest sample. Holds 15 bytes per sample. Rows are computed in parallel.
 ///
 /// # Errors
 /// The error of `check`, which is called repeatedly.
@@ -172,10 +172,11 @@ impl Sight {
         let slant = down / across;
         let metres = (1.0 + slant * slant).sqrt() * self.cell;
         let forwards = across > 0.0;
+        let entry = self.entry(slant, ground);
         // The first crossed column, and the last one before the target.
         let (first, last) = match forwards {
-            true => (x.floor() as i64 + 1, self.to[0] - 1),
-            false => (x.ceil() as i64 - 1, self.to[0] + 1),
+            true => ((x.floor() as i64).saturating_add(1).max(entry.ceil() as i64), self.to[0] - 1),
+            false => ((x.ceil() as i64).saturating_sub(1).min(entry.floor() as i64), self.to[0] + 1),
         };
         let left = |column: i64| if forwards { last - column + 1 } else { column - last + 1 };
         let (mut column, mut try_level) = (first, 0usize);
@@ -204,6 +205,16 @@ impl Sight {
             column = if forwards { end + 1 } else { end - 1 };
         }
         steepest
+    }
+
+    /// The x at which a sight from outside the grid enters it; that of the eye from within. Nothing outside hides anything.
+    fn entry(&self, slant: f64, ground: &MaxPyramid) -> f64 {
+        let [x, y] = self.from;
+        let [right, bottom] = [ground.levels[0].columns, ground.levels[0].rows].map(|samples| (samples - 1) as f64);
+        let nearest = y.clamp(0.0, bottom);
+        // A sight along the rows never enters from north or south.
+        let entered = if nearest == y { x } else { x + (nearest - y) / slant };
+        if self.to[0] as f64 > x { entered.max(0.0) } else { entered.min(right) }
     }
 
     /// The slope from the eye to ground of this height at the distance `away`.
@@ -257,6 +268,30 @@ mod tests {
                     assert!((f64::from(*found) - expect).abs() < 1e-3, "({i}, {j}) from {at:?}: {found} {expect}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn from_outside_only_the_ground_of_the_grid_hides() {
+        let mut heights = Grid::filled(Window::new(50, 21, 10.0), 0.0f32);
+        (0..21).for_each(|j| heights.row_mut(j)[20] = 12.0);
+        for (at, shown, behind, hidden_to) in [
+            // 300 m before the wall, 10 m below its top: at 500 m, 16.7 m below the sight.
+            ([-10.0, 10.0], (15, 10), (40, 10), 2.0 + 10.0 / 300.0 * 500.0),
+            ([70.0, 10.0], (25, 10), (10, 10), 2.0 + 10.0 / 500.0 * 600.0),
+            // North of the grid: the line of the wall is crossed outside of it, or just at its side.
+            ([20.0, -30.0], (22, 10), (40, 10), 0.0),
+            ([0.0, -10.0], (19, 10), (40, 10), 2.0 + 10.0 / 20.0 * 40.0),
+        ] {
+            let found = hidden(&heights, &Observer::new(at, 2.0), &|| Ok(())).unwrap();
+            assert_eq!(found[shown], 0.0, "{at:?}");
+            assert!((f64::from(found[behind]) - hidden_to).abs() < 1e-3, "{at:?}: {}, not {hidden_to}", found[behind]);
+        }
+        // As far as recipes can say, in any direction.
+        for at in [[-1e13, -1e13], [1e13, 4.0], [7.5, -1e13], [1e13, 0.0]] {
+            assert!(
+                hidden(&heights, &Observer::new(at, 2.0), &|| Ok(())).unwrap().data().iter().all(|h| h.is_finite())
+            );
         }
     }
 
