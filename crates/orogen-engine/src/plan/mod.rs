@@ -15,6 +15,7 @@ pub(crate) mod key;
 pub(crate) mod levels;
 pub(crate) mod memory;
 pub(crate) mod parts;
+mod number;
 pub mod planner;
 pub mod program;
 mod request;

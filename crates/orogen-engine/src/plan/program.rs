@@ -1,5 +1,6 @@
 //! Programs: fused fields as a flat list of instructions over block registers.
 
+use super::number;
 use crate::expression::function::Function;
 use crate::ids::{CoordSetId, GridId, NodeId, RegisterId};
 use crate::layer::LayerKind;
@@ -18,7 +19,7 @@ pub const BLOCK_HEIGHT: usize = 64;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Operand {
     /// A constant.
-    Number(f32),
+    Number(#[serde(with = "number")] f32),
     /// A block of samples.
     Register(RegisterId),
 }
@@ -39,6 +40,7 @@ pub enum Instruction<G = GridId> {
     /// A constant.
     Constant {
         /// The number.
+        #[serde(with = "number")]
         value: f32,
         /// The result.
         out: RegisterId,
