@@ -26,7 +26,9 @@ fn open(input: &mut dyn Input, sidecar: &Sidecar, allowed: u64) -> std::result::
         other => format!("it is not a valid PNG ({other})"),
     };
     let limit = usize::try_from(allowed).unwrap_or(usize::MAX);
-    let mut decoder = Decoder::new_with_limits(BufReader::new(input), Limits { bytes: limit });
+    // What the decoder takes for any picture is no matter of this one: a picture that does not fit is refused with its size.
+    const DECODER: usize = 64 << 10;
+    let mut decoder = Decoder::new_with_limits(BufReader::new(input), Limits { bytes: limit.max(DECODER) });
     decoder.set_transformations(Transformations::IDENTITY);
     let mut reader = decoder.read_info().map_err(broken)?;
     let (width, height) = (u64::from(reader.info().width), u64::from(reader.info().height));
@@ -101,6 +103,19 @@ mod tests {
             let why = read(&mut Cursor::new(&bytes), "a.png", &Sidecar::default(), 1 << 20).unwrap_err().to_string();
             assert!(why.contains("`encoding`"), "{why}");
         }
+    }
+
+    #[test]
+    fn a_picture_that_does_not_fit_is_not_called_damaged() {
+        let grid = Grid::filled(Window::new(64, 64, 1.0), 5.0f32);
+        let mut bytes = Vec::new();
+        png::write_grey16(&mut bytes, &grid, &Levels::new(0.0, 9.0), &[]).unwrap();
+        let sidecar = Sidecar { cell: Some(1.0), low: Some(0.0), high: Some(9.0), ..Sidecar::default() };
+        for allowed in [0, 1, 2000, 16_383] {
+            let why = read(&mut Cursor::new(&bytes), "a.png", &sidecar, allowed).unwrap_err().to_string();
+            assert!(why.contains("64 x 64 samples need 16"), "{why}");
+        }
+        assert!(read(&mut Cursor::new(&bytes), "a.png", &sidecar, 16_384).is_ok());
     }
 
     #[test]
