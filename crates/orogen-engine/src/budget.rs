@@ -5,8 +5,14 @@ use std::time::Duration;
 
 use crate::pool::HAS_THREADS;
 use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::grid::Window;
 use orogen_grid::progress::Progress;
 use orogen_grid::words::bytes_apart;
+
+/// Memory of a window with this many bytes per sample; `u64::MAX` if it is more.
+pub(crate) fn memory(window: &Window, bytes_per_sample: u64) -> u64 {
+    (window.width as u64).saturating_mul(window.height as u64).saturating_mul(bytes_per_sample)
+}
 
 /// A memory limit in bytes. Clones share one limit.
 ///

@@ -1,5 +1,6 @@
 //! Gaussian blur.
 
+use crate::budget::memory;
 use crate::lower::{Lowering, Passes};
 use crate::op::{Context, Filter, WorldParams};
 use orogen_grid::error::Result;
@@ -46,8 +47,8 @@ impl Filter for Blur {
     fn scratch(&self, window: &Window) -> u64 {
         let reach = self.halo(window.cell);
         // A tile for each band that is worked on, which may be all of them.
-        let bands = window.height.div_ceil(band(reach));
-        4 * (bands * TILE * (band(reach) + 2 * reach)) as u64
+        let rows = window.height.div_ceil(band(reach)).saturating_mul(band(reach) + 2 * reach);
+        memory(&Window { width: TILE, height: rows, ..*window }, 4)
     }
 
     fn apply(

@@ -1,5 +1,6 @@
 //! Distance to the nearest sample above a threshold.
 
+use crate::budget::memory;
 use crate::lower::{Lowering, Passes, alternating};
 use crate::op::{Context, Filter, WorldParams};
 use orogen_grid::analysis::distance::nearest_with;
@@ -44,7 +45,7 @@ impl Filter for Distance {
     fn scratch(&self, window: &Window) -> u64 {
         let grown = window.grown(self.halo(window.cell));
         // Distances down the columns, and those that are found.
-        4 * grown.width as u64 * window.height as u64 + 4 * window.len() as u64
+        memory(&Window { height: window.height, ..grown }, 4).saturating_add(memory(window, 4))
     }
 
     fn apply(

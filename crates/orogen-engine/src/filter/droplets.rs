@@ -1,5 +1,6 @@
 //! Hydraulic erosion by droplets.
 
+use crate::budget::memory;
 use crate::lower::{Lowering, Passes};
 use crate::op::{Context, Filter, WorldParams};
 use orogen_grid::erosion::droplets::Droplets as Law;
@@ -59,7 +60,7 @@ impl Filter for Droplets {
 
     fn scratch(&self, window: &Window) -> u64 {
         // The heights twice, two sums of eight bytes, and four planes while the deposits slide.
-        40 * window.grown(self.halo(window.cell)).len() as u64
+        memory(&window.grown(self.halo(window.cell)), 40)
     }
 
     fn apply(

@@ -1,5 +1,6 @@
 //! Landforms by geomorphons.
 
+use crate::budget::memory;
 use crate::lower::{Lowering, Passes};
 use crate::op::{Context, Filter, WorldParams};
 use orogen_grid::analysis::geomorphons::{CODES, Level, Look, geomorphons_with};
@@ -53,7 +54,7 @@ impl Filter for Geomorphons {
     }
 
     fn scratch(&self, window: &Window) -> u64 {
-        window.len() as u64
+        memory(window, 1)
     }
 
     fn apply(

@@ -1,5 +1,6 @@
 //! Stream power erosion with a finite halo.
 
+use crate::budget::memory;
 use crate::lower::{Lowering, Passes, alternating};
 use crate::op::{Context, Filter, WorldParams};
 use orogen_grid::erosion::local_stream_power::{AREA, HEIGHT, LocalStreamPower as Law, RADIUS, SEDIMENT};
@@ -66,7 +67,7 @@ impl Filter for LocalStreamPower {
 
     fn scratch(&self, window: &Window) -> u64 {
         // Three planes before and after some iterations, and bands of them.
-        36 * window.grown(self.halo(window.cell)).len() as u64
+        memory(&window.grown(self.halo(window.cell)), 36)
     }
 
     fn reads_sea_level(&self) -> bool {

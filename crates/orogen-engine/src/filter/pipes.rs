@@ -1,5 +1,6 @@
 //! Hydraulic erosion with virtual pipes.
 
+use crate::budget::memory;
 use crate::lower::{Lowering, Passes};
 use crate::op::{Context, Filter, WorldParams};
 use orogen_grid::erosion::pipe_rows::{BED, DEPTH, SEDIMENT};
@@ -69,7 +70,7 @@ impl Filter for Pipes {
 
     fn scratch(&self, window: &Window) -> u64 {
         // Five planes before and after, and the bands.
-        60 * window.grown(self.halo(window.cell) + 1).len() as u64
+        memory(&window.grown(self.halo(window.cell) + 1), 60)
     }
 
     fn apply(

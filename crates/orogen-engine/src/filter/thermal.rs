@@ -1,5 +1,6 @@
 //! Thermal weathering: slopes slide to the talus angle.
 
+use crate::budget::memory;
 use crate::lower::{Lowering, Passes, alternating};
 use crate::op::{Context, Filter, WorldParams};
 use orogen_grid::erosion::thermal::Thermal as Law;
@@ -38,7 +39,7 @@ impl Filter for Thermal {
 
     fn scratch(&self, window: &Window) -> u64 {
         // All rows before and after some passes, and the bands.
-        12 * window.grown(self.iterations as usize).len() as u64
+        memory(&window.grown(self.iterations as usize), 12)
     }
 
     fn apply(

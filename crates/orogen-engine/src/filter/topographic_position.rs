@@ -1,5 +1,6 @@
 //! Topographic position index.
 
+use crate::budget::memory;
 use crate::lower::{Lowering, Passes};
 use crate::op::{Context, Filter, WorldParams};
 use orogen_grid::analysis::position::{class, half_widths, positions_with};
@@ -55,7 +56,7 @@ impl Filter for TopographicPosition {
 
     fn scratch(&self, window: &Window) -> u64 {
         let grown = window.grown(self.halo(window.cell));
-        16 * (grown.width as u64 + 1) * grown.height as u64 + 16 * window.len() as u64
+        memory(&Window { width: grown.width + 1, ..grown }, 16).saturating_add(memory(window, 16))
     }
 
     fn apply(

@@ -1,6 +1,7 @@
 //! Depression breaching.
 
-use super::terrain::{Terrain, memory};
+use super::terrain::Terrain;
+use crate::budget::memory;
 use crate::lower::{Lowering, Passes};
 use crate::op::{Context, Solution, Solver, Sources, WorldParams};
 use orogen_grid::error::Result;

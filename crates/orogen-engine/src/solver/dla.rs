@@ -1,6 +1,6 @@
 //! Mountains from diffusion-limited aggregation.
 
-use super::terrain::memory;
+use crate::budget::memory;
 use crate::lower::{Lowering, Passes};
 use crate::op::{Context, Solution, Solver, Sources, WorldParams};
 use orogen_grid::aggregate::relief::{self, Ridges};

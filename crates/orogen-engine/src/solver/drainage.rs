@@ -1,7 +1,8 @@
 //! Drainage: flow directions, drainage areas, watersheds and stream order.
 
 use super::routing::{self, Flats, Planes, step, then};
-use super::terrain::{Terrain, TiledTerrain, cells_of, flow_layer, layer_of, memory, sea_level_of};
+use super::terrain::{Terrain, TiledTerrain, cells_of, flow_layer, layer_of, sea_level_of};
+use crate::budget::memory;
 use crate::declare::{Declared, Input};
 use crate::large::areas::Layers;
 use crate::lower::{Lowering, Passes};

@@ -1,7 +1,8 @@
 //! Depression filling.
 
 use super::routing::{self, Flats, Planes, step, then};
-use super::terrain::{Terrain, TiledTerrain, memory, sea_level_of};
+use super::terrain::{Terrain, TiledTerrain, sea_level_of};
+use crate::budget::memory;
 use crate::declare::Declared;
 use crate::lower::{Lowering, Passes};
 use crate::op::{Context, Solution, Solver, Sources, WorldParams};

@@ -1,7 +1,8 @@
 //! Lakes in depressions.
 
 use super::routing::{self, Flats, Planes, step, then};
-use super::terrain::{Terrain, cells_of, layer_of, memory, sea_level_of};
+use super::terrain::{Terrain, cells_of, layer_of, sea_level_of};
+use crate::budget::memory;
 use crate::declare::Declared;
 use crate::lower::{Lowering, Passes};
 use crate::op::{Context, Solution, Solver, Sources, WorldParams};

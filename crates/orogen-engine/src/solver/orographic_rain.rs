@@ -1,6 +1,7 @@
 //! Rain over mountains.
 
-use super::terrain::{self, memory};
+use super::terrain;
+use crate::budget::memory;
 use crate::lower::{Lowering, Passes};
 use crate::op::{Context, Reading, Solution, Solver, Sources, WorldParams};
 use orogen_grid::climate::orographic::OrographicRain as Law;

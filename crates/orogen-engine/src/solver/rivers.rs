@@ -1,6 +1,7 @@
 //! Rivers and their beds.
 
-use super::terrain::{Terrain, cells_of, layer, layer_of, memory};
+use super::terrain::{Terrain, cells_of, layer, layer_of};
+use crate::budget::memory;
 use crate::lower::{Lowering, Passes};
 use crate::op::{Context, Solution, Solver, Sources, WorldParams};
 use orogen_grid::error::Result;

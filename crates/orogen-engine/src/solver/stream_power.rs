@@ -1,7 +1,8 @@
 //! Stream power erosion with uplift.
 
 use super::routing::{self, Descent, Flats, LAST, Planes, then};
-use super::terrain::{flow_layer, memory, sea_level, sea_level_of};
+use super::terrain::{flow_layer, sea_level, sea_level_of};
+use crate::budget::memory;
 use crate::declare::{Declared, Input};
 use crate::lower::{Lowering, Passes};
 use crate::op::{Context, Solution, Solver, Sources, WorldParams};

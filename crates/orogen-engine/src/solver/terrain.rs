@@ -1,5 +1,6 @@
 //! What the solvers of water begin with: the heights of their domain, and the cells at which water leaves it.
 
+use crate::budget::memory;
 use crate::large::drainage::{self as large, Water};
 use crate::large::tiling::Tiling;
 use crate::op::{Context, Sources, WorldParams};
@@ -27,11 +28,6 @@ pub(crate) fn sea_level(sea: bool, context: &Context) -> Option<f32> {
 /// The same in a world.
 pub(crate) fn sea_level_of(sea: bool, world_params: &WorldParams) -> Option<f32> {
     sea.then_some(world_params.sea_level as f32)
-}
-
-/// Memory of a domain with this many bytes per cell.
-pub(crate) fn memory(padded: &Window, bytes_per_cell: u64) -> u64 {
-    (padded.width as u64).saturating_mul(padded.height as u64).saturating_mul(bytes_per_cell)
 }
 
 /// An area in whole cells, at least `fewest` of them.

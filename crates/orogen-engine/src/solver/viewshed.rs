@@ -1,6 +1,7 @@
 //! Viewshed of an observer.
 
-use super::terrain::{self, memory};
+use super::terrain;
+use crate::budget::memory;
 use crate::lower::{Lowering, Passes};
 use crate::op::{Context, Solution, Solver, Sources, WorldParams};
 use orogen_grid::analysis::viewshed::{BEYOND, Observer, hidden, sinking};

@@ -1,12 +1,15 @@
 //! Invariants of all nodes. New nodes are included automatically.
 
 use crate::support::{laws_of, open, recipe_of, world_of};
+use orogen::declare::Shape;
 use orogen::field::{add::Add, constant::Constant, fbm::Fbm, perlin::Perlin, warp::Warp};
 use orogen::ids::Id;
 use orogen::laws::{CELLS, Violation};
 use orogen::node::Node;
+use orogen::op::Op;
 use orogen::plan::steps::{Plan, Step};
 use orogen::solver::normalise::Normalise;
+use orogen::value::Value;
 use orogen::{Grid, Progress, Recipe, Window, World, WorldSpec};
 
 fn holds<T>(verdict: Result<T, Violation>) -> T {
@@ -277,6 +280,35 @@ fn a_plan_over_memory_is_refused_before_it_starts() {
     assert_eq!(error.kind(), orogen::ErrorKind::Memory);
     assert!(error.to_string().contains("4.1 TiB") && error.to_string().contains("64 MiB"), "{error}");
     assert!(world.window("height", &Window::new(512, 512, 10.0)).is_ok());
+}
+
+/// With parameters at the ends of their ranges, over windows of all sizes.
+#[test]
+fn no_estimate_of_memory_overflows() {
+    for node in Node::all() {
+        for end in [0, 1] {
+            let mut node = node.clone();
+            for (i, spec) in node.spec().params.iter().enumerate() {
+                let value = match spec.shape {
+                    Shape::Number => Value::Number(spec.range[end]),
+                    Shape::Integer => Value::Integer(spec.range[end] as i64),
+                    _ => continue,
+                };
+                node.set_param(i, &value).unwrap();
+            }
+            let mut before = 0;
+            for side in [1, 100, 1 << 20, 1 << 31, 1 << 53] {
+                let window = Window::new(side, side, 10.0);
+                let memory = match node.op() {
+                    Op::Filter(filter) => filter.scratch(&window),
+                    Op::Solver(solver) => solver.scratch(&window),
+                    Op::Field(_) | Op::Levelled(_) => 0,
+                };
+                assert!(memory >= before, "{} at {side} x {side}: {memory} after {before}", node.spec().op);
+                before = memory;
+            }
+        }
+    }
 }
 
 #[test]
