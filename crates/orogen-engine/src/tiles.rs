@@ -66,6 +66,10 @@ pub struct Tile {
 /// Maximum number of samples that are made at once: enough to make halos and plans cheap.
 const AT_ONCE: usize = 1 << 24;
 
+/// The share of a memory limit that one grid of what is made at once takes at most. The allocator keeps what a thread has freed for this thread,
+/// outside of the budget, so many small grids take less memory than a few large ones.
+const PART_OF_LIMIT: u64 = 16;
+
 /// The tiles of a large window, made on demand: see [`World::tiles`].
 pub struct Tiles<'w> {
     world: &'w World,
@@ -244,9 +248,10 @@ impl<'w> Tiles<'w> {
             window.width.saturating_mul(window.height)
         };
         let allowed = self.allowed();
+        let most = allowed.map_or(AT_ONCE, |allowed| AT_ONCE.min((allowed / PART_OF_LIMIT / 4) as usize));
         let mut at_once = [columns, rows];
         loop {
-            if at_once == [1, 1] || samples(at_once) <= AT_ONCE {
+            if at_once == [1, 1] || samples(at_once) <= most {
                 let needed = self.needed(at_once)?;
                 match allowed {
                     Some(allowed) if needed > allowed => {

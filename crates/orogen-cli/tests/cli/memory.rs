@@ -8,7 +8,7 @@
 
 use std::io::Read;
 use std::process::{Command, Stdio};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use orogen::export::derived::layer::{Made, Nature};
 use orogen::export::derived::list as derived;
@@ -19,7 +19,7 @@ use crate::harness::Folder;
 
 /// The maximum peak as a multiple of the limit.
 #[cfg_attr(not(target_os = "linux"), allow(dead_code, reason = "the peak of a process is read from /proc"))]
-const MOST: f64 = 1.1;
+pub const MOST: f64 = 1.1;
 
 /// Commands that only hold a text or a page of fixed size, and have no `--memory`.
 const SMALL: [&str; 10] =
@@ -106,9 +106,28 @@ fn rows(side: usize) -> Vec<Vec<String>> {
 }
 
 /// Returns the exit code of a run, its standard error, and its peak memory in bytes.
-fn measured(mut command: Command) -> (i32, String, u64) {
+fn measured(command: Command) -> (i32, String, u64) {
+    let watched = watched(command, None);
+    (watched.code.unwrap(), watched.said, watched.peak)
+}
+
+/// A command that has ended.
+pub struct Watched {
+    /// Its exit code; none if a signal ended it.
+    pub code: Option<i32>,
+    /// Its standard error.
+    pub said: String,
+    /// Its peak memory in bytes.
+    pub peak: u64,
+    /// The time from the interruption to its end, if it was interrupted.
+    pub late: Option<Duration>,
+}
+
+/// Runs a command to its end. It is interrupted once if it takes longer than `patience`.
+pub fn watched(mut command: Command, patience: Option<Duration>) -> Watched {
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
     let (status, mut peak) = (format!("/proc/{}/status", child.id()), 0);
+    let (begun, mut asked) = (Instant::now(), None);
     let code = loop {
         // The system keeps the peak, so only the growth after the last reading is missed.
         let text = std::fs::read_to_string(&status).unwrap_or_default();
@@ -116,13 +135,19 @@ fn measured(mut command: Command) -> (i32, String, u64) {
         let most = most.and_then(|most| most.trim().trim_end_matches(" kB").parse::<u64>().ok());
         peak = peak.max(most.unwrap_or(0) << 10);
         if let Some(ended) = child.try_wait().unwrap() {
-            break ended.code().unwrap();
+            break ended.code();
+        }
+        if asked.is_none() && patience.is_some_and(|patience| begun.elapsed() > patience) {
+            let status = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+            assert!(status.success());
+            asked = Some(Instant::now());
         }
         std::thread::sleep(Duration::from_millis(2));
     };
+    let late = asked.map(|asked| asked.elapsed());
     let mut said = String::new();
     child.stderr.take().unwrap().read_to_string(&mut said).unwrap();
-    (code, said, peak)
+    Watched { code, said, peak, late }
 }
 
 #[test]
@@ -176,6 +201,18 @@ fn measure_every(side: usize, limits: &[u32]) {
         println!("{line}");
     }
     assert!(worst.is_empty(), "{}", worst.join("\n"));
+}
+
+/// What the allocator keeps for each thread counts, too.
+#[test]
+#[cfg(target_os = "linux")]
+fn bands_of_many_columns_keep_their_memory() {
+    let folder = Folder::with_small();
+    for size in ["4096", "8192"] {
+        let arguments = ["export", "small.toml", "-o", "a.r32", "--size", size, "-q", "--force", "--memory", "64MiB"];
+        let (code, said, peak) = measured(folder.command(&arguments));
+        assert!(code == 0 && peak as f64 <= MOST * f64::from(64 << 20), "{size}: {code}, {peak} bytes: {said}");
+    }
 }
 
 #[test]
