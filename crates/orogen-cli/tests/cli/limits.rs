@@ -1,12 +1,18 @@
 //! Requirements for every command, tested command by command. The table in docs/development.md lists them; the test
 //! compares it with the results, and `OROGEN_BLESS=1` updates it.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use orogen::export::derived::layer::{Made, Nature};
+use orogen::export::derived::list as derived;
+use orogen::export::options::{OptionSpec, ValueKind};
+use orogen::export::registry;
+
 use crate::commands::{WRITERS, Writer, prepare, workplace};
 use crate::harness::{Folder, Running, SMALL, bless, slow};
+use crate::memory::{MOST, Watched, watched};
 
 /// One requirement, in the order of the table's columns.
 struct Promise {
@@ -259,6 +265,7 @@ const HOSTILE: [(&str, &[&str]); 8] = [
             "0,0,1000000000,1000000000",
             "4503599627370496,0,9,9",
             "-4503599627370496,-4503599627370496,9,9",
+            "0,0,9,9",
             "0m,0m,1000000000km,1000000000km",
             "1000000000km,0m,1km,1km",
         ],
@@ -270,20 +277,82 @@ const HOSTILE: [(&str, &[&str]); 8] = [
     ("--camera", &["nan,0", "0,0,-1"]),
     ("--cell", &["1e300", "1e-300", "1e12", "1e-6", "0", "nan"]),
     // All others.
-    ("", &["nan", "-1e300", "18446744073709551616"]),
+    (
+        "",
+        &[
+            "",
+            "0",
+            "1",
+            "-1",
+            "nan",
+            "inf",
+            "-1e300",
+            "1e300",
+            "1e-300",
+            "1e9",
+            "65536",
+            "18446744073709551616",
+            "0,0",
+            "1e9,1e9",
+            "1e9,1e9,1e9",
+            "\u{7}",
+        ],
+    ),
 ];
 
 /// Options whose values are no numbers, or that say where and how the work is done.
 const NO_NUMBERS: [&str; 5] = ["--out", "--memory", "--cache", "--title", "--set"];
 
-/// The options with a value that a command lists.
+/// The options with a value that a command lists, without those of formats and layers.
 fn options(folder: &Folder, command: &str) -> Vec<String> {
     let help = folder.good(&[command, "--help"]).text().to_string();
     let named = |line: &str| {
         let (_, rest) = line.split_once("--").filter(|(before, _)| before.trim().len() <= 3)?;
         rest.split_once(" <").map(|(name, _)| format!("--{name}"))
     };
-    help.lines().filter_map(named).filter(|name| !NO_NUMBERS.contains(&name.as_str())).collect()
+    let declared: Vec<&str> = declared().into_iter().map(|(spec, _)| spec.name).collect();
+    let is_own = |name: &String| !NO_NUMBERS.contains(&name.as_str()) && !declared.contains(&&name[2..]);
+    help.lines().filter_map(named).filter(is_own).collect()
+}
+
+/// The options of formats and layers, each with the arguments of `export` for every format or layer that has it.
+fn declared() -> Vec<(&'static OptionSpec, Vec<String>)> {
+    let formats = registry::options().into_iter().map(|(spec, all)| {
+        let arguments = all.iter().map(|format| format!("export small.toml -o option.{}", format.name));
+        (spec, arguments.collect())
+    });
+    let of_layer = |name: &&str| {
+        let is_picture = matches!(derived::named(name).map(|layer| &layer.made), Some(Made::Rows(rows)) if rows.nature != Nature::Numbers);
+        let needed = match *name {
+            "viewshed" => "--observer 320,240",
+            "watershed" => "--outlet 320,240",
+            _ => "",
+        };
+        format!("export small.toml --layer {name} {needed} -o option.{}", if is_picture { "png" } else { "tif" })
+    };
+    let layers = derived::options().into_iter().map(|(spec, all)| (spec, all.iter().map(of_layer).collect()));
+    formats.chain(layers).collect()
+}
+
+/// The ends of what an option may be, and what is beyond them.
+fn ends(kind: ValueKind) -> Vec<String> {
+    let all = |values: &[&str]| values.iter().map(|value| value.to_string()).collect();
+    match kind {
+        ValueKind::Nothing => Vec::new(),
+        ValueKind::Whole(low, high) => {
+            let beyond = [low.saturating_sub(1), low, high, high.saturating_add(1)].map(|whole| whole.to_string());
+            [&beyond[..], &["1.5".into(), "-1".into(), "18446744073709551616".into()]].concat()
+        }
+        ValueKind::Number(low, high) => {
+            let ends = [low, high, low + 1e-9, high - 1e-9, low - 1.0, high * 2.0 + 1.0];
+            [&ends.map(|number| format!("{number:e}"))[..], &["nan".into(), "".into()]].concat()
+        }
+        ValueKind::Range => all(&["1,1", "1,0", "-1e300,1e300", "0,1e-300", "-1e30,1e30", "nan,1", "0"]),
+        ValueKind::Point => all(&["320,240", "0,0", "1e300,0", "-1e9,1e9", "nan,0", "0"]),
+        ValueKind::Word(words) => words.iter().copied().chain(["", "wrong"]).map(str::to_string).collect(),
+        ValueKind::Text => all(&["", "0", "1,2,3", "1e300", "nan", "\u{e9}", "a=1e300,b=0"]),
+        ValueKind::File => all(&["", "absent.txt", "small.toml", "."]),
+    }
 }
 
 /// Commands with an unbounded world, or without one: what a window of a bounded one may be is known.
@@ -318,21 +387,102 @@ fn no_value_of_an_option_ends_a_command_without_a_sentence() {
     }
 }
 
+/// How long a command may work before it is interrupted, and how soon it then ends.
+const PATIENCE: Duration = Duration::from_secs(2);
+const PROMPT: Duration = Duration::from_millis(300);
+
 #[test]
-#[ignore = "long: every option of every command at the ends of its range and beyond"]
+#[ignore = "long: every option of every command at the ends of its range and beyond, its memory and the time until it ends"]
 fn no_value_of_any_option_ends_a_command_without_a_sentence() {
     let folder = workplace();
     WRITERS.iter().for_each(|writer| prepare(&folder, writer));
     let writers = WRITERS.iter().map(|writer| writer.arguments);
-    for arguments in UNBOUNDED.into_iter().chain(writers) {
-        for option in options(&folder, arguments[0]) {
-            let known = HOSTILE.iter().find(|(name, _)| *name == option || name.is_empty());
-            for value in known.map_or(&[][..], |(_, values)| *values) {
-                let few: &[&str] =
-                    if option == "--cell" && arguments.contains(&"endless") { &["--window", "0,0,9,9"] } else { &[] };
-                answered(&folder, arguments, few, &option, value);
-            }
+    let mut broken = 0;
+    // How many did their work, were refused, and were interrupted.
+    let mut runs = [0; 3];
+    let mut watch = |arguments: &[&str], option: &str, value: &str| {
+        let ended = watched_with(&folder, arguments, option, value);
+        runs[if ended.late.is_some() { 2 } else { usize::from(ended.code != Some(0)) }] += 1;
+        if let Some(fault) = fault(&ended) {
+            println!("{} {option}={value:?}: {fault}", arguments.join(" "));
+            broken += 1;
         }
+        ended.said
+    };
+    for arguments in UNBOUNDED.into_iter().chain(writers) {
+        let is_endless = arguments.contains(&"endless");
+        for option in options(&folder, arguments[0]) {
+            let few: &[&str] = if option == "--cell" && is_endless { &["--window", "0,0,9,9"] } else { &[] };
+            let all = [arguments, few].concat();
+            let values = HOSTILE.iter().filter(|(name, _)| *name == option || name.is_empty());
+            let values: Vec<&str> = values.flat_map(|(_, values)| *values).copied().collect();
+            let said: String = values.iter().map(|value| watch(&all, &option, value)).collect();
+            limits_named(&said).iter().for_each(|value| _ = watch(&all, &option, value));
+        }
+        let values =
+            |option| HOSTILE.iter().filter(move |(name, _)| is_endless && *name == option).flat_map(|(_, all)| *all);
+        for (cell, window) in values("--cell").flat_map(|cell| values("--window").map(move |window| (cell, window))) {
+            watch(&[arguments, &["--window", window]].concat(), "--cell", cell);
+        }
+    }
+    for (spec, commands) in declared() {
+        for command in commands {
+            // Without what is given for the option's own sake.
+            let option = format!("--{}", spec.name);
+            let words: Vec<&str> = command.split_whitespace().collect();
+            let own = words.iter().position(|word| *word == option);
+            let kept = |at: &usize| own.is_none_or(|own| *at != own && *at != own + 1);
+            let arguments: Vec<&str> = (0..words.len()).filter(kept).map(|at| words[at]).collect();
+            ends(spec.value_kind).iter().for_each(|value| _ = watch(&arguments, &option, value));
+        }
+    }
+    println!("{runs:?} runs");
+    assert!(broken == 0, "{broken} of {runs:?} runs");
+}
+
+/// The limits that refusals name: "must be 1 to 1000", "at most 64".
+fn limits_named(said: &str) -> BTreeSet<String> {
+    let words: Vec<&str> = said.split_whitespace().map(|word| word.trim_matches([',', ';', '.', '(', ')'])).collect();
+    let is_limit = |at: &usize| {
+        let before = at.checked_sub(1).map_or("", |before| words[before]);
+        words[*at].parse::<f64>().is_ok()
+            && (matches!(before, "to" | "most" | "least" | "than" | "below") || words.get(at + 1) == Some(&"to"))
+    };
+    (0..words.len()).filter(is_limit).map(|at| words[at].to_string()).collect()
+}
+
+/// Runs a command with a value of an option under a memory limit of 64 MiB.
+fn watched_with(folder: &Folder, arguments: &[&str], option: &str, value: &str) -> Watched {
+    let option = format!("{option}={value}");
+    let mut all = [arguments, &[&option]].concat();
+    if !matches!(arguments[0], "palettes" | "graph") {
+        all.extend(["--memory", "64MiB"]);
+    }
+    remove_output(folder, arguments);
+    watched(folder.command(&all), Some(PATIENCE))
+}
+
+/// What is wrong with such a run: it does its work or says why not, keeps its memory, and ends at once when it is interrupted.
+fn fault(ended: &Watched) -> Option<String> {
+    const LIMIT: u64 = 64 << 20;
+    let said = ended.said.trim_end();
+    let is_told = said.lines().any(|line| line.starts_with("error: "));
+    let fault = match (ended.code, ended.late) {
+        _ if said.contains("panicked") => Some("a panic".to_string()),
+        (Some(0), None) => None,
+        (Some(1 | 2), None) if is_told => None,
+        (Some(0 | 1 | 130), Some(late)) => (late > PROMPT).then(|| format!("{late:?} after the interruption")),
+        (code, _) => Some(format!("{code:?}")),
+    };
+    let peak = (ended.peak as f64 > MOST * LIMIT as f64).then(|| format!("{} MiB", ended.peak >> 20));
+    fault.or(peak).map(|fault| format!("{fault}: {said}"))
+}
+
+/// Removes what a run before has written.
+fn remove_output(folder: &Folder, arguments: &[&str]) {
+    if let Some(at) = arguments.iter().position(|argument| *argument == "-o") {
+        let out = folder.path(arguments[at + 1]);
+        let _ = if out.is_dir() { std::fs::remove_dir_all(out) } else { std::fs::remove_file(out) };
     }
 }
 
@@ -340,13 +490,8 @@ fn no_value_of_any_option_ends_a_command_without_a_sentence() {
 fn answered(folder: &Folder, arguments: &[&str], more: &[&str], option: &str, value: &str) {
     let option = format!("{option}={value}");
     let all = [arguments, more, &[&option], &["--memory", "64MiB"]].concat();
-    let takes_memory = !matches!(arguments[0], "palettes" | "graph");
-    // What a run before has written.
-    if let Some(at) = arguments.iter().position(|argument| *argument == "-o") {
-        let out = folder.path(arguments[at + 1]);
-        let _ = if out.is_dir() { std::fs::remove_dir_all(out) } else { std::fs::remove_file(out) };
-    }
-    let mut running = Running::start(folder, if takes_memory { &all } else { &all[..all.len() - 2] });
+    remove_output(folder, arguments);
+    let mut running = Running::start(folder, &all);
     let (code, said) = running.ended();
     // 2 and 1 come with a sentence, anything else is an abort or a panic.
     let is_told = said.iter().any(|line| line.starts_with("error: "));
