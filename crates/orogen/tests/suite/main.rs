@@ -7,6 +7,7 @@ mod dems;
 mod fit;
 mod flight;
 mod golden;
+mod graphs;
 mod images;
 mod large_water;
 mod laws;

@@ -30,13 +30,29 @@ impl Random {
         z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
         (z ^ (z >> 31)) % n
     }
+
+    /// A number from 0 to 1, less than 1.
+    pub fn share(&mut self) -> f64 {
+        self.below(1 << 53) as f64 / (1u64 << 53) as f64
+    }
+
+    /// One of these.
+    pub fn of<'a, T>(&mut self, all: &'a [T]) -> &'a T {
+        &all[self.below(all.len() as u64) as usize]
+    }
 }
 
 /// A file of heights for the `dem` node.
-const DEM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/dem/f32-tiles-deflate-p3.tif");
+pub const DEM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/dem/f32-tiles-deflate-p3.tif");
 
 /// A grey picture for the `image` node.
-const PICTURE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/dem/grey.png");
+pub const PICTURE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/dem/grey.png");
+
+/// Lines and areas for nodes that draw.
+pub const DRAWINGS: [&str; 2] = [
+    concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/drawing/lines.geojson"),
+    concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/drawing/areas.geojson"),
+];
 
 /// Two lines or rings for the nodes that draw, in a small world: the second one crosses the first.
 fn drawing(cell: f64) -> Value {
