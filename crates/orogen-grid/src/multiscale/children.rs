@@ -5,7 +5,6 @@ use super::given::Given;
 use super::hash::{self, jittered};
 use super::lakes;
 use super::level::Level;
-use super::mouths;
 use super::refinement::Refinement;
 use super::rock;
 use super::stencil::Extent;
@@ -146,7 +145,6 @@ impl Children {
         let near_row = j / 2 * parents;
         let far_row = if j & 1 == 1 { near_row + parents } else { near_row - parents };
         let (has_lakes, beside) = (land.lakes > 0.0, lakes::beside(land, parent.depth));
-        let beside_inland = mouths::beside(land, parent.depth);
         let kilometres = land.kilometres(self.depth) as f32;
         let amplitude = amplitude(land, self.depth);
         for i in 2..width - 2 {
@@ -182,16 +180,15 @@ impl Children {
             };
             let irregular = self.indent * rugged * if land.sea { steepness() } else { 1.0 };
             let irregular = irregular * hash::normal(mix64(bits ^ 0xAAAA));
+            // Land is near the shore of a lake, however far it is from the sea.
+            let beside_water = || {
+                let shares = [0.5625, 0.1875, 0.1875, 0.0625].into_iter().zip(parents);
+                shares.map(|(share, p)| share * parent.shore[p].min(beside)).sum::<f32>()
+            };
             self.shore[q] = match given.shore(x, y) {
-                _ if beside_lake => {
-                    let shares = [0.5625, 0.1875, 0.1875, 0.0625].into_iter().zip(parents);
-                    shares.map(|(share, p)| share * parent.shore[p].min(beside)).sum::<f32>()
-                        + lakes::SHORE_IRREGULARITY * irregular
-                }
-                Some(shore) if parents.into_iter().any(|p| mouths::is_inland(parent, p)) => {
-                    let shares = [0.5625, 0.1875, 0.1875, 0.0625].into_iter().zip(parents);
-                    let inland = shares.map(|(share, p)| share * parent.shore[p].min(beside_inland)).sum::<f32>();
-                    shore.min(inland + irregular)
+                _ if beside_lake => beside_water() + lakes::SHORE_IRREGULARITY * irregular,
+                Some(shore) if parents.into_iter().any(|p| parent.is_inland(p)) => {
+                    shore.min(beside_water() + irregular)
                 }
                 Some(shore) => shore,
                 None => blend(&parent.shore) + irregular,

@@ -81,6 +81,12 @@ impl Level {
         Ok(Level { depth, window, east, south, height, area, receiver, variation, uplift, shore })
     }
 
+    /// Whether a node is in an inland lake: water without an outlet above the sea.
+    #[inline(always)]
+    pub(super) fn is_inland(&self, q: usize) -> bool {
+        self.receiver[q] == NONE && self.height[q] > 0.0
+    }
+
     /// The nodes of `window`, which must lie within the level's.
     ///
     /// # Errors

@@ -4,31 +4,16 @@
 use super::children::heir;
 use super::given::Given;
 use super::level::{Level, direction};
-use super::refinement::Refinement;
 use crate::hydrology::direction::{NONE, STEPS, is_diagonal, opposite};
 
 /// The least size of an inland lake where a mouth has no sea, as the distance from its node to its shore, in cells.
 const INLAND: f32 = 1.0;
-
-/// The largest distance to the shore that nodes beside an inland lake have for its shore, in cells.
-const BESIDE: f32 = 0.5;
 
 /// The height of the water of an inland lake, relative to that of the lowest river that ends there.
 const INLAND_HEIGHT: f32 = 0.5;
 
 /// The height of land between a river and the sea, relative to that of the lowest river that passes.
 const PASSED_HEIGHT: f32 = 0.5;
-
-/// Whether a node is in an inland lake: water without an outlet above the sea.
-#[inline(always)]
-pub fn is_inland(level: &Level, q: usize) -> bool {
-    level.receiver[q] == NONE && level.height[q] > 0.0
-}
-
-/// The largest distance to the shore that nodes beside an inland lake have for its shore, in km.
-pub fn beside(land: &Refinement, depth: usize) -> f32 {
-    BESIDE * land.kilometres(depth) as f32
-}
 
 /// What the given shore says of the children of a node.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -215,7 +200,7 @@ mod tests {
         let found = led(level(2), |i, j| i >= 6 && j >= 6);
         assert_eq!(found.receiver[MIDDLE], 1);
         let found = led(level(2), |_, _| false);
-        assert!(is_inland(&found, MIDDLE) && found.receiver[MIDDLE] == NONE);
+        assert!(found.is_inland(MIDDLE) && found.receiver[MIDDLE] == NONE);
         assert_eq!((found.height[MIDDLE], found.shore[MIDDLE]), (45.0, -1.0));
         // Sea without rivers, and what is at the edge, stay as they are.
         assert_eq!((found.height[MIDDLE + 1], found.height[22]), (0.0, 0.0));

@@ -2,7 +2,7 @@
 
 use orogen_grid::parallel;
 
-use super::solid::Scale;
+use super::scale::Scale;
 use super::surface::Surface;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::words::number;

@@ -29,6 +29,7 @@ pub mod ply;
 mod raised_text;
 pub(crate) mod relief;
 mod sample_set;
+mod scale;
 mod scan;
 pub mod shape;
 pub mod solid;

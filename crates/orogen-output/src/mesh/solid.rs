@@ -7,6 +7,7 @@ use super::cavity::Ceiling;
 use super::clip::{Clipped, clip};
 use super::outline::sides;
 use super::raised_text::RaisedText;
+use super::scale::Scale;
 use super::surface::Surface;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::words::number;
@@ -82,7 +83,7 @@ impl Solid {
             );
             return Err(Error::new(ErrorKind::Request, message));
         }
-        let scale = Scale::new(surface, print);
+        let scale = Scale::new(surface, [print.size, print.base], print.cut);
         let mut solid = Solid::top(surface, &scale);
         let sides = sides(surface);
         let around = sides.concat();
@@ -306,33 +307,4 @@ impl Solid {
 /// The edges of a closed line.
 fn pairs(line: &[u32]) -> impl Iterator<Item = (u32, u32)> {
     line.iter().copied().zip(line.iter().copied().cycle().skip(1))
-}
-
-/// Conversion from samples to millimetres.
-pub(super) struct Scale {
-    /// Millimetres per metre.
-    pub scale: f64,
-    /// The height at the top of the base, in metres.
-    lowest: f64,
-    /// Thickness of the base in millimetres.
-    pub base: f64,
-}
-
-impl Scale {
-    fn new(surface: &Surface, print: &Print) -> Scale {
-        let window = surface.grid.window();
-        let [east, south] = [window.width, window.height].map(|samples| (samples - 1) as f64 * window.cell);
-        let [least, _] = surface.bounds();
-        let lowest = print.cut.map_or(f64::from(least[1]), |level| level * f64::from(surface.exaggeration));
-        Scale { scale: print.size / east.max(south), lowest, base: print.base }
-    }
-
-    /// The position of a sample of the surface.
-    pub fn place(&self, surface: &Surface, column: usize, row: usize) -> [f32; 3] {
-        let grid = surface.grid;
-        let [_, height, _] = surface.place(column, row);
-        let along = |steps: usize| (steps as f64 * grid.window().cell * self.scale) as f32;
-        let up = self.base + (f64::from(height) - self.lowest) * self.scale;
-        [along(column), along(grid.height() - 1 - row), up as f32]
-    }
 }

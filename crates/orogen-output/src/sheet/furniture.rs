@@ -6,6 +6,7 @@ use super::labels::Label;
 use super::layout::{BLOCK_GAP, Block, MARGIN, ROW};
 use super::options::PageColors;
 use super::scene::{Item, Scene, Step, line, polygon};
+use super::symbols::{dot, triangle};
 use super::ticks::{Count, grouped, step, ticks};
 use crate::map::text::Face;
 use orogen_grid::words;
@@ -228,10 +229,8 @@ impl Desk<'_> {
                     let across = line([[x, y], [x + SIGN, y]]);
                     self.scene.lines(down.into_iter().chain([across]).collect(), 0.14, self.colors.ink, 0.8);
                 }
-                Sign::Place => self.scene.area(super::marks::dot(Point::new(x + SIGN / 2.0, y)), self.colors.ink, 1.0),
-                Sign::Summit => {
-                    self.scene.area(super::marks::triangle(Point::new(x + SIGN / 2.0, y)), self.colors.ink, 1.0)
-                }
+                Sign::Place => self.scene.area(dot(Point::new(x + SIGN / 2.0, y)), self.colors.ink, 1.0),
+                Sign::Summit => self.scene.area(triangle(Point::new(x + SIGN / 2.0, y)), self.colors.ink, 1.0),
             }
             self.small(&entry.text, Point::new(x + SIGN + 1.8, y + 0.95), Align::Start);
         }

@@ -2,7 +2,8 @@
 
 use super::furniture::Desk;
 use super::geometry::Point;
-use super::scene::{Step, polygon};
+use super::scene::Step;
+use super::symbols::{DOT, dot, triangle};
 use super::taken::Taken;
 use crate::map::text::Face;
 use orogen_io::palette::color::Rgb;
@@ -10,14 +11,8 @@ use orogen_io::palette::color::Rgb;
 /// Size of a summit's label, the em in millimetres.
 const SIZE: f32 = 2.5;
 
-/// Size of a place's name, and radius of its mark.
+/// Size of a place's name.
 const NAME: f32 = 3.1;
-const DOT: f32 = 0.7;
-
-/// A small triangle around a point.
-pub fn triangle(Point { x, y }: Point) -> Vec<Step> {
-    polygon([[x, y - 0.95], [x + 0.85, y + 0.6], [x - 0.85, y + 0.6]])
-}
 
 /// Draws a summit and its height, if there is room: to the right, otherwise to the left. Marks the room as occupied.
 pub fn summit(desk: &mut Desk, taken: &mut Taken, at: Point, text: &str) {
@@ -36,15 +31,6 @@ pub fn summit(desk: &mut Desk, taken: &mut Taken, at: Point, text: &str) {
     desk.scene.area(outline, desk.colors.ink, 1.0);
     taken.take(at, 1.3);
     shares().for_each(|share| taken.take(middle(start, share), SIZE * 0.75));
-}
-
-/// A dot at a place.
-pub fn dot(Point { x, y }: Point) -> Vec<Step> {
-    let corner = |k: i32| {
-        let (sin, cos) = libm::sincosf(std::f32::consts::TAU * k as f32 / 24.0);
-        [x + DOT * cos, y + DOT * sin]
-    };
-    polygon((0..24).map(corner))
 }
 
 /// Draws a place and its name, if there is room: to the right, otherwise to the left, above or below. Marks the room as occupied. Returns whether there was

@@ -24,6 +24,7 @@ pub(crate) mod ramp;
 pub mod raster;
 pub(crate) mod relief;
 pub mod scene;
+mod symbols;
 mod taken;
 pub(crate) mod ticks;
 pub mod vector;

@@ -16,6 +16,7 @@ mod meshes;
 mod neighbours;
 #[cfg(target_os = "linux")]
 mod peaks;
+mod prints;
 mod programs;
 mod progress;
 mod properties;

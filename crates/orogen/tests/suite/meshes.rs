@@ -20,10 +20,10 @@ use orogen::test_folder::TestFolder;
 use orogen::{Grid, Progress, Recipe, Window, World};
 use serde_json::Value;
 
-type V3 = [f64; 3];
+pub type V3 = [f64; 3];
 
 /// A bump in the north-east of land that falls to the south: every mirror image and shift differs.
-fn land(width: usize, height: usize) -> Grid {
+pub fn land(width: usize, height: usize) -> Grid {
     let mut grid = Grid::filled(Window::new(width, height, 12.5).at(40, -30), 0.0);
     for j in 0..height {
         for i in 0..width {
@@ -35,7 +35,7 @@ fn land(width: usize, height: usize) -> Grid {
     grid
 }
 
-fn surface<'a>(grid: &'a Grid, shape: &'a Shape) -> Surface<'a> {
+pub fn surface<'a>(grid: &'a Grid, shape: &'a Shape) -> Surface<'a> {
     static ALONE: LazyLock<Halo> = LazyLock::new(Halo::default);
     Surface { grid, halo: &ALONE, shape, exaggeration: 1.0, painter: None, progress: None }
 }
@@ -49,7 +49,7 @@ struct Mesh {
     triangles: Vec<[usize; 3]>,
 }
 
-fn f32s(bytes: &[u8]) -> Vec<f32> {
+pub fn f32s(bytes: &[u8]) -> Vec<f32> {
     bytes.chunks_exact(4).map(|four| f32::from_le_bytes(four.try_into().unwrap())).collect()
 }
 
@@ -158,19 +158,19 @@ fn read_obj(text: &str) -> Mesh {
     mesh
 }
 
-fn minus(a: V3, b: V3) -> V3 {
+pub fn minus(a: V3, b: V3) -> V3 {
     std::array::from_fn(|i| a[i] - b[i])
 }
 
-fn cross(a: V3, b: V3) -> V3 {
+pub fn cross(a: V3, b: V3) -> V3 {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-fn dot(a: V3, b: V3) -> f64 {
+pub fn dot(a: V3, b: V3) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-fn wide(v: [f32; 3]) -> V3 {
+pub fn wide(v: [f32; 3]) -> V3 {
     v.map(f64::from)
 }
 
@@ -210,7 +210,7 @@ fn check(mesh: &Mesh, grid: &Grid, shape: &Shape) {
     assert!((area - expect).abs() < 1e-6 * expect, "{area} {expect}");
 }
 
-fn shapes(grid: &Grid) -> Vec<Shape> {
+pub fn shapes(grid: &Grid) -> Vec<Shape> {
     vec![Shape::lattice(grid, 1).unwrap(), Shape::lattice(grid, 4).unwrap(), adaptive(grid, 8.0).unwrap()]
 }
 
@@ -372,196 +372,6 @@ fn colours_of_corners_are_those_of_the_map() {
         }
         assert_eq!(lights[corner][6..], [255, 255]);
     }
-}
-
-/// Checks that a solid, as an .stl file holds it, is closed and faces outwards; returns its volume and its bounds.
-fn closed(solid: &Solid) -> (f64, [V3; 2]) {
-    let mut bytes = Vec::new();
-    stl::write(&mut bytes, solid, &Progress::none()).unwrap();
-    let count = u32::from_le_bytes(bytes[80..84].try_into().unwrap()) as usize;
-    assert_eq!(bytes.len(), 84 + 50 * count);
-    let mut edges: BTreeMap<[[u32; 3]; 2], i32> = BTreeMap::new();
-    let (mut volume, mut least, mut greatest) = (0.0, [f64::MAX; 3], [f64::MIN; 3]);
-    for facet in bytes[84..].chunks_exact(50) {
-        let numbers = f32s(&facet[..48]);
-        let corners: [[f32; 3]; 3] = std::array::from_fn(|k| numbers[3 + 3 * k..6 + 3 * k].try_into().unwrap());
-        for k in 0..3 {
-            let [from, to] = [corners[k], corners[(k + 1) % 3]].map(|corner| corner.map(f32::to_bits));
-            *edges.entry([from, to]).or_default() += 1;
-            least = std::array::from_fn(|i| least[i].min(f64::from(corners[k][i])));
-            greatest = std::array::from_fn(|i| greatest[i].max(f64::from(corners[k][i])));
-        }
-        let [a, b, c] = corners.map(wide);
-        let normal = cross(minus(b, a), minus(c, a));
-        assert!(dot(normal, wide(numbers[..3].try_into().unwrap())) > 0.0);
-        volume += dot(a, cross(b, c)) / 6.0;
-    }
-    for ([from, to], times) in &edges {
-        assert_eq!((*times, edges.get(&[*to, *from])), (1, Some(&1)), "an edge is shared by two");
-    }
-    assert_eq!(solid.bounds().map(wide), [least, greatest]);
-    (volume, [least, greatest])
-}
-
-#[test]
-fn a_solid_is_closed_and_faces_outwards() {
-    for (width, height) in [(37, 23), (2, 2), (2, 40), (120, 100)] {
-        let grid = land(width, height);
-        for shape in shapes(&grid) {
-            let exaggerated = Surface { exaggeration: 2.0, ..surface(&grid, &shape) };
-            let print = Print::new(150.0).with_base(3.0);
-            let solid = Solid::new(&exaggerated, &print).unwrap();
-            let (volume, [least, greatest]) = closed(&solid);
-            let scale = 150.0 / (12.5 * (width.max(height) - 1) as f64);
-            let sides = [width, height].map(|samples| (samples - 1) as f64 * 12.5 * scale);
-            assert!((0..2).all(|i| (greatest[i] - sides[i]).abs() < 1e-4), "{greatest:?}");
-            assert_eq!(least, [0.0; 3]);
-            let relief = exaggerated.bounds()[1][1] - exaggerated.bounds()[0][1];
-            assert!((greatest[2] - 3.0 - f64::from(relief) * scale).abs() < 1e-4);
-            // The mean height above the base, by the trapezoidal rule on the grid.
-            if shape == Shape::lattice(&grid, 1).unwrap() && width * height > 1000 {
-                let lowest = grid.data().iter().copied().fold(f32::MAX, f32::min);
-                let mean = grid.data().iter().map(|&z| f64::from(z - lowest)).sum::<f64>() / grid.data().len() as f64;
-                let expect = sides[0] * sides[1] * (3.0 + 2.0 * scale * mean);
-                assert!((volume / expect - 1.0).abs() < 0.02, "{volume} {expect}");
-            }
-            assert!(volume > 3.0 * sides[0] * sides[1]);
-        }
-    }
-}
-
-/// Two hills with a pass at 10 m between them, on level ground of 0 m.
-fn two_hills() -> Grid {
-    let mut grid = Grid::filled(Window::new(61, 41, 10.0), 0.0);
-    for j in 0..41 {
-        for i in 0..61 {
-            let hill = |x: f32| 40.0 - 3.0 * libm::hypotf(i as f32 - x, j as f32 - 20.0);
-            grid.row_mut(j)[i] = hill(20.0).max(hill(40.0)).max(0.0);
-        }
-    }
-    grid
-}
-
-#[test]
-fn land_above_a_cut_has_its_outline_and_a_base_there() {
-    let grid = two_hills();
-    for shape in shapes(&grid) {
-        let surface = Surface { exaggeration: 2.0, ..surface(&grid, &shape) };
-        let cut = |level: f64| Solid::new(&surface, &Print::new(120.0).with_base(2.0).with_cut(level));
-        // 120 mm are 600 m; the hills are cones of radius 13.3 samples at 0 m, and of 6.7 at 20 m.
-        let (volume, [least, greatest]) = closed(&cut(20.0).unwrap());
-        let near = |a: f64, b: f64, off: f64| assert!((a - b).abs() < off, "{a} {b}");
-        let coarse = if shape == Shape::lattice(&grid, 1).unwrap() { 0.3 } else { 4.0 };
-        near(least[0], 2.0 * (20.0 - 6.67), coarse);
-        near(greatest[0], 2.0 * (40.0 + 6.67), coarse);
-        near(greatest[2], 2.0 + 2.0 * 20.0 * 0.2, coarse);
-        assert_eq!(least[2], 0.0);
-        if coarse < 1.0 {
-            // Two cones of 8 mm on cylinders of 2 mm with a radius of 13.3 mm.
-            near(volume, 2.0 * std::f64::consts::PI * 13.33 * 13.33 * (2.0 + 8.0 / 3.0), 60.0);
-        }
-        // At the level of the ground and at that of the pass, where vertices are on the cut; below all of it, and above.
-        for level in [0.0, 10.0, 25.0, -5.0] {
-            closed(&cut(level).unwrap());
-        }
-        let below = closed(&cut(-5.0).unwrap()).1;
-        near(below[1][2], 2.0 + 2.0 * 45.0 * 0.2, coarse);
-        assert_eq!(below[0], [0.0; 3]);
-        let why = cut(40.0).unwrap_err().to_string();
-        assert!(why.contains("its level is 40 m, and the highest sample is at 40 m"), "{why}");
-    }
-    // White noise: many small parts, holes, and land that touches the border.
-    let mut noise = Grid::filled(Window::new(57, 43, 1.0), 0.0);
-    for k in 0..57 * 43 {
-        noise.row_mut(k / 57)[k % 57] = (k * 7919 % 101) as f32;
-    }
-    let shape = Shape::lattice(&noise, 1).unwrap();
-    for level in [10.0, 50.0, 90.0] {
-        closed(&Solid::new(&surface(&noise, &shape), &Print::new(100.0).with_cut(level)).unwrap());
-    }
-}
-
-#[test]
-fn a_hollow_solid_has_walls_and_a_ceiling_everywhere() {
-    for (width, height) in [(37, 23), (12, 90), (120, 100)] {
-        let grid = land(width, height);
-        for shape in [Shape::lattice(&grid, 1).unwrap(), adaptive(&grid, 1.5).unwrap()] {
-            let surface = surface(&grid, &shape);
-            let full = Solid::new(&surface, &Print::new(150.0)).unwrap();
-            let hollow = Solid::new(&surface, &Print::new(150.0).with_hollow(2.0)).unwrap();
-            let ((all, bounds), (left, hollow_bounds)) = (closed(&full), closed(&hollow));
-            assert_eq!(bounds, hollow_bounds);
-            assert!(left < 0.85 * all, "{left} {all}");
-            // Vertices of the cavity are those that are not below, on or beside the surface.
-            let top = full.corners.len() - 1;
-            let inside =
-                |[x, y, _]: [f32; 3]| x > 0.0 && y > 0.0 && f64::from(x) < bounds[1][0] && f64::from(y) < bounds[1][1];
-            let outer = &full.corners[..top];
-            let mut ceilings = 0;
-            for corner in hollow.corners[shape.corners()..].iter().filter(|corner| inside(**corner) && corner[2] > 0.0)
-            {
-                let near = outer.iter().map(|other| {
-                    let apart = minus(wide(*other), wide(*corner));
-                    dot(apart, apart).sqrt()
-                });
-                assert!(near.fold(f64::MAX, f64::min) > 2.0 - 1e-4, "{corner:?}");
-                assert!((0..2).all(|i| (2.0 - 1e-4..=bounds[1][i] - 2.0 + 1e-4).contains(&f64::from(corner[i]))));
-                ceilings += 1;
-            }
-            assert!(ceilings > 100, "{ceilings}");
-        }
-    }
-    let grid = land(60, 40);
-    let shape = Shape::lattice(&grid, 1).unwrap();
-    let refused = |print: Print| Solid::new(&surface(&grid, &shape), &print).unwrap_err().to_string();
-    let why = refused(Print::new(150.0).with_hollow(3.0));
-    assert!(why.contains("walls of 3 mm need a base that is thicker than 3 mm"), "{why}");
-    let why = refused(Print::new(15.0).with_base(9.0).with_hollow(4.0));
-    assert!(why.contains("a solid of 15 x 9.9 mm is too small for walls of 4 mm"), "{why}");
-}
-
-#[test]
-fn letters_stand_out_of_the_southern_wall() {
-    let grid = land(60, 40);
-    let shape = Shape::lattice(&grid, 1).unwrap();
-    let print = Print::new(150.0).with_base(10.0);
-    let plain = Solid::new(&surface(&grid, &shape), &print).unwrap();
-    let (before, _) = closed(&plain);
-    let mut solid = plain.clone();
-    // Eight of the ten millimetres of the base.
-    assert!((solid.letter("L").unwrap() - 8.0).abs() < 0.01);
-    let (volume, [least, _]) = closed(&solid);
-    assert!((least[1] + 0.6).abs() < 1e-6);
-    let letter: Vec<V3> = solid.corners[plain.corners.len()..].iter().copied().map(wide).collect();
-    let range = |axis: usize| {
-        letter.iter().fold([f64::MAX, f64::MIN], |[low, high], at| [low.min(at[axis]), high.max(at[axis])])
-    };
-    let ([west, east], [south, north], [low, high]) = (range(0), range(1), range(2));
-    assert!(west > 70.0 && east < 80.0 && (north - 0.4).abs() < 1e-6 && (south + 0.6).abs() < 1e-6, "{west} {east}");
-    // A capital is about .72 em high; its middle is that of the base.
-    assert!((high - low - 0.72 * 8.0).abs() < 0.3 && (high + low - 10.0).abs() < 0.6, "{low} {high}");
-    // The stem of an L is in its west, and its arm is at the bottom.
-    let stem = letter.iter().filter(|at| at[2] > 6.0).all(|at| at[0] < 0.5 * (west + east));
-    let arm = letter.iter().filter(|at| at[0] > 0.5 * (west + east)).all(|at| at[2] < 5.0);
-    assert!(stem && arm);
-    let area = volume - before;
-    assert!((5.0..20.0).contains(&area), "{area}");
-    // Letters with holes, several, and one of several parts.
-    for text in ["BØ8%&", "Alpine 2026", "i"] {
-        closed(&{
-            let mut solid = plain.clone();
-            solid.letter(text).unwrap();
-            solid
-        });
-    }
-    let refused = |print: Print, text: &str| {
-        let mut solid = Solid::new(&surface(&grid, &shape), &print).unwrap();
-        solid.letter(text).unwrap_err().to_string()
-    };
-    assert!(refused(print, "the 山").contains("the built-in font has no letter for `山` of --text"));
-    assert!(refused(print, "  ").contains("--text must have 1 to 200 letters"));
-    let why = refused(Print::new(5000.0), "a");
-    assert!(why.contains("would have a size of 2.4 mm on a model of 5000 mm"), "{why}");
 }
 
 #[test]
