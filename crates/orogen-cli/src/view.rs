@@ -222,34 +222,17 @@ impl View {
         }
     }
 
-    /// The requested part of the world, if any: in samples of `cell` metres, or with `size` samples.
-    ///
-    /// Bounds include samples at their west and north edges, and exclude those at their east and south edges. Adjacent
-    /// parts therefore share no samples, and bounds along pixel edges of a GeoTIFF select the same pixels as
-    /// gdal_translate.
-    pub fn part(&self, recipe: &Recipe, size: Option<Size>, cell: f64) -> Result<Option<Window>, Failure> {
-        if size.is_some() && self.cell.is_some() {
-            let message = "--size and --cell both set the cell size; leave out one of them";
-            return Err(Failure::Usage(message.into()));
-        }
+    /// The requested part of the world, if it is given in metres or coordinates: its west, north, east and south in metres from the north-west corner.
+    /// It may extend half a cell beyond the world.
+    pub fn ends(&self, recipe: &Recipe, cell: f64) -> Result<Option<[f64; 4]>, Failure> {
         let bounds = match (&self.projwin, self.bounds) {
             (Some(corners), _) => Some(Bounds::of_corners(corners).map_err(Failure::Usage)?),
             (None, bounds) => bounds,
         };
         let map = recipe.georeference();
         let local = || Georeference { origin: [0.0; 2], per_metre: [1.0; 2], keys: None };
-        // West, north, east and south in metres from the north-west corner.
         let ends = match (self.window, bounds) {
-            (Some(Rectangle::Samples(x, y, width, height)), _) => {
-                return match size {
-                    None => Ok(Some(Window { x, y, width, height, cell })),
-                    Some(_) => Err(Failure::Usage(
-                        "--window counts samples already; leave out --size, or give the window in metres, such as \
-                         0m,500m,2km,2km"
-                            .into(),
-                    )),
-                };
-            }
+            (Some(Rectangle::Samples(..)), _) => return Ok(None),
             (Some(Rectangle::Metres([x, y, width, height])), _) => [x, y, x + width, y + height],
             (None, Some(Bounds { west, south, east, north })) => {
                 let place = map.clone().unwrap_or_else(local);
@@ -276,6 +259,30 @@ impl View {
                 )));
             }
         }
+        Ok(Some(ends))
+    }
+
+    /// The requested part of the world, if any: in samples of `cell` metres, or with `size` samples.
+    ///
+    /// Bounds include samples at their west and north edges, and exclude those at their east and south edges. Adjacent
+    /// parts therefore share no samples, and bounds along pixel edges of a GeoTIFF select the same pixels as
+    /// gdal_translate.
+    pub fn part(&self, recipe: &Recipe, size: Option<Size>, cell: f64) -> Result<Option<Window>, Failure> {
+        if size.is_some() && self.cell.is_some() {
+            let message = "--size and --cell both set the cell size; leave out one of them";
+            return Err(Failure::Usage(message.into()));
+        }
+        if let Some(Rectangle::Samples(x, y, width, height)) = self.window {
+            return match size {
+                None => Ok(Some(Window { x, y, width, height, cell })),
+                Some(_) => Err(Failure::Usage(
+                    "--window counts samples already; leave out --size, or give the window in metres, such as \
+                     0m,500m,2km,2km"
+                        .into(),
+                )),
+            };
+        }
+        let Some(ends) = self.ends(recipe, cell)? else { return Ok(None) };
         let extent = [ends[2] - ends[0], ends[3] - ends[1]];
         let (counts, cell) = match size {
             Some(size) => {

@@ -137,7 +137,15 @@ fn engine_job(
         }
     };
     samples.cell = view.cell;
-    samples.window = view.part(world.recipe(), None, view.cell.unwrap_or(world.recipe().world.cell))?;
+    let lattice = world.recipe().world.cell;
+    match view.cell {
+        // A window in metres is resampled to a size of the engine.
+        None => samples.area = view.ends(world.recipe(), lattice)?,
+        Some(_) => {}
+    }
+    if samples.area.is_none() {
+        samples.window = view.part(world.recipe(), None, view.cell.unwrap_or(lattice))?;
+    }
     samples.tiles = args.tiles.map(|tiles| match tiles {
         Size::Longer(count) => [count, count],
         Size::Both(across, down) => [across, down],

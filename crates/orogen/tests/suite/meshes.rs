@@ -493,7 +493,7 @@ fn exports_are_whole_and_the_same_on_any_number_of_threads() {
         (
             "h.stl",
             &[("hollow", "1"), ("text", "H"), ("bed", "100x150.5x90")],
-            "letters of --text have a size of 2.7 mm",
+            "letters of --text have a size of 2.6 mm",
         ),
         ("i.3mf", &[("cut", "200"), ("exaggeration", "0.01")], "less than a layer of 0.2 mm; use an exaggeration of"),
     ];

@@ -7,6 +7,9 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
 use orogen_grid::words::number;
 
+/// Tolerance, in cells, for an area that begins at a sample.
+const NEAR: f64 = 1e-6;
+
 /// The requested samples; missing values are chosen by the target.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[non_exhaustive]
@@ -17,6 +20,8 @@ pub struct FrameSpec {
     pub cell: Option<f64>,
     /// The window; its size is optional for the target.
     pub window: Option<Window>,
+    /// West, north, east and south of an area, in metres from the world's north-west corner, that is resampled to a size of the target.
+    pub area: Option<[f64; 4]>,
     /// Number of tiles, east and south.
     pub tiles: Option<[usize; 2]>,
 }
@@ -38,6 +43,12 @@ impl FrameSpec {
     #[must_use]
     pub fn with_window(self, window: Window) -> FrameSpec {
         FrameSpec { window: Some(window), ..self }
+    }
+
+    /// The same over this area: west, north, east and south in metres from the world's north-west corner.
+    #[must_use]
+    pub fn with_area(self, area: [f64; 4]) -> FrameSpec {
+        FrameSpec { area: Some(area), ..self }
     }
 
     /// The same in this many tiles, east and south.
@@ -64,9 +75,9 @@ pub struct Frame {
 impl Frame {
     /// The samples of a world for a target.
     ///
-    /// The default size is the largest that the world has samples for. Without a cell or a window, the world's shorter
-    /// extent (with several tiles, the extent that they cover) is resampled to them; with either, they start at the
-    /// window's first sample.
+    /// The default size is the largest that the world has samples for. Without a cell or a window, the shorter extent of the
+    /// area or the world (with several tiles, the extent that they cover) is resampled to them; with either, they start at
+    /// the window's first sample. The samples of an area are moved to the lattice, by less than a cell to the west and north.
     ///
     /// # Errors
     /// If the target does not support a size or tiles; the message names the closest.
@@ -80,6 +91,12 @@ impl Frame {
         }
         let spec = &world.recipe().world;
         let cell = asked.cell.unwrap_or(spec.cell);
+        let area = asked.area.filter(|_| asked.window.is_none());
+        let extent = area.map(|[west, north, east, south]| [east - west, south - north]);
+        if extent.is_some_and(|extent| extent.into_iter().any(|side| side < spec.cell)) {
+            return refuse(format!("the area is smaller than a cell of {} m", number(spec.cell)));
+        }
+        let extent = extent.or(spec.size);
         let side = match (asked.side, asked.window) {
             (Some(side), _) => allowed(target, side)?,
             (None, Some(window)) => {
@@ -103,7 +120,7 @@ impl Frame {
                 }
                 allowed(target, sides[0].0)?
             }
-            (None, None) => match spec.size {
+            (None, None) => match extent {
                 Some(size) => {
                     let there = [0, 1].map(|axis| (size[axis] / cell / tiles[axis] as f64).floor() as usize + 1);
                     let most = there[0].min(there[1]);
@@ -115,7 +132,7 @@ impl Frame {
         let samples = tiles.map(|count| count * (side - 1) + 1);
         let spread =
             |[width, height]: [f64; 2]| (width / (samples[0] - 1) as f64).min(height / (samples[1] - 1) as f64);
-        let (first, cell, note) = match (asked.window, asked.cell, spec.size) {
+        let (first, cell, note) = match (asked.window, asked.cell, extent) {
             (Some(window), ..) => ([window.x, window.y], cell, None),
             (None, None, Some(size)) => {
                 let cell = spread(size);
@@ -124,21 +141,25 @@ impl Frame {
                 let mut note = Vec::new();
                 if (cell - spec.cell).abs() > 1e-9 * cell {
                     note.push(format!(
-                        "the cell is {} m instead of {} m, so that the world fits",
+                        "the cell is {} m instead of {} m, so that {} fits",
                         number(cell),
-                        number(spec.cell)
+                        number(spec.cell),
+                        if area.is_some() { "the area" } else { "the world" }
                     ));
                 }
                 if left {
                     note.push(format!(
-                        "only the first {2} x {3} m of the world's {0} x {1} m are written, because the engine only takes squares",
+                        "only the first {2} x {3} m of {4} {0} x {1} m are written, because the engine only takes squares",
                         number(size[0]),
                         number(size[1]),
                         number(covered[0]),
-                        number(covered[1])
+                        number(covered[1]),
+                        if area.is_some() { "the area's" } else { "the world's" }
                     ));
                 }
-                ([0, 0], cell, (!note.is_empty()).then(|| note.join("; ")))
+                let first =
+                    area.map_or([0, 0], |[west, north, ..]| [west, north].map(|at| (at / cell + NEAR).floor() as i64));
+                (first, cell, (!note.is_empty()).then(|| note.join("; ")))
             }
             _ => ([0, 0], cell, None),
         };
@@ -210,6 +231,21 @@ mod tests {
         assert!(wide.note.unwrap().contains("the first 5120 x 5120 m"));
         assert_eq!(frame("unreal", "size = [300, 300]", FrameSpec::default()).unwrap().side, 127);
         assert_eq!(frame("unity", "", FrameSpec::default()).unwrap().side, 1025);
+    }
+
+    #[test]
+    fn an_area_in_metres_is_resampled() {
+        let asked = FrameSpec::default().with_area([2000.0, 3000.0, 7000.0, 8000.0]);
+        let made = frame("unity", "size = [10240, 10240]", asked).unwrap();
+        // The land has 501 samples of 10 m there; 257 of them, so steps of 19.53 m, are the most that the engine takes.
+        assert_eq!((made.side, made.window.cell), (257, 5000.0 / 256.0));
+        assert_eq!((made.window.x, made.window.y), (102, 153));
+        assert!((2000.0 - made.window.east(0)) < made.window.cell);
+        assert!(made.note.unwrap().contains("so that the area fits"));
+        let fine = frame("unity", "size = [10240, 10240]", asked.with_side(1025)).unwrap();
+        assert_eq!((fine.side, fine.window.cell), (1025, 5000.0 / 1024.0));
+        let tiny = FrameSpec::default().with_area([0.0, 0.0, 5.0, 5.0]);
+        assert!(frame("unity", "size = [10240, 10240]", tiny).unwrap_err().contains("smaller than a cell"));
     }
 
     #[test]
