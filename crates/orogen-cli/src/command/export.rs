@@ -138,10 +138,9 @@ fn engine_job(
     };
     samples.cell = view.cell;
     let lattice = world.recipe().world.cell;
-    match view.cell {
+    if view.cell.is_none() {
         // A window in metres is resampled to a size of the engine.
-        None => samples.area = view.ends(world.recipe(), lattice)?,
-        Some(_) => {}
+        samples.area = view.ends(world.recipe(), lattice)?;
     }
     if samples.area.is_none() {
         samples.window = view.part(world.recipe(), None, view.cell.unwrap_or(lattice))?;

@@ -33,26 +33,29 @@ pub fn lead(level: &mut Level, given: &Given) {
         return;
     }
     let (width, height) = (level.window.width, level.window.height);
-    let below: Vec<Below> = (0..level.window.len()).map(|q| below(level, given, q)).collect();
-    let at_sea = |level: &Level, q: usize| level.receiver[q] == NONE && level.height[q] == 0.0;
-    let sea = |level: &Level, q: usize| match below[q] {
-        Below::Sea(_, shore) if at_sea(level, q) => Some(shore),
+    let sea = |level: &Level, q: usize| match is_sea(level, q).then(|| below(level, given, q)) {
+        Some(Below::Sea(_, shore)) => Some(shore),
         _ => None,
     };
     let mut changes = Vec::new();
     for q in (1..height.saturating_sub(1)).flat_map(|j| j * width + 1..(j + 1) * width - 1) {
-        let Some(lowest) = lowest_donor(level, q) else { continue };
-        match below[q] {
-            Below::Sea(corner, _) if at_sea(level, q) => changes.push((q, Change::Move(corner))),
-            Below::Land if at_sea(level, q) => {
-                let code = way(level, |near| sea(level, near), q);
-                changes.push((q, code.map_or(Change::Inland(lowest), |code| Change::Lead(code, lowest))));
+        if is_sea(level, q) {
+            let Some(lowest) = lowest_donor(level, q) else { continue };
+            match below(level, given, q) {
+                Below::Sea(corner, _) => changes.push((q, Change::Move(corner))),
+                Below::Land => {
+                    let code = way(level, |near| sea(level, near), q);
+                    changes.push((q, code.map_or(Change::Inland(lowest), |code| Change::Lead(code, lowest))));
+                }
+                Below::Unknown => {}
             }
-            Below::Sea(corner, _) if corner == heir(level, q) => {
-                let ends = level.downstream(q).is_some_and(|to| sea(level, to).is_some());
-                changes.extend(ends.then_some((q, Change::Drown)));
-            }
-            _ => {}
+        } else if level.receiver[q] < NONE
+            && shore_of(level, given, q, heir(level, q)).is_some_and(|shore| shore < 0.0)
+            && below(level, given, q) != Below::Unknown
+            && level.downstream(q).is_some_and(|to| sea(level, to).is_some())
+            && lowest_donor(level, q).is_some()
+        {
+            changes.push((q, Change::Drown));
         }
     }
     for (q, change) in changes {
@@ -94,17 +97,24 @@ fn inside(share: f32, second: bool) -> f32 {
     if (share >= 0.5) == second { share } else { 1.0 - share }
 }
 
-fn below(level: &Level, given: &Given, q: usize) -> Below {
+fn is_sea(level: &Level, q: usize) -> bool {
+    level.receiver[q] == NONE && level.height[q] == 0.0
+}
+
+/// The given distance of a child from the shore, in km.
+fn shore_of(level: &Level, given: &Given, q: usize, corner: u8) -> Option<f32> {
     let (i, j) = ((q % level.window.width) as i64, (q / level.window.width) as i64);
     let (x, y) = (2 * (level.window.x + i), 2 * (level.window.y + j));
+    given.shore(x + i64::from(corner & 1), y + i64::from(corner >> 1))
+}
+
+fn below(level: &Level, given: &Given, q: usize) -> Below {
     let own = heir(level, q);
     let mut found = Below::Land;
     // The heir, those beside it, and the one across.
     for flip in [0, 1, 2, 3] {
         let corner = own ^ flip;
-        let Some(shore) = given.shore(x + i64::from(corner & 1), y + i64::from(corner >> 1)) else {
-            return Below::Unknown;
-        };
+        let Some(shore) = shore_of(level, given, q, corner) else { return Below::Unknown };
         let is_better = match found {
             Below::Sea(best, other) => flip == 2 && best != own && shore < other,
             _ => true,
