@@ -367,7 +367,8 @@ for kind, base, options in (("cut", "2", ("--cut", middle)), ("hollow", "2", ("-
     checks.that(f"{path.name}: wound the same way", bool(solid.is_winding_consistent and same.is_winding_consistent))
     checks.near(f"{other.name}: the volume of {path.name}", float(same.volume), float(solid.volume), 1e-3 * float(solid.volume))
     found = admesh(path)
-    checks.that(f"{path.name}: its parts", found.pop("parts") == solid.body_count)
+    bodies = trimesh.graph.connected_components(solid.face_adjacency, nodes=numpy.arange(len(solid.faces)), engine="networkx")
+    checks.equal(f"{path.name}: its parts", found.pop("parts"), len(bodies))
     checks.equal(f"{path.name}: what admesh would mend", found, {name: count for name, count in nothing.items() if name != "parts"})
     if base == "2":
         share = solid.volume / trimesh.load_mesh(WORK / "bump-full.stl").volume
