@@ -25,6 +25,7 @@ pub fn show(ui: &mut Ui, export: &mut Export, studio: &Studio, language: Languag
         let formats: Vec<(SheetFormat, String)> =
             SheetFormat::ALL.into_iter().map(|format| (format, format!(".{}", format.name()))).collect();
         is_other = rows::choice(ui, language.text("export.format"), &mut own.format, &formats);
+        rows::samples(ui, &mut own.samples, language);
         colors(ui, own, studio, language);
         let shadings: Vec<_> =
             SHADINGS.iter().map(|(shading, _, key)| (*shading, language.text(key).to_owned())).collect();
@@ -71,7 +72,6 @@ pub fn show(ui: &mut Ui, export: &mut Export, studio: &Studio, language: Languag
             rows::optional(ui, scale, &mut own.map_scale, (100_000.0, 1.0..=1e9), ["1 : ", ""], language);
         }
         resolution(ui, &mut own.resolution, language);
-        rows::samples(ui, &mut own.samples, language);
     });
     ui.add_space(4.0);
     ui.strong(language.text("export.parts"));
