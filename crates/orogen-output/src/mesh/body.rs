@@ -1,5 +1,7 @@
 //! Surfaces in space that are not made of a grid of heights.
 
+use super::bounds::bounds;
+
 /// A part of a surface, with a color for each vertex.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BodyMesh {
@@ -27,11 +29,6 @@ impl BodyMesh {
     /// The least and the greatest of each coordinate.
     #[must_use]
     pub fn bounds(&self) -> [[f32; 3]; 2] {
-        let bound = |pick: fn(f32, f32) -> f32, start: f32| {
-            self.corners
-                .iter()
-                .fold([start; 3], |all, corner| std::array::from_fn(|axis| pick(all[axis], corner[axis])))
-        };
-        [bound(f32::min, f32::INFINITY), bound(f32::max, f32::NEG_INFINITY)]
+        bounds(&self.corners)
     }
 }

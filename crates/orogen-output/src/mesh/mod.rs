@@ -17,6 +17,7 @@
 pub mod adaptive;
 pub mod body;
 mod border;
+mod bounds;
 mod cavity;
 mod clip;
 pub mod glb;

@@ -3,6 +3,7 @@
 //! Millimetres; x east, y north, z up, with the south-western corner of the window at the origin. The surface is closed by walls and a flat base, so that the
 //! solid is watertight: every edge has a triangle on both sides, and every normal points outward.
 
+use super::bounds::bounds;
 use super::cavity::Ceiling;
 use super::clip::{Clipped, clip};
 use super::outline::sides;
@@ -288,12 +289,7 @@ impl Solid {
     /// The least and the greatest of each coordinate.
     #[must_use]
     pub fn bounds(&self) -> [[f32; 3]; 2] {
-        let bound = |pick: fn(f32, f32) -> f32, start: f32| {
-            self.corners
-                .iter()
-                .fold([start; 3], |all, corner| std::array::from_fn(|axis| pick(all[axis], corner[axis])))
-        };
-        [bound(f32::min, f32::INFINITY), bound(f32::max, f32::NEG_INFINITY)]
+        bounds(&self.corners)
     }
 
     /// The size in millimetres: east, north, up.
