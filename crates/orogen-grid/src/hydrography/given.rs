@@ -79,7 +79,7 @@ impl Water {
         let sea = at_sea(&heights, &bed, offset.as_ref(), &receivers, sea_level);
         let drowned = match sea_level {
             Some(level) => {
-                // A bed that is lower is under a river that is not.
+                // The bed of a river may be lower than the sea, but not its water.
                 let beds = bed.data_mut().iter_mut().zip(&sea);
                 beds.filter(|(_, at_sea)| !**at_sea).for_each(|(bed, _)| *bed = bed.max(level));
                 beyond(&receivers, &sea, progress)?

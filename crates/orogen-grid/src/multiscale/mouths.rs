@@ -97,6 +97,7 @@ fn inside(share: f32, second: bool) -> f32 {
     if (share >= 0.5) == second { share } else { 1.0 - share }
 }
 
+/// Whether a node is in the sea.
 fn is_sea(level: &Level, q: usize) -> bool {
     level.receiver[q] == NONE && level.height[q] == 0.0
 }
@@ -108,6 +109,7 @@ fn shore_of(level: &Level, given: &Given, q: usize, corner: u8) -> Option<f32> {
     given.shore(x + i64::from(corner & 1), y + i64::from(corner >> 1))
 }
 
+/// What the given shore says of the children of a node.
 fn below(level: &Level, given: &Given, q: usize) -> Below {
     let own = heir(level, q);
     let mut found = Below::Land;
