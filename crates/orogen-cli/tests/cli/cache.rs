@@ -2,7 +2,7 @@
 
 use crate::harness::Folder;
 
-/// A world whose normalisation takes one thread some times longer than the minimum time for the cache.
+/// A world whose normalisation is estimated at some times the minimum time for the cache.
 pub const SLOW: &str = r#"
 orogen = 1
 [world]

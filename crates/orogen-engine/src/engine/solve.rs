@@ -47,7 +47,8 @@ impl Engine<'_> {
                 // It is stored on a thread of the pool: the calling thread may run work of another request that waits
                 // for it.
                 Begun::Make(making) => {
-                    self.pool.install(|| Ok::<_, Error>(making.finish(self.solved(order, &there, &part)?)))?
+                    let made = || Ok::<_, Error>(making.finish(self.solved(order, &there, &part)?, order.work()));
+                    self.pool.install(made)?
                 }
             };
             part.finish();

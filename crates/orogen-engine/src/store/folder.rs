@@ -20,13 +20,13 @@ pub struct FolderStore {
     pub folder: PathBuf,
     /// Maximum size of all entries, in bytes. While tiles of levels are stored, it may be exceeded by a few percent.
     pub limit: u64,
-    /// Solutions that took less time to compute are not stored, nor tiles of levels if those of a request take less than a tenth
-    /// of it.
+    /// Solutions whose estimated time on one core is less are not stored, nor tiles of levels if the time of those of a request is
+    /// less than a tenth of it. An estimate, so that the same solutions are stored on any machine.
     pub slower_than: Duration,
 }
 
 impl FolderStore {
-    /// A store in `folder` of at most 10 GiB, for solutions that took longer than 0.25 s.
+    /// A store in `folder` of at most 10 GiB, for solutions that take a core more than about 0.25 s.
     pub fn new(folder: impl Into<PathBuf>) -> FolderStore {
         FolderStore { folder: folder.into(), limit: 10 << 30, slower_than: Duration::from_millis(250) }
     }

@@ -100,7 +100,7 @@ pub trait SolutionStore: Send + Sync + fmt::Debug {
     /// If the store fails.
     fn remove(&self, key: &EntryKey) -> io::Result<()>;
 
-    /// Solutions that took less time to compute are not stored. By default all are stored. Tiles of levels are stored if those of
+    /// Solutions whose estimated time on one core is less are not stored. By default all are stored. Tiles of levels are stored if those of
     /// a request take about a tenth of this time or more.
     fn slower_than(&self) -> Duration {
         Duration::ZERO

@@ -10,7 +10,7 @@ use orogen_io::{file, fs};
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Solutions in memory, backed by a store for later runs.
 ///
@@ -52,15 +52,14 @@ pub struct Making<'a> {
     key: Key,
     /// Whether the key is marked: not if the same solution is being computed by a thread that cannot be waited for.
     marked: bool,
-    /// The start time, if a store needs it; some hosts have no clock.
-    begun: Option<Instant>,
 }
 
 impl Making<'_> {
-    /// Stores the solution, also for later runs if it took long.
-    pub fn finish(self, made: Solution) -> Arc<Solution> {
+    /// Stores the solution, also for later runs if it is slow: `work` is the approximate time of making it on one core, in
+    /// nanoseconds.
+    pub fn finish(self, made: Solution, work: f64) -> Arc<Solution> {
         if let Some(backing) = self.store.backing.as_deref()
-            && self.begun.is_none_or(|begun| begun.elapsed() >= backing.slower_than())
+            && work >= backing.slower_than().as_nanos() as f64
             && let Err(error) = store(backing, &self.key, &made)
         {
             self.store.lock().failure = Some(error);
@@ -166,7 +165,7 @@ impl Store {
     }
 
     fn making(&self, key: Key, marked: bool) -> Making<'_> {
-        Making { store: self, key, marked, begun: if self.backing.is_some() { now() } else { None } }
+        Making { store: self, key, marked }
     }
 
     /// Starts the computation of a solution, whether it is stored or not.
@@ -235,11 +234,6 @@ impl Store {
     fn lock(&self) -> MutexGuard<'_, Entries> {
         self.held.lock().unwrap_or_else(PoisonError::into_inner)
     }
-}
-
-/// The time, where the host has a clock.
-fn now() -> Option<Instant> {
-    (!cfg!(all(target_family = "wasm", not(target_os = "wasi")))).then(Instant::now)
 }
 
 /// The solution that `store` has for a content key, verified; `None` if it has none. A damaged entry is removed.
