@@ -39,6 +39,7 @@ nodes! {
         select_flow::SelectFlow,
         select_height::SelectHeight,
         simplex::Simplex,
+        slice::Slice,
         swiss::Swiss,
         temperature::Temperature,
         terrace::Terrace,

@@ -179,11 +179,8 @@ impl Stencil {
     /// The maps to the four positions: east, west, south, north.
     #[must_use]
     pub fn maps(&self) -> [Affine; 4] {
-        [[self.step, 0.0], [-self.step, 0.0], [0.0, self.step], [0.0, -self.step]].map(|offset| Affine {
-            turn: [1.0, 0.0],
-            scale: 1.0,
-            offset,
-        })
+        let offsets = [[self.step, 0.0], [-self.step, 0.0], [0.0, self.step], [0.0, -self.step]];
+        offsets.map(|offset| Affine { offset, ..Affine::IDENTITY })
     }
 }
 
@@ -212,7 +209,18 @@ pub enum CoordMap {
     },
 }
 
-/// A similarity of the plane: p -> rotate(p) * scale + offset.
+impl CoordMap {
+    /// The altitude at which the source is read, in metres; `None` for that of the field.
+    #[must_use]
+    pub fn altitude(&self) -> Option<f64> {
+        match self {
+            CoordMap::Displaced { .. } => None,
+            CoordMap::Mapped { map, .. } => map.altitude,
+        }
+    }
+}
+
+/// A similarity of the plane, p -> rotate(p) * scale + offset, to the same altitude or a given one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Affine {
     /// Cosine and sine of the rotation; [1, 0] is none.
@@ -221,9 +229,15 @@ pub struct Affine {
     pub scale: f64,
     /// Offset east and south, in metres.
     pub offset: [f64; 2],
+    /// The altitude to which it leads, in metres; `None` for that of the position.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub altitude: Option<f64>,
 }
 
 impl Affine {
+    /// The map of each position to itself.
+    pub const IDENTITY: Affine = Affine { turn: [1.0, 0.0], scale: 1.0, offset: [0.0; 2], altitude: None };
+
     /// Whether columns stay columns and rows stay rows.
     #[must_use]
     pub fn is_separable(&self) -> bool {

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use orogen::budget::Reservation;
+use orogen::format::png::{Animation, Picture, Pixel};
 use orogen::jobs::render::RenderJob;
 use orogen::map::contact::{self, Drawn, Sheet, Variant};
 use orogen::palette::palette::Palette;
@@ -14,6 +15,7 @@ use crate::bar::Bar;
 use crate::command::render;
 use crate::failure::Failure;
 use crate::format::Format;
+use crate::moving::{AnimationTarget, Moving};
 use crate::options::RunOptions;
 use crate::sink::{Sink, is_stdout};
 use crate::source::{Source, title};
@@ -52,7 +54,14 @@ pub struct Args {
     /// Camera position around the centre of the land, as in `orogen render`: AZIMUTH,ELEVATION[,DISTANCE] [default: 200,24]
     #[arg(long, value_name = "A,E[,D]", requires = "render", allow_hyphen_values = true)]
     camera: Option<Numbers>,
-    /// Picture to write (.png)
+    /// Show the pictures of --sweep one after the other, forward and back, so that they loop: an animated .png, a .gif, or a file for each frame such as
+    /// land-%03d.png
+    #[arg(long, requires = "sweep", conflicts_with = "columns")]
+    animate: bool,
+    /// Duration of each frame, in milliseconds
+    #[arg(long, value_name = "MS", default_value = "60", requires = "animate")]
+    delay: u16,
+    /// Picture to write (.png); with --animate also a .gif, or a file for each frame such as land-%03d.png
     #[arg(short, long, value_name = "FILE", default_value = "variants.png")]
     out: PathBuf,
     /// Samples along the longer side of each picture
@@ -81,9 +90,15 @@ struct Asked {
 
 /// Draws the sheet.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    if !is_stdout(&args.out) && Format::of(&args.out, Format::ALL).map_err(Failure::Usage)? != Format::Png {
-        return Err(Failure::Usage("the sheet is written as PNG; use the extension .png".into()));
-    }
+    let target = match args.animate {
+        true => AnimationTarget::of(&args.out).map_err(Failure::Usage)?,
+        false => {
+            if !is_stdout(&args.out) && Format::of(&args.out, Format::ALL).map_err(Failure::Usage)? != Format::Png {
+                return Err(Failure::Usage("the sheet is written as PNG; use the extension .png".into()));
+            }
+            AnimationTarget::Apng
+        }
+    };
     let source = Source::find(&args.recipe)?;
     if let Source::Dem(path) = &source {
         return Err(Failure::Usage(format!(
@@ -95,12 +110,13 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let recipe = source.read(&budget, &args.arguments)?;
     let palette = palette::chosen(args.palette.as_deref(), args.nearest_color)?;
     let policy = args.run.replace.policy(source.inputs(&recipe)).protecting(&args.palette);
-    let sink = Sink::new(&args.out, &policy)?;
     let asked = asked(args, &recipe)?;
+    let outputs = target.outputs(&args.out, if args.animate { frames(asked.len()) } else { 1 }, &policy)?;
     let (bar, progress) = Bar::new(args.run.quiet);
     let stopped = |failure: Failure| interrupt::explain(failure, "nothing was written");
     let job = if args.render { Some(job(args, palette.as_ref())?) } else { None };
-    let [making, rendering, writing] = progress.parts([19.0, if args.render { 60.0 } else { 0.0 }, 1.0]);
+    let shares = [19.0, if args.render { 60.0 } else { 0.0 }, if args.animate { 10.0 } else { 1.0 }];
+    let [making, rendering, writing] = progress.parts(shares);
     making.expect(asked.len() as f64);
     rendering.expect(asked.len() as f64);
     let (mut variants, mut held) = (Vec::with_capacity(asked.len()), Vec::with_capacity(asked.len()));
@@ -118,26 +134,78 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             held.push(budget.charge(3 * (job.size[0] * job.size[1]) as u64));
         }
     }
-    let words = words(args, &recipe);
     let sheet = Sheet {
         title: title(&args.recipe),
         about: recipe.about.clone(),
-        footer: words,
+        footer: words(args, &recipe),
         sea_level: recipe.world.sea_level,
         palette,
     };
-    let columns = args.columns.map(usize::from);
-    let [width, height] = contact::size(&variants, columns);
-    let page = budget.reserve((3 * width * height) as u64)?;
-    let canvas = contact::draw(&sheet, &variants, columns)?;
-    let software = say::SOFTWARE;
-    sink.write(|out| canvas.write_png(out, &[("Software", software)]))?;
+    let words = match args.animate {
+        true => animate(args, &sheet, &variants, &target, &outputs, &budget, &writing).map_err(stopped)?,
+        false => {
+            let columns = args.columns.map(usize::from);
+            let [width, height] = contact::size(&variants, columns);
+            let _page = budget.reserve((3 * width * height) as u64)?;
+            let canvas = contact::draw(&sheet, &variants, columns)?;
+            outputs[0].write(|out| canvas.write_png(out, &[NOTE]))?;
+            format!("{} pictures, {width} x {height} pixels", variants.len())
+        }
+    };
     writing.finish();
-    drop((bar, page, held));
-    sink.tell(
-        args.run.quiet,
-        &format!("{}: {} pictures, {width} x {height} pixels\n", args.out.display(), variants.len()),
-    )
+    drop((bar, held));
+    outputs[0].tell(args.run.quiet, &format!("{}: {words}\n", args.out.display()))
+}
+
+/// The note in every picture.
+const NOTE: (&str, &str) = ("Software", say::SOFTWARE);
+
+/// Number of frames that show this many pictures forward and back.
+fn frames(pictures: usize) -> u32 {
+    (2 * pictures.saturating_sub(1)).max(1) as u32
+}
+
+/// Writes the animation, and describes it.
+fn animate(
+    args: &Args,
+    sheet: &Sheet,
+    variants: &[Variant],
+    target: &AnimationTarget,
+    outputs: &[Sink],
+    budget: &Budget,
+    progress: &Progress,
+) -> Result<String, Failure> {
+    let [width, height] = variants[0].size();
+    if let Some(other) = variants.iter().find(|variant| variant.size() != [width, height]) {
+        let [across, down] = other.size();
+        return Err(Failure::Usage(format!(
+            "`{}` is a picture of {width} x {height} pixels and `{}` one of {across} x {down}; the frames of an animation are of one size: sweep \
+             a parameter that leaves the size of the world, or leave out --animate",
+            variants[0].label, other.label
+        )));
+    }
+    let pixels = (width * height) as u64;
+    // The frame that is painted, and its writer.
+    let _room = budget.reserve(3 * pixels + target.reserved(pixels))?;
+    let (painter, frames) = (sheet.painter(variants), frames(variants.len()));
+    let frame = |k: u32| {
+        let k = k as usize;
+        variants[k.min(frames as usize - k)].pixels(&painter)
+    };
+    // Colors of a GIF: from both ends.
+    let sample = || Ok([frame(0), frame(frames / 2)].concat());
+    let notes = [NOTE];
+    let picture = Picture::new(width, height, Pixel::Rgb8).with_notes(&notes);
+    let animation = Animation::new(frames, args.delay);
+    let moving = Moving { outputs, target, picture, animation, sample: &sample };
+    progress.expect(f64::from(frames));
+    moving.write(|k, bytes| {
+        progress.check()?;
+        bytes.copy_from_slice(&frame(k));
+        progress.advance(1.0);
+        Ok(())
+    })?;
+    Ok(format!("{frames} frames of {width} x {height} pixels"))
 }
 
 /// The pictures to make.

@@ -91,6 +91,46 @@ fn variants_on_one_sheet() {
 }
 
 #[test]
+fn variants_as_an_animation() {
+    let folder = Folder::new();
+    folder.write("a.toml", RECIPE);
+    let draw = |more: &[&str]| {
+        folder.good(
+            &[&["variants", "a.toml", "--size", "96", "-q", "--animate", "--sweep", "relief=100,500,900"], more]
+                .concat(),
+        );
+    };
+    // Forward and back: 100, 500, 900, 500.
+    draw(&["-o", "frame-%d.png"]);
+    let frames: Vec<Vec<u8>> = (0..4).map(|k| png(&folder.read(&format!("frame-{k}.png"))).data).collect();
+    assert!(frames[1] == frames[3] && frames[0] != frames[1] && frames[1] != frames[2] && frames[0] != frames[2]);
+    assert!(!folder.path("frame-4.png").exists());
+    // The same pixels in one file, with the duration of its frames (`acTL` tells their number).
+    draw(&["-o", "moving.png", "--delay", "70"]);
+    let moving = folder.read("moving.png");
+    assert_eq!(png(&moving).data, frames[0]);
+    let chunk = moving.windows(4).position(|name| name == b"acTL").unwrap();
+    assert_eq!(moving[chunk + 4..chunk + 8], 4u32.to_be_bytes());
+    draw(&["-o", "moving.gif"]);
+    assert!(folder.read("moving.gif").starts_with(b"GIF89a"));
+    draw(&["-o", "view-%d.png", "--render"]);
+    let [low, high] = [0, 2].map(|k| png(&folder.read(&format!("view-{k}.png"))));
+    assert!(low.data != high.data && (low.width, low.height) == (96, 72));
+    let bad =
+        |more: &[&str], expect: &str| folder.bad(&[&["variants", "a.toml", "--animate"], more].concat(), 2, expect);
+    bad(&["-o", "x.png"], "--sweep");
+    bad(&["--sweep", "relief=1,2", "-o", "x.tif"], "an animated .png");
+    bad(&["--sweep", "relief=1,2", "--columns", "2"], "cannot be used with");
+    folder.write("wide.toml", &RECIPE.replace("[600,", "[\"= 10 * relief\","));
+    folder.bad(
+        &["variants", "wide.toml", "--animate", "--sweep", "relief=100,900", "--size", "96", "-o", "x.png"],
+        2,
+        "frames of an animation are of one size",
+    );
+    assert!(!folder.path("x.png").exists());
+}
+
+#[test]
 fn values_change_what_is_made() {
     let folder = Folder::new();
     folder.write("a.toml", RECIPE);

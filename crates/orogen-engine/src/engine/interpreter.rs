@@ -36,6 +36,8 @@ struct CoordSet {
     y: Vec<f64>,
     dx: Vec<f32>,
     dy: Vec<f32>,
+    /// The altitude if it is not that of the samples, in metres.
+    altitude: Option<f64>,
 }
 
 impl CoordSet {
@@ -114,6 +116,7 @@ impl<'p> Interpreter<'p> {
     fn enter_block(&mut self, block: &Window) {
         let coords = &mut self.coord_sets[CoordSetId::BLOCK];
         coords.shape = Shape::Lattice;
+        coords.altitude = None;
         coords.x.clear();
         coords.x.extend((0..block.width).map(|i| block.east(i)));
         coords.y.clear();
@@ -124,6 +127,7 @@ impl<'p> Interpreter<'p> {
     pub fn run_points(&mut self, x: &[f64], y: &[f64], bindings: &Bindings) -> Result<()> {
         let coords = &mut self.coord_sets[CoordSetId::BLOCK];
         coords.shape = Shape::Scattered;
+        coords.altitude = None;
         coords.x.clear();
         coords.x.extend_from_slice(x);
         coords.y.clear();
@@ -170,7 +174,7 @@ impl<'p> Interpreter<'p> {
             Instruction::Constant { value, out } => self.registers[*out].fill(*value),
             Instruction::Field { node, layer, coords, inputs, out } => {
                 let field = (bindings.fields)(*node).ok_or_else(|| internal("a node to evaluate is not a field"))?;
-                let altitude = self.altitude;
+                let altitude = self.coord_sets[*coords].altitude.unwrap_or(self.altitude);
                 self.with_inputs(*coords, inputs, *out, |points, slots, out| {
                     field.eval_layer(*layer, points, &slots.with_altitude(altitude), bindings.world_params, out);
                 });
@@ -235,6 +239,7 @@ impl<'p> Interpreter<'p> {
             Instruction::Map { from, map, to } => {
                 let mut mapped = std::mem::take(&mut self.coord_sets[*to]);
                 let from = &self.coord_sets[*from];
+                mapped.altitude = map.altitude.or(from.altitude);
                 mapped.x.clear();
                 mapped.y.clear();
                 if from.shape == Shape::Lattice && map.is_separable() {
@@ -309,6 +314,7 @@ fn displace(from: &CoordSet, count: usize, by: impl Fn(usize) -> (f32, f32), to:
     to.y.clear();
     to.dx.clear();
     to.dy.clear();
+    to.altitude = from.altitude;
     if from.shape == Shape::Lattice {
         to.shape = Shape::Displaced;
         to.x.extend_from_slice(&from.x);

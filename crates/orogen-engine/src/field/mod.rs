@@ -42,6 +42,7 @@ pub mod ridged;
 pub mod select_flow;
 pub mod select_height;
 pub mod simplex;
+pub mod slice;
 pub mod swiss;
 pub mod temperature;
 pub mod terrace;

@@ -32,7 +32,7 @@ impl Field for Transform {
         let (sin, cos) = sin_cos_degrees(self.angle);
         Some(CoordMap::Mapped {
             source: 0,
-            map: Affine { turn: [cos, -sin], scale: 1.0 / self.scale, offset: self.offset },
+            map: Affine { turn: [cos, -sin], scale: 1.0 / self.scale, offset: self.offset, altitude: None },
         })
     }
 }

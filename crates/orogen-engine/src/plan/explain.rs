@@ -29,6 +29,7 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
             }
             Op::Field(field) => match field.coord_map() {
                 Some(crate::op::CoordMap::Displaced { reach, .. }) => format!("within {} m", number(reach)),
+                Some(map) if let Some(altitude) = map.altitude() => format!("at altitude {} m", number(altitude)),
                 Some(crate::op::CoordMap::Mapped { .. }) => "elsewhere".to_string(),
                 None => match field.stencil() {
                     Some(stencil) => format!("within {} m", number(stencil.step)),

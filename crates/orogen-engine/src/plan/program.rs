@@ -254,6 +254,11 @@ impl<G> Instruction<G> {
         }
     }
 
+    /// Whether it makes a coordinate set at an altitude of its own.
+    pub(super) fn has_altitude(&self) -> bool {
+        matches!(self, Instruction::Map { map, .. } if map.altitude.is_some())
+    }
+
     /// The coordinate set that it makes.
     pub(super) fn new_coords(&mut self) -> Option<&mut CoordSetId> {
         match self {

@@ -13,10 +13,15 @@ pub fn in_two_parts<G>(
 ) -> (Vec<Instruction<G>>, usize) {
     let mut value_varies: IndexVec<RegisterId, bool> = vec![false; values].into();
     let mut coords_vary: IndexVec<CoordSetId, bool> = vec![false; coord_sets].into();
+    let mut at_one_altitude: IndexVec<CoordSetId, bool> = vec![false; coord_sets].into();
     let (mut once, mut varying) = (Vec::with_capacity(instructions.len()), Vec::new());
     for mut instruction in instructions {
         let (reads, coords) = instruction.reads();
-        let varies = matches!(&instruction, Instruction::Field { node, .. } if reads_altitude(*node))
+        if let (Some(from), Some(to)) = (coords, instruction.new_coords().copied()) {
+            at_one_altitude[to] = at_one_altitude[from] || instruction.has_altitude();
+        }
+        let reads_own = |node: NodeId, coords: CoordSetId| reads_altitude(node) && !at_one_altitude[coords];
+        let varies = matches!(&instruction, Instruction::Field { node, coords, .. } if reads_own(*node, *coords))
             || reads.iter().any(|value| value_varies[*value])
             || coords.is_some_and(|coords| coords_vary[coords]);
         if !varies {

@@ -32,10 +32,13 @@ pub fn split(
     is_away: impl Fn(GridId) -> bool,
 ) -> Result<Option<Split>> {
     let written_once = WrittenOnce::of(program)?;
+    let at_altitudes = written_once.at_altitudes();
     let shaders: Vec<Option<Shader>> = written_once
         .instructions
         .iter()
         .map(|instruction| match instruction {
+            // Shaders are functions of the plane.
+            Instruction::Field { coords, .. } if at_altitudes[*coords] => None,
             Instruction::Field { .. } | Instruction::Solved { .. } => lower(instruction),
             _ => None,
         })
@@ -122,6 +125,19 @@ impl WrittenOnce {
         }
         let outputs = program.outputs.iter().map(|out| value_of[*out].ok_or_else(unwritten)).collect::<Result<_>>()?;
         Ok(WrittenOnce { instructions, values, coord_sets, outputs })
+    }
+
+    /// Whether each coordinate set is at an altitude of its own.
+    fn at_altitudes(&self) -> IndexVec<CoordSetId, bool> {
+        let mut at_altitudes: IndexVec<CoordSetId, bool> = vec![false; self.coord_sets].into();
+        for instruction in &self.instructions {
+            if let (_, Some(from)) = instruction.reads()
+                && let Some(to) = instruction.clone().new_coords()
+            {
+                at_altitudes[*to] = at_altitudes[from] || instruction.has_altitude();
+            }
+        }
+        at_altitudes
     }
 
     /// Which instructions are needed for values; what those before a `border` read is not.

@@ -133,7 +133,8 @@ impl Graph {
                     }
                 }
             }
-            let from_inputs = !on_grids && self.links[id].iter().any(in_space);
+            let is_slice = matches!(named.node.op(), Op::Field(field) if field.coord_map().is_some_and(|map| map.altitude().is_some()));
+            let from_inputs = !on_grids && !is_slice && self.links[id].iter().any(in_space);
             self.in_space[id] = named.node.reads_altitude() || from_inputs || in_space(&self.masks[id]);
         }
         if diagnostics.is_empty() { Ok(()) } else { Err(diagnostics) }

@@ -42,11 +42,13 @@ fn fields() -> Vec<String> {
         "op = \"select-flow\"\nsource = \"flow\"\nrange = [1e3, 1e5]",
         "op = \"warp\"\nsource = \"wave\"\nx = \"y\"\ny = \"x\"\nstrength = 70",
         "op = \"transform\"\nsource = \"warped\"\nangle = 30\nscale = 1.5\noffset = [40, -70]",
+        "op = \"slice\"\nsource = \"high\"\naltitude = 70",
         "op = \"mix\"\na = \"x\"\nb = \"wave\"\namount = \"y\"\nmask = \"x\"",
     ];
     let expression = |text: &str| format!("op = \"expr\"\nexpr = \"{text}\"");
     let helpers = "[nodes.expr]\nop = \"expr\"\nexpr = \"7 * wave\"\n[nodes.flow]\nop = \"expr\"\nexpr = \"exp(12 * x)\"\n\
-        [nodes.warped]\nop = \"warp\"\nsource = \"wave\"\nx = \"y\"\ny = \"x\"\nstrength = 70\n";
+        [nodes.warped]\nop = \"warp\"\nsource = \"wave\"\nx = \"y\"\ny = \"x\"\nstrength = 70\n\
+        [nodes.above]\nop = \"altitude\"\n[nodes.high]\nop = \"add\"\na = \"wave\"\nb = \"above\"\n";
     let nodes = expressions.map(expression).into_iter().chain(ops.map(str::to_string));
     nodes.map(|node| format!("{POSITIONS}{helpers}[nodes.made]\n{node}\n[outputs]\nheight = \"made\"\n")).collect()
 }

@@ -1,4 +1,6 @@
-//! The page of `orogen variants`: pictures of worlds side by side, with the same colors and light.
+//! The pictures of `orogen variants`, with the same colors and light, and the page with them side by side.
+
+use std::borrow::Cow;
 
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -54,10 +56,34 @@ pub struct Drawn {
     pub bytes: Vec<u8>,
 }
 
+impl Sheet {
+    /// The painter of maps, with the same colors and light for all pictures.
+    #[must_use]
+    pub fn painter(&self, variants: &[Variant]) -> Painter {
+        let all = together(variants);
+        match &self.palette {
+            Some(palette) => Painter::with_tint(Tint::of(palette, &all, self.sea_level as f32), &all, self.sea_level),
+            None => Painter::fit(&all, self.sea_level),
+        }
+    }
+}
+
 impl Variant {
-    /// Width and height of the picture.
-    fn size(&self) -> [usize; 2] {
+    /// Width and height of the picture, in pixels.
+    #[must_use]
+    pub fn size(&self) -> [usize; 2] {
         self.picture.as_ref().map_or([self.grid.width(), self.grid.height()], |picture| picture.size)
+    }
+
+    /// Red, green and blue of each pixel of the picture; the painter is that of [`Sheet::painter`].
+    #[must_use]
+    pub fn pixels(&self, painter: &Painter) -> Cow<'_, [u8]> {
+        if let Some(picture) = &self.picture {
+            return Cow::Borrowed(&picture.bytes);
+        }
+        let mut painted = vec![0; 3 * self.grid.width() * self.grid.height()];
+        painter.paint(&self.grid, 0..self.grid.height(), &mut painted);
+        Cow::Owned(painted)
     }
 }
 
@@ -108,11 +134,7 @@ pub fn draw(sheet: &Sheet, variants: &[Variant], columns: Option<usize>) -> Resu
     let about = style(Face::Regular, 15.0, SOFT);
     font.write(&mut canvas, MARGIN as f32, (MARGIN + 22) as i64, &fitted(&sheet.title, heading, inner), heading);
     font.write(&mut canvas, MARGIN as f32, (MARGIN + 48) as i64, &fitted(&sheet.about, about, inner), about);
-    let all = together(variants);
-    let painter = match &sheet.palette {
-        Some(palette) => Painter::with_tint(Tint::of(palette, &all, sheet.sea_level as f32), &all, sheet.sea_level),
-        None => Painter::fit(&all, sheet.sea_level),
-    };
+    let painter = sheet.painter(variants);
     for (k, variant) in variants.iter().enumerate() {
         let (Variant { label, grid, .. }, [across, down]) = (variant, variant.size());
         let (row, column) = (k / layout.columns, k % layout.columns);
@@ -153,18 +175,8 @@ fn together(variants: &[Variant]) -> Grid {
 }
 
 fn picture(canvas: &mut Canvas, painter: &Painter, variant: &Variant, [left, top]: [usize; 2]) {
-    let (grid, [width, _]) = (&variant.grid, variant.size());
-    let map;
-    let bytes = match &variant.picture {
-        Some(picture) => &picture.bytes,
-        None => {
-            let mut painted = vec![0; 3 * grid.width() * grid.height()];
-            painter.paint(grid, 0..grid.height(), &mut painted);
-            map = painted;
-            &map
-        }
-    };
-    for (k, pixel) in bytes.chunks_exact(3).enumerate() {
+    let [width, _] = variant.size();
+    for (k, pixel) in variant.pixels(painter).chunks_exact(3).enumerate() {
         let (i, j) = (k % width, k / width);
         canvas.set((left + i) as i64, (top + j) as i64, [pixel[0], pixel[1], pixel[2]]);
     }

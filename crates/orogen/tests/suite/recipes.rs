@@ -265,7 +265,7 @@ fn recipes_in_the_docs_are_recipes() {
             }
         }
     }
-    assert_eq!(found, 5);
+    assert_eq!(found, 6);
 }
 
 /// Counts teeth and notches of a cliff: samples more than 40 m above, or below, the ground on both sides, one or two

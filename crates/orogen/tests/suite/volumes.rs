@@ -145,6 +145,79 @@ fn a_part_of_a_volume_has_the_bits_of_the_whole() {
     }
 }
 
+/// The density of [`fields`] cut at an altitude, and what others make of the slice.
+const CUT: &str = r#"
+[nodes.slice]
+op = "slice"
+source = "density"
+altitude = ALTITUDE
+[nodes.beside]
+op = "transform"
+source = "slice"
+offset = [40, -10]
+[nodes.bent_slice]
+op = "warp"
+source = "slice"
+x = "bend"
+y = "bend"
+strength = 20
+[nodes.over]
+op = "add"
+a = "slice"
+b = "altitude"
+[nodes.soft_slice]
+op = "blur"
+source = "slice"
+radius = 4
+[nodes.full]
+op = "fill"
+source = "slice"
+
+[outputs]
+slice = "slice"
+beside = "beside"
+bent = "bent_slice"
+over = "over"
+soft_slice = "soft_slice"
+full = "full"
+"#;
+
+#[test]
+fn a_slice_is_its_source_at_one_altitude_wherever_it_is_read() {
+    let plain = world(&fields());
+    for altitude in ALTITUDES {
+        let cut = CUT.replace("ALTITUDE", &altitude.to_string());
+        let cut = world(&fields().replace("[outputs]\n", &cut).replace("[world]", "[world]\nsize = [240, 200]"));
+        let window = Window::new(60, 40, 2.0).at(10, 20);
+        let at = |world: &World, layer: &str, window: &Window, altitude: f64| {
+            world.volume(layer, window, &[altitude]).unwrap().slice(0).to_vec()
+        };
+        let source = at(&plain, "density", &window, altitude);
+        assert_eq!(cut.window("slice", &window).unwrap().data(), source);
+        assert_eq!(cut.points("slice", &[window.east(7)], &[window.south(9)]).unwrap()[0], source[9 * 60 + 7]);
+        assert_eq!(at(&cut, "slice", &window, 17.0), source, "the same at all altitudes");
+        let beside = Window { x: window.x + 20, y: window.y - 5, ..window };
+        assert_eq!(cut.window("beside", &window).unwrap().data(), at(&plain, "density", &beside, altitude));
+        let over = at(&cut, "over", &window, 17.0);
+        assert!(over.iter().zip(&source).all(|(over, source)| *over == source + 17.0));
+        // The warp depends on the altitude; what it reads does not.
+        let [low, high] = [-30.0, 240.0].map(|other| at(&cut, "bent", &window, other));
+        assert_ne!(low, high);
+        let inside = |made: &[f32]| made.iter().all(|made| source.iter().any(|s| (s - made).abs() < 60.0));
+        assert!(inside(&low) && inside(&high));
+        // Only its own layers are in space.
+        for (layer, varies) in
+            [("slice", false), ("soft_slice", false), ("full", false), ("bent", true), ("over", true)]
+        {
+            assert_eq!(cut.reads_altitude(layer).unwrap(), varies, "{layer}");
+        }
+        let soft = cut.window("soft_slice", &window).unwrap();
+        assert!(soft.data() != source && soft.data().iter().all(|made| made.is_finite()));
+        let full = cut.window("full", &window).unwrap();
+        assert!(full.data().iter().zip(&source).all(|(full, source)| full >= source));
+    }
+}
+
 #[test]
 fn every_noise_can_be_one_of_space() {
     let noises = Node::all().into_iter().filter(|node| node.spec().params.iter().any(|param| param.name == VERTICAL));

@@ -75,9 +75,9 @@ pub struct Frame {
 impl Frame {
     /// The samples of a world for a target.
     ///
-    /// The default size is the largest that the world has samples for. Without a cell or a window, the shorter extent of the
-    /// area or the world (with several tiles, the extent that they cover) is resampled to them; with either, they start at
-    /// the window's first sample. The samples of an area are moved to the lattice, by less than a cell to the west and north.
+    /// Without a cell or a window, the shorter extent of the area or the world (with several tiles, the extent that they cover) is resampled; the
+    /// default size is the one whose cell is nearest to the world's. With a cell it is the largest that the world has samples for, and with either, they
+    /// start at the window's first sample. The samples of an area are moved to the lattice, by less than a cell to the west and north.
     ///
     /// # Errors
     /// If the target does not support a size or tiles; the message names the closest.
@@ -122,9 +122,15 @@ impl Frame {
             }
             (None, None) => match extent {
                 Some(size) => {
-                    let there = [0, 1].map(|axis| (size[axis] / cell / tiles[axis] as f64).floor() as usize + 1);
-                    let most = there[0].min(there[1]);
-                    target.sides.iter().copied().filter(|side| *side <= most).max().unwrap_or(target.sides[0])
+                    let steps = [0, 1].map(|axis| size[axis] / cell / tiles[axis] as f64);
+                    let steps = steps[0].min(steps[1]);
+                    let fits = |side: &usize| asked.cell.is_none() || (side - 1) as f64 <= steps;
+                    let far = |side: &usize| {
+                        let ratio = (side - 1) as f64 / steps;
+                        ratio.max(1.0 / ratio)
+                    };
+                    let sides = target.sides.iter().copied().filter(fits);
+                    sides.min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(target.sides[0])
                 }
                 None => target.sides.iter().copied().filter(|side| *side <= 1025).max().unwrap_or(target.sides[0]),
             },
@@ -214,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn the_largest_that_fits_is_taken() {
+    fn the_size_with_the_nearest_cell_is_taken() {
         let square = "size = [10240, 10240]";
         for (target, side, cell) in [
             ("unreal", 1009, 10240.0 / 1008.0),
@@ -230,6 +236,11 @@ mod tests {
         assert_eq!((wide.side, wide.window.cell), (513, 10.0));
         assert!(wide.note.unwrap().contains("the first 5120 x 5120 m"));
         assert_eq!(frame("unreal", "size = [300, 300]", FrameSpec::default()).unwrap().side, 127);
+        // A little finer rather than half as fine; with a cell of its own only what is there.
+        assert_eq!(frame("unity", "size = [10000, 10000]", FrameSpec::default()).unwrap().side, 1025);
+        assert_eq!(frame("unity", "size = [7000, 7000]", FrameSpec::default()).unwrap().side, 513);
+        let with_cell = FrameSpec { cell: Some(10.0), ..FrameSpec::default() };
+        assert_eq!(frame("unity", "size = [10000, 10000]", with_cell).unwrap().side, 513);
         assert_eq!(frame("unity", "", FrameSpec::default()).unwrap().side, 1025);
     }
 
@@ -237,9 +248,9 @@ mod tests {
     fn an_area_in_metres_is_resampled() {
         let asked = FrameSpec::default().with_area([2000.0, 3000.0, 7000.0, 8000.0]);
         let made = frame("unity", "size = [10240, 10240]", asked).unwrap();
-        // The land has 501 samples of 10 m there; 257 of them, so steps of 19.53 m, are the most that the engine takes.
-        assert_eq!((made.side, made.window.cell), (257, 5000.0 / 256.0));
-        assert_eq!((made.window.x, made.window.y), (102, 153));
+        // The land has 501 samples of 10 m there; the engine takes 257 or 513.
+        assert_eq!((made.side, made.window.cell), (513, 5000.0 / 512.0));
+        assert_eq!((made.window.x, made.window.y), (204, 307));
         assert!((2000.0 - made.window.east(0)) < made.window.cell);
         assert!(made.note.unwrap().contains("so that the area fits"));
         let fine = frame("unity", "size = [10240, 10240]", asked.with_side(1025)).unwrap();
