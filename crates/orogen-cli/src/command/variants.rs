@@ -146,7 +146,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         false => {
             let columns = args.columns.map(usize::from);
             let [width, height] = contact::size(&variants, columns);
-            let _page = budget.reserve((3 * width * height) as u64)?;
+            let _page = budget.reserve((3 * width * height) as u64 + contact::fitting(&variants))?;
             let canvas = contact::draw(&sheet, &variants, columns)?;
             outputs[0].write(|out| canvas.write_png(out, &[NOTE]))?;
             format!("{} pictures, {width} x {height} pixels", variants.len())
@@ -187,7 +187,11 @@ fn animate(
     let pixels = (width * height) as u64;
     // The frame that is painted, and its writer.
     let _room = budget.reserve(3 * pixels + target.reserved(pixels))?;
-    let (painter, frames) = (sheet.painter(variants), frames(variants.len()));
+    let painter = {
+        let _fitting = budget.reserve(contact::fitting(variants))?;
+        sheet.painter(variants)
+    };
+    let frames = frames(variants.len());
     let frame = |k: u32| {
         let k = k as usize;
         variants[k.min(frames as usize - k)].pixels(&painter)

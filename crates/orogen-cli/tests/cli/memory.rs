@@ -28,7 +28,7 @@ const SMALL: [&str; 10] =
 /// Rough terrain with many contours, rivers and triangles.
 fn recipe(side: usize, last: &str) -> String {
     format!(
-        "orogen = 1\n[world]\nseed = 3\nsize = [{0}.0, {0}.0]\ncell = 10.0\n\
+        "orogen = 1\n[parameters]\nup = 1\n[world]\nseed = 3\nsize = [{0}.0, {0}.0]\ncell = 10.0\n\
          [nodes.noise]\nop = \"fbm\"\nwavelength = 9000\noctaves = 10\n\
          [nodes.land]\nop = \"remap\"\nsource = \"noise\"\nfrom = [-0.5, 0.5]\nto = [-200, 1500]\n{last}",
         side * 10
@@ -48,6 +48,7 @@ fn rows(side: usize) -> Vec<Vec<String>> {
         "analyze dem.tif -o page.png -q".into(),
         "variants land.toml --seeds 2 -q".into(),
         "variants land.toml --seeds 2 --render --size 256 -q".into(),
+        "variants land.toml --sweep up=0..1:5 --animate --size 512 -q".into(),
         "render land.toml --size 480x270 --samples 1 -q".into(),
         "grow rising.toml --frames 2 -q".into(),
         "grow rising.toml --frames 2 -o grow.gif -q".into(),

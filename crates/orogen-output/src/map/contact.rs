@@ -57,7 +57,7 @@ pub struct Drawn {
 }
 
 impl Sheet {
-    /// The painter of maps, with the same colors and light for all pictures.
+    /// The painter of maps, with the same colors and light for all pictures. While it is made it takes [`fitting`] bytes.
     #[must_use]
     pub fn painter(&self, variants: &[Variant]) -> Painter {
         let all = together(variants);
@@ -93,6 +93,12 @@ pub fn range(variants: &[Variant]) -> Option<[f64; 2]> {
     let all = variants.iter().flat_map(|variant| variant.grid.data()).copied().filter(|height| height.is_finite());
     let [low, high] = all.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)]);
     (low < high).then_some([f64::from(low), f64::from(high)])
+}
+
+/// Memory for fitting colors and light to all pictures, in bytes.
+#[must_use]
+pub fn fitting(variants: &[Variant]) -> u64 {
+    variants.iter().map(|variant| size_of_val(variant.grid.data()) as u64).sum()
 }
 
 /// Pictures per row, and the size of the largest.
