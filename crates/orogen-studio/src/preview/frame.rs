@@ -50,7 +50,7 @@ pub struct Frame {
     pub shaded: Vec<u8>,
     /// Contour lines of the heights, if they are wanted.
     pub contours: Option<Arc<Contours>>,
-    /// How much of the sun each sample sees, 0 to 255.
+    /// How much of the sun each sample sees, 0 to 255: two bytes for each sample, of the ground and of the surface of land and sea.
     pub light: Vec<u8>,
     /// The height of the sea.
     pub sea_level: f64,

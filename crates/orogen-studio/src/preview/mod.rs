@@ -14,6 +14,7 @@ pub mod request;
 pub mod stages;
 pub mod statistics;
 pub mod strip;
+pub mod sunlight;
 pub mod survey;
 pub mod thumbnails;
 pub mod worker;

@@ -5,7 +5,6 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::Instant;
 
-use orogen::analysis::shadow::Shadows;
 use orogen::budget::Reservation;
 use orogen::export::derived::list;
 use orogen::export::layer_source::LayerSource;
@@ -20,8 +19,8 @@ use super::frame::{Frame, Quality};
 use super::request::Request;
 use super::stages::{self, Stage};
 use super::statistics::Statistics;
+use super::sunlight::sunlight;
 use super::{cover, failure};
-use crate::view::sun;
 
 /// What the work tells.
 #[derive(Debug)]
@@ -256,9 +255,7 @@ fn paint(world: &World, request: &Request, quality: Quality, samples: Samples, p
     // On the session's threads, as all that is divided among threads.
     let (contours, light, statistics) = world.install(|| {
         let contours = request.contours.map(|interval| Contours::of(&heights, interval)).transpose();
-        let shadows = Shadows::new(heights.data(), heights.width(), heights.window().cell);
-        let light = shadows.lit(sun::towards(request.sun)).into_iter().map(|lit| if lit { 255 } else { 0 }).collect();
-        (contours, light, Statistics::of(shown, sea_level))
+        (contours, sunlight(&heights, sea_level as f32, request.sun), Statistics::of(shown, sea_level))
     });
     Ok(Frame {
         request: 0,

@@ -378,7 +378,7 @@ impl Relief {
         let views = [
             view("heights", wgpu::TextureFormat::R32Float, bytemuck::cast_slice(&heights)),
             view("albedo", wgpu::TextureFormat::Rgba8UnormSrgb, &frame.albedo),
-            view("light", wgpu::TextureFormat::R8Unorm, &frame.light),
+            view("light", wgpu::TextureFormat::Rg8Unorm, &frame.light),
         ];
         let entry = |binding: u32, resource| wgpu::BindGroupEntry { binding, resource };
         device.create_bind_group(&wgpu::BindGroupDescriptor {

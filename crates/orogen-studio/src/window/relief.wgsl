@@ -121,9 +121,10 @@ fn sample_at(uv: vec2f) -> vec2f {
     return uv * (1.0 - step) + 0.5 * step;
 }
 
-// The share of the sun that reaches the ground.
+// The share of the sun that reaches the ground; with water, the surface of land and sea: hills of the sea floor cast no shadow on the water.
 fn sun_seen(uv: vec2f) -> f32 {
-    return mix(1.0, textureSample(light, linear_sampler, sample_at(uv)).r, scene.lines.w);
+    let seen = textureSample(light, linear_sampler, sample_at(uv)).rg;
+    return mix(1.0, select(seen.r, seen.g, scene.water.y > 0.0), scene.lines.w);
 }
 
 @fragment

@@ -1,9 +1,11 @@
 //! The main views, compared with pictures of them. `UPDATE_SNAPSHOTS=1` makes the pictures anew; look at them before they are committed.
 
 use eframe::egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable as _;
 use egui_kittest::{Harness, SnapshotOptions};
 use orogen::test_folder::TestFolder;
 use orogen_studio::catalogue::Language;
+use orogen_studio::studio::Studio;
 use orogen_studio::window::app::App;
 
 use super::{press, until, window};
@@ -44,4 +46,47 @@ fn the_main_views_look_as_they_did() {
     compare(&mut harness, "analysis");
     press(&mut harness, Modifiers::COMMAND, Key::E);
     compare(&mut harness, "export");
+}
+
+/// A steep hill of the sea floor, 20 m below the water.
+const SHOAL: &str = r#"orogen = 1
+
+[world]
+size = 1280
+cell = 10
+
+[nodes.hill]
+op = "radial"
+center = [640, 640]
+radius = 200
+
+[nodes.floor]
+op = "expr"
+expr = "hill * 380 - 400"
+
+[outputs]
+height = "floor"
+"#;
+
+#[test]
+fn a_hill_of_the_sea_floor_casts_no_shadow_on_the_water() {
+    let folder = TestFolder::new("studio-shoal").unwrap();
+    let file = folder.join("shoal.toml");
+    std::fs::write(&file, SHOAL).unwrap();
+    let mut harness = window(&folder, file.to_str(), Language::English);
+    until(&mut harness, "the picture", |app| app.studio().is_some_and(Studio::is_done));
+    // The middle of the view: the water above the hill and its shadow, and no table, on which the land casts one, too.
+    let middle = harness.get_by_label("relief view").rect().center();
+    let mut look = |label: &str| {
+        harness.get_by_label(label).click();
+        harness.run_steps(4);
+        let picture = harness.render().unwrap();
+        let at = |i: u32, j: u32| picture.get_pixel(middle.x as u32 + i - 100, middle.y as u32 + j - 40).0;
+        (0..200 * 80).map(|k| at(k % 200, k / 200)).collect::<Vec<_>>()
+    };
+    let (without, with) = (look("Shadows"), look("Shadows"));
+    assert!(without == with, "with water");
+    // Without water the hill has its shadow.
+    let with = look("Water");
+    assert!(look("Shadows") != with, "without water");
 }

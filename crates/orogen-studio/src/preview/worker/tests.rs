@@ -42,7 +42,7 @@ fn pictures_become_finer_and_the_last_one_has_the_samples_of_the_world() {
     let samples = 400 * 400;
     assert_eq!(
         [frames[1].albedo.len(), frames[1].shaded.len(), frames[1].light.len()],
-        [4 * samples, 4 * samples, samples]
+        [4 * samples, 4 * samples, 2 * samples]
     );
     assert!(!worker.is_busy());
 }
