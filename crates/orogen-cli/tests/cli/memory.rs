@@ -75,8 +75,8 @@ fn rows(side: usize) -> Vec<Vec<String>> {
     rows.push("export land.toml --surfaces --max-error 20 -o ground.glb -q".into());
     // Few pixels, but many samples for the lines.
     rows.push("map land.toml --dpi 40 -o small.png -q".into());
-    // SRTM has fixed sizes, and .tres holds only objects.
-    let formats = registry::all().iter().filter(|format| !matches!(format.name, "hgt" | "tres"));
+    // SRTM has fixed sizes, and .json and .tres hold only objects.
+    let formats = registry::all().iter().filter(|format| !matches!(format.name, "hgt" | "json" | "tres"));
     for format in formats {
         rows.push(format!("export land.toml -o out.{} -q", format.name));
         if format.knows("max-error") {
@@ -85,7 +85,9 @@ fn rows(side: usize) -> Vec<Vec<String>> {
     }
     rows.push("export land.toml --size 400 -o cut.3mf --cut 700 -q".into());
     rows.push("export land.toml --size 400 -o hollow.stl --hollow 1 --text Land -q".into());
-    rows.extend(["csv", "tres", "gpkg"].map(|kind| format!("export trees.toml -o trees.{kind} --layer scatter -q")));
+    rows.extend(
+        ["csv", "json", "tres", "gpkg"].map(|kind| format!("export trees.toml -o trees.{kind} --layer scatter -q")),
+    );
     rows.push("export trees.toml -o trees.glb --objects -q".into());
     for layer in derived::all() {
         let kind = match &layer.made {

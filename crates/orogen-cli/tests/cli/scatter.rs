@@ -21,8 +21,11 @@ fn folder() -> Folder {
     folder
 }
 
-/// The lines of a table: x, y, z, kind, size, turn.
-fn lines(folder: &Folder, name: &str) -> Vec<(f64, f64, f64, String, f64, f64)> {
+/// A line of a table: x, y, z, kind, size, turn.
+type Line = (f64, f64, f64, String, f64, f64);
+
+/// The lines of a table.
+fn lines(folder: &Folder, name: &str) -> Vec<Line> {
     let text = folder.text(name);
     let mut lines = text.lines();
     assert_eq!(lines.next(), Some("x,y,z,kind,size,turn,height"));
@@ -56,7 +59,7 @@ fn objects_are_points_in_every_format_of_features() {
         folder.good(&["export", "land.toml", "-o", name, "--layer", "scatter", "--window", window, "-q"]);
         parts.extend(lines(&folder, name));
     }
-    let sorted = |mut lines: Vec<(f64, f64, f64, String, f64, f64)>| {
+    let sorted = |mut lines: Vec<Line>| {
         lines.sort_by(|a, b| a.partial_cmp(b).unwrap());
         lines
     };
@@ -149,5 +152,119 @@ fn what_cannot_be_is_refused() {
         let outcome = folder.run(&[&["export"], args].concat());
         assert!(outcome.code != 0 && outcome.err.contains(expect), "{args:?}: {}", outcome.err);
         assert_eq!(folder.names("").len(), 2, "{args:?}");
+    }
+}
+
+/// The trees of a Unity file as the lines of a table, on a terrain of this size whose south-west corner is there; and the lowest and the highest height.
+fn trees(folder: &Folder, name: &str, length: f64, corner: [f64; 2]) -> (Vec<Line>, [f64; 2]) {
+    let file = folder.json(name);
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    let (low, size) = (number(&file["low"]), &file["size"]);
+    assert_eq!([number(&size["x"]), number(&size["z"])], [length; 2]);
+    let rise = number(&size["y"]);
+    let tree = |tree: &serde_json::Value| {
+        let [x, y, z] = ["x", "y", "z"].map(|axis| number(&tree["position"][axis]));
+        assert!([x, y, z].iter().all(|share| (0.0..=1.0).contains(share)), "{tree}");
+        assert_eq!(tree["widthScale"], tree["heightScale"]);
+        let kind = file["prototypes"][tree["prototypeIndex"].as_u64().unwrap() as usize].as_str().unwrap();
+        let turn = number(&tree["rotation"]).to_degrees();
+        (
+            corner[0] + x * length,
+            corner[1] + z * length,
+            low + y * rise,
+            kind.to_string(),
+            number(&tree["widthScale"]),
+            turn,
+        )
+    };
+    (file["trees"].as_array().unwrap().iter().map(tree).collect(), [low, low + rise])
+}
+
+#[test]
+fn unity_gets_trees_that_stand_on_its_terrain() {
+    let folder = folder();
+    let export = |args: &str| folder.good(&args.split(' ').collect::<Vec<_>>()).text().to_string();
+    let alike = |found: &[Line], expect: &[Line]| {
+        assert_eq!(found.len(), expect.len());
+        for (a, b) in found.iter().zip(expect) {
+            let off = [a.0 - b.0, a.1 - b.1, a.2 - b.2, (a.4 - b.4) * 10.0, (a.5 - b.5) * 0.1];
+            assert!(a.3 == b.3 && off.iter().all(|off| off.abs() < 1e-3), "{a:?} {b:?}");
+        }
+    };
+    // The table has objects up to a cell beyond the last samples.
+    let within = |name: &str| {
+        let mut all = lines(&folder, name);
+        all.retain(|(x, y, ..)| *x < 480.0 && *y > -480.0);
+        all
+    };
+    export("export land.toml -o u.r16 --target unity --size 33 -q");
+    let said = export("export land.toml -o trees.json --target unity --size 33 --layer scatter");
+    export("export land.toml -o same.csv --layer scatter --window 0,0,33,33 --cell 15 -q");
+    let (found, [low, high]) = trees(&folder, "trees.json", 480.0, [0.0, -480.0]);
+    assert!(
+        found.len() > 300 && found.iter().any(|tree| tree.3 == "house") && found.iter().any(|tree| tree.3 == "tree")
+    );
+    alike(&found, &within("same.csv"));
+    let houses = found.iter().filter(|tree| tree.3 == "house").count();
+    assert!(said.contains(&format!("{houses} objects of house (prototype 0), ")), "{said}");
+    assert!(said.contains("TerrainData.treePrototypes"), "{said}");
+    // Heights are those of the terrain's levels around a tree, to half a step.
+    let about = folder.json("u.json");
+    assert!(
+        (about["low"].as_f64().unwrap() - low).abs() < 1e-4 && (about["high"].as_f64().unwrap() - high).abs() < 1e-4
+    );
+    let levels: Vec<f64> =
+        folder.read("u.r16").chunks_exact(2).map(|pair| f64::from(u16::from_le_bytes([pair[0], pair[1]]))).collect();
+    for (x, y, z, ..) in &found {
+        let [column, row] = [x / 15.0, (y + 480.0) / 15.0].map(|at| (at as usize).min(31));
+        let corners = [0, 1, 33, 34].map(|step| levels[33 * row + column + step]);
+        let level = (z - low) / (high - low) * 65535.0;
+        let [least, greatest] =
+            [corners.iter().copied().fold(65535.0, f64::min), corners.iter().copied().fold(0.0, f64::max)];
+        assert!((least - 0.6..=greatest + 0.6).contains(&level), "{level} {corners:?}");
+    }
+    // Tiles have one scale and each object once.
+    export("export land.toml -o t.r16 --target unity --size 33 --cell 7.5 --tiles 2x2 -q");
+    export("export land.toml -o t_trees.json --target unity --size 33 --cell 7.5 --tiles 2x2 --layer scatter -q");
+    export("export land.toml -o fine.csv --layer scatter --window 0,0,65,65 --cell 7.5 -q");
+    let mut all = Vec::new();
+    for (tile, corner) in
+        [("0_0", [0.0, -480.0]), ("1_0", [240.0, -480.0]), ("0_1", [0.0, -240.0]), ("1_1", [240.0, -240.0])]
+    {
+        let (part, range) = trees(&folder, &format!("t_trees_{tile}.json"), 240.0, corner);
+        let about = folder.json(&format!("t_{tile}.json"));
+        assert!(["low", "high"].iter().zip(range).all(|(key, end)| (about[*key].as_f64().unwrap() - end).abs() < 1e-4));
+        assert!(part.len() > 50);
+        all.extend(part);
+    }
+    let expect = within("fine.csv");
+    assert_eq!(all.len(), expect.len());
+    for one in &expect {
+        let same = all.iter().filter(|tree| (tree.0 - one.0).abs() + (tree.1 - one.1).abs() < 2e-3).collect::<Vec<_>>();
+        assert_eq!(same.len(), 1, "{one:?}");
+        alike(&[same[0].clone()], std::slice::from_ref(one));
+    }
+    // Without an engine the terrain is the window. Objects for Godot are those of the same terrain, too.
+    export("export land.toml -o plain.json --layer scatter --window 0,0,33,33 --cell 15 -q");
+    assert_eq!(folder.text("plain.json"), folder.text("trees.json"));
+    export("export land.toml -o g.tres --target hterrain --size 65 --layer scatter -q");
+    export("export land.toml -o h.tres --layer scatter --window 0,0,65,65 --cell 7.5 -q");
+    assert_eq!(folder.text("g_tree.tres"), folder.text("h_tree.tres"));
+    for (args, expect) in [
+        (
+            "-o u.json --target unity --size 33 --layer scatter",
+            "u.json describes u.r16; name another file, such as u_trees.json",
+        ),
+        ("-o x.csv --target unity --layer scatter", "unity reads `scatter` as .json, not as .csv"),
+        ("-o x.png --target unity --layer scatter", "unity reads `scatter` as .json, not as .png"),
+        ("-o x.json --target unity --layer coast", "unity has no form of its own for `coast`; leave out --target"),
+        (
+            "-o x.json --target unreal --layer scatter",
+            "unreal has no form of its own for `scatter`; leave out --target",
+        ),
+        ("-o x.json", "a .json file holds objects: use --layer scatter"),
+    ] {
+        let line = format!("export land.toml {args}");
+        folder.bad(&line.split(' ').collect::<Vec<_>>(), 2, expect);
     }
 }

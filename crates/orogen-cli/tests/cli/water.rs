@@ -49,7 +49,10 @@ fn what_cannot_be_is_refused() {
     let folder = Folder::new();
     for (args, expect) in [
         (&["-o", "x.tif", "--layer", "rivers"][..], "consists of vector features, which .tif cannot hold"),
-        (&["-o", "x.tif", "--layer", "rivers,lakes"], "formats that can: .csv, .fgb, .geojson, .gpkg, .svg, .tres"),
+        (
+            &["-o", "x.tif", "--layer", "rivers,lakes"],
+            "formats that can: .csv, .fgb, .geojson, .gpkg, .json, .svg, .tres",
+        ),
         (&["-o", "x.fgb", "--layer", "rivers,lakes"], "holds one layer"),
         (&["-o", "x.gpkg", "--layer", "rivers,puddles"], "rivers,puddles"),
         (

@@ -8,6 +8,7 @@
     &formats::glb::FORMAT,
     &formats::gpkg::FORMAT,
     &formats::hgt::FORMAT,
+    &formats::json::FORMAT,
     &formats::npy::FORMAT,
     &formats::obj::FORMAT,
     &formats::pgm::FORMAT,

@@ -63,10 +63,7 @@ pub fn of(source: &LayerSource, mesh: &Prepared, options: &Options) -> io::Resul
 /// Fails if the world has no objects, or memory does not suffice.
 pub fn kinds(source: &LayerSource, height: impl Fn(&Object) -> f32) -> io::Result<Vec<ObjectMesh>> {
     let (world, window) = (source.world(), *source.window());
-    // The cells of the mesh: meshes that share a row or a column of samples share no object.
-    let cells = Window { width: window.width.saturating_sub(1), height: window.height.saturating_sub(1), ..window };
-    let objects = world.objects(&cells, source.progress())?;
-    world.budget().afford(objects.len() as u64 * OBJECT_MEMORY)?;
+    let objects = within(source)?;
     let mut kinds: Vec<ObjectMesh> = Vec::new();
     for object in &objects {
         let height = height(object);
@@ -85,6 +82,18 @@ pub fn kinds(source: &LayerSource, height: impl Fn(&Object) -> f32) -> io::Resul
         }
     }
     Ok(kinds)
+}
+
+/// The objects between the first and the last samples of a source's window.
+///
+/// Fails if the world has no objects, or memory does not suffice.
+pub fn within(source: &LayerSource) -> io::Result<Vec<Object>> {
+    let (world, window) = (source.world(), *source.window());
+    // The cells of the mesh: meshes that share a row or a column of samples share no object.
+    let cells = Window { width: window.width.saturating_sub(1), height: window.height.saturating_sub(1), ..window };
+    let objects = world.objects(&cells, source.progress())?;
+    world.budget().afford(objects.len() as u64 * OBJECT_MEMORY)?;
+    Ok(objects)
 }
 
 /// The number of objects of each kind: ", 12 of tree, 3 of rock".

@@ -154,7 +154,7 @@ fn place(path: &Path, name: &str) -> PathBuf {
 }
 
 /// The file that a sidecar of ours describes.
-fn belongs_to(sidecar: &Path) -> Option<String> {
+pub(super) fn belongs_to(sidecar: &Path) -> Option<String> {
     let mut text = String::new();
     File::open(sidecar).ok()?.take(1 << 16).read_to_string(&mut text).ok()?;
     let value: serde_json::Value = serde_json::from_str(&text).ok()?;

@@ -42,6 +42,9 @@ impl EngineExport {
     pub fn set_target(&mut self, target: &'static EngineTarget) {
         self.target = target;
         self.side = self.side.filter(|side| target.sides.contains(side));
+        if self.formats().is_empty() {
+            self.layer = HEIGHT.into();
+        }
         if target.tile.is_none() {
             self.tiles = [1, 1];
         }
@@ -50,7 +53,7 @@ impl EngineExport {
     /// The formats that the engine imports this layer from.
     #[must_use]
     pub fn formats(&self) -> &'static [&'static str] {
-        if self.layer == HEIGHT { self.target.formats } else { &["png"] }
+        self.target.formats_of(&self.layer)
     }
 
     /// The samples. A part of the world begins at its corner, and has a cell with which the engine's samples fill it.

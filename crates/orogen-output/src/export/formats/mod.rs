@@ -9,6 +9,7 @@ pub mod geojson;
 pub mod glb;
 pub mod gpkg;
 pub mod hgt;
+pub mod json;
 pub mod npy;
 pub mod obj;
 pub mod pgm;

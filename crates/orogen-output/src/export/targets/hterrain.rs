@@ -3,8 +3,8 @@
 //! Its height map is an EXR with one channel of half floats, 2^n + 1 samples per side, in metres; its splat maps have
 //! one row and one column less.
 
-use super::target::EngineTarget;
-use crate::export::formats::exr;
+use super::target::{EngineObjects, EngineTarget};
+use crate::export::formats::{exr, tres};
 use orogen_io::format::levels::Levels;
 
 /// The target.
@@ -19,6 +19,10 @@ pub static TARGET: EngineTarget = EngineTarget {
     normal: "opengl",
     heights: |_, options| options.give(&exr::HALF, ""),
     import,
+    objects: Some(EngineObjects {
+        formats: &[tres::FORMAT.name],
+        import: &["a MultiMeshInstance3D at the position of the terrain takes each file, with a mesh of yours"],
+    }),
 };
 
 fn import(side: usize, cell: f64, levels: &Levels) -> Vec<String> {

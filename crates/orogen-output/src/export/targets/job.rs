@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::frame::{Frame, FrameSpec};
 use super::target::EngineTarget;
 use crate::export::derived::list;
+use crate::export::features;
 use crate::export::format::Format;
 use crate::export::options::Options;
 use orogen_engine::recipe::document::Recipe;
@@ -22,8 +23,8 @@ pub struct EngineJob {
     pub target: &'static EngineTarget,
     /// The file format, which the engine must support for the layer.
     pub format: &'static Format,
-    /// The layer: an output of the recipe, `node.layer`, or a layer [derived](crate::export::derived) from the heights.
-    /// `height` by default.
+    /// The layer: an output of the recipe, `node.layer`, a layer [derived](crate::export::derived) from the heights, or
+    /// `scatter`. `height` by default.
     pub layer: String,
     /// Options of the derived layer; none by default.
     pub layer_options: Options,
@@ -67,7 +68,10 @@ impl EngineJob {
     /// # Errors
     /// The errors of [`list::prepare`].
     pub fn prepare(&self, recipe: &mut Recipe) -> Result<()> {
-        list::prepare(recipe, &self.layer, &self.layer_options)
+        match features::list::listed(&self.layer) {
+            Some(_) if self.format.features => list::check(&self.layer, &[], &self.layer_options),
+            _ => list::prepare(recipe, &self.layer, &self.layer_options),
+        }
     }
 }
 

@@ -4,6 +4,7 @@ pub mod frame;
 pub(crate) mod hterrain;
 pub mod job;
 pub mod list;
+pub(crate) mod objects;
 pub(crate) mod run;
 pub mod target;
 pub(crate) mod terrain3d;

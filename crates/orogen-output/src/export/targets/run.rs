@@ -2,8 +2,11 @@
 
 use super::frame::Frame;
 use super::job::{EngineJob, Exported};
+use super::objects;
+use super::target::EngineTarget;
 use crate::export::channels::{NORMAL, WEIGHTS, suffixed};
 use crate::export::derived::layer::Nature;
+use crate::export::features;
 use crate::export::files::Files;
 use crate::export::layer_source::LayerSource;
 use crate::export::options::Options;
@@ -24,8 +27,28 @@ impl EngineJob {
     /// The errors of [`Frame::new`]; if the engine does not support the format; or those of
     /// [`ExportJob::to_file`](crate::export::job::ExportJob::to_file).
     pub fn run(&self, world: &World, output: &Output, progress: &Progress) -> Result<Exported> {
-        export(self, Frame::new(self.target, world, &self.samples)?, world, output, progress)
+        let frame = Frame::new(self.target, world, &self.samples)?;
+        match features::list::listed(&self.layer) {
+            Some(_) if world.unit(&self.layer).is_err() => objects::export(self, frame, world, output, progress),
+            _ => export(self, frame, world, output, progress),
+        }
     }
+}
+
+/// The output of each tile, row by row. Those that may not be replaced are rejected before the first tile is computed.
+pub(super) fn outputs(target: &EngineTarget, frame: &Frame, output: &Output) -> Result<Vec<Output>> {
+    let mut outputs = Vec::new();
+    for row in 0..frame.tiles[1] {
+        for column in 0..frame.tiles[0] {
+            outputs.push(match target.tile {
+                Some(name) if frame.tiles != [1, 1] => {
+                    output.policy().output(suffixed(output.path(), &name(column, row, frame.tiles[1])))?
+                }
+                _ => output.clone(),
+            });
+        }
+    }
+    Ok(outputs)
 }
 
 /// Exports the layer of a job over a frame, all tiles or none.
@@ -44,24 +67,13 @@ fn export(job: &EngineJob, frame: Frame, world: &World, output: &Output, progres
         Ok(LayerSource::new(world, layer, window, progress)?.with_options(layer_options.clone()))
     };
     let mut all = source(frame.window, &ranging)?;
-    let known: &[&str] = if layer == HEIGHT { target.formats } else { &["png"] };
+    let known = if layer == HEIGHT { target.formats } else { &["png"] };
     if !known.contains(&format.name) {
         let list: Vec<String> = known.iter().map(|name| format!(".{name}")).collect();
         let message = format!("{} imports `{layer}` as {}, not as .{}", target.name, list.join(" or "), format.name);
         return Err(Error::new(ErrorKind::Request, message));
     }
-    // Outputs that may not be replaced are rejected before the first tile is computed.
-    let mut outputs = Vec::new();
-    for row in 0..frame.tiles[1] {
-        for column in 0..frame.tiles[0] {
-            outputs.push(match target.tile {
-                Some(name) if frame.tiles != [1, 1] => {
-                    output.policy().output(suffixed(path, &name(column, row, frame.tiles[1])))?
-                }
-                _ => output.clone(),
-            });
-        }
-    }
+    let outputs = outputs(target, &frame, output)?;
     let mut import = Vec::new();
     let mut less = 0;
     match nature {

@@ -1,6 +1,8 @@
 //! Definition of engine targets.
 
 use crate::export::options::Options;
+use crate::export::vectors::scatter;
+use orogen_engine::world::HEIGHT;
 use orogen_io::format::levels::Levels;
 
 use orogen_grid::error::Result;
@@ -30,4 +32,33 @@ pub struct EngineTarget {
     /// Values for the import dialogue, one line each, for the number of samples along a side (of a tile), the cell in
     /// metres, and the range of heights.
     pub import: fn(usize, f64, &Levels) -> Vec<String>,
+    /// How it reads scattered objects; `None` if it has no form of its own for them.
+    pub objects: Option<EngineObjects>,
+}
+
+/// The form in which an engine reads scattered objects.
+#[derive(Debug)]
+pub struct EngineObjects {
+    /// The supported formats, the default first.
+    pub formats: &'static [&'static str],
+    /// What to do with the files, one line each.
+    pub import: &'static [&'static str],
+}
+
+impl EngineTarget {
+    /// The layer of scattered objects, if the engine reads them.
+    #[must_use]
+    pub fn objects_layer(&self) -> Option<&'static str> {
+        self.objects.as_ref().map(|_| scatter::LAYER.name)
+    }
+
+    /// The formats that the engine reads a layer from, the default first.
+    #[must_use]
+    pub fn formats_of(&self, layer: &str) -> &'static [&'static str] {
+        match layer {
+            HEIGHT => self.formats,
+            _ if layer == scatter::LAYER.name => self.objects.as_ref().map_or(&[], |objects| objects.formats),
+            _ => &["png"],
+        }
+    }
 }

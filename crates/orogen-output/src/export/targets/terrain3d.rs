@@ -4,8 +4,8 @@
 //! regions of 1024 samples itself. Three channels of 32 bits without alpha, which Godot reads as floats; half floats
 //! would have steps of 2 m at 3000 m.
 
-use super::target::EngineTarget;
-use crate::export::formats::exr;
+use super::target::{EngineObjects, EngineTarget};
+use crate::export::formats::{exr, tres};
 use orogen_io::format::levels::Levels;
 
 /// The target.
@@ -20,6 +20,12 @@ pub static TARGET: EngineTarget = EngineTarget {
     normal: "opengl",
     heights: |_, options| options.give(&exr::RGB, ""),
     import,
+    objects: Some(EngineObjects {
+        formats: &[tres::FORMAT.name],
+        import: &[
+            "a MultiMeshInstance3D at the position of the terrain's first sample takes each file, with a mesh of yours",
+        ],
+    }),
 };
 
 fn import(side: usize, cell: f64, levels: &Levels) -> Vec<String> {

@@ -4,8 +4,8 @@
 //! terrain's first row is the southern one (z increases northward), so rows are written from the south and no flip is
 //! needed.
 
-use super::target::EngineTarget;
-use crate::export::formats::r16;
+use super::target::{EngineObjects, EngineTarget};
+use crate::export::formats::{json, r16};
 use crate::export::quantizer::{FIRST_ROW, RANGE};
 use orogen_io::format::levels::Levels;
 
@@ -27,6 +27,12 @@ pub static TARGET: EngineTarget = EngineTarget {
         options.give(&FIRST_ROW, "south")
     },
     import,
+    objects: Some(EngineObjects {
+        formats: &[json::FORMAT.name],
+        import: &[
+            "a script reads it with JsonUtility and sets TerrainData.treePrototypes and treeInstances: docs/scatter.md has the lines",
+        ],
+    }),
 };
 
 /// The heights of 0 and 65535; level ground gets a range of one metre.

@@ -24,6 +24,7 @@ pub static TARGET: EngineTarget = EngineTarget {
         options.give(&RANGE, &format!("{},{}", -256.0 * metres, 32767.0 / 128.0 * metres))
     },
     import,
+    objects: None,
 };
 
 /// The actor's Z scale that fits all heights: 100 spans 256 m on both sides of 0.

@@ -28,8 +28,12 @@ pub fn show(ui: &mut Ui, export: &mut Export, studio: &Studio, language: Languag
             is_other = true;
         }
         let mut layer = own.layer.clone();
-        let pictures = registry::named("png").map(|format| layers(format, studio.document.recipe()));
-        if rows::names(ui, language.text("menu.layer"), &mut layer, pictures.unwrap_or_default()) {
+        let recipe = studio.document.recipe();
+        let mut names = registry::named("png").map(|format| layers(format, recipe)).unwrap_or_default();
+        if !recipe.scatter().is_empty() {
+            names.extend(own.target.objects_layer().map(str::to_owned));
+        }
+        if rows::names(ui, language.text("menu.layer"), &mut layer, names) {
             is_other = true;
             own.layer = layer;
         }
