@@ -120,9 +120,6 @@ fn engine_job(
     if is_stdout(&args.out) {
         return Err(Failure::Usage("--target cannot write to standard output; name a file with -o".into()));
     }
-    if let Some(option) = job.options.names().next() {
-        return Err(Failure::Usage(format!("--target {} sets --{option}; leave it out", target.name)));
-    }
     let SizedView { view, size } = &args.samples;
     let mut samples = FrameSpec::default();
     samples.side = match size {
@@ -150,10 +147,13 @@ fn engine_job(
         Size::Both(across, down) => [across, down],
     });
     let layer_options = job.layer_options.clone();
-    Ok(EngineJob::new(target, job.format)
+    let job = EngineJob::new(target, job.format)
         .with_layer(&job.layer)
+        .with_options(job.options.clone())
         .with_layer_options(layer_options)
-        .with_samples(samples))
+        .with_samples(samples);
+    job.check()?;
+    Ok(job)
 }
 
 /// Writes the layer for an engine.

@@ -42,6 +42,10 @@ pub const WRITERS: &[Writer] = &[
         &["export", "small.toml", "--target", "unity", "--size", "33", "--tiles", "2x1", "-o", "u.r16"],
         &["u_0_0.r16", "u_1_0.r16"],
     ),
+    writer(
+        &["export", "small.toml", "--layer", "splat", "--preview", "-o", "w.png"],
+        &["w.png", "w_2.png", "w_preview.png", "w.json"],
+    ),
     writer(&["build", "small.toml", "--force", "-o", "b.tif"], &["b.tif"]),
     writer(&["analyze", "small.toml", "--cell", "5", "-o", "page.png"], &["page.png"]),
     writer(&["fit", "place.tif", "--tries", "12", "--judges", "1", "-o", "like.toml"], &["like.toml"]),

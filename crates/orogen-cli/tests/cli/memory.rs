@@ -89,6 +89,7 @@ fn rows(side: usize) -> Vec<Vec<String>> {
         ["csv", "json", "tres", "gpkg"].map(|kind| format!("export trees.toml -o trees.{kind} --layer scatter -q")),
     );
     rows.push("export trees.toml -o trees.glb --objects -q".into());
+    rows.push("export land.toml -o weights.png --layer splat --preview -q".into());
     for layer in derived::all() {
         let kind = match &layer.made {
             Made::Rows(rows) if rows.nature != Nature::Numbers => "png",

@@ -139,3 +139,57 @@ fn a_render_shows_them_and_what_is_wrong_is_told_at_its_place() {
     assert!(error.contains("c.toml:28:10"), "{error}");
     assert!(!folder.names("").iter().any(|name| name.starts_with('x')));
 }
+
+#[test]
+fn a_preview_shows_what_weights_mean() {
+    let folder = folder();
+    let said = folder.good(&["export", "a.toml", "-o", "w.png", "--layer", "splat", "--preview"]).text().to_string();
+    assert!(said.contains("\n  w_preview.png: the surfaces in their colors"), "{said}");
+    let preview = folder.read("w_preview.png");
+    let picture = png(&preview);
+    assert_eq!((picture.width, picture.data.len()), (100, 3 * 100 * 64));
+    // The slope is even, so all of a surface has one shade of its color: that of a map, which is lighter than the albedo.
+    let pixel = |i: usize| [0, 1, 2].map(|c| picture.data[3 * (20 * 100 + i) + c]);
+    let shaded = |color: [u8; 3], i: usize| {
+        let light = color.map(orogen::palette::color::decode);
+        [0, 1, 2].map(|c| orogen::palette::color::decode(pixel(i)[c]) / light[c])
+    };
+    let [rock, moss] = [shaded([0x80; 3], 80), shaded([0x20, 0x40, 0x10], 45)];
+    for (a, b) in rock.iter().zip(moss) {
+        assert!((a - b).abs() < 0.1 * a, "{rock:?} {moss:?}");
+    }
+    assert!(rock.iter().all(|factor| (1.2..2.2).contains(factor)), "{rock:?}");
+    assert_ne!(pixel(80), pixel(45));
+    // Below the sea it is bluer than the sand above it.
+    let blue = |[red, _, blue]: [u8; 3]| i32::from(blue) - i32::from(red);
+    assert!(blue(pixel(2)) > blue(pixel(20)) + 40, "{:?} {:?}", pixel(2), pixel(20));
+    // The weights are the same without it, and the picture with other layouts, threads and order of rows.
+    folder.good(&["export", "a.toml", "-o", "plain.png", "--layer", "splat", "-q"]);
+    assert_eq!(folder.read("plain.png"), folder.read("w.png"));
+    let line =
+        ["export", "a.toml", "-o", "v.png", "--layer", "splat", "--preview", "--threads", "1", "--first-row", "south"];
+    folder.good(&[&line[..], &["--weights", "layers", "-q"]].concat());
+    assert_eq!(png(&folder.read("v_preview.png")).data, picture.data);
+    // Engines have it beside each tile, over the same pixels.
+    let engine =
+        ["export", "a.toml", "-o", "u.png", "--layer", "splat", "--target", "unity", "--size", "33", "--preview"];
+    folder.good(&[&engine[..], &["--tiles", "2x1", "-q"]].concat());
+    assert_eq!(png(&folder.read("u_1_0_preview.png")).width, 32);
+    // A file of another kind is not replaced, and nothing is written.
+    folder.write("x_preview.png", "mine");
+    folder.bad(&["export", "a.toml", "-o", "x.png", "--layer", "splat", "--preview"], 1, "x_preview.png");
+    assert!(folder.text("x_preview.png") == "mine" && !folder.path("x.png").exists());
+    folder.write("named.toml", RECIPE.replace("\"moss\"", "\"preview\""));
+    for (args, expect) in [
+        (&["a.toml", "-o", "y.png", "--layer", "normal", "--preview"][..], "--preview applies to the layer `splat`"),
+        (&["a.toml", "-o", "y.png", "--preview"], "--preview applies to the layer `splat`; leave it out for `height`"),
+        (&["a.toml", "-o", "y.exr", "--layer", "splat", "--preview"], "--preview does not apply to the format exr"),
+        (&["a.toml", "-o", "y.png", "--layer", "splat", "--target", "unity", "--weights", "layers"], "sets --weights"),
+        (
+            &["named.toml", "-o", "y.png", "--layer", "splat", "--preview", "--weights", "layers"],
+            "a surface is named `preview`, as is the file of --preview; use --weights rgba",
+        ),
+    ] {
+        folder.bad(&[&["export"][..], args].concat(), 2, expect);
+    }
+}

@@ -11,6 +11,7 @@ use super::options::{OptionSpec, Options, ValueKind};
 use super::place;
 use super::quantizer;
 use super::sidecar::{self, SampleEncoding};
+use super::weights_preview;
 use orogen_grid::grid::Grid;
 use orogen_io::format::levels::Levels;
 use orogen_io::format::png::{self, Picture, Pixel};
@@ -32,6 +33,14 @@ pub const WEIGHTS: OptionSpec = OptionSpec {
     about: "Weights of a splat map: rgba, four per picture (NAME.png, NAME_2.png, ...), or layers, one grey picture each (NAME_grass.png, ...) \
             [default: rgba]",
     value_kind: ValueKind::Word(&["rgba", "layers"]),
+};
+
+/// The option for a picture beside weights.
+pub const PREVIEW: OptionSpec = OptionSpec {
+    name: "preview",
+    value: "",
+    about: "Write a picture of a splat map beside it: the surfaces in their colors with relief shading (NAME_preview.png)",
+    value_kind: ValueKind::Nothing,
 };
 
 /// Writes normals as red (east), green (north, or south for DirectX) and blue (up); -1 to 1 becomes 0 to 255 or 65535.
@@ -99,6 +108,9 @@ pub fn write_weights(source: &mut LayerSource, options: &Options, files: &mut Fi
     let mut spool = files.spool();
     source.rows(|band| put_aside(&mut spool, band))?;
     let layers = options.word(WEIGHTS.name) == Some("layers");
+    if layers && options.has(PREVIEW.name) && names.iter().any(|name| name == weights_preview::SUFFIX) {
+        return refuse(format!("a surface is named `{0}`, as is the file of --{0}; use --weights rgba", PREVIEW.name));
+    }
     let groups: Vec<Vec<usize>> = match layers {
         true => (0..names.len()).map(|k| vec![k]).collect(),
         false => (0..names.len()).collect::<Vec<usize>>().chunks(4).map(<[usize]>::to_vec).collect(),
@@ -141,13 +153,17 @@ pub fn write_weights(source: &mut LayerSource, options: &Options, files: &mut Fi
         held.channels.push((to, channels));
     }
     let told = sidecar::write(files, source, options, &held)?;
-    let list: Vec<String> = (held.channels.iter())
+    drop(spool);
+    let mut list: Vec<String> = (held.channels.iter())
         .map(|(path, channels)| {
             let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
             format!("{file}: {}", channels.join(", "))
         })
         .collect();
-    Ok(format!("weights that add up to 255\n  {}{told}", list.join("\n  ")))
+    if options.has(PREVIEW.name) {
+        list.push(weights_preview::write(source, options, files)?);
+    }
+    Ok(format!("weights that add up to 255{told}\n  {}", list.join("\n  ")))
 }
 
 fn put_aside(spool: &mut Spool, band: &[Grid]) -> io::Result<()> {

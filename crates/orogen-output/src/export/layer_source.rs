@@ -160,6 +160,14 @@ impl<'w> LayerSource<'w> {
         Ok(Box::new(bands.map(move |band| band.map(counted))))
     }
 
+    /// The rows of another derived layer over the same window, with the same memory reserved. Its inputs must be prepared.
+    ///
+    /// # Errors
+    /// The errors of [`World::bands`].
+    pub(super) fn rows_of(&self, derived: &'static RowLayer) -> Result<Rows<'w>> {
+        Rows::new(derived, self.world, &self.window, self.reserved, &self.progress.part(0.0))
+    }
+
     /// The world.
     #[must_use]
     pub fn world(&self) -> &'w World {

@@ -47,3 +47,4 @@ pub(crate) mod sidecar;
 pub(crate) mod solid;
 pub mod targets;
 pub(crate) mod vectors;
+pub(crate) mod weights_preview;

@@ -30,7 +30,7 @@ const DARKEST: f32 = 0.26;
 const HIGHLIGHT: f32 = 0.45;
 
 /// Number of rows for fitting the z factor.
-const PROBES: usize = 64;
+pub(crate) const PROBES: usize = 64;
 
 /// A shading: lights and a z factor. Level ground keeps its colour; slopes towards the light become brighter, others
 /// darker and bluer.
@@ -67,6 +67,22 @@ impl Shade {
     pub fn fit_lit(lights: Lights, grid: &Grid, sea_level: f32) -> Shade {
         let typical = typical_steepness(grid, |height| height > sea_level)
             .or_else(|| typical_steepness(grid, |height| height <= sea_level));
+        Shade::of_typical(lights, typical)
+    }
+
+    /// The same with a z factor fitted to samples, each with its steepness and its height, such as those of [`PROBES`] rows.
+    pub(crate) fn fit_samples(samples: &[(f32, f32)], sea_level: f32) -> Shade {
+        let typical = |is_land: bool| {
+            let kind = samples.iter().filter(|(steepness, height)| {
+                steepness.is_finite() && height.is_finite() && (*height > sea_level) == is_land
+            });
+            exceeded_by_a_quarter(kind.map(|(steepness, _)| *steepness).collect())
+        };
+        Shade::of_typical(Lights::Three, typical(true).or_else(|| typical(false)))
+    }
+
+    /// The shading of ground that is so steep.
+    fn of_typical(lights: Lights, typical: Option<f32>) -> Shade {
         let z_factor = match typical {
             Some(steepness) if steepness > 0.0 => libm::powf(NATURAL / steepness, FIT),
             _ => 1.0,
@@ -104,6 +120,11 @@ fn typical_steepness(grid: &Grid, kind: impl Fn(f32) -> bool) -> Option<f32> {
             }
         });
     }
+    exceeded_by_a_quarter(found)
+}
+
+/// The number that is exceeded by a quarter of these; `None` if there are none.
+fn exceeded_by_a_quarter(mut found: Vec<f32>) -> Option<f32> {
     let at = found.len() * 3 / 4;
     (!found.is_empty()).then(|| *found.select_nth_unstable_by(at, f32::total_cmp).1)
 }
@@ -158,6 +179,24 @@ mod tests {
             })
             .to_vec();
         assert!(contrast.is_sorted(), "{contrast:?}");
+    }
+
+    #[test]
+    fn samples_of_all_rows_fit_like_their_grid() {
+        let grid = waves(30.0, 0.2);
+        let mut samples = Vec::new();
+        for j in 0..grid.height() - 2 {
+            gradients_between([grid.row(j), grid.row(j + 1), grid.row(j + 2)], 30.0, |i, gradient| {
+                samples.push((gradient.steepness(), grid[(i + 1, j + 1)]));
+            });
+        }
+        samples.extend([(f32::NAN, 2000.0), (9.0, f32::NAN)]);
+        let on = |shade: Shade| shade.on(Gradient { east: 0.1, north: 0.05 })[1];
+        let [whole, sampled] = [on(Shade::fit(&grid, 0.0)), on(Shade::fit_samples(&samples, 0.0))];
+        assert!((whole - sampled).abs() < 0.01 && whole != on(Shade::new(1.0)), "{whole} {sampled}");
+        // Without land, the sea floor is fitted; without either, nothing is.
+        assert_eq!(on(Shade::fit_samples(&samples, 9000.0)), sampled);
+        assert_eq!(on(Shade::fit_samples(&[], 0.0)), on(Shade::new(1.0)));
     }
 
     #[test]

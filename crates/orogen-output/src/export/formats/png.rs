@@ -2,7 +2,7 @@
 
 use std::io;
 
-use crate::export::channels::{self, NORMAL, WEIGHTS};
+use crate::export::channels::{self, NORMAL, PREVIEW, WEIGHTS};
 use crate::export::derived::layer::Nature;
 use crate::export::files::Files;
 use crate::export::format::{Format, refuse};
@@ -23,7 +23,7 @@ pub static FORMAT: Format = Format {
     name: "png",
     aliases: &[],
     about: "Grey PNG of 16 or 8 bits (black is the lowest value, white the highest), heights encoded as colours (--encoding), normals, weights or colors",
-    options: &[BITS, RANGE, FIRST_ROW, ENCODING, NORMAL, WEIGHTS, NO_SIDECAR],
+    options: &[BITS, RANGE, FIRST_ROW, ENCODING, NORMAL, WEIGHTS, PREVIEW, NO_SIDECAR],
     channels: MAX_SURFACES,
     features: false,
     memory: |window, _| aside(2 * whole(window)),
@@ -43,6 +43,7 @@ fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::
     for (option, holds, what) in [
         (NORMAL.name, fits(Nature::Normal), "the layer `normal`"),
         (WEIGHTS.name, fits(Nature::Weights), "the layer `splat`"),
+        (PREVIEW.name, fits(Nature::Weights), "the layer `splat`"),
         (RANGE.name, fits(Nature::Numbers), "plain numbers"),
         (ENCODING.name, fits(Nature::Numbers), "plain numbers"),
         (FIRST_ROW.name, fits(Nature::Numbers) || fits(Nature::Weights), "plain numbers and weights"),

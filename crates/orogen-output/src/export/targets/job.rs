@@ -4,14 +4,16 @@ use std::path::PathBuf;
 
 use super::frame::{Frame, FrameSpec};
 use super::target::EngineTarget;
+use crate::export::channels::PREVIEW;
 use crate::export::derived::list;
 use crate::export::features;
 use crate::export::format::Format;
 use crate::export::options::Options;
+use crate::export::registry;
 use orogen_engine::recipe::document::Recipe;
 use orogen_engine::world::HEIGHT;
 use orogen_grid::analysis::finite::FiniteCount;
-use orogen_grid::error::Result;
+use orogen_grid::error::{Error, ErrorKind, Result};
 
 /// The export of a layer for an engine, in one file or in tiles. The engine sets the options of the format.
 ///
@@ -28,6 +30,8 @@ pub struct EngineJob {
     pub layer: String,
     /// Options of the derived layer; none by default.
     pub layer_options: Options,
+    /// Options of the format that no engine sets, which are [`PREVIEW`] alone; none by default.
+    pub options: Options,
     /// The requested samples; by default the engine chooses them.
     pub samples: FrameSpec,
 }
@@ -41,6 +45,7 @@ impl EngineJob {
             format,
             layer: HEIGHT.into(),
             layer_options: Options::default(),
+            options: Options::default(),
             samples: FrameSpec::default(),
         }
     }
@@ -57,10 +62,31 @@ impl EngineJob {
         EngineJob { layer_options, ..self }
     }
 
+    /// The same with these options of the format.
+    #[must_use]
+    pub fn with_options(self, options: Options) -> EngineJob {
+        EngineJob { options, ..self }
+    }
+
     /// The same with these samples.
     #[must_use]
     pub fn with_samples(self, samples: FrameSpec) -> EngineJob {
         EngineJob { samples, ..self }
+    }
+
+    /// Checks that its options are among those that no engine sets, and that the format has them.
+    ///
+    /// # Errors
+    /// If one is not.
+    pub fn check(&self) -> Result<()> {
+        registry::check(self.format, &self.options)?;
+        match self.options.names().find(|name| *name != PREVIEW.name) {
+            None => Ok(()),
+            Some(option) => {
+                let message = format!("--target {} sets --{option}; leave it out", self.target.name);
+                Err(Error::new(ErrorKind::Request, message))
+            }
+        }
     }
 
     /// Appends to a recipe the nodes that the layer needs; call it before the world is opened.

@@ -9,7 +9,6 @@ use crate::export::derived::layer::Nature;
 use crate::export::features;
 use crate::export::files::Files;
 use crate::export::layer_source::LayerSource;
-use crate::export::options::Options;
 use crate::export::quantizer::{self, BITS, RANGE};
 use crate::export::run;
 use orogen_engine::world::{HEIGHT, World};
@@ -27,6 +26,7 @@ impl EngineJob {
     /// The errors of [`Frame::new`]; if the engine does not support the format; or those of
     /// [`ExportJob::to_file`](crate::export::job::ExportJob::to_file).
     pub fn run(&self, world: &World, output: &Output, progress: &Progress) -> Result<Exported> {
+        self.check()?;
         let frame = Frame::new(self.target, world, &self.samples)?;
         match features::list::listed(&self.layer) {
             Some(_) if world.unit(&self.layer).is_err() => objects::export(self, frame, world, output, progress),
@@ -58,7 +58,7 @@ pub(super) fn outputs(target: &EngineTarget, frame: &Frame, output: &Output) -> 
 fn export(job: &EngineJob, frame: Frame, world: &World, output: &Output, progress: &Progress) -> Result<Exported> {
     let EngineJob { target, format, ref layer, ref layer_options, .. } = *job;
     let path = output.path();
-    let mut options = Options::default();
+    let mut options = job.options.clone();
     // Plain numbers are computed twice: for their range, and tile by tile.
     let nature = LayerSource::new(world, layer, frame.window, progress)?.nature();
     let [ranging, writing] = progress.parts([if nature == Nature::Numbers { 1.0 } else { 0.0 }, 1.0]);
