@@ -84,6 +84,8 @@ fn rows(side: usize) -> Vec<Vec<String>> {
         }
     }
     rows.push("export land.toml --size 400 -o cut.3mf --cut 700 -q".into());
+    rows.push("export land.toml --size 400 -o engraved.stl --text Land --text-style engraved -q".into());
+    rows.push("export land.toml --size 400 -o parts.stl --cut 300 --hollow 1 -q".into());
     rows.push("export land.toml --size 400 -o hollow.stl --hollow 1 --text Land -q".into());
     rows.extend(
         ["csv", "json", "tres", "gpkg"].map(|kind| format!("export trees.toml -o trees.{kind} --layer scatter -q")),

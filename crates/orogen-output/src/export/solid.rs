@@ -51,23 +51,37 @@ pub const HOLLOW: OptionSpec = OptionSpec {
 pub const TEXT: OptionSpec = OptionSpec {
     name: "text",
     value: "TEXT",
-    about: "Raised letters on the southern side of the base, as large as it has room for [default: none]",
+    about: "Letters on the southern side of the base, as large as it has room for [default: none]",
     value_kind: ValueKind::Text,
 };
 
+/// `--text-style`.
+pub const TEXT_STYLE: OptionSpec = OptionSpec {
+    name: "text-style",
+    value: "HOW",
+    about: "Letters of --text: raised, which stand out of the side, or engraved [default: raised]",
+    value_kind: ValueKind::Word(&["raised", "engraved"]),
+};
+
 /// The options of solids.
-pub const OPTIONS: &[OptionSpec] = &[MAX_ERROR, EXAGGERATION, HEIGHT_CURVE, PRINT_SIZE, BASE, CUT, HOLLOW, TEXT, BED];
+pub const OPTIONS: &[OptionSpec] =
+    &[MAX_ERROR, EXAGGERATION, HEIGHT_CURVE, PRINT_SIZE, BASE, CUT, HOLLOW, TEXT, TEXT_STYLE, BED];
 
 /// Memory for drawing a letter, in bytes.
 const LETTER: u64 = 160 << 10;
 
 /// Memory of the solid of a window, in bytes, beside that of writing the file: the mesh, and 12 bytes for each vertex and triangle. A cut takes the whole surface, what
-/// it leaves of that (of white noise, two vertices for each), and a copy for the base. A cavity has two vertices for each sample at most.
+/// it leaves of that (of white noise, two vertices for each), and a copy for the base; with a cavity, also its ceiling at each vertex, and what that divides. A cavity has two vertices for each
+/// sample at most.
 #[must_use]
 pub fn memory(window: &Window, options: &Options) -> u64 {
     // Of an adaptive mesh, one sample in five becomes a vertex.
     let corners = if options.has(MAX_ERROR.name) { whole(window) / 5 } else { whole(window) };
-    let copies = if options.has(CUT.name) { 6 } else { 1 };
+    let copies = match (options.has(CUT.name), options.has(HOLLOW.name)) {
+        (true, true) => 10,
+        (true, false) => 6,
+        (false, _) => 1,
+    };
     let solid = corners.saturating_mul(9 * copies);
     let ceiling = if options.has(HOLLOW.name) { whole(window).saturating_mul(20) } else { 0 };
     let letters = options.text(TEXT.name).map_or(0, |text| LETTER * text.chars().count() as u64);
@@ -92,16 +106,17 @@ impl PrintJob {
         let mesh = Prepared::new(source, options, 1)?;
         let print_size = options.number(PRINT_SIZE.name).unwrap_or(150.0);
         let base = options.number(BASE.name).unwrap_or(3.0);
-        if options.has(CUT.name) && options.has(HOLLOW.name) {
+        let is_engraved = options.word(TEXT_STYLE.name) == Some("engraved");
+        if options.has(TEXT_STYLE.name) && !options.has(TEXT.name) {
             return refuse(format!(
-                "--{} does not apply with --{}: a model with the outline of its land is full",
-                HOLLOW.name, CUT.name
+                "--{} applies to the letters of --{}; name them, or leave it out",
+                TEXT_STYLE.name, TEXT.name
             ));
         }
-        if options.has(CUT.name) && options.has(TEXT.name) {
+        if is_engraved && options.has(CUT.name) {
             return refuse(format!(
-                "--{} does not apply with --{}: there is no straight side for letters",
-                TEXT.name, CUT.name
+                "--{} engraved does not apply with --{}: land above a cut may be thinner than letters are deep; use raised letters",
+                TEXT_STYLE.name, CUT.name
             ));
         }
         let mut print = Print::new(print_size).with_base(base);
@@ -113,9 +128,10 @@ impl PrintJob {
         }
         let surface = mesh.surface(0, false);
         let mut solid = Solid::new(&surface, &print)?;
-        let letters = options.text(TEXT.name).map(|text| solid.letter(text)).transpose()?;
+        let letter = |text: &str| if is_engraved { solid.engrave(text, print.hollow) } else { solid.letter(text) };
+        let letters = options.text(TEXT.name).map(letter).transpose()?;
         let exaggeration = f64::from(mesh.exaggeration());
-        let raised = if letters.is_some() { f64::from(RAISED) } else { 0.0 };
+        let raised = if letters.is_some() && !is_engraved { f64::from(RAISED) } else { 0.0 };
         let model = ModelSize { size: solid.size(), fixed: [0.0, raised, base], print_size, exaggeration };
         bed.map_or(Ok(()), |bed| bed.check(&model))?;
         let [low, high] = extremes(NO_SAMPLES, mesh.grid.data());

@@ -13,6 +13,9 @@ const PARTS: f64 = 8.0;
 /// Factor of a side of a cell to its diagonal, rounded up.
 const DIAGONAL: f64 = 1.415;
 
+/// The height of a ceiling where there must not be a cavity, in millimetres.
+const NOWHERE: f32 = -1.0;
+
 /// A ceiling in a rectangle, in millimetres.
 #[derive(Debug)]
 pub(super) struct Ceiling {
@@ -22,16 +25,20 @@ pub(super) struct Ceiling {
     pub ys: Vec<f32>,
     /// The heights of its vertices, row by row.
     pub heights: Vec<f32>,
+    /// Distance between the samples of the surface in millimetres.
+    cell: f32,
 }
 
 impl Ceiling {
     /// The ceiling below a surface, at least `wall` millimetres from it and from its sides.
     ///
+    /// With `is_cut`, samples that are not above the base are not part of the solid: the ceiling is below 0 where it would be less than `wall` from one.
+    ///
     /// The ceiling is the lower end of balls of that radius around all samples, and as low as everywhere within a cell of it, so that it is nowhere too high.
     ///
     /// # Errors
     /// If the base or the solid is too small for such walls.
-    pub fn of(surface: &Surface, scale: &Scale, wall: f64) -> Result<Ceiling> {
+    pub fn of(surface: &Surface, scale: &Scale, wall: f64, is_cut: bool) -> Result<Ceiling> {
         let grid = surface.grid;
         let cell = grid.window().cell * scale.scale;
         let sides = [grid.width(), grid.height()].map(|samples| (samples - 1) as f64 * cell);
@@ -64,12 +71,13 @@ impl Ceiling {
         // The ceiling between two vertices is not above either, so each is as low as all places within this distance. Vertices are up to one and a half steps apart.
         let slack = (1.5 * step + 1.0) * cell * DIAGONAL;
         let reach = wall + slack;
+        let (level, clear) = (scale.base as f32, if is_cut { reach + cell * DIAGONAL } else { reach });
         let drop = |away: f64| {
             let away = (away - slack).max(0.0);
             (wall * wall - away * away).max(0.0).sqrt()
         };
         let range = |at: f64, samples: usize| {
-            let [from, to] = [at - reach, at + reach].map(|at| (at / cell).clamp(0.0, (samples - 1) as f64));
+            let [from, to] = [at - clear, at + clear].map(|at| (at / cell).clamp(0.0, (samples - 1) as f64));
             from.ceil() as usize..=to.floor() as usize
         };
         let rows = parallel::map(&ys, |y| -> Vec<f32> {
@@ -79,8 +87,15 @@ impl Ceiling {
                 for row in range(south, grid.height()) {
                     for column in range(*x, grid.width()) {
                         let away = libm::hypot(column as f64 * cell - x, row as f64 * cell - south);
+                        if away >= clear {
+                            continue;
+                        }
+                        let up = scale.place(surface, column, row)[2];
+                        if is_cut && up <= level {
+                            return NOWHERE;
+                        }
                         if away < reach {
-                            least = least.min(f64::from(scale.place(surface, column, row)[2]) - drop(away));
+                            least = least.min(f64::from(up) - drop(away));
                         }
                     }
                 }
@@ -89,7 +104,34 @@ impl Ceiling {
             xs.iter().map(height).collect()
         });
         let narrow = |places: Vec<f64>| places.into_iter().map(|at| at as f32).collect();
-        Ok(Ceiling { xs: narrow(xs), ys: narrow(ys), heights: rows.concat() })
+        Ok(Ceiling { xs: narrow(xs), ys: narrow(ys), heights: rows.concat(), cell: cell as f32 })
+    }
+
+    /// The height at a position between its vertices; below 0 where there must not be a cavity. It is linear between positions that are as close as samples.
+    pub fn at(&self, [x, y]: [f32; 2]) -> f32 {
+        let (column, row) = (self.xs.partition_point(|at| *at <= x), self.ys.partition_point(|at| *at > y));
+        let [width, height] = [self.xs.len(), self.ys.len()];
+        // Between a position outside and the next one, the line around a cavity may be at either.
+        let near = |side: f32, at: f32| (side - at).abs() < self.cell;
+        let is_outside = column == 0
+            || column == width
+            || row == 0
+            || row == height
+            || near(self.xs[0], x)
+            || near(self.xs[width - 1], x)
+            || near(self.ys[0], y)
+            || near(self.ys[height - 1], y);
+        if is_outside {
+            return NOWHERE;
+        }
+        let across = (x - self.xs[column - 1]) / (self.xs[column] - self.xs[column - 1]);
+        let down = (y - self.ys[row - 1]) / (self.ys[row] - self.ys[row - 1]);
+        let mix = |from: f32, to: f32, share: f32| from + (to - from) * share;
+        let along = |row: usize| {
+            let first = row * width + column - 1;
+            mix(self.heights[first], self.heights[first + 1], across)
+        };
+        mix(along(row - 1), along(row), down)
     }
 
     /// The vertices along each side, counter-clockwise from above: along the north, the west, the south and the east, each with both of its ends.

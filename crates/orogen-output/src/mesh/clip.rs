@@ -7,7 +7,7 @@ use std::collections::HashMap;
 const MARGIN: f64 = 1.0 / 64.0;
 
 /// The number of a vertex that is not in the result.
-const NONE: u32 = u32::MAX;
+pub(super) const NONE: u32 = u32::MAX;
 
 /// Triangles above a level.
 #[derive(Debug)]
@@ -61,6 +61,51 @@ pub(super) fn clip(corners: &[[f32; 3]], triangles: &[[u32; 3]], around: &[[u32;
     clipped
 }
 
+/// Triangles divided at a level.
+#[derive(Debug)]
+pub(super) struct Parted {
+    /// The vertices of the triangles, with their numbers, and after them those on the level where edges are cut.
+    pub corners: Vec<[f32; 3]>,
+    /// Triangles above the level, with the orientation of those that were cut.
+    pub above: Vec<[u32; 3]>,
+    /// Triangles below it.
+    pub below: Vec<[u32; 3]>,
+    /// The lines between them, with those above to their left, edge by edge.
+    pub between: Vec<[u32; 2]>,
+}
+
+/// Divides triangles at the level `z`. Both parts share the vertices between them, so together they are the surface that was cut; the vertices follow the rules of [`clip`].
+pub(super) fn part(corners: &[[f32; 3]], triangles: &[[u32; 3]], z: f32) -> Parted {
+    let vertices = (0..corners.len() as u32).collect();
+    let mut cut = Cut { corners, z, made: corners.to_vec(), vertices, cuts: HashMap::new() };
+    let mut parted = Parted { corners: Vec::new(), above: Vec::new(), below: Vec::new(), between: Vec::new() };
+    for triangle in triangles {
+        let is_above = triangle.map(|corner| cut.is_above(corner));
+        let mut polygons = [Vec::with_capacity(4), Vec::with_capacity(4)];
+        let (mut leaves, mut enters) = (None, None);
+        for k in 0..3 {
+            let next = (k + 1) % 3;
+            polygons[usize::from(is_above[k])].push(triangle[k]);
+            if is_above[k] != is_above[next] {
+                let vertex = cut.between(triangle[k], triangle[next]);
+                polygons.iter_mut().for_each(|polygon| polygon.push(vertex));
+                *(if is_above[k] { &mut leaves } else { &mut enters }) = Some(vertex);
+            }
+        }
+        let [below, above] = polygons;
+        for (polygon, out) in [(below, &mut parted.below), (above, &mut parted.above)] {
+            for k in 2..polygon.len() {
+                out.push([polygon[0], polygon[k - 1], polygon[k]]);
+            }
+        }
+        if let (Some(from), Some(to)) = (leaves, enters) {
+            parted.between.push([from, to]);
+        }
+    }
+    parted.corners = cut.made;
+    parted
+}
+
 /// Vertices of the result, each made once, in the order of their first use.
 struct Cut<'a> {
     corners: &'a [[f32; 3]],
@@ -106,6 +151,31 @@ fn push(corners: &mut Vec<[f32; 3]>, corner: [f32; 3]) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn both_parts_of_a_pyramid_share_the_line_between_them() {
+        let corners = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [0.0, 2.0, 0.0], [1.0, 1.0, 4.0]];
+        let triangles = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
+        let parted = part(&corners, &triangles, 2.0);
+        assert_eq!((parted.above.len(), parted.below.len(), parted.corners.len()), (4, 8, 9));
+        // Around the upper part counter-clockwise, with it to the left.
+        let turn: f32 = parted.between.iter().fold(0.0, |sum, [from, to]| {
+            let [a, b] = [from, to].map(|corner| parted.corners[*corner as usize]);
+            assert_eq!([a[2], b[2]], [2.0; 2]);
+            sum + (a[0] - 1.0) * (b[1] - 1.0) - (a[1] - 1.0) * (b[0] - 1.0)
+        });
+        assert_eq!(turn, 2.0);
+        let area = |triangles: &[[u32; 3]]| -> f32 {
+            let each = triangles.iter().map(|triangle| {
+                let [a, b, c] = triangle.map(|corner| parted.corners[corner as usize]);
+                ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2.0
+            });
+            each.sum()
+        };
+        assert_eq!([area(&parted.above), area(&parted.below)], [1.0, 3.0]);
+        let whole = part(&corners, &triangles, -1.0);
+        assert!(whole.above == triangles && whole.below.is_empty() && whole.between.is_empty());
+    }
 
     #[test]
     fn a_pyramid_is_cut_where_its_sides_are_and_never_at_a_vertex() {

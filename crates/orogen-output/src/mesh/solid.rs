@@ -5,11 +5,11 @@
 
 use super::bounds::bounds;
 use super::cavity::Ceiling;
-use super::clip::{Clipped, clip};
+use super::clip::{Clipped, NONE, clip, part};
 use super::outline::sides;
-use super::raised_text::RaisedText;
 use super::scale::Scale;
 use super::surface::Surface;
+use super::wall_text::{StraightWall, WallText};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::words::number;
 
@@ -30,7 +30,7 @@ pub struct Print {
     pub base: f64,
     /// The level in metres, before exaggeration, above which the land is kept; all of it by default.
     pub cut: Option<f64>,
-    /// Least thickness of the walls and the ceiling around a cavity that is open below, in millimetres; without it the solid is full. A solid that is cut is full.
+    /// Least thickness of the walls and the ceiling around a cavity that is open below, in millimetres; without it the solid is full.
     pub hollow: Option<f64>,
 }
 
@@ -105,12 +105,15 @@ impl Solid {
             }
             drop(solid);
             let mut solid = Solid { corners: Vec::new(), triangles: Vec::new() };
-            solid.extrude(&clipped, |[x, y, _]| [x, y, 0.0]);
+            match print.hollow {
+                Some(wall) => solid.extrude_hollow(&clipped, surface, &scale, wall)?,
+                None => solid.extrude(&clipped, |[x, y, _]| [x, y, 0.0]),
+            }
             return Ok(solid);
         }
         match print.hollow {
             Some(wall) => {
-                let ceiling = Ceiling::of(surface, &scale, wall)?;
+                let ceiling = Ceiling::of(surface, &scale, wall, false)?;
                 solid.numbered(around.len() + 3 * ceiling.heights.len())?;
                 solid.close_hollow(&sides, &ceiling);
             }
@@ -122,21 +125,46 @@ impl Solid {
         Ok(solid)
     }
 
-    /// Adds raised letters in the middle of the southern wall; returns their size in millimetres per em.
+    /// Adds raised letters in the middle of the southern wall, or of that straight piece of it where they are largest; returns their size in millimetres per em.
     ///
     /// They are bodies of their own that reach into the wall, which printers' programs join with it.
     ///
     /// # Errors
-    /// If the font lacks a letter, if there are none or too many, or if the wall has no room for them.
+    /// If the font lacks a letter, if there are none or too many, or if no wall has room for them.
     pub fn letter(&mut self, text: &str) -> Result<f64> {
-        let [_, [length, ..]] = self.bounds();
-        let wall = self.corners.iter().filter(|[_, north, up]| *north == 0.0 && *up > 0.0);
-        let height = wall.fold(f32::INFINITY, |least, [_, _, up]| least.min(*up));
-        let RaisedText { mut front, size } = RaisedText::new(text, length.into(), height.into())?;
+        let text = WallText::new(text, &self.southern_walls(), self.size()[0], false)?;
+        let mut front = text.letters();
         self.numbered(2 * front.corners.len())?;
         front.corners.iter_mut().for_each(|corner| *corner = [corner[0], -RAISED, corner[1]]);
         self.extrude(&front, |[x, _, z]| [x, SUNK, z]);
-        Ok(size)
+        Ok(text.size)
+    }
+
+    /// The straight walls along the southern side of the window, from west to east.
+    pub(super) fn southern_walls(&self) -> Vec<StraightWall> {
+        // One of the two triangles of a piece of a wall has its upper edge.
+        let mut pieces: Vec<StraightWall> = Vec::new();
+        for triangle in &self.triangles {
+            let corners = triangle.map(|corner| self.corners[corner as usize]);
+            let mut upper = corners.iter().filter(|[_, _, up]| *up > 0.0);
+            if let (Some(a), Some(b), None) = (upper.next(), upper.next(), upper.next())
+                && corners.iter().all(|[_, north, _]| *north == 0.0)
+                && a[0] != b[0]
+            {
+                pieces.push(StraightWall { west: a[0].min(b[0]), east: a[0].max(b[0]), height: a[2].min(b[2]) });
+            }
+        }
+        pieces.sort_by(|a, b| a.west.total_cmp(&b.west));
+        let mut walls: Vec<StraightWall> = Vec::new();
+        for piece in pieces {
+            match walls.last_mut() {
+                Some(wall) if wall.east == piece.west => {
+                    (wall.east, wall.height) = (piece.east, wall.height.min(piece.height));
+                }
+                _ => walls.push(piece),
+            }
+        }
+        walls
     }
 
     /// Adds a surface, its copy at the positions of `back`, and the walls between them.
@@ -151,6 +179,63 @@ impl Solid {
         for [from, to] in &front.around {
             self.wall_piece([first + from, first + to], [behind + from, behind + to]);
         }
+    }
+
+    /// Adds land above a cut with walls, a base, and a cavity in each part that has room for it, open below.
+    ///
+    /// The lines around the cavities divide the triangles of the land: those outside have a copy on the ground, those inside one at the ceiling.
+    ///
+    /// # Errors
+    /// If the base is too thin, no part has room, or the surface is not one of all samples.
+    fn extrude_hollow(&mut self, land: &Clipped, surface: &Surface, scale: &Scale, wall: f64) -> Result<()> {
+        let refuse = |message: String| Err(Error::new(ErrorKind::Request, message));
+        // The ceiling is linear between vertices, which must not be far apart.
+        if surface.shape.corners() != surface.grid.data().len() {
+            return refuse(
+                "a hollow model of the land above a cut has a vertex at every sample; leave out --max-error, or use a larger cell".into(),
+            );
+        }
+        let ceiling = Ceiling::of(surface, scale, wall, true)?;
+        let under: Vec<[f32; 3]> = land.corners.iter().map(|[x, y, _]| [*x, *y, ceiling.at([*x, *y])]).collect();
+        // Ceilings that are not beside a wall are above the base less the wall.
+        let parted = part(&under, &land.triangles, (0.5 * (scale.base - wall)) as f32);
+        if parted.above.is_empty() {
+            return refuse(format!(
+                "no part of the land above the cut has room for a cavity within walls of {} mm; use a smaller --hollow, or leave it out",
+                number(wall)
+            ));
+        }
+        self.numbered(land.corners.len() + 2 * parted.corners.len())?;
+        self.corners.extend_from_slice(&land.corners);
+        self.triangles.extend_from_slice(&land.triangles);
+        let ground = self.face_down(&parted.corners, &parted.below, |_| 0.0);
+        let inside = self.face_down(&parted.corners, &parted.above, |up| up);
+        let below = |[from, to]: [u32; 2]| [from, to].map(|corner| ground[corner as usize]);
+        for edge in &land.around {
+            self.wall_piece(*edge, below(*edge));
+        }
+        for [from, to] in &parted.between {
+            self.wall_piece([*to, *from].map(|corner| inside[corner as usize]), below([*to, *from]));
+        }
+        Ok(())
+    }
+
+    /// Adds triangles turned over, with a vertex for each of theirs; returns the numbers of these.
+    fn face_down(&mut self, corners: &[[f32; 3]], triangles: &[[u32; 3]], up: impl Fn(f32) -> f32) -> Vec<u32> {
+        let mut numbers = vec![NONE; corners.len()];
+        for triangle in triangles {
+            let [a, b, c] = triangle.map(|corner| {
+                let [x, y, z] = corners[corner as usize];
+                let number = &mut numbers[corner as usize];
+                if *number == NONE {
+                    self.corners.push([x, y, up(z)]);
+                    *number = (self.corners.len() - 1) as u32;
+                }
+                *number
+            });
+            self.triangles.push([a, c, b]);
+        }
+        numbers
     }
 
     /// The surface alone.
@@ -168,7 +253,7 @@ impl Solid {
     }
 
     /// Checks that more vertices can be numbered.
-    fn numbered(&self, more: usize) -> Result<()> {
+    pub(super) fn numbered(&self, more: usize) -> Result<()> {
         match u32::try_from(self.corners.len() + more) {
             Ok(_) => Ok(()),
             Err(_) => Err(Error::new(
@@ -254,7 +339,7 @@ impl Solid {
     }
 
     /// Makes room for more vertices and triangles, and no more than that.
-    fn reserve(&mut self, corners: usize, triangles: usize) {
+    pub(super) fn reserve(&mut self, corners: usize, triangles: usize) {
         self.corners.reserve_exact(corners);
         self.triangles.reserve_exact(triangles);
     }
@@ -281,7 +366,7 @@ impl Solid {
         self.triangles.extend([[from, from_below, to_below], [from, to_below, to]]);
     }
 
-    fn push(&mut self, corner: [f32; 3]) -> u32 {
+    pub(super) fn push(&mut self, corner: [f32; 3]) -> u32 {
         self.corners.push(corner);
         (self.corners.len() - 1) as u32
     }

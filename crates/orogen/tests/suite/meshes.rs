@@ -478,7 +478,7 @@ fn exports_are_whole_and_the_same_on_any_number_of_threads() {
     let folder = TestFolder::new("meshes").unwrap();
     let (world, window) = (world(), Window::new(150, 90, 20.0).at(100, 100));
     type Given<'a> = &'a [(&'a str, &'a str)];
-    let cases: [(&str, Given, &str); 9] = [
+    let cases: [(&str, Given, &str); 10] = [
         ("a.glb", &[], "26522 triangles"),
         (
             "b.glb",
@@ -495,6 +495,7 @@ fn exports_are_whole_and_the_same_on_any_number_of_threads() {
             &[("hollow", "1"), ("text", "H"), ("bed", "100x150.5x90")],
             "letters of --text have a size of 2.6 mm",
         ),
+        ("j.stl", &[("text", "Alp"), ("text-style", "engraved"), ("max-error", "2")], "no sample more than 2 m"),
         ("i.3mf", &[("cut", "200"), ("exaggeration", "0.01")], "less than a layer of 0.2 mm; use an exaggeration of"),
     ];
     let all = |threads: usize| -> BTreeMap<String, Vec<u8>> {
@@ -512,7 +513,20 @@ fn exports_are_whole_and_the_same_on_any_number_of_threads() {
     let names: Vec<&str> = one.keys().map(String::as_str).collect();
     assert_eq!(
         names,
-        ["a.glb", "b.glb", "c-texture.png", "c.mtl", "c.obj", "d.ply", "e.stl", "f.obj", "g.3mf", "h.stl", "i.3mf"]
+        [
+            "a.glb",
+            "b.glb",
+            "c-texture.png",
+            "c.mtl",
+            "c.obj",
+            "d.ply",
+            "e.stl",
+            "f.obj",
+            "g.3mf",
+            "h.stl",
+            "i.3mf",
+            "j.stl"
+        ]
     );
     assert!(one == all(3));
     let obj = String::from_utf8(one["c.obj"].clone()).unwrap();
@@ -533,13 +547,20 @@ fn exports_are_whole_and_the_same_on_any_number_of_threads() {
         ("x.ply", &[("color", "texture")], window, "cannot hold a texture; use --color vertex"),
         ("x.stl", &[("bed", "220x220")], window, "such as 220x220x250"),
         ("x.3mf", &[("bed", "100x100x100")], window, "has room for 100 x 100 x 100 mm; use --print-size 100 or less"),
-        ("x.3mf", &[("cut", "10"), ("hollow", "2")], window, "--hollow does not apply with --cut"),
-        ("x.stl", &[("cut", "10"), ("text", "A")], window, "--text does not apply with --cut"),
+        ("x.3mf", &[("cut", "200"), ("hollow", "2"), ("max-error", "3")], window, "leave out --max-error"),
+        (
+            "x.stl",
+            &[("cut", "200"), ("text", "A"), ("text-style", "engraved")],
+            window,
+            "engraved does not apply with --cut",
+        ),
+        ("x.stl", &[("text-style", "engraved")], window, "--text-style applies to the letters of --text"),
+        ("x.3mf", &[("cut", "200"), ("hollow", "3")], window, "walls of 3 mm need a base that is thicker than 3 mm"),
     ] {
         let why = export(&world, window, &folder.join(name), given).unwrap_err();
         assert!(why.contains(expect), "{why}");
     }
-    assert_eq!(folder.names().len(), 11);
+    assert_eq!(folder.names().len(), 12);
 }
 
 #[test]

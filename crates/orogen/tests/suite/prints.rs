@@ -198,3 +198,137 @@ fn letters_stand_out_of_the_southern_wall() {
     let why = refused(Print::new(5000.0), "a");
     assert!(why.contains("would have a size of 2.4 mm on a model of 5000 mm"), "{why}");
 }
+
+/// The two hills at a quarter of the cell: 0.5 mm on a model of 120 mm.
+fn fine_hills() -> Grid {
+    let mut grid = Grid::filled(Window::new(241, 161, 2.5), 0.0);
+    for j in 0..161 {
+        for i in 0..241 {
+            let hill = |x: f32| 40.0 - 0.75 * libm::hypotf(i as f32 - x, j as f32 - 80.0);
+            grid.row_mut(j)[i] = hill(80.0).max(hill(160.0)).max(0.0);
+        }
+    }
+    grid
+}
+
+#[test]
+fn each_part_of_land_above_a_cut_is_hollow() {
+    let grid = fine_hills();
+    let shape = Shape::lattice(&grid, 1).unwrap();
+    let surface = Surface { exaggeration: 2.0, ..surface(&grid, &shape) };
+    let print = Print::new(120.0).with_base(2.5).with_cut(20.0);
+    let (full, hollow) =
+        (Solid::new(&surface, &print).unwrap(), Solid::new(&surface, &print.with_hollow(1.5)).unwrap());
+    let ((all, bounds), (left, hollow_bounds)) = (closed(&full), closed(&hollow));
+    assert_eq!(bounds, hollow_bounds);
+    assert!(left < 0.75 * all, "{left} {all}");
+    // The upper half of the vertices is the land; the cavity is what else is above the ground.
+    let top = &full.corners[..full.corners.len() / 2];
+    assert_eq!(top, &hollow.corners[..top.len()]);
+    let outline: Vec<[f32; 3]> = top.iter().copied().filter(|corner| corner[2] == 2.5).collect();
+    let ceiling: Vec<[f32; 3]> = hollow.corners[top.len()..].iter().copied().filter(|corner| corner[2] > 0.0).collect();
+    assert!(outline.len() > 100 && ceiling.len() > 500, "{} {}", outline.len(), ceiling.len());
+    for corner in &ceiling {
+        let least = |others: &[[f32; 3]], up: f64| {
+            let away = others.iter().map(|other| {
+                let [x, y, z] = minus(wide(*other), wide(*corner));
+                dot([x, y, up * z], [x, y, up * z]).sqrt()
+            });
+            away.fold(f64::MAX, f64::min)
+        };
+        assert!(least(top, 1.0) > 1.5 - 1e-4 && least(&outline, 0.0) > 1.5 - 1e-4, "{corner:?}");
+    }
+    // Both hills have one.
+    assert!(ceiling.iter().any(|corner| corner[0] < 55.0) && ceiling.iter().any(|corner| corner[0] > 65.0));
+    // Land with capes and holes that touches the sides, at several levels.
+    let grid = land(120, 100);
+    let [low, high] = grid.data().iter().fold([f32::MAX, f32::MIN], |[low, high], z| [low.min(*z), high.max(*z)]);
+    let shape = Shape::lattice(&grid, 1).unwrap();
+    let mut cavities = 0;
+    for share in [0.2, 0.4, 0.5, 0.6] {
+        let print = Print::new(150.0).with_base(6.0).with_cut(f64::from(low + share * (high - low)));
+        let surface = crate::meshes::surface(&grid, &shape);
+        let full = closed(&Solid::new(&surface, &print).unwrap()).0;
+        if let Ok(hollow) = Solid::new(&surface, &print.with_hollow(2.0)) {
+            assert!(closed(&hollow).0 < full);
+            cavities += 1;
+        }
+    }
+    assert!(cavities > 1, "{cavities}");
+    // Refused: what has no room, and what has no vertex at every sample.
+    let refused = |shape: &Shape, grid: &Grid, print: Print| {
+        Solid::new(&crate::meshes::surface(grid, shape), &print).unwrap_err().to_string()
+    };
+    let coarse = two_hills();
+    let [whole, few] = [Shape::lattice(&coarse, 1).unwrap(), adaptive(&coarse, 1.0).unwrap()];
+    let print = Print::new(60.0).with_base(9.0).with_cut(20.0).with_hollow(8.0);
+    let why = refused(&whole, &coarse, print);
+    assert!(why.contains("no part of the land above the cut has room for a cavity within walls of 8 mm"), "{why}");
+    let why = refused(&few, &coarse, print);
+    assert!(why.contains("has a vertex at every sample; leave out --max-error"), "{why}");
+}
+
+#[test]
+fn letters_stand_on_the_straight_side_of_land_above_a_cut() {
+    // A ridge across the southern side in its western half, and a lower, narrower one in its eastern half.
+    let mut grid = Grid::filled(Window::new(121, 61, 10.0), 0.0);
+    for j in 0..61 {
+        for (i, height) in grid.row_mut(j).iter_mut().enumerate() {
+            let ridge = |x: f32, top: f32| top - (i as f32 - x).abs();
+            *height = ridge(40.0, 40.0).max(ridge(100.0, 25.0)).max(0.0);
+        }
+    }
+    let shape = Shape::lattice(&grid, 1).unwrap();
+    let print = Print::new(120.0).with_base(6.0).with_cut(15.0);
+    let plain = Solid::new(&surface(&grid, &shape), &print).unwrap();
+    let mut solid = plain.clone();
+    let size = solid.letter("N").unwrap();
+    closed(&solid);
+    assert!((size - 4.8).abs() < 0.01, "{size}");
+    let [west, east] = solid.corners[plain.corners.len()..]
+        .iter()
+        .fold([f32::MAX, f32::MIN], |[west, east], corner| [west.min(corner[0]), east.max(corner[0])]);
+    assert!((0.5 * (west + east) - 40.0).abs() < 0.5 && east - west < 6.0, "{west} {east}");
+    let hills = two_hills();
+    let shape = Shape::lattice(&hills, 1).unwrap();
+    let why = Solid::new(&surface(&hills, &shape), &print).unwrap().letter("N").unwrap_err().to_string();
+    assert!(why.contains("the land above the cut does not reach the southern side of the window"), "{why}");
+}
+
+#[test]
+fn letters_are_engraved_in_the_southern_wall() {
+    let grid = land(60, 40);
+    for shape in [Shape::lattice(&grid, 1).unwrap(), adaptive(&grid, 1.5).unwrap()] {
+        for (hollow, depth) in [(None, 0.6), (Some(1.0), 0.5)] {
+            let mut print = Print::new(150.0).with_base(10.0);
+            print.hollow = hollow;
+            let plain = Solid::new(&surface(&grid, &shape), &print).unwrap();
+            let (before, bounds) = closed(&plain);
+            let [mut raised, mut engraved] = [plain.clone(), plain.clone()];
+            let sizes = [raised.letter("L").unwrap(), engraved.engrave("L", hollow).unwrap()];
+            assert!((sizes[0] - sizes[1]).abs() < 0.2, "{sizes:?}");
+            let ((more, _), (less, same)) = (closed(&raised), closed(&engraved));
+            assert_eq!(bounds, same);
+            // Raised letters are bodies 1 mm thick.
+            let scale = sizes[1] / sizes[0];
+            let expect = (more - before) * depth * scale * scale;
+            assert!((before - less - expect).abs() < 0.01 * expect, "{before} {less} {expect}");
+            for text in ["BØ8%& Alpine", "Äg", "i"] {
+                let mut solid = plain.clone();
+                solid.engrave(text, hollow).unwrap();
+                let deepest = solid.corners[plain.corners.len()..].iter().fold(0.0, |most: f32, at| most.max(at[1]));
+                assert!((f64::from(deepest) - depth).abs() < 1e-6, "{deepest}");
+                closed(&solid);
+            }
+        }
+    }
+    // Ground that falls away from a high edge limits the letters.
+    let mut cliff = land(60, 40);
+    cliff.row_mut(39).fill(2000.0);
+    let shape = Shape::lattice(&cliff, 1).unwrap();
+    let print = Print::new(30.0).with_base(10.0);
+    let solid = Solid::new(&surface(&cliff, &shape), &print).unwrap();
+    let wall = |letter: fn(&mut Solid) -> f64| letter(&mut solid.clone());
+    let sizes = [wall(|solid| solid.letter("L").unwrap()), wall(|solid| solid.engrave("L", None).unwrap())];
+    assert!(sizes[0] == 12.0 && sizes[1] < 12.0, "{sizes:?}");
+}
