@@ -360,7 +360,10 @@ for kind, options in (("full.stl", ()), ("adaptive.stl", ADAPTIVE), ("full.3mf",
     checks.equal(f"{path.name}: meshio reads as many triangles", len(meshio.read(path).cells_dict["triangle"]), len(solid.faces))
 middle = f"{(heights.min() + heights.max()) / 2:.2f}"
 for kind, base, options in (("cut", "2", ("--cut", middle)), ("hollow", "2", ("--hollow", "1.2")), ("text", "8", ("--text", "Bump & 8")),
-                            ("all", "8", ("--hollow", "1.2", "--text", "öß%", *ADAPTIVE))):
+                            ("all", "8", ("--hollow", "1.2", "--text", "öß%", *ADAPTIVE)),
+                            ("shells", "2", ("--cut", middle, "--hollow", "0.8")),
+                            ("engraved", "8", ("--text", "Bump & 8", "--text-style", "engraved")),
+                            ("plate", "8", ("--hollow", "1.2", "--text", "öß%", "--text-style", "engraved", *ADAPTIVE))):
     path, other = (export(BUMP, f"bump-{kind}.{suffix}", "--print-size", "120", "--base", base, *options) for suffix in ("stl", "3mf"))
     solid, same = trimesh.load_mesh(path), trimesh.load_mesh(other)
     checks.that(f"{path.name}: watertight, as {other.name}", bool(solid.is_watertight and same.is_watertight))
