@@ -121,7 +121,7 @@ fn variants_as_an_animation() {
     bad(&["-o", "x.png"], "--sweep");
     bad(&["--sweep", "relief=1,2", "-o", "x.tif"], "an animated .png");
     bad(&["--sweep", "relief=1,2", "--columns", "2"], "cannot be used with");
-    folder.write("wide.toml", &RECIPE.replace("[600,", "[\"= 10 * relief\","));
+    folder.write("wide.toml", RECIPE.replace("[600,", "[\"= 10 * relief\","));
     folder.bad(
         &["variants", "wide.toml", "--animate", "--sweep", "relief=100,900", "--size", "96", "-o", "x.png"],
         2,
