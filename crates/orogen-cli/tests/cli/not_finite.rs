@@ -35,7 +35,9 @@ fn no_finite_height_is_an_error_of_every_command() {
         let folder = workplace();
         folder.write("small.toml", recipe(true));
         prepare(&folder, writer);
-        folder.bad(&[writer.arguments, &["-q"]].concat(), 2, "the layer `height` has no finite sample: all ");
+        let layer = writer.arguments.iter().skip_while(|argument| **argument != "--layer").nth(1).unwrap_or(&"height");
+        let expect = format!("the layer `{layer}` has no finite sample: all ");
+        folder.bad(&[writer.arguments, &["-q"]].concat(), 2, &expect);
         assert!(writer.files.iter().all(|file| !folder.path(file).exists()), "{:?}", folder.names(""));
     }
 }
