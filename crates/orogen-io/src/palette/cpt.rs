@@ -81,25 +81,30 @@ fn hsv_stops([start, end]: [(f64, Color); 2]) -> Vec<(f64, Rgb)> {
 /// Parses a table.
 ///
 /// Heights are metres, unless the table is normalised (from 0 to 1, or from -1 to 1): then it is stretched over its
-/// `RANGE` or, if it has none, from the lowest height to the highest; a `HINGE` is kept at sea level.
+/// `RANGE` or, if it has none, from the lowest height to the highest. With a `HINGE` both halves of a table from -1 to 1 are
+/// stretched on their own: 0 is at the hinge, a height of 0 m unless it states another, or without a range at sea level.
 ///
 /// # Errors
 /// A message with the line that cannot be parsed.
 pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
     let mut palette = Palette { name: name.to_string(), mix: Mix::Rgb, ..Palette::default() };
-    let (mut model, mut mixed, mut range, mut hinge) = (Model::Rgb, Model::Rgb, None, false);
+    let (mut model, mut mixed, mut range, mut hinge) = (Model::Rgb, Model::Rgb, None, None);
     let mut stops: Vec<(f64, Rgb)> = Vec::new();
     for (number, line) in text.lines().enumerate().map(|(k, line)| (k + 1, line.trim())) {
         let at = |why: String| format!("line {number}: {why}");
         if let Some(comment) = line.strip_prefix('#') {
             let Some((key, value)) = comment.split_once('=') else {
-                hinge |= matches!(comment.trim(), "HINGE" | "SOFT_HINGE" | "HARD_HINGE");
+                if matches!(comment.trim(), "HINGE" | "SOFT_HINGE" | "HARD_HINGE") {
+                    hinge = Some(0.0);
+                }
                 continue;
             };
             match key.trim() {
                 "COLOR_MODEL" => (model, mixed) = color_model(value.trim()).map_err(at)?,
                 "RANGE" => range = span(value.trim()),
-                "HINGE" | "SOFT_HINGE" | "HARD_HINGE" => hinge = true,
+                "HINGE" | "SOFT_HINGE" | "HARD_HINGE" => {
+                    hinge = Some(value.trim().parse().ok().filter(|at: &f64| at.is_finite()).unwrap_or(0.0));
+                }
                 _ => {}
             }
             continue;
@@ -136,10 +141,13 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
     let (first, last) = (stops[0].0, stops[stops.len() - 1].0);
     let both_signs = (first, last) == (-1.0, 1.0);
     let normal = both_signs || (first, last) == (0.0, 1.0);
-    let place = |at: f64| match (normal, range, hinge && both_signs) {
+    let place = |at: f64| match (normal, range, hinge.filter(|_| both_signs)) {
+        (true, Some([low, high]), Some(hinge)) if low < hinge && hinge < high => {
+            Position::Value(hinge + at * if at < 0.0 { hinge - low } else { high - hinge })
+        }
         (true, Some([low, high]), _) => Position::Value(low + (at - first) / (last - first) * (high - low)),
-        (true, None, true) => Position::Sea(at),
-        (true, None, false) => Position::Share((at - first) / (last - first)),
+        (true, None, Some(_)) => Position::Sea(at),
+        (true, None, None) => Position::Share((at - first) / (last - first)),
         (false, ..) => Position::Value(at),
     };
     palette.stops = stops.into_iter().map(|(at, color)| Stop { at: place(at), color }).collect();
@@ -252,6 +260,14 @@ mod tests {
         assert_eq!(stops("-1 navy 1 white")[0].0, Share(0.0));
         assert_eq!(stops("# RANGE = -8000/4000\n0 navy 1 white")[1].0, Value(4000.0));
         // Adjacent slices with equal colours have no step between them.
+        // Both sides of a hinge are stretched on their own, as GMT does for etopo1, whose range is not symmetric.
+        for (hinge, expect) in
+            [("HARD_HINGE", 0.0), ("SOFT_HINGE", 0.0), ("HINGE = 500", 500.0), ("HINGE = 9e9", -1250.0)]
+        {
+            let text = format!("# {hinge}\n# RANGE = -11000/8500\n-1 navy 0 aqua\n0 green 1 white");
+            let places: Vec<Position> = stops(&text).into_iter().map(|(at, _)| at).collect();
+            assert_eq!(places, [-11000.0, expect, expect, 8500.0].map(Value), "{hinge}");
+        }
         assert_eq!(stops("0 red 1 blue\n1 blue 2 red").len(), 3);
     }
 

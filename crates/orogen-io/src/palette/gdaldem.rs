@@ -73,9 +73,25 @@ fn scale_of<'a>(components: impl Iterator<Item = &'a str> + Clone) -> f64 {
     }
 }
 
+/// The color of a name for `gdaldem`, whose gray, brown and others are not those of the web; `None` for other names.
+fn of_gdaldem(name: &str) -> Option<Rgb> {
+    Some(match name.to_ascii_lowercase().as_str() {
+        "green" => [0, 255, 0],
+        "aqua" => [0, 191, 191],
+        "grey" | "gray" => [191; 3],
+        "orange" => [255, 127, 0],
+        "brown" => [191, 127, 63],
+        "purple" | "violet" => [127, 0, 255],
+        "indigo" => [0, 127, 255],
+        _ => return None,
+    })
+}
+
 fn color(words: &[&str], scale: f64) -> Result<Rgb, String> {
     match words {
-        [name] => named(name).ok_or_else(|| format!("`{name}` is not a colour; write a name or three numbers")),
+        [name] => of_gdaldem(name)
+            .or_else(|| named(name))
+            .ok_or_else(|| format!("`{name}` is not a colour; write a name or three numbers")),
         [red, green, blue] | [red, green, blue, _] => {
             let mut color = [0; 3];
             for (part, text) in color.iter_mut().zip([red, green, blue]) {
@@ -119,6 +135,26 @@ mod tests {
             ]
         );
         assert_eq!((palette.missing, palette.mix), (Some([128; 3]), Mix::Rgb));
+    }
+
+    #[test]
+    fn names_have_the_colors_of_gdaldem() {
+        // As gdaldem color-relief of GDAL 3.6 paints them; names that it does not know are those of the web.
+        let expect = [
+            ("green", [0, 255, 0]),
+            ("Aqua", [0, 191, 191]),
+            ("gray", [191; 3]),
+            ("orange", [255, 127, 0]),
+            ("brown", [191, 127, 63]),
+            ("purple", [127, 0, 255]),
+            ("violet", [127, 0, 255]),
+            ("indigo", [0, 127, 255]),
+            ("magenta", [255, 0, 255]),
+            ("navy", [0, 0, 128]),
+        ];
+        for (name, color) in expect {
+            assert_eq!(parse("t", &format!("7 {name}")).unwrap().stops[0].color, color, "{name}");
+        }
     }
 
     #[test]

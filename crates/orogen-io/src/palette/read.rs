@@ -32,6 +32,8 @@ pub fn read(path: &Path) -> Result<Palette> {
 /// # Errors
 /// A message about what is wrong.
 pub fn parse(name: &str, extension: &str, text: &str) -> std::result::Result<Palette, String> {
+    // Editors of Windows write a byte order mark.
+    let text = text.trim_start_matches('\u{feff}');
     match extension {
         "cpt" => cpt::parse(name, text),
         "gpl" => gpl::parse(name, text),
@@ -65,6 +67,13 @@ mod tests {
         ),
         ("txt", "# a comment\n100%  white\n0% 0 100 0 255\n\n1500:10,20,30\nnv\tgrey50\ndefault 1 2 3\n-7e2 white\n"),
     ];
+
+    #[test]
+    fn a_byte_order_mark_is_ignored() {
+        for (extension, text) in TEXTS {
+            assert_eq!(parse("t", extension, &format!("\u{feff}{text}")), parse("t", extension, text), "{extension}");
+        }
+    }
 
     #[test]
     fn damage_is_no_danger() {
