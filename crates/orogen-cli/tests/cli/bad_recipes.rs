@@ -33,6 +33,7 @@ fn what_is_no_text() {
     check(" \n\n ", "a.toml is empty");
     check((0..=255u8).cycle().take(5000).collect::<Vec<u8>>(), "is not UTF-8 text");
     check([0; 100], "a.toml:");
+    check(b"\xff\xfeo\0r\0o\0", "it is UTF-16 text; save it as UTF-8");
     check(b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR", "is not UTF-8 text");
 }
 

@@ -154,7 +154,13 @@ fn parse(text: &str, name: &str, set: &[(String, f64)], origin: &Origin) -> Resu
     }
     let text = Text { name, text };
     let is_json = text.text.trim_start().starts_with('{');
-    let tree = if is_json { json::read(&text)? } else { toml::read(&text)? };
+    let tree = match is_json {
+        true => json::read(&text)?,
+        // A file that says that it is JSON gets messages about JSON.
+        false => {
+            toml::read(&text).or_else(|error| if name.ends_with(".json") { json::read(&text) } else { Err(error) })?
+        }
+    };
     let walk = Walk {
         text: &text,
         registry: origin.registry(),

@@ -88,6 +88,14 @@ pub fn too_long(name: &str) -> Error {
 
 /// The content of a file as text.
 pub fn text_of(content: Vec<u8>, path: &Path) -> Result<String> {
+    // As some editors and shells of Windows write text.
+    if content.starts_with(b"\xff\xfe") || content.starts_with(b"\xfe\xff") {
+        let path = path.display();
+        return Err(Error::new(
+            ErrorKind::Recipe,
+            format!("{path} is not a recipe: it is UTF-16 text; save it as UTF-8"),
+        ));
+    }
     String::from_utf8(content).map_err(|fault| {
         Error::new(
             ErrorKind::Recipe,

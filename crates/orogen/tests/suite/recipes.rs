@@ -112,6 +112,10 @@ fn wrong_json_is_told_too() {
     );
     complains("{\"orogen\": 1, \"nodes\": {\"a\": null}}", "1:30", &["must be a table", "null"]);
     complains("{\"orogen\": 1, // a comment\n\"outputs\": {}}", "1:", &["not JSON"]);
+    for text in ["// a comment\n{\"orogen\": 1}", "null"] {
+        let error = Recipe::parse(text, "r.json").unwrap_err().to_string();
+        assert!(error.starts_with("r.json:1:") && !error.contains("TOML"), "{error}");
+    }
     let deep = format!("{{\"orogen\": {}", "[".repeat(1_000_000));
     complains(&deep, "1:", &["nested more than"]);
 }
