@@ -6,6 +6,7 @@ use super::presets::{self, Preset};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::words::nearest;
 use orogen_io::dem::open;
+use orogen_io::format::content;
 use orogen_io::format::foreign::foreign;
 use orogen_io::fs;
 
@@ -30,7 +31,7 @@ impl RecipeSource {
             Some(preset) if !fs::is_file(argument) => Ok(RecipeSource::Preset(preset)),
             None if open::is_dem(argument) => Ok(RecipeSource::Dem(argument.to_path_buf())),
             // Reading it says how to convert it.
-            None if fs::is_file(argument) && foreign(argument).is_some() => {
+            None if fs::is_file(argument) && (foreign(argument).is_some() || content::of_file(argument).is_some()) => {
                 Ok(RecipeSource::Dem(argument.to_path_buf()))
             }
             None if !fs::is_present(argument) && !looks_like_a_path(argument) => {

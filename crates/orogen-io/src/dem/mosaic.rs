@@ -208,7 +208,9 @@ fn lay(
     let count = afford(size[0], size[1], request.allowed).map_err(|why| refused(name, why))?;
     let [width, height] = size.map(|side| side as usize);
     let left = request.allowed.saturating_sub(4 * count as u64);
-    let mut heights = vec![absent; count];
+    // Marks samples without a part until all parts are there.
+    const NO_PART: f32 = f32::INFINITY;
+    let mut heights = vec![NO_PART; count];
     let mut notes = Vec::new();
     for part in parts {
         let dem = import::read_with(&part.path, Request::new(left).with_band(part.band), &part.metadata)?;
@@ -232,16 +234,86 @@ fn lay(
             let source = (part.from[1] + j) * dem.width + part.from[0];
             let to = (part.to[1] + j) * width + part.to[0];
             for (height, own) in heights[to..to + size[0]].iter_mut().zip(&dem.heights[source..source + size[0]]) {
-                // A missing sample shows the part below. Where there may be none, it must not become a height.
-                if !own.is_nan() || !absent.is_nan() {
+                // A missing sample shows the part below. Where there is none, it must not become a height.
+                if !own.is_nan() || *height == NO_PART {
                     *height = *own;
                 }
             }
         }
         notes.extend(dem.notes);
     }
+    heights.iter_mut().filter(|height| **height == NO_PART).for_each(|height| *height = absent);
     let mut dem = Dem::new([width, height], heights, place).map_err(|why| refused(name, why))?;
     notes.dedup();
     dem.notes = notes;
     Ok(dem)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_folder::TestFolder;
+    use std::fs::write;
+
+    const HEAD: &str = "ncols 3\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 10\n";
+
+    fn source(kind: &str, file: &str, more: &str) -> String {
+        format!("<{kind}><SourceFilename relativeToVRT=\"1\">{file}</SourceFilename>{more}</{kind}>")
+    }
+
+    #[test]
+    fn missing_samples_of_a_virtual_raster_show_the_source_below() {
+        let folder = TestFolder::new("mosaic").unwrap();
+        write(folder.join("a.asc"), format!("{HEAD}1 2.6 300\n")).unwrap();
+        write(folder.join("b.asc"), format!("{HEAD}7 -1 9\n")).unwrap();
+        let below = source("SimpleSource", "a.asc", "");
+        let above = source("ComplexSource", "b.asc", "<NODATA>-1</NODATA>");
+        // As GDAL reads them; a hole of the lowest source, which GDAL fills with 0, is missing.
+        for (kind, sources, expect) in [
+            ("Float32", format!("{below}{above}"), [7.0, 2.6, 9.0]),
+            ("Float32", format!("{above}{below}"), [1.0, 2.6, 300.0]),
+            ("Byte", below.clone(), [1.0, 3.0, 255.0]),
+            ("Float32", above.clone(), [7.0, f32::NAN, 9.0]),
+            ("Float32", String::new(), [0.0; 3]),
+        ] {
+            let text = format!(
+                "<VRTDataset rasterXSize=\"3\" rasterYSize=\"1\"><VRTRasterBand dataType=\"{kind}\">{sources}</VRTRasterBand></VRTDataset>"
+            );
+            write(folder.join("c.vrt"), text).unwrap();
+            let dem = virtual_raster(&folder.join("c.vrt"), Request::new(1 << 20)).unwrap();
+            let same = dem
+                .heights
+                .iter()
+                .zip(expect)
+                .all(|(own, expect)| own.to_bits() == expect.to_bits() || own.is_nan() && expect.is_nan());
+            assert!(same, "{kind} {sources}: {:?}", dem.heights);
+        }
+        let nested = source("SimpleSource", "c.vrt", "");
+        let text = format!(
+            "<VRTDataset rasterXSize=\"3\" rasterYSize=\"1\"><VRTRasterBand>{nested}</VRTRasterBand></VRTDataset>"
+        );
+        write(folder.join("d.vrt"), text).unwrap();
+        let why = virtual_raster(&folder.join("d.vrt"), Request::new(1 << 20)).unwrap_err().to_string();
+        assert!(
+            why.contains("a virtual raster within another") && why.contains("gdal_translate c.vrt out.tif"),
+            "{why}"
+        );
+    }
+
+    #[test]
+    fn seconds_and_feet_of_an_old_projection_file_are_converted() {
+        let folder = TestFolder::new("seconds").unwrap();
+        let head = "ncols 2\nnrows 2\nxllcenter 36000\nyllcenter 162000\ncellsize 3\n";
+        write(folder.join("a.asc"), format!("{head}1 2\n3 1000\n")).unwrap();
+        write(folder.join("a.prj"), "Projection GEOGRAPHIC\nDatum WGS84\nZunits FEET\nUnits DS\nParameters\n").unwrap();
+        let dem = import::read(&folder.join("a.asc"), 1 << 20).unwrap();
+        let place = dem.place.unwrap();
+        assert!((place.origin[0] - 10.0).abs() < 1e-12 && (place.origin[1] - 45.0 - 1.0 / 1200.0).abs() < 1e-12);
+        assert!((place.step[0] - 1.0 / 1200.0).abs() < 1e-15 && place.unit == Unit::Degrees);
+        assert!((dem.heights[3] - 304.8006).abs() < 1e-4, "{:?}", dem.heights);
+        // The same numbers as degrees are not on Earth.
+        write(folder.join("a.prj"), "Projection GEOGRAPHIC\nDatum WGS84\nUnits DD\nParameters\n").unwrap();
+        let why = import::read(&folder.join("a.asc"), 1 << 20).unwrap_err().to_string();
+        assert!(why.contains("a latitude of 162003 degrees is beyond the pole"), "{why}");
+    }
 }

@@ -92,6 +92,10 @@ pub fn head(input: &mut dyn Input, name: &str) -> Result<([usize; 2], Option<Pla
 /// The header, the size it states, and the first word after it.
 fn read_head(words: &mut Words) -> std::result::Result<(Head, [u64; 2], Option<String>), String> {
     let mut head = Head::default();
+    // Editors of Windows write a byte order mark.
+    if words.input.fill_buf().map_err(|cause| cause.to_string())?.starts_with(b"\xef\xbb\xbf") {
+        words.input.consume(3);
+    }
     // The header ends with the first word that is a number in place of a key.
     let mut first = words.next()?;
     while let Some(word) = first.as_deref()

@@ -20,6 +20,8 @@ pub struct BandMetadata {
     pub unit: Option<String>,
     /// Metres per unit of scaled samples, if the unit is known without a name.
     pub metres: Option<f64>,
+    /// The least and the greatest whole number of a virtual raster's type, to which stored samples are rounded.
+    pub whole: Option<[f64; 2]>,
 }
 
 /// Nodata values that programs use most; files often do not declare them.
@@ -44,6 +46,7 @@ impl BandMetadata {
             offset: number("Offset"),
             unit: text("UnitType").map(String::from),
             metres: None,
+            whole: None,
         }
     }
 
@@ -66,6 +69,7 @@ impl BandMetadata {
             offset: number("offset"),
             unit: text("unittype").map(String::from),
             metres: None,
+            whole: None,
         }
     }
 
@@ -86,6 +90,7 @@ impl BandMetadata {
         if other.unit.is_some() || other.metres.is_some() {
             (self.unit, self.metres) = (other.unit.clone(), other.metres);
         }
+        self.whole = other.whole.or(self.whole);
         self
     }
 
@@ -113,7 +118,8 @@ impl BandMetadata {
         }
         let unknown = self.unit.as_ref().filter(|unit| length_of_name(unit).is_none()).cloned();
         let metres = self.unit.as_deref().map_or(self.metres.or(vertical), length_of_name).unwrap_or(1.0);
-        Ok(Conversion { nodata: self.nodata.clone(), scale, offset, metres, unknown, seen: Seen::default() })
+        let (nodata, whole) = (self.nodata.clone(), self.whole);
+        Ok(Conversion { nodata, whole, scale, offset, metres, unknown, seen: Seen::default() })
     }
 }
 
@@ -121,6 +127,7 @@ impl BandMetadata {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Conversion {
     nodata: Vec<f64>,
+    whole: Option<[f64; 2]>,
     scale: f64,
     offset: f64,
     metres: f64,
@@ -142,6 +149,13 @@ impl Conversion {
         // Some programs write nodata with fewer digits than the float has.
         let is = |nodata: &f64| value == *nodata || size == 4 && value as f32 == *nodata as f32;
         if value.is_nan() || self.nodata.iter().any(is) {
+            return f32::NAN;
+        }
+        let value = match self.whole {
+            Some([least, greatest]) => (value + 0.5).floor().clamp(least, greatest),
+            None => value,
+        };
+        if self.whole.is_some() && self.nodata.contains(&value) {
             return f32::NAN;
         }
         if value.abs() >= HIGHEST {
@@ -176,6 +190,16 @@ impl Conversion {
     /// Converts samples that a reader has stored as f32.
     pub fn apply(&mut self, samples: &mut [f32]) {
         samples.iter_mut().for_each(|sample| *sample = self.height(f64::from(*sample), 4));
+    }
+
+    /// [`notes`](Conversion::notes) about the heights that a mask has left.
+    #[must_use]
+    pub fn notes_of(mut self, heights: &[f32]) -> Vec<String> {
+        for (common, seen) in COMMON_NODATA.iter().zip(&mut self.seen.common).filter(|(_, seen)| **seen) {
+            let height = ((common * self.scale + self.offset) * self.metres) as f32;
+            *seen = heights.contains(&height);
+        }
+        self.notes()
     }
 
     /// Messages about unusual units and values.
@@ -238,6 +262,24 @@ mod tests {
         assert!(notes.len() == 2 && notes[0].contains("are -9999") && notes[1].contains("beyond 1e30"), "{notes:?}");
         let percent = BandMetadata { unit: Some("percent".into()), ..Default::default() };
         assert!(percent.conversion(None).unwrap().notes()[0].contains("`percent`"));
+    }
+
+    #[test]
+    fn samples_of_virtual_rasters_are_rounded_to_their_type() {
+        // As GDAL copies floats to bytes.
+        let band =
+            BandMetadata { whole: Some([0.0, 255.0]), scale: Some(2.0), nodata: vec![7.0], ..Default::default() };
+        let mut conversion = band.conversion(None).unwrap();
+        let heights = [1.4, 1.5, 300.0, -3.0].map(|value| conversion.height(value, 4));
+        assert_eq!((heights, conversion.height(6.9, 4).is_nan()), ([2.0, 4.0, 510.0, 0.0], true));
+    }
+
+    #[test]
+    fn masked_samples_are_no_note() {
+        let mut conversion = BandMetadata::default().conversion(None).unwrap();
+        conversion.height(-9999.0, 4);
+        assert!(conversion.clone().notes_of(&[1.0, f32::NAN]).is_empty());
+        assert_eq!(conversion.notes_of(&[1.0, -9999.0]).len(), 1);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //!
 //! Keys read: `nrows`, `ncols`, `nbits`, `pixeltype`, `byteorder`, `skipbytes`, `bandrowbytes`, `totalrowbytes`, `ulxmap`
 //! and `ulymap` (the centre of the first pixel) with `xdim` and `ydim`, or `xllcorner`, `yllcorner` and `cellsize` as in
-//! `.asc`, and `nodata`. The defaults are GDAL's: `.bil` has 8 bits, whole numbers without a sign unless nodata is
+//! `.asc`, `zunits` and `nodata`. The defaults are GDAL's: `.bil` has 8 bits, whole numbers without a sign unless nodata is
 //! negative; `.flt` has floats of 32 bits.
 
 use std::collections::BTreeMap;
@@ -10,7 +10,7 @@ use std::io::Read;
 
 use super::affine::{Affine, Lattice};
 use super::band::BandMetadata;
-use super::crs::unit::Unit;
+use super::crs::unit::{Unit, length_of_name};
 use super::dem::{Dem, Input, Placement, afford, length, refused};
 use orogen_grid::error::Result;
 
@@ -139,7 +139,8 @@ fn open(
         return Err(format!("{width} x {height} samples of {size} bytes do not fit in its {there} bytes"));
     }
     let metadata = BandMetadata::default().with_nodata(nodata).replaced_by(metadata);
-    let mut conversion = metadata.conversion(vertical)?;
+    let stated = header.text("zunits").and_then(length_of_name);
+    let mut conversion = metadata.conversion(vertical.or(stated))?;
     let mut heights = Vec::with_capacity(count);
     let mut bytes = vec![0; row as usize];
     std::io::copy(&mut input.take(skip), &mut std::io::sink()).map_err(|cause| cause.to_string())?;

@@ -14,8 +14,15 @@ const FORMATS: &[(&[&str], &str, &str)] = &[
     (&["gsb", "gtx"], "a binary grid", "gdal_translate FILE out.tif"),
     (&["bag"], "Bathymetry Attributed Grid", "gdal_translate FILE out.tif"),
     (&["dem", "ddf"], "USGS DEM", "gdal_translate FILE out.tif"),
-    (&["bip", "bsq", "ers", "rst", "kea", "mbtiles"], "a raster", "gdal_translate FILE out.tif"),
+    (
+        &["bip", "bsq", "ers", "rst", "kea", "mbtiles", "gpkg", "sdat", "sgrd", "bt", "pix", "mrf"],
+        "a raster",
+        "gdal_translate FILE out.tif",
+    ),
     (&["sid", "ecw"], "a wavelet-compressed raster", "gdal_translate FILE out.tif"),
+    (&["fits"], "FITS", "gdal_translate FILE out.tif"),
+    (&["ntf", "nitf"], "NITF", "gdal_translate FILE out.tif"),
+    (&["gif", "bmp"], "a picture", "gdal_translate FILE out.tif"),
     (&["ter"], "Terragen", "gdal_translate FILE out.tif"),
     (&["las", "laz", "e57"], "a point cloud", "pdal translate FILE out.tif --writers.gdal.resolution=1"),
     (&["zip"], "an archive", "unzip FILE"),
@@ -29,8 +36,19 @@ const FORMATS: &[(&[&str], &str, &str)] = &[
 pub fn foreign(path: &Path) -> Option<String> {
     let extension = path.extension()?.to_str()?.to_ascii_lowercase();
     let (_, format, command) = FORMATS.iter().find(|(extensions, ..)| extensions.contains(&extension.as_str()))?;
-    let command = command.replace("FILE", &path.file_name()?.to_string_lossy());
+    let command = with_name(path, command);
     Some(format!("its format, {format} (.{extension}), is not supported; convert it, for example with {command}"))
+}
+
+/// The message for a file whose content is of such a format, whatever its name says.
+pub(super) fn of_name(path: &Path, format: &str, command: &str) -> String {
+    let command = with_name(path, command);
+    format!("its content is {format}, which is not supported; convert it, for example with {command}")
+}
+
+/// A command with the name of a file.
+fn with_name(path: &Path, command: &str) -> String {
+    command.replace("FILE", &path.file_name().unwrap_or_default().to_string_lossy())
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use std::io::Cursor;
 use std::path::Path;
 
 use super::band::BandMetadata;
+use super::content;
 use super::dem::{Dem, Input, Part, Placement, Request, refused};
 use super::foreign::foreign;
 use super::noted::noted;
@@ -11,7 +12,7 @@ use super::raw::Sample;
 use super::sidecar::Sidecar;
 use super::{asc, dted, ehdr, exr_reader, geotiff, grey, hgt, netcdf, npy, raw, xyz, zip};
 use crate::open;
-use orogen_grid::error::Result;
+use orogen_grid::error::{Error, Result};
 
 /// Extensions of readable files.
 pub const EXTENSIONS: [&str; 19] = [
@@ -80,7 +81,12 @@ pub fn read(path: &Path, request: impl Into<Request>) -> Result<Dem> {
     known(path, &name)?;
     let mut file = open::regular(path, "read")?;
     let sidecar = Sidecar::beside(path)?;
-    parse(&mut file, &name, &extension(path).unwrap_or_default(), sidecar, request)
+    parse(&mut file, &name, &extension(path).unwrap_or_default(), sidecar, request).map_err(|error| named(path, error))
+}
+
+/// The error for a file that cannot be read: if its content is of another format than its name says, that is why.
+fn named(path: &Path, error: Error) -> Error {
+    content::of_file(path).map_or(error, |why| refused(&path.display().to_string(), why))
 }
 
 /// [`read`] with metadata of the band that replaces what the file and its sidecars state, as virtual rasters do.
@@ -97,6 +103,7 @@ pub fn read_with(path: &Path, request: Request, metadata: &BandMetadata) -> Resu
     let mut told = Sidecar::beside(path)?.unwrap_or_default();
     told.replaced = metadata.clone();
     parse(&mut file, &name, &extension(path).unwrap_or_default(), Some(told), request)
+        .map_err(|error| named(path, error))
 }
 
 /// An error for a file whose extension is not that of a format for heights.
@@ -104,7 +111,14 @@ fn known(path: &Path, name: &str) -> Result<()> {
     if is_dem(path) {
         return Ok(());
     }
-    if let Some(why) = foreign(path) {
+    if extension(path).is_some_and(|extension| extension == "vrt") {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let why = format!(
+            "a virtual raster within another is not supported; convert it, for example with gdal_translate {name} out.tif"
+        );
+        return Err(refused(&path.display().to_string(), why));
+    }
+    if let Some(why) = foreign(path).or_else(|| content::of_file(path)) {
         return Err(refused(name, why));
     }
     let known = "supported are .tif, .asc, .hgt, .hgt.zip, .nc, .grd, .bil, .flt, .xyz, .dt0 to .dt2, .png, .r16, .r32, .npy, .exr and .vrt, folders of .tif, .hgt or .asc, and Zarr";
@@ -193,8 +207,23 @@ fn band(input: &mut dyn Input, name: &str, extension: &str, sidecar: Option<Side
         if place.keys.is_none() {
             dem.notes.extend(told.notes);
         }
+        on_earth(place, dem.height).map_err(|why| refused(name, why))?;
     }
     Ok(dem)
+}
+
+/// Checks that no row is beyond a pole; a sample may be on it.
+fn on_earth(place: &Placement, rows: usize) -> std::result::Result<(), String> {
+    let Some(degrees) = place.unit.degrees() else { return Ok(()) };
+    let [north, step] = [place.origin[1], place.step[1]].map(|at| at * degrees);
+    let south = north - step * (rows as f64 - 1.0);
+    match [north, south].into_iter().find(|latitude| latitude.abs() > 90.0 + step) {
+        Some(beyond) => Err(format!(
+            "its georeference is invalid: a latitude of {} degrees is beyond the pole; if its coordinates are metres, correct its coordinate system, for example with gdal_edit.py -a_srs",
+            (beyond * 1e6).round() / 1e6
+        )),
+        None => Ok(()),
+    }
 }
 
 /// Applies the mask beside a file, and the nodata, scale, offset and unit that GDAL's sidecar and a vertical coordinate

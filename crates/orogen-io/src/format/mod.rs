@@ -5,6 +5,7 @@ pub mod affine;
 pub mod asc;
 pub mod aux_xml;
 pub mod band;
+pub mod content;
 pub mod contour_svg;
 pub mod crs;
 pub mod csv;

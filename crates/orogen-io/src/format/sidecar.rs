@@ -16,6 +16,7 @@ use serde::Deserialize;
 
 use super::affine::Affine;
 use super::band::BandMetadata;
+use super::crs::arc_info;
 use super::crs::keys::{self, GeoKeys};
 use super::crs::unit::Unit;
 use super::crs::vertical;
@@ -68,6 +69,9 @@ pub struct Sidecar {
     /// Metres per unit of the vertical coordinate system in other sidecars, if they have one.
     #[serde(skip)]
     pub vertical: Option<f64>,
+    /// Whether the coordinates of the file are seconds of arc, as a `.prj` of ARC/INFO states.
+    #[serde(skip)]
+    pub is_in_seconds: bool,
     /// What GDAL's sidecar states about each band, in the order of the bands.
     #[serde(skip)]
     pub bands: Vec<BandMetadata>,
@@ -105,8 +109,12 @@ impl Sidecar {
         }
         let (notes, projection) = (aux_xml(path), path.with_extension("prj"));
         if fs::is_file(&projection) {
-            match text(&projection, MAX_LENGTH as u64, |wkt| Ok((keys::of_wkt(wkt)?, vertical::metres_of_text(wkt)))) {
-                Ok((keys, vertical)) => (all.keys, all.vertical) = (Some(keys), vertical),
+            let parse =
+                |wkt: &str| Ok((keys::of_wkt(wkt)?, vertical::metres_of_text(wkt), arc_info::is_in_seconds(wkt)));
+            match text(&projection, MAX_LENGTH as u64, parse) {
+                Ok((keys, vertical, is_in_seconds)) => {
+                    (all.keys, all.vertical, all.is_in_seconds) = (Some(keys), vertical, is_in_seconds);
+                }
                 Err(why) => all.notes.push(format!("its coordinate system is not known: {why}")),
             }
         }
@@ -250,6 +258,11 @@ impl Sidecar {
     pub fn complete(&self, place: &mut Placement) -> std::result::Result<(), String> {
         if let (None, Some(keys)) = (&place.keys, &self.keys) {
             place.unit = keys::unit(keys)?;
+            if self.is_in_seconds {
+                for number in place.origin.iter_mut().chain(&mut place.step) {
+                    *number /= 3600.0;
+                }
+            }
             place.keys = Some(keys.clone());
         }
         Ok(())

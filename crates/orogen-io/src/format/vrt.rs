@@ -86,13 +86,24 @@ fn band(band: Node) -> Result<Band, String> {
     }
     let all = band.children().filter(|node| node.is_element() && node.tag_name().name().ends_with("Source"));
     let sources = all.map(source).collect::<Result<_, _>>()?;
-    Ok(Band { sources, metadata: BandMetadata::of_xml(band) })
+    let whole = match band.attribute("dataType") {
+        Some("Byte") => Some([0.0, 255.0]),
+        Some("Int8") => Some([-128.0, 127.0]),
+        Some("UInt16") => Some([0.0, 65_535.0]),
+        Some("Int16") => Some([-32_768.0, 32_767.0]),
+        Some("UInt32") => Some([0.0, 4_294_967_295.0]),
+        Some("Int32") => Some([-2_147_483_648.0, 2_147_483_647.0]),
+        _ => None,
+    };
+    Ok(Band { sources, metadata: BandMetadata { whole, ..BandMetadata::of_xml(band) } })
 }
 
 fn source(node: Node) -> Result<Source, String> {
     let name = node.tag_name().name();
     if !matches!(name, "SimpleSource" | "ComplexSource") {
-        return Err(format!("it has a {name}, which is not supported; convert it to GeoTIFF with gdal_translate"));
+        return Err(format!(
+            "a source is of the kind {name}, which is not supported; convert it to GeoTIFF with gdal_translate"
+        ));
     }
     let child = |name: &str| node.children().find(|node| node.has_tag_name(name));
     if let Some(other) = ["ScaleOffset", "ScaleRatio", "LUT", "Exponent", "ColorTableComponent", "UseMaskBand"]
@@ -108,7 +119,12 @@ fn source(node: Node) -> Result<Source, String> {
         file.text().map(str::trim).filter(|path| !path.is_empty()).ok_or("a source has no file name")?.to_string();
     let relative = matches!(file.attribute("relativeToVRT"), Some("1" | "true" | "TRUE"));
     let band = match child("SourceBand").and_then(|node| node.text()) {
-        Some(text) => text.trim().parse().map_err(|_| format!("a source uses the band `{}`", text.escape_debug()))?,
+        Some(text) => text.trim().parse().map_err(|_| {
+            let band = text.escape_debug();
+            format!(
+                "a source uses the band `{band}`, which is not supported; convert it to GeoTIFF with gdal_translate"
+            )
+        })?,
         None => 1,
     };
     let (from, to) = (rectangle(child("SrcRect"))?, rectangle(child("DstRect"))?);

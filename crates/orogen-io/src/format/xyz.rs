@@ -88,8 +88,11 @@ fn parse(line: &[u8], number: usize) -> std::result::Result<Option<[f64; 3]>, St
     if text.is_empty() || text.starts_with('#') {
         return Ok(None);
     }
-    let mut words = text.split([' ', '\t', ',', ';']).filter(|word| !word.is_empty());
-    let mut next = || words.next()?.parse::<f64>().ok();
+    // Where semicolons separate the numbers, commas are those of decimals.
+    let is_decimal = text.contains(';');
+    let separates = |c: char| matches!(c, ' ' | '\t' | ';') || c == ',' && !is_decimal;
+    let mut words = text.split(separates).filter(|word| !word.is_empty());
+    let mut next = || words.next()?.replace(',', ".").parse::<f64>().ok();
     match (next(), next(), next()) {
         (Some(x), Some(y), Some(z)) if x.is_finite() && y.is_finite() => Ok(Some([x, y, z])),
         _ if number == 1 && text.starts_with(|c: char| c.is_alphabetic() || c == '"') => Ok(None),
@@ -111,7 +114,9 @@ mod tests {
         // As GDAL writes it, and with names, commas and rows from the south.
         let north = "600050 5199950 1\n600150 5199950 2\n600250 5199950 3\n600050 5199850 4\n600150 5199850 -5\n600250 5199850 6\n";
         let south = "x,y,z\n600050,5199850,4\n600150,5199850,-5\n600250,5199850,6\r\n600050,5199950,1\n600150,5199950,2\n600250,5199950,3";
-        for text in [north, south] {
+        let commas = north.replace(' ', ";").replace(";5", ",0;5");
+        assert!(commas.starts_with("600050,0;5199950;1\n"));
+        for text in [north, south, &commas] {
             let dem = grid(text).unwrap();
             assert_eq!((dem.width, dem.height, &dem.heights[..]), (3, 2, &[1.0, 2.0, 3.0, 4.0, -5.0, 6.0][..]));
             let place = dem.place.unwrap();

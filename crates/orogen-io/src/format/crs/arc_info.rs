@@ -2,6 +2,7 @@
 //! grids.
 
 use super::epsg;
+use super::unit::US_FOOT;
 
 /// Maximum number of lines.
 const MAX_LINES: usize = 64;
@@ -9,12 +10,7 @@ const MAX_LINES: usize = 64;
 /// The EPSG code of such a text, if it is supported: UTM or degrees, in metres, on the datums of North America or WGS
 /// 84.
 pub fn epsg(text: &str) -> Option<u16> {
-    let value = |wanted: &str| {
-        text.lines().take(MAX_LINES).find_map(|line| {
-            let (keyword, value) = line.trim().split_once(char::is_whitespace)?;
-            keyword.eq_ignore_ascii_case(wanted).then(|| value.trim().to_ascii_uppercase())
-        })
-    };
+    let value = |wanted: &str| value(text, wanted);
     let plain = |text: String| text.replace(['_', '-', ' '], "");
     let degrees = match plain(value("Datum")?).as_str() {
         "WGS84" | "WGS1984" => 4326,
@@ -46,6 +42,29 @@ pub fn epsg(text: &str) -> Option<u16> {
     }
 }
 
+/// The value of a keyword, in capital letters.
+fn value(text: &str, wanted: &str) -> Option<String> {
+    text.lines().take(MAX_LINES).find_map(|line| {
+        let (keyword, value) = line.trim().split_once(char::is_whitespace)?;
+        keyword.eq_ignore_ascii_case(wanted).then(|| value.trim().to_ascii_uppercase())
+    })
+}
+
+/// Metres per unit of height, if the text states them: a number is that of units in a metre.
+pub fn vertical_metres(text: &str) -> Option<f64> {
+    value(text, "Projection")?;
+    match value(text, "Zunits")?.as_str() {
+        "FEET" => Some(US_FOOT),
+        "METERS" | "METRES" => Some(1.0),
+        number => number.parse().ok().filter(|units: &f64| units.is_finite() && *units > 0.0).map(|units| 1.0 / units),
+    }
+}
+
+/// Whether coordinates are seconds of arc.
+pub fn is_in_seconds(text: &str) -> bool {
+    value(text, "Projection").as_deref() == Some("GEOGRAPHIC") && value(text, "Units").as_deref() == Some("DS")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -61,5 +80,21 @@ mod tests {
         assert_eq!(epsg(&text("UTM", "WGS84", "Zone 61")), None);
         assert_eq!(epsg(&text("UTM", "NAD27", "Units FEET\nZone 11")), None);
         assert_eq!(epsg("PROJCS[\"a\"]"), None);
+    }
+
+    #[test]
+    fn units_of_heights_and_seconds_are_known() {
+        let text = |rest: &str| format!("Projection GEOGRAPHIC\r\nDatum WGS84\r\n{rest}\r\nParameters\r\n");
+        for (rest, expect) in [
+            ("Zunits FEET", Some(US_FOOT)),
+            ("ZUNITS Meters", Some(1.0)),
+            ("Zunits 100", Some(0.01)),
+            ("Zunits NO", None),
+            ("Zunits 0", None),
+            ("Units DD", None),
+        ] {
+            assert_eq!(vertical_metres(&text(rest)), expect, "{rest}");
+        }
+        assert_eq!([text("Units DS"), text("Units DD")].map(|text| is_in_seconds(&text)), [true, false]);
     }
 }

@@ -67,7 +67,11 @@ fn double(keys: &GeoKeys, wanted: u16) -> Option<f64> {
 /// Whether coordinates are longitude and latitude, in degrees or another unit of angles.
 #[must_use]
 pub fn is_degrees(keys: &GeoKeys) -> bool {
-    short(keys, MODEL) == Some(2)
+    match short(keys, MODEL) {
+        Some(2) => true,
+        Some(USER_DEFINED) => esri_text(keys).is_some_and(|text| text.starts_with("GEO")),
+        _ => false,
+    }
 }
 
 /// Whether the keys describe a coordinate system on Earth: not local metres, and not degrees of an unknown datum.
@@ -76,6 +80,7 @@ pub fn is_named(keys: &GeoKeys) -> bool {
     match short(keys, MODEL) {
         Some(1) => true,
         Some(2) => epsg(keys).is_some() || !keys.text.is_empty() || !keys.doubles.is_empty(),
+        Some(USER_DEFINED) => esri_text(keys).is_some(),
         _ => false,
     }
 }
@@ -188,11 +193,8 @@ pub fn of_wkt(wkt: &str) -> Result<GeoKeys, String> {
     if wkt.contains('|') || !wkt.is_ascii() {
         return Err("its well-known text contains invalid characters".into());
     }
-    let length = text.len() as u16;
-    let directory = match geographic {
-        true => vec![1, 1, 0, 3, MODEL, 0, 1, 2, CITATION, TEXTS, length, 0, GEOGRAPHIC, 0, 1, USER_DEFINED],
-        false => vec![1, 1, 0, 3, MODEL, 0, 1, 1, PROJECTED, 0, 1, USER_DEFINED, PROJECTED_CITATION, TEXTS, length, 0],
-    };
+    // GDAL writes a text that no other key expresses in this way, and reads the text only if the model is user-defined.
+    let directory = vec![1, 1, 0, 2, MODEL, 0, 1, USER_DEFINED, PROJECTED_CITATION, TEXTS, text.len() as u16, 0];
     let mut keys = GeoKeys { directory, doubles: Vec::new(), text };
     if !geographic {
         push_unit(&mut keys, metres);
@@ -293,6 +295,12 @@ fn geographic(keys: &GeoKeys) -> Option<Geographic> {
 /// A projection that the keys define by parameters.
 fn user_defined(keys: &GeoKeys) -> Option<System> {
     if short(keys, MODEL) != Some(1) || short(keys, ANGULAR_UNIT).is_some_and(|unit| !matches!(unit, 9102 | 9122)) {
+        return None;
+    }
+    // Longitudes from another meridian than Greenwich.
+    if short(keys, 2051).is_some_and(|code| !matches!(code, 0 | 8901 | USER_DEFINED))
+        || double(keys, 2061).is_some_and(|degrees| degrees != 0.0)
+    {
         return None;
     }
     let geographic = geographic(keys)?;

@@ -58,10 +58,11 @@ pub fn rebuilt(found: &GeoKeys) -> Result<GeoKeys, String> {
 
 /// Whether a key describes the horizontal system.
 fn is_horizontal(key: u16) -> bool {
-    matches!(key, MODEL | 1026 | GEOGRAPHIC..=2062 | PROJECTED..=3095)
+    matches!(key, MODEL | 1026 | GEOGRAPHIC..=2062 | PROJECTED..=3096)
 }
 
-/// A text, in ASCII as GeoTIFF requires. Of well-known text only the horizontal system is kept.
+/// A text, in ASCII as GeoTIFF requires. Of well-known text only the horizontal system is kept. A key states the length of
+/// its text, so bars within it remain: GDAL separates the names of a datum, ellipsoid and meridian by them.
 fn text_of(text: &str) -> String {
     let (before, wkt) = text.split_once(ESRI_TEXT).map_or((text, None), |(before, wkt)| (before, Some(wkt)));
     let horizontal = wkt.map(|wkt| {
@@ -71,7 +72,7 @@ fn text_of(text: &str) -> String {
         format!("{ESRI_TEXT}{own}")
     });
     let text = format!("{before}{}", horizontal.unwrap_or_default());
-    text.chars().map(|c| if c.is_ascii() && c != '|' { c } else { '?' }).collect()
+    text.chars().map(|c| if c.is_ascii() { c } else { '?' }).collect()
 }
 
 /// The EPSG code of a UTM zone that has only a projection and a geographic system.
@@ -163,6 +164,21 @@ mod tests {
         }
         let in_feet = keys(&[[1024, 0, 1, 1], [2048, 0, 1, 4326], [3074, 0, 1, 16032], [3076, 0, 1, 9002]]);
         assert_eq!(epsg(&rebuilt(&in_feet).unwrap()), None);
+    }
+
+    #[test]
+    fn bars_within_texts_and_the_angle_of_oblique_systems_are_kept() {
+        // As GDAL writes a datum without a code, and an oblique Mercator projection.
+        let text = "GCS Name = a|Datum = b|Primem = Paris||";
+        let mut found = keys(&[[1024, 0, 1, 1], [2049, TEXTS, text.len() as u16, 0], [3096, DOUBLES, 1, 0]]);
+        (found.text, found.doubles) = (text.into(), vec![30.0]);
+        let own = rebuilt(&found).unwrap();
+        assert_eq!(
+            (own.text.as_str(), own.doubles.as_slice()),
+            ("GCS Name = a|Datum = b|Primem = Paris|", &[30.0][..])
+        );
+        assert_eq!(own.directory[3], 3);
+        assert_eq!(rebuilt(&own).as_ref(), Ok(&own));
     }
 
     #[test]

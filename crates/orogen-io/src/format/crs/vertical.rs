@@ -1,5 +1,6 @@
 //! Units of vertical coordinate systems.
 
+use super::arc_info;
 use super::keys::{GeoKeys, USER_DEFINED, short};
 use super::unit::{length_of_code, metres_of_vertical};
 use super::wkt::Node;
@@ -27,11 +28,27 @@ pub fn metres_of_keys(keys: &GeoKeys) -> Result<Option<f64>, String> {
     }
 }
 
+/// The vertical systems of the EPSG registry whose axis points down.
+const DEPTHS: &[u16] = &[
+    5336, 5612, 5614, 5706, 5715, 5789, 5831, 5861, 5862, 5863, 5864, 5865, 5866, 5867, 5868, 5869, 5870, 5871, 5872,
+    5873, 5874, 6357, 6358, 6359, 8051, 8053,
+];
+
+/// Whether GeoTIFF keys state a vertical system of depths.
+#[must_use]
+pub fn is_depth(keys: &GeoKeys) -> bool {
+    short(keys, SYSTEM).is_some_and(|code| DEPTHS.contains(&code))
+}
+
 /// Metres per unit of height that a coordinate system in any form of [`keys::of_text`](super::keys::of_text) states;
 /// `None` if it has no vertical part.
 #[must_use]
 pub fn metres_of_text(text: &str) -> Option<f64> {
-    Node::parse(text.trim_start_matches('\u{feff}').trim()).ok()?.vertical_metres()
+    let text = text.trim_start_matches('\u{feff}').trim();
+    match Node::parse(text) {
+        Ok(node) => node.vertical_metres(),
+        Err(_) => arc_info::vertical_metres(text),
+    }
 }
 
 #[cfg(test)]
@@ -60,6 +77,13 @@ mod tests {
             assert_eq!(metres_of_keys(&keys(more)), expect, "{more:?}");
         }
         assert!(metres_of_keys(&keys(&[4099, 0, 1, 9102])).unwrap_err().contains("EPSG:9102"));
+    }
+
+    #[test]
+    fn depths_are_known_by_code() {
+        for (code, expect) in [(5715, true), (6358, true), (5714, false), (6360, false)] {
+            assert_eq!(is_depth(&keys(&[4096, 0, 1, code])), expect, "{code}");
+        }
     }
 
     #[test]

@@ -14,6 +14,8 @@ pub struct Found {
     pub place: Option<Placement>,
     pub from_south: bool,
     pub vertical: Option<f64>,
+    /// Whether the vertical system counts depths.
+    pub is_depth: bool,
 }
 
 /// Reads the position tags.
@@ -23,12 +25,13 @@ pub fn find(tiff: &mut Tiff, height: usize) -> Result<Found, String> {
         Some(keys) => vertical::metres_of_keys(keys)?.or_else(|| vertical::metres_of_text(keys::esri_text(keys)?)),
         None => None,
     };
+    let is_depth = stored.as_ref().is_some_and(vertical::is_depth);
     let (scale, tie, matrix) = (tiff.doubles(33550)?, tiff.doubles(33922)?, tiff.doubles(34264)?);
     // East = a column + b row + c, north = d column + e row + f.
     let [a, b, c, d, e, f] = match (matrix.as_deref(), scale.as_deref(), tie.as_deref()) {
         (Some(m), _, _) if m.len() >= 16 => [m[0], m[1], m[3], m[4], m[5], m[7]],
         (_, Some([sx, sy, ..]), Some([i, j, _, x, y, ..])) => [*sx, 0.0, x - i * sx, 0.0, -sy, y + j * sy],
-        _ => return Ok(Found { place: None, from_south: false, vertical }),
+        _ => return Ok(Found { place: None, from_south: false, vertical, is_depth }),
     };
     // The tags refer to pixel corners, unless key 1025 declares pixel-is-point: then they refer to the samples.
     let half = match stored.as_ref().and_then(|keys| short(keys, 1025)) {
@@ -39,7 +42,7 @@ pub fn find(tiff: &mut Tiff, height: usize) -> Result<Found, String> {
     let keys = stored.as_ref().map(rebuilt).transpose()?;
     let unit = keys.as_ref().map_or(Ok(Unit::Metres(1.0)), keys::unit)?;
     let place = Placement { origin: lattice.origin, step: lattice.step, unit, cell: None, keys };
-    Ok(Found { place: Some(place), from_south: lattice.from_south, vertical })
+    Ok(Found { place: Some(place), from_south: lattice.from_south, vertical, is_depth })
 }
 
 /// The keys as the file stores them.

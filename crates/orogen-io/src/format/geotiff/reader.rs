@@ -1,9 +1,9 @@
 //! Reading the heights of a GeoTIFF that any program wrote.
 //!
 //! Supported: classic TIFF and BigTIFF of both byte orders; one band, of several that are interleaved or separate, of
-//! integers (8, 16, 32, 64 bits, signed or unsigned) or floats (32, 64); strips and tiles; no compression, LZW,
+//! integers (8, 16, 32, 64 bits, signed or unsigned) or floats (16, 32, 64); strips and tiles; no compression, LZW,
 //! deflate, PackBits, Zstandard, LZMA and LERC (with deflate and Zstandard); predictors 1, 2 and 3; GDAL's nodata; a
-//! band's scale, offset and unit in GDAL's metadata; masks in the file and beside it; absent blocks. Sizes in a file are checked against its length.
+//! band's scale, offset and unit in GDAL's metadata; masks in the file and beside it; an alpha band; absent blocks. Sizes in a file are checked against its length.
 
 use super::blocks::{Blocks, Limits};
 use super::entries::Tiff;
@@ -11,6 +11,7 @@ use super::unpack::{Layout, Packing};
 use super::{mask, place};
 use crate::format::band::BandMetadata;
 use crate::format::dem::{Dem, Input, Part, Placement, Request, afford, beyond, refused, turn_rows};
+use crate::format::half;
 use crate::format::sidecar::Sidecar;
 use crate::open;
 use orogen_grid::error::Result;
@@ -70,6 +71,8 @@ struct Samples {
     band: usize,
     /// The number of bands before it, if each band has its own blocks.
     plane: usize,
+    /// The plane of the alpha band, and its index among those interleaved in a block: samples where it is 0 are missing.
+    alpha: Option<[usize; 2]>,
     metadata: BandMetadata,
 }
 
@@ -120,6 +123,22 @@ fn heights(
             }
         }
     })?;
+    if let Some([plane, index]) = samples.alpha {
+        let bands = samples.layout.bands;
+        blocks.each(tiff, plane, row, &samples.packing, &limits, |block, bytes| {
+            for j in 0..block.size[1] {
+                let begin = (block.to[1] + j) * part.size[0] + block.to[0];
+                let own = &mut heights[begin..begin + block.size[0]];
+                let Some(line) = bytes.chunks_exact_mut(row as usize).nth(block.from[1] + j) else {
+                    own.fill(f32::NAN);
+                    continue;
+                };
+                samples.layout.row(line, &mut bits);
+                let alpha = bits.iter().skip(block.from[0] * bands + index).step_by(bands);
+                own.iter_mut().zip(alpha).filter(|(_, bits)| **bits == 0).for_each(|(height, _)| *height = f32::NAN);
+            }
+        })?;
+    }
     let damaged = mask::internal(tiff, size, part, request.allowed, &mut heights)?;
     if let Some(external) = external {
         mask::external(external, size, part, request, &mut heights)?;
@@ -131,8 +150,12 @@ fn heights(
         Some(part) => Dem::part(part, heights, found.place),
         None => Dem::new(whole, heights, found.place)?,
     };
-    dem.notes = conversion.notes();
+    dem.notes = conversion.notes_of(&dem.heights);
     dem.notes.extend(damaged);
+    if found.is_depth {
+        let note = "its vertical system counts depths downward, and its samples were read as heights; if they are depths, change their sign first, for example with gdal_calc.py --calc=-A";
+        dem.notes.push(note.into());
+    }
     Ok(dem)
 }
 
@@ -144,7 +167,15 @@ fn samples(tiff: &mut Tiff, request: Request) -> std::result::Result<Samples, St
     if !(1..=MAX_BANDS).contains(&bands) {
         return Err(format!("it has {bands} bands; 1 to {MAX_BANDS} are supported"));
     }
-    let band = request.choose(bands as usize)?;
+    // Extra samples are the last ones; 1 and 2 are alpha.
+    let extra = tiff.wholes(338)?.unwrap_or_default();
+    let alpha = extra.iter().position(|kind| matches!(kind, 1 | 2));
+    let alpha = alpha.and_then(|k| (bands as usize + k).checked_sub(extra.len()));
+    let band = match (request.band, bands, alpha) {
+        (None, 2, Some(1)) => 0,
+        _ => request.choose(bands as usize)?,
+    };
+    let alpha = alpha.filter(|alpha| *alpha != band);
     let all_bits = tiff.wholes(258)?.unwrap_or_else(|| vec![1]);
     let bits = all_bits.first().copied().unwrap_or(1);
     if all_bits.iter().any(|other| *other != bits) {
@@ -158,12 +189,14 @@ fn samples(tiff: &mut Tiff, request: Request) -> std::result::Result<Samples, St
         other => return Err(format!("its sample format is {other}; only integers and floats are supported")),
     };
     let sound = match kind {
-        Kind::Float => matches!(bits, 32 | 64),
+        Kind::Float => matches!(bits, 16 | 32 | 64),
         _ => matches!(bits, 8 | 16 | 32 | 64),
     };
     if !sound {
-        let what = if kind == Kind::Float { "floats have 32 or 64" } else { "whole numbers have 8, 16, 32 or 64" };
-        return Err(format!("its samples have {bits} bits; {what}"));
+        let what = if kind == Kind::Float { "floats have 16, 32 or 64" } else { "whole numbers have 8, 16, 32 or 64" };
+        return Err(format!(
+            "its samples have {bits} bits; {what}; convert it, for example with gdal_translate -ot Float32"
+        ));
     }
     if tiff.one(266)?.unwrap_or(1) != 1 {
         return Err("its fill order is lowest bit first (tag 266), which is not supported".into());
@@ -191,6 +224,7 @@ fn samples(tiff: &mut Tiff, request: Request) -> std::result::Result<Samples, St
         packing,
         band: if apart { 0 } else { band },
         plane: if apart { band } else { 0 },
+        alpha: alpha.map(|alpha| if apart { [alpha, 0] } else { [0, alpha] }),
         metadata,
     })
 }
@@ -202,6 +236,7 @@ impl Samples {
         match (self.kind, self.layout.size) {
             (Kind::Unsigned, _) => bits as f64,
             (Kind::Signed, _) => ((bits << shift) as i64 >> shift) as f64,
+            (Kind::Float, 2) => f64::from(half::to_f32(bits as u16)),
             (Kind::Float, 4) => f64::from(f32::from_bits(bits as u32)),
             (Kind::Float, _) => f64::from_bits(bits),
         }

@@ -237,3 +237,49 @@ fn cells_that_are_nearly_square_keep_both_sizes() {
     let ([east, _], steps) = map.georeference.unwrap().of(&Window::new(4, 4, 100.0));
     assert!((east + 3.0 * steps[0] - (600_000.0 + 3.5 * 100.09)).abs() < 1e-6 && steps[1] == 100.0, "{steps:?}");
 }
+
+#[test]
+fn an_alpha_band_is_a_mask() {
+    let samples = |values: &[f32]| values.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>();
+    let fields = |planes: u16, offsets: Vec<u32>, lengths: Vec<u32>| {
+        vec![
+            (256, Shorts(vec![3])),
+            (257, Shorts(vec![1])),
+            (258, Shorts(vec![32, 32])),
+            (259, Shorts(vec![1])),
+            (262, Shorts(vec![1])),
+            (273, Longs(offsets)),
+            (277, Shorts(vec![2])),
+            (278, Shorts(vec![1])),
+            (279, Longs(lengths)),
+            (284, Shorts(vec![planes])),
+            (338, Shorts(vec![2])),
+            (339, Shorts(vec![3, 3])),
+        ]
+    };
+    let together = tiff(&samples(&[5.0, 255.0, -9999.0, 0.0, 7.0, 1.0]), &[fields(1, vec![8], vec![24])]);
+    let apart = tiff(&samples(&[5.0, -9999.0, 7.0, 255.0, 0.0, 1.0]), &[fields(2, vec![8, 20], vec![12, 12])]);
+    for file in [together, apart] {
+        // GDAL reads bands of 8 and 16 bits in this way.
+        let dem = read(&mut Cursor::new(&file), "a.tif", 1 << 20).unwrap();
+        assert!(dem.heights[0] == 5.0 && dem.heights[1].is_nan() && dem.heights[2] == 7.0, "{:?}", dem.heights);
+        assert!(dem.notes.is_empty(), "{:?}", dem.notes);
+    }
+}
+
+#[test]
+fn halves_are_floats() {
+    let fields = vec![
+        (256, Shorts(vec![2])),
+        (257, Shorts(vec![1])),
+        (258, Shorts(vec![16])),
+        (259, Shorts(vec![1])),
+        (273, Longs(vec![8])),
+        (277, Shorts(vec![1])),
+        (278, Shorts(vec![1])),
+        (279, Longs(vec![4])),
+        (339, Shorts(vec![3])),
+    ];
+    let dem = read(&mut Cursor::new(&tiff(&[0x00, 0x3e, 0x00, 0xc0], &[fields])), "a.tif", 1 << 20).unwrap();
+    assert_eq!(dem.heights, [1.5, -2.0]);
+}

@@ -209,6 +209,7 @@ fn metadata(attributes: &Attributes, type_of: Type) -> BandMetadata {
         offset: attributes.number("add_offset"),
         unit: unit.map(String::from),
         metres: None,
+        whole: None,
     }
 }
 

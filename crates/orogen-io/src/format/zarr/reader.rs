@@ -324,6 +324,7 @@ fn open(folder: &Path, request: Request) -> std::result::Result<Dem, ReadFault> 
         offset: array.attribute("add_offset"),
         unit: unit.map(String::from),
         metres: None,
+        whole: None,
     };
     let mut conversion = metadata.conversion(None)?;
     // Absent chunks consist of the fill value: for floats it means no height, for integers it is a value.
