@@ -1,9 +1,9 @@
 //! Pictures of several channels: normal maps, color maps, and splat maps.
 
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use super::files::Files;
+use super::files::{Files, suffixed};
 use super::format::refuse;
 use super::layer_source::LayerSource;
 use super::notes::SOFTWARE;
@@ -199,17 +199,6 @@ fn to_bytes(weights: &[f32], bytes: &mut [u8]) {
         bytes[most] += 1;
         left -= 1;
     }
-}
-
-/// The path with a suffix before its extension.
-pub(super) fn suffixed(path: &Path, suffix: &str) -> PathBuf {
-    let mut name = path.file_stem().unwrap_or_default().to_os_string();
-    name.push(suffix);
-    if let Some(extension) = path.extension() {
-        name.push(".");
-        name.push(extension);
-    }
-    path.with_file_name(name)
 }
 
 #[cfg(test)]

@@ -2,10 +2,9 @@
 
 use std::io::{self, Write};
 
-use super::channels::suffixed;
 use super::derived::cover::{self, Cover};
 use super::derived::layer::{Nature, RowLayer, nothing};
-use super::files::Files;
+use super::files::{Files, suffixed};
 use super::format::refuse;
 use super::layer_source::LayerSource;
 use super::notes::SOFTWARE;

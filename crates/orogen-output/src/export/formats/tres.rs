@@ -3,8 +3,7 @@
 use std::io;
 use std::path::Path;
 
-use crate::export::channels::suffixed;
-use crate::export::files::Files;
+use crate::export::files::{Files, suffixed};
 use crate::export::format::{Format, refuse};
 use crate::export::layer_source::LayerSource;
 use crate::export::mesh_objects::kinds;

@@ -1,11 +1,13 @@
 //! The samples for an engine: a size that it supports, and the cell that fits the world.
 
 use super::target::EngineTarget;
+use crate::export::files::suffixed;
 use orogen_engine::tiles::Tiling;
 use orogen_engine::world::World;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
 use orogen_grid::words::number;
+use orogen_io::file::Output;
 
 /// Tolerance, in cells, for an area that begins at a sample.
 const NEAR: f64 = 1e-6;
@@ -171,6 +173,19 @@ impl Frame {
         };
         let window = Window { x: first[0], y: first[1], width: samples[0], height: samples[1], cell };
         Ok(Frame { window, side, tiles, note })
+    }
+
+    /// The output of each tile, row by row. Those that may not be replaced are rejected before the first tile is computed.
+    pub(super) fn outputs(&self, target: &EngineTarget, output: &Output) -> Result<Vec<Output>> {
+        let tiles = (0..self.tiles[1]).flat_map(|row| (0..self.tiles[0]).map(move |column| (column, row)));
+        tiles
+            .map(|(column, row)| match target.tile {
+                Some(name) if self.tiles != [1, 1] => {
+                    output.policy().output(suffixed(output.path(), &name(column, row, self.tiles[1])))
+                }
+                _ => Ok(output.clone()),
+            })
+            .collect()
     }
 
     /// The window of a tile.

@@ -2,7 +2,6 @@
 
 use super::frame::Frame;
 use super::job::{EngineJob, Exported};
-use super::run::outputs;
 use crate::export::files::Files;
 use crate::export::layer_source::LayerSource;
 use crate::export::options::Options;
@@ -42,7 +41,7 @@ pub(super) fn export(
             format.name
         ));
     }
-    let outputs = outputs(target, &frame, output)?;
+    let outputs = frame.outputs(target, output)?;
     let mut options = Options::default();
     let [ranging, writing] = progress.parts([if format.knows(RANGE.name) { 1.0 } else { 0.0 }, 1.0]);
     if format.knows(RANGE.name) {

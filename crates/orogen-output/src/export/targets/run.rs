@@ -3,8 +3,7 @@
 use super::frame::Frame;
 use super::job::{EngineJob, Exported};
 use super::objects;
-use super::target::EngineTarget;
-use crate::export::channels::{NORMAL, WEIGHTS, suffixed};
+use crate::export::channels::{NORMAL, WEIGHTS};
 use crate::export::derived::layer::Nature;
 use crate::export::features;
 use crate::export::files::Files;
@@ -35,22 +34,6 @@ impl EngineJob {
     }
 }
 
-/// The output of each tile, row by row. Those that may not be replaced are rejected before the first tile is computed.
-pub(super) fn outputs(target: &EngineTarget, frame: &Frame, output: &Output) -> Result<Vec<Output>> {
-    let mut outputs = Vec::new();
-    for row in 0..frame.tiles[1] {
-        for column in 0..frame.tiles[0] {
-            outputs.push(match target.tile {
-                Some(name) if frame.tiles != [1, 1] => {
-                    output.policy().output(suffixed(output.path(), &name(column, row, frame.tiles[1])))?
-                }
-                _ => output.clone(),
-            });
-        }
-    }
-    Ok(outputs)
-}
-
 /// Exports the layer of a job over a frame, all tiles or none.
 ///
 /// # Errors
@@ -73,7 +56,7 @@ fn export(job: &EngineJob, frame: Frame, world: &World, output: &Output, progres
         let message = format!("{} imports `{layer}` as {}, not as .{}", target.name, list.join(" or "), format.name);
         return Err(Error::new(ErrorKind::Request, message));
     }
-    let outputs = outputs(target, &frame, output)?;
+    let outputs = frame.outputs(target, output)?;
     let mut import = Vec::new();
     let mut less = 0;
     match nature {
