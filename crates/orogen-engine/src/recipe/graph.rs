@@ -133,7 +133,10 @@ impl Graph {
                     }
                 }
             }
-            let is_slice = matches!(named.node.op(), Op::Field(field) if field.coord_map().is_some_and(|map| map.altitude().is_some()));
+            let is_slice = match named.node.op() {
+                Op::Field(field) => field.coord_map().and_then(|map| map.altitude()).is_some(),
+                _ => false,
+            };
             let from_inputs = !on_grids && !is_slice && self.links[id].iter().any(in_space);
             self.in_space[id] = named.node.reads_altitude() || from_inputs || in_space(&self.masks[id]);
         }

@@ -10,7 +10,7 @@ use super::layer_source::LayerSource;
 use super::notes::SOFTWARE;
 use super::options::Options;
 use super::place;
-use crate::map::shade::{PROBES, Shade};
+use crate::map::shade::{PROBES, Shade, UNDER_WATER};
 use crate::sheet::relief::PRINTED;
 use orogen_grid::analysis::slope::{Gradient, gradients_between};
 use orogen_grid::grid::{Grid, Window};
@@ -23,9 +23,8 @@ use orogen_io::spool::Spool;
 /// The end of the picture's name, before the extension.
 pub const SUFFIX: &str = "preview";
 
-/// Share of the tint of its depth in the color of ground below the sea, and strength of the shading there relative to land.
+/// Share of the tint of its depth in the color of ground below the sea.
 const WATER: f32 = 0.93;
-const UNDER_WATER: f32 = 0.35;
 
 /// Bytes of a sample in the spool: an sRGB color, a gradient and a height.
 const SAMPLE: usize = 15;

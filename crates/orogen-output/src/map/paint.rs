@@ -5,15 +5,12 @@ use std::ops::Range;
 
 use orogen_grid::parallel;
 
-use super::shade::Shade;
+use super::shade::{Shade, UNDER_WATER};
 use orogen_grid::analysis::slope::{beyond, extend_row, gradients_between};
 use orogen_grid::grid::Grid;
 use orogen_io::format::png::{self, Picture, Pixel};
 use orogen_io::palette::color::{Encoder, Rgb, decode};
 use orogen_io::palette::tint::Tint;
-
-/// Strength of the shading of the sea floor relative to land.
-const UNDER_WATER: f32 = 0.35;
 
 /// Colour of lakes at the shore, and in deep water.
 pub const LAKES: Rgb = [170, 211, 233];

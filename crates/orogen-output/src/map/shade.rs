@@ -29,6 +29,9 @@ const FIT: f32 = 0.66;
 const DARKEST: f32 = 0.26;
 const HIGHLIGHT: f32 = 0.45;
 
+/// Strength of the shading of the sea floor relative to land.
+pub(crate) const UNDER_WATER: f32 = 0.35;
+
 /// Number of rows for fitting the z factor.
 pub(crate) const PROBES: usize = 64;
 

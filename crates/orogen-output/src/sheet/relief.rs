@@ -5,14 +5,11 @@ use orogen_grid::parallel;
 use super::ground::{at_pixels, laid};
 use super::options::Shading;
 use super::ramp::Ramp;
-use crate::map::shade::{Lights, Shade};
+use crate::map::shade::{Lights, Shade, UNDER_WATER};
 use orogen_grid::analysis::slope::{Gradient, extended, gradients_between};
 use orogen_grid::grid::Grid;
 use orogen_io::palette::color::{Encoder, Light};
 use orogen_io::palette::tint::Tint;
-
-/// Strength of the shading of the sea floor relative to land.
-const UNDER_WATER: f32 = 0.35;
 
 /// Strength of the shading on colours of a layer, which must remain readable on the colour bar.
 const ON_LAYER: f32 = 0.5;

@@ -65,12 +65,14 @@ fn a_solid_is_closed_and_faces_outwards() {
     }
 }
 
-/// Two hills with a pass at 10 m between them, on level ground of 0 m.
-fn two_hills() -> Grid {
-    let mut grid = Grid::filled(Window::new(61, 41, 10.0), 0.0);
-    for j in 0..41 {
-        for i in 0..61 {
-            let hill = |x: f32| 40.0 - 3.0 * libm::hypotf(i as f32 - x, j as f32 - 20.0);
+/// Two hills with a pass at 10 m between them, on level ground of 0 m, in cells of 10 m divided by `fineness`.
+fn two_hills(fineness: u16) -> Grid {
+    let (across, down) = (60 * usize::from(fineness) + 1, 40 * usize::from(fineness) + 1);
+    let mut grid = Grid::filled(Window::new(across, down, 10.0 / f64::from(fineness)), 0.0);
+    for j in 0..down {
+        for i in 0..across {
+            let [east, south] = [i, j].map(|k| k as f32 / f32::from(fineness));
+            let hill = |x: f32| 40.0 - 3.0 * libm::hypotf(east - x, south - 20.0);
             grid.row_mut(j)[i] = hill(20.0).max(hill(40.0)).max(0.0);
         }
     }
@@ -79,7 +81,7 @@ fn two_hills() -> Grid {
 
 #[test]
 fn land_above_a_cut_has_its_outline_and_a_base_there() {
-    let grid = two_hills();
+    let grid = two_hills(1);
     for shape in shapes(&grid) {
         let surface = Surface { exaggeration: 2.0, ..surface(&grid, &shape) };
         let cut = |level: f64| Solid::new(&surface, &Print::new(120.0).with_base(2.0).with_cut(level));
@@ -199,21 +201,10 @@ fn letters_stand_out_of_the_southern_wall() {
     assert!(why.contains("would have a size of 2.4 mm on a model of 5000 mm"), "{why}");
 }
 
-/// The two hills at a quarter of the cell: 0.5 mm on a model of 120 mm.
-fn fine_hills() -> Grid {
-    let mut grid = Grid::filled(Window::new(241, 161, 2.5), 0.0);
-    for j in 0..161 {
-        for i in 0..241 {
-            let hill = |x: f32| 40.0 - 0.75 * libm::hypotf(i as f32 - x, j as f32 - 80.0);
-            grid.row_mut(j)[i] = hill(80.0).max(hill(160.0)).max(0.0);
-        }
-    }
-    grid
-}
-
 #[test]
 fn each_part_of_land_above_a_cut_is_hollow() {
-    let grid = fine_hills();
+    // 0.5 mm on a model of 120 mm.
+    let grid = two_hills(4);
     let shape = Shape::lattice(&grid, 1).unwrap();
     let surface = Surface { exaggeration: 2.0, ..surface(&grid, &shape) };
     let print = Print::new(120.0).with_base(2.5).with_cut(20.0);
@@ -259,7 +250,7 @@ fn each_part_of_land_above_a_cut_is_hollow() {
     let refused = |shape: &Shape, grid: &Grid, print: Print| {
         Solid::new(&crate::meshes::surface(grid, shape), &print).unwrap_err().to_string()
     };
-    let coarse = two_hills();
+    let coarse = two_hills(1);
     let [whole, few] = [Shape::lattice(&coarse, 1).unwrap(), adaptive(&coarse, 1.0).unwrap()];
     let print = Print::new(60.0).with_base(9.0).with_cut(20.0).with_hollow(8.0);
     let why = refused(&whole, &coarse, print);
@@ -289,7 +280,7 @@ fn letters_stand_on_the_straight_side_of_land_above_a_cut() {
         .iter()
         .fold([f32::MAX, f32::MIN], |[west, east], corner| [west.min(corner[0]), east.max(corner[0])]);
     assert!((0.5 * (west + east) - 40.0).abs() < 0.5 && east - west < 6.0, "{west} {east}");
-    let hills = two_hills();
+    let hills = two_hills(1);
     let shape = Shape::lattice(&hills, 1).unwrap();
     let why = Solid::new(&surface(&hills, &shape), &print).unwrap().letter("N").unwrap_err().to_string();
     assert!(why.contains("the land above the cut does not reach the southern side of the window"), "{why}");
