@@ -18,11 +18,11 @@ pub const ABOUT: &str = "rewrite the lists of modules, nodes and formats, the JS
 pub const HELP: &str = "
 Usage: cargo xtask codegen [--check]
 
-Reads the op! block of every file in crates/orogen-engine/src/{field,filter,levelled,solver} and rewrites
+Reads the op! block of every file in crates/orogen-ops/src/{field,filter,levelled,solver} and rewrites
   - the module lines at the end of each folder's mod.rs
-  - crates/orogen-engine/src/node_list.rs
-  - crates/orogen-output/src/export/format_list.rs, of the files in export/formats that declare a FORMAT
-  - crates/orogen-output/src/export/vector_list.rs, of the files in export/vectors that declare a LAYER
+  - crates/orogen-ops/src/node_list.rs
+  - crates/orogen-jobs/src/export/format_list.rs, of the files in export/formats that declare a FORMAT
+  - crates/orogen-jobs/src/export/vector_list.rs, of the files in export/vectors that declare a LAYER
   - crates/orogen-engine/recipes/orogen.schema.json, from `orogen schema`
   - docs/ops.md, from `orogen ops --markdown`
 
@@ -49,7 +49,7 @@ pub fn run(args: &[String]) -> Result {
 
 /// The module lines and the list of nodes.
 pub fn lists(check: bool) -> Result {
-    let src = shell::root().join("crates/orogen-engine/src");
+    let src = shell::root().join("crates/orogen-ops/src");
     let mut ops = Vec::new();
     for locality in LOCALITIES {
         let folder = src.join(locality);
@@ -73,7 +73,7 @@ pub fn lists(check: bool) -> Result {
     }
     lists::distinct(&ops).map_err(Failure::new)?;
     settle(&src.join("node_list.rs"), &lists::node_list(&LOCALITIES, &ops), check)?;
-    exports(&shell::root().join("crates/orogen-output/src/export"), check)
+    exports(&shell::root().join("crates/orogen-jobs/src/export"), check)
 }
 
 /// Generated lists of exports: the folder, the declaration, and the name of the list.

@@ -4,10 +4,11 @@ use std::io::Write;
 use std::path::Path;
 
 use orogen::analysis::summary::{self, Summary};
-use orogen::export::{notes, place};
+use orogen::export::place;
 use orogen::file::{self, Output, OutputPolicy, Staged, mark};
 use orogen::format::dem::Georeference;
 use orogen::format::levels::Levels;
+use orogen::format::notes;
 use orogen::format::png;
 use orogen::map::paint::Painter;
 use orogen::{Grid, Recipe, Result, Window};

@@ -1,13 +1,13 @@
 //! Devices that compute steps of plans where exact bits are not needed, such as graphics cards.
 
-use crate::expression::function::Function;
-use crate::layer::LayerKind;
-use crate::lower::{LayerPasses, LevelPasses, Passes};
-use crate::op::Affine;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 use orogen_noise::shader::function::Shader;
+use orogen_ops::expression::function::Function;
+use orogen_ops::layer::LayerKind;
+use orogen_ops::lower::{LayerPasses, LevelPasses, Passes};
+use orogen_ops::op::Affine;
 use std::any::Any;
 use std::fmt;
 use std::sync::Arc;

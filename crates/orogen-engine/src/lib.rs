@@ -13,45 +13,32 @@
 //! ```
 #![forbid(unsafe_code)]
 
-#[macro_use]
-pub mod declare;
-
 pub mod bands;
-pub mod budget;
 pub mod chunks;
 #[doc(hidden)]
 pub mod device;
 #[doc(hidden)]
 pub mod device_choice;
 mod engine;
-pub mod expression;
-pub mod field;
-pub mod filter;
 pub mod growth;
-pub mod ids;
-#[doc(hidden)]
-pub mod large;
 pub mod laws;
-pub mod layer;
-pub mod levelled;
-#[doc(hidden)]
-pub mod lower;
-pub mod node;
 pub mod objects;
-pub mod op;
 pub mod plan;
-mod pool;
 pub mod recipe;
-pub mod registered;
 pub mod registry;
 pub mod sampler;
 pub mod session;
-pub mod solver;
 pub mod store;
 pub mod tiles;
-pub mod value;
 pub mod volume;
 pub mod world;
+
+#[doc(inline)]
+pub use orogen_ops::{
+    budget, choice, declare, expression, field, filter, ids, layer, levelled, node, op, registered, solver, value,
+};
+#[doc(hidden)]
+pub use orogen_ops::{large, lower};
 
 pub use budget::Budget;
 pub use chunks::id::ChunkId;

@@ -2,15 +2,15 @@
 
 use std::ops::Range;
 
-use crate::budget::Reservation;
 use crate::recipe::scatter::document::{ExpandedScatter, InWater, Scatter, Turn};
 use crate::world::{HEIGHT, LAKES, World};
 use orogen_grid::error::{Error, ErrorKind, Result};
-use orogen_grid::grid::{Grid, Window};
-use orogen_grid::poisson_discs::{POINTS, PoissonDiscs, square};
+use orogen_grid::grid::Window;
+use orogen_grid::poisson_discs::{POINTS, PoissonDiscs};
 use orogen_grid::progress::Progress;
 use orogen_grid::random::Random;
-use orogen_grid::triangles;
+use orogen_grid::sites::{Near, SiteWater, Sites, height, mean};
+use orogen_ops::budget::Reservation;
 
 /// An object on the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -128,24 +128,13 @@ impl World {
         let _search = self.budget().reserve(searched.saturating_add(PoissonDiscs::memory(self.threads())))?;
         let near: Vec<Near> = before.iter().map(|placed| Near::new(&placed.points, entry.clearance)).collect();
         let sea_level = recipe.world.sea_level;
-        let is_wet = |position: [f64; 2]| match water {
-            [height] => Some(wet(height, None, sea_level, position)),
-            [height, lakes] => Some(wet(height, Some(lakes), sea_level, position)),
-            _ => None,
+        let water = match (entry.water, water) {
+            (InWater::Any, _) | (_, []) => None,
+            (wanted, [heights, lakes @ ..]) => {
+                Some(SiteWater { heights, lakes: lakes.first(), sea_level, is_wanted: wanted == InWater::Only })
+            }
         };
-        let at = |position: [f64; 2]| {
-            let is_within = around.iter().zip(position).all(|(side, at)| (side.start..=side.end).contains(&at));
-            // Not a number is less than nothing, too.
-            let density = if is_within { interpolated(density, position) } else { 0.0 };
-            let is_free = density > 0.0
-                && match entry.water {
-                    InWater::Any => true,
-                    InWater::Avoid => is_wet(position) == Some(false),
-                    InWater::Only => is_wet(position) == Some(true),
-                }
-                && !near.iter().any(|near| near.is_within(position));
-            if is_free { density } else { 0.0 }
-        };
+        let sites = Sites { bounds: around, density, water, near };
         // There are no points outside the world, however far the bounds extend.
         let bounds = match recipe.world.size {
             Some(size) => {
@@ -153,7 +142,7 @@ impl World {
             }
             None => bounds.clone(),
         };
-        let points = self.install(|| discs.within(&bounds, at, &progress.part(1.0)))?;
+        let points = self.install(|| sites.points(&discs, &bounds, &progress.part(1.0)))?;
         let points = points.into_iter().map(|point| (point.position, point.bits)).collect();
         Ok(Placed { points, _held: held })
     }
@@ -195,103 +184,6 @@ fn samples(bounds: &[Range<f64>; 2], cell: f64) -> Window {
     Window { x: columns.0, y: rows.0, width: columns.1, height: rows.1, cell }
 }
 
-/// The corners of the cell around a position, and the position in it: 0 to 1 along each side.
-fn cell(grid: &Grid, position: [f64; 2]) -> Option<([f32; 4], [f64; 2])> {
-    let window = grid.window();
-    // The same for any window.
-    let [east, south] = position.map(|at| at / window.cell);
-    let [column, row] = [east.floor(), south.floor()];
-    let i = usize::try_from(column as i64 - window.x).ok()?;
-    let j = usize::try_from(row as i64 - window.y).ok()?;
-    let corner = |i, j| grid.get(i, j);
-    let corners = [corner(i, j)?, corner(i + 1, j)?, corner(i, j + 1)?, corner(i + 1, j + 1)?];
-    Some((corners, [east - column, south - row]))
-}
-
-/// Bilinear interpolation; NaN outside the grid.
-fn interpolated(grid: &Grid, position: [f64; 2]) -> f64 {
-    let Some((corners, [u, v])) = cell(grid, position) else { return f64::NAN };
-    let [nw, ne, sw, se] = corners.map(f64::from);
-    let [north, south] = [nw + u * (ne - nw), sw + u * (se - sw)];
-    north + v * (south - north)
-}
-
-/// The height of the mesh; NaN outside the grid.
-fn height(heights: &Grid, position: [f64; 2]) -> f64 {
-    cell(heights, position).map_or(f64::NAN, |(corners, at)| triangles::height(corners, at))
-}
-
-/// Whether a position is in the sea or in a lake. Beside the shore of a lake, the depth between samples counts.
-fn wet(heights: &Grid, lakes: Option<&Grid>, sea_level: f64, position: [f64; 2]) -> bool {
-    let is_above = height(heights, position) > sea_level;
-    !is_above || lakes.is_some_and(|lakes| interpolated(lakes, position) > 0.0)
-}
-
-/// The mean of all positive samples and zeros for the others.
-fn mean(grid: &Grid) -> f64 {
-    let sum: f64 = grid.data().iter().filter(|value| **value > 0.0).map(|value| f64::from(*value)).sum();
-    sum / grid.data().len().max(1) as f64
-}
-
 fn missing() -> Error {
     Error::new(ErrorKind::Internal, "the density of an entry of `scatter` was not computed")
-}
-
-/// Points in buckets, to find those near a position.
-struct Near {
-    distance: f64,
-    bucket: f64,
-    first: [i64; 2],
-    columns: i64,
-    rows: i64,
-    /// The first point of each bucket, and the number of all.
-    starts: Vec<usize>,
-    points: Vec<[f64; 2]>,
-}
-
-/// Maximum number of buckets along a side.
-const MAX_BUCKETS: f64 = 1024.0;
-
-impl Near {
-    /// Memory in bytes for a number of points.
-    fn memory(points: usize) -> u64 {
-        let buckets = (MAX_BUCKETS + 2.0) * (MAX_BUCKETS + 2.0);
-        (points * size_of::<[f64; 2]>()) as u64 + buckets as u64 * size_of::<usize>() as u64
-    }
-
-    fn new(points: &[([f64; 2], u64)], distance: f64) -> Near {
-        let ends = |axis: usize| {
-            let start = points.iter().map(|(at, _)| at[axis]).fold(f64::INFINITY, f64::min);
-            let end = points.iter().map(|(at, _)| at[axis]).fold(f64::NEG_INFINITY, f64::max);
-            start..end.max(start)
-        };
-        if points.is_empty() {
-            let starts = vec![0];
-            return Near { distance, bucket: distance, first: [0; 2], columns: 0, rows: 0, starts, points: Vec::new() };
-        }
-        let [across, down] = [ends(0), ends(1)];
-        let bucket = distance.max((across.end - across.start).max(down.end - down.start) / MAX_BUCKETS);
-        let number = |at: f64| (at / bucket).floor() as i64;
-        let first = [number(across.start), number(down.start)];
-        let (columns, rows) = (number(across.end) - first[0] + 1, number(down.end) - first[1] + 1);
-        let of = |[x, y]: [f64; 2]| ((number(y) - first[1]) * columns + number(x) - first[0]) as usize;
-        let mut points: Vec<[f64; 2]> = points.iter().map(|(at, _)| *at).collect();
-        points.sort_by_key(|at| of(*at));
-        let mut starts = vec![0; (columns * rows) as usize + 1];
-        points.iter().for_each(|at| starts[of(*at) + 1] += 1);
-        (1..starts.len()).for_each(|k| starts[k] += starts[k - 1]);
-        Near { distance, bucket, first, columns, rows, starts, points }
-    }
-
-    /// Whether one of the points is nearer than the distance.
-    fn is_within(&self, position: [f64; 2]) -> bool {
-        let [column, row] = [0, 1].map(|axis| (position[axis] / self.bucket).floor() as i64 - self.first[axis]);
-        let rows = (row - 1).max(0)..(row + 2).min(self.rows);
-        let (from, to) = ((column - 1).max(0), (column + 2).min(self.columns));
-        from < to
-            && rows.into_iter().any(|row| {
-                let [start, end] = [from, to].map(|column| self.starts[(row * self.columns + column) as usize]);
-                self.points[start..end].iter().any(|at| square(*at, position) < self.distance * self.distance)
-            })
-    }
 }

@@ -1,11 +1,11 @@
 //! The ops that recipes may use: the built-in ones and those of the program.
 
-use crate::declare::Spec;
-use crate::node::Node;
-use crate::op::OpType;
-use crate::registered::{check_name, namespace};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::words::{nearest, respelled, suggestion};
+use orogen_ops::declare::Spec;
+use orogen_ops::node::Node;
+use orogen_ops::op::OpType;
+use orogen_ops::registered::{check_name, namespace};
 
 /// The ops that recipes may use by their names: all built-in ones, and those that the program registers.
 ///

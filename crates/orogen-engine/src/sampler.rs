@@ -1,12 +1,12 @@
 //! A layer of a world prepared for many requests.
 
 use crate::engine::inline::PreparedProgram;
-use crate::engine::interpreter::Buffers;
 use crate::volume::{self, Volume};
 use crate::world::World;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
+use orogen_ops::interpreter::Buffers;
 use std::borrow::Borrow;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 

@@ -1,16 +1,16 @@
 //! Sessions: threads, solutions and memory that worlds share.
 
-use crate::budget::Budget;
 use crate::device::Device;
 use crate::engine::preview::Previews;
-use crate::op::Solution;
 use crate::plan::key::Key;
-use crate::pool::Pool;
 use crate::store::grids::GridStore;
 use crate::store::level_tiles::LevelTiles;
 use crate::store::solution_store::SolutionStore;
 use crate::store::solutions::Store;
 use orogen_grid::error::{Error, Result};
+use orogen_ops::budget::Budget;
+use orogen_ops::op::Solution;
+use orogen_ops::pool::Pool;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -182,7 +182,7 @@ impl Session {
         self.store.failure()
     }
 
-    /// Number of tiles of the levels of [levelled ops](crate::op::Levelled) made so far, without reused ones.
+    /// Number of tiles of the levels of [levelled ops](orogen_ops::op::Levelled) made so far, without reused ones.
     #[must_use]
     pub fn level_tiles_made(&self) -> u64 {
         self.level_tiles.made()

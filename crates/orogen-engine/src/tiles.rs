@@ -1,11 +1,11 @@
 //! Streams of tiles of a large window.
 
-use crate::budget::Budget;
 use crate::plan::steps::Plan;
 use crate::world::World;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
+use orogen_ops::budget::Budget;
 use std::collections::VecDeque;
 
 /// The division of a window into tiles.

@@ -1,13 +1,9 @@
 //! Worlds: opened recipes, from which windows and points are requested.
 
-use crate::budget::{Budget, Reservation};
 use crate::device::Device;
 use crate::engine::inline::PreparedProgram;
 use crate::engine::preview::{Preview, may_draft};
 use crate::engine::run::Engine;
-use crate::ids::{Id, IndexVec, NodeId};
-use crate::layer::LayerKind;
-use crate::op::{Solution, StepObserver, WorldParams};
 use crate::plan::cost;
 use crate::plan::domain::world_windows;
 use crate::plan::explain::explain;
@@ -25,6 +21,10 @@ use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 use orogen_grid::words::{number, suggestion};
 use orogen_io::dem::prepared::DEFAULT_MEMORY;
+use orogen_ops::budget::{Budget, Reservation};
+use orogen_ops::ids::{Id, IndexVec, NodeId};
+use orogen_ops::layer::LayerKind;
+use orogen_ops::op::{Solution, StepObserver, WorldParams};
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};

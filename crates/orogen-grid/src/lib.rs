@@ -76,6 +76,8 @@ pub mod progress;
 #[doc(hidden)]
 pub mod random;
 pub mod resample;
+#[doc(hidden)]
+pub mod sites;
 pub mod surface_nets;
 pub mod triangles;
 pub mod words;

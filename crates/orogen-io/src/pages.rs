@@ -3,6 +3,7 @@
 use crate::file::Temporary;
 use crate::fs;
 use crate::read_at::{PositionedFile, ReadAt};
+use crate::samples;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use std::collections::HashMap;
@@ -170,7 +171,7 @@ impl Pages {
             let message = format!("the spilled data in {path} are damaged; start again");
             return Err(Error::new(ErrorKind::File, message));
         }
-        Ok(bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect())
+        Ok(samples::from_bytes(&bytes))
     }
 
     fn keep(&self, index: usize, page: &Page) {
@@ -200,7 +201,7 @@ impl Pages {
                 None => page.paste(part),
             }
             let samples = page.into_data();
-            let bytes: Vec<u8> = samples.iter().flat_map(|sample| sample.to_le_bytes()).collect();
+            let bytes = samples::to_bytes(&samples);
             let written = self.file.write(self.base + (index * BYTES) as u64, &bytes);
             written.map_err(|cause| Error::file("spill more data to", &self.file.path, &cause))?;
             self.sums[index] = Some(checksum(&bytes));

@@ -29,6 +29,17 @@ pub trait Record: Copy {
 
     /// The value of its bytes.
     fn get(bytes: &[u8]) -> Self;
+
+    /// Replaces `bytes` with those of records.
+    fn put_all(records: &[Self], bytes: &mut Vec<u8>) {
+        bytes.resize(records.len() * Self::BYTES, 0);
+        bytes.chunks_exact_mut(Self::BYTES).zip(records).for_each(|(bytes, record)| record.put(bytes));
+    }
+
+    /// Appends the records of bytes.
+    fn get_all(bytes: &[u8], to: &mut Vec<Self>) {
+        to.extend(bytes.chunks_exact(Self::BYTES).map(Self::get));
+    }
 }
 
 impl Record for u8 {
@@ -40,6 +51,16 @@ impl Record for u8 {
 
     fn get(bytes: &[u8]) -> u8 {
         bytes.first().copied().unwrap_or_default()
+    }
+
+    // Not those of the trait, which would be compiled where they are called.
+    fn put_all(records: &[u8], bytes: &mut Vec<u8>) {
+        bytes.clear();
+        bytes.extend_from_slice(records);
+    }
+
+    fn get_all(bytes: &[u8], to: &mut Vec<u8>) {
+        to.extend_from_slice(bytes);
     }
 }
 
@@ -53,6 +74,15 @@ impl Record for u32 {
 
     fn get(bytes: &[u8]) -> u32 {
         bytes.try_into().map(u32::from_le_bytes).unwrap_or_default()
+    }
+
+    fn put_all(records: &[u32], bytes: &mut Vec<u8>) {
+        bytes.clear();
+        bytes.extend(records.iter().flat_map(|record| record.to_le_bytes()));
+    }
+
+    fn get_all(bytes: &[u8], to: &mut Vec<u32>) {
+        to.extend(bytes.as_chunks().0.iter().map(|bytes| u32::from_le_bytes(*bytes)));
     }
 }
 
@@ -128,7 +158,7 @@ impl<T: Record> Records<T> {
             Stored::Memory(records) => {
                 let (mut stream, mut bytes) = (Deflate::new(Wrap::Zlib, LEVEL), Vec::new());
                 for part in records.chunks(BLOCK / T::BYTES) {
-                    put(part, &mut bytes);
+                    T::put_all(part, &mut bytes);
                     stream.write(out, &bytes)?;
                 }
                 stream.finish(out)
@@ -154,12 +184,6 @@ fn next_piece(spool: &Mutex<Spool>, at: u64, piece: &mut Vec<u8>) -> io::Result<
     piece.resize(length as usize, 0);
     spool.read(at, piece)?;
     Ok(length)
-}
-
-/// Replaces `bytes` with those of records.
-fn put<T: Record>(records: &[T], bytes: &mut Vec<u8>) {
-    bytes.resize(records.len() * T::BYTES, 0);
-    bytes.chunks_exact_mut(T::BYTES).zip(records).for_each(|(bytes, record)| record.put(bytes));
 }
 
 /// Reads records in order.
@@ -194,7 +218,7 @@ impl<T: Record> Reader<'_, T> {
                         *packed += next_piece(spool, *packed, piece)?;
                         Ok(())
                     })?;
-                    to.extend(self.bytes.chunks_exact(T::BYTES).map(T::get));
+                    T::get_all(&self.bytes, to);
                 }
             }
             (Stored::Memory(records), _) => to.extend_from_slice(&records[next..next + count]),
@@ -253,7 +277,7 @@ impl<T: Record> Recorder<T> {
             Kept::Memory(kept) => kept.extend_from_slice(records),
             Kept::Packed { spool, stream, bytes, .. } => {
                 for part in records.chunks(BLOCK / T::BYTES) {
-                    put(part, bytes);
+                    T::put_all(part, bytes);
                     stream.write(spool, bytes)?;
                 }
             }

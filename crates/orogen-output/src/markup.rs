@@ -3,13 +3,14 @@
 use std::io::{self, Write};
 
 /// Text without control characters, with the characters escaped that begin markup.
-pub(crate) fn escaped(text: &str) -> String {
+#[must_use]
+pub fn escaped(text: &str) -> String {
     let text: String = text.chars().filter(|letter| !letter.is_control()).collect();
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 /// Writes what is written to it as base64 (RFC 4648).
-pub(crate) struct Base64<'a> {
+pub struct Base64<'a> {
     out: &'a mut dyn Write,
     /// Up to two bytes that wait for a third.
     rest: [u8; 3],
@@ -74,7 +75,7 @@ fn letters([a, b, c]: [u8; 3]) -> [u8; 4] {
 }
 
 /// Writes bytes as base64 (RFC 4648).
-pub(crate) fn base64(out: &mut dyn Write, bytes: &[u8]) -> io::Result<()> {
+pub fn base64(out: &mut dyn Write, bytes: &[u8]) -> io::Result<()> {
     let mut base64 = Base64::new(out);
     base64.write_all(bytes)?;
     base64.finish()

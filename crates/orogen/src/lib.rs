@@ -93,10 +93,14 @@ pub use orogen_grid::{
 pub use orogen_io::test_folder;
 #[doc(inline)]
 pub use orogen_io::{dem, file, format, open, palette, raster, read_at, spool};
-#[doc(inline)]
-pub use orogen_output::{blocks, builder, export, fit, jobs, map, mesh, render, sheet, survey, tilemap};
 #[doc(hidden)]
-pub use orogen_output::{graph_layout, noise_pictures};
+pub use orogen_jobs::graph_layout;
+#[doc(inline)]
+pub use orogen_jobs::{builder, export, fit, jobs, tilemap};
+#[doc(hidden)]
+pub use orogen_output::noise_pictures;
+#[doc(inline)]
+pub use orogen_output::{blocks, map, mesh, render, sheet, survey};
 
 pub use budget::Budget;
 pub use chunks::id::ChunkId;

@@ -6,6 +6,7 @@ use orogen::autotile::choose::layers;
 use orogen::autotile::classes::Classes;
 use orogen::autotile::clean::clean;
 use orogen::tilemap::load::any::parse;
+use orogen::tilemap::tiled::write_tsx;
 use orogen::tilemap::tileset::parts;
 
 /// Runs the target on an input; one that is no text is skipped.
@@ -23,6 +24,6 @@ pub fn run(input: &[u8]) {
             }
         }
         let mut out = Vec::new();
-        set.write_tsx(&mut out, "tiles.png", "fuzz").unwrap();
+        write_tsx(&set, &mut out, "tiles.png", "fuzz").unwrap();
     }
 }

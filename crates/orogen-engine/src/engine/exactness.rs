@@ -2,10 +2,10 @@
 
 use super::nodes::Nodes;
 use super::preview::Preview;
-use crate::ids::{GridId, IndexVec};
-use crate::op::Op;
 use crate::plan::levels::{self, Serving};
 use crate::plan::steps::{Plan, Step, wanted};
+use orogen_ops::ids::{GridId, IndexVec};
+use orogen_ops::op::Op;
 
 /// Which grids have the bits of the processor, and which must have them.
 pub struct Exactness<'a> {

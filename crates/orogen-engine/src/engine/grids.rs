@@ -1,11 +1,11 @@
 //! The grids of a plan while its steps run.
 
 use crate::device::{Device, DeviceGrid, PlanGrid};
-use crate::ids::{GridId, IndexVec, StepId};
 use crate::plan::steps::Plan;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Grid;
 use orogen_grid::progress::Progress;
+use orogen_ops::ids::{GridId, IndexVec, StepId};
 
 /// The grids of a plan that steps have made and that later ones or the results need.
 pub struct Grids {

@@ -2,12 +2,12 @@
 //! allocation once the buffers have their final size.
 
 use super::grids::Grids;
-use super::interpreter::{Bindings, Buffers, Interpreter};
 use super::run::{Engine, Solutions};
-use crate::plan::program::{BLOCK_HEIGHT, BLOCK_WIDTH, Program};
 use crate::plan::steps::Plan;
 use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
+use orogen_ops::interpreter::{Bindings, Buffers, Interpreter};
+use orogen_ops::program::{BLOCK_HEIGHT, BLOCK_WIDTH, Program};
 
 /// A program for points, with all its inputs computed.
 pub struct PreparedProgram {
@@ -95,8 +95,8 @@ impl Engine<'_> {
     ) -> Result<Buffers> {
         let fields = |node| self.field(node);
         let solvers = |node| self.solver(node, &ready.solutions);
-        let bindings =
-            Bindings { world_params: self.world_params, fields: &fields, solvers: &solvers, grids: &ready.grids };
+        let grids = |slot| ready.grids.memory(slot);
+        let bindings = Bindings { world_params: self.world_params, fields: &fields, solvers: &solvers, grids: &grids };
         let mut interpreter = Interpreter::with(&ready.program, buffers);
         work(&mut interpreter, &bindings)?;
         Ok(interpreter.into_buffers())

@@ -2,13 +2,13 @@
 
 use super::refine::{Planes, Refining};
 use super::run::Engine;
-use crate::op::Levelled;
 use crate::plan::levels;
 use crate::store::level_tile::LevelTile;
 use crate::store::level_tiles::Claim;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::parallel;
+use orogen_ops::op::Levelled;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 

@@ -3,7 +3,6 @@
 mod exactness;
 mod grids;
 pub(crate) mod inline;
-pub(crate) mod interpreter;
 mod level_tiles;
 pub(crate) mod nodes;
 mod on_device;

@@ -1,9 +1,9 @@
 //! The nodes of a recipe, as what runs them sees them.
 
-use crate::ids::{Id, NodeId};
-use crate::op::{Op, WorldParams};
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::{Graph, Link};
+use orogen_ops::ids::{Id, NodeId};
+use orogen_ops::op::{Op, WorldParams};
 
 /// The nodes of a recipe and what they read.
 #[derive(Clone, Copy)]

@@ -3,13 +3,13 @@
 use super::grids::{Grids, missing};
 use super::run::{Engine, Solutions};
 use crate::device::{Device, FilterExtent, PlanGrid};
-use crate::ids::GridId;
-use crate::lower::Lowering;
-use crate::plan::program::Instruction;
 use crate::plan::split::split;
 use crate::plan::steps::{Step, wanted};
 use orogen_grid::error::Result;
 use orogen_grid::progress::Progress;
+use orogen_ops::ids::GridId;
+use orogen_ops::lower::Lowering;
+use orogen_ops::program::Instruction;
 
 impl Engine<'_> {
     /// Computes a step on a device; `None` if the processor is to do it.

@@ -2,15 +2,15 @@
 
 use super::nodes::Nodes;
 use crate::device::{Device, PlanGrid};
-use crate::ids::{IndexVec, NodeId};
-use crate::lower::{Lowering, Passes};
-use crate::op::{Op, Solver};
 use crate::plan::domain::Domain;
 use crate::plan::steps::{Plan, Solve};
 use crate::recipe::graph::Link;
 use crate::store::grids::GridStore;
 use crate::store::level_tiles::LevelTiles;
 use crate::store::solutions::Store;
+use orogen_ops::ids::{IndexVec, NodeId};
+use orogen_ops::lower::{Lowering, Passes};
+use orogen_ops::op::{Op, Solver};
 use std::path::Path;
 
 /// What previews of a session keep in memory, for later ones. Nothing of it is stored for later runs, and nothing exact is made from it.

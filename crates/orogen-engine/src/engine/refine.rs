@@ -3,9 +3,6 @@
 use super::preview::{Preview, Previews};
 use super::run::Engine;
 use crate::device::{Device, LayerStep, LevelStep, PlanGrid};
-use crate::ids::{Id, NodeId};
-use crate::lower::Lowering;
-use crate::op::{Context, Levelled, Op, WorldParams};
 use crate::plan::levels::{self, Serving};
 use crate::recipe::graph::LayerRef;
 use orogen_grid::error::{Error, ErrorKind, Result};
@@ -14,6 +11,9 @@ use orogen_grid::parallel;
 use orogen_grid::progress::Progress;
 use orogen_grid::resample::{self, LayerKind};
 use orogen_noise::Points;
+use orogen_ops::ids::{Id, NodeId};
+use orogen_ops::lower::Lowering;
+use orogen_ops::op::{Context, Levelled, Op, WorldParams};
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 

@@ -2,18 +2,12 @@
 
 use super::exactness::Exactness;
 use super::grids::{Grids, missing};
-use super::interpreter::{Bindings, Interpreter};
 use super::nodes::Nodes;
 use super::preview::Preview;
-use crate::budget::Budget;
 use crate::device::{Device, PlanGrid};
-use crate::ids::{GridId, Id, IndexVec, NodeId, StepId};
-use crate::op::{Context, Field, Filter, Op, Solution, Solver, StepObserver, WorldParams};
 use crate::plan::cost;
 use crate::plan::key::Key;
-use crate::plan::program::{BLOCK_HEIGHT, BLOCK_WIDTH, Program};
 use crate::plan::steps::{Plan, Step, wanted};
-use crate::pool::Pool;
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::Graph;
 use crate::store::grids::{EXPENSIVE, GridKey, GridStore};
@@ -23,6 +17,12 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::parallel;
 use orogen_grid::progress::Progress;
+use orogen_ops::budget::Budget;
+use orogen_ops::ids::{GridId, Id, IndexVec, NodeId, StepId};
+use orogen_ops::interpreter::{Bindings, Interpreter};
+use orogen_ops::op::{Context, Field, Filter, Op, Solution, Solver, StepObserver, WorldParams};
+use orogen_ops::pool::Pool;
+use orogen_ops::program::{BLOCK_HEIGHT, BLOCK_WIDTH, Program};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -285,7 +285,8 @@ impl<'a> Engine<'a> {
     ) -> Result<Vec<Vec<f32>>> {
         let fields = |node| self.field(node);
         let solvers = |node| self.solver(node, solutions);
-        let bindings = Bindings { world_params: self.world_params, fields: &fields, solvers: &solvers, grids };
+        let grids = |slot| grids.memory(slot);
+        let bindings = Bindings { world_params: self.world_params, fields: &fields, solvers: &solvers, grids: &grids };
         const POINTS: usize = BLOCK_WIDTH * BLOCK_HEIGHT;
         let mut values = vec![Vec::with_capacity(x.len()); program.outputs.len()];
         let mut interpreter = Interpreter::new(program);
@@ -307,7 +308,8 @@ impl<'a> Engine<'a> {
         }
         let fields = |node| self.field(node);
         let solvers = |node| self.solver(node, solutions);
-        let bindings = Bindings { world_params: self.world_params, fields: &fields, solvers: &solvers, grids };
+        let grids = |slot| grids.memory(slot);
+        let bindings = Bindings { world_params: self.world_params, fields: &fields, solvers: &solvers, grids: &grids };
         // Enough bands for all threads, but not so thin that rows of noise lattices are computed repeatedly.
         let rows = window.height.div_ceil(2 * parallel::threads()).clamp(8, BLOCK_HEIGHT);
         let (columns, rows) = block_of(cost::program(program, self.recipe), rows);

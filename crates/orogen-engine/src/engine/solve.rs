@@ -2,8 +2,6 @@
 
 use super::run::{Engine, Solutions};
 use super::tiles::Tiles;
-use crate::ids::{Id, NodeId};
-use crate::op::{Context, Op, Solution, Solver, Sources};
 use crate::plan::cost;
 use crate::plan::planner::Planner;
 use crate::plan::steps::{Plan, Solve};
@@ -12,6 +10,8 @@ use crate::store::solutions::{Begun, Store};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
+use orogen_ops::ids::{Id, NodeId};
+use orogen_ops::op::{Context, Op, Solution, Solver, Sources};
 use std::sync::Arc;
 
 impl Engine<'_> {

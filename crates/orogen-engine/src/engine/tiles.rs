@@ -1,12 +1,12 @@
 //! The sources of a solver, computed tile by tile on request.
 
-use crate::op::Sources;
 use crate::plan::steps::Solve;
 use crate::recipe::graph::Link;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_io::pages::Pages;
 use orogen_io::raster::Raster;
+use orogen_ops::op::Sources;
 use std::path::Path;
 
 /// The inputs of a solver; `make` computes an input over a tile.

@@ -1,13 +1,13 @@
 //! Running a program over a window at several altitudes.
 
 use super::inline::put;
-use super::interpreter::{Bindings, Interpreter};
 use super::run::Engine;
-use crate::plan::program::{BLOCK_HEIGHT, BLOCK_WIDTH};
 use crate::plan::steps::Plan;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
 use orogen_grid::parallel;
+use orogen_ops::interpreter::{Bindings, Interpreter};
+use orogen_ops::program::{BLOCK_HEIGHT, BLOCK_WIDTH};
 
 impl Engine<'_> {
     /// Computes the samples of a plan for points at each sample of its window and each altitude, slice by slice, each row-major.
@@ -18,6 +18,7 @@ impl Engine<'_> {
         let (solutions, grids) = self.before_points(plan)?;
         let fields = |node| self.field(node);
         let solvers = |node| self.solver(node, &solutions);
+        let grids = |slot| grids.memory(slot);
         let bindings = Bindings { world_params: self.world_params, fields: &fields, solvers: &solvers, grids: &grids };
         let mut out = vec![0.0; window.len().saturating_mul(altitudes.len())];
         self.pool.install(|| {

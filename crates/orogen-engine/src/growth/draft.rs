@@ -7,16 +7,16 @@
 //! frame. Detail therefore appears gradually, and the last frame of the stage continues in the first one of the next
 //! stage without a jump.
 
-use crate::field::add::Add;
-use crate::field::gullies::Gullies;
-use crate::ids::{Id, NodeId};
-use crate::layer::LayerKind;
-use crate::node::Node;
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::Graph;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::resample;
 use orogen_noise::Points;
+use orogen_ops::field::add::Add;
+use orogen_ops::field::gullies::Gullies;
+use orogen_ops::ids::{Id, NodeId};
+use orogen_ops::layer::LayerKind;
+use orogen_ops::node::Node;
 use std::collections::BTreeSet;
 
 /// The ratio of a draft's cell to its frame's cell.

@@ -1,6 +1,7 @@
 //! Storage of frames until they are shown, in memory if they are few, otherwise on disk.
 
 use orogen_grid::grid::{Grid, Window};
+use orogen_io::samples;
 use orogen_io::spool::Spool;
 use std::collections::BTreeMap;
 use std::io;
@@ -30,8 +31,7 @@ impl FrameSpool {
         }
         let mut start = None;
         for row in 0..self.window.height {
-            let bytes: Vec<u8> = heights.row(row).iter().flat_map(|sample| sample.to_le_bytes()).collect();
-            let at = self.spool.push(&bytes)?;
+            let at = self.spool.push(&samples::to_bytes(heights.row(row)))?;
             start.get_or_insert(at);
         }
         self.starts.insert(step, start.unwrap_or_default());
@@ -48,9 +48,7 @@ impl FrameSpool {
         let mut bytes = vec![0; 4 * self.window.width];
         for row in 0..self.window.height {
             self.spool.read(start + (row * bytes.len()) as u64, &mut bytes)?;
-            for (sample, bytes) in grid.row_mut(row).iter_mut().zip(bytes.as_chunks().0) {
-                *sample = f32::from_le_bytes(*bytes);
-            }
+            samples::read_bytes(grid.row_mut(row), &bytes);
         }
         Ok(grid)
     }

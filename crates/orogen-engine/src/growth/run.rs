@@ -7,10 +7,6 @@
 
 use super::draft;
 use super::frame_spool::FrameSpool;
-use crate::ids::{Id, NodeId};
-use crate::layer::LayerKind;
-use crate::node::Node;
-use crate::op::{Solution, StepObserver};
 use crate::plan::key::keys;
 use crate::plan::steps::Plan;
 use crate::recipe::document::Recipe;
@@ -21,6 +17,10 @@ use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 use orogen_io::fs;
 use orogen_io::spool::Spool;
+use orogen_ops::ids::{Id, NodeId};
+use orogen_ops::layer::LayerKind;
+use orogen_ops::node::Node;
+use orogen_ops::op::{Solution, StepObserver};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -5,13 +5,13 @@ use super::check::Laws;
 use super::forced::at_level;
 use super::law::{Law, Verdict, Violation};
 use super::recipes::{NODE, output_of, unsoftened, world_of};
-use crate::declare::{Input, VERTICAL};
-use crate::op::Op;
 use crate::sampler::Sampler;
-use crate::value::Value;
 use crate::volume::Volume;
 use orogen_grid::grid::{Grid, Window};
 use orogen_noise::Level;
+use orogen_ops::declare::{Input, VERTICAL};
+use orogen_ops::op::Op;
+use orogen_ops::value::Value;
 
 impl Laws<'_> {
     /// [`Law::Altitudes`], for a field that may read nodes that depend on the altitude. The op, its inputs and its mask are noises of space, as far

@@ -2,15 +2,15 @@
 
 use super::law::{Law, Verdict, Violation};
 use super::recipes::{SIDES, full};
-use crate::declare::MARGIN;
 use crate::recipe::document::Recipe;
 use crate::session::Options;
-use crate::value::Value;
 use crate::world::World;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 use orogen_grid::random::Random;
+use orogen_ops::declare::MARGIN;
+use orogen_ops::value::Value;
 
 /// A law during its test.
 pub(super) struct Case {

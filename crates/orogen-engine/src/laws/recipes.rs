@@ -1,12 +1,12 @@
 //! Worlds and recipes in which an op is tested.
 
-use crate::declare::Input;
-use crate::field::{fbm::Fbm, perlin::Perlin};
-use crate::filter::blur::Blur;
-use crate::layer::Layer;
-use crate::node::Node;
 use crate::recipe::document::{Recipe, WorldSpec};
 use orogen_grid::grid::Window;
+use orogen_ops::declare::Input;
+use orogen_ops::field::{fbm::Fbm, perlin::Perlin};
+use orogen_ops::filter::blur::Blur;
+use orogen_ops::layer::Layer;
+use orogen_ops::node::Node;
 
 /// The name of the node under test in the recipes of [`recipe_of`] and [`Laws::in_recipes`](super::Laws::in_recipes).
 pub const NODE: &str = "node";

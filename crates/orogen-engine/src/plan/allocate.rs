@@ -1,8 +1,8 @@
 //! The allocation of registers: values that are never needed at the same time share one.
 
-use super::program::{Instruction, Program};
-use crate::ids::{CoordSetId, Id, IndexVec, RegisterId};
 use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_ops::ids::{CoordSetId, Id, IndexVec, RegisterId};
+use orogen_ops::program::{Instruction, Program};
 
 /// Ids that are reused as soon as they are free.
 struct Pool<I> {
@@ -95,9 +95,9 @@ pub fn allocate<G>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::expression::function::Function;
-    use crate::ids::GridId;
-    use crate::plan::program::Operand;
+    use orogen_ops::expression::function::Function;
+    use orogen_ops::ids::GridId;
+    use orogen_ops::program::Operand;
 
     fn sum(terms: [usize; 2], out: usize) -> Instruction<GridId> {
         let arguments = terms.map(|term| Operand::Register(RegisterId::new(term))).into();

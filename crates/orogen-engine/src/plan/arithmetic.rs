@@ -1,12 +1,12 @@
 //! Compiling the arithmetic of fields that are terms of their inputs.
 
 use super::compile::{Compiler, internal};
-use super::program::{Instruction, Operand};
-use crate::expression::function::{Function, MAX_ARGUMENTS};
-use crate::expression::term::Term;
-use crate::ids::{CoordSetId, RegisterId};
 use crate::recipe::graph::Link;
 use orogen_grid::error::Result;
+use orogen_ops::expression::function::{Function, MAX_ARGUMENTS};
+use orogen_ops::expression::term::Term;
+use orogen_ops::ids::{CoordSetId, RegisterId};
+use orogen_ops::program::{Instruction, Operand};
 
 impl Compiler<'_> {
     /// Emits the arithmetic of a field. Constant terms are folded.

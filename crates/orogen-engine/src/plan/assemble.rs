@@ -2,8 +2,8 @@
 
 use super::schedule::{Asked, Schedule};
 use super::steps::{GridSlot, Plan, Step};
-use crate::ids::{Id, IndexVec, StepId};
 use orogen_grid::error::Result;
+use orogen_ops::ids::{Id, IndexVec, StepId};
 
 /// The plan of a schedule, without solvers.
 ///

@@ -7,16 +7,16 @@
 use super::allocate::allocate;
 use super::around::samples_around;
 use super::coord_sets::CoordSets;
-use super::program::{Instruction, Program};
 use super::request::{GridRequest, Requests};
 use super::space::in_two_parts;
-use crate::ids::{CoordSetId, Id, NodeId, RegisterId, RequestId};
-use crate::layer::LayerKind;
-use crate::op::{CoordMap, Field, Op, Stencil};
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::{Graph, LayerRef, Link};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
+use orogen_ops::ids::{CoordSetId, Id, NodeId, RegisterId, RequestId};
+use orogen_ops::layer::LayerKind;
+use orogen_ops::op::{CoordMap, Field, Op, Stencil};
+use orogen_ops::program::{Instruction, Program};
 use std::collections::{HashMap, HashSet};
 
 /// Maximum number of instructions of a program. Only nested warps multiply them.

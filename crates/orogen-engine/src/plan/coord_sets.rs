@@ -1,9 +1,9 @@
 //! The coordinate sets of a program that is being compiled.
 
-use super::program::Instruction;
-use crate::ids::{CoordSetId, IndexVec, NodeId, RequestId};
-use crate::op::{Affine, CoordMap, Stencil};
 use orogen_grid::grid::{FARTHEST, Window};
+use orogen_ops::ids::{CoordSetId, IndexVec, NodeId, RequestId};
+use orogen_ops::op::{Affine, CoordMap, Stencil};
+use orogen_ops::program::Instruction;
 use std::collections::HashMap;
 
 /// Coordinate sets and what they are for: each exists once.

@@ -7,11 +7,11 @@
 //! per side.
 
 use super::levels;
-use super::program::{Instruction, Program};
 use super::steps::{Plan, Solve, Step, wanted};
-use crate::ids::{CoordSetId, GridId, Id, IndexVec};
-use crate::op::Op;
 use crate::recipe::document::Recipe;
+use orogen_ops::ids::{CoordSetId, GridId, Id, IndexVec};
+use orogen_ops::op::Op;
+use orogen_ops::program::{Instruction, Program};
 
 /// Storing a sample of a program's result.
 const STORED: f64 = 0.2;

@@ -1,7 +1,7 @@
 //! The samples that solvers cover: the world, or a wider domain, on a lattice.
 
-use crate::op::{Solver, WorldParams};
 use orogen_grid::grid::Window;
+use orogen_ops::op::{Solver, WorldParams};
 
 /// Samples beyond a world's or a domain's edge that readers may need.
 pub const WORLD_MARGIN: usize = 2;
@@ -47,7 +47,7 @@ fn whole_cells(length: f64, cell: f64, round: impl Fn(f64) -> f64) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solver::fill::Fill;
+    use orogen_ops::solver::fill::Fill;
 
     #[test]
     fn domains_cover_the_world_and_its_margin() {

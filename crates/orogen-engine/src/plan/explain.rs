@@ -3,13 +3,13 @@
 use super::levels::Serving;
 use super::steps::{Plan, Step};
 use super::{cost, memory};
-use crate::declare::short;
-use crate::ids::{GridId, Id, NodeId};
-use crate::op::Op;
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::Graph;
 use orogen_grid::grid::Window;
 use orogen_grid::words::{bytes, count, number};
+use orogen_ops::declare::short;
+use orogen_ops::ids::{GridId, Id, NodeId};
+use orogen_ops::op::Op;
 use std::fmt::Write as _;
 
 /// Describes a plan: the nodes in order with their locality and halo, then the steps with their windows and memory.
@@ -28,9 +28,9 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
                 format!("samples at {} m", number(source))
             }
             Op::Field(field) => match field.coord_map() {
-                Some(crate::op::CoordMap::Displaced { reach, .. }) => format!("within {} m", number(reach)),
+                Some(orogen_ops::op::CoordMap::Displaced { reach, .. }) => format!("within {} m", number(reach)),
                 Some(map) if let Some(altitude) = map.altitude() => format!("at altitude {} m", number(altitude)),
-                Some(crate::op::CoordMap::Mapped { .. }) => "elsewhere".to_string(),
+                Some(orogen_ops::op::CoordMap::Mapped { .. }) => "elsewhere".to_string(),
                 None => match field.stencil() {
                     Some(stencil) => format!("within {} m", number(stencil.step)),
                     None => "one position".to_string(),

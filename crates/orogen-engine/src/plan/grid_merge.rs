@@ -1,8 +1,8 @@
 //! Merging of grid requests.
 
 use super::request::Requests;
-use crate::ids::RequestId;
 use orogen_grid::grid::Window;
+use orogen_ops::ids::RequestId;
 
 /// A grid to make, and the requests that it serves.
 pub struct Cluster {
@@ -47,9 +47,9 @@ pub fn clusters(requests: &Requests, wanted: impl Iterator<Item = RequestId>) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ids::{Id, NodeId};
     use crate::plan::request::GridRequest;
     use crate::recipe::graph::LayerRef;
+    use orogen_ops::ids::{Id, NodeId};
 
     #[test]
     fn near_windows_join_and_far_ones_do_not() {

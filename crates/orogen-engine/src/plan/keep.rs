@@ -1,8 +1,8 @@
 //! The choice of nodes whose results are kept as grids, instead of being evaluated by each program that reads them.
 
-use crate::ids::{Id, NodeId};
-use crate::op::Op;
 use crate::recipe::document::Recipe;
+use orogen_ops::ids::{Id, NodeId};
+use orogen_ops::op::Op;
 use std::collections::{HashMap, HashSet};
 
 /// What the programs of a plan evaluate at the block itself, where a grid could be read instead.

@@ -1,12 +1,12 @@
 //! Content keys: hashes of everything that a node's result depends on.
 
-use crate::declare::{MARGIN, Shape, Spec, VERTICAL};
-use crate::ids::{Id, IndexVec, NodeId};
-use crate::node::Node;
-use crate::op::{Op, WorldParams};
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::{Graph, Link};
-use crate::value::Value;
+use orogen_ops::declare::{MARGIN, Shape, Spec, VERTICAL};
+use orogen_ops::ids::{Id, IndexVec, NodeId};
+use orogen_ops::node::Node;
+use orogen_ops::op::{Op, WorldParams};
+use orogen_ops::value::Value;
 use sha2::{Digest, Sha256};
 
 /// A hash of everything that a node's result depends on: the op, its revision, its parameters, the keys of its sources,

@@ -6,10 +6,10 @@
 
 use super::around::samples_around;
 use super::steps::grid_bytes;
-use crate::op::{Levelled, Levels};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
 use orogen_grid::words::number;
+use orogen_ops::op::{Levelled, Levels};
 use std::ops::Range;
 
 /// Samples along the sides of the tiles of coarse levels.

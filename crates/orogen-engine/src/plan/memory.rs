@@ -1,12 +1,12 @@
 //! Memory of a plan, known before the first sample.
 
 use super::levels;
-use super::program::{BLOCK_HEIGHT, BLOCK_WIDTH, Program};
 use super::steps::{Plan, Solve, Step, grid_bytes, wanted};
-use crate::ids::{GridId, Id, IndexVec, StepId};
-use crate::op::Op;
 use crate::recipe::document::Recipe;
 use orogen_io::pages;
+use orogen_ops::ids::{GridId, Id, IndexVec, StepId};
+use orogen_ops::op::Op;
+use orogen_ops::program::{BLOCK_HEIGHT, BLOCK_WIDTH, Program};
 
 /// Memory of the registers and coordinate sets of one thread.
 fn block_bytes(program: &Program) -> u64 {

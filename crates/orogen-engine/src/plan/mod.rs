@@ -14,10 +14,8 @@ mod keep;
 pub(crate) mod key;
 pub(crate) mod levels;
 pub(crate) mod memory;
-mod number;
 pub(crate) mod parts;
 pub mod planner;
-pub mod program;
 mod request;
 mod schedule;
 mod solves;
@@ -25,3 +23,6 @@ mod space;
 pub(crate) mod split;
 pub mod steps;
 mod stored;
+
+#[doc(inline)]
+pub use orogen_ops::program;

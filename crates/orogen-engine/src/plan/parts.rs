@@ -1,11 +1,11 @@
 //! Whether the heights that a plan reads are there: those of a large file may have been read in part.
 
-use super::program::Instruction;
 use super::steps::{Plan, Step};
-use crate::ids::{CoordSetId, Id, NodeId};
-use crate::node::Node;
 use crate::recipe::document::Recipe;
 use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_ops::ids::{CoordSetId, Id, NodeId};
+use orogen_ops::node::Node;
+use orogen_ops::program::Instruction;
 
 /// Checks that a plan reads only heights that were read from their files. Solvers read the whole world, and points may
 /// be anywhere in it, so they need whole files.

@@ -15,12 +15,12 @@ use super::key::{Key, identity};
 use super::memory;
 use super::schedule::{Asked, schedule};
 use super::steps::Plan;
-use crate::ids::{IndexVec, NodeId};
-use crate::op::WorldParams;
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::{Graph, Link};
 use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
+use orogen_ops::ids::{IndexVec, NodeId};
+use orogen_ops::op::WorldParams;
 use std::collections::HashSet;
 
 /// Sides of solvers' tiles, in order of preference: large enough to keep the cost of halos small, small enough for any
@@ -118,13 +118,13 @@ impl<'a> Planner<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::field::fbm::Fbm;
-    use crate::filter::blur::Blur;
-    use crate::ids::Id;
     use crate::plan::key::keys;
     use crate::recipe::document::WorldSpec;
     use crate::recipe::graph::LayerRef;
     use orogen_grid::error::ErrorKind;
+    use orogen_ops::field::fbm::Fbm;
+    use orogen_ops::filter::blur::Blur;
+    use orogen_ops::ids::Id;
 
     #[test]
     fn broken_invariants_are_internal_errors() {

@@ -1,11 +1,11 @@
 //! What programs and filters ask for: grids that earlier steps must make.
 
-use crate::ids::{GridId, Id, IndexVec, NodeId, RequestId};
-use crate::op::Op;
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::{Graph, LayerRef, Link};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
+use orogen_ops::ids::{GridId, Id, IndexVec, NodeId, RequestId};
+use orogen_ops::op::Op;
 use std::collections::HashMap;
 
 /// A request for a grid that an earlier step must make: a node's layer over a window.

@@ -6,12 +6,12 @@ use super::keep::Evaluations;
 use super::levels::{self, Serving};
 use super::request::{GridRequest, Requests};
 use super::steps::{Step, wanted};
-use crate::ids::{GridId, Id, IndexVec, NodeId, RequestId};
-use crate::op::{Filter, Levelled, Op};
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::{Graph, LayerRef, Link};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
+use orogen_ops::ids::{GridId, Id, IndexVec, NodeId, RequestId};
+use orogen_ops::op::{Filter, Levelled, Op};
 use std::collections::HashSet;
 
 /// What a plan is made for.

@@ -4,11 +4,11 @@ use super::domain::Domain;
 use super::planner::Planner;
 use super::steps::Solve;
 use super::{cost, memory};
-use crate::ids::{Id, IndexVec, NodeId};
-use crate::op::Op;
 use crate::recipe::graph::Link;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
+use orogen_ops::ids::{Id, IndexVec, NodeId};
+use orogen_ops::op::Op;
 use std::collections::{BTreeMap, BTreeSet};
 
 impl Planner<'_> {

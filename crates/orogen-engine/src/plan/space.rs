@@ -1,7 +1,7 @@
 //! The order of a program that is run at several altitudes: first what does not depend on the altitude.
 
-use super::program::Instruction;
-use crate::ids::{CoordSetId, IndexVec, NodeId, RegisterId};
+use orogen_ops::ids::{CoordSetId, IndexVec, NodeId, RegisterId};
+use orogen_ops::program::Instruction;
 
 /// Moves the instructions that depend on the altitude behind all others, and returns the number of the others. The order within both parts is kept.
 /// Each value and coordinate set is written once.

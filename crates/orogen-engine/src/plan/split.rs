@@ -2,12 +2,12 @@
 //! grids.
 
 use super::allocate::allocate;
-use super::program::{Instruction, Operand, Program};
 use crate::device::{Lowered, LoweredCoords, LoweredOperand, LoweredProgram};
-use crate::ids::{CoordSetId, GridId, Id, IndexVec, RegisterId};
-use crate::layer::LayerKind;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_noise::shader::function::Shader;
+use orogen_ops::ids::{CoordSetId, GridId, Id, IndexVec, RegisterId};
+use orogen_ops::layer::LayerKind;
+use orogen_ops::program::{Instruction, Operand, Program};
 use std::collections::BTreeMap;
 
 /// A program in two parts.
@@ -243,8 +243,8 @@ fn unwritten() -> Error {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::expression::function::Function;
-    use crate::ids::NodeId;
+    use orogen_ops::expression::function::Function;
+    use orogen_ops::ids::NodeId;
 
     fn field(node: usize, inputs: &[usize], out: usize) -> Instruction {
         let inputs = inputs.iter().map(|input| Some(RegisterId::new(*input))).collect();

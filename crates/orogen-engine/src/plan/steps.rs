@@ -1,10 +1,10 @@
 //! The data of a plan: steps, solvers and grids.
 
 use super::key::Key;
-use super::program::{Instruction, Program};
-use crate::ids::{GridId, IndexVec, NodeId, StepId};
 use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
+use orogen_ops::ids::{GridId, IndexVec, NodeId, StepId};
+use orogen_ops::program::{Instruction, Program};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 

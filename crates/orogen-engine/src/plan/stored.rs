@@ -2,8 +2,8 @@
 
 use super::key::Key;
 use super::steps::{GridSlot, Plan, Solve, Step};
-use crate::ids::{GridId, IndexVec, StepId};
 use orogen_grid::grid::Window;
+use orogen_ops::ids::{GridId, IndexVec, StepId};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 use sha2::{Digest, Sha256};
 use std::fmt::{self, Write};

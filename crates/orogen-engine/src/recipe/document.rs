@@ -2,15 +2,10 @@
 
 pub use super::text::LONGEST_TEXT;
 
-use crate::declare::{Input, Shape};
-use crate::field::dem::Dem;
-use crate::node::Node;
-use crate::op::{Op, WorldParams};
 use crate::recipe::class::document::{CLASS, ExpandedClass, TerrainClass};
 use crate::recipe::parameters::{Formula, Parameter, Parameters, Step};
 use crate::recipe::scatter::document::{ExpandedScatter, Scatter};
 use crate::recipe::surface::document::{Expanded, RAMP, Surface};
-use crate::value::{toml_key, toml_string};
 use orogen_grid::error::{Diagnostic, Error, ErrorKind, Result};
 use orogen_io::dem::file_ref::{FileKind, FileRef};
 use orogen_io::dem::open;
@@ -21,6 +16,11 @@ use orogen_io::format::crs::unit::Unit;
 use orogen_io::format::dem::{Georeference, Request};
 use orogen_io::format::drawing::Drawing;
 use orogen_io::palette::histogram;
+use orogen_ops::declare::{Input, Shape};
+use orogen_ops::field::dem::Dem;
+use orogen_ops::node::Node;
+use orogen_ops::op::{Op, WorldParams};
+use orogen_ops::value::{toml_key, toml_string};
 use std::collections::{BTreeMap, HashSet};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

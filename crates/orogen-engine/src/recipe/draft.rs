@@ -1,9 +1,9 @@
 //! Drafts of recipes: the same world, sooner and coarser.
 
 use super::document::Recipe;
-use crate::declare::Shape;
-use crate::declare::spec::Locality;
-use crate::value::Value;
+use orogen_ops::declare::Shape;
+use orogen_ops::declare::spec::Locality;
+use orogen_ops::value::Value;
 
 /// The parameter with the cell size of a solver's own solution.
 const CELL: &str = "cell";

@@ -1,14 +1,14 @@
 //! The graph of a recipe's nodes: resolved names, order, keys.
 
 use super::document::{MAX_NODES, Recipe};
-use crate::declare::{Input, MARGIN, Spec};
-use crate::ids::{Id, IndexVec, NodeId};
-use crate::layer::{Interpolation, LayerKind};
-use crate::node::Node;
-use crate::op::Op;
-use crate::registered::check_name;
 use orogen_grid::error::{Diagnostic, Error, ErrorKind};
 use orogen_grid::words::suggestion;
+use orogen_ops::declare::{Input, MARGIN, Spec};
+use orogen_ops::ids::{Id, IndexVec, NodeId};
+use orogen_ops::layer::{Interpolation, LayerKind};
+use orogen_ops::node::Node;
+use orogen_ops::op::Op;
+use orogen_ops::registered::check_name;
 use std::collections::{BTreeSet, HashMap, HashSet};
 
 /// Maximum nesting of recipes in recipes.

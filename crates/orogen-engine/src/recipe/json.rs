@@ -1,11 +1,11 @@
 //! Parsing of JSON to a tree of values.
 
 use super::text::Text;
-use crate::value::{Span, Spanned, Value};
 use jsonc_parser::ast;
 use jsonc_parser::common::Ranged;
 use jsonc_parser::{CollectOptions, ParseOptions, parse_to_ast};
 use orogen_grid::error::Result;
+use orogen_ops::value::{Span, Spanned, Value};
 
 /// Maximum nesting. A recipe needs four levels; the limit protects recursive parsers.
 const DEEPEST: usize = 64;

@@ -1,5 +1,6 @@
 //! Recipes: documents that describe a world.
 
+pub mod biomes;
 pub mod class;
 pub mod condition;
 pub mod document;

@@ -2,9 +2,9 @@
 
 use super::document::Recipe;
 use super::graph::{Graph, LayerRef};
-use crate::declare::Input;
-use crate::ids::Id;
-use crate::op::{Levels, Op};
+use orogen_ops::declare::Input;
+use orogen_ops::ids::Id;
+use orogen_ops::op::{Levels, Op};
 
 /// The network of a levelled node, which every window of the world shares: drainage areas and receivers are functions of the position, not of
 /// the window.

@@ -4,11 +4,11 @@
 //! sees plain numbers. Their positions are recorded, so that a recipe keeps them when it is written.
 
 use super::text::Text;
-use crate::declare::Spec;
-use crate::expression::error::ExpressionError;
-use crate::expression::formula::{self, formula, is_parameter_name};
-use crate::value::{Span, Spanned, Value, toml_key, toml_string};
 use orogen_grid::words::{number, respelled, suggestion};
+use orogen_ops::declare::Spec;
+use orogen_ops::expression::error::ExpressionError;
+use orogen_ops::expression::formula::{self, formula, is_parameter_name};
+use orogen_ops::value::{Span, Spanned, Value, toml_key, toml_string};
 use std::collections::HashSet;
 use std::fmt::Write as _;
 

@@ -1,10 +1,10 @@
 //! Descriptions of the ops, made from their declarations.
 
-use crate::declare::{ParamSpec, Shape, Spec, TableSpec, short};
-use crate::layer::{Interpolation, Layer, ONE_LAYER};
-use crate::node::Node;
 use crate::registry::Registry;
-use crate::value::Value;
+use orogen_ops::declare::{ParamSpec, Shape, Spec, TableSpec, short};
+use orogen_ops::layer::{Interpolation, Layer, ONE_LAYER};
+use orogen_ops::node::Node;
+use orogen_ops::value::Value;
 use std::fmt::Write as _;
 
 /// One line a built-in op: its name, its locality and what it does.
@@ -113,7 +113,7 @@ fn between(layer: &Layer) -> String {
 #[must_use]
 pub fn markdown() -> String {
     format!(
-        "<!-- Written by `cargo xtask codegen` from the declarations in crates/orogen-engine/src. Do not edit. -->\n\n{}",
+        "<!-- Written by `cargo xtask codegen` from the declarations in crates/orogen-ops/src. Do not edit. -->\n\n{}",
         markdown_of(&Registry::new())
     )
 }

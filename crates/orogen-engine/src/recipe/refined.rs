@@ -1,16 +1,16 @@
 //! The recipe that refines a real place.
 
 use super::document::Recipe;
-use crate::declare::Input;
-use crate::field::expr::Expr;
-use crate::filter::blur::Blur;
-use crate::filter::slope::{Slope, SlopeUnit};
-use crate::levelled::amplify::Amplify;
-use crate::solver::bake::Bake;
-use crate::solver::breach::Breach;
-use crate::solver::drainage::Drainage;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::words::number;
+use orogen_ops::declare::Input;
+use orogen_ops::field::expr::Expr;
+use orogen_ops::filter::blur::Blur;
+use orogen_ops::filter::slope::{Slope, SlopeUnit};
+use orogen_ops::levelled::amplify::Amplify;
+use orogen_ops::solver::bake::Bake;
+use orogen_ops::solver::breach::Breach;
+use orogen_ops::solver::drainage::Drainage;
 
 /// Cells of the place beyond its edge that its rivers are solved for, so that they leave outside what is seen.
 const MARGIN: f64 = 16.0;

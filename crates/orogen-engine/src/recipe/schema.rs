@@ -1,12 +1,12 @@
 //! The JSON Schema of recipes, made from the declarations.
 
 use super::document::{VERSION, WorldSpec};
-use crate::declare::point_lists::MAX_POINTS;
-use crate::declare::{Param, ParamSpec, Shape, TableSpec, read_param, short};
-use crate::node::Node;
 use crate::registry::Registry;
-use crate::value::Value;
 use orogen_grid::words::respelled;
+use orogen_ops::declare::point_lists::MAX_POINTS;
+use orogen_ops::declare::{Param, ParamSpec, Shape, TableSpec, read_param, short};
+use orogen_ops::node::Node;
+use orogen_ops::value::Value;
 use serde_json::{Map, Value as Json, json};
 use std::collections::BTreeMap;
 

@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 use super::document::Recipe;
 use super::text::Text;
 use super::toml;
-use crate::value::{Spanned, Value, toml_key};
 use orogen_grid::error::{Diagnostic, Error};
+use orogen_ops::value::{Spanned, Value, toml_key};
 
 /// What messages call a recipe that is in no file.
 const NAME: &str = "the recipe";

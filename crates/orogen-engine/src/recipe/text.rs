@@ -1,8 +1,8 @@
 //! The text of a recipe, and positions in it.
 
-use crate::value::Span;
 use orogen_grid::error::{Diagnostic, Error, ErrorKind, Location, Result};
 use orogen_grid::words::count;
+use orogen_ops::value::Span;
 use std::path::Path;
 
 /// Maximum length of a recipe's text, in bytes.

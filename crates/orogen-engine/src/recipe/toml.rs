@@ -1,8 +1,8 @@
 //! Parsing of TOML to a tree of values.
 
 use super::text::Text;
-use crate::value::{Spanned, Value};
 use orogen_grid::error::Result;
+use orogen_ops::value::{Spanned, Value};
 use toml::de::{DeTable, DeValue};
 
 /// Parses the whole text; the error is the first syntax error.

@@ -4,12 +4,13 @@
 //! of each page, and a checksum of those. Numbers are little-endian. The length follows from the header, so that a
 //! truncated file is detected at once.
 
-use crate::op::Solution;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_io::pages::{self, BYTES, PageFile, Pages, SIDE, checksum, has_checksum};
 use orogen_io::raster::Raster;
 use orogen_io::read_at::ReadAt;
+use orogen_io::samples;
+use orogen_ops::op::Solution;
 use std::io::{self, Write};
 use std::path::Path;
 use std::sync::Arc;
@@ -50,16 +51,13 @@ pub fn write(out: &mut dyn Write, key: &[u8; 32], solution: &Solution) -> io::Re
     out.write_all(&head)?;
     out.write_all(&sum.to_le_bytes())?;
     let mut sums = Vec::new();
-    let mut bytes = Vec::with_capacity(BYTES);
     for layer in &solution.layers {
         for window in layer.window().tiles(SIDE) {
             let part = layer.get(&window)?;
-            bytes.clear();
+            let mut bytes = vec![0; BYTES];
             for row in 0..window.height {
-                bytes.extend(part.row(row).iter().flat_map(|sample| sample.to_le_bytes()));
-                bytes.resize((row + 1) * SIDE * 4, 0);
+                samples::write_bytes(&mut bytes[row * SIDE * 4..], part.row(row));
             }
-            bytes.resize(BYTES, 0);
             sums.extend_from_slice(&checksum(&bytes).to_le_bytes());
             out.write_all(&bytes)?;
         }

@@ -152,9 +152,9 @@ const EXTENSION: &str = ".solved";
 mod tests {
     use super::super::solutions::{look_up, store};
     use super::*;
-    use crate::op::Solution;
     use orogen_grid::grid::{Grid, Window};
     use orogen_io::raster::Raster;
+    use orogen_ops::op::Solution;
 
     struct Folder(PathBuf);
 

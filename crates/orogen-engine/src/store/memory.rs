@@ -106,7 +106,7 @@ impl SolutionStore for MemoryStore {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::op::Solution;
+    use orogen_ops::op::Solution;
 
     #[test]
     fn the_longest_unused_goes_first_and_the_limit_is_kept() {

@@ -3,9 +3,9 @@
 pub use super::entry_key::{EntryKey, NoEntryKey};
 use super::level_tile::LevelTile;
 use super::{entry, tile_entry};
-use crate::op::Solution;
 use orogen_grid::grid::Grid;
 use orogen_io::read_at::ReadAt;
+use orogen_ops::op::Solution;
 use std::fmt;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -106,7 +106,7 @@ pub trait SolutionStore: Send + Sync + fmt::Debug {
         Duration::ZERO
     }
 
-    /// Whether tiles of the levels of [levelled ops](crate::op::Levelled) are stored, too. A tile has some hundred KiB and takes
+    /// Whether tiles of the levels of [levelled ops](orogen_ops::op::Levelled) are stored, too. A tile has some hundred KiB and takes
     /// milliseconds to make, and a request looks for some ten of them, one after the other: a store that is slower than a disk
     /// should not keep them. By default it does not.
     fn keeps_tiles(&self) -> bool {

@@ -2,11 +2,11 @@
 
 use super::entry;
 use super::solution_store::{Entry, EntryKey, SolutionStore};
-use crate::op::Solution;
 use crate::plan::key::Key;
 use orogen_grid::error::{Error, Result};
 use orogen_grid::progress::Progress;
 use orogen_io::{file, fs};
+use orogen_ops::op::Solution;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};

@@ -9,6 +9,7 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_io::pages::{checksum, has_checksum};
 use orogen_io::read_at::ReadAt;
+use orogen_io::samples::{append_bytes, from_bytes};
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -27,9 +28,7 @@ pub fn length(tile: &LevelTile) -> u64 {
 /// Writes the planes of a tile.
 pub fn write(out: &mut dyn Write, key: &EntryKey, tile: &LevelTile, planes: &[Grid]) -> io::Result<()> {
     let mut samples = Vec::with_capacity(usize::try_from(length(tile)).unwrap_or_default());
-    for sample in planes.iter().flat_map(Grid::data) {
-        samples.extend_from_slice(&sample.to_le_bytes());
-    }
+    planes.iter().for_each(|plane| append_bytes(&mut samples, plane.data()));
     out.write_all(&head(key, tile))?;
     out.write_all(&samples)?;
     out.write_all(&checksum(&samples).to_le_bytes())
@@ -56,8 +55,7 @@ pub fn read(bytes: &dyn ReadAt, name: &Path, key: &EntryKey, tile: &LevelTile) -
         return Err(fault(name, "its samples are damaged"));
     }
     let plane = |bytes: &[u8]| {
-        let samples = bytes.as_chunks().0.iter().map(|sample| f32::from_le_bytes(*sample)).collect();
-        Grid::from_data(tile.window, samples).ok_or_else(|| fault(name, "it has too few samples"))
+        Grid::from_data(tile.window, from_bytes(bytes)).ok_or_else(|| fault(name, "it has too few samples"))
     };
     samples.chunks(4 * tile.window.len().max(1)).map(plane).collect()
 }

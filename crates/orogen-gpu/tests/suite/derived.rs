@@ -2,8 +2,8 @@
 
 use crate::common::{difference, processor, session};
 use orogen_engine::{Grid, Progress, Recipe, Session, Window};
-use orogen_output::export::derived::list;
-use orogen_output::export::derived::rows::Rows;
+use orogen_jobs::export::derived::list;
+use orogen_jobs::export::derived::rows::Rows;
 
 /// Steep land with ledges that end in nothing.
 fn recipe(size: &str) -> Recipe {

@@ -56,6 +56,33 @@ pub fn gradients_between(rows: [&[f32]; 3], cell: f64, mut each: impl FnMut(usiz
     }
 }
 
+/// Gradients at every sample of `grid` except its border: to the east and to the north.
+#[must_use]
+pub fn gradients(grid: &Grid) -> [Grid; 2] {
+    let window = inner(grid.window());
+    let [mut east, mut north] = [(); 2].map(|()| Grid::filled(window, 0.0));
+    for j in 0..window.height {
+        let rows = [grid.row(j), grid.row(j + 1), grid.row(j + 2)];
+        let (east, north) = (east.row_mut(j), north.row_mut(j));
+        gradients_between(rows, window.cell, |i, gradient| (east[i], north[i]) = (gradient.east, gradient.north));
+    }
+    [east, north]
+}
+
+/// Unit normals at every sample of `grid` except its border: their parts to the east, north and up.
+#[must_use]
+pub fn normals(grid: &Grid) -> [Grid; 3] {
+    let window = inner(grid.window());
+    let mut parts = [(); 3].map(|()| Grid::filled(window, 0.0));
+    for j in 0..window.height {
+        let rows = [grid.row(j), grid.row(j + 1), grid.row(j + 2)];
+        gradients_between(rows, window.cell, |i, gradient| {
+            parts.iter_mut().zip(gradient.normal()).for_each(|(part, value)| part.row_mut(j)[i] = value);
+        });
+    }
+    parts
+}
+
 /// The gradient if a sample is not finite or a difference overflows f32.
 #[cold]
 fn repaired(rows: [&[f32]; 3], cell: f64) -> Gradient {

@@ -6,6 +6,8 @@
 
 pub mod clip;
 pub mod given;
+#[doc(hidden)]
+pub mod ground;
 pub mod joints;
 pub mod network;
 pub mod outlines;

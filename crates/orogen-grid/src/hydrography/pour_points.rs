@@ -1,5 +1,6 @@
 //! Watersheds of chosen outlets (pour points), which are moved to the nearest stream first.
 
+use super::ground::Ground;
 use super::water::{Cover, Water};
 use crate::error::Result;
 use crate::progress::Progress;
@@ -129,6 +130,74 @@ impl PourPoints {
             }
         }
         all
+    }
+}
+
+/// The samples of a label.
+#[derive(Debug, Clone, Copy)]
+pub struct Part {
+    /// Their ground.
+    pub ground: Ground,
+    /// The first and the last column.
+    pub columns: [usize; 2],
+    /// The first and the last row.
+    pub rows: [usize; 2],
+    /// Whether one is at the border, or beside one without a height.
+    pub at_border: bool,
+}
+
+impl Part {
+    /// No samples.
+    pub const EMPTY: Part =
+        Part { ground: Ground::EMPTY, columns: [usize::MAX, 0], rows: [usize::MAX, 0], at_border: false };
+
+    /// Both.
+    #[must_use]
+    pub fn join(mut self, other: &Part) -> Part {
+        let span = |a: [usize; 2], b: [usize; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+        self.ground.join(&other.ground);
+        Part {
+            columns: span(self.columns, other.columns),
+            rows: span(self.rows, other.rows),
+            at_border: self.at_border || other.at_border,
+            ..self
+        }
+    }
+}
+
+impl PourPoints {
+    /// The label of each sample on land, of some columns and rows of the water's grid, and the samples of each of `count` labels.
+    #[must_use]
+    pub fn sampled(&self, water: &Water, count: usize, columns: &[usize], rows: &[usize]) -> (Vec<u32>, Vec<Part>) {
+        let (width, height) = (columns.len(), rows.len());
+        let at = |i: usize, j: usize| rows[j] * water.heights.width() + columns[i];
+        let is_missing = |i: usize, j: usize| water.cover(at(i, j)) == Cover::Missing;
+        let mut labels = vec![NONE; width * height];
+        let mut parts = vec![Part::EMPTY; count];
+        for j in 0..height {
+            for i in 0..width {
+                let at = at(i, j);
+                let label = self.labels[water.nearest_node(at)];
+                if label == NONE || !matches!(water.cover(at), Cover::Land | Cover::Lake(_)) {
+                    continue;
+                }
+                labels[j * width + i] = label;
+                let known = &mut parts[label as usize];
+                known.ground.add(water.heights.data()[at]);
+                *known = known.join(&Part {
+                    ground: Ground::EMPTY,
+                    columns: [i; 2],
+                    rows: [j; 2],
+                    at_border: known.at_border
+                        || i == 0
+                        || j == 0
+                        || i + 1 == width
+                        || j + 1 == height
+                        || (j - 1..=j + 1).any(|y| (i - 1..=i + 1).any(|x| is_missing(x, y))),
+                });
+            }
+        }
+        (labels, parts)
     }
 }
 

@@ -114,6 +114,21 @@ impl Frame {
 pub const MEMORY: u64 = 44;
 
 impl Water {
+    /// The volume of each lake within a frame, at the index of its label, of samples of this area.
+    #[must_use]
+    pub fn lake_volumes(&self, frame: &Frame, cell_area: f64) -> Vec<f64> {
+        let mut volumes = vec![0.0f64; self.lakes.len() + 1];
+        for row in frame.rows.clone() {
+            let columns = frame.columns.clone();
+            for (label, height) in self.labels.row(row)[columns.clone()].iter().zip(&self.heights.row(row)[columns]) {
+                if let Some(lake) = label.checked_sub(1).and_then(|k| self.lakes.get(k as usize)) {
+                    volumes[*label as usize] += (f64::from(lake.level) - f64::from(*height)) * cell_area;
+                }
+            }
+        }
+        volumes
+    }
+
     /// Computes the water of a grid. A grid of fewer than three columns or rows has none.
     ///
     /// # Errors

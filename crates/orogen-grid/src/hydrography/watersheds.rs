@@ -1,7 +1,9 @@
 //! Watersheds of river mouths, and the land between them.
 
+use super::ground::Ground;
 use super::rivers::{Mouth, River};
 use super::water::{Cover, Frame, Water};
+use std::ops::Range;
 
 /// The watershed of each sample of a frame.
 #[derive(Debug, Clone, PartialEq)]
@@ -111,6 +113,28 @@ pub fn watersheds(water: &Water, frame: &Frame, reaches: &[River]) -> Watersheds
         }
     }
     Watersheds { labels: out, rivers }
+}
+
+impl Watersheds {
+    /// The labels of some columns and rows of the water's grid, and the ground of each label; those outside the frame are at its edge.
+    #[must_use]
+    pub fn sampled(&self, water: &Water, frame: &Frame, columns: &[usize], rows: &[usize]) -> (Vec<u32>, Vec<Ground>) {
+        let mut grounds = vec![Ground::EMPTY; self.rivers.len() + 1];
+        let within = |at: usize, range: &Range<usize>| at.clamp(range.start, range.end - 1);
+        let columns: Vec<usize> = columns.iter().map(|column| within(*column, &frame.columns)).collect();
+        let mut labels = Vec::with_capacity(columns.len() * rows.len());
+        for y in rows.iter().map(|row| within(*row, &frame.rows)) {
+            let first = (y - frame.rows.start) * frame.columns.len();
+            for x in &columns {
+                let label = self.labels[first + x - frame.columns.start];
+                labels.push(label);
+                if label != 0 {
+                    grounds[label as usize].add(water.heights[(*x, y)]);
+                }
+            }
+        }
+        (labels, grounds)
+    }
 }
 
 #[cfg(test)]

@@ -11,6 +11,7 @@ use crate::format::dem::{Dem, Georeference, Placement, Request, afford, afford_b
 use crate::format::import;
 use crate::format::sidecar::Sidecar;
 use crate::open::regular;
+use crate::samples;
 use orogen_grid::error::Result;
 use orogen_grid::grid::Grid;
 use orogen_grid::words::{count, percent};
@@ -138,7 +139,7 @@ pub(super) fn hash(grid: &Grid) -> [u8; 32] {
     let mut bytes = Vec::with_capacity(1 << 16);
     for piece in grid.data().chunks(1 << 14) {
         bytes.clear();
-        bytes.extend(piece.iter().flat_map(|sample| sample.to_le_bytes()));
+        samples::append_bytes(&mut bytes, piece);
         hash.update(&bytes);
     }
     hash.finalize().into()

@@ -24,6 +24,7 @@ mod kind;
 pub mod mark;
 mod output_folder;
 mod policy;
+pub mod stopping;
 mod temporary;
 
 pub use atomic::{Staged, check_folder, commit, explain, stage, write_whole};

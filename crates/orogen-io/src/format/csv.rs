@@ -44,6 +44,20 @@ pub fn write(out: &mut dyn Write, layer: &FeatureLayer, decimals: usize) -> io::
     Ok(())
 }
 
+/// Appends a line for each sample, at these positions. One that is not finite has no value.
+pub fn append_samples(text: &mut String, places: &[[f64; 2]], decimals: usize, samples: &[f32]) {
+    for (place, sample) in places.iter().zip(samples) {
+        for position in place {
+            number(text, *position, decimals);
+            text.push(',');
+        }
+        if sample.is_finite() {
+            let _ = write!(text, "{sample}");
+        }
+        text.push('\n');
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -53,6 +53,13 @@ impl Encoding {
         [(steps >> 16) as u8, (steps >> 8) as u8, steps as u8]
     }
 
+    /// Fills pixels of three bytes from heights.
+    pub fn fill(self, pixels: &mut [u8], heights: &[f32]) {
+        for (pixel, height) in pixels.chunks_exact_mut(3).zip(heights) {
+            pixel.copy_from_slice(&self.bytes(*height));
+        }
+    }
+
     /// The height of three bytes.
     #[must_use]
     pub fn height(self, bytes: [u8; 3]) -> f64 {

@@ -60,6 +60,14 @@ impl Levels {
         self.level(height, f64::from(u8::MAX)) as u8
     }
 
+    /// Appends the levels of samples as bytes: one byte each if `most` is 255, otherwise two, big-endian.
+    pub fn append_bytes(&self, bytes: &mut Vec<u8>, samples: &[f32], most: u16) {
+        match most {
+            255 => bytes.extend(samples.iter().map(|sample| self.to_u8(*sample))),
+            _ => bytes.extend(samples.iter().flat_map(|sample| self.to_u16(*sample).to_be_bytes())),
+        }
+    }
+
     /// In f64, where the difference of two f32 and its product with a level neither overflow nor round twice.
     fn level(&self, height: f32, most: f64) -> f64 {
         if height.is_nan() || self.is_flat() {

@@ -8,6 +8,7 @@
 use std::io::{self, Read, Write};
 
 use super::dem::afford;
+use crate::samples;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 
@@ -56,7 +57,7 @@ pub fn write_rows(out: &mut dyn Write, samples: &[f32]) -> io::Result<()> {
     let mut bytes = Vec::with_capacity(PIECE.min(samples.len() * 4));
     for piece in samples.chunks(PIECE / 4) {
         bytes.clear();
-        bytes.extend(piece.iter().flat_map(|sample| sample.to_le_bytes()));
+        samples::append_bytes(&mut bytes, piece);
         out.write_all(&bytes)?;
     }
     Ok(())

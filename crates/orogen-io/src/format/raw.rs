@@ -5,6 +5,7 @@ use std::io::{self, Read, Write};
 use super::dem::{Dem, Input, afford, length, refused};
 use super::levels::Levels;
 use super::sidecar::{Sidecar, needs};
+use crate::samples;
 use orogen_grid::error::Result;
 use orogen_grid::grid::Grid;
 
@@ -41,10 +42,7 @@ pub fn write_u16(out: &mut dyn Write, samples: &[f32], levels: &Levels) -> io::R
 
 /// Writes samples as f32, little-endian.
 pub fn write_f32(out: &mut dyn Write, samples: &[f32]) -> io::Result<()> {
-    samples.chunks(1 << 14).try_for_each(|piece| {
-        let bytes: Vec<u8> = piece.iter().flat_map(|height| height.to_le_bytes()).collect();
-        out.write_all(&bytes)
-    })
+    samples.chunks(1 << 14).try_for_each(|piece| out.write_all(&samples::to_bytes(piece)))
 }
 
 /// Reads samples as described by their sidecar. `name` is the file's name in errors.

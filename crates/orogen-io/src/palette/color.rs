@@ -33,6 +33,12 @@ impl Encoder {
     pub fn bytes(&self, color: Light) -> [u8; 3] {
         color.map(|c| self.table[(c.clamp(0.0, 1.0) * LEVELS as f32 + 0.5) as usize])
     }
+
+    /// Appends the sRGB bytes of samples of red, green and blue, pixel by pixel.
+    pub fn append_bytes(&self, bytes: &mut Vec<u8>, [red, green, blue]: [&[f32]; 3]) {
+        let light = red.iter().zip(green).zip(blue);
+        bytes.extend(light.flat_map(|((red, green), blue)| self.bytes([*red, *green, *blue])));
+    }
 }
 
 /// The linear light of an sRGB byte (IEC 61966-2-1).

@@ -36,7 +36,7 @@ const SHALLOW: i32 = 7;
 pub const MAX_THICKNESS: i32 = 6;
 
 impl Cover {
-    /// The covers of the [standard classes](crate::tilemap::standard) of terrain, by their number.
+    /// The covers of the [standard classes](orogen_engine::recipe::class::standard) of terrain, by their number.
     pub const OF_CLASSES: [Cover; 6] =
         [Cover::Bed, Cover::Beach, Cover::Meadow, Cover::Forest, Cover::Rock, Cover::Snow];
 

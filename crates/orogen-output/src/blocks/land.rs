@@ -4,10 +4,10 @@ use super::cover::Cover;
 use super::density::{DENSITY, Offsets};
 use super::levels::{Extent, Levels, MAX_BELOW, MAX_LEVEL};
 use super::reach::{ABOVE, SOIL_REACH, TREE_HEIGHT};
-use crate::export::biome_cover;
-use crate::tilemap::named::number;
-use crate::tilemap::standard::{NAMES, classify};
+use orogen_engine::recipe::biomes::biomes;
 use orogen_engine::recipe::class::document::CLASS;
+use orogen_engine::recipe::class::named::number;
+use orogen_engine::recipe::class::standard::{NAMES, classify};
 use orogen_engine::world::{HEIGHT, LAKES};
 use orogen_engine::{Recipe, World};
 use orogen_grid::analysis::finite::FiniteCount;
@@ -77,7 +77,7 @@ pub struct Land {
     pub(super) sea_level: f64,
 }
 
-/// Adds what blocks need to a recipe: its own classes with the numbers of the standard ones of their names, or the [standard classes](crate::tilemap::standard), if it has none and no
+/// Adds what blocks need to a recipe: its own classes with the numbers of the standard ones of their names, or the [standard classes](orogen_engine::recipe::class::standard), if it has none and no
 /// output `class`. `cell` is the size of a block in metres.
 ///
 /// # Errors
@@ -110,7 +110,7 @@ impl Land {
         let [reading, shaping] = progress.parts([1.0, 1.0]);
         let around = world.surroundings(window, HALO);
         let recipe = world.recipe();
-        let biome = biome_cover::output(recipe).filter(|(name, _)| *name == "biome");
+        let biome = biomes(recipe).filter(|(name, _)| *name == "biome");
         let has_lakes = recipe.outputs().any(|name| name == LAKES);
         let mut layers = vec![HEIGHT, CLASS];
         layers.extend(has_lakes.then_some(LAKES));

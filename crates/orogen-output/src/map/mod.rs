@@ -3,6 +3,11 @@
 pub mod canvas;
 pub mod contact;
 pub mod paint;
-pub(crate) mod shade;
+#[doc(hidden)]
+pub mod shade;
+#[doc(hidden)]
+pub mod surface_cover;
+#[doc(hidden)]
+pub mod surface_picture;
 pub mod swatches;
 pub mod text;

@@ -32,6 +32,9 @@ const HIGHLIGHT: f32 = 0.45;
 /// Strength of the shading of the sea floor relative to land.
 pub(crate) const UNDER_WATER: f32 = 0.35;
 
+/// Brightness of the printed ground relative to its albedo: paper is viewed in less light than land.
+pub const PRINTED: f32 = 1.8;
+
 /// Number of rows for fitting the z factor.
 pub(crate) const PROBES: usize = 64;
 
@@ -45,11 +48,13 @@ pub struct Shade {
 
 impl Shade {
     /// The shading with heights multiplied by `z_factor`.
+    #[must_use]
     pub fn new(z_factor: f32) -> Shade {
         Shade::lit(Lights::Three, z_factor)
     }
 
     /// The same with these lights.
+    #[must_use]
     pub fn lit(lights: Lights, z_factor: f32) -> Shade {
         let count = if lights == Lights::One { 1 } else { LIGHTS.len() };
         let lights: Vec<(Light, f32)> = LIGHTS[..count]
@@ -62,11 +67,13 @@ impl Shade {
 
     /// The shading with a z factor fitted to the land of `grid` (or to the sea floor, if there is no land). Steepness
     /// depends on the cell; the fit makes different cells of one world look alike.
+    #[must_use]
     pub fn fit(grid: &Grid, sea_level: f32) -> Shade {
         Shade::fit_lit(Lights::Three, grid, sea_level)
     }
 
     /// The same with these lights.
+    #[must_use]
     pub fn fit_lit(lights: Lights, grid: &Grid, sea_level: f32) -> Shade {
         let typical = typical_steepness(grid, |height| height > sea_level)
             .or_else(|| typical_steepness(grid, |height| height <= sea_level));
@@ -94,6 +101,7 @@ impl Shade {
     }
 
     /// Factors for the red, green and blue light of a colour.
+    #[must_use]
     pub fn on(&self, gradient: Gradient) -> [f32; 3] {
         let light: f32 = self.lights.iter().map(|(light, weight)| weight * light.on(gradient)).sum();
         let relative = light / self.level;

@@ -14,7 +14,7 @@ use orogen_grid::progress::Progress;
 
 /// Maximum number of cells of a tile along each side; larger grids are split. Coordinates within a tile must be small
 /// enough for exact arithmetic in 64 bits, and a tile's data should fit in cache.
-pub(crate) const TILE: usize = 1024;
+pub const TILE: usize = 1024;
 
 /// A surface through some of the samples with a vertical error of at most `max_error` metres at every sample.
 ///

@@ -23,13 +23,16 @@ mod clip;
 mod engraving;
 pub mod glb;
 mod monotone;
-pub(crate) mod normal_map;
+#[doc(hidden)]
+pub mod normal_map;
 pub mod obj;
-pub(crate) mod objects;
+#[doc(hidden)]
+pub mod objects;
 mod outline;
 mod packed;
 pub mod ply;
-pub(crate) mod relief;
+#[doc(hidden)]
+pub mod relief;
 mod sample_set;
 mod scale;
 mod scan;
@@ -41,4 +44,5 @@ pub mod three_mf;
 mod tile;
 mod tin;
 mod wall_text;
-pub(crate) mod water;
+#[doc(hidden)]
+pub mod water;

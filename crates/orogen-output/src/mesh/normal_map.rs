@@ -12,6 +12,7 @@ use orogen_grid::progress::Progress;
 const FLAT: [u8; 3] = [128, 128, 255];
 
 /// The tangent of the ground at a vertex with this normal (east, up, south): the unit vector eastward along the ground.
+#[must_use]
 pub fn tangent([east, up, _]: [f32; 3]) -> [f32; 3] {
     let length = (east * east + up * up).sqrt();
     if length > 0.0 { [up / length, -east / length, 0.0] } else { [1.0, 0.0, 0.0] }

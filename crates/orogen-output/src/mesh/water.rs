@@ -29,6 +29,7 @@ const STEP: f64 = 0.5;
 
 impl WaterMesh {
     /// A mesh without triangles.
+    #[must_use]
     pub fn new(name: &'static str, color: [f32; 4]) -> WaterMesh {
         WaterMesh { name, color, corners: Vec::new(), triangles: Vec::new() }
     }
@@ -111,6 +112,7 @@ impl WaterMesh {
     }
 
     /// The upward unit normal of each vertex: the area-weighted mean of the adjacent triangles.
+    #[must_use]
     pub fn normals(&self) -> Vec<[f32; 3]> {
         let mut sums = vec![[0.0f64; 3]; self.corners.len()];
         for triangle in &self.triangles {

@@ -128,7 +128,8 @@ pub(super) enum Seen {
 
 impl Scene {
     /// The tint of [`Colors::Map`].
-    pub(crate) fn tint(&self) -> &Tint {
+    #[must_use]
+    pub fn tint(&self) -> &Tint {
         &self.ground.tint
     }
 

@@ -59,6 +59,7 @@ impl Desk<'_> {
     }
 
     /// The outline of a label along its path.
+    #[must_use]
     pub fn outline_along(&self, label: &Label, face: Face) -> Vec<Step> {
         let width = self.letters.width(&label.text, face, label.size) * label.spacing;
         let length: f32 = label.path.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
@@ -292,21 +293,25 @@ fn columns(entries: &[Entry], letters: &FontSet, rows: usize) -> Vec<f32> {
 }
 
 /// The block of the colour bar; in a column it takes the full width.
+#[must_use]
 pub fn colors_block() -> Block {
     Block { widths: [COLORS, 0.0], height: ROW }
 }
 
 /// The block of the scale bar.
+#[must_use]
 pub fn scale_block() -> Block {
     Block { widths: [SCALE - BLOCK_GAP; 2], height: ROW - 3.0 }
 }
 
 /// The block of the north arrow.
+#[must_use]
 pub fn north_block() -> Block {
     Block { widths: [NORTH + 4.0; 2], height: ROW }
 }
 
 /// The block of the legend.
+#[must_use]
 pub fn legend_block(entries: &[Entry], letters: &FontSet) -> Block {
     let width = |rows: usize| columns(entries, letters, rows).iter().sum::<f32>().max(1.0) - 5.0;
     Block { widths: [width(LEGEND_ROWS), width(entries.len())], height: LINE * entries.len() as f32 + 1.0 }

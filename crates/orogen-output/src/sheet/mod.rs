@@ -4,7 +4,8 @@
 mod contour_lines;
 pub mod draw;
 pub mod font_set;
-pub(crate) mod furniture;
+#[doc(hidden)]
+pub mod furniture;
 pub mod geometry;
 mod grid_lines;
 pub(crate) mod ground;
@@ -28,7 +29,8 @@ mod symbols;
 mod taken;
 pub(crate) mod ticks;
 pub mod vector;
-pub(crate) mod water;
+#[doc(hidden)]
+pub mod water;
 
 #[cfg(test)]
 mod tests;

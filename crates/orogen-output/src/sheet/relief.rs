@@ -5,7 +5,7 @@ use orogen_grid::parallel;
 use super::ground::{at_pixels, laid};
 use super::options::Shading;
 use super::ramp::Ramp;
-use crate::map::shade::{Lights, Shade, UNDER_WATER};
+use crate::map::shade::{Lights, PRINTED, Shade, UNDER_WATER};
 use orogen_grid::analysis::slope::{Gradient, extended, gradients_between};
 use orogen_grid::grid::Grid;
 use orogen_io::palette::color::{Encoder, Light};
@@ -38,9 +38,6 @@ enum Painted<'a> {
     Layer(Grid, &'a Ramp),
     Albedo([Grid; 3]),
 }
-
-/// Brightness of the printed ground relative to its albedo: paper is viewed in less light than land.
-pub(crate) const PRINTED: f32 = 1.8;
 
 /// The relief of heights at pixels, in sRGB bytes.
 pub fn paint(

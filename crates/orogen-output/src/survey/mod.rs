@@ -8,4 +8,6 @@ pub mod measures;
 pub mod page;
 pub mod real;
 pub(crate) mod sorted;
+#[doc(hidden)]
+pub mod stretch;
 pub(crate) mod water;

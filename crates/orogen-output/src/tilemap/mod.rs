@@ -1,25 +1,7 @@
-//! Tilemaps: terrain classes of a world drawn with tiles, as files for map editors, engines and programs.
-//!
-//! [`job::TilemapJob`] makes a [`map::Tilemap`] from a world, in memory or in bounded memory; [`art`] draws the tilesets of the program, and [`load`] reads those of others; [`tiled`], [`ldtk`],
-//! [`godot`], [`preview`] and [`table`] write the map; [`files`] puts all of it into a folder.
+//! Tiles: a [`tileset`], those that the program draws ([`art`]), and their [`picture`].
 
 pub mod art;
-mod class_rows;
-mod drawing;
-pub mod files;
-pub mod godot;
-pub mod job;
-pub mod ldtk;
-pub mod load;
-pub mod map;
-mod map_objects;
-pub(crate) mod named;
-pub mod preview;
-pub mod standard;
-pub mod table;
-pub mod tiled;
+pub mod picture;
+#[doc(hidden)]
+pub mod rows;
 pub mod tileset;
-pub mod tileset_source;
-
-#[cfg(test)]
-mod tests;

@@ -1,9 +1,9 @@
 //! A terrain class in memory.
 
-use crate::declare::Input;
 use crate::recipe::condition::document::{Condition, rename_layers, rename_mask, write_toml};
-use crate::value::toml_string;
 use orogen_io::palette::color::{Rgb, hex, rgb};
+use orogen_ops::declare::Input;
+use orogen_ops::value::toml_string;
 use std::fmt::Write as _;
 use std::ops::Range;
 

@@ -1,13 +1,13 @@
 //! Expansion of terrain classes to nodes: the output [`CLASS`] is computed by ordinary ops.
 
 use super::document::{CLASS, End, ExpandedClass, HEIGHT, Share, TerrainClass};
-use crate::declare::Input;
-use crate::field::expr::Expr;
-use crate::field::label::Label;
 use crate::recipe::condition::expand::ShareNodes;
 use crate::recipe::document::Recipe;
-use crate::solver::select_share::SelectShare;
 use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_ops::declare::Input;
+use orogen_ops::field::expr::Expr;
+use orogen_ops::field::label::Label;
+use orogen_ops::solver::select_share::SelectShare;
 
 /// Adds the nodes to a recipe that compute its classes, and the output with their numbers, unless they exist. Opening a world does this. Shares are exact at the world's
 /// cell.

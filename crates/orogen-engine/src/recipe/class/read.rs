@@ -2,8 +2,8 @@
 
 use super::document::{End, HEIGHT, MAX_CLASSES, Share, TerrainClass};
 use crate::recipe::condition::read::{CONDITIONS, Places, ValueReader};
-use crate::value::{Span, Spanned, Value};
 use orogen_grid::words::suggestion;
+use orogen_ops::value::{Span, Spanned, Value};
 
 /// The keys of a class, beside conditions.
 pub const KEYS: [&str; 5] = ["name", "color", "any", "mask", "share"];

@@ -1,11 +1,11 @@
 use super::document::End;
 use super::expand::{expand, expand_at};
-use crate::declare::Input;
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::Graph;
 use crate::world::World;
 use orogen_grid::grid::Window;
 use orogen_grid::progress::Progress;
+use orogen_ops::declare::Input;
 
 fn recipe(classes: &str) -> String {
     format!(

@@ -1,7 +1,7 @@
 //! Conditions in memory.
 
-use crate::declare::Input;
-use crate::value::{toml_key, toml_string};
+use orogen_ops::declare::Input;
+use orogen_ops::value::{toml_key, toml_string};
 use std::fmt::Write as _;
 
 /// Maximum number of alternatives in an `any`.

@@ -4,18 +4,18 @@
 use std::collections::HashSet;
 
 use super::document::{Condition, Noise, Quantity};
-use crate::declare::Input;
-use crate::field::constant::Constant;
-use crate::field::fbm::Fbm;
-use crate::field::max::Max;
-use crate::field::multiply::Multiply;
-use crate::field::select_flow::SelectFlow;
-use crate::field::select_height::SelectHeight;
-use crate::filter::select_curvature::SelectCurvature;
-use crate::filter::select_slope::SelectSlope;
-use crate::node::Node;
 use crate::recipe::document::Recipe;
-use crate::solver::drainage::Drainage;
+use orogen_ops::declare::Input;
+use orogen_ops::field::constant::Constant;
+use orogen_ops::field::fbm::Fbm;
+use orogen_ops::field::max::Max;
+use orogen_ops::field::multiply::Multiply;
+use orogen_ops::field::select_flow::SelectFlow;
+use orogen_ops::field::select_height::SelectHeight;
+use orogen_ops::filter::select_curvature::SelectCurvature;
+use orogen_ops::filter::select_slope::SelectSlope;
+use orogen_ops::node::Node;
+use orogen_ops::solver::drainage::Drainage;
 
 /// The output with drainage areas, if a recipe has one.
 const FLOW: &str = "flow";

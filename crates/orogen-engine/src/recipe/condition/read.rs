@@ -3,11 +3,11 @@
 use std::collections::HashSet;
 
 use super::document::{Condition, MAX_ALTERNATIVES, Noise, Quantity};
-use crate::declare::Input;
-use crate::value::{Span, Spanned, Value};
 use orogen_grid::words::suggestion;
 use orogen_io::palette::color::Rgb;
 use orogen_io::palette::names;
+use orogen_ops::declare::Input;
+use orogen_ops::value::{Span, Spanned, Value};
 
 /// A key with its value.
 pub type Entry = (Spanned<String>, Spanned<Value>);

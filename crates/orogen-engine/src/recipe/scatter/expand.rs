@@ -1,9 +1,9 @@
 //! Expansion of scatter to nodes: the density of each kind is computed by ordinary ops.
 
 use super::document::ExpandedScatter;
-use crate::declare::Input;
 use crate::recipe::condition::expand::ShareNodes;
 use crate::recipe::document::Recipe;
+use orogen_ops::declare::Input;
 
 /// The output with the heights.
 const HEIGHT: &str = "height";

@@ -2,8 +2,8 @@
 
 use super::document::{InWater, MAX_SCATTERS, SIZES, SPACINGS, Scatter, Turn};
 use crate::recipe::condition::read::{CONDITIONS, Places, ValueReader};
-use crate::value::{Span, Spanned, Value};
 use orogen_grid::words::suggestion;
+use orogen_ops::value::{Span, Spanned, Value};
 
 /// The keys of an entry, beside conditions.
 pub const KEYS: [&str; 11] =

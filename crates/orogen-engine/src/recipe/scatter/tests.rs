@@ -1,8 +1,8 @@
 use super::document::{InWater, Turn};
 use super::expand::expand;
-use crate::declare::Input;
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::Graph;
+use orogen_ops::declare::Input;
 
 fn recipe(scatter: &str) -> String {
     format!(

@@ -1,11 +1,11 @@
 //! A surface in memory.
 
-use crate::declare::Input;
 pub use crate::recipe::condition::document::{Condition, Noise, Quantity};
 use crate::recipe::condition::document::{rename_layers, rename_mask, write_toml};
-use crate::value::toml_string;
 use orogen_io::dem::file_ref::FileRef;
 use orogen_io::palette::color::{Light, Rgb, decode, hex, linear, mix, oklab};
+use orogen_ops::declare::Input;
+use orogen_ops::value::toml_string;
 use std::fmt::Write as _;
 
 /// Number of colors of a gradient or a picture, including the first and the last.

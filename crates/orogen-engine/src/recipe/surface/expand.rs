@@ -3,13 +3,13 @@
 
 use super::document::{Along, Coloring, Expanded, Surface};
 use super::standard;
-use crate::declare::Input;
-use crate::field::curve::Curve;
-use crate::field::fbm::Fbm;
-use crate::field::remap::Remap;
-use crate::filter::slope::Slope;
 use crate::recipe::condition::expand::ShareNodes;
 use crate::recipe::document::Recipe;
+use orogen_ops::declare::Input;
+use orogen_ops::field::curve::Curve;
+use orogen_ops::field::fbm::Fbm;
+use orogen_ops::field::remap::Remap;
+use orogen_ops::filter::slope::Slope;
 
 /// The output with the heights.
 const HEIGHT: &str = "height";

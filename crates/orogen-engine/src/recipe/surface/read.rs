@@ -2,9 +2,9 @@
 
 use super::document::{Along, Coloring, DEFAULT_GRAIN, MAX_COLORS, MAX_SURFACES, Surface};
 use crate::recipe::condition::read::{CONDITIONS, Entry, Places, ValueReader};
-use crate::value::{Span, Spanned, Value};
 use orogen_grid::words::suggestion;
 use orogen_io::dem::file_ref::FileRef;
+use orogen_ops::value::{Span, Spanned, Value};
 
 /// The other keys of a surface.
 pub const KEYS: [&str; 11] =

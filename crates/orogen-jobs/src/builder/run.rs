@@ -1,0 +1,418 @@
+//! Running a build.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use orogen_grid::parallel;
+
+use super::blocks::{Block, memory_beside, union};
+use super::cog::Cog;
+use super::digest::FileDigest;
+use super::folder::Folder;
+use super::identity::Identity;
+use super::job::{Job, JobFile, Record, Stage};
+use super::journal::{Journal, JournalState};
+use super::output_store::{OutputStore, Put, put};
+use super::samples::range;
+use super::spec::{BuildSpec, Form};
+use super::target::{BuildTarget, Disk, paths};
+use super::work_dir::WorkDir;
+use super::xyz::Tree;
+use super::zarr::Zarr;
+use orogen_engine::world::World;
+use orogen_grid::analysis::finite::FiniteCount;
+use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::grid::Grid;
+use orogen_grid::progress::Progress;
+use orogen_io::file::Output;
+use orogen_io::fs;
+
+/// Treatment of existing results.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Start {
+    /// There must be no existing result.
+    Fresh,
+    /// Continue the same build, if it was started, and keep intact tiles.
+    Resume,
+    /// Start again, replacing the files of an earlier build.
+    Force,
+}
+
+/// Approximate time for compressing and writing a sample, in nanoseconds.
+const PACKING: f64 = 15.0;
+
+/// Statistics of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Report {
+    /// Tiles made in this run, including those of overviews and lower zooms.
+    pub made: usize,
+    /// Tiles that existed and were intact.
+    pub kept: usize,
+    /// Existing tiles that were computed again because others are derived from them.
+    pub again: usize,
+    /// The count of samples computed in this run, over all layers.
+    pub samples: FiniteCount,
+    /// Files in the result's folder that no build has made, by their paths within it; they were kept.
+    pub foreign: Vec<PathBuf>,
+    /// Size of the result's tiles, or of the single file, in bytes.
+    pub bytes: u64,
+}
+
+/// A checked build, ready to run.
+///
+/// ```
+/// use orogen_jobs::builder::run::{Build, Start};
+/// use orogen_jobs::builder::spec::{BuildSpec, Form};
+/// use orogen_io::file::OutputPolicy;
+/// use orogen_engine::{Progress, Window, World};
+///
+/// let world = World::open(orogen_engine::presets::find("hills").ok_or("no such preset")?.recipe()?)?;
+/// let out = std::env::temp_dir().join(format!("orogen-doc-{}.zarr", std::process::id()));
+/// let spec = BuildSpec::new(Form::Zarr, Window::new(300, 200, 30.0)).with_tile(128);
+/// let build = Build::new(&world, &spec, &OutputPolicy::default().output(&out)?)?;
+/// let report = build.run(Start::Fresh, &Progress::none())?;
+/// assert_eq!((report.made, report.kept), (6, 0));
+/// assert_eq!(build.run(Start::Resume, &Progress::none())?.made, 0);
+/// # std::fs::remove_dir_all(&out)?;
+/// # std::fs::remove_dir_all(build.beside())?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Build<'a> {
+    world: &'a World,
+    identity: Identity,
+    target: Box<dyn BuildTarget>,
+    stages: Vec<Stage>,
+    block: Block,
+    work_dir: WorkDir,
+    /// The function that writes files.
+    pub(super) put: Box<Put>,
+}
+
+impl<'a> Build<'a> {
+    /// Checks that the build is possible. Nothing is written.
+    ///
+    /// # Errors
+    /// If the specification or the path is invalid, the world does not have these samples, or one tile needs more
+    /// memory than allowed.
+    pub fn new(world: &'a World, spec: &BuildSpec, output: &Output) -> Result<Build<'a>> {
+        spec.check()?;
+        let tile = match spec.tile.or(spec.form.usual_tile()) {
+            Some(tile) => tile,
+            None => Cog::usual_tile(&spec.window)?,
+        };
+        let identity = Identity::of(world, spec, tile)?;
+        let layers: Vec<&str> = spec.layers.iter().map(String::as_str).collect();
+        // Rejects invalid windows first.
+        world.plan(&layers, &spec.window)?;
+        let target = target(world, &identity, spec.form)?;
+        let stages = target.stages();
+        let block = Block::fitting(world, target.as_ref(), stages[0], &layers)?;
+        let work_dir = WorkDir::new(output, spec.form.is_file())?;
+        Ok(Build { world, identity, target, stages, block, work_dir, put: Box::new(put) })
+    }
+
+    /// Maximum memory, in bytes.
+    #[must_use]
+    pub fn memory(&self) -> u64 {
+        self.block.memory
+    }
+
+    /// Maximum disk space, and the number of bytes that exist already.
+    #[must_use]
+    pub fn disk(&self) -> (Disk, u64) {
+        let there = match JournalState::read(&self.work_dir.journal()) {
+            Ok(Some(state)) => {
+                sum(state.records.values().flat_map(|record| &record.digests).map(|digest| digest.length))
+            }
+            _ => 0,
+        };
+        (self.target.disk(), there)
+    }
+
+    /// Number of tiles and of samples, including those of overviews and lower zooms.
+    pub fn tiles(&self) -> (usize, u64) {
+        let samples = self.stages.iter().map(|stage| stage.len() as u64 * stage.samples as u64).sum();
+        (self.stages.iter().map(Stage::len).sum(), samples)
+    }
+
+    /// The folder with the journal and, until the build is complete, temporary files.
+    #[must_use]
+    pub fn beside(&self) -> &Path {
+        self.work_dir.beside()
+    }
+
+    /// Runs the build.
+    ///
+    /// # Errors
+    /// If `start` does not allow for an existing result, another build is running there, a file cannot be written, or
+    /// the work is cancelled. After any of these, and after a kill, [`Start::Resume`] continues.
+    pub fn run(&self, start: Start, progress: &Progress) -> Result<Report> {
+        let mut held = self.work_dir.hold()?;
+        let (state, sound, foreign) = self.begin(start, progress)?;
+        held.keep();
+        if let Some(report) = self.is_finished(&state, &sound) {
+            self.work_dir.sweep()?;
+            return Ok(report);
+        }
+        let wanted = self.wanted(&sound);
+        let (kept, again) = (sound.len(), wanted.intersection(&sound).count());
+        let records: BTreeMap<Job, Record> = state.records;
+        let journal = JournalState { identity: self.identity.clone(), records: records.clone(), finished: None };
+        self.work_dir.tidy()?;
+        self.work_dir.furnish()?;
+        let journal = Journal::write(&self.work_dir.journal(), &self.work_dir.temporary(0), &journal)?;
+        let store = OutputStore::new(&self.work_dir, journal, records, self.put.as_ref());
+        let made = wanted.len() - again;
+        let samples = self.world.install(|| self.make(&wanted, &store, progress))?;
+        progress.check()?;
+        for (n, layer) in self.identity.layers.iter().enumerate() {
+            if store.range(n).is_none() {
+                // Also if all tiles existed: then nothing was counted in this run.
+                FiniteCount { samples: samples.samples.max(1), finite: 0 }.check(&format!("the layer `{layer}`"))?;
+            }
+        }
+        let extra = self.target.finish(&store)?;
+        let bytes = self.close(store, extra)?;
+        Ok(Report { made, kept, again, samples, foreign, bytes })
+    }
+
+    /// The state of the build, and the jobs whose files are intact.
+    fn begin(&self, start: Start, progress: &Progress) -> Result<(JournalState, BTreeSet<Job>, Vec<PathBuf>)> {
+        let mut foreign = Vec::new();
+        let state = match (start, JournalState::read(&self.work_dir.journal())) {
+            (Start::Force, read) => {
+                let known = !matches!(read, Ok(None));
+                foreign = self.clear(read.ok().flatten().map(|state| state.identity).as_ref(), known)?;
+                None
+            }
+            (_, read) => read?,
+        };
+        let refuse = |message: String| Err(Error::new(ErrorKind::File, message));
+        let out = self.work_dir.out().display();
+        let taken = self.work_dir.is_taken();
+        match (start, state) {
+            // Each message names only what will work.
+            (Start::Fresh, Some(state)) => match (self.identity.difference(&state.identity), state.finished) {
+                (Some(difference), _) => refuse(format!(
+                    "{out} is another build: it was started {difference}; choose another output, or replace it with --force"
+                )),
+                (None, Some(_)) => {
+                    refuse(format!("{out} is already complete; use --resume to check it, or --force to build it again"))
+                }
+                (None, None) => refuse(format!(
+                    "{out} is an unfinished build; use --resume to continue it, or --force to start again"
+                )),
+            },
+            (Start::Fresh | Start::Resume, None) if taken => match (self.work_dir.foreign(), start) {
+                (Some(foreign), _) => Err(foreign),
+                (None, Start::Fresh) => refuse(format!("{out} already exists; use --force to replace it")),
+                (None, _) => refuse(format!(
+                    "{out} exists, but the journal of its build ({}) is missing, so it cannot be resumed; use --force, without --resume, to build it again",
+                    self.work_dir.journal().display()
+                )),
+            },
+            (_, Some(state)) => match self.identity.difference(&state.identity) {
+                Some(difference) => refuse(format!(
+                    "{out} cannot be resumed: it was started {difference}; use the same arguments, or start again with --force and without --resume"
+                )),
+                None => {
+                    let sound = self.world.install(|| self.sound(&state, progress))?;
+                    Ok((state, sound, foreign))
+                }
+            },
+            (_, None) => Ok((JournalState::begun(self.identity.clone()), BTreeSet::new(), foreign)),
+        }
+    }
+
+    /// Removes the files of the previous build, as described by its journal. Returns files that no build has made,
+    /// which stay.
+    fn clear(&self, before: Option<&Identity>, known: bool) -> Result<Vec<PathBuf>> {
+        let new = paths(self.target.as_ref());
+        // Without a readable journal, only files that would be written again count as a build's own.
+        let old = before.and_then(|before| target(self.world, before, Form::named(&before.form)?).ok());
+        let old = old.map_or_else(|| new.clone(), |target| paths(target.as_ref()));
+        self.work_dir.clear(known, &old, &new)
+    }
+
+    /// The jobs whose files all exist and are unchanged.
+    fn sound(&self, state: &JournalState, progress: &Progress) -> Result<BTreeSet<Job>> {
+        let records: Vec<(&Job, &Record)> = state.records.iter().collect();
+        let checked = parallel::try_map(records, |(job, record)| -> Result<Option<Job>> {
+            progress.check()?;
+            let stage = self.stages.get(job.stage).filter(|stage| job.row < stage.rows && job.column < stage.columns);
+            let places = if stage.is_some() { self.target.places(*job) } else { Vec::new() };
+            let as_many = !places.is_empty() && places.len() == record.digests.len();
+            let same = |(place, digest): (&JobFile, &FileDigest)| match (place, &state.finished) {
+                // Temporary files may be gone.
+                (JobFile::Scratch(_), Some(_)) => true,
+                _ => digest.is_at(&self.work_dir.path(place)),
+            };
+            Ok((as_many && places.iter().zip(&record.digests).all(same)).then_some(*job))
+        });
+        Ok(checked?.into_iter().flatten().collect())
+    }
+
+    /// The report, if everything exists and is intact.
+    fn is_finished(&self, state: &JournalState, sound: &BTreeSet<Job>) -> Option<Report> {
+        let finished = state.finished.as_ref()?;
+        let whole = finished.iter().all(|(path, digest)| digest.is_at(&self.work_dir.result(path)));
+        let tiles = if self.target.assembles() { 0 } else { self.tiles().0 };
+        (whole && sound.len() >= tiles).then(|| Report {
+            made: 0,
+            kept: self.tiles().0,
+            again: 0,
+            samples: FiniteCount::default(),
+            foreign: Vec::new(),
+            bytes: self.bytes(&state.records, sum(finished.iter().map(|(_, digest)| digest.length))),
+        })
+    }
+
+    /// The jobs to run: those whose part of the result is missing, and missing ones that others need.
+    fn wanted(&self, sound: &BTreeSet<Job>) -> BTreeSet<Job> {
+        let mut wanted = BTreeSet::new();
+        for (stage, Stage { rows, columns, .. }) in self.stages.iter().enumerate().rev() {
+            let read: BTreeSet<Job> = wanted
+                .iter()
+                .filter(|job: &&Job| job.stage == stage + 1)
+                .flat_map(|job| self.target.reads(*job))
+                .collect();
+            for (row, column) in (0..*rows).flat_map(|row| (0..*columns).map(move |column| (row, column))) {
+                let job = Job { stage, row, column };
+                let places = self.target.places(job);
+                let needed = read.contains(&job)
+                    || self.target.assembles()
+                    || places.iter().any(|place| matches!(place, JobFile::Result(_)));
+                // After completion, temporary files count as intact unless a job reads them.
+                let there = sound.contains(&job)
+                    && (!read.contains(&job)
+                        || places.iter().all(|place| {
+                            matches!(place, JobFile::Result(_)) || fs::is_file(&self.work_dir.path(place))
+                        }));
+                if needed && !there {
+                    wanted.insert(job);
+                }
+            }
+        }
+        wanted
+    }
+
+    /// Runs the jobs, stage by stage. Returns the count of finite samples.
+    fn make(&self, wanted: &BTreeSet<Job>, store: &OutputStore, progress: &Progress) -> Result<FiniteCount> {
+        let mut count = FiniteCount::default();
+        let samples = |stage: usize| {
+            wanted.iter().filter(|job| job.stage == stage).map(|job| self.stages[job.stage].samples as f64).sum::<f64>()
+        };
+        let [mut solving, each] = self.work(wanted)?;
+        let packing: f64 = (0..self.stages.len()).map(|stage| PACKING * samples(stage)).sum();
+        progress.expect(solving + each * samples(0) + packing);
+        for (n, stage) in self.stages.iter().enumerate() {
+            let tiles = wanted.iter().filter(|job| job.stage == n).map(|job| (job.row, job.column));
+            if n == 0 {
+                for group in self.block.groups(&tiles.collect(), *stage) {
+                    // Solving happens with the first group.
+                    let work = std::mem::take(&mut solving) + each * (group.len() * stage.samples) as f64;
+                    count = count.and(self.make_group(&group, store, progress, work)?);
+                }
+            } else {
+                let tiles: Vec<(usize, usize)> = tiles.collect();
+                parallel::try_for_each(tiles, |(row, column)| {
+                    self.make_one(Job { stage: n, row, column }, &[], store, progress)
+                })?;
+            }
+        }
+        Ok(count)
+    }
+
+    /// Approximate time, in nanoseconds, of solving and of making one sample.
+    fn work(&self, wanted: &BTreeSet<Job>) -> Result<[f64; 2]> {
+        let first = wanted.iter().find(|job| job.stage == 0).map(|job| (job.row, job.column));
+        let Some(window) = union(self.target.as_ref(), first.into_iter()) else { return Ok([0.0; 2]) };
+        let layers: Vec<&str> = self.identity.layers.iter().map(String::as_str).collect();
+        let [solving, making] = self.world.work_of(&self.world.plan(&layers, &window)?)?;
+        Ok([solving, making / window.len().max(1) as f64])
+    }
+
+    /// Computes the samples of adjacent tiles, which is `work`, then makes each tile.
+    fn make_group(
+        &self,
+        group: &[(usize, usize)],
+        store: &OutputStore,
+        progress: &Progress,
+        work: f64,
+    ) -> Result<FiniteCount> {
+        let Some(window) = union(self.target.as_ref(), group.iter().copied()) else {
+            return Ok(FiniteCount::default());
+        };
+        let layers: Vec<&str> = self.identity.layers.iter().map(String::as_str).collect();
+        let beside = memory_beside(self.world, self.target.as_ref(), &layers);
+        let grids = self.world.grids_beside(&layers, &window, beside, &progress.part(work))?;
+        parallel::try_for_each(group, |&(row, column)| {
+            let window = self.target.window(row, column);
+            let tiles: Option<Vec<Grid>> = grids.iter().map(|grid| grid.crop(&window)).collect();
+            let tiles = tiles.ok_or_else(|| Error::new(ErrorKind::Request, "a tile is outside its block"))?;
+            self.make_one(Job { stage: 0, row, column }, &tiles, store, progress)
+        })?;
+        Ok(grids.iter().fold(FiniteCount::default(), |count, grid| count.and(FiniteCount::of(grid.data()))))
+    }
+
+    fn make_one(&self, job: Job, grids: &[Grid], store: &OutputStore, progress: &Progress) -> Result<()> {
+        progress.check()?;
+        let mut made = self.target.make(job, grids, store)?;
+        if made.ranges.is_empty() {
+            // Ranges also tell whether any sample is finite.
+            made.ranges = grids.iter().map(range).collect();
+        }
+        store.keep(job, &self.target.places(job), &made)?;
+        progress.advance(PACKING * self.stages[job.stage].samples as f64);
+        Ok(())
+    }
+
+    /// Finishes the result, records completion in the journal, and removes temporary files. Returns the size of the
+    /// result.
+    fn close(&self, store: OutputStore, extra: Vec<(PathBuf, FileDigest)>) -> Result<u64> {
+        let mut records = store.into_records();
+        if self.target.assembles() {
+            // From now on the assembled file is checked.
+            records.clear();
+        }
+        let mut paths: Vec<PathBuf> = extra.iter().map(|(path, _)| path.clone()).collect();
+        for job in records.keys() {
+            paths.extend(self.target.places(*job).into_iter().filter_map(|place| match place {
+                JobFile::Result(path) => Some(path),
+                JobFile::Scratch(_) => None,
+            }));
+        }
+        self.work_dir.sync(&paths)?;
+        let bytes = self.bytes(&records, sum(extra.iter().map(|(_, digest)| digest.length)));
+        let state = JournalState { identity: self.identity.clone(), records, finished: Some(extra) };
+        Journal::write(&self.work_dir.journal(), &self.work_dir.temporary(0), &state)?;
+        self.work_dir.sweep()?;
+        Ok(bytes)
+    }
+
+    /// The size of the result in bytes.
+    fn bytes(&self, records: &BTreeMap<Job, Record>, extra: u64) -> u64 {
+        let of = |(job, record): (&Job, &Record)| -> u64 {
+            let places = self.target.places(*job);
+            let own = places.iter().zip(&record.digests).filter(|(place, _)| matches!(place, JobFile::Result(_)));
+            sum(own.map(|(_, digest)| digest.length))
+        };
+        sum(records.iter().map(of).chain([extra]))
+    }
+}
+
+/// The sum of lengths, which a journal may state as it likes.
+fn sum(lengths: impl Iterator<Item = u64>) -> u64 {
+    lengths.fold(0, u64::saturating_add)
+}
+
+/// The target for an identity.
+fn target(world: &World, identity: &Identity, form: Form) -> Result<Box<dyn BuildTarget>> {
+    let (about, sea_level) = (&world.recipe().about, world.recipe().world.sea_level);
+    Ok(match form {
+        Form::Cog => Box::new(Cog::new(identity)?),
+        Form::Zarr => Box::new(Zarr::new(identity, about)?),
+        Form::Tiles(samples) => Box::new(Folder::new(identity, samples, about, sea_level)?),
+        Form::Xyz(encoding) => Box::new(Tree::new(world, identity, encoding)?),
+    })
+}

@@ -1,0 +1,78 @@
+//! A picture of the surfaces beside their weights: `--preview`.
+
+use std::io::{self, Write};
+
+use super::derived::cover;
+use super::derived::layer::{Nature, RowLayer, nothing};
+use super::files::{Files, suffixed};
+use super::format::refuse;
+use super::layer_source::LayerSource;
+use super::options::Options;
+use super::place;
+use orogen_grid::analysis::slope::gradients;
+use orogen_io::format::notes::SOFTWARE;
+use orogen_io::format::png::{self, Picture, Pixel};
+use orogen_io::spool::Spool;
+use orogen_output::map::surface_picture::{SAMPLE, SurfacePacker, SurfacePainter};
+
+/// The end of the picture's name, before the extension.
+pub const SUFFIX: &str = "preview";
+
+/// The albedo, the gradient and the height of each sample, in one pass over the world.
+static ROWS: RowLayer = RowLayer {
+    unit: "",
+    nature: Nature::Color,
+    channels: |_| ["R", "G", "B", "east", "north", "height"].map(String::from).to_vec(),
+    prepare: nothing,
+    layers: cover::shares_and_positions,
+    reach: |_| 1,
+    make: |around, window| {
+        let mut out = cover::of(around).albedo(window);
+        let heights = around.bordered(window);
+        out.extend(gradients(&heights));
+        out.extend(heights.crop(window));
+        out
+    },
+    lowered: None,
+};
+
+/// Writes the picture: the surfaces in their colors, mixed by their weights, with the relief shading of maps. The first row is the northern one.
+/// Returns its line of the final message.
+///
+/// Fails if the world or the files fail.
+pub fn write(source: &LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
+    let Some(path) = files.path() else { return refuse("the preview is a file; name a file with -o".into()) };
+    let (to, window) = (suffixed(path, &format!("_{SUFFIX}")), *source.window());
+    let (mut samples, painter) = spooled(source, files)?;
+    let about = format!("surfaces of {}; {} metres a sample", source.layer(), window.cell);
+    let notes = [("Software", SOFTWARE), ("Description", about.as_str())];
+    let picture = Picture::new(window.width, window.height, Pixel::Rgb8).with_notes(&notes);
+    let body = |out: &mut dyn Write| {
+        png::write_through(out, &picture, |out| {
+            let (mut row, mut pixels) = (vec![0; SAMPLE * window.width], vec![0; 3 * window.width]);
+            (0..window.height).try_for_each(|j| {
+                samples.read((j * row.len()) as u64, &mut row)?;
+                painter.paint(&row, &mut pixels);
+                out.write_all(&pixels)
+            })
+        })
+    };
+    files.write_beside(|_| to.clone(), body)?;
+    place::write_for(files, &to, source, options, Some(false))?;
+    let name = to.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    Ok(format!("{name}: the surfaces in their colors"))
+}
+
+/// The samples of a window in a spool, row by row, and what paints them.
+fn spooled(source: &LayerSource, files: &Files) -> io::Result<(Spool, SurfacePainter)> {
+    let mut packer = SurfacePacker::new(source.window().height);
+    let mut spool = files.spool();
+    for band in source.rows_of(&ROWS)? {
+        let band = band?.0;
+        let Some(band) = band.as_array::<6>() else { return refuse("a preview has six channels".into()) };
+        for j in 0..band[0].height() {
+            spool.write_all(&packer.pack(band.each_ref().map(|part| part.row(j))))?;
+        }
+    }
+    Ok((spool, packer.painter(source.world().recipe().world.sea_level as f32)))
+}

@@ -1,0 +1,209 @@
+//! From a world to a tilemap.
+
+use std::path::Path;
+
+use orogen_engine::recipe::class::document::CLASS;
+use orogen_engine::recipe::class::named::number;
+use orogen_engine::recipe::class::standard::classify;
+use orogen_engine::{Recipe, World};
+use orogen_grid::autotile::clean::HALO;
+use orogen_grid::autotile::drawable::Drawable;
+use orogen_grid::error::Result;
+use orogen_grid::grid::Window;
+use orogen_grid::progress::Progress;
+use orogen_io::records::MEMORY as RECORDS;
+
+use super::class_rows::ClassRows;
+use super::drawing::{Drawing, IN_MEMORY, Stores, seen, sides};
+use super::map::Tilemap;
+use super::map_objects::{has_objects, objects};
+use super::tileset::Tileset;
+
+/// How many cells are made at once. Maps are the same for any numbers.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct AtOnce {
+    /// Approximate number of cells that are cleaned at once, and minimum number of rows: fewer would be cleaned several times, because of the halo.
+    pub cleaned: usize,
+    pub cleaned_rows: usize,
+    /// Approximate number of cells that are drawn at once.
+    pub drawn: usize,
+}
+
+const AT_ONCE: AtOnce = AtOnce { cleaned: 1 << 22, cleaned_rows: 256, drawn: 1 << 17 };
+
+/// What a map is made with.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct TilemapJob {
+    /// The tiles.
+    pub tileset: Tileset,
+    /// Whether classes are changed where the tileset has no tile.
+    pub cleans: bool,
+    /// Whether maps of Tiled are infinite: chunks of tiles at the positions of the world's cells.
+    pub is_infinite: bool,
+    pub(super) at_once: AtOnce,
+}
+
+impl TilemapJob {
+    /// A map with these tiles, cleaned.
+    #[must_use]
+    pub fn new(tileset: Tileset) -> TilemapJob {
+        TilemapJob { tileset, cleans: true, is_infinite: false, at_once: AT_ONCE }
+    }
+
+    /// Sets whether classes are changed where the tileset has no tile.
+    #[must_use]
+    pub fn with_cleans(self, cleans: bool) -> TilemapJob {
+        TilemapJob { cleans, ..self }
+    }
+
+    /// Sets whether maps of Tiled are infinite.
+    #[must_use]
+    pub fn with_infinite(self, is_infinite: bool) -> TilemapJob {
+        TilemapJob { is_infinite, ..self }
+    }
+
+    /// Adds what the map needs to a recipe: its own [classes](orogen_engine::recipe::class) with the numbers of the tileset's terrains of their names, or the
+    /// [standard ones](orogen_engine::recipe::class::standard), if it has none and no output `class`. `cell` is the map's cell in metres, at which shares of classes are exact.
+    ///
+    /// # Errors
+    /// If the recipe has neither classes nor heights, or if the tileset has no terrain with the name of a class.
+    pub fn prepare(&self, recipe: &mut Recipe, cell: f64) -> Result<()> {
+        let names: Vec<&str> = self.tileset.terrains.iter().map(|terrain| terrain.name.as_str()).collect();
+        number(recipe, &names, &format!("terrain of the tileset `{}`", self.tileset.name), cell)?;
+        classify(recipe, cell)
+    }
+
+    /// The memory for streaming a map of this window beside that of the engine, in bytes.
+    #[must_use]
+    pub fn memory(&self, window: &Window) -> u64 {
+        let is_cleaned = self.is_cleaned(&self.tileset.drawable());
+        let around = window.grown(1 + cleaning_halo(is_cleaned));
+        let (width, layers) = (around.width as u64, self.tileset.layer_names().len() as u64);
+        let rows = |at_once: usize| (at_once.min(window.height + 1)) as u64;
+        let cleaned = (rows(self.cleaned_rows(window, is_cleaned)) + 2 * cleaning_halo(is_cleaned) as u64 + 4) * width;
+        // Classes that are held, before and after the clean-up, and copies for drawing; of a drawn cell two numbers in each layer.
+        let drawn = rows(self.drawn_rows(window)) * width * (8 * layers + 4);
+        let stores = (layers + 2) * (RECORDS + IN_MEMORY as u64);
+        3 * cleaned + ClassRows::memory(window) + drawn + stores
+    }
+
+    /// Whether the clean-up can change anything.
+    fn is_cleaned(&self, drawable: &Drawable) -> bool {
+        self.cleans && !drawable.is_complete()
+    }
+
+    /// Rows that are cleaned at once, if any are.
+    fn cleaned_rows(&self, window: &Window, is_cleaned: bool) -> usize {
+        match is_cleaned {
+            true => (self.at_once.cleaned / window.width.max(1)).max(self.at_once.cleaned_rows),
+            false => self.drawn_rows(window),
+        }
+    }
+
+    /// Rows of tiles that are drawn at once.
+    fn drawn_rows(&self, window: &Window) -> usize {
+        (self.at_once.drawn / window.width.max(1)).max(1)
+    }
+
+    /// Makes the map of the cells of a window in memory. `world` is of a [prepared](TilemapJob::prepare) recipe.
+    ///
+    /// Any part of a map has the same tiles as the whole.
+    ///
+    /// ```
+    /// use orogen_engine::{Progress, Window, World, presets};
+    /// use orogen_grid::autotile::mask::Layout;
+    /// use orogen_jobs::tilemap::{art::set::SETS, job::TilemapJob};
+    ///
+    /// let job = TilemapJob::new(SETS[0].draw(Layout::Blob));
+    /// let mut recipe = presets::find("hills").ok_or("no such preset")?.recipe()?;
+    /// job.prepare(&mut recipe, 20.0)?;
+    /// let map = job.make(&World::open(recipe)?, &Window::new(24, 16, 20.0), &Progress::none())?;
+    /// let water = map.layers[0].tiles.in_memory().ok_or("it is in memory")?;
+    /// assert_eq!((water.len(), map.class_counts.iter().sum::<u64>(), map.gap_count), (24 * 16, 24 * 16, 0));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If the window is not in the world, if a class is none of the tileset's, or if `progress` is cancelled.
+    pub fn make(&self, world: &World, window: &Window, progress: &Progress) -> Result<Tilemap> {
+        self.draw(world, window, None, progress)
+    }
+
+    /// Makes a map as [`TilemapJob::make`] does, in [bounded memory](TilemapJob::memory): tiles, classes and objects are packed in temporary files beside `path`, if
+    /// they are many.
+    ///
+    /// # Errors
+    /// Also if memory does not suffice, or if the disk is full or fails.
+    pub fn stream(&self, world: &World, window: &Window, path: &Path, progress: &Progress) -> Result<Tilemap> {
+        self.afford(world, window, 0)?;
+        let _held = world.budget().reserve(self.memory(window))?;
+        self.draw(world, window, Some(path), progress)
+    }
+
+    /// Checks that a map, the classes of its cells while they are computed, and `beside` bytes fit into memory together.
+    ///
+    /// # Errors
+    /// If they do not; the message has what all of it needs.
+    pub(super) fn afford(&self, world: &World, window: &Window, beside: u64) -> Result<()> {
+        world.bands(&[CLASS], window, self.memory(window).saturating_add(beside), &Progress::none()).map(drop)
+    }
+
+    fn draw(&self, world: &World, window: &Window, path: Option<&Path>, progress: &Progress) -> Result<Tilemap> {
+        world.check(window)?;
+        let stores = Stores { path };
+        let mut drawing =
+            Drawing::new(&self.tileset, window, world.recipe().world.seed, self.drawn_rows(window), &stores);
+        let is_cleaned = self.is_cleaned(&drawing.drawable);
+        let halo = cleaning_halo(is_cleaned);
+        // Tiles see one cell around them.
+        let around = world.surroundings(window, 1 + halo);
+        let some = Window { height: around.height.min(AT_ONCE.cleaned_rows), ..around };
+        let work = world.work(&world.plan(&[CLASS], &some)?)?;
+        let cells = window.len() as f64;
+        let [computing, cleaning, placing] = progress.parts([
+            work * around.height as f64 / some.height.max(1) as f64,
+            cells * if is_cleaned { 40.0 } else { 20.0 },
+            cells * if has_objects(world, window.cell) { 20.0 } else { 1.0 },
+        ]);
+        let mut rows = ClassRows::new(world, &self.tileset, &around, &computing)?;
+        let layout = self.tileset.layout;
+        let [width, height] = sides(layout, window);
+        cleaning.expect(height as f64);
+        let at_once = self.cleaned_rows(window, is_cleaned);
+        for top in (0..height).step_by(at_once) {
+            let bottom = (top + at_once).min(height);
+            let [from, to] = seen(layout, [top, bottom]).map(|row| row + window.y);
+            let before = rows.rows(from - halo as i64, to + halo as i64)?;
+            let part = cleaning.part((bottom - top) as f64);
+            world.install(|| drawing.add(before, is_cleaned, [top, bottom], &part))?;
+        }
+        let finite = rows.finite();
+        drop(rows);
+        let (kinds, objects) = objects(world, layout, window, &stores, &placing)?;
+        let drawn = drawing.finish()?;
+        Ok(Tilemap {
+            tileset: self.tileset.clone(),
+            window: *window,
+            width,
+            height,
+            finite,
+            kinds,
+            objects,
+            is_infinite: self.is_infinite,
+            seed: world.recipe().world.seed,
+            classes: drawn.classes,
+            class_counts: drawn.class_counts,
+            layers: drawn.layers,
+            gaps_before: drawn.gaps_before,
+            gap_count: drawn.gap_count,
+            gaps: drawn.gaps,
+            changed: drawn.changed,
+        })
+    }
+}
+
+/// How far the clean-up looks.
+fn cleaning_halo(is_cleaned: bool) -> usize {
+    if is_cleaned { HALO } else { 0 }
+}

@@ -1,0 +1,382 @@
+//! `op!` and `choice!`, for ops of this crate and of any other: every path begins with `$crate`.
+
+/// A parameter that is one of several names. The first variant is the default.
+///
+/// ```
+/// orogen_ops::choice! {
+///     /// Unit of a slope.
+///     pub enum Unit {
+///         /// Degrees from the horizontal.
+///         Degrees = "degrees",
+///         /// Rise over run.
+///         Ratio = "ratio",
+///     }
+/// }
+///
+/// assert_eq!(Unit::default(), Unit::Degrees);
+/// ```
+#[macro_export]
+macro_rules! choice {
+    (
+        $(#[doc = $doc:literal])+
+        $visibility:vis enum $name:ident { $(#[doc = $first_doc:literal])+ $first:ident = $first_text:literal, $( $(#[doc = $vdoc:literal])+ $variant:ident = $text:literal, )* }
+    ) => {
+        $(#[doc = $doc])+
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+        $visibility enum $name { $(#[doc = $first_doc])+ #[default] $first, $( $(#[doc = $vdoc])+ $variant, )* }
+
+        impl $crate::declare::Param for $name {
+            const SHAPE: $crate::declare::Shape = $crate::declare::Shape::Choice(|| {
+                vec![($first_text, concat!($($first_doc, "\n"),+)), $( ($text, concat!($($vdoc, "\n"),+)), )*]
+            });
+            fn read(value: &$crate::value::Value) -> Option<$name> {
+                match value {
+                    $crate::value::Value::Text(text) => match text.as_str() {
+                        $first_text => Some($name::$first),
+                        $( $text => Some($name::$variant), )*
+                        _ => None,
+                    },
+                    _ => None,
+                }
+            }
+            fn write(&self) -> $crate::value::Value {
+                $crate::value::Value::Text(match self {
+                    $name::$first => $first_text,
+                    $( $name::$variant => $text, )*
+                }.to_string())
+            }
+        }
+    };
+}
+
+/// Declares an op: its struct, defaults, name in recipes, inputs, parameters and layers. The struct then implements [`Field`](crate::op::Field),
+/// [`Filter`](crate::op::Filter), [`Levelled`](crate::op::Levelled) or [`Solver`](crate::op::Solver), the locality that the declaration names.
+///
+/// The name of an op that is not part of this crate has a namespace: `"mygame.terraces"`. A `Registry` of the engine makes it known
+/// to recipes. The revision is part of the content key of every node of the op: raise it when the op comes to make other bits.
+///
+/// The blocks, in this order, all of them optional:
+///
+/// - `inputs { /// .. source: required, /// .. other: optional, }`: the nodes it reads, by their index in the `inputs` that it is given.
+///   `inputs of NAME;` instead reads whatever the expression in its parameter NAME names.
+/// - `params { /// .. name: TYPE = DEFAULT, unit "m", range 0.0 to 1e5; }`: unit and range are optional. A type is any
+///   [`Param`](crate::declare::Param): `f64`, `u32`, `u64` (a seed), `bool`, `[f64; 2]`, `Vec<[f64; 2]>` (a curve), `LinePoints` or `AreaPoints`, `Strokes`, `FileRef`, `Expression`, or a
+///   [`choice!`](crate::choice).
+/// - `layers { /// .. name: height, unit "m"; }`: what a filter or solver makes besides one layer of heights, and how each is read
+///   between samples (`height`, `label`, `flow`, or as its `source`).
+/// - `check |op| Ok(());`: what a single parameter cannot see, a key and a message if parameters contradict each other.
+///
+/// After an input's need, or at the end of a parameter, `alias "other"` names another key that recipes may use: a former one, or the word of textbooks. With `octaves;` after its name the op is a fractal: it
+/// gets the parameters all fractals share, beside its own. With `margin;` after its name the op is a solver with the parameter `margin`: its domain
+/// extends beyond the world by that length on each side, and it need not know it ([`Sources::domain`](crate::op::Sources::domain) is the domain).
+/// With `space;` (`octaves in space;` for a fractal) the op is a noise with the parameter `vertical` and a method `depth`: the third coordinate of the
+/// noise, or `None` if it is one of the plane.
+///
+/// ```
+/// use orogen_ops::op::{Context, Filter};
+/// use orogen_grid::{Grid, Result, Window};
+///
+/// orogen_ops::op! {
+///     /// Raises the source by a constant height.
+///     pub struct Raise = "example.raise", filter, revision 1;
+///     inputs {
+///         /// The heights to raise.
+///         source: required,
+///     }
+///     params {
+///         /// How far.
+///         by: f64 = 10.0, unit "m", range -1e4 to 1e4;
+///     }
+/// }
+///
+/// impl Filter for Raise {
+///     fn halo(&self, _cell: f64) -> usize {
+///         0
+///     }
+///
+///     fn apply(&self, inputs: &[Option<&Grid>], _: &Window, out: &mut [Option<Grid>], _: &Context) -> Result<()> {
+///         let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
+///         for (out, source) in out.data_mut().iter_mut().zip(source.data()) {
+///             *out = source + self.by as f32;
+///         }
+///         Ok(())
+///     }
+/// }
+///
+/// assert_eq!(Raise::default().by, 10.0);
+/// ```
+#[macro_export]
+macro_rules! op {
+    (
+        $(#[doc = $doc:literal])+
+        $visibility:vis struct $name:ident = $op:literal, $locality:ident, revision $revision:literal;
+        octaves $(in $space:ident)?;
+        $(params { $($params:tt)* })?
+    ) => {
+        $crate::op! {
+            $(#[doc = $doc])+
+            $visibility struct $name = $op, $locality, revision $revision;
+            $($space;)?
+            params {
+                /// Noise basis of the octaves.
+                basis: $crate::declare::noise::Basis = $crate::declare::noise::Basis::Perlin;
+                /// Seed of the node, hashed with the world's seed. Two nodes with equal seeds make the same noise.
+                seed: u64 = 0;
+                /// Wavelength of the first octave, which is about the distance between its hills.
+                wavelength: f64 = 1000.0, unit "m", range 1e-3 to 1e9, alias "scale";
+                /// Number of octaves. Each octave is finer than the one before.
+                octaves: u32 = 6, range 1 to $crate::declare::noise::MAX_OCTAVES;
+                /// Frequency ratio between successive octaves.
+                lacunarity: f64 = 2.0, range 1.0 to 16.0;
+                /// Amplitude ratio between successive octaves (also called persistence).
+                gain: f64 = 0.5, range 0.0 to 1.0, alias "persistence";
+                $($($params)*)?
+            }
+        }
+
+        impl $name {
+            /// The octaves as the noise library sums them.
+            fn fractal(&self, world_params: &$crate::op::WorldParams, kind: $crate::declare::noise::Kind) -> $crate::declare::noise::Fractal {
+                $crate::declare::noise::Fractal::new(world_params.seed_of(self.seed), self.wavelength)
+                    .with_basis(self.basis)
+                    .with_kind(kind)
+                    .with_octaves(self.octaves)
+                    .with_lacunarity(self.lacunarity)
+                    .with_gain(self.gain)
+            }
+        }
+    };
+    (
+        $(#[doc = $doc:literal])+
+        $visibility:vis struct $name:ident = $op:literal, $locality:ident, revision $revision:literal;
+        space;
+        params { $($params:tt)* }
+    ) => {
+        $crate::op! {
+            $(#[doc = $doc])+
+            $visibility struct $name = $op, $locality, revision $revision;
+            space in vertical;
+            params {
+                $($params)*
+                /// Wavelength along the altitude, as a multiple of `wavelength`: the noise is one of space, and depends on the altitude at which
+                /// the layer is sampled. 0: the noise is one of the plane, the same at every altitude.
+                vertical: f64 = 0.0, range 0.0 to 1e3;
+            }
+        }
+
+        impl $name {
+            /// The third coordinate of a noise of space, in metres; `None` for a noise of the plane.
+            fn depth(&self, inputs: &$crate::op::Inputs) -> Option<f64> {
+                (self.vertical > 0.0).then(|| inputs.altitude() / self.vertical)
+            }
+        }
+    };
+    (
+        $(#[doc = $doc:literal])+
+        $visibility:vis struct $name:ident = $op:literal, solver, revision $revision:literal;
+        margin;
+        $(inputs { $($inputs:tt)* })?
+        $(params { $($params:tt)* })?
+        $(layers { $($layers:tt)* })?
+        $(check $check:expr;)?
+    ) => {
+        $crate::op! {
+            $(#[doc = $doc])+
+            $visibility struct $name = $op, solver, revision $revision;
+            margin in margin;
+            $(inputs { $($inputs)* })?
+            params {
+                $($($params)*)?
+                /// Width of the strip beyond each side of the world that is solved too. The border of the solved domain shows in drainage, erosion and
+                /// shadows; with a margin it lies outside the world. Nodes that read beyond the world's sides get solved values up to there.
+                margin: f64 = 0.0, unit "m", range 0.0 to 1e6;
+            }
+            $(layers { $($layers)* })?
+            $(check $check;)?
+        }
+    };
+    (
+        $(#[doc = $doc:literal])+
+        $visibility:vis struct $name:ident = $op:literal, $locality:ident, revision $revision:literal;
+        $(margin in $margin:ident;)?
+        $(space in $vertical:ident;)?
+        $(inputs of $expression:ident;)?
+        $(inputs { $( $(#[doc = $idoc:literal])+ $input:ident: $need:ident $(, alias $ialias:literal)?, )* })?
+        $(params { $(
+            $(#[doc = $pdoc:literal])+
+            $param:ident: $pty:ty = $default:expr $(, unit $unit:literal)? $(, range $low:literal to $high:expr)? $(, alias $palias:literal)?;
+        )* })?
+        $(layers { $( $(#[doc = $ldoc:literal])+ $layer:ident: $interpolation:ident $(, unit $lunit:literal)?; )+ })?
+        $(check $check:expr;)?
+    ) => {
+        $(#[doc = $doc])+
+        ///
+        #[doc = concat!("In recipes: `op = \"", $op, "\"`.")]
+        #[derive(Debug, Clone, PartialEq)]
+        $visibility struct $name {
+            $(
+                #[doc = concat!("What the names in `", stringify!($expression), "` stand for.")]
+                pub inputs: Vec<(String, $crate::declare::Input)>,
+            )?
+            $( $( $(#[doc = $idoc])+ pub $input: $crate::declare::Input, )* )?
+            $( $(
+                $(#[doc = $pdoc])+
+                $(#[doc = ""] #[doc = concat!("Unit: ", $unit, ".")])?
+                #[doc = ""]
+                #[doc = concat!("Default: `", stringify!($default), "`." $(, " Range: ", stringify!($low), " to ", stringify!($high), ".")?)]
+                pub $param: $pty,
+            )* )?
+        }
+
+        impl Default for $name {
+            fn default() -> $name {
+                $name {
+                    $( inputs: $crate::op!(@empty $expression), )?
+                    $( $( $input: $crate::declare::Input::None, )* )?
+                    $( $( $param: $default, )* )?
+                }
+            }
+        }
+
+        impl $crate::declare::Declared for $name {
+            fn spec(&self) -> &'static $crate::declare::Spec {
+                const INPUTS: &[$crate::declare::InputSpec] = &[$( $( $crate::declare::InputSpec {
+                    name: stringify!($input),
+                    alias: concat!($($ialias)?),
+                    doc: concat!($($idoc, "\n"),+),
+                    required: $crate::op!(@required $need),
+                }, )* )?];
+                const PARAMS: &[$crate::declare::ParamSpec] = &[$( $( $crate::declare::ParamSpec {
+                    name: stringify!($param),
+                    alias: concat!($($palias)?),
+                    doc: concat!($($pdoc, "\n"),+),
+                    unit: concat!($($unit)?),
+                    shape: <$pty as $crate::declare::Param>::SHAPE,
+                    range: $crate::op!(@range $($low, $high)?),
+                }, )* )?];
+                const LAYERS: &[$crate::layer::Layer] = &[$( $( $crate::layer::Layer {
+                    name: stringify!($layer),
+                    doc: concat!($($ldoc, "\n"),+),
+                    unit: concat!($($lunit)?),
+                    interpolation: $crate::op!(@interpolation $interpolation),
+                }, )+ )?];
+                static SPEC: $crate::declare::Spec = $crate::declare::Spec {
+                    op: $op,
+                    locality: $crate::op!(@locality $locality),
+                    revision: $revision,
+                    doc: concat!($($doc, "\n"),+),
+                    inputs: INPUTS,
+                    named_inputs: $crate::op!(@given $($expression)?),
+                    params: PARAMS,
+                    layers: if LAYERS.is_empty() { $crate::layer::ONE_LAYER } else { LAYERS },
+                };
+                &SPEC
+            }
+
+            $(
+                fn inputs(&self) -> ::std::vec::Vec<$crate::declare::InputName<'_>> {
+                    let names = self.$expression.names().iter();
+                    names.map(|name| $crate::declare::InputName { name, required: true }).collect()
+                }
+            )?
+
+            #[allow(unused_variables, unused_mut, unused_assignments, reason = "not every op has inputs")]
+            fn input(&self, i: usize) -> &$crate::declare::Input {
+                $(
+                    let given = self.$expression.names().get(i);
+                    let given = self.inputs.iter().find(|(name, _)| Some(name) == given);
+                    if let Some((_, input)) = given { return input; }
+                )?
+                let mut at = 0;
+                $( $( if i == at { return &self.$input; } at += 1; )* )?
+                &$crate::declare::Input::None
+            }
+
+            #[allow(unused_variables, unused_mut, unused_assignments, reason = "not every op has inputs")]
+            fn set_input(&mut self, i: usize, input: $crate::declare::Input) {
+                $(
+                    if let Some(name) = self.$expression.names().get(i).cloned() {
+                        $crate::declare::set_named(&mut self.inputs, self.$expression.names(), name, input);
+                        return;
+                    }
+                )?
+                let mut at = 0;
+                $( $( if i == at { self.$input = input; return; } at += 1; )* )?
+            }
+
+            #[allow(unused_variables, unused_mut, unused_assignments, reason = "not every op has parameters")]
+            fn param(&self, i: usize) -> $crate::value::Value {
+                let mut at = 0;
+                $( $( if i == at { return $crate::declare::Param::write(&self.$param); } at += 1; )* )?
+                $crate::value::Value::Other("nothing")
+            }
+
+            #[allow(unused_variables, unused_mut, unused_assignments, reason = "not every op has parameters")]
+            fn set_param(&mut self, i: usize, value: &$crate::value::Value) -> std::result::Result<(), String> {
+                let spec = self.spec();
+                let mut at = 0;
+                $( $(
+                    if i == at {
+                        self.$param = $crate::declare::read_param(&spec.params[i], value)?;
+                        return Ok(());
+                    }
+                    at += 1;
+                )* )?
+                Ok(())
+            }
+
+            #[allow(unused_variables, unused_mut, unused_assignments, reason = "not every op has parameters")]
+            fn param_key(&self, i: usize) -> $crate::value::Value {
+                let mut at = 0;
+                $( $( if i == at { return $crate::declare::Param::key(&self.$param); } at += 1; )* )?
+                $crate::value::Value::Other("nothing")
+            }
+
+            fn files(&mut self) -> Vec<&mut $crate::declare::FileRef> {
+                $crate::declare::present(vec![$( $( $crate::declare::Param::file(&mut self.$param), )* )?])
+            }
+
+            $(
+                fn margin(&self) -> Option<f64> {
+                    Some(self.$margin)
+                }
+            )?
+
+            $(
+                fn vertical(&self) -> f64 {
+                    self.$vertical
+                }
+            )?
+
+            fn consistent(&self) -> std::result::Result<(), (&'static str, String)> {
+                $( let check: fn(&$name) -> std::result::Result<(), (&'static str, String)> = $check; check(self)?; )?
+                Ok(())
+            }
+        }
+
+        impl $crate::op::OpType for $name {
+            fn as_op(&self) -> $crate::op::Op<'_> {
+                $crate::op!(@as_op $locality self)
+            }
+        }
+    };
+    (@as_op field $op:expr) => { $crate::op::Op::Field($op) };
+    (@as_op filter $op:expr) => { $crate::op::Op::Filter($op) };
+    (@as_op levelled $op:expr) => { $crate::op::Op::Levelled($op) };
+    (@as_op solver $op:expr) => { $crate::op::Op::Solver($op) };
+    (@empty $given:tt) => { Vec::new() };
+    (@given) => { false };
+    (@given $given:tt) => { true };
+    (@required required) => { true };
+    (@required optional) => { false };
+    (@range) => { [f64::NEG_INFINITY, f64::INFINITY] };
+    (@range $low:literal, $high:expr) => { [$low as f64, $high as f64] };
+    (@interpolation height) => { $crate::layer::Interpolation::As($crate::layer::LayerKind::Height) };
+    (@interpolation label) => { $crate::layer::Interpolation::As($crate::layer::LayerKind::Label) };
+    (@interpolation flow) => { $crate::layer::Interpolation::As($crate::layer::LayerKind::Flow) };
+    (@interpolation source) => { $crate::layer::Interpolation::AsSource };
+    (@locality field) => { $crate::declare::Locality::Field };
+    (@locality filter) => { $crate::declare::Locality::Filter };
+    (@locality levelled) => { $crate::declare::Locality::Levelled };
+    (@locality solver) => { $crate::declare::Locality::Solver };
+}

@@ -1,0 +1,145 @@
+//! Lines and areas as parameters: lists of points, and the segments that they consist of.
+
+use std::sync::Arc;
+
+use super::memo::Memo;
+use super::param::Param;
+use super::point_lists::{Drawn, Form, Lists, MAX_POINTS, Reader};
+use super::spec::Shape;
+use crate::value::{Spanned, Value};
+use orogen_grid::polylines::outline::Outline;
+use orogen_grid::polylines::segments::Segments;
+use orogen_io::dem::file_ref::FileRef;
+use orogen_io::format::drawing::Drawing;
+
+/// The points of lines: at least two for each.
+pub type LinePoints = PointLists<2>;
+
+/// The corners of areas: at least three for each ring.
+pub type AreaPoints = PointLists<3>;
+
+/// Lists of points, each of at least `MIN` points, or none. Recipes write one list as `[[x, y], ...]` and several as `[[[x, y], ...], ...]`; a third
+/// number of every point is its height.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct PointLists<const MIN: usize> {
+    lists: Arc<Lists>,
+    form: Form,
+    segments: Memo<Made>,
+}
+
+/// How points or the outlines of a file become segments.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OutlineOptions {
+    /// Whether lines are smooth curves through their points.
+    pub smooth: bool,
+    /// Whether all lines are closed.
+    pub closed: bool,
+    /// Maximum distance between a curve and its segments, in metres.
+    pub tolerance: f64,
+    /// Metres per unit of the file.
+    pub scale: [f64; 2],
+    /// Position of the file's origin, in metres.
+    pub offset: [f64; 2],
+}
+
+/// Segments, and what they were made of.
+struct Made {
+    options: OutlineOptions,
+    file: Option<Arc<Drawing>>,
+    segments: Segments,
+}
+
+impl<const MIN: usize> From<Vec<Vec<[f64; 3]>>> for PointLists<MIN> {
+    fn from(lists: Lists) -> PointLists<MIN> {
+        let form = Form { is_nested: lists.len() != 1, has_heights: true };
+        PointLists { lists: Arc::new(lists), form, segments: Memo::default() }
+    }
+}
+
+impl<const MIN: usize> From<Vec<Vec<[f64; 2]>>> for PointLists<MIN> {
+    fn from(lists: Vec<Vec<[f64; 2]>>) -> PointLists<MIN> {
+        let raised = lists.into_iter().map(|list| list.into_iter().map(|[x, y]| [x, y, 0.0]).collect());
+        let mut made = PointLists::from(raised.collect::<Lists>());
+        made.form.has_heights = false;
+        made
+    }
+}
+
+impl<const MIN: usize> From<Vec<[f64; 2]>> for PointLists<MIN> {
+    fn from(list: Vec<[f64; 2]>) -> PointLists<MIN> {
+        PointLists::from(vec![list])
+    }
+}
+
+impl<const MIN: usize> From<Vec<[f64; 3]>> for PointLists<MIN> {
+    fn from(list: Vec<[f64; 3]>) -> PointLists<MIN> {
+        PointLists::from(vec![list])
+    }
+}
+
+impl<const MIN: usize> PointLists<MIN> {
+    /// Whether there are no points.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.lists.is_empty()
+    }
+
+    /// The points of each list: east, south, and the height, which is 0 if the points have none.
+    #[must_use]
+    pub fn lists(&self) -> &[Vec<[f64; 3]>] {
+        &self.lists
+    }
+
+    /// The segments of the points and of the file's outlines. They are made once, and again only for other options or another file.
+    pub fn with_segments<T>(&self, file: &FileRef, options: OutlineOptions, read: impl FnOnce(&Segments) -> T) -> T {
+        let drawing = file.drawing();
+        let is_current = |made: &Made| {
+            let is_same_file = match (&made.file, drawing) {
+                (Some(made), Some(drawing)) => Arc::ptr_eq(made, drawing),
+                (made, drawing) => made.is_none() && drawing.is_none(),
+            };
+            is_same_file && made.options == options
+        };
+        let make = || {
+            let own = self.lists.iter().map(|points| Outline::of_points(points));
+            let read = drawing.iter().flat_map(|drawing| &drawing.outlines);
+            let read = read.map(|outline| outline.placed(options.scale, options.offset));
+            let outlines = own.chain(read).map(|outline| {
+                let outline = if options.closed { outline.closed() } else { outline };
+                if options.smooth { outline.smoothed() } else { outline }
+            });
+            let outlines: Vec<Outline> = outlines.collect();
+            Made { options, file: drawing.cloned(), segments: Segments::new(&outlines, options.tolerance) }
+        };
+        read(&self.segments.get_or_make(is_current, make).segments)
+    }
+}
+
+impl<const MIN: usize> Param for PointLists<MIN> {
+    const SHAPE: Shape = Shape::Points(MIN);
+
+    fn read(value: &Value) -> Option<PointLists<MIN>> {
+        let anywhere = [f64::NEG_INFINITY, f64::INFINITY];
+        let reader = Reader { name: "", number: String::new(), drawn: Drawn::of_at_least(MIN), range: anywhere };
+        let (lists, form) = reader.read(value).ok()?;
+        Some(PointLists { lists: Arc::new(lists), form, segments: Memo::default() })
+    }
+
+    fn write(&self) -> Value {
+        let list = |items: Vec<Value>| Value::List(items.into_iter().map(Spanned::unplaced).collect());
+        let numbers = if self.form.has_heights { 3 } else { 2 };
+        let point = |point: &[f64; 3]| list(point[..numbers].iter().map(|number| Value::Number(*number)).collect());
+        let points = |points: &Vec<[f64; 3]>| list(points.iter().map(point).collect());
+        match (self.lists.as_slice(), self.form.is_nested) {
+            ([only], false) => points(only),
+            (lists, _) => list(lists.iter().map(points).collect()),
+        }
+    }
+
+    fn within(&self, [low, high]: [f64; 2]) -> bool {
+        let numbers = || self.lists.iter().flatten().flatten();
+        self.lists.iter().all(|points| points.len() >= MIN)
+            && self.lists.iter().map(Vec::len).sum::<usize>() <= MAX_POINTS
+            && numbers().all(|number| number.is_finite() && (low..=high).contains(number))
+    }
+}
