@@ -6,10 +6,10 @@ use crate::recipe::scatter::document::{ExpandedScatter, InWater, Scatter, Turn};
 use crate::world::{HEIGHT, LAKES, World};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
+use orogen_grid::placement::{NearPoints, Placement, PlacementWater, height, mean};
 use orogen_grid::poisson_discs::{POINTS, PoissonDiscs};
 use orogen_grid::progress::Progress;
 use orogen_grid::random::Random;
-use orogen_grid::sites::{Near, SiteWater, Sites, height, mean};
 use orogen_ops::budget::Reservation;
 
 /// An object on the ground.
@@ -124,17 +124,18 @@ impl World {
         let count = area / (entry.spacing * entry.spacing) * POINTS * mean(density).min(1.0) * 1.02 + 1000.0;
         let held = self.budget().reserve((count * POINT_MEMORY) as u64)?;
         let before = if entry.clearance > 0.0 { before } else { &[] };
-        let searched: u64 = before.iter().map(|placed| Near::memory(placed.points.len())).sum();
+        let searched: u64 = before.iter().map(|placed| NearPoints::memory(placed.points.len())).sum();
         let _search = self.budget().reserve(searched.saturating_add(PoissonDiscs::memory(self.threads())))?;
-        let near: Vec<Near> = before.iter().map(|placed| Near::new(&placed.points, entry.clearance)).collect();
+        let near: Vec<NearPoints> =
+            before.iter().map(|placed| NearPoints::new(&placed.points, entry.clearance)).collect();
         let sea_level = recipe.world.sea_level;
         let water = match (entry.water, water) {
             (InWater::Any, _) | (_, []) => None,
             (wanted, [heights, lakes @ ..]) => {
-                Some(SiteWater { heights, lakes: lakes.first(), sea_level, is_wanted: wanted == InWater::Only })
+                Some(PlacementWater { heights, lakes: lakes.first(), sea_level, is_wanted: wanted == InWater::Only })
             }
         };
-        let sites = Sites { bounds: around, density, water, near };
+        let placement = Placement { bounds: around, density, water, near };
         // There are no points outside the world, however far the bounds extend.
         let bounds = match recipe.world.size {
             Some(size) => {
@@ -142,7 +143,7 @@ impl World {
             }
             None => bounds.clone(),
         };
-        let points = self.install(|| sites.points(&discs, &bounds, &progress.part(1.0)))?;
+        let points = self.install(|| placement.points(&discs, &bounds, &progress.part(1.0)))?;
         let points = points.into_iter().map(|point| (point.position, point.bits)).collect();
         Ok(Placed { points, _held: held })
     }

@@ -70,14 +70,14 @@ mod interop;
 pub mod multiscale;
 #[doc(hidden)]
 pub mod parallel;
+#[doc(hidden)]
+pub mod placement;
 pub mod poisson_discs;
 pub mod polylines;
 pub mod progress;
 #[doc(hidden)]
 pub mod random;
 pub mod resample;
-#[doc(hidden)]
-pub mod sites;
 pub mod surface_nets;
 pub mod triangles;
 pub mod words;

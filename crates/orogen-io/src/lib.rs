@@ -6,7 +6,6 @@
 //! - [`mod@file`]: files written atomically, and the policy of what they may replace.
 //! - [`raster`]: a layer in memory or in pages on disk; both give the same bits.
 //! - [`read_at`]: bytes that are read by position, from any thread.
-//! - [`mod@samples`]: samples as bytes.
 //! - [`spool`]: byte buffers in memory or on disk; [`records`]: values in order, packed in such a buffer.
 #![forbid(unsafe_code)]
 
@@ -24,6 +23,7 @@ pub mod palette;
 pub mod raster;
 pub mod read_at;
 pub mod records;
+#[doc(hidden)]
 pub mod samples;
 pub mod spool;
 #[doc(hidden)]

@@ -1,4 +1,4 @@
-//! Samples as bytes and back: little-endian f32. Whole slices at a time, so that the loop is compiled here, at full speed, for crates that are not.
+//! Samples as bytes and back: little-endian f32. Functions of whole slices: crates that are compiled without optimisation call them instead of a loop of their own.
 
 use orogen_grid::grid::Grid;
 
@@ -35,9 +35,9 @@ pub fn from_bytes(bytes: &[u8]) -> Vec<f32> {
     bytes.as_chunks().0.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect()
 }
 
-/// Three rows sample by sample; the second with its sign changed if `flipped`.
+/// Three rows, interleaved sample by sample; the second is negated if `flipped`.
 #[must_use]
-pub fn triples([first, second, third]: [&[f32]; 3], flipped: bool) -> Vec<f32> {
+pub fn interleaved([first, second, third]: [&[f32]; 3], flipped: bool) -> Vec<f32> {
     let sign = if flipped { -1.0 } else { 1.0 };
     first.iter().zip(second).zip(third).flat_map(|((a, b), c)| [*a, sign * b, *c]).collect()
 }
@@ -48,7 +48,7 @@ pub fn pick(grid: &Grid, columns: &[usize], rows: &[usize]) -> Vec<f32> {
     rows.iter().flat_map(|j| columns.iter().map(move |i| grid[(*i, *j)])).collect()
 }
 
-/// A square of half the samples per side, each the mean of four.
+/// A square of `side` samples reduced to half of that, by the mean of 2 x 2 samples.
 #[must_use]
 pub fn halved(samples: &[f32], side: usize) -> Vec<f32> {
     let half = side / 2;

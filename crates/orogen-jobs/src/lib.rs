@@ -1,4 +1,4 @@
-//! What a user orders of a world, from its recipe to its files.
+//! Exports, builds, map sheets, renders, tilemaps and fits of worlds, each as a job that writes its files.
 //!
 //! - [`export`]: a registry of layers and formats, for every front end.
 //! - [`jobs`]: a map sheet or a rendered picture of a world as one job.
@@ -7,8 +7,8 @@
 //! - [`fit`]: recipes like a real place.
 //! - [`graph_layout`]: boxes and wires in columns.
 //!
-//! It reads options, asks for layers, and puts files in place. What computes samples is in the crates below, so that this one can be
-//! compiled fast instead of to be fast.
+//! A job reads options, requests layers, and puts files in place. The crates below it process the samples. This crate is therefore compiled without
+//! optimisation, which takes an eighth of the time.
 #![forbid(unsafe_code)]
 
 pub mod builder;

@@ -6,8 +6,6 @@
 
 pub mod clip;
 pub mod given;
-#[doc(hidden)]
-pub mod ground;
 pub mod joints;
 pub mod network;
 pub mod outlines;
@@ -18,3 +16,5 @@ pub mod shores;
 pub mod summits;
 pub mod water;
 pub mod watersheds;
+#[doc(hidden)]
+pub mod zones;

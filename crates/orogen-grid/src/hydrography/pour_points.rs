@@ -1,7 +1,7 @@
 //! Watersheds of chosen outlets (pour points), which are moved to the nearest stream first.
 
-use super::ground::Ground;
 use super::water::{Cover, Water};
+use super::zones::ZoneStats;
 use crate::error::Result;
 use crate::progress::Progress;
 
@@ -135,9 +135,9 @@ impl PourPoints {
 
 /// The samples of a label.
 #[derive(Debug, Clone, Copy)]
-pub struct Part {
+pub struct LabelStats {
     /// Their ground.
-    pub ground: Ground,
+    pub ground: ZoneStats,
     /// The first and the last column.
     pub columns: [usize; 2],
     /// The first and the last row.
@@ -146,17 +146,17 @@ pub struct Part {
     pub at_border: bool,
 }
 
-impl Part {
+impl LabelStats {
     /// No samples.
-    pub const EMPTY: Part =
-        Part { ground: Ground::EMPTY, columns: [usize::MAX, 0], rows: [usize::MAX, 0], at_border: false };
+    pub const EMPTY: LabelStats =
+        LabelStats { ground: ZoneStats::EMPTY, columns: [usize::MAX, 0], rows: [usize::MAX, 0], at_border: false };
 
     /// Both.
     #[must_use]
-    pub fn join(mut self, other: &Part) -> Part {
+    pub fn join(mut self, other: &LabelStats) -> LabelStats {
         let span = |a: [usize; 2], b: [usize; 2]| [a[0].min(b[0]), a[1].max(b[1])];
         self.ground.join(&other.ground);
-        Part {
+        LabelStats {
             columns: span(self.columns, other.columns),
             rows: span(self.rows, other.rows),
             at_border: self.at_border || other.at_border,
@@ -168,12 +168,18 @@ impl Part {
 impl PourPoints {
     /// The label of each sample on land, of some columns and rows of the water's grid, and the samples of each of `count` labels.
     #[must_use]
-    pub fn sampled(&self, water: &Water, count: usize, columns: &[usize], rows: &[usize]) -> (Vec<u32>, Vec<Part>) {
+    pub fn sampled(
+        &self,
+        water: &Water,
+        count: usize,
+        columns: &[usize],
+        rows: &[usize],
+    ) -> (Vec<u32>, Vec<LabelStats>) {
         let (width, height) = (columns.len(), rows.len());
         let at = |i: usize, j: usize| rows[j] * water.heights.width() + columns[i];
         let is_missing = |i: usize, j: usize| water.cover(at(i, j)) == Cover::Missing;
         let mut labels = vec![NONE; width * height];
-        let mut parts = vec![Part::EMPTY; count];
+        let mut parts = vec![LabelStats::EMPTY; count];
         for j in 0..height {
             for i in 0..width {
                 let at = at(i, j);
@@ -184,8 +190,8 @@ impl PourPoints {
                 labels[j * width + i] = label;
                 let known = &mut parts[label as usize];
                 known.ground.add(water.heights.data()[at]);
-                *known = known.join(&Part {
-                    ground: Ground::EMPTY,
+                *known = known.join(&LabelStats {
+                    ground: ZoneStats::EMPTY,
                     columns: [i; 2],
                     rows: [j; 2],
                     at_border: known.at_border

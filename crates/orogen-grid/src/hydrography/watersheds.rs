@@ -1,8 +1,8 @@
 //! Watersheds of river mouths, and the land between them.
 
-use super::ground::Ground;
 use super::rivers::{Mouth, River};
 use super::water::{Cover, Frame, Water};
+use super::zones::ZoneStats;
 use std::ops::Range;
 
 /// The watershed of each sample of a frame.
@@ -118,8 +118,14 @@ pub fn watersheds(water: &Water, frame: &Frame, reaches: &[River]) -> Watersheds
 impl Watersheds {
     /// The labels of some columns and rows of the water's grid, and the ground of each label; those outside the frame are at its edge.
     #[must_use]
-    pub fn sampled(&self, water: &Water, frame: &Frame, columns: &[usize], rows: &[usize]) -> (Vec<u32>, Vec<Ground>) {
-        let mut grounds = vec![Ground::EMPTY; self.rivers.len() + 1];
+    pub fn sampled(
+        &self,
+        water: &Water,
+        frame: &Frame,
+        columns: &[usize],
+        rows: &[usize],
+    ) -> (Vec<u32>, Vec<ZoneStats>) {
+        let mut grounds = vec![ZoneStats::EMPTY; self.rivers.len() + 1];
         let within = |at: usize, range: &Range<usize>| at.clamp(range.start, range.end - 1);
         let columns: Vec<usize> = columns.iter().map(|column| within(*column, &frame.columns)).collect();
         let mut labels = Vec::with_capacity(columns.len() * rows.len());

@@ -85,9 +85,9 @@ fn advance(here: &Grid, last: &Grid, outlets: &Outlets, [again, share]: [f32; 2]
     let (width, height) = (here.width(), here.height());
     let rows = next.data_mut().chunks_mut(width).enumerate().take(height.max(1) - 1).skip(1);
     parallel::for_each(rows, |(j, row)| {
-        let triples = here.row(j - 1).windows(3).zip(here.row(j).windows(3)).zip(here.row(j + 1).windows(3));
+        let interleaved = here.row(j - 1).windows(3).zip(here.row(j).windows(3)).zip(here.row(j + 1).windows(3));
         let places = row[1..].iter_mut().zip(&outlets.mask().row(j)[1..]).zip(&last.row(j)[1..]);
-        for (((new, outlet), last), ((n, m), s)) in places.zip(triples) {
+        for (((new, outlet), last), ((n, m), s)) in places.zip(interleaved) {
             let sides = (n[1] - m[1]) + (m[0] - m[1]) + (m[2] - m[1]) + (s[1] - m[1]);
             let corners = (n[0] - m[1]) + (n[2] - m[1]) + (s[0] - m[1]) + (s[2] - m[1]);
             let moved = m[1] + again * (m[1] - last) + share * (4.0 * sides + corners);

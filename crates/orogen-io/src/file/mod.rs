@@ -19,12 +19,12 @@
 //! - *a pipe or a device* (`/dev/null`): written directly, because it cannot be replaced.
 
 mod atomic;
+pub mod cancellable;
 mod identity;
 mod kind;
 pub mod mark;
 mod output_folder;
 mod policy;
-pub mod stopping;
 mod temporary;
 
 pub use atomic::{Staged, check_folder, commit, explain, stage, write_whole};

@@ -54,6 +54,7 @@ mod svg_shapes;
 pub mod tres;
 pub mod vox;
 pub mod vrt;
+#[doc(hidden)]
 pub mod weights;
 pub mod world_file;
 pub mod xml;

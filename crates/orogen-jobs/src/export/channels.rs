@@ -17,7 +17,7 @@ use orogen_io::format::notes::SOFTWARE;
 use orogen_io::format::png::{self, Picture, Pixel};
 use orogen_io::format::weights;
 use orogen_io::palette::color::Encoder;
-use orogen_io::samples::triples;
+use orogen_io::samples::interleaved;
 
 /// The option for the direction of green in normal maps.
 pub const NORMAL: OptionSpec = OptionSpec {
@@ -60,7 +60,7 @@ pub fn write_normals(source: &mut LayerSource, options: &Options, files: &mut Fi
         png::write_through(out, &picture, |out| {
             source.rows(|band| {
                 (0..band[0].height()).try_for_each(|j| {
-                    let row = triples([0, 1, 2].map(|part| band[part].row(j)), directx);
+                    let row = interleaved([0, 1, 2].map(|part| band[part].row(j)), directx);
                     quantizer::write_levels(out, &row, &levels, most)
                 })
             })

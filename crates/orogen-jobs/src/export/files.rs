@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use orogen_grid::progress::Progress;
-use orogen_io::file::stopping::Stopping;
+use orogen_io::file::cancellable::CancellableWriter;
 use orogen_io::file::{self, Existing, Output, Staged};
 use orogen_io::fs;
 use orogen_io::spool::Spool;
@@ -58,9 +58,9 @@ impl<'a> Files<'a> {
     /// Writes the main file.
     pub fn write(&mut self, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
         match &mut self.sink {
-            Sink::Stream(out) => body(&mut Stopping { out: &mut **out, progress: &self.progress }),
+            Sink::Stream(out) => body(&mut CancellableWriter { out: &mut **out, progress: &self.progress }),
             Sink::File(output) => {
-                let staged = file::stage(output, |out| body(&mut Stopping { out, progress: &self.progress }))?;
+                let staged = file::stage(output, |out| body(&mut CancellableWriter { out, progress: &self.progress }))?;
                 self.staged.push(staged);
                 Ok(())
             }
@@ -80,7 +80,7 @@ impl<'a> Files<'a> {
             return Ok(());
         }
         let beside = output.policy().output(name(path))?;
-        let staged = file::stage(&beside, |out| body(&mut Stopping { out, progress: &self.progress }))?;
+        let staged = file::stage(&beside, |out| body(&mut CancellableWriter { out, progress: &self.progress }))?;
         self.staged.push(staged);
         Ok(())
     }

@@ -15,7 +15,7 @@ use orogen_grid::grid::{Grid, Window};
 use orogen_grid::parallel;
 use orogen_grid::progress::Progress;
 use orogen_grid::words::{count, number};
-use orogen_io::file::stopping::Stopping;
+use orogen_io::file::cancellable::CancellableWriter;
 use orogen_io::format::dem::Georeference;
 use orogen_io::format::levels::{NO_SAMPLES, extremes};
 use orogen_output::map::paint::Painter;
@@ -173,7 +173,7 @@ impl Prepared {
     ///
     /// Fails if `out` fails, or if the work is cancelled.
     pub fn picture(&self, out: &mut dyn io::Write) -> io::Result<()> {
-        self.painter.write_png(&mut Stopping { out, progress: &self.painting }, &self.grid, None, &[])?;
+        self.painter.write_png(&mut CancellableWriter { out, progress: &self.painting }, &self.grid, None, &[])?;
         self.painting.finish();
         Ok(())
     }

@@ -13,7 +13,7 @@ use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 use orogen_io::palette::color::{Encoder, Rgb};
-use orogen_output::map::surface_cover::land_share;
+use orogen_output::map::surface_blend::land_share;
 use orogen_output::sheet::options::{SurfaceCover, SurfaceEntry};
 
 /// Maximum number of surfaces in a legend, and minimum share of the window of each.

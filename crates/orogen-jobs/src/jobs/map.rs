@@ -18,7 +18,7 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 use orogen_grid::words::number;
-use orogen_io::file::stopping::Stopping;
+use orogen_io::file::cancellable::CancellableWriter;
 use orogen_io::file::{self, Output};
 use orogen_io::format::affine::Affine;
 use orogen_io::format::dem::Georeference;
@@ -601,7 +601,7 @@ impl DrawnMap {
     /// # Errors
     /// If the stream fails, or the work was cancelled.
     pub fn to_stream(&self, out: &mut dyn Write) -> io::Result<()> {
-        let out = &mut Stopping { out, progress: &self.writing };
+        let out = &mut CancellableWriter { out, progress: &self.writing };
         let scene = &self.sheet.scene;
         match self.format {
             SheetFormat::Png => {

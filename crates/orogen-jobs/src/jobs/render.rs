@@ -17,7 +17,7 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 use orogen_grid::words::number;
-use orogen_io::file::stopping::Stopping;
+use orogen_io::file::cancellable::CancellableWriter;
 use orogen_io::file::{self, Output};
 use orogen_io::format::levels::{NO_SAMPLES, extremes};
 use orogen_io::format::notes::SOFTWARE;
@@ -425,7 +425,7 @@ impl Rendering {
     /// # Errors
     /// If the stream fails, or the work was cancelled.
     pub fn to_stream(&self, out: &mut dyn Write) -> io::Result<()> {
-        let stopping = &mut Stopping { out, progress: &self.painting };
+        let stopping = &mut CancellableWriter { out, progress: &self.painting };
         if self.device.is_some() {
             // At once: a device receives the scene for each call.
             let bytes = self.to_bytes()?;

@@ -13,7 +13,7 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
 use orogen_grid::progress::Progress;
 use orogen_grid::words::{count, number};
-use orogen_io::file::stopping::Stopping;
+use orogen_io::file::cancellable::CancellableWriter;
 use orogen_io::file::{self, Output, OutputFolder, OutputPolicy, Staged};
 use orogen_io::format::notes::SOFTWARE;
 
@@ -87,7 +87,8 @@ fn write(map: &Tilemap, outputs: &[Output], progress: &Progress) -> Result<()> {
         progress.step(1.0)?;
         match is_missing(map, name) {
             true => Ok(None),
-            false => file::stage(output, |out| write_file(map, name, &json, &mut Stopping { out, progress })).map(Some),
+            false => file::stage(output, |out| write_file(map, name, &json, &mut CancellableWriter { out, progress }))
+                .map(Some),
         }
     };
     let staged: Vec<Result<Option<Staged>>> = parallel::map(NAMES.iter().zip(outputs), stage);
@@ -96,7 +97,7 @@ fn write(map: &Tilemap, outputs: &[Output], progress: &Progress) -> Result<()> {
 }
 
 /// Writes the file of this name.
-fn write_file(map: &Tilemap, name: &str, json: &str, out: &mut Stopping) -> io::Result<()> {
+fn write_file(map: &Tilemap, name: &str, json: &str, out: &mut CancellableWriter) -> io::Result<()> {
     let notes = [("Software", SOFTWARE)];
     let [image, tsx, tres] = [NAMES[0], NAMES[1], NAMES[5]];
     match name {

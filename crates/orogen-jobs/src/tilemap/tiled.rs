@@ -239,7 +239,7 @@ impl Tilemap {
         let (mut reader, mut row) = (tiles.reader(), Vec::new());
         for nth in 1..=self.height {
             reader.read(self.width, &mut row)?;
-            write_numbers(out, &row)?;
+            out.write_all(listed(&row).as_bytes())?;
             writeln!(out, "{}", if nth < self.height { "," } else { "" })?;
         }
         Ok(())
@@ -409,15 +409,10 @@ impl Tilemap {
 fn write_chunk(out: &mut dyn Write, tiles: &[u32]) -> io::Result<()> {
     let mut rows = tiles.chunks(CHUNK).peekable();
     while let Some(row) = rows.next() {
-        write_numbers(out, row)?;
+        out.write_all(listed(row).as_bytes())?;
         writeln!(out, "{}", if rows.peek().is_some() { "," } else { "" })?;
     }
     Ok(())
-}
-
-/// Writes numbers separated by commas.
-fn write_numbers(out: &mut dyn Write, numbers: &[u32]) -> io::Result<()> {
-    out.write_all(listed(numbers).as_bytes())
 }
 
 /// Writes tiles as 32-bit little-endian, compressed, as base64.

@@ -6,7 +6,7 @@ pub mod paint;
 #[doc(hidden)]
 pub mod shade;
 #[doc(hidden)]
-pub mod surface_cover;
+pub mod surface_blend;
 #[doc(hidden)]
 pub mod surface_picture;
 pub mod swatches;

@@ -12,7 +12,7 @@ use orogen_grid::triangles::falls;
 
 /// Triangles over the samples of a grid.
 ///
-/// Vertices are numbered from 0, row by row, each row from west to east. Triangles are triples of vertices,
+/// Vertices are numbered from 0, row by row, each row from west to east. Triangles are interleaved of vertices,
 /// counter-clockwise seen from above.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shape {

@@ -42,7 +42,7 @@ pub(super) struct Workspace {
     queue: Queue,
 }
 
-/// Triangulates a tile of at least 2 x 2 finite samples with an error of at most `max_error`. Returns triples of
+/// Triangulates a tile of at least 2 x 2 finite samples with an error of at most `max_error`. Returns interleaved of
 /// samples, each clockwise in the picture.
 ///
 /// # Errors

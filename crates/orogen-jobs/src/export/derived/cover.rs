@@ -2,7 +2,7 @@
 
 use super::layer::Around;
 use orogen_engine::recipe::document::Recipe;
-use orogen_output::map::surface_cover::{LaidSurface, SurfaceCover};
+use orogen_output::map::surface_blend::{SurfaceBlend, SurfaceLayer};
 
 /// The names of the surfaces without duplicates, in the order of first use.
 pub fn names(recipe: &Recipe) -> Vec<String> {
@@ -27,16 +27,16 @@ pub fn shares_and_positions(recipe: &Recipe) -> Vec<String> {
 }
 
 /// The surfaces over a window, from layers in the order of [`shares`] or of [`shares_and_positions`].
-pub fn of<'a>(around: &'a Around<'a>) -> SurfaceCover<'a> {
+pub fn of<'a>(around: &'a Around<'a>) -> SurfaceBlend<'a> {
     let (recipe, names) = (around.recipe, names(around.recipe));
     let count = shares(recipe).len().min(around.layers.len());
     let (mut shares, mut positions) = (around.layers[..count].iter(), around.layers[count..].iter());
-    let laid = recipe.expanded().iter().map(|expanded| LaidSurface {
+    let laid = recipe.expanded().iter().map(|expanded| SurfaceLayer {
         colors: &expanded.colors,
         roughness: expanded.surface.roughness as f32,
         channel: names.iter().position(|name| *name == expanded.surface.name).unwrap_or(0),
         share: expanded.share.as_ref().and_then(|_| shares.next()),
         position: expanded.position.as_ref().and_then(|_| positions.next()),
     });
-    SurfaceCover { surfaces: laid.collect(), heights: around.heights }
+    SurfaceBlend { surfaces: laid.collect(), heights: around.heights }
 }

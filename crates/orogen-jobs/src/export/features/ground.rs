@@ -1,6 +1,6 @@
 //! The attributes of the ground of an area.
 
-use orogen_grid::hydrography::ground::Ground;
+use orogen_grid::hydrography::zones::ZoneStats;
 use orogen_io::format::features::{Field, FieldType, Value};
 
 /// The attributes, in the order of [`heights`].
@@ -9,12 +9,12 @@ pub const HIGHEST: Field = Field { name: "highest", kind: FieldType::Real, about
 pub const MEAN: Field = Field { name: "mean", kind: FieldType::Real, about: "mean height, m" };
 
 /// The area in m^2, of samples of this cell.
-pub fn area(ground: &Ground, cell: f64) -> Value {
+pub fn area(ground: &ZoneStats, cell: f64) -> Value {
     Value::Real(ground.count as f64 * (cell * cell))
 }
 
 /// The lowest, the highest and the mean height; without samples, there are none.
-pub fn heights(ground: &Ground) -> [Value; 3] {
+pub fn heights(ground: &ZoneStats) -> [Value; 3] {
     let heights = [f64::from(ground.low), f64::from(ground.high), ground.sum / ground.count as f64];
     heights.map(|height| if ground.count > 0 { Value::Real(height) } else { Value::Null })
 }

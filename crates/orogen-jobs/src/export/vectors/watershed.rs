@@ -9,7 +9,7 @@ use crate::export::features::source::FeatureSource;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::hydrography::outlines::outlines;
-use orogen_grid::hydrography::pour_points::{Part, PourPoints, Snapped, nearest_stream};
+use orogen_grid::hydrography::pour_points::{LabelStats, PourPoints, Snapped, nearest_stream};
 use orogen_grid::hydrography::water::Cover;
 use orogen_grid::progress::Progress;
 use orogen_io::format::features::{Feature, FeatureLayer, Field, FieldType, Geometry, GeometryType, Value};
@@ -68,7 +68,7 @@ fn make(ground: &FeatureSource, options: &FeatureOptions, progress: &Progress) -
     let mut features = Vec::with_capacity(nodes.len());
     for (k, upstream) in found.upstream().iter().enumerate() {
         progress.check()?;
-        let all = upstream.iter().fold(Part::EMPTY, |all, label| all.join(&parts[*label as usize]));
+        let all = upstream.iter().fold(LabelStats::EMPTY, |all, label| all.join(&parts[*label as usize]));
         let (outlet, snapped) = (&outlets.all[k], &snapped[k]);
         let [east, north] = outlets.coordinates(ground.place(ground.water.node_place(snapped.node)));
         let mut values = vec![
@@ -142,7 +142,12 @@ fn snap(
 }
 
 /// The squares of the samples of these labels, as polygons in metres.
-fn polygon(labels: &Grid<u32>, upstream: &[u32], all: &Part, (cut, cell): (usize, f64)) -> Vec<Vec<Vec<[f64; 2]>>> {
+fn polygon(
+    labels: &Grid<u32>,
+    upstream: &[u32],
+    all: &LabelStats,
+    (cut, cell): (usize, f64),
+) -> Vec<Vec<Vec<[f64; 2]>>> {
     if all.ground.count == 0 {
         return Vec::new();
     }

@@ -1,8 +1,8 @@
-//! The ground of an area: the number and heights of its samples.
+//! Statistics of the heights of a zone.
 
-/// What is known of the samples of an area.
+/// The number and the heights of the samples of a zone.
 #[derive(Debug, Clone, Copy)]
-pub struct Ground {
+pub struct ZoneStats {
     /// The number of samples.
     pub count: u64,
     /// The lowest height in metres.
@@ -13,17 +13,17 @@ pub struct Ground {
     pub sum: f64,
 }
 
-impl Ground {
+impl ZoneStats {
     /// No samples.
-    pub const EMPTY: Ground = Ground { count: 0, low: f32::INFINITY, high: f32::NEG_INFINITY, sum: 0.0 };
+    pub const EMPTY: ZoneStats = ZoneStats { count: 0, low: f32::INFINITY, high: f32::NEG_INFINITY, sum: 0.0 };
 
     /// Adds a sample.
     pub fn add(&mut self, height: f32) {
-        self.join(&Ground { count: 1, low: height, high: height, sum: f64::from(height) });
+        self.join(&ZoneStats { count: 1, low: height, high: height, sum: f64::from(height) });
     }
 
-    /// Adds the samples of another area.
-    pub fn join(&mut self, other: &Ground) {
+    /// Adds the samples of another zone.
+    pub fn join(&mut self, other: &ZoneStats) {
         self.count += other.count;
         self.sum += other.sum;
         (self.low, self.high) = (self.low.min(other.low), self.high.max(other.high));

@@ -6,7 +6,7 @@ use orogen_io::palette::palette::NO_DATA;
 
 /// A surface that lies on those before it.
 #[derive(Debug)]
-pub struct LaidSurface<'a> {
+pub struct SurfaceLayer<'a> {
     /// Evenly spaced colors of a gradient, in linear light.
     pub colors: &'a [Light],
     /// Roughness, 0 to 1.
@@ -21,14 +21,14 @@ pub struct LaidSurface<'a> {
 
 /// Surfaces over a window, the lowest first.
 #[derive(Debug)]
-pub struct SurfaceCover<'a> {
+pub struct SurfaceBlend<'a> {
     /// The surfaces. Their layers have the window of the heights.
-    pub surfaces: Vec<LaidSurface<'a>>,
+    pub surfaces: Vec<SurfaceLayer<'a>>,
     /// The heights: where there is none, nothing is covered.
     pub heights: &'a Grid,
 }
 
-impl SurfaceCover<'_> {
+impl SurfaceBlend<'_> {
     /// Calls `visit` for each sample of a window with the weights of all surfaces, which add up to 1; all are 0 where
     /// there is no height.
     fn each(&self, window: &Window, mut visit: impl FnMut([usize; 2], [usize; 2], &[f32])) {

@@ -9,20 +9,20 @@ use std::ops::Range;
 
 /// The places of points.
 #[derive(Debug)]
-pub struct Sites<'a> {
+pub struct Placement<'a> {
     /// Nothing lies outside these eastings and southings, in metres.
     pub bounds: [Range<f64>; 2],
     /// Share of the greatest possible number of points, 0 to 1; where it is not a number there are none.
     pub density: &'a Grid,
     /// The water that points lie in or avoid.
-    pub water: Option<SiteWater<'a>>,
+    pub water: Option<PlacementWater<'a>>,
     /// Points placed before, from which these keep their distance.
-    pub near: Vec<Near>,
+    pub near: Vec<NearPoints>,
 }
 
 /// Water, as far as points heed it.
 #[derive(Debug)]
-pub struct SiteWater<'a> {
+pub struct PlacementWater<'a> {
     /// Heights in metres.
     pub heights: &'a Grid,
     /// Depths of lakes.
@@ -33,7 +33,7 @@ pub struct SiteWater<'a> {
     pub is_wanted: bool,
 }
 
-impl Sites<'_> {
+impl Placement<'_> {
     /// The points within eastings and southings.
     ///
     /// # Errors
@@ -51,7 +51,7 @@ impl Sites<'_> {
         let is_within = self.bounds.iter().zip(position).all(|(side, at)| (side.start..=side.end).contains(&at));
         // Not a number is less than nothing, too.
         let density = if is_within { interpolated(self.density, position) } else { 0.0 };
-        let is_right = |water: &SiteWater| water.is_wet(position) == water.is_wanted;
+        let is_right = |water: &PlacementWater| water.is_wet(position) == water.is_wanted;
         let is_free = density > 0.0
             && self.water.as_ref().is_none_or(is_right)
             && !self.near.iter().any(|near| near.is_within(position));
@@ -59,7 +59,7 @@ impl Sites<'_> {
     }
 }
 
-impl SiteWater<'_> {
+impl PlacementWater<'_> {
     fn is_wet(&self, position: [f64; 2]) -> bool {
         wet(self.heights, self.lakes, self.sea_level, position)
     }
@@ -107,7 +107,7 @@ pub fn mean(grid: &Grid) -> f64 {
 
 /// Points in buckets, to find those near a position.
 #[derive(Debug)]
-pub struct Near {
+pub struct NearPoints {
     distance: f64,
     bucket: f64,
     first: [i64; 2],
@@ -121,7 +121,7 @@ pub struct Near {
 /// Maximum number of buckets along a side.
 const MAX_BUCKETS: f64 = 1024.0;
 
-impl Near {
+impl NearPoints {
     /// Memory in bytes for a number of points.
     #[must_use]
     pub fn memory(points: usize) -> u64 {
@@ -131,7 +131,7 @@ impl Near {
 
     /// Of points, with their random bits, from which others keep a distance in metres.
     #[must_use]
-    pub fn new(points: &[([f64; 2], u64)], distance: f64) -> Near {
+    pub fn new(points: &[([f64; 2], u64)], distance: f64) -> NearPoints {
         let ends = |axis: usize| {
             let start = points.iter().map(|(at, _)| at[axis]).fold(f64::INFINITY, f64::min);
             let end = points.iter().map(|(at, _)| at[axis]).fold(f64::NEG_INFINITY, f64::max);
@@ -139,7 +139,15 @@ impl Near {
         };
         if points.is_empty() {
             let starts = vec![0];
-            return Near { distance, bucket: distance, first: [0; 2], columns: 0, rows: 0, starts, points: Vec::new() };
+            return NearPoints {
+                distance,
+                bucket: distance,
+                first: [0; 2],
+                columns: 0,
+                rows: 0,
+                starts,
+                points: Vec::new(),
+            };
         }
         let [across, down] = [ends(0), ends(1)];
         let bucket = distance.max((across.end - across.start).max(down.end - down.start) / MAX_BUCKETS);
@@ -152,7 +160,7 @@ impl Near {
         let mut starts = vec![0; (columns * rows) as usize + 1];
         points.iter().for_each(|at| starts[of(*at) + 1] += 1);
         (1..starts.len()).for_each(|k| starts[k] += starts[k - 1]);
-        Near { distance, bucket, first, columns, rows, starts, points }
+        NearPoints { distance, bucket, first, columns, rows, starts, points }
     }
 
     /// Whether one of the points is nearer than the distance.
