@@ -3,7 +3,8 @@
 //! Tasks take items from a sequential iterator, in batches that become smaller towards the end. The only call of rayon is in a function that is not
 //! generic, so a loop takes little time to compile. With one thread, all items are done in order on the calling thread.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::cmp::Ordering;
+use std::sync::atomic::{self, AtomicUsize};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Samples of a piece of work on single samples.
@@ -111,6 +112,14 @@ pub fn samples<R: Copy + Default + Send>(count: usize, of: impl Fn(usize) -> R +
     samples
 }
 
+/// Sorts `items`; equal ones keep their order.
+pub fn sort_by<T: Send>(items: &mut [T], compare: impl Fn(&T, &T) -> Ordering + Sync) {
+    let part = items.len().div_ceil(threads()).max(SAMPLES);
+    for_each(items.chunks_mut(part), |part| part.sort_by(&compare));
+    // The standard library's sort finds parts that are in order, so that it only merges them.
+    items.sort_by(compare);
+}
+
 /// Places for results.
 fn slots<R>(count: usize) -> Vec<Option<R>> {
     let mut slots = Vec::new();
@@ -142,7 +151,7 @@ impl<E> FirstError<E> {
     /// Keeps the error of item `index` if it is the first.
     fn or(&self, index: usize, error: E) {
         let mut kept = lock(&self.error);
-        if self.index.fetch_min(index, Ordering::Relaxed) > index {
+        if self.index.fetch_min(index, atomic::Ordering::Relaxed) > index {
             *kept = Some(error);
         }
     }
@@ -179,7 +188,7 @@ fn share<T: Send>(
                 }
                 let this = index;
                 index += 1;
-                if this < end.load(Ordering::Relaxed) { batch.next().map(|item| (this, item)) } else { None }
+                if this < end.load(atomic::Ordering::Relaxed) { batch.next().map(|item| (this, item)) } else { None }
             });
         }
     });

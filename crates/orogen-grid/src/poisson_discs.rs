@@ -13,7 +13,6 @@
 
 use std::ops::Range;
 
-use rayon::slice::ParallelSliceMut;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::parallel;
@@ -168,7 +167,7 @@ impl PoissonDiscs {
             })?;
             points.extend(made.into_iter().flatten());
         }
-        points.par_sort_unstable_by_key(|(cell, _)| *cell);
+        parallel::sort_by(&mut points, |(a, _), (b, _)| a.cmp(b));
         Ok(points.into_iter().map(|(_, point)| point).collect())
     }
 

@@ -1,9 +1,8 @@
 //! Summits with their prominence.
 
-use rayon::slice::ParallelSliceMut;
-
 use super::water::Frame;
 use crate::grid::Grid;
+use crate::parallel;
 
 /// A summit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,7 +36,7 @@ pub fn summits(heights: &Grid, frame: &Frame, sea_level: Option<f32>, least: f32
     let sea = sea_level.unwrap_or(f32::NEG_INFINITY);
     let mut order: Vec<u32> = (0..width * height).filter(|cell| at(*cell) > sea).map(|cell| cell as u32).collect();
     order.retain(|cell| at(*cell as usize).is_finite());
-    order.par_sort_unstable_by(|a, b| at(*b as usize).total_cmp(&at(*a as usize)).then(a.cmp(b)));
+    parallel::sort_by(&mut order, |a, b| at(*b as usize).total_cmp(&at(*a as usize)).then(a.cmp(b)));
     let Some(lowest) = order.last().map(|cell| at(*cell as usize)) else { return Vec::new() };
     // The hill of each sample, by its parent; a summit is its own parent.
     let mut parents = vec![NOT_YET; width * height];

@@ -2,7 +2,7 @@
 
 use super::*;
 use std::sync::Barrier;
-use std::sync::atomic::AtomicU32;
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
 
 /// Does work in a pool of this many threads.
@@ -147,5 +147,18 @@ fn a_panic_of_an_item_reaches_the_caller() {
             with_threads(threads, || for_each(0..100, |k| assert!(k != 40, "the fortieth")));
         });
         assert!(caught.is_err());
+    }
+}
+
+#[test]
+fn sorted_items_are_those_of_a_stable_sort() {
+    // Keys that repeat, in an order without runs.
+    let unsorted: Vec<(u32, u32)> = (0..3 * SAMPLES as u32 + 7).map(|k| (k.wrapping_mul(2_654_435_761) >> 20, k)).collect();
+    let mut expected = unsorted.clone();
+    expected.sort_by_key(|(key, _)| *key);
+    for threads in [1, 2, 3, 8] {
+        let mut items = unsorted.clone();
+        with_threads(threads, || sort_by(&mut items, |(a, _), (b, _)| a.cmp(b)));
+        assert_eq!(items, expected, "{threads} threads");
     }
 }
