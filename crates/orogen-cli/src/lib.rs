@@ -9,9 +9,9 @@
 mod bar;
 mod cli;
 mod command;
+mod declared;
 mod device;
 mod disk;
-mod export_options;
 mod failure;
 mod finite;
 mod format;
@@ -22,7 +22,6 @@ mod layer_file;
 mod memory;
 mod moving;
 mod options;
-mod palette;
 mod pictures;
 mod replace;
 mod report;

@@ -13,7 +13,6 @@
 
 use std::ops::Range;
 
-
 use crate::error::{Error, ErrorKind, Result};
 use crate::parallel;
 use crate::progress::Progress;

@@ -2,6 +2,7 @@
 //!
 //! - [`export`]: a registry of layers and formats, for every front end.
 //! - [`jobs`]: a map sheet or a rendered picture of a world as one job.
+//! - [`options`]: declarations of options, from which front ends derive theirs.
 //! - [`builder`]: worlds of any size into files, with resume.
 //! - [`tilemap`]: terrain classes drawn with tiles.
 //! - [`fit`]: recipes like a real place.
@@ -17,4 +18,5 @@ pub mod fit;
 #[doc(hidden)]
 pub mod graph_layout;
 pub mod jobs;
+pub mod options;
 pub mod tilemap;

@@ -76,7 +76,13 @@ impl Language {
     /// The text of a key; in English if this language lacks it, and the key itself if English does, too.
     #[must_use]
     pub fn text(self, key: &'static str) -> &'static str {
-        self.texts().get(key).or_else(|| ENGLISH.get(key)).map_or(key, String::as_str)
+        self.find(key).unwrap_or(key)
+    }
+
+    /// The text of a key, if a catalogue has it.
+    #[must_use]
+    pub fn find(self, key: &str) -> Option<&'static str> {
+        self.texts().get(key).or_else(|| ENGLISH.get(key)).map(String::as_str)
     }
 
     /// The text of a key with values in place of `{name}`.
@@ -98,11 +104,35 @@ impl Language {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use orogen::jobs::map::MapJob;
+    use orogen::jobs::render::RenderJob;
+    use orogen::options::ValueKind;
+    use orogen::tilemap::job::TilemapJob;
     use std::collections::BTreeSet;
 
     /// The names in braces in a text.
     fn placeholders(text: &str) -> BTreeSet<&str> {
         text.split('{').skip(1).filter_map(|part| part.split_once('}')).map(|(name, _)| name).collect()
+    }
+
+    /// The keys of the options of jobs, and of their choices.
+    fn declared() -> BTreeSet<String> {
+        use crate::window::export_fields::option_rows::SAME;
+        let mut keys = BTreeSet::from(["choice.palette-auto".to_owned(), "choice.paper-auto".to_owned()]);
+        let specs = [MapJob::OPTIONS, RenderJob::OPTIONS, TilemapJob::OPTIONS].into_iter().flatten();
+        for spec in specs.filter(|spec| !SAME.contains(&spec.name)) {
+            keys.insert(format!("option.{}", spec.name));
+            let names: Vec<&str> = match spec.kind {
+                // Layouts of tiles are called by their names.
+                ValueKind::Choice(choices) if spec.name != "layout" => {
+                    choices.iter().map(|choice| choice.name).collect()
+                }
+                ValueKind::Tuple(components, _) => components.iter().map(|component| component.name).collect(),
+                _ => continue,
+            };
+            keys.extend(names.into_iter().map(|name| format!("choice.{}-{name}", spec.name)));
+        }
+        keys
     }
 
     #[test]
@@ -126,7 +156,8 @@ mod tests {
         let tables: BTreeSet<&str> =
             Language::English.keys().filter_map(|key| key.split_once('.')).map(|(table, _)| table).collect();
         let keys: BTreeSet<&str> = Language::English.keys().collect();
-        let mut used = BTreeSet::new();
+        let mut used = declared();
+        assert!(used.iter().all(|key| keys.contains(key.as_str())), "{used:?}");
         let mut folders = vec![std::path::PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("src")];
         while let Some(folder) = folders.pop() {
             for entry in std::fs::read_dir(folder).unwrap() {

@@ -96,7 +96,7 @@ pub use orogen_io::{dem, file, format, open, palette, raster, read_at, spool};
 #[doc(hidden)]
 pub use orogen_jobs::graph_layout;
 #[doc(inline)]
-pub use orogen_jobs::{builder, export, fit, jobs, tilemap};
+pub use orogen_jobs::{builder, export, fit, jobs, options, tilemap};
 #[doc(hidden)]
 pub use orogen_output::noise_pictures;
 #[doc(inline)]

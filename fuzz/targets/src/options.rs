@@ -4,15 +4,18 @@ use crate::values::bytes::Bytes;
 use crate::values::number::{self, MOST, Numbers};
 use crate::values::region::{self, Bounds, Rectangle};
 use crate::values::size::Size;
-use crate::values::{arguments, seeds, time};
+use crate::values::{arguments, seeds};
 use clap::{Args, Command, FromArgMatches};
 use orogen::export::derived::list;
-use orogen::export::options::Options;
 use orogen::export::registry;
 use orogen::expression::text::Expression;
 use orogen::format::crs::registry::Crs;
+use orogen::jobs::map::MapJob;
+use orogen::jobs::render::RenderJob;
+use orogen::options::Options;
 use orogen::palette::names;
 use orogen::sheet::paper;
+use orogen::tilemap::job::TilemapJob;
 
 /// Runs the target on an input; one that is no text is skipped.
 pub fn run(input: &[u8]) {
@@ -29,7 +32,6 @@ pub fn run(input: &[u8]) {
         assert!(number.is_finite() && number > 0.0, "{text}");
     }
     assert!(!number::not_negative(text).is_ok_and(|number| number.is_nan() || number < 0.0), "{text}");
-    assert!(!time::clock(text).is_ok_and(|hours| !(0.0..24.0).contains(&hours)), "{text}");
     assert!(!text.parse::<Bytes>().is_ok_and(|bytes| bytes.0 == 0), "{text}");
     if let Ok(Numbers(numbers)) = text.parse() {
         assert!(!numbers.is_empty() && numbers.iter().all(|number| number.is_finite()), "{text}");
@@ -65,12 +67,17 @@ pub fn run(input: &[u8]) {
         let values = vec![0.5; expression.names().len()];
         assert!(expression.value(&values).is_some(), "{text}");
     }
+    let of_files = registry::options().into_iter().map(|(spec, _)| spec);
+    let of_layers = list::options().into_iter().map(|(spec, _)| spec);
+    let of_jobs = [MapJob::OPTIONS, RenderJob::OPTIONS, TilemapJob::OPTIONS].into_iter().flatten();
     let mut options = Options::default();
-    for (spec, _) in registry::options()
-        .into_iter()
-        .map(|(spec, _)| (spec, ()))
-        .chain(list::options().into_iter().map(|(spec, _)| (spec, ())))
-    {
+    for spec in of_files.chain(of_layers) {
         let _ = options.give(spec, text);
     }
+    let mut options = Options::default();
+    for spec in of_jobs {
+        let _ = options.give(spec, text);
+    }
+    assert!(options.number("time").is_none_or(|hours| (0.0..24.0).contains(&hours)), "{text}");
+    assert!(options.numbers("levels").is_none_or(|numbers| numbers.iter().all(|number| number.is_finite())), "{text}");
 }

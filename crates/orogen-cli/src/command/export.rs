@@ -14,7 +14,7 @@ use orogen::file::OutputPolicy;
 use orogen::words::{count, number};
 
 use crate::bar::Bar;
-use crate::export_options::{FormatOptions, LayerOptions};
+use crate::declared::{FormatOptions, LayerOptions};
 use crate::failure::Failure;
 use crate::options::RunOptions;
 use crate::sink::{Sink, is_stdout};

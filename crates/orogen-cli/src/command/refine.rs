@@ -8,7 +8,7 @@ use orogen::export::registry;
 use orogen::file::mark;
 use orogen::words::number;
 
-use crate::export_options::FormatOptions;
+use crate::declared::FormatOptions;
 use crate::failure::Failure;
 use crate::layer_file;
 use crate::options::RunOptions;

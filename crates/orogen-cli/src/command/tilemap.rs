@@ -3,20 +3,17 @@
 use std::path::PathBuf;
 
 use orogen::Progress;
-use orogen::autotile::mask::Layout;
 use orogen::recipe::class::document::CLASS;
-use orogen::tilemap::art::set::SETS;
 use orogen::tilemap::files::SIDE;
 use orogen::tilemap::job::TilemapJob;
-use orogen::tilemap::tileset_source;
 use orogen::world::HEIGHT;
 
 use crate::bar::Bar;
+use crate::declared::TilemapOptions;
 use crate::failure::Failure;
 use crate::options::RunOptions;
 use crate::sink::is_stdout;
 use crate::source::Source;
-use crate::values::name_of::NameOf;
 use crate::values::size::Size;
 use crate::view::SizedView;
 use crate::{interrupt, say};
@@ -29,18 +26,8 @@ pub struct Args {
     recipe: PathBuf,
     #[command(flatten)]
     samples: SizedView,
-    /// Tileset to draw with: `fields-16` or `fields-32`, or a file: a tileset of Tiled (.tsx) with a wang set, or a description (.toml)
-    #[arg(long, value_name = "T", default_value = SETS[0].name)]
-    tileset: String,
-    /// Wang set to use of a .tsx that has several
-    #[arg(long, value_name = "NAME")]
-    wang_set: Option<String>,
-    /// How the tiles follow their surroundings [default: that of the tileset, `blob`]
-    #[arg(long, value_name = "L", value_parser = NameOf::layout())]
-    layout: Option<&'static str>,
-    /// Make the maps for Tiled infinite: chunks of 16 x 16 tiles at the positions of the world's cells, so that maps of parts join
-    #[arg(long)]
-    infinite: bool,
+    #[command(flatten)]
+    options: TilemapOptions,
     /// Output folder; it is created if needed
     #[arg(short, long, value_name = "DIR", default_value = "tilemap")]
     out: PathBuf,
@@ -67,9 +54,8 @@ fn make(args: &Args, progress: &Progress) -> Result<String, Failure> {
     let source = Source::find(&args.recipe)?;
     let budget = args.run.limits.budget();
     let mut recipe = args.samples.recipe(&source, &budget)?;
-    let layout = args.layout.and_then(Layout::named);
-    let tileset = tileset_source::find(&args.tileset, layout, args.wang_set.as_deref())?;
-    let inputs = source.inputs(&recipe).into_iter().chain(tileset.files);
+    let job = TilemapJob::with_options(&args.options.read()?)?;
+    let inputs = source.inputs(&recipe).into_iter().chain(job.files.iter().cloned());
     let policy = args.run.replace.policy(inputs);
     let samples = SizedView {
         size: args
@@ -80,7 +66,6 @@ fn make(args: &Args, progress: &Progress) -> Result<String, Failure> {
     };
     // The classes of a recipe without any depend on the cell of the map.
     let window = samples.window(&args.run.limits.open(recipe.clone(), &budget)?)?;
-    let job = TilemapJob::new(tileset.tileset).with_infinite(args.infinite);
     let source_layer = if recipe.outputs().any(|name| name == CLASS) { CLASS } else { HEIGHT };
     job.prepare(&mut recipe, window.cell)?;
     let world = args.run.limits.open(recipe, &budget)?;

@@ -4,15 +4,15 @@ use std::path::PathBuf;
 
 use orogen::budget::Reservation;
 use orogen::format::png::{Animation, Picture, Pixel};
-use orogen::jobs::render::RenderJob;
+use orogen::jobs::render::{RenderJob, around};
 use orogen::map::contact::{self, Drawn, Sheet, Variant};
+use orogen::options::find_palette;
 use orogen::palette::palette::Palette;
 use orogen::render::scene::Colors;
 use orogen::world::HEIGHT;
 use orogen::{Budget, Grid, Progress, Recipe, Window, World};
 
 use crate::bar::Bar;
-use crate::command::render;
 use crate::failure::Failure;
 use crate::format::Format;
 use crate::moving::{AnimationTarget, Moving};
@@ -22,7 +22,7 @@ use crate::source::{Source, title};
 use crate::values::arguments::Arguments;
 use crate::values::number::{Numbers, seed};
 use crate::values::sweep::Sweep;
-use crate::{finite, interrupt, palette, say};
+use crate::{finite, interrupt, say};
 
 /// Arguments of the command.
 #[derive(Debug, clap::Args)]
@@ -108,7 +108,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     let budget = args.run.limits.budget();
     let recipe = source.read(&budget, &args.arguments)?;
-    let palette = palette::chosen(args.palette.as_deref(), args.nearest_color)?;
+    let palette = args.palette.as_deref().map(find_palette).transpose()?;
+    let palette = if args.nearest_color { palette.map(Palette::nearest) } else { palette };
     let policy = args.run.replace.policy(source.inputs(&recipe)).protecting(&args.palette);
     let asked = asked(args, &recipe)?;
     let outputs = target.outputs(&args.out, if args.animate { frames(asked.len()) } else { 1 }, &policy)?;
@@ -246,7 +247,9 @@ fn job(args: &Args, palette: Option<&Palette>) -> Result<RenderJob, Failure> {
     let mut job = RenderJob::default();
     let width = usize::from(args.size);
     job.size = [width, width * 3 / 4];
-    job.view = render::around(args.camera.as_ref().map(|camera| camera.0.as_slice()))?;
+    if let Some(Numbers(camera)) = &args.camera {
+        job.view = around(camera)?;
+    }
     if palette.is_some() {
         (job.colors, job.palette) = (Colors::Map, palette.cloned());
     }

@@ -2,7 +2,6 @@
 
 pub mod arguments;
 pub mod bytes;
-pub mod color;
 pub mod name_of;
 pub mod number;
 pub mod region;

@@ -1,7 +1,6 @@
-//! Values that are names of formats, engines or layouts.
+//! Values that are names of formats or engines.
 
 use clap::builder::PossibleValue;
-use orogen::autotile::mask::Layout;
 use orogen::export::format::Format;
 use orogen::export::targets::target::EngineTarget;
 use orogen::export::{registry, targets};
@@ -30,15 +29,6 @@ impl NameOf {
         NameOf {
             all: targets::list::all().iter().map(value).collect(),
             declared: |name| targets::list::named(name).map(|target| target.name),
-        }
-    }
-
-    /// The layouts of tilesets.
-    pub fn layout() -> NameOf {
-        let value = |layout: Layout| PossibleValue::new(layout.name()).help(layout.about());
-        NameOf {
-            all: Layout::ALL.into_iter().map(value).collect(),
-            declared: |name| Layout::named(name).map(Layout::name),
         }
     }
 }

@@ -1,14 +1,7 @@
-//! Times of day, and ages.
+//! Ages.
 
 use std::str::FromStr;
 use std::time::Duration;
-
-/// A time of day, as hours after midnight.
-pub fn clock(text: &str) -> Result<f64, String> {
-    let number = |text: &str, end: u32| text.trim().parse::<u32>().ok().filter(|n| *n < end).map(f64::from);
-    let time = text.split_once(':').and_then(|(hour, minute)| Some(number(hour, 24)? + number(minute, 60)? / 60.0));
-    time.ok_or_else(|| "a time must be from 00:00 to 23:59, such as 17:30".into())
-}
 
 /// `--older-than`: the time since the last use.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,20 +25,6 @@ impl FromStr for Age {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn times() {
-        for (text, expect) in [
-            ("17:30", Some(17.5)),
-            ("0:00", Some(0.0)),
-            ("24:00", None),
-            ("12:60", None),
-            ("12", None),
-            ("-1:00", None),
-        ] {
-            assert_eq!(clock(text).ok(), expect, "{text}");
-        }
-    }
 
     #[test]
     fn ages() {

@@ -7,8 +7,10 @@ use std::time::{Duration, Instant};
 
 use orogen::export::derived::layer::{Made, Nature};
 use orogen::export::derived::list as derived;
-use orogen::export::options::{OptionSpec, ValueKind};
 use orogen::export::registry;
+use orogen::jobs::map::MapJob;
+use orogen::jobs::render::RenderJob;
+use orogen::options::{Condition, OptionSpec, ValueKind};
 
 use crate::commands::{WRITERS, Writer, prepare, workplace};
 use crate::harness::{Folder, Running, SMALL, bless, slow};
@@ -303,19 +305,21 @@ const HOSTILE: [(&str, &[&str]); 8] = [
 /// Options whose values are no numbers, or that say where and how the work is done.
 const NO_NUMBERS: [&str; 5] = ["--out", "--memory", "--cache", "--title", "--set"];
 
-/// The options with a value that a command lists, without those of formats and layers.
+/// The options with a value that a command lists, without those that its job, formats and layers declare.
 fn options(folder: &Folder, command: &str) -> Vec<String> {
     let help = folder.good(&[command, "--help"]).text().to_string();
     let named = |line: &str| {
         let (_, rest) = line.split_once("--").filter(|(before, _)| before.trim().len() <= 3)?;
         rest.split_once(" <").map(|(name, _)| format!("--{name}"))
     };
-    let declared: Vec<&str> = declared().into_iter().map(|(spec, _)| spec.name).collect();
+    let is_of = |commands: &[String]| commands.iter().any(|words| words.split(' ').next() == Some(command));
+    let declared = declared().into_iter().filter(|(_, commands)| is_of(commands));
+    let declared: Vec<&str> = declared.map(|(spec, _)| spec.name).collect();
     let is_own = |name: &String| !NO_NUMBERS.contains(&name.as_str()) && !declared.contains(&&name[2..]);
     help.lines().filter_map(named).filter(is_own).collect()
 }
 
-/// The options of formats and layers, each with the arguments of `export` for every format or layer that has it.
+/// The options of jobs, formats and layers, each with the arguments of a command for every job, format or layer that has it.
 fn declared() -> Vec<(&'static OptionSpec, Vec<String>)> {
     let formats = registry::options().into_iter().map(|(spec, all)| {
         let arguments = all.iter().map(|format| format!("export small.toml -o option.{}", format.name));
@@ -331,12 +335,22 @@ fn declared() -> Vec<(&'static OptionSpec, Vec<String>)> {
         format!("export small.toml --layer {name} {needed} -o option.{}", if is_picture { "png" } else { "tif" })
     };
     let layers = derived::options().into_iter().map(|(spec, all)| (spec, all.iter().map(of_layer).collect()));
-    formats.chain(layers).collect()
+    let maps = MapJob::OPTIONS.iter().map(|spec| (spec, vec!["map small.toml --size 100 -o option.png".to_string()]));
+    let renders = RenderJob::OPTIONS.iter().map(|spec| {
+        let needed = match spec.condition {
+            Condition::Given("camera") => "--camera 1,2,300",
+            Condition::Given(_) => "--time 12:00",
+            Condition::Is(..) => "--color map",
+            _ => "",
+        };
+        (spec, vec![format!("render small.toml --size 40x30 {needed} -o option.png")])
+    });
+    formats.chain(layers).chain(maps).chain(renders).collect()
 }
 
 /// The ends of what an option may be, and what is beyond them.
 fn ends(kind: ValueKind) -> Vec<String> {
-    let all = |values: &[&str]| values.iter().map(|value| value.to_string()).collect();
+    let all = |values: &[&str]| values.iter().map(|value| value.to_string()).collect::<Vec<String>>();
     match kind {
         ValueKind::Nothing => Vec::new(),
         ValueKind::Whole(low, high) => {
@@ -349,9 +363,23 @@ fn ends(kind: ValueKind) -> Vec<String> {
         }
         ValueKind::Range => all(&["1,1", "1,0", "-1e300,1e300", "0,1e-300", "-1e30,1e30", "nan,1", "0"]),
         ValueKind::Point => all(&["320,240", "0,0", "1e300,0", "-1e9,1e9", "nan,0", "0"]),
+        ValueKind::Positive | ValueKind::Automatic => all(&["1e-300", "1e300", "0", "-1", "nan", "auto", ""]),
+        ValueKind::Tuple(..) => all(&["0,0", "1,100", "200,24,1e300", "1e300,-1", "nan,0", "0,0,0,0", ""]),
+        ValueKind::Size(most) => {
+            [&all(&["0", "1x1", "64x", "nan", ""])[..], &[format!("{}", most + 1), format!("{most}x1")]].concat()
+        }
+        ValueKind::Clock => all(&["00:00", "23:59", "24:00", "12", ""]),
+        ValueKind::Numbers => all(&["1e300", "-1e300,1e300", "0,0", "1,,2", "nan", ""]),
+        ValueKind::Choice(choices) => {
+            choices.iter().map(|choice| choice.name).chain(["", "wrong"]).map(str::to_string).collect()
+        }
+        ValueKind::Color => all(&["ivory", "#fff", "#12345", ""]),
+        ValueKind::Layer => all(&["slope", "flow", "normal", "wrong", "\u{7}", ""]),
+        ValueKind::Palette => all(&["viridis", "wrong", "absent.cpt", "small.toml", ""]),
+        ValueKind::Paper => all(&["a5", "50x50mm", "2000x2000mm", "0x0mm", "nanxnanmm", ""]),
         ValueKind::Word(words) => words.iter().copied().chain(["", "wrong"]).map(str::to_string).collect(),
         ValueKind::Text => all(&["", "0", "1,2,3", "1e300", "nan", "\u{e9}", "a=1e300,b=0"]),
-        ValueKind::File => all(&["", "absent.txt", "small.toml", "."]),
+        ValueKind::File | ValueKind::Tileset => all(&["", "absent.txt", "small.toml", "."]),
     }
 }
 
@@ -433,7 +461,7 @@ fn no_value_of_any_option_ends_a_command_without_a_sentence() {
             let own = words.iter().position(|word| *word == option);
             let kept = |at: &usize| own.is_none_or(|own| *at != own && *at != own + 1);
             let arguments: Vec<&str> = (0..words.len()).filter(kept).map(|at| words[at]).collect();
-            ends(spec.value_kind).iter().for_each(|value| _ = watch(&arguments, &option, value));
+            ends(spec.kind).iter().for_each(|value| _ = watch(&arguments, &option, value));
         }
     }
     println!("{runs:?} runs");

@@ -74,7 +74,7 @@ fn what_cannot_be_drawn_is_a_sentence_and_leaves_nothing() {
         (&["-o", "a.png", "--contours", "0"], 2, "greater than 0"),
         (&["-o", "a.png", "--contours", "0.0001"], 2, "use a larger interval"),
         (&["-o", "a.png", "--size", "500", "--memory", "1MB"], 1, "of memory"),
-        (&["-o", "a.png", "--paper", "2000x2000mm", "--dpi", "1200"], 2, "lower --dpi"),
+        (&["-o", "a.png", "--paper", "2000x2000mm", "--dpi", "1200"], 2, "use a lower resolution"),
         (&["-o", "a.png", "--window", "0,0,1,1"], 2, "a map needs at least 2 x 2 finite heights"),
         (&["-o", "none/a.png", "--size", "200"], 1, "the folder does not exist"),
     ] {
@@ -118,12 +118,12 @@ fn any_layer_colours_a_map() {
     for (options, expect) in [
         (&["--layer", "nothing"][..], "nothing"),
         (&["--layer", "normal"], "`normal` has 3 channels"),
-        (&["--layer", "slope", "--range", "5"], "--range must be LOW,HIGH"),
-        (&["--layer", "slope", "--range", "9,5"], "the lower value first"),
-        (&["--color", "surfaces", "--layer", "slope"], "cannot be combined with --layer, --palette or --range"),
-        (&["--color", "biomes", "--layer", "slope"], "cannot be combined with --layer, --palette or --range"),
-        (&["--color", "surfaces", "--palette", "viridis"], "cannot be combined with --layer, --palette or --range"),
-        (&["--color", "surfaces", "--range", "0,5"], "cannot be combined with --layer, --palette or --range"),
+        (&["--layer", "slope", "--range", "5"], "two numbers, the lower first"),
+        (&["--layer", "slope", "--range", "9,5"], "the lower first"),
+        (&["--color", "surfaces", "--layer", "slope"], "applies to --color palette"),
+        (&["--color", "biomes", "--layer", "slope"], "applies to --color palette"),
+        (&["--color", "surfaces", "--palette", "viridis"], "applies to --color palette"),
+        (&["--color", "surfaces", "--range", "0,5"], "applies to --color palette"),
         (&["--ramp", "log"], "needs a --layer other than height"),
         (&["--layer", "noise", "--ramp", "log", "--range", "-1,1"], "a logarithmic ramp needs values above 0"),
         (&["--layer", "slope", "--palette", "hypsometric"], "applies to heights only"),
@@ -316,8 +316,8 @@ fn contours_at_given_heights() {
     assert!(told.text().ends_with(", contours at 200 m\n"), "{}", told.text());
     for (more, why) in [
         (&["--levels", "100", "--contours", "50"][..], "--contours"),
-        (&["--levels", "100,high"], "is not a list of numbers"),
-        (&["--levels", ""], "is not a list of numbers"),
+        (&["--levels", "100,high"], "numbers separated by commas"),
+        (&["--levels", ""], "numbers separated by commas"),
         (&["--levels", "100", "--labels", "index"], "no index contours"),
         (&["--labels", "all", "--no-labels"], "--no-labels"),
     ] {
@@ -357,7 +357,7 @@ fn a_grid_has_lines_at_round_coordinates() {
     assert_eq!(lines("b.svg", &["--grid", "1000"]), 5 + 4);
     assert_eq!(lines("c.svg", &[]), 0);
     folder.bad(&map(&["x.svg", "--grid", "2"]), 2, "less than 1 mm apart on this map; use at least 50 m");
-    folder.bad(&map(&["x.svg", "--grid", "no"]), 2, "leave it out for a distance that suits the scale");
+    folder.bad(&map(&["x.svg", "--grid", "no"]), 2, "to leave it out, write --grid at the end");
 }
 
 #[test]

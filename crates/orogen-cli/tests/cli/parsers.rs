@@ -4,8 +4,11 @@
 use crate::values::bytes::Bytes;
 use crate::values::number::{self, MOST, Numbers};
 use crate::values::region::{self, Bounds, Rectangle};
+use crate::values::seeds;
 use crate::values::size::Size;
-use crate::values::{seeds, time};
+use orogen::jobs::map::MapJob;
+use orogen::jobs::render::RenderJob;
+use orogen::options::{OptionSpec, Options};
 use orogen::sheet::paper::Paper;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseResult, TestRng, TestRunner};
@@ -18,6 +21,18 @@ where
     let config = Config { cases, failure_persistence: None, ..Config::default() };
     let rng = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
     TestRunner::new_with_rng(config, rng).run(&strategy, test).unwrap_or_else(|failure| panic!("{failure}"));
+}
+
+/// The declared options of jobs.
+fn declared() -> impl Iterator<Item = &'static OptionSpec> {
+    MapJob::OPTIONS.iter().chain(RenderJob::OPTIONS)
+}
+
+/// An option with this value, if it can have it.
+fn given(name: &str, text: &str) -> Option<Options> {
+    let mut options = Options::default();
+    options.give(declared().find(|spec| spec.name == name)?, text).ok()?;
+    Some(options)
 }
 
 /// Finite numbers, as people and programs write them.
@@ -61,7 +76,7 @@ fn sizes_seeds_and_times_are_read_as_they_are_written() {
         Ok(())
     });
     check(500, (0u32..30, 0u32..70), |(hour, minute)| {
-        let time = time::clock(&format!("{hour}:{minute:02}")).ok();
+        let time = given("time", &format!("{hour}:{minute:02}")).and_then(|options| options.number("time"));
         let expected = (hour < 24 && minute < 60).then_some(f64::from(hour) + f64::from(minute) / 60.0);
         prop_assert_eq!(time, expected);
         Ok(())
@@ -142,10 +157,10 @@ fn papers_are_read_in_millimetres() {
 #[test]
 fn other_texts_are_refused_with_a_message() {
     check(3000, "[-+0-9.,:;xX× a-zA-Zé%=#\u{0}]{0,16}", |text| {
+        let declared = declared().map(|spec| spec.check(&text).err());
         let messages = [
             text.parse::<Size>().err(),
             number::seed(&text).err(),
-            time::clock(&text).err(),
             text.parse::<Bytes>().err(),
             text.parse::<Numbers>().err(),
             text.parse::<Rectangle>().err(),
@@ -154,7 +169,9 @@ fn other_texts_are_refused_with_a_message() {
             text.parse::<Paper>().err(),
             region::place(&text).err(),
         ];
-        prop_assert!(messages.iter().flatten().all(|message| message.len() > 10 && !message.ends_with('.')));
+        prop_assert!(
+            messages.into_iter().chain(declared).flatten().all(|message| message.len() > 10 && !message.ends_with('.'))
+        );
         Ok(())
     });
 }

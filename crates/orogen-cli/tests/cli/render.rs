@@ -67,7 +67,7 @@ fn what_cannot_be_is_a_sentence_and_leaves_nothing() {
         (&["--camera", "1,100"], "must be from -90 to 90"),
         (&["--camera", "1,-5"], "must be above the horizon"),
         (&["--camera", "1,5,0"], "greater than 0"),
-        (&["--camera", "a,b"], "not a list of numbers"),
+        (&["--camera", "a,b"], "numbers separated by commas"),
         (&["--camera", "1,2", "--look", "3,4"], "X,Y,HEIGHT"),
         (&["--camera", "1,2,3", "--look", "1,2"], "directly above the point that it looks at"),
         (&["--sun", "290"], "AZIMUTH,ELEVATION"),

@@ -73,7 +73,7 @@ impl Layout {
 
     /// Its name, as on the command line.
     #[must_use]
-    pub fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         match self {
             Layout::Blob => "blob",
             Layout::Edge => "edge",
@@ -91,7 +91,7 @@ impl Layout {
 
     /// What it is for, in a line.
     #[must_use]
-    pub fn about(self) -> &'static str {
+    pub const fn about(self) -> &'static str {
         match self {
             Layout::Blob => "47 tiles a class: by the sides of a cell, and its corners between two sides",
             Layout::Edge => "16 tiles a class: by the sides of a cell",

@@ -153,7 +153,8 @@ fn a_panic_of_an_item_reaches_the_caller() {
 #[test]
 fn sorted_items_are_those_of_a_stable_sort() {
     // Keys that repeat, in an order without runs.
-    let unsorted: Vec<(u32, u32)> = (0..3 * SAMPLES as u32 + 7).map(|k| (k.wrapping_mul(2_654_435_761) >> 20, k)).collect();
+    let unsorted: Vec<(u32, u32)> =
+        (0..3 * SAMPLES as u32 + 7).map(|k| (k.wrapping_mul(2_654_435_761) >> 20, k)).collect();
     let mut expected = unsorted.clone();
     expected.sort_by_key(|(key, _)| *key);
     for threads in [1, 2, 3, 8] {

@@ -6,11 +6,11 @@ use std::path::Path;
 use super::files::{Files, suffixed};
 use super::format::refuse;
 use super::layer_source::LayerSource;
-use super::options::{OptionSpec, Options, ValueKind};
 use super::place;
 use super::quantizer;
 use super::sidecar::{self, SampleEncoding};
 use super::weights_preview;
+use crate::options::{OptionSpec, Options, ValueKind};
 use orogen_grid::grid::Grid;
 use orogen_io::format::levels::Levels;
 use orogen_io::format::notes::SOFTWARE;
@@ -20,29 +20,27 @@ use orogen_io::palette::color::Encoder;
 use orogen_io::samples::interleaved;
 
 /// The option for the direction of green in normal maps.
-pub const NORMAL: OptionSpec = OptionSpec {
-    name: "normal",
-    value: "WAY",
-    about: "Direction of green in a normal map: opengl (up) or directx (down) [default: opengl]",
-    value_kind: ValueKind::Word(&["opengl", "directx"]),
-};
+pub const NORMAL: OptionSpec = OptionSpec::new(
+    "normal",
+    "WAY",
+    ValueKind::Word(&["opengl", "directx"]),
+    "Direction of green in a normal map: opengl (up) or directx (down) [default: opengl]",
+);
 
 /// The option for the layout of weights.
-pub const WEIGHTS: OptionSpec = OptionSpec {
-    name: "weights",
-    value: "HOW",
-    about: "Weights of a splat map: rgba, four per picture (NAME.png, NAME_2.png, ...), or layers, one grey picture each (NAME_grass.png, ...) \
+pub const WEIGHTS: OptionSpec = OptionSpec::new(
+    "weights",
+    "HOW",
+    ValueKind::Word(&["rgba", "layers"]),
+    "Weights of a splat map: rgba, four per picture (NAME.png, NAME_2.png, ...), or layers, one grey picture each (NAME_grass.png, ...) \
             [default: rgba]",
-    value_kind: ValueKind::Word(&["rgba", "layers"]),
-};
+);
 
 /// The option for a picture beside weights.
-pub const PREVIEW: OptionSpec = OptionSpec {
-    name: "preview",
-    value: "",
-    about: "Write a picture of a splat map beside it: the surfaces in their colors with relief shading (NAME_preview.png)",
-    value_kind: ValueKind::Nothing,
-};
+pub const PREVIEW: OptionSpec = OptionSpec::switch(
+    "preview",
+    "Write a picture of a splat map beside it: the surfaces in their colors with relief shading (NAME_preview.png)",
+);
 
 /// Writes normals as red (east), green (north, or south for DirectX) and blue (up); -1 to 1 becomes 0 to 255 or 65535.
 ///

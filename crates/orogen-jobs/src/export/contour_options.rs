@@ -1,33 +1,29 @@
 //! Options of contours, common to all formats of lines.
 
-use super::options::{OptionSpec, Options, ValueKind};
+use crate::options::{OptionSpec, Options, ValueKind};
 use orogen_grid::contour::levels::given;
 use orogen_grid::error::{Error, ErrorKind, Result};
 
 /// `--interval`.
-pub const INTERVAL: OptionSpec = OptionSpec {
-    name: "interval",
-    value: "M",
-    about: "Contour interval in metres [default: a round number that gives 10 to 25 contours]",
-    value_kind: ValueKind::Number(1e-6, 1e6),
-};
+pub const INTERVAL: OptionSpec = OptionSpec::new(
+    "interval",
+    "M",
+    ValueKind::Number(1e-6, 1e6),
+    "Contour interval in metres [default: a round number that gives 10 to 25 contours]",
+);
 
 /// `--levels`.
-pub const LEVELS: OptionSpec = OptionSpec {
-    name: "levels",
-    value: "A,B,...",
-    about: "Contour heights, instead of an interval",
-    value_kind: ValueKind::Text,
-};
+pub const LEVELS: OptionSpec =
+    OptionSpec::new("levels", "A,B,...", ValueKind::Text, "Contour heights, instead of an interval");
 
 /// `--smooth`.
-pub const SMOOTH: OptionSpec = OptionSpec {
-    name: "smooth",
-    value: "N",
-    about: "Passes of corner cutting for lines, each doubling their points, and of smoothing for rivers \
+pub const SMOOTH: OptionSpec = OptionSpec::new(
+    "smooth",
+    "N",
+    ValueKind::Whole(0, 6),
+    "Passes of corner cutting for lines, each doubling their points, and of smoothing for rivers \
             [default: 0 for contours, 1 for shores and watersheds, 3 for rivers]",
-    value_kind: ValueKind::Whole(0, 6),
-};
+);
 
 /// Checks that the options of contours are consistent and valid.
 ///

@@ -2,7 +2,7 @@
 
 use super::contour_options::{INTERVAL, LEVELS, SMOOTH, parse};
 use super::memory::whole;
-use super::options::Options;
+use crate::options::Options;
 use orogen_grid::contour::chaikin::smooth;
 use orogen_grid::contour::levels::{every, round_interval};
 use orogen_grid::contour::line::Line;

@@ -4,7 +4,7 @@ use std::io;
 
 use super::files::Files;
 use super::layer_source::LayerSource;
-use super::options::{OptionSpec, Options};
+use crate::options::{OptionSpec, Options};
 use orogen_grid::error::{Error, ErrorKind};
 use orogen_grid::grid::Window;
 

@@ -7,7 +7,7 @@ use super::derived::list;
 use super::derived::rows::Rows;
 use super::features::layer::VectorLayer;
 use super::features::list as vector_list;
-use super::options::Options;
+use crate::options::Options;
 use orogen_engine::layer::LayerKind;
 use orogen_engine::world::{HEIGHT, World};
 use orogen_grid::analysis::finite::FiniteCount;

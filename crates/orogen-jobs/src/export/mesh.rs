@@ -8,7 +8,7 @@ use super::files::Files;
 use super::layer_source::LayerSource;
 use super::memory::whole;
 use super::mesh_tint;
-use super::options::{OptionSpec, Options, ValueKind};
+use crate::options::{OptionSpec, Options, ValueKind};
 use orogen_grid::analysis::halo::Halo;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -26,36 +26,32 @@ use orogen_output::mesh::shape::Shape;
 use orogen_output::mesh::surface::Surface;
 
 /// `--max-error`.
-pub const MAX_ERROR: OptionSpec = OptionSpec {
-    name: "max-error",
-    value: "M",
-    about: "Adaptive mesh with a vertical error of at most M metres at every sample [default: a full grid, two triangles per cell]",
-    value_kind: ValueKind::Number(0.0, 1e9),
-};
+pub const MAX_ERROR: OptionSpec = OptionSpec::new(
+    "max-error",
+    "M",
+    ValueKind::Number(0.0, 1e9),
+    "Adaptive mesh with a vertical error of at most M metres at every sample [default: a full grid, two triangles per cell]",
+);
 
 /// `--exaggeration`.
-pub const EXAGGERATION: OptionSpec = OptionSpec {
-    name: "exaggeration",
-    value: "F",
-    about: "Vertical exaggeration factor [default: 1]",
-    value_kind: ValueKind::Number(0.001, 1000.0),
-};
+pub const EXAGGERATION: OptionSpec =
+    OptionSpec::new("exaggeration", "F", ValueKind::Number(0.001, 1000.0), "Vertical exaggeration factor [default: 1]");
 
 /// `--height-curve`.
-pub const HEIGHT_CURVE: OptionSpec = OptionSpec {
-    name: "height-curve",
-    value: "A:B,...",
-    about: "Curve applied to the heights, from 0:0 (lowest of the window) to 1:1 (highest), such as 0:0,0.5:0.2,1:1",
-    value_kind: ValueKind::Text,
-};
+pub const HEIGHT_CURVE: OptionSpec = OptionSpec::new(
+    "height-curve",
+    "A:B,...",
+    ValueKind::Text,
+    "Curve applied to the heights, from 0:0 (lowest of the window) to 1:1 (highest), such as 0:0,0.5:0.2,1:1",
+);
 
 /// `--color`.
-pub const COLOR: OptionSpec = OptionSpec {
-    name: "color",
-    value: "HOW",
-    about: "Map colours without shading, stored as texture (a picture), vertex or none [default: texture; ply: vertex]",
-    value_kind: ValueKind::Word(&["texture", "vertex", "none"]),
-};
+pub const COLOR: OptionSpec = OptionSpec::new(
+    "color",
+    "HOW",
+    ValueKind::Word(&["texture", "vertex", "none"]),
+    "Map colours without shading, stored as texture (a picture), vertex or none [default: texture; ply: vertex]",
+);
 
 /// Approximate time per sample on one core, in nanoseconds: for choosing the vertices of an adaptive mesh or of a full
 /// grid, for painting, and for writing triangles.

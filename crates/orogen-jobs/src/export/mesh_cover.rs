@@ -8,7 +8,7 @@ use super::derived::{albedo, occlusion, roughness};
 use super::format::refuse;
 use super::layer_source::LayerSource;
 use super::mesh::COLOR;
-use super::options::{OptionSpec, Options, ValueKind};
+use crate::options::{OptionSpec, Options};
 use orogen_engine::recipe::document::Recipe;
 use orogen_engine::recipe::surface::expand::expand;
 use orogen_grid::grid::{Grid, Window};
@@ -18,12 +18,10 @@ use orogen_output::mesh::normal_map;
 use orogen_output::mesh::surface::Surface;
 
 /// `--surfaces`.
-pub const SURFACES: OptionSpec = OptionSpec {
-    name: "surfaces",
-    value: "",
-    about: "Use the colors of the recipe's surfaces (or of the standard ones) instead of map colors; in glb with roughness, occlusion, and normal maps for meshes with few triangles",
-    value_kind: ValueKind::Nothing,
-};
+pub const SURFACES: OptionSpec = OptionSpec::switch(
+    "surfaces",
+    "Use the colors of the recipe's surfaces (or of the standard ones) instead of map colors; in glb with roughness, occlusion, and normal maps for meshes with few triangles",
+);
 
 /// Adds the nodes to a recipe that compute its surfaces, if the options request them; call it before the world is
 /// opened.

@@ -5,7 +5,7 @@ use std::io;
 use super::format::refuse;
 use super::layer_source::LayerSource;
 use super::mesh::Prepared;
-use super::options::{OptionSpec, Options, ValueKind};
+use crate::options::{OptionSpec, Options};
 use orogen_engine::objects::Object;
 use orogen_engine::world::HEIGHT;
 use orogen_grid::grid::Window;
@@ -14,12 +14,10 @@ use orogen_grid::words::count;
 use orogen_output::mesh::objects::{Instance, ObjectMesh};
 
 /// `--objects`.
-pub const OBJECTS: OptionSpec = OptionSpec {
-    name: "objects",
-    value: "",
-    about: "Add the objects of the recipe's scatter: a node for each kind with a placeholder mesh and an instance for each object",
-    value_kind: ValueKind::Nothing,
-};
+pub const OBJECTS: OptionSpec = OptionSpec::switch(
+    "objects",
+    "Add the objects of the recipe's scatter: a node for each kind with a placeholder mesh and an instance for each object",
+);
 
 /// Memory of an object and its instance, in bytes.
 const OBJECT_MEMORY: u64 = 160;

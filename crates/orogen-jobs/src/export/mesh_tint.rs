@@ -3,19 +3,19 @@
 use std::io;
 
 use super::layer_source::LayerSource;
-use super::options::{OptionSpec, Options, ValueKind};
+use crate::options::{OptionSpec, Options, ValueKind};
 use orogen_engine::world::World;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_io::palette::tint::Tint;
 
 /// `--color-range`.
-pub const COLOR_RANGE: OptionSpec = OptionSpec {
-    name: "color-range",
-    value: "LOW,HIGH",
-    about: "Heights at the ends of the color scale [default: approximate minimum and maximum of the world, the same for all its windows]",
-    value_kind: ValueKind::Range,
-};
+pub const COLOR_RANGE: OptionSpec = OptionSpec::new(
+    "color-range",
+    "LOW,HIGH",
+    ValueKind::Range,
+    "Heights at the ends of the color scale [default: approximate minimum and maximum of the world, the same for all its windows]",
+);
 
 /// Samples along the longer side of the overview of a world.
 const OVERVIEW: usize = 256;
@@ -29,7 +29,7 @@ const CELLS: f64 = 4096.0;
 pub fn of(source: &LayerSource, options: &Options) -> io::Result<Tint> {
     let world = source.world();
     let sea_level = world.recipe().world.sea_level as f32;
-    match options.range(COLOR_RANGE.name) {
+    match options.pair(COLOR_RANGE.name) {
         Some([low, high]) => Ok(Tint::hypsometric(low as f32, high as f32, sea_level)),
         None => Ok(Tint::fit(&overview(source)?, sea_level)),
     }

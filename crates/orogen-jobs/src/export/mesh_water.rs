@@ -7,19 +7,17 @@ use super::features::source::FeatureSource;
 use super::format::refuse;
 use super::layer_source::LayerSource;
 use super::mesh::Prepared;
-use super::options::{OptionSpec, Options, ValueKind};
+use crate::options::{OptionSpec, Options};
 use orogen_engine::world::HEIGHT;
 use orogen_grid::grid::Window;
 use orogen_grid::hydrography::water::{Cover, MEMORY};
 use orogen_output::mesh::water::{Ribbon, WaterMesh};
 
 /// `--water`.
-pub const WATER: OptionSpec = OptionSpec {
-    name: "water",
-    value: "",
-    about: "Add water: rivers as ribbons, lakes and the sea as level surfaces, as translucent meshes in separate nodes",
-    value_kind: ValueKind::Nothing,
-};
+pub const WATER: OptionSpec = OptionSpec::switch(
+    "water",
+    "Add water: rivers as ribbons, lakes and the sea as level surfaces, as translucent meshes in separate nodes",
+);
 
 /// Linear red, green and blue, and opacity, of rivers, lakes and the sea.
 const RIVERS: [f32; 4] = [0.045, 0.16, 0.27, 0.85];

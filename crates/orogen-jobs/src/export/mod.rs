@@ -35,7 +35,6 @@ pub mod mesh_cover;
 pub(crate) mod mesh_objects;
 pub mod mesh_tint;
 pub(crate) mod mesh_water;
-pub mod options;
 pub mod place;
 pub(crate) mod print_bed;
 pub mod quantizer;

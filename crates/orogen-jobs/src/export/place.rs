@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 
 use super::files::Files;
 use super::layer_source::LayerSource;
-use super::options::Options;
 use super::sidecar::{self, NO_SIDECAR, SampleEncoding};
+use crate::options::Options;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_io::file::{self, Existing, Output, Staged};
 use orogen_io::format::affine::Affine;

@@ -4,15 +4,15 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::words::number;
 
 use super::mesh::EXAGGERATION;
-use super::options::{OptionSpec, ValueKind};
+use crate::options::{OptionSpec, ValueKind};
 
 /// `--bed`.
-pub const BED: OptionSpec = OptionSpec {
-    name: "bed",
-    value: "WxDxH",
-    about: "Width and depth of the printer's bed and height above it in millimetres, such as 220x220x250: a model that does not fit is refused [default: no check]",
-    value_kind: ValueKind::Text,
-};
+pub const BED: OptionSpec = OptionSpec::new(
+    "bed",
+    "WxDxH",
+    ValueKind::Text,
+    "Width and depth of the printer's bed and height above it in millimetres, such as 220x220x250: a model that does not fit is refused [default: no check]",
+);
 
 /// Usual thickness of a layer in millimetres, and how many of them the advised relief has.
 const LAYER: f64 = 0.2;
@@ -90,7 +90,7 @@ pub fn flatness(model: &ModelSize) -> Option<String> {
         return None;
     }
     let high = format!("the relief is {} mm high, less than a layer of {LAYER} mm", number(rounded(relief, 100.0)));
-    let ValueKind::Number(_, most) = EXAGGERATION.value_kind else { return Some(high) };
+    let ValueKind::Number(_, most) = EXAGGERATION.kind else { return Some(high) };
     let advised = digits(model.exaggeration * LAYERS * LAYER / relief, 2, f64::round);
     Some(match advised <= most {
         true => format!("{high}; use an exaggeration of about {}", number(advised)),

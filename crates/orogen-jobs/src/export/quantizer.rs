@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use super::files::Files;
 use super::format::refuse;
 use super::layer_source::LayerSource;
-use super::options::{OptionSpec, Options, ValueKind};
+use crate::options::{OptionSpec, Options, ValueKind};
 use orogen_engine::layer::LayerKind;
 use orogen_io::format::levels::Levels;
 use orogen_io::format::npy;
@@ -13,28 +13,28 @@ use orogen_io::samples;
 use orogen_io::spool::Spool;
 
 /// The option for the range.
-pub const RANGE: OptionSpec = OptionSpec {
-    name: "range",
-    value: "LOW,HIGH",
-    about: "Values of the lowest and the highest level, to use the same scale for several windows [default: minimum and maximum of this window]",
-    value_kind: ValueKind::Range,
-};
+pub const RANGE: OptionSpec = OptionSpec::new(
+    "range",
+    "LOW,HIGH",
+    ValueKind::Range,
+    "Values of the lowest and the highest level, to use the same scale for several windows [default: minimum and maximum of this window]",
+);
 
 /// The option for the order of rows.
-pub const FIRST_ROW: OptionSpec = OptionSpec {
-    name: "first-row",
-    value: "SIDE",
-    about: "Side of the first row, north or south [default: north]",
-    value_kind: ValueKind::Word(&["north", "south"]),
-};
+pub const FIRST_ROW: OptionSpec = OptionSpec::new(
+    "first-row",
+    "SIDE",
+    ValueKind::Word(&["north", "south"]),
+    "Side of the first row, north or south [default: north]",
+);
 
 /// The option for 8 or 16 bits.
-pub const BITS: OptionSpec = OptionSpec {
-    name: "bits",
-    value: "N",
-    about: "Bits per sample, 8 or 16 [default: 16, for normals 8]",
-    value_kind: ValueKind::Word(&["8", "16"]),
-};
+pub const BITS: OptionSpec = OptionSpec::new(
+    "bits",
+    "N",
+    ValueKind::Word(&["8", "16"]),
+    "Bits per sample, 8 or 16 [default: 16, for normals 8]",
+);
 
 /// The largest level for the given options.
 #[must_use]
@@ -66,7 +66,7 @@ impl<'s, 'w> Quantizer<'s, 'w> {
     ///
     /// Fails if the source fails, or if labels exceed the largest level `most`.
     pub fn new(source: &'s mut LayerSource<'w>, options: &Options, most: u16, files: &Files) -> io::Result<Self> {
-        let asked = options.range("range").map(|[low, high]| Levels::new(low as f32, high as f32));
+        let asked = options.pair("range").map(|[low, high]| Levels::new(low as f32, high as f32));
         let from_south = from_south(options);
         let kept = match asked.is_none() || from_south {
             true => Some(keep(source, files)?),

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::format::Format;
 use super::formats;
-use super::options::{OptionSpec, Options, by_name};
+use crate::options::{OptionSpec, Options, by_name};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::words::nearest;
 

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::files::Files;
 use super::layer_source::LayerSource;
-use super::options::{OptionSpec, Options, ValueKind};
+use crate::options::{OptionSpec, Options};
 use orogen_grid::hex;
 use orogen_io::format::dem::Georeference;
 use orogen_io::format::levels::Levels;
@@ -17,12 +17,10 @@ use orogen_io::format::sidecar::own;
 use orogen_io::fs::{self, File};
 
 /// The option that omits it.
-pub const NO_SIDECAR: OptionSpec = OptionSpec {
-    name: "no-sidecar",
-    value: "",
-    about: "Do not write files beside the output: no NAME.json (size, cell size, range, seed and other metadata), no .prj, no world file and no .aux.xml",
-    value_kind: ValueKind::Nothing,
-};
+pub const NO_SIDECAR: OptionSpec = OptionSpec::switch(
+    "no-sidecar",
+    "Do not write files beside the output: no NAME.json (size, cell size, range, seed and other metadata), no .prj, no world file and no .aux.xml",
+);
 
 /// The encoding of samples in a file.
 #[derive(Debug, Clone, Default)]

@@ -6,8 +6,8 @@ use super::format::refuse;
 use super::layer_source::LayerSource;
 use super::memory::whole;
 use super::mesh::{self, EXAGGERATION, HEIGHT_CURVE, MAX_ERROR, Prepared};
-use super::options::{OptionSpec, Options, ValueKind};
 use super::print_bed::{BED, Bed, ModelSize, flatness, shown};
+use crate::options::{OptionSpec, Options, ValueKind};
 use orogen_grid::grid::Window;
 use orogen_grid::progress::Progress;
 use orogen_grid::words::{count, number};
@@ -16,52 +16,52 @@ use orogen_output::mesh::solid::{LEGIBLE, Print, RAISED, Solid};
 use orogen_output::proportions;
 
 /// `--print-size`.
-pub const PRINT_SIZE: OptionSpec = OptionSpec {
-    name: "print-size",
-    value: "MM",
-    about: "Length of the longer side in millimetres [default: 150]",
-    value_kind: ValueKind::Number(1.0, 1e5),
-};
+pub const PRINT_SIZE: OptionSpec = OptionSpec::new(
+    "print-size",
+    "MM",
+    ValueKind::Number(1.0, 1e5),
+    "Length of the longer side in millimetres [default: 150]",
+);
 
 /// `--base`.
-pub const BASE: OptionSpec = OptionSpec {
-    name: "base",
-    value: "MM",
-    about: "Thickness of the base below the lowest sample, in millimetres [default: 3]",
-    value_kind: ValueKind::Number(0.1, 1e4),
-};
+pub const BASE: OptionSpec = OptionSpec::new(
+    "base",
+    "MM",
+    ValueKind::Number(0.1, 1e4),
+    "Thickness of the base below the lowest sample, in millimetres [default: 3]",
+);
 
 /// `--cut`.
-pub const CUT: OptionSpec = OptionSpec {
-    name: "cut",
-    value: "M",
-    about: "Print only the land above M metres, with its outline; its base begins there [default: all of the window]",
-    value_kind: ValueKind::Number(-1e6, 1e6),
-};
+pub const CUT: OptionSpec = OptionSpec::new(
+    "cut",
+    "M",
+    ValueKind::Number(-1e6, 1e6),
+    "Print only the land above M metres, with its outline; its base begins there [default: all of the window]",
+);
 
 /// `--hollow`.
-pub const HOLLOW: OptionSpec = OptionSpec {
-    name: "hollow",
-    value: "MM",
-    about: "Hollow model, open below, with walls and a ceiling of at least MM millimetres, less than the base [default: full]",
-    value_kind: ValueKind::Number(0.8, 1e3),
-};
+pub const HOLLOW: OptionSpec = OptionSpec::new(
+    "hollow",
+    "MM",
+    ValueKind::Number(0.8, 1e3),
+    "Hollow model, open below, with walls and a ceiling of at least MM millimetres, less than the base [default: full]",
+);
 
 /// `--text`.
-pub const TEXT: OptionSpec = OptionSpec {
-    name: "text",
-    value: "TEXT",
-    about: "Letters on the southern side of the base, as large as it has room for [default: none]",
-    value_kind: ValueKind::Text,
-};
+pub const TEXT: OptionSpec = OptionSpec::new(
+    "text",
+    "TEXT",
+    ValueKind::Text,
+    "Letters on the southern side of the base, as large as it has room for [default: none]",
+);
 
 /// `--text-style`.
-pub const TEXT_STYLE: OptionSpec = OptionSpec {
-    name: "text-style",
-    value: "HOW",
-    about: "Letters of --text: raised, which stand out of the side, or engraved [default: raised]",
-    value_kind: ValueKind::Word(&["raised", "engraved"]),
-};
+pub const TEXT_STYLE: OptionSpec = OptionSpec::new(
+    "text-style",
+    "HOW",
+    ValueKind::Word(&["raised", "engraved"]),
+    "Letters of --text: raised, which stand out of the side, or engraved [default: raised]",
+);
 
 /// The options of solids.
 pub const OPTIONS: &[OptionSpec] =

@@ -1,14 +1,14 @@
 //! A map sheet as one job.
 
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::sheet_format::SheetFormat;
-use super::{finite, map_names, map_water};
+use super::{finite, map_names, map_options, map_water};
 use crate::export::derived::list;
 use crate::export::layer_source::LayerSource;
-use crate::export::options::Options;
 use crate::export::{biome_cover, place, sheet_cover};
+use crate::options::{OptionSpec, Options};
 use orogen_engine::budget::Reservation;
 use orogen_engine::layer::LayerKind;
 use orogen_engine::recipe::document::Recipe;
@@ -23,7 +23,7 @@ use orogen_io::file::{self, Output};
 use orogen_io::format::affine::Affine;
 use orogen_io::format::dem::Georeference;
 use orogen_io::format::notes::SOFTWARE;
-use orogen_io::format::points::{NamedLine, NamedPoint, NamedPoints};
+use orogen_io::format::points::NamedPoints;
 use orogen_io::palette::named;
 use orogen_io::palette::palette::Palette;
 use orogen_output::sheet::draw::{Sheet, draw};
@@ -113,11 +113,11 @@ pub struct MapJob {
     pub river_area: Option<f64>,
     /// Minimum area of lakes in m^2; by default it depends on the scale.
     pub lake_area: Option<f64>,
-    /// Places whose names are shown, in map coordinates, or in metres east and north of the world's origin; the most important first. Those without room
-    /// are left out.
-    pub names: Vec<NamedPoint>,
-    /// Names along lines, likewise.
-    pub line_names: Vec<NamedLine>,
+    /// Points and lines whose names are shown, in map coordinates, or in metres east and north of the world's origin; the most important first. Those without
+    /// room are left out.
+    pub names: NamedPoints,
+    /// A file of points and lines (`.csv` or `.geojson`), in the same coordinates, with further names.
+    pub names_file: Option<PathBuf>,
     /// The denominator of the map's scale, such as 100 000, which sets the size of the page. Paper has a size of its own.
     pub map_scale: Option<f64>,
     /// The heading.
@@ -180,8 +180,8 @@ impl MapJob {
             grid: None,
             river_area: None,
             lake_area: None,
-            names: Vec::new(),
-            line_names: Vec::new(),
+            names: NamedPoints::default(),
+            names_file: None,
             map_scale: None,
             title: String::new(),
             paper: None,
@@ -217,13 +217,15 @@ impl MapJob {
         MapJob { window: Some(window), ..self }
     }
 
-    /// The same with the names in a file of points and lines (`.csv` or `.geojson`), in the coordinates of a recipe's world.
+    /// The options, for front ends.
+    pub const OPTIONS: &[OptionSpec] = map_options::OPTIONS;
+
+    /// The same with all that is chosen by [`OPTIONS`](MapJob::OPTIONS).
     ///
     /// # Errors
-    /// Those of [`NamedPoints::read_on`].
-    pub fn with_names_from(self, path: &Path, recipe: &Recipe) -> Result<MapJob> {
-        let read = NamedPoints::read_on(path, recipe.georeference().as_ref(), "the heights", MAX_NAMES)?;
-        Ok(MapJob { names: read.points, line_names: read.lines, ..self })
+    /// If an option does not apply, a palette cannot be read, or the errors of [`check`](MapJob::check).
+    pub fn with_options(self, options: &Options) -> Result<MapJob> {
+        map_options::read(self, options)
     }
 
     /// Checks that the options do not contradict each other.
@@ -325,7 +327,8 @@ impl MapJob {
         let mut options = self.options(world);
         let mut warnings = Vec::new();
         let map = options.map.clone();
-        map_names::add(&mut options, (&self.names, &self.line_names), map.as_ref(), &window, &mut warnings);
+        let names = self.all_names(map.as_ref())?;
+        map_names::add(&mut options, &names, map.as_ref(), &window, &mut warnings);
         let shows_biomes = self.shows_biomes(world.recipe());
         let (plan, reserved) = world.plan_beside(&[HEIGHT], &window, self.memory(&window, shows_biomes))?;
         let work = world.work(&plan)?;
@@ -393,6 +396,17 @@ impl MapJob {
             writing,
             _reserved: reserved,
         })
+    }
+
+    /// The names, those of the file last.
+    fn all_names(&self, map: Option<&Georeference>) -> Result<NamedPoints> {
+        let mut names = self.names.clone();
+        if let Some(path) = &self.names_file {
+            let read = NamedPoints::read_on(path, map, "the heights", MAX_NAMES)?;
+            names.points.extend(read.points);
+            names.lines.extend(read.lines);
+        }
+        Ok(names)
     }
 
     fn is_covered(&self) -> bool {

@@ -3,7 +3,7 @@
 use orogen_grid::grid::Window;
 use orogen_grid::words::number;
 use orogen_io::format::dem::Georeference;
-use orogen_io::format::points::{NamedLine, NamedPoint};
+use orogen_io::format::points::NamedPoints;
 use orogen_output::sheet::options::{LineName, PlaceKind, PlaceName, SheetOptions};
 
 /// Maximum number of names in a message.
@@ -25,7 +25,7 @@ fn kind(word: Option<&String>) -> PlaceKind {
 /// Adds the named points and lines inside a window to the options of its sheet, with a warning about others.
 pub fn add(
     options: &mut SheetOptions,
-    (points, lines): (&[NamedPoint], &[NamedLine]),
+    names: &NamedPoints,
     map: Option<&Georeference>,
     window: &Window,
     warnings: &mut Vec<String>,
@@ -38,7 +38,7 @@ pub fn add(
         [share(east, window.x, window.width), share(south, window.y, window.height)]
     };
     let is_inside = |at: &[f64; 2]| at.iter().all(|share| (0.0..=1.0).contains(share));
-    for point in points {
+    for point in &names.points {
         let Some(name) = point.name.clone() else { continue };
         let at = shares(point.at);
         let kind = kind(point.kind.as_ref());
@@ -47,7 +47,7 @@ pub fn add(
             false => outside.push(name),
         }
     }
-    for line in lines {
+    for line in &names.lines {
         let Some(name) = line.name.clone() else { continue };
         let points: Vec<[f64; 2]> = line.points.iter().map(|at| shares(*at)).collect();
         let is_water = line.kind.is_none() || matches!(kind(line.kind.as_ref()), PlaceKind::River | PlaceKind::Water);

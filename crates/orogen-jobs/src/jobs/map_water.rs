@@ -2,7 +2,7 @@
 
 use crate::export::features::options::FeatureOptions;
 use crate::export::features::source::FeatureSource;
-use crate::export::options::Options;
+use crate::options::Options;
 use orogen_engine::node::Node;
 use orogen_engine::recipe::document::Recipe;
 use orogen_engine::recipe::network::OwnNetwork;

@@ -7,6 +7,8 @@ mod color_bar;
 mod finite;
 pub mod map;
 mod map_names;
+mod map_options;
 mod map_water;
 pub mod render;
+mod render_options;
 pub mod sheet_format;

@@ -5,11 +5,12 @@ use std::ops::{Range, RangeInclusive};
 use std::sync::{Arc, OnceLock};
 
 use super::color_bar::ColorBar;
-use super::finite;
+pub use super::render_options::around;
+use super::{finite, render_options};
 use crate::export::derived::layer::Derived;
 use crate::export::derived::rows::Rows;
 use crate::export::derived::{albedo, list, roughness};
-use crate::export::options::Options;
+use crate::options::{OptionSpec, Options};
 use orogen_engine::budget::Reservation;
 use orogen_engine::recipe::document::Recipe;
 use orogen_engine::world::{HEIGHT, World};
@@ -126,6 +127,17 @@ const PREPARING: f64 = 1600.0;
 const RAY: f64 = 500.0;
 
 impl RenderJob {
+    /// The options, for front ends.
+    pub const OPTIONS: &[OptionSpec] = render_options::OPTIONS;
+
+    /// The same with all that is chosen by [`OPTIONS`](RenderJob::OPTIONS).
+    ///
+    /// # Errors
+    /// If an option does not apply, a palette cannot be read, or the errors of [`check`](RenderJob::check).
+    pub fn with_options(self, options: &Options) -> Result<RenderJob> {
+        render_options::read(self, options)
+    }
+
     /// The same over this window.
     #[must_use]
     pub fn with_window(self, window: Window) -> RenderJob {

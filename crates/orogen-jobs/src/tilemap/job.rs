@@ -1,6 +1,6 @@
 //! From a world to a tilemap.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use orogen_engine::recipe::class::document::CLASS;
 use orogen_engine::recipe::class::named::number;
@@ -17,7 +17,9 @@ use super::class_rows::ClassRows;
 use super::drawing::{Drawing, IN_MEMORY, Stores, seen, sides};
 use super::map::Tilemap;
 use super::map_objects::{has_objects, objects};
+use super::tilemap_options;
 use super::tileset::Tileset;
+use crate::options::{OptionSpec, Options};
 
 /// How many cells are made at once. Maps are the same for any numbers.
 #[derive(Debug, Clone, Copy)]
@@ -41,14 +43,27 @@ pub struct TilemapJob {
     pub cleans: bool,
     /// Whether maps of Tiled are infinite: chunks of tiles at the positions of the world's cells.
     pub is_infinite: bool,
+    /// The files that the tileset was read from.
+    pub files: Vec<PathBuf>,
     pub(super) at_once: AtOnce,
 }
 
 impl TilemapJob {
+    /// The options, for front ends.
+    pub const OPTIONS: &[OptionSpec] = tilemap_options::OPTIONS;
+
+    /// A map with all that is chosen by [`OPTIONS`](TilemapJob::OPTIONS), cleaned.
+    ///
+    /// # Errors
+    /// If an option does not apply, there is no such tileset, or it cannot be read.
+    pub fn with_options(options: &Options) -> Result<TilemapJob> {
+        tilemap_options::read(options)
+    }
+
     /// A map with these tiles, cleaned.
     #[must_use]
     pub fn new(tileset: Tileset) -> TilemapJob {
-        TilemapJob { tileset, cleans: true, is_infinite: false, at_once: AT_ONCE }
+        TilemapJob { tileset, cleans: true, is_infinite: false, files: Vec::new(), at_once: AT_ONCE }
     }
 
     /// Sets whether classes are changed where the tileset has no tile.

@@ -15,6 +15,7 @@ mod map_objects;
 pub mod preview;
 pub mod table;
 pub mod tiled;
+mod tilemap_options;
 pub mod tileset_source;
 
 #[doc(inline)]

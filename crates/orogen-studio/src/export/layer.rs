@@ -1,6 +1,5 @@
 //! A layer or a mesh in any format.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use orogen::export::derived::layer::Nature;
@@ -8,19 +7,17 @@ use orogen::export::derived::list as derived;
 use orogen::export::features::list as features;
 use orogen::export::format::Format;
 use orogen::export::job::ExportJob;
-use orogen::export::options::{OptionSpec, Options, ValueKind};
 use orogen::export::registry;
+use orogen::options::OptionSpec;
 use orogen::recipe::document::Recipe;
 use orogen::world::HEIGHT;
 use orogen::{Error, ErrorKind, Result, WorldSpec};
 
 use super::command_line::CommandLine;
+use super::given::{self, Given};
 use super::samples::Samples;
 use super::work::{Work, lines};
 use crate::preview::region::Region;
-
-/// Options as texts, by their names; a switch has an empty one.
-pub type Given = BTreeMap<&'static str, String>;
 
 /// The choices of a layer.
 #[derive(Debug, Clone)]
@@ -71,8 +68,8 @@ impl LayerExport {
     fn job(&self) -> Result<ExportJob> {
         let job = ExportJob::new(self.format)
             .with_layer(&self.layer)
-            .with_options(read(self.format.options, &self.options)?)
-            .with_layer_options(read(layer_options(&self.layer), &self.layer_options)?);
+            .with_options(given::read(self.format.options, &self.options)?)
+            .with_layer_options(given::read(layer_options(&self.layer), &self.layer_options)?);
         job.check()?;
         Ok(job)
     }
@@ -84,8 +81,8 @@ impl LayerExport {
         }
         line.differing("layer", self.layer.as_str(), &HEIGHT);
         Samples::of(region, self.size, world).sized(line);
-        given(self.format.options, &self.options, line);
-        given(layer_options(&self.layer), &self.layer_options, line);
+        given::words(self.format.options, &self.options, line);
+        given::words(layer_options(&self.layer), &self.layer_options, line);
     }
 
     /// Makes the file. Returns a description.
@@ -122,28 +119,6 @@ pub fn layers(format: &Format, recipe: &Recipe) -> Vec<String> {
 #[must_use]
 pub fn layer_options(layer: &str) -> &'static [OptionSpec] {
     derived::named(layer).map_or(&[], |derived| derived.options)
-}
-
-/// The options that are given.
-fn read(specs: &'static [OptionSpec], given: &Given) -> Result<Options> {
-    let mut options = Options::default();
-    for spec in specs {
-        if let Some(text) = given.get(spec.name) {
-            options.give(spec, text)?;
-        }
-    }
-    Ok(options)
-}
-
-/// Adds the options that are given.
-fn given(specs: &[OptionSpec], given: &Given, line: &mut CommandLine) {
-    for spec in specs {
-        match (given.get(spec.name), spec.value_kind) {
-            (Some(_), ValueKind::Nothing) => line.flag(spec.name),
-            (Some(text), _) => line.option(spec.name, text),
-            (None, _) => {}
-        }
-    }
 }
 
 /// Whether a format holds a layer by its kind.

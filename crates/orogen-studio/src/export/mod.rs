@@ -4,6 +4,7 @@
 
 pub mod command_line;
 pub mod engine;
+pub mod given;
 pub mod kind;
 pub mod layer;
 pub mod map;

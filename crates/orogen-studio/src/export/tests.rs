@@ -19,6 +19,7 @@ use orogen::tilemap::job::TilemapJob;
 use orogen::world::HEIGHT;
 use orogen::{ErrorKind, Progress, Session, presets};
 
+use super::given::Given;
 use super::kind::Kind;
 use super::request::Export;
 use crate::preview::region::Region;
@@ -35,6 +36,11 @@ fn export(kind: Kind, folder: &Path) -> Export {
     let mut export = Export::new(Region::Whole, "classic", false, folder).unwrap();
     export.set_kind(kind);
     export
+}
+
+/// Chooses options.
+fn give(given: &mut Given, options: &[(&'static str, &str)]) {
+    given.extend(options.iter().map(|(name, text)| (*name, text.to_string())));
 }
 
 fn run(export: &Export) -> String {
@@ -95,16 +101,21 @@ fn a_map_is_that_of_the_job() {
     let folder = TestFolder::new("studio-map").unwrap();
     let mut export = export(Kind::Map, &folder);
     export.map.samples = Some(80);
-    export.map.resolution = Some(Resolution::Longer(300));
-    export.map.shading = Shading::Swiss;
-    export.map.set_colors(MapColors::Surfaces);
-    export.map.parts.rivers = false;
-    export.map.lake_area = Some(5e4);
-    export.map.names = folder.join("places.csv").to_string_lossy().into_owned();
-    std::fs::write(&export.map.names, "x,y,name\n200,-300,Ford\n").unwrap();
-    export.map.map_scale = Some(1e5);
-    (export.map.levels, export.map.interval) = ("300, 450.5".into(), Some(7.0));
-    (export.map.has_grid, export.map.page_colors.page) = (true, [250, 240, 220]);
+    let names = folder.join("places.csv");
+    std::fs::write(&names, "x,y,name\n200,-300,Ford\n").unwrap();
+    let options = [
+        ("color", "surfaces"),
+        ("shade", "swiss"),
+        ("levels", "300, 450.5"),
+        ("grid", "auto"),
+        ("lake-area", "50000"),
+        ("names", names.to_str().unwrap()),
+        ("scale", "100000"),
+        ("size", "300"),
+        ("page-color", "#faf0dc"),
+        ("no-rivers", ""),
+    ];
+    give(&mut export.map.options, &options);
     let words = run(&export);
     assert!(words.starts_with("surfaces, ") && words.contains("80 x 80 samples"), "{words}");
     let mut job = MapJob::new(SheetFormat::Png).with_colors(MapColors::Surfaces).with_title("classic");
@@ -117,8 +128,7 @@ fn a_map_is_that_of_the_job() {
     job.grid = Some(GridStep::Automatic);
     job.page_colors.page = [250, 240, 220];
     let mut recipe = recipe();
-    let job = job.with_names_from(Path::new(&export.map.names), &recipe).unwrap();
-    assert_eq!(job.names.len(), 1);
+    job.names_file = Some(names.clone());
     job.prepare(&mut recipe).unwrap();
     let world = session().open(recipe).unwrap();
     let job = job.with_window(world.window_fitting(80).unwrap());
@@ -127,20 +137,17 @@ fn a_map_is_that_of_the_job() {
     assert!(std::fs::read(export.path()).unwrap() == std::fs::read(output.path()).unwrap());
     let cell = 0.0125 * super::tests::recipe().world.size.unwrap()[0];
     let end = format!(
-        "classic-map.png --color surfaces --shade swiss --levels '300, 450.5' --grid --page-color '#faf0dc' --lake-area 50000 --names {} --scale 100000 --size 300 --no-rivers --cell {cell}",
-        export.map.names
+        "classic-map.png --color surfaces --shade swiss --levels '300, 450.5' --grid --lake-area 50000 --names {} --scale 100000 --size 300 --page-color '#faf0dc' --no-rivers --cell {cell}",
+        names.display()
     );
     assert!(line(&export).ends_with(&end), "{}", line(&export));
     // Its extension chooses the kind of file.
     export.set_path(&folder.join("a.pdf").to_string_lossy());
     assert_eq!(export.map.format, SheetFormat::Pdf);
-    // Paper has a size of its own.
-    export.map.paper = Some("a4");
-    assert!(
-        !line(&export).contains("--scale")
-            && export.run(&session(), super::tests::recipe(), None, &Progress::none()).is_ok()
-    );
-    export.map.range = Some([3.0, 1.0]);
+    // What does not apply any more is left out: surfaces have no palette.
+    give(&mut export.map.options, &[("palette", "swiss"), ("range", "3,1")]);
+    assert!(!line(&export).contains("--range"), "{}", line(&export));
+    export.map.options.remove("color");
     let error = export.run(&session(), super::tests::recipe(), None, &Progress::none()).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::Request);
 }
@@ -150,13 +157,17 @@ fn a_render_is_that_of_the_job() {
     let folder = TestFolder::new("studio-render").unwrap();
     let mut export = export(Kind::Render, &folder);
     export.render.samples = Some(48);
-    export.render.size = [64, 40];
-    export.render.camera = [120.5, 40.0];
-    export.render.rays = 1;
-    export.render.set_colors(Colors::Map);
-    export.render.palette = Some("swiss");
-    (export.render.nearest_color, export.render.range) = (true, Some([0.0, 900.0]));
-    export.render.color_bar = true;
+    let options = [
+        ("size", "64x40"),
+        ("camera", "120.5,40"),
+        ("samples", "1"),
+        ("color", "map"),
+        ("palette", "swiss"),
+        ("nearest-color", ""),
+        ("range", "0,900"),
+        ("color-bar", ""),
+    ];
+    give(&mut export.render.options, &options);
     let words = run(&export);
     assert!(words.starts_with("64 x 40 pixels, of 48 x 48 samples"), "{words}");
     let mut job = RenderJob::default();
@@ -172,11 +183,11 @@ fn a_render_is_that_of_the_job() {
     let output = OutputPolicy::default().output(folder.join("job.png")).unwrap();
     job.to_file(&world, &output, &Progress::none()).unwrap();
     assert!(std::fs::read(export.path()).unwrap() == std::fs::read(output.path()).unwrap());
-    let options = " --size 64x40 --camera 120.5,40 --color map --palette swiss --nearest-color --range 0,900 --color-bar --samples 1 --cell ";
+    let options = " --size 64x40 --camera 120.5,40 --color map --samples 1 --palette swiss --nearest-color --range 0,900 --color-bar --cell ";
     assert!(line(&export).contains(options), "{}", line(&export));
-    export.render.haze = 101.0;
+    give(&mut export.render.options, &[("haze", "101")]);
     let error = export.run(&session(), recipe(), None, &Progress::none()).unwrap_err();
-    assert!(error.to_string().contains("the haze must be from 0 to 100"), "{error}");
+    assert!(error.to_string().contains("a number from 0 to 100"), "{error}");
 }
 
 #[test]

@@ -1,15 +1,13 @@
 //! A map of tiles.
 
-use orogen::autotile::mask::Layout;
 use orogen::recipe::class::document::CLASS;
-use orogen::tilemap::art::set::SETS;
 use orogen::tilemap::files::SIDE;
 use orogen::tilemap::job::TilemapJob;
-use orogen::tilemap::tileset_source;
 use orogen::world::HEIGHT;
 use orogen::{Result, WorldSpec};
 
 use super::command_line::CommandLine;
+use super::given::{self, Given};
 use super::samples::Samples;
 use super::work::{Work, lines};
 use crate::preview::region::Region;
@@ -17,27 +15,15 @@ use crate::preview::region::Region;
 /// The choices of a map of tiles.
 #[derive(Debug, Clone)]
 pub struct TilemapExport {
-    /// The tileset: a name of the program's own, or a file.
-    pub tileset: String,
-    /// The wang set of a .tsx that has several; empty for its only one.
-    pub wang_set: String,
-    /// How tiles follow their surroundings; that of the tileset if `None`.
-    pub layout: Option<Layout>,
     /// Cells along the longer side.
     pub size: usize,
-    /// Whether maps for Tiled are infinite.
-    pub is_infinite: bool,
+    /// The options of [`TilemapJob::OPTIONS`].
+    pub options: Given,
 }
 
 impl Default for TilemapExport {
     fn default() -> TilemapExport {
-        TilemapExport {
-            tileset: SETS[0].name.into(),
-            wang_set: String::new(),
-            layout: None,
-            size: SIDE,
-            is_infinite: false,
-        }
+        TilemapExport { size: SIDE, options: Given::new() }
     }
 }
 
@@ -52,14 +38,7 @@ impl TilemapExport {
             Samples::Fitting(SIDE) => {}
             samples => samples.sized(line),
         }
-        line.differing("tileset", self.tileset.as_str(), &SETS[0].name);
-        line.differing("wang-set", self.wang_set.as_str(), &"");
-        if let Some(layout) = self.layout {
-            line.option("layout", layout.name());
-        }
-        if self.is_infinite {
-            line.flag("infinite");
-        }
+        given::words(TilemapJob::OPTIONS, &self.options, line);
     }
 
     /// Makes the files. Returns a description.
@@ -67,10 +46,8 @@ impl TilemapExport {
     /// # Errors
     /// If there is no such tileset, or the export fails; then there are no files, or those which were there.
     pub fn make(&self, mut work: Work, region: Region) -> Result<String> {
-        let wang_set = Some(self.wang_set.as_str()).filter(|name| !name.is_empty());
-        let tileset = tileset_source::find(&self.tileset, self.layout, wang_set)?;
-        work.inputs.extend(tileset.files);
-        let job = TilemapJob::new(tileset.tileset).with_infinite(self.is_infinite);
+        let job = TilemapJob::with_options(&given::read(TilemapJob::OPTIONS, &self.options)?)?;
+        work.inputs.extend(job.files.iter().cloned());
         let layer = if work.recipe.outputs().any(|name| name == CLASS) { CLASS } else { HEIGHT };
         // The classes of a recipe without any depend on the cell of the map.
         let window = self.samples(region, &work.recipe.world).window(&work.open()?)?;

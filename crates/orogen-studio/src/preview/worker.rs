@@ -8,9 +8,9 @@ use std::time::Instant;
 use orogen::budget::Reservation;
 use orogen::export::derived::list;
 use orogen::export::layer_source::LayerSource;
-use orogen::export::options::Options as LayerOptions;
 use orogen::layer::LayerKind;
 use orogen::map::paint::Painter;
+use orogen::options::Options as LayerOptions;
 use orogen::{Error, ErrorKind, Grid, Progress, Result, Session, World};
 
 use super::colors::Colors;

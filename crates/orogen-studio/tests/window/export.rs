@@ -8,12 +8,10 @@ use eframe::egui::{Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable as _;
 use orogen::export::registry;
 use orogen::export::targets::list;
-use orogen::jobs::map::MapColors;
-use orogen::render::scene::{Colors, Edge};
-use orogen::sheet::options::{Labels, Resolution, Scale, Shading};
 use orogen::test_folder::TestFolder;
 use orogen::{Progress, Session};
 use orogen_studio::catalogue::Language;
+use orogen_studio::export::given::Given;
 use orogen_studio::export::kind::Kind;
 use orogen_studio::export::request::Export;
 use orogen_studio::preview::region::Region;
@@ -61,6 +59,11 @@ fn taken(folder: &Path) -> BTreeMap<String, Vec<u8>> {
         }
     }
     all
+}
+
+/// Chooses options.
+fn give(given: &mut Given, options: &[(&'static str, &str)]) {
+    given.extend(options.iter().map(|(name, text)| (*name, text.to_string())));
 }
 
 /// Exports, and runs the command line: both make the same files. Returns the number of files.
@@ -140,51 +143,67 @@ fn the_copied_command_line_makes_the_same_files() {
             export.set_kind(Kind::Map);
             export.set_path(&export.path().with_extension(format).to_string_lossy());
             export.map.samples = Some(70);
-            export.map.resolution = Some(Resolution::Longer(400));
+            give(&mut export.map.options, &[("size", "400")]);
         }
     };
     same(classic, Region::Whole, &folder, map("png"));
     same(&heights, Region::Whole, &folder, map("png"));
     same(&mine, part, &folder, |export| {
         map("svg")(export);
-        export.map.set_colors(MapColors::Surfaces);
-        (export.map.paper, export.map.is_landscape) = (Some("a5"), true);
-        export.map.title = "-x 'Höhe'".into();
-        export.map.shading = Shading::Swiss;
-        export.map.labels = Some(Labels::All);
-        (export.map.has_grid, export.map.grid_step) = (true, Some(200.0));
-        export.map.page_colors.water = Some([10, 120, 130]);
+        let options = [
+            ("color", "surfaces"),
+            // What does not apply is not on the command line.
+            ("layer", "slope"),
+            ("title", "-x 'Höhe'"),
+            ("paper", "a5"),
+            ("landscape", ""),
+            ("shade", "swiss"),
+            ("labels", "all"),
+            ("grid", "200"),
+            ("water-color", "#0a7882"),
+        ];
+        give(&mut export.map.options, &options);
     });
     same(&mine, Region::Whole, &folder, |export| {
         map("pdf")(export);
-        export.map.set_layer("slope");
-        export.map.palette = Some("magma");
-        export.map.scale = Some(Scale::Linear);
-        export.map.range = Some([-1.5, 40.25]);
-        export.map.interval = Some(25.5);
-        (export.map.parts.legend, export.map.parts.axes) = (false, false);
-        export.map.resolution = Some(Resolution::Inch(90.0));
+        let options = [
+            ("layer", "slope"),
+            ("palette", "magma"),
+            ("ramp", "linear"),
+            ("range", "-1.5,40.25"),
+            ("contours", "25.5"),
+            ("no-legend", ""),
+            ("no-axes", ""),
+            ("dpi", "90"),
+        ];
+        export.map.options.clear();
+        give(&mut export.map.options, &options);
     });
 
     // Renders.
     let render = |export: &mut Export| {
         export.set_kind(Kind::Render);
-        (export.render.size, export.render.rays, export.render.samples) = ([96, 54], 1, Some(60));
+        export.render.samples = Some(60);
+        give(&mut export.render.options, &[("size", "96x54"), ("samples", "1")]);
     };
     same(classic, Region::Whole, &folder, render);
     same(&mine, part, &folder, |export| {
         render(export);
-        export.render.set_colors(Colors::Surfaces);
-        export.render.camera = [77.7, 33.3];
-        export.render.distance = Some(2500.5);
-        export.render.sun = [120.0, 12.5];
-        (export.render.haze, export.render.exaggeration, export.render.fov) = (0.25, 1.7, 55.0);
-        (export.render.edge, export.render.snow_line) = (Some(Edge::Cut), Some(-20.5));
+        let options = [
+            ("color", "surfaces"),
+            ("camera", "77.7,33.3,2500.5"),
+            ("sun", "120,12.5"),
+            ("haze", "0.25"),
+            ("exaggeration", "1.7"),
+            ("fov", "55"),
+            ("edge", "cut"),
+            ("snow-line", "-20.5"),
+        ];
+        give(&mut export.render.options, &options);
     });
     same(classic, Region::Whole, &folder, |export| {
         render(export);
-        export.render.set_colors(Colors::Map);
-        export.render.palette = Some("viridis");
+        give(&mut export.render.options, &[("color", "map"), ("palette", "viridis"), ("color-bar", "")]);
     });
 
     // Tilemaps.
@@ -195,9 +214,7 @@ fn the_copied_command_line_makes_the_same_files() {
     assert!(same(classic, Region::Whole, &folder, tilemap) >= 9);
     same(&mine, part, &folder, |export| {
         tilemap(export);
-        export.tilemap.tileset = "fields-32".into();
-        export.tilemap.layout = Some(orogen::autotile::mask::Layout::Dual);
-        export.tilemap.is_infinite = true;
+        give(&mut export.tilemap.options, &[("tileset", "fields-32"), ("layout", "dual"), ("infinite", "")]);
     });
     let usual = same(Path::new("tile-island"), Region::Whole, &folder, |export| export.set_kind(Kind::Tilemap));
     assert!(usual >= 9);

@@ -6,7 +6,6 @@ use std::sync::{Arc, LazyLock, Mutex};
 
 use orogen::analysis::halo::Halo;
 use orogen::export::job::ExportJob;
-use orogen::export::options::Options;
 use orogen::export::registry;
 use orogen::file::OutputPolicy;
 use orogen::map::paint::Painter;
@@ -16,6 +15,7 @@ use orogen::mesh::shape::Shape;
 use orogen::mesh::solid::{Print, Solid};
 use orogen::mesh::surface::Surface;
 use orogen::mesh::{obj, ply, stl, three_mf};
+use orogen::options::Options;
 use orogen::test_folder::TestFolder;
 use orogen::{Grid, Progress, Recipe, Window, World};
 use serde_json::Value;

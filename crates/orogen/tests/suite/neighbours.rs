@@ -7,11 +7,11 @@ use orogen::export::job::ExportJob;
 use orogen::export::layer_source::LayerSource;
 use orogen::export::mesh_cover::{self, SURFACES};
 use orogen::export::mesh_tint::COLOR_RANGE;
-use orogen::export::options::Options;
 use orogen::export::targets::frame::FrameSpec;
 use orogen::export::targets::job::EngineJob;
 use orogen::export::{registry, targets};
 use orogen::file::OutputPolicy;
+use orogen::options::Options;
 use orogen::test_folder::TestFolder;
 use orogen::{Progress, Recipe, Window, World};
 

@@ -6,10 +6,10 @@ use orogen::export::derived::list::prepare;
 use orogen::export::features::list;
 use orogen::export::features::options::FeatureOptions;
 use orogen::export::features::source::FeatureSource;
-use orogen::export::options::Options;
 use orogen::format::features::{FeatureLayer, Geometry, Value};
 use orogen::hydrography::rivers::{Mouth, River, Source};
 use orogen::hydrology::direction::STEPS;
+use orogen::options::Options;
 use orogen::{Budget, ErrorKind, Progress, Recipe, Window, World, presets};
 
 fn world(preset: &str) -> World {

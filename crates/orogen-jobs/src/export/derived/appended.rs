@@ -1,6 +1,6 @@
 //! Nodes that a derived layer appends to a recipe.
 
-use crate::export::options::{OptionSpec, Options, ValueKind};
+use crate::options::{OptionSpec, Options, ValueKind};
 use orogen_engine::declare::Input;
 use orogen_engine::field::expr::Expr;
 use orogen_engine::node::Node;
@@ -9,12 +9,12 @@ use orogen_engine::recipe::network::OwnNetwork;
 use orogen_engine::solver::drainage::Drainage;
 
 /// The option for the drainage area at which streams start.
-pub const STREAM: OptionSpec = OptionSpec {
-    name: "stream",
-    value: "AREA",
-    about: "Minimum drainage area of streams, in m^2 [default: 1e6]",
-    value_kind: ValueKind::Number(0.0, 1e15),
-};
+pub const STREAM: OptionSpec = OptionSpec::new(
+    "stream",
+    "AREA",
+    ValueKind::Number(0.0, 1e15),
+    "Minimum drainage area of streams, in m^2 [default: 1e6]",
+);
 
 /// A recipe with known heights, and the given options.
 pub struct Appended<'a> {

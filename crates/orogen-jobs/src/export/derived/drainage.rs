@@ -2,17 +2,17 @@
 
 use super::appended::STREAM;
 use super::layer::{Derived, Made, NodeLayer};
-use crate::export::options::{OptionSpec, ValueKind};
+use crate::options::{OptionSpec, ValueKind};
 use orogen_engine::filter::flow_direction::{Codes, FlowDirection};
 use orogen_engine::solver::fill::Fill;
 
 /// Option for the codes of directions: esri (1 east, 2 south-east, 4 south ...), grass, taudem, whitebox or pcraster.
-const CODES: OptionSpec = OptionSpec {
-    name: "codes",
-    value: "WHOSE",
-    about: "Encoding of flow directions: esri (1 east, 2 south-east, 4 south ...), grass, taudem, whitebox or pcraster [default: esri]",
-    value_kind: ValueKind::Word(&["esri", "grass", "taudem", "whitebox", "pcraster"]),
-};
+const CODES: OptionSpec = OptionSpec::new(
+    "codes",
+    "WHOSE",
+    ValueKind::Word(&["esri", "grass", "taudem", "whitebox", "pcraster"]),
+    "Encoding of flow directions: esri (1 east, 2 south-east, 4 south ...), grass, taudem, whitebox or pcraster [default: esri]",
+);
 
 /// The layer `drainage-area`.
 pub static AREA: Derived = Derived {

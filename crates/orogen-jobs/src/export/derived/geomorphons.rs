@@ -1,24 +1,24 @@
 //! The layer `landforms`.
 
 use super::layer::{Derived, Made, NodeLayer};
-use crate::export::options::{OptionSpec, ValueKind};
+use crate::options::{OptionSpec, ValueKind};
 use orogen_engine::filter::geomorphons::Geomorphons;
 
 /// Option for the search radius, in metres.
-const REACH: OptionSpec = OptionSpec {
-    name: "reach",
-    value: "M",
-    about: "Search radius of geomorphons, in metres [default: 500]",
-    value_kind: ValueKind::Number(0.0, 1e6),
-};
+const REACH: OptionSpec = OptionSpec::new(
+    "reach",
+    "M",
+    ValueKind::Number(0.0, 1e6),
+    "Search radius of geomorphons, in metres [default: 500]",
+);
 
 /// Option for the angle up to which ground is level, in degrees.
-const FLAT: OptionSpec = OptionSpec {
-    name: "flat",
-    value: "DEG",
-    about: "Flatness threshold of geomorphons, in degrees [default: 1]",
-    value_kind: ValueKind::Number(0.0, 45.0),
-};
+const FLAT: OptionSpec = OptionSpec::new(
+    "flat",
+    "DEG",
+    ValueKind::Number(0.0, 45.0),
+    "Flatness threshold of geomorphons, in degrees [default: 1]",
+);
 
 /// The layer.
 pub static LAYER: Derived = Derived {

@@ -1,34 +1,34 @@
 //! The layer `hillshade`.
 
 use super::layer::{Derived, LoweredRows, Made, Nature, RowLayer, none, nothing};
-use crate::export::options::{OptionSpec, Options, ValueKind};
+use crate::options::{OptionSpec, Options, ValueKind};
 use orogen_engine::lower::{HORN, Passes};
 use orogen_grid::analysis::hillshade::{Light, hillshade};
 use std::sync::LazyLock;
 
 /// Option for the direction of the light.
-const AZIMUTH: OptionSpec = OptionSpec {
-    name: "azimuth",
-    value: "DEG",
-    about: "Direction that the light of a hillshade comes from, in degrees clockwise from north [default: 315]",
-    value_kind: ValueKind::Number(-360.0, 360.0),
-};
+const AZIMUTH: OptionSpec = OptionSpec::new(
+    "azimuth",
+    "DEG",
+    ValueKind::Number(-360.0, 360.0),
+    "Direction that the light of a hillshade comes from, in degrees clockwise from north [default: 315]",
+);
 
 /// Option for the height of the light.
-const ALTITUDE: OptionSpec = OptionSpec {
-    name: "altitude",
-    value: "DEG",
-    about: "Height of the light of a hillshade above the horizon, in degrees; 90 is straight above [default: 45]",
-    value_kind: ValueKind::Number(0.0, 90.0),
-};
+const ALTITUDE: OptionSpec = OptionSpec::new(
+    "altitude",
+    "DEG",
+    ValueKind::Number(0.0, 90.0),
+    "Height of the light of a hillshade above the horizon, in degrees; 90 is straight above [default: 45]",
+);
 
 /// Option for vertical exaggeration.
-const Z_FACTOR: OptionSpec = OptionSpec {
-    name: "z-factor",
-    value: "K",
-    about: "Factor of the heights before a hillshade is computed [default: 1]",
-    value_kind: ValueKind::Number(0.0, 1e6),
-};
+const Z_FACTOR: OptionSpec = OptionSpec::new(
+    "z-factor",
+    "K",
+    ValueKind::Number(0.0, 1e6),
+    "Factor of the heights before a hillshade is computed [default: 1]",
+);
 
 /// The light of the options.
 fn light(options: &Options) -> Light {

@@ -2,46 +2,46 @@
 
 use super::appended::Appended;
 use super::layer::{Derived, Made, NodeLayer};
-use crate::export::options::{OptionSpec, ValueKind};
+use crate::options::{OptionSpec, ValueKind};
 use orogen_engine::solver::insolation::Insolation;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_io::dem::latitude;
 
 /// Option for a single day.
-const DAY: OptionSpec = OptionSpec {
-    name: "day",
-    value: "N",
-    about: "Day of the year for insolation, 1 to 365 [default: the whole year]",
-    value_kind: ValueKind::Whole(1, 365),
-};
+const DAY: OptionSpec = OptionSpec::new(
+    "day",
+    "N",
+    ValueKind::Whole(1, 365),
+    "Day of the year for insolation, 1 to 365 [default: the whole year]",
+);
 
 /// Option for a season.
-const SEASON: OptionSpec = OptionSpec {
-    name: "season",
-    value: "WHEN",
-    about: "Season for insolation, from equinox to solstice or solstice to equinox at the latitude: spring, summer, autumn or winter",
-    value_kind: ValueKind::Word(&["spring", "summer", "autumn", "winter"]),
-};
+const SEASON: OptionSpec = OptionSpec::new(
+    "season",
+    "WHEN",
+    ValueKind::Word(&["spring", "summer", "autumn", "winter"]),
+    "Season for insolation, from equinox to solstice or solstice to equinox at the latitude: spring, summer, autumn or winter",
+);
 
 /// The time step of a single day, in hours. The days of a longer period have different sunrises, which evens out
 /// shadows between time steps.
 const STEP_OF_A_DAY: f64 = 0.1;
 
 /// Option for the latitude.
-const LATITUDE: OptionSpec = OptionSpec {
-    name: "latitude",
-    value: "DEG",
-    about: "Latitude in degrees, positive in the north [default: that of a file of heights, else 45]",
-    value_kind: ValueKind::Number(-90.0, 90.0),
-};
+const LATITUDE: OptionSpec = OptionSpec::new(
+    "latitude",
+    "DEG",
+    ValueKind::Number(-90.0, 90.0),
+    "Latitude in degrees, positive in the north [default: that of a file of heights, else 45]",
+);
 
 /// Option for the turbidity of the air.
-const TURBIDITY: OptionSpec = OptionSpec {
-    name: "turbidity",
-    value: "T",
-    about: "Linke turbidity of the air: 1 clean and dry, 6 hazy [default: 3]",
-    value_kind: ValueKind::Number(1.0, 10.0),
-};
+const TURBIDITY: OptionSpec = OptionSpec::new(
+    "turbidity",
+    "T",
+    ValueKind::Number(1.0, 10.0),
+    "Linke turbidity of the air: 1 clean and dry, 6 hazy [default: 3]",
+);
 
 /// The first and the last day of each season of the northern hemisphere.
 const SEASONS: [(&str, [f64; 2]); 4] =

@@ -1,7 +1,7 @@
 //! Definition of derived layers.
 
 use super::appended::Appended;
-use crate::export::options::{OptionSpec, Options};
+use crate::options::{OptionSpec, Options};
 use orogen_engine::declare::Input;
 use orogen_engine::lower::Passes;
 use orogen_engine::recipe::document::Recipe;

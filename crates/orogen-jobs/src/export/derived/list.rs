@@ -6,7 +6,7 @@ use super::{
     albedo, aspect, curvature, drainage, geomorphons, height_above_drainage, hillshade, insolation, normal, occlusion,
     position, roughness, ruggedness, slope, soil_depth, splat, viewshed, wetness,
 };
-use crate::export::options::{OptionSpec, Options, by_name};
+use crate::options::{OptionSpec, Options, by_name};
 use orogen_engine::recipe::document::Recipe;
 use orogen_engine::recipe::network::OwnNetwork;
 use orogen_engine::world::HEIGHT;

@@ -1,7 +1,7 @@
 //! The layer `normal`.
 
 use super::layer::{Derived, LoweredRows, Made, Nature, RowLayer, none, nothing};
-use crate::export::options::Options;
+use crate::options::Options;
 use orogen_engine::lower::{HORN, Passes};
 use orogen_grid::analysis::slope::normals;
 use std::sync::LazyLock;

@@ -1,7 +1,7 @@
 //! The layer `occlusion`.
 
 use super::layer::{Around, Derived, LoweredRows, Made, Nature, RowLayer, none, nothing};
-use crate::export::options::Options;
+use crate::options::Options;
 use orogen_engine::lower::Passes;
 use orogen_grid::analysis::sky;
 use orogen_grid::grid::{Grid, Window};

@@ -2,16 +2,12 @@
 
 use super::appended::{Appended, AppendedNode};
 use super::layer::{Derived, Made, NodeLayer};
-use crate::export::options::{OptionSpec, ValueKind};
+use crate::options::{OptionSpec, ValueKind};
 use orogen_engine::filter::topographic_position::TopographicPosition;
 
 /// Option for the radius of the disc, in metres.
-const RADIUS: OptionSpec = OptionSpec {
-    name: "disc",
-    value: "M",
-    about: "Radius of the disc, in metres [default: 300]",
-    value_kind: ValueKind::Number(0.0, 1e6),
-};
+const RADIUS: OptionSpec =
+    OptionSpec::new("disc", "M", ValueKind::Number(0.0, 1e6), "Radius of the disc, in metres [default: 300]");
 
 /// Appends the node.
 fn append(to: &mut Appended) -> AppendedNode {

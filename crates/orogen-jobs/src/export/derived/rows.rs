@@ -3,7 +3,7 @@
 use orogen_grid::parallel;
 
 use super::layer::{Around, RowLayer};
-use crate::export::options::Options;
+use crate::options::Options;
 use orogen_engine::bands::Bands;
 use orogen_engine::device::{FilterExtent, PlanGrid};
 use orogen_engine::world::{HEIGHT, World};

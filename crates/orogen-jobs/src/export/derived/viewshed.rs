@@ -1,49 +1,49 @@
 //! The layer `viewshed`.
 
 use super::layer::{Derived, Made, NodeLayer};
-use crate::export::options::{OptionSpec, ValueKind};
+use crate::options::{OptionSpec, ValueKind};
 use orogen_engine::solver::viewshed::Viewshed;
 use orogen_grid::error::{Error, ErrorKind};
 
 /// Option for the position of the observer.
-const OBSERVER: OptionSpec = OptionSpec {
-    name: "observer",
-    value: "X,Y",
-    about: "Position of the observer of a viewshed: metres east and south of the world's north-west corner",
-    value_kind: ValueKind::Point,
-};
+const OBSERVER: OptionSpec = OptionSpec::new(
+    "observer",
+    "X,Y",
+    ValueKind::Point,
+    "Position of the observer of a viewshed: metres east and south of the world's north-west corner",
+);
 
 /// Option for the height of the eye.
-const OBSERVER_HEIGHT: OptionSpec = OptionSpec {
-    name: "observer-height",
-    value: "M",
-    about: "Height of the observer's eye above the ground, in metres [default: 1.75]",
-    value_kind: ValueKind::Number(0.0, 1e6),
-};
+const OBSERVER_HEIGHT: OptionSpec = OptionSpec::new(
+    "observer-height",
+    "M",
+    ValueKind::Number(0.0, 1e6),
+    "Height of the observer's eye above the ground, in metres [default: 1.75]",
+);
 
 /// Option for the height of the target.
-const TARGET_HEIGHT: OptionSpec = OptionSpec {
-    name: "target-height",
-    value: "M",
-    about: "Height of the target above the ground, in metres [default: 0]",
-    value_kind: ValueKind::Number(0.0, 1e6),
-};
+const TARGET_HEIGHT: OptionSpec = OptionSpec::new(
+    "target-height",
+    "M",
+    ValueKind::Number(0.0, 1e6),
+    "Height of the target above the ground, in metres [default: 0]",
+);
 
 /// Option for the range of sight.
-const RADIUS: OptionSpec = OptionSpec {
-    name: "radius",
-    value: "M",
-    about: "Maximum distance of a viewshed, in metres [default: the whole world]",
-    value_kind: ValueKind::Number(0.0, 1e9),
-};
+const RADIUS: OptionSpec = OptionSpec::new(
+    "radius",
+    "M",
+    ValueKind::Number(0.0, 1e9),
+    "Maximum distance of a viewshed, in metres [default: the whole world]",
+);
 
 /// Option for the curvature of the earth and refraction.
-const REFRACTION: OptionSpec = OptionSpec {
-    name: "refraction",
-    value: "K",
-    about: "Take the earth's curvature into account, with this refraction coefficient, such as 0.13 [default: a flat earth]",
-    value_kind: ValueKind::Number(0.0, 1.0),
-};
+const REFRACTION: OptionSpec = OptionSpec::new(
+    "refraction",
+    "K",
+    ValueKind::Number(0.0, 1.0),
+    "Take the earth's curvature into account, with this refraction coefficient, such as 0.13 [default: a flat earth]",
+);
 
 /// The layer.
 pub static LAYER: Derived = Derived {
@@ -58,7 +58,7 @@ pub static LAYER: Derived = Derived {
             let (options, defaults) = (to.options(), Viewshed::default());
             let number = |option: &OptionSpec, default: f64| options.number(option.name).unwrap_or(default);
             let size = to.recipe().world.size.unwrap_or_default();
-            let Some(observer) = options.point(OBSERVER.name) else {
+            let Some(observer) = options.pair(OBSERVER.name) else {
                 let message = format!(
                     "the layer viewshed needs --observer X,Y, in metres east and south of the world's north-west corner; the world is {} x {} m",
                     size[0], size[1]

@@ -2,43 +2,43 @@
 
 use super::outlets::{OUTLET, OUTLETS, Outlets, SNAP};
 use crate::export::contour_options;
-use crate::export::options::{OptionSpec, Options, ValueKind};
+use crate::options::{OptionSpec, Options, ValueKind};
 use orogen_engine::node::Node;
 use orogen_engine::recipe::document::Recipe;
 use orogen_grid::error::Result;
 use orogen_grid::hydrology::rivers::Channel;
 
 /// `--river-area`.
-pub const RIVER_AREA: OptionSpec = OptionSpec {
-    name: "river-area",
-    value: "M2",
-    about: "Minimum drainage area of rivers in m^2 [default: the recipe's, else 1000000, at least 32 samples]",
-    value_kind: ValueKind::Number(0.0, 1e15),
-};
+pub const RIVER_AREA: OptionSpec = OptionSpec::new(
+    "river-area",
+    "M2",
+    ValueKind::Number(0.0, 1e15),
+    "Minimum drainage area of rivers in m^2 [default: the recipe's, else 1000000, at least 32 samples]",
+);
 
 /// `--lake-area`.
-pub const LAKE_AREA: OptionSpec = OptionSpec {
-    name: "lake-area",
-    value: "M2",
-    about: "Minimum area of lakes in m^2 [default: the recipe's, else 20000, at least 4 samples]",
-    value_kind: ValueKind::Number(0.0, 1e15),
-};
+pub const LAKE_AREA: OptionSpec = OptionSpec::new(
+    "lake-area",
+    "M2",
+    ValueKind::Number(0.0, 1e15),
+    "Minimum area of lakes in m^2 [default: the recipe's, else 20000, at least 4 samples]",
+);
 
 /// `--runoff`.
-pub const RUNOFF: OptionSpec = OptionSpec {
-    name: "runoff",
-    value: "M",
-    about: "Runoff in metres per year, for discharges and widths [default: the recipe's, else 0.5]",
-    value_kind: ValueKind::Number(0.0, 1000.0),
-};
+pub const RUNOFF: OptionSpec = OptionSpec::new(
+    "runoff",
+    "M",
+    ValueKind::Number(0.0, 1000.0),
+    "Runoff in metres per year, for discharges and widths [default: the recipe's, else 0.5]",
+);
 
 /// `--prominence`.
-pub const PROMINENCE: OptionSpec = OptionSpec {
-    name: "prominence",
-    value: "M",
-    about: "Minimum prominence of summits in metres [default: 1/25 of the relief]",
-    value_kind: ValueKind::Number(0.0, 1e6),
-};
+pub const PROMINENCE: OptionSpec = OptionSpec::new(
+    "prominence",
+    "M",
+    ValueKind::Number(0.0, 1e6),
+    "Minimum prominence of summits in metres [default: 1/25 of the relief]",
+);
 
 /// The options of formats that hold vector features.
 pub const OPTIONS: &[OptionSpec] = &[

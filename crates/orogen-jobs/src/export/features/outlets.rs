@@ -1,6 +1,6 @@
 //! Outlets of watersheds: `--outlet`, `--outlets` and `--snap`.
 
-use crate::export::options::{OptionSpec, Options, ValueKind};
+use crate::options::{OptionSpec, Options, ValueKind};
 use orogen_engine::recipe::document::Recipe;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
@@ -9,30 +9,30 @@ use orogen_io::format::dem::Georeference;
 use orogen_io::format::points::NamedPoints;
 
 /// `--outlet`.
-pub const OUTLET: OptionSpec = OptionSpec {
-    name: "outlet",
-    value: "E,N",
-    about: "Outlet of a watershed: easting and northing in the CRS of the heights; without a CRS, metres east and north of the world's \
+pub const OUTLET: OptionSpec = OptionSpec::new(
+    "outlet",
+    "E,N",
+    ValueKind::Point,
+    "Outlet of a watershed: easting and northing in the CRS of the heights; without a CRS, metres east and north of the world's \
             north-west corner (points south of it are negative)",
-    value_kind: ValueKind::Point,
-};
+);
 
 /// `--outlets`.
-pub const OUTLETS: OptionSpec = OptionSpec {
-    name: "outlets",
-    value: "FILE",
-    about: "Outlets of watersheds, in the same coordinates: points of a .csv file (columns x, y and name) or a .geojson file",
-    value_kind: ValueKind::File,
-};
+pub const OUTLETS: OptionSpec = OptionSpec::new(
+    "outlets",
+    "FILE",
+    ValueKind::File,
+    "Outlets of watersheds, in the same coordinates: points of a .csv file (columns x, y and name) or a .geojson file",
+);
 
 /// `--snap`.
-pub const SNAP: OptionSpec = OptionSpec {
-    name: "snap",
-    value: "M",
-    about: "Maximum distance that an outlet is moved to the nearest stream, in metres; streams are those of --river-area; 0 moves none \
+pub const SNAP: OptionSpec = OptionSpec::new(
+    "snap",
+    "M",
+    ValueKind::Number(0.0, 1e6),
+    "Maximum distance that an outlet is moved to the nearest stream, in metres; streams are those of --river-area; 0 moves none \
             [default: 5 samples]",
-    value_kind: ValueKind::Number(0.0, 1e6),
-};
+);
 
 /// Maximum number of outlets.
 const MOST: usize = 1000;
@@ -66,7 +66,7 @@ impl Outlets {
     /// If there are two sources of them, or the file cannot be read or has another coordinate system.
     pub fn of(given: &Options, recipe: &Recipe) -> Result<Option<Outlets>> {
         let map = recipe.georeference();
-        let points = match (given.point(OUTLET.name), given.file(OUTLETS.name)) {
+        let points = match (given.pair(OUTLET.name), given.file(OUTLETS.name)) {
             (None, None) => return Ok(None),
             (Some(_), Some(_)) => {
                 let message = "--outlet and --outlets exclude each other; leave out one of them";

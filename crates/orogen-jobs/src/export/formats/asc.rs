@@ -5,9 +5,9 @@ use std::io;
 use crate::export::files::Files;
 use crate::export::format::Format;
 use crate::export::layer_source::LayerSource;
-use crate::export::options::Options;
 use crate::export::place;
 use crate::export::sidecar::NO_SIDECAR;
+use crate::options::Options;
 use orogen_io::format::asc;
 
 /// The format.

@@ -7,7 +7,7 @@ use crate::export::features::options::PROMINENCE;
 use crate::export::files::Files;
 use crate::export::format::{Format, refuse};
 use crate::export::layer_source::LayerSource;
-use crate::export::options::Options;
+use crate::options::Options;
 use orogen_io::format::csv;
 use orogen_io::format::geojson::decimals;
 

@@ -6,9 +6,9 @@ use crate::export::files::Files;
 use crate::export::format::Format;
 use crate::export::layer_source::LayerSource;
 use crate::export::memory::{aside, whole};
-use crate::export::options::{OptionSpec, Options, ValueKind};
 use crate::export::place;
 use crate::export::sidecar::NO_SIDECAR;
+use crate::options::{OptionSpec, Options};
 use orogen_engine::recipe::surface::document::MAX_SURFACES;
 use orogen_grid::grid::Window;
 use orogen_io::format::exr::{Picture, Sample, Writer};
@@ -27,20 +27,11 @@ pub static FORMAT: Format = Format {
 };
 
 /// The option for half floats.
-pub const HALF: OptionSpec = OptionSpec {
-    name: "half",
-    value: "",
-    about: "16-bit floats instead of 32-bit; above 2048 m the resolution is 2 m",
-    value_kind: ValueKind::Nothing,
-};
+pub const HALF: OptionSpec =
+    OptionSpec::switch("half", "16-bit floats instead of 32-bit; above 2048 m the resolution is 2 m");
 
 /// The option for three channels.
-pub const RGB: OptionSpec = OptionSpec {
-    name: "rgb",
-    value: "",
-    about: "Write the samples to the channels R, G and B instead of Y",
-    value_kind: ValueKind::Nothing,
-};
+pub const RGB: OptionSpec = OptionSpec::switch("rgb", "Write the samples to the channels R, G and B instead of Y");
 
 /// Compressed rows that wait, and rows on their way into blocks.
 fn memory(window: &Window, _: &Options) -> u64 {

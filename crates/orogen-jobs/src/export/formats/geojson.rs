@@ -6,7 +6,7 @@ use crate::export::features::drawing::{self, Drawing};
 use crate::export::files::Files;
 use crate::export::format::Format;
 use crate::export::layer_source::LayerSource;
-use crate::export::options::Options;
+use crate::options::Options;
 use orogen_io::format::geojson;
 
 /// The format.

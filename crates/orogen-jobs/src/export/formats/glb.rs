@@ -13,17 +13,17 @@ use crate::export::mesh_cover::{self, SURFACES};
 use crate::export::mesh_objects::{self, OBJECTS};
 use crate::export::mesh_tint::COLOR_RANGE;
 use crate::export::mesh_water::{self, WATER, memory as water_memory};
-use crate::export::options::{OptionSpec, Options, ValueKind};
+use crate::options::{OptionSpec, Options, ValueKind};
 use orogen_grid::grid::Window;
 use orogen_output::mesh::glb::{Model, write as write_model};
 use orogen_output::mesh::surface::Surface;
 
-const LODS: OptionSpec = OptionSpec {
-    name: "lods",
-    value: "N",
-    about: "Number of levels of detail: each halves the samples, or doubles the error of --max-error [default: 1]",
-    value_kind: ValueKind::Whole(1, 12),
-};
+const LODS: OptionSpec = OptionSpec::new(
+    "lods",
+    "N",
+    ValueKind::Whole(1, 12),
+    "Number of levels of detail: each halves the samples, or doubles the error of --max-error [default: 1]",
+);
 
 /// The format.
 pub static FORMAT: Format = Format {

@@ -5,7 +5,7 @@ use std::io;
 use crate::export::files::Files;
 use crate::export::format::{Format, refuse};
 use crate::export::layer_source::LayerSource;
-use crate::export::options::Options;
+use crate::options::Options;
 use orogen_grid::grid::Window;
 use orogen_io::format::dem::Georeference;
 use orogen_io::format::hgt::{self, SIZES};

@@ -9,10 +9,10 @@ use crate::export::files::Files;
 use crate::export::format::{Format, refuse};
 use crate::export::layer_source::LayerSource;
 use crate::export::mesh_objects::within;
-use crate::export::options::Options;
 use crate::export::quantizer::RANGE;
 use crate::export::sidecar;
 use crate::export::vectors::scatter::LAYER;
+use crate::options::Options;
 use orogen_engine::objects::Object;
 use orogen_engine::world::HEIGHT;
 use orogen_grid::grid::Window;
@@ -73,7 +73,7 @@ fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::
     if window.width < 2 || window.height < 2 {
         return refuse("a terrain has at least 2 x 2 samples; use a larger window".into());
     }
-    let levels = match options.range(RANGE.name) {
+    let levels = match options.pair(RANGE.name) {
         Some([low, high]) => Levels::new(low as f32, high as f32),
         None => {
             let mut heights = LayerSource::new(source.world(), HEIGHT, window, &source.progress().part(0.0))?;

@@ -9,7 +9,7 @@ use crate::export::layer_source::LayerSource;
 use crate::export::mesh::{COLOR, EXAGGERATION, HEIGHT_CURVE, MAX_ERROR, Prepared, color, memory};
 use crate::export::mesh_cover::{self, SURFACES};
 use crate::export::mesh_tint::COLOR_RANGE;
-use crate::export::options::Options;
+use crate::options::Options;
 use orogen_output::mesh::obj;
 
 /// The format.

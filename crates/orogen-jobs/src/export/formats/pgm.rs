@@ -6,10 +6,10 @@ use crate::export::files::Files;
 use crate::export::format::Format;
 use crate::export::layer_source::LayerSource;
 use crate::export::memory::{aside, whole};
-use crate::export::options::Options;
 use crate::export::place;
 use crate::export::quantizer::{self, BITS, FIRST_ROW, Quantizer, RANGE};
 use crate::export::sidecar::{NO_SIDECAR, SampleEncoding};
+use crate::options::Options;
 use orogen_io::format::notes;
 use orogen_io::format::pgm;
 

@@ -8,10 +8,10 @@ use crate::export::files::Files;
 use crate::export::format::{Format, refuse};
 use crate::export::layer_source::LayerSource;
 use crate::export::memory::{aside, whole};
-use crate::export::options::{OptionSpec, Options, ValueKind};
 use crate::export::place;
 use crate::export::quantizer::{self, BITS, FIRST_ROW, Quantizer, RANGE};
 use crate::export::sidecar::{NO_SIDECAR, SampleEncoding};
+use crate::options::{OptionSpec, Options, ValueKind};
 use orogen_engine::recipe::surface::document::MAX_SURFACES;
 use orogen_io::format::encoding::Encoding;
 use orogen_io::format::notes;
@@ -31,12 +31,12 @@ pub static FORMAT: Format = Format {
 };
 
 /// The option for heights encoded in colours.
-const ENCODING: OptionSpec = OptionSpec {
-    name: "encoding",
-    value: "NAME",
-    about: "Heights encoded in red, green and blue: terrarium, in steps of 1/256 m, or terrain-rgb, in steps of 1/10 m",
-    value_kind: ValueKind::Word(&["terrarium", "terrain-rgb"]),
-};
+const ENCODING: OptionSpec = OptionSpec::new(
+    "encoding",
+    "NAME",
+    ValueKind::Word(&["terrarium", "terrain-rgb"]),
+    "Heights encoded in red, green and blue: terrarium, in steps of 1/256 m, or terrain-rgb, in steps of 1/10 m",
+);
 
 fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
     let fits = |nature: Nature| source.nature() == nature;

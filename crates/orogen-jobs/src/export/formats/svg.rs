@@ -7,7 +7,7 @@ use crate::export::features::svg as drawn;
 use crate::export::files::Files;
 use crate::export::format::Format;
 use crate::export::layer_source::LayerSource;
-use crate::export::options::Options;
+use crate::options::Options;
 use orogen_io::format::contour_svg;
 
 /// The format.

@@ -5,8 +5,8 @@ use std::io;
 use crate::export::files::Files;
 use crate::export::format::Format;
 use crate::export::layer_source::LayerSource;
-use crate::export::options::Options;
 use crate::export::solid::{OPTIONS, PrintJob, memory};
+use crate::options::Options;
 use orogen_output::mesh::three_mf::write as write_solid;
 
 /// The format.

@@ -6,7 +6,7 @@ use crate::export::files::Files;
 use crate::export::format::Format;
 use crate::export::layer_source::LayerSource;
 use crate::export::memory::{aside, whole};
-use crate::export::options::Options;
+use crate::options::Options;
 use orogen_grid::grid::Window;
 use orogen_io::format::geotiff::options::Options as Layout;
 use orogen_io::format::geotiff::writer::Writer;

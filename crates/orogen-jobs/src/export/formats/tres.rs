@@ -7,8 +7,8 @@ use crate::export::files::{Files, suffixed};
 use crate::export::format::{Format, refuse};
 use crate::export::layer_source::LayerSource;
 use crate::export::mesh_objects::kinds;
-use crate::export::options::Options;
 use crate::export::vectors::scatter::LAYER;
+use crate::options::Options;
 use orogen_grid::words::count;
 use orogen_io::format::tres;
 

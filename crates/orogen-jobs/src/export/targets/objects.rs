@@ -4,10 +4,10 @@ use super::frame::Frame;
 use super::job::{EngineJob, Exported};
 use crate::export::files::Files;
 use crate::export::layer_source::LayerSource;
-use crate::export::options::Options;
 use crate::export::quantizer::RANGE;
 use crate::export::run;
 use crate::export::vectors::scatter;
+use crate::options::Options;
 use orogen_engine::world::{HEIGHT, World};
 use orogen_grid::analysis::finite::FiniteCount;
 use orogen_grid::error::{Error, ErrorKind, Result};
@@ -51,7 +51,7 @@ pub(super) fn export(
         all.count().check(&format!("the layer `{HEIGHT}`"))?;
         let mut own = Options::default();
         (target.heights)(&all.levels(), &mut own)?;
-        if let Some([low, high]) = own.range(RANGE.name) {
+        if let Some([low, high]) = own.pair(RANGE.name) {
             options.give(&RANGE, &format!("{low},{high}"))?;
         }
     }

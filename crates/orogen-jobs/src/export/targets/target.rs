@@ -1,7 +1,7 @@
 //! Definition of engine targets.
 
-use crate::export::options::Options;
 use crate::export::vectors::scatter;
+use crate::options::Options;
 use orogen_engine::world::HEIGHT;
 use orogen_io::format::levels::Levels;
 

@@ -55,7 +55,7 @@ fn import(side: usize, cell: f64, levels: &Levels) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::export::options::Options;
+    use crate::options::Options;
 
     #[test]
     fn heights_come_back_by_the_engines_formula() {
@@ -63,7 +63,7 @@ mod tests {
             let found = Levels::new(low, high);
             let mut options = Options::default();
             (TARGET.heights)(&found, &mut options).unwrap();
-            let [least, greatest] = options.range("range").unwrap();
+            let [least, greatest] = options.pair("range").unwrap();
             let levels = Levels::new(least as f32, greatest as f32);
             let scale = f64::from(z_scale(&found));
             assert_eq!(levels.to_u16(0.0), 32768);

@@ -3,6 +3,7 @@
 use eframe::egui::Ui;
 use orogen::export::registry;
 
+use super::option_rows::{Fields, OptionRows};
 use super::rows;
 use crate::catalogue::Language;
 use crate::export::layer::{layer_options, layers};
@@ -35,8 +36,9 @@ pub fn show(ui: &mut Ui, export: &mut Export, studio: &Studio, language: Languag
         ui.add_space(4.0);
         ui.strong(language.text("export.options"));
         rows::grid(ui, "options", |ui| {
-            rows::options(ui, own.format.options, &mut own.options);
-            rows::options(ui, known, &mut own.layer_options);
+            let fields = Fields { language, layers: Vec::new(), title: "" };
+            OptionRows { fields: &fields, specs: own.format.options, given: &mut own.options }.rows(ui);
+            OptionRows { fields: &fields, specs: known, given: &mut own.layer_options }.rows(ui);
         });
     }
     if is_other {

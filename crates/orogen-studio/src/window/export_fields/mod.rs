@@ -3,6 +3,7 @@
 pub mod engine;
 pub mod layer;
 pub mod map;
+pub mod option_rows;
 pub mod render;
 pub mod rows;
 pub mod tilemap;

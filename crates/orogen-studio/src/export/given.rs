@@ -1,0 +1,47 @@
+//! Options as a dialog holds them: texts by their names.
+
+use std::collections::BTreeMap;
+
+use orogen::Result;
+use orogen::options::{OptionSpec, Options, ValueKind};
+
+use super::command_line::CommandLine;
+
+/// Options as texts, by their names; a switch has an empty one.
+pub type Given = BTreeMap<&'static str, String>;
+
+/// Whether an option applies beside the others that are given.
+#[must_use]
+pub fn applies(spec: &OptionSpec, specs: &[OptionSpec], given: &Given) -> bool {
+    spec.applies(specs, |other| given.get(other.name).cloned())
+}
+
+/// The given options that apply; others stay in the dialog for when they do.
+fn applying<'a>(
+    specs: &'static [OptionSpec],
+    given: &'a Given,
+) -> impl Iterator<Item = (&'static OptionSpec, &'a str)> {
+    let value = |spec: &'static OptionSpec| Some((spec, given.get(spec.name)?.as_str()));
+    specs.iter().filter_map(value).filter(|(spec, _)| applies(spec, specs, given))
+}
+
+/// The options, as the library takes them.
+///
+/// # Errors
+/// If a value is not valid.
+pub fn read(specs: &'static [OptionSpec], given: &Given) -> Result<Options> {
+    let mut options = Options::default();
+    applying(specs, given).try_for_each(|(spec, text)| options.give(spec, text))?;
+    Ok(options)
+}
+
+/// Adds the options to a command line.
+pub fn words(specs: &'static [OptionSpec], given: &Given, line: &mut CommandLine) {
+    for (spec, text) in applying(specs, given) {
+        match spec.kind {
+            ValueKind::Nothing => line.flag(spec.name),
+            ValueKind::Automatic if text == "auto" => line.flag(spec.name),
+            _ => line.differing(spec.name, text, &spec.default),
+        }
+    }
+}
