@@ -7,6 +7,7 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use orogen::export::derived::list;
 use orogen::export::registry;
+use orogen::jobs::blocks::BlocksJob;
 use orogen::jobs::map::MapJob;
 use orogen::jobs::render::RenderJob;
 use orogen::options::{Choice, Condition, OptionSpec, Options, ValueKind};
@@ -72,6 +73,18 @@ impl Declares for Renders {
     }
 }
 
+/// Blocks.
+#[derive(Debug, Clone, Default)]
+pub struct Blocks;
+
+impl Declares for Blocks {
+    const HEADING: Option<&str> = None;
+
+    fn options() -> Vec<(&'static OptionSpec, Vec<&'static str>)> {
+        of_job(BlocksJob::OPTIONS)
+    }
+}
+
 /// Tilemaps.
 #[derive(Debug, Clone, Default)]
 pub struct Tilemaps;
@@ -107,6 +120,9 @@ pub type MapOptions = OptionsOf<Maps>;
 
 /// The options of rendered pictures.
 pub type RenderOptions = OptionsOf<Renders>;
+
+/// The options of blocks.
+pub type BlockOptions = OptionsOf<Blocks>;
 
 /// The options of tilemaps.
 pub type TilemapOptions = OptionsOf<Tilemaps>;

@@ -10,6 +10,7 @@ use orogen::export::derived::list;
 use orogen::export::registry;
 use orogen::expression::text::Expression;
 use orogen::format::crs::registry::Crs;
+use orogen::jobs::blocks::BlocksJob;
 use orogen::jobs::map::MapJob;
 use orogen::jobs::render::RenderJob;
 use orogen::options::Options;
@@ -69,7 +70,7 @@ pub fn run(input: &[u8]) {
     }
     let of_files = registry::options().into_iter().map(|(spec, _)| spec);
     let of_layers = list::options().into_iter().map(|(spec, _)| spec);
-    let of_jobs = [MapJob::OPTIONS, RenderJob::OPTIONS, TilemapJob::OPTIONS].into_iter().flatten();
+    let of_jobs = [MapJob::OPTIONS, RenderJob::OPTIONS, TilemapJob::OPTIONS, BlocksJob::OPTIONS].into_iter().flatten();
     let mut options = Options::default();
     for spec in of_files.chain(of_layers) {
         let _ = options.give(spec, text);

@@ -78,7 +78,7 @@ fn exaggeration_caves_and_sections_are_of_any_recipe() {
     section(&["row=12", "-o", "a.vox"], "--section draws a picture: name a .png");
     section(&["column=60", "-o", "b.png"], "there is no column 60 to cut along; the window has the columns 0 to 59");
     section(&["12", "-o", "b.png"], "it must be row=N or column=N");
-    folder.bad(&["blocks", "hills.toml", "--exaggeration", "1000"], 2, "--exaggeration must be from 0.01 to 100");
+    folder.bad(&["blocks", "hills.toml", "--exaggeration", "1000"], 2, "it must be a number from 0.01 to 100");
     folder.bad(&["blocks", "caves", "--caves"], 2, "the recipe has an output `density`");
 }
 

@@ -8,9 +8,11 @@ use std::time::{Duration, Instant};
 use orogen::export::derived::layer::{Made, Nature};
 use orogen::export::derived::list as derived;
 use orogen::export::registry;
+use orogen::jobs::blocks::BlocksJob;
 use orogen::jobs::map::MapJob;
 use orogen::jobs::render::RenderJob;
 use orogen::options::{Condition, OptionSpec, ValueKind};
+use orogen::tilemap::job::TilemapJob;
 
 use crate::commands::{WRITERS, Writer, prepare, workplace};
 use crate::harness::{Folder, Running, SMALL, bless, slow};
@@ -345,7 +347,11 @@ fn declared() -> Vec<(&'static OptionSpec, Vec<String>)> {
         };
         (spec, vec![format!("render small.toml --size 40x30 {needed} -o option.png")])
     });
-    formats.chain(layers).chain(maps).chain(renders).collect()
+    let blocks =
+        BlocksJob::OPTIONS.iter().map(|spec| (spec, vec!["blocks small.toml --size 20 -o option.png".to_string()]));
+    let tilemaps =
+        TilemapJob::OPTIONS.iter().map(|spec| (spec, vec!["tilemap small.toml --size 20 -o option".to_string()]));
+    formats.chain(layers).chain(maps).chain(renders).chain(blocks).chain(tilemaps).collect()
 }
 
 /// The ends of what an option may be, and what is beyond them.

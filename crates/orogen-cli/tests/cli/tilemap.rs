@@ -197,7 +197,7 @@ fn tilesets_from_files_are_used_and_kept() {
     let one = ["tilemap", "land.toml", "--tileset", "own/tiles.tsx", "--wang-set", "lava", "-o", "x"];
     folder.bad(&one, 1, "no wang set `lava`; it has `water`, `sand`");
     let program = ["tilemap", "land.toml", "--wang-set", "sand", "-o", "x"];
-    folder.bad(&program, 2, "--wang-set chooses one of a .tsx");
+    folder.bad(&program, 2, "--wang-set needs a file as --tileset");
     folder.write("rows.toml", "picture = \"own/tiles.png\"\nsize = 16\nlayout = \"rule\"\n[[class]]\nname = \"a\"\nfull = [0]\n[[class.rule]]\npattern = [\"##\"]\ntiles = [1]");
     folder.bad(&arguments("rows.toml", "x"), 1, "needs three rows of three characters");
     assert!(!folder.path("x").exists(), "nothing is left behind");

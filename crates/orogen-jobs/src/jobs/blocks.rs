@@ -1,0 +1,354 @@
+//! Blocks of a world as one job.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use super::render::EXAGGERATION;
+use crate::options::{OptionSpec, Options, ValueKind};
+use orogen_engine::budget::Reservation;
+use orogen_engine::recipe::document::Recipe;
+use orogen_engine::world::World;
+use orogen_grid::analysis::finite::FiniteCount;
+use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::grid::Window;
+use orogen_grid::progress::Progress;
+use orogen_grid::words::{count, number};
+use orogen_io::file::cancellable::CancellableWriter;
+use orogen_io::file::{self, Existing, Output, OutputFolder, OutputPolicy};
+use orogen_io::format::notes::SOFTWARE;
+use orogen_io::format::{schem, vox};
+use orogen_output::blocks::caves;
+use orogen_output::blocks::kind::{Block, KINDS};
+use orogen_output::blocks::land::{self, COLUMN_BYTES, HALO, Land};
+use orogen_output::blocks::levels::{DEFAULT_BELOW, Extent, Levels, MAX_BELOW};
+use orogen_output::blocks::luanti::{FILES, LuantiWorld, OPENED};
+use orogen_output::blocks::mesh::BlockMesh;
+use orogen_output::blocks::picture::Isometric;
+use orogen_output::blocks::schem::write_schem;
+use orogen_output::blocks::section::Section;
+use orogen_output::blocks::volume::BlockVolume;
+use orogen_output::blocks::vox::write_vox;
+
+/// The kinds of files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum BlockFormat {
+    /// MagicaVoxel models.
+    Vox,
+    /// A Sponge schematic, version 3, for Minecraft: Java Edition.
+    Schem,
+    /// The smooth surface of the ground as a mesh.
+    Glb,
+    /// A picture: from the south-east, or a vertical section.
+    Png,
+    /// A folder with a Luanti (Minetest) world.
+    Luanti,
+}
+
+/// Blocks of a world.
+///
+/// [`prepare`](BlocksJob::prepare) a recipe, open its world, then [`make`](BlocksJob::make) the blocks, and write them.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct BlocksJob {
+    /// The kind of file.
+    pub format: BlockFormat,
+    /// Levels of blocks below the lowest ground; by default 16, and 48 with caves.
+    pub below: Option<u32>,
+    /// Vertical exaggeration of the ground and the water.
+    pub exaggeration: f64,
+    /// Whether caves are carved into the ground.
+    pub has_caves: bool,
+    /// The section that a picture shows, in place of the view from the south-east.
+    pub section: Option<Section>,
+}
+
+/// Memory for writing a file, in bytes.
+const ENCODERS: u64 = 4 << 20;
+
+const OPTIONS: &[OptionSpec] = &[
+    OptionSpec::new(
+        "below",
+        "N",
+        ValueKind::Whole(0, MAX_BELOW as u64),
+        "Levels of blocks below the lowest ground [default: 16; with --caves 48]",
+    )
+    .with_example("16", ["", ""]),
+    OptionSpec::new(
+        "exaggeration",
+        "N",
+        ValueKind::Number(*EXAGGERATION.start(), *EXAGGERATION.end()),
+        "Vertical exaggeration of the ground and the water",
+    )
+    .with_default("1"),
+    OptionSpec::switch(
+        "caves",
+        "Carve caves into the ground, away from water; not for recipes with an output `density`",
+    ),
+    OptionSpec::new(
+        "section",
+        "row=N|column=N",
+        ValueKind::Text,
+        "Draw a vertical cut along a row or a column of the window, counted from 0 in the north and in the west, as a \
+         .png",
+    ),
+];
+
+impl BlocksJob {
+    /// The options, for front ends.
+    pub const OPTIONS: &[OptionSpec] = OPTIONS;
+
+    /// Blocks of the ground and the water, without caves.
+    #[must_use]
+    pub fn new(format: BlockFormat) -> BlocksJob {
+        BlocksJob { format, below: None, exaggeration: 1.0, has_caves: false, section: None }
+    }
+
+    /// The same with all that is chosen by [`OPTIONS`](BlocksJob::OPTIONS).
+    ///
+    /// # Errors
+    /// If a section is not valid, or the errors of [`check`](BlocksJob::check).
+    pub fn with_options(self, options: &Options) -> Result<BlocksJob> {
+        options.check(OPTIONS)?;
+        let job = BlocksJob {
+            below: options.whole("below").map(|levels| levels as u32),
+            exaggeration: options.number("exaggeration").unwrap_or(self.exaggeration),
+            has_caves: options.has("caves"),
+            section: options.text("section").map(Section::parse).transpose()?,
+            ..self
+        };
+        job.check()?;
+        Ok(job)
+    }
+
+    /// Checks that the options do not contradict each other.
+    ///
+    /// # Errors
+    /// If they do, or the exaggeration is out of its range.
+    pub fn check(&self) -> Result<()> {
+        let refuse = |message: String| Err(Error::new(ErrorKind::Request, message));
+        if !EXAGGERATION.contains(&self.exaggeration) {
+            let (from, to) = (EXAGGERATION.start(), EXAGGERATION.end());
+            return refuse(format!("the exaggeration must be from {from} to {to}, not {}", self.exaggeration));
+        }
+        if self.section.is_some() && self.format != BlockFormat::Png {
+            return refuse("--section draws a picture: name a .png with -o, or use --format png".into());
+        }
+        Ok(())
+    }
+
+    /// Appends to a recipe the nodes that the blocks need; call it before the world is opened. `cell` is the size of a block in metres.
+    ///
+    /// # Errors
+    /// The errors of [`land::prepare`] and [`caves::add`].
+    pub fn prepare(&self, recipe: &mut Recipe, cell: f64) -> Result<()> {
+        land::prepare(recipe, cell)?;
+        if self.has_caves {
+            caves::add(recipe, cell)?;
+        }
+        Ok(())
+    }
+
+    /// Makes the blocks of a window of a world of a [prepared](BlocksJob::prepare) recipe. Writing them is the rest of `progress`.
+    ///
+    /// # Errors
+    /// The errors of [`check`](BlocksJob::check); if the format cannot hold them, or the world cannot make the window; if memory does not suffice; or the work
+    /// was cancelled.
+    pub fn make<'w>(&self, world: &'w World, window: &Window, progress: &Progress) -> Result<MadeBlocks<'w>> {
+        self.check()?;
+        // The sides are known before the heights are.
+        let sea_level = world.recipe().world.sea_level * self.exaggeration;
+        let one = Levels { bottom: Levels::of(sea_level, window.cell), count: 1 };
+        let fits = |levels: Levels| match self.section {
+            Some(section) => section.check(window, levels.count).map(drop),
+            None => self.fits(window, levels, sea_level, world),
+        };
+        fits(one)?;
+        let budget = world.budget();
+        let columns = (window.grown(HALO).len() as u64).saturating_mul(COLUMN_BYTES).saturating_add(ENCODERS);
+        let mut reserved = vec![budget.reserve(columns)?];
+        let [reading, making, writing] = progress.parts([2.0, 3.0, 5.0]);
+        let below = self.below.unwrap_or(if self.has_caves { caves::BELOW } else { DEFAULT_BELOW });
+        let land = Land::of(world, window, Extent::Below(below), self.exaggeration, &fits, &reading)?;
+        let (finite, mut levels) = (land.finite, land.levels);
+        let content = if self.format == BlockFormat::Glb {
+            Content::Mesh(world.install(|| BlockMesh::of(&land, budget, &making))?)
+        } else {
+            reserved.push(budget.reserve(BlockVolume::memory(window, levels))?);
+            let volume = world.install(|| BlockVolume::of(&land, &making))?;
+            levels = volume.levels;
+            Content::Volume(volume)
+        };
+        let made = MadeBlocks {
+            job: self.clone(),
+            world,
+            window: *window,
+            finite,
+            levels,
+            content,
+            writing,
+            _reserved: reserved,
+        };
+        Ok(made)
+    }
+
+    /// Checks that the format can hold the blocks of a window.
+    fn fits(&self, window: &Window, levels: Levels, sea_level: f64, world: &World) -> Result<()> {
+        let (width, height) = (window.width, window.height);
+        match self.format {
+            BlockFormat::Vox => vox::check([width, height, levels.count]),
+            BlockFormat::Schem => schem::check([width, levels.count, height]),
+            BlockFormat::Png => Isometric::new([width, levels.count, height]).map(drop),
+            BlockFormat::Luanti => {
+                LuantiWorld::start([width, levels.count, height], levels, sea_level, window.cell).map(drop)
+            }
+            BlockFormat::Glb => world.budget().afford(world.install(|| BlockMesh::memory(window, levels))),
+        }
+    }
+}
+
+/// Blocks that are made.
+pub struct MadeBlocks<'w> {
+    job: BlocksJob,
+    world: &'w World,
+    window: Window,
+    /// How many of the heights are finite.
+    pub finite: FiniteCount,
+    levels: Levels,
+    content: Content,
+    writing: Progress,
+    _reserved: Vec<Reservation>,
+}
+
+enum Content {
+    Mesh(BlockMesh),
+    Volume(BlockVolume),
+}
+
+impl MadeBlocks<'_> {
+    /// Writes them to a stream; a Luanti world has a folder.
+    ///
+    /// # Errors
+    /// If the stream fails, memory does not suffice, or the work was cancelled.
+    pub fn to_stream(&self, out: &mut dyn Write) -> io::Result<()> {
+        let out = &mut CancellableWriter { out, progress: &self.writing };
+        let notes = [("Software", SOFTWARE)];
+        match (&self.content, self.job.format, self.job.section) {
+            (Content::Mesh(mesh), ..) => mesh.write_glb(out)?,
+            (Content::Volume(volume), _, Some(section)) => section.write(out, volume, &notes)?,
+            (Content::Volume(volume), BlockFormat::Schem, _) => write_schem(out, volume)?,
+            (Content::Volume(volume), BlockFormat::Png, _) => {
+                let picture = Isometric::new(volume.size())?;
+                let _picture = self.world.budget().reserve(picture.memory())?;
+                picture.write(out, volume, &notes)?;
+            }
+            (Content::Volume(volume), ..) => write_vox(out, volume)?,
+        }
+        self.writing.finish();
+        Ok(())
+    }
+
+    /// Writes a Luanti world to its folder, atomically.
+    ///
+    /// # Errors
+    /// If they are no blocks of a Luanti world, a file cannot be written, memory does not suffice, or the work was cancelled.
+    pub fn to_luanti(&self, folder: LuantiFolder) -> Result<()> {
+        let Content::Volume(volume) = &self.content else {
+            return Err(Error::new(ErrorKind::Internal, "a mesh is no Luanti world"));
+        };
+        let _map = self.world.budget().reserve(LuantiWorld::memory(volume.blocks.len() as u64))?;
+        let luanti = self.world.install(|| LuantiWorld::new(volume, &self.writing))?;
+        let stage = |(name, output): (&&str, &Output)| {
+            file::stage(output, |out| {
+                luanti.write(name, &mut CancellableWriter { out, progress: &self.writing }, SOFTWARE)
+            })
+        };
+        let staged: Vec<_> = FILES.iter().zip(&folder.outputs).map(stage).collect::<Result<_>>()?;
+        file::commit(staged)?;
+        folder.folder.keep();
+        self.writing.finish();
+        Ok(())
+    }
+
+    /// A description: the size, and the kinds of blocks with their shares.
+    #[must_use]
+    pub fn words(&self) -> String {
+        let parts = match &self.content {
+            Content::Mesh(mesh) => {
+                let [triangles, parts] = mesh.triangles();
+                format!("{} in {}", count(triangles, "triangle"), count(parts, "part"))
+            }
+            Content::Volume(volume) => self.world.install(|| shares(volume)),
+        };
+        let Window { width, height, cell, .. } = self.window;
+        format!(
+            "{width} x {height} columns, {}, {} m a block, seed {}\n{parts}",
+            count(self.levels.count, "level"),
+            number(cell),
+            self.world.recipe().world.seed,
+        )
+    }
+}
+
+/// The kinds of blocks with their numbers and shares, and the air.
+fn shares(volume: &BlockVolume) -> String {
+    let counts = volume.counts();
+    let all: u64 = counts[1..].iter().sum();
+    let shares = KINDS.iter().zip(counts).skip(1).filter(|(_, blocks)| *blocks > 0);
+    let shares: Vec<String> = shares
+        .map(|(kind, blocks)| format!("{:.1} % {} ({blocks})", 100.0 * blocks as f64 / all as f64, kind.name))
+        .collect();
+    let air = counts[Block::Air as usize];
+    let enclosed = volume.enclosed();
+    format!("{all} blocks: {}\n{air} of air, {enclosed} of them in caves and below overhangs", shares.join(", "))
+}
+
+/// The folder of a Luanti world.
+pub struct LuantiFolder {
+    folder: OutputFolder,
+    outputs: Vec<Output>,
+}
+
+impl LuantiFolder {
+    /// The folder, with those around it.
+    ///
+    /// # Errors
+    /// If Luanti has opened a world there, a file may not be replaced, or a folder cannot be made.
+    pub fn new(path: &Path, policy: &OutputPolicy) -> Result<LuantiFolder> {
+        if policy.existing() != Existing::Replace && path.join(OPENED).exists() {
+            let message = format!(
+                "cannot write {}: Luanti has opened this world, so it may have been changed; choose another name, or \
+                 replace its map with --force",
+                path.display()
+            );
+            return Err(Error::new(ErrorKind::File, message));
+        }
+        let outputs = FILES.iter().map(|name| policy.output(path.join(name))).collect::<Result<_>>()?;
+        let innermost = path.join(FILES[0]).parent().map_or_else(|| path.to_path_buf(), Path::to_path_buf);
+        Ok(LuantiFolder { folder: OutputFolder::ready(&innermost as &PathBuf)?, outputs })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn options_choose_levels_caves_and_a_section() {
+        let job = |format: BlockFormat, given: &[(&str, &str)]| {
+            let mut options = Options::default();
+            for (name, text) in given {
+                options.give(OPTIONS.iter().find(|spec| spec.name == *name).unwrap(), text).unwrap();
+            }
+            BlocksJob::new(format).with_options(&options).map_err(|error| error.to_string())
+        };
+        let own = job(BlockFormat::Vox, &[]).unwrap();
+        assert_eq!((own.below, own.exaggeration, own.has_caves, own.section), (None, 1.0, false, None));
+        let given = [("below", "7"), ("exaggeration", "2.5"), ("caves", ""), ("section", "row=12")];
+        let other = job(BlockFormat::Png, &given).unwrap();
+        assert_eq!((other.below, other.exaggeration, other.has_caves), (Some(7), 2.5, true));
+        assert_eq!(other.section, Some(Section::Row(12)));
+        assert!(job(BlockFormat::Vox, &[("section", "row=12")]).unwrap_err().contains("--section draws a picture"));
+        assert!(job(BlockFormat::Png, &[("section", "12")]).unwrap_err().contains("row=N or column=N"));
+    }
+}
