@@ -12,19 +12,9 @@
 pub mod dem;
 pub mod file;
 pub mod format;
-#[doc(hidden)]
-pub mod fs;
-#[doc(hidden)]
-pub mod full_disk;
 pub mod open;
-#[doc(hidden)]
-pub mod pages;
 pub mod palette;
-pub mod raster;
-pub mod read_at;
-pub mod records;
+
 #[doc(hidden)]
-pub mod samples;
-pub mod spool;
-#[doc(hidden)]
-pub mod test_folder;
+pub use orogen_codec::{fs, full_disk, pages, samples, test_folder};
+pub use orogen_codec::{raster, read_at, records, spool};

@@ -10,6 +10,7 @@ use crate::format::dem::{Dem, Placement, Request, afford, refused};
 use crate::format::import;
 use crate::format::vrt::{self, Band, Virtual};
 use crate::fs;
+use crate::samples;
 use orogen_grid::error::{Error, Result};
 
 /// Maximum number of files.
@@ -210,7 +211,7 @@ fn lay(
     let left = request.allowed.saturating_sub(4 * count as u64);
     // Marks samples without a part until all parts are there.
     const NO_PART: f32 = f32::INFINITY;
-    let mut heights = vec![NO_PART; count];
+    let mut heights = samples::filled(NO_PART, count);
     let mut notes = Vec::new();
     for part in parts {
         let dem = import::read_with(&part.path, Request::new(left).with_band(part.band), &part.metadata)?;
@@ -233,16 +234,12 @@ fn lay(
         for j in 0..size[1] {
             let source = (part.from[1] + j) * dem.width + part.from[0];
             let to = (part.to[1] + j) * width + part.to[0];
-            for (height, own) in heights[to..to + size[0]].iter_mut().zip(&dem.heights[source..source + size[0]]) {
-                // A missing sample shows the part below. Where there is none, it must not become a height.
-                if !own.is_nan() || *height == NO_PART {
-                    *height = *own;
-                }
-            }
+            // A missing sample shows the part below. Where there is none, it must not become a height.
+            samples::lay(&mut heights[to..to + size[0]], &dem.heights[source..source + size[0]], NO_PART);
         }
         notes.extend(dem.notes);
     }
-    heights.iter_mut().filter(|height| **height == NO_PART).for_each(|height| *height = absent);
+    samples::replace(&mut heights, NO_PART, absent);
     let mut dem = Dem::new([width, height], heights, place).map_err(|why| refused(name, why))?;
     notes.dedup();
     dem.notes = notes;

@@ -10,6 +10,7 @@ use super::prepared::{PreparedDem, filled, hash, lattice};
 use super::square::Layout;
 use crate::format::dem::{Dem, Part, Placement, Request, afford_beside, refused};
 use crate::format::import;
+use crate::samples;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 
@@ -145,7 +146,7 @@ fn every_block_has_a_height(dem: &Dem, side: usize) -> bool {
         let mut found = vec![false; across];
         for row in rows.chunks(dem.width) {
             for (found, piece) in found.iter_mut().zip(row.chunks(side)) {
-                *found = *found || piece.iter().any(|height| !height.is_nan());
+                *found = *found || samples::has_height(piece);
             }
         }
         found.iter().all(|found| *found)

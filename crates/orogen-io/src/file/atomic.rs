@@ -1,11 +1,12 @@
 //! Files are written atomically.
 
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use super::Temporary;
 use super::policy::Output;
-use super::temporary::Temporary;
-use crate::fs::{self, File, OpenOptions, Permissions};
+use crate::fs::{self, File, OpenOptions, Permissions, folder};
+use orogen_codec::buffered::Buffered;
 use orogen_grid::error::{Error, ErrorKind, Result};
 
 /// Large enough to make system calls rare, small enough for any memory budget.
@@ -214,10 +215,11 @@ fn target(path: &Path) -> Result<Destination> {
 fn fill(path: &Path, file: Box<dyn Write + '_>, body: Body) -> Result<()> {
     let mut failure = None;
     let done = {
-        let mut out = BufWriter::with_capacity(BUFFER, Noting { path, inner: file, failure: &mut failure });
+        let mut file = Noting { path, inner: file, failure: &mut failure };
+        let mut out = Buffered::new(&mut file, BUFFER);
         let done = body(&mut out).and_then(|()| out.flush());
         // Buffered data must not be written again after a failure.
-        drop(out.into_parts());
+        out.discard();
         done
     };
     match (failure, done) {
@@ -255,15 +257,6 @@ impl Write for Noting<'_> {
     fn flush(&mut self) -> io::Result<()> {
         let result = self.inner.flush();
         self.note(result)
-    }
-}
-
-/// The folder that contains `path`.
-#[must_use]
-pub fn folder(path: &Path) -> &Path {
-    match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
     }
 }
 

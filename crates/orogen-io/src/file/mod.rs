@@ -25,14 +25,15 @@ mod kind;
 pub mod mark;
 mod output_folder;
 mod policy;
-mod temporary;
 
 pub use atomic::{Staged, check_folder, commit, explain, stage, write_whole};
 pub use output_folder::OutputFolder;
 pub use policy::{Existing, Output, OutputPolicy};
 
 #[doc(hidden)]
-pub use atomic::{folder, replace_unsynced, replace_whole, sync_folder};
-pub(crate) use temporary::Temporary;
+pub use atomic::{replace_unsynced, replace_whole, sync_folder};
 #[doc(hidden)]
-pub use temporary::sweep;
+pub use orogen_codec::fs::folder;
+pub(crate) use orogen_codec::temporary::Temporary;
+#[doc(hidden)]
+pub use orogen_codec::temporary::sweep;

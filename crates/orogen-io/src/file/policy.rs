@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use super::identity::FileId;
 use super::kind::Found;
-use crate::fs;
 use orogen_grid::error::{Error, ErrorKind, Result};
 
 /// Treatment of existing files.
@@ -140,15 +139,11 @@ impl Output {
     }
 }
 
-/// Whether the name is in use, also by a dangling link.
-pub(super) fn is_taken(path: &Path) -> bool {
-    fs::symlink_metadata(path).is_ok()
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::{mark, stage, write_whole};
     use super::*;
+    use crate::fs;
 
     struct Folder(PathBuf);
 

@@ -4,19 +4,18 @@
 //! `dy`), `nodata_value`, in any case and order. The format does not store its unit: without a `.prj` beside it, the
 //! unit is [guessed](Unit::guess).
 
-use std::io::{self, BufRead, Write};
+use std::io::{self, Write};
 
 use super::affine::{Affine, Lattice};
 use super::crs::unit::Unit;
 use super::dem::{Dem, Georeference, Input, Placement, afford, refused};
+use super::number::append_row;
+use super::words::{Words, number};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 
 /// The nodata value in written files.
 const NODATA: f32 = -9999.0;
-
-/// Maximum length of a line of the header, and of a number.
-const LONGEST_WORD: usize = 64;
 
 /// Writes a grid. Its samples are pixel centres, as the format requires.
 pub fn write(out: &mut dyn Write, grid: &Grid) -> io::Result<()> {
@@ -45,13 +44,7 @@ pub fn write_rows(out: &mut dyn Write, width: usize, samples: &[f32]) -> io::Res
     let mut text = String::new();
     for row in samples.chunks(width.max(1)) {
         text.clear();
-        for (i, height) in row.iter().enumerate() {
-            let gap = if i > 0 { " " } else { "" };
-            let height = if height.is_finite() { *height } else { NODATA };
-            // Writing to a string does not fail.
-            let _ = std::fmt::Write::write_fmt(&mut text, format_args!("{gap}{height}"));
-        }
-        text.push('\n');
+        append_row(&mut text, row, NODATA);
         out.write_all(text.as_bytes())?;
     }
     Ok(())
@@ -83,7 +76,7 @@ struct Head {
 /// # Errors
 /// If it is not an ASCII grid.
 pub fn head(input: &mut dyn Input, name: &str) -> Result<([usize; 2], Option<Placement>)> {
-    let mut words = Words { input: &mut io::BufReader::new(input), word: Vec::new() };
+    let mut words = Words::new(input);
     let (head, [columns, rows], _) = read_head(&mut words).map_err(|why| refused(name, why))?;
     let place = head.place(rows).map_err(|why| refused(name, why))?;
     Ok(([columns as usize, rows as usize], place))
@@ -92,10 +85,7 @@ pub fn head(input: &mut dyn Input, name: &str) -> Result<([usize; 2], Option<Pla
 /// The header, the size it states, and the first word after it.
 fn read_head(words: &mut Words) -> std::result::Result<(Head, [u64; 2], Option<String>), String> {
     let mut head = Head::default();
-    // Editors of Windows write a byte order mark.
-    if words.input.fill_buf().map_err(|cause| cause.to_string())?.starts_with(b"\xef\xbb\xbf") {
-        words.input.consume(3);
-    }
+    words.skip_mark()?;
     // The header ends with the first word that is a number in place of a key.
     let mut first = words.next()?;
     while let Some(word) = first.as_deref()
@@ -114,32 +104,15 @@ fn read_head(words: &mut Words) -> std::result::Result<(Head, [u64; 2], Option<S
 }
 
 fn open(input: &mut dyn Input, allowed: u64) -> std::result::Result<Dem, String> {
-    let mut words = Words { input: &mut io::BufReader::new(input), word: Vec::new() };
+    let mut words = Words::new(input);
     let (head, [columns, rows], first) = read_head(&mut words)?;
-    let count = afford(columns, rows, allowed)?;
-    let mut heights: Vec<f32> = Vec::new();
-    let mut next = first;
-    while heights.len() < count {
-        let Some(word) = next else {
-            return Err(format!("it ends after {} heights; its header declares {columns} x {rows}", heights.len()));
-        };
-        let height = number(&word).ok_or_else(|| {
-            let (row, column) = (heights.len() as u64 / columns + 1, heights.len() as u64 % columns + 1);
-            format!("`{}` in row {row}, column {column} is not a number", word.escape_debug())
-        })?;
-        heights.push(if head.nodata == Some(height) { f32::NAN } else { height as f32 });
-        next = if heights.len() < count { words.next()? } else { None };
-    }
+    afford(columns, rows, allowed)?;
+    let heights = words.heights(first, [columns as usize, rows as usize], head.nodata)?;
     if let Some(word) = words.next()? {
         return Err(format!("it continues with `{}` after its {columns} x {rows} heights", word.escape_debug()));
     }
     let place = head.place(rows)?;
     Dem::new([columns as usize, rows as usize], heights, place)
-}
-
-fn number(word: &str) -> Option<f64> {
-    // Some locales write decimal commas.
-    word.replace(',', ".").parse().ok()
 }
 
 impl Head {
@@ -207,38 +180,6 @@ impl Head {
             Affine([dx, 0.0, east, 0.0, -dy, bottom + (rows as f64 - 1.0) * dy]).lattice(rows as usize)?;
         let unit = Unit::guess([east, bottom], step);
         Ok(Some(Placement { origin, step, unit, cell: None, keys: None }))
-    }
-}
-
-/// The words of a text; each is at most as long as a number.
-struct Words<'a> {
-    input: &'a mut dyn BufRead,
-    word: Vec<u8>,
-}
-
-impl Words<'_> {
-    fn next(&mut self) -> std::result::Result<Option<String>, String> {
-        self.word.clear();
-        loop {
-            let buffer = self.input.fill_buf().map_err(|cause| cause.to_string())?;
-            if buffer.is_empty() {
-                break;
-            }
-            let blanks =
-                if self.word.is_empty() { buffer.iter().take_while(|b| b.is_ascii_whitespace()).count() } else { 0 };
-            let rest = &buffer[blanks..];
-            let letters = rest.iter().position(|b| b.is_ascii_whitespace()).unwrap_or(rest.len());
-            self.word.extend_from_slice(&rest[..letters.min(LONGEST_WORD + 1)]);
-            let ended = letters < rest.len();
-            self.input.consume(blanks + letters);
-            if self.word.len() > LONGEST_WORD || self.word.iter().any(|byte| !(0x20..0x7f).contains(byte)) {
-                return Err("it is not an ASCII grid: it contains more than words and numbers".into());
-            }
-            if ended && !self.word.is_empty() {
-                break;
-            }
-        }
-        Ok((!self.word.is_empty()).then(|| String::from_utf8_lossy(&self.word).into_owned()))
     }
 }
 

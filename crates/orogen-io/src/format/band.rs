@@ -3,6 +3,7 @@
 
 use roxmltree::Node;
 
+use super::conversion::{Conversion, Linear};
 use super::crs::unit::length_of_name;
 use super::xml;
 
@@ -23,12 +24,6 @@ pub struct BandMetadata {
     /// The least and the greatest whole number of a virtual raster's type, to which stored samples are rounded.
     pub whole: Option<[f64; 2]>,
 }
-
-/// Nodata values that programs use most; files often do not declare them.
-const COMMON_NODATA: [f64; 3] = [-32768.0, -9999.0, -32767.0];
-
-/// Stored values above this are nodata, whatever a file declares: some programs write the largest float.
-const HIGHEST: f64 = 1e30;
 
 impl BandMetadata {
     /// The children `NoDataValue`, `Scale`, `Offset` and `UnitType` of a band in GDAL's XML.
@@ -118,112 +113,8 @@ impl BandMetadata {
         }
         let unknown = self.unit.as_ref().filter(|unit| length_of_name(unit).is_none()).cloned();
         let metres = self.unit.as_deref().map_or(self.metres.or(vertical), length_of_name).unwrap_or(1.0);
-        let (nodata, whole) = (self.nodata.clone(), self.whole);
-        Ok(Conversion { nodata, whole, scale, offset, metres, unknown, seen: Seen::default() })
-    }
-}
-
-/// The conversion of stored samples to heights in metres, and which unusual values it has met.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Conversion {
-    nodata: Vec<f64>,
-    whole: Option<[f64; 2]>,
-    scale: f64,
-    offset: f64,
-    metres: f64,
-    /// The unit, if it is not a known length.
-    unknown: Option<String>,
-    seen: Seen,
-}
-
-/// Undeclared nodata values among samples.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-struct Seen {
-    common: [bool; COMMON_NODATA.len()],
-    huge: bool,
-}
-
-impl Conversion {
-    /// The height of a stored sample of `size` bytes, in metres; NaN if it is missing.
-    pub fn height(&mut self, value: f64, size: usize) -> f32 {
-        // Some programs write nodata with fewer digits than the float has.
-        let is = |nodata: &f64| value == *nodata || size == 4 && value as f32 == *nodata as f32;
-        if value.is_nan() || self.nodata.iter().any(is) {
-            return f32::NAN;
-        }
-        let value = match self.whole {
-            Some([least, greatest]) => (value + 0.5).floor().clamp(least, greatest),
-            None => value,
-        };
-        if self.whole.is_some() && self.nodata.contains(&value) {
-            return f32::NAN;
-        }
-        if value.abs() >= HIGHEST {
-            self.seen.huge = true;
-            return f32::NAN;
-        }
-        if value <= COMMON_NODATA[1] {
-            COMMON_NODATA.iter().zip(&mut self.seen.common).for_each(|(common, seen)| *seen |= value == *common);
-        }
-        if self.scale == 1.0 && self.offset == 0.0 && self.metres == 1.0 {
-            return value as f32;
-        }
-        ((value * self.scale + self.offset) * self.metres) as f32
-    }
-
-    /// The height of samples that a file does not store, such as absent blocks: missing if the band has a nodata value,
-    /// otherwise that of the value 0, as GDAL reads them.
-    #[must_use]
-    pub fn absent(&self) -> f32 {
-        match self.nodata.is_empty() {
-            true => (self.offset * self.metres) as f32,
-            false => f32::NAN,
-        }
-    }
-
-    /// The heights of the stored samples 0 and `most`.
-    #[must_use]
-    pub fn range(&self, most: f64) -> [f64; 2] {
-        [0.0, most].map(|value| (value * self.scale + self.offset) * self.metres)
-    }
-
-    /// Converts samples that a reader has stored as f32.
-    pub fn apply(&mut self, samples: &mut [f32]) {
-        samples.iter_mut().for_each(|sample| *sample = self.height(f64::from(*sample), 4));
-    }
-
-    /// [`notes`](Conversion::notes) about the heights that a mask has left.
-    #[must_use]
-    pub fn notes_of(mut self, heights: &[f32]) -> Vec<String> {
-        for (common, seen) in COMMON_NODATA.iter().zip(&mut self.seen.common).filter(|(_, seen)| **seen) {
-            let height = ((common * self.scale + self.offset) * self.metres) as f32;
-            *seen = heights.contains(&height);
-        }
-        self.notes()
-    }
-
-    /// Messages about unusual units and values.
-    #[must_use]
-    pub fn notes(&self) -> Vec<String> {
-        let mut notes = Vec::new();
-        if let Some(unit) = &self.unknown {
-            notes.push(format!(
-                "the unit of its samples is `{}`, which is not a known length; they were read as metres",
-                unit.escape_debug()
-            ));
-        }
-        for (value, _) in COMMON_NODATA.iter().zip(self.seen.common).filter(|(_, seen)| *seen) {
-            notes.push(format!(
-                "some of its samples are {value}, a common nodata value that it does not declare, and were read as heights; if they are missing, declare it, for example with gdal_translate -a_nodata {value}"
-            ));
-        }
-        if self.seen.huge {
-            notes.push(
-                "some of its samples are beyond 1e30, which it does not declare as nodata; they were read as missing"
-                    .into(),
-            );
-        }
-        notes
+        let linear = Linear { scale, offset, metres };
+        Ok(Conversion::new(self.nodata.clone(), self.whole, linear, unknown))
     }
 }
 

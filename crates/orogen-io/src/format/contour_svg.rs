@@ -2,7 +2,8 @@
 
 use std::io::{self, Write};
 
-use crate::format::geojson::{decimals, number};
+use crate::format::coordinates::append_path;
+use crate::format::number::decimals;
 use crate::format::svg::{MAX_PATH, pieces};
 use orogen_grid::contour::levels::is_index;
 use orogen_grid::contour::line::Line;
@@ -42,12 +43,7 @@ pub fn write(out: &mut dyn Write, lines: &[Line], window: &Window, interval: Opt
             for piece in pieces(&ring) {
                 let closed = line.closed && piece.len() == ring.len();
                 let piece = if closed { &piece[..piece.len() - 1] } else { piece };
-                for (k, [x, y]) in piece.iter().enumerate() {
-                    text.push(if k == 0 { 'M' } else { 'L' });
-                    number(&mut text, x - origin[0], decimals);
-                    text.push(' ');
-                    number(&mut text, y - origin[1], decimals);
-                }
+                append_path(&mut text, piece, origin, decimals);
                 if closed {
                     text.push('Z');
                 }

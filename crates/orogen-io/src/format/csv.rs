@@ -4,8 +4,10 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 
 use super::features::{FeatureLayer, Geometry, Value};
-use super::geojson::number;
+use super::number::number;
 use orogen_grid::error::{Error, ErrorKind};
+
+pub use super::number::append_samples;
 
 /// Writes the points of a layer: the columns `x` (east), `y` (north) and `z`, then its attributes; lines end with a line feed.
 /// Coordinates are rounded to `decimals` decimals, heights to millimetres. A missing value is empty.
@@ -42,20 +44,6 @@ pub fn write(out: &mut dyn Write, layer: &FeatureLayer, decimals: usize) -> io::
         out.write_all(text.as_bytes())?;
     }
     Ok(())
-}
-
-/// Appends a line for each sample, at these positions. One that is not finite has no value.
-pub fn append_samples(text: &mut String, places: &[[f64; 2]], decimals: usize, samples: &[f32]) {
-    for (place, sample) in places.iter().zip(samples) {
-        for position in place {
-            number(text, *position, decimals);
-            text.push(',');
-        }
-        if sample.is_finite() {
-            let _ = write!(text, "{sample}");
-        }
-        text.push('\n');
-    }
 }
 
 #[cfg(test)]

@@ -1,20 +1,15 @@
 //! A digital elevation model read from a file: heights and their position.
 
-use std::io::{Read, Seek};
-
 use super::affine::Affine;
 use super::crs::keys::{self, GeoKeys};
 use super::crs::registry::Crs;
 use super::crs::unit::Unit;
+use crate::samples;
 use orogen_grid::error::{Error, ErrorKind};
 use orogen_grid::grid::Window;
-use orogen_grid::words::bytes_apart;
 use serde::{Deserialize, Serialize};
 
-/// The source of a reader: a file, or bytes in memory.
-pub trait Input: Read + Seek {}
-
-impl<T: Read + Seek> Input for T {}
+pub use super::input::{Input, afford, afford_beside, length, turn_rows};
 
 /// Options of a reader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -225,9 +220,6 @@ impl Georeference {
     }
 }
 
-/// Values above this are not heights: some programs write the largest float as nodata.
-const HIGHEST: f32 = 1e30;
-
 impl Dem {
     /// A DEM of the samples read; missing ones become NaN.
     ///
@@ -260,29 +252,24 @@ impl Dem {
             return Err(beyond([self.width, self.height]));
         }
         let ([left, top], [width, height]) = (part.from, part.size);
-        let rows = self.heights.chunks_exact(self.width).skip(top).take(height);
-        let heights = rows.flat_map(|row| &row[left..left + width]).copied().collect();
+        let mut heights = Vec::with_capacity(width * height);
+        for row in self.heights.chunks_exact(self.width).skip(top).take(height) {
+            heights.extend_from_slice(&row[left..left + width]);
+        }
         Ok(Dem { notes: self.notes, ..Dem::part(part, heights, self.place) })
     }
 
     /// A DEM of the samples read, and whether there is any height.
     fn checked(size: [usize; 2], mut heights: Vec<f32>, place: Option<Placement>) -> (Dem, bool) {
         let [width, height] = size;
-        let mut found = false;
-        for sample in &mut heights {
-            if sample.abs() < HIGHEST {
-                found = true;
-            } else {
-                *sample = f32::NAN;
-            }
-        }
+        let found = samples::keep_heights(&mut heights);
         (Dem { width, height, heights, place, notes: Vec::new() }, found)
     }
 
     /// Number of samples without a height.
     #[must_use]
     pub fn missing(&self) -> usize {
-        self.heights.iter().filter(|height| height.is_nan()).count()
+        samples::missing(&self.heights)
     }
 }
 
@@ -296,63 +283,6 @@ pub(super) fn beyond(size: [usize; 2]) -> String {
     format!("it has {} x {} samples, and others were asked for", size[0], size[1])
 }
 
-/// Checks, before allocation, that heights of this size fit in `allowed` bytes. Returns their number.
-///
-/// # Errors
-/// A message with both figures.
-pub fn afford(width: u64, height: u64, allowed: u64) -> Result<usize, String> {
-    if width == 0 || height == 0 {
-        return Err(format!("its header declares {width} x {height} samples, which is empty"));
-    }
-    let needed = width.saturating_mul(height).saturating_mul(4);
-    match needed > allowed || needed > isize::MAX as u64 {
-        true => {
-            let [needed, allowed] = bytes_apart(needed, allowed);
-            Err(format!(
-                "its {width} x {height} samples need {needed} of memory, and {allowed} is allowed; cut out a part of it, or raise the memory limit"
-            ))
-        }
-        false => Ok((width * height) as usize),
-    }
-}
-
-/// Size of a reader's buffers that is not counted, in bytes.
-const BUFFER: u64 = 4 << 20;
-
-/// Checks that `beside` more bytes, which a reader holds during decompression, fit with `count` heights in `allowed`
-/// bytes.
-///
-/// # Errors
-/// A message with both figures.
-pub fn afford_beside(count: usize, beside: u64, allowed: u64) -> Result<(), String> {
-    let needed = (count as u64).saturating_mul(4).saturating_add(beside);
-    match beside > BUFFER && needed > allowed {
-        true => {
-            let [needed, allowed] = bytes_apart(needed, allowed);
-            Err(format!(
-                "reading it needs {needed} of memory for its heights and one decompressed block, and {allowed} is allowed; save it with smaller blocks, or raise the memory limit"
-            ))
-        }
-        false => Ok(()),
-    }
-}
-
-/// Reverses the order of the rows, in place.
-pub fn turn_rows(samples: &mut [f32], width: usize) {
-    let rows = samples.len().checked_div(width).unwrap_or(0);
-    for j in 0..rows / 2 {
-        let (upper, lower) = samples.split_at_mut((rows - 1 - j) * width);
-        upper[j * width..(j + 1) * width].swap_with_slice(&mut lower[..width]);
-    }
-}
-
-/// The length of an input in bytes; its position is then at the start.
-pub fn length(input: &mut dyn Input) -> Result<u64, String> {
-    let length = input.seek(std::io::SeekFrom::End(0)).map_err(|cause| cause.to_string())?;
-    input.rewind().map_err(|cause| cause.to_string())?;
-    Ok(length)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -363,14 +293,5 @@ mod tests {
         assert_eq!((dem.missing(), dem.heights[0]), (3, 1.0));
         let why = Dem::new([2, 1], vec![f32::NAN; 2], None).unwrap_err();
         assert!(why.contains("2 x 1 samples are nodata"), "{why}");
-    }
-
-    #[test]
-    fn sizes_are_known_before_memory_is_taken() {
-        assert_eq!(afford(1 << 10, 1 << 10, 1 << 22), Ok(1 << 20));
-        let why = afford(1 << 16, 1 << 16, 1 << 30).unwrap_err();
-        assert!(why.contains("16 GiB") && why.contains("1.0 GiB"), "{why}");
-        assert!(afford(u64::MAX, u64::MAX, u64::MAX).is_err());
-        assert!(afford(0, 5, 100).unwrap_err().contains("0 x 5 samples, which is empty"));
     }
 }

@@ -6,6 +6,8 @@ use std::io::Read;
 use super::crs::keys;
 use super::crs::unit::Unit;
 use super::dem::{Dem, Input, Placement, afford, length, refused};
+use super::metres16;
+use crate::samples;
 use orogen_grid::error::Result;
 
 /// Bytes before the columns: the labels UHL, DSI and ACC.
@@ -51,17 +53,14 @@ fn open(input: &mut dyn Input, allowed: u64) -> std::result::Result<Dem, String>
     if step.contains(&0) {
         return Err("its intervals are 0".into());
     }
-    let mut heights = vec![f32::NAN; count];
+    let mut heights = samples::filled(f32::NAN, count);
     let mut bytes = vec![0; record];
     for i in 0..width {
         input.read_exact(&mut bytes).map_err(|cause| cause.to_string())?;
         if bytes.first() != Some(&0xaa) {
             return Err(format!("its column {i} has no sentinel; it is damaged"));
         }
-        let samples = bytes[LEADER..LEADER + 2 * height].chunks_exact(2);
-        for (j, pair) in samples.enumerate() {
-            heights[(height - 1 - j) * width + i] = sample(u16::from_be_bytes([pair[0], pair[1]]));
-        }
+        metres16::dted_column(&bytes[LEADER..LEADER + 2 * height], &mut heights, width, i);
     }
     let step = step.map(|tenths| f64::from(tenths) / 36_000.0);
     let place = Placement {
@@ -72,16 +71,6 @@ fn open(input: &mut dyn Input, allowed: u64) -> std::result::Result<Dem, String>
         keys: Some(keys::of_epsg(4326, true)),
     };
     Dem::new([width, height], heights, Some(place))
-}
-
-/// A sample: sign and magnitude. Some programs write two's complement, whose magnitudes are beyond any height.
-fn sample(bits: u16) -> f32 {
-    match (bits >> 15, bits & 0x7fff) {
-        (0, height) => f32::from(height),
-        (_, 0x7fff) => f32::NAN,
-        (_, depth) if depth > 16_000 => f32::from(bits as i16),
-        (_, depth) => -f32::from(depth),
-    }
 }
 
 /// Degrees of a text such as 0070000E.

@@ -12,6 +12,8 @@ use super::affine::{Affine, Lattice};
 use super::band::BandMetadata;
 use super::crs::unit::{Unit, length_of_name};
 use super::dem::{Dem, Input, Placement, afford, length, refused};
+use super::stored::{Kind, Stored};
+use crate::samples;
 use orogen_grid::error::Result;
 
 /// Maximum length of a header, in bytes.
@@ -33,14 +35,6 @@ pub fn read(
     allowed: u64,
 ) -> Result<Dem> {
     open(input, header, is_float, metadata, vertical, allowed).map_err(|why| refused(name, why))
-}
-
-/// The type of the samples.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Kind {
-    Unsigned,
-    Signed,
-    Float,
 }
 
 /// The keys of a header, in small letters, with their values.
@@ -141,30 +135,17 @@ fn open(
     let metadata = BandMetadata::default().with_nodata(nodata).replaced_by(metadata);
     let stated = header.text("zunits").and_then(length_of_name);
     let mut conversion = metadata.conversion(vertical.or(stated))?;
-    let mut heights = Vec::with_capacity(count);
+    let stored = Stored { kind, size: size as usize, big_endian: big };
+    let mut heights = samples::filled(f32::NAN, count);
     let mut bytes = vec![0; row as usize];
     std::io::copy(&mut input.take(skip), &mut std::io::sink()).map_err(|cause| cause.to_string())?;
-    for _ in 0..height {
+    for heights in heights.chunks_exact_mut(width as usize) {
         input.read_exact(&mut bytes).map_err(|cause| cause.to_string())?;
-        let samples = bytes.chunks_exact(size as usize).take(width as usize);
-        heights.extend(samples.map(|bytes| conversion.height(value(bytes, kind, big), size as usize)));
+        stored.convert(&bytes, &mut conversion, heights);
     }
     let mut dem = Dem::new([width as usize, height as usize], heights, header.place(height)?)?;
     dem.notes = conversion.notes();
     Ok(dem)
-}
-
-/// A stored sample.
-fn value(bytes: &[u8], kind: Kind, big: bool) -> f64 {
-    let add = |bits: u64, byte: &u8| bits << 8 | u64::from(*byte);
-    let bits = if big { bytes.iter().fold(0, add) } else { bytes.iter().rev().fold(0, add) };
-    let shift = 64 - 8 * bytes.len() as u32;
-    match (kind, bytes.len()) {
-        (Kind::Unsigned, _) => bits as f64,
-        (Kind::Signed, _) => ((bits << shift) as i64 >> shift) as f64,
-        (Kind::Float, 4) => f64::from(f32::from_bits(bits as u32)),
-        (Kind::Float, _) => f64::from_bits(bits),
-    }
 }
 
 #[cfg(test)]

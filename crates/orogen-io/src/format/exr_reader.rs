@@ -3,11 +3,11 @@
 //! "OpenEXR File Layout" (openexr.com). Heights are in one channel: the only one; otherwise `Y`, `height` or `Z`;
 //! otherwise R, if R, G and B are equal; or the channel chosen by its number in the order of names. Samples are metres.
 
-use miniz_oxide::inflate::decompress_to_vec_zlib_with_limit;
-
 use super::dem::{Dem, Input, Request, afford, afford_beside, length, refused};
-use super::half;
+use super::exr_block::{damaged, take, unpack};
 use super::sidecar::Sidecar;
+use super::stored::{Kind, Stored};
+use crate::samples;
 use orogen_grid::error::Result;
 
 /// Maximum length of the header, in bytes.
@@ -36,6 +36,11 @@ impl Sample {
     fn bytes(self) -> usize {
         if self == Sample::Half { 2 } else { 4 }
     }
+
+    fn stored(self) -> Stored {
+        let kind = if self == Sample::Whole { Kind::Unsigned } else { Kind::Float };
+        Stored { kind, size: self.bytes(), big_endian: false }
+    }
 }
 
 #[derive(Default)]
@@ -44,10 +49,6 @@ struct Head {
     packing: Option<u8>,
     /// First and last column and row.
     window: Option<[i32; 4]>,
-}
-
-fn damaged() -> String {
-    "it is a damaged OpenEXR picture".into()
 }
 
 fn open(input: &mut dyn Input, sidecar: &Sidecar, request: Request) -> std::result::Result<Dem, String> {
@@ -102,7 +103,7 @@ fn open(input: &mut dyn Input, sidecar: &Sidecar, request: Request) -> std::resu
     if there.saturating_sub(table) / 8 < blocks || line.saturating_mul(rows) > there.saturating_mul(1032).max(1 << 20) {
         return Err("it ends before its samples".into());
     }
-    let mut heights = vec![f32::NAN; count];
+    let mut heights = samples::filled(f32::NAN, count);
     let mut seen = 0;
     for n in 0..blocks {
         let mut entry = Vec::new();
@@ -128,13 +129,7 @@ fn open(input: &mut dyn Input, sidecar: &Sidecar, request: Request) -> std::resu
             let begin = j * line as usize + before_own as usize * width;
             let out = &mut heights[(first as usize + j) * width..][..width];
             let source = &samples[begin..begin + own.bytes() * width];
-            for (height, b) in out.iter_mut().zip(source.chunks_exact(own.bytes())) {
-                *height = match own {
-                    Sample::Half => half::to_f32(u16::from_le_bytes([b[0], b[1]])),
-                    Sample::Float => f32::from_le_bytes([b[0], b[1], b[2], b[3]]),
-                    Sample::Whole => u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as f32,
-                };
-            }
+            own.stored().copy(source, out);
         }
         seen += lines;
     }
@@ -142,7 +137,7 @@ fn open(input: &mut dyn Input, sidecar: &Sidecar, request: Request) -> std::resu
         return Err(damaged());
     }
     if let Some(nodata) = sidecar.nodata {
-        heights.iter_mut().filter(|height| f64::from(**height) == nodata).for_each(|height| *height = f32::NAN);
+        samples::hide(&mut heights, nodata);
     }
     let heights = sidecar.north_first(heights, width)?;
     Dem::new([width, height as usize], heights, sidecar.place(height as usize)?)
@@ -161,12 +156,6 @@ fn read_some(input: &mut dyn Input, count: u64, out: &mut Vec<u8>) -> std::resul
     use std::io::Read;
     input.take(count).read_to_end(out).map_err(|cause| cause.to_string())?;
     if out.len() as u64 == count { Ok(()) } else { Err("it ends within its samples".into()) }
-}
-
-fn take<'a>(rest: &mut &'a [u8], count: usize) -> std::result::Result<&'a [u8], String> {
-    let (head, tail) = rest.split_at_checked(count).ok_or_else(damaged)?;
-    *rest = tail;
-    Ok(head)
 }
 
 fn int(rest: &mut &[u8]) -> std::result::Result<i32, String> {
@@ -240,43 +229,6 @@ fn choose(channels: &[(String, Option<Sample>, bool)], request: Request) -> std:
     })
 }
 
-/// Decompresses a block.
-fn unpack(packing: u8, packed: &[u8], due: usize) -> std::result::Result<Vec<u8>, String> {
-    let mut parted = match packing {
-        1 => runs(packed, due)?,
-        2 | 3 => decompress_to_vec_zlib_with_limit(packed, due).map_err(|_| damaged())?,
-        _ => return Err(damaged()),
-    };
-    if parted.len() != due {
-        return Err(damaged());
-    }
-    for k in 1..due {
-        parted[k] = parted[k].wrapping_add(parted[k - 1]).wrapping_sub(128);
-    }
-    let (even, odd) = parted.split_at(due.div_ceil(2));
-    Ok((0..due).map(|k| if k % 2 == 0 { even[k / 2] } else { odd[k / 2] }).collect())
-}
-
-/// Run-length coding: a negative count precedes that many literal bytes; another count precedes a byte that is repeated
-/// count + 1 times.
-fn runs(packed: &[u8], due: usize) -> std::result::Result<Vec<u8>, String> {
-    let mut out = Vec::new();
-    let mut rest = packed;
-    while !rest.is_empty() {
-        match take(&mut rest, 1)?[0] as i8 {
-            count @ ..0 => out.extend_from_slice(take(&mut rest, usize::from(count.unsigned_abs()))?),
-            count => {
-                let byte = take(&mut rest, 1)?[0];
-                out.resize(out.len() + count as usize + 1, byte);
-            }
-        }
-        if out.len() > due {
-            return Err(damaged());
-        }
-    }
-    Ok(out)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -320,11 +272,5 @@ mod tests {
         for n in (0..bytes.len() - 1).step_by(13) {
             assert!(parse(&bytes[..n], Request { band: Some(1), ..plain }).is_err(), "{n}");
         }
-    }
-
-    #[test]
-    fn runs_of_bytes() {
-        assert_eq!(runs(&[2, 7, 0xfe, 1, 2], 5), Ok(vec![7, 7, 7, 1, 2]));
-        assert!(runs(&[9, 7], 5).is_err() && runs(&[0x80, 1], 500).is_err());
     }
 }

@@ -1,7 +1,10 @@
 //! Vector features as GIS formats store them: points, lines and polygons with attributes.
 
+use super::coordinates::{self, bounds};
 use super::dem::Georeference;
 use std::borrow::Cow;
+
+pub use super::coordinates::join;
 
 /// The type of a layer's geometries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -158,13 +161,14 @@ impl GeometryType {
 }
 
 impl Geometry {
-    /// Calls `visit` with the east and north of every vertex.
-    fn each(&mut self, mut visit: impl FnMut(&mut f64, &mut f64)) {
+    /// Places its positions on a map, as [`FeatureLayer::place`].
+    fn place(&mut self, map: Option<&Georeference>) {
+        let map = map.map(|map| (map.origin, map.per_metre));
         match self {
-            Geometry::Point([x, y, _]) => visit(x, y),
-            Geometry::Line(points) => points.iter_mut().for_each(|[x, y, _]| visit(x, y)),
+            Geometry::Point(at) => coordinates::place(at, 3, map),
+            Geometry::Line(points) => coordinates::place(points.as_flattened_mut(), 3, map),
             Geometry::MultiPolygon(parts) => {
-                parts.iter_mut().flatten().flatten().for_each(|[x, y]| visit(x, y));
+                parts.iter_mut().flatten().for_each(|ring| coordinates::place(ring.as_flattened_mut(), 2, map));
             }
         }
     }
@@ -172,20 +176,13 @@ impl Geometry {
     /// The bounds: west, south, east, north. `None` for empty geometries.
     #[must_use]
     pub fn bounds(&self) -> Option<[f64; 4]> {
-        let mut bounds: Option<[f64; 4]> = None;
-        let mut add = |x: f64, y: f64| {
-            let [w, s, e, n] = bounds.unwrap_or([x, y, x, y]);
-            bounds = Some([w.min(x), s.min(y), e.max(x), n.max(y)]);
-        };
         match self {
-            Geometry::Point([x, y, _]) => add(*x, *y),
-            Geometry::Line(points) => points.iter().for_each(|[x, y, _]| add(*x, *y)),
+            Geometry::Point(at) => bounds(at, 3, None),
+            Geometry::Line(points) => bounds(points.as_flattened(), 3, None),
             // Holes are within the outer ring.
-            Geometry::MultiPolygon(parts) => {
-                parts.iter().filter_map(|part| part.first()).flatten().for_each(|[x, y]| add(*x, *y));
-            }
+            Geometry::MultiPolygon(parts) => (parts.iter().filter_map(|part| part.first()))
+                .fold(None, |others, ring| bounds(ring.as_flattened(), 2, others)),
         }
-        bounds
     }
 
     /// Number of vertices.
@@ -203,7 +200,7 @@ impl FeatureLayer {
     /// and north.
     pub fn place(&mut self, map: Option<&Georeference>) {
         for feature in &mut self.features {
-            feature.geometry.each(|x, y| [*x, *y] = map.map_or([*x, -*y], |map| map.at(*x, *y)));
+            feature.geometry.place(map);
         }
     }
 
@@ -217,12 +214,6 @@ impl FeatureLayer {
 #[must_use]
 pub fn length(points: &[[f64; 3]]) -> f64 {
     points.windows(2).map(|pair| libm::hypot(pair[1][0] - pair[0][0], pair[1][1] - pair[0][1])).sum()
-}
-
-/// The bounds of both.
-#[must_use]
-pub fn join(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
-    [a[0].min(b[0]), a[1].min(b[1]), a[2].max(b[2]), a[3].max(b[3])]
 }
 
 /// The name of a world's local coordinate system.

@@ -2,6 +2,7 @@
 
 use std::io::{self, Write};
 
+use super::coordinates::append_bytes;
 use super::features::{Crs, Definition, Feature, FeatureLayer, FieldType, Geometry, GeometryType, LOCAL_NAME, Value};
 use super::flatbuffer::{Builder, Offset, Slot};
 use super::packed_tree::{Bounds, hilbert_order, levels};
@@ -87,7 +88,7 @@ fn head(layer: &FeatureLayer, count: usize, crs: Crs) -> Vec<u8> {
         Definition::Unknown { .. } => Slot::Absent,
     };
     let envelope = match layer.bounds() {
-        Some(bounds) => Slot::Reference(builder.numbers(bounds.into_iter())),
+        Some(bounds) => Slot::Reference(builder.numbers(&bounds.map(f64::to_le_bytes).concat())),
         None => Slot::Absent,
     };
     let kind = match layer.geometry {
@@ -130,7 +131,9 @@ fn packed(feature: &Feature, layer: &FeatureLayer) -> Vec<u8> {
                         })
                         .collect();
                     let ends = if ends.len() > 1 { Slot::Reference(builder.wholes(&ends)) } else { Slot::Absent };
-                    let xy = builder.numbers(part.iter().flatten().flat_map(|point| *point));
+                    let mut xy = Vec::new();
+                    part.iter().for_each(|ring| append_bytes(ring.as_flattened(), 2, 0..2, &mut xy));
+                    let xy = builder.numbers(&xy);
                     let slots = [ends, Slot::Reference(xy)].into_iter().chain([Slot::Absent; 4]);
                     builder.table(&slots.chain([Slot::Byte(POLYGON)]).collect::<Vec<Slot>>())
                 })
@@ -163,8 +166,12 @@ fn packed(feature: &Feature, layer: &FeatureLayer) -> Vec<u8> {
 }
 
 fn points(builder: &mut Builder, points: &[[f64; 3]], z: bool) -> Offset {
-    let xy = builder.numbers(points.iter().flat_map(|[x, y, _]| [*x, *y]));
-    let heights = if z { Slot::Reference(builder.numbers(points.iter().map(|point| point[2]))) } else { Slot::Absent };
+    let mut bytes = Vec::new();
+    append_bytes(points.as_flattened(), 3, 0..2, &mut bytes);
+    let xy = builder.numbers(&bytes);
+    bytes.clear();
+    append_bytes(points.as_flattened(), 3, 2..3, &mut bytes);
+    let heights = if z { Slot::Reference(builder.numbers(&bytes)) } else { Slot::Absent };
     builder.table(&[Slot::Absent, Slot::Reference(xy), heights])
 }
 

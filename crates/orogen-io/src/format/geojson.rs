@@ -3,7 +3,10 @@
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
+use super::coordinates::{append_list, append_position};
 use super::features::{Crs, Definition, FeatureLayer, Geometry, Value};
+
+pub use super::number::{decimals, number};
 
 /// Writes a layer as a feature collection, one feature per line. `step` is the distance between samples in the unit of
 /// the coordinates, which are rounded to at most a thousandth of it; heights are rounded to millimetres.
@@ -55,16 +58,16 @@ fn geometry(text: &mut String, geometry: &Geometry, z: bool, decimals: usize) {
     match geometry {
         Geometry::Point(at) => {
             text.push_str("\"type\":\"Point\",\"coordinates\":");
-            position(text, &at[..numbers], decimals);
+            append_position(text, &at[..numbers], decimals);
         }
         Geometry::Line(points) => {
             text.push_str("\"type\":\"LineString\",\"coordinates\":");
-            list(text, points, |text, point| position(text, &point[..numbers], decimals));
+            append_list(text, points.as_flattened(), 3, numbers, decimals);
         }
         Geometry::MultiPolygon(parts) => {
             text.push_str("\"type\":\"MultiPolygon\",\"coordinates\":");
             list(text, parts, |text, part| {
-                list(text, part, |text, ring| list(text, ring, |text, point| position(text, point, decimals)));
+                list(text, part, |text, ring| append_list(text, ring.as_flattened(), 2, 2, decimals));
             });
         }
     }
@@ -80,45 +83,6 @@ fn list<T>(text: &mut String, items: &[T], mut item: impl FnMut(&mut String, &T)
     }
     text.push(']');
 }
-
-fn position(text: &mut String, at: &[f64], decimals: usize) {
-    text.push('[');
-    for (k, value) in at.iter().enumerate() {
-        if k > 0 {
-            text.push(',');
-        }
-        number(text, *value, if k < 2 { decimals } else { 3 });
-    }
-    text.push(']');
-}
-
-/// Number of decimals that resolve a thousandth of a step.
-#[must_use]
-pub fn decimals(step: f64) -> usize {
-    (3.0 - libm::log10(step).floor()).clamp(0.0, 15.0) as usize
-}
-
-/// Appends a number with at most `decimals` decimals and without trailing zeros.
-pub fn number(text: &mut String, value: f64, decimals: usize) {
-    let power = POWERS[decimals.min(POWERS.len() - 1)];
-    let scaled = (value * power).round();
-    // Integers are formatted much faster than fractions.
-    if scaled.abs() < 9e15 && decimals < POWERS.len() {
-        let (whole, part) = ((scaled.abs() as u64) / power as u64, (scaled.abs() as u64) % power as u64);
-        if scaled < 0.0 {
-            text.push('-');
-        }
-        let _ = write!(text, "{whole}");
-        if part > 0 {
-            let _ = write!(text, ".{part:0decimals$}");
-            text.truncate(text.trim_end_matches('0').len());
-        }
-    } else {
-        let _ = write!(text, "{value}");
-    }
-}
-
-const POWERS: [f64; 16] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15];
 
 #[cfg(test)]
 mod tests {
@@ -185,23 +149,5 @@ mod tests {
         assert_eq!(collection["features"][0]["geometry"]["coordinates"], expect);
         map.keys = keys(&[1, 1, 0, 2, 1024, 0, 1, 1, 3072, 0, 1, 32633]);
         assert_eq!(written(lines(), Some(&map))["crs"]["properties"]["name"], "urn:ogc:def:crs:EPSG::32633");
-    }
-
-    #[test]
-    fn numbers_are_short_and_exact() {
-        for (value, decimals, expect) in [
-            (0.0, 2, "0"),
-            (-0.001, 2, "0"),
-            (12.5, 3, "12.5"),
-            (-12.0625, 4, "-12.0625"),
-            (1e6 / 3.0, 2, "333333.33"),
-            (7.0, 0, "7"),
-            (1e300, 3, &format!("{}", 1e300)),
-        ] {
-            let mut text = String::new();
-            number(&mut text, value, decimals);
-            assert_eq!(text, expect, "{value}");
-        }
-        assert_eq!([0.01, 1.0, 30.0, 1e5, 1e-4].map(decimals), [5, 3, 2, 0, 7]);
     }
 }

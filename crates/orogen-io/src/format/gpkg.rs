@@ -2,6 +2,7 @@
 
 use std::io::{self, Write};
 
+use super::coordinates::append_bytes;
 use super::features::{Crs, Definition, FeatureLayer, FieldType, Geometry, GeometryType, LOCAL_WKT, Value};
 use super::packed_tree::{Bounds, hilbert_order, levels};
 use super::sqlite::{Column, Database};
@@ -246,7 +247,7 @@ fn blob(geometry: &Geometry, kind: GeometryType, srs: i64) -> Vec<u8> {
             let z = kind == GeometryType::LineZ;
             head(if z { 1002 } else { 2 }, &mut out);
             count(points.len(), &mut out);
-            points.iter().for_each(|point| numbers(&point[..if z { 3 } else { 2 }], &mut out));
+            append_bytes(points.as_flattened(), 3, 0..if z { 3 } else { 2 }, &mut out);
         }
         Geometry::MultiPolygon(parts) => {
             head(6, &mut out);
@@ -256,7 +257,7 @@ fn blob(geometry: &Geometry, kind: GeometryType, srs: i64) -> Vec<u8> {
                 count(part.len(), &mut out);
                 for ring in part {
                     count(ring.len(), &mut out);
-                    ring.iter().for_each(|point| numbers(point, &mut out));
+                    append_bytes(ring.as_flattened(), 2, 0..2, &mut out);
                 }
             }
         }

@@ -1,11 +1,10 @@
 //! Reading heights from a greyscale PNG of 8 or 16 bits, with a [`Sidecar`] that states the heights of black and white,
 //! and from a colour PNG of 8 bits whose sidecar states the [`Encoding`].
 
-use std::io::BufReader;
+use ::png::{BitDepth, ColorType};
 
-use ::png::{BitDepth, ColorType, Decoder, DecodingError, Limits, Transformations};
-
-use super::dem::{Dem, Input, afford, refused};
+use super::dem::{Dem, Input, refused};
+use super::grey_rows::Pixels;
 use super::sidecar::{Sidecar, needs};
 use orogen_grid::error::Result;
 
@@ -19,21 +18,8 @@ pub fn read(input: &mut dyn Input, name: &str, sidecar: &Sidecar, allowed: u64) 
 }
 
 fn open(input: &mut dyn Input, sidecar: &Sidecar, allowed: u64) -> std::result::Result<Dem, String> {
-    let broken = |fault: DecodingError| match fault {
-        DecodingError::LimitsExceeded => {
-            "it needs more memory than a picture of its size should; it is damaged".to_string()
-        }
-        other => format!("it is not a valid PNG ({other})"),
-    };
-    let limit = usize::try_from(allowed).unwrap_or(usize::MAX);
-    // What the decoder takes for any picture is no matter of this one: a picture that does not fit is refused with its size.
-    const DECODER: usize = 64 << 10;
-    let mut decoder = Decoder::new_with_limits(BufReader::new(input), Limits { bytes: limit.max(DECODER) });
-    decoder.set_transformations(Transformations::IDENTITY);
-    let mut reader = decoder.read_info().map_err(broken)?;
-    let (width, height) = (u64::from(reader.info().width), u64::from(reader.info().height));
-    let count = afford(width, height, allowed)?;
-    let (color, depth) = (reader.info().color_type, reader.info().bit_depth);
+    let mut picture = Pixels::open(input, allowed)?;
+    let Pixels { width, height, color, depth, .. } = picture;
     let encoding = sidecar.encoding();
     let size = match (color, depth) {
         (ColorType::Grayscale, BitDepth::Eight) => 1,
@@ -50,31 +36,14 @@ fn open(input: &mut dyn Input, sidecar: &Sidecar, allowed: u64) -> std::result::
             ));
         }
     };
-    if reader.info().interlaced {
-        return Err("it is interlaced; save it without interlacing".into());
-    }
+    picture.check_rows()?;
     let encoding = encoding.filter(|_| size > 2);
     let most = if size == 1 { 255.0 } else { 65535.0 };
     let [low, high] = if encoding.is_some() { [0.0; 2] } else { sidecar.range(most)? };
-    let mut heights: Vec<f32> = Vec::new();
-    while let Some(row) = reader.next_row().map_err(broken)? {
-        heights.extend(row.data().chunks_exact(size).map(|bytes| {
-            if let (Some(encoding), [red, green, blue, rest @ ..]) = (encoding, bytes) {
-                // Transparent pixels have no height, nor has 0, 0, 0.
-                let color = [*red, *green, *blue];
-                return if rest == [0] || color == [0; 3] { f32::NAN } else { encoding.height(color) as f32 };
-            }
-            let number = bytes.iter().fold(0u32, |number, byte| number << 8 | u32::from(*byte));
-            let number = f64::from(number);
-            if sidecar.nodata == Some(number) { f32::NAN } else { (low + number / most * (high - low)) as f32 }
-        }));
-        if heights.len() >= count {
-            break;
-        }
-    }
-    if heights.len() != count {
-        return Err("it ends within its rows".into());
-    }
+    let heights = match encoding {
+        Some(encoding) => picture.encoded(size, encoding)?,
+        None => picture.greys(size, most, [low, high], sidecar.nodata)?,
+    };
     let heights = sidecar.north_first(heights, width as usize)?;
     Dem::new([width as usize, height as usize], heights, sidecar.place(height as usize)?)
 }

@@ -9,9 +9,8 @@ use std::io::{Read, Write};
 use super::crs::keys;
 use super::crs::unit::Unit;
 use super::dem::{Dem, Input, Placement, afford, length, refused};
+use super::metres16;
 use orogen_grid::error::Result;
-
-const VOID: i16 = -32768;
 
 /// The supported sizes: columns and rows.
 pub const SIZES: [[usize; 2]; 4] = [[1201, 1201], [3601, 3601], [1801, 3601], [601, 1201]];
@@ -22,10 +21,7 @@ pub fn write(out: &mut dyn Write, heights: &[f32]) -> std::io::Result<()> {
     let mut bytes = Vec::with_capacity(1 << 16);
     for piece in heights.chunks(1 << 15) {
         bytes.clear();
-        for height in piece {
-            let whole = if height.is_nan() { VOID } else { height.round().clamp(-32767.0, 32767.0) as i16 };
-            bytes.extend(whole.to_be_bytes());
-        }
+        metres16::append_bytes(&mut bytes, piece);
         out.write_all(&bytes)?;
     }
     Ok(())
@@ -74,11 +70,7 @@ fn open(input: &mut dyn Input, name: &str, allowed: u64) -> std::result::Result<
     let count = afford(columns as u64, rows as u64, allowed)?;
     let mut raw = Vec::with_capacity(2 * count);
     input.take(bytes).read_to_end(&mut raw).map_err(|cause| cause.to_string())?;
-    let height = |pair: &[u8]| match i16::from_be_bytes([pair[0], pair[1]]) {
-        VOID => f32::NAN,
-        height => f32::from(height),
-    };
-    let heights: Vec<f32> = raw.chunks_exact(2).map(height).collect();
+    let heights = metres16::heights(&raw);
     if heights.len() != count {
         return Err("it ends within its samples".into());
     }

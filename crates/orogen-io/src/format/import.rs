@@ -12,6 +12,7 @@ use super::raw::Sample;
 use super::sidecar::Sidecar;
 use super::{asc, dted, ehdr, exr_reader, geotiff, grey, hgt, netcdf, npy, raw, xyz, zip};
 use crate::open;
+use crate::samples;
 use orogen_grid::error::{Error, Result};
 
 /// Extensions of readable files.
@@ -255,7 +256,7 @@ fn convert(
     let mut conversion = metadata.conversion(vertical)?;
     conversion.apply(&mut dem.heights);
     dem.notes.extend(conversion.notes());
-    match request.part.is_none() && dem.heights.iter().all(|height| height.is_nan()) {
+    match request.part.is_none() && !samples::has_height(&dem.heights) {
         true => Err(format!("all of its {} x {} samples are nodata", dem.width, dem.height)),
         false => Ok(()),
     }

@@ -9,56 +9,42 @@ pub mod content;
 pub mod contour_svg;
 pub mod crs;
 pub mod csv;
-pub(crate) mod deflate;
 pub mod dem;
 pub mod drawing;
 pub(crate) mod dted;
 pub(crate) mod ehdr;
-pub mod encoding;
-pub mod exr;
 pub(crate) mod exr_reader;
 pub mod features;
 pub mod fgb;
-pub(crate) mod flatbuffer;
 pub mod foreign;
 pub mod geojson;
-mod geojson_reader;
 pub mod geotiff;
-pub mod gif;
 pub mod gpkg;
 pub(crate) mod grey;
-pub(crate) mod gzip;
-pub mod half;
 pub mod hgt;
 pub mod import;
-pub mod lerc;
-pub mod levels;
-pub mod luanti;
-pub(crate) mod nbt;
 pub(crate) mod netcdf;
 mod noted;
 pub mod notes;
-pub mod npy;
-pub mod outlines;
-pub(crate) mod packed_tree;
 pub mod pgm;
-pub mod png;
 pub mod points;
 pub mod raw;
-pub mod schem;
 pub mod sidecar;
-pub(crate) mod sqlite;
 pub mod svg;
-mod svg_path;
 mod svg_shapes;
 pub mod tres;
-pub mod vox;
 pub mod vrt;
-#[doc(hidden)]
-pub mod weights;
 pub mod world_file;
 pub mod xml;
 pub(crate) mod xyz;
 pub mod zarr;
-pub(crate) mod zip;
-pub mod zip_writer;
+
+#[doc(hidden)]
+pub use orogen_codec::format::weights;
+pub(crate) use orogen_codec::format::{
+    conversion, coordinates, exr_block, flatbuffer, geojson_reader, grey_rows, input, metres16, number, packed_tree,
+    sqlite, stored, svg_path, words, xyz_rows, zip,
+};
+pub use orogen_codec::format::{
+    encoding, exr, gif, half, lerc, levels, luanti, npy, outlines, png, schem, vox, zip_writer,
+};

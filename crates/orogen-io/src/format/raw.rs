@@ -5,6 +5,7 @@ use std::io::{self, Read, Write};
 use super::dem::{Dem, Input, afford, length, refused};
 use super::levels::Levels;
 use super::sidecar::{Sidecar, needs};
+use super::stored::{Kind, Stored};
 use crate::samples;
 use orogen_grid::error::Result;
 use orogen_grid::grid::Grid;
@@ -34,10 +35,7 @@ pub fn write_r32(out: &mut dyn Write, grid: &Grid) -> io::Result<()> {
 
 /// Writes samples as u16, little-endian, over the range of `levels`.
 pub fn write_u16(out: &mut dyn Write, samples: &[f32], levels: &Levels) -> io::Result<()> {
-    samples.chunks(1 << 15).try_for_each(|piece| {
-        let bytes: Vec<u8> = piece.iter().flat_map(|height| levels.to_u16(*height).to_le_bytes()).collect();
-        out.write_all(&bytes)
-    })
+    samples.chunks(1 << 15).try_for_each(|piece| out.write_all(&levels.to_le_bytes(piece)))
 }
 
 /// Writes samples as f32, little-endian.
@@ -60,15 +58,16 @@ fn open(input: &mut dyn Input, sample: Sample, sidecar: &Sidecar, allowed: u64) 
     let big = sidecar.big_endian()?;
     let [low, high] = if sample == Sample::U16 { sidecar.range(65535.0)? } else { [0.0, 1.0] };
     let count = afford(width, height, allowed)?;
-    let size = if sample == Sample::U16 { 2 } else { 4 };
+    let size: usize = if sample == Sample::U16 { 2 } else { 4 };
     let there = length(input)?;
-    if there != count as u64 * size {
+    if there != (count * size) as u64 {
         return Err(format!(
             "{width} x {height} samples of {size} bytes need {} bytes, and it has {there}",
-            count as u64 * size
+            (count * size) as u64
         ));
     }
-    let nodata = |value: f64| sidecar.nodata == Some(value);
+    let kind = if sample == Sample::U16 { Kind::Unsigned } else { Kind::Float };
+    let stored = Stored { kind, size, big_endian: big };
     let mut heights: Vec<f32> = Vec::with_capacity(count);
     let mut bytes = Vec::with_capacity(PIECE);
     while heights.len() < count {
@@ -78,22 +77,8 @@ fn open(input: &mut dyn Input, sample: Sample, sidecar: &Sidecar, allowed: u64) 
             return Err("it ends within its samples".into());
         }
         match sample {
-            Sample::U16 => {
-                let height = |pair: &[u8]| {
-                    let number = [pair[0], pair[1]];
-                    let number = f64::from(if big { u16::from_be_bytes(number) } else { u16::from_le_bytes(number) });
-                    if nodata(number) { f32::NAN } else { (low + number / 65535.0 * (high - low)) as f32 }
-                };
-                heights.extend(bytes.chunks_exact(2).map(height));
-            }
-            Sample::F32 => {
-                let height = |four: &[u8]| {
-                    let four = [four[0], four[1], four[2], four[3]];
-                    let number = if big { f32::from_be_bytes(four) } else { f32::from_le_bytes(four) };
-                    if nodata(f64::from(number)) { f32::NAN } else { number }
-                };
-                heights.extend(bytes.chunks_exact(4).map(height));
-            }
+            Sample::U16 => stored.append_scaled(&bytes, 65535.0, [low, high], sidecar.nodata, &mut heights),
+            Sample::F32 => stored.append(&bytes, sidecar.nodata, &mut heights),
         }
     }
     let heights = sidecar.north_first(heights, width as usize)?;

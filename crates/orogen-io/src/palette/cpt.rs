@@ -87,7 +87,8 @@ fn hsv_stops([start, end]: [(f64, Color); 2]) -> Vec<(f64, Rgb)> {
 /// # Errors
 /// A message with the line that cannot be parsed.
 pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
-    let mut palette = Palette { name: name.to_string(), mix: Mix::Rgb, ..Palette::default() };
+    let mut palette = Palette::new(name, Vec::new());
+    palette.mix = Mix::Rgb;
     let (mut model, mut mixed, mut range, mut hinge) = (Model::Rgb, Model::Rgb, None, None);
     let mut stops: Vec<(f64, Rgb)> = Vec::new();
     for (number, line) in text.lines().enumerate().map(|(k, line)| (k + 1, line.trim())) {

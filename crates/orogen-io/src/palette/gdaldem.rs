@@ -15,7 +15,8 @@ use super::palette::{Mix, Palette, Position, Stop};
 /// # Errors
 /// A message with the line that cannot be parsed.
 pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
-    let mut palette = Palette { name: name.to_string(), mix: Mix::Rgb, ..Palette::default() };
+    let mut palette = Palette::new(name, Vec::new());
+    palette.mix = Mix::Rgb;
     let lines: Vec<(usize, Vec<&str>)> = (text.lines().enumerate())
         .map(|(k, line)| (k + 1, line.split('#').next().unwrap_or_default()))
         .map(|(k, line)| (k, line.split([' ', '\t', ',', ':', '\r']).filter(|word| !word.is_empty()).collect()))
@@ -109,10 +110,7 @@ fn color(words: &[&str], scale: f64) -> Result<Rgb, String> {
 
 /// The stops in ascending order; the sort is stable.
 fn ordered(mut palette: Palette) -> Palette {
-    let place = |stop: &Stop| match stop.at {
-        Position::Value(at) | Position::Share(at) | Position::Sea(at) => at,
-    };
-    palette.stops.sort_by(|a, b| place(a).total_cmp(&place(b)));
+    palette.stops.sort_by(|a, b| a.at.number().total_cmp(&b.at.number()));
     palette
 }
 

@@ -4,19 +4,15 @@
 //! brown does not turn grey. Results are in linear light, so that shading can multiply them; [`color::Encoder`]
 //! converts them to bytes.
 
-pub(crate) mod atlas;
-pub mod color;
 pub(crate) mod cpt;
-pub mod fitted;
 pub(crate) mod gdaldem;
 pub(crate) mod gpl;
-pub mod histogram;
 pub mod named;
 pub mod names;
 pub mod own;
-#[allow(clippy::module_inception, reason = "the room is about palettes, the file about the one")]
-pub mod palette;
 pub(crate) mod qgis;
-pub mod ramp;
 pub mod read;
-pub mod tint;
+#[cfg(test)]
+mod tint_tests;
+
+pub use orogen_codec::palette::{color, fitted, histogram, palette, ramp, tint};

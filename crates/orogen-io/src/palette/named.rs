@@ -483,7 +483,9 @@ impl Named {
             Span::Degrees => Position::Value,
         };
         let stops = self.stops.iter().map(|&(at, color)| Stop { at: place(at), color: rgb(color) }).collect();
-        Palette { follows_relief: self.name == DEFAULT, ..Palette::new(self.name, stops) }
+        let mut palette = Palette::new(self.name, stops);
+        palette.follows_relief = self.name == DEFAULT;
+        palette
     }
 
     /// The ends of the scale of its positions.

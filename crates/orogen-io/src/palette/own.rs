@@ -67,42 +67,30 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
         return Err("its stops are not in ascending order".into());
     }
     let optional = |value: &Option<toml::Value>| value.as_ref().map(color).transpose();
-    Ok(Palette {
-        name: file.name.unwrap_or_else(|| name.to_string()),
-        stops,
-        mix,
-        below: optional(&file.below)?,
-        above: optional(&file.above)?,
-        missing: optional(&file.missing)?,
-        follows_relief: false,
-    })
+    let mut palette = Palette::new(file.name.as_deref().unwrap_or(name), stops);
+    palette.mix = mix;
+    palette.below = optional(&file.below)?;
+    palette.above = optional(&file.above)?;
+    palette.missing = optional(&file.missing)?;
+    Ok(palette)
 }
 
 /// A palette as a text that [`parse`] reads. `None` if the positions of its colors are of several kinds, or follow the relief, which the format cannot say.
 #[must_use]
 pub fn write(palette: &Palette) -> Option<String> {
     let first = palette.stops.first()?.at;
-    let unit = match first {
-        Position::Value(_) => "m",
-        Position::Share(_) => "range",
-        Position::Sea(_) => "sea",
-    };
+    let unit = first.unit();
     let is_one_kind = palette.stops.iter().all(|stop| discriminant(&stop.at) == discriminant(&first));
     if !is_one_kind || palette.follows_relief {
         return None;
     }
-    let mix = match palette.mix {
-        Mix::Oklab => "oklab",
-        Mix::Rgb => "rgb",
-        Mix::Hsv => "hsv",
-        Mix::Nearest => "nearest",
-    };
+    let mix = palette.mix.word();
     let mut text = format!(
         "name = {}\nunit = \"{unit}\"\nmix = \"{mix}\"\nstops = [\n",
         serde_json::Value::from(palette.name.replace('\u{7f}', " "))
     );
     for Stop { at, color } in &palette.stops {
-        let (Position::Value(at) | Position::Share(at) | Position::Sea(at)) = at;
+        let at = at.number();
         text.push_str(&format!("    [{at:?}, \"{}\"],\n", hex(*color)));
     }
     text.push_str("]\n");
@@ -161,8 +149,8 @@ mod tests {
     #[test]
     fn what_is_written_is_read() {
         for named in named::all() {
-            let mut palette =
-                Palette { follows_relief: false, mix: Mix::Hsv, above: Some([1, 2, 3]), ..named.palette() };
+            let mut palette = named.palette();
+            (palette.follows_relief, palette.mix, palette.above) = (false, Mix::Hsv, Some([1, 2, 3]));
             assert_eq!(parse("", &write(&palette).unwrap()), Ok(palette.clone()));
             let nearest = palette.clone().nearest();
             assert_eq!(parse("", &write(&nearest).unwrap()), Ok(nearest));

@@ -57,7 +57,8 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
         rows.push((value, color));
     }
     rows.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut palette = Palette { name: name.to_string(), mix: Mix::Rgb, ..Palette::default() };
+    let mut palette = Palette::new(name, Vec::new());
+    palette.mix = Mix::Rgb;
     let stop = |value: f64, color| Stop { at: Position::Value(value), color };
     for (k, (value, color)) in rows.iter().enumerate() {
         // A discrete colour begins where the one below ends.

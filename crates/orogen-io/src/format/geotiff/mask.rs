@@ -3,7 +3,7 @@
 
 use super::blocks::{Blocks, Limits};
 use super::entries::Tiff;
-use super::unpack::Packing;
+use super::unpack::{Packing, mask};
 use crate::format::dem::{Input, Part, Request};
 
 /// Sets heights to NaN where the file's own mask is 0. Without a mask nothing changes. Returns a note if the file is
@@ -78,17 +78,10 @@ fn apply(
     blocks.each(tiff, plane, row, &packing, &limits, |block, bytes| {
         let row = row as usize;
         for j in 0..block.size[1] {
-            for i in 0..block.size[0] {
-                let (column, line) = (block.from[0] + i, (block.from[1] + j) * row);
-                let valid = match bits {
-                    1 => bytes.get(line + column / 8).is_some_and(|byte| byte >> (7 - column % 8) & 1 == 1),
-                    _ => bytes.get(line + column * together + inner).is_some_and(|byte| *byte != 0),
-                };
-                let at = (block.to[1] + j) * part.size[0] + block.to[0] + i;
-                if let (false, Some(height)) = (valid, heights.get_mut(at)) {
-                    *height = f32::NAN;
-                }
-            }
+            let line = bytes.get((block.from[1] + j) * row..).unwrap_or_default();
+            let at = (block.to[1] + j) * part.size[0] + block.to[0];
+            let heights = &mut heights[at..at + block.size[0]];
+            mask(&line[..line.len().min(row)], bits, together, inner, block.from[0], heights);
         }
     })
 }

@@ -28,16 +28,15 @@ mod directory;
 mod entries;
 pub(crate) mod mask;
 pub mod options;
-#[doc(hidden)]
-pub mod overview;
 mod place;
 #[doc(hidden)]
 pub mod pyramid;
 pub mod reader;
-#[doc(hidden)]
-pub mod tile;
-pub(crate) mod unpack;
 pub mod writer;
+
+pub(crate) use orogen_codec::format::geotiff::unpack;
+#[doc(hidden)]
+pub use orogen_codec::format::geotiff::{overview, tile};
 
 #[cfg(test)]
 mod reader_tests;

@@ -80,10 +80,9 @@ impl Pyramid {
             .map(|([width, height], lengths)| Level { width: *width, height: *height, lengths })
             .collect();
         out.write_all(&directory::head(&self.description, &table, self.big))?;
-        let mut bytes = Vec::new();
         for (level, table) in table.iter().enumerate().rev() {
             for (tile, length) in table.lengths.iter().enumerate() {
-                bytes.resize(*length as usize, 0);
+                let mut bytes = vec![0; *length as usize];
                 read(level, tile, &mut bytes)?;
                 out.write_all(&length.to_le_bytes())?;
                 out.write_all(&bytes)?;

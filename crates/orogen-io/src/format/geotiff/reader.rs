@@ -7,13 +7,14 @@
 
 use super::blocks::{Blocks, Limits};
 use super::entries::Tiff;
-use super::unpack::{Layout, Packing};
+use super::unpack::{Layout, Packing, Row};
 use super::{mask, place};
 use crate::format::band::BandMetadata;
 use crate::format::dem::{Dem, Input, Part, Placement, Request, afford, beyond, refused, turn_rows};
-use crate::format::half;
 use crate::format::sidecar::Sidecar;
+use crate::format::stored::{Kind, Stored};
 use crate::open;
+use crate::samples;
 use orogen_grid::error::Result;
 
 /// Reads a band of a GeoTIFF. `name` is the file's name in errors.
@@ -55,16 +56,7 @@ fn side(tiff: &mut Tiff, tag: u16, what: &str) -> std::result::Result<u64, Strin
     tiff.one(tag)?.ok_or_else(|| format!("its directory has no {what}"))
 }
 
-/// The type of the samples.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Kind {
-    Unsigned,
-    Signed,
-    Float,
-}
-
 struct Samples {
-    kind: Kind,
     layout: Layout,
     packing: Packing,
     /// The index, from 0, of the band among those interleaved in a block.
@@ -100,31 +92,27 @@ fn heights(
     let vertical = if has_system { found.vertical } else { found.vertical.or(told.vertical) };
     let mut conversion = metadata.conversion(vertical)?;
     let blocks = Blocks::read(tiff, size)?;
-    let row = blocks.width.saturating_mul((samples.layout.size * samples.layout.bands) as u64);
+    let row = blocks.width.saturating_mul((samples.layout.stored.size * samples.layout.bands) as u64);
     let limits = Limits { count, allowed: request.allowed, bands: samples.layout.bands, part };
     let mut heights: Vec<f32> = Vec::new();
     let mut bits = Vec::new();
+    let row_of = |first: usize, band: usize| Row { layout: samples.layout, first, band };
     blocks.each(tiff, samples.plane, row, &samples.packing, &limits, |block, bytes| {
         let [left, top] = block.to;
         if left == 0 {
             // Allocate only for this row of blocks: a file with a wrong size fails early.
             let grown = heights.len() + block.size[1] * part.size[0];
             heights.reserve(if top == 0 { count.min(2 * grown) } else { grown - heights.len() });
-            heights.resize(grown, conversion.absent());
+            samples::grow(&mut heights, grown, conversion.absent());
         }
         let lines = bytes.chunks_exact_mut(row as usize).skip(block.from[1]).take(block.size[1]);
         for (j, line) in lines.enumerate() {
-            samples.layout.row(line, &mut bits);
             let begin = (top + j) * part.size[0] + left;
-            let bands = samples.layout.bands;
-            let own = bits.iter().skip(block.from[0] * bands + samples.band).step_by(bands);
-            for (height, bits) in heights[begin..begin + block.size[0]].iter_mut().zip(own) {
-                *height = conversion.height(samples.value(*bits), samples.layout.size);
-            }
+            let own = &mut heights[begin..begin + block.size[0]];
+            row_of(block.from[0], samples.band).convert(line, &mut bits, &mut conversion, own);
         }
     })?;
     if let Some([plane, index]) = samples.alpha {
-        let bands = samples.layout.bands;
         blocks.each(tiff, plane, row, &samples.packing, &limits, |block, bytes| {
             for j in 0..block.size[1] {
                 let begin = (block.to[1] + j) * part.size[0] + block.to[0];
@@ -133,9 +121,7 @@ fn heights(
                     own.fill(f32::NAN);
                     continue;
                 };
-                samples.layout.row(line, &mut bits);
-                let alpha = bits.iter().skip(block.from[0] * bands + index).step_by(bands);
-                own.iter_mut().zip(alpha).filter(|(_, bits)| **bits == 0).for_each(|(height, _)| *height = f32::NAN);
+                row_of(block.from[0], index).hide(line, &mut bits, own);
             }
         })?;
     }
@@ -217,28 +203,14 @@ fn samples(tiff: &mut Tiff, request: Request) -> std::result::Result<Samples, St
         bands: together,
         size,
     };
+    let stored = Stored { kind, size, big_endian: tiff.big_endian };
     Ok(Samples {
-        kind,
         // Also for LERC: libtiff compresses a file's samples with their bytes in the file's order.
-        layout: Layout { size, big_endian: tiff.big_endian, predictor, bands: together },
+        layout: Layout { stored, predictor, bands: together },
         packing,
         band: if apart { 0 } else { band },
         plane: if apart { band } else { 0 },
         alpha: alpha.map(|alpha| if apart { [alpha, 0] } else { [0, alpha] }),
         metadata,
     })
-}
-
-impl Samples {
-    /// The stored value of a sample's bits.
-    fn value(&self, bits: u64) -> f64 {
-        let shift = 64 - 8 * self.layout.size as u32;
-        match (self.kind, self.layout.size) {
-            (Kind::Unsigned, _) => bits as f64,
-            (Kind::Signed, _) => ((bits << shift) as i64 >> shift) as f64,
-            (Kind::Float, 2) => f64::from(half::to_f32(bits as u16)),
-            (Kind::Float, 4) => f64::from(f32::from_bits(bits as u32)),
-            (Kind::Float, _) => f64::from_bits(bits),
-        }
-    }
 }

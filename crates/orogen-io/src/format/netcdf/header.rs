@@ -5,6 +5,7 @@
 use std::io::{BufReader, Read};
 
 use crate::format::dem::{Input, length};
+use crate::format::stored::{self, Stored};
 
 /// Maximum length of a header, in bytes.
 const MAX_LENGTH: u64 = 1 << 20;
@@ -49,16 +50,14 @@ impl Type {
         Some(Type { kind, size })
     }
 
-    /// The value of a sample's bytes.
-    pub fn value(self, bytes: &[u8]) -> f64 {
-        let shift = 64 - 8 * self.size as u32;
-        let bits = bytes.iter().fold(0u64, |bits, byte| bits << 8 | u64::from(*byte));
-        match (self.kind, self.size) {
-            (Kind::Signed, _) => ((bits << shift) as i64 >> shift) as f64,
-            (Kind::Unsigned | Kind::Text, _) => bits as f64,
-            (Kind::Float, 4) => f64::from(f32::from_bits(bits as u32)),
-            (Kind::Float, _) => f64::from_bits(bits),
-        }
+    /// How values are stored: those of text as numbers.
+    pub fn stored(self) -> Stored {
+        let kind = match self.kind {
+            Kind::Signed => stored::Kind::Signed,
+            Kind::Unsigned | Kind::Text => stored::Kind::Unsigned,
+            Kind::Float => stored::Kind::Float,
+        };
+        Stored { kind, size: self.size, big_endian: true }
     }
 }
 
@@ -201,7 +200,9 @@ impl Source<'_> {
             let bytes = source.padded(count.saturating_mul(type_of.size as u64))?;
             let value = match type_of.kind {
                 Kind::Text => Attribute::Text(String::from_utf8_lossy(&bytes).trim_end_matches('\0').into()),
-                _ => Attribute::Numbers(bytes.chunks_exact(type_of.size).map(|bytes| type_of.value(bytes)).collect()),
+                _ => Attribute::Numbers(
+                    bytes.chunks_exact(type_of.size).map(|bytes| type_of.stored().value(bytes)).collect(),
+                ),
             };
             Ok((name, value))
         })?))

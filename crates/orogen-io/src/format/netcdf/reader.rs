@@ -14,6 +14,7 @@ use crate::format::band::BandMetadata;
 use crate::format::crs::keys::{self, GeoKeys};
 use crate::format::crs::unit::{Unit, length_of_name};
 use crate::format::dem::{Dem, Input, Part, Placement, Request, afford, beyond, refused, turn_rows};
+use crate::samples;
 use orogen_grid::error::Result;
 
 /// Maximum number of coordinates along a side.
@@ -154,13 +155,13 @@ fn open(input: &mut dyn Input, name: &str, request: Request) -> Fallible<Dem> {
         }
         None => return Err("its samples are beyond the end of any file; it is damaged".into()),
     }
-    let mut heights: Vec<f32> = Vec::with_capacity(count);
+    let mut heights = samples::filled(f32::NAN, count);
     let mut bytes = vec![0; bytes_of_row];
-    for at in (0..part.size[1]).filter_map(row) {
+    let rows = heights.chunks_exact_mut(part.size[0]);
+    for (heights, at) in rows.zip((0..part.size[1]).filter_map(row)) {
         input.seek(SeekFrom::Start(at)).map_err(|cause| cause.to_string())?;
         input.read_exact(&mut bytes).map_err(|cause| cause.to_string())?;
-        let values = bytes.chunks_exact(type_of.size).map(|bytes| type_of.value(bytes));
-        heights.extend(values.map(|value| conversion.height(value, type_of.size)));
+        type_of.stored().convert(&bytes, &mut conversion, heights);
     }
     if from_south {
         turn_rows(&mut heights, part.size[0]);
@@ -358,7 +359,7 @@ impl Line {
         input.seek(SeekFrom::Start(at)).map_err(|cause| cause.to_string())?;
         input.read_exact(&mut bytes).map_err(|cause| cause.to_string())?;
         for (k, bytes) in (first..).zip(bytes.chunks_exact(self.type_of.size)) {
-            visit(k, self.type_of.value(bytes) * self.scale + self.offset);
+            visit(k, self.type_of.stored().value(bytes) * self.scale + self.offset);
         }
         Ok(())
     }

@@ -9,7 +9,8 @@
 //! each array states its system (`_CRS`, `crs_wkt`). Rows are in the order of a picture, and a sample has the same
 //! position as in the GeoTIFF.
 
-pub mod blosc;
 pub mod metadata;
 pub(crate) mod reader;
-pub(crate) mod unpack;
+
+pub use orogen_codec::format::zarr::blosc;
+pub(crate) use orogen_codec::format::zarr::unpack;

@@ -14,8 +14,10 @@ use crate::format::band::BandMetadata;
 use crate::format::crs::keys::{self, GeoKeys};
 use crate::format::crs::unit::Unit;
 use crate::format::dem::{Dem, Placement, Request, afford, afford_beside, refused, turn_rows};
+use crate::format::stored::{Kind, Stored};
 use crate::fs;
 use crate::open;
+use crate::samples;
 use orogen_grid::error::{Error, Result};
 
 /// Maximum length of metadata, in bytes.
@@ -66,13 +68,6 @@ impl From<Error> for ReadFault {
     fn from(error: Error) -> ReadFault {
         ReadFault::Other(error)
     }
-}
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Kind {
-    Unsigned,
-    Signed,
-    Float,
 }
 
 /// An array as its metadata describes it.
@@ -269,21 +264,9 @@ impl Array {
         Ok(Some(bytes))
     }
 
-    /// The samples of these bytes, as stored.
-    fn values<'a>(&'a self, bytes: &'a [u8]) -> impl Iterator<Item = f64> + 'a {
-        let shift = 64 - 8 * self.size as u32;
-        bytes.chunks_exact(self.size).map(move |bytes| {
-            let bits = match self.big_endian {
-                true => bytes.iter().fold(0u64, |bits, byte| bits << 8 | u64::from(*byte)),
-                false => bytes.iter().rev().fold(0u64, |bits, byte| bits << 8 | u64::from(*byte)),
-            };
-            match (self.kind, self.size) {
-                (Kind::Unsigned, _) => bits as f64,
-                (Kind::Signed, _) => ((bits << shift) as i64 >> shift) as f64,
-                (Kind::Float, 4) => f64::from(f32::from_bits(bits as u32)),
-                (Kind::Float, _) => f64::from_bits(bits),
-            }
-        })
+    /// How its samples are stored.
+    fn stored(&self) -> Stored {
+        Stored { kind: self.kind, size: self.size, big_endian: self.big_endian }
     }
 
     /// A numeric attribute.
@@ -298,7 +281,8 @@ impl Array {
         let mut line = Vec::new();
         for k in 0..length.div_ceil(chunk) {
             let bytes = self.chunk(&[k], 0, allowed)?.ok_or_else(|| "its coordinates lack a chunk".to_string())?;
-            line.extend(self.values(&bytes).take((length - k * chunk).min(chunk) as usize));
+            let inside = (length - k * chunk).min(chunk) as usize;
+            self.stored().append_values(&bytes[..inside * self.size], &mut line);
         }
         Ok(line)
     }
@@ -328,13 +312,12 @@ fn open(folder: &Path, request: Request) -> std::result::Result<Dem, ReadFault> 
     };
     let mut conversion = metadata.conversion(None)?;
     // Absent chunks consist of the fill value: for floats it means no height, for integers it is a value.
-    let mut sample = |value: f64| conversion.height(value, array.size);
     let [chunk_height, chunk_width] = [array.chunk[array.chunk.len() - 2], array.chunk[array.chunk.len() - 1]];
     let (first, layer) = match array.chunk[..] {
         [bands, ..] if array.chunk.len() == 3 => (Some(band / bands), (band % bands) * chunk_height * chunk_width),
         _ => (None, 0),
     };
-    let mut heights = vec![sample(array.fill); count];
+    let mut heights = samples::filled(conversion.height(array.fill, array.size), count);
     for row in 0..height.div_ceil(chunk_height) {
         for column in 0..width.div_ceil(chunk_width) {
             let at: Vec<u64> = first.into_iter().chain([row, column]).collect();
@@ -344,8 +327,8 @@ fn open(folder: &Path, request: Request) -> std::result::Result<Dem, ReadFault> 
             for j in 0..chunk_height.min(height - top) {
                 let from = (layer + j * chunk_width) as usize;
                 let to = ((top + j) * width + left) as usize;
-                let values = array.values(&bytes[from * array.size..(from + inside) * array.size]);
-                heights[to..to + inside].iter_mut().zip(values).for_each(|(height, value)| *height = sample(value));
+                let bytes = &bytes[from * array.size..(from + inside) * array.size];
+                array.stored().convert(bytes, &mut conversion, &mut heights[to..to + inside]);
             }
         }
     }

@@ -1,0 +1,37 @@
+//! The parts of file formats that work on samples and bytes.
+
+pub mod conversion;
+pub mod coordinates;
+pub mod deflate;
+pub mod encoding;
+pub mod exr;
+pub mod exr_block;
+pub mod flatbuffer;
+pub mod geojson_reader;
+pub mod geotiff;
+pub mod gif;
+pub mod grey_rows;
+pub mod gzip;
+pub mod half;
+pub mod input;
+pub mod lerc;
+pub mod levels;
+pub mod luanti;
+pub mod metres16;
+pub mod nbt;
+pub mod npy;
+pub mod number;
+pub mod outlines;
+pub mod packed_tree;
+pub mod png;
+pub mod schem;
+pub mod sqlite;
+pub mod stored;
+pub mod svg_path;
+pub mod vox;
+pub mod weights;
+pub mod words;
+pub mod xyz_rows;
+pub mod zarr;
+pub mod zip;
+pub mod zip_writer;

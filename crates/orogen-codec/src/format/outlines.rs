@@ -1,0 +1,100 @@
+//! The outlines that readers of vector files find.
+
+use orogen_grid::polylines::outline::{Outline, Piece};
+
+/// Maximum number of points of a file.
+pub const MAX_POINTS: usize = 1 << 20;
+
+/// Maximum coordinate, in the unit of the file.
+pub const MAX_COORDINATE: f64 = 1e9;
+
+/// What is read of a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum DrawingKind {
+    /// Lines.
+    Lines,
+    /// Boundaries of areas.
+    Areas,
+}
+
+impl DrawingKind {
+    /// What one of them is called.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            DrawingKind::Lines => "line",
+            DrawingKind::Areas => "area",
+        }
+    }
+
+    /// The other kind.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn other(self) -> DrawingKind {
+        match self {
+            DrawingKind::Lines => DrawingKind::Areas,
+            DrawingKind::Areas => DrawingKind::Lines,
+        }
+    }
+
+    /// The op that reads them.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn op(self) -> &'static str {
+        match self {
+            DrawingKind::Lines => "path",
+            DrawingKind::Areas => "polygon",
+        }
+    }
+}
+
+/// The outlines that a reader finds.
+#[doc(hidden)]
+pub struct Collector {
+    kind: DrawingKind,
+    /// Those of the wanted kind.
+    pub outlines: Vec<Outline>,
+    /// Number of outlines of the other kind.
+    pub others: usize,
+    points: usize,
+}
+
+impl Collector {
+    /// A collector of one kind.
+    #[must_use]
+    pub fn new(kind: DrawingKind) -> Collector {
+        Collector { kind, outlines: Vec::new(), others: 0, points: 0 }
+    }
+
+    /// Takes outlines of an element that is of these kinds.
+    pub fn take(&mut self, kinds: &[DrawingKind], outlines: Vec<Outline>) -> Result<(), String> {
+        if !kinds.contains(&self.kind) {
+            self.others += outlines.len();
+            return Ok(());
+        }
+        for mut outline in outlines {
+            self.points += 1 + outline.pieces.len();
+            if self.points > MAX_POINTS {
+                return Err(format!("it has more than {MAX_POINTS} points; simplify its lines, or split it"));
+            }
+            let is_valid = |numbers: &[f64]| numbers.iter().all(|number| number.abs() <= MAX_COORDINATE);
+            let is_sound = is_valid(&outline.start)
+                && outline.pieces.iter().all(|piece| match piece {
+                    Piece::Straight(end) => is_valid(end),
+                    Piece::Curve(control, end) => control.iter().all(|point| is_valid(point)) && is_valid(end),
+                });
+            if !is_sound {
+                return Err(format!(
+                    "it has a coordinate that is not a number from -{MAX_COORDINATE:e} to {MAX_COORDINATE:e}"
+                ));
+            }
+            outline.closed |= self.kind == DrawingKind::Areas;
+            // A single point is neither a line nor an area.
+            if !outline.pieces.is_empty() {
+                self.outlines.push(outline);
+            }
+        }
+        Ok(())
+    }
+}

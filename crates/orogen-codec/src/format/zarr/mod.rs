@@ -1,0 +1,4 @@
+//! Chunks of Zarr.
+
+pub mod blosc;
+pub mod unpack;

@@ -1,0 +1,60 @@
+//! The one door to the file system: `std::fs` with the feature `fs`, and without it the same items, each of which
+//! fails with [`std::io::ErrorKind::Unsupported`].
+//!
+//! All libraries of Orogen reach files through here, so a host without a file system runs everything that needs none,
+//! and everything that does fails with an error that says why.
+
+use std::path::{Path, PathBuf};
+
+#[cfg(not(feature = "fs"))]
+mod absent;
+
+#[cfg(not(feature = "fs"))]
+pub use absent::*;
+#[cfg(feature = "fs")]
+pub use std::fs::*;
+
+/// Whether this build has a file system: the feature `fs`.
+pub const AVAILABLE: bool = cfg!(feature = "fs");
+
+/// Whether a file exists at `path`; links are followed.
+#[must_use]
+pub fn is_file(path: &Path) -> bool {
+    metadata(path).is_ok_and(|there| there.is_file())
+}
+
+/// Whether a folder exists at `path`; links are followed.
+#[must_use]
+pub fn is_dir(path: &Path) -> bool {
+    metadata(path).is_ok_and(|there| there.is_dir())
+}
+
+/// Whether anything exists at `path`; links are followed.
+#[must_use]
+pub fn is_present(path: &Path) -> bool {
+    metadata(path).is_ok()
+}
+
+/// The system's temporary folder. A host without files has none, and gets an empty path.
+#[must_use]
+pub fn temporary_folder() -> PathBuf {
+    match AVAILABLE && !cfg!(all(target_family = "wasm", not(target_os = "wasi"))) {
+        true => std::env::temp_dir(),
+        false => PathBuf::new(),
+    }
+}
+
+/// Whether the name is in use, also by a dangling link.
+#[must_use]
+pub fn is_taken(path: &Path) -> bool {
+    symlink_metadata(path).is_ok()
+}
+
+/// The folder that contains `path`.
+#[must_use]
+pub fn folder(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}

@@ -1,0 +1,122 @@
+//! Palettes: colours at positions, before they are applied to heights.
+
+use super::color::Rgb;
+
+/// The default color of a sample without a finite value: a light, neutral grey.
+pub const NO_DATA: Rgb = [222, 222, 222];
+
+/// The position of a colour.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Position {
+    /// A height in metres, or a value in the layer's unit.
+    Value(f64),
+    /// A share of the range: 0 is the lowest value, 1 the highest.
+    Share(f64),
+    /// -1 is the deepest sea, 0 the shore, 1 the highest land. Land that does not reach the sea starts at 0.
+    Sea(f64),
+}
+
+impl Position {
+    /// Its number, of whatever kind.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn number(self) -> f64 {
+        match self {
+            Position::Value(at) | Position::Share(at) | Position::Sea(at) => at,
+        }
+    }
+
+    /// What the files of palettes call its kind.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn unit(self) -> &'static str {
+        match self {
+            Position::Value(_) => "m",
+            Position::Share(_) => "range",
+            Position::Sea(_) => "sea",
+        }
+    }
+}
+
+/// A colour and its position. Two stops at one position make a hard step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stop {
+    /// The position.
+    pub at: Position,
+    /// The colour.
+    pub color: Rgb,
+}
+
+/// The colour space in which colours between stops are mixed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum Mix {
+    /// Oklab, which is perceptually uniform.
+    #[default]
+    Oklab,
+    /// sRGB bytes, as in most other programs.
+    Rgb,
+    /// Hue, saturation and value; the hue takes the shorter way.
+    Hsv,
+    /// Not mixed: the colour of the nearest stop.
+    Nearest,
+}
+
+impl Mix {
+    /// All of them.
+    #[doc(hidden)]
+    pub const ALL: [Mix; 4] = [Mix::Oklab, Mix::Rgb, Mix::Hsv, Mix::Nearest];
+
+    /// What the files of palettes call it.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Mix::Oklab => "oklab",
+            Mix::Rgb => "rgb",
+            Mix::Hsv => "hsv",
+            Mix::Nearest => "nearest",
+        }
+    }
+}
+
+/// Colours for a map.
+#[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
+pub struct Palette {
+    /// The name.
+    pub name: String,
+    /// Colours in ascending order of their positions, if the positions are of one kind.
+    pub stops: Vec<Stop>,
+    /// The mixing of colours between stops.
+    pub mix: Mix,
+    /// The colour below the first stop; by default that of the first stop.
+    pub below: Option<Rgb>,
+    /// The colour above the last stop; by default that of the last stop.
+    pub above: Option<Rgb>,
+    /// The colour of samples that are not finite; by default [`NO_DATA`].
+    pub missing: Option<Rgb>,
+    /// Whether it is the atlas tint, which is fitted to the relief.
+    pub follows_relief: bool,
+}
+
+impl Palette {
+    /// A palette with these stops, mixed in Oklab.
+    #[must_use]
+    pub fn new(name: &str, stops: Vec<Stop>) -> Palette {
+        Palette { name: name.to_string(), stops, ..Palette::default() }
+    }
+
+    /// The same with only the colours of its stops: each value has that of the nearest one. The atlas tint is then not fitted to the relief.
+    #[must_use]
+    pub fn nearest(self) -> Palette {
+        Palette { mix: Mix::Nearest, follows_relief: false, ..self }
+    }
+
+    /// Whether it distinguishes sea from land: its stops are not all shares of the range.
+    #[must_use]
+    pub fn has_sea(&self) -> bool {
+        self.follows_relief || self.stops.iter().any(|stop| matches!(stop.at, Position::Sea(_)))
+    }
+}
