@@ -1,5 +1,5 @@
-//! Area `gpu`: terrain and pictures on a graphics card, beside what its memory allows and beside the processor. Wall time. On a software adapter nothing has a
-//! target: it shares the processor.
+//! Area `gpu`: terrain and pictures on a graphics card, beside what its memory allows and beside the processor. Wall
+//! time. On a software adapter nothing has a target: it shares the processor.
 
 use std::sync::Arc;
 use std::time::Instant;

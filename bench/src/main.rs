@@ -1,7 +1,8 @@
 //! Benchmarks of Orogen against its peers and physical limits, measured in one run. `cargo xtask bench` is the front
 //! end.
 //!
-//! Prints one JSON object, {"area", "simd", "threads", "rows"}; area `water` prints a table. Progress goes to standard error.
+//! Prints one JSON object, {"area", "simd", "threads", "rows"}; area `water` prints a table. Progress goes to standard
+//! error.
 #![forbid(unsafe_code)]
 
 mod erosion;

@@ -1,5 +1,5 @@
-//! Part of area `erosion`: a stream power solution at the world's cell in worlds of several sizes, from the recipe to its
-//! heights. CPU time of one thread.
+//! Part of area `erosion`: a stream power solution at the world's cell in worlds of several sizes, from the recipe to
+//! its heights. CPU time of one thread.
 
 use cpu_time::ProcessTime;
 use orogen::{Options as Limits, Progress, Recipe, World};

@@ -1,4 +1,5 @@
-//! Area `studio`: from a change of a parameter to the pictures of the studio, without the drawing of the window. Wall time of all cores.
+//! Area `studio`: from a change of a parameter to the pictures of the studio, without the drawing of the window. Wall
+//! time of all cores.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -17,7 +18,8 @@ use crate::measure::median;
 use crate::options::Options;
 use crate::world::figure::{Figure, Target};
 
-/// A preset, the text of a parameter in it and what varies there, and the maximum times of the first and of the finest picture in seconds.
+/// A preset, the text of a parameter in it and what varies there, and the maximum times of the first and of the finest
+/// picture in seconds.
 const CASES: [(&str, &str, &str, [f64; 2]); 2] = [
     ("classic", "wavelength = 1024.0", "wavelength = ", [0.060, 0.5]),
     ("alpine", "default = 0.7", "default = ", [0.150, 3.5]),
@@ -68,8 +70,9 @@ const EDITS: u64 = 40;
 /// The most seconds that the thread of the interface may be busy with anything but drawing.
 const BUSY: f64 = 0.016;
 
-/// The longest time that an edit, the request for its pictures and what they tell take on the thread of the interface, over all presets and a recipe of
-/// `NODES` nodes. Of each recipe the median counts: on a shared machine any one of them may be interrupted.
+/// The longest time that an edit, the request for its pictures and what they tell take on the thread of the interface,
+/// over all presets and a recipe of `NODES` nodes. Of each recipe the median counts: on a shared machine any one of
+/// them may be interrupted.
 fn interface() -> Result<Value, String> {
     let mut large = String::from("orogen = 1\n\n[world]\ncell = 10\nsize = 1000\n\n[nodes.n0]\nop = \"fbm\"\n");
     for n in 1..NODES {

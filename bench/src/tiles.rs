@@ -1,5 +1,5 @@
-//! Area `tiles`: terrain classes, clean-up and tiles of a large map, climate and biomes, chunks of blocks at random places, and maps larger than memory. Wall time
-//! of all cores.
+//! Area `tiles`: terrain classes, clean-up and tiles of a large map, climate and biomes, chunks of blocks at random
+//! places, and maps larger than memory. Wall time of all cores.
 
 mod streamed;
 

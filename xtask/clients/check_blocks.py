@@ -163,7 +163,7 @@ def glb():
     checks.that("glb: as wide as the window", low[0] < 0 and 298 < high[0] < 300 and 118 < high[2] < 120)
     checks.equal("glb: edges inside with one triangle", open_edges(whole), 0)
     checks.that("glb: a missing triangle is found", open_edges(trimesh.Trimesh(whole.vertices, whole.faces[len(whole.faces) // 2 :], process=False)) > 0)
-    checks.that("glb: neighbouring triangles turn the same way", whole.is_winding_consistent)
+    checks.that("glb: neighboring triangles turn the same way", whole.is_winding_consistent)
     checks.that("glb: a color for each vertex", all(len(part.visual.vertex_attributes["color"]) == len(part.vertices) for part in parts))
     normals = numpy.concatenate([part.vertex_normals for part in parts])
     checks.that("glb: unit normals", bool(numpy.allclose(numpy.linalg.norm(normals, axis=1), 1, atol=1e-4)))

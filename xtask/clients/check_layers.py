@@ -34,7 +34,7 @@ def read(path):
 
 
 def inner(data, border):
-    """Removes the border, where a neighbourhood extends beyond the map and each program extrapolates in its own way."""
+    """Removes the border, where a neighborhood extends beyond the map and each program extrapolates in its own way."""
     return data[border:-border, border:-border]
 
 
@@ -89,8 +89,8 @@ def unlike(ours, theirs, tolerance=0):
     return (numpy.abs(ours - theirs) > tolerance * numpy.abs(theirs)).mean()
 
 
-def neighbourhoods(name, place):
-    """Compares neighbourhood layers with GRASS and gdaldem: differences by name, each with its tolerance."""
+def neighborhoods(name, place):
+    """Compares neighborhood layers with GRASS and gdaldem: differences by name, each with its tolerance."""
     found = {}
     cell, z = place.cell, place.z
     search = max(3, round(500 / cell))
@@ -197,7 +197,7 @@ def whitebox(place):
     """Compares water layers with those of WhiteboxTools.
 
     Programs route water across level ground and out of depressions differently, so both get ground without them: filled, with each cell
-    2 cm above the next, plus smaller noise so that no two neighbours are equally steep.
+    2 cm above the next, plus smaller noise so that no two neighbors are equally steep.
     """
     random = numpy.random.default_rng(1)
     falling = flooded(place.z - place.z.min() + 1, step=0.02)
@@ -259,7 +259,7 @@ if __name__ == "__main__":
             path = export(source, "preset.tif", "--window", "400,440,320,300", *map_options, "-q")
         with rasterio.open(path) as raster:
             place = Place(raster.read(1), raster.crs, raster.transform)
-        found = neighbourhoods(source, place) if CLIENT == "grass" else walked(place) | whitebox(place)
+        found = neighborhoods(source, place) if CLIENT == "grass" else walked(place) | whitebox(place)
         for layer, (value, most) in found.items():
             checks.that(f"{source}: {layer}", value <= most, f"{value:.7f}, at most {most}")
             if named:

@@ -227,7 +227,7 @@ for kind, options in (("full", ()), ("adaptive", ADAPTIVE)):
                 worst = max(worst, float(off.max()))
             checks.that(f"{path.name}: no sample is further than 4 m", worst <= 4 + 1e-6, f"({worst})")
 
-# With a texture, the colour at a vertex is that of its pixel.
+# With a texture, the color at a vertex is that of its pixel.
 picture = trimesh.load_scene(WORK / "bump-full.glb", process=False).geometry.values()
 material = next(iter(picture)).visual.material
 checks.equal("bump-full.glb: its picture has a pixel for each sample",
@@ -236,7 +236,7 @@ pixels = numpy.asarray(material.baseColorTexture)
 mesh, _ = load(WORK / "bump-adaptive.ply")
 column, row = (numpy.rint(numpy.abs(mesh.vertices[:, k]) / CELL).astype(int) for k in (0, 1))
 same = (mesh.visual.vertex_colors[:, :3] == pixels[row, column, :3]).all(axis=1)
-checks.that("bump-adaptive.ply: corners have the colours of that picture's pixels", bool(same.all()), f"({(~same).sum()} have not)")
+checks.that("bump-adaptive.ply: corners have the colors of that picture's pixels", bool(same.all()), f"({(~same).sum()} have not)")
 mesh, _ = load(WORK / "bump-adaptive.obj")
 place = numpy.stack([mesh.visual.uv[:, 0] * pixels.shape[1], (1 - mesh.visual.uv[:, 1]) * pixels.shape[0]], axis=1) - 0.5
 off = float(numpy.abs(place - mesh.vertices[:, [0, 2]] / CELL).max())

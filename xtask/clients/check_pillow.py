@@ -40,10 +40,10 @@ for preset in ("alpine", "island"):
     check_greys(f"{preset} height.png", fine, 65535, heights, summary)
     coarse = pixels(folder / "height8.png", "L", shape)
     check_greys(f"{preset} height8.png", coarse, 255, heights, summary)
-    colours = pixels(folder / "map.png", "RGB", shape).astype("i4")
+    colors = pixels(folder / "map.png", "RGB", shape).astype("i4")
 
     # Water is where blue is above red. Up to 2 % of the pixels may differ at the shore.
-    blue = colours[..., 2] > colours[..., 0]
+    blue = colors[..., 2] > colors[..., 0]
     lakes = numpy.load(export(preset, f"{preset}-lakes.npy", "--layer", "lakes", *options)) > 0.0
     sea = float((blue & ~lakes).mean())
     checks.near(f"{preset} map.png: sea and land are told apart", 1.0 - sea, summary["land_share"], 0.02)
@@ -82,7 +82,7 @@ def refused(path):
         return True
 
 
-# Animations: an APNG contains exactly the bytes of each frame; a GIF approximates them with 255 colours.
+# Animations: an APNG contains exactly the bytes of each frame; a GIF approximates them with 255 colors.
 FRAMES, DELAY, WIDE, HIGH = 6, 80, 160, 90
 turn = ("render", "island", "--cell", 160, "--size", f"{WIDE}x{HIGH}", "--turntable", FRAMES, "--delay", DELAY, "--quiet", "-o")
 orogen(*turn, WORK / "turn-%02d.png")

@@ -63,7 +63,7 @@ for name, recipe, cell, window, tile in [
         checks.equal(f"{name}: only NaN stands for none", str(tiff.nodata), "nan")
         checks.equal(f"{name}: heights are in metres", tiff.units[0], "m")
         checks.that(f"{name}: a system of its own, in metres", "metre" in tiff.crs.to_wkt() and not tiff.crs.to_epsg())
-        # The centre of a pixel is the position of its sample: x east, y south of the origin.
+        # The center of a pixel is the position of its sample: x east, y south of the origin.
         for row, column in [(0, 0), (height - 1, 0), (0, width - 1), (height // 2, width // 3)]:
             place = tuple(map(float, tiff.xy(row, column)))
             checks.equal(f"{name}: place of {column}, {row}", place, ((x + column) * cell, -(y + row) * cell))

@@ -50,7 +50,7 @@ def look(name, language, arguments, seconds):
         time.sleep(3)
         grabbed = ImageGrab.grab(xdisplay=screen)
         grabbed.save(WORK / f"{name}.png")
-        checks.that(f"{name}: the land is drawn ({colors} colours)", colors >= 2000)
+        checks.that(f"{name}: the land is drawn ({colors} colors)", colors >= 2000)
         return numpy.array(grabbed.convert("RGB"))
     finally:
         for process in studio, server:

@@ -31,7 +31,7 @@ def run(*command):
 
 
 def pixels(path):
-    """Returns the colours of a picture."""
+    """Returns the colors of a picture."""
     with Image.open(path) as picture:
         return numpy.array(picture.convert("RGB"))
 
@@ -65,7 +65,7 @@ def check(preset, tileset, size, layout):
         own = {tile["tileid"]: tile["wangid"] for tile in own["wangtiles"]}
         theirs = {tile["tileid"]: tile["wangid"] for tile in found["wangtiles"]}
         checks.equal(f"{name}, {found['name']}: wang ids", theirs, own)
-        # A tile without any colour is no part of a wang set, and water has no borders.
+        # A tile without any color is no part of a wang set, and water has no borders.
         different = 1 if found["name"] == "water" else count - (kind != "corner")
         checks.equal(f"{name}, {found['name']}: different tiles", len(set(map(tuple, own.values()))), different)
 
@@ -165,7 +165,7 @@ def engines(name, folder, has_ldtk=True):
 
 
 def corner_tiles(folder, pairs, turns):
-    """Makes a tileset of Tiled with corner tiles of pairs of terrains, each quarter in the colour of its terrain."""
+    """Makes a tileset of Tiled with corner tiles of pairs of terrains, each quarter in the color of its terrain."""
     colors = [(40, 90, 200), (220, 200, 120), (70, 160, 60), (120, 120, 120)]
     corners = []
     for low, high in pairs:
@@ -207,7 +207,7 @@ nodes.class = { op = "expr", expr = "min(3, max(0, floor(land * 5 + 2)))" }
 
 
 def check_given(name, pairs, turns):
-    """Uses a tileset that was not made by us: each quarter of a tile has the colour of the class at its corner."""
+    """Uses a tileset that was not made by us: each quarter of a tile has the color of the class at its corner."""
     folder = WORK / name
     folder.mkdir(exist_ok=True)
     colors, count = corner_tiles(folder, pairs, turns)

@@ -104,7 +104,7 @@ for kind in ("png", "r16", "r32"):
 def terrarium(path):
     """Returns the metres of a Terrarium tile."""
     with Image.open(path) as picture:
-        checks.equal(f"{path.name}: colours", picture.mode, "RGB")
+        checks.equal(f"{path.name}: colors", picture.mode, "RGB")
         red, green, blue = (numpy.array(picture).astype("f8")[..., k] for k in range(3))
     return red * 256 + green + blue / 256 - 32768
 
@@ -143,7 +143,7 @@ checks.equal("map: encoding", about["encoding"], "terrarium")
 checks.near("map: true to scale", about["map_metres_per_metre"], 1.0, 1e-12)
 worst = on_map(folder, heights, *window[:2])
 checks.that("map: within 1/256 m", worst <= 1 / 256, f"(off by {worst})")
-# The bounds of TileJSON: the sample is at the centre of its pixel, half a pixel from the border.
+# The bounds of TileJSON: the sample is at the center of its pixel, half a pixel from the border.
 west, south, east, north = about["bounds"]
 degrees = 360 / 2**ZOOM / 256
 checks.near("map: west", west, window[0] * degrees, 1e-9)

@@ -109,7 +109,7 @@ with rasterio.open(DEGREES, "w", crs="EPSG:4326", transform=rasterio.transform.f
 
 
 def halves(name, x, y, side, cell):
-    """Checks that the water of two neighbouring windows of `endless` is that of both together."""
+    """Checks that the water of two neighboring windows of `endless` is that of both together."""
     layers = ["rivers", "lakes", "coast", "watersheds"]
 
     def water(part, window):
@@ -220,7 +220,7 @@ for name, recipe, options, crs, banks in CASES:
     whole, gaps = tiles(name, data["watersheds"][1], box, land)
     if len(data["coast"][1]) == 0:
         checks.equal(f"{name}: watersheds fill the GeoTIFF's extent without a gap", (whole.geom_type, len(gaps), whole.bounds == tuple(shapely.box(*box).bounds)), ("Polygon", 0, True)) if crs is None else checks.equal(f"{name}: no gap", len(gaps), 0)
-    # Summits are samples of the GeoTIFF, the highest of their neighbourhood.
+    # Summits are samples of the GeoTIFF, the highest of their neighborhood.
     summits, points, _ = data["summits"]
     for point, height in zip(points, summits["height"]):
         i, j = int((point.x - box.left) / cell[0]), int((box.top - point.y) / cell[1])

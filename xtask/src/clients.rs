@@ -1,7 +1,7 @@
 //! `cargo xtask clients`: checks of our files by other programs.
 //!
-//! Each client is a row of a table and, except for the emulator, a script in xtask/clients/. A client that cannot be installed is a failure, not
-//! a skip: a check that did not run proves nothing.
+//! Each client is a row of a table and, except for the emulator, a script in xtask/clients/. A client that cannot be
+//! installed is a failure, not a skip: a check that did not run proves nothing.
 
 mod asan;
 mod blender;

@@ -21,7 +21,7 @@ Usage: cargo xtask gallery
 
 Rewrites docs/images/: one relief map of each preset, the views of docs/render.md and the README's first picture, a
 map sheet, the zoom of docs/levels.md, water as vectors, a tilemap, blocks, all palettes, the page of noises side by side, and the chunks around a viewer. Pictures of the studio's window stay. Then the pictures
-of its start page, and docs/gallery.md: a map of each preset, and the shaded relief of a part of it at one pixel per sample, which shows artefacts that colours hide. Then
+of its start page, and docs/gallery.md: a map of each preset, and the shaded relief of a part of it at one pixel per sample, which shows artifacts that colors hide. Then
 crates/orogen-noise/docs/gallery.md: the pictures at the top of the documentation of orogen-noise. They are embedded in the
 file, so that every renderer shows them.
 ";

@@ -6,12 +6,12 @@ use crate::compiled::{LIBRARIES, WINDOW};
 use crate::failure::{Failure, Result, on_file};
 use crate::shell::{self, cargo, program, run as sh};
 
-/// Packs every crate as it would be published, unpacks the archives and compiles what is in them alone: paths that lead out
-/// of a crate's folder, and files that are missing in it, fail here. Documents the libraries from there, too.
+/// Packs every crate as it would be published, unpacks the archives and compiles what is in them alone: paths that lead
+/// out of a crate's folder, and files that are missing in it, fail here. Documents the libraries from there, too.
 ///
-/// `cargo package` itself would generate code for each crate and its dependencies. Here no code is generated, and profile,
-/// features and target folder are those of clippy, so that dependencies are not compiled again. The crates for windows and
-/// graphics cards are not compiled here, see [`check_window`].
+/// `cargo package` itself would generate code for each crate and its dependencies. Here no code is generated, and
+/// profile, features and target folder are those of clippy, so that dependencies are not compiled again. The crates for
+/// windows and graphics cards are not compiled here, see [`check_window`].
 pub fn check() -> Result {
     let folder = shell::target_dir().join("packages");
     // Archives of other versions.
@@ -25,7 +25,8 @@ pub fn check() -> Result {
     write_features(&unpacked, &crates)?;
     write_workspace(&unpacked, &crates)?;
     in_archives(&format!("check --quiet {LIBRARIES} --lib --bins"), "")?;
-    // Without the binary `orogen`, whose pages would overwrite those of the library of the same name, and without the studio.
+    // Without the binary `orogen`, whose pages would overwrite those of the library of the same name, and without the
+    // studio.
     let undocumented = "--exclude orogen-cli --exclude orogen-studio --exclude orogen-features";
     in_archives(&format!("doc --quiet {LIBRARIES} --no-deps {undocumented}"), "-D warnings")
 }
@@ -60,7 +61,8 @@ fn unpack(archives: &Path, into: &Path) -> Result<Vec<String>> {
         return Err(Failure::new("`cargo package` has made no archive"));
     }
     for archive in &archives {
-        // With -m the files have the time of now. Those in archives never change, and cargo would take changed files for those of before.
+        // With -m the files have the time of now. Those in archives never change, and cargo would take changed files
+        // for those of before.
         sh(program("tar").arg("-xzmf").arg(archive).arg("-C").arg(into))?;
     }
     Ok(archives.iter().filter_map(|path| Some(path.file_stem()?.to_string_lossy().into_owned())).collect())
@@ -79,7 +81,8 @@ fn write_features(folder: &Path, crates: &[String]) -> Result {
     Ok(())
 }
 
-/// Makes a workspace of the unpacked crates, which are there what the registry would be to a user, with our profiles and versions of dependencies.
+/// Makes a workspace of the unpacked crates, which are there what the registry would be to a user, with our profiles
+/// and versions of dependencies.
 fn write_workspace(folder: &Path, crates: &[String]) -> Result {
     let root = shell::read(&shell::root().join("Cargo.toml"))?;
     let manifest = manifest(&root, crates)?;

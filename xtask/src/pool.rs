@@ -13,7 +13,8 @@ pub fn workers() -> usize {
     thread::available_parallelism().map_or(1, NonZero::get).max(2)
 }
 
-/// Does the work of every item, in order, as many at once as there are workers. After a failure no other item is begun. Returns all failures.
+/// Does the work of every item, in order, as many at once as there are workers. After a failure no other item is begun.
+/// Returns all failures.
 pub fn run<T: Send>(items: Vec<T>, work: impl Fn(T) -> Result + Sync) -> Result {
     let (log, failed, waiting) = (output::log(), AtomicBool::new(false), Mutex::new(items.into_iter()));
     let worker = || {

@@ -1,5 +1,5 @@
-//! A folder in memory for the files of tests: writing them to a disk, which the program waits for, would take a large part
-//! of the time of a run.
+//! A folder in memory for the files of tests: writing them to a disk, which the program waits for, would take a large
+//! part of the time of a run.
 
 use std::path::{Path, PathBuf};
 

@@ -1,5 +1,5 @@
-//! Named steps in order, each timed; the first failure ends the run. Neighbours of the same group run side by side. What a
-//! step prints is kept in `steps/NAME.log` in the target folder.
+//! Named steps in order, each timed; the first failure ends the run. Neighbors of the same group run side by side. What
+//! a step prints is kept in `steps/NAME.log` in the target folder.
 
 use std::fs::File;
 use std::io::{self, Write as _};
@@ -17,8 +17,8 @@ pub struct Step {
     pub name: &'static str,
     /// The description in the list.
     pub about: &'static str,
-    /// Neighbours of the same group run side by side: none depends on another, shares a folder with it or has time limits.
-    /// Without a group it runs alone.
+    /// Neighbors of the same group run side by side: none depends on another, shares a folder with it or has time
+    /// limits. Without a group it runs alone.
     pub group: Option<u32>,
     /// The function. It prints with [`output::line`] and starts programs with [`shell`].
     pub run: fn() -> Result,

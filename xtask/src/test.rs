@@ -132,8 +132,9 @@ fn tests() -> Result {
     sh(&mut cargo(&format!("test {LIBRARIES} --doc")))
 }
 
-/// Checks the libraries without files and threads. No code of theirs, tests aside, may then name anything of the standard library's file
-/// system: `xtask/no_fs/clippy.toml` lists it. `cargo xtask clients wasm` runs what is checked here.
+/// Checks the libraries without files and threads. No code of theirs, tests aside, may then name anything of the
+/// standard library's file system: `xtask/no_fs/clippy.toml` lists it. `cargo xtask clients wasm` runs what is checked
+/// here.
 fn features() -> Result {
     let mut clippy = cargo("clippy --quiet --package orogen --lib --no-default-features -- -D warnings");
     clippy.arg("-D").arg("clippy::disallowed_types");

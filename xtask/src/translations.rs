@@ -57,8 +57,8 @@ struct Part {
     /// From 1.
     line: usize,
     kind: Kind,
-    /// What must be equal: the marks of a heading, the columns of a row and the inline code in its first cell, the language of a block,
-    /// code without its comment, a target.
+    /// What must be equal: the marks of a heading, the columns of a row and the inline code in its first cell, the
+    /// language of a block, code without its comment, a target.
     key: String,
     /// The text for messages.
     shown: String,
@@ -146,7 +146,8 @@ fn common(left: &[Part], right: &[Part]) -> Vec<(usize, usize)> {
     pairs
 }
 
-/// Headings, table rows, code and links of a text in their order, without the links from one file of the pair to the other.
+/// Headings, table rows, code and links of a text in their order, without the links from one file of the pair to the
+/// other.
 fn parts(text: &str, pair: [&str; 2]) -> Vec<Part> {
     let mut parts = Vec::new();
     let mut fence: Option<&str> = None;
@@ -205,7 +206,8 @@ fn fence_start(line: &str) -> Option<(&str, &str)> {
     (!info.contains('`')).then(|| (&line[..line.len() - info.len()], info.trim()))
 }
 
-/// A line of code without its comment: `#` outside quotes, with a blank or nothing on each side. `#[test]` and `#:schema` are code.
+/// A line of code without its comment: `#` outside quotes, with a blank or nothing on each side. `#[test]` and
+/// `#:schema` are code.
 fn without_comment(line: &str) -> &str {
     let (mut quote, mut before) = (None, ' ');
     for (at, c) in line.char_indices() {

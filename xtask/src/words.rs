@@ -88,6 +88,19 @@ const PHRASES: &[&str] = &[
     "worked out once",
 ];
 
+/// Parts of words in British spelling, each with the American one.
+const SPELLINGS: &[(&str, &str)] = &[
+    ("behaviour", "behavior"),
+    ("neighbour", "neighbor"),
+    ("artefact", "artifact"),
+    ("colours", "colors"),
+    ("coloured", "colored"),
+    ("centred", "centered"),
+];
+
+/// Maximum number of characters of a line of comments; longer tables are allowed.
+const WIDTH: usize = 120;
+
 /// Checks every file that git tracks.
 pub fn check() -> Result {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."));
@@ -106,6 +119,11 @@ pub fn check() -> Result {
     }
 }
 
+/// A line in lower case, without names of other programs.
+fn text_of(line: &str) -> String {
+    line.replace("MonoBehaviour", "").to_lowercase()
+}
+
 fn faults(line: &str) -> Vec<String> {
     let mut faults: Vec<String> =
         PHRASES.iter().filter(|phrase| line.contains(*phrase)).map(|phrase| format!("\"{phrase}\"")).collect();
@@ -116,6 +134,17 @@ fn faults(line: &str) -> Vec<String> {
         let name = NAMES.iter().find(|(name, _)| *name == pair[1]);
         let prefix = PREFIXES.iter().find(|(prefix, _)| pair[1].starts_with(prefix));
         faults.extend(name.or(prefix).map(|(_, instead)| format!("`{}`: {instead}", pair[1])));
+    }
+    // What is quoted may be typed by a user, or stand in a file.
+    let is_quoted = |word: &str| line.contains(&format!("\"{word}")) || line.contains(&format!("-{word}"));
+    let spelled = SPELLINGS.iter().filter(|(british, _)| text_of(line).contains(british) && !is_quoted(british));
+    faults.extend(spelled.map(|(british, american)| format!("`{british}`: {american}")));
+    let text = line.trim_start();
+    if text.starts_with("//")
+        && !text.trim_start_matches(['/', '!', ' ']).starts_with('|')
+        && line.chars().count() > WIDTH
+    {
+        faults.push(format!("a comment of more than {WIDTH} characters"));
     }
     faults
 }
@@ -129,6 +158,10 @@ mod tests {
         assert_eq!(faults("pub struct Shelf<'a> {"), ["`Shelf`: OutputStore"]);
         assert_eq!(faults("const MOST_NODES: usize = 3;"), ["`MOST_NODES`: MAX_"]);
         assert_eq!(faults("    /// Which chances."), ["\"Which chances.\""]);
+        assert_eq!(faults("/// The Neighbours of a cell."), ["`neighbour`: neighbor"]);
+        assert!(faults("aliases([\"colours\"])").is_empty());
+        assert_eq!(faults(&format!("    // {}", "x".repeat(120))), ["a comment of more than 120 characters"]);
+        assert!(faults(&format!("    /// | {} |", "x".repeat(120))).is_empty());
         assert!(faults("impl Shelf { // struct Shelf").is_empty());
         assert!(faults("let order = Order::new();").is_empty());
     }

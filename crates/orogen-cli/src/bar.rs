@@ -20,7 +20,8 @@ pub enum Mode {
     Auto,
     /// A line on standard error every second: "12 %, 34 s left"
     Plain,
-    /// A line of JSON on standard error ten times per second: share done (0 to 1), elapsed seconds, and remaining seconds or null
+    /// A line of JSON on standard error ten times per second: share done (0 to 1), elapsed seconds, and remaining
+    /// seconds or null
     Json,
     /// No progress
     None,

@@ -13,8 +13,8 @@ use crate::failure::Failure;
 
 /// Procedural terrain from recipes.
 ///
-/// `orogen generate` makes the default preset in the folder `out`. `orogen presets` lists the other presets, and `orogen new NAME` writes a
-/// recipe to edit.
+/// `orogen generate` makes the default preset in the folder `out`. `orogen presets` lists the other presets, and
+/// `orogen new NAME` writes a recipe to edit.
 #[derive(Debug, Parser)]
 #[command(name = "orogen", version, max_term_width = 100)]
 pub struct Cli {

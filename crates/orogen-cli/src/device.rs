@@ -12,14 +12,16 @@ use crate::say;
 /// Where windows are computed.
 #[derive(Debug, Clone, clap::Args)]
 pub struct DeviceOption {
-    /// Where the terrain is computed: cpu, gpu (the first graphics card; gpu:NAME or gpu:NUMBER for another one of `orogen devices`), or auto (a graphics card
-    /// if there is one). A graphics card makes a preview: close to the processor's terrain, but not the same bits
+    /// Where the terrain is computed: cpu, gpu (the first graphics card; gpu:NAME or gpu:NUMBER for another one of
+    /// `orogen devices`), or auto (a graphics card if there is one). A graphics card makes a preview: close to the
+    /// processor's terrain, but not the same bits
     #[arg(long, value_name = "DEVICE", default_value = "cpu")]
     device: DeviceChoice,
 }
 
 impl DeviceOption {
-    /// Opens the world of a recipe, with the device if it can be used. If it cannot, the processor stands in, and a line on standard error says why.
+    /// Opens the world of a recipe, with the device if it can be used. If it cannot, the processor stands in, and a
+    /// line on standard error says why.
     pub fn open(&self, limits: &Limits, recipe: Recipe, budget: &Budget) -> Result<(World, Card), Failure> {
         let session = Session::new(limits.options(budget))?;
         let card = Card::open(&self.device, budget)?;

@@ -17,14 +17,15 @@ pub struct Options {
     /// Damping function of `weighted`, with m the squared slope [default: reciprocal]
     #[arg(long)]
     falloff: Option<Falloff>,
-    /// How often `ping-pong` folds the noise (2 S - 1 times): 0.5 not at all, 1 like ridged, 4 in many bands [default: 2]
+    /// How often `ping-pong` folds the noise (2 S - 1 times): 0.5 not at all, 1 like ridged, 4 in many bands [default:
+    /// 2]
     #[arg(long, value_name = "S", value_parser = not_negative, allow_negative_numbers = true)]
     strength: Option<f64>,
     /// Value added to the noise of `hybrid` and `hetero`: where the sum is small, ground is smooth [default: 0.7]
     #[arg(long, value_name = "O", value_parser = finite, allow_negative_numbers = true)]
     offset: Option<f64>,
-    /// How far slopes displace later octaves, in wavelengths of the first octave (`swiss`) or in cells of the octave (`jordan`) [default:
-    /// 0.15; 0.35]
+    /// How far slopes displace later octaves, in wavelengths of the first octave (`swiss`) or in cells of the octave
+    /// (`jordan`) [default: 0.15; 0.35]
     #[arg(long, value_name = "W", value_parser = finite, allow_negative_numbers = true)]
     warp: Option<f64>,
     /// How far slopes let the finer octaves of `jordan` through; 0 leaves only the first octave [default: 0.8]

@@ -53,7 +53,8 @@ mod unix {
     pub struct Signal(Arc<AtomicUsize>);
 
     impl Signal {
-        /// Lets signals set `asked`, and end the process if it is set. A signal without a handler keeps its default effect.
+        /// Lets signals set `asked`, and end the process if it is set. A signal without a handler keeps its default
+        /// effect.
         pub fn handled(asked: &Arc<AtomicBool>) -> Signal {
             let last = Arc::new(AtomicUsize::new(SIGINT as usize));
             for signal in [SIGINT, SIGTERM, SIGHUP] {

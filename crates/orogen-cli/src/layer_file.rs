@@ -11,7 +11,8 @@ use crate::failure::Failure;
 use crate::sink::Sink;
 use crate::{finite, interrupt};
 
-/// Writes the layer of `job` over a window to `sink`, the output for `out`. `origin` stands behind the size in the message.
+/// Writes the layer of `job` over a window to `sink`, the output for `out`. `origin` stands behind the size in the
+/// message.
 ///
 /// # Errors
 /// If making or writing fails, or no sample is finite.

@@ -1,7 +1,7 @@
 //! The `orogen` command: terrains from recipes.
 //!
-//! It is a library to shorten the build: Cargo compiles a library as soon as the metadata of its dependencies exists, but a
-//! binary only after all of them are finished. Programs use the crate `orogen` instead.
+//! It is a library to shorten the build: Cargo compiles a library as soon as the metadata of its dependencies exists,
+//! but a binary only after all of them are finished. Programs use the crate `orogen` instead.
 #![forbid(unsafe_code)]
 // These macros panic if the other end of a pipe is closed; `say` does not.
 #![deny(clippy::print_stdout, clippy::print_stderr)]

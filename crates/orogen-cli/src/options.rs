@@ -21,7 +21,8 @@ pub struct Limits {
     /// Memory limit of the whole process, such as 512MiB or 2GiB [default: half of the free memory]
     #[arg(long, value_name = "BYTES")]
     pub memory: Option<Bytes>,
-    /// Folder of the cache, where slow solutions and tiles of levels are stored for later runs [default: $OROGEN_CACHE, else the system's cache folder]
+    /// Folder of the cache, where slow solutions and tiles of levels are stored for later runs [default: $OROGEN_CACHE,
+    /// else the system's cache folder]
     #[arg(long, value_name = "DIR")]
     pub cache: Option<PathBuf>,
     /// Size limit of the cache; what was not used for longest is removed first [default: 10GiB]

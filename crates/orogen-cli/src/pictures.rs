@@ -72,8 +72,8 @@ pub fn outputs(folder: &Path, policy: &OutputPolicy) -> Result<Vec<Output>> {
     FILES.iter().map(|name| policy.output(folder.join(name))).collect()
 }
 
-/// Writes all files to their `outputs`, or none: they are put in place only after all are written to disk. The map shows `lakes`, their depth in
-/// metres. `seconds` returns the duration of the command.
+/// Writes all files to their `outputs`, or none: they are put in place only after all are written to disk. The map
+/// shows `lakes`, their depth in metres. `seconds` returns the duration of the command.
 pub fn write(
     outputs: &[Output],
     recipe: &Recipe,

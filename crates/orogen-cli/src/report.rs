@@ -11,7 +11,7 @@ use crate::{say, usage};
 
 /// Reports a failure: every diagnostic, with its location in the text.
 pub fn report(failure: &Failure) {
-    let paint = Paint(colours());
+    let paint = Paint(colors());
     match failure {
         Failure::Usage(message) => say::painted(&paint.diagnostic(message, None)),
         Failure::Engine(error) => {
@@ -25,8 +25,8 @@ pub fn report(failure: &Failure) {
     }
 }
 
-/// Whether standard error shows colours: it is a terminal and `NO_COLOR` is not set (<https://no-color.org>).
-fn colours() -> bool {
+/// Whether standard error shows colors: it is a terminal and `NO_COLOR` is not set (<https://no-color.org>).
+fn colors() -> bool {
     let declined = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
     let dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
     io::stderr().is_terminal() && !declined && !dumb
@@ -35,7 +35,7 @@ fn colours() -> bool {
 /// Maximum length of the part of a line that is shown around a diagnostic.
 const SHOWN: usize = 100;
 
-/// Formats diagnostics, with colour or without.
+/// Formats diagnostics, with color or without.
 struct Paint(bool);
 
 impl Paint {

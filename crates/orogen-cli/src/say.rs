@@ -34,8 +34,8 @@ pub fn painted(line: &str) {
     let _ = writeln!(io::stderr().lock(), "{line}");
 }
 
-/// A text with control characters escaped, except line ends and tabs: names of files and keys in it could move a terminal's
-/// cursor, change its colors or reverse the direction of its text.
+/// A text with control characters escaped, except line ends and tabs: names of files and keys in it could move a
+/// terminal's cursor, change its colors or reverse the direction of its text.
 pub fn harmless(text: &str) -> Cow<'_, str> {
     if !text.contains(|c| is_harmful(c) && !matches!(c, '\n' | '\t')) {
         return Cow::Borrowed(text);

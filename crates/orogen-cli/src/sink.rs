@@ -45,8 +45,8 @@ mod stdout {
         }
     }
 
-    /// Whether the process was started without standard output. In its place Rust's runtime opens the null device for reading
-    /// and writing, which shells open for writing only.
+    /// Whether the process was started without standard output. In its place Rust's runtime opens the null device for
+    /// reading and writing, which shells open for writing only.
     pub fn is_closed() -> bool {
         let is_null = |ours: Stat| stat("/dev/null").is_ok_and(|null| null.st_rdev == ours.st_rdev);
         let is_opened_for_both = |flags: OFlags| flags & OFlags::RWMODE == OFlags::RDWR;
@@ -69,7 +69,8 @@ impl Sink {
     /// The output for `out`.
     ///
     /// # Errors
-    /// If it is a file that may not be replaced, or a terminal, which cannot show binary data, or if standard output is closed.
+    /// If it is a file that may not be replaced, or a terminal, which cannot show binary data, or if standard output is
+    /// closed.
     pub fn new(out: &Path, policy: &OutputPolicy) -> Result<Sink, Failure> {
         match is_stdout(out) || stdout::is_behind(out) {
             false => Ok(Sink::File(policy.output(out)?)),

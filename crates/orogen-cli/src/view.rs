@@ -1,5 +1,6 @@
-//! Which samples of which world: the options for seed, size, cell, window and georeference shared by all commands, and the window that they
-//! define. Apart from the seed, they only change which samples are taken; the world stays the same.
+//! Which samples of which world: the options for seed, size, cell, window and georeference shared by all commands, and
+//! the window that they define. Apart from the seed, they only change which samples are taken; the world stays the
+//! same.
 
 use std::path::{Path, PathBuf};
 
@@ -24,21 +25,22 @@ use crate::values::size::Size;
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "World and window")]
 pub struct View {
-    /// Seed of the world, instead of the recipe's. Several seeds, such as 1,2,3 or 1..9, make one output each, named by its seed
-    /// (NAME-7.png, or at {seed} in the name)
+    /// Seed of the world, instead of the recipe's. Several seeds, such as 1,2,3 or 1..9, make one output each, named by
+    /// its seed (NAME-7.png, or at {seed} in the name)
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub seed: Option<Seeds>,
     #[command(flatten)]
     pub arguments: Arguments,
-    /// Cell size in metres [default: the world's cell; except for `build`, a whole world of more than 16384 samples along a side is shown with
-    /// at most 4096]
+    /// Cell size in metres [default: the world's cell; except for `build`, a whole world of more than 16384 samples
+    /// along a side is shown with at most 4096]
     #[arg(long, value_name = "M", value_parser = cell, allow_negative_numbers = true)]
     pub cell: Option<f64>,
-    /// Window of the world: column and row of its first sample, width and height, in samples; or in metres, such as 0m,500m,2km,2km
+    /// Window of the world: column and row of its first sample, width and height, in samples; or in metres, such as
+    /// 0m,500m,2km,2km
     #[arg(long, value_name = "X,Y,W,H", conflicts_with_all = ["bounds", "projwin"], allow_hyphen_values = true)]
     pub window: Option<Rectangle>,
-    /// Window of the world in map coordinates; in a world without a CRS, metres east and north of its north-west corner (coordinates south
-    /// of it are negative)
+    /// Window of the world in map coordinates; in a world without a CRS, metres east and north of its north-west corner
+    /// (coordinates south of it are negative)
     #[arg(long, value_name = "W,S,E,N", conflicts_with = "projwin", allow_hyphen_values = true)]
     pub bounds: Option<Bounds>,
     /// Window given by its upper left and lower right corner, as in gdal_translate
@@ -174,8 +176,8 @@ impl View {
         recipe
     }
 
-    /// The requested part of a file of heights with its surroundings, on the lattice of the file. `None` if it cannot be
-    /// told without `--size`.
+    /// The requested part of a file of heights with its surroundings, on the lattice of the file. `None` if it cannot
+    /// be told without `--size`.
     fn around(&self, recipe: &Recipe) -> Option<Window> {
         let lattice = recipe.world.cell;
         let Ok(Some(part)) = self.part(recipe, None, self.cell.unwrap_or(lattice)) else { return None };
@@ -187,8 +189,8 @@ impl View {
     }
 
     /// The requested window: a part, or the whole world. A world of length L has round(L / cell) samples. For an
-    /// unbounded world it starts at the origin and has the default size. A world that is too large for its own cell is shown as a whole with
-    /// a larger one, and a note says so.
+    /// unbounded world it starts at the origin and has the default size. A world that is too large for its own cell is
+    /// shown as a whole with a larger one, and a note says so.
     pub fn window(&self, world: &World) -> Result<Window, Failure> {
         self.sized(world, None)
     }
@@ -222,8 +224,8 @@ impl View {
         }
     }
 
-    /// The requested part of the world, if it is given in metres or coordinates: its west, north, east and south in metres from the north-west corner.
-    /// It may extend half a cell beyond the world.
+    /// The requested part of the world, if it is given in metres or coordinates: its west, north, east and south in
+    /// metres from the north-west corner. It may extend half a cell beyond the world.
     pub fn ends(&self, recipe: &Recipe, cell: f64) -> Result<Option<[f64; 4]>, Failure> {
         let bounds = match (&self.projwin, self.bounds) {
             (Some(corners), _) => Some(Bounds::of_corners(corners).map_err(Failure::Usage)?),
@@ -307,8 +309,8 @@ impl View {
     }
 }
 
-/// The cell that shows a whole world which has too many samples at its own cell: a power of two times as large. A file of heights is always
-/// shown at its own. Prints a note.
+/// The cell that shows a whole world which has too many samples at its own cell: a power of two times as large. A file
+/// of heights is always shown at its own. Prints a note.
 fn overview(world: &World, extent: [f64; 2]) -> Option<f64> {
     let cell = world.recipe().world.cell;
     let samples = |cell: f64| extent[0].max(extent[1]) / cell;

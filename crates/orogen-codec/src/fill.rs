@@ -65,7 +65,7 @@ impl Level {
         }
     }
 
-    /// The value at sample (i, j) of the next finer level: its centre is a quarter of a cell from that of the nearest
+    /// The value at sample (i, j) of the next finer level: its center is a quarter of a cell from that of the nearest
     /// sample here.
     fn between(&self, i: usize, j: usize) -> f32 {
         let pair = |k: usize, side: usize| {

@@ -1,5 +1,5 @@
-//! What file formats compute sample by sample and byte by byte, and the buffers that they need. Programs use it as parts of `orogen-io`, which holds the
-//! formats: what they read and write once a file, a row or a feature.
+//! What file formats compute sample by sample and byte by byte, and the buffers that they need. Programs use it as
+//! parts of `orogen-io`, which holds the formats: what they read and write once a file, a row or a feature.
 //!
 //! - [`mod@format`]: compression, pictures, samples as bytes and text, and the formats that consist of little else.
 //! - [`palette`]: colors of heights.

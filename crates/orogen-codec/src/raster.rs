@@ -227,7 +227,7 @@ mod tests {
         assert!(Pages::scratch(Path::new("/dev/null/no"), window).is_err());
     }
 
-    /// One pass over all tiles: every sample becomes the mean of itself and its neighbours, read from `from`.
+    /// One pass over all tiles: every sample becomes the mean of itself and its neighbors, read from `from`.
     fn sweep(from: &Raster, to: &mut Raster, side: usize) {
         let whole = *from.window();
         for tile in whole.tiles(side) {

@@ -1,4 +1,5 @@
-//! Many records of one kind, in order: in memory, or compressed in a [`Spool`], so that files of any size are made in bounded memory.
+//! Many records of one kind, in order: in memory, or compressed in a [`Spool`], so that files of any size are made in
+//! bounded memory.
 
 use std::io::{self, Write};
 use std::marker::PhantomData;

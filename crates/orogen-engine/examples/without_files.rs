@@ -1,6 +1,7 @@
 //! A world on a host without a file system: `cargo run -p orogen-engine --example without_files --no-default-features`.
 //!
-//! Terrain is made in memory, solutions are kept in memory for later sessions, and a recipe that names a file is refused with the reason.
+//! Terrain is made in memory, solutions are kept in memory for later sessions, and a recipe that names a file is
+//! refused with the reason.
 
 use orogen_engine::{ErrorKind, MemoryStore, Options, Recipe, Session, Window};
 use std::error::Error;

@@ -12,11 +12,12 @@ use std::any::Any;
 use std::fmt;
 use std::sync::Arc;
 
-/// Computes steps of plans in place of the processor. Its results are close to those of the processor, and not the same: a [session](crate::Session) keeps
-/// none of them for later requests, and gives nothing of them to solvers and levelled ops.
+/// Computes steps of plans in place of the processor. Its results are close to those of the processor, and not the
+/// same: a [session](crate::Session) keeps none of them for later requests, and gives nothing of them to solvers and
+/// levelled ops.
 ///
-/// A step that returns `None` is computed by the processor: because the device cannot do it, or has failed. An error ends the request. What a step makes may
-/// stay on the device until the processor [asks](Device::read) for it.
+/// A step that returns `None` is computed by the processor: because the device cannot do it, or has failed. An error
+/// ends the request. What a step makes may stay on the device until the processor [asks](Device::read) for it.
 pub trait Device: Send + Sync {
     /// Whether it is the processor itself, by a software driver: then it is slower than without it.
     fn is_software(&self) -> bool {
@@ -47,7 +48,8 @@ pub trait Device: Send + Sync {
         progress: &Progress,
     ) -> Result<Option<Vec<Option<PlanGrid>>>>;
 
-    /// Copies grids that the device made to the processor's memory. `None` if the device has lost one of them: the processor then makes all again.
+    /// Copies grids that the device made to the processor's memory. `None` if the device has lost one of them: the
+    /// processor then makes all again.
     ///
     /// # Errors
     /// If the work was cancelled.
@@ -68,8 +70,9 @@ pub trait Device: Send + Sync {
         Ok(grids.into_iter().map(|grid| grid.memory.or_else(|| read.next())).collect())
     }
 
-    /// Computes the planes of the last of some levels, each from those of the level above it. Those above the first are given over exactly the samples that
-    /// `Levelled::refine` gets, and each level covers those that the next one reads.
+    /// Computes the planes of the last of some levels, each from those of the level above it. Those above the first are
+    /// given over exactly the samples that `Levelled::refine` gets, and each level covers those that the next one
+    /// reads.
     ///
     /// # Errors
     /// If the work was cancelled.

@@ -11,7 +11,8 @@ pub enum DeviceChoice {
     Processor,
     /// A graphics card if there is one, otherwise the processor: `auto`.
     Auto,
-    /// A graphics card, `gpu`, or the one with this number or with this text in its name, `gpu:NAME`. The processor stands in for one that is not there.
+    /// A graphics card, `gpu`, or the one with this number or with this text in its name, `gpu:NAME`. The processor
+    /// stands in for one that is not there.
     Card(Option<String>),
 }
 

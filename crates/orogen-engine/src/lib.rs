@@ -1,7 +1,8 @@
-//! The engine of Orogen: a recipe describes a world, and the engine makes any window of it, at any resolution, always the same.
+//! The engine of Orogen: a recipe describes a world, and the engine makes any window of it, at any resolution, always
+//! the same.
 //!
-//! The crate `orogen` puts this engine, its files, maps and meshes together, and is what programs usually depend on. This crate alone is
-//! for programs that want terrain and write no files.
+//! The crate `orogen` puts this engine, its files, maps and meshes together, and is what programs usually depend on.
+//! This crate alone is for programs that want terrain and write no files.
 //!
 //! ```
 //! use orogen_engine::{Window, World, presets};

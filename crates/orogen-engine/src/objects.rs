@@ -28,9 +28,9 @@ pub struct Object {
 }
 
 impl World {
-    /// The recipe's [scatter](crate::recipe::scatter::document::Scatter) over a window: the objects from its first sample
-    /// up to, but not including, one cell beyond its last one. Windows side by side therefore have each object once. They are
-    /// ordered by entry, and then row by row of a lattice.
+    /// The recipe's [scatter](crate::recipe::scatter::document::Scatter) over a window: the objects from its first
+    /// sample up to, but not including, one cell beyond its last one. Windows side by side therefore have each object
+    /// once. They are ordered by entry, and then row by row of a lattice.
     ///
     /// Which objects there are, and where, does not depend on the window and its cell: conditions are computed at the
     /// world's cell, or at that of the entry. Heights are those of the window's samples.
@@ -158,7 +158,8 @@ struct Placed {
     _held: Reservation,
 }
 
-/// How far beyond the window the points of each entry are needed, in metres, because those of later entries depend on them.
+/// How far beyond the window the points of each entry are needed, in metres, because those of later entries depend on
+/// them.
 fn beyond(entries: &[(&Scatter, &ExpandedScatter)]) -> Vec<f64> {
     let mut beyond = vec![0.0; entries.len()];
     let mut furthest: f64 = 0.0;

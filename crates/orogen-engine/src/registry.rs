@@ -10,8 +10,9 @@ use orogen_ops::registered::{check_name, namespace};
 /// The ops that recipes may use by their names: all built-in ones, and those that the program registers.
 ///
 /// A registry is a value. It reads recipes ([`Registry::read`], [`Registry::parse`]) and writes their
-/// [schema](crate::recipe::schema::json_schema_of) and [reference](crate::recipe::reference::markdown_of). Only texts need it. A recipe
-/// contains its ops, and so do its worlds, plans and sessions. [`Recipe::add`](crate::Recipe::add) accepts any op without a registry.
+/// [schema](crate::recipe::schema::json_schema_of) and [reference](crate::recipe::reference::markdown_of). Only texts
+/// need it. A recipe contains its ops, and so do its worlds, plans and sessions. [`Recipe::add`](crate::Recipe::add)
+/// accepts any op without a registry.
 ///
 /// ```
 /// use orogen_engine::op::{Field, Inputs, WorldParams};
@@ -70,7 +71,8 @@ impl Registry {
     /// Adds an op that [`op!`](crate::op!) declares.
     ///
     /// # Errors
-    /// If its name has no namespace or is not allowed, if an op of that name is registered already, or if its declaration is inconsistent.
+    /// If its name has no namespace or is not allowed, if an op of that name is registered already, or if its
+    /// declaration is inconsistent.
     pub fn register<T: OpType>(&mut self) -> Result<&mut Registry> {
         let node = Node::from(T::default());
         self.check(&node).map_err(|message| Error::new(ErrorKind::Request, message))?;

@@ -196,8 +196,9 @@ impl<W: Borrow<World>> Sampler<W> {
         Ok(Volume::new(*window, altitudes, data))
     }
 
-    /// Writes the samples of a window at each of the altitudes, in metres, to `out`: slice by slice in the order of the altitudes, each row-major from
-    /// the north-west. Like [`Sampler::fill`], it works on the calling thread without allocation once warm, if the layer has no filters.
+    /// Writes the samples of a window at each of the altitudes, in metres, to `out`: slice by slice in the order of the
+    /// altitudes, each row-major from the north-west. Like [`Sampler::fill`], it works on the calling thread without
+    /// allocation once warm, if the layer has no filters.
     ///
     /// # Errors
     /// The errors of [`World::volume`], or `out` has another length.

@@ -23,7 +23,8 @@ pub struct Options {
     /// disk.
     pub memory: Budget,
     /// Where solutions and tiles of levels are kept for later runs: a [`FolderStore`](crate::FolderStore), a
-    /// [`MemoryStore`](crate::MemoryStore), or a [store of your own](SolutionStore). `None` keeps them for this session only.
+    /// [`MemoryStore`](crate::MemoryStore), or a [store of your own](SolutionStore). `None` keeps them for this session
+    /// only.
     pub store: Option<Arc<dyn SolutionStore>>,
     /// The folder for data that does not fit in memory; `None` uses that of the store, otherwise the system's temporary
     /// folder. No files remain in it, even after a kill.
@@ -101,9 +102,10 @@ impl Session {
         })
     }
 
-    /// The same session with a device that computes windows in place of the processor, where it can and exact bits are not needed: for previews. Stored solutions,
-    /// tiles of levels and kept grids remain those of the processor, and so do points, objects and volumes: what is made on the device is kept in memory, for
-    /// later windows of sessions with it.
+    /// The same session with a device that computes windows in place of the processor, where it can and exact bits are
+    /// not needed: for previews. Stored solutions, tiles of levels and kept grids remain those of the processor, and so
+    /// do points, objects and volumes: what is made on the device is kept in memory, for later windows of sessions with
+    /// it.
     #[doc(hidden)]
     #[must_use]
     pub fn with_device(&self, device: Arc<dyn Device>) -> Session {
@@ -111,8 +113,9 @@ impl Session {
         Session { device: Some(device), previews: kept(), drafts: kept(), ..self.clone() }
     }
 
-    /// The same session, whose device also computes solvers that are chaotic: of which the device makes other land, as real as that of the processor. Their
-    /// rivers lie elsewhere, so this is for drafts. Without a device it changes nothing.
+    /// The same session, whose device also computes solvers that are chaotic: of which the device makes other land, as
+    /// real as that of the processor. Their rivers lie elsewhere, so this is for drafts. Without a device it changes
+    /// nothing.
     #[doc(hidden)]
     #[must_use]
     pub fn drafting(&self) -> Session {
@@ -133,7 +136,8 @@ impl Session {
     }
 
     /// Runs work on a thread of its own, for callers that must not wait, such as a user interface. Cancel it with the
-    /// [`Progress`](orogen_grid::progress::Progress) that it uses. Without threads the work is done before this returns.
+    /// [`Progress`](orogen_grid::progress::Progress) that it uses. Without threads the work is done before this
+    /// returns.
     ///
     /// ```
     /// use orogen_engine::{Options, Session, Window, presets};
@@ -175,8 +179,8 @@ impl Session {
         self.store.made()
     }
 
-    /// The latest failure of the [store](Options::store), or a damaged entry that it had. It stops no work: what cannot be
-    /// read is solved again, and what cannot be stored stays in memory.
+    /// The latest failure of the [store](Options::store), or a damaged entry that it had. It stops no work: what cannot
+    /// be read is solved again, and what cannot be stored stays in memory.
     #[must_use]
     pub fn store_failure(&self) -> Option<Error> {
         self.store.failure()

@@ -13,7 +13,7 @@ use std::collections::VecDeque;
 pub struct Tiling {
     /// Side of a tile in samples. The tiles at the window's east and south edges may be smaller.
     pub side: usize,
-    /// Samples that a tile has beyond its side in the east and south, which are its neighbours' first ones: 0 for tiles
+    /// Samples that a tile has beyond its side in the east and south, which are its neighbors' first ones: 0 for tiles
     /// that only touch, 1 for tiles that share an edge, as engines require.
     pub overlap: usize,
     /// Memory limit of the stream, in bytes, without the returned tiles; `None` for the world's limit.
@@ -66,8 +66,8 @@ pub struct Tile {
 /// Maximum number of samples that are made at once: enough to make halos and plans cheap.
 const AT_ONCE: usize = 1 << 24;
 
-/// The share of a memory limit that one grid of what is made at once takes at most. The allocator keeps what a thread has freed for this thread,
-/// outside of the budget, so many small grids take less memory than a few large ones.
+/// The share of a memory limit that one grid of what is made at once takes at most. The allocator keeps what a thread
+/// has freed for this thread, outside of the budget, so many small grids take less memory than a few large ones.
 const PART_OF_LIMIT: u64 = 16;
 
 /// The tiles of a large window, made on demand: see [`World::tiles`].
@@ -98,7 +98,7 @@ impl World {
     /// - Tiles come row by row from the north, each row from west to east, each wanted tile once.
     /// - The work stays within the memory limit of the tiling (or of the world). If even one tile does not fit, nothing
     ///   is started and the error states the needed memory.
-    /// - Neighbouring tiles are made together if memory allows, so that they share a filter's halo.
+    /// - Neighboring tiles are made together if memory allows, so that they share a filter's halo.
     /// - `progress` counts all samples, and cancels the stream with [`ErrorKind::Cancelled`]. The stream ends after an
     ///   error.
     ///

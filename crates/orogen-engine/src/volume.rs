@@ -64,7 +64,8 @@ impl Index<(usize, usize, usize)> for Volume {
 }
 
 impl World {
-    /// Whether a layer depends on the altitude at which it is sampled. In the plane, where windows and points are, the altitude is 0.
+    /// Whether a layer depends on the altitude at which it is sampled. In the plane, where windows and points are, the
+    /// altitude is 0.
     ///
     /// # Errors
     /// If there is no such layer.
@@ -72,10 +73,12 @@ impl World {
         Ok(self.depends_on_altitude(&self.target(layer)?))
     }
 
-    /// A layer in space: the samples of a window at each of the altitudes, which are in metres and may be in any order. What does not depend on the
-    /// altitude is computed once per column: all filters, levels and solutions, and fields that do not read it.
+    /// A layer in space: the samples of a window at each of the altitudes, which are in metres and may be in any order.
+    /// What does not depend on the altitude is computed once per column: all filters, levels and solutions, and fields
+    /// that do not read it.
     ///
-    /// Any part of the window and of the altitudes has the same bits, and the samples at altitude 0 are those of [`World::window`].
+    /// Any part of the window and of the altitudes has the same bits, and the samples at altitude 0 are those of
+    /// [`World::window`].
     ///
     /// ```
     /// use orogen_engine::{Recipe, Window, World};
@@ -110,8 +113,8 @@ impl World {
     /// ```
     ///
     /// # Errors
-    /// If there is no such layer, the window is not valid for this world, there is no altitude or one is not finite, or the volume needs more memory
-    /// than allowed.
+    /// If there is no such layer, the window is not valid for this world, there is no altitude or one is not finite, or
+    /// the volume needs more memory than allowed.
     pub fn volume(&self, layer: &str, window: &Window, altitudes: &[f64]) -> Result<Volume> {
         let target = self.target(layer)?;
         self.check_volume(window, altitudes)?;

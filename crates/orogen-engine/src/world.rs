@@ -208,7 +208,7 @@ impl World {
     }
 
     /// The window of the whole world with a cell of `cell` metres: a world of length L has round(L / cell) samples
-    /// along that side; the sample at its far edge belongs to the neighbour.
+    /// along that side; the sample at its far edge belongs to the neighbor.
     ///
     /// # Errors
     /// If the world is unbounded, or has no samples or more than 2^31 along a side at that cell.
@@ -357,7 +357,8 @@ impl World {
         self.session.device.as_deref()
     }
 
-    /// Whether a [draft](Session::drafting) of a plan would be other land: because its device solves a solver of it that is chaotic and not solved yet.
+    /// Whether a [draft](Session::drafting) of a plan would be other land: because its device solves a solver of it
+    /// that is chaotic and not solved yet.
     ///
     /// # Errors
     /// The plan was made for another recipe.
@@ -465,7 +466,8 @@ impl World {
     /// A plan for layers over a window, and `bytes` that are reserved beside it.
     ///
     /// # Errors
-    /// The errors of [`World::plan`]. If both do not fit together, the message has what both need, so that a limit of that suffices.
+    /// The errors of [`World::plan`]. If both do not fit together, the message has what both need, so that a limit of
+    /// that suffices.
     #[doc(hidden)]
     pub fn plan_beside(&self, layers: &[&str], window: &Window, bytes: u64) -> Result<(Plan, Reservation)> {
         let plan = self.plan_within(layers, window, self.limit_beside(bytes))?;

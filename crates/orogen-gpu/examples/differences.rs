@@ -61,7 +61,8 @@ fn water_recipe(op: &str) -> Option<Recipe> {
     Recipe::parse(&text, op).ok()
 }
 
-/// Why the processor computes an op, if it does; `Err` for ops of which there is nothing to compute, or that are computed level by level.
+/// Why the processor computes an op, if it does; `Err` for ops of which there is nothing to compute, or that are
+/// computed level by level.
 fn reason(node: &Node) -> Result<Option<&'static str>, ()> {
     let world_params = WorldParams { seed: 0, size: Some([4e6, 4e6]), cell: 10.0, sea_level: 0.0 };
     match node.op() {
@@ -124,7 +125,8 @@ fn main() {
         let Some(recipe) = water_recipe(name) else { continue };
         let cell = if matches!(node.op(), Op::Levelled(_)) { 60.0 } else { 30.0 };
         for layer in node.layers() {
-            // A session of its own has no exact solution that it would take. A draft, so that the card solves one step of `stream-power`.
+            // A session of its own has no exact solution that it would take. A draft, so that the card solves one step
+            // of `stream-power`.
             let Ok(card) = Session::new(Options::default()) else { continue };
             let card = card.with_device(Arc::new(gpu().clone()));
             let card = if name == "stream-power" { card.drafting() } else { card };

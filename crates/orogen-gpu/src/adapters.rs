@@ -33,7 +33,8 @@ pub enum Kind {
     Virtual,
     /// Not known.
     Other,
-    /// A driver that computes on the processor, such as Mesa's lavapipe: slower than the engine itself, and used only on request.
+    /// A driver that computes on the processor, such as Mesa's lavapipe: slower than the engine itself, and used only
+    /// on request.
     Software,
 }
 
@@ -96,7 +97,8 @@ impl fmt::Display for Adapter {
     }
 }
 
-/// The adapters of this machine, in the order in which they are tried: cards with memory of their own first, software last.
+/// The adapters of this machine, in the order in which they are tried: cards with memory of their own first, software
+/// last.
 #[must_use]
 pub fn adapters() -> Vec<Adapter> {
     found().into_iter().map(|(adapter, _)| adapter).collect()

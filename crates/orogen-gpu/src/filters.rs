@@ -24,14 +24,16 @@ pub(crate) struct Preludes {
     pub(crate) shared: &'static str,
 }
 
-/// Computes layers of a filter over `window`, as `Filter::apply` does: each given input covers at least the window grown by `halo`. The result has an element
-/// for each of `wanted`, one per declared layer: a grid if it is true. `Ok(None)` if the work was cancelled; `is_cancelled` is asked between parts of it.
+/// Computes layers of a filter over `window`, as `Filter::apply` does: each given input covers at least the window
+/// grown by `halo`. The result has an element for each of `wanted`, one per declared layer: a grid if it is true.
+/// `Ok(None)` if the work was cancelled; `is_cancelled` is asked between parts of it.
 ///
-/// If the planes exceed the [largest buffer](Gpu::buffer_limit), the window is computed in tiles, each with its halo. The layers stay on the device, if they fit
-/// into its buffers.
+/// If the planes exceed the [largest buffer](Gpu::buffer_limit), the window is computed in tiles, each with its halo.
+/// The layers stay on the device, if they fit into its buffers.
 ///
 /// # Errors
-/// If the device was lost, has too little memory for a single sample with its halo, or refuses a shader; if an input does not cover the window and its halo.
+/// If the device was lost, has too little memory for a single sample with its halo, or refuses a shader; if an input
+/// does not cover the window and its halo.
 pub fn apply(
     gpu: &Gpu,
     passes: &Passes,
@@ -100,7 +102,8 @@ impl<'a> Planes<'a> {
         (4 * self.count() as u64).saturating_mul(side(tile.width)).saturating_mul(side(tile.height))
     }
 
-    /// Makes the wanted layers over a tile from inputs that cover it, grown by the halo. Returns whether that was done, not cancelled.
+    /// Makes the wanted layers over a tile from inputs that cover it, grown by the halo. Returns whether that was done,
+    /// not cancelled.
     pub(crate) fn make(
         &self,
         gpu: &Gpu,
@@ -141,7 +144,8 @@ impl<'a> Planes<'a> {
 /// Number of samples that one dispatch reads at most: a fraction of a second on slow cards.
 const READS: usize = 1 << 30;
 
-/// Bands of rows, of each the first row and the number of rows, of which none reads too much if a row reads `reads` samples. At least one workgroup is high.
+/// Bands of rows, of each the first row and the number of rows, of which none reads too much if a row reads `reads`
+/// samples. At least one workgroup is high.
 pub(crate) fn bands(height: usize, reads: usize) -> impl Iterator<Item = (usize, usize)> {
     let group = GROUP as usize;
     let rows = (READS / reads.max(1) / group).max(1) * group;

@@ -50,15 +50,17 @@ pub struct Options {
     pub choice: Choice,
     /// Maximum size of a buffer, in bytes: less than the adapter's own limit. `None` uses that.
     pub buffer: Option<u64>,
-    /// Maximum number of instructions of a program in one shader, where a call of a noise counts as 8. Larger programs are divided. With 1, each
-    /// instruction is a shader of its own: a recipe whose structure changes compiles only what it has not had before, and runs slower.
+    /// Maximum number of instructions of a program in one shader, where a call of a noise counts as 8. Larger programs
+    /// are divided. With 1, each instruction is a shader of its own: a recipe whose structure changes compiles only
+    /// what it has not had before, and runs slower.
     pub kernel: usize,
 }
 
 /// Maximum number of dispatches that are submitted together.
 const TOGETHER: usize = 64;
 
-/// The time that dispatches which are submitted together should take at most, so that work can be cancelled and no driver ends it as a hang.
+/// The time that dispatches which are submitted together should take at most, so that work can be cancelled and no
+/// driver ends it as a hang.
 const PART: Duration = Duration::from_millis(100);
 
 /// Default of [`Options::kernel`].
@@ -122,7 +124,8 @@ impl Gpu {
         }))
     }
 
-    /// Opens the card of a choice; `None` for the processor, or if there is none for [`DeviceChoice::Auto`]. Buffers have at most `buffer` bytes, if it is given.
+    /// Opens the card of a choice; `None` for the processor, or if there is none for [`DeviceChoice::Auto`]. Buffers
+    /// have at most `buffer` bytes, if it is given.
     ///
     /// # Errors
     /// If a card was asked for and none can be used.
@@ -198,8 +201,9 @@ impl Gpu {
         self.opened.buffer
     }
 
-    /// The seconds of all jobs since the last call, from the first copy to the device to the end of the last shader: without copying back. Successive jobs on
-    /// grids that stay on the device count together, with what the processor does between them.
+    /// The seconds of all jobs since the last call, from the first copy to the device to the end of the last shader:
+    /// without copying back. Successive jobs on grids that stay on the device count together, with what the processor
+    /// does between them.
     #[doc(hidden)]
     #[must_use]
     pub fn take_seconds(&self) -> f64 {
@@ -220,7 +224,8 @@ impl Gpu {
         sum.back += moved.back;
     }
 
-    /// Number of dispatches to be submitted together: as many as are expected to take a tenth of a second, going by those before.
+    /// Number of dispatches to be submitted together: as many as are expected to take a tenth of a second, going by
+    /// those before.
     pub(crate) fn together(&self) -> usize {
         self.opened.together.load(Ordering::Relaxed)
     }

@@ -72,7 +72,8 @@ impl Job<'_> {
         4 * (self.data.len() + self.samples + downloads) as u64 + FRAME * frames as u64
     }
 
-    /// Runs it; returns the downloads. `is_cancelled` is asked between parts of the work. Without downloads it may not have ended yet: later jobs come after it.
+    /// Runs it; returns the downloads. `is_cancelled` is asked between parts of the work. Without downloads it may not
+    /// have ended yet: later jobs come after it.
     ///
     /// # Errors
     /// If the device was lost, has too little memory, or refuses a shader; `Ok(None)` if the work was cancelled.

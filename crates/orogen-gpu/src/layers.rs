@@ -31,7 +31,8 @@ impl Layers {
         Layers::Memory((0..count).map(|_| Grid::filled(*window, 0.0f32)).collect())
     }
 
-    /// Runs the job of a tile, whose layers begin at these samples and have rows of `stride` samples. Returns whether it was done, not cancelled.
+    /// Runs the job of a tile, whose layers begin at these samples and have rows of `stride` samples. Returns whether
+    /// it was done, not cancelled.
     ///
     /// # Errors
     /// Those of [`Job::run`].

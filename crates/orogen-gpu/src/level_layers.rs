@@ -11,10 +11,12 @@ use orogen_engine::device::{LayerStep, LevelStep, PlanGrid};
 use orogen_grid::grid::{Grid, Window};
 use std::collections::HashMap;
 
-/// Computes layers of the last of some levels as `Levelled::layers_of` does, and the levels as [`refine`](levels::refine) does. `Ok(None)` if the work was cancelled;
-/// `is_cancelled` is asked between parts of it. The layers stay on the card, if they fit into its buffers.
+/// Computes layers of the last of some levels as `Levelled::layers_of` does, and the levels as
+/// [`refine`](levels::refine) does. `Ok(None)` if the work was cancelled; `is_cancelled` is asked between parts of it.
+/// The layers stay on the card, if they fit into its buffers.
 ///
-/// If the levels do not fit into the [largest buffer](Gpu::buffer_limit) together, the last one is computed from the others in tiles with their layers.
+/// If the levels do not fit into the [largest buffer](Gpu::buffer_limit) together, the last one is computed from the
+/// others in tiles with their layers.
 ///
 /// # Errors
 /// Those of [`refine`](levels::refine).

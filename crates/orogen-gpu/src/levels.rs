@@ -16,14 +16,16 @@ use std::collections::HashMap;
 /// What the passes of all levels have in common.
 pub(crate) const PRELUDE: &str = concat!(include_str!("filters.wgsl"), "\n", include_str!("levels.wgsl"));
 
-/// Computes the planes of the last of some levels, each as `Levelled::refine` does: from those of the level above, and from the op's inputs at the cell of the
-/// level. `above` are those above the first. `Ok(None)` if the work was cancelled; `is_cancelled` is asked between parts of it.
+/// Computes the planes of the last of some levels, each as `Levelled::refine` does: from those of the level above, and
+/// from the op's inputs at the cell of the level. `above` are those above the first. `Ok(None)` if the work was
+/// cancelled; `is_cancelled` is asked between parts of it.
 ///
-/// Levels that fit into the [largest buffer](Gpu::buffer_limit) together stay on the card. One that does not fit is computed in tiles, each from its own part of the
-/// level above.
+/// Levels that fit into the [largest buffer](Gpu::buffer_limit) together stay on the card. One that does not fit is
+/// computed in tiles, each from its own part of the level above.
 ///
 /// # Errors
-/// If the device was lost, has too little memory for a single sample and what it is made from, or refuses a shader; if a level above covers too little.
+/// If the device was lost, has too little memory for a single sample and what it is made from, or refuses a shader; if
+/// a level above covers too little.
 pub fn refine(
     gpu: &Gpu,
     levels: &[LevelStep],
@@ -105,8 +107,8 @@ pub(crate) fn job<'a>(levels: &'a [Level], above: &'a [Grid]) -> Result<(Job<'a>
     Ok((job, before))
 }
 
-/// The part of an input that a tile needs, without values beyond the input's edge. As `Levelled::refine` does, the last samples at the edge read inputs that
-/// none of the window's samples depend on.
+/// The part of an input that a tile needs, without values beyond the input's edge. As `Levelled::refine` does, the last
+/// samples at the edge read inputs that none of the window's samples depend on.
 fn padded<'a>(input: &'a Grid, grown: &Window) -> Cow<'a, [f32]> {
     if input.window() == grown {
         return input.data().into();
@@ -231,7 +233,8 @@ impl<'a> Level<'a> {
         Ok(Some(out))
     }
 
-    /// Adds the runs of all passes to a job, with planes from `first` on. The level above is uploaded, or was made `before`.
+    /// Adds the runs of all passes to a job, with planes from `first` on. The level above is uploaded, or was made
+    /// `before`.
     fn dispatch<'b>(
         &'b self,
         job: &mut Job<'b>,

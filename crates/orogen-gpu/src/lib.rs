@@ -1,7 +1,8 @@
-//! The engine's programs, filters and levels as compute shaders, for live previews and fast builds where exact bits are not needed.
+//! The engine's programs, filters and levels as compute shaders, for live previews and fast builds where exact bits are
+//! not needed.
 //!
-//! The processor stays the reference: a graphics card may fuse and reorder operations, so its results are never stored under the key of a solution, nor
-//! called equal. What it cannot compute, the engine computes as always: see [`Gpu`].
+//! The processor stays the reference: a graphics card may fuse and reorder operations, so its results are never stored
+//! under the key of a solution, nor called equal. What it cannot compute, the engine computes as always: see [`Gpu`].
 #![forbid(unsafe_code)]
 
 pub mod adapters;

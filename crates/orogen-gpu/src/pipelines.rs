@@ -1,12 +1,13 @@
-//! Compiled shaders, kept by their text. The text depends on the structure of the work and not on its parameters, which are data: a moved slider compiles
-//! nothing.
+//! Compiled shaders, kept by their text. The text depends on the structure of the work and not on its parameters, which
+//! are data: a moved slider compiles nothing.
 
 use crate::failure::Failure;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// What every shader starts with: its data, the samples that it reads and writes, and the part of the data that this dispatch uses.
+/// What every shader starts with: its data, the samples that it reads and writes, and the part of the data that this
+/// dispatch uses.
 pub const HEADER: &str = include_str!("header.wgsl");
 
 /// Compiled shaders.

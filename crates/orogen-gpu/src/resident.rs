@@ -54,7 +54,8 @@ pub(crate) fn read(gpu: &Gpu, grids: &[&DeviceGrid]) -> Result<Vec<Grid>, Failur
     grids.collect()
 }
 
-/// Waits for all work, and copies parts of buffers to the processor's memory: of each the first sample and the number of samples.
+/// Waits for all work, and copies parts of buffers to the processor's memory: of each the first sample and the number
+/// of samples.
 pub(crate) fn download(gpu: &Gpu, parts: &[(&wgpu::Buffer, usize, usize)]) -> Result<Vec<Vec<f32>>, Failure> {
     use wgpu::BufferUsages as Usage;
     let mut back = Vec::with_capacity(parts.len());

@@ -14,12 +14,12 @@ const PRELUDES: Preludes = Preludes {
     shared: concat!(include_str!("solvers.wgsl"), include_str!("shared_words.wgsl")),
 };
 
-/// Computes the layers of a solution over `window` from the solver's inputs, which cover it. `Ok(None)` if the work was cancelled; `is_cancelled` is asked
-/// between parts of it. The result is the same in each run on a device.
+/// Computes the layers of a solution over `window` from the solver's inputs, which cover it. `Ok(None)` if the work was
+/// cancelled; `is_cancelled` is asked between parts of it. The result is the same in each run on a device.
 ///
 /// # Errors
-/// If the planes exceed the [largest buffer](Gpu::buffer_limit); if the device was lost, has too little memory, or refuses a shader; if an input does not cover
-/// the window.
+/// If the planes exceed the [largest buffer](Gpu::buffer_limit); if the device was lost, has too little memory, or
+/// refuses a shader; if an input does not cover the window.
 pub fn solve(
     gpu: &Gpu,
     passes: &Passes,

@@ -1,5 +1,5 @@
-//! Work that is asked now and then whether to stop: loops take a function that they call between pieces of work, and whose
-//! error ends them.
+//! Work that is asked now and then whether to stop: loops take a function that they call between pieces of work, and
+//! whose error ends them.
 
 use crate::error;
 use crate::progress::Progress;

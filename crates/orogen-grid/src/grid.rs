@@ -5,14 +5,14 @@ use std::ops::{Index, IndexMut};
 use crate::parallel;
 use serde::{Deserialize, Serialize};
 
-/// Columns and rows of a lattice are counted up to this many samples from the origin. Sums of them do not overflow; no memory holds a window of so many
-/// samples.
+/// Columns and rows of a lattice are counted up to this many samples from the origin. Sums of them do not overflow; no
+/// memory holds a window of so many samples.
 pub const FARTHEST: i64 = 1 << 60;
 
 /// A rectangle of samples of the infinite lattice with spacing `cell`.
 ///
 /// Sample (i, j) of a window is *at* x = (self.x + i) * cell, y = (self.y + j) * cell in metres: a lattice point, not
-/// the centre of a pixel, so neighbouring windows can share an edge. x increases eastward, y increases southward.
+/// the center of a pixel, so neighboring windows can share an edge. x increases eastward, y increases southward.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Window {
     /// Column of the first sample on the lattice.
@@ -167,8 +167,8 @@ impl Window {
 
 /// Samples over a window, row-major from the north, each row from west to east, like a picture.
 ///
-/// Serialised it is a table of `window` and `data`. Data whose length differs from the window's is rejected. JSON has no NaN and therefore
-/// cannot carry samples without a value.
+/// Serialised it is a table of `window` and `data`. Data whose length differs from the window's is rejected. JSON has
+/// no NaN and therefore cannot carry samples without a value.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "GridData<T>", bound(serialize = "T: Serialize", deserialize = "T: Copy + Deserialize<'de>"))]
 pub struct Grid<T = f32> {

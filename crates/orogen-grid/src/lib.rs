@@ -1,7 +1,9 @@
-//! Terrain analysis, hydrology and erosion on grids of heights, with the same bits on every machine, SIMD level and thread count.
+//! Terrain analysis, hydrology and erosion on grids of heights, with the same bits on every machine, SIMD level and
+//! thread count.
 //!
-//! A [`Grid`] is a rectangle of `f32` samples over a [`Window`]: sample (i, j) is at ((x + i) cell, (y + j) cell) in metres, with x to the east and
-//! y to the south. NaN marks a sample without a value. All functions depend only on their arguments: no files, no network, no clock.
+//! A [`Grid`] is a rectangle of `f32` samples over a [`Window`]: sample (i, j) is at ((x + i) cell, (y + j) cell) in
+//! metres, with x to the east and y to the south. NaN marks a sample without a value. All functions depend only on
+//! their arguments: no files, no network, no clock.
 //!
 //! Option structs such as [`erosion::droplets::Droplets`] are built from `new` or `Default` and `with_*` methods.
 //!
@@ -22,7 +24,9 @@
 //! | [`polylines`] | lines and areas of straight segments and curves: smoothing, the nearest point, inside or outside |
 //!
 //! ```
-//! use orogen_grid::hydrology::{accumulation::accumulate, drainage::route_carving, fill::fill, outlets::Outlets, steepest::Descent};
+//! use orogen_grid::hydrology::accumulation::accumulate;
+//! use orogen_grid::hydrology::drainage::route_carving;
+//! use orogen_grid::hydrology::{fill::fill, outlets::Outlets, steepest::Descent};
 //! use orogen_grid::{Grid, Window};
 //!
 //! // A bowl of 7 x 7 samples, 10 m apart, its rim at 4 m with a notch at 3 m.

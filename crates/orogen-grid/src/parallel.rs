@@ -1,7 +1,9 @@
-//! Loops whose items are shared out to threads: those of the rayon pool that the caller runs in, otherwise of the global one.
+//! Loops whose items are shared out to threads: those of the rayon pool that the caller runs in, otherwise of the
+//! global one.
 //!
-//! Tasks take items from a sequential iterator, in batches that become smaller towards the end. The only call of rayon is in a function that is not
-//! generic, so a loop takes little time to compile. With one thread, all items are done in order on the calling thread.
+//! Tasks take items from a sequential iterator, in batches that become smaller towards the end. The only call of rayon
+//! is in a function that is not generic, so a loop takes little time to compile. With one thread, all items are done in
+//! order on the calling thread.
 
 use std::cmp::Ordering;
 use std::sync::atomic::{self, AtomicUsize};
@@ -164,11 +166,12 @@ impl<E> FirstError<E> {
 /// The index at which a loop without errors ends.
 static NO_END: AtomicUsize = AtomicUsize::new(usize::MAX);
 
-/// A task of a loop: calls its argument for items, with their indices, until there are none. It is called only if there is an item.
+/// A task of a loop: calls its argument for items, with their indices, until there are none. It is called only if there
+/// is an item.
 type Task<'a, T> = &'a (dyn Fn(&mut dyn FnMut() -> Option<(usize, T)>) + Sync);
 
-/// Runs `task` on as many threads as have time for it, and hands out to them all items of `next` whose index is below `end`.
-/// There are `least` to `most` items.
+/// Runs `task` on as many threads as have time for it, and hands out to them all items of `next` whose index is below
+/// `end`. There are `least` to `most` items.
 fn share<T: Send>(
     (least, most): (usize, Option<usize>),
     end: &AtomicUsize,
@@ -216,8 +219,8 @@ struct Items<'a, T> {
 }
 
 impl<T> Items<'_, T> {
-    /// Takes the next items: many while many are left, so that tasks rarely wait for each other, and in the end one by one, so that all
-    /// tasks end at about the same time.
+    /// Takes the next items: many while many are left, so that tasks rarely wait for each other, and in the end one by
+    /// one, so that all tasks end at about the same time.
     fn batch(&mut self, tasks: usize) -> Batch<T> {
         let count = (self.left / (4 * tasks)).clamp(1, LARGEST);
         let mut batch = Vec::with_capacity(count);
@@ -236,7 +239,8 @@ impl<T> Items<'_, T> {
     }
 }
 
-/// Calls `work` on at most `tasks` threads, as many as have time for it before it is done; returns when all calls have returned.
+/// Calls `work` on at most `tasks` threads, as many as have time for it before it is done; returns when all calls have
+/// returned.
 fn on_threads(tasks: usize, work: &(dyn Fn() + Sync)) {
     match tasks {
         0 => {}

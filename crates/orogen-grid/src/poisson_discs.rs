@@ -3,13 +3,15 @@
 //! A lattice with four cells per spacing has one candidate in each cell, with a hashed position and a hashed rank. The
 //! candidates whose rank is below a limit that follows from the density take part. They are decided in rounds: a
 //! candidate without an undecided one of lower rank within the spacing is a point, and the undecided ones within the
-//! spacing of it are not. These are the rounds of the parallel algorithm of Luby for maximal independent sets ("A simple
-//! parallel algorithm for the maximal independent set problem", 1986) with ranks drawn once. Without a limit of rounds the
-//! result would be that of random sequential adsorption, candidate by candidate in the order of ranks, but it would
-//! depend on points at any distance. After [`ROUNDS`] rounds less than one candidate in 10 000 is undecided; these are
-//! no points. So whether a candidate is one depends on [`PoissonDiscs::reach`] metres around it, and on nothing else.
+//! spacing of it are not. These are the rounds of the parallel algorithm of Luby for maximal independent sets ("A
+//! simple parallel algorithm for the maximal independent set problem", 1986) with ranks drawn once. Without a limit of
+//! rounds the result would be that of random sequential adsorption, candidate by candidate in the order of ranks, but
+//! it would depend on points at any distance. After [`ROUNDS`] rounds less than one candidate in 10 000 is undecided;
+//! these are no points. So whether a candidate is one depends on [`PoissonDiscs::reach`] metres around it, and on
+//! nothing else.
 //!
-//! Ranks decide both what takes part and what is first, so the points of a lower density are among those of a higher one.
+//! Ranks decide both what takes part and what is first, so the points of a lower density are among those of a higher
+//! one.
 
 use std::ops::Range;
 
@@ -44,9 +46,9 @@ const MAX_CELL: f64 = (1u64 << 31) as f64;
 /// The share of a cell along its sides without candidates, so that rounding moves none into the next cell.
 const MARGIN: f64 = 1.0 / (1 << 20) as f64;
 
-/// Number of points in the square of a spacing at a density of 1; measured. A maximal set of random points has 0.6966 (discs
-/// that cover a share of 0.547, the jamming limit of random sequential adsorption: Feder, "Random sequential adsorption",
-/// 1980).
+/// Number of points in the square of a spacing at a density of 1; measured. A maximal set of random points has 0.6966
+/// (discs that cover a share of 0.547, the jamming limit of random sequential adsorption: Feder, "Random sequential
+/// adsorption", 1980).
 pub const POINTS: f64 = 0.623;
 
 /// Ranks below which candidates take part, for densities in steps of 1/16: the number of points is proportional to the
@@ -98,13 +100,14 @@ impl PoissonDiscs {
         self.spacing / CELLS as f64
     }
 
-    /// The points whose easting and southing lie within `bounds`, row by row of their lattice. `density`, 0 to 1, is the number
-    /// of points as a share of the greatest possible one, at a position of at most [`reach`](PoissonDiscs::reach) metres
-    /// outside the bounds; where it is not a number there are no points. A point keeps its place whatever the bounds are,
-    /// as long as `density` is the same function.
+    /// The points whose easting and southing lie within `bounds`, row by row of their lattice. `density`, 0 to 1, is
+    /// the number of points as a share of the greatest possible one, at a position of at most
+    /// [`reach`](PoissonDiscs::reach) metres outside the bounds; where it is not a number there are no points. A point
+    /// keeps its place whatever the bounds are, as long as `density` is the same function.
     ///
     /// # Errors
-    /// If the bounds are more than 2^29 spacings from the origin or have more than 2^40 cells, or the work was cancelled.
+    /// If the bounds are more than 2^29 spacings from the origin or have more than 2^40 cells, or the work was
+    /// cancelled.
     pub fn within(
         &self,
         bounds: &[Range<f64>; 2],
@@ -203,8 +206,8 @@ enum State {
     NoPoint,
 }
 
-/// The candidates of a rectangle of cells and of the halo around it. Around these is a border of [`CELLS`] cells without
-/// candidates, so that every candidate has neighbours on all sides.
+/// The candidates of a rectangle of cells and of the halo around it. Around these is a border of [`CELLS`] cells
+/// without candidates, so that every candidate has neighbors on all sides.
 struct Block {
     /// Column and row of the first cell of the border.
     first: [i64; 2],
@@ -269,8 +272,8 @@ impl Block {
         }
     }
 
-    /// Whether no undecided candidate within the spacing comes before this one. Equal ranks are ordered by their cells, row
-    /// by row, as in every block.
+    /// Whether no undecided candidate within the spacing comes before this one. Equal ranks are ordered by their cells,
+    /// row by row, as in every block.
     fn is_first(&self, k: usize, offsets: &[isize]) -> bool {
         let rank = self.ranks[k];
         !offsets.iter().any(|offset| {

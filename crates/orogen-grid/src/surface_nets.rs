@@ -1,8 +1,9 @@
 //! Surfaces of densities in space as triangles: surface nets.
 //!
-//! After Gibson (1998), "Constrained elastic surface nets", in the simple form without relaxation: each cube of eight samples whose signs differ has one vertex, the
-//! mean of the points where the surface crosses its edges, and each edge whose ends differ in sign has a quadrilateral between the vertices of its four cubes. A
-//! vertex depends on the eight samples of its cube only, so the vertices that two parts share have the same bits, and parts join without cracks.
+//! After Gibson (1998), "Constrained elastic surface nets", in the simple form without relaxation: each cube of eight
+//! samples whose signs differ has one vertex, the mean of the points where the surface crosses its edges, and each edge
+//! whose ends differ in sign has a quadrilateral between the vertices of its four cubes. A vertex depends on the eight
+//! samples of its cube only, so the vertices that two parts share have the same bits, and parts join without cracks.
 
 use crate::error::{Error, ErrorKind, Result};
 
@@ -38,8 +39,8 @@ const EDGES: [[usize; 2]; 12] =
 const NONE: u32 = u32::MAX;
 
 impl Lattice<'_> {
-    /// The surface between the cubes of the lattice, with the quadrilaterals of the edges that begin at its second samples or later. So parts of N + 2
-    /// samples in steps of N cover each place once.
+    /// The surface between the cubes of the lattice, with the quadrilaterals of the edges that begin at its second
+    /// samples or later. So parts of N + 2 samples in steps of N cover each place once.
     ///
     /// # Errors
     /// If the densities do not fit the size.

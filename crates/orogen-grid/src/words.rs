@@ -174,8 +174,8 @@ pub fn bytes(n: u64) -> String {
     bytes_with(n, 0, f64::round).0
 }
 
-/// A need of bytes and a limit that it exceeds, with enough digits that both texts differ: "1.1 GiB" and "1.0 GiB". The need is
-/// rounded up, so that a limit of what its text shows suffices.
+/// A need of bytes and a limit that it exceeds, with enough digits that both texts differ: "1.1 GiB" and "1.0 GiB". The
+/// need is rounded up, so that a limit of what its text shows suffices.
 #[must_use]
 pub fn bytes_apart(need: u64, limit: u64) -> [String; 2] {
     // More digits would be harder to read than the number itself.

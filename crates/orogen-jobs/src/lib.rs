@@ -8,8 +8,8 @@
 //! - [`fit`]: recipes like a real place.
 //! - [`graph_layout`]: boxes and wires in columns.
 //!
-//! A job reads options, requests layers, and puts files in place. The crates below it process the samples. This crate is therefore compiled without
-//! optimisation, which takes an eighth of the time.
+//! A job reads options, requests layers, and puts files in place. The crates below it process the samples. This crate
+//! is therefore compiled without optimisation, which takes an eighth of the time.
 #![forbid(unsafe_code)]
 
 pub mod builder;

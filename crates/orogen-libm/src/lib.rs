@@ -1,18 +1,21 @@
-//! The elementary functions that Orogen computes terrain with. **Internal to Orogen: there is no promise of stability.**
+//! The elementary functions that Orogen computes terrain with. **Internal to Orogen: there is no promise of
+//! stability.**
 //!
-//! The sources are those of [libm] 0.2.16 of the Rust project (part of compiler-builtins), itself a port of musl's, which come from
-//! FreeBSD's msun and others; `LICENSE.txt` has all notices. Orogen carries its own copy because another version of libm could
-//! change bits of terrain, and because a program that depends on Orogen must be free to use any version for itself.
+//! The sources are those of [libm] 0.2.16 of the Rust project (part of compiler-builtins), itself a port of musl's,
+//! which come from FreeBSD's msun and others; `LICENSE.txt` has all notices. Orogen carries its own copy because
+//! another version of libm could change bits of terrain, and because a program that depends on Orogen must be free to
+//! use any version for itself.
 //!
 //! What was changed, without a change of any bit:
 //!
-//! - Only the functions in use are here, and there is no code of a single architecture. `sqrt`, `floor` and `abs` are the standard
-//!   library's, which are exact by IEEE 754. No function needs a fused multiply-add.
+//! - Only the functions in use are here, and there is no code of a single architecture. `sqrt`, `floor` and `abs` are
+//!   the standard library's, which are exact by IEEE 754. No function needs a fused multiply-add.
 //! - Arrays are indexed with checks.
 //! - Nothing is computed only to raise a flag of the floating-point environment, which Rust does not have.
 //! - Tables and branches for more than 53 bits are left out.
 //!
-//! Sign and payload of a NaN are not defined, as in Rust itself. `tests/upstream.rs` compares all other bits with the original.
+//! Sign and payload of a NaN are not defined, as in Rust itself. `tests/upstream.rs` compares all other bits with the
+//! original.
 //!
 //! [libm]: https://crates.io/crates/libm
 #![forbid(unsafe_code)]

@@ -10,8 +10,8 @@ macro_rules! scalbn {
             const EXP_MIN: i32 = 1 - EXP_MAX;
             // 2^EXP_MAX, the largest power of two.
             const F_EXP_MAX: $float = $float::from_bits(((2 * EXP_MAX) as $bits) << SIG_BITS);
-            // The factor on the way down is not 2^EXP_MIN, so that no x becomes subnormal before the last multiplication: it would
-            // be rounded twice.
+            // The factor on the way down is not 2^EXP_MIN, so that no x becomes subnormal before the last
+            // multiplication: it would be rounded twice.
             const ADD: i32 = -EXP_MIN - $float::MANTISSA_DIGITS as i32;
             const MUL: $float = $float::from_bits(((EXP_MAX - ADD) as $bits) << SIG_BITS);
 

@@ -37,7 +37,7 @@ fn special_f64() -> Vec<f64> {
         1.1875,
         2.4375,
     ]);
-    with_neighbours(&values, |x, step| f64::from_bits(x.to_bits().wrapping_add_signed(step)))
+    with_neighbors(&values, |x, step| f64::from_bits(x.to_bits().wrapping_add_signed(step)))
 }
 
 fn special_f32() -> Vec<f32> {
@@ -64,10 +64,10 @@ fn special_f32() -> Vec<f32> {
         1.1875,
         2.4375,
     ]);
-    with_neighbours(&values, |x, step| f32::from_bits(x.to_bits().wrapping_add_signed(step as i32)))
+    with_neighbors(&values, |x, step| f32::from_bits(x.to_bits().wrapping_add_signed(step as i32)))
 }
 
-fn with_neighbours<T: Copy + std::ops::Neg<Output = T>>(values: &[T], step: impl Fn(T, i64) -> T) -> Vec<T> {
+fn with_neighbors<T: Copy + std::ops::Neg<Output = T>>(values: &[T], step: impl Fn(T, i64) -> T) -> Vec<T> {
     let around = values.iter().flat_map(|&x| [-1, 0, 1].map(|by| step(x, by)));
     around.flat_map(|x| [x, -x]).collect()
 }

@@ -1,4 +1,5 @@
-//! Prints the time of one call in nanoseconds, of noises directly and prepared: a single point, and a block of 8 x 8 samples.
+//! Prints the time of one call in nanoseconds, of noises directly and prepared: a single point, and a block of 8 x 8
+//! samples.
 //!
 //! `cargo run --release -p orogen-noise --example prepared`
 
@@ -6,7 +7,8 @@ use orogen_noise::{Basis, Fractal, LengthMismatch, Perlin, Points, Simplex, Worl
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Nanoseconds per call: the minimum of 500 runs of 200 calls, so short that most runs are not interrupted by other processes.
+/// Nanoseconds per call: the minimum of 500 runs of 200 calls, so short that most runs are not interrupted by other
+/// processes.
 fn time(mut call: impl FnMut(usize)) -> f64 {
     let mut least = f64::INFINITY;
     for _ in 0..500 {

@@ -1,5 +1,5 @@
-//! Prints how many million points a second each noise makes on one thread, per SIMD level: 1024 x 1024 samples, wavelength of
-//! 100 samples.
+//! Prints how many million points a second each noise makes on one thread, per SIMD level: 1024 x 1024 samples,
+//! wavelength of 100 samples.
 //!
 //! `cargo run --release -p orogen-noise --example throughput [LEVEL [CASE]]`
 
@@ -11,7 +11,8 @@ const SIDE: usize = 1024;
 /// Fills a value and two slopes.
 type Work<'a> = &'a mut dyn FnMut(&mut [f32], &mut [f32], &mut [f32]);
 
-/// Processor time of this thread in seconds, so that a busy machine does not count; wall time where the system does not tell.
+/// Processor time of this thread in seconds, so that a busy machine does not count; wall time where the system does not
+/// tell.
 fn clock(since: Instant) -> f64 {
     let spent = std::fs::read_to_string("/proc/thread-self/schedstat");
     let nanoseconds = spent.ok().and_then(|text| text.split(' ').next()?.parse::<f64>().ok());

@@ -76,8 +76,8 @@ impl Basis {
         Basis::ALL.into_iter().find(|basis| basis.name() == name)
     }
 
-    /// Whether the noise has a gradient. White noise has none, and that of Worley noise is not computed; methods that return gradients
-    /// return zeros for them.
+    /// Whether the noise has a gradient. White noise has none, and that of Worley noise is not computed; methods that
+    /// return gradients return zeros for them.
     #[must_use]
     pub const fn has_gradient(self) -> bool {
         !matches!(self, Basis::White | Basis::Worley | Basis::WorleyEdge)
@@ -89,8 +89,8 @@ impl Basis {
         !matches!(self, Basis::Simplex | Basis::OpenSimplex2 | Basis::OpenSimplex2Smooth)
     }
 
-    /// The maximum absolute value of the basis in 2, 3 or 4 dimensions; a [`crate::Fractal`] divides by it. Perlin's reference noise
-    /// reaches 1.03635 in 3D and 1.53658 in 4D.
+    /// The maximum absolute value of the basis in 2, 3 or 4 dimensions; a [`crate::Fractal`] divides by it. Perlin's
+    /// reference noise reaches 1.03635 in 3D and 1.53658 in 4D.
     #[must_use]
     pub const fn bound(self, dimensions: usize) -> f64 {
         match (self, dimensions) {

@@ -15,11 +15,13 @@ pub enum Fade {
     Quintic,
 }
 
-/// The gradients of [`crate::Classic`] in 2D. In 3D all variants are the 2002 reference: the twelve edges of a cube, four of them twice.
+/// The gradients of [`crate::Classic`] in 2D. In 3D all variants are the 2002 reference: the twelve edges of a cube,
+/// four of them twice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 #[non_exhaustive]
 pub enum ClassicVariant {
-    /// As in most textbook ports: the low three bits of the hash select +-x +-y, which gives four diagonals, each twice.
+    /// As in most textbook ports: the low three bits of the hash select +-x +-y, which gives four diagonals, each
+    /// twice.
     #[default]
     Diagonal,
     /// The low three bits of the hash select one of eight directions: four diagonals (1, 1) and four axes (1, 0).
@@ -28,7 +30,8 @@ pub enum ClassicVariant {
     Angle,
 }
 
-/// How a fractal combines its octaves. All kinds are normalised by the sum of the octaves' amplitudes and stay in -1 ..= 1.
+/// How a fractal combines its octaves. All kinds are normalised by the sum of the octaves' amplitudes and stay in -1
+/// ..= 1.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 #[non_exhaustive]
 pub enum Kind {
@@ -47,10 +50,11 @@ pub enum Kind {
     /// ```
     ///
     /// With gain 1/2 and lacunarity 2 this is the sum of I. Quilez, "Value noise derivatives" (2008), over any basis.
-    /// Its gradient is approximate: it omits the slope of the falloff, which would need second derivatives. White noise has no slope, so
-    /// with it this kind equals [`Kind::Fbm`].
+    /// Its gradient is approximate: it omits the slope of the falloff, which would need second derivatives. White noise
+    /// has no slope, so with it this kind equals [`Kind::Fbm`].
     Weighted {
-        /// Strength of the damping, at least 0; 0 gives [`Kind::Fbm`]. It has no unit and does not depend on the wavelength. Typical: 1.
+        /// Strength of the damping, at least 0; 0 gives [`Kind::Fbm`]. It has no unit and does not depend on the
+        /// wavelength. Typical: 1.
         k: f64,
         /// Shape of the damping.
         falloff: Falloff,
@@ -63,17 +67,19 @@ pub enum Kind {
     ///
     /// Its gradient is exact except at the folds.
     PingPong {
-        /// The range of the noise is folded 2 strength - 1 times: 0.5 gives the noise itself, 1 its ridges, 2 (typical) three folds.
+        /// The range of the noise is folded 2 strength - 1 times: 0.5 gives the noise itself, 1 its ridges, 2 (typical)
+        /// three folds.
         strength: f64,
     },
-    /// Musgrave's hybrid multifractal: the weight of an octave is the product of the previous ones, so lowlands are smooth and heights are
-    /// rough.
+    /// Musgrave's hybrid multifractal: the weight of an octave is the product of the previous ones, so lowlands are
+    /// smooth and heights are rough.
     ///
     /// ```text
     /// s_i = gain^i (n_i + offset);  h += w s_i;  w = clamp(w s_i, 0, 1), starting at 1
     /// ```
     ///
-    /// Its gradient is exact except where w is clamped. F. K. Musgrave in Ebert et al., "Texturing and Modeling" (1994).
+    /// Its gradient is exact except where w is clamped. F. K. Musgrave in Ebert et al., "Texturing and Modeling"
+    /// (1994).
     Hybrid {
         /// Added to the noise. Ground is smooth where the sum of both is small. Typical: 0.7.
         offset: f64,
@@ -89,31 +95,34 @@ pub enum Kind {
         /// Added to the noise. Ground is smooth where the sum of both is small. Typical: 0.7.
         offset: f64,
     },
-    /// De Carpentier's swiss turbulence: ridged noise whose slopes displace the finer octaves downhill, so that crests branch.
+    /// De Carpentier's swiss turbulence: ridged noise whose slopes displace the finer octaves downhill, so that crests
+    /// branch.
     ///
     /// ```text
     /// n_i at p + warp d;  h += a_i (1 - |n_i|);  d -= a_i n_i grad n_i;  a_i+1 = a_i gain clamp(h, 0, 1)
     /// ```
     ///
-    /// with grad n_i per cell of octave i and p in first wavelengths. Its gradient is approximate: it omits the derivatives of displacements
-    /// and amplitudes. G. de Carpentier, "Scape: procedural basics" (2011).
+    /// with grad n_i per cell of octave i and p in first wavelengths. Its gradient is approximate: it omits the
+    /// derivatives of displacements and amplitudes. G. de Carpentier, "Scape: procedural basics" (2011).
     Swiss {
         /// Displacement of later octaves by the slopes, in first wavelengths. Typical: 0.15.
         warp: f64,
     },
-    /// De Carpentier's jordan turbulence: squared noise, displaced and damped by the slopes of the previous octaves. It gives rounded massifs
-    /// with eroded flanks.
+    /// De Carpentier's jordan turbulence: squared noise, displaced and damped by the slopes of the previous octaves. It
+    /// gives rounded massifs with eroded flanks.
     ///
     /// ```text
-    /// n_i at p lacunarity^i + warp d;  h += a_i n_i^2;  d += n_i grad n_i;  a_i = gain^i (1 - 1 / (1 + |damp d|^2)), a_0 = 1
+    /// n_i at p lacunarity^i + warp d;  h += a_i n_i^2;  d += n_i grad n_i;
+    /// a_i = gain^i (1 - 1 / (1 + |damp d|^2)), a_0 = 1
     /// ```
     ///
-    /// with grad n_i per cell of octave i. Its gradient is approximate: it omits the derivatives of displacements and amplitudes. G. de
-    /// Carpentier, "Scape: procedural basics" (2011).
+    /// with grad n_i per cell of octave i. Its gradient is approximate: it omits the derivatives of displacements and
+    /// amplitudes. G. de Carpentier, "Scape: procedural basics" (2011).
     Jordan {
         /// Displacement of later octaves by the slopes, in cells of the octave. Typical: 0.35.
         warp: f64,
-        /// How much slopes of previous octaves let later octaves through; with 0 only the first octave remains. Typical: 0.8.
+        /// How much slopes of previous octaves let later octaves through; with 0 only the first octave remains.
+        /// Typical: 0.8.
         damp: f64,
     },
 }
@@ -172,7 +181,7 @@ pub enum Feature {
     Product,
     /// A random value per cell.
     Value,
-    /// Distance to the nearest edge between cells, exact for [`Distance::Euclidean`]. For the other distances it is (F2 - F1) / 2, which is
-    /// 0 on the edges and never more than the distance to them.
+    /// Distance to the nearest edge between cells, exact for [`Distance::Euclidean`]. For the other distances it is
+    /// (F2 - F1) / 2, which is 0 on the edges and never more than the distance to them.
     Edge,
 }

@@ -11,8 +11,8 @@ use crate::worley::Worley;
 
 /// A sum of octaves of one basis.
 ///
-/// Octave i has the wavelength `wavelength / lacunarity^i`, the amplitude gain^i divided by the sum of all amplitudes, and its own seed and
-/// offset, so that the lattices do not coincide at the origin. Range: -1 ..= 1.
+/// Octave i has the wavelength `wavelength / lacunarity^i`, the amplitude gain^i divided by the sum of all amplitudes,
+/// and its own seed and offset, so that the lattices do not coincide at the origin. Range: -1 ..= 1.
 ///
 /// ```
 /// use orogen_noise::{Basis, Fractal, Kind};
@@ -28,12 +28,13 @@ pub struct Fractal {
     pub basis: Basis,
     /// How the octaves are combined. Default [`Kind::Fbm`].
     pub kind: Kind,
-    /// Any number; neighbouring seeds give unrelated noise. Default 0.
+    /// Any number; neighboring seeds give unrelated noise. Default 0.
     pub seed: u64,
-    /// Wavelength of the first octave, in metres. If it is zero or too small to divide by, the noise is constant. Default 1.
+    /// Wavelength of the first octave, in metres. If it is zero or too small to divide by, the noise is constant.
+    /// Default 1.
     pub wavelength: f64,
-    /// Number of octaves, up to [`crate::MAX_OCTAVES`]; more are ignored. Without octaves the value is 0 (1 for ridged; -1 for billow, swiss
-    /// and jordan). Default 6.
+    /// Number of octaves, up to [`crate::MAX_OCTAVES`]; more are ignored. Without octaves the value is 0 (1 for ridged;
+    /// -1 for billow, swiss and jordan). Default 6.
     pub octaves: u32,
     /// Frequency ratio from one octave to the next. Default 2.
     pub lacunarity: f64,

@@ -6,7 +6,8 @@ use crate::points::{Depth, LengthMismatch, Points};
 use crate::program::Program;
 use orogen_simd::{Level, LevelError, dispatch, dispatch_at};
 
-/// Runs a program at the current SIMD level. `depths` are z and w, as far as these axes exist; `slopes` has one slice per axis.
+/// Runs a program at the current SIMD level. `depths` are z and w, as far as these axes exist; `slopes` has one slice
+/// per axis.
 pub(crate) fn fill(
     program: &Program,
     points: &Points,
@@ -70,8 +71,8 @@ pub(crate) fn sample(program: &Program, x: f64, y: f64, depths: &[Depth]) -> f32
 macro_rules! value_methods {
     ($noise:ident) => {
         impl $noise {
-            /// The value at (x, y), metres. For many points at once, [`fill`](Self::fill) is many times faster and gives the same
-            /// bits; for many single points, see [`Prepared`](crate::Prepared).
+            /// The value at (x, y), metres. For many points at once, [`fill`](Self::fill) is many times faster and
+            /// gives the same bits; for many single points, see [`Prepared`](crate::Prepared).
             #[must_use]
             pub fn sample(&self, x: f64, y: f64) -> f32 {
                 $crate::methods::sample(&self.program(2), x, y, &[])
@@ -175,8 +176,8 @@ macro_rules! noise_methods {
                 $crate::methods::fill(&self.program(3), points, &[*depth], value, Some([dx, dy, dz, &mut []]))
             }
 
-            /// The values at the points in four dimensions and their slopes along x, y, z and w, per metre, in `gradient`;
-            /// `depths` are z and w.
+            /// The values at the points in four dimensions and their slopes along x, y, z and w, per metre, in
+            /// `gradient`; `depths` are z and w.
             ///
             /// # Errors
             /// A slice does not have the points' length; nothing is written.

@@ -29,7 +29,7 @@ use crate::program::{Program, Source};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct OpenSimplex2 {
-    /// Any number; neighbouring seeds give unrelated noise. Default 0.
+    /// Any number; neighboring seeds give unrelated noise. Default 0.
     pub seed: u64,
     /// Side of the squares from which the triangles are skewed, in metres. Default 1.
     pub wavelength: f64,

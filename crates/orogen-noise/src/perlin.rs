@@ -13,8 +13,8 @@ use orogen_simd::dispatch;
 /// repeats, and every seed gives a different noise.
 ///
 /// All gradients have the same length. In 2D there are 16 directions, 11.25 + 22.5 k degrees; none lies along an axis
-/// or a diagonal. In 3D there are 32: the corners and face centres of an icosahedron. The result is scaled to a maximum
-/// of 1: the raw noise reaches .695353 in 2D, at (.5, .5266) in a cell, and sqrt(3/4) in 3D, in the centre of a cell.
+/// or a diagonal. In 3D there are 32: the corners and face centers of an icosahedron. The result is scaled to a maximum
+/// of 1: the raw noise reaches .695353 in 2D, at (.5, .5266) in a cell, and sqrt(3/4) in 3D, in the center of a cell.
 ///
 /// Range: -1 ..= 1. Zero mean; zero at every lattice point. Its gradient is exact.
 ///
@@ -28,7 +28,7 @@ use orogen_simd::dispatch;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Perlin {
-    /// Any number; neighbouring seeds give unrelated noise. Default 0.
+    /// Any number; neighboring seeds give unrelated noise. Default 0.
     pub seed: u64,
     /// Distance between lattice points, in metres. Default 1.
     pub wavelength: f64,

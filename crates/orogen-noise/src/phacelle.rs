@@ -6,22 +6,24 @@ use crate::points::{LengthMismatch, Points};
 use crate::program::{MAX_PERIOD, Program, Source};
 use orogen_simd::{Level, LevelError, dispatch, dispatch_at};
 
-/// Phacelle noise: stripes along a direction that the caller gives for each sample. Stripes merge where directions change. Along the slope of
-/// a terrain they look like gullies.
+/// Phacelle noise: stripes along a direction that the caller gives for each sample. Stripes merge where directions
+/// change. Along the slope of a terrain they look like gullies.
 ///
-/// Each cell has a pivot within half a cell of its lattice point, with a plane wave of random phase. A sample is the mean of the waves of the
-/// 4 x 4 pivots around it, weighted by max(0, e^(-2 d^2) - e^(-4.5)) at distance d in cells, and lengthened towards length 1:
+/// Each cell has a pivot within half a cell of its lattice point, with a plane wave of random phase. A sample is the
+/// mean of the waves of the 4 x 4 pivots around it, weighted by max(0, e^(-2 d^2) - e^(-4.5)) at distance d in cells,
+/// and lengthened towards length 1:
 ///
 /// ```text
 /// wave = sum w (cos phi, sin phi) / sum w,   phi = 2 pi (v . side / wavelength + phase)
 /// result = wave / max(1 - normalisation, |wave|)
 /// ```
 ///
-/// with v from the pivot to the sample and `side` perpendicular to the direction. Other pivots have a weight of 0, so there are no
-/// discontinuities.
+/// with v from the pivot to the sample and `side` perpendicular to the direction. Other pivots have a weight of 0, so
+/// there are no discontinuities.
 ///
-/// Range: -1 ..= 1 for cosine and sine. Zero mean. There is no exact gradient, because it would need the derivatives of the directions. Across
-/// the stripes the slope of the cosine is about -2 pi / wavelength times the sine. Two dimensions only.
+/// Range: -1 ..= 1 for cosine and sine. Zero mean. There is no exact gradient, because it would need the derivatives of
+/// the directions. Across the stripes the slope of the cosine is about -2 pi / wavelength times the sine. Two
+/// dimensions only.
 ///
 /// R. Skovbo Johansen, "Phacelle noise" (2025).
 ///
@@ -40,15 +42,17 @@ use orogen_simd::{Level, LevelError, dispatch, dispatch_at};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Phacelle {
-    /// Any number; neighbouring seeds give unrelated noise. Default 0.
+    /// Any number; neighboring seeds give unrelated noise. Default 0.
     pub seed: u64,
     /// Distance from stripe to stripe, metres. Default 1.
     pub wavelength: f64,
     /// Side of a cell in wavelengths. It limits the length of a stripe. Default 0.7.
     pub cell: f64,
-    /// How far waves that cancel each other are lengthened, from 0 (not at all) to 1 (to full height); clamped. Default 0.5.
+    /// How far waves that cancel each other are lengthened, from 0 (not at all) to 1 (to full height); clamped. Default
+    /// 0.5.
     pub normalisation: f64,
-    /// Direction of the stripes for methods without directions: an angle from x (east) towards y (south), in degrees. Default 0.
+    /// Direction of the stripes for methods without directions: an angle from x (east) towards y (south), in degrees.
+    /// Default 0.
     pub direction: f64,
     /// Period along x and y in cells; 0 along axes without a period. At most 2^26. Default [0, 0].
     pub period: [u32; 2],
@@ -94,8 +98,8 @@ impl Phacelle {
         }
     }
 
-    /// The cosine at (x, y), metres, of stripes along [`Phacelle::direction`]. Each call computes the tables of the noise:
-    /// [`prepare`](Self::prepare) does that once for many calls.
+    /// The cosine at (x, y), metres, of stripes along [`Phacelle::direction`]. Each call computes the tables of the
+    /// noise: [`prepare`](Self::prepare) does that once for many calls.
     #[must_use]
     pub fn sample(&self, x: f64, y: f64) -> f32 {
         self.prepare().sample(x, y)
@@ -109,8 +113,8 @@ impl Phacelle {
         self.prepare().fill(points, value)
     }
 
-    /// Cosines and sines at the points, of stripes along (dx, dy), one direction for each sample. The length of a direction does not
-    /// matter; a direction of length 0 makes no stripes.
+    /// Cosines and sines at the points, of stripes along (dx, dy), one direction for each sample. The length of a
+    /// direction does not matter; a direction of length 0 makes no stripes.
     ///
     /// # Errors
     /// A slice does not have the points' length; nothing is written.
@@ -141,8 +145,8 @@ impl Phacelle {
     }
 }
 
-/// [`Phacelle`] noise whose tables are computed once, for many calls; [`Phacelle::prepare`] makes it. Any number of threads can use it
-/// at the same time.
+/// [`Phacelle`] noise whose tables are computed once, for many calls; [`Phacelle::prepare`] makes it. Any number of
+/// threads can use it at the same time.
 ///
 /// ```
 /// let stripes = orogen_noise::Phacelle::new(7, 100.0).with_direction(30.0);

@@ -4,11 +4,12 @@ use std::fmt;
 
 /// The positions at which a noise is evaluated, in metres, in f64.
 ///
-/// The three forms give the same bits for the same positions; they differ in speed. A lattice is several times faster than scattered points,
-/// because values that depend on x alone or y alone are computed once per column or row.
+/// The three forms give the same bits for the same positions; they differ in speed. A lattice is several times faster
+/// than scattered points, because values that depend on x alone or y alone are computed once per column or row.
 #[derive(Clone, Copy, Debug)]
 pub enum Points<'a> {
-    /// Sample k = j * xs.len() + i is at `(xs[i], ys[j])`. Evenly spaced, ascending columns are fastest; all values are valid.
+    /// Sample k = j * xs.len() + i is at `(xs[i], ys[j])`. Evenly spaced, ascending columns are fastest; all values are
+    /// valid.
     Lattice {
         /// x of each column, metres.
         xs: &'a [f64],

@@ -5,12 +5,13 @@ use crate::program::Program;
 
 /// A noise whose tables of octaves are computed once, for many calls.
 ///
-/// Every call of [`Fractal::sample`](crate::Fractal::sample) or [`fill`](crate::Fractal::fill) first derives the octaves' seeds, offsets
-/// and amplitudes from the noise's fields. A prepared noise has done that. It has the same methods and returns the same bits; single
-/// points and small blocks are faster, large grids are not.
+/// Every call of [`Fractal::sample`](crate::Fractal::sample) or [`fill`](crate::Fractal::fill) first derives the
+/// octaves' seeds, offsets and amplitudes from the noise's fields. A prepared noise has done that. It has the same
+/// methods and returns the same bits; single points and small blocks are faster, large grids are not.
 ///
-/// [`prepare`](crate::Fractal::prepare) of any noise makes one. It is immutable, so any number of threads can use it at the same time.
-/// It takes about 12 KiB on the heap. Where the noise has no gradient, the methods `*_with_gradient` write zeros.
+/// [`prepare`](crate::Fractal::prepare) of any noise makes one. It is immutable, so any number of threads can use it at
+/// the same time. It takes about 12 KiB on the heap. Where the noise has no gradient, the methods `*_with_gradient`
+/// write zeros.
 ///
 /// ```
 /// use orogen_noise::{Fractal, Points};

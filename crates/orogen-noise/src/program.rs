@@ -76,7 +76,7 @@ impl Cellular {
     /// Maximum size of the feature, in cells.
     ///
     /// Let the nearest lattice corner of a sample be x, y (and z) away, each at most 1/2. Its own cell's point is
-    /// within (1 - x, 1 - y), and that of the neighbour across its nearest side within 2 min(x, y) more along one axis.
+    /// within (1 - x, 1 - y), and that of the neighbor across its nearest side within 2 min(x, y) more along one axis.
     /// The maxima of these over all positions bound the nearest and the second nearest distance, and points in the
     /// farthest corners reach them. An edge is at most sqrt 2 (sqrt 3, 2) minus the nearest distance away, because a
     /// position farther off would have no point, and at most half the sum of the nearest two distances: together less

@@ -9,7 +9,7 @@ pub(crate) const fn mix64(mut z: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// The n-th word of a seed's sequence. Neighbouring seeds start 2^64 / golden ratio apart after a first mix, so 0 and 1
+/// The n-th word of a seed's sequence. Neighboring seeds start 2^64 / golden ratio apart after a first mix, so 0 and 1
 /// are as unrelated as any two.
 pub(crate) const fn word(seed: u64, n: u64) -> u64 {
     mix64(mix64(seed ^ 0x6A09_E667_F3BC_C909).wrapping_add((n + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15)))

@@ -3,15 +3,17 @@
 use crate::methods::noise_methods;
 use crate::program::{Program, TileError};
 
-/// A noise that repeats, so that copies of one period join without a seam. The method `tiled` of a noise makes it. It has the same methods,
-/// speed, range and gradients, and its tables are computed once, as in [`Prepared`](crate::Prepared).
+/// A noise that repeats, so that copies of one period join without a seam. The method `tiled` of a noise makes it. It
+/// has the same methods, speed, range and gradients, and its tables are computed once, as in
+/// [`Prepared`](crate::Prepared).
 ///
-/// A period is a whole number of cells of the first octave: along an axis with period p and wavelength w the noise repeats every p * w metres.
-/// Every other octave must have a whole number of cells in the period too. An integer lacunarity always fits; other values fit some
-/// periods.
+/// A period is a whole number of cells of the first octave: along an axis with period p and wavelength w the noise
+/// repeats every p * w metres. Every other octave must have a whole number of cells in the period too. An integer
+/// lacunarity always fits; other values fit some periods.
 ///
-/// Both sides of a seam are equal to the bit. For this, positions are rounded to 2^-24 of a cell. The equality holds if a period of n
-/// samples lies within 2^26 / n cells of the origin, counted in the finest octave. Positions beyond 2^27 of those cells are clamped.
+/// Both sides of a seam are equal to the bit. For this, positions are rounded to 2^-24 of a cell. The equality holds if
+/// a period of n samples lies within 2^26 / n cells of the origin, counted in the finest octave. Positions beyond 2^27
+/// of those cells are clamped.
 ///
 /// ```
 /// use orogen_noise::{Fractal, Points};
@@ -31,7 +33,8 @@ pub struct Tiled {
     programs: [Program; 3],
 }
 
-/// The period along x, y, z and w in cells of the first octave; 0 along axes without a period. Arrays of two to four numbers convert to it.
+/// The period along x, y, z and w in cells of the first octave; 0 along axes without a period. Arrays of two to four
+/// numbers convert to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Period([u32; 4]);
 
@@ -69,8 +72,8 @@ noise_methods!(Tiled);
 macro_rules! tileable {
     ($noise:ident) => {
         impl $noise {
-            /// The noise with a period, in cells of the first octave along x, y, z and w: `[4, 4]`, `[4, 4, 2]` and so on; 0 along axes
-            /// without a period.
+            /// The noise with a period, in cells of the first octave along x, y, z and w: `[4, 4]`, `[4, 4, 2]` and so
+            /// on; 0 along axes without a period.
             ///
             /// # Errors
             /// An octave does not have a whole number of cells in the period, or the noise is a simplex noise: see

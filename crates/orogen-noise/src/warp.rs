@@ -24,8 +24,8 @@ pub enum WarpKind {
 
 /// A domain warp: displacements of positions before another noise is evaluated there.
 ///
-/// Displacements of independent and progressive warps are at most `strength` along each axis. Gradient warps have no simple bound: the slope
-/// of Perlin fBm per first wavelength is rarely above 3.
+/// Displacements of independent and progressive warps are at most `strength` along each axis. Gradient warps have no
+/// simple bound: the slope of Perlin fBm per first wavelength is rarely above 3.
 ///
 /// I. Quilez, "Domain warping" (2002).
 ///
@@ -47,7 +47,7 @@ pub struct Warp {
     pub kind: WarpKind,
     /// The noise that is summed. Default [`Basis::Perlin`].
     pub basis: Basis,
-    /// Any number; neighbouring seeds give unrelated warps. Default 0.
+    /// Any number; neighboring seeds give unrelated warps. Default 0.
     pub seed: u64,
     /// Wavelength of the first octave, metres. Default 1.
     pub wavelength: f64,
@@ -86,8 +86,8 @@ noise_builder!(
 );
 
 impl Warp {
-    /// Displacements of the points along x and y, in metres. For points that are displaced already, these are further displacements at
-    /// the displaced positions.
+    /// Displacements of the points along x and y, in metres. For points that are displaced already, these are further
+    /// displacements at the displaced positions.
     ///
     /// # Errors
     /// A slice does not have the points' length; nothing is written.
@@ -138,8 +138,8 @@ impl Warp {
     }
 }
 
-/// A [`Warp`] whose tables of octaves are computed once, for many calls; [`Warp::prepare`] makes it. Any number of threads can use it
-/// at the same time.
+/// A [`Warp`] whose tables of octaves are computed once, for many calls; [`Warp::prepare`] makes it. Any number of
+/// threads can use it at the same time.
 ///
 /// ```
 /// use orogen_noise::{Points, Warp};

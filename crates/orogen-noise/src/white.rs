@@ -19,7 +19,7 @@ use crate::tiled::tileable;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct White {
-    /// Any number; neighbouring seeds give unrelated noise. Default 0.
+    /// Any number; neighboring seeds give unrelated noise. Default 0.
     pub seed: u64,
     /// Side of a square, in metres. Default 1.
     pub wavelength: f64,

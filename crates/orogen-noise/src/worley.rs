@@ -7,9 +7,11 @@ use crate::prepared::preparable;
 use crate::program::{Cellular, Program, Source};
 use crate::tiled::tileable;
 
-/// Worley's cellular noise: a lattice with one random point per cell. The value of a sample follows from the points nearest to it.
+/// Worley's cellular noise: a lattice with one random point per cell. The value of a sample follows from the points
+/// nearest to it.
 ///
-/// The search covers all cells that can hold a nearest point. The usual search of 3 x 3 cells misses some, which causes discontinuities.
+/// The search covers all cells that can hold a nearest point. The usual search of 3 x 3 cells misses some, which causes
+/// discontinuities.
 ///
 /// Range: -1 ..= 1. A distance d becomes 2 d / bound - 1, where the bound is the maximum in wavelengths:
 ///
@@ -33,7 +35,7 @@ use crate::tiled::tileable;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Worley {
-    /// Any number; neighbouring seeds give unrelated noise. Default 0.
+    /// Any number; neighboring seeds give unrelated noise. Default 0.
     pub seed: u64,
     /// Side of a cell, metres. Default 1.
     pub wavelength: f64,
@@ -41,7 +43,8 @@ pub struct Worley {
     pub distance: Distance,
     /// The computed value. Default [`Feature::F1`].
     pub feature: Feature,
-    /// Share of its cell in which a point is placed, along each axis, from 0 (the centre) to 1 (anywhere); clamped. Default 1.
+    /// Share of its cell in which a point is placed, along each axis, from 0 (the center) to 1 (anywhere); clamped.
+    /// Default 1.
     pub jitter: f64,
 }
 

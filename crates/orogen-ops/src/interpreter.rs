@@ -92,8 +92,8 @@ impl<'p> Interpreter<'p> {
         self.run(Some(block), block.len(), bindings)
     }
 
-    /// Runs the program over a block of the lattice at each altitude, and passes the first output to `visit` with the altitude's index. What does not
-    /// depend on the altitude is computed once.
+    /// Runs the program over a block of the lattice at each altitude, and passes the first output to `visit` with the
+    /// altitude's index. What does not depend on the altitude is computed once.
     pub fn run_block_at(
         &mut self,
         block: &Window,

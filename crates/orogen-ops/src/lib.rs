@@ -7,7 +7,8 @@
 //! - [`expression`]: formulas of recipes.
 //! - [`large`]: water over areas larger than memory; [`budget`]: a shared limit of memory.
 //!
-//! An op knows its inputs and nothing of the recipe or the plan that it is part of; those are in the crate `orogen-engine`, which holds this one.
+//! An op knows its inputs and nothing of the recipe or the plan that it is part of; those are in the crate
+//! `orogen-engine`, which holds this one.
 #![forbid(unsafe_code)]
 
 #[macro_use]

@@ -1,4 +1,5 @@
-//! How ops are computed on a graphics card: each field has a function of WGSL, and each filter has passes, beside its computation on the processor.
+//! How ops are computed on a graphics card: each field has a function of WGSL, and each filter has passes, beside its
+//! computation on the processor.
 
 /// The function `selected` of WGSL, which several ops have: a range with smooth ends.
 pub const SELECTION: &str = include_str!("lower/selection.wgsl");
@@ -19,14 +20,16 @@ pub enum Lowering<T> {
 
 /// A filter as passes over planes: grids over its window grown by the halo, all in the same place.
 ///
-/// The first planes are its inputs, one for each that is declared (zeros if it is not given). The next are its layers, and then come `scratch` planes. Planes
-/// other than inputs start as zeros. The text defines one function `fn NAME(base: u32, at: vec2<i32>)` for each pass, which is called for every sample of the
-/// planes, except for a border that no later pass reads. It reads numbers with `number(base, i)` and samples with `plane(k, at)`, where positions beyond the
-/// border are those of the border, and writes samples with `set_plane(k, at, value)`; `size()` is the number of columns and rows of the planes. A pass may run
-/// for all samples at once: it must not read samples that another call writes.
+/// The first planes are its inputs, one for each that is declared (zeros if it is not given). The next are its layers,
+/// and then come `scratch` planes. Planes other than inputs start as zeros. The text defines one function `fn
+/// NAME(base: u32, at: vec2<i32>)` for each pass, which is called for every sample of the planes, except for a border
+/// that no later pass reads. It reads numbers with `number(base, i)` and samples with `plane(k, at)`, where positions
+/// beyond the border are those of the border, and writes samples with `set_plane(k, at, value)`; `size()` is the number
+/// of columns and rows of the planes. A pass may run for all samples at once: it must not read samples that another
+/// call writes.
 ///
-/// Those of a solver read and write the planes otherwise, as words: see `solvers.wgsl` of orogen-gpu. Calls of a [shared](Pass::is_shared) pass may read what
-/// others write, if the result does not depend on their order.
+/// Those of a solver read and write the planes otherwise, as words: see `solvers.wgsl` of orogen-gpu. Calls of a
+/// [shared](Pass::is_shared) pass may read what others write, if the result does not depend on their order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Passes {
     /// The text that defines the functions of the passes. It does not depend on parameters.
@@ -37,7 +40,8 @@ pub struct Passes {
     pub layers: usize,
     /// Number of planes beside inputs and layers.
     pub scratch: usize,
-    /// Whether differences of the last digits grow, so that the result is other land, as real as that of the processor: for drafts.
+    /// Whether differences of the last digits grow, so that the result is other land, as real as that of the processor:
+    /// for drafts.
     pub is_chaotic: bool,
     /// The passes, in order.
     pub passes: Vec<Pass>,
@@ -52,7 +56,8 @@ pub struct Pass {
     pub step: u32,
     /// Columns and rows at each side of the planes that it leaves out, at most the halo.
     pub inset: [usize; 2],
-    /// Number of samples that a call reads, about. The samples of an expensive pass are computed in parts, so that no driver ends it as a hang.
+    /// Number of samples that a call reads, about. The samples of an expensive pass are computed in parts, so that no
+    /// driver ends it as a hang.
     pub reads: usize,
     /// Whether calls write to samples of other calls, or read what they write: only in solvers.
     pub is_shared: bool,
@@ -60,11 +65,12 @@ pub struct Pass {
 
 /// A level of a levelled op as passes over planes, of the level and of the level above.
 ///
-/// Planes of the level begin with those that it has; then come `scratch` planes, which start as zeros like these, and the inputs. Planes of the level above have
-/// half the columns and rows: sample (i, j) of the level is in the cell of sample (i / 2, j / 2) of the level above. They begin with those of the level above, and
-/// `scratch_above` planes follow. The functions of passes are those of [`Passes`], which also read `above(k, at)`, write `set_above(k, at, value)`, and have the
-/// number `above_size()` of columns and rows of the level above, and the position of the first sample on the lattice as whole numbers of 64 bits,
-/// `first_column()` and `first_row()`.
+/// Planes of the level begin with those that it has; then come `scratch` planes, which start as zeros like these, and
+/// the inputs. Planes of the level above have half the columns and rows: sample (i, j) of the level is in the cell of
+/// sample (i / 2, j / 2) of the level above. They begin with those of the level above, and `scratch_above` planes
+/// follow. The functions of passes are those of [`Passes`], which also read `above(k, at)`, write `set_above(k, at,
+/// value)`, and have the number `above_size()` of columns and rows of the level above, and the position of the first
+/// sample on the lattice as whole numbers of 64 bits, `first_column()` and `first_row()`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LevelPasses {
     /// The numbers that the functions read.
@@ -101,8 +107,8 @@ pub struct LevelPass {
 /// Planes beside those of the level have any values before the passes. The functions are those of [`Passes`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct LayerPasses {
-    /// The numbers that the functions read. After them come the first column and row, and the number of columns and rows, of the samples of the layers among
-    /// those of the planes.
+    /// The numbers that the functions read. After them come the first column and row, and the number of columns and
+    /// rows, of the samples of the layers among those of the planes.
     pub words: Vec<u32>,
     /// Number of planes beside those of the level.
     pub scratch: usize,
@@ -123,7 +129,8 @@ pub struct LayerPass {
     pub around: usize,
     /// That of [`Pass::reads`].
     pub reads: usize,
-    /// That of [`Pass::is_shared`]: then the code declares the planes as words, and functions that read samples are not called.
+    /// That of [`Pass::is_shared`]: then the code declares the planes as words, and functions that read samples are not
+    /// called.
     pub is_shared: bool,
 }
 
@@ -192,8 +199,9 @@ impl Passes {
     }
 }
 
-/// The planes that iterations read and write in turn, as the step of a pass: the plane that is read in the lower eight bits, and the one that is written in the
-/// next eight. The first iteration reads `first`, the last one writes `turns[0]`, the one before it `turns[1]`, and so on.
+/// The planes that iterations read and write in turn, as the step of a pass: the plane that is read in the lower eight
+/// bits, and the one that is written in the next eight. The first iteration reads `first`, the last one writes
+/// `turns[0]`, the one before it `turns[1]`, and so on.
 #[must_use]
 pub fn alternating(iterations: u32, first: u32, turns: [u32; 2]) -> Vec<u32> {
     let written = |k: u32| if (iterations - k) % 2 == 1 { turns[0] } else { turns[1] };

@@ -144,7 +144,8 @@ impl Node {
         self.declared().param_key(i)
     }
 
-    /// The length by which a solver's domain extends beyond each side of the world, in metres; `None` if the op has no such parameter.
+    /// The length by which a solver's domain extends beyond each side of the world, in metres; `None` if the op has no
+    /// such parameter.
     #[must_use]
     pub fn margin(&self) -> Option<f64> {
         self.declared().margin()

@@ -57,7 +57,8 @@ impl<'a> Inputs<'a> {
         Inputs { altitude, ..self }
     }
 
-    /// The altitude of the points in metres: 0 in the plane. Only a field that [reads the altitude](Field::reads_altitude) may use it.
+    /// The altitude of the points in metres: 0 in the plane. Only a field that [reads the
+    /// altitude](Field::reads_altitude) may use it.
     #[must_use]
     pub fn altitude(&self) -> f64 {
         self.altitude
@@ -85,7 +86,8 @@ pub trait Field: Send + Sync {
         term::evaluate(&self.terms().unwrap_or_default(), |input| inputs.get(input), out);
     }
 
-    /// Computes one value of a layer per point. A field that declares several layers implements it; others have [`Field::eval`] alone.
+    /// Computes one value of a layer per point. A field that declares several layers implements it; others have
+    /// [`Field::eval`] alone.
     fn eval_layer(&self, layer: usize, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
         let _ = layer;
         self.eval(at, inputs, world_params, out);
@@ -108,8 +110,9 @@ pub trait Field: Send + Sync {
         None
     }
 
-    /// The cell at which the first input of a field is computed that interpolates between samples of a cell of its own, for a requested cell and that of
-    /// the world, all in metres. [`Field::eval`] of such a field is never called: the engine makes those samples and interpolates them.
+    /// The cell at which the first input of a field is computed that interpolates between samples of a cell of its own,
+    /// for a requested cell and that of the world, all in metres. [`Field::eval`] of such a field is never called: the
+    /// engine makes those samples and interpolates them.
     fn source_cell(&self, requested: f64, world_cell: f64) -> Option<f64> {
         let _ = (requested, world_cell);
         None
@@ -126,8 +129,9 @@ pub trait Field: Send + Sync {
         false
     }
 
-    /// Whether the result depends on the [altitude](Inputs::altitude) at which the field is evaluated, other than through its inputs. The engine
-    /// evaluates a field that returns false once for all altitudes. An op with `space;` in its declaration need not implement it.
+    /// Whether the result depends on the [altitude](Inputs::altitude) at which the field is evaluated, other than
+    /// through its inputs. The engine evaluates a field that returns false once for all altitudes. An op with `space;`
+    /// in its declaration need not implement it.
     fn reads_altitude(&self) -> bool {
         false
     }
@@ -137,8 +141,8 @@ pub trait Field: Send + Sync {
         0
     }
 
-    /// How a graphics card computes a layer in the plane. A field with terms, a coordinate map or a cell of its own need not implement it: the engine
-    /// computes it otherwise.
+    /// How a graphics card computes a layer in the plane. A field with terms, a coordinate map or a cell of its own
+    /// need not implement it: the engine computes it otherwise.
     #[doc(hidden)]
     fn lower(&self, layer: usize, world_params: &WorldParams) -> Lowering<Shader> {
         let _ = (layer, world_params);
@@ -166,7 +170,7 @@ const IN_ROWS: f64 = 0.15;
 
 /// A source that a field also reads around its position. After its inputs, the field receives that source at `step`
 /// metres to the east, west, south and north. The engine makes the four positions and evaluates the source there, so
-/// the slope is known at any point, without neighbouring samples.
+/// the slope is known at any point, without neighboring samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stencil {
     /// Index of the input.
@@ -340,18 +344,20 @@ impl Levels {
         self.finest * (1u64 << halvings) as f64
     }
 
-    /// The level that a window with this cell is read from: the coarsest with the same or a smaller cell, otherwise the finest.
+    /// The level that a window with this cell is read from: the coarsest with the same or a smaller cell, otherwise the
+    /// finest.
     #[must_use]
     pub fn serving(&self, cell: f64) -> usize {
         (0..self.count).find(|level| self.cell(*level) <= cell).unwrap_or(self.count.saturating_sub(1))
     }
 }
 
-/// A levelled op is a pyramid of lattices. Each level over any window is a function of the coarser level over that window and a
-/// finite halo, so a coarse level is the preview of the finer ones, and no window depends on the extent of the world. Level 0
-/// depends on its inputs, positions and the seed alone.
+/// A levelled op is a pyramid of lattices. Each level over any window is a function of the coarser level over that
+/// window and a finite halo, so a coarse level is the preview of the finer ones, and no window depends on the extent of
+/// the world. Level 0 depends on its inputs, positions and the seed alone.
 ///
-/// The data of a level are *planes*: grids over its window whose meaning only the op knows. The layers are made from them last.
+/// The data of a level are *planes*: grids over its window whose meaning only the op knows. The layers are made from
+/// them last.
 pub trait Levelled: Declared + Send + Sync {
     /// The lattices.
     fn levels(&self) -> Levels;
@@ -384,8 +390,8 @@ pub trait Levelled: Declared + Send + Sync {
     /// If the work was cancelled.
     fn coarsest(&self, inputs: &[Option<&Grid>], window: &Window, context: &Context) -> Result<Vec<Grid>>;
 
-    /// The planes of `level`, at least 1, over `window`, from those of the level above over
-    /// [the window's parent](Levelled::parent). Each given input covers `window.grown(source_halo(level))` at the cell of the level.
+    /// The planes of `level`, at least 1, over `window`, from those of the level above over [the window's
+    /// parent](Levelled::parent). Each given input covers `window.grown(source_halo(level))` at the cell of the level.
     ///
     /// # Errors
     /// If the work was cancelled.
@@ -398,12 +404,12 @@ pub trait Levelled: Declared + Send + Sync {
         context: &Context,
     ) -> Result<Vec<Grid>>;
 
-    /// Number of samples of a level that [`Levelled::layers_of`] reads beyond the window. `wanted` says of each declared layer whether it is
-    /// requested.
+    /// Number of samples of a level that [`Levelled::layers_of`] reads beyond the window. `wanted` says of each
+    /// declared layer whether it is requested.
     fn surface_halo(&self, level: usize, wanted: &[bool]) -> usize;
 
-    /// Computes layers over `window` from the planes of `level` over `window` grown by the [halo of the wanted layers](Levelled::surface_halo). `out` is
-    /// that of [`Filter::apply`].
+    /// Computes layers over `window` from the planes of `level` over `window` grown by the [halo of the wanted
+    /// layers](Levelled::surface_halo). `out` is that of [`Filter::apply`].
     ///
     /// # Errors
     /// If the work was cancelled.
@@ -416,14 +422,16 @@ pub trait Levelled: Declared + Send + Sync {
         context: &Context,
     ) -> Result<()>;
 
-    /// How a graphics card computes what [`Levelled::refine`] does, where `given` says of each input whether it is given.
+    /// How a graphics card computes what [`Levelled::refine`] does, where `given` says of each input whether it is
+    /// given.
     #[doc(hidden)]
     fn lower(&self, level: usize, given: &[bool], world_params: &WorldParams) -> Lowering<LevelPasses> {
         let _ = (level, given, world_params);
         Lowering::Missing
     }
 
-    /// How a graphics card computes what [`Levelled::layers_of`] does, for layers that are wanted, from a level that it has made.
+    /// How a graphics card computes what [`Levelled::layers_of`] does, for layers that are wanted, from a level that it
+    /// has made.
     #[doc(hidden)]
     fn lower_layers(&self, level: usize, wanted: &[bool], world_params: &WorldParams) -> Lowering<LayerPasses> {
         let _ = (level, wanted, world_params);
@@ -448,14 +456,15 @@ pub trait Levelled: Declared + Send + Sync {
         false
     }
 
-    /// The samples of the level above that `level` over `window` is made from: from half the first, rounded down, to half the last,
-    /// rounded up, and the halo around them.
+    /// The samples of the level above that `level` over `window` is made from: from half the first, rounded down, to
+    /// half the last, rounded up, and the halo around them.
     fn parent(&self, level: usize, window: &Window) -> Window {
         halved(window, self.levels().cell(level.saturating_sub(1))).grown(self.halo(level))
     }
 }
 
-/// The samples of the lattice with `cell`, twice that of the window, from half the window's first, rounded down, to half the last, rounded up.
+/// The samples of the lattice with `cell`, twice that of the window, from half the window's first, rounded down, to
+/// half the last, rounded up.
 #[must_use]
 pub fn halved(window: &Window, cell: f64) -> Window {
     let halved = |first: i64, end: i64| (first.div_euclid(2), end.div_euclid(2) + 1);
@@ -572,8 +581,8 @@ pub trait Solver: Declared + Send + Sync {
         }
     }
 
-    /// How a graphics card computes what [`Solver::solve`] does over `padded`, the window of [`Sources::padded`], where `given` says of each input whether it is
-    /// given: the layers of the solution, without numbers.
+    /// How a graphics card computes what [`Solver::solve`] does over `padded`, the window of [`Sources::padded`], where
+    /// `given` says of each input whether it is given: the layers of the solution, without numbers.
     #[doc(hidden)]
     fn lower(&self, padded: &Window, given: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
         let _ = (padded, given, world_params);

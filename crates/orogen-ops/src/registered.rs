@@ -100,7 +100,8 @@ pub fn namespace(op: &str) -> Option<&str> {
     op.split_once('.').map(|(namespace, _)| namespace)
 }
 
-/// Checks the name of an op that is not built in. It must be `namespace.name`; names of built-in ops have no namespace, now and later.
+/// Checks the name of an op that is not built in. It must be `namespace.name`; names of built-in ops have no namespace,
+/// now and later.
 ///
 /// # Errors
 /// The rule that the name violates.

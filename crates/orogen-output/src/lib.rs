@@ -1,6 +1,6 @@
 //! What is made of Orogen's terrains: pictures, sheets, meshes, blocks and reports.
 //!
-//! - [`map`]: colours on the ground, shaded relief.
+//! - [`map`]: colors on the ground, shaded relief.
 //! - [`sheet`]: map sheets with contours, grid, scale and legend, as PNG, SVG and PDF.
 //! - [`render`]: perspective pictures with sky, water and shadows.
 //! - [`mesh`]: triangles of a grid, as GLB, OBJ, PLY, STL and 3MF.

@@ -1,4 +1,5 @@
-//! Whether land is so steep as a whole that a picture or a model of it shows nothing: usually heights in another unit than lengths.
+//! Whether land is so steep as a whole that a picture or a model of it shows nothing: usually heights in another unit
+//! than lengths.
 
 use orogen_grid::words::number;
 

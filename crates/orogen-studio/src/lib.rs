@@ -1,7 +1,7 @@
 //! The studio of Orogen: a window in which a person designs a world by looking.
 //!
-//! It is a thin shell over the engine's session. What is edited ([`editing`]), what is shown ([`studio`], [`preview`]) and from where
-//! ([`view`]) needs no graphics; the feature `window` adds what draws it.
+//! It is a thin shell over the engine's session. What is edited ([`editing`]), what is shown ([`studio`], [`preview`])
+//! and from where ([`view`]) needs no graphics; the feature `window` adds what draws it.
 #![forbid(unsafe_code)]
 
 pub mod catalogue;

@@ -25,7 +25,7 @@ use crate::preview::worker::{Event, Wake, Worker};
 /// What is shown, and in which light.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Look {
-    /// The layer that is coloured: an output, a node, or a layer derived from the heights.
+    /// The layer that is colored: an output, a node, or a layer derived from the heights.
     pub layer: String,
     /// What the colors show.
     pub coloring: Coloring,
@@ -257,8 +257,8 @@ impl Studio {
         files::changed(path) != self.file_time && files::read(path).ok().as_deref() != self.document.saved()
     }
 
-    /// Looks whether another program has changed the file of the document, and reads it then. Own changes that are not saved stay; the next [`save`](Studio::save) tells of the
-    /// conflict. Returns whether it was read.
+    /// Looks whether another program has changed the file of the document, and reads it then. Own changes that are not
+    /// saved stay; the next [`save`](Studio::save) tells of the conflict. Returns whether it was read.
     pub fn watch(&mut self) -> bool {
         let Some(path) = self.document.path().map(Path::to_path_buf) else { return false };
         if files::changed(&path) == self.file_time || self.document.is_changed() {
@@ -330,7 +330,8 @@ fn has_layer(recipe: &Recipe, layer: &str) -> bool {
         || orogen::export::derived::list::named(layer).is_some()
 }
 
-/// The layer that shows a stroke of a node: the node itself if nothing reads it; otherwise what is shown, unless that is a mask that is painted.
+/// The layer that shows a stroke of a node: the node itself if nothing reads it; otherwise what is shown, unless that
+/// is a mask that is painted.
 fn layer_of_stroke(recipe: &Recipe, node: &str, shown: &str) -> String {
     let is_it = |input: &Input| matches!(input, Input::Node(name) if name == node);
     let reads =
@@ -348,7 +349,8 @@ fn layer_of_stroke(recipe: &Recipe, node: &str, shown: &str) -> String {
 /// Opens a recipe, a preset by its name, or a file of heights.
 ///
 /// # Errors
-/// If there is nothing of that name, or it cannot be read. A recipe that is not valid is no error: its document has the diagnostics.
+/// If there is nothing of that name, or it cannot be read. A recipe that is not valid is no error: its document has the
+/// diagnostics.
 pub fn open(argument: &Path) -> Result<Document> {
     let path = match RecipeSource::find(argument)? {
         RecipeSource::Preset(preset) => return Document::of_preset(preset),

@@ -1,4 +1,5 @@
-//! The window, used as a person uses it. Needs an adapter: `cargo xtask clients studio` installs Mesa's software driver.
+//! The window, used as a person uses it. Needs an adapter: `cargo xtask clients studio` installs Mesa's software
+//! driver.
 #![allow(clippy::unwrap_used, reason = "a failure is a failed test")]
 
 #[path = "window/export.rs"]

@@ -3,8 +3,8 @@
 //! a system (`cargo xtask clients wasm`).
 //!
 //! The exit code is 0 if all bits are equal, else the number of the first preset that differs, counted from 1; 255 for
-//! any other error. `OROGEN_PRESETS`, when it is compiled, names the presets to make, separated by blanks; without it, all
-//! are made.
+//! any other error. `OROGEN_PRESETS`, when it is compiled, names the presets to make, separated by blanks; without it,
+//! all are made.
 
 use std::process::ExitCode;
 

@@ -85,13 +85,13 @@ fn draw(scene: &HashMap<ChunkId, Grid>, lod: &LodConfig, path: &Path) -> Result<
     }
     let painter = Painter::fit(&heights, 0.0);
     let mut page = Canvas::new(PIXELS, PIXELS, [255; 3]);
-    let mut colours = [0; 3 * (PIXELS - 2)];
+    let mut colors = [0; 3 * (PIXELS - 2)];
     for j in 1..PIXELS - 1 {
-        painter.row([heights.row(j - 1), heights.row(j), heights.row(j + 1)], cell, &mut colours);
-        for (i, colour) in (1..).zip(colours.chunks_exact(3)) {
+        painter.row([heights.row(j - 1), heights.row(j), heights.row(j + 1)], cell, &mut colors);
+        for (i, color) in (1..).zip(colors.chunks_exact(3)) {
             let here = cover[j * PIXELS + i];
             let outline = here != cover[j * PIXELS + i - 1] || here != cover[(j - 1) * PIXELS + i];
-            page.set(i as i64, j as i64, [colour[0], colour[1], colour[2]]);
+            page.set(i as i64, j as i64, [color[0], color[1], color[2]]);
             page.cover(i as i64, j as i64, [0; 3], if outline { 0.5 } else { 0.0 });
         }
     }

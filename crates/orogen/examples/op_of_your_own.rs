@@ -11,7 +11,8 @@ use std::path::Path;
 orogen::op! {
     /// Terraces whose edges follow the slope: flat where the ground is gentle, untouched where it is steep.
     ///
-    /// Each sample moves towards the next lower multiple of `height`, by a share that falls from 1 on level ground to 0 at the slope `steep`.
+    /// Each sample moves towards the next lower multiple of `height`, by a share that falls from 1 on level ground to 0
+    /// at the slope `steep`.
     pub struct Terraces = "mygame.terraces", filter, revision 1;
     inputs {
         /// The heights to cut into terraces.

@@ -17,14 +17,15 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A program beside a clone of Orogen depends on it with `cargo add orogen --path ../orogen/crates/orogen`. Build it with `--release`: code without
-//! optimisation is slow.
+//! A program beside a clone of Orogen depends on it with `cargo add orogen --path ../orogen/crates/orogen`. Build it
+//! with `--release`: code without optimisation is slow.
 //!
 //! # Reading a grid
 //!
-//! A grid holds the samples of a window row by row from the north-west corner: `tile[(i, j)]` is column `i` from the west and row `j` from the north, and
-//! `tile.data()[j * tile.width() + i]` is the same sample. [`Window::east`] and [`Window::south`] tell its position in metres from the origin of the world. Heights
-//! are `f32` metres; samples without a value, such as those of a file with gaps, are NaN.
+//! A grid holds the samples of a window row by row from the north-west corner: `tile[(i, j)]` is column `i` from the
+//! west and row `j` from the north, and `tile.data()[j * tile.width() + i]` is the same sample. [`Window::east`] and
+//! [`Window::south`] tell its position in metres from the origin of the world. Heights are `f32` metres; samples
+//! without a value, such as those of a file with gaps, are NaN.
 //!
 //! ```
 //! use orogen::{Window, World};
@@ -67,8 +68,9 @@
 //! | lines and areas drawn on a map | [`polylines`], and the ops `path` and `polygon` |
 //! | terrain analysis, hydrology and erosion on any grid | [`analysis`], [`hydrology`], [`hydrography`], [`erosion`], [`contour`] |
 //!
-//! Structs with options are built with `new` or `Default` and `with_*` methods, so that later versions can add options. Ops are plain structs;
-//! write `..Default::default()` after the parameters that you set. Noises without recipes are in the crate `orogen-noise`.
+//! Structs with options are built with `new` or `Default` and `with_*` methods, so that later versions can add options.
+//! Ops are plain structs; write `..Default::default()` after the parameters that you set. Noises without recipes are in
+//! the crate `orogen-noise`.
 #![forbid(unsafe_code)]
 
 #[doc(inline)]

@@ -1,4 +1,4 @@
-//! Palette files: any text is a palette in each of the formats, or refused with a message. A palette has a colour
+//! Palette files: any text is a palette in each of the formats, or refused with a message. A palette has a color
 //! everywhere.
 
 use orogen::palette::fitted::Fitted;

@@ -19,7 +19,8 @@ struct Case {
 
 /// What a preset is compared with, and which samples of it.
 enum Land {
-    /// With all places of the folder: [`SIDE`] x [`SIDE`] samples at [`CELL`] metres, from this sample east and south on.
+    /// With all places of the folder: [`SIDE`] x [`SIDE`] samples at [`CELL`] metres, from this sample east and south
+    /// on.
     Any([i64; 2]),
     /// The same around the highest place within 490 km of this sample: land elsewhere may be sea or plain.
     Highest([i64; 2]),

@@ -1,5 +1,5 @@
-//! The libraries built for WebAssembly, without an operating system; presets are made under node and must have the golden
-//! hash.
+//! The libraries built for WebAssembly, without an operating system; presets are made under node and must have the
+//! golden hash.
 
 use std::path::Path;
 
@@ -36,7 +36,8 @@ pub fn check_all() -> Result {
     check("")
 }
 
-/// Builds without threads and without the feature `fs`, with 128-bit vectors, and makes these presets; without a name, all.
+/// Builds without threads and without the feature `fs`, with 128-bit vectors, and makes these presets; without a name,
+/// all.
 fn check(presets: &str) -> Result {
     let folder = super::folder().join("wasm");
     let build = |example: &str| {

@@ -19,8 +19,8 @@ fn part(preset: &str) -> &'static str {
 /// The shaded relief of every preset, and the page with all of them.
 pub fn write(presets: &[(&str, &str)], images: &Path) -> Result {
     let mut page = String::from(
-        "# Gallery\n\nEvery preset with its defaults: a map of the whole world, and the shaded relief of a part of it without colours (light from the north-west at\n\
-         45 degrees elevation; one pixel per sample at the world's own cell), which shows artefacts that colours hide.\n\nWritten by `cargo xtask gallery`.\n\n\
+        "# Gallery\n\nEvery preset with its defaults: a map of the whole world, and the shaded relief of a part of it without colors (light from the north-west at\n\
+         45 degrees elevation; one pixel per sample at the world's own cell), which shows artifacts that colors hide.\n\nWritten by `cargo xtask gallery`.\n\n\
          | preset | map | shaded relief |\n|---|---|---|\n",
     );
     for (name, about) in presets {

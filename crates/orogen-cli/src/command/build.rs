@@ -39,7 +39,8 @@ pub struct Args {
     /// Samples along each side of a tile [default: 512; 513 for tiles that share their edges; 256 for an XYZ tree]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65536), allow_negative_numbers = true)]
     tile: Option<u32>,
-    /// Resume an interrupted build, and repair damaged parts of a finished one; with --force, also over an existing file of another kind
+    /// Resume an interrupted build, and repair damaged parts of a finished one; with --force, also over an existing
+    /// file of another kind
     #[arg(long, conflicts_with = "no_clobber")]
     resume: bool,
     #[command(flatten)]
@@ -156,7 +157,7 @@ fn window(args: &Args, world: &World, form: Form) -> Result<Window, Failure> {
         None => world.full_window(cell)?,
     };
     Ok(match form {
-        // Including the far edge, which tiles share with neighbours that do not exist here.
+        // Including the far edge, which tiles share with neighbors that do not exist here.
         Form::Tiles(_) => Window { width: whole.width + 1, height: whole.height + 1, ..whole },
         _ => whole,
     })

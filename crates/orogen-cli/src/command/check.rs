@@ -22,7 +22,8 @@ pub struct Args {
     recipes: Vec<PathBuf>,
     #[command(flatten)]
     arguments: Arguments,
-    /// Memory limit for the files of heights that recipes read, such as 512MiB or 2GiB [default: half of the free memory]
+    /// Memory limit for the files of heights that recipes read, such as 512MiB or 2GiB [default: half of the free
+    /// memory]
     #[arg(long, value_name = "BYTES")]
     memory: Option<Bytes>,
     /// Print the results as JSON, including errors

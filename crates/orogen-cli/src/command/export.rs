@@ -41,8 +41,9 @@ pub struct Args {
     layer: String,
     #[command(flatten)]
     samples: SizedView,
-    /// Game engine to write for: sets format, scale, row order and sizes, and prints the settings for its import dialog. --size is the
-    /// number of samples along each side, of each tile if there are several [default: as many as the world has]
+    /// Game engine to write for: sets format, scale, row order and sizes, and prints the settings for its import
+    /// dialog. --size is the number of samples along each side, of each tile if there are several [default: as many as
+    /// the world has]
     #[arg(long, help_heading = "Engines", value_name = "ENGINE", value_parser = NameOf::engine(), conflicts_with = "format")]
     target: Option<&'static str>,
     /// Number of tiles for the engine, east and south; adjacent tiles share the samples along their common edge

@@ -36,16 +36,17 @@ pub struct Args {
     /// Output: an animated .png (APNG), a .gif, or a file for each frame such as grow-%03d.png
     #[arg(short, long, value_name = "FILE", default_value = "grow.png")]
     out: PathBuf,
-    /// Number of frames, from the initial to the final terrain. If a node has fewer steps than frames, heights between steps are
-    /// interpolated
+    /// Number of frames, from the initial to the final terrain. If a node has fewer steps than frames, heights between
+    /// steps are interpolated
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(2..=1000), default_value = "25",
           allow_negative_numbers = true)]
     frames: u16,
     /// Simulated years of each node `stream-power` [default: as in the recipe]
     #[arg(long, value_name = "YR", allow_negative_numbers = true)]
     years: Option<f64>,
-    /// Compute every frame from the whole recipe. By default, frames of a node `stream-power` that another one follows are made at twice the cell size,
-    /// and their finest detail comes from the frame at the end of that node, which is several times faster
+    /// Compute every frame from the whole recipe. By default, frames of a node `stream-power` that another one follows
+    /// are made at twice the cell size, and their finest detail comes from the frame at the end of that node, which is
+    /// several times faster
     #[arg(long)]
     exact: bool,
     /// Duration of each frame, in milliseconds
@@ -114,7 +115,7 @@ fn write(
     // Growing takes the time of the terrain, and for each frame the work after its step, about a twentieth of that.
     let growing = world.work(&plan)? * (1.0 + frames.steps.len() as f64 / 20.0);
     let [growing, painting] = progress.parts([growing, PAINTING * pixels as f64 * f64::from(args.frames)]);
-    // All frames use the last frame's colours, so heights wait until it is made.
+    // All frames use the last frame's colors, so heights wait until it is made.
     let heights = Mutex::new(FrameSpool::new(Spool::beside(&args.out), window));
     growth.run(&frames.steps, &growing, &|step, grid| {
         let mut heights = heights.lock().unwrap_or_else(PoisonError::into_inner);
@@ -130,7 +131,7 @@ fn write(
     let picture = Picture::new(width, height, Pixel::Rgb8).with_notes(&notes);
     let animation = Animation::new(u32::from(args.frames), args.delay);
     let painted = |ground: &Grid, bytes: &mut [u8]| painter.paint(ground, 0..height, bytes);
-    // The start is smooth and the end is rough: colours and shades are fitted to both.
+    // The start is smooth and the end is rough: colors and shades are fitted to both.
     let sample = || {
         let mut bytes = vec![0; width * height * 6];
         let (one, other) = bytes.split_at_mut(width * height * 3);

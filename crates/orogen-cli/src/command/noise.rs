@@ -57,14 +57,15 @@ pub struct Args {
     /// Seed of the noise
     #[arg(long, value_name = "N", value_parser = seed, default_value = "0", allow_negative_numbers = true)]
     seed: u64,
-    /// Wavelength in samples: the approximate distance between hills, or the side of the squares of white noise [default: 64, of white
-    /// noise 1; textures have their own]
+    /// Wavelength in samples: the approximate distance between hills, or the side of the squares of white noise
+    /// [default: 64, of white noise 1; textures have their own]
     #[arg(long, visible_alias = "scale", value_name = "N", value_parser = wavelength, allow_negative_numbers = true)]
     wavelength: Option<f64>,
     /// Frequency of the noise in waves per sample: 1 / wavelength
     #[arg(long, value_name = "F", value_parser = frequency, conflicts_with = "wavelength", allow_negative_numbers = true)]
     frequency: Option<f64>,
-    /// Number of octaves, each finer and weaker than the one before [default: 1, with --fractal 6; textures have their own]
+    /// Number of octaves, each finer and weaker than the one before [default: 1, with --fractal 6; textures have their
+    /// own]
     #[arg(long, value_name = "N", value_parser = octaves(), allow_negative_numbers = true)]
     octaves: Option<u32>,
     /// Amplitude ratio between successive octaves
@@ -76,15 +77,15 @@ pub struct Args {
     lacunarity: f64,
     #[command(flatten)]
     sum: fractal_options::Options,
-    /// Make the noise tileable horizontally and vertically, and through the frames or the slices of a volume. Wavelengths are adjusted
-    /// slightly so that a whole number of them fits
+    /// Make the noise tileable horizontally and vertically, and through the frames or the slices of a volume.
+    /// Wavelengths are adjusted slightly so that a whole number of them fits
     #[arg(long)]
     tileable: bool,
     /// Draw a slice of 3D noise at this depth (in samples) instead of 2D noise
     #[arg(long, value_name = "Z", value_parser = finite, allow_negative_numbers = true)]
     z: Option<f64>,
-    /// Draw the slope as a normal map of ground a quarter of a wavelength high: red is east, green is north (up), blue is up. As .npy: the
-    /// slopes along x and y per sample, of shape (2, H, W)
+    /// Draw the slope as a normal map of ground a quarter of a wavelength high: red is east, green is north (up), blue
+    /// is up. As .npy: the slopes along x and y per sample, of shape (2, H, W)
     #[arg(long, conflicts_with_all = ["texture", "volume"])]
     gradient: bool,
     /// Values of an array in place of -1 and 1: the noise is mapped linearly, so that -1 becomes A and 1 becomes B
@@ -96,8 +97,9 @@ pub struct Args {
     /// Bits per grey value, or per component of a normal
     #[arg(long, value_name = "8|16", value_parser = ["8", "16"], default_value = "8")]
     bits: String,
-    /// Write an animation of N frames (animated .png, .gif, or files such as noise-%03d.png). Each frame is a slice of 3D noise: from --z
-    /// forward and back, slowing down at the turns, so that it loops smoothly; with --tileable it moves forward all the time
+    /// Write an animation of N frames (animated .png, .gif, or files such as noise-%03d.png). Each frame is a slice of
+    /// 3D noise: from --z forward and back, slowing down at the turns, so that it loops smoothly; with --tileable it
+    /// moves forward all the time
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), allow_negative_numbers = true,
           conflicts_with = "volume")]
     frames: Option<u32>,

@@ -13,7 +13,7 @@ use crate::sink::{Sink, is_stdout};
 /// Arguments of the command.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Palette files to show as well: .cpt, .gpl, .toml, or gdaldem colour files
+    /// Palette files to show as well: .cpt, .gpl, .toml, or gdaldem color files
     files: Vec<PathBuf>,
     /// Picture of all palettes to write (.png)
     #[arg(short, long, value_name = "FILE")]
@@ -57,6 +57,6 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         let mark = if *safe { "*" } else { " " };
         text.push_str(&format!("{:longest$} {mark} {about}\n", palette.name));
     }
-    text.push_str("\n* distinguishable by colour-blind readers\n");
+    text.push_str("\n* distinguishable by color-blind readers\n");
     say::out(&text)
 }

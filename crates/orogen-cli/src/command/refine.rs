@@ -21,8 +21,8 @@ use crate::view::View;
 pub struct Args {
     /// A file of heights (GeoTIFF, .asc, .hgt, ...)
     place: PathBuf,
-    /// Output file; its extension determines the format; - is standard output. With the extension .toml the recipe of the refined land is
-    /// written, for the other commands
+    /// Output file; its extension determines the format; - is standard output. With the extension .toml the recipe of
+    /// the refined land is written, for the other commands
     #[arg(short, long, value_name = "FILE")]
     out: PathBuf,
     /// Layer to write: height, flow (drainage area), or a layer derived from the heights as in `export`
@@ -36,7 +36,8 @@ pub struct Args {
     options: FormatOptions,
 }
 
-/// Number by which the cell is divided if none is given: the halvings up to which the result is about as realistic as real land.
+/// Number by which the cell is divided if none is given: the halvings up to which the result is about as realistic as
+/// real land.
 const FINER: f64 = 8.0;
 
 /// Refines the place.

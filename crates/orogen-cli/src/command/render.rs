@@ -93,10 +93,10 @@ fn render(args: &Args) -> Result<(), Failure> {
     outputs[0].tell(args.run.quiet, &format!("{}: {words}\n", args.out.display()))
 }
 
-/// The share of a frame's pixels from which a GIF's colours are taken.
+/// The share of a frame's pixels from which a GIF's colors are taken.
 const PREVIEW: f64 = 0.25;
 
-/// How many pictures are painted: those of an animation, and the parts of some for the colours of a GIF.
+/// How many pictures are painted: those of an animation, and the parts of some for the colors of a GIF.
 fn pictures(args: &Args, target: &AnimationTarget) -> f64 {
     match args.turntable {
         None => 1.0,
@@ -142,7 +142,7 @@ fn turntable(
     let distance = distance.unwrap_or_else(|| scene.distance(sides, spec));
     let view = |frame: u32| Shot::Around { azimuth: turn(frame), elevation, distance: Some(distance) };
     let side = |frame: u32| scene.camera(&spec.with_view(view(frame)));
-    // Four small views suffice for the colours.
+    // Four small views suffice for the colors.
     let sample = || {
         let small = size.map(|side| side.div_ceil(4));
         previewing.expect(4.0);

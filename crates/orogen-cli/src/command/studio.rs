@@ -14,7 +14,8 @@ use crate::source::Source;
 /// Arguments of the command.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A recipe file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...) [default: a page of presets]
+    /// A recipe file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...) [default: a page of
+    /// presets]
     recipe: Option<PathBuf>,
     /// Where previews are computed: cpu, gpu, gpu:NAME or auto; exports are always the processor's
     #[arg(long, value_name = "DEVICE", default_value_t)]

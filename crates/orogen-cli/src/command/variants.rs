@@ -33,7 +33,8 @@ pub struct Args {
     /// Number of seeds to show, starting with the recipe's seed or --seed [default: 9]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=64), conflicts_with = "sweep")]
     seeds: Option<u8>,
-    /// Show values of a parameter: N, evenly spaced from A to B, such as relief=200..2000:9, or a list, such as relief=200,500,2000
+    /// Show values of a parameter: N, evenly spaced from A to B, such as relief=200..2000:9, or a list, such as
+    /// relief=200,500,2000
     #[arg(long, value_name = "NAME=A..B:N|A,B,...", allow_hyphen_values = true)]
     sweep: Option<Sweep>,
     /// The first seed, or with --sweep the seed of all pictures [default: the recipe's]
@@ -47,15 +48,16 @@ pub struct Args {
     /// Give each value the color of the nearest stop of the palette, without mixing (as gdaldem's -nearest_color_entry)
     #[arg(long, requires = "palette")]
     nearest_color: bool,
-    /// Show the land in perspective, as `orogen render` does, instead of a map; with --palette in the colors of the map, over the heights of all
-    /// pictures
+    /// Show the land in perspective, as `orogen render` does, instead of a map; with --palette in the colors of the
+    /// map, over the heights of all pictures
     #[arg(long)]
     render: bool,
-    /// Camera position around the centre of the land, as in `orogen render`: AZIMUTH,ELEVATION[,DISTANCE] [default: 200,24]
+    /// Camera position around the center of the land, as in `orogen render`: AZIMUTH,ELEVATION[,DISTANCE] [default:
+    /// 200,24]
     #[arg(long, value_name = "A,E[,D]", requires = "render", allow_hyphen_values = true)]
     camera: Option<Numbers>,
-    /// Show the pictures of --sweep one after the other, forward and back, so that they loop: an animated .png, a .gif, or a file for each frame such as
-    /// land-%03d.png
+    /// Show the pictures of --sweep one after the other, forward and back, so that they loop: an animated .png, a .gif,
+    /// or a file for each frame such as land-%03d.png
     #[arg(long, requires = "sweep", conflicts_with = "columns")]
     animate: bool,
     /// Duration of each frame, in milliseconds

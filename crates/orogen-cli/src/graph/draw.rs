@@ -35,7 +35,7 @@ const EDGE: Rgb = [150, 148, 146];
 /// Opacity of boxes that no output depends on.
 const FAINT: f32 = 0.35;
 
-/// The colour of a kind's header.
+/// The color of a kind's header.
 pub fn color(kind: Kind) -> Rgb {
     match kind {
         Kind::Field => [92, 148, 92],

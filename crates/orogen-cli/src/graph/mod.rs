@@ -1,4 +1,5 @@
-//! A recipe's graph as a drawing: boxes and wires ([`diagram`]), as a scene ([`draw`]) and as Graphviz source ([`dot`]).
+//! A recipe's graph as a drawing: boxes and wires ([`diagram`]), as a scene ([`draw`]) and as Graphviz source
+//! ([`dot`]).
 
 pub mod diagram;
 pub mod dot;

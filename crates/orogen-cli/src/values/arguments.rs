@@ -8,7 +8,8 @@ use clap::Args;
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "World and window")]
 pub struct Arguments {
-    /// Value of a parameter of the recipe, instead of its default; can be given several times. `orogen explain RECIPE` lists the parameters
+    /// Value of a parameter of the recipe, instead of its default; can be given several times. `orogen explain RECIPE`
+    /// lists the parameters
     #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
     set: Vec<Assignment>,
 }

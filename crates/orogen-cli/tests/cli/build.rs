@@ -64,7 +64,7 @@ fn what_is_built_and_what_is_said() {
     folder.good(&["export", "small.toml", "--cell", "0.7", "-o", "b.tif"]);
     folder.good(&["build", "small.toml", "--cell", "0.7", "-o", "c.tif"]);
     assert!(folder.read("b.tif") == folder.read("c.tif"), "build and export write the same file");
-    // Tiles with shared edges include the far edge; other builds leave it to the neighbour.
+    // Tiles with shared edges include the far edge; other builds leave it to the neighbor.
     assert_eq!(folder.json("r16/manifest.json")["window"]["width"], 769);
     assert_eq!(folder.json("a.zarr/height/zarr.json")["shape"][1], 711);
     assert_eq!(folder.json("map/tiles.json")["map_metres_per_metre"], 1.0);

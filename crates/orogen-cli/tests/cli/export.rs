@@ -214,7 +214,7 @@ fn labels_and_masks_keep_their_numbers() {
 }
 
 #[test]
-fn heights_in_colours_come_back() {
+fn heights_in_colors_come_back() {
     let folder = Folder::with_small();
     folder.good(&["export", "small.toml", "-o", "all.npy", "-q"]);
     let samples = npy(&folder.read("all.npy"));

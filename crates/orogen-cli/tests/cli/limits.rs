@@ -321,7 +321,8 @@ fn options(folder: &Folder, command: &str) -> Vec<String> {
     help.lines().filter_map(named).filter(is_own).collect()
 }
 
-/// The options of jobs, formats and layers, each with the arguments of a command for every job, format or layer that has it.
+/// The options of jobs, formats and layers, each with the arguments of a command for every job, format or layer that
+/// has it.
 fn declared() -> Vec<(&'static OptionSpec, Vec<String>)> {
     let formats = registry::options().into_iter().map(|(spec, all)| {
         let arguments = all.iter().map(|format| format!("export small.toml -o option.{}", format.name));
@@ -496,7 +497,8 @@ fn watched_with(folder: &Folder, arguments: &[&str], option: &str, value: &str) 
     watched(folder.command(&all), Some(PATIENCE))
 }
 
-/// What is wrong with such a run: it does its work or says why not, keeps its memory, and ends at once when it is interrupted.
+/// What is wrong with such a run: it does its work or says why not, keeps its memory, and ends at once when it is
+/// interrupted.
 fn fault(ended: &Watched) -> Option<String> {
     const LIMIT: u64 = 64 << 20;
     let said = ended.said.trim_end();

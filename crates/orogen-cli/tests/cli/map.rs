@@ -26,7 +26,7 @@ fn one_sheet_as_picture_svg_and_pdf() {
 }
 
 #[test]
-fn colours_by_name_and_from_files() {
+fn colors_by_name_and_from_files() {
     let folder = Folder::with_small();
     folder.write("own.toml", "unit = \"range\"\nstops = [[0, \"#000\"], [1, \"white\"]]\n");
     for palette in ["viridis", "own.toml"] {
@@ -84,7 +84,7 @@ fn what_cannot_be_drawn_is_a_sentence_and_leaves_nothing() {
 }
 
 #[test]
-fn any_layer_colours_a_map() {
+fn any_layer_colors_a_map() {
     let folder = Folder::with_small();
     let text = crate::harness::SMALL.replace(
         "[outputs]",

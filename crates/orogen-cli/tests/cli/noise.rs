@@ -309,7 +309,7 @@ fn tileable_animations_blocks_slopes_and_materials_close() {
 }
 
 #[test]
-fn textures_are_coloured_each_in_its_way() {
+fn textures_are_colored_each_in_its_way() {
     let folder = Folder::new();
     for texture in ["clouds", "marble", "wood"] {
         folder.good(&["noise", "perlin", "--size", "128", "--texture", texture, "-o", "a.png"]);

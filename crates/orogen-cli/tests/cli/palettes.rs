@@ -25,7 +25,7 @@ fn what_cannot_be_read_is_a_sentence() {
     folder.write("bad.cpt", "0 red 1 blurple\n");
     folder.write("bytes.gpl", [0xff, 0xfe, 0x00]);
     for (file, expect) in [
-        ("bad.cpt", "cannot read the palette bad.cpt: line 1: `blurple` is not a colour"),
+        ("bad.cpt", "cannot read the palette bad.cpt: line 1: `blurple` is not a color"),
         ("bytes.gpl", "not UTF-8 text"),
         ("none.txt", "cannot read none.txt: no such file"),
     ] {

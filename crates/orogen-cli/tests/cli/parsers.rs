@@ -1,5 +1,5 @@
-//! Values of the command line over generated texts: what is written as a value is read as that value, and any other text is refused. The
-//! cases are the same in every run.
+//! Values of the command line over generated texts: what is written as a value is read as that value, and any other
+//! text is refused. The cases are the same in every run.
 
 use crate::values::bytes::Bytes;
 use crate::values::number::{self, MOST, Numbers};

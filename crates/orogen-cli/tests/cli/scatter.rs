@@ -155,7 +155,8 @@ fn what_cannot_be_is_refused() {
     }
 }
 
-/// The trees of a Unity file as the lines of a table, on a terrain of this size whose south-west corner is there; and the lowest and the highest height.
+/// The trees of a Unity file as the lines of a table, on a terrain of this size whose south-west corner is there; and
+/// the lowest and the highest height.
 fn trees(folder: &Folder, name: &str, length: f64, corner: [f64; 2]) -> (Vec<Line>, [f64; 2]) {
     let file = folder.json(name);
     let number = |value: &serde_json::Value| value.as_f64().unwrap();

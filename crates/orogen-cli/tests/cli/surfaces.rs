@@ -148,7 +148,8 @@ fn a_preview_shows_what_weights_mean() {
     let preview = folder.read("w_preview.png");
     let picture = png(&preview);
     assert_eq!((picture.width, picture.data.len()), (100, 3 * 100 * 64));
-    // The slope is even, so all of a surface has one shade of its color: that of a map, which is lighter than the albedo.
+    // The slope is even, so all of a surface has one shade of its color: that of a map, which is lighter than the
+    // albedo.
     let pixel = |i: usize| [0, 1, 2].map(|c| picture.data[3 * (20 * 100 + i) + c]);
     let shaded = |color: [u8; 3], i: usize| {
         let light = color.map(orogen::palette::color::decode);

@@ -36,8 +36,8 @@ struct Seen {
 }
 
 impl Conversion {
-    /// A conversion of samples that are missing if they have one of the values `nodata`. Samples become whole numbers of the range `whole`, if there is one. `unknown`
-    /// is their unit, if it is not a known length.
+    /// A conversion of samples that are missing if they have one of the values `nodata`. Samples become whole numbers
+    /// of the range `whole`, if there is one. `unknown` is their unit, if it is not a known length.
     #[must_use]
     pub fn new(nodata: Vec<f64>, whole: Option<[f64; 2]>, linear: Linear, unknown: Option<String>) -> Conversion {
         Conversion { nodata, whole, linear, unknown, seen: Seen::default() }

@@ -19,7 +19,8 @@ pub fn bounds(numbers: &[f64], each: usize, others: Option<[f64; 4]>) -> Option<
     })
 }
 
-/// Places positions on a map, whose `origin` is at (0, 0) and which has `per_metre` units a metre; without a map y points north.
+/// Places positions on a map, whose `origin` is at (0, 0) and which has `per_metre` units a metre; without a map y
+/// points north.
 pub fn place(numbers: &mut [f64], each: usize, map: Option<([f64; 2], [f64; 2])>) {
     for at in numbers.chunks_exact_mut(each) {
         let (x, y) = (at[0], at[1]);

@@ -1,7 +1,7 @@
 //! Lines and areas of GeoJSON (RFC 7946).
 //!
-//! Geometries alone, features, and collections of both are read. Properties, coordinate systems and points are skipped. y points north in GeoJSON: it
-//! is negated. The third coordinate is the height.
+//! Geometries alone, features, and collections of both are read. Properties, coordinate systems and points are skipped.
+//! y points north in GeoJSON: it is negated. The third coordinate is the height.
 
 use std::cell::Cell;
 use std::fmt;

@@ -1,8 +1,8 @@
 //! GIF animations.
 //!
 //! "Graphics Interchange Format, Version 89a" (CompuServe, 1990), with the extension that repeats it endlessly in
-//! browsers. A GIF has at most 256 colours. One palette serves all frames, which avoids flicker; it is found by median
-//! cut (P. Heckbert, "Color image quantization for frame buffer display", 1982). Intermediate colours are dithered with
+//! browsers. A GIF has at most 256 colors. One palette serves all frames, which avoids flicker; it is found by median
+//! cut (P. Heckbert, "Color image quantization for frame buffer display", 1982). Intermediate colors are dithered with
 //! the same pattern in every frame (B. Bayer's ordered dither, 1973). Unchanged pixels are transparent, which
 //! compresses better.
 
@@ -10,25 +10,25 @@ use std::io::{self, Write};
 
 use super::png::Animation;
 
-/// Number of colours; one more index means "unchanged".
+/// Number of colors; one more index means "unchanged".
 const COLORS: usize = 255;
 const SAME: u8 = 255;
 
-/// Bits per channel for counting and looking up colours.
+/// Bits per channel for counting and looking up colors.
 const BITS: usize = 5;
 const SIDE: usize = 1 << BITS;
 
-/// The colours of an animation.
+/// The colors of an animation.
 #[derive(Debug, Clone)]
 pub struct Palette {
     colors: Vec<[u8; 3]>,
-    /// The index of the nearest colour, for each of `SIDE`^3 colours.
+    /// The index of the nearest color, for each of `SIDE`^3 colors.
     nearest: Vec<u8>,
     /// Amplitude of the dither, in steps of a byte.
     spread: i32,
 }
 
-/// A box of colours that become one.
+/// A box of colors that become one.
 #[derive(Debug, Clone)]
 struct Cluster {
     /// Cells of the histogram.
@@ -60,7 +60,7 @@ impl Palette {
                 (weigh(2.0) - weigh(1.0) * weigh(1.0)).max(0.0) * [0.9, 1.4, 0.6][channel]
             });
             let channel = (0..3).fold(0, |best, channel| if vary[channel] > vary[best] { channel } else { best });
-            // The square root gives more weight to rare colours.
+            // The square root gives more weight to rare colors.
             Cluster { cells, spread: vary[channel] * pixels.sqrt(), channel }
         };
         let mut clusters = vec![cluster((0..counts.len()).filter(|cell| counts[*cell] > 0).collect())];
@@ -116,7 +116,7 @@ impl Palette {
                 near([channel(2 * BITS), channel(BITS), channel(0)], None).unwrap_or(0) as u8
             })
             .collect();
-        // The median distance between colours.
+        // The median distance between colors.
         let mut gaps: Vec<i32> = (0..colors.len())
             .filter_map(|at| {
                 let color = colors[at].map(i32::from);
@@ -136,7 +136,7 @@ impl Palette {
     }
 }
 
-/// The cell of the histogram that contains a colour.
+/// The cell of the histogram that contains a color.
 fn cell(color: [i32; 3]) -> usize {
     color.iter().fold(0, |cell, byte| cell << BITS | *byte as usize >> (8 - BITS))
 }
@@ -187,7 +187,7 @@ fn write_frames(
     }
     out.write_all(b"GIF89a")?;
     out.write_all(&[wide[0], wide[1], high[0], high[1]])?;
-    // A palette of 256 colours for all frames.
+    // A palette of 256 colors for all frames.
     out.write_all(&[0xf7, 0, 0])?;
     let mut table = [0u8; 768];
     table.chunks_exact_mut(3).zip(&palette.colors).for_each(|(entry, color)| entry.copy_from_slice(color));
@@ -378,7 +378,7 @@ mod tests {
     }
 
     #[test]
-    fn few_colours_are_kept_exactly() {
+    fn few_colors_are_kept_exactly() {
         let pixels: Vec<u8> = (0..3000).flat_map(|k| [[10, 200, 30], [0, 0, 0], [250, 249, 7]][k % 3]).collect();
         let palette = Palette::of(&pixels);
         assert_eq!(palette.colors, [[0, 0, 0], [10, 200, 30], [250, 249, 7]]);
@@ -386,7 +386,7 @@ mod tests {
     }
 
     #[test]
-    fn many_colours_come_close_and_dither_to_their_mean() {
+    fn many_colors_come_close_and_dither_to_their_mean() {
         let pixels: Vec<u8> = (0..64 * 64).flat_map(|k| [(k % 64 * 4) as u8, (k / 64 * 4) as u8, 90]).collect();
         let palette = Palette::of(&pixels);
         assert!(palette.colors.len() > 200);

@@ -38,7 +38,8 @@ impl<'a> Pixels<'a> {
     /// A message if it is not a PNG, or its heights take more than `allowed` bytes.
     pub fn open(input: &'a mut dyn Input, allowed: u64) -> Result<Pixels<'a>, String> {
         let limit = usize::try_from(allowed).unwrap_or(usize::MAX);
-        // What the decoder takes for any picture is no matter of this one: a picture that does not fit is refused with its size.
+        // What the decoder takes for any picture is no matter of this one: a picture that does not fit is refused with
+        // its size.
         const DECODER: usize = 64 << 10;
         let mut decoder = Decoder::new_with_limits(BufReader::new(input), Limits { bytes: limit.max(DECODER) });
         decoder.set_transformations(Transformations::IDENTITY);

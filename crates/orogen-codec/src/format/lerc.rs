@@ -2,7 +2,7 @@
 //!
 //! A blob is a header, a mask of valid pixels, and the values: as one sequence, as Huffman codes of bytes, or in square
 //! blocks of integers with as many bits as the largest needs: value = offset + 2 error number. A Fletcher checksum
-//! covers the whole blob. Follows Esri's description of the format and the behaviour of its decoder
+//! covers the whole blob. Follows Esri's description of the format and the behavior of its decoder
 //! (github.com/Esri/lerc, Apache 2.0).
 
 /// Sizes of the sample types, by the format's numbers.

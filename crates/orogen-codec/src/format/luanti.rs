@@ -1,7 +1,7 @@
 //! Map blocks of Luanti (Minetest) and the database that holds them.
 //!
-//! After "Luanti World Format 22...29" (doc/world_format.md): blocks of 16 x 16 x 16 nodes, version 28, which every Luanti since 0.4.16 reads; zlib. x points east, y up
-//! and z north.
+//! After "Luanti World Format 22...29" (doc/world_format.md): blocks of 16 x 16 x 16 nodes, version 28, which every
+//! Luanti since 0.4.16 reads; zlib. x points east, y up and z north.
 
 use std::io::{self, Write};
 

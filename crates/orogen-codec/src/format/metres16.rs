@@ -29,7 +29,8 @@ pub fn dted_column(bytes: &[u8], heights: &mut [f32], width: usize, i: usize) {
     }
 }
 
-/// A height with a bit for its sign. -32767 is missing. Some programs write two's complement: no land is below -16 000 m.
+/// A height with a bit for its sign. -32767 is missing. Some programs write two's complement: no land is below -16 000
+/// m.
 #[must_use]
 fn signed(bits: u16) -> f32 {
     match (bits >> 15, bits & 0x7fff) {

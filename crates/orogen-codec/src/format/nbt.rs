@@ -1,4 +1,5 @@
-//! Named binary tags (NBT) of Minecraft: Java Edition, as they are written to files: big-endian, strings in modified UTF-8.
+//! Named binary tags (NBT) of Minecraft: Java Edition, as they are written to files: big-endian, strings in modified
+//! UTF-8.
 //!
 //! Only the tags that other formats here need. Texts are ASCII, which modified UTF-8 writes as it is.
 

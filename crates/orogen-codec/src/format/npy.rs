@@ -1,9 +1,9 @@
 //! NumPy's `.npy`: the samples as they are, without loss.
 //!
-//! The format is NEP 1 (numpy.lib.format): a magic, a version, the length of a header, the header as a Python dictionary
-//! padded so that the data begins at a multiple of 64, the data. Written: version 1.0, `<f4`, C order. Read: versions 1 to 3,
-//! one or two dimensions, floats and integers of any byte order, in C order. What a file claims is never believed further
-//! than its bytes go: a header that promises more samples than follow costs no memory.
+//! The format is NEP 1 (numpy.lib.format): a magic, a version, the length of a header, the header as a Python
+//! dictionary padded so that the data begins at a multiple of 64, the data. Written: version 1.0, `<f4`, C order. Read:
+//! versions 1 to 3, one or two dimensions, floats and integers of any byte order, in C order. What a file claims is
+//! never believed further than its bytes go: a header that promises more samples than follow costs no memory.
 
 use std::io::{self, Read, Write};
 
@@ -32,8 +32,8 @@ pub fn write_header(out: &mut dyn Write, width: usize, height: usize) -> io::Res
     write_shape(out, &[height, width])
 }
 
-/// Writes what comes before the samples of an array of any dimensions, the last the fastest. Exactly their product of samples
-/// must follow by [`write_rows`].
+/// Writes what comes before the samples of an array of any dimensions, the last the fastest. Exactly their product of
+/// samples must follow by [`write_rows`].
 pub fn write_shape(out: &mut dyn Write, shape: &[usize]) -> io::Result<()> {
     // Python writes a tuple of one with a comma behind it.
     let sides: Vec<String> = shape.iter().map(usize::to_string).collect();

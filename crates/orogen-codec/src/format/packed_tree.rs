@@ -6,7 +6,7 @@ use super::coordinates::join;
 /// West, south, east, north.
 pub type Bounds = [f64; 4];
 
-/// The order of boxes by their centres along a Hilbert curve over all of them; ties keep the order of the list.
+/// The order of boxes by their centers along a Hilbert curve over all of them; ties keep the order of the list.
 pub fn hilbert_order(boxes: &[Bounds]) -> Vec<usize> {
     let Some(all) = boxes.iter().copied().reduce(join) else { return Vec::new() };
     const LARGEST: f64 = 65_535.0;
@@ -61,7 +61,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_curve_goes_from_cell_to_neighbouring_cell() {
+    fn the_curve_goes_from_cell_to_neighboring_cell() {
         // The first 4^5 cells of the curve fill a square; consecutive cells are adjacent.
         let mut cells: Vec<(u32, [i64; 2])> = Vec::new();
         for x in 0..32u32 {

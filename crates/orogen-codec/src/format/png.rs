@@ -1,7 +1,7 @@
-//! PNG pictures: greyscale of 8 and 16 bits, colour, normals, and animations (APNG).
+//! PNG pictures: greyscale of 8 and 16 bits, color, normals, and animations (APNG).
 //!
 //! The PNG specification (third edition, W3C 2025). 16-bit samples are big-endian. Greys and normals are data, so they
-//! have no gamma or colour chunk that a reader could apply; colours are marked as sRGB. Compression favours speed.
+//! have no gamma or color chunk that a reader could apply; colors are marked as sRGB. Compression favours speed.
 
 use std::io::{self, Write};
 use std::ops::Range;
@@ -26,11 +26,11 @@ pub enum Pixel {
     Rgb8,
     /// Four bytes: red, green, blue, as sRGB, and opacity.
     Rgba8,
-    /// Three bytes of data that are not a colour, such as the components of a normal.
+    /// Three bytes of data that are not a color, such as the components of a normal.
     Data8,
-    /// Three 16-bit numbers, big-endian, that are not a colour.
+    /// Three 16-bit numbers, big-endian, that are not a color.
     Data16,
-    /// Four bytes of data that are neither colour nor opacity, such as weights.
+    /// Four bytes of data that are neither color nor opacity, such as weights.
     Weights8,
 }
 
@@ -250,7 +250,7 @@ mod tests {
     use crate::full_disk::Full;
     use orogen_grid::grid::Window;
 
-    /// Reads a picture back: size, colour, depth and bytes.
+    /// Reads a picture back: size, color, depth and bytes.
     fn read(bytes: &[u8]) -> (u32, u32, ColorType, BitDepth, Vec<u8>) {
         let mut reader = ::png::Decoder::new(io::Cursor::new(bytes)).read_info().unwrap();
         let mut data = vec![0; reader.output_buffer_size().unwrap()];
@@ -338,7 +338,7 @@ mod tests {
         assert_eq!(
             chunks(&bytes),
             ["IHDR", "acTL", "fcTL", "IDAT", "fcTL", "fdAT", "fcTL", "fdAT", "IEND"],
-            "no colour chunk: normals are data"
+            "no color chunk: normals are data"
         );
         let mut reader = ::png::Decoder::new(io::Cursor::new(&bytes)).read_info().unwrap();
         let mut data = vec![0; reader.output_buffer_size().unwrap()];

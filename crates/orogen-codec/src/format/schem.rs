@@ -1,7 +1,8 @@
 //! Sponge schematics, version 3: blocks for Minecraft: Java Edition (WorldEdit and others paste them).
 //!
-//! After the Sponge Schematic Specification, version 3 (2021). NBT in gzip. Blocks are numbers of a palette of block states, in the order y, z, x: a
-//! varint each, which is one byte for the palettes here. x points east, y up and z south.
+//! After the Sponge Schematic Specification, version 3 (2021). NBT in gzip. Blocks are numbers of a palette of block
+//! states, in the order y, z, x: a varint each, which is one byte for the palettes here. x points east, y up and z
+//! south.
 
 use std::io::{self, Write};
 

@@ -106,7 +106,8 @@ impl Stored {
         });
     }
 
-    /// Appends the heights of samples from 0, which is `low`, to `most`, which is `high`; those with the number `nodata` are NaN.
+    /// Appends the heights of samples from 0, which is `low`, to `most`, which is `high`; those with the number
+    /// `nodata` are NaN.
     pub fn append_scaled(
         &self,
         bytes: &[u8],

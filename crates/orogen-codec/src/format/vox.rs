@@ -1,7 +1,8 @@
-//! MagicaVoxel models (.vox, version 150): colored voxels, in models of at most 256 voxels along each side, placed by a scene graph.
+//! MagicaVoxel models (.vox, version 150): colored voxels, in models of at most 256 voxels along each side, placed by a
+//! scene graph.
 //!
-//! After "MagicaVoxel .vox File Format" and its extension for scenes (ephtracy, voxel-model). Chunks: SIZE and XYZI for each model, then nTRN, nGRP and nSHP, then
-//! the palette, RGBA. x points east, y north and z up.
+//! After "MagicaVoxel .vox File Format" and its extension for scenes (ephtracy, voxel-model). Chunks: SIZE and XYZI for
+//! each model, then nTRN, nGRP and nSHP, then the palette, RGBA. x points east, y north and z up.
 
 use std::io::{self, Write};
 

@@ -4,8 +4,8 @@ use orogen_grid::grid::Grid;
 
 /// Row `row` of weights, one grid for each surface, as bytes: those of one sample side by side, adding up to 255.
 ///
-/// They are rounded down, and the remainder is given to those with the largest rounding loss, the first of equals first. All are 0 where no
-/// weight is positive.
+/// They are rounded down, and the remainder is given to those with the largest rounding loss, the first of equals
+/// first. All are 0 where no weight is positive.
 #[must_use]
 pub fn row_bytes(weights: &[Grid], row: usize) -> Vec<u8> {
     let mut of_sample = vec![0.0; weights.len()];

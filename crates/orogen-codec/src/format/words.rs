@@ -19,7 +19,8 @@ impl<'a> Words<'a> {
         Words { input: BufReader::new(input), word: Vec::new() }
     }
 
-    /// Heights in so many columns and rows, of which the first is the word `first`; those of the value `nodata` are NaN.
+    /// Heights in so many columns and rows, of which the first is the word `first`; those of the value `nodata` are
+    /// NaN.
     ///
     /// # Errors
     /// A message if a word is not a number, or there are too few.

@@ -27,7 +27,8 @@ pub struct Rows {
 /// Reads all lines.
 ///
 /// # Errors
-/// A message if a line is not three numbers, the samples are not all of a regular grid, or heights take more than `allowed` bytes.
+/// A message if a line is not three numbers, the samples are not all of a regular grid, or heights take more than
+/// `allowed` bytes.
 pub fn read(input: &mut dyn Input, allowed: u64) -> Result<Rows, String> {
     let mut lines = BufReader::new(input);
     let mut heights: Vec<f32> = Vec::new();

@@ -9,16 +9,16 @@ use orogen_grid::grid::Grid;
 /// The atlas tint: green lowlands, then straw, ochre, brown, grey and white heights; the sea darkens with depth. Land
 /// and sea meet exactly at sea level.
 ///
-/// In a printed atlas every height has a fixed colour, so hills of 300 m are all green; with all colours stretched over
+/// In a printed atlas every height has a fixed color, so hills of 300 m are all green; with all colors stretched over
 /// the relief they would have snow. This tint is a compromise: the more relief the land has, the higher in the ramp its
 /// summits are (300 m is ochre, 4000 m is white), and likewise for the depth of the sea. Most real land is low. Where
-/// much land is high, colours are shifted towards green, so that summits still stand out.
+/// much land is high, colors are shifted towards green, so that summits still stand out.
 #[derive(Debug, Clone)]
 pub struct Atlas {
     land: Ramp,
     sea: Ramp,
     sea_level: f32,
-    /// The height where the land's colours start, and the shares of the ramps per metre.
+    /// The height where the land's colors start, and the shares of the ramps per metre.
     base: f32,
     land_scale: f32,
     sea_scale: f32,
@@ -82,7 +82,7 @@ impl Atlas {
         Atlas::bent(low, high, sea_level, (libm::logf(MIDDLE) / libm::logf(share)).clamp(1.0, MAX_BENT))
     }
 
-    /// The tint with the land's colours at `share of the relief ^ power`.
+    /// The tint with the land's colors at `share of the relief ^ power`.
     fn bent(low: f32, high: f32, sea_level: f32, power: f32) -> Atlas {
         // Land above the sea starts with green at its lowest height: plateaus have lowlands too.
         let base = if low.is_finite() { low.max(sea_level) } else { sea_level };
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn senseless_worlds_still_have_colours() {
+    fn senseless_worlds_still_have_colors() {
         for (low, high) in [(5.0, 5.0), (f32::NAN, f32::NAN), (1.0, -1.0), (f32::MIN, f32::MAX)] {
             let atlas = Atlas::new(low, high, 0.0);
             for height in [f32::MIN, -1.0, 0.0, 1.0, f32::MAX, f32::NAN, f32::INFINITY] {

@@ -1,9 +1,9 @@
-//! Colours in linear light, in sRGB bytes, and in Oklab for mixing.
+//! Colors in linear light, in sRGB bytes, and in Oklab for mixing.
 
-/// A colour in linear light: red, green, blue, 0 to 1.
+/// A color in linear light: red, green, blue, 0 to 1.
 pub type Light = [f32; 3];
 
-/// A colour in sRGB bytes: red, green, blue.
+/// A color in sRGB bytes: red, green, blue.
 pub type Rgb = [u8; 3];
 
 /// A table for conversion of linear light to sRGB bytes.
@@ -28,7 +28,7 @@ impl Encoder {
         Encoder { table: (0..=LEVELS).map(|level| encode(level as f32 / LEVELS as f32)).collect() }
     }
 
-    /// The sRGB bytes of a colour, clamped to the range of a byte.
+    /// The sRGB bytes of a color, clamped to the range of a byte.
     #[must_use]
     pub fn bytes(&self, color: Light) -> [u8; 3] {
         color.map(|c| self.table[(c.clamp(0.0, 1.0) * LEVELS as f32 + 0.5) as usize])
@@ -82,13 +82,13 @@ pub fn linear([lightness, a, b]: [f32; 3]) -> Light {
     ]
 }
 
-/// The colour of a hexadecimal number 0xrrggbb.
+/// The color of a hexadecimal number 0xrrggbb.
 #[must_use]
 pub const fn rgb(hex: u32) -> Rgb {
     [(hex >> 16) as u8, (hex >> 8) as u8, hex as u8]
 }
 
-/// A colour as `#rrggbb`, for SVG, TOML and DOT.
+/// A color as `#rrggbb`, for SVG, TOML and DOT.
 #[must_use]
 pub fn hex([red, green, blue]: Rgb) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")

@@ -146,7 +146,7 @@ fn piece(from: f32, stops: &[(f64, Rgb)], mix: Mix) -> Segment {
     Segment { from, start: first.0, per_metre: (entries / length).min(1e30), table: table.collect() }
 }
 
-/// The mixed colour of two.
+/// The mixed color of two.
 fn mixed(from: Rgb, to: Rgb, share: f32, how: Mix) -> Light {
     match how {
         Mix::Oklab => linear(mix(oklab(from.map(decode)), oklab(to.map(decode)), share)),
@@ -249,7 +249,7 @@ mod tests {
             let at = [sea - 300.0, sea, sea.next_up(), sea + 800.0];
             assert_eq!(bytes(&shore, [sea - 300.0, sea + 800.0, sea], &at), [BLUE, RED, LIME, WHITE]);
         }
-        // A plateau far above the sea starts with the first land colour; a map of sea only ends at its surface.
+        // A plateau far above the sea starts with the first land color; a map of sea only ends at its surface.
         assert_eq!(bytes(&shore, [500.0, 900.0, 0.0], &[500.5, 900.0])[1], WHITE);
         assert_eq!(bytes(&shore, [500.0, 900.0, 0.0], &[500.0])[0], LIME);
         assert_eq!(bytes(&shore, [-500.0, -90.0, 0.0], &[-500.0, 0.0]), [BLUE, RED]);
@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_outside_has_the_colours_named() {
+    fn what_lies_outside_has_the_colors_named() {
         let mut ends = palette(&[(Position::Value(0.0), BLUE), (Position::Value(1.0), RED)]);
         (ends.below, ends.above, ends.missing) = (Some(LIME), Some(WHITE), Some([1, 2, 3]));
         let at = [-1.0, 0.0, 1.0, 1.5, f32::NAN];
@@ -293,7 +293,7 @@ mod tests {
     }
 
     #[test]
-    fn narrow_stretches_in_a_wide_palette_keep_their_colours() {
+    fn narrow_stretches_in_a_wide_palette_keep_their_colors() {
         let value = Position::Value;
         let wide = palette(&[(value(-11e3), BLUE), (value(0.0), WHITE), (value(1.0), RED), (value(9e3), LIME)]);
         assert_eq!(bytes(&wide, [0.0, 1.0, 0.0], &[-11e3, 0.0, 1.0, 9e3]), [BLUE, WHITE, RED, LIME]);
@@ -302,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn senseless_ranges_and_empty_palettes_still_have_colours() {
+    fn senseless_ranges_and_empty_palettes_still_have_colors() {
         let some = palette(&[(Position::Sea(-1.0), BLUE), (Position::Share(0.5), RED), (Position::Value(9.0), LIME)]);
         for palette in &[some, Palette::default()] {
             for range in [[5.0, 5.0, 0.0], [f32::NAN; 3], [1.0, -1.0, 0.0], [f32::MIN, f32::MAX, f32::INFINITY]] {

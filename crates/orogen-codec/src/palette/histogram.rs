@@ -13,7 +13,8 @@ const LEVELS: usize = 4096;
 /// Maximum number of pixels of a picture.
 const MAX_PIXELS: u64 = 1 << 27;
 
-/// Number of pixels of a picture up to which all are counted. Of a larger one every second row is, or every third, and so on.
+/// Number of pixels of a picture up to which all are counted. Of a larger one every second row is, or every third, and
+/// so on.
 const COUNTED: u64 = 1 << 24;
 
 /// Reads a `.png` and returns `count` colors in linear light, from dark to light: each is the mean color of an equal

@@ -1,11 +1,11 @@
-//! Palettes: colours at positions, before they are applied to heights.
+//! Palettes: colors at positions, before they are applied to heights.
 
 use super::color::Rgb;
 
 /// The default color of a sample without a finite value: a light, neutral grey.
 pub const NO_DATA: Rgb = [222, 222, 222];
 
-/// The position of a colour.
+/// The position of a color.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Position {
@@ -39,16 +39,16 @@ impl Position {
     }
 }
 
-/// A colour and its position. Two stops at one position make a hard step.
+/// A color and its position. Two stops at one position make a hard step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stop {
     /// The position.
     pub at: Position,
-    /// The colour.
+    /// The color.
     pub color: Rgb,
 }
 
-/// The colour space in which colours between stops are mixed.
+/// The color space in which colors between stops are mixed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Mix {
@@ -59,7 +59,7 @@ pub enum Mix {
     Rgb,
     /// Hue, saturation and value; the hue takes the shorter way.
     Hsv,
-    /// Not mixed: the colour of the nearest stop.
+    /// Not mixed: the color of the nearest stop.
     Nearest,
 }
 
@@ -81,21 +81,21 @@ impl Mix {
     }
 }
 
-/// Colours for a map.
+/// Colors for a map.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Palette {
     /// The name.
     pub name: String,
-    /// Colours in ascending order of their positions, if the positions are of one kind.
+    /// Colors in ascending order of their positions, if the positions are of one kind.
     pub stops: Vec<Stop>,
-    /// The mixing of colours between stops.
+    /// The mixing of colors between stops.
     pub mix: Mix,
-    /// The colour below the first stop; by default that of the first stop.
+    /// The color below the first stop; by default that of the first stop.
     pub below: Option<Rgb>,
-    /// The colour above the last stop; by default that of the last stop.
+    /// The color above the last stop; by default that of the last stop.
     pub above: Option<Rgb>,
-    /// The colour of samples that are not finite; by default [`NO_DATA`].
+    /// The color of samples that are not finite; by default [`NO_DATA`].
     pub missing: Option<Rgb>,
     /// Whether it is the atlas tint, which is fitted to the relief.
     pub follows_relief: bool,
@@ -108,7 +108,8 @@ impl Palette {
         Palette { name: name.to_string(), stops, ..Palette::default() }
     }
 
-    /// The same with only the colours of its stops: each value has that of the nearest one. The atlas tint is then not fitted to the relief.
+    /// The same with only the colors of its stops: each value has that of the nearest one. The atlas tint is then not
+    /// fitted to the relief.
     #[must_use]
     pub fn nearest(self) -> Palette {
         Palette { mix: Mix::Nearest, follows_relief: false, ..self }

@@ -1,25 +1,25 @@
-//! Colour ramps over 0 to 1.
+//! Color ramps over 0 to 1.
 
 use super::color::{Light, Rgb, decode, linear, mix, oklab};
 
 /// Number of table entries: steps are far below the resolution of eight bits.
 const STEPS: usize = 1024;
 
-/// A colour ramp over 0 to 1.
+/// A color ramp over 0 to 1.
 #[derive(Debug, Clone)]
 pub struct Ramp {
     table: Vec<Light>,
 }
 
 impl Ramp {
-    /// A ramp through `stops`: positions in ascending order, with their colours in sRGB bytes. Before the first stop
+    /// A ramp through `stops`: positions in ascending order, with their colors in sRGB bytes. Before the first stop
     /// and after the last it is constant; without stops it is black.
     #[must_use]
     pub fn new(stops: &[(f32, Rgb)]) -> Ramp {
         Ramp::bent(stops, |at| at)
     }
 
-    /// [`Ramp::new`], with the colour of `bend(at)` at `at`.
+    /// [`Ramp::new`], with the color of `bend(at)` at `at`.
     pub(super) fn bent(stops: &[(f32, Rgb)], bend: impl Fn(f32) -> f32) -> Ramp {
         let labs: Vec<(f32, [f32; 3])> =
             stops.iter().map(|&(at, [r, g, b])| (at, oklab([decode(r), decode(g), decode(b)]))).collect();
@@ -27,7 +27,7 @@ impl Ramp {
         Ramp { table }
     }
 
-    /// The colour at `at`, clamped to 0 to 1; NaN counts as 0.
+    /// The color at `at`, clamped to 0 to 1; NaN counts as 0.
     #[must_use]
     pub fn at(&self, at: f32) -> Light {
         let at = if at > 0.0 { at.min(1.0) * STEPS as f32 } else { 0.0 };
@@ -36,7 +36,7 @@ impl Ramp {
     }
 }
 
-/// The interpolated colour of the two stops around `at`.
+/// The interpolated color of the two stops around `at`.
 fn between(stops: &[(f32, [f32; 3])], at: f32) -> [f32; 3] {
     let after = stops.partition_point(|stop| stop.0 <= at);
     match (after.checked_sub(1).map(|before| stops[before]), stops.get(after)) {

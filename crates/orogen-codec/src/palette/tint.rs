@@ -7,12 +7,12 @@ use super::palette::Palette;
 use crate::format::levels::Levels;
 use orogen_grid::grid::Grid;
 
-/// A mapping from heights to colours.
+/// A mapping from heights to colors.
 #[derive(Debug, Clone)]
 pub struct Tint {
     colors: Colors,
     sea_level: f32,
-    /// Whether water is distinguished from land by colour.
+    /// Whether water is distinguished from land by color.
     sea: bool,
 }
 

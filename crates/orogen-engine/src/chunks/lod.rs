@@ -11,11 +11,11 @@ use orogen_grid::grid::Window;
 /// **Chunks.** A chunk of level l has sides of `cells * cell * 2^l` metres. The terrain within `range` of the viewer is
 /// divided into chunks of the coarsest level. Each chunk that is closer to the viewer than `detail` of its sides is
 /// replaced by the four finer ones that cover it, down to level 0. Distances are Chebyshev distances (the greater of
-/// those east and south), so rings are square. The chunks cover the terrain once, and neighbours differ by at most one
+/// those east and south), so rings are square. The chunks cover the terrain once, and neighbors differ by at most one
 /// level.
 ///
-/// **Borders.** A chunk has `cells + 1` samples per side: its last row and column are its neighbour's first, with the
-/// same bits. If the neighbour is one level coarser, its samples are every second one of the finer chunk's, with the
+/// **Borders.** A chunk has `cells + 1` samples per side: its last row and column are its neighbor's first, with the
+/// same bits. If the neighbor is one level coarser, its samples are every second one of the finer chunk's, with the
 /// same bits unless the recipe has filters (whose results depend on the cell): see [`stitch`](super::seam::stitch).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -83,7 +83,7 @@ impl LodConfig {
         }
         if !(1.0 + self.slack..=16.0).contains(&self.detail) {
             return fault(format!(
-                "the detail must be from 1 + slack = {1} to 16, not {0}; otherwise neighbours could differ by more than one level",
+                "the detail must be from 1 + slack = {1} to 16, not {0}; otherwise neighbors could differ by more than one level",
                 self.detail,
                 1.0 + self.slack
             ));
@@ -148,7 +148,7 @@ impl LodConfig {
         along(x, id.x).max(along(y, id.y))
     }
 
-    /// The distance of a viewer from a chunk's centre, in metres.
+    /// The distance of a viewer from a chunk's center, in metres.
     pub(super) fn distance_to_middle(&self, id: ChunkId, [x, y]: [f64; 2]) -> f64 {
         let side = self.side(id.level);
         let along = |at: f64, index: i64| (at - (index as f64 + 0.5) * side).abs();
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn chunks_share_their_edges_with_neighbours_and_parents() {
+    fn chunks_share_their_edges_with_neighbors_and_parents() {
         let lod = LodConfig { cell: 1.0 / 3.0, ..LodConfig::default() };
         let id = ChunkId { level: 1, y: -2, x: 3 };
         let (window, east) = (lod.window(id), lod.window(id.beside(1, 0)));

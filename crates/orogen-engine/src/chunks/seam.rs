@@ -1,4 +1,4 @@
-//! Seams between a chunk and coarser neighbours.
+//! Seams between a chunk and coarser neighbors.
 
 use orogen_grid::grid::Grid;
 
@@ -15,8 +15,8 @@ pub struct Sides {
     pub west: bool,
 }
 
-/// Closes the cracks between a chunk and coarser neighbours. Along the given sides every second sample, which the
-/// neighbour lacks, is moved to the line between its two neighbours, which is the edge of the neighbour's triangle.
+/// Closes the cracks between a chunk and coarser neighbors. Along the given sides every second sample, which the
+/// neighbor lacks, is moved to the line between its two neighbors, which is the edge of the neighbor's triangle.
 ///
 /// Shared samples do not change. They are equal unless the recipe has filters; with filters, use skirts instead.
 pub fn stitch(grid: &mut Grid, sides: Sides) {

@@ -27,7 +27,8 @@ pub enum ChunkStep {
 /// use orogen_engine::{ChunkStep, Recipe, LodConfig, Sampler, World};
 /// use std::collections::HashMap;
 ///
-/// let world = World::open(Recipe::parse("orogen = 1\n[nodes.n]\nop = \"fbm\"\n[outputs]\nheight = \"n\"\n", "example")?)?;
+/// let text = "orogen = 1\n[nodes.n]\nop = \"fbm\"\n[outputs]\nheight = \"n\"\n";
+/// let world = World::open(Recipe::parse(text, "example")?)?;
 /// let ground = Sampler::new(&world, "height")?;
 /// let mut chunks = world.chunks(LodConfig::default().with_cells(16).with_levels(3).with_range(200.0))?;
 /// let mut scene = HashMap::new();
@@ -273,7 +274,7 @@ impl Chunks {
         self.handed.map(ChunkStep::Make)
     }
 
-    /// The sides of a chunk with a coarser neighbour, for [`stitch`](super::seam::stitch). They change as the viewer
+    /// The sides of a chunk with a coarser neighbor, for [`stitch`](super::seam::stitch). They change as the viewer
     /// moves.
     #[must_use]
     pub fn coarser(&self, id: ChunkId) -> Sides {

@@ -59,8 +59,8 @@ impl<'a> Exactness<'a> {
     }
 }
 
-/// The grids that must be exact for a levelled op: none if it reads what the device makes anyway. Otherwise its tiles are exact; if it is made on the device, that
-/// begins below the tiled levels.
+/// The grids that must be exact for a levelled op: none if it reads what the device makes anyway. Otherwise its tiles
+/// are exact; if it is made on the device, that begins below the tiled levels.
 fn exact_inputs(nodes: &Nodes, preview: Option<&Preview>, step: &Step) -> Vec<GridId> {
     let Step::Refine { node, inputs, window, out } = step else { return Vec::new() };
     let exact = match (preview, nodes.op(*node)) {

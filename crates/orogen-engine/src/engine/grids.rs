@@ -54,7 +54,8 @@ impl Grids {
         }
     }
 
-    /// Copies those that are on the device alone to memory. Returns whether all are there: a device may have been lost with its grids.
+    /// Copies those that are on the device alone to memory. Returns whether all are there: a device may have been lost
+    /// with its grids.
     pub fn fetch(&mut self, slots: &[GridId], device: Option<&dyn Device>, progress: &Progress) -> Result<bool> {
         let mut away: Vec<GridId> = slots.iter().filter(|slot| self.is_away(**slot)).copied().collect();
         away.sort_unstable();

@@ -50,8 +50,8 @@ impl Engine<'_> {
         })
     }
 
-    /// Computes the samples of a window at each altitude into `out`, slice by slice, each row-major; returns the buffers. `out` must have their number.
-    /// The program must be valid for the window.
+    /// Computes the samples of a window at each altitude into `out`, slice by slice, each row-major; returns the
+    /// buffers. `out` must have their number. The program must be valid for the window.
     pub fn volume_inline(
         &self,
         ready: &PreparedProgram,

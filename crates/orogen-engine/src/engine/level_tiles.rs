@@ -1,4 +1,5 @@
-//! Tiles of the coarse levels that a window of a levelled op is made from: found in memory or in the store, or made, coarsest first.
+//! Tiles of the coarse levels that a window of a levelled op is made from: found in memory or in the store, or made,
+//! coarsest first.
 
 use super::refine::{Planes, Refining};
 use super::run::Engine;
@@ -15,7 +16,8 @@ use std::ops::RangeInclusive;
 /// A tile of a level by its column and row.
 type At = (i64, i64);
 
-/// Minimum cost of a tile that is stored for later runs, in nanoseconds per sample of a plane; reading one takes about three.
+/// Minimum cost of a tile that is stored for later runs, in nanoseconds per sample of a plane; reading one takes about
+/// three.
 const EXPENSIVE: f64 = 16.0;
 
 /// What a window is made from at one level.
@@ -26,8 +28,8 @@ struct LevelTiles {
 }
 
 impl Engine<'_> {
-    /// The tiles of the first of the `direct` levels that pieces of the last are made from. It must not run on a thread of the pool if it is to wait for
-    /// tiles that other requests make.
+    /// The tiles of the first of the `direct` levels that pieces of the last are made from. It must not run on a thread
+    /// of the pool if it is to wait for tiles that other requests make.
     pub(super) fn level_tiles(
         &self,
         refining: &Refining,
@@ -56,12 +58,13 @@ impl Engine<'_> {
         let of_piece = |piece: &Window| refining.work_of_piece(direct.clone(), piece);
         refining.progress.expect(work + pieces.iter().map(of_piece).sum::<f64>());
         let is_stored = self.store.keeps_tiles(work);
-        // The claims end on a thread of the pool: the calling thread may run work of another request that waits for them.
+        // The claims end on a thread of the pool: the calling thread may run work of another request that waits for
+        // them.
         self.pool.install(|| self.make_level_tiles(refining, tiles, claims, is_stored))
     }
 
-    /// What is found of each level from `last`, and what is missing: the tiles that are missing at each level tell which the level above must have.
-    /// Tiles that were `found` before are not looked for again.
+    /// What is found of each level from `last`, and what is missing: the tiles that are missing at each level tell
+    /// which the level above must have. Tiles that were `found` before are not looked for again.
     fn find_level_tiles(
         &self,
         refining: &Refining,

@@ -13,7 +13,8 @@ use orogen_ops::lower::{Lowering, Passes};
 use orogen_ops::op::{Op, Solver};
 use std::path::Path;
 
-/// What previews of a session keep in memory, for later ones. Nothing of it is stored for later runs, and nothing exact is made from it.
+/// What previews of a session keep in memory, for later ones. Nothing of it is stored for later runs, and nothing exact
+/// is made from it.
 pub struct Previews {
     pub store: Store,
     pub grids: GridStore<PlanGrid>,
@@ -21,7 +22,8 @@ pub struct Previews {
 }
 
 impl Previews {
-    /// Room for at most these bytes of grids and of tiles; `scratch` is the folder for solutions that do not fit in memory.
+    /// Room for at most these bytes of grids and of tiles; `scratch` is the folder for solutions that do not fit in
+    /// memory.
     pub fn new(scratch: &Path, grids: u64, level_tiles: u64) -> Previews {
         Previews {
             store: Store::holding(Vec::new(), scratch.to_path_buf()),
@@ -55,8 +57,8 @@ pub struct Preview<'a> {
     pub kept: &'a Previews,
     /// Whether the device also solves what is chaotic.
     is_draft: bool,
-    /// Solvers and levelled ops that the device computes, and all that reads them. Fields and filters that it computes are not among them: whether they
-    /// must be exact depends on who reads them.
+    /// Solvers and levelled ops that the device computes, and all that reads them. Fields and filters that it computes
+    /// are not among them: whether they must be exact depends on who reads them.
     approximate: IndexVec<NodeId, bool>,
     /// Whether a node reads such a node.
     reads: IndexVec<NodeId, bool>,

@@ -38,8 +38,8 @@ pub(super) struct Refining<'a> {
 }
 
 impl Engine<'_> {
-    /// Computes the wanted layers of a levelled op over a window; they may be on a device if `keeps` allows it. Work is done on the threads of the pool, and
-    /// the calling thread waits for tiles that other requests make.
+    /// Computes the wanted layers of a levelled op over a window; they may be on a device if `keeps` allows it. Work is
+    /// done on the threads of the pool, and the calling thread waits for tiles that other requests make.
     pub(super) fn refine(
         &self,
         node: NodeId,
@@ -160,7 +160,8 @@ impl Refining<'_> {
         self.checked(planes, window)
     }
 
-    /// As many of these levels as the device makes one from the other, and their number; `None` if there is no device, or the processor is to make the first.
+    /// As many of these levels as the device makes one from the other, and their number; `None` if there is no device,
+    /// or the processor is to make the first.
     fn on_device(&self, levels: &[(usize, &Window)], above: &[Grid]) -> Result<Option<(Vec<Grid>, usize)>> {
         let Some((device, given)) = &self.device else { return Ok(None) };
         let mut steps = Vec::new();
@@ -182,7 +183,8 @@ impl Refining<'_> {
         Ok(Some(LevelStep { passes, inputs: self.inputs_over(level, window)?, window: *window }))
     }
 
-    /// The layers of the last of the `direct` levels over a piece, which a device makes with all levels from tiles of the first; `None` if it does not.
+    /// The layers of the last of the `direct` levels over a piece, which a device makes with all levels from tiles of
+    /// the first; `None` if it does not.
     fn layers_on_device(
         &self,
         direct: RangeInclusive<usize>,

@@ -137,8 +137,8 @@ impl<'a> Engine<'a> {
         plan.outputs.iter().map(|&slot| grids.take(slot).ok_or_else(|| missing("an output")).map(Some)).collect()
     }
 
-    /// Takes kept grids of expensive filters from earlier requests, those on the device only if it `has_device`. Returns which steps are still needed: those
-    /// whose grids are results or are read by needed steps.
+    /// Takes kept grids of expensive filters from earlier requests, those on the device only if it `has_device`.
+    /// Returns which steps are still needed: those whose grids are results or are read by needed steps.
     fn kept_grids(
         &self,
         plan: &Plan,
@@ -384,7 +384,8 @@ impl<'a> Engine<'a> {
     }
 }
 
-/// Lends the inputs of a filter, cropped to its window grown by its halo: they may cover more because other steps read them, too.
+/// Lends the inputs of a filter, cropped to its window grown by its halo: they may cover more because other steps read
+/// them, too.
 fn with_inputs<T>(step: &Step, grids: &Grids, work: impl FnOnce(&[Option<&Grid>]) -> Result<T>) -> Result<T> {
     let Step::Apply { inputs, window, halo, .. } = step else { return Err(missing("the filter of a step")) };
     if inputs.iter().flatten().any(|&slot| grids.memory(slot).is_none()) {

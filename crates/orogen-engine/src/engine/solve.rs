@@ -74,8 +74,8 @@ impl Engine<'_> {
         }
     }
 
-    /// Whether this thread may wait for a solution or a tile that another request is computing. A thread of the pool may not:
-    /// that request could be further down its own stack.
+    /// Whether this thread may wait for a solution or a tile that another request is computing. A thread of the pool
+    /// may not: that request could be further down its own stack.
     pub(super) fn may_wait(&self) -> bool {
         !self.pool.is_current()
     }

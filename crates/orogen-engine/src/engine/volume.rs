@@ -10,7 +10,8 @@ use orogen_ops::interpreter::{Bindings, Interpreter};
 use orogen_ops::program::{BLOCK_HEIGHT, BLOCK_WIDTH};
 
 impl Engine<'_> {
-    /// Computes the samples of a plan for points at each sample of its window and each altitude, slice by slice, each row-major.
+    /// Computes the samples of a plan for points at each sample of its window and each altitude, slice by slice, each
+    /// row-major.
     pub fn volume(&self, plan: &Plan, altitudes: &[f64]) -> Result<Vec<f32>> {
         let program =
             plan.asked().ok_or_else(|| Error::new(ErrorKind::Internal, "a plan for points has no program"))?;

@@ -14,8 +14,9 @@ use orogen_ops::op::Op;
 use orogen_ops::value::Value;
 
 impl Laws<'_> {
-    /// [`Law::Altitudes`], for a field that may read nodes that depend on the altitude. The op, its inputs and its mask are noises of space, as far
-    /// as they are noises. It forces SIMD levels for the whole process and restores the previous one at the end.
+    /// [`Law::Altitudes`], for a field that may read nodes that depend on the altitude. The op, its inputs and its mask
+    /// are noises of space, as far as they are noises. It forces SIMD levels for the whole process and restores the
+    /// previous one at the end.
     ///
     /// # Errors
     /// The first difference.

@@ -29,21 +29,23 @@ pub struct Laws<'a> {
 }
 
 impl<'a> Laws<'a> {
-    /// The laws of the op that `op` returns for a cell size. Each input is a noise. The worlds have 97 x 81 samples, so parameters that are
-    /// lengths should be a few cells: effects wider than the world or narrower than a sample are not tested.
+    /// The laws of the op that `op` returns for a cell size. Each input is a noise. The worlds have 97 x 81 samples, so
+    /// parameters that are lengths should be a few cells: effects wider than the world or narrower than a sample are
+    /// not tested.
     pub fn of<T: Into<Node>>(op: impl Fn(f64) -> T + 'a) -> Laws<'a> {
         let node = op(CELLS[0]).into();
         Laws::in_recipes(node, move |world, masked| recipe_of(&op(world.cell).into(), world, masked))
     }
 
-    /// The laws of an op that cannot read an arbitrary noise. `recipe` returns a recipe for a world, with or without a mask. In it the op is the
-    /// node [`NODE`], and the outputs are its layers, the first one named `height`. `node` is the op itself.
+    /// The laws of an op that cannot read an arbitrary noise. `recipe` returns a recipe for a world, with or without a
+    /// mask. In it the op is the node [`NODE`], and the outputs are its layers, the first one named `height`. `node` is
+    /// the op itself.
     pub fn in_recipes(node: Node, recipe: impl Fn(WorldSpec, bool) -> Recipe + 'a) -> Laws<'a> {
         Laws { node, recipe: Box::new(recipe) }
     }
 
-    /// All laws, without [`Laws::cancel`], which measures time. [`Law::Levels`] forces SIMD levels for the whole process
-    /// while it runs.
+    /// All laws, without [`Laws::cancel`], which measures time. [`Law::Levels`] forces SIMD levels for the whole
+    /// process while it runs.
     pub fn check(&self) -> Vec<Violation> {
         let at_cells = CELLS
             .into_iter()
@@ -84,8 +86,8 @@ impl<'a> Laws<'a> {
         Ok(())
     }
 
-    /// [`Law::TileEqualsCrop`] for windows of a levelled op that are too large for tiles of their last levels: those levels are made over the window itself,
-    /// so a halo that is too small shows at its edges.
+    /// [`Law::TileEqualsCrop`] for windows of a levelled op that are too large for tiles of their last levels: those
+    /// levels are made over the window itself, so a halo that is too small shows at its edges.
     ///
     /// # Errors
     /// The first difference.
@@ -134,8 +136,8 @@ impl<'a> Laws<'a> {
         Ok(())
     }
 
-    /// [`Law::Stored`], unless the op reads the altitude, so that no solver may read it. The test edits the plan, which is plain data: all solutions are
-    /// on disk, and their sources use tiny tiles.
+    /// [`Law::Stored`], unless the op reads the altitude, so that no solver may read it. The test edits the plan, which
+    /// is plain data: all solutions are on disk, and their sources use tiny tiles.
     ///
     /// # Errors
     /// The first difference.
@@ -346,9 +348,10 @@ impl<'a> Laws<'a> {
         Ok(())
     }
 
-    /// [`Law::Cancel`] without a clock, in a world of `side` x `side` samples on one thread: the result does not depend on
-    /// how busy the machine is. Times are those of the costs that the ops state. Cancels the work at five different shares
-    /// of it. Returns the longest time for which it continued, or between two reports of progress, if that is longer.
+    /// [`Law::Cancel`] without a clock, in a world of `side` x `side` samples on one thread: the result does not depend
+    /// on how busy the machine is. Times are those of the costs that the ops state. Cancels the work at five different
+    /// shares of it. Returns the longest time for which it continued, or between two reports of progress, if that is
+    /// longer.
     ///
     /// # Errors
     /// If the time is longer than [`LONGEST_CANCEL`], or if the work ended with another error than
@@ -408,9 +411,9 @@ impl<'a> Laws<'a> {
         (self.case(Law::Cancel).in_window(window), recipe, window)
     }
 
-    /// [`Law::Cancel`], in a world of `side` x `side` samples, by the clock. Cancels the work at five different times and
-    /// returns the longest time for which it continued. For fields the engine checks between blocks. Other work on the
-    /// machine may break this law: [`Laws::stops`] does not depend on it.
+    /// [`Law::Cancel`], in a world of `side` x `side` samples, by the clock. Cancels the work at five different times
+    /// and returns the longest time for which it continued. For fields the engine checks between blocks. Other work on
+    /// the machine may break this law: [`Laws::stops`] does not depend on it.
     ///
     /// # Errors
     /// If it continued for longer than [`LONGEST_CANCEL`] in three runs, or did not end with [`ErrorKind::Cancelled`].

@@ -59,9 +59,9 @@ pub fn world_of(cell: f64) -> WorldSpec {
     WorldSpec { seed: 42, size: Some(size), cell, ..WorldSpec::default() }
 }
 
-/// A recipe with the node as [`NODE`]. Each input is a separate noise, about -1 to 1 with a wavelength of nine cells. An input called `source` reads
-/// it through a blur, so that halos add up. The outputs are the node's layers, the first one named `height`, and another one of that name
-/// `layer_height`.
+/// A recipe with the node as [`NODE`]. Each input is a separate noise, about -1 to 1 with a wavelength of nine cells.
+/// An input called `source` reads it through a blur, so that halos add up. The outputs are the node's layers, the first
+/// one named `height`, and another one of that name `layer_height`.
 #[must_use]
 pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
     let mut node = node.clone();

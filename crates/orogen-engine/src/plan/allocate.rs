@@ -36,7 +36,8 @@ impl<I: Id> Pool<I> {
 }
 
 /// Assigns registers and coordinate sets. In the input, each is written once (the block itself never); the output
-/// reuses them. The instructions from number `once` on can be run repeatedly: they do not overwrite what they read of earlier ones.
+/// reuses them. The instructions from number `once` on can be run repeatedly: they do not overwrite what they read of
+/// earlier ones.
 ///
 /// # Errors
 /// If an instruction reads a value before it is written, which is a bug.

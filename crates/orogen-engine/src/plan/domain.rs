@@ -36,7 +36,8 @@ pub fn world_windows(size: [f64; 2], cell: f64) -> (Window, Window) {
     (world, world.grown(WORLD_MARGIN))
 }
 
-/// A length in whole cells. One that is a whole number of cells up to rounding is that number: 1000 / 0.1 is 10 000 cells.
+/// A length in whole cells. One that is a whole number of cells up to rounding is that number: 1000 / 0.1 is 10 000
+/// cells.
 fn whole_cells(length: f64, cell: f64, round: impl Fn(f64) -> f64) -> usize {
     let cells = length / cell;
     let near = cells.round();

@@ -10,8 +10,8 @@ pub struct Cluster {
     pub serves: Vec<RequestId>,
 }
 
-/// Merges nearby windows of the same cell: two become one if the union has at most a quarter more samples than both together. A
-/// levelled op requests its inputs at the cells of its levels.
+/// Merges nearby windows of the same cell: two become one if the union has at most a quarter more samples than both
+/// together. A levelled op requests its inputs at the cells of its levels.
 pub fn clusters(requests: &Requests, wanted: impl Iterator<Item = RequestId>) -> Vec<Cluster> {
     let mut clusters: Vec<Cluster> =
         wanted.map(|id| Cluster { window: requests.get(id).window, serves: vec![id] }).collect();

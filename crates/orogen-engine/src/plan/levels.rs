@@ -1,8 +1,8 @@
-//! How a window of a levelled op is made: the level that serves it, the pieces that are made side by side, and the windows of the
-//! levels above each.
+//! How a window of a levelled op is made: the level that serves it, the pieces that are made side by side, and the
+//! windows of the levels above each.
 //!
-//! Coarse levels are made in *tiles* of a fixed side, which neighbouring windows share. Levels of which a piece needs more than a few tiles are made
-//! over the piece itself: in tiles, their halos would cost more than sharing saves.
+//! Coarse levels are made in *tiles* of a fixed side, which neighboring windows share. Levels of which a piece needs
+//! more than a few tiles are made over the piece itself: in tiles, their halos would cost more than sharing saves.
 
 use super::around::samples_around;
 use super::steps::grid_bytes;
@@ -18,8 +18,8 @@ const TILE: usize = 64;
 /// The same of level 0, whose halo is usually wide.
 const COARSEST_TILE: usize = 128;
 
-/// Samples along the sides of the tiles of a level, and samples of tile (0, 0) before the origin. A tile of level 0 has the origin in its middle, because
-/// most people look there first.
+/// Samples along the sides of the tiles of a level, and samples of tile (0, 0) before the origin. A tile of level 0 has
+/// the origin in its middle, because most people look there first.
 fn shape(level: usize) -> (usize, i64) {
     if level == 0 { (COARSEST_TILE, COARSEST_TILE as i64 / 2) } else { (TILE, 0) }
 }
@@ -53,8 +53,8 @@ impl Serving {
         Serving { level, samples: samples_around(window, levels.cell(level)) }
     }
 
-    /// Checks that the samples are not far more than those of any picture: a window with large cells far above those of the coarsest level needs a lot of
-    /// them for each of its own samples.
+    /// Checks that the samples are not far more than those of any picture: a window with large cells far above those of
+    /// the coarsest level needs a lot of them for each of its own samples.
     ///
     /// # Errors
     /// If they are; the message has the largest cell for a window of so many samples.
@@ -123,8 +123,9 @@ impl Serving {
     }
 }
 
-/// The level whose tiles the pieces of a window are made from. It does not depend on the number of threads, which decides about pieces. `wanted` says
-/// of each layer of the op whether it is requested, here and in the functions below.
+/// The level whose tiles the pieces of a window are made from. It does not depend on the number of threads, which
+/// decides about pieces. `wanted` says of each layer of the op whether it is requested, here and in the functions
+/// below.
 #[must_use]
 pub fn tiled(op: &dyn Levelled, wanted: &[bool], serving: &Serving) -> usize {
     let Serving { mut level, samples } = *serving;
@@ -150,7 +151,8 @@ pub fn windows(op: &dyn Levelled, wanted: &[bool], tiled: usize, level: usize, p
     windows
 }
 
-/// Windows of the levels from the coarsest that contain all that a window is made from: whole tiles of the tiled levels.
+/// Windows of the levels from the coarsest that contain all that a window is made from: whole tiles of the tiled
+/// levels.
 #[must_use]
 pub fn covering(op: &dyn Levelled, wanted: &[bool], window: &Window) -> Vec<Window> {
     let serving = Serving::of(&op.levels(), window);

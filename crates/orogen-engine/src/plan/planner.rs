@@ -50,7 +50,8 @@ impl<'a> Planner<'a> {
     /// solutions are moved to disk, and solvers' sources are made in smaller tiles.
     ///
     /// # Errors
-    /// The errors of [`Planner::plan`]. A plan that does not fit is not an error; it is the one that needs least memory.
+    /// The errors of [`Planner::plan`]. A plan that does not fit is not an error; it is the one that needs least
+    /// memory.
     pub fn fitting(
         self,
         targets: &[Link],

@@ -1,4 +1,5 @@
-//! Ordering: from what is asked to steps, last step first, so that all requests for a node are known before the steps that serve them.
+//! Ordering: from what is asked to steps, last step first, so that all requests for a node are known before the steps
+//! that serve them.
 
 use super::compile::{Scope, compile};
 use super::grid_merge::{Cluster, clusters};
@@ -183,7 +184,8 @@ impl Scheduler<'_> {
         constants.into_iter().try_for_each(|constant| self.fill_constant(constant))
     }
 
-    /// The requests for a node's inputs over a window. A constant input becomes a grid with that value, filled by a step right before.
+    /// The requests for a node's inputs over a window. A constant input becomes a grid with that value, filled by a
+    /// step right before.
     fn inputs(&mut self, node: NodeId, window: Window) -> (Vec<Option<RequestId>>, Vec<Constant>) {
         let graph = self.graph;
         let mut inputs: Vec<Option<RequestId>> = Vec::new();

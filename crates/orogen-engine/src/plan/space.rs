@@ -3,8 +3,8 @@
 use orogen_ops::ids::{CoordSetId, IndexVec, NodeId, RegisterId};
 use orogen_ops::program::Instruction;
 
-/// Moves the instructions that depend on the altitude behind all others, and returns the number of the others. The order within both parts is kept.
-/// Each value and coordinate set is written once.
+/// Moves the instructions that depend on the altitude behind all others, and returns the number of the others. The
+/// order within both parts is kept. Each value and coordinate set is written once.
 pub fn in_two_parts<G>(
     instructions: Vec<Instruction<G>>,
     values: usize,

@@ -1,5 +1,5 @@
-//! The split of a program between a device and the processor: what the device cannot compute is computed first, with all that it reads, and handed over as
-//! grids.
+//! The split of a program between a device and the processor: what the device cannot compute is computed first, with
+//! all that it reads, and handed over as grids.
 
 use super::allocate::allocate;
 use crate::device::{Lowered, LoweredCoords, LoweredOperand, LoweredProgram};
@@ -21,8 +21,9 @@ pub struct Split {
     pub device: LoweredProgram,
 }
 
-/// Splits a program. `lower` is the function that computes a field, or reads a solution, on the device, if there is one; `is_away` says of a grid whether it is on
-/// the device alone. Returns `None` if no field and no such grid is left for the device: then it would only copy grids.
+/// Splits a program. `lower` is the function that computes a field, or reads a solution, on the device, if there is
+/// one; `is_away` says of a grid whether it is on the device alone. Returns `None` if no field and no such grid is left
+/// for the device: then it would only copy grids.
 ///
 /// # Errors
 /// If an instruction reads a value before it is written, which is a bug.

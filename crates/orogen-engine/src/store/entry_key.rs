@@ -5,8 +5,8 @@ use sha2::{Digest, Sha256};
 use std::fmt;
 use std::str::FromStr;
 
-/// The key of an entry: a hash of the content key of a solver, or of a levelled op with the level and the tile, and of the
-/// version of this library. It is displayed, and read back, as 64 hexadecimal digits.
+/// The key of an entry: a hash of the content key of a solver, or of a levelled op with the level and the tile, and of
+/// the version of this library. It is displayed, and read back, as 64 hexadecimal digits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct EntryKey(pub [u8; 32]);
 

@@ -1,9 +1,10 @@
 //! A folder of solutions and tiles of levels, shared by later runs and other processes.
 //!
-//! An entry is a file named by the hash of its key: the content key, for a tile the level and its window, and the version of this library. It is
-//! written atomically and verified completely when it is read; a damaged entry is computed again. Reading makes an
-//! entry the most recent one; if the folder exceeds its limit, the oldest entries are removed. Several processes may
-//! share a folder: a file that one of them removes stays readable for those that have it open.
+//! An entry is a file named by the hash of its key: the content key, for a tile the level and its window, and the
+//! version of this library. It is written atomically and verified completely when it is read; a damaged entry is
+//! computed again. Reading makes an entry the most recent one; if the folder exceeds its limit, the oldest entries are
+//! removed. Several processes may share a folder: a file that one of them removes stays readable for those that have it
+//! open.
 
 use super::solution_store::{Entry, EntryKey, SolutionStore};
 use orogen_io::file;
@@ -20,8 +21,8 @@ pub struct FolderStore {
     pub folder: PathBuf,
     /// Maximum size of all entries, in bytes. While tiles of levels are stored, it may be exceeded by a few percent.
     pub limit: u64,
-    /// Solutions whose estimated time on one core is less are not stored, nor tiles of levels if the time of those of a request is
-    /// less than a tenth of it. An estimate, so that the same solutions are stored on any machine.
+    /// Solutions whose estimated time on one core is less are not stored, nor tiles of levels if the time of those of a
+    /// request is less than a tenth of it. An estimate, so that the same solutions are stored on any machine.
     pub slower_than: Duration,
 }
 
@@ -55,8 +56,8 @@ impl FolderStore {
         name.strip_suffix(EXTENSION)?.parse().ok()
     }
 
-    /// Whether the folder is tidied after a tile. Listing a folder takes longer than writing a tile, so only some of them do, chosen by their keys:
-    /// about one in each 64th of the limit.
+    /// Whether the folder is tidied after a tile. Listing a folder takes longer than writing a tile, so only some of
+    /// them do, chosen by their keys: about one in each 64th of the limit.
     fn is_tidied_by(&self, key: &EntryKey, bytes: u64) -> bool {
         let chance = u64::from(u32::from_le_bytes([key.0[0], key.0[1], key.0[2], key.0[3]]));
         u128::from(chance) * u128::from(self.limit / 64) < u128::from(bytes) << 32

@@ -12,8 +12,8 @@ use std::time::Duration;
 
 /// Tiles in memory.
 ///
-/// No lock is held while a tile is made, but the tile is marked: other requests that need it wait ([`LevelTiles::claim`])
-/// instead of making it again.
+/// No lock is held while a tile is made, but the tile is marked: other requests that need it wait
+/// ([`LevelTiles::claim`]) instead of making it again.
 pub struct LevelTiles {
     grids: GridStore,
     /// Tiles that are being made.
@@ -63,13 +63,13 @@ impl LevelTiles {
         self.grids.find(&tile.grids())
     }
 
-    /// Permission to make all these tiles. `None` if the caller must look for them again, because one has been kept since,
-    /// or another request that made one has ended.
+    /// Permission to make all these tiles. `None` if the caller must look for them again, because one has been kept
+    /// since, or another request that made one has ended.
     ///
-    /// If another request makes one of them, the caller waits for it if it `may_wait`. Meanwhile it has no permission for
-    /// any tile, so requests never wait for each other. A caller that may not wait makes the tile a second time; the bits
-    /// are the same, and the first result is kept. A thread must not wait if the tile may be made further down its own
-    /// stack, as on the threads of the pool.
+    /// If another request makes one of them, the caller waits for it if it `may_wait`. Meanwhile it has no permission
+    /// for any tile, so requests never wait for each other. A caller that may not wait makes the tile a second time;
+    /// the bits are the same, and the first result is kept. A thread must not wait if the tile may be made further down
+    /// its own stack, as on the threads of the pool.
     ///
     /// # Errors
     /// If `progress` is cancelled during the wait.
@@ -106,8 +106,8 @@ impl LevelTiles {
         self.made.load(Ordering::Relaxed)
     }
 
-    /// Keeps a copy of the planes of a tile, if it fits in the limit and in `allowed`, the bytes that all tiles may take
-    /// now (`None` for no such limit).
+    /// Keeps a copy of the planes of a tile, if it fits in the limit and in `allowed`, the bytes that all tiles may
+    /// take now (`None` for no such limit).
     pub fn keep(&self, tile: &LevelTile, planes: &[Grid], allowed: Option<u64>) {
         tile.grids().into_iter().zip(planes).for_each(|(key, plane)| self.grids.keep(key, plane, allowed));
     }

@@ -11,18 +11,19 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Keeps solutions, and tiles of levels if it [wants](SolutionStore::keeps_tiles), for later runs and other sessions: bytes under a key. [`FolderStore`](super::folder::FolderStore)
-/// keeps them in a folder, [`MemoryStore`](super::memory::MemoryStore) in memory; a program may keep them anywhere else.
+/// Keeps solutions, and tiles of levels if it [wants](SolutionStore::keeps_tiles), for later runs and other sessions:
+/// bytes under a key. [`FolderStore`](super::folder::FolderStore) keeps them in a folder,
+/// [`MemoryStore`](super::memory::MemoryStore) in memory; a program may keep them anywhere else.
 ///
 /// A [`Session`](crate::Session) looks for a solution before it solves, and stores one after it has solved. A store may
 /// forget entries at any time and may be shared by any number of sessions and processes; its methods are called from
 /// several threads at once.
 ///
-/// A store cannot change terrain. Each entry contains its key and checksums of all its bytes, and a session verifies them
-/// before it uses the entry, so whatever a store returns is either the solution or recognised as damaged. If an entry is
-/// missing or damaged or the store fails, the session solves instead; [`Session::store_failure`](crate::Session::store_failure)
-/// tells why. If an entry is left in the store to save memory and can no longer be read while it is used, the request ends
-/// with an error.
+/// A store cannot change terrain. Each entry contains its key and checksums of all its bytes, and a session verifies
+/// them before it uses the entry, so whatever a store returns is either the solution or recognised as damaged. If an
+/// entry is missing or damaged or the store fails, the session solves instead;
+/// [`Session::store_failure`](crate::Session::store_failure) tells why. If an entry is left in the store to save memory
+/// and can no longer be read while it is used, the request ends with an error.
 ///
 /// ```
 /// use orogen_engine::store::solution_store::{Entry, EntryKey, SolutionStore};
@@ -64,7 +65,8 @@ use std::time::Duration;
 ///
 /// let objects = Arc::new(Objects::default());
 /// let mut recipe = Recipe::new(WorldSpec::default().with_size(Some([2000.0, 2000.0])).with_cell(20.0));
-/// recipe.add("noise", Fbm::default()).add("land", Normalise { source: "noise".into(), low: 0.0, high: 900.0, ..Normalise::default() });
+/// let land = Normalise { source: "noise".into(), low: 0.0, high: 900.0, ..Normalise::default() };
+/// recipe.add("noise", Fbm::default()).add("land", land);
 /// recipe.output("height", "land");
 /// let make = || -> orogen_engine::Result<u64> {
 ///     let session = Session::new(Options { store: Some(objects.clone()), ..Options::default() })?;
@@ -83,15 +85,15 @@ pub trait SolutionStore: Send + Sync + fmt::Debug {
     /// If the store fails. The session then solves.
     fn get(&self, key: &EntryKey) -> io::Result<Option<Box<dyn ReadAt>>>;
 
-    /// Stores an entry under `key`, atomically: a reader finds all of it or none of it. An entry that is there already is
-    /// replaced. A store that has no room for it may ignore it.
+    /// Stores an entry under `key`, atomically: a reader finds all of it or none of it. An entry that is there already
+    /// is replaced. A store that has no room for it may ignore it.
     ///
     /// # Errors
     /// If the store fails. The session keeps the solution in memory all the same.
     fn put(&self, key: &EntryKey, entry: &Entry) -> io::Result<()>;
 
-    /// Whether there is an entry under `key`, intact or not. It is asked for estimates of work, so it should be quick; a
-    /// store that cannot tell returns `false`.
+    /// Whether there is an entry under `key`, intact or not. It is asked for estimates of work, so it should be quick;
+    /// a store that cannot tell returns `false`.
     fn contains(&self, key: &EntryKey) -> bool;
 
     /// Removes a damaged entry. It is no error if there is none.
@@ -100,15 +102,15 @@ pub trait SolutionStore: Send + Sync + fmt::Debug {
     /// If the store fails.
     fn remove(&self, key: &EntryKey) -> io::Result<()>;
 
-    /// Solutions whose estimated time on one core is less are not stored. By default all are stored. Tiles of levels are stored if those of
-    /// a request take about a tenth of this time or more.
+    /// Solutions whose estimated time on one core is less are not stored. By default all are stored. Tiles of levels
+    /// are stored if those of a request take about a tenth of this time or more.
     fn slower_than(&self) -> Duration {
         Duration::ZERO
     }
 
-    /// Whether tiles of the levels of [levelled ops](orogen_ops::op::Levelled) are stored, too. A tile has some hundred KiB and takes
-    /// milliseconds to make, and a request looks for some ten of them, one after the other: a store that is slower than a disk
-    /// should not keep them. By default it does not.
+    /// Whether tiles of the levels of [levelled ops](orogen_ops::op::Levelled) are stored, too. A tile has some hundred
+    /// KiB and takes milliseconds to make, and a request looks for some ten of them, one after the other: a store that
+    /// is slower than a disk should not keep them. By default it does not.
     fn keeps_tiles(&self) -> bool {
         false
     }

@@ -55,8 +55,8 @@ pub struct Making<'a> {
 }
 
 impl Making<'_> {
-    /// Stores the solution, also for later runs if it is slow: `work` is the approximate time of making it on one core, in
-    /// nanoseconds.
+    /// Stores the solution, also for later runs if it is slow: `work` is the approximate time of making it on one core,
+    /// in nanoseconds.
     pub fn finish(self, made: Solution, work: f64) -> Arc<Solution> {
         if let Some(backing) = self.store.backing.as_deref()
             && work >= backing.slower_than().as_nanos() as f64
@@ -82,8 +82,8 @@ impl Drop for Making<'_> {
 const PATIENCE: Duration = Duration::from_millis(20);
 
 impl Store {
-    /// A store backed by another, with `scratch` for data that does not fit in memory: by default that of the store behind
-    /// it, otherwise the system's temporary folder.
+    /// A store backed by another, with `scratch` for data that does not fit in memory: by default that of the store
+    /// behind it, otherwise the system's temporary folder.
     pub fn new(backing: Option<Arc<dyn SolutionStore>>, scratch: Option<PathBuf>) -> Store {
         let behind = || backing.as_deref().and_then(SolutionStore::scratch_folder).map(Path::to_path_buf);
         let scratch = scratch.or_else(behind).unwrap_or_else(fs::temporary_folder);

@@ -8,8 +8,8 @@ use orogen_grid::error::{Error, Result};
 use orogen_grid::grid::Grid;
 use orogen_io::file;
 
-/// The tiles of a request are stored if they take longer than this part of the time below which solutions are not stored.
-/// Many requests share a tile; few share a solution.
+/// The tiles of a request are stored if they take longer than this part of the time below which solutions are not
+/// stored. Many requests share a tile; few share a solution.
 const PART: f64 = 0.1;
 
 impl Store {
@@ -24,8 +24,8 @@ impl Store {
         self.backing().is_some_and(|backing| backing.keeps_tiles() && is_slow(backing))
     }
 
-    /// The planes of a tile from the store behind this one, verified. If it fails or has a damaged entry, the tile is made
-    /// instead.
+    /// The planes of a tile from the store behind this one, verified. If it fails or has a damaged entry, the tile is
+    /// made instead.
     pub fn find_tile(&self, tile: &LevelTile) -> Option<Vec<Grid>> {
         let found = look_up(self.backing()?, tile);
         found.unwrap_or_else(|error| {

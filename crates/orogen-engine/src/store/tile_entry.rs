@@ -1,7 +1,8 @@
 //! The file format of a tile of a level.
 //!
-//! A header (magic, key, level, number of planes, window, a checksum), the samples of one plane after the other, and their
-//! checksum. Numbers are little-endian. The length follows from the header, so that a truncated file is detected at once.
+//! A header (magic, key, level, number of planes, window, a checksum), the samples of one plane after the other, and
+//! their checksum. Numbers are little-endian. The length follows from the header, so that a truncated file is detected
+//! at once.
 
 use super::entry_key::EntryKey;
 use super::level_tile::LevelTile;

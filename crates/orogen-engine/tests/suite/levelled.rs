@@ -44,7 +44,8 @@ ranges = "ranges"
     World::open(Recipe::parse(&text, "ranges").unwrap()).unwrap()
 }
 
-/// The shift of `land` against `reference`, in samples: the least squares fit of reference - shift * gradient, with a factor and an offset of heights.
+/// The shift of `land` against `reference`, in samples: the least squares fit of reference - shift * gradient, with a
+/// factor and an offset of heights.
 fn shift(land: &Grid, reference: &Grid) -> [f64; 2] {
     let (width, height) = (land.width(), land.height());
     // Sums for the normal equations of the unknowns shift east, shift south, factor and offset.

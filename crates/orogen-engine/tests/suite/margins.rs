@@ -28,7 +28,8 @@ fn set(node: &mut Node, name: &str, value: &Value) {
     }
 }
 
-/// A solver of land whose origin is `shift` cells from the world's origin. Choices that depend on a sample's number are off.
+/// A solver of land whose origin is `shift` cells from the world's origin. Choices that depend on a sample's number are
+/// off.
 fn recipe_of(node: &Node, world: WorldSpec, shift: usize) -> Recipe {
     let mut node = node.clone();
     let metres = shift as f64 * CELL;

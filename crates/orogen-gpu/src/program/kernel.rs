@@ -1,4 +1,5 @@
-//! The text of a kernel: a part of a program as one shader, and the words that it reads. The text depends on the structure of the part alone.
+//! The text of a kernel: a part of a program as one shader, and the words that it reads. The text depends on the
+//! structure of the part alone.
 
 use super::functions;
 use crate::job::GROUP;
@@ -52,8 +53,8 @@ pub(crate) fn parts(program: &LoweredProgram, most: usize) -> Vec<Range<usize>> 
     parts
 }
 
-/// The kernel of a part. `kept` are the values of the part that later parts or the outputs need; `copies` says of each instruction whether it reads its grid as
-/// it is, because the grid has the samples of the block.
+/// The kernel of a part. `kept` are the values of the part that later parts or the outputs need; `copies` says of each
+/// instruction whether it reads its grid as it is, because the grid has the samples of the block.
 pub(crate) fn kernel(program: &LoweredProgram, part: Range<usize>, kept: &[usize], copies: &[bool]) -> Kernel {
     let mut writer = Writer {
         program,

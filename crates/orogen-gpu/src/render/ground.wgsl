@@ -192,7 +192,7 @@ fn desert(site: Site, shape: vec4<f32>, noise: vec4<f32>) -> Coat {
     return Coat(blend(color, SCRUB, min(green, 0.9)), 0.07 + 0.26 * bare);
 }
 
-// The colour of a block's side at a depth below the ground, in metres. `along` is a position along the side.
+// The color of a block's side at a depth below the ground, in metres. `along` is a position along the side.
 fn section(along: f32, height: f32, depth: f32, thickness: f32) -> vec3<f32> {
     let wave = plain_grain(along * value(CELL) / thickness * 0.25, 0.7, 7u);
     let at = height / thickness + 0.35 * wave;

@@ -1,7 +1,8 @@
 //! Rendered pictures of the land on a graphics card.
 //!
-//! The scene is that of `orogen render`: a [`Scene`], whose skylight the card can compute, is drawn by a compute shader instead of [`Scene::paint`]. The shader has a
-//! file per concern like that renderer, and takes colors, tables and all numbers of the scene from it. Pictures look the same, but are not equal to the last bit.
+//! The scene is that of `orogen render`: a [`Scene`], whose skylight the card can compute, is drawn by a compute shader
+//! instead of [`Scene::paint`]. The shader has a file per concern like that renderer, and takes colors, tables and all
+//! numbers of the scene from it. Pictures look the same, but are not equal to the last bit.
 
 mod shader;
 mod skylight;
@@ -29,8 +30,8 @@ const RAYS: usize = 1 << 20;
 /// Maximum number of pixels that are copied back at once.
 const PIXELS: usize = 1 << 22;
 
-/// Renders some rows of a picture of `size` pixels as sRGB bytes, three per pixel, like [`Scene::paint`]. `is_cancelled` is asked before each part of the work, with
-/// the finished share of it; `Ok(None)` if it was cancelled.
+/// Renders some rows of a picture of `size` pixels as sRGB bytes, three per pixel, like [`Scene::paint`].
+/// `is_cancelled` is asked before each part of the work, with the finished share of it; `Ok(None)` if it was cancelled.
 ///
 /// # Errors
 /// If the scene does not fit into a buffer of the card, or the card fails. The processor can then paint.

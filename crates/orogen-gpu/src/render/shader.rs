@@ -95,8 +95,8 @@ impl<'a> Encoded<'a> {
 /// The light of pictures for shaders of other programs: that of the sky, of haze, ground and water, and tone mapping.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LightShader {
-    /// Functions in WGSL; the text is the same for all light. What includes it defines `fn word(at: u32) -> u32`, a word, and
-    /// `fn triple_of(start: u32) -> vec3<f32>`, three successive numbers of the tables.
+    /// Functions in WGSL; the text is the same for all light. What includes it defines `fn word(at: u32) -> u32`, a
+    /// word, and `fn triple_of(start: u32) -> vec3<f32>`, three successive numbers of the tables.
     pub text: String,
     /// The words.
     pub words: Vec<u32>,

@@ -21,7 +21,7 @@ fn sky_light(along: vec3<f32>) -> vec3<f32> {
 // The light from a direction, including the sun's disc.
 fn sky_seen(along: vec3<f32>) -> vec3<f32> {
     let sky = sky_light(along);
-    // 1 - cos of the angle to the centre of the sun, relative to that of its limb; from the chord, because the cosine is too near to 1.
+    // 1 - cos of the angle to the center of the sun, relative to that of its limb; from the chord, because the cosine is too near to 1.
     let chord = along - triple(SUN);
     let away = 0.5 * dot(chord, chord) / SUN_HALF_SQUARE;
     if (away >= 1.5 || along.z < 0.0) {

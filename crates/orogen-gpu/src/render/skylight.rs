@@ -8,7 +8,8 @@ use orogen_output::render::skylight::{ENTRIES, Shed, SkylightInput};
 /// Invocations of a workgroup.
 const INVOCATIONS: u32 = GROUP * GROUP;
 
-/// Lines in one direction that cross every column of the land: the sweep's columns are the land's rows where the direction is nearer to north or south.
+/// Lines in one direction that cross every column of the land: the sweep's columns are the land's rows where the
+/// direction is nearer to north or south.
 struct Sweep {
     /// Number of columns of the sweep, and of rows.
     length: usize,
@@ -38,7 +39,8 @@ impl Sweep {
     }
 }
 
-/// Computes the light of the sky on every sample of the land. `is_cancelled` is asked between parts of the work; `Ok(None)` if it was cancelled.
+/// Computes the light of the sky on every sample of the land. `is_cancelled` is asked between parts of the work;
+/// `Ok(None)` if it was cancelled.
 ///
 /// # Errors
 /// If the land does not fit into a buffer of the card, or the card fails.

@@ -1,7 +1,7 @@
 // Light of the sky on each sample, with the horizon in every direction.
 //
 // For each direction, two shaders run: with `frame.step` 0 each invocation follows a line across the land and keeps the convex hull of the ground passed; with 1 each
-// invocation adds the light above the horizon of a sample. Lines of one direction are next to each other in memory, so that neighbouring invocations read neighbouring
+// invocation adds the light above the horizon of a sample. Lines of one direction are next to each other in memory, so that neighboring invocations read neighboring
 // words. The CPU twin is `orogen-output/src/render/skylight.rs`.
 
 // Words of a dispatch.
@@ -149,7 +149,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_
     if (id.x >= frame.width || id.y >= frame.height) {
         return;
     }
-    // Neighbouring invocations take neighbouring samples of the land.
+    // Neighboring invocations take neighboring samples of the land.
     if (word(STRIDES) == 1u) {
         add_light(i32(id.x), i32(id.y));
     } else {

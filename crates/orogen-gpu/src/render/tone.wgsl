@@ -1,4 +1,4 @@
-// Tone mapping: from light to displayable colours.
+// Tone mapping: from light to displayable colors.
 
 fn tone_map(light: vec3<f32>) -> vec3<f32> {
     let c = max(light, vec3<f32>(0.0));

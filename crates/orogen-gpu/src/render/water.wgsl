@@ -1,4 +1,4 @@
-// Water: reflection, and colour by depth.
+// Water: reflection, and color by depth.
 
 fn slanted(cosine: f32) -> f32 {
     return 1.0 / sqrt(max(1.0 - BENDS * (1.0 - cosine * cosine), 0.1));
@@ -14,7 +14,7 @@ fn water_body(is_sea: bool, depth: f32, seen: f32, lit: f32) -> vec3<f32> {
     return bottom * left + deep * (1.0 - left);
 }
 
-// The colour of a section through water, at a depth in metres.
+// The color of a section through water, at a depth in metres.
 fn water_section(depth: f32) -> vec3<f32> {
     let left = exp(-triple(SEA_TAKES) * depth * 0.12);
     return DARK + (SHALLOW - DARK) * max(left, vec3<f32>(left.y * 0.6));

@@ -15,7 +15,8 @@ enum Budget {
     Close,
     /// The same, except for this share of the samples, which are beside a threshold.
     Labels(f64),
-    /// Mean and standard deviation within 2 % of the processor's standard deviation; this share of the samples may be farther than 1e-4 of the range.
+    /// Mean and standard deviation within 2 % of the processor's standard deviation; this share of the samples may be
+    /// farther than 1e-4 of the range.
     Chaotic(f64),
 }
 

@@ -21,7 +21,8 @@ use std::time::Instant;
 struct Difference {
     /// Share of the samples with another receiver.
     receivers: f64,
-    /// Heights: the worst difference and the root of the mean square, in metres, and the share of samples that are off by more than 1e-4 of the range.
+    /// Heights: the worst difference and the root of the mean square, in metres, and the share of samples that are off
+    /// by more than 1e-4 of the range.
     worst: f64,
     rms: f64,
     far: f64,
@@ -83,8 +84,9 @@ impl Totals {
         sums.iter_mut().zip(shares).for_each(|(sum, share)| *sum += share * samples as f64);
     }
 
-    /// Nearly all samples have the same receiver and height. A rounding error may decide between two ways, and with it about all that is upstream: if the rock of
-    /// level 2 moves by 1e-6, the processor's own level 3 of `alpine` has other heights in 5e-3 of the samples and other receivers in 7e-5.
+    /// Nearly all samples have the same receiver and height. A rounding error may decide between two ways, and with it
+    /// about all that is upstream: if the rock of level 2 moves by 1e-6, the processor's own level 3 of `alpine` has
+    /// other heights in 5e-3 of the samples and other receivers in 7e-5.
     fn check(&self) {
         for (level, [samples, receivers, far, areas, water]) in &self.0 {
             let [receivers, far, areas, water] = [receivers, far, areas, water].map(|sum| sum / samples);

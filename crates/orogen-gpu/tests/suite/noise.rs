@@ -36,7 +36,8 @@ struct Outliers {
 const SMOOTH: Outliers = Outliers { share: 0.0, most: 0.0 };
 /// Values jump between cells, so a sample may be on the other side.
 const JUMPS: Outliers = Outliers { share: 1e-3, most: 2.0 };
-/// Displacements by the steep slopes of simplex noise grow from octave to octave. On the processor, too, such noise changes by 2e-3 over 5e-8 wavelengths.
+/// Displacements by the steep slopes of simplex noise grow from octave to octave. On the processor, too, such noise
+/// changes by 2e-3 over 5e-8 wavelengths.
 const STEEP: Outliers = Outliers { share: 5e-2, most: 5e-3 };
 
 macro_rules! noise {
@@ -195,7 +196,8 @@ fn windows() -> Vec<Window> {
     ]
 }
 
-/// The text of a kernel that writes the samples of a function from `frame.step` on. Before it are the displacements and the function's inputs.
+/// The text of a kernel that writes the samples of a function from `frame.step` on. Before it are the displacements and
+/// the function's inputs.
 fn kernel(shader: &Shader, inputs: usize, is_displaced: bool) -> String {
     let (name, code) = shader.function(is_displaced);
     let inputs: String = (0..inputs).map(|i| format!(", samples[at + {}u * count]", 2 + i)).collect();
@@ -232,7 +234,8 @@ fn computed(gpu: &Gpu, noises: &[Noise], window: &Window, inputs: &[Vec<f32>]) -
     job.run(gpu, || false).unwrap().unwrap()
 }
 
-/// Compares functions in a window; returns the greatest difference without outliers and without noises that are [`STEEP`], and whose it is.
+/// Compares functions in a window; returns the greatest difference without outliers and without noises that are
+/// [`STEEP`], and whose it is.
 fn compare(gpu: &Gpu, noises: &[Noise], window: &Window, inputs: &[Vec<f32>]) -> (f32, String) {
     let made = computed(gpu, noises, window, inputs);
     let [x, y] = window.points();

@@ -20,7 +20,8 @@ const SIZE: [usize; 2] = [320, 200];
 /// The least similarity of two pictures of a scene.
 const SIMILAR: f64 = 0.999;
 
-/// The most mean difference of their bytes. A coefficient that only one of the two renderers has makes several times as much.
+/// The most mean difference of their bytes. A coefficient that only one of the two renderers has makes several times as
+/// much.
 const DIFFERENT: f64 = 0.01;
 
 const ALL: View = View::Around { azimuth: 200.0, elevation: 24.0, distance: None };
@@ -72,8 +73,9 @@ fn luminance(bytes: &[u8]) -> Vec<f64> {
         .collect()
 }
 
-/// The mean structural similarity of two pictures over all windows of 8 x 8 pixels, or over the whole picture if it is smaller (Z. Wang, A. C. Bovik, H. R. Sheikh,
-/// E. P. Simoncelli, "Image quality assessment: from error visibility to structural similarity", 2004).
+/// The mean structural similarity of two pictures over all windows of 8 x 8 pixels, or over the whole picture if it is
+/// smaller (Z. Wang, A. C. Bovik, H. R. Sheikh, E. P. Simoncelli, "Image quality assessment: from error visibility to
+/// structural similarity", 2004).
 fn ssim(one: &[f64], other: &[f64], [width, height]: [usize; 2]) -> f64 {
     let (c1, c2) = (0.01f64 * 255.0 * 0.01 * 255.0, 0.03f64 * 255.0 * 0.03 * 255.0);
     let [wide, high] = [width, height].map(|side| side.min(8));

@@ -91,7 +91,8 @@ fn filled_ground_lakes_and_heights_above_drainage_are_those_of_the_processor() {
                     if worst > 0.0 {
                         println!("{case}");
                     }
-                    // In closed flats water takes other ways than on the processor: so do streams, and ground that is raised along them.
+                    // In closed flats water takes other ways than on the processor: so do streams, and ground that is
+                    // raised along them.
                     let most = match (land, op) {
                         ("steps", "height-above-drainage") => 1.0,
                         ("steps", _) => 1e-3,
@@ -128,7 +129,8 @@ fn drainage_is_that_of_the_processor() {
                 [0, 1, 2, 3].map(same)
             );
             assert!(differences(&expected[4], &made[4])[1] <= 1e-4);
-            // On level ground the processor's gradients lead to the nearest outlet, and the card's spanning tree to any.
+            // On level ground the processor's gradients lead to the nearest outlet, and the card's spanning tree to
+            // any.
             if land == "hills" || land == "holes" {
                 assert!((0..4).all(|k| same(k) > 0.999), "{land}");
             }
@@ -208,7 +210,8 @@ fn a_step_of_stream_power_is_that_of_the_processor() {
                     assert!(after.is_finite() || outlets.at(cell));
                     assert!(!outlets.at(cell) || before.to_bits() == after.to_bits(), "outlets keep their heights");
                 }
-                // Where slopes are at the limit, several neighbours are equally low, and the last digits choose. On level ground water takes other ways.
+                // Where slopes are at the limit, several neighbors are equally low, and the last digits choose. On
+                // level ground water takes other ways.
                 if land == "hills" || land == "holes" {
                     assert!(found[0] < 2e-3 && found[2] < 1e-2);
                 }
@@ -217,7 +220,8 @@ fn a_step_of_stream_power_is_that_of_the_processor() {
     }
 }
 
-/// The inputs of the solvers of the preset `alpine`: heights before the first of them, and the factors of erodibility and uplift, over a part of their domain.
+/// The inputs of the solvers of the preset `alpine`: heights before the first of them, and the factors of erodibility
+/// and uplift, over a part of their domain.
 fn alpine(side: usize) -> [Grid; 3] {
     // The domain has the world's 129 samples, 104 of the margin on each side, and one beyond.
     let window = Window::new(side, side, 480.0).at(-105, -105);

@@ -12,7 +12,7 @@ use crate::random::Random;
 pub struct Ridges {
     /// Seed of the random choices.
     pub seed: u64,
-    /// Maximum distance from the centre, as a share of the distance to the edges.
+    /// Maximum distance from the center, as a share of the distance to the edges.
     pub reach: f64,
     /// The share of cells that ridges cover, at every scale.
     pub density: f64,
@@ -44,7 +44,7 @@ const COARSEST: usize = 12;
 /// Heights from 0 to about 1 over a grid of at least `width` x `height` samples: the size of that grid, and the heights
 /// row by row.
 ///
-/// On the coarsest grid an aggregate grows from the centre. Each finer grid takes it over with small random bends (see
+/// On the coarsest grid an aggregate grows from the center. Each finer grid takes it over with small random bends (see
 /// [`Tree::refined`]) and continues its growth. At every scale the height of a ridge depends on the distance d to the
 /// farthest tip that grew on it: 1 - 1 / (1 + d / taper). The heights of all scales are added; those of coarser scales
 /// are smoothed at each refinement. Costs O(cells).
@@ -104,12 +104,12 @@ pub fn heights(width: usize, height: usize, ridges: &Ridges, progress: &Progress
     Ok((across, down, map))
 }
 
-/// A grid with twice as many cells along each side, by bilinear interpolation between cell centres.
+/// A grid with twice as many cells along each side, by bilinear interpolation between cell centers.
 fn doubled(map: &[f32], across: usize, finer_across: usize, finer_down: usize) -> Vec<f32> {
     let down = map.len() / across;
     let mut finer = vec![0.0f32; finer_across * finer_down];
     parallel::for_each(finer.chunks_mut(finer_across).enumerate(), |(j, row)| {
-        // The centre of a fine cell is a quarter of a coarse cell away from the centre of its coarse cell.
+        // The center of a fine cell is a quarter of a coarse cell away from the center of its coarse cell.
         let near = (j / 2).min(down - 1);
         let far = if j % 2 == 0 { near.max(1) - 1 } else { (near + 1).min(down - 1) };
         let (near, far) = (&map[near * across..(near + 1) * across], &map[far * across..(far + 1) * across]);
@@ -123,7 +123,7 @@ fn doubled(map: &[f32], across: usize, finer_across: usize, finer_down: usize) -
     finer
 }
 
-/// Mixes each cell with its neighbours: weights 1, 2, 1 along both axes.
+/// Mixes each cell with its neighbors: weights 1, 2, 1 along both axes.
 fn blurred(map: &[f32], across: usize) -> Vec<f32> {
     let down = map.len() / across;
     let mut rows = vec![0.0f32; map.len()];

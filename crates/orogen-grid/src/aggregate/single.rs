@@ -2,10 +2,10 @@
 
 use crate::random::Random;
 
-/// Grows an aggregate of `members` cells from the centre of a square of `side` cells, with walkers that start far away.
+/// Grows an aggregate of `members` cells from the center of a square of `side` cells, with walkers that start far away.
 /// Returns whether each cell belongs to it. Growth ends early if it comes near the edge.
 ///
-/// Walkers step to one of the four neighbours and stick beside a cell (Witten and Sander 1981). A walker farther away
+/// Walkers step to one of the four neighbors and stick beside a cell (Witten and Sander 1981). A walker farther away
 /// than twice the aggregate's radius is dropped. The number of cells grows as the radius to the power of 1.71.
 #[must_use]
 pub fn aggregate(side: usize, members: usize, seed: u64) -> Vec<bool> {

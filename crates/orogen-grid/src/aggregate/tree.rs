@@ -1,11 +1,11 @@
-//! An aggregate on a grid, as a tree of cells: each cell except the first is attached to a neighbour.
+//! An aggregate on a grid, as a tree of cells: each cell except the first is attached to a neighbor.
 
 use crate::checks::{never, now_and_then};
 use crate::error::Result;
 use crate::progress::Progress;
 use crate::random::Random;
 
-/// Columns east and rows south to the eight neighbours, axial ones first.
+/// Columns east and rows south to the eight neighbors, axial ones first.
 const AROUND: [(i64, i64); 8] = [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1)];
 
 const FREE: u32 = u32::MAX;
@@ -27,12 +27,12 @@ pub struct Tree {
     cells: Vec<u32>,
     /// The member that each is attached to, which is older; none for the first ones.
     parents: Vec<Option<u32>>,
-    /// Limit of growth: an ellipse around the centre, whose axes are this share of the grid's.
+    /// Limit of growth: an ellipse around the center, whose axes are this share of the grid's.
     reach: f64,
 }
 
 impl Tree {
-    /// An empty tree that grows at most `reach` times half the grid from the centre.
+    /// An empty tree that grows at most `reach` times half the grid from the center.
     #[must_use]
     pub fn new(width: usize, height: usize, reach: f64) -> Tree {
         Tree { width, height, members: vec![FREE; width * height], cells: Vec::new(), parents: Vec::new(), reach }
@@ -88,7 +88,7 @@ impl Tree {
         self.members[cell]
     }
 
-    /// A member in a neighbouring cell, including diagonal ones; random if there are several.
+    /// A member in a neighboring cell, including diagonal ones; random if there are several.
     fn beside(&self, i: i64, j: i64, random: &mut Random) -> Option<u32> {
         let mut found = [0; 8];
         let mut count = 0;
@@ -152,7 +152,7 @@ impl Tree {
 
     /// The same aggregate on a grid of `width` x `height` cells, about twice as many along each side. Every cell moves
     /// to a random one of its four subcells, and the branches between them bend. The first member, which must be the
-    /// central one, stays at the centre.
+    /// central one, stays at the center.
     pub fn refined(&self, width: usize, height: usize, random: &mut Random) -> Tree {
         let Ok(fine) = self.refined_checked(width, height, random, &never);
         fine
@@ -176,7 +176,7 @@ impl Tree {
             let end = (2 * i + (chance & 1) as i64, 2 * j + (chance >> 1 & 1) as i64);
             let end = (end.0.min(width as i64 - 1), end.1.min(height as i64 - 1));
             let member = match parent {
-                // At the centre, which is within the limit of growth even if that is small: walkers have to find it.
+                // At the center, which is within the limit of growth even if that is small: walkers have to find it.
                 None => fine.put(width as i64 / 2, height as i64 / 2, None),
                 Some(parent) => {
                     let start = places[*parent as usize];

@@ -1,6 +1,6 @@
 //! Curvature of the ground.
 //!
-//! Over the 3 x 3 neighbourhood a b c / d e f / g h i of cells of c metres, a quadric is fitted (Zevenbergen and Thorne,
+//! Over the 3 x 3 neighborhood a b c / d e f / g h i of cells of c metres, a quadric is fitted (Zevenbergen and Thorne,
 //! "Quantitative analysis of land surface topography", 1987):
 //!
 //! ```text
@@ -43,7 +43,7 @@ pub fn curvature(grid: &Grid, kind: Curvature) -> Grid {
     out
 }
 
-/// The curvature at the centre of nine heights `c` metres apart, rows from the north; NaN where one is not finite.
+/// The curvature at the center of nine heights `c` metres apart, rows from the north; NaN where one is not finite.
 #[must_use]
 pub fn bend(z: [[f64; 3]; 3], c: f64, kind: Curvature) -> f32 {
     let r = (z[1][0] - 2.0 * z[1][1] + z[1][2]) / (c * c);

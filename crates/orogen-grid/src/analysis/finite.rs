@@ -44,7 +44,7 @@ impl FiniteCount {
             missing => {
                 let share = percent(missing, samples);
                 Ok(Some(format!(
-                    "{missing} of {samples} samples of {what} ({share}) are NaN or infinite; summaries and colours ignore them"
+                    "{missing} of {samples} samples of {what} ({share}) are NaN or infinite; summaries and colors ignore them"
                 )))
             }
         }

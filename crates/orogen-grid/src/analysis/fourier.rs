@@ -22,9 +22,9 @@ impl Fourier {
         Some(Fourier { turns: (0..count / 2).map(turn).collect(), count })
     }
 
-    /// Transforms `values` (real and imaginary parts) in place with the algorithm of Cooley and Tukey (1965): X(k) = sum
-    /// over n of x(n) exp(-2 pi i k n / N). Does nothing if their number is not that of the transform. The order of the
-    /// sums is fixed, so the bits are the same on every machine.
+    /// Transforms `values` (real and imaginary parts) in place with the algorithm of Cooley and Tukey (1965): X(k) =
+    /// sum over n of x(n) exp(-2 pi i k n / N). Does nothing if their number is not that of the transform. The order of
+    /// the sums is fixed, so the bits are the same on every machine.
     pub fn transform(&self, values: &mut [[f64; 2]]) {
         let count = values.len();
         if count != self.count || count == 1 {

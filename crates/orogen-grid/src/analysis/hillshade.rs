@@ -1,8 +1,8 @@
 //! Hillshade: the illumination of slopes by a distant light.
 //!
-//! For the light's azimuth a (degrees clockwise from north) and altitude, z the zenith angle, s the slope and b its aspect
-//! (Horn 1981): `cos z cos s + sin z sin s cos(a - b)`, clamped to 0. With the gradient (p, q) and the z factor k this is the
-//! light's direction times the surface's normal:
+//! For the light's azimuth a (degrees clockwise from north) and altitude, z the zenith angle, s the slope and b its
+//! aspect (Horn 1981): `cos z cos s + sin z sin s cos(a - b)`, clamped to 0. With the gradient (p, q) and the z factor
+//! k this is the light's direction times the surface's normal:
 //!
 //! ```text
 //! (L_up - k (p L_east + q L_north)) / sqrt(1 + k^2 (p^2 + q^2))

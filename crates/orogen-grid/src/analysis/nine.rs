@@ -1,4 +1,4 @@
-//! Functions of a sample and its eight neighbours.
+//! Functions of a sample and its eight neighbors.
 
 use crate::parallel;
 

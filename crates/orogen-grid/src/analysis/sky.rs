@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn shares_are_the_angles_halfway_to_the_neighbours() {
+    fn shares_are_the_angles_halfway_to_the_neighbors() {
         let (looks, shares) = looks(32, 2.0);
         assert_eq!(shares.len(), 16);
         assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-12);

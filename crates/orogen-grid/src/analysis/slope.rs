@@ -1,7 +1,7 @@
 //! Slopes by Horn's method.
 //!
-//! Over the 3 x 3 neighbourhood a b c / d e f / g h i of cells of c metres (B. K. P. Horn, "Hill shading and the reflectance
-//! map", Proceedings of the IEEE 69(1), 1981):
+//! Over the 3 x 3 neighborhood a b c / d e f / g h i of cells of c metres (B. K. P. Horn, "Hill shading and the
+//! reflectance map", Proceedings of the IEEE 69(1), 1981):
 //!
 //! ```text
 //! p = ((c - a) + 2 (f - d) + (i - g)) / 8c      towards the east
@@ -11,8 +11,8 @@
 //! Every function here takes a grid with one sample more on each side than it returns, so that a tile equals the crop
 //! of the whole. At the edge of a world, [`extended`] adds that border.
 //!
-//! **Missing samples.** The slope of a sample that is not finite is NaN. A neighbour that is not finite counts as level
-//! with the centre.
+//! **Missing samples.** The slope of a sample that is not finite is NaN. A neighbor that is not finite counts as level
+//! with the center.
 
 use crate::grid::{Grid, Window};
 
@@ -47,7 +47,7 @@ pub fn gradients_between(rows: [&[f32]; 3], cell: f64, mut each: impl FnMut(usiz
     let [above, here, below] = rows;
     let triples = above.windows(3).zip(here.windows(3)).zip(below.windows(3));
     for (i, ((n, m), s)) in triples.enumerate() {
-        // Differences first: neighbouring heights are similar, so little precision is lost far above zero.
+        // Differences first: neighboring heights are similar, so little precision is lost far above zero.
         let east = ((n[2] - n[0]) + 2.0 * (m[2] - m[0]) + (s[2] - s[0])) * scale;
         let north = ((n[0] - s[0]) + 2.0 * (n[1] - s[1]) + (n[2] - s[2])) * scale;
         let gradient = Gradient { east, north };
@@ -214,12 +214,12 @@ mod tests {
     }
 
     #[test]
-    fn missing_samples_have_no_slope_and_level_neighbours() {
+    fn missing_samples_have_no_slope_and_level_neighbors() {
         let mut grid = grid(Window::new(5, 5, 1.0), |x, _| x);
         grid.row_mut(2)[2] = f32::NAN;
         let steep = steepness(&grid);
         assert!(steep[(1, 1)].is_nan());
-        // East of the hole: (c - a) + 2 (f - d) + (i - g) = 2 + 2 (4 - 3) + 2 with the hole level with its neighbour.
+        // East of the hole: (c - a) + 2 (f - d) + (i - g) = 2 + 2 (4 - 3) + 2 with the hole level with its neighbor.
         assert!((steep[(2, 1)] - 6.0 / 8.0).abs() < 1e-6);
         grid.row_mut(2)[2] = f32::INFINITY;
         assert!(steepness(&grid)[(1, 1)].is_nan());

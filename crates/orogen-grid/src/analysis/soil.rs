@@ -38,8 +38,8 @@ pub struct Soil {
 }
 
 impl Default for Soil {
-    /// The defaults of the op `soil-depth`: production 7.7e-5, decay 0.43, creep 0.005, critical slope 1.25, density ratio 2, depth up to
-    /// 2 m.
+    /// The defaults of the op `soil-depth`: production 7.7e-5, decay 0.43, creep 0.005, critical slope 1.25, density
+    /// ratio 2, depth up to 2 m.
     fn default() -> Soil {
         Soil { production: 7.7e-5, decay: 0.43, creep: 0.005, critical_slope: 1.25, density_ratio: 2.0, deepest: 2.0 }
     }
@@ -76,7 +76,7 @@ impl Soil {
         if share >= 1.0 { f64::INFINITY.copysign(along) } else { self.creep * along / (1.0 - share) }
     }
 
-    /// The depth, in metres, at the centre of 3 x 3 heights `c` metres apart, rows from the north: from the fluxes
+    /// The depth, in metres, at the center of 3 x 3 heights `c` metres apart, rows from the north: from the fluxes
     /// through the four sides of its cell. 0 if a side is steeper than the critical slope. NaN if one of the nine
     /// heights is not finite.
     #[must_use]

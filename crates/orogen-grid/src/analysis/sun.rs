@@ -76,8 +76,9 @@ mod tests {
 
     #[test]
     fn the_sun_stands_where_almanacs_say() {
-        // Latitude, day, solar time; azimuth and elevation. Noon elevations are 90 - |latitude - declination|, declinations from the
-        // Astronomical Almanac's table of the sun (2023): 21 June +23.44, 21 December -23.44, 5 February -15.9, 6 August +16.6.
+        // Latitude, day, solar time; azimuth and elevation. Noon elevations are 90 - |latitude - declination|,
+        // declinations from the Astronomical Almanac's table of the sun (2023): 21 June +23.44, 21 December -23.44, 5
+        // February -15.9, 6 August +16.6.
         for (latitude, day, hour, azimuth, elevation) in [
             (47.0, 172, 12.0, 180.0, 66.44),
             (47.0, 355, 12.0, 180.0, 19.56),
@@ -89,8 +90,9 @@ mod tests {
             (0.0, 81, 6.0, 90.0, 0.0),
             (0.0, 81, 9.0, 90.0, 45.0),
             (0.0, 81, 15.0, 270.0, 45.0),
-            // J. A. Duffie, W. A. Beckman, "Solar Engineering of Thermal Processes", example 1.6.2: latitude 43, 13 February at
-            // 9:30, zenith angle 66.5 and azimuth 40.0 east of south; 1 July at 18:30, 79.6 and 112.0 west of south.
+            // J. A. Duffie, W. A. Beckman, "Solar Engineering of Thermal Processes", example 1.6.2: latitude 43, 13
+            // February at 9:30, zenith angle 66.5 and azimuth 40.0 east of south; 1 July at 18:30, 79.6 and 112.0 west
+            // of south.
             (43.0, 44, 9.5, 140.0, 23.5),
             (43.0, 182, 18.5, 292.0, 10.4),
         ] {

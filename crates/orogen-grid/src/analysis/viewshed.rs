@@ -57,7 +57,8 @@ pub const BEYOND: f32 = -1.0;
 /// Exact lines of sight (R3; Franklin and Ray, "Higher isn't necessarily better: visibility algorithms and
 /// experiments", 1994) from the eye to every sample. The ground is interpolated linearly between samples where a line
 /// crosses a column (or a row, whichever there are more of). Squares whose maximum cannot rise above the horizon so far
-/// are skipped, which does not change the result. There is no ground outside the grid: an observer there stands as high as its nearest sample. Holds 15 bytes per sample. Rows are computed in parallel.
+/// are skipped, which does not change the result. There is no ground outside the grid: an observer there stands as high
+/// as its nearest sample. Holds 15 bytes per sample. Rows are computed in parallel.
 ///
 /// # Errors
 /// The error of `check`, which is called repeatedly.
@@ -207,7 +208,8 @@ impl Sight {
         steepest
     }
 
-    /// The x at which a sight from outside the grid enters it; that of the eye from within. Nothing outside hides anything.
+    /// The x at which a sight from outside the grid enters it; that of the eye from within. Nothing outside hides
+    /// anything.
     fn entry(&self, slant: f64, ground: &MaxPyramid) -> f64 {
         let [x, y] = self.from;
         let [right, bottom] = [ground.levels[0].columns, ground.levels[0].rows].map(|samples| (samples - 1) as f64);

@@ -83,8 +83,9 @@ pub enum Tiles {
 /// The number of a place without a tile in a layer of tiles.
 pub const NONE: u32 = u32::MAX;
 
-/// Draws classes with tiles: for each class a layer of tile numbers, row-major, bottom to top, or one layer of wang tiles; [`NONE`] where a layer has no tile. Tiles
-/// below a full tile are left out. The same tiles at the same positions of the plane for any window, except beside sides at which the plane goes on.
+/// Draws classes with tiles: for each class a layer of tile numbers, row-major, bottom to top, or one layer of wang
+/// tiles; [`NONE`] where a layer has no tile. Tiles below a full tile are left out. The same tiles at the same
+/// positions of the plane for any window, except beside sides at which the plane goes on.
 ///
 /// Places for which there is no tile are left out: see [`Drawable::gaps`].
 #[must_use]

@@ -8,8 +8,8 @@ pub(super) fn hash([x, y]: [i64; 2], seed: u64) -> u64 {
     mix64(mix64(seed ^ (x as u64).wrapping_mul(STEP)) ^ (y as u64).wrapping_mul(0xD1B5_4A32_D192_ED03))
 }
 
-/// Terrain classes, row-major, with the position of the first in the plane, so that parts of a map are cleaned and drawn as the whole is.
-/// Beyond the sides of the window the nearest cell counts.
+/// Terrain classes, row-major, with the position of the first in the plane, so that parts of a map are cleaned and
+/// drawn as the whole is. Beyond the sides of the window the nearest cell counts.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Classes {
     /// Column of the first cell.
@@ -22,7 +22,8 @@ pub struct Classes {
 }
 
 impl Classes {
-    /// The classes of `width` x `height` cells from the cell (x, y). Classes that are missing at the end are 0, and those beyond it are left out.
+    /// The classes of `width` x `height` cells from the cell (x, y). Classes that are missing at the end are 0, and
+    /// those beyond it are left out.
     #[must_use]
     pub fn new([x, y]: [i64; 2], width: usize, height: usize, mut data: Vec<u8>) -> Classes {
         data.resize(width * height, 0);
@@ -70,7 +71,8 @@ impl Classes {
         }
     }
 
-    /// The part of `width` x `height` cells from the cell (x, y) in the plane. Cells outside the window have the class of the nearest in it.
+    /// The part of `width` x `height` cells from the cell (x, y) in the plane. Cells outside the window have the class
+    /// of the nearest in it.
     #[must_use]
     pub fn part(&self, [x, y]: [i64; 2], width: usize, height: usize) -> Classes {
         let rows = (0..height as i64)

@@ -1,14 +1,18 @@
-//! Clean-up: changes of classes where a tileset has no tile, for example at necks of one cell or where two areas touch at a corner only.
+//! Clean-up: changes of classes where a tileset has no tile, for example at necks of one cell or where two areas touch
+//! at a corner only.
 //!
-//! In each of a fixed number of rounds, every place without a tile proposes the change of one cell that leaves the fewest such places. Of
-//! proposals near each other the best is done, so each change has the effect that it was chosen for, and the number of places without a tile falls
-//! with every change. What is left after these rounds, in the middle of dense noise, is filled: for tiles of cells by blocks of 2 x 2 cells of one
-//! class, which the smallest common tilesets can draw; for tiles on corners by raising all corners of the tile to the class that lacks one.
+//! In each of a fixed number of rounds, every place without a tile proposes the change of one cell that leaves the
+//! fewest such places. Of proposals near each other the best is done, so each change has the effect that it was chosen
+//! for, and the number of places without a tile falls with every change. What is left after these rounds, in the middle
+//! of dense noise, is filled: for tiles of cells by blocks of 2 x 2 cells of one class, which the smallest common
+//! tilesets can draw; for tiles on corners by raising all corners of the tile to the class that lacks one.
 //!
-//! Wang tiles usually show some pairs of classes only. There, before all else and between the fills, a class that joins both is put between two that no tile
-//! shows together. Their fills give the corners or cells that a missing tile sees the class that most of them have.
+//! Wang tiles usually show some pairs of classes only. There, before all else and between the fills, a class that joins
+//! both is put between two that no tile shows together. Their fills give the corners or cells that a missing tile sees
+//! the class that most of them have.
 //!
-//! A round looks at a fixed distance, so a part of a map that is cleaned with its surroundings ([`HALO`]) is the part of the cleaned map.
+//! A round looks at a fixed distance, so a part of a map that is cleaned with its surroundings ([`HALO`]) is the part
+//! of the cleaned map.
 
 use std::collections::HashMap;
 
@@ -25,16 +29,16 @@ const BRIDGE_ROUNDS: usize = 6;
 /// Rounds of single changes.
 const ROUNDS: usize = 8;
 
-/// Rounds in which what is left is filled. In white noise each leaves a quarter of the places without a tile that there were before it, so that no place is
-/// left in millions of cells.
+/// Rounds in which what is left is filled. In white noise each leaves a quarter of the places without a tile that there
+/// were before it, so that no place is left in millions of cells.
 const FILL_ROUNDS: usize = 14;
 
-/// Proposals within this distance, in cells along either axis, exclude each other: a change affects tiles one cell away, which see one cell
-/// further.
+/// Proposals within this distance, in cells along either axis, exclude each other: a change affects tiles one cell
+/// away, which see one cell further.
 const APART: i64 = 3;
 
-/// How far a round of single changes looks: to proposals that exclude a change ([`APART`]), the places they come from (1), and what those see
-/// to choose (3).
+/// How far a round of single changes looks: to proposals that exclude a change ([`APART`]), the places they come from
+/// (1), and what those see to choose (3).
 const ROUND_HALO: usize = APART as usize + 4;
 
 /// How far a round of fills looks: to a tile that sees the block, and what it sees.
@@ -54,8 +58,8 @@ struct Proposal {
     class: u8,
 }
 
-/// Changes as few classes as it finds necessary for `drawable` to have a tile everywhere. Where that fails, the places remain, as
-/// [`Drawable::gaps`] lists them.
+/// Changes as few classes as it finds necessary for `drawable` to have a tile everywhere. Where that fails, the places
+/// remain, as [`Drawable::gaps`] lists them.
 ///
 /// # Errors
 /// If `progress` is cancelled.
@@ -207,8 +211,8 @@ fn best_change(
     best
 }
 
-/// The blocks of 2 x 2 cells, at even positions of the plane, that a place without a tile sees: all cells get the most frequent class of the block, or the lowest of
-/// those.
+/// The blocks of 2 x 2 cells, at even positions of the plane, that a place without a tile sees: all cells get the most
+/// frequent class of the block, or the lowest of those.
 fn blocks(classes: &Classes, drawable: &Drawable, gaps: &[Gap]) -> Vec<(i64, i64, u8)> {
     let mut corners: Vec<(i64, i64)> = gaps
         .iter()
@@ -264,7 +268,8 @@ fn lowest(mut changes: Vec<(i64, i64, u8)>) -> Vec<(i64, i64, u8)> {
     changes
 }
 
-/// The corners of tiles that are missing, raised to the class whose layer lacks them. Layers only grow by this, so that it ends.
+/// The corners of tiles that are missing, raised to the class whose layer lacks them. Layers only grow by this, so that
+/// it ends.
 fn raised(classes: &Classes, drawable: &Drawable, gaps: &[Gap]) -> Vec<(i64, i64, u8)> {
     let corners = gaps.iter().flat_map(|gap| {
         let least = match gap.tile {

@@ -16,7 +16,8 @@ pub struct Drawable {
 /// Which tiles there are.
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum Present {
-    /// For each class from the second on, whether there is a tile for a mask. All 256, so that masks need not be reduced.
+    /// For each class from the second on, whether there is a tile for a mask. All 256, so that masks need not be
+    /// reduced.
     Layers(Vec<[bool; 256]>),
     /// Tiles that show all classes of their place.
     Wang(Wang),
@@ -27,7 +28,8 @@ enum Present {
 struct Wang {
     classes: usize,
     ids: HashSet<[u8; 8]>,
-    /// For each pair of classes the class after the first on the shortest way from the first to the second through classes that some tile shows together.
+    /// For each pair of classes the class after the first on the shortest way from the first to the second through
+    /// classes that some tile shows together.
     next: Vec<Vec<u8>>,
 }
 
@@ -57,8 +59,8 @@ pub enum MissingTile {
 }
 
 impl Drawable {
-    /// Tiles of a layout for layers: for each class from the second on, the masks that there are tiles for. Masks are reduced. The first class covers everything
-    /// and needs no other tile than a full one.
+    /// Tiles of a layout for layers: for each class from the second on, the masks that there are tiles for. Masks are
+    /// reduced. The first class covers everything and needs no other tile than a full one.
     #[must_use]
     pub fn new<'m>(layout: Layout, masks: impl IntoIterator<Item = &'m [u8]>) -> Drawable {
         let present = masks.into_iter().map(|masks| {
@@ -82,7 +84,8 @@ impl Drawable {
             let seen: Vec<usize> = seen.map(|(_, class)| usize::from(*class)).filter(|of| *of < classes).collect();
             seen.iter().for_each(|a| seen.iter().for_each(|b| meet[*a][*b] = true));
         }
-        // From each class, how far the others are; the next class on the way to `to` is the first of those that are nearest to it.
+        // From each class, how far the others are; the next class on the way to `to` is the first of those that are
+        // nearest to it.
         let distances: Vec<Vec<usize>> = (0..classes).map(|from| distances(from, &meet)).collect();
         let next = |from: usize, to: usize| {
             let nearer = (0..classes).filter(|class| meet[from][*class]);
@@ -105,7 +108,8 @@ impl Drawable {
         self.layout
     }
 
-    /// Whether every surroundings of every class can be drawn. False of wang tiles, of which there are too many to count.
+    /// Whether every surroundings of every class can be drawn. False of wang tiles, of which there are too many to
+    /// count.
     #[must_use]
     pub fn is_complete(&self) -> bool {
         match &self.tiles {
@@ -128,7 +132,8 @@ impl Drawable {
         matches!(self.tiles, Present::Wang(_))
     }
 
-    /// The class to put between two classes beside each other that no tile shows together; `None` if there is such a tile, or no way from one to the other.
+    /// The class to put between two classes beside each other that no tile shows together; `None` if there is such a
+    /// tile, or no way from one to the other.
     #[inline]
     pub(super) fn between(&self, from: u8, to: u8) -> Option<u8> {
         let Present::Wang(wang) = &self.tiles else { return None };
@@ -143,8 +148,8 @@ impl Drawable {
         self.layout.wang_id(seen, own)
     }
 
-    /// The classes that a tile sees, clockwise from the north as the bits of masks, and the class of its cell. Tiles on corners have the
-    /// class of their north-west corner in column `x` and row `y`, see four classes, and no own one.
+    /// The classes that a tile sees, clockwise from the north as the bits of masks, and the class of its cell. Tiles on
+    /// corners have the class of their north-west corner in column `x` and row `y`, see four classes, and no own one.
     #[inline]
     pub(super) fn seen(&self, at: impl Fn(i64, i64) -> u8, x: i64, y: i64) -> ([u8; 8], u8) {
         if self.layout.is_on_corners() {
@@ -213,7 +218,8 @@ impl Drawable {
     }
 }
 
-/// The number of steps from a class to each other through classes that meet; the number of classes where there is no way.
+/// The number of steps from a class to each other through classes that meet; the number of classes where there is no
+/// way.
 fn distances(from: usize, meet: &[Vec<bool>]) -> Vec<usize> {
     let mut distances = vec![meet.len(); meet.len()];
     distances[from] = 0;

@@ -1,6 +1,7 @@
 //! Flips and quarter turns of tiles.
 
-/// How a tile is turned before it is drawn: first over its diagonal from the upper left to the lower right, then left to right, then top to bottom.
+/// How a tile is turned before it is drawn: first over its diagonal from the upper left to the lower right, then left
+/// to right, then top to bottom.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub struct Flip {
     /// Columns and rows are exchanged.

@@ -1,7 +1,8 @@
 //! Masks of neighbors, and the masks that each layout of tiles tells apart.
 //!
-//! A mask has a bit for each of the eight directions, clockwise from the north: N 1, NE 2, E 4, SE 8, S 16, SW 32, W 64, NW 128. These are the
-//! weights of the common "blob" tilesets, and the order of Tiled's wang ids. A bit is set where the layer goes on.
+//! A mask has a bit for each of the eight directions, clockwise from the north: N 1, NE 2, E 4, SE 8, S 16, SW 32, W
+//! 64, NW 128. These are the weights of the common "blob" tilesets, and the order of Tiled's wang ids. A bit is set
+//! where the layer goes on.
 
 /// North.
 pub const N: u8 = 1;
@@ -32,8 +33,8 @@ pub const OFFSETS: [[i64; 2]; 8] = [[0, -1], [1, -1], [1, 0], [1, 1], [0, 1], [-
 /// Each corner with the sides beside it.
 const BESIDE: [(u8, u8); 4] = [(NE, N | E), (SE, S | E), (SW, S | W), (NW, N | W)];
 
-/// The masks of the smallest common blob tilesets: a full tile, four sides, four outer and four inner corners. They have no tile for necks of
-/// one cell, nor for areas that touch at a corner.
+/// The masks of the smallest common blob tilesets: a full tile, four sides, four outer and four inner corners. They
+/// have no tile for necks of one cell, nor for areas that touch at a corner.
 pub const SIMPLE_BLOB: [u8; 13] = [
     255,
     !(NW | N | NE),
@@ -58,10 +59,11 @@ pub enum Layout {
     Blob,
     /// 16 tiles: sides only, for paths, fences and walls.
     Edge,
-    /// 16 tiles, one of them empty: a class at each corner of a tile. A map of W x H tiles has (W + 1) x (H + 1) classes.
+    /// 16 tiles, one of them empty: a class at each corner of a tile. A map of W x H tiles has (W + 1) x (H + 1)
+    /// classes.
     Corner,
-    /// The tiles of [`Layout::Corner`], shifted by half a tile so that each class is in the middle of a cell: a map of W x H cells has
-    /// (W + 1) x (H + 1) tiles.
+    /// The tiles of [`Layout::Corner`], shifted by half a tile so that each class is in the middle of a cell: a map of
+    /// W x H cells has (W + 1) x (H + 1) tiles.
     Dual,
     /// Any of the 256 surroundings, for tiles that are chosen by rules: see [`super::rule`].
     Rule,
@@ -101,8 +103,8 @@ impl Layout {
         }
     }
 
-    /// Whether classes are at the corners of tiles, so that a tile sees four of them. Otherwise they are those of cells, and a tile sees
-    /// its own and eight neighbors.
+    /// Whether classes are at the corners of tiles, so that a tile sees four of them. Otherwise they are those of
+    /// cells, and a tile sees its own and eight neighbors.
     #[must_use]
     pub fn is_on_corners(self) -> bool {
         matches!(self, Layout::Corner | Layout::Dual)
@@ -128,9 +130,10 @@ impl Layout {
         self.reduced(255)
     }
 
-    /// The classes along the sides and at the corners of a tile, clockwise from the north, for the classes around it and its own: those of the directions that the
-    /// layout tells apart, the others 0. On a side of a cell the lower class of the two cells counts, and at a corner the lowest of the four, so neighbors agree.
-    /// Tiles on corners have the class of each corner.
+    /// The classes along the sides and at the corners of a tile, clockwise from the north, for the classes around it
+    /// and its own: those of the directions that the layout tells apart, the others 0. On a side of a cell the lower
+    /// class of the two cells counts, and at a corner the lowest of the four, so neighbors agree. Tiles on corners have
+    /// the class of each corner.
     #[inline]
     #[must_use]
     pub fn wang_id(self, around: [u8; 8], own: u8) -> [u8; 8] {
@@ -167,8 +170,8 @@ impl Layout {
         mask & full == full
     }
 
-    /// All reduced masks, in ascending order. An empty tile of [`Layout::Corner`] and [`Layout::Dual`], mask 0, is not drawn and is no part
-    /// of it.
+    /// All reduced masks, in ascending order. An empty tile of [`Layout::Corner`] and [`Layout::Dual`], mask 0, is not
+    /// drawn and is no part of it.
     #[must_use]
     pub fn masks(self) -> Vec<u8> {
         let first = u8::from(self.is_on_corners());

@@ -13,8 +13,8 @@ pub struct Pattern {
 }
 
 impl Pattern {
-    /// Reads three rows of three characters, from the north: `#` where the layer must go on, `.` where it must end, `?` for any; the middle is `#`. Spaces are
-    /// left out.
+    /// Reads three rows of three characters, from the north: `#` where the layer must go on, `.` where it must end, `?`
+    /// for any; the middle is `#`. Spaces are left out.
     ///
     /// # Errors
     /// What is wrong with the rows, as the end of a sentence.
@@ -46,7 +46,8 @@ impl Pattern {
     }
 }
 
-/// For each of the 256 surroundings the first rule that matches, and how its tiles are turned. A rule matches with any of its flips, the unchanged first.
+/// For each of the 256 surroundings the first rule that matches, and how its tiles are turned. A rule matches with any
+/// of its flips, the unchanged first.
 #[must_use]
 pub fn first_matches(rules: &[(Pattern, Flips)]) -> Vec<Option<(usize, super::flip::Flip)>> {
     let matching = |mask: u8| {

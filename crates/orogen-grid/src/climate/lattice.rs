@@ -21,7 +21,8 @@ const TOGETHER: usize = 8;
 const MIN_STRIP: usize = 256;
 
 impl Lattice {
-    /// The lattice with a strip of at least `reach` metres beyond the window, at most as wide as the window or 256 samples.
+    /// The lattice with a strip of at least `reach` metres beyond the window, at most as wide as the window or 256
+    /// samples.
     pub(super) fn new(window: &Window, reach: f64) -> Lattice {
         let largest = window.width.max(window.height).max(MIN_STRIP);
         let strip = ((reach / window.cell).ceil() as usize).min(largest);
@@ -39,8 +40,9 @@ impl Lattice {
         (self.half() as u64).saturating_mul((self.rows + self.window.height) as u64).saturating_mul(16)
     }
 
-    /// The heights, as `of` makes them from samples, filtered by `response`: a complex factor for each wave, given by its wavenumbers in 1/m to the east and to the south. Beyond the window
-    /// heights change smoothly to those of its opposite side.
+    /// The heights, as `of` makes them from samples, filtered by `response`: a complex factor for each wave, given by
+    /// its wavenumbers in 1/m to the east and to the south. Beyond the window heights change smoothly to those of its
+    /// opposite side.
     pub(super) fn filtered(
         &self,
         heights: &Grid,
@@ -147,7 +149,8 @@ impl Lattice {
         Ok(columns)
     }
 
-    /// The wavenumbers of a column and a row of the transform. Those of half the lattice's frequency have no sign, so they have none.
+    /// The wavenumbers of a column and a row of the transform. Those of half the lattice's frequency have no sign, so
+    /// they have none.
     fn waves(&self) -> impl Fn(usize, usize) -> Option<[f64; 2]> + Sync + use<> {
         let (columns, rows, cell) = (self.columns, self.rows, self.window.cell);
         let [east, south] = [columns, rows].map(|side| std::f64::consts::TAU / (side as f64 * cell));

@@ -8,11 +8,13 @@ use crate::progress::Progress;
 
 /// The linear theory of orographic precipitation (Smith and Barstad 2004, J. Atmos. Sci. 61).
 ///
-/// Air that is lifted by the ground condenses water, which drifts with the wind while it turns into rain and falls. With the Fourier transform h of the heights and the intrinsic
-/// frequency sigma = U k + V l, the transform of the rain is (their equation 49)
+/// Air that is lifted by the ground condenses water, which drifts with the wind while it turns into rain and falls.
+/// With the Fourier transform h of the heights and the intrinsic frequency sigma = U k + V l, the transform of the rain
+/// is (their equation 49)
 ///
 /// ```text
-/// P = Cw i sigma h / ((1 - i m Hw) (1 + i sigma tau_c) (1 + i sigma tau_f)),    m^2 = (Nm^2 - sigma^2) / sigma^2 (k^2 + l^2)
+/// P = Cw i sigma h / ((1 - i m Hw) (1 + i sigma tau_c) (1 + i sigma tau_f))
+/// m^2 = (Nm^2 - sigma^2) / sigma^2 (k^2 + l^2)
 /// ```
 ///
 /// where m has the sign of sigma if it is real, and is positive imaginary otherwise. Coriolis force is neglected.
@@ -35,7 +37,8 @@ pub struct OrographicRain {
     pub uplift_sensitivity: f64,
     /// Rain where the ground is level, in mm per year. Default: 800.
     pub background: f64,
-    /// Hours of rain in a year: the factor between the rate of the theory in mm/h and the rain of a year. Default: 1000.
+    /// Hours of rain in a year: the factor between the rate of the theory in mm/h and the rain of a year. Default:
+    /// 1000.
     pub rain_hours: f64,
 }
 
@@ -81,7 +84,8 @@ impl OrographicRain {
         [-sin * self.wind_speed, cos * self.wind_speed]
     }
 
-    /// Rain of a year in mm, as a complex number, for 1 m of height of a wave with wavenumbers in 1/m to the east and to the south.
+    /// Rain of a year in mm, as a complex number, for 1 m of height of a wave with wavenumbers in 1/m to the east and
+    /// to the south.
     fn response(&self, wind: [f64; 2], wave: [f64; 2]) -> [f64; 2] {
         let sigma = wind[0] * wave[0] + wind[1] * wave[1];
         // Waves along the wind lift no air.
@@ -115,9 +119,10 @@ impl OrographicRain {
 
     /// Rain in mm per year over the window of the heights, at least 0.
     ///
-    /// Ground below `sea_level` counts as at `sea_level`, and NaN, too. Beyond the sides of the window heights change smoothly to those of the opposite side, over at least 4 times the distance that
-    /// the wind covers in both times, or the size of the window if that is less; so land that ends at a side ends in a gentle slope there. Costs O(n log n) on all threads; the bits do not depend on
-    /// their number.
+    /// Ground below `sea_level` counts as at `sea_level`, and NaN, too. Beyond the sides of the window heights change
+    /// smoothly to those of the opposite side, over at least 4 times the distance that the wind covers in both times,
+    /// or the size of the window if that is less; so land that ends at a side ends in a gentle slope there. Costs O(n
+    /// log n) on all threads; the bits do not depend on their number.
     ///
     /// # Errors
     /// If `progress` is cancelled.
@@ -165,8 +170,8 @@ mod tests {
     /// A ridge that runs from north to south.
     const RIDGE: Window = Window { x: -1000, y: 0, width: 2001, height: 9, cell: 500.0 };
 
-    /// The rain of an infinitely long ridge by the integral over its waves, without a discrete transform: `spectrum` is the integral of
-    /// h(x) cos(k x) over all x, of a ridge that is symmetric about 0.
+    /// The rain of an infinitely long ridge by the integral over its waves, without a discrete transform: `spectrum` is
+    /// the integral of h(x) cos(k x) over all x, of a ridge that is symmetric about 0.
     fn integral(law: &OrographicRain, x: f64, spectrum: impl Fn(f64) -> f64) -> f64 {
         let (step, mut sum) = (2e-8, 0.0);
         for n in 0..100_000 {
@@ -199,7 +204,8 @@ mod tests {
 
     #[test]
     fn a_ridge_without_delays_has_the_closed_form() {
-        // A hydrostatic witch of Agnesi, h = H a^2 / (x^2 + a^2): P = Cw U (h' - s H a (a^2 - x^2) / (x^2 + a^2)^2) / (1 + s^2), s = Nm Hw / U.
+        // A hydrostatic witch of Agnesi, h = H a^2 / (x^2 + a^2): P = Cw U (h' - s H a (a^2 - x^2) / (x^2 + a^2)^2) /
+        // (1 + s^2), s = Nm Hw / U.
         let law = OrographicRain::default().with_conversion_time(0.0).with_fallout_time(0.0).with_stability(0.012);
         let (high, a) = (500.0, 40e3);
         let s = law.stability * law.vapor_height / law.wind_speed;

@@ -2,8 +2,9 @@
 
 /// The temperature of the air near the ground.
 ///
-/// The mean at sea level is `equator` - (`equator` - `pole`) sin^2(latitude), two modes of an energy balance (North, Cahalan and Coakley 1981). The range
-/// follows from Conrad's index of continentality K (Conrad 1946), K = 1.7 A / sin(latitude + 10 degrees) - 14 with the annual range A.
+/// The mean at sea level is `equator` - (`equator` - `pole`) sin^2(latitude), two modes of an energy balance (North,
+/// Cahalan and Coakley 1981). The range follows from Conrad's index of continentality K (Conrad 1946), K = 1.7 A /
+/// sin(latitude + 10 degrees) - 14 with the annual range A.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Temperature {
@@ -64,14 +65,16 @@ impl Temperature {
         self.lapse_rate * (above_sea.max(0.0) / 1000.0)
     }
 
-    /// Index of continentality at a distance from the sea in metres, 0 at the sea to 100: 100 d / (d + `continental_distance`).
+    /// Index of continentality at a distance from the sea in metres, 0 at the sea to 100: 100 d / (d +
+    /// `continental_distance`).
     #[must_use]
     pub fn continentality(&self, from_sea: f64) -> f64 {
         let distance = from_sea.max(0.0);
         100.0 * distance / (distance + self.continental_distance)
     }
 
-    /// Half the difference between the warmest and the coldest month, in K, for each unit of 14 + K, at a position in metres south.
+    /// Half the difference between the warmest and the coldest month, in K, for each unit of 14 + K, at a position in
+    /// metres south.
     #[must_use]
     pub fn seasonality(&self, south: f64) -> f64 {
         libm::sin((self.latitude_at(south).abs() + 10.0).to_radians()) / (2.0 * 1.7)

@@ -31,7 +31,8 @@ impl Year {
         self.mean - self.range
     }
 
-    /// Biotemperature, in degrees C: the mean over the months of temperatures limited to 0 to 30 degrees C (Holdridge 1967).
+    /// Biotemperature, in degrees C: the mean over the months of temperatures limited to 0 to 30 degrees C (Holdridge
+    /// 1967).
     #[must_use]
     pub fn biotemperature(&self) -> f64 {
         self.months().iter().map(|month| month.clamp(0.0, 30.0)).sum::<f64>() / 12.0

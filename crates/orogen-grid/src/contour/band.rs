@@ -56,7 +56,7 @@ impl Levels {
         Levels { exact: levels.to_vec(), steps: steps.collect() }
     }
 
-    /// The number of levels that each sample reaches. Neighbours are similar, so each search starts at the previous
+    /// The number of levels that each sample reaches. Neighbors are similar, so each search starts at the previous
     /// result.
     fn classify(&self, row: &[f32], classes: &mut [u16]) {
         let mut class = 0;

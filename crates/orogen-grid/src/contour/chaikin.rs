@@ -7,7 +7,7 @@ use super::line::Line;
 /// Processing 3, 1974). Each round doubles the number of points.
 ///
 /// The ends of an open line stay, on the border. A point moves by at most a quarter of the longer adjacent segment, so
-/// neighbouring lines rarely touch, but they may if they were very close.
+/// neighboring lines rarely touch, but they may if they were very close.
 #[must_use]
 pub fn smooth(line: &Line, rounds: usize) -> Line {
     let mut points = line.points.clone();

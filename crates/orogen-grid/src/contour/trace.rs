@@ -17,7 +17,7 @@ const ROWS: usize = 128;
 ///
 /// Samples are lattice points, so lines reach the border of the window: an open line ends there, or at a hole. All
 /// other lines are rings. Higher ground is to the left ([`Line`]). A point is where the linear interpolation between
-/// two neighbouring samples reaches the level.
+/// two neighboring samples reaches the level.
 ///
 /// *Ties.* A sample exactly at a level counts as higher ground. A line passes it once; a flat at the level is outlined.
 /// Rings that then enclose nothing (a single summit that just reaches the level) are dropped.
@@ -226,7 +226,8 @@ mod tests {
             assert_eq!(lines.len(), 2);
             let joined = level < 0.5;
             let north = &lines.iter().find(|line| line.points.iter().any(|p| p[1] == 0.0)).unwrap().points;
-            // A line from the northern edge goes to the east around the low north-east, or to the west around the high north-west.
+            // A line from the northern edge goes to the east around the low north-east, or to the west around the high
+            // north-west.
             assert_eq!(north.iter().any(|p| p[0] == 1.0), joined, "{north:?}");
             assert!(lines.iter().flat_map(|l| &l.points).any(|p| p[1] == south || 1.0 - p[1] == south), "{lines:?}");
         }

@@ -171,7 +171,7 @@ impl Droplets {
     }
 
     /// The eroded and deposited amounts of one batch at each cell, in multiples of [`droplet_paths::UNIT`]. Bands of
-    /// rows run in parallel, first the even ones and then the odd ones, because only neighbouring bands write to the
+    /// rows run in parallel, first the even ones and then the odd ones, because only neighboring bands write to the
     /// same rows.
     fn sum(&self, heights: &Grid, batch: u64, sums: &mut [Vec<i64>; 2], progress: &Progress) -> Result<()> {
         let window = *heights.window();

@@ -13,14 +13,15 @@ use orogen_simd::{Body, Simd, dispatch};
 /// stream power law model taking into account sediment deposition" (2019).
 ///
 /// ```text
-/// A' = l^2 + sum over higher neighbours of share A        share ~ slope^4 (multiple flow directions)
-/// E  = dt K A'^m S^n / (1 + dt K A'^m S^(n-1) / l)        never below the lowest neighbour
-/// D  = dt G Q / A'                                        Q = sum over higher neighbours of share (Q + (E - D) l^2 / dt)
+/// A' = l^2 + sum over higher neighbors of share A        share ~ slope^4 (multiple flow directions)
+/// E  = dt K A'^m S^n / (1 + dt K A'^m S^(n-1) / l)        never below the lowest neighbor
+/// D  = dt G Q / A'
+/// Q  = sum over higher neighbors of share (Q + (E - D) l^2 / dt)
 /// h' = h - E + D + dt (U + creep (d2h/dx2 + d2h/dy2))
 /// ```
 ///
 /// S is the upwind gradient, which is isotropic. The denominator makes the step stable for any dt (the implicit step of
-/// Braun and Willett 2013 with the neighbour's old height). Water and sediment move one cell per iteration; start with
+/// Braun and Willett 2013 with the neighbor's old height). Water and sediment move one cell per iteration; start with
 /// the drainage areas of a coarser solution to include distant catchments. An iteration reads two cells on each side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -46,8 +47,8 @@ pub struct LocalStreamPower {
 }
 
 impl LocalStreamPower {
-    /// The law for cells of this side in metres, without uplift and sea; the other fields are those of the op `local-stream-power`
-    /// at its defaults (1e5 years in 50 iterations).
+    /// The law for cells of this side in metres, without uplift and sea; the other fields are those of the op
+    /// `local-stream-power` at its defaults (1e5 years in 50 iterations).
     #[must_use]
     pub const fn new(cell: f64) -> LocalStreamPower {
         LocalStreamPower {
@@ -206,7 +207,7 @@ impl Constants {
     fn give(&self, heights: [&[f32]; 3], [area, load]: [&[f32]; 2], [areas, loads]: [&mut [f32]; 2]) {
         let n = areas.len();
         let loads = &mut loads[..n];
-        let [[nw, nc, ne], [w, c, e], [sw, sc, se]] = heights.map(|row| neighbours(row, n));
+        let [[nw, nc, ne], [w, c, e], [sw, sc, se]] = heights.map(|row| neighbors(row, n));
         let (area, load) = (&area[1..=n], &load[1..=n]);
         let (side, corner) = (self.per_side, self.per_corner);
         for i in 0..n {
@@ -228,10 +229,10 @@ impl Constants {
     fn take(&self, heights: [&[f32]; 3], given: [&[f32]; 3], [height, area, load]: [&mut [f32]; 3]) {
         let n = height.len();
         let (area, load) = (&mut area[..n], &mut load[..n]);
-        let [[nw, nc, ne], [w, c, e], [sw, sc, se]] = heights.map(|row| neighbours(&row[1..], n));
+        let [[nw, nc, ne], [w, c, e], [sw, sc, se]] = heights.map(|row| neighbors(&row[1..], n));
         let halves = given.map(|row| row.split_at(row.len() / 2));
-        let [[a_nw, a_n, a_ne], [a_w, _, a_e], [a_sw, a_s, a_se]] = halves.map(|(areas, _)| neighbours(areas, n));
-        let [[q_nw, q_n, q_ne], [q_w, _, q_e], [q_sw, q_s, q_se]] = halves.map(|(_, loads)| neighbours(loads, n));
+        let [[a_nw, a_n, a_ne], [a_w, _, a_e], [a_sw, a_s, a_se]] = halves.map(|(areas, _)| neighbors(areas, n));
+        let [[q_nw, q_n, q_ne], [q_w, _, q_e], [q_sw, q_s, q_se]] = halves.map(|(_, loads)| neighbors(loads, n));
         let (side, corner) = (self.per_side, self.per_corner);
         for i in 0..n {
             let h = c[i];
@@ -272,9 +273,9 @@ impl Constants {
     }
 }
 
-/// The western, central and eastern neighbours of `n` columns, starting with the second.
+/// The western, central and eastern neighbors of `n` columns, starting with the second.
 #[inline(always)]
-fn neighbours(row: &[f32], n: usize) -> [&[f32]; 3] {
+fn neighbors(row: &[f32], n: usize) -> [&[f32]; 3] {
     [&row[..n], &row[1..=n], &row[2..n + 2]]
 }
 

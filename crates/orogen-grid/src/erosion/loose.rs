@@ -6,11 +6,11 @@ use crate::error::Result;
 use crate::progress::Progress;
 use orogen_simd::{Body, Simd, dispatch};
 
-/// Loose ground on top of firm ground. Of the height difference to a neighbour beyond `stands`, a fifth crosses the
+/// Loose ground on top of firm ground. Of the height difference to a neighbor beyond `stands`, a fifth crosses the
 /// common side in a pass, and at most a quarter of the loose ground of the higher cell. Mass is conserved; firm ground
 /// does not move.
 pub struct Loose {
-    /// Height difference between neighbours, in metres, at which loose ground is stable.
+    /// Height difference between neighbors, in metres, at which loose ground is stable.
     pub stands: f32,
 }
 

@@ -22,7 +22,7 @@ use orogen_simd::{Body, Simd, dispatch};
 /// ```
 ///
 /// Where the sediment s is less than C, erosion dt (C - s) is eroded; where it is more, deposition dt (s - C) is
-/// deposited. Erosion is limited to half the drop to the lowest neighbour, and deposition to the neighbours' mean plus
+/// deposited. Erosion is limited to half the drop to the lowest neighbor, and deposition to the neighbors' mean plus
 /// a quarter of the water depth, which prevents pits and spikes. Sediment moves as a share of the water that flows over
 /// each side, instead of the backtracing along the velocity in Mei and others: mass is conserved. One signed flow per
 /// side replaces their two (J. F. O'Brien and J. K. Hodgins, 1995).
@@ -206,7 +206,8 @@ impl Pipes {
         Ok(wet)
     }
 
-    /// The constants of an iteration, in the order of [`Constants`], and the speed in m/s of a flow over two sides in a depth of 1 m.
+    /// The constants of an iteration, in the order of [`Constants`], and the speed in m/s of a flow over two sides in a
+    /// depth of 1 m.
     #[doc(hidden)]
     #[must_use]
     pub fn numbers(&self, cell: f64) -> [f32; 9] {
@@ -247,7 +248,7 @@ struct Stride {
     lost: usize,
 }
 
-/// Computes `to` from `from`. Bands of rows, one per thread, run in parallel, each with enough rows of its neighbours;
+/// Computes `to` from `from`. Bands of rows, one per thread, run in parallel, each with enough rows of its neighbors;
 /// the bits do not depend on the number of bands. `spare` is memory that is reused between calls.
 fn advance(
     from: &Wet,

@@ -135,7 +135,7 @@ const AT_ONCE: usize = 8;
 const BAND: usize = 64;
 
 /// The planes after `passes` passes, smaller by that many radii on each side. Bands of rows run in parallel, each
-/// several passes at a time while in cache. Rows that neighbouring bands need of each other are computed twice; the
+/// several passes at a time while in cache. Rows that neighboring bands need of each other are computed twice; the
 /// bits do not depend on the number of threads.
 ///
 /// # Errors

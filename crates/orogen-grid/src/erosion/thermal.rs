@@ -10,7 +10,7 @@ use orogen_simd::{Body, Simd, dispatch};
 /// Thermal weathering after F. K. Musgrave, C. E. Kolb and R. S. Mace, "The synthesis and rendering of eroded fractal
 /// terrains" (1989): material on slopes above the talus angle moves down.
 ///
-/// The original compares each cell with its neighbours in eight directions, which gives octagonal cones. Here the
+/// The original compares each cell with its neighbors in eight directions, which gives octagonal cones. Here the
 /// material that crosses the side between two cells is, with g the gradient there (both components) and T the stable
 /// slope,
 ///
@@ -56,7 +56,7 @@ impl Thermal {
         Ok(settled.grid(0, heights.window().shrunk(passes)))
     }
 
-    /// The height difference between neighbours at the stable slope, and the share of a difference that moves in a pass.
+    /// The height difference between neighbors at the stable slope, and the share of a difference that moves in a pass.
     #[doc(hidden)]
     #[must_use]
     pub fn numbers(&self, cell: f64) -> [f32; 2] {
@@ -64,7 +64,7 @@ impl Thermal {
     }
 }
 
-/// The rule in units of samples: `stands` is the height difference between neighbours at the stable slope.
+/// The rule in units of samples: `stands` is the height difference between neighbors at the stable slope.
 struct Slide {
     stands: f32,
     share: f32,

@@ -1,7 +1,8 @@
-//! Lines and polygons cut at the sides of a rectangle, so that the parts in two rectangles with a common side meet in the same points.
+//! Lines and polygons cut at the sides of a rectangle, so that the parts in two rectangles with a common side meet in
+//! the same points.
 //!
-//! A point on the western or northern side is inside, one on the eastern or southern side outside. A cut depends on the segment and the side
-//! only: the neighbour's cut has the same bits if positions are [snapped].
+//! A point on the western or northern side is inside, one on the eastern or southern side outside. A cut depends on the
+//! segment and the side only: the neighbor's cut has the same bits if positions are [snapped].
 
 use super::given::snapped;
 use super::joints::Path;
@@ -20,7 +21,8 @@ pub struct Rectangle {
 pub struct Piece {
     /// Its points.
     pub points: Vec<[f64; 3]>,
-    /// The points of the line that it contains, by their indices; empty if it only crosses the rectangle between two points.
+    /// The points of the line that it contains, by their indices; empty if it only crosses the rectangle between two
+    /// points.
     pub inner: std::ops::Range<usize>,
     /// Whether it begins at a side, not with the line.
     pub enters: bool,
@@ -36,7 +38,8 @@ impl Rectangle {
         west <= x && x < east && north <= y && y < south
     }
 
-    /// For each side, the position along a segment, 0 to 1, at which it crosses the side; only sides that `point` is beyond.
+    /// For each side, the position along a segment, 0 to 1, at which it crosses the side; only sides that `point` is
+    /// beyond.
     fn crossings(&self, a: [f64; 3], b: [f64; 3], point: [f64; 3]) -> impl Iterator<Item = (f64, usize)> {
         let [west, north, east, south] = self.sides;
         let beyond = [point[0] < west, point[1] < north, point[0] >= east, point[1] >= south];
@@ -112,7 +115,8 @@ impl Rectangle {
         pieces
     }
 
-    /// The parts of a shore within the rectangle. A ring whose first point is inside continues from its end to its beginning.
+    /// The parts of a shore within the rectangle. A ring whose first point is inside continues from its end to its
+    /// beginning.
     fn arcs(&self, line: &Path) -> Vec<Piece> {
         let line: Vec<[f64; 3]> = line.iter().map(|[x, y]| [*x, *y, 0.0]).collect();
         let mut pieces = self.pieces(&line);
@@ -138,7 +142,8 @@ impl Rectangle {
         self.arcs(line).into_iter().map(path).filter(|path| path.len() > 1).collect()
     }
 
-    /// The parts of a polygon within the rectangle: `part` is an outer ring and its holes. Rings have the polygon to their left with north up.
+    /// The parts of a polygon within the rectangle: `part` is an outer ring and its holes. Rings have the polygon to
+    /// their left with north up.
     #[must_use]
     pub fn polygons(&self, part: &[Path]) -> Vec<Vec<Path>> {
         let mut rings: Vec<Path> = Vec::new();

@@ -1,5 +1,5 @@
-//! Water from drainage that is known already: receivers, drainage areas and standing water are taken from the caller, not computed from the
-//! heights. Whatever runs into the grid from outside is included.
+//! Water from drainage that is known already: receivers, drainage areas and standing water are taken from the caller,
+//! not computed from the heights. Whatever runs into the grid from outside is included.
 
 use crate::checks::now_and_then;
 use crate::error::{Error, ErrorKind, Result};
@@ -33,8 +33,8 @@ pub struct Nodes {
     pub height: Grid,
     /// Drainage area of each node in m^2.
     pub flow: Grid,
-    /// Code of the direction of each node's receiver; 8 in standing water. Water of a lake with an outlet has receivers, too; where nodes are not at their
-    /// samples, 16 is added to its codes.
+    /// Code of the direction of each node's receiver; 8 in standing water. Water of a lake with an outlet has
+    /// receivers, too; where nodes are not at their samples, 16 is added to its codes.
     pub receiver: Grid,
     /// Columns and rows from the sample to its node; none if nodes are at their samples.
     pub offset: Option<[Grid; 2]>,
@@ -43,7 +43,8 @@ pub struct Nodes {
 /// Largest difference of two water levels of one lake, in metres: more than rounding, less than a step between lakes.
 const ONE_LEVEL: f32 = 0.05;
 
-/// Positions are whole multiples of this part of a cell. Sums of them have no rounding, so they are the same in every window.
+/// Positions are whole multiples of this part of a cell. Sums of them have no rounding, so they are the same in every
+/// window.
 const PARTS: f64 = (1 << 20) as f64;
 
 /// A coordinate in columns or rows rounded to 2^-20 of a cell.
@@ -53,9 +54,10 @@ pub fn snapped(coordinate: f64) -> f64 {
 }
 
 impl Water {
-    /// The water of known drainage. Rivers begin where the drainage area reaches that of `least.spring` samples and continue to standing
-    /// water or the border. The order of a reach into which water runs from outside the grid is unknown, 0. Lakes are connected samples of
-    /// standing water with one level; those of fewer than `least.lake` samples are [small](Water::is_small).
+    /// The water of known drainage. Rivers begin where the drainage area reaches that of `least.spring` samples and
+    /// continue to standing water or the border. The order of a reach into which water runs from outside the grid is
+    /// unknown, 0. Lakes are connected samples of standing water with one level; those of fewer than `least.lake`
+    /// samples are [small](Water::is_small).
     ///
     /// # Errors
     /// If the grids do not have the same window, or the work was cancelled.
@@ -90,7 +92,8 @@ impl Water {
         let codes = receivers.codes_mut().iter_mut().zip(&sea);
         codes.filter(|(_, at_sea)| **at_sea).for_each(|(code, _)| *code = NONE);
         let drained = accumulate_with(&receivers, &progress.part(0.0))?;
-        // A cycle has no first node, so its nodes and those below it are not visited. No level has one, but a recipe may.
+        // A cycle has no first node, so its nodes and those below it are not visited. No level has one, but a recipe
+        // may.
         let mut visited = vec![false; window.len()];
         drained.upstream_first().for_each(|node| visited[node] = true);
         let lost = receivers.codes_mut().iter_mut().zip(&visited);
@@ -149,7 +152,8 @@ impl Water {
         Ok(water)
     }
 
-    /// Which lakes are too small to be shown: those of fewer than `fewest` samples, unless a river ends in them or they reach the border.
+    /// Which lakes are too small to be shown: those of fewer than `fewest` samples, unless a river ends in them or they
+    /// reach the border.
     fn small_lakes(&self, fewest: u32) -> Vec<bool> {
         let mut small: Vec<bool> = self.lakes.iter().map(|lake| lake.cells < fewest).collect();
         let mut keep = |label: u32| {
@@ -185,14 +189,16 @@ fn is_border(window: &Window, sample: usize) -> bool {
     i == 0 || j == 0 || i + 1 == window.width || j + 1 == window.height
 }
 
-/// Nodes along its course that lie in the sea where a river ends in a narrow bay; fewer than the samples beyond a window.
+/// Nodes along its course that lie in the sea where a river ends in a narrow bay; fewer than the samples beyond a
+/// window.
 const COURSE: usize = 16;
 
 /// Samples on each side of a node, and how many of all of them are sea where it is wide.
 const WIDE: (usize, usize) = (2, 15);
 
-/// Which nodes are in the sea: where the ground between the samples is not above its level, if the sea is wide there or the course goes on in it. A bed on a
-/// plain may be lower than the sea far inland, and the land around a valley of a coarser level may have drowned.
+/// Which nodes are in the sea: where the ground between the samples is not above its level, if the sea is wide there or
+/// the course goes on in it. A bed on a plain may be lower than the sea far inland, and the land around a valley of a
+/// coarser level may have drowned.
 fn at_sea(
     heights: &Grid,
     bed: &Grid,
@@ -302,8 +308,8 @@ fn lakes_of(
     Ok((labels, lakes))
 }
 
-/// The standing water of each node: the sea, a lake next to it, or 0 on land. A lake without an outlet that no sample shows has the number
-/// after the last.
+/// The standing water of each node: the sea, a lake next to it, or 0 on land. A lake without an outlet that no sample
+/// shows has the number after the last.
 fn covers_of(receivers: &Receivers, in_lake: &[bool], sea: &[bool], labels: &Grid<u32>) -> Grid<u32> {
     let window = *labels.window();
     let unseen = AT_SEA - 1;
@@ -337,7 +343,8 @@ mod tests {
     use crate::hydrography::shores::Shores;
     use crate::hydrography::water::Frame;
 
-    /// A slope to the east with a river in row 4 that enters from the west, one that joins it from the north in column 5, and a lake from column 15 on.
+    /// A slope to the east with a river in row 4 that enters from the west, one that joins it from the north in column
+    /// 5, and a lake from column 15 on.
     fn given(width: usize) -> GivenWater {
         let window = Window::new(width, 9, 10.0);
         let grid = |value: &dyn Fn(usize, usize) -> f32| {

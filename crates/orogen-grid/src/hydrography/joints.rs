@@ -54,8 +54,9 @@ impl<'a> Joints<'a> {
         Joints { is_snapped: true, ..self }
     }
 
-    /// The crossing with the shore of a water at which a path that ends in it enters it: the last one, or an earlier one if the path leaves the water for
-    /// less than a sample after it. The index of the path's segment, the position along it (0 to 1), and the point, which is also inserted into the shore.
+    /// The crossing with the shore of a water at which a path that ends in it enters it: the last one, or an earlier
+    /// one if the path leaves the water for less than a sample after it. The index of the path's segment, the position
+    /// along it (0 to 1), and the point, which is also inserted into the shore.
     pub fn entry(&mut self, path: &[[f64; 3]], water: u32) -> Option<(usize, f64, [f64; 2])> {
         let pairs = path.windows(2).enumerate();
         let crossings: Vec<_> =

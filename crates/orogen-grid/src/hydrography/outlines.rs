@@ -1,6 +1,6 @@
 //! Outlines of labelled samples: polygons that tile the plane, with bit-equal common borders.
 //!
-//! Each sample is the centre of a square; a polygon is the union of the squares of one label. Corners of borders are
+//! Each sample is the center of a square; a polygon is the union of the squares of one label. Corners of borders are
 //! cut (Chaikin) between the nodes where three polygons meet, which stay fixed. Borders cannot cross, because each cut
 //! corner lies in a triangle of its own.
 
@@ -131,7 +131,7 @@ impl Squares<'_> {
     }
 }
 
-/// A closed ring without the points on a straight line between their neighbours, except for fixed points.
+/// A closed ring without the points on a straight line between their neighbors, except for fixed points.
 fn straightened(points: &[[f64; 2]], fixed: &[[f64; 2]]) -> Path {
     let count = points.len();
     let mut next_fixed = fixed.iter().peekable();

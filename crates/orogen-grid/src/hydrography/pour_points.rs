@@ -18,8 +18,8 @@ pub struct Snapped {
 }
 
 /// The stream node within `radius` samples of a place that is nearest to it: a node on land or in a lake through which
-/// at least `least` samples drain (Jenson 1991). Of equally near ones, the one that drains the most. `at` is a column and a row of the grid;
-/// only nodes of samples that `inside` accepts are considered. Costs O(distance^2).
+/// at least `least` samples drain (Jenson 1991). Of equally near ones, the one that drains the most. `at` is a column
+/// and a row of the grid; only nodes of samples that `inside` accepts are considered. Costs O(distance^2).
 ///
 /// # Errors
 /// If the work was cancelled.
@@ -37,7 +37,7 @@ pub fn nearest_stream(
     let farthest = radius.min((width + height) as f64).ceil() as i64 + 2;
     let mut best: Option<Snapped> = None;
     for ring in 0..=farthest {
-        // A node is at most a sample from its own, and the place half of one from that of the ring's centre.
+        // A node is at most a sample from its own, and the place half of one from that of the ring's center.
         if best.is_some_and(|best| best.moved < ring as f64 - 2.0) {
             break;
         }
@@ -77,7 +77,8 @@ pub struct PourPoints {
 }
 
 impl PourPoints {
-    /// The land that drains to each of these nodes. Of equal nodes, the water passes the later one first. Costs O(nodes).
+    /// The land that drains to each of these nodes. Of equal nodes, the water passes the later one first. Costs
+    /// O(nodes).
     ///
     /// # Errors
     /// If the work was cancelled.
@@ -166,7 +167,8 @@ impl LabelStats {
 }
 
 impl PourPoints {
-    /// The label of each sample on land, of some columns and rows of the water's grid, and the samples of each of `count` labels.
+    /// The label of each sample on land, of some columns and rows of the water's grid, and the samples of each of
+    /// `count` labels.
     #[must_use]
     pub fn sampled(
         &self,

@@ -82,9 +82,10 @@ pub fn rivers(water: &Water, frame: &Frame, rounds: usize, shores: &mut Shores) 
     traced(water, frame, rounds, shores).into_iter().map(|(river, _)| river).collect()
 }
 
-/// The reaches of a given network within a rectangle: lines of the whole grid, smoothed, ended at the shores of the whole grid and then cut. Where
-/// the rectangles of two windows have a common side, the parts of a reach meet in the same point, as long as both grids extend some samples
-/// beyond the side. A reach that leaves and comes back is several.
+/// The reaches of a given network within a rectangle: lines of the whole grid, smoothed, ended at the shores of the
+/// whole grid and then cut. Where the rectangles of two windows have a common side, the parts of a reach meet in the
+/// same point, as long as both grids extend some samples beyond the side. A reach that leaves and comes back is
+/// several.
 pub fn rivers_within(
     water: &Water,
     frame: &Frame,

@@ -25,7 +25,7 @@ const NOT_YET: u32 = u32::MAX;
 /// The summits within a frame with at least this prominence, in metres, the most prominent first. Samples in the sea
 /// and at the border of the frame, where the ground may continue to rise, are excluded.
 ///
-/// Samples are processed from the highest down and joined to their processed neighbours. Where two hills meet, the
+/// Samples are processed from the highest down and joined to their processed neighbors. Where two hills meet, the
 /// sample is the key col of the lower summit (union-find, O(n log n)). Of equal heights the first in row order counts
 /// as higher.
 #[must_use]

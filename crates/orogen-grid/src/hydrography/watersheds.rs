@@ -17,8 +17,9 @@ pub struct Watersheds {
 
 const UNKNOWN: u32 = u32::MAX;
 
-/// The watersheds of all reaches that end in the sea or at the border of a frame, and in lakes of a given network, in the order of the reaches; then the
-/// remaining land, one label per part connected by the sides of samples. Costs O(samples).
+/// The watersheds of all reaches that end in the sea or at the border of a frame, and in lakes of a given network, in
+/// the order of the reaches; then the remaining land, one label per part connected by the sides of samples. Costs
+/// O(samples).
 #[must_use]
 pub fn watersheds(water: &Water, frame: &Frame, reaches: &[River]) -> Watersheds {
     let width = water.heights.width();
@@ -116,7 +117,8 @@ pub fn watersheds(water: &Water, frame: &Frame, reaches: &[River]) -> Watersheds
 }
 
 impl Watersheds {
-    /// The labels of some columns and rows of the water's grid, and the ground of each label; those outside the frame are at its edge.
+    /// The labels of some columns and rows of the water's grid, and the ground of each label; those outside the frame
+    /// are at its edge.
     #[must_use]
     pub fn sampled(
         &self,

@@ -1,6 +1,6 @@
 //! Flow accumulation: the area that drains through each cell.
 
-use super::direction::{neighbour, strides};
+use super::direction::{neighbor, strides};
 use super::receivers::Receivers;
 use crate::checks::{checks, never, now_and_then, steps};
 use crate::error;
@@ -8,7 +8,8 @@ use crate::grid::Grid;
 use crate::parallel;
 use crate::progress::Progress;
 
-/// The weight of a cell where the factor of the rain is 1. Weights are integers, so that their sums do not depend on the order of addition.
+/// The weight of a cell where the factor of the rain is 1. Weights are integers, so that their sums do not depend on
+/// the order of addition.
 pub const UNIT_WEIGHT: u32 = 1 << 16;
 
 /// The weight of a cell by its factor of the rain, which is clamped to 0.01 ..= 100; NaN counts as 1.
@@ -24,7 +25,8 @@ pub struct Accumulation {
     /// Number of cells that drain through each cell, including itself. Integers, so the result does not depend on the
     /// order of addition.
     pub area: Grid<u32>,
-    /// The same with every cell weighted by the rain, in units of 1 / [`UNIT_WEIGHT`] of a cell; `None` if the rain is the same everywhere.
+    /// The same with every cell weighted by the rain, in units of 1 / [`UNIT_WEIGHT`] of a cell; `None` if the rain is
+    /// the same everywhere.
     pub discharge: Option<Grid<u64>>,
     /// Cells that receive water from other bands, each after its receiver. Their receivers are included too.
     trunk: Vec<u32>,
@@ -121,8 +123,8 @@ pub fn accumulate_with(receivers: &Receivers, progress: &Progress) -> error::Res
     accumulate_in(receivers, band_rows(receivers), &steps(progress, checks(receivers.window().len())))
 }
 
-/// [`accumulate_with`], and the sum of the weights of the cells that drain through each cell, if the factors of the rain are given, on the grid of the
-/// receivers: the [discharge](Accumulation::discharge), as a drainage area.
+/// [`accumulate_with`], and the sum of the weights of the cells that drain through each cell, if the factors of the
+/// rain are given, on the grid of the receivers: the [discharge](Accumulation::discharge), as a drainage area.
 ///
 /// # Errors
 /// If the work is cancelled.
@@ -168,7 +170,7 @@ fn discharge(receivers: &Receivers, accumulation: &Accumulation, rain: &Grid) ->
     for cell in accumulation.trunk.iter().rev().map(|cell| *cell as usize) {
         let flows_in = |k: &usize| donors[cell] & 1 << k != 0;
         sums_of[cell] =
-            weights(cell) + (0..8).filter(flows_in).map(|k| sums_of[neighbour(cell, strides[k])]).sum::<u64>();
+            weights(cell) + (0..8).filter(flows_in).map(|k| sums_of[neighbor(cell, strides[k])]).sum::<u64>();
     }
     sums
 }
@@ -211,7 +213,7 @@ fn accumulate_in<E: Send>(
     let strides = strides(window.width);
     for cell in trunk.order.iter().rev().map(|cell| *cell as usize) {
         let flows_in = |k: &usize| donors[cell] & 1 << k != 0;
-        area[cell] = 1 + (0..8).filter(flows_in).map(|k| area[neighbour(cell, strides[k])]).sum::<u32>();
+        area[cell] = 1 + (0..8).filter(flows_in).map(|k| area[neighbor(cell, strides[k])]).sum::<u32>();
     }
     let area = Grid::from_data(window, area).unwrap_or_else(|| Grid::filled(window, 0));
     Ok(Accumulation { area, discharge: None, trunk: trunk.order, bands })

@@ -8,7 +8,7 @@
 //! levels have the same bits, because both algorithms take, over all paths to an outlet, the minimum of the highest
 //! cell on the path.
 
-use super::direction::{NONE, neighbour, opposite, strides};
+use super::direction::{NONE, neighbor, opposite, strides};
 use super::outlets::Outlets;
 use super::receivers::Receivers;
 use crate::grid::Grid;
@@ -183,7 +183,7 @@ pub fn passes(heights: &Grid, labels: &[u32]) -> Vec<Pass> {
         let (h, h_below) = (heights.row(j), heights.row(beneath));
         let mut i = 0;
         while i < width {
-            // Most cells have only neighbours of their own basin.
+            // Most cells have only neighbors of their own basin.
             if let (Some(run), Some(beneath)) = (here.get(i..=i + RUN), below.get(i.max(1) - 1..=i + RUN))
                 && run.iter().chain(beneath).fold(0, |differ, label| differ | (label ^ here[i])) == 0
             {
@@ -209,11 +209,11 @@ struct Found {
 }
 
 impl Found {
-    /// Compares column `i` of the upper of two rows with its neighbours to the east and below; `start` is the row's
+    /// Compares column `i` of the upper of two rows with its neighbors to the east and below; `start` is the row's
     /// first cell.
     fn look(&mut self, [here, below]: [&[u32]; 2], [h, h_below]: [&[f32]; 2], i: usize, start: u32) {
         let mine = here[i];
-        // A missing neighbour counts as one of the same basin.
+        // A missing neighbor counts as one of the same basin.
         let (west, east) = (i.max(1) - 1, (i + 1).min(here.len() - 1));
         let or_mine = |there: bool, label: u32| if there { label } else { mine };
         let around = [here[east], or_mine(east > i, below[east]), below[i], or_mine(west < i, below[west])];
@@ -287,7 +287,7 @@ fn flood(passes: &[Pass], basins: &mut Basins, strides: &[isize; 8]) {
         let [a, b] = next.basins;
         let (basin, parent, last, code) = match reached[b as usize] {
             true => (a, b, next.from, next.code),
-            false => (b, a, neighbour(next.from as usize, strides[usize::from(next.code)]) as u32, opposite(next.code)),
+            false => (b, a, neighbor(next.from as usize, strides[usize::from(next.code)]) as u32, opposite(next.code)),
         };
         let below = basins.spills[parent as usize].level;
         let way = &mut basins.spills[basin as usize];
@@ -339,7 +339,7 @@ mod tests {
                 reached[*b as usize] = true;
                 assert_eq!(basins.labels[way.last as usize], *b);
                 assert_eq!(basins.labels[way.pit as usize], *b);
-                let step = neighbour(way.last as usize, strides[usize::from(way.code)]);
+                let step = neighbor(way.last as usize, strides[usize::from(way.code)]);
                 assert_eq!(basins.labels[step], way.next);
                 let h = heights.data();
                 assert!(way.level >= h[way.last as usize] && way.level >= h[step]);

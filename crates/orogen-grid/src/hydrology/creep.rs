@@ -42,8 +42,8 @@ pub(super) fn creep_stages(window: &Window, amount: f64) -> f64 {
     strides(window, amount).map_or(0.0, |[_, strides, stages]| strides * stages)
 }
 
-/// How a map creeps by an amount: the number of strides, the stages of each, and the amount of a stage in squared cells before its own factor. `None` if nothing
-/// moves.
+/// How a map creeps by an amount: the number of strides, the stages of each, and the amount of a stage in squared cells
+/// before its own factor. `None` if nothing moves.
 #[doc(hidden)]
 #[must_use]
 pub fn creep_strides(window: &Window, amount: f64) -> Option<[f64; 3]> {

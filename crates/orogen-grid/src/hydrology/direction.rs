@@ -1,6 +1,7 @@
 //! The eight directions of a grid.
 //!
-//! Codes run clockwise from the east: 0 east, 1 south-east, 2 south, 3 south-west, 4 west, 5 north-west, 6 north, 7 north-east.
+//! Codes run clockwise from the east: 0 east, 1 south-east, 2 south, 3 south-west, 4 west, 5 north-west, 6 north, 7
+//! north-east.
 
 /// The code of a cell without a receiver.
 pub const NONE: u8 = 8;
@@ -15,10 +16,10 @@ pub fn strides(width: usize) -> [isize; 8] {
 }
 
 /// The sample at `stride` from sample `index`. Only for samples that are not on the grid's border and have all
-/// neighbours.
+/// neighbors.
 #[inline(always)]
 #[must_use]
-pub fn neighbour(index: usize, stride: isize) -> usize {
+pub fn neighbor(index: usize, stride: isize) -> usize {
     index.wrapping_add_signed(stride)
 }
 
@@ -34,7 +35,7 @@ pub fn is_diagonal(code: u8) -> bool {
     code & 1 == 1
 }
 
-/// Distance to the neighbour in each direction, in cells.
+/// Distance to the neighbor in each direction, in cells.
 pub const DISTANCES: [f64; 8] = [
     1.0,
     std::f64::consts::SQRT_2,

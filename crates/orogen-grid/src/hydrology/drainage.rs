@@ -20,7 +20,7 @@ pub struct Drainage {
     pub basins: Basins,
 }
 
-/// Drainage along the terrain, below the water of lakes. Each cell drains to its steepest lower neighbour. In a
+/// Drainage along the terrain, below the water of lakes. Each cell drains to its steepest lower neighbor. In a
 /// depression this leads to the pit. From the pit the path from the pass down to the pit is reversed, so that water
 /// flows to the pass and out (Cordonnier, Bovy and Braun 2019: carving).
 ///

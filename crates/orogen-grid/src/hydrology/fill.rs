@@ -11,7 +11,7 @@ use crate::parallel;
 /// outlet that never rises. Equal to Priority-Flood without an epsilon (Barnes, Lehman and Mulla 2014), bit for bit;
 /// filled areas are level.
 ///
-/// Heights that are not finite stay, and their neighbours are outlets. Costs O(cells).
+/// Heights that are not finite stay, and their neighbors are outlets. Costs O(cells).
 #[must_use]
 pub fn fill(heights: &Grid, outlets: &Outlets) -> Grid {
     filled(heights, &drainage::route_carving(heights, outlets, Descent::Steepest).basins)
@@ -38,7 +38,7 @@ pub fn filled(heights: &Grid, basins: &Basins) -> Grid {
 mod tests {
     use super::*;
     use crate::grid::Window;
-    use crate::hydrology::direction::{neighbour, strides};
+    use crate::hydrology::direction::{neighbor, strides};
     use crate::hydrology::samples;
 
     /// Planchon and Darboux (2002): starts with infinitely high water, which sinks until the heights are stable.
@@ -49,7 +49,7 @@ mod tests {
         loop {
             let mut changed = false;
             for c in (0..h.len()).filter(|c| !outlets.at(*c)) {
-                let least = strides.iter().map(|stride| water[neighbour(c, *stride)]).fold(f32::INFINITY, f32::min);
+                let least = strides.iter().map(|stride| water[neighbor(c, *stride)]).fold(f32::INFINITY, f32::min);
                 let level = h[c].max(least);
                 changed |= level < water[c];
                 water[c] = water[c].min(level);

@@ -1,16 +1,16 @@
-//! Drainage over flats, where no neighbour is lower.
+//! Drainage over flats, where no neighbor is lower.
 //!
 //! After Barnes, Lehman and Mulla, "An efficient assignment of drainage direction over flat surfaces in raster digital
 //! elevation models" (2014). Two integer gradients are added: twice the number of steps to the flat's lower rim, and
 //! the steps away from the higher ground around it. Each cell drains down their sum. A step towards the rim lowers the
 //! sum by two while the other part changes by at most one, so the sum has no pits. Barnes and others take the first of
-//! equally low neighbours, which gives straight parallel lines on the flat; here a hash of the cell's position chooses,
+//! equally low neighbors, which gives straight parallel lines on the flat; here a hash of the cell's position chooses,
 //! and lines wander and join.
 //!
 //! A flat without a lower rim is *closed*. All its cells drain to one of them, the first in row order, which remains a
 //! pit.
 
-use super::direction::{NONE, hashed, neighbour, one_of, strides};
+use super::direction::{NONE, hashed, neighbor, one_of, strides};
 use super::outlets::Outlets;
 use super::receivers::Receivers;
 use crate::grid::Grid;
@@ -109,11 +109,11 @@ struct Flats<'a> {
 }
 
 impl Flats<'_> {
-    /// The neighbours of a cell with the same height that belong to a flat: their direction and index.
+    /// The neighbors of a cell with the same height that belong to a flat: their direction and index.
     fn beside(&self, cell: usize) -> impl Iterator<Item = (usize, usize)> {
         let h = self.heights[cell];
         let level = move |(k, stride): (usize, &isize)| {
-            let n = neighbour(cell, *stride);
+            let n = neighbor(cell, *stride);
             if self.heights[n] == h { Some((k, self.places.of(n)?)) } else { None }
         };
         self.strides.iter().enumerate().filter_map(level)
@@ -124,7 +124,7 @@ impl Flats<'_> {
         for (place, c) in self.cells.iter().enumerate() {
             let cell = *c as usize;
             let h = self.heights[cell];
-            if self.strides.iter().any(|stride| self.heights[neighbour(cell, *stride)] > h) {
+            if self.strides.iter().any(|stride| self.heights[neighbor(cell, *stride)] > h) {
                 self.away[place] = 1;
                 queue.push(place as u32);
             }
@@ -181,12 +181,12 @@ impl Flats<'_> {
         }
     }
 
-    /// The set of directions with a neighbour as high as `cell` that has a receiver of its own.
+    /// The set of directions with a neighbor as high as `cell` that has a receiver of its own.
     fn drained_beside(&self, cell: usize) -> u8 {
         let h = self.heights[cell];
         let mut set = 0;
         for (k, stride) in self.strides.into_iter().enumerate() {
-            let n = neighbour(cell, stride);
+            let n = neighbor(cell, stride);
             // A cell of the same height outside all flats drains or is an outlet.
             if self.heights[n] == h && self.places.of(n).is_none() {
                 set |= 1 << k;
@@ -241,7 +241,7 @@ mod tests {
         while next < found.len() {
             if !outlets.at(found[next]) {
                 for stride in strides {
-                    let n = neighbour(found[next], stride);
+                    let n = neighbor(found[next], stride);
                     if h[n] == h[start] && !found.contains(&n) {
                         found.push(n);
                     }
@@ -267,11 +267,11 @@ mod tests {
                 if outlets.at(at) {
                     continue;
                 }
-                // A pit: its level ground has no outlet and no lower neighbour, and it is the only pit there.
+                // A pit: its level ground has no outlet and no lower neighbor, and it is the only pit there.
                 let ground = level_ground(&heights, at);
                 for g in &ground {
                     assert!(!outlets.at(*g) && (*g == at || receivers.code(*g) != NONE));
-                    let lower = |stride| heights.data()[neighbour(*g, stride)] < heights.data()[at];
+                    let lower = |stride| heights.data()[neighbor(*g, stride)] < heights.data()[at];
                     assert!(!strides(heights.width()).into_iter().any(lower));
                 }
             }
@@ -303,8 +303,8 @@ mod tests {
 
     #[test]
     fn lines_over_a_flat_do_not_run_parallel() {
-        // On a wide level plain that drains to one side, equal steps offer three ways each: most cells must not simply go
-        // straight.
+        // On a wide level plain that drains to one side, equal steps offer three ways each: most cells must not simply
+        // go straight.
         let mut heights = Grid::filled(Window::new(102, 102, 1.0), 1.0);
         heights.row_mut(101).fill(0.0);
         let (_, receivers) = resolved(&heights);

@@ -1,6 +1,6 @@
 //! Lakes: water in depressions.
 
-use super::direction::{DISTANCES, neighbour, strides};
+use super::direction::{DISTANCES, neighbor, strides};
 use super::drainage::Drainage;
 use super::outlets::Outlets;
 use crate::checks::{checks, never, now_and_then, steps};
@@ -105,8 +105,8 @@ fn find<E>(heights: &Grid, drainage: &Drainage, fewest: u32, check: &impl Fn() -
         let mut next = 0;
         while let Some(c) = cells.get(next).copied() {
             next += 1;
-            // Cells under water are not outlets, so all their neighbours exist.
-            for n in strides.map(|stride| neighbour(c, stride)) {
+            // Cells under water are not outlets, so all their neighbors exist.
+            for n in strides.map(|stride| neighbor(c, stride)) {
                 if !seen[n] && under(n) {
                     seen[n] = true;
                     cells.push(n);

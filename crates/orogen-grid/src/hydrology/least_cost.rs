@@ -1,6 +1,6 @@
 //! Least-cost breaching: depressions drained by the channels with the least excavation.
 
-use super::direction::{DISTANCES, NONE, neighbour, opposite, strides};
+use super::direction::{DISTANCES, NONE, neighbor, opposite, strides};
 use super::drainage;
 use super::fill;
 use super::outlets::Outlets;
@@ -140,7 +140,7 @@ impl Search {
                 continue;
             }
             for (k, stride) in self.strides.into_iter().enumerate() {
-                let n = neighbour(cell, stride);
+                let n = neighbor(cell, stride);
                 let depth = (h[n] - bed).max(0.0);
                 if depth > limits.deepest || outlets.at(n) && h[n] > bed {
                     continue;
@@ -160,7 +160,7 @@ impl Search {
     fn cut(&self, h: &mut [f32], end: usize, bed: f32) {
         let mut cell = end;
         while self.found[cell].back != NONE {
-            cell = neighbour(cell, self.strides[usize::from(self.found[cell].back)]);
+            cell = neighbor(cell, self.strides[usize::from(self.found[cell].back)]);
             h[cell] = h[cell].min(bed);
         }
     }

@@ -1,9 +1,9 @@
 //! Outlets: the cells where water leaves a map.
 
-use super::direction::{neighbour, strides};
+use super::direction::{neighbor, strides};
 use crate::grid::Grid;
 
-/// The outlets of a map: all cells of the grid's border; cells that are not finite, and their neighbours; cells of the
+/// The outlets of a map: all cells of the grid's border; cells that are not finite, and their neighbors; cells of the
 /// sea. All other cells drain to one of these.
 ///
 /// In a grid of fewer than 3 columns or rows every cell is on the border.
@@ -37,10 +37,10 @@ impl Outlets {
         }
         let strides = strides(width);
         for (i, j) in holes {
-            // Cells beside a hole at the border are border cells, except for inner neighbours: test them all.
+            // Cells beside a hole at the border are border cells, except for inner neighbors: test them all.
             if i > 0 && j > 0 && i + 1 < width && j + 1 < height {
                 for stride in strides {
-                    mask.data_mut()[neighbour(j * width + i, stride)] = true;
+                    mask.data_mut()[neighbor(j * width + i, stride)] = true;
                 }
             } else {
                 for y in j.saturating_sub(1)..(j + 2).min(height) {

@@ -3,22 +3,22 @@
 //! On a square lattice water has eight directions, and slopes at the limit form facets that face them: ridges and
 //! valleys align with the grid. A mesh of irregular points has no preferred directions (as in the triangulated models
 //! of Tucker et al., "An object-oriented framework for distributed hydrologic and geomorphic modeling using
-//! triangulated irregular networks", 2001). Here each cell keeps its eight neighbours, but its point is displaced
+//! triangulated irregular networks", 2001). Here each cell keeps its eight neighbors, but its point is displaced
 //! within the cell. Distances then differ from pair to pair, and the directions of flow and of facets vary.
 
-use super::direction::{STEPS, hashed, neighbour, opposite};
+use super::direction::{STEPS, hashed, neighbor, opposite};
 use super::outlets::Outlets;
 use crate::grid::{Grid, Window};
 use crate::parallel;
 
-/// A point for each cell of a map, and the distances between neighbours.
+/// A point for each cell of a map, and the distances between neighbors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Points {
     window: Window,
     /// Maximum displacement along each axis, in cells.
     reach: f32,
     salt: u32,
-    /// The inverse of the distance, in cells, to the neighbours in the east, south-east, south and south-west.
+    /// The inverse of the distance, in cells, to the neighbors in the east, south-east, south and south-west.
     inverse_distance: [Vec<f32>; 4],
 }
 
@@ -69,7 +69,7 @@ impl Points {
         [hash & 0xFFFF, hash >> 16].map(|bits| (bits as f32 * (2.0 / 65535.0) - 1.0) * self.reach)
     }
 
-    /// The inverse distances, in cells, from the inner cells of row `j` to their neighbours, in the order of [`STEPS`].
+    /// The inverse distances, in cells, from the inner cells of row `j` to their neighbors, in the order of [`STEPS`].
     pub(super) fn around(&self, j: usize) -> [&[f32]; 8] {
         let width = self.window.width;
         std::array::from_fn(|code| {
@@ -80,12 +80,12 @@ impl Points {
         })
     }
 
-    /// The inverse distance, in cells, from cell `c` to the neighbour in direction `code`.
+    /// The inverse distance, in cells, from cell `c` to the neighbor in direction `code`.
     #[inline(always)]
     pub(super) fn inverse_distance(&self, c: usize, code: u8, strides: &[isize; 8]) -> f32 {
         match code {
             0..4 => self.inverse_distance[usize::from(code)][c],
-            _ => self.inverse_distance[usize::from(opposite(code))][neighbour(c, strides[usize::from(code)])],
+            _ => self.inverse_distance[usize::from(opposite(code))][neighbor(c, strides[usize::from(code)])],
         }
     }
 
@@ -146,7 +146,7 @@ fn carry_over(h: [&[f32]; 3], offsets: [&Offsets; 3], row: &mut [f32]) {
     let width = row.len();
     let (here_x, here_y) = (&offsets[1].east[1..width - 1], &offsets[1].south[1..width - 1]);
     let here = &h[1][1..width - 1];
-    // The eight neighbours in the order of STEPS: heights and displacements, shifted along the row.
+    // The eight neighbors in the order of STEPS: heights and displacements, shifted along the row.
     let around = STEPS.map(|(east, south)| {
         let from = 1usize.wrapping_add_signed(east);
         let at = 1usize.wrapping_add_signed(south);
@@ -190,7 +190,7 @@ mod tests {
                 let c = j * 40 + i;
                 for code in 0..8u8 {
                     let near = points.inverse_distance(c, code, &strides);
-                    let there = neighbour(c, strides[usize::from(code)]);
+                    let there = neighbor(c, strides[usize::from(code)]);
                     assert_eq!(near, points.inverse_distance(there, opposite(code), &strides));
                     assert_eq!(near, around[usize::from(code)][i - 1]);
                     if (10..28).contains(&i) && (6..19).contains(&j) {

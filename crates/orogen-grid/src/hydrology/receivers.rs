@@ -1,6 +1,6 @@
-//! Receivers: the neighbour that each cell drains to.
+//! Receivers: the neighbor that each cell drains to.
 
-use super::direction::{NONE, neighbour, opposite, strides};
+use super::direction::{NONE, neighbor, opposite, strides};
 use crate::grid::{Grid, Window};
 use crate::parallel;
 
@@ -51,10 +51,10 @@ impl Receivers {
     pub fn of(&self, index: usize) -> usize {
         // The mask does not change a code; it removes the bounds check.
         let code = self.codes.data()[index];
-        neighbour(index, self.strides[usize::from(code.min(NONE))])
+        neighbor(index, self.strides[usize::from(code.min(NONE))])
     }
 
-    /// The donors of each cell as a set: bit k stands for the neighbour in direction k. Rows are computed in parallel.
+    /// The donors of each cell as a set: bit k stands for the neighbor in direction k. Rows are computed in parallel.
     #[must_use]
     pub fn donors(&self) -> Vec<u8> {
         let (width, height) = (self.window().width, self.window().height);
@@ -84,10 +84,10 @@ impl Receivers {
     }
 }
 
-/// Marks the cells whose neighbour in this direction drains into them.
-fn mark(sets: &mut [u8], neighbours: &[u8], direction: u8) {
+/// Marks the cells whose neighbor in this direction drains into them.
+fn mark(sets: &mut [u8], neighbors: &[u8], direction: u8) {
     let here = opposite(direction);
-    sets.iter_mut().zip(neighbours).for_each(|(set, code)| *set |= u8::from(*code == here) << direction);
+    sets.iter_mut().zip(neighbors).for_each(|(set, code)| *set |= u8::from(*code == here) << direction);
 }
 
 #[cfg(test)]
@@ -108,7 +108,7 @@ mod tests {
             let strides = strides(width);
             let mut expect = vec![0u8; width * height];
             for c in (0..width * height).filter(|c| receivers.code(*c) != NONE) {
-                expect[neighbour(c, strides[usize::from(receivers.code(c))])] |= 1 << opposite(receivers.code(c));
+                expect[neighbor(c, strides[usize::from(receivers.code(c))])] |= 1 << opposite(receivers.code(c));
             }
             assert_eq!(donors, expect);
         }

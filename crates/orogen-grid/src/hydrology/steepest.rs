@@ -1,4 +1,4 @@
-//! D8: each cell drains to one lower neighbour.
+//! D8: each cell drains to one lower neighbor.
 
 use super::direction::{NONE, STEPS, hashed, one_of};
 use super::outlets::Outlets;
@@ -21,7 +21,7 @@ pub enum Descent<'a> {
     Interpolation(&'a Points),
 }
 
-/// The receiver of each cell. Outlets, and cells without a lower neighbour, have none. Ties are broken by a hash of the
+/// The receiver of each cell. Outlets, and cells without a lower neighbor, have none. Ties are broken by a hash of the
 /// cell's position on the lattice.
 ///
 /// Costs O(cells). Rows are computed in parallel.
@@ -91,7 +91,7 @@ fn steepest_sets(rows: [&[f32]; 3], diagonals: &[f32], sets: &mut [u8]) {
     }
 }
 
-/// The same with each neighbour's drop multiplied by the row of its direction in `inverse_distance`.
+/// The same with each neighbor's drop multiplied by the row of its direction in `inverse_distance`.
 fn steepest_between(rows: [&[f32]; 3], inverse_distance: [&[f32]; 8], sets: &mut [u8]) {
     let count = sets.len() - 2;
     let middle = &rows[1][1..=count];
@@ -102,7 +102,7 @@ fn steepest_between(rows: [&[f32]; 3], inverse_distance: [&[f32]; 8], sets: &mut
     }
 }
 
-/// The eight rows of neighbours of the inner cells, all of the same length: loops over equal slices are vectorised.
+/// The eight rows of neighbors of the inner cells, all of the same length: loops over equal slices are vectorised.
 #[inline(always)]
 fn around(rows: [&[f32]; 3], count: usize) -> [&[f32]; 8] {
     STEPS.map(|(east, south)| {
@@ -126,11 +126,11 @@ fn largest(drops: &[f32; 8]) -> u8 {
 mod tests {
     use super::*;
     use crate::grid::Window;
-    use crate::hydrology::direction::{DISTANCES, neighbour, strides};
+    use crate::hydrology::direction::{DISTANCES, neighbor, strides};
     use crate::hydrology::samples;
 
     #[test]
-    fn no_neighbour_falls_more_steeply() {
+    fn no_neighbor_falls_more_steeply() {
         for heights in samples::grids() {
             let outlets = Outlets::new(&heights, None);
             let receivers = receivers(&heights, &outlets, Descent::Steepest);
@@ -141,7 +141,7 @@ mod tests {
                     continue;
                 }
                 let drops: Vec<f64> =
-                    (0..8).map(|k| f64::from(here - h[neighbour(c, strides[k])]) / DISTANCES[k]).collect();
+                    (0..8).map(|k| f64::from(here - h[neighbor(c, strides[k])]) / DISTANCES[k]).collect();
                 let most = drops.iter().copied().fold(0.0, f64::max);
                 match receivers.code(c) {
                     NONE => assert!(most <= 0.0),
@@ -167,7 +167,8 @@ mod tests {
 
     #[test]
     fn scattered_water_goes_where_the_slope_does() {
-        // A plane that falls 22.5 degrees south of east, between two directions. D8 goes straight east or straight south-east.
+        // A plane that falls 22.5 degrees south of east, between two directions. D8 goes straight east or straight
+        // south-east.
         for angle in [10.0f64, 22.5, 40.0, 70.0] {
             let (east, south) = (libm::cos(angle.to_radians()), libm::sin(angle.to_radians()));
             let mut plane = Grid::filled(Window::new(202, 202, 1.0), 0.0);

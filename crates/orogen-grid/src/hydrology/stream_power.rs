@@ -78,8 +78,8 @@ pub struct Substrate<'a> {
     pub erodibility_factor: Option<&'a Grid>,
     /// Factor of the uplift; `None` means 1 everywhere.
     pub uplift_factor: Option<&'a Grid>,
-    /// Factor of the rain, 0.01 to 100: a run of the law weights drainage areas by it; `None` means 1 everywhere. A single step takes the
-    /// [discharge](Accumulation::discharge) that it is given instead.
+    /// Factor of the rain, 0.01 to 100: a run of the law weights drainage areas by it; `None` means 1 everywhere. A
+    /// single step takes the [discharge](Accumulation::discharge) that it is given instead.
     pub rain: Option<&'a Grid>,
     /// Positions of the cells, which determine the distances to receivers; `None` means the lattice.
     pub points: Option<&'a Points>,
@@ -114,8 +114,8 @@ impl<'a> Substrate<'a> {
 impl StreamPower {
     /// Advances by `years`. Cells without a receiver (outlets) keep their heights.
     ///
-    /// The drainage area is the discharge, if `drained` has one. Every other cell is then higher than its receiver, so the result has no depressions and no flats. Costs
-    /// O(cells), on as many threads as `drained` was computed with.
+    /// The drainage area is the discharge, if `drained` has one. Every other cell is then higher than its receiver, so
+    /// the result has no depressions and no flats. Costs O(cells), on as many threads as `drained` was computed with.
     pub fn step(
         &self,
         heights: &mut Grid,

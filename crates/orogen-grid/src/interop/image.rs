@@ -11,8 +11,8 @@ impl<T: Copy + Primitive> Grid<T>
 where
     Luma<T>: Pixel<Subpixel = T>,
 {
-    /// The samples as an image, unchanged and not copied: heights in metres of a `Grid<f32>`, levels of a `Grid<u8>` or `Grid<u16>`. `None`
-    /// if a side has more than 2^32 - 1 samples, the maximum of an image.
+    /// The samples as an image, unchanged and not copied: heights in metres of a `Grid<f32>`, levels of a `Grid<u8>` or
+    /// `Grid<u16>`. `None` if a side has more than 2^32 - 1 samples, the maximum of an image.
     #[must_use]
     pub fn into_image(self) -> Option<Gray<T>> {
         let (width, height) = sides(self.window())?;
@@ -32,10 +32,11 @@ where
 }
 
 impl Grid<f32> {
-    /// The heights as a 16-bit image. Heights from `low` to `high` are mapped linearly to 0 ..= 65535 and rounded; others are clamped. NaN
-    /// becomes 0. Files exported with `--range LOW,HIGH` have the same levels.
+    /// The heights as a 16-bit image. Heights from `low` to `high` are mapped linearly to 0 ..= 65535 and rounded;
+    /// others are clamped. NaN becomes 0. Files exported with `--range LOW,HIGH` have the same levels.
     ///
-    /// `None` if `low` and `high` are not two finite numbers in this order, or a side has more samples than an image can have.
+    /// `None` if `low` and `high` are not two finite numbers in this order, or a side has more samples than an image
+    /// can have.
     ///
     /// ```
     /// use orogen_grid::{Grid, Window};
@@ -58,9 +59,11 @@ impl Grid<f32> {
         ImageBuffer::from_raw(width, height, self.data().iter().map(level).collect())
     }
 
-    /// Heights from 16 bits: level 0 is `low`, level 65535 is `high`. The inverse of [`Grid::to_image16`], up to the rounding to levels.
+    /// Heights from 16 bits: level 0 is `low`, level 65535 is `high`. The inverse of [`Grid::to_image16`], up to the
+    /// rounding to levels.
     ///
-    /// `None` if `low` and `high` are not two finite numbers in this order, or the image does not have the width and height of `window`.
+    /// `None` if `low` and `high` are not two finite numbers in this order, or the image does not have the width and
+    /// height of `window`.
     #[must_use]
     pub fn from_image16(window: Window, image: &Gray<u16>, low: f32, high: f32) -> Option<Grid> {
         if sides(&window) != Some(image.dimensions()) {

@@ -1,6 +1,7 @@
 //! Conversions to and from types of other crates. Each is behind a feature with the crate's name, off by default.
 //!
-//! Points in results are plain arrays (`[f64; 2]`, `[f32; 3]`); types of `mint` convert from them with `into()`, without a feature.
+//! Points in results are plain arrays (`[f64; 2]`, `[f32; 3]`); types of `mint` convert from them with `into()`,
+//! without a feature.
 
 #[cfg(feature = "image")]
 mod image;

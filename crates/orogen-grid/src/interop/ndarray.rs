@@ -43,8 +43,8 @@ impl<T: Copy> From<Grid<T>> for Array2<T> {
 }
 
 impl<T: Copy> Grid<T> {
-    /// A grid over an array that is indexed by (row, column), or `None` if it does not have the rows and columns of `window`. An array in
-    /// row-major order is not copied.
+    /// A grid over an array that is indexed by (row, column), or `None` if it does not have the rows and columns of
+    /// `window`. An array in row-major order is not copied.
     ///
     /// ```
     /// use ndarray::array;

@@ -48,10 +48,12 @@ impl Refinement {
         self.cells_in(depth, WIDEST, MAX_CELLS)
     }
 
-    /// Thickness in metres of the sediment of rivers at the points of a surface of this level, made at `share`; 0 on hillsides and in standing water.
+    /// Thickness in metres of the sediment of rivers at the points of a surface of this level, made at `share`; 0 on
+    /// hillsides and in standing water.
     ///
     /// # Errors
-    /// If the level does not cover the surface's window grown by [`Refinement::sediment_reach`], or the work is cancelled.
+    /// If the level does not cover the surface's window grown by [`Refinement::sediment_reach`], or the work is
+    /// cancelled.
     pub fn sediment(&self, share: f32, level: &Level, surface: &Surface, progress: &Progress) -> Result<Grid> {
         let window = surface.height.window();
         let nodes = self.nodes_at(level.depth, window);
@@ -103,7 +105,7 @@ impl Refinement {
 /// 1 where the ground on both sides of a river is a floor, 0 where it is steep.
 fn flatness(level: &Level, cell: f32, q: usize) -> f32 {
     let side = |turn: u8| {
-        let Some(beside) = level.neighbour(q, STEPS[usize::from((level.receiver[q] + turn) & 7)]) else { return 0.0 };
+        let Some(beside) = level.neighbor(q, STEPS[usize::from((level.receiver[q] + turn) & 7)]) else { return 0.0 };
         let distance = DISTANCES[usize::from((level.receiver[q] + turn) & 7)] as f32 * cell;
         let slope = (level.height[beside] - level.height[q]).abs() / distance;
         ((STEEP - slope) / (STEEP - FLOOR_SLOPE)).clamp(0.0, 1.0)
@@ -111,7 +113,8 @@ fn flatness(level: &Level, cell: f32, q: usize) -> f32 {
     0.5 * (side(2) + side(6))
 }
 
-/// Distance from each node to the nearest hillside in units of a cell, at most `most` cells: by steps to the eight neighbours.
+/// Distance from each node to the nearest hillside in units of a cell, at most `most` cells: by steps to the eight
+/// neighbors.
 fn hillside_distances(level: &Level, cell: f32, most: u32) -> Vec<u32> {
     let (width, height) = (level.window.width, level.window.height);
     let most = most * UNITS[0];
@@ -140,8 +143,8 @@ fn hillside_distances(level: &Level, cell: f32, most: u32) -> Vec<u32> {
     distance
 }
 
-/// Spreads the fill from rivers over the floors: the largest value that a way from a river leaves, of which each link takes the slope of the rock times its
-/// length, and more where the ground is steeper than a floor.
+/// Spreads the fill from rivers over the floors: the largest value that a way from a river leaves, of which each link
+/// takes the slope of the rock times its length, and more where the ground is steeper than a floor.
 fn spread(level: &Level, cell: f32, mut fill: Vec<f32>, progress: &Progress) -> Result<Vec<f32>> {
     // Positive numbers are in the order of their bits.
     let rivers = fill.iter().enumerate().filter(|(_, fill)| **fill > 0.0);
@@ -156,7 +159,7 @@ fn spread(level: &Level, cell: f32, mut fill: Vec<f32>, progress: &Progress) -> 
             continue;
         }
         for (step, distance) in STEPS.iter().zip(DISTANCES) {
-            let Some(to) = level.neighbour(q, *step).filter(|to| !level.is_water(*to)) else { continue };
+            let Some(to) = level.neighbor(q, *step).filter(|to| !level.is_water(*to)) else { continue };
             let metres = distance as f32 * cell;
             let slope = (level.height[to] - level.height[q]) / (FRICTION_SLOPE * metres);
             let left = f32::from_bits(bits) - ROCK_SLOPE * metres * (1.0 + slope * slope);

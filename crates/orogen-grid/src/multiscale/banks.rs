@@ -1,4 +1,5 @@
-//! Banks of rivers on the finest level: the ground beside a river is higher than its bed, so that steepest descent stays in it.
+//! Banks of rivers on the finest level: the ground beside a river is higher than its bed, so that steepest descent
+//! stays in it.
 
 use super::drainage::WATER;
 use super::stencil::Extent;

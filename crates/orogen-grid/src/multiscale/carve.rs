@@ -93,7 +93,8 @@ impl Carved {
         let entry = Child { parent: target, corner: link.entry };
         let end = Child { parent: target, corner: heir(parent, target) };
         let length = |from, to| if from == to { 0.0 } else { children.distance(from, to, parents) };
-        // Water of lakes with an outlet does not fall: from a lake only beyond the last child in it, to a lake only up to the entry.
+        // Water of lakes with an outlet does not fall: from a lake only beyond the last child in it, to a lake only up
+        // to the entry.
         let (from_lake, to_lake) = (is_lake(parent.receiver[q]), is_lake(parent.receiver[target]));
         let is_water = |child: Child| self.fixed[child.index(parents)] == WATER;
         let first = if from_lake && is_water(exit) { 0.0 } else { length(start, exit) };

@@ -12,13 +12,14 @@ use crate::progress::Progress;
 /// Half of the width of the widest river, in cells: wider ones are as narrow as this.
 const WIDEST: f32 = 20.0;
 
-/// Links up and down a river over which its course is averaged, for one half of its width in cells, at least and at most. Without it banks would be
-/// as angular as the links of cells.
+/// Links up and down a river over which its course is averaged, for one half of its width in cells, at least and at
+/// most. Without it banks would be as angular as the links of cells.
 const SMOOTHED: f32 = 3.0;
 const MIN_SMOOTHED: f32 = 8.0;
 const MAX_SMOOTHED: f32 = 24.0;
 
-/// Widths in cells at which beds begin to be cut, and have their whole depth: a river narrower than a cell has no bed of its own.
+/// Widths in cells at which beds begin to be cut, and have their whole depth: a river narrower than a cell has no bed
+/// of its own.
 const NARROW: [f32; 2] = [1.0, 2.0];
 
 /// A river at a node.
@@ -51,11 +52,13 @@ impl Refinement {
         if self.is_detail(depth) { (WIDEST + MAX_SMOOTHED) as usize + 2 } else { 0 }
     }
 
-    /// Lowers the ground to the beds of rivers with at least this drainage area in m^2, if the level is one of details: between flat beds and the
-    /// ground beside them there are banks. Heights fall along the beds as they fall along the nodes.
+    /// Lowers the ground to the beds of rivers with at least this drainage area in m^2, if the level is one of details:
+    /// between flat beds and the ground beside them there are banks. Heights fall along the beds as they fall along the
+    /// nodes.
     ///
     /// # Errors
-    /// If the level does not cover the surface's window grown by [`Refinement::rivers_reach`], or the work is cancelled.
+    /// If the level does not cover the surface's window grown by [`Refinement::rivers_reach`], or the work is
+    /// cancelled.
     pub fn cut_rivers(
         &self,
         level: &Level,

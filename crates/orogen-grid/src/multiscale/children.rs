@@ -1,4 +1,5 @@
-//! The nodes of a level before rivers: positions, rock and the shape of the shore, from the level above and from hashes.
+//! The nodes of a level before rivers: positions, rock and the shape of the shore, from the level above and from
+//! hashes.
 
 use super::geography::Geography;
 use super::given::Given;
@@ -22,7 +23,8 @@ pub const FINEST_GEOGRAPHY: f64 = 3.0;
 /// Share of the way by which the node that a parent becomes moves to a random position in its cell.
 const WANDER: f32 = 0.5;
 
-/// The children of all nodes of a parent level: cell (i, j) of the parent has the children (2 i, 2 j) to (2 i + 1, 2 j + 1).
+/// The children of all nodes of a parent level: cell (i, j) of the parent has the children (2 i, 2 j) to
+/// (2 i + 1, 2 j + 1).
 pub struct Children {
     pub depth: usize,
     pub window: Window,
@@ -56,8 +58,9 @@ pub fn amplitude(land: &Refinement, depth: usize) -> f32 {
 /// Share of the change over a cell that is the slope of the shore: the irregularities of coarser levels are the rest.
 const SHORE_SLOPE: f32 = 0.5;
 
-/// By how much the distance to the shore changes along a kilometre near the shore, at least 1; `falls` are the changes over a cell to the east and to the
-/// south. Irregularities are multiplied by it, so that they move any shore equally far.
+/// By how much the distance to the shore changes along a kilometre near the shore, at least 1; `falls` are the changes
+/// over a cell to the east and to the south. Irregularities are multiplied by it, so that they move any shore equally
+/// far.
 fn steepness(shore: f32, falls: [f32; 2], cell: f32) -> f32 {
     let steep = SHORE_SLOPE * (falls[0] * falls[0] + falls[1] * falls[1]).sqrt() / cell;
     let near = (2.0 - shore.abs() / (3.0 * cell * steep.max(1.0))).clamp(0.0, 1.0);

@@ -25,10 +25,12 @@ pub struct Coarse<'a> {
 }
 
 impl Refinement {
-    /// The coarsest level over `window` of given land, whose samples are in the middles of the cells: the nodes lie around them.
+    /// The coarsest level over `window` of given land, whose samples are in the middles of the cells: the nodes lie
+    /// around them.
     ///
     /// # Errors
-    /// If a parameter is out of range, the window is not one of the level, a grid covers too little, or the work is cancelled.
+    /// If a parameter is out of range, the window is not one of the level, a grid covers too little, or the work is
+    /// cancelled.
     pub fn coarsest_of(&self, land: &Coarse, given: &Given, window: &Window, progress: &Progress) -> Result<Level> {
         self.check(0, window)?;
         let read = window.grown(REACH);
@@ -71,8 +73,9 @@ impl Refinement {
 }
 
 impl Refinement {
-    /// The share of a coarsest cell at which a node lies: between the place of its valley, from the middle of the cell, and one by a random number from
-    /// 0 to 1. It is at most as far from the middle as nodes of other levels, and within the cell.
+    /// The share of a coarsest cell at which a node lies: between the place of its valley, from the middle of the cell,
+    /// and one by a random number from 0 to 1. It is at most as far from the middle as nodes of other levels, and
+    /// within the cell.
     fn around_middle(&self, valley: f32, draw: f32) -> f32 {
         let middle = 0.5 + self.half_finest(0);
         let width = JITTER.min(2.0 * (1.0 - middle));
@@ -134,7 +137,8 @@ mod tests {
     use crate::error::ErrorKind;
     use crate::hydrology::direction::{DISTANCES, strides};
 
-    /// Hills that fall to a valley along the middle row, which falls to the east; drainage areas by the steepest descent.
+    /// Hills that fall to a valley along the middle row, which falls to the east; drainage areas by the steepest
+    /// descent.
     fn valley(window: Window) -> (Grid, Grid) {
         let mut height = Grid::filled(window, 0.0f32);
         for j in 0..window.height {
@@ -217,7 +221,8 @@ mod tests {
             }
             grid
         };
-        // Few heights, so that some are equal; no flow to the north, so that no two cells drain to each other across a corner.
+        // Few heights, so that some are equal; no flow to the north, so that no two cells drain to each other across a
+        // corner.
         let (height, receivers) = (random(9.0, 3), random(5.0, 4));
         let land = Coarse { height: &height, flow: &height, receiver: Some(&receivers) };
         let crossings = |code: &dyn Fn(i64, i64) -> u8| {

@@ -61,8 +61,8 @@ impl Continents {
     /// Samples of the coarsest level beyond a window that [`Continents::coarsest`] works on.
     pub const COARSEST_REACH: usize = REACH;
 
-    /// The coarsest level over `window`. It holds about 60 bytes per sample of the window grown by 148. What is given covers the window grown by
-    /// [`Continents::COARSEST_REACH`].
+    /// The coarsest level over `window`. It holds about 60 bytes per sample of the window grown by 148. What is given
+    /// covers the window grown by [`Continents::COARSEST_REACH`].
     ///
     /// # Errors
     /// If a parameter is out of range, the window is not one of the level, or the work is cancelled.
@@ -79,7 +79,8 @@ impl Continents {
         Ok(coarsest.finish(heights, window))
     }
 
-    /// [`Refinement::refine`](super::refinement::Refinement::refine), where the geography of this land decides what is not given.
+    /// [`Refinement::refine`](super::refinement::Refinement::refine), where the geography of this land decides what is
+    /// not given.
     ///
     /// # Errors
     /// Those of [`Refinement::refine`](super::refinement::Refinement::refine).
@@ -124,7 +125,7 @@ impl<'a> Coarsest<'a> {
                 made.detour.push(0.5 + draw(2));
             }
         }
-        // Only land and its neighbours read the uplift.
+        // Only land and its neighbors read the uplift.
         for j in extent.shrunk(1).rows() {
             progress.step(1.0)?;
             for i in extent.shrunk(1).columns() {
@@ -185,8 +186,8 @@ impl<'a> Coarsest<'a> {
         Ok(heights)
     }
 
-    /// Inner basins: high and gentle land behind steep land, where the way out to the sea is kept from being cut; and places beyond the reach
-    /// of the sea.
+    /// Inner basins: high and gentle land behind steep land, where the way out to the sea is kept from being cut; and
+    /// places beyond the reach of the sea.
     fn choose_basins(&mut self, heights: &[f32]) {
         let (relief, width) = (self.land.refinement.relief as f32, self.extent.width);
         let score = |q: usize| match heights[q] {

@@ -14,7 +14,8 @@ pub struct Continents {
     pub land: f64,
     /// Factor of the size of continents and ranges.
     pub size: f64,
-    /// Share of the suitable inner basins that keep a lake without an outlet, 0 to 1. Elsewhere all land drains to the sea.
+    /// Share of the suitable inner basins that keep a lake without an outlet, 0 to 1. Elsewhere all land drains to the
+    /// sea.
     pub basins: f64,
 }
 

@@ -5,10 +5,10 @@ use super::stencil::Extent;
 use orogen_simd::{Body, Simd, dispatch};
 use std::f32::consts::FRAC_1_SQRT_2;
 
-/// Share of the way to the mean of the neighbours.
+/// Share of the way to the mean of the neighbors.
 const RATE: f32 = 0.8;
 
-/// Variance of the average of the neighbours, in square cells.
+/// Variance of the average of the neighbors, in square cells.
 const SPREAD: f64 = 0.6;
 
 /// Number of passes that round land over a distance in cells.
@@ -85,8 +85,8 @@ impl Body for Creep<'_> {
     }
 }
 
-/// A node falls by at most a share of the fall to its receiver, and rises by at most the rest of that from its lowest donor, so that donors stay
-/// above.
+/// A node falls by at most a share of the fall to its receiver, and rises by at most the rest of that from its lowest
+/// donor, so that donors stay above.
 #[inline(always)]
 fn smooth(
     [height, area, receiver, fixed, factor]: [&[f32]; 5],

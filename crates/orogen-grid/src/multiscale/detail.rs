@@ -1,5 +1,6 @@
-//! Detail levels, below the finest level of valleys. Their hillsides are as steep as those of that level, soil smooths gentle ones, steep ones are rough
-//! rock, and only gullies are new: valleys that grew further by the law of slopes would make all land as steep as rock can stand.
+//! Detail levels, below the finest level of valleys. Their hillsides are as steep as those of that level, soil smooths
+//! gentle ones, steep ones are rough rock, and only gullies are new: valleys that grew further by the law of slopes
+//! would make all land as steep as rock can stand.
 
 use super::carve::Carved;
 use super::creep;
@@ -17,7 +18,8 @@ use std::f32::consts::{E, SQRT_2};
 /// The part of its cell in which a node of the finest level of valleys is displaced from the lattice.
 const DISPLACED: f32 = 0.5;
 
-/// Drainage area in cells up to which the slope to the receiver is that of a hillside. Beyond it a node counts the less, the larger its area.
+/// Drainage area in cells up to which the slope to the receiver is that of a hillside. Beyond it a node counts the
+/// less, the larger its area.
 const HILLSIDE_AREA: f32 = 8.0;
 
 /// Weights of nodes in the middle of rivers and of water among those of hillsides.
@@ -28,15 +30,16 @@ const WATER_WEIGHT: f32 = 0.001;
 const MIN_STABLE: f32 = 1e-3;
 const MAX_STABLE: f32 = 1.5;
 
-/// Drainage area in m^2 below which rivers of detail levels choose their receivers again: two that run side by side at different heights would
-/// have a wall between them.
+/// Drainage area in m^2 below which rivers of detail levels choose their receivers again: two that run side by side at
+/// different heights would have a wall between them.
 const FREE_AREA: f64 = 1e6;
 
 /// Passes of creep, at most.
 const CREEP_PASSES: usize = 2;
 
-/// Turns nodes of the finest level of valleys into those that detail levels begin with: off the lattice, with uplift over erodibility in `variation` and the
-/// logarithm of the stable slope in `uplift`. Values [`scree::REACH`] nodes away from the edge are exact.
+/// Turns nodes of the finest level of valleys into those that detail levels begin with: off the lattice, with uplift
+/// over erodibility in `variation` and the logarithm of the stable slope in `uplift`. Values [`scree::REACH`] nodes
+/// away from the edge are exact.
 pub fn begin(land: &Refinement, level: &mut Level) {
     let width = level.window.width;
     let mut stable = stable_slopes(land, level);
@@ -100,8 +103,9 @@ pub fn free_area(cell: f64) -> f32 {
     (FREE_AREA / (cell * cell)) as f32
 }
 
-/// Rivers of small area choose their receivers again. They keep their slopes where those are steeper than the law: they fell by less than the level
-/// above otherwise, and a fall that moves upstream by a few cells on each level would leave steps.
+/// Rivers of small area choose their receivers again. They keep their slopes where those are steeper than the law: they
+/// fell by less than the level above otherwise, and a fall that moves upstream by a few cells on each level would leave
+/// steps.
 pub fn free_rivers(land: &Refinement, depth: usize, carved: &mut Carved, extent: Extent, law: &mut Law) {
     let cell = land.cell_of(depth);
     let free_area = free_area(cell);

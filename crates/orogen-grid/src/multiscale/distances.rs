@@ -1,4 +1,4 @@
-//! Distances between the nodes of neighbouring cells, with one diagonal per four cells.
+//! Distances between the nodes of neighboring cells, with one diagonal per four cells.
 
 use super::stencil::Extent;
 use crate::hydrology::direction::STEPS;
@@ -9,8 +9,8 @@ pub const CLOSED: f32 = 1e30;
 /// The smallest distance between two nodes, in cells: nodes of adjacent cells may nearly coincide.
 const NEAREST: f32 = 0.35;
 
-/// Distances in cells from each node to those in the east, south-east, south and south-west. Of the two diagonals of four cells only the shorter is
-/// open, so that links never cross.
+/// Distances in cells from each node to those in the east, south-east, south and south-west. Of the two diagonals of
+/// four cells only the shorter is open, so that links never cross.
 pub struct Distances {
     pub planes: [Vec<f32>; 4],
 }
@@ -57,7 +57,7 @@ impl Distances {
         }
     }
 
-    /// The distances from the cells of row `j` to their neighbours, in the order of [`STEPS`].
+    /// The distances from the cells of row `j` to their neighbors, in the order of [`STEPS`].
     #[inline(always)]
     pub fn around(&self, extent: Extent, j: usize) -> [&[f32]; 8] {
         let opposite = |code: usize| extent.around(&self.planes[code], j)[code + 4];

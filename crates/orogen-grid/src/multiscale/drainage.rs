@@ -10,8 +10,9 @@ pub const FREE: f32 = -1.0;
 /// In planes of fixed receivers: water.
 pub const WATER: f32 = NONE as f32;
 
-/// Replaces `area` by 1, or the rain of the cell, plus the areas of the donors before, over `extent`; `spare` is scratch memory. Sums are in the order of
-/// directions, so they have the same bits in every window. Receivers are codes of directions.
+/// Replaces `area` by 1, or the rain of the cell, plus the areas of the donors before, over `extent`; `spare` is
+/// scratch memory. Sums are in the order of directions, so they have the same bits in every window. Receivers are codes
+/// of directions.
 pub fn step(extent: Extent, rain: Option<&[f32]>, receiver: &[f32], area: &mut Vec<f32>, spare: &mut Vec<f32>) {
     dispatch(Step { extent, rain, receiver, area, out: spare });
     std::mem::swap(area, spare);
@@ -49,7 +50,7 @@ fn sum(receivers: [&[f32]; 8], areas: [&[f32]; 8], out: &mut [f32]) {
     for i in 0..n {
         let mut total = out[i];
         for code in 0..8 {
-            // The neighbour drains here if its receiver is in the opposite direction.
+            // The neighbor drains here if its receiver is in the opposite direction.
             let back = ((code + 4) & 7) as f32;
             total += if receivers[code][i] == back { areas[code][i] } else { 0.0 };
         }

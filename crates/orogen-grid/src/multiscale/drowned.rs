@@ -15,9 +15,9 @@ const FURTHEST: f32 = 1300.0;
 const HALVINGS: usize = 40;
 
 impl Level {
-    /// Lets the sea stand at `sea_level` in a coarsest level of given land: heights become those above it, and nodes of land at or below it become water. Their
-    /// distance from the shore is the one at which the bottom is as deep as the land there, and at least that of the coast. `land` covers the window grown by
-    /// [`REACH`](super::coarse::REACH).
+    /// Lets the sea stand at `sea_level` in a coarsest level of given land: heights become those above it, and nodes of
+    /// land at or below it become water. Their distance from the shore is the one at which the bottom is as deep as the
+    /// land there, and at least that of the coast. `land` covers the window grown by [`REACH`](super::coarse::REACH).
     pub fn drown(&mut self, land: &Grid, sea_level: f32) {
         let cell = (self.window.cell * 1e-3) as f32;
         let window = self.window;

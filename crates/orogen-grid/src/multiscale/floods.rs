@@ -1,5 +1,5 @@
-//! Flood plains: land that lies less above the river that it drains to than a flood rises there (the height above the nearest drainage; Rennó and
-//! others 2008, Nobre and others 2011).
+//! Flood plains: land that lies less above the river that it drains to than a flood rises there (the height above the
+//! nearest drainage; Rennó and others 2008, Nobre and others 2011).
 
 use super::level::{Level, invalid};
 use super::refinement::Refinement;
@@ -9,8 +9,9 @@ use crate::grid::Grid;
 use crate::hydrology::rivers::Channel;
 use crate::progress::Progress;
 
-/// Height of a flood over the bed, as a multiple of the depth of the river by its mean discharge. Banks are full at about five times that discharge, and then the
-/// river is 5^0.4 = 1.9 times as deep; land that is prone to floods lies up to twice as high (Rosgen 1994).
+/// Height of a flood over the bed, as a multiple of the depth of the river by its mean discharge. Banks are full at
+/// about five times that discharge, and then the river is 5^0.4 = 1.9 times as deep; land that is prone to floods lies
+/// up to twice as high (Rosgen 1994).
 const STAGE: f64 = 4.0;
 
 /// Longest way from the land to its river, in metres and in links between nodes.
@@ -54,12 +55,14 @@ impl Refinement {
         self.cells_in(depth, FURTHEST, MAX_LINKS)
     }
 
-    /// Depth in metres of the flood at the points of a surface of this level, made at `share`; 0 where there is none. Rivers have at least this drainage
-    /// area in m^2. In a river the flood is four times as deep as the river. It reaches all land that drains to the river within 4000 m or 96 links, along
-    /// the receivers, and lies below the flood; in the last quarter of that way the flood thins out. Rivers that join another rise by its flood, too.
+    /// Depth in metres of the flood at the points of a surface of this level, made at `share`; 0 where there is none.
+    /// Rivers have at least this drainage area in m^2. In a river the flood is four times as deep as the river. It
+    /// reaches all land that drains to the river within 4000 m or 96 links, along the receivers, and lies below the
+    /// flood; in the last quarter of that way the flood thins out. Rivers that join another rise by its flood, too.
     ///
     /// # Errors
-    /// If the level does not cover the surface's window grown by [`Refinement::floods_reach`], or the work is cancelled.
+    /// If the level does not cover the surface's window grown by [`Refinement::floods_reach`], or the work is
+    /// cancelled.
     pub fn floodplain(
         &self,
         share: f32,
@@ -98,7 +101,8 @@ impl Refinement {
                     continue;
                 }
                 let q = self.nearest_node(share, level, (top + j) * level.window.width + left + i);
-                // On detail levels points lie on the smooth ground between nodes; on coarse ones that is smoother than the valleys.
+                // On detail levels points lie on the smooth ground between nodes; on coarse ones that is smoother than
+                // the valleys.
                 let ground = if self.is_detail(level.depth) { surface.height[(i, j)] } else { level.height[q] };
                 depth[(i, j)] = floods.depth(q, ground);
             }
@@ -178,8 +182,8 @@ impl Floods<'_> {
         }
     }
 
-    /// Height of the flood at a node of a river: that of its own, or of the river downstream, which backs up the less, the further away it is. Nodes are as high
-    /// as the banks, which are above the bed by the depth of the river.
+    /// Height of the flood at a node of a river: that of its own, or of the river downstream, which backs up the less,
+    /// the further away it is. Nodes are as high as the banks, which are above the bed by the depth of the river.
     fn height_at(&mut self, river: usize) -> f32 {
         if self.height[river].is_nan() {
             let rise = |at: usize| ((STAGE - 1.0) * self.depth_of(at)) as f32;

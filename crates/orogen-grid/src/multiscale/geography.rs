@@ -18,17 +18,20 @@ pub struct Geography {
 /// Number of places that are tried as the home.
 const PLACES: u64 = 64;
 
-/// Distance to the shore in kilometres, and logarithm of uplift over erodibility, of a home: mountains not far from the sea.
+/// Distance to the shore in kilometres, and logarithm of uplift over erodibility, of a home: mountains not far from the
+/// sea.
 const HOME_SHORE: std::ops::Range<f32> = 60.0..400.0;
 const HOME_UPLIFT: f32 = 0.3;
 
-/// The threshold of the coast by share of land, in steps of 0.1 from 0 to 1: measured quantiles of [`Site::coast`] with its detail.
+/// The threshold of the coast by share of land, in steps of 0.1 from 0 to 1: measured quantiles of [`Site::coast`] with
+/// its detail.
 const THRESHOLDS: [f64; 11] = [0.72, 0.46, 0.305, 0.19, 0.09, 0.0, -0.09, -0.19, -0.305, -0.46, -0.72];
 
 /// Kilometres of distance to the shore per unit of the coast's shape.
 const COAST: f64 = 1500.0;
 
-/// The warped coordinates of a position, in kilometres, three of them rotated so that the lattices of the noises differ.
+/// The warped coordinates of a position, in kilometres, three of them rotated so that the lattices of the noises
+/// differ.
 struct Site<'a> {
     geography: &'a Geography,
     plain: (f64, f64),
@@ -46,8 +49,8 @@ impl Geography {
         Geography { home: geography.found_home(), ..geography }
     }
 
-    /// A place in mountains near the sea, otherwise the place with the largest uplift of those on land, so that the land around the origin is
-    /// worth a look with every seed.
+    /// A place in mountains near the sea, otherwise the place with the largest uplift of those on land, so that the
+    /// land around the origin is worth a look with every seed.
     fn found_home(&self) -> (f64, f64) {
         let mut best = (f32::NEG_INFINITY, (0.0, 0.0));
         for place in 0..PLACES {

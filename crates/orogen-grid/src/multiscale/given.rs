@@ -5,8 +5,8 @@ use super::geography::Geography;
 use crate::grid::{Grid, Window};
 use std::ops::RangeInclusive;
 
-/// Shores, uplift and factors. Each grid is at the cell of the level and covers the samples that the level reads. A factor without a value (NaN, or
-/// beyond the grid's edge) is 1.
+/// Shores, uplift and factors. Each grid is at the cell of the level and covers the samples that the level reads. A
+/// factor without a value (NaN, or beyond the grid's edge) is 1.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Given<'a> {
     /// Distance to the shore in metres, positive on land.
@@ -19,9 +19,11 @@ pub struct Given<'a> {
     pub creep_factor: Option<&'a Grid>,
     /// Factor of the width of valley floors.
     pub floor_factor: Option<&'a Grid>,
-    /// Factor of the rain, and so of the discharge from each cell. Detail levels take the rain of their streams from above.
+    /// Factor of the rain, and so of the discharge from each cell. Detail levels take the rain of their streams from
+    /// above.
     pub rain: Option<&'a Grid>,
-    /// The land whose geography decides about shores and uplift without a value. Without it they are those of the level above.
+    /// The land whose geography decides about shores and uplift without a value. Without it they are those of the level
+    /// above.
     pub continents: Option<&'a Continents>,
 }
 

@@ -1,4 +1,5 @@
-//! Growth of the land between rivers: passes in which heights fall to the steady state of the law over the lowest neighbour.
+//! Growth of the land between rivers: passes in which heights fall to the steady state of the law over the lowest
+//! neighbor.
 
 use super::distances::Distances;
 use super::growth_row::{Around, Own, Row, Scale, grow};
@@ -10,8 +11,8 @@ use orogen_simd::{Body, Simd, dispatch};
 /// Drainage area, in km^2, from which rivers have floors.
 pub const FLOOR_AREA: f64 = 5.0;
 
-/// Smallest rise over one cell, in metres: heights fall strictly. On detail levels it shrinks with the cell, so that floors stay flat, as far as
-/// heights of a few kilometres have the digits.
+/// Smallest rise over one cell, in metres: heights fall strictly. On detail levels it shrinks with the cell, so that
+/// floors stay flat, as far as heights of a few kilometres have the digits.
 const LEAST_RISE: f32 = 0.012;
 const LEAST_DETAIL_RISE: f32 = 0.001;
 
@@ -29,7 +30,7 @@ pub struct Growth {
     pub spare: Vec<f32>,
 }
 
-/// The distances between neighbours.
+/// The distances between neighbors.
 #[derive(Clone, Copy)]
 pub enum Spacing<'a> {
     Irregular(&'a Distances),

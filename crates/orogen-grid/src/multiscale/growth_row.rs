@@ -1,4 +1,4 @@
-//! The growth of one row of nodes. Each step is a loop over a row that reads one neighbour, so that it vectorises.
+//! The growth of one row of nodes. Each step is a loop over a row that reads one neighbor, so that it vectorises.
 
 use super::carve::UNKNOWN;
 use super::drainage::{FREE, WATER};
@@ -39,7 +39,7 @@ pub struct Own<'a> {
     pub least: &'a [f32],
 }
 
-/// What a row of cells reads of its neighbours.
+/// What a row of cells reads of its neighbors.
 pub struct Around<'a> {
     pub height: [&'a [f32]; 8],
     pub fixed: [&'a [f32]; 8],
@@ -54,7 +54,7 @@ pub struct Row {
     /// Rise over one cell by the law, and on a floor.
     rise: Vec<f32>,
     flat: Vec<f32>,
-    /// Free nodes drain to neighbours below this height.
+    /// Free nodes drain to neighbors below this height.
     below: Vec<f32>,
     lowest: Vec<f32>,
     best: Vec<f32>,
@@ -92,7 +92,7 @@ pub fn grow<const FLOORS: bool, const REGULAR: bool>(
     let law = Law { rise, flat, below, fixed: own.fixed, cell: scale.cell };
     for code in 0..8 {
         let there =
-            Neighbour { height: around.height[code], distance: around.distance[code], floor: around.floor[code] };
+            Neighbor { height: around.height[code], distance: around.distance[code], floor: around.floor[code] };
         let there = Toward { there, code };
         let [lowest, best, floor] = [&mut lowest[..n], &mut best[..n], &mut floor[..n]];
         if code & 1 == 0 {
@@ -119,7 +119,7 @@ pub fn grow<const FLOORS: bool, const REGULAR: bool>(
     }
 }
 
-/// What all neighbours of a row are measured by.
+/// What all neighbors of a row are measured by.
 struct Law<'a> {
     rise: &'a [f32],
     flat: &'a [f32],
@@ -128,15 +128,15 @@ struct Law<'a> {
     cell: f32,
 }
 
-struct Neighbour<'a> {
+struct Neighbor<'a> {
     height: &'a [f32],
     distance: &'a [f32],
     floor: &'a [f32],
 }
 
-/// The neighbours in one direction.
+/// The neighbors in one direction.
 struct Toward<'a> {
-    there: Neighbour<'a>,
+    there: Neighbor<'a>,
     code: usize,
 }
 
@@ -157,8 +157,8 @@ fn rises(own: &Own<'_>, scale: Scale, rise: &mut [f32], flat: &mut [f32], below:
     }
 }
 
-/// Takes the height over the neighbours in one direction where it is the lowest so far. No link crosses a river that leads from one of the two cells
-/// `beside` a diagonal to the other: it would pass under that river.
+/// Takes the height over the neighbors in one direction where it is the lowest so far. No link crosses a river that
+/// leads from one of the two cells `beside` a diagonal to the other: it would pass under that river.
 #[inline(always)]
 fn offer<const FLOORS: bool, const REGULAR: bool, const DIAGONAL: bool>(
     law: &Law<'_>,
@@ -195,7 +195,8 @@ fn offer<const FLOORS: bool, const REGULAR: bool, const DIAGONAL: bool>(
     }
 }
 
-/// Takes the height of a front that passes between a neighbour and the lower one `beside` it where it is the lowest so far.
+/// Takes the height of a front that passes between a neighbor and the lower one `beside` it where it is the lowest so
+/// far.
 #[inline(always)]
 fn front(law: &Law<'_>, heights: [&[f32]; 4], beside: f32, lowest: &mut [f32], best: &mut [f32], floor: &mut [f32]) {
     let n = lowest.len();
@@ -242,7 +243,8 @@ fn floors([area, width, fixed]: [&[f32]; 3], floor: &[f32], floor_area: f32, out
 mod tests {
     use super::*;
 
-    /// The direction that a free node takes whose lowest neighbour is in the south-east, beside a river at the east with this fixed receiver.
+    /// The direction that a free node takes whose lowest neighbor is in the south-east, beside a river at the east with
+    /// this fixed receiver.
     fn receiver(river: f32) -> f32 {
         let heights = [[30.0], [5.0], [31.0], [40.0], [20.0], [40.0], [40.0], [40.0]];
         let fixed = [[river], [FREE], [FREE], [FREE], [FREE], [FREE], [FREE], [FREE]];

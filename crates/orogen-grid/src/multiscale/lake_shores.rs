@@ -10,7 +10,8 @@ use super::stencil::Extent;
 use crate::hydrology::direction::{NONE, STEPS};
 use std::f32::consts::SQRT_2;
 
-/// A lake is nearer to its own river than to a lower one by this factor of the distances, so that there is a ridge between them.
+/// A lake is nearer to its own river than to a lower one by this factor of the distances, so that there is a ridge
+/// between them.
 const NEARER: f32 = 0.6;
 
 /// Cells around a lake whose land is not much lower than the lake, so that it does not stand behind a wall.
@@ -59,18 +60,19 @@ pub fn shape(parts: &[Part], level: &Level, children: &mut Children) {
 /// The position of the receiver of a lake's node in the same lake, from the corner of the node's cell, in cells.
 fn link(level: &Level, q: usize) -> Option<[f32; 2]> {
     let step = STEPS[usize::from(level.receiver[q] & 7)];
-    let to = level.neighbour(q, step)?;
+    let to = level.neighbor(q, step)?;
     let is_same = is_lake(level.receiver[to]) && level.height[to] == level.height[q];
     is_same.then(|| [level.east[to] + step.0 as f32, level.south[to] + step.1 as f32])
 }
 
-/// The links of rivers near a lake's node that are lower than the lake: positions from the corner of the node's cell, in cells.
+/// The links of rivers near a lake's node that are lower than the lake: positions from the corner of the node's cell,
+/// in cells.
 fn lower_rivers(level: &Level, q: usize) -> Vec<[[f32; 2]; 2]> {
     let reach = WIDEST as isize;
     let around = (-reach..=reach).flat_map(|south| (-reach..=reach).map(move |east| (east, south)));
     let mut found = Vec::new();
     for (east, south) in around {
-        let Some(near) = level.neighbour(q, (east, south)) else { continue };
+        let Some(near) = level.neighbor(q, (east, south)) else { continue };
         let is_lower = level.receiver[near] < NONE && level.height[near] < level.height[q];
         let Some(to) = level.downstream(near).filter(|_| is_lower && level.area[near] > 1.5) else { continue };
         let step = STEPS[usize::from(level.receiver[near])];
@@ -81,7 +83,8 @@ fn lower_rivers(level: &Level, q: usize) -> Vec<[[f32; 2]; 2]> {
     found
 }
 
-/// The smallest heights of land around lakes with an outlet, [`RIM`] cells away from the edge; elsewhere [`ANYTHING`]. Nothing if there is no lake.
+/// The smallest heights of land around lakes with an outlet, [`RIM`] cells away from the edge; elsewhere [`ANYTHING`].
+/// Nothing if there is no lake.
 pub fn rims(land: &Refinement, depth: usize, extent: Extent, carved: &Carved) -> Vec<f32> {
     let has_outlet = |q: usize| carved.fixed[q] == WATER && carved.receiver[q] < WATER;
     if land.lakes == 0.0 || !(0..extent.len()).any(has_outlet) {

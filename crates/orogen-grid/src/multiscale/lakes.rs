@@ -35,8 +35,9 @@ const MAIN_SHARE: f32 = 0.35;
 /// Slope of the river before it became a lake, and below its outlet, at most.
 const MAX_SLOPE: f64 = 0.03;
 
-/// Fall from a lake to the river below, in metres, if the river fell by as much, and at least this share of the river's fall. What is left of the fall is above
-/// the lake: finer levels have water up to the end of the link, so that its fall becomes a step.
+/// Fall from a lake to the river below, in metres, if the river fell by as much, and at least this share of the river's
+/// fall. What is left of the fall is above the lake: finer levels have water up to the end of the link, so that its
+/// fall becomes a step.
 const OUTLET_FALL: f32 = 1.0;
 const OUTLET_SHARE: f32 = 0.1;
 
@@ -52,7 +53,8 @@ pub const SHORE_IRREGULARITY: f32 = 0.55;
 /// Cells from a node of a lake to those whose distances to the shore it changes, and to the rivers that keep it away.
 pub const WIDEST: usize = 2;
 
-/// Cells that the lakes of a cell depend on: to a node of a lake and on to a lower river or another lake, along that to its outlet, and down to the next one.
+/// Cells that the lakes of a cell depend on: to a node of a lake and on to a lower river or another lake, along that to
+/// its outlet, and down to the next one.
 pub const REACH: usize = 2 * WIDEST + 2 * MAX_LINKS + 1;
 
 /// Whether the code of a receiver is that of a lake with an outlet.
@@ -126,7 +128,7 @@ pub fn begin(land: &Refinement, level: &mut Level) -> Vec<Part> {
 
 /// Whether no node around a node is water.
 fn is_dry(level: &Level, receivers: &[u8], q: usize) -> bool {
-    STEPS.into_iter().all(|step| level.neighbour(q, step).is_none_or(|near| receivers[near] < NONE))
+    STEPS.into_iter().all(|step| level.neighbor(q, step).is_none_or(|near| receivers[near] < NONE))
 }
 
 /// Nodes of rivers that may become the outlets of lakes.
@@ -187,7 +189,7 @@ fn place(level: &Level, q: usize) -> (i64, i64) {
 /// The nodes on land whose receiver is a node.
 fn donors(level: &Level, q: usize) -> impl Iterator<Item = usize> {
     STEPS.iter().enumerate().filter_map(move |(code, step)| {
-        let donor = level.neighbour(q, *step)?;
+        let donor = level.neighbor(q, *step)?;
         (usize::from(level.receiver[donor]) == (code + 4) & 7).then_some(donor)
     })
 }

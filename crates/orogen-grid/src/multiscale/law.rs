@@ -68,8 +68,8 @@ impl Law {
 }
 
 impl Law {
-    /// The law at the nodes of a detail level, from uplift over erodibility in `variation` and the logarithms of stable slopes in `uplift`. There are no
-    /// floors: stable slopes contain them.
+    /// The law at the nodes of a detail level, from uplift over erodibility in `variation` and the logarithms of stable
+    /// slopes in `uplift`. There are no floors: stable slopes contain them.
     fn fill_detail(&mut self, variation: &[f32], uplift: &[f32], river_factor: f32) {
         for (river, variation) in self.river.iter_mut().zip(variation) {
             *river = river_factor * power(std::f32::consts::E, *variation);
@@ -138,7 +138,8 @@ fn floors(variation: &[f32], uplift: &[f32], floor: &mut [f32]) {
     }
 }
 
-/// The rise in metres from a node to its neighbour at the source of a river, where the logarithm of uplift over erodibility is `logarithm`.
+/// The rise in metres from a node to its neighbor at the source of a river, where the logarithm of uplift over
+/// erodibility is `logarithm`.
 pub fn slope_of_one_cell(land: &Refinement, depth: usize, logarithm: f32) -> f32 {
     let kilometres = land.kilometres(depth);
     let river = river_slope(land, kilometres * kilometres) as f32 * power(std::f32::consts::E, logarithm);

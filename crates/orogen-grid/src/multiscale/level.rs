@@ -35,8 +35,8 @@ pub struct Level {
     pub height: Vec<f32>,
     /// Drainage area, in cells of this level, weighted by the rain if that is given.
     pub area: Vec<f32>,
-    /// Code of the direction to the receiver (see [`crate::hydrology::direction`]); [`NONE`] for the sea and lakes without an outlet. Nodes of lakes
-    /// with one have [`LAKE`] added.
+    /// Code of the direction to the receiver (see [`crate::hydrology::direction`]); [`NONE`] for the sea and lakes
+    /// without an outlet. Nodes of lakes with one have [`LAKE`] added.
     pub receiver: Vec<u8>,
     /// Local part of the logarithm of uplift over erodibility; on detail levels all of it.
     pub variation: Vec<f32>,

@@ -1,4 +1,5 @@
-//! The ways of rivers through the children of a level: which links of the parents are kept, and the children that they pass.
+//! The ways of rivers through the children of a level: which links of the parents are kept, and the children that they
+//! pass.
 
 use super::children::{Children, heir};
 use super::hash;
@@ -48,7 +49,8 @@ pub enum Around {
     End,
 }
 
-/// The way of a parent's link: from the parent's heir to the exit, possibly around a corner, and from the entry to the receiver's heir.
+/// The way of a parent's link: from the parent's heir to the exit, possibly around a corner, and from the entry to the
+/// receiver's heir.
 #[derive(Debug, Clone, Copy)]
 pub struct Link {
     /// Whether the parent has a donor or is water: other parents are forgotten, and their nodes grow anew.
@@ -63,7 +65,8 @@ pub struct Link {
     pub around: Around,
 }
 
-/// The links of all parents. Those of parents at least three cells from the edge, and the children that they pass, are exact.
+/// The links of all parents. Those of parents at least three cells from the edge, and the children that they pass, are
+/// exact.
 pub struct Links {
     pub list: Vec<Link>,
     /// Parents per row, and rows.
@@ -132,7 +135,8 @@ impl Links {
         }
     }
 
-    /// Chooses the exit and the entry of a link: across a side one of four pairs, by length and chance; across a corner there is only one.
+    /// Chooses the exit and the entry of a link: across a side one of four pairs, by length and chance; across a corner
+    /// there is only one.
     fn cross(&mut self, land: &Refinement, parent: &Level, children: &Children, q: usize, wander: f32) {
         let (east, south) = step(parent.receiver[q]);
         let target = self.target(parent, q);

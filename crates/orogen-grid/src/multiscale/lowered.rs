@@ -102,14 +102,16 @@ impl Refinement {
         self.is_detail(depth)
     }
 
-    /// The numbers of [`Refinement::surface_at`]: where samples are in their cells, and the mean change of heights by finer levels.
+    /// The numbers of [`Refinement::surface_at`]: where samples are in their cells, and the mean change of heights by
+    /// finer levels.
     #[must_use]
     pub fn surface_numbers(&self, depth: usize, share: f32) -> [f32; 2] {
         [self.inside(depth, share), self.mean_change(depth)]
     }
 
-    /// The numbers of level `depth`, at least 1: bits of what it has; the starts of the hashes of streams 0, 7 and 9, and of stream 11 of the level above, each
-    /// as a low and a high word; and then numbers of f32, in the order in which shaders read them.
+    /// The numbers of level `depth`, at least 1: bits of what it has; the starts of the hashes of streams 0, 7 and 9,
+    /// and of stream 11 of the level above, each as a low and a high word; and then numbers of f32, in the order in
+    /// which shaders read them.
     #[must_use]
     pub fn words(&self, depth: usize) -> [u32; WORDS] {
         let above = depth.saturating_sub(1);

@@ -1,5 +1,5 @@
-//! Mouths of rivers where shores are given: the water that a coarse level sees in one sample of the shore leads on to the sea that finer samples have, or stays as
-//! an inland lake.
+//! Mouths of rivers where shores are given: the water that a coarse level sees in one sample of the shore leads on to
+//! the sea that finer samples have, or stays as an inland lake.
 
 use super::children::heir;
 use super::given::Given;
@@ -26,8 +26,9 @@ enum Below {
     Sea(u8, f32),
 }
 
-/// Leads mouths to the sea of the next level. A node of the sea moves to a child that is sea; if it has none, its rivers go on to one beside it that does, and if
-/// there is none, they end in an inland lake. A node of land whose heir is sea becomes sea if its river ends there. Nodes at the edge are left as they are.
+/// Leads mouths to the sea of the next level. A node of the sea moves to a child that is sea; if it has none, its
+/// rivers go on to one beside it that does, and if there is none, they end in an inland lake. A node of land whose heir
+/// is sea becomes sea if its river ends there. Nodes at the edge are left as they are.
 pub fn lead(level: &mut Level, given: &Given) {
     if given.shore.is_none() {
         return;
@@ -131,17 +132,18 @@ fn below(level: &Level, given: &Given, q: usize) -> Below {
 /// The height of the lowest river that ends at an inner node.
 fn lowest_donor(level: &Level, q: usize) -> Option<f32> {
     let donors = STEPS.iter().zip(0u8..).filter_map(|(step, code)| {
-        let donor = level.neighbour(q, *step)?;
+        let donor = level.neighbor(q, *step)?;
         (direction(level.receiver[donor]) == opposite(code)).then(|| level.height[donor])
     });
     donors.reduce(f32::min)
 }
 
-/// The direction from a node to the sea beside it that is furthest from its shore; across a side if possible, and across no river.
+/// The direction from a node to the sea beside it that is furthest from its shore; across a side if possible, and
+/// across no river.
 fn way(level: &Level, sea: impl Fn(usize) -> Option<f32>, q: usize) -> Option<u8> {
     let mut best: Option<(bool, f32, u8)> = None;
     for (code, &step) in (0u8..).zip(&STEPS) {
-        let Some(shore) = level.neighbour(q, step).and_then(&sea) else { continue };
+        let Some(shore) = level.neighbor(q, step).and_then(&sea) else { continue };
         let found = (is_diagonal(code), shore, code);
         if best.is_none_or(|best| (found.0, found.1) < (best.0, best.1)) && !(found.0 && is_crossed(level, q, step)) {
             best = Some(found);
@@ -153,7 +155,7 @@ fn way(level: &Level, sea: impl Fn(usize) -> Option<f32>, q: usize) -> Option<u8
 /// Whether a river passes between the two cells beside a step across a corner.
 fn is_crossed(level: &Level, q: usize, (east, south): (isize, isize)) -> bool {
     let leads = |from: (isize, isize), by: (isize, isize)| {
-        let code = level.neighbour(q, from).map_or(NONE, |near| direction(level.receiver[near]));
+        let code = level.neighbor(q, from).map_or(NONE, |near| direction(level.receiver[near]));
         STEPS.get(usize::from(code)) == Some(&by)
     };
     leads((east, 0), (-east, south)) || leads((0, south), (east, -south))

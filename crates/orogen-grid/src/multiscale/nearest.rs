@@ -5,8 +5,8 @@ use super::refinement::Refinement;
 use crate::hydrology::direction::{NONE, STEPS};
 
 impl Refinement {
-    /// The node nearest to the point at `share` of the sides of cell `q`, as [`Refinement::surface_at`] has it. On the finest level of valleys it is that
-    /// of the cell.
+    /// The node nearest to the point at `share` of the sides of cell `q`, as [`Refinement::surface_at`] has it. On the
+    /// finest level of valleys it is that of the cell.
     pub(super) fn nearest_node(&self, share: f32, level: &Level, q: usize) -> usize {
         if self.is_finest(level.depth) {
             return q;
@@ -40,11 +40,11 @@ impl Level {
 
     /// The node that a node drains to; none in water and at the edge of the window.
     pub(super) fn downstream(&self, q: usize) -> Option<usize> {
-        self.neighbour(q, *STEPS.get(usize::from(self.receiver[q]))?)
+        self.neighbor(q, *STEPS.get(usize::from(self.receiver[q]))?)
     }
 
     /// The node in the cell that many columns east and rows south.
-    pub(super) fn neighbour(&self, q: usize, (east, south): (isize, isize)) -> Option<usize> {
+    pub(super) fn neighbor(&self, q: usize, (east, south): (isize, isize)) -> Option<usize> {
         let (width, height) = (self.window.width, self.window.height);
         let (x, y) = ((q % width).checked_add_signed(east)?, (q / width).checked_add_signed(south)?);
         (x < width && y < height).then_some(y * width + x)

@@ -35,10 +35,11 @@ pub const AREA_PASSES: usize = 2;
 const CARVING_WORK: [f64; 4] = [1.0, 1.0, 0.5, 0.5];
 const FINEST_WORK: f64 = 2.0;
 
-/// The largest factor of creep: the average of the neighbours takes the place of a height.
+/// The largest factor of creep: the average of the neighbors takes the place of a height.
 const MAX_CREEP_FACTOR: f32 = 1.25;
 
-/// Passes of areas at the end of each level, and on the finest level, where nodes have just chosen their receivers again.
+/// Passes of areas at the end of each level, and on the finest level, where nodes have just chosen their receivers
+/// again.
 const LAST_AREA_PASSES: usize = 3;
 const FINEST_AREA_PASSES: usize = 6;
 
@@ -46,7 +47,8 @@ const FINEST_AREA_PASSES: usize = 6;
 pub const RAISE_PASSES: usize = 6;
 pub const LIMIT_PASSES: usize = 3;
 
-/// Passes that raise banks on the finest level, and rounds of them: nodes that drained to a bank choose their receivers again after each.
+/// Passes that raise banks on the finest level, and rounds of them: nodes that drained to a bank choose their receivers
+/// again after each.
 pub const BANK_PASSES: usize = 3;
 pub const BANK_ROUNDS: usize = 2;
 
@@ -58,8 +60,8 @@ pub fn last_area_passes(finest: bool) -> usize {
 }
 
 impl Refinement {
-    /// Samples of level `depth - 1` that [`Refinement::refine`] to `depth` reads beyond each side of the halved window, which extends from half the
-    /// first sample, rounded down, to half the last, rounded up.
+    /// Samples of level `depth - 1` that [`Refinement::refine`] to `depth` reads beyond each side of the halved window,
+    /// which extends from half the first sample, rounded down, to half the last, rounded up.
     #[must_use]
     pub fn reach(&self, depth: usize) -> usize {
         self.inset(depth).div_ceil(2)
@@ -98,19 +100,22 @@ impl Refinement {
         Window { x, y, width, height, cell: self.cell_of(depth.saturating_sub(1)) }.grown(self.reach(depth))
     }
 
-    /// Bytes that [`Refinement::refine`] holds at its peak per sample of the window grown by twice the [reach](Refinement::reach), including the
-    /// result and without the parent.
+    /// Bytes that [`Refinement::refine`] holds at its peak per sample of the window grown by twice the
+    /// [reach](Refinement::reach), including the result and without the parent.
     #[must_use]
     pub fn bytes_per_sample() -> u64 {
-        // Planes of 4 bytes: children 5, rivers 4, distances 4, the law 3, growth 4; the result 29 bytes, a quarter of the parent 8.
+        // Planes of 4 bytes: children 5, rivers 4, distances 4, the law 3, growth 4; the result 29 bytes, a quarter of
+        // the parent 8.
         120
     }
 
-    /// Exactly `window` of the level below `parent`, which must cover [`Refinement::parent_window`]. Other nodes of the parent are not read. What
-    /// is given covers the window grown by [`Refinement::given_reach`]; detail levels read nothing of it.
+    /// Exactly `window` of the level below `parent`, which must cover [`Refinement::parent_window`]. Other nodes of the
+    /// parent are not read. What is given covers the window grown by [`Refinement::given_reach`]; detail levels read
+    /// nothing of it.
     ///
     /// # Errors
-    /// If the parent covers too little, a parameter is out of range, the window is not one of the level, or the work is cancelled.
+    /// If the parent covers too little, a parameter is out of range, the window is not one of the level, or the work is
+    /// cancelled.
     pub fn refine(&self, parent: &Level, given: &Given, window: &Window, progress: &Progress) -> Result<Level> {
         let depth = parent.depth + 1;
         let given = if self.is_detail(depth) { &Given::default() } else { given };

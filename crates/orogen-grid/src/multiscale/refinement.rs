@@ -5,12 +5,13 @@ use crate::error::Result;
 use crate::grid::Window;
 use crate::words::number;
 
-/// Levels of land, each made from the one above it: rivers keep their course, and branches and slopes grow between them.
+/// Levels of land, each made from the one above it: rivers keep their course, and branches and slopes grow between
+/// them.
 ///
-/// The node (i, j) of the finest level of valleys is exactly at (i cell, j cell). On a coarser level with cell c, the node of sample (i, j) is at
-/// ((i + east) c - cell / 2, (j + south) c - cell / 2), where `cell` is that of the finest level of valleys; on a detail
-/// level it is at ((i + east) c, (j + south) c). Given land has its samples (i, j) in the middles of
-/// the coarsest cells, at ((i + 0.5) c, (j + 0.5) c).
+/// The node (i, j) of the finest level of valleys is exactly at (i cell, j cell). On a coarser level with cell c, the
+/// node of sample (i, j) is at ((i + east) c - cell / 2, (j + south) c - cell / 2), where `cell` is that of the finest
+/// level of valleys; on a detail level it is at ((i + east) c, (j + south) c). Given land has its samples (i, j) in the
+/// middles of the coarsest cells, at ((i + 0.5) c, (j + 0.5) c).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Refinement {
@@ -22,18 +23,21 @@ pub struct Refinement {
     pub levels: usize,
     /// Factor of the uplift.
     pub relief: f64,
-    /// Distance over which creep rounds the finest level of valleys, in its cells: the standard deviation of the average.
+    /// Distance over which creep rounds the finest level of valleys, in its cells: the standard deviation of the
+    /// average.
     pub creep: f64,
     /// Factor of the variation of the rock that each level adds.
     pub variation: f64,
-    /// How far the coarsest nodes of given land are from its valleys, 0 to 1: 0 is in the valley of the sample's cell, 1 at a random place of the cell.
+    /// How far the coarsest nodes of given land are from its valleys, 0 to 1: 0 is in the valley of the sample's cell,
+    /// 1 at a random place of the cell.
     pub jitter: f64,
-    /// Number of further halvings, below `cell`: detail levels, with the slopes of the finest level of valleys, gullies, and beds and banks of rivers.
+    /// Number of further halvings, below `cell`: detail levels, with the slopes of the finest level of valleys,
+    /// gullies, and beds and banks of rivers.
     pub details: usize,
     /// How frequent lakes with an outlet are along rivers, 0 to 1.
     pub lakes: f64,
-    /// Whether given land has a [sea](super::level::Level::drown), whose depth tells how far the shore is: near steep coasts that distance changes by more than a
-    /// kilometre along a kilometre.
+    /// Whether given land has a [sea](super::level::Level::drown), whose depth tells how far the shore is: near steep
+    /// coasts that distance changes by more than a kilometre along a kilometre.
     pub sea: bool,
 }
 
@@ -98,8 +102,8 @@ impl Refinement {
         (index as f64 + f64::from(share)) * self.cell_of(depth) - 0.5 * self.cell
     }
 
-    /// Half a cell of the finest level of valleys, in cells of a level: nodes and points are that much further inside their cells, because the nodes of the finest
-    /// level are in the middles of its cells.
+    /// Half a cell of the finest level of valleys, in cells of a level: nodes and points are that much further inside
+    /// their cells, because the nodes of the finest level are in the middles of its cells.
     pub(super) fn half_finest(&self, depth: usize) -> f32 {
         (0.5 * self.cell / self.cell_of(depth)) as f32
     }
@@ -114,7 +118,8 @@ impl Refinement {
         depth > self.levels
     }
 
-    /// Number of cells that the nodes of a level are ahead of its samples: the node of a cell south-east of sample (i, j) is (i + ahead, j + ahead).
+    /// Number of cells that the nodes of a level are ahead of its samples: the node of a cell south-east of sample (i,
+    /// j) is (i + ahead, j + ahead).
     pub(super) fn ahead(&self, depth: usize) -> i64 {
         if self.is_detail(depth) { 1i64 << (depth - self.levels - 1).min(MAX_DETAILS) } else { 0 }
     }

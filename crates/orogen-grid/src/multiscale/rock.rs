@@ -5,11 +5,13 @@ const SOIL_SLOPE: f32 = 0.5;
 const ROCK_SLOPE: f32 = 1.0;
 const ROCK_CREEP: f32 = 0.1;
 
-/// Variation of the logarithm of the stable slope that a level adds, relative to that of uplift over erodibility: of soil, and what rock adds to it.
+/// Variation of the logarithm of the stable slope that a level adds, relative to that of uplift over erodibility: of
+/// soil, and what rock adds to it.
 const SOIL_VARIATION: f32 = 0.3;
 const ROCK_VARIATION: f32 = 0.9;
 
-/// What a detail level adds to the logarithm of the stable slope, relative to the variation of uplift over erodibility: rock is rougher than soil.
+/// What a detail level adds to the logarithm of the stable slope, relative to the variation of uplift over erodibility:
+/// rock is rougher than soil.
 pub fn roughness(logarithm: f32) -> f32 {
     // Slopes from 0.7 to 1.1.
     SOIL_VARIATION + ROCK_VARIATION * share(logarithm, [-0.35, 0.1])

@@ -32,7 +32,7 @@ pub fn links(extent: Extent, nodes: &Nodes<'_>) -> Distances {
     links
 }
 
-/// One pass: every height becomes at most that of each neighbour plus the rise of the link to it.
+/// One pass: every height becomes at most that of each neighbor plus the rise of the link to it.
 pub fn relax(extent: Extent, links: &Distances, heights: &mut Vec<f32>, spare: &mut Vec<f32>) {
     dispatch(Relax { extent, links, heights, out: spare });
     std::mem::swap(heights, spare);
@@ -72,7 +72,8 @@ fn lowest(heights: &[f32], around: [&[f32]; 8], links: [&[f32]; 8], out: &mut [f
     }
 }
 
-/// The receivers of all nodes: the lower neighbour from which the way is cheapest. Nodes that are still at their `start` are bases.
+/// The receivers of all nodes: the lower neighbor from which the way is cheapest. Nodes that are still at their `start`
+/// are bases.
 pub fn route(extent: Extent, links: &Distances, heights: &[f32], start: &[f32], receiver: &mut [f32]) {
     for j in extent.rows() {
         let (around, links) = (extent.around(heights, j), links.around(extent, j));

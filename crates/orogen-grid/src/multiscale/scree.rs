@@ -1,4 +1,5 @@
-//! Scree of detail levels: debris of rock faces lies at their foot, as steep as it can. Water seeps into it, so that it has no gullies.
+//! Scree of detail levels: debris of rock faces lies at their foot, as steep as it can. Water seeps into it, so that it
+//! has no gullies.
 
 use super::level::Level;
 use super::rock;
@@ -12,17 +13,20 @@ const FACES: [f32; 2] = [0.75, 1.0];
 /// Nodes around a node among which its height tells whether it is at the foot of a face or on it.
 pub const REACH: usize = 3;
 
-/// Share of the height between the lowest and the highest of these nodes: up to the first there is scree alone, from the last there is rock alone.
+/// Share of the height between the lowest and the highest of these nodes: up to the first there is scree alone, from
+/// the last there is rock alone.
 const FOOT: [f32; 2] = [0.3, 0.5];
 
-/// By how much rock above scree is steeper, relative to what scree is gentler, so that faces are as high as before; and its greatest slope.
+/// By how much rock above scree is steeper, relative to what scree is gentler, so that faces are as high as before; and
+/// its greatest slope.
 const STEEPER: f32 = 0.6;
 const MAX_ROCK: f32 = 2.5;
 
 /// What is added to the logarithm of uplift over erodibility where all is scree: no stream cuts down.
 const SEEPAGE: f32 = 2.0;
 
-/// Lays scree at the foot of faces: changes `stable`, the stable slopes of nodes, and `variation`. Nodes [`REACH`] away from the edge are exact.
+/// Lays scree at the foot of faces: changes `stable`, the stable slopes of nodes, and `variation`. Nodes [`REACH`] away
+/// from the edge are exact.
 pub fn lay(level: &Level, stable: &mut [f32], variation: &mut [f32]) {
     let position = positions(level);
     for ((stable, variation), position) in stable.iter_mut().zip(variation).zip(position) {

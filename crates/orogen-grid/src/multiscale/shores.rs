@@ -80,7 +80,8 @@ pub fn standing_water(parent: &Level, links: &Links, children: &mut Children) ->
     Water { levels, gained }
 }
 
-/// Lakes with an outlet stay apart from other water and from lower rivers: where they meet, children that no link holds become land.
+/// Lakes with an outlet stay apart from other water and from lower rivers: where they meet, children that no link holds
+/// become land.
 fn dry_between(parent: &Level, held: &[Held], extent: Extent, levels: &mut [f32]) {
     if !parent.receiver.iter().any(|code| is_lake(*code)) {
         return;
@@ -137,7 +138,8 @@ fn held(parent: &Level, links: &Links) -> Vec<Held> {
         let (lake, river) = (Held::Lake(parent.height[q]), Held::River(parent.height[target]));
         let is_outlet = is_lake(code) && !is_lake(parent.receiver[target]);
         held[start].gain(if is_lake(code) { lake } else { river });
-        // A lake ends at the start of its outlet's link, so that the river falls along all of it, or behind it if there is nothing else of the lake.
+        // A lake ends at the start of its outlet's link, so that the river falls along all of it, or behind it if there
+        // is nothing else of the lake.
         let passed = if is_lake(code) && !(is_outlet && fed[q]) { lake } else { river };
         held[own(link.exit)].gain(passed);
         if let Some(via) = links.via(parent, q) {

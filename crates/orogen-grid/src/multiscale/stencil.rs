@@ -1,4 +1,4 @@
-//! Rows of planes and of their eight neighbours, as slices.
+//! Rows of planes and of their eight neighbors, as slices.
 
 use crate::hydrology::direction::STEPS;
 
@@ -7,12 +7,12 @@ use crate::hydrology::direction::STEPS;
 pub struct Extent {
     pub width: usize,
     pub height: usize,
-    /// Cells at each edge whose values are not exact; at least 1 where neighbours are read.
+    /// Cells at each edge whose values are not exact; at least 1 where neighbors are read.
     pub inset: usize,
 }
 
 impl Extent {
-    /// The extent after a pass that reads neighbours up to `reach` cells away.
+    /// The extent after a pass that reads neighbors up to `reach` cells away.
     pub fn shrunk(self, reach: usize) -> Extent {
         Extent { inset: self.inset + reach, ..self }
     }
@@ -45,7 +45,7 @@ impl Extent {
         &mut plane[j * self.width + columns.start..j * self.width + columns.end]
     }
 
-    /// The eight neighbours of the part of row `j` without the inset, in the order of [`STEPS`].
+    /// The eight neighbors of the part of row `j` without the inset, in the order of [`STEPS`].
     #[inline(always)]
     pub fn around<T>(self, plane: &[T], j: usize) -> [&[T]; 8] {
         let columns = self.columns();

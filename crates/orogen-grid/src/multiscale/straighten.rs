@@ -14,8 +14,8 @@ const AHEAD: usize = 5;
 const SKIPPED: usize = AHEAD - 1;
 const NEAR: usize = 3;
 
-/// Cells that the result of a cell depends on: a shortcut over it starts at most `NEAR` cells away, those that compete with it as far from there,
-/// and each looks at links up to `SKIPPED` cells away.
+/// Cells that the result of a cell depends on: a shortcut over it starts at most `NEAR` cells away, those that compete
+/// with it as far from there, and each looks at links up to `SKIPPED` cells away.
 pub const REACH: usize = 2 * NEAR + SKIPPED;
 
 /// A river that can go to a cell directly.
@@ -35,7 +35,8 @@ impl Shortcut {
     }
 }
 
-/// Replaces loops of rivers by direct links. Cells that are skipped lose the water that now passes beside them, and those without any become free.
+/// Replaces loops of rivers by direct links. Cells that are skipped lose the water that now passes beside them, and
+/// those without any become free.
 pub fn straighten(extent: Extent, window: &Window, carved: &mut Carved) {
     let found = shortcuts(extent, window, carved);
     let mut of_start = vec![u32::MAX; extent.len()];

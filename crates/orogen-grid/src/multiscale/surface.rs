@@ -33,8 +33,8 @@ const RADIUS_SQUARED: f32 = 2.5;
 /// Least depth of standing water, in metres.
 const MIN_DEPTH: f32 = 0.5;
 
-/// Mean change of heights by the finer levels, by their number: a share of the rise from a node to the next one up at the source of a river.
-/// Measured in mountains.
+/// Mean change of heights by the finer levels, by their number: a share of the rise from a node to the next one up at
+/// the source of a river. Measured in mountains.
 const MEAN_CHANGE: [f32; 7] = [0.0, -0.108, -0.083, -0.073, -0.025, 0.05, 0.05];
 
 /// One point of a surface.
@@ -50,8 +50,9 @@ impl Refinement {
     /// Samples of the level beyond a window that [`Refinement::surface`] reads.
     pub const SURFACE_REACH: usize = 2;
 
-    /// The terrain at the lattice points of `window`, from a level that covers it grown by [`Refinement::SURFACE_REACH`]. On coarser levels
-    /// heights are interpolated between nodes, and the mean change by finer levels is included.
+    /// The terrain at the lattice points of `window`, from a level that covers it grown by
+    /// [`Refinement::SURFACE_REACH`]. On coarser levels heights are interpolated between nodes, and the mean change by
+    /// finer levels is included.
     ///
     /// # Errors
     /// If the level covers too little, the window is not one of the level, or the work is cancelled.
@@ -59,8 +60,8 @@ impl Refinement {
         self.surface_at(0.0, level, window, progress)
     }
 
-    /// The same at a position within the cells of a coarser level: at `share` of their sides, 0 for the lattice points of [`Refinement::surface`],
-    /// 0.5 for the middles. On the finest level of valleys points are always at its nodes.
+    /// The same at a position within the cells of a coarser level: at `share` of their sides, 0 for the lattice points
+    /// of [`Refinement::surface`], 0.5 for the middles. On the finest level of valleys points are always at its nodes.
     ///
     /// # Errors
     /// Those of [`Refinement::surface`].
@@ -108,8 +109,8 @@ impl Refinement {
         MEAN_CHANGE[self.levels.saturating_sub(depth).min(MEAN_CHANGE.len() - 1)]
     }
 
-    /// The point at a share of the sides of cell `q`, half a finest cell further inside, from the nodes of 4 x 4 cells. Around a corner these are all
-    /// that count; around a middle, of 3 x 3 cells.
+    /// The point at a share of the sides of cell `q`, half a finest cell further inside, from the nodes of 4 x 4 cells.
+    /// Around a corner these are all that count; around a middle, of 3 x 3 cells.
     fn between(&self, share: f32, level: &Level, q: usize) -> Point {
         let width = level.window.width;
         let inside = self.inside(level.depth, share);
@@ -173,8 +174,8 @@ const VALLEY_LAKE: (f32, f32) = (80.0, 300.0);
 /// The same of lakes without one.
 const BASIN_LAKE: (f32, f32) = (8.0, 120.0);
 
-/// Height of the bottom of standing water. Lakes fall from the shore to their greatest depth. The sea has a shelf of 80 km, a
-/// continental slope and a deep plain.
+/// Height of the bottom of standing water. Lakes fall from the shore to their greatest depth. The sea has a shelf of 80
+/// km, a continental slope and a deep plain.
 fn bottom(level: &Level, q: usize) -> f32 {
     let (height, distance) = (level.height[q], (-level.shore[q]).max(0.0));
     if height > 0.0 {
@@ -194,7 +195,8 @@ pub(super) fn sea_bottom(distance: f32) -> f32 {
     -(shelf + 3400.0 * t * t * (3.0 - 2.0 * t) + rise)
 }
 
-/// The bed of a lake with this surface that is not below the sea: a recipe's sea is where the ground is at or below sea level.
+/// The bed of a lake with this surface that is not below the sea: a recipe's sea is where the ground is at or below sea
+/// level.
 fn above_the_sea(bed: f32, surface: f32) -> f32 {
     bed.max(0.5 * surface.min(1.0))
 }

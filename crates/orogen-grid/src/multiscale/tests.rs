@@ -226,7 +226,8 @@ fn more_relief_is_higher_and_more_land_is_land() {
     assert!(count(land.with_land(0.6)).0 > dry && count(land.with_land(0.2)).0 < dry);
 }
 
-/// The number of links from nodes with more than `least` cells of drainage area, and the shares of the area that are lost where it falls.
+/// The number of links from nodes with more than `least` cells of drainage area, and the shares of the area that are
+/// lost where it falls.
 fn lost_areas(level: &Level, least: f32) -> (usize, Vec<f32>) {
     let (width, height) = (level.window.width, level.window.height);
     let (mut links, mut lost) = (0, Vec::new());

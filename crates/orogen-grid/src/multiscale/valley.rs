@@ -1,11 +1,12 @@
 //! Where valleys lie between the samples of given land.
 
-/// Distance from the middle of a cell, in cells, up to which a valley is that of the cell; a little more than half a cell, because heights have errors.
+/// Distance from the middle of a cell, in cells, up to which a valley is that of the cell; a little more than half a
+/// cell, because heights have errors.
 const IN_CELL: f32 = 0.6;
 
-/// Where the line of a valley passes the middle of a cell most closely, east and south of it in cells: the lowest place across the direction of the
-/// strongest curvature, of the quadratic surface through 3 x 3 samples (Steger 1998). (0, 0) without a valley in the cell. `height` is that of
-/// the sample some steps east and south of the middle.
+/// Where the line of a valley passes the middle of a cell most closely, east and south of it in cells: the lowest place
+/// across the direction of the strongest curvature, of the quadratic surface through 3 x 3 samples (Steger 1998). (0,
+/// 0) without a valley in the cell. `height` is that of the sample some steps east and south of the middle.
 pub fn valley(height: impl Fn(i64, i64) -> f32) -> (f32, f32) {
     let h = height;
     let (gx, gy) = (0.5 * (h(1, 0) - h(-1, 0)), 0.5 * (h(0, 1) - h(0, -1)));

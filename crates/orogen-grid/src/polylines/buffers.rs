@@ -14,8 +14,9 @@ const GROUP: usize = 16;
 
 /// The points within a distance of a line, for many lines, in a tree of boxes.
 ///
-/// A search visits the boxes around a position and few others, so it takes as long with many lines far away as without them. It finds lines in their
-/// order, whatever the tree is, and allocates nothing. Of a line it visits the segments near the position.
+/// A search visits the boxes around a position and few others, so it takes as long with many lines far away as without
+/// them. It finds lines in their order, whatever the tree is, and allocates nothing. Of a line it visits the segments
+/// near the position.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Buffers {
     /// The distance around each line.
@@ -86,8 +87,8 @@ impl Batch {
 }
 
 impl Buffers {
-    /// The buffers of lines: the points of each, and the distance around it. A line of one point is a disc. Lines with a coordinate or a distance that
-    /// is not finite contain nothing.
+    /// The buffers of lines: the points of each, and the distance around it. A line of one point is a disc. Lines with
+    /// a coordinate or a distance that is not finite contain nothing.
     #[must_use]
     pub fn new<'a>(lines: impl IntoIterator<Item = (&'a [[f64; 2]], f64)>) -> Buffers {
         let mut made = Buffers::default();
@@ -159,7 +160,8 @@ impl Buffers {
         node
     }
 
-    /// Calls `visit` with the index of each line whose buffer contains a position, and the distance from the line, in the order of lines.
+    /// Calls `visit` with the index of each line whose buffer contains a position, and the distance from the line, in
+    /// the order of lines.
     pub fn visit(&self, at: [f64; 2], visit: impl FnMut(usize, f64)) {
         self.visit_counted(at, visit, &mut 0);
     }

@@ -10,8 +10,8 @@ pub struct Cubic(pub [[f64; 2]; 4]);
 impl Cubic {
     /// The number of straight segments, of equal shares of the parameter, that keep within `tolerance` of the curve.
     ///
-    /// The distance is at most an eighth of the second derivative, divided by the square of the number; the second derivative is at most six times
-    /// the larger second difference of the control points.
+    /// The distance is at most an eighth of the second derivative, divided by the square of the number; the second
+    /// derivative is at most six times the larger second difference of the control points.
     #[must_use]
     pub fn segments(&self, tolerance: f64) -> u32 {
         let [a, b, c, d] = self.0;

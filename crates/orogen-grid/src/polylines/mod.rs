@@ -2,7 +2,8 @@
 //!
 //! - [`outline`]: a line of points, straight pieces and cubic curves; smoothing
 //! - [`cubic`]: cubic Bézier curves, and how many straight segments replace one
-//! - [`segments`]: all segments of a drawing in a tree of boxes: the nearest one to a position, and whether a position is inside
+//! - [`segments`]: all segments of a drawing in a tree of boxes: the nearest one to a position, and whether a position
+//!   is inside
 //! - [`buffers`]: lines with a distance around each: which of them contain a position
 //!
 //! ```

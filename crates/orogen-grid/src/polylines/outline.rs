@@ -61,8 +61,9 @@ impl Outline {
         Outline { start: point(self.start), pieces: self.pieces.iter().map(piece).collect(), closed: self.closed }
     }
 
-    /// A smooth curve through the points: centripetal Catmull-Rom splines (Yuksel, Schaefer and Keyser 2011), which have no loops and no cusps between
-    /// points. An outline that has curves already is returned as it is, and so is one of fewer than three different points.
+    /// A smooth curve through the points: centripetal Catmull-Rom splines (Yuksel, Schaefer and Keyser 2011), which
+    /// have no loops and no cusps between points. An outline that has curves already is returned as it is, and so is
+    /// one of fewer than three different points.
     #[must_use]
     pub fn smoothed(&self) -> Outline {
         if self.pieces.iter().any(|piece| matches!(piece, Piece::Curve(..))) {
@@ -97,8 +98,8 @@ impl Outline {
         Outline { start: self.start, pieces: pieces.collect(), closed }
     }
 
-    /// Calls `visit` with every point after the first: those of straight pieces, and points on curves at most `tolerance` from them. A closed outline
-    /// ends with its first point.
+    /// Calls `visit` with every point after the first: those of straight pieces, and points on curves at most
+    /// `tolerance` from them. A closed outline ends with its first point.
     pub fn flatten(&self, tolerance: f64, mut visit: impl FnMut([f64; 3])) {
         let mut from = self.start;
         for piece in &self.pieces {

@@ -44,8 +44,8 @@ struct Node {
 /// The index of no slanted box.
 const NONE: u32 = u32::MAX;
 
-/// A box that is turned to the direction of the segments in it. Long parallel segments, such as those of a zigzag line, have boxes along the axes that all
-/// overlap; a search would visit all of them.
+/// A box that is turned to the direction of the segments in it. Long parallel segments, such as those of a zigzag line,
+/// have boxes along the axes that all overlap; a search would visit all of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Slanted {
     /// A unit vector along it.
@@ -82,10 +82,11 @@ enum Content {
     Pair(u32),
 }
 
-/// The segments of lines, in a tree of boxes. A search visits the boxes around a position and few others, so it takes as long for a drawing with many
-/// segments far away as for one without.
+/// The segments of lines, in a tree of boxes. A search visits the boxes around a position and few others, so it takes
+/// as long for a drawing with many segments far away as for one without.
 ///
-/// The answers depend on the position and the segments alone: of several segments at the same distance, the first is the nearest.
+/// The answers depend on the position and the segments alone: of several segments at the same distance, the first is
+/// the nearest.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Segments {
     segments: Vec<Segment>,
@@ -135,8 +136,9 @@ impl Nearest {
 }
 
 impl Segments {
-    /// The segments of outlines. Curves are replaced by segments at most `tolerance` metres from them. If these were more than [`MAX_SEGMENTS`], the
-    /// tolerance is doubled until they are not; straight pieces beyond that number are left out.
+    /// The segments of outlines. Curves are replaced by segments at most `tolerance` metres from them. If these were
+    /// more than [`MAX_SEGMENTS`], the tolerance is doubled until they are not; straight pieces beyond that number are
+    /// left out.
     #[must_use]
     pub fn new(outlines: &[Outline], tolerance: f64) -> Segments {
         let count = |tolerance: f64| outlines.iter().map(|outline| outline.flattened_len(tolerance)).sum::<u64>();
@@ -167,7 +169,8 @@ impl Segments {
         self.visits
     }
 
-    /// Adds a line of straight pieces with a tree of its own. Returns the node of all of it, and its box; `None` if it has no point with coordinates.
+    /// Adds a line of straight pieces with a tree of its own. Returns the node of all of it, and its box; `None` if it
+    /// has no point with coordinates.
     pub(super) fn add_line(&mut self, outline: &Outline) -> Option<(usize, [[f64; 2]; 2])> {
         let (first, end) = self.add(outline, 0.0)?;
         let root = self.nodes.len();
@@ -264,8 +267,8 @@ impl Segments {
         node
     }
 
-    /// The slanted box of the segments of the nodes after `at`, which are those of `node`, if it is less than half as large. Segments of a chain follow
-    /// each other.
+    /// The slanted box of the segments of the nodes after `at`, which are those of `node`, if it is less than half as
+    /// large. Segments of a chain follow each other.
     fn slanted(&self, at: usize, node: &Node, is_chain: bool) -> Option<Slanted> {
         let segments = || {
             self.nodes[at + 1..].iter().flat_map(|node| match node.content {
@@ -335,7 +338,8 @@ impl Segments {
         })
     }
 
-    /// The square of the distance from the line of a node, if it is at most `square`; adds the number of segments looked at to `visited`.
+    /// The square of the distance from the line of a node, if it is at most `square`; adds the number of segments
+    /// looked at to `visited`.
     pub(super) fn square_to(&self, node: usize, at: [f64; 2], square: f64, visited: &mut usize) -> Option<f64> {
         let best = self.nearest_of(node, at, square, visited)?;
         best.found.map(|_| best.square)
@@ -385,8 +389,8 @@ impl Segments {
         }
     }
 
-    /// Whether a position is inside by the even-odd rule: a line from it to infinity crosses the segments an odd number of times. Lines that are not
-    /// closed have no inside.
+    /// Whether a position is inside by the even-odd rule: a line from it to infinity crosses the segments an odd number
+    /// of times. Lines that are not closed have no inside.
     #[must_use]
     pub fn is_inside(&self, at: [f64; 2]) -> bool {
         self.is_inside_counted(at, &mut 0)
@@ -404,11 +408,13 @@ impl Segments {
         if y < found.low[1] || y > found.high[1] || x > found.high[0] {
             return false;
         }
-        // All of it is to the east: the number is odd if and only if the ends of the chain are on different sides of y, wherever the points between are.
+        // All of it is to the east: the number is odd if and only if the ends of the chain are on different sides of y,
+        // wherever the points between are.
         if x < found.low[0] {
             return (found.ends[0] <= y) != (found.ends[1] <= y);
         }
-        // Outside a convex area around a chain, the number is odd for all chains in it with the same ends, or for none: also for a straight line.
+        // Outside a convex area around a chain, the number is odd for all chains in it with the same ends, or for none:
+        // also for a straight line.
         if let Some(slanted) = self.slanted.get(found.slanted as usize)
             && slanted.square_to(at) > 0.0
         {
@@ -463,7 +469,8 @@ fn bounds(segments: &[Segment]) -> ([f64; 2], [f64; 2]) {
     (low, high)
 }
 
-/// The square of the distance to the straight line between two points, and the share of the line at which it is nearest.
+/// The square of the distance to the straight line between two points, and the share of the line at which it is
+/// nearest.
 pub(super) fn distance([[ax, ay], [bx, by]]: [[f64; 2]; 2], [x, y]: [f64; 2]) -> (f64, f64) {
     let (rx, ry, ux, uy) = (x - ax, y - ay, bx - ax, by - ay);
     let along = rx * ux + ry * uy;
@@ -481,7 +488,8 @@ pub(super) fn distance([[ax, ay], [bx, by]]: [[f64; 2]; 2], [x, y]: [f64; 2]) ->
     (ex * ex + ey * ey, share)
 }
 
-/// Whether a line from a position to the east crosses a segment. A point of the drawing at exactly this y counts as above.
+/// Whether a line from a position to the east crosses a segment. A point of the drawing at exactly this y counts as
+/// above.
 fn crosses([[ax, ay], [bx, by]]: [[f64; 2]; 2], [x, y]: [f64; 2]) -> bool {
     if (ay <= y) == (by <= y) {
         return false;

@@ -132,8 +132,8 @@ fn complete(path: &Path, size: [usize; 2], part: Part, request: Request) -> Resu
 /// The blocks of `side` by `side` samples of a raster that a part touches, and one more on each side.
 ///
 /// [`fill`] takes a missing sample from the means of blocks. If all blocks around have a height, those beyond are not
-/// read for a sample that is at least one block from the edge: each level of the pyramid reads one mean further than the
-/// next coarser one, which together is less than a block.
+/// read for a sample that is at least one block from the edge: each level of the pyramid reads one mean further than
+/// the next coarser one, which together is less than a block.
 fn around(part: Part, size: [usize; 2], side: usize) -> Part {
     let from = part.from.map(|at| (at / side).saturating_sub(1) * side);
     let end = |k: usize| ((part.end()[k].div_ceil(side) + 1) * side).min(size[k]);

@@ -64,8 +64,8 @@ impl Layout {
     }
 
     /// Map units per metre of the lattice, for a DEM with these steps in map units and in metres. Sides that count as
-    /// equal keep their own sizes, so that no sample moves on the map; only differences below a thousandth of a cell over
-    /// the whole raster are left out.
+    /// equal keep their own sizes, so that no sample moves on the map; only differences below a thousandth of a cell
+    /// over the whole raster are left out.
     #[must_use]
     pub fn per_metre(&self, steps: [f64; 2], metres: [f64; 2]) -> [f64; 2] {
         let longest = self.size[0].max(self.size[1]) as f64;

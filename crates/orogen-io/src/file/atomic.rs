@@ -45,8 +45,8 @@ pub fn replace_whole<'a>(path: &Path, body: impl FnOnce(&mut dyn Write) -> io::R
     stage_through(path, None, |file| Box::new(file), Box::new(body))?.commit()
 }
 
-/// [`replace_whole`] without a wait for the disk: after a failure of the system the file may be damaged. For files that contain checksums and
-/// can be made again.
+/// [`replace_whole`] without a wait for the disk: after a failure of the system the file may be damaged. For files that
+/// contain checksums and can be made again.
 pub fn replace_unsynced<'a>(path: &Path, body: impl FnOnce(&mut dyn Write) -> io::Result<()> + 'a) -> Result<()> {
     stage_as(false, path, None, |file| Box::new(file), Box::new(body))?.commit()
 }

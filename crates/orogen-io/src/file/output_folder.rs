@@ -6,8 +6,8 @@ use super::atomic::check_folder;
 use crate::fs;
 use orogen_grid::error::{Error, Result};
 
-/// A writable folder. Folders created for it are removed on drop if they are empty and [`OutputFolder::keep`] was not called,
-/// so that failed work leaves no trace.
+/// A writable folder. Folders created for it are removed on drop if they are empty and [`OutputFolder::keep`] was not
+/// called, so that failed work leaves no trace.
 #[derive(Debug)]
 pub struct OutputFolder {
     made: Vec<PathBuf>,

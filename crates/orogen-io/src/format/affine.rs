@@ -1,6 +1,6 @@
 //! Affine transforms from columns and rows of a raster to coordinates.
 
-/// East = a column + b row + c, north = d column + e row + f, for sample positions (pixel centres).
+/// East = a column + b row + c, north = d column + e row + f, for sample positions (pixel centers).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Affine(pub [f64; 6]);
 

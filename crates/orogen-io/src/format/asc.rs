@@ -17,7 +17,7 @@ use orogen_grid::grid::{Grid, Window};
 /// The nodata value in written files.
 const NODATA: f32 = -9999.0;
 
-/// Writes a grid. Its samples are pixel centres, as the format requires.
+/// Writes a grid. Its samples are pixel centers, as the format requires.
 pub fn write(out: &mut dyn Write, grid: &Grid) -> io::Result<()> {
     write_head(out, grid.window(), None)?;
     write_rows(out, grid.width(), grid.data())
@@ -62,7 +62,7 @@ pub fn read(input: &mut dyn Input, name: &str, allowed: u64) -> Result<Dem> {
 struct Head {
     columns: Option<u64>,
     rows: Option<u64>,
-    /// The coordinate of the lower left pixel, and whether it is that of the pixel's centre.
+    /// The coordinate of the lower left pixel, and whether it is that of the pixel's center.
     west: Option<(f64, bool)>,
     south: Option<(f64, bool)>,
     step: [Option<f64>; 2],

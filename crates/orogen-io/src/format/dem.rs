@@ -19,8 +19,8 @@ pub struct Request {
     pub band: Option<u32>,
     /// Maximum size of the heights, in bytes.
     pub allowed: u64,
-    /// The part to read; `None` for all. Files that cannot be [read in parts](super::import::reads_parts) are read whole
-    /// and then cropped.
+    /// The part to read; `None` for all. Files that cannot be [read in parts](super::import::reads_parts) are read
+    /// whole and then cropped.
     #[doc(hidden)]
     pub part: Option<Part>,
 }
@@ -111,7 +111,7 @@ pub struct Dem {
 /// The position of samples on a map.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Placement {
-    /// East and north of the first sample, which is the centre of its pixel if the file treats pixels as areas.
+    /// East and north of the first sample, which is the center of its pixel if the file treats pixels as areas.
     pub origin: [f64; 2],
     /// Distance between columns eastward and between rows southward; both positive.
     pub step: [f64; 2],

@@ -1,5 +1,5 @@
-//! DTED (MIL-PRF-89020B), `.dt0`, `.dt1` and `.dt2`: one degree of WGS 84, whole metres, columns from the west, each from
-//! the south. -32767 is nodata; negative heights have a sign bit.
+//! DTED (MIL-PRF-89020B), `.dt0`, `.dt1` and `.dt2`: one degree of WGS 84, whole metres, columns from the west, each
+//! from the south. -32767 is nodata; negative heights have a sign bit.
 
 use std::io::Read;
 

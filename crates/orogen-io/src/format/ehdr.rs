@@ -1,9 +1,10 @@
-//! ESRI's headerless rasters, `.bil` and `.flt`, with the text file NAME.hdr beside them: one band, rows from the north.
+//! ESRI's headerless rasters, `.bil` and `.flt`, with the text file NAME.hdr beside them: one band, rows from the
+//! north.
 //!
-//! Keys read: `nrows`, `ncols`, `nbits`, `pixeltype`, `byteorder`, `skipbytes`, `bandrowbytes`, `totalrowbytes`, `ulxmap`
-//! and `ulymap` (the centre of the first pixel) with `xdim` and `ydim`, or `xllcorner`, `yllcorner` and `cellsize` as in
-//! `.asc`, `zunits` and `nodata`. The defaults are GDAL's: `.bil` has 8 bits, whole numbers without a sign unless nodata is
-//! negative; `.flt` has floats of 32 bits.
+//! Keys read: `nrows`, `ncols`, `nbits`, `pixeltype`, `byteorder`, `skipbytes`, `bandrowbytes`, `totalrowbytes`,
+//! `ulxmap` and `ulymap` (the center of the first pixel) with `xdim` and `ydim`, or `xllcorner`, `yllcorner` and
+//! `cellsize` as in `.asc`, `zunits` and `nodata`. The defaults are GDAL's: `.bil` has 8 bits, whole numbers without a
+//! sign unless nodata is negative; `.flt` has floats of 32 bits.
 
 use std::collections::BTreeMap;
 use std::io::Read;
@@ -74,7 +75,7 @@ impl Header {
         let cell = self.number("cellsize")?;
         let step = [self.number("xdim")?.or(cell), self.number("ydim")?.or(cell)];
         let [Some(dx), Some(dy)] = step else { return Ok(None) };
-        let middle = |corner: Option<f64>, centre: Option<f64>, step: f64| centre.or(corner.map(|at| at + 0.5 * step));
+        let middle = |corner: Option<f64>, center: Option<f64>, step: f64| center.or(corner.map(|at| at + 0.5 * step));
         let (east, north) = match (self.number("ulxmap")?, self.number("ulymap")?) {
             (Some(east), Some(north)) => (east, north),
             _ => {

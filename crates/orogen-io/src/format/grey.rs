@@ -1,5 +1,5 @@
 //! Reading heights from a greyscale PNG of 8 or 16 bits, with a [`Sidecar`] that states the heights of black and white,
-//! and from a colour PNG of 8 bits whose sidecar states the [`Encoding`].
+//! and from a color PNG of 8 bits whose sidecar states the [`Encoding`].
 
 use ::png::{BitDepth, ColorType};
 
@@ -28,11 +28,11 @@ fn open(input: &mut dyn Input, sidecar: &Sidecar, allowed: u64) -> std::result::
         (ColorType::Rgba, BitDepth::Eight) if encoding.is_some() => 4,
         // With the heights of black and white, grey is expected.
         (ColorType::Rgb | ColorType::Rgba, BitDepth::Eight) if sidecar.low.is_none() => {
-            return Err(needs("the encoding of heights in its colours, `encoding` (\"terrarium\" or \"terrain-rgb\")"));
+            return Err(needs("the encoding of heights in its colors, `encoding` (\"terrarium\" or \"terrain-rgb\")"));
         }
         _ => {
             return Err(format!(
-                "its pixels are {color:?} with {depth:?} bits; only grey with 8 or 16 bits, and colours of 8 bits with `encoding`, are supported"
+                "its pixels are {color:?} with {depth:?} bits; only grey with 8 or 16 bits, and colors of 8 bits with `encoding`, are supported"
             ));
         }
     };
@@ -58,7 +58,7 @@ mod tests {
     use std::io::Cursor;
 
     #[test]
-    fn heights_in_colours_are_read_back() {
+    fn heights_in_colors_are_read_back() {
         let heights = [f32::NAN, 100.5, -12.25, 8848.0];
         for encoding in Encoding::ALL {
             let mut bytes = Vec::new();

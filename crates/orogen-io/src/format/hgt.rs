@@ -2,7 +2,7 @@
 //! corner.
 //!
 //! The 1201 x 1201 samples (3 arc seconds), 3601 x 3601 (1) or 1801 x 3601 (2 and 1, far north) lie *on* the degree's
-//! edges, which neighbouring files share. Coordinates are degrees of WGS 84. -32768 is nodata.
+//! edges, which neighboring files share. Coordinates are degrees of WGS 84. -32768 is nodata.
 
 use std::io::{Read, Write};
 

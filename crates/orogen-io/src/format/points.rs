@@ -56,7 +56,8 @@ const KIND: &[&str] = &["kind", "type", "class", "natural", "waterway", "place"]
 const HEIGHT: &[&str] = &["height", "elevation", "ele", "z"];
 
 impl NamedPoints {
-    /// Reads at most `most` points and lines of a file; its extension is its format: .csv, .txt or .tsv, .geojson or .json.
+    /// Reads at most `most` points and lines of a file; its extension is its format: .csv, .txt or .tsv, .geojson or
+    /// .json.
     ///
     /// # Errors
     /// If the file cannot be read, is not valid, or has none or too many points.
@@ -83,7 +84,8 @@ impl NamedPoints {
         }
     }
 
-    /// [Reads](NamedPoints::read) points that must be in the coordinate system of a map, if both are known. `of` names what the map is of.
+    /// [Reads](NamedPoints::read) points that must be in the coordinate system of a map, if both are known. `of` names
+    /// what the map is of.
     ///
     /// # Errors
     /// Those of [`read`](NamedPoints::read), or if the points are in another coordinate system.
@@ -102,8 +104,8 @@ impl NamedPoints {
         }
     }
 
-    /// The points of comma-separated values (RFC 4180), also with semicolons or tabs between them. The first line names the columns;
-    /// without names they are east, north and, if there is one more, the name.
+    /// The points of comma-separated values (RFC 4180), also with semicolons or tabs between them. The first line names
+    /// the columns; without names they are east, north and, if there is one more, the name.
     ///
     /// # Errors
     /// A message with the line that is not valid.
@@ -143,8 +145,9 @@ impl NamedPoints {
         Ok(NamedPoints { points, ..NamedPoints::default() })
     }
 
-    /// The points and lines of GeoJSON: `Point`, `MultiPoint`, `LineString` and `MultiLineString`, with the property `name`, `label`, `title`, `station`
-    /// or `id` as the name, `kind`, `type`, `class`, `natural`, `waterway` or `place` as the kind, and `height`, `elevation`, `ele` or `z` as the height.
+    /// The points and lines of GeoJSON: `Point`, `MultiPoint`, `LineString` and `MultiLineString`, with the property
+    /// `name`, `label`, `title`, `station` or `id` as the name, `kind`, `type`, `class`, `natural`, `waterway` or
+    /// `place` as the kind, and `height`, `elevation`, `ele` or `z` as the height.
     ///
     /// # Errors
     /// A message if it is not valid.

@@ -2,7 +2,7 @@
 //!
 //! Keys: `width`, `height` (samples); `cell` (metres between samples); `low`, `high` (heights in metres of 0 and 65535,
 //! or of 0 and 255); `byte_order` ("little", the default, or "big"); `first_row` ("north", the default, or "south");
-//! `nodata` (the value of missing samples); `encoding` ("terrarium" or "terrain-rgb", for heights in the colours of a
+//! `nodata` (the value of missing samples); `encoding` ("terrarium" or "terrain-rgb", for heights in the colors of a
 //! picture); `geotransform` (six numbers in GDAL's order: west edge, column step, 0,
 //! north edge, 0, row step, which is negative); `crs` ("EPSG:32632"); `wkt` (the coordinate system as well-known text).
 //! Other keys are ignored, so that the `summary.json` that `orogen generate` writes beside `height.png` is a sidecar
@@ -53,7 +53,7 @@ pub struct Sidecar {
     pub first_row: Option<String>,
     /// The value of missing samples.
     pub nodata: Option<f64>,
-    /// The encoding of heights in the colours of a picture: "terrarium" or "terrain-rgb".
+    /// The encoding of heights in the colors of a picture: "terrarium" or "terrain-rgb".
     pub encoding: Option<String>,
     /// The type of the samples as exports state it; of a picture, its encoding.
     pub sample: Option<String>,
@@ -194,7 +194,7 @@ impl Sidecar {
         Ok(samples)
     }
 
-    /// The encoding of heights in the colours of a picture, if it is stated.
+    /// The encoding of heights in the colors of a picture, if it is stated.
     #[must_use]
     pub fn encoding(&self) -> Option<Encoding> {
         let stated = |name: &str| [&self.encoding, &self.sample].into_iter().flatten().any(|own| own == name);
@@ -208,8 +208,8 @@ impl Sidecar {
         self.bands.get(index).cloned().unwrap_or_default().replaced_by(&self.replaced)
     }
 
-    /// The heights, in metres, of a sample of 0 and of the largest possible one, `most`: `low` and `high`, otherwise those
-    /// that the scale, offset and unit in GDAL's sidecar give.
+    /// The heights, in metres, of a sample of 0 and of the largest possible one, `most`: `low` and `high`, otherwise
+    /// those that the scale, offset and unit in GDAL's sidecar give.
     ///
     /// # Errors
     /// If neither is stated, or a virtual raster replaces the metadata of a file with `low` and `high`.

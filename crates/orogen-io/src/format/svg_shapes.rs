@@ -1,8 +1,8 @@
 //! Lines and areas of SVG documents.
 //!
-//! Elements with a `transform` and groups of such are read; nested `svg` elements count as groups. Nothing is read of definitions, of what is not
-//! displayed, of `use`, text and pictures, and of style sheets. Coordinates are those of the document's user space: the attributes `width`, `height`
-//! and `viewBox` of the document do not matter.
+//! Elements with a `transform` and groups of such are read; nested `svg` elements count as groups. Nothing is read of
+//! definitions, of what is not displayed, of `use`, text and pictures, and of style sheets. Coordinates are those of
+//! the document's user space: the attributes `width`, `height` and `viewBox` of the document do not matter.
 
 use orogen_grid::polylines::outline::{Outline, Piece};
 use roxmltree::{Document, Node};

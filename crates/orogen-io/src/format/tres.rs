@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-/// Writes a MultiMesh without a mesh. A transform is the 3 x 4 matrix of an instance, row by row: basis and origin, in metres
-/// with x east, y up and z south.
+/// Writes a MultiMesh without a mesh. A transform is the 3 x 4 matrix of an instance, row by row: basis and origin, in
+/// metres with x east, y up and z south.
 ///
 /// Fails if `out` fails.
 pub fn write_multimesh(out: &mut dyn Write, transforms: impl ExactSizeIterator<Item = [f32; 12]>) -> io::Result<()> {

@@ -1,7 +1,7 @@
 //! World files: six lines beside a picture that state the position of its pixels.
 //!
 //! Esri's format: column step eastward, rotations (two lines, 0), row step (negative if rows go south), east and north
-//! of the centre of the first pixel. `NAME.pgw` belongs to `NAME.png`; `NAME.wld` and `NAME.EXTw` to any raster.
+//! of the center of the first pixel. `NAME.pgw` belongs to `NAME.png`; `NAME.wld` and `NAME.EXTw` to any raster.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};

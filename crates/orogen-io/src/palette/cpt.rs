@@ -1,14 +1,14 @@
-//! Colour palette tables (`.cpt`) of GMT, the Generic Mapping Tools.
+//! Color palette tables (`.cpt`) of GMT, the Generic Mapping Tools.
 //!
-//! A line has a height, its colour, a higher height, its colour: `0 20/40/60 500 120/160/90`; components may be
-//! separated by blanks. Colours are red/green/blue, hue-saturation-value, cyan/magenta/yellow/black, #rrggbb, a grey
-//! level or a name. `B`, `F` and `N` are the colours below, above, and for missing samples. `# COLOR_MODEL`, `# RANGE`
+//! A line has a height, its color, a higher height, its color: `0 20/40/60 500 120/160/90`; components may be
+//! separated by blanks. Colors are red/green/blue, hue-saturation-value, cyan/magenta/yellow/black, #rrggbb, a grey
+//! level or a name. `B`, `F` and `N` are the colors below, above, and for missing samples. `# COLOR_MODEL`, `# RANGE`
 //! and `# HINGE` are supported.
 //!
-//! The colour model tells what three or four numbers mean. Written in small letters (`hsv`) or with a plus sign (`+HSV`), it
-//! is also the one in which GMT mixes colours: hue, saturation and value each change linearly, and the hue does not take the
-//! shorter way, so that `0-1-1` to `360-1-1` passes through all hues. Such a slice becomes several stops, between which
-//! red, green and blue change linearly.
+//! The color model tells what three or four numbers mean. Written in small letters (`hsv`) or with a plus sign
+//! (`+HSV`), it is also the one in which GMT mixes colors: hue, saturation and value each change linearly, and the hue
+//! does not take the shorter way, so that `0-1-1` to `360-1-1` passes through all hues. Such a slice becomes several
+//! stops, between which red, green and blue change linearly.
 
 use super::color::Rgb;
 use super::fitted::{hsv, of_hsv};
@@ -22,7 +22,7 @@ enum Model {
     Cmyk,
 }
 
-/// A colour as it was written: hues of 0 and 360 degrees differ.
+/// A color as it was written: hues of 0 and 360 degrees differ.
 #[derive(Clone, Copy, PartialEq)]
 enum Color {
     Rgb([f64; 3]),
@@ -47,8 +47,9 @@ impl Color {
     }
 }
 
-/// The stops of a slice that is mixed by hue, saturation and value. Between multiples of 60 degrees, where red, green and blue
-/// have kinks, they are at most quadratic, and pieces of them differ by less than half a level of 255 from straight lines.
+/// The stops of a slice that is mixed by hue, saturation and value. Between multiples of 60 degrees, where red, green
+/// and blue have kinks, they are at most quadratic, and pieces of them differ by less than half a level of 255 from
+/// straight lines.
 fn hsv_stops([start, end]: [(f64, Color); 2]) -> Vec<(f64, Rgb)> {
     let (from, to) = (start.1.hsv(), end.1.hsv());
     let at = |share: f64| std::array::from_fn(|k| from[k] + share * (to[k] - from[k]));
@@ -81,8 +82,9 @@ fn hsv_stops([start, end]: [(f64, Color); 2]) -> Vec<(f64, Rgb)> {
 /// Parses a table.
 ///
 /// Heights are metres, unless the table is normalised (from 0 to 1, or from -1 to 1): then it is stretched over its
-/// `RANGE` or, if it has none, from the lowest height to the highest. With a `HINGE` both halves of a table from -1 to 1 are
-/// stretched on their own: 0 is at the hinge, a height of 0 m unless it states another, or without a range at sea level.
+/// `RANGE` or, if it has none, from the lowest height to the highest. With a `HINGE` both halves of a table from -1 to
+/// 1 are stretched on their own: 0 is at the hinge, a height of 0 m unless it states another, or without a range at sea
+/// level.
 ///
 /// # Errors
 /// A message with the line that cannot be parsed.
@@ -133,7 +135,7 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
         }
     }
     if stops.is_empty() {
-        return Err("it has no line of two heights and their colours, such as `0 20/40/60 500 120/160/90`".into());
+        return Err("it has no line of two heights and their colors, such as `0 20/40/60 500 120/160/90`".into());
     }
     if !stops.is_sorted_by(|a, b| a.0 <= b.0) {
         return Err("its heights are not in ascending order".into());
@@ -155,14 +157,14 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
     Ok(palette)
 }
 
-/// The model of colours, and that in which they are mixed.
+/// The model of colors, and that in which they are mixed.
 fn color_model(text: &str) -> Result<(Model, Model), String> {
     let name = text.strip_prefix('+').unwrap_or(text);
     let model = match name.to_ascii_uppercase().as_str() {
         "RGB" => Model::Rgb,
         "HSV" => Model::Hsv,
         "CMYK" => Model::Cmyk,
-        _ => return Err(format!("unknown colour model `{text}`; supported are RGB, HSV and CMYK")),
+        _ => return Err(format!("unknown color model `{text}`; supported are RGB, HSV and CMYK")),
     };
     let mixes = name != text || !name.contains(|c: char| c.is_ascii_uppercase());
     Ok((model, if mixes { model } else { Model::Rgb }))
@@ -176,13 +178,13 @@ fn span(text: &str) -> Option<[f64; 2]> {
 
 /// The two stops of a line.
 fn slice(words: &[&str], model: Model) -> Result<[(f64, Color); 2], String> {
-    // L, U and B at the end request annotations on GMT's colour bar.
+    // L, U and B at the end request annotations on GMT's color bar.
     let words = match words {
         [init @ .., "L" | "U" | "B"] if init.len() > 2 => init,
         words => words,
     };
     if words.len() < 4 || words.len() % 2 == 1 {
-        let message = "each line must have a height and its colour, then a greater height and its colour; categorical palettes are not supported";
+        let message = "each line must have a height and its color, then a greater height and its color; categorical palettes are not supported";
         return Err(message.into());
     }
     let (start, end) = words.split_at(words.len() / 2);
@@ -196,7 +198,7 @@ fn slice(words: &[&str], model: Model) -> Result<[(f64, Color); 2], String> {
 
 fn colors(words: &[&str], model: Model) -> Result<Color, String> {
     let text = words.join(" ");
-    let wrong = || format!("`{text}` is not a colour");
+    let wrong = || format!("`{text}` is not a color");
     if let [word] = words
         && let Some(color) = hexadecimal(word).or_else(|| named(word))
     {
@@ -260,7 +262,7 @@ mod tests {
         assert_eq!(stops("# HINGE = 0\n-1 navy 0 aqua\n0 green 1 white")[1].0, Sea(0.0));
         assert_eq!(stops("-1 navy 1 white")[0].0, Share(0.0));
         assert_eq!(stops("# RANGE = -8000/4000\n0 navy 1 white")[1].0, Value(4000.0));
-        // Adjacent slices with equal colours have no step between them.
+        // Adjacent slices with equal colors have no step between them.
         // Both sides of a hinge are stretched on their own, as GMT does for etopo1, whose range is not symmetric.
         for (hinge, expect) in
             [("HARD_HINGE", 0.0), ("SOFT_HINGE", 0.0), ("HINGE = 500", 500.0), ("HINGE = 9e9", -1250.0)]
@@ -272,7 +274,7 @@ mod tests {
         assert_eq!(stops("0 red 1 blue\n1 blue 2 red").len(), 3);
     }
 
-    /// The colours that GMT 6 has at 0, 1/12, ... 1: hue, saturation and value change linearly.
+    /// The colors that GMT 6 has at 0, 1/12, ... 1: hue, saturation and value change linearly.
     #[test]
     fn hues_are_mixed_as_gmt_mixes_them() {
         let at = |text: &str, height: f32| {
@@ -302,7 +304,7 @@ mod tests {
             // Names have hues as well; 240 is reached by way of 120, not of 300.
             assert!(near(at(&format!("# COLOR_MODEL = {model}\n0 red 1 blue"), 0.5), [0, 255, 0]));
         }
-        // In capitals without a plus sign, colours are read as hues and mixed as red, green and blue.
+        // In capitals without a plus sign, colors are read as hues and mixed as red, green and blue.
         assert!(near(at("# COLOR_MODEL = HSV\n0 0-1-1 1 120-1-1", 0.5), [128, 128, 0]));
         for model in ["rgb", "+RGB", "RGB"] {
             assert!(near(at(&format!("# COLOR_MODEL = {model}\n0 255/0/0 1 0/0/255"), 0.5), [128, 0, 128]));
@@ -317,13 +319,13 @@ mod tests {
         for (text, expect) in [
             ("", "no line of two heights"),
             ("0 red 1", "line 1: each line must have a height"),
-            ("0 red 1 blurple", "line 1: `blurple` is not a colour"),
+            ("0 red 1 blurple", "line 1: `blurple` is not a color"),
             ("# x\n0 red 1 1/2/256", "line 2: `1/2/256`"),
             ("x red 1 blue", "line 1: `x` is not a height"),
-            ("# COLOR_MODEL = LAB", "line 1: unknown colour model `LAB`; supported are RGB, HSV and CMYK"),
+            ("# COLOR_MODEL = LAB", "line 1: unknown color model `LAB`; supported are RGB, HSV and CMYK"),
             ("5 red 9 blue\n0 red 5 blue", "ascending"),
             ("0 400-1-1 1 red", "`400-1-1`"),
-            ("B", "line 1: `` is not a colour"),
+            ("B", "line 1: `` is not a color"),
         ] {
             let why = parse("t", text).unwrap_err();
             assert!(why.contains(expect), "{why}");

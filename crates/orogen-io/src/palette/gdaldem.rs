@@ -1,16 +1,17 @@
-//! Colour files of `gdaldem color-relief`.
+//! Color files of `gdaldem color-relief`.
 //!
-//! A line has a height and three numbers from 0 to 255, or a colour name, separated by blanks, tabs, commas or colons.
+//! A line has a height and three numbers from 0 to 255, or a color name, separated by blanks, tabs, commas or colons.
 //! A fourth number, the opacity, is ignored. The height may be a percentage of the range, or `nv` for missing samples.
 //!
-//! Two kinds of files of other programs are read, too: colors from 0 to 1, if no number of the file is larger and one has a decimal point, and lines of
-//! three such numbers without heights (matplotlib's color maps, Scientific Colour Maps), which are evenly spaced over the range.
+//! Two kinds of files of other programs are read, too: colors from 0 to 1, if no number of the file is larger and one
+//! has a decimal point, and lines of three such numbers without heights (matplotlib's color maps, Scientific Color
+//! Maps), which are evenly spaced over the range.
 
 use super::color::Rgb;
 use super::names::named;
 use super::palette::{Mix, Palette, Position, Stop};
 
-/// Parses a colour file.
+/// Parses a color file.
 ///
 /// # Errors
 /// A message with the line that cannot be parsed.
@@ -39,7 +40,7 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
             palette.missing = Some(color);
             continue;
         }
-        // `gdaldem`'s colour for values without a line; the nearest stops are better here.
+        // `gdaldem`'s color for values without a line; the nearest stops are better here.
         if at.eq_ignore_ascii_case("default") {
             continue;
         }
@@ -52,7 +53,7 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
         palette.stops.push(Stop { at, color });
     }
     match palette.stops.is_empty() {
-        true => Err("it has no line of a height and a colour, such as `1200 230 220 190`".into()),
+        true => Err("it has no line of a height and a color, such as `1200 230 220 190`".into()),
         false => Ok(ordered(palette)),
     }
 }
@@ -92,19 +93,19 @@ fn color(words: &[&str], scale: f64) -> Result<Rgb, String> {
     match words {
         [name] => of_gdaldem(name)
             .or_else(|| named(name))
-            .ok_or_else(|| format!("`{name}` is not a colour; write a name or three numbers")),
+            .ok_or_else(|| format!("`{name}` is not a color; write a name or three numbers")),
         [red, green, blue] | [red, green, blue, _] => {
             let mut color = [0; 3];
             for (part, text) in color.iter_mut().zip([red, green, blue]) {
                 let value = text.parse::<f64>().ok().filter(|value| (0.0..=255.0).contains(value));
                 let value = value.ok_or_else(|| {
-                    format!("`{text}` is not a colour component; write numbers from 0 to 255, or all from 0 to 1")
+                    format!("`{text}` is not a color component; write numbers from 0 to 255, or all from 0 to 1")
                 })?;
                 *part = if scale > 1.0 { (value * scale).round() as u8 } else { value as u8 };
             }
             Ok(color)
         }
-        _ => Err("the height must be followed by a colour name or by red, green and blue".into()),
+        _ => Err("the height must be followed by a color name or by red, green and blue".into()),
     }
 }
 
@@ -183,13 +184,13 @@ mod tests {
         for (text, expect) in [
             ("10 1 2 3\nhigh 1 2 3", "line 2: `high` is not a height"),
             ("10 1 2", "line 1: the height must be followed"),
-            ("10 1 2 256", "line 1: `256` is not a colour component"),
+            ("10 1 2 256", "line 1: `256` is not a color component"),
             (
                 "10 0.1 0.2 -0.3",
-                "line 1: `-0.3` is not a colour component; write numbers from 0 to 255, or all from 0 to 1",
+                "line 1: `-0.3` is not a color component; write numbers from 0 to 255, or all from 0 to 1",
             ),
             ("0.1 0.2 0.3\n0.1 0.2 3", "line 1: the height must be followed"),
-            ("10 blurple", "line 1: `blurple` is not a colour"),
+            ("10 blurple", "line 1: `blurple` is not a color"),
             ("1e300 1 2 3", "line 1: `1e300`"),
             ("# nothing\n", "no line of a height"),
         ] {

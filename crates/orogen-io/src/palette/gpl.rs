@@ -1,4 +1,4 @@
-//! Palettes of GIMP, Inkscape and Krita (`.gpl`): a list of colours, here evenly spaced from the lowest to the highest
+//! Palettes of GIMP, Inkscape and Krita (`.gpl`): a list of colors, here evenly spaced from the lowest to the highest
 //! value.
 
 use super::color::Rgb;
@@ -28,7 +28,7 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
     }
     let last = colors.len().saturating_sub(1).max(1) as f64;
     match colors.is_empty() {
-        true => Err("it has no colours".into()),
+        true => Err("it has no colors".into()),
         false => {
             let stop = |(k, color)| Stop { at: Position::Share(k as f64 / last), color };
             Ok(Palette::new(&title, colors.into_iter().enumerate().map(stop).collect()))
@@ -41,7 +41,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn colours_stand_at_even_distances() {
+    fn colors_stand_at_even_distances() {
         let text =
             "GIMP Palette\r\nName: Hills\nColumns: 3\n# by hand\n  0 10 20\tdeep\n 30 40 50\n255 255 255 white snow\n";
         let palette = parse("file", text).unwrap();
@@ -57,7 +57,7 @@ mod tests {
         for (text, expect) in [
             ("", "first line"),
             ("JASC-PAL\n", "first line"),
-            ("GIMP Palette\nName: x\n", "no colours"),
+            ("GIMP Palette\nName: x\n", "no colors"),
             ("GIMP Palette\n1 2 3\n1 2 256", "line 3"),
             ("GIMP Palette\n1 2", "line 2"),
         ] {

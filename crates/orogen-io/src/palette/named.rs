@@ -1,9 +1,9 @@
 //! Built-in palettes.
 //!
-//! Palettes from other sources are interpolated between a few of their colours in Oklab; no channel differs by more
-//! than 3 of 255 from the 256 colours of the original. Sources: viridis, magma and inferno by S. van der Walt and N.
+//! Palettes from other sources are interpolated between a few of their colors in Oklab; no channel differs by more
+//! than 3 of 255 from the 256 colors of the original. Sources: viridis, magma and inferno by S. van der Walt and N.
 //! Smith (CC0); turbo by A. Mikhailov, Copyright 2019 Google LLC (Apache-2.0); batlow and oleron by F. Crameri,
-//! "Scientific colour maps", Copyright (c) 2023 Fabio Crameri (MIT); topo by K. Thyng and others, cmocean, Copyright
+//! "Scientific color maps", Copyright (c) 2023 Fabio Crameri (MIT); topo by K. Thyng and others, cmocean, Copyright
 //! (c) 2015 Kristen M. Thyng (MIT). All others are this project's own.
 
 use super::color::rgb;
@@ -31,7 +31,7 @@ pub struct Named {
     pub about: &'static str,
     /// The scale of the positions.
     pub span: Span,
-    /// Whether colour-blind readers can distinguish its heights: with full protanopia, deuteranopia or tritanopia
+    /// Whether color-blind readers can distinguish its heights: with full protanopia, deuteranopia or tritanopia
     /// (after G. Machado, M. Oliveira and L. Fernandes, 2009), any two of twelve heights differ by at least 0.04 in
     /// Oklab.
     pub safe: bool,
@@ -186,7 +186,7 @@ const ALL: &[Named] = &[
     },
     Named {
         name: "parchment",
-        about: "colours of an old map",
+        about: "colors of an old map",
         span: Span::Sea,
         safe: false,
         stops: &[(-1.0, 0x9aa690), (0.0, 0xd5d5b6), (0.0, 0xf3e8c9), (0.4, 0xe3cf9f), (0.7, 0xc8a674), (1.0, 0x94704a)],

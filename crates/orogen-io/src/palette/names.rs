@@ -1,4 +1,4 @@
-//! Colours by name, as in palette files.
+//! Colors by name, as in palette files.
 
 use super::color::{Rgb, rgb};
 
@@ -157,7 +157,7 @@ const NAMES: [(&str, u32); 148] = [
 /// Further names of GDAL and GMT.
 const OTHERS: [(&str, u32); 1] = [("violetred", 0xd02090)];
 
-/// The colour of a name, ignoring case; `gray0` to `gray100` (or `grey`) are percentages of white.
+/// The color of a name, ignoring case; `gray0` to `gray100` (or `grey`) are percentages of white.
 #[must_use]
 pub fn named(name: &str) -> Option<Rgb> {
     let name = name.to_ascii_lowercase();
@@ -168,7 +168,7 @@ pub fn named(name: &str) -> Option<Rgb> {
     })
 }
 
-/// The colour of `#rgb` or `#rrggbb`.
+/// The color of `#rgb` or `#rrggbb`.
 #[must_use]
 pub fn hexadecimal(text: &str) -> Option<Rgb> {
     let digits = text.strip_prefix('#')?;

@@ -2,13 +2,15 @@
 //!
 //! ```toml
 //! name = "Autumn"
-//! unit = "m"              # or "range" (0 the lowest, 1 the highest) or "sea" (-1 the deepest, 0 the shore, 1 the highest)
-//! mix = "oklab"           # or "rgb", "hsv", or "nearest" (the colour of the nearest stop)
+//! unit = "m"              # or "range" (0 the lowest, 1 the highest),
+//!                         # or "sea" (-1 the deepest, 0 the shore, 1 the highest)
+//! mix = "oklab"           # or "rgb", "hsv", or "nearest" (the color of the nearest stop)
 //! stops = [[0, "#2c5f2d"], [900, [0.59, 0.74, 0.38]], [1800, "white"]]
 //! missing = "#dddddd"
 //! ```
 //!
-//! A color is #rrggbb, a name, or red, green and blue: from 0 to 1 if a number of the list has a decimal point, else whole numbers from 0 to 255.
+//! A color is #rrggbb, a name, or red, green and blue: from 0 to 1 if a number of the list has a decimal point, else
+//! whole numbers from 0 to 255.
 
 use std::mem::discriminant;
 
@@ -59,7 +61,7 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
     let mut stops = Vec::new();
     for (at, value) in &file.stops {
         if !(-1e9..=1e9).contains(at) {
-            return Err(format!("{at} is not a valid position of a colour"));
+            return Err(format!("{at} is not a valid position of a color"));
         }
         stops.push(Stop { at: place(*at), color: color(value)? });
     }
@@ -75,7 +77,8 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
     Ok(palette)
 }
 
-/// A palette as a text that [`parse`] reads. `None` if the positions of its colors are of several kinds, or follow the relief, which the format cannot say.
+/// A palette as a text that [`parse`] reads. `None` if the positions of its colors are of several kinds, or follow the
+/// relief, which the format cannot say.
 #[must_use]
 pub fn write(palette: &Palette) -> Option<String> {
     let first = palette.stops.first()?.at;
@@ -113,7 +116,7 @@ fn color(value: &toml::Value) -> Result<Rgb, String> {
         value => written(value),
     };
     found.ok_or_else(|| {
-        format!("`{text}` is not a colour; write #rrggbb, a name such as white, or red, green and blue such as [0.2, 0.5, 1.0] or [51, 128, 255]")
+        format!("`{text}` is not a color; write #rrggbb, a name such as white, or red, green and blue such as [0.2, 0.5, 1.0] or [51, 128, 255]")
     })
 }
 
@@ -180,14 +183,11 @@ mod tests {
         for (text, expect) in [
             ("stops = []", "no stops"),
             ("name = \"x\"", "stops"),
-            ("stops = [[0, \"#12\"]]", "`#12` is not a colour"),
-            (
-                "stops = [[0, [1.5, 0, 0]]]",
-                "`[1.5, 0, 0]` is not a colour; write #rrggbb, a name such as white, or red",
-            ),
-            ("stops = [[0, [0, 0, 256]]]", "`[0, 0, 256]` is not a colour"),
-            ("stops = [[0, [0, 0]]]", "is not a colour"),
-            ("stops = [[0, 7]]", "`7` is not a colour"),
+            ("stops = [[0, \"#12\"]]", "`#12` is not a color"),
+            ("stops = [[0, [1.5, 0, 0]]]", "`[1.5, 0, 0]` is not a color; write #rrggbb, a name such as white, or red"),
+            ("stops = [[0, [0, 0, 256]]]", "`[0, 0, 256]` is not a color"),
+            ("stops = [[0, [0, 0]]]", "is not a color"),
+            ("stops = [[0, 7]]", "`7` is not a color"),
             ("stops = [[1, \"red\"], [0, \"red\"]]", "ascending"),
             ("stops = [[inf, \"red\"]]", "inf is not a valid position"),
             ("unit = \"feet\"\nstops = [[0, \"red\"]]", "unknown unit \"feet\""),

@@ -1,26 +1,26 @@
-//! Colour maps that QGIS exports from the raster symbology, `.txt`: a comment, `INTERPOLATION:` with a kind, and lines of
-//! a value, red, green, blue, opacity and a label, separated by commas. The opacity and the label are ignored.
+//! Color maps that QGIS exports from the raster symbology, `.txt`: a comment, `INTERPOLATION:` with a kind, and lines
+//! of a value, red, green, blue, opacity and a label, separated by commas. The opacity and the label are ignored.
 
 use super::palette::{Mix, Palette, Position, Stop};
 
-/// How colours between values are chosen.
+/// How colors between values are chosen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Kind {
     /// Mixed.
     Interpolated,
-    /// The colour of the next value, which may be `inf`.
+    /// The color of the next value, which may be `inf`.
     Discrete,
 }
 
 /// The start of the line with the kind.
 const KIND: &str = "INTERPOLATION:";
 
-/// Whether a text is such a colour map.
+/// Whether a text is such a color map.
 pub fn is_qgis(text: &str) -> bool {
     text.lines().take(3).any(|line| line.trim().starts_with(KIND))
 }
 
-/// Parses a colour map.
+/// Parses a color map.
 ///
 /// # Errors
 /// A message with the line that cannot be parsed.
@@ -61,7 +61,7 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
     palette.mix = Mix::Rgb;
     let stop = |value: f64, color| Stop { at: Position::Value(value), color };
     for (k, (value, color)) in rows.iter().enumerate() {
-        // A discrete colour begins where the one below ends.
+        // A discrete color begins where the one below ends.
         if let (Kind::Discrete, Some((below, _))) = (kind, k.checked_sub(1).and_then(|k| rows.get(k))) {
             palette.stops.push(stop(*below, *color));
         }
@@ -70,7 +70,7 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
         }
     }
     match palette.stops.is_empty() {
-        true => Err("it has no line of a height and a colour".into()),
+        true => Err("it has no line of a height and a color".into()),
         false => Ok(palette),
     }
 }

@@ -10,8 +10,8 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 /// Maximum size of a palette file, in bytes.
 const MOST: u64 = 1 << 20;
 
-/// Reads a palette: GMT's `.cpt`, GIMP's `.gpl`, our own `.toml`, and any other extension as a colour map of QGIS or a
-/// colour file of `gdaldem`.
+/// Reads a palette: GMT's `.cpt`, GIMP's `.gpl`, our own `.toml`, and any other extension as a color map of QGIS or a
+/// color file of `gdaldem`.
 ///
 /// # Errors
 /// If the file cannot be read, or cannot be parsed: the message contains the line.
@@ -86,7 +86,7 @@ mod tests {
         read_damaged(200_000);
     }
 
-    /// Damaged texts yield a message or a palette with colours, never a panic.
+    /// Damaged texts yield a message or a palette with colors, never a panic.
     fn read_damaged(rounds: usize) {
         let pieces =
             ["-", "/", "1e308", "nan", "#", "\n", " ", "%", "\"", "é", "[", "0", "B ", "=", ",", "99999999999", "\0"];

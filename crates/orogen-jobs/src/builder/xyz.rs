@@ -1,13 +1,13 @@
 //! An XYZ tree of PNG tiles with encoded heights ([`Encoding`]), with TileJSON.
 //!
-//! **Position.** Web Mercator. Pixels are areas, and samples are at their centres. Tiles are those of the whole map, so
+//! **Position.** Web Mercator. Pixels are areas, and samples are at their centers. Tiles are those of the whole map, so
 //! that windows of one world fit together; the part of a tile outside the window repeats its edge.
 //!
-//! - A world in EPSG:3857 is at its place, in the tiles of all web maps. Pixels between its samples are interpolated, with samples beyond the
-//!   window where the world has any, so that adjacent windows have the pixels of one.
-//! - Any other world has its origin at 0 degrees east and north. Near the equator Mercator is true to scale: one metre of
-//!   the world is one metre of the map if the cell equals a pixel of some zoom (see [`cell_near`]); otherwise the map is
-//!   scaled by a factor that TileJSON states.
+//! - A world in EPSG:3857 is at its place, in the tiles of all web maps. Pixels between its samples are interpolated,
+//!   with samples beyond the window where the world has any, so that adjacent windows have the pixels of one.
+//! - Any other world has its origin at 0 degrees east and north. Near the equator Mercator is true to scale: one metre
+//!   of the world is one metre of the map if the cell equals a pixel of some zoom (see [`cell_near`]); otherwise the
+//!   map is scaled by a factor that TileJSON states.
 //!
 //! **Lower zooms.** Each pixel is the mean of the four below it in full precision, rounded once when it is written.
 
@@ -87,7 +87,8 @@ impl Axis {
         self.step == 1.0 && self.first == self.first.floor()
     }
 
-    /// The first and last of `most` pixels whose middles are in the cells of `count` samples from sample `from` on, without the last edge.
+    /// The first and last of `most` pixels whose middles are in the cells of `count` samples from sample `from` on,
+    /// without the last edge.
     fn pixels(&self, from: i64, count: usize, most: u64) -> Option<[u64; 2]> {
         let first = |edge: f64| ((edge - 0.5 - self.first) / self.step).ceil();
         let (first, end) = (first(from as f64), first(from as f64 + count as f64));
@@ -209,8 +210,8 @@ impl Tree {
         JobFile::Scratch(format!("half/{zoom}/{column}/{row}").into())
     }
 
-    /// The positions, in samples, of the pixels of a tile of the highest zoom along an axis. Those outside the window are
-    /// at its edge.
+    /// The positions, in samples, of the pixels of a tile of the highest zoom along an axis. Those outside the window
+    /// are at its edge.
     fn positions(&self, axis: usize, tile: u64) -> impl Iterator<Item = f64> {
         let (side, [first, last]) = (self.tile() as u64, self.pixels[axis]);
         (tile * side..(tile + 1) * side).map(move |pixel| self.axes[axis].at(pixel.clamp(first, last)))
@@ -252,7 +253,7 @@ impl Tree {
         out
     }
 
-    /// The samples of a tile derived from those below it; where there is none, the edge of its neighbour is repeated.
+    /// The samples of a tile derived from those below it; where there is none, the edge of its neighbor is repeated.
     fn gathered(&self, job: Job, store: &OutputStore) -> Result<Vec<f32>> {
         let (tile, half) = (self.tile(), self.tile() / 2);
         let mut quarters: [[Option<Vec<f32>>; 2]; 2] = Default::default();

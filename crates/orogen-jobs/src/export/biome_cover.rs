@@ -23,8 +23,8 @@ pub fn memory(window: &Window) -> u64 {
     (window.width as u64).saturating_mul(window.height as u64).saturating_mul(20)
 }
 
-/// The output that is the layer of a `biome`, and the names and colors of its classes in the order of their codes; `None` if the recipe has no such
-/// output.
+/// The output that is the layer of a `biome`, and the names and colors of its classes in the order of their codes;
+/// `None` if the recipe has no such output.
 #[must_use]
 pub fn classes(recipe: &Recipe) -> Option<(&str, Vec<(&'static str, Rgb)>)> {
     let (output, scheme) = biomes(recipe)?;

@@ -160,7 +160,8 @@ impl<'w> LayerSource<'w> {
         Ok(Box::new(bands.map(move |band| band.map(counted))))
     }
 
-    /// The rows of another derived layer over the same window, with the same memory reserved. Its inputs must be prepared.
+    /// The rows of another derived layer over the same window, with the same memory reserved. Its inputs must be
+    /// prepared.
     ///
     /// # Errors
     /// The errors of [`World::bands`].
@@ -280,7 +281,7 @@ impl<'w> LayerSource<'w> {
     }
 
     /// The first channel, all rows at once, and in `halo` the samples around it, as far as the world extends. Values
-    /// that depend on neighbours are then the same in adjacent windows. A format that uses this counts it like
+    /// that depend on neighbors are then the same in adjacent windows. A format that uses this counts it like
     /// [`whole`](LayerSource::whole).
     ///
     /// Fails if the world fails.

@@ -50,7 +50,7 @@ pub const COLOR: OptionSpec = OptionSpec::new(
     "color",
     "HOW",
     ValueKind::Word(&["texture", "vertex", "none"]),
-    "Map colours without shading, stored as texture (a picture), vertex or none [default: texture; ply: vertex]",
+    "Map colors without shading, stored as texture (a picture), vertex or none [default: texture; ply: vertex]",
 );
 
 /// Approximate time per sample on one core, in nanoseconds: for choosing the vertices of an adaptive mesh or of a full
@@ -133,7 +133,7 @@ impl Prepared {
         Ok(Prepared { grid, halo, shapes, painter, exaggeration, max_error, painting, writing, curve, map })
     }
 
-    /// A level of detail, with vertex colours on request.
+    /// A level of detail, with vertex colors on request.
     #[must_use]
     pub fn surface(&self, level: usize, colors: bool) -> Surface<'_> {
         Surface {
@@ -230,7 +230,7 @@ impl Prepared {
     }
 }
 
-/// The colouring of a mesh: the requested one, otherwise `otherwise`. A stream has no texture file beside it.
+/// The coloring of a mesh: the requested one, otherwise `otherwise`. A stream has no texture file beside it.
 #[must_use]
 pub fn color(options: &Options, otherwise: &'static str, files: &Files, beside: bool) -> &'static str {
     match options.word(COLOR.name).unwrap_or(otherwise) {

@@ -55,8 +55,8 @@ pub fn of(source: &LayerSource, mesh: &Prepared, options: &Options) -> io::Resul
     })
 }
 
-/// The objects within the samples of a source's window, each at a height if that is finite. Entries with the same name are
-/// one kind.
+/// The objects within the samples of a source's window, each at a height if that is finite. Entries with the same name
+/// are one kind.
 ///
 /// Fails if the world has no objects, or memory does not suffice.
 pub fn kinds(source: &LayerSource, height: impl Fn(&Object) -> f32) -> io::Result<Vec<ObjectMesh>> {

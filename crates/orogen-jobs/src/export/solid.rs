@@ -70,9 +70,10 @@ pub const OPTIONS: &[OptionSpec] =
 /// Memory for drawing a letter, in bytes.
 const LETTER: u64 = 160 << 10;
 
-/// Memory of the solid of a window, in bytes, beside that of writing the file: the mesh, and 12 bytes for each vertex and triangle. A cut takes the whole surface, what
-/// it leaves of that (of white noise, two vertices for each), and a copy for the base; with a cavity, also its ceiling at each vertex, and what that divides. A cavity has two vertices for each
-/// sample at most.
+/// Memory of the solid of a window, in bytes, beside that of writing the file: the mesh, and 12 bytes for each vertex
+/// and triangle. A cut takes the whole surface, what it leaves of that (of white noise, two vertices for each), and a
+/// copy for the base; with a cavity, also its ceiling at each vertex, and what that divides. A cavity has two vertices
+/// for each sample at most.
 #[must_use]
 pub fn memory(window: &Window, options: &Options) -> u64 {
     // Of an adaptive mesh, one sample in five becomes a vertex.

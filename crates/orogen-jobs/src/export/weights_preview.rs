@@ -36,8 +36,8 @@ static ROWS: RowLayer = RowLayer {
     lowered: None,
 };
 
-/// Writes the picture: the surfaces in their colors, mixed by their weights, with the relief shading of maps. The first row is the northern one.
-/// Returns its line of the final message.
+/// Writes the picture: the surfaces in their colors, mixed by their weights, with the relief shading of maps. The first
+/// row is the northern one. Returns its line of the final message.
 ///
 /// Fails if the world or the files fail.
 pub fn write(source: &LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {

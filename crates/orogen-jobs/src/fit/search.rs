@@ -142,7 +142,7 @@ pub fn search(target: &FitTarget, effort: &Effort, options: &Options, progress: 
     let mut chance = Random::of_state(effort.seed);
     let mut tried: Vec<(f64, ParamValues)> = Vec::new();
     for k in 0..effort.random.max(1) {
-        // The first is the centre of all ranges.
+        // The first is the center of all ranges.
         let values = std::array::from_fn(|_| if k == 0 { 0.5 } else { chance.share() });
         tried.push((trial.distance(&values)?, values));
     }

@@ -85,7 +85,7 @@ fn round(value: f64) -> f64 {
     (value * digits).round() / digits
 }
 
-/// The area on which rivers are solved: the world, or a larger area with the world at its centre, at the same
+/// The area on which rivers are solved: the world, or a larger area with the world at its center, at the same
 /// resolution. A solver ends at the world's edge, where heights do not change: a rim.
 #[derive(Debug, Clone, Copy)]
 struct View {
@@ -117,7 +117,7 @@ impl View {
         }
     }
 
-    /// The centre of the area's solution.
+    /// The center of the area's solution.
     fn middle(&self, source: &str) -> Transform {
         let offset = self.around.map(|metres| metres * self.scale);
         Transform { source: source.into(), scale: 1.0 / self.scale, offset, ..Transform::default() }
@@ -167,8 +167,8 @@ pub(super) const MARGIN: usize = 48;
 /// Cell from which the whole range of creep is searched, in metres.
 const CREEP_CELL: f64 = 10.0;
 
-/// The factor of creep at a cell. Creep over a number of cells takes time with the inverse of the cell: what it rounds on cells of a metre in the same way as
-/// on cells of 10 m is a hundredth of it.
+/// The factor of creep at a cell. Creep over a number of cells takes time with the inverse of the cell: what it rounds
+/// on cells of a metre in the same way as on cells of 10 m is a hundredth of it.
 fn creep_factor(cell: f64) -> f64 {
     let share = (cell / CREEP_CELL).min(1.0);
     share * share

@@ -10,7 +10,8 @@ pub struct Forward {
 }
 
 impl Forward {
-    /// Finds an order. `wires` are pairs of boxes, the one that is read first. Boxes of circles come in an order that leaves few wires backwards.
+    /// Finds an order. `wires` are pairs of boxes, the one that is read first. Boxes of circles come in an order that
+    /// leaves few wires backwards.
     #[must_use]
     pub fn new(blocks: usize, wires: &[(usize, usize)]) -> Forward {
         let mut waits = vec![0_usize; blocks];

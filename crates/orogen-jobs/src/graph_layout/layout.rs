@@ -70,14 +70,14 @@ impl Layout {
         }
         for round in 0..ROUNDS {
             let rightwards = round % 2 == 0;
-            let neighbours = if rightwards { &left } else { &right };
+            let neighbors = if rightwards { &left } else { &right };
             for k in 0..columns.columns.len() {
                 let column = &columns.columns[if rightwards { k } else { columns.columns.len() - 1 - k }];
                 let wanted: Vec<f32> = column
                     .iter()
                     .map(|slot| {
                         let mut ends: Vec<f32> =
-                            neighbours[*slot].iter().map(|(own, other, at)| tops[*other] + at - own).collect();
+                            neighbors[*slot].iter().map(|(own, other, at)| tops[*other] + at - own).collect();
                         match ends.is_empty() {
                             true => tops[*slot],
                             false => median(&mut ends),

@@ -21,7 +21,7 @@ pub struct Columns {
     pub ways: Vec<Vec<usize>>,
 }
 
-/// Rounds of sorting slots by their neighbours.
+/// Rounds of sorting slots by their neighbors.
 const ROUNDS: usize = 24;
 
 impl Columns {
@@ -56,7 +56,7 @@ impl Columns {
         self.slots.len() - 1
     }
 
-    /// Reduces crossings: sorts slots by the mean position of their neighbours, left and right in turns, and keeps the
+    /// Reduces crossings: sorts slots by the mean position of their neighbors, left and right in turns, and keeps the
     /// best order.
     fn sort(&mut self) {
         let mut left: Vec<Vec<usize>> = vec![Vec::new(); self.slots.len()];
@@ -68,13 +68,13 @@ impl Columns {
         let mut best = (self.crossings(&right), self.columns.clone());
         for round in 0..ROUNDS {
             let rightwards = round % 2 == 0;
-            let neighbours = if rightwards { &left } else { &right };
+            let neighbors = if rightwards { &left } else { &right };
             let count = self.columns.len();
             for k in 0..count {
                 let column = if rightwards { k } else { count - 1 - k };
                 let place = self.places();
                 let mean = |slot: usize| {
-                    let around = &neighbours[slot];
+                    let around = &neighbors[slot];
                     match around.is_empty() {
                         true => place[slot] as f64,
                         false => around.iter().map(|slot| place[*slot] as f64).sum::<f64>() / around.len() as f64,

@@ -137,7 +137,8 @@ impl BlocksJob {
         Ok(())
     }
 
-    /// Appends to a recipe the nodes that the blocks need; call it before the world is opened. `cell` is the size of a block in metres.
+    /// Appends to a recipe the nodes that the blocks need; call it before the world is opened. `cell` is the size of a
+    /// block in metres.
     ///
     /// # Errors
     /// The errors of [`land::prepare`] and [`caves::add`].
@@ -149,11 +150,12 @@ impl BlocksJob {
         Ok(())
     }
 
-    /// Makes the blocks of a window of a world of a [prepared](BlocksJob::prepare) recipe. Writing them is the rest of `progress`.
+    /// Makes the blocks of a window of a world of a [prepared](BlocksJob::prepare) recipe. Writing them is the rest of
+    /// `progress`.
     ///
     /// # Errors
-    /// The errors of [`check`](BlocksJob::check); if the format cannot hold them, or the world cannot make the window; if memory does not suffice; or the work
-    /// was cancelled.
+    /// The errors of [`check`](BlocksJob::check); if the format cannot hold them, or the world cannot make the window;
+    /// if memory does not suffice; or the work was cancelled.
     pub fn make<'w>(&self, world: &'w World, window: &Window, progress: &Progress) -> Result<MadeBlocks<'w>> {
         self.check()?;
         // The sides are known before the heights are.
@@ -251,7 +253,8 @@ impl MadeBlocks<'_> {
     /// Writes a Luanti world to its folder, atomically.
     ///
     /// # Errors
-    /// If they are no blocks of a Luanti world, a file cannot be written, memory does not suffice, or the work was cancelled.
+    /// If they are no blocks of a Luanti world, a file cannot be written, memory does not suffice, or the work was
+    /// cancelled.
     pub fn to_luanti(&self, folder: LuantiFolder) -> Result<()> {
         let Content::Volume(volume) = &self.content else {
             return Err(Error::new(ErrorKind::Internal, "a mesh is no Luanti world"));

@@ -1,4 +1,4 @@
-//! A colour bar in the corner of a picture, in the style of map sheets.
+//! A color bar in the corner of a picture, in the style of map sheets.
 
 use orogen_grid::error::Result;
 use orogen_io::palette::tint::Tint;
@@ -17,7 +17,8 @@ const PADDING: [f32; 2] = [4.5, 3.0];
 /// Opacity of the panel.
 const COVER: f32 = 0.8;
 
-/// Share of the picture's width for the panel, its maximum, and the pixels of a millimetre that make its numbers legible.
+/// Share of the picture's width for the panel, its maximum, and the pixels of a millimetre that make its numbers
+/// legible.
 const SHARE: f32 = 0.38;
 const MOST: f32 = 0.9;
 const LEGIBLE: f32 = 4.2;
@@ -25,7 +26,7 @@ const LEGIBLE: f32 = 4.2;
 /// Maximum share of the picture's height.
 const HEIGHT: f32 = 0.3;
 
-/// A colour bar of heights in the lower left corner of pictures.
+/// A color bar of heights in the lower left corner of pictures.
 pub struct ColorBar {
     scene: Scene,
 }

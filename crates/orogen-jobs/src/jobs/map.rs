@@ -34,7 +34,7 @@ use orogen_output::sheet::options::{
 };
 use orogen_output::sheet::{pdf, raster, vector};
 
-/// What the colours of a map show.
+/// What the colors of a map show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum MapColors {
@@ -64,7 +64,8 @@ impl MapColors {
 
 /// A map sheet of a world.
 ///
-/// [`prepare`](MapJob::prepare) a recipe, open its world, then write [to a file](MapJob::to_file); or [`draw`](MapJob::draw) the sheet and write it yourself.
+/// [`prepare`](MapJob::prepare) a recipe, open its world, then write [to a file](MapJob::to_file); or
+/// [`draw`](MapJob::draw) the sheet and write it yourself.
 ///
 /// ```
 /// use orogen_engine::{Progress, Window, World, presets};
@@ -84,13 +85,14 @@ impl MapColors {
 pub struct MapJob {
     /// The kind of file.
     pub format: SheetFormat,
-    /// What the colours show.
+    /// What the colors show.
     pub colors: MapColors,
-    /// The layer that is coloured with the palette; `height` by default. Other layers have no lines and no water, which would hide them.
+    /// The layer that is colored with the palette; `height` by default. Other layers have no lines and no water, which
+    /// would hide them.
     pub layer: String,
     /// Options of a derived layer.
     pub layer_options: Options,
-    /// How values of another layer than the heights are mapped to colours; by default what suits the layer.
+    /// How values of another layer than the heights are mapped to colors; by default what suits the layer.
     pub scale: Option<Scale>,
     /// The values at the ends of the palette; by default the minimum and maximum.
     pub range: Option<[f32; 2]>,
@@ -113,12 +115,13 @@ pub struct MapJob {
     pub river_area: Option<f64>,
     /// Minimum area of lakes in m^2; by default it depends on the scale.
     pub lake_area: Option<f64>,
-    /// Points and lines whose names are shown, in map coordinates, or in metres east and north of the world's origin; the most important first. Those without
-    /// room are left out.
+    /// Points and lines whose names are shown, in map coordinates, or in metres east and north of the world's origin;
+    /// the most important first. Those without room are left out.
     pub names: NamedPoints,
     /// A file of points and lines (`.csv` or `.geojson`), in the same coordinates, with further names.
     pub names_file: Option<PathBuf>,
-    /// The denominator of the map's scale, such as 100 000, which sets the size of the page. Paper has a size of its own.
+    /// The denominator of the map's scale, such as 100 000, which sets the size of the page. Paper has a size of its
+    /// own.
     pub map_scale: Option<f64>,
     /// The heading.
     pub title: String,
@@ -128,7 +131,8 @@ pub struct MapJob {
     pub resolution: Option<Resolution>,
     /// The parts of the sheet.
     pub parts: Parts,
-    /// Whether the world is a real place, a file of heights: it has no sea level, and its lakes are level in the data already.
+    /// Whether the world is a real place, a file of heights: it has no sea level, and its lakes are level in the data
+    /// already.
     pub is_place: bool,
     /// Whether georeferencing files are written beside a picture, if the world has a position on a map.
     pub has_sidecars: bool,
@@ -193,7 +197,7 @@ impl MapJob {
         }
     }
 
-    /// The same with these colours.
+    /// The same with these colors.
     #[must_use]
     pub fn with_colors(self, colors: MapColors) -> MapJob {
         MapJob { colors, ..self }
@@ -238,7 +242,7 @@ impl MapJob {
             return refuse(format!("a map of {} has no other layer, palette or range", self.colors.plural()));
         }
         if self.scale.is_some() && self.layer == HEIGHT {
-            return refuse("heights are always mapped to colours on a linear scale; leave out the scale".into());
+            return refuse("heights are always mapped to colors on a linear scale; leave out the scale".into());
         }
         if let Some(levels) = &self.levels {
             if self.interval.is_some() {
@@ -317,8 +321,8 @@ impl MapJob {
     /// Draws the sheet of a world of a [prepared](MapJob::prepare) recipe. Writing it is the rest of `progress`.
     ///
     /// # Errors
-    /// The errors of [`check`](MapJob::check); if the world has no such layer, surfaces or classes, or cannot make the window; if memory does not suffice (then nothing
-    /// was started); or the work was cancelled.
+    /// The errors of [`check`](MapJob::check); if the world has no such layer, surfaces or classes, or cannot make the
+    /// window; if memory does not suffice (then nothing was started); or the work was cancelled.
     pub fn draw(&self, world: &World, progress: &Progress) -> Result<DrawnMap> {
         let Some(window) = self.window else {
             return self.clone().with_window(world.full_window(world.recipe().world.cell)?).draw(world, progress);
@@ -413,7 +417,8 @@ impl MapJob {
         self.colors != MapColors::Palette
     }
 
-    /// Whether the layer is that of the biomes, which have colors and names of their own, unless a palette or a mapping to colours was chosen.
+    /// Whether the layer is that of the biomes, which have colors and names of their own, unless a palette or a mapping
+    /// to colors was chosen.
     fn shows_biomes(&self, recipe: &Recipe) -> bool {
         let has_own = self.palette.is_some() || self.range.is_some() || self.scale.is_some();
         !self.is_covered() && !has_own && biome_cover::classes(recipe).is_some_and(|(name, _)| name == self.layer)
@@ -430,7 +435,7 @@ impl MapJob {
         named::find(name).unwrap_or(&named::all()[0]).palette()
     }
 
-    /// The layer that colours the map.
+    /// The layer that colors the map.
     fn layer(&self, world: &World, window: &Window, warnings: &mut Vec<String>, progress: &Progress) -> Result<Layer> {
         let source = LayerSource::new(world, &self.layer, *window, progress)?;
         let mut source = source.with_options(self.layer_options.clone());
@@ -552,7 +557,7 @@ fn longer(page: Page) -> f64 {
 /// A drawn map sheet.
 pub struct DrawnMap {
     format: SheetFormat,
-    /// What the colours show, for the final message.
+    /// What the colors show, for the final message.
     what: String,
     title: String,
     /// The position on a map, if it is written beside a picture.

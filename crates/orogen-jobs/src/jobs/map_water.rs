@@ -19,7 +19,8 @@ pub fn is_known(recipe: &Recipe, window: &Window) -> bool {
     OwnNetwork::of(recipe).is_some_and(|own| own.cell_for(window.cell).is_some())
 }
 
-/// Whether the recipe's land is drained: by erosion, as a real place, or by outputs of water. The depressions of bare noise are no lakes.
+/// Whether the recipe's land is drained: by erosion, as a real place, or by outputs of water. The depressions of bare
+/// noise are no lakes.
 #[must_use]
 pub fn is_drained(recipe: &Recipe) -> bool {
     let shapes = |node: &Node| {
@@ -42,7 +43,8 @@ pub fn is_drained(recipe: &Recipe) -> bool {
         || recipe.nodes().iter().any(|named| shapes(&named.node))
 }
 
-/// The water of the network in a window, with at least these drainage areas of rivers and areas of lakes in m^2. The caller holds `held` bytes.
+/// The water of the network in a window, with at least these drainage areas of rivers and areas of lakes in m^2. The
+/// caller holds `held` bytes.
 ///
 /// # Errors
 /// If memory does not suffice, or the work was cancelled.

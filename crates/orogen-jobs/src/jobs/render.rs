@@ -54,7 +54,8 @@ pub const MAX_SIDE: usize = 32_768;
 
 /// A perspective picture of a world.
 ///
-/// [`prepare`](RenderJob::prepare) a recipe, open its world, then write [to a file](RenderJob::to_file); or make the [scene](RenderJob::scene), and paint pictures of it yourself.
+/// [`prepare`](RenderJob::prepare) a recipe, open its world, then write [to a file](RenderJob::to_file); or make the
+/// [scene](RenderJob::scene), and paint pictures of it yourself.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct RenderJob {
@@ -72,13 +73,13 @@ pub struct RenderJob {
     pub exaggeration: f64,
     /// What is shown beyond the edge of the land; by default haze if most of the edge is sea, otherwise a cut.
     pub edge: Option<Edge>,
-    /// Colours of the ground.
+    /// Colors of the ground.
     pub colors: Colors,
     /// The palette of [`Colors::Map`]; by default that of the relief map.
     pub palette: Option<Palette>,
     /// The heights at the ends of the palette of [`Colors::Map`]; by default the lowest and the highest.
     pub range: Option<[f64; 2]>,
-    /// Whether a colour bar of [`Colors::Map`] is in the lower left corner.
+    /// Whether a color bar of [`Colors::Map`] is in the lower left corner.
     pub color_bar: bool,
     /// Height of the snow line in metres; by default chosen by the relief.
     pub snow_line: Option<f64>,
@@ -113,7 +114,8 @@ impl Default for RenderJob {
     }
 }
 
-/// Memory per sample of the land beside its layers, in bytes: the pyramid, slopes, and light twice while it is computed.
+/// Memory per sample of the land beside its layers, in bytes: the pyramid, slopes, and light twice while it is
+/// computed.
 const LAND: u64 = 116;
 
 /// Layers that a picture uses if the recipe has them.
@@ -184,14 +186,14 @@ impl RenderJob {
             return refuse("the snow line must be a height in metres".into());
         }
         if self.palette.is_some() && self.colors != Colors::Map {
-            return refuse("a palette applies to the colours of the map only".into());
+            return refuse("a palette applies to the colors of the map only".into());
         }
         if self.color_bar && self.colors != Colors::Map {
-            return refuse("a colour bar applies to the colours of the map only".into());
+            return refuse("a color bar applies to the colors of the map only".into());
         }
         match self.range {
             Some(_) if self.colors != Colors::Map => {
-                return refuse("the ends of a palette apply to the colours of the map only".into());
+                return refuse("the ends of a palette apply to the colors of the map only".into());
             }
             Some([low, high]) if !(low.is_finite() && high.is_finite() && low < high) => {
                 return refuse("the ends of the palette must be two heights, the lower first".into());
@@ -230,12 +232,12 @@ impl RenderJob {
         (width as u64).saturating_mul(height as u64).saturating_mul(6)
     }
 
-    /// Makes the scene of a world of a [prepared](RenderJob::prepare) recipe. Painting is the rest of `progress`: that of `pictures` pictures, which take `writing` bytes of
-    /// memory to write, beside their pixels.
+    /// Makes the scene of a world of a [prepared](RenderJob::prepare) recipe. Painting is the rest of `progress`: that
+    /// of `pictures` pictures, which take `writing` bytes of memory to write, beside their pixels.
     ///
     /// # Errors
-    /// The errors of [`check`](RenderJob::check); if the world cannot make the window or no sample is finite; if memory does not suffice (then nothing was started); or the
-    /// work was cancelled.
+    /// The errors of [`check`](RenderJob::check); if the world cannot make the window or no sample is finite; if memory
+    /// does not suffice (then nothing was started); or the work was cancelled.
     pub fn scene(&self, world: &World, pictures: f64, writing: u64, progress: &Progress) -> Result<Rendering> {
         self.check()?;
         let window = match self.window {
@@ -372,8 +374,8 @@ impl Rendering {
         self.refused.get().map(String::as_str)
     }
 
-    /// Paints some rows of a picture of `size` pixels, like [`Scene::paint`], with the job's device. If the device refuses,
-    /// the processor paints this picture and all later ones, and [`refused`](Rendering::refused) says why.
+    /// Paints some rows of a picture of `size` pixels, like [`Scene::paint`], with the job's device. If the device
+    /// refuses, the processor paints this picture and all later ones, and [`refused`](Rendering::refused) says why.
     ///
     /// # Errors
     /// If the work is cancelled.
@@ -533,7 +535,7 @@ mod tests {
         assert!(rows == bar);
         job.colors = Colors::Clay;
         job.range = None;
-        assert!(job.check().unwrap_err().to_string().contains("a colour bar applies to the colours of the map only"));
+        assert!(job.check().unwrap_err().to_string().contains("a color bar applies to the colors of the map only"));
     }
 
     #[test]

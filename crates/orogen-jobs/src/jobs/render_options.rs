@@ -215,7 +215,8 @@ fn at(camera: &[f64], look: [f64; 2]) -> Result<View> {
     Ok(View::At { eye: [x, y, height], look })
 }
 
-/// The view around the center of the land: azimuth and elevation in degrees, and the distance in metres, if it is given.
+/// The view around the center of the land: azimuth and elevation in degrees, and the distance in metres, if it is
+/// given.
 ///
 /// # Errors
 /// If there are other numbers, the elevation is not above the horizon, or the distance is not greater than 0.

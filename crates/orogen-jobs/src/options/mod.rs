@@ -1,5 +1,5 @@
-//! Options of jobs, formats and layers: declared once beside what has them, checked here. Command lines, dialogs and copied commands derive from the
-//! declarations.
+//! Options of jobs, formats and layers: declared once beside what has them, checked here. Command lines, dialogs and
+//! copied commands derive from the declarations.
 
 mod given;
 mod palette;

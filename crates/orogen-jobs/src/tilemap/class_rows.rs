@@ -45,7 +45,8 @@ impl<'w> ClassRows<'w> {
         self.finite
     }
 
-    /// The rows from row `from` of the world up to, but not including, `to`, as far as the window has them. Rows before `from` are dropped.
+    /// The rows from row `from` of the world up to, but not including, `to`, as far as the window has them. Rows before
+    /// `from` are dropped.
     pub fn rows(&mut self, from: i64, to: i64) -> Result<Classes> {
         let (width, height) = (self.window.width, self.window.height as i64);
         let [from, to] = [from, to].map(|row| (row - self.window.y).clamp(0, height) as usize);

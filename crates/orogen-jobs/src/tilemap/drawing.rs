@@ -119,7 +119,8 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// Cleans classes, if they are, and draws the rows of tiles that see them: from `top` up to, but not including, `bottom`.
+    /// Cleans classes, if they are, and draws the rows of tiles that see them: from `top` up to, but not including,
+    /// `bottom`.
     pub fn add(
         &mut self,
         before: Classes,

@@ -17,7 +17,8 @@ use orogen_io::file::cancellable::CancellableWriter;
 use orogen_io::file::{self, Output, OutputFolder, OutputPolicy, Staged};
 use orogen_io::format::notes::SOFTWARE;
 
-/// The files, in the order in which they are put in place: the summary is last, so its presence means that all files are complete.
+/// The files, in the order in which they are put in place: the summary is last, so its presence means that all files
+/// are complete.
 pub const NAMES: [&str; 10] =
     ["tiles.png", "tiles.tsx", "map.tmx", "map.tmj", LDTK, "tiles.tres", GODOT, "classes.csv", "preview.png", SUMMARY];
 
@@ -47,11 +48,12 @@ pub struct WrittenMap {
 }
 
 impl TilemapJob {
-    /// Makes a map as [`TilemapJob::stream`] does and writes all its files into a folder, which is created if needed, or none. `source` is the layer that
-    /// classes are made from, for messages.
+    /// Makes a map as [`TilemapJob::stream`] does and writes all its files into a folder, which is created if needed,
+    /// or none. `source` is the layer that classes are made from, for messages.
     ///
     /// # Errors
-    /// The errors of [`TilemapJob::stream`]; if a file may not be replaced or cannot be written; or if no sample is finite.
+    /// The errors of [`TilemapJob::stream`]; if a file may not be replaced or cannot be written; or if no sample is
+    /// finite.
     pub fn to_folder(
         &self,
         world: &World,

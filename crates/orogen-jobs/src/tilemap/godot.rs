@@ -1,7 +1,9 @@
-//! Resources of Godot 4.3 and later: a TileSet, and a scene with a TileMapLayer for each layer and a Marker2D for each scattered object.
+//! Resources of Godot 4.3 and later: a TileSet, and a scene with a TileMapLayer for each layer and a Marker2D for each
+//! scattered object.
 //!
-//! The formats are those of Godot's text resources (docs.godotengine.org, "TSCN file format"). The cells of a TileMapLayer are bytes: a version, and for each cell
-//! its column, row, source, and the column, row and flips of its tile, all as 16 bits little-endian.
+//! The formats are those of Godot's text resources (docs.godotengine.org, "TSCN file format"). The cells of a
+//! TileMapLayer are bytes: a version, and for each cell its column, row, source, and the column, row and flips of its
+//! tile, all as 16 bits little-endian.
 
 use std::io::{self, Write};
 
@@ -32,7 +34,8 @@ const DIRECTIONS: [&str; 8] = [
     "top_left_corner",
 ];
 
-/// Writes the tileset as a TileSet with terrains. `image` is the name of its picture beside the file, and `made_by` the program.
+/// Writes the tileset as a TileSet with terrains. `image` is the name of its picture beside the file, and `made_by` the
+/// program.
 ///
 /// # Errors
 /// If `out` fails.
@@ -95,7 +98,8 @@ pub fn write_tileset(tileset: &Tileset, out: &mut dyn Write, image: &str, made_b
 }
 
 impl Tilemap {
-    /// Whether the map can be a scene of Godot: it has at most 32767 tiles along a side, and 2^24 tiles, because a scene lists each.
+    /// Whether the map can be a scene of Godot: it has at most 32767 tiles along a side, and 2^24 tiles, because a
+    /// scene lists each.
     #[must_use]
     pub fn fits_godot(&self) -> bool {
         self.width.max(self.height) <= MAX_PLACE && self.width * self.height <= MAX_TILES

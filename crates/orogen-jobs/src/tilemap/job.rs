@@ -24,7 +24,8 @@ use crate::options::{OptionSpec, Options};
 /// How many cells are made at once. Maps are the same for any numbers.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct AtOnce {
-    /// Approximate number of cells that are cleaned at once, and minimum number of rows: fewer would be cleaned several times, because of the halo.
+    /// Approximate number of cells that are cleaned at once, and minimum number of rows: fewer would be cleaned several
+    /// times, because of the halo.
     pub cleaned: usize,
     pub cleaned_rows: usize,
     /// Approximate number of cells that are drawn at once.
@@ -78,8 +79,9 @@ impl TilemapJob {
         TilemapJob { is_infinite, ..self }
     }
 
-    /// Adds what the map needs to a recipe: its own [classes](orogen_engine::recipe::class) with the numbers of the tileset's terrains of their names, or the
-    /// [standard ones](orogen_engine::recipe::class::standard), if it has none and no output `class`. `cell` is the map's cell in metres, at which shares of classes are exact.
+    /// Adds what the map needs to a recipe: its own [classes](orogen_engine::recipe::class) with the numbers of the
+    /// tileset's terrains of their names, or the [standard ones](orogen_engine::recipe::class::standard), if it has
+    /// none and no output `class`. `cell` is the map's cell in metres, at which shares of classes are exact.
     ///
     /// # Errors
     /// If the recipe has neither classes nor heights, or if the tileset has no terrain with the name of a class.
@@ -97,7 +99,8 @@ impl TilemapJob {
         let (width, layers) = (around.width as u64, self.tileset.layer_names().len() as u64);
         let rows = |at_once: usize| (at_once.min(window.height + 1)) as u64;
         let cleaned = (rows(self.cleaned_rows(window, is_cleaned)) + 2 * cleaning_halo(is_cleaned) as u64 + 4) * width;
-        // Classes that are held, before and after the clean-up, and copies for drawing; of a drawn cell two numbers in each layer.
+        // Classes that are held, before and after the clean-up, and copies for drawing; of a drawn cell two numbers in
+        // each layer.
         let drawn = rows(self.drawn_rows(window)) * width * (8 * layers + 4);
         let stores = (layers + 2) * (RECORDS + IN_MEMORY as u64);
         3 * cleaned + ClassRows::memory(window) + drawn + stores
@@ -145,8 +148,8 @@ impl TilemapJob {
         self.draw(world, window, None, progress)
     }
 
-    /// Makes a map as [`TilemapJob::make`] does, in [bounded memory](TilemapJob::memory): tiles, classes and objects are packed in temporary files beside `path`, if
-    /// they are many.
+    /// Makes a map as [`TilemapJob::make`] does, in [bounded memory](TilemapJob::memory): tiles, classes and objects
+    /// are packed in temporary files beside `path`, if they are many.
     ///
     /// # Errors
     /// Also if memory does not suffice, or if the disk is full or fails.
@@ -156,7 +159,8 @@ impl TilemapJob {
         self.draw(world, window, Some(path), progress)
     }
 
-    /// Checks that a map, the classes of its cells while they are computed, and `beside` bytes fit into memory together.
+    /// Checks that a map, the classes of its cells while they are computed, and `beside` bytes fit into memory
+    /// together.
     ///
     /// # Errors
     /// If they do not; the message has what all of it needs.

@@ -1,7 +1,7 @@
 //! A project of the level editor LDtk with one level.
 //!
-//! The format is that of LDtk 1.5 (ldtk.io/json, "JSON schema"). Each layer of tiles is a layer of the level, tilesets of cells have the classes as an IntGrid
-//! layer, and scattered objects are entities. LDtk lists layers top to bottom.
+//! The format is that of LDtk 1.5 (ldtk.io/json, "JSON schema"). Each layer of tiles is a layer of the level, tilesets
+//! of cells have the classes as an IntGrid layer, and scattered objects are entities. LDtk lists layers top to bottom.
 
 use std::io::{self, Write};
 
@@ -38,7 +38,8 @@ enum Layer<'a> {
 }
 
 impl Tilemap {
-    /// Whether the map can be a project of LDtk: it has at most 2^20 tiles, because a project lists each, and no quarter turns, which LDtk does not know.
+    /// Whether the map can be a project of LDtk: it has at most 2^20 tiles, because a project lists each, and no
+    /// quarter turns, which LDtk does not know.
     #[must_use]
     pub fn fits_ldtk(&self) -> bool {
         self.width.saturating_mul(self.height) <= MAX_TILES
@@ -60,7 +61,8 @@ impl Tilemap {
         layers
     }
 
-    /// Writes the map as a project of LDtk. `image` is the name of the tileset's picture beside the file, and `made_by` the program.
+    /// Writes the map as a project of LDtk. `image` is the name of the tileset's picture beside the file, and `made_by`
+    /// the program.
     ///
     /// # Errors
     /// If `out` fails.
@@ -85,7 +87,7 @@ impl Tilemap {
         let level = json!({
             "identifier": "Level_0", "iid": self.iid(2), "uid": LEVEL, "worldX": 0, "worldY": 0, "worldDepth": 0, "pxWid": width, "pxHei": height,
             "__bgColor": "#696A79", "bgColor": null, "useAutoIdentifier": true, "bgRelPath": null, "bgPos": null, "bgPivotX": 0.5, "bgPivotY": 0.5,
-            "__smartColor": "#ADADB5", "__bgPos": null, "externalRelPath": null, "fieldInstances": [], "__neighbours": [],
+            "__smartColor": "#ADADB5", "__bgPos": null, "externalRelPath": null, "fieldInstances": [], "__neighbors": [],
         });
         write!(out, "{},\n\"levels\": [{},\n\"layerInstances\": [", open(&root), open(&level))?;
         for (nth, layer) in layers.iter().enumerate() {
@@ -271,7 +273,7 @@ fn entity_uid(kind: usize) -> u32 {
     field_uid(kind) + 4
 }
 
-/// Colours of the kinds of objects.
+/// Colors of the kinds of objects.
 fn entity_color(kind: usize) -> &'static str {
     const COLORS: [&str; 6] = ["#3e8948", "#a8a8a8", "#be4a2f", "#63c74d", "#e4a672", "#5a6988"];
     COLORS[kind % COLORS.len()]

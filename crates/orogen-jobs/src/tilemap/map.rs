@@ -14,7 +14,8 @@ use super::tileset::Tileset;
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct TileLayer {
-    /// The tiles, row-major, as the files of a map have them: 0 where there is none, and otherwise 1 more than the [number](super::tileset::number) of the tile.
+    /// The tiles, row-major, as the files of a map have them: 0 where there is none, and otherwise 1 more than the
+    /// [number](super::tileset::number) of the tile.
     pub tiles: Records<u32>,
     /// Whether it has any tile.
     pub is_used: bool,

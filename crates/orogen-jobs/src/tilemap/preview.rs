@@ -17,7 +17,8 @@ const MAX_SIDE: usize = 8192;
 const BAND: usize = 2 << 20;
 
 impl Tilemap {
-    /// How many pixels of the map are one of its picture along either side: 1 up to 8192 pixels, and otherwise a divisor or a multiple of the side of a tile.
+    /// How many pixels of the map are one of its picture along either side: 1 up to 8192 pixels, and otherwise a
+    /// divisor or a multiple of the side of a tile.
     #[must_use]
     pub fn reduction(&self) -> usize {
         let size = self.tileset.size;
@@ -42,7 +43,8 @@ impl Tilemap {
         self.gap_count == 0 && base.peek().is_some() && base.all(is_opaque)
     }
 
-    /// Writes the picture of the map as a PNG: all pixels of its tiles, or of a large map every [`Tilemap::reduction`]th. It is transparent where nothing is drawn.
+    /// Writes the picture of the map as a PNG: all pixels of its tiles, or of a large map every
+    /// [`Tilemap::reduction`]th. It is transparent where nothing is drawn.
     ///
     /// # Errors
     /// If `out` fails.

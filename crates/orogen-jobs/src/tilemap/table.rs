@@ -64,7 +64,8 @@ pub struct MissingTile {
     /// Its missing mask: N 1, NE 2, E 4, SE 8, S 16, SW 32, W 64, NW 128.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mask: Option<u8>,
-    /// The classes along the sides and at the corners of the missing wang tile, clockwise from the north; those that its layout does not tell apart are 0.
+    /// The classes along the sides and at the corners of the missing wang tile, clockwise from the north; those that
+    /// its layout does not tell apart are 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wang: Option<[u8; 8]>,
 }

@@ -22,8 +22,8 @@ fn covers(tileset: &Tileset, class: u8, mask: u8, [x, y]: [usize; 2]) -> bool {
     tileset.row(tile, y)[x][3] > 0
 }
 
-/// A border has the same shape whether it is drawn by tiles of cells or by tiles on corners, so tiles join: in one of the two layouts
-/// every pixel beside a side is in the middle of a tile of the other.
+/// A border has the same shape whether it is drawn by tiles of cells or by tiles on corners, so tiles join: in one of
+/// the two layouts every pixel beside a side is in the middle of a tile of the other.
 #[test]
 fn borders_are_the_same_in_all_layouts() {
     for set in SETS {

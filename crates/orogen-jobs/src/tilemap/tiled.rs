@@ -1,8 +1,9 @@
 //! Files for the map editor Tiled: a tileset (TSX), and a map as XML (TMX) and as JSON (TMJ).
 //!
-//! The formats are those of Tiled 1.8 (doc.mapeditor.org, "TMX Map Format" and "JSON Map Format"). Each terrain has a wang set, so that its borders can be edited
-//! with the terrain brush; wang tiles have one for all terrains. Tiles chosen by rules have none, because such a tile fits many surroundings. Each class of a map
-//! is a tile layer; wang tiles have one layer.
+//! The formats are those of Tiled 1.8 (doc.mapeditor.org, "TMX Map Format" and "JSON Map Format"). Each terrain has a
+//! wang set, so that its borders can be edited with the terrain brush; wang tiles have one for all terrains. Tiles
+//! chosen by rules have none, because such a tile fits many surroundings. Each class of a map is a tile layer; wang
+//! tiles have one layer.
 
 use std::io::{self, Write};
 
@@ -25,17 +26,18 @@ const TILED: &str = "1.8.6";
 /// The first number of the tileset's tiles in a map; 0 is no tile.
 const FIRST: u32 = 1;
 
-/// Maximum number of tiles of a map whose layers are lists of numbers, which all programs read. Those of larger maps are compressed.
+/// Maximum number of tiles of a map whose layers are lists of numbers, which all programs read. Those of larger maps
+/// are compressed.
 const MAX_LISTED: usize = 1 << 20;
 
-/// A wang set: its colours, and the tiles with their eight colours, clockwise from the north.
+/// A wang set: its colors, and the tiles with their eight colors, clockwise from the north.
 struct WangSet {
     name: String,
     colors: Vec<WangColor>,
     tiles: Vec<(u32, [u8; 8])>,
 }
 
-/// A colour of a wang set: a terrain.
+/// A color of a wang set: a terrain.
 struct WangColor {
     name: String,
     color: String,
@@ -66,7 +68,7 @@ fn wang_sets(tileset: &Tileset) -> Vec<WangSet> {
     };
     if tileset.is_wang {
         let directions = tileset.layout.directions();
-        // Colours are numbered from 1, and 0 stands for what a layout does not tell apart.
+        // Colors are numbered from 1, and 0 stands for what a layout does not tell apart.
         let colors = |id: [u8; 8]| std::array::from_fn(|bit| (id[bit] + 1) * (directions >> bit & 1));
         let tiles: Vec<(u32, [u8; 8])> = own()
             .filter_map(|tile| match tile.fit {
@@ -85,7 +87,7 @@ fn wang_sets(tileset: &Tileset) -> Vec<WangSet> {
         let colors = |mask: u8| std::array::from_fn(|bit| mask >> bit & 1);
         let tiles: Vec<(u32, [u8; 8])> = own()
             .filter_map(|tile| match tile.fit {
-                // A tile without any colour is no part of a wang set.
+                // A tile without any color is no part of a wang set.
                 Fit::Layer { class: of, mask } if usize::from(of) == class && mask != 0 => {
                     Some((tile.picture, colors(mask)))
                 }
@@ -200,7 +202,8 @@ impl Tilemap {
         ([x, y], [width, height])
     }
 
-    /// Gives the chunks of a layer that have a tile, at the positions of the world's cells: where each begins, and its tiles.
+    /// Gives the chunks of a layer that have a tile, at the positions of the world's cells: where each begins, and its
+    /// tiles.
     fn each_chunk(
         &self,
         tiles: &Records<u32>,
@@ -325,7 +328,8 @@ impl Tilemap {
         writeln!(out, "</map>")
     }
 
-    /// Writes the map as TMJ, with its tileset. `image` is the name of the tileset's picture beside the file, and `made_by` the program.
+    /// Writes the map as TMJ, with its tileset. `image` is the name of the tileset's picture beside the file, and
+    /// `made_by` the program.
     ///
     /// # Errors
     /// If `out` fails.

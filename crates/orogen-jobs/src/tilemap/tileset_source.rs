@@ -19,8 +19,9 @@ pub struct TilesetSource {
     pub files: Vec<PathBuf>,
 }
 
-/// The tileset of the program with this name, or that in the file: a tileset of Tiled (.tsx) or a description (.toml). `layout` is how tiles follow their surroundings; by
-/// default that of the file, or `blob`. `wang_set` names the wang set of a .tsx that has several.
+/// The tileset of the program with this name, or that in the file: a tileset of Tiled (.tsx) or a description (.toml).
+/// `layout` is how tiles follow their surroundings; by default that of the file, or `blob`. `wang_set` names the wang
+/// set of a .tsx that has several.
 ///
 /// # Errors
 /// If there is no such tileset, or it has no such layout or wang set.

@@ -1,7 +1,7 @@
 //! One octave of a basis in low-rank form: a few row vectors along x, and a few coefficients along y.
 //!
-//! For a row of samples at fixed y, with t the fraction of x in its cell, u its fade, and (gx, gy) the gradients of one line of the
-//! lattice,
+//! For a row of samples at fixed y, with t the fraction of x in its cell, u its fade, and (gx, gy) the gradients of one
+//! line of the lattice,
 //!
 //! ```text
 //! X(x) = (1 - u) t gx[c] + u (t - 1) gx[c + 1]

@@ -77,7 +77,7 @@ impl<S: Simd> Cell<S> {
 
     #[inline(always)]
     fn wrapped(simd: S, whole: S::F64, period: f64) -> [S::U32; 2] {
-        // The centre of a cell is so far from the ends of a period that rounding cannot move it across.
+        // The center of a cell is so far from the ends of a period that rounding cannot move it across.
         let turns = ((whole + simd.f64(0.5)) * simd.f64(1.0 / period)).floor();
         let (_, low, high) = simd.whole(whole - turns * simd.f64(period));
         [low, high]

@@ -217,7 +217,7 @@ impl Strip {
 }
 
 /// The rows of a strip that lie in one line of cells, at most [`BAND`]; for F1 with euclidean distance in the plane.
-/// Returns their number. The samples of a run in these rows share one cell. Of its nine neighbours, only those that can
+/// Returns their number. The samples of a run in these rows share one cell. Of its nine neighbors, only those that can
 /// be nearest to one of the samples are read.
 struct Band<'a> {
     job: Job<'a>,
@@ -411,7 +411,7 @@ fn nearest<S: Simd, const N: usize>(
     }
 }
 
-/// Searches beyond the neighbouring cells of a register of samples, if the nearest point is farther than [`NEAR`].
+/// Searches beyond the neighboring cells of a register of samples, if the nearest point is farther than [`NEAR`].
 struct Beyond<'a> {
     cellular: program::Cellular,
     octave: &'a Octave,

@@ -148,7 +148,7 @@ fn anywhere<S: Simd, P: Pointwise<S>, A: Placed<S>>(simd: S, noise: P, points: &
     sum[0].store_partial(&mut target[start..]);
 }
 
-/// The keys of neighbouring cells in the plane.
+/// The keys of neighboring cells in the plane.
 struct Near<S: Simd> {
     /// The first cell's number, per axis.
     first: [f64; 2],

@@ -1,6 +1,6 @@
 //! OpenSimplex2: the lattice of Simplex noise with more gradients. In space the lattice is rotated so that horizontal
 //! planes have the least visible structure. The smooth variant has wider kernels. In space the corners are two lattices
-//! of cubes, each at the centres of the other's cubes. A sample is rotated so that their common diagonal is the z axis,
+//! of cubes, each at the centers of the other's cubes. A sample is rotated so that their common diagonal is the z axis,
 //! and the nearest corners are found in each lattice separately.
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs

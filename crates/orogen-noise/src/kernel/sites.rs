@@ -3,7 +3,7 @@
 //! The search starts with the cells around the sample's own cell and continues with shells of cells farther out. Any
 //! point beyond shell r is at least r + m away, in all three distances, where m is the distance of the sample from the
 //! side of its cell. The search ends when the result is smaller than that. Skipped points cannot change the result, so
-//! the bits do not depend on how far neighbouring lanes extend the search.
+//! the bits do not depend on how far neighboring lanes extend the search.
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
@@ -25,7 +25,7 @@ const EDGE_MARGIN: f32 = 1.0 - 1e-5;
 /// Larger than any distance.
 pub(crate) const FAR: f32 = 1e9;
 
-/// If the squared distance of the nearest point is less than this, no point beyond the neighbouring cells is nearer:
+/// If the squared distance of the nearest point is less than this, no point beyond the neighboring cells is nearer:
 /// the first shell's bound is at least 1 at any position in the cell.
 pub(crate) const NEAR: f32 = MARGIN * MARGIN;
 
@@ -188,9 +188,9 @@ fn side<S: Simd, const DIMS: usize>(simd: S, t: &[S::F32; 4]) -> S::F32 {
     side
 }
 
-/// Offset of a neighbouring cell by its number, including the cell itself.
+/// Offset of a neighboring cell by its number, including the cell itself.
 #[inline(always)]
-fn neighbour<const DIMS: usize>(number: usize) -> [i32; 4] {
+fn neighbor<const DIMS: usize>(number: usize) -> [i32; 4] {
     let (mut offset, mut rest) = ([0; 4], number);
     for axis in 0..DIMS {
         offset[axis] = (rest % 3) as i32 - 1;
@@ -210,7 +210,7 @@ pub(crate) fn evaluate<S: Simd, P: Sites<S>, const DIMS: usize>(
     let t = [cells[0].t, cells[1].t, cells[2].t, cells[3].t];
     let mut nearest = Nearest::at(simd, simd.f32(FAR));
     for number in 0..3_usize.pow(DIMS as u32) {
-        let offset = neighbour::<DIMS>(number);
+        let offset = neighbor::<DIMS>(number);
         let (place, hash) = sites.near(simd, offset);
         keep::<S, DIMS>(field, &mut nearest, way::<S, DIMS>(simd, &place, &t, offset), hash);
     }
@@ -239,7 +239,7 @@ pub(crate) fn spread<S: Simd>(simd: S, raw: S::F32, bound: f32) -> S::F32 {
     raw.mul_add(simd.f32(2.0 / bound), simd.f32(-1.0)).min(simd.f32(1.0))
 }
 
-/// Searches the shells beyond the neighbouring cells as far as necessary. Returns the distance of the sample from the
+/// Searches the shells beyond the neighboring cells as far as necessary. Returns the distance of the sample from the
 /// nearest side of its cell.
 #[inline(always)]
 pub(crate) fn search_shells<S: Simd, const DIMS: usize>(
@@ -284,7 +284,7 @@ fn edge<S: Simd, P: Sites<S>, const DIMS: usize>(
     let t = [cells[0].t, cells[1].t, cells[2].t, cells[3].t];
     let mut least = simd.f32(FAR);
     for number in 0..3_usize.pow(DIMS as u32) {
-        let offset = neighbour::<DIMS>(number);
+        let offset = neighbor::<DIMS>(number);
         let (place, _) = sites.near(simd, offset);
         let way = way::<S, DIMS>(simd, &place, &t, offset);
         least = least.min(midway::<S, DIMS>(simd, &nearest.way, &way));

@@ -1,6 +1,6 @@
 //! Simplex noise on lattices of samples: sums of octaves, row by row.
 //!
-//! Along a row the cubes of successive samples are neighbours, so their keys are kept in a table and selected by
+//! Along a row the cubes of successive samples are neighbors, so their keys are kept in a table and selected by
 //! permutes, like lattice lines of the low-rank bases. If cubes are wide, most registers of samples lie in one line of
 //! cubes along x. In that case the gradients of the lattice lines at the edges of these cubes are kept instead. The
 //! remaining arithmetic uses small fractions; see [`crate::kernel::simplex`].

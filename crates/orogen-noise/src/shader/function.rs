@@ -7,14 +7,15 @@ pub const PLACE: &str = include_str!("place.wgsl");
 
 /// A function of WGSL that computes one number per sample.
 ///
-/// Its signature is `fn NAME(base: u32, place: Placement, a: f32, b: f32, ..) -> f32` with one number for each input of the op. What it reads of `data` starts at
-/// `base`: its `words`, and then a block for each of its lattices. Parameters are words, so the text depends on none of them.
+/// Its signature is `fn NAME(base: u32, place: Placement, a: f32, b: f32, ..) -> f32` with one number for each input of
+/// the op. What it reads of `data` starts at `base`: its `words`, and then a block for each of its lattices. Parameters
+/// are words, so the text depends on none of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shader {
     /// The name of the function.
     pub name: &'static str,
-    /// The parts of the text that defines it, each of which other functions may have, too: the text of a kernel contains each once, in this order. [`PLACE`]
-    /// is always there.
+    /// The parts of the text that defines it, each of which other functions may have, too: the text of a kernel
+    /// contains each once, in this order. [`PLACE`] is always there.
     pub code: Vec<&'static str>,
     /// Its numbers.
     pub words: Vec<u32>,
@@ -24,7 +25,8 @@ pub struct Shader {
     pub undisplaced: Option<Undisplaced>,
 }
 
-/// A function for samples that are not displaced: its tables have the keys of the hash in place of cells, which are not hashed for each sample.
+/// A function for samples that are not displaced: its tables have the keys of the hash in place of cells, which are not
+/// hashed for each sample.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Undisplaced {
     /// The name of the function.
@@ -62,7 +64,8 @@ impl Shader {
         }
     }
 
-    /// Appends the numbers and the tables for samples at these positions, from which they may be displaced, to `data`; returns the `base`.
+    /// Appends the numbers and the tables for samples at these positions, from which they may be displaced, to `data`;
+    /// returns the `base`.
     pub fn encode(&self, positions: &Positions, is_displaced: bool, data: &mut Vec<u32>) -> u32 {
         let base = data.len();
         data.extend_from_slice(&self.words);

@@ -65,7 +65,7 @@ fn noise_sixteenth(hash: u32) -> vec2<f32> {
     );
 }
 
-// 6 t^5 - 15 t^4 + 10 t^3 and its slope, written around the centre.
+// 6 t^5 - 15 t^4 + 10 t^3 and its slope, written around the center.
 fn noise_quintic(t: f32) -> vec2<f32> {
     let s = t - 0.5;
     let q = s * s;

@@ -1,8 +1,8 @@
-//! Lattices as a graphics card reads them. The cells of columns and rows are computed here, in f64: positions keep their precision at any distance from
-//! the origin, and a shader adds only the fraction and what displaces the sample.
+//! Lattices as a graphics card reads them. The cells of columns and rows are computed here, in f64: positions keep
+//! their precision at any distance from the origin, and a shader adds only the fraction and what displaces the sample.
 
-/// Positions of the columns and rows of a window along each axis, in metres. The position of a sample is the sum of its column's and its row's. An empty list
-/// contributes nothing: columns of the plane have no y.
+/// Positions of the columns and rows of a window along each axis, in metres. The position of a sample is the sum of its
+/// column's and its row's. An empty list contributes nothing: columns of the plane have no y.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Positions {
     /// x and y of the columns.
@@ -22,7 +22,8 @@ pub struct Lattice {
     pub limit: f64,
 }
 
-/// Number of words of a lattice's block: its matrix as pairs of f32, and the tables of columns and rows along each axis.
+/// Number of words of a lattice's block: its matrix as pairs of f32, and the tables of columns and rows along each
+/// axis.
 pub const LATTICE_WORDS: usize = 12;
 
 impl Lattice {
@@ -38,7 +39,8 @@ impl Lattice {
         Lattice::square(1.0 / unit, origin.map(|origin| -origin / unit))
     }
 
-    /// Appends the tables to `data`; returns the block. With the words of the hash along each axis, the tables have the keys of cells in place of the cells.
+    /// Appends the tables to `data`; returns the block. With the words of the hash along each axis, the tables have the
+    /// keys of cells in place of the cells.
     pub(super) fn encode(
         &self,
         positions: &Positions,
@@ -95,7 +97,8 @@ fn key([low, high]: [u32; 2], cell: i64) -> u32 {
     key ^ (key >> 15)
 }
 
-/// Appends a table of cells: low word, high word and fraction of each, or two keys and the fraction; returns its index, or 0 if there is none.
+/// Appends a table of cells: low word, high word and fraction of each, or two keys and the fraction; returns its index,
+/// or 0 if there is none.
 fn table(coordinates: &[f64], offset: f64, hash: Option<[u32; 2]>, data: &mut Vec<u32>) -> u32 {
     if coordinates.is_empty() {
         return 0;

@@ -1,4 +1,5 @@
-//! Noises as functions of WGSL. The text depends only on the kind of lattice and on the kind of sum; all parameters are words.
+//! Noises as functions of WGSL. The text depends only on the kind of lattice and on the kind of sum; all parameters are
+//! words.
 
 use super::function::{PLACE, Shader, Undisplaced};
 use super::lattice::Lattice;

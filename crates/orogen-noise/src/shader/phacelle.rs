@@ -5,8 +5,9 @@ use super::lattice::Lattice;
 use super::noise::HASH;
 use crate::phacelle::Phacelle;
 
-/// The parts of a text that define `fn phacelle(words: u32, x: Cell, y: Cell, direction: vec2<f32>) -> vec2<f32>`: cosine and sine of stripes along a
-/// direction, in the cell of [`Phacelle::shader_lattice`], with [`Phacelle::shader_words`] at `words`.
+/// The parts of a text that define `fn phacelle(words: u32, x: Cell, y: Cell, direction: vec2<f32>) -> vec2<f32>`:
+/// cosine and sine of stripes along a direction, in the cell of [`Phacelle::shader_lattice`], with
+/// [`Phacelle::shader_words`] at `words`.
 pub const PHACELLE: [&str; 3] = [PLACE, HASH, include_str!("phacelle.wgsl")];
 
 impl Phacelle {

@@ -28,14 +28,14 @@ pub(crate) const X_2D: [f32; 8] = scaled([C1, C3, S3, S1, -S1, -S3, -C3, -C1], S
 /// Their y.
 pub(crate) const Y_2D: [f32; 8] = scaled([S1, S3, C3, C1, C1, C3, S3, S1], SCALE_2D);
 
-// A corner of the icosahedron is (0, A, B) in some cyclic order and up to signs; a face centre (D, D, D) or (0, E, F).
+// A corner of the icosahedron is (0, A, B) in some cyclic order and up to signs; a face center (D, D, D) or (0, E, F).
 const A: f64 = 0.525_731_112_119_133_6;
 const B: f64 = 0.850_650_808_352_040;
 const D: f64 = 0.577_350_269_189_625_8;
 const E: f64 = 0.356_822_089_773_089_93;
 const F: f64 = 0.934_172_358_962_715_8;
 
-/// x of sixteen directions, one of each pair of opposites: six corners and ten face centres of an icosahedron.
+/// x of sixteen directions, one of each pair of opposites: six corners and ten face centers of an icosahedron.
 pub(crate) const X_3D: [f32; 16] = scaled([0.0, 0.0, A, A, B, -B, D, D, D, -D, 0.0, 0.0, E, E, F, -F], SCALE_3D);
 /// Their y.
 pub(crate) const Y_3D: [f32; 16] = scaled([A, A, B, -B, 0.0, 0.0, D, D, -D, D, E, E, F, -F, 0.0, 0.0], SCALE_3D);
@@ -70,8 +70,8 @@ pub(crate) const OPEN_Y_2D: [f32; 16] = scaled([
     0.0, 0.0, 0.0, 0.0,
 ], 1.0);
 
-// The 48 directions of OpenSimplex2 in space, a rounded cuboctahedron: (P, P, O) and (Q, R, 0) in every order, with every sign. The
-// first sort has eight signs to an order and is here twice, the second four.
+// The 48 directions of OpenSimplex2 in space, a rounded cuboctahedron: (P, P, O) and (Q, R, 0) in every order, with
+// every sign. The first sort has eight signs to an order and is here twice, the second four.
 const P: f64 = 0.673887338679005;
 const O: f64 = 0.3029054465278827;
 const Q: f64 = 0.9348469228350482;

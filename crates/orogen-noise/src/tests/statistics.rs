@@ -1,4 +1,5 @@
-//! Independence of lattice points, chunks, and what is told of wrong lengths. (Statistics of what a user sees: tests/suite/statistics.rs.)
+//! Independence of lattice points, chunks, and what is told of wrong lengths. (Statistics of what a user sees:
+//! tests/suite/statistics.rs.)
 
 use crate::{Basis, Depth, Falloff, Fractal, Kind, LengthMismatch, Perlin, Points, White};
 
@@ -16,7 +17,7 @@ fn correlation(a: &[f32], b: &[f32]) -> f64 {
 }
 
 #[test]
-fn neighbours_on_the_lattice_are_strangers() {
+fn neighbors_on_the_lattice_are_strangers() {
     // One sample per cell: along, across, diagonal, mirrored.
     let side = 500;
     let at = axis(0.5, 1.0, side);

@@ -50,9 +50,10 @@ fn improved_noise(x: f64, y: f64, z: f64) -> f64 {
     )
 }
 
-/// Published values of the 2002 reference, as independent ports of it test themselves. The first is Rosetta Code's ("Perlin noise"),
-/// which most ports use; those up to the origin are from ports to Zig (one of them gives the places of the first two at z = 0, where
-/// the sign of the second turns). Of negative places, and of places beyond the table's 256 entries, there is one each.
+/// Published values of the 2002 reference, as independent ports of it test themselves. The first is Rosetta Code's
+/// ("Perlin noise"), which most ports use; those up to the origin are from ports to Zig (one of them gives the places
+/// of the first two at z = 0, where the sign of the second turns). Of negative places, and of places beyond the table's
+/// 256 entries, there is one each.
 const PUBLISHED: [([f64; 3], f64); 9] = [
     #[allow(clippy::approx_constant)] // no pi: the place of the published value
     ([3.14, 42.0, 7.0], 0.136_919_958_784_000_12),
@@ -193,7 +194,8 @@ fn corners_at(source: Source, octave: &Octave, at: &[f64]) -> f64 {
         _ => [99.836_6, 108.291_0, 96.463_1],
     }[n - 2];
     let cubes = n == 3 && !matches!(source, Source::Simplex);
-    // The lattices: where the sample is in each, how far a step along all axes is taken back, and what tells them apart.
+    // The lattices: where the sample is in each, how far a step along all axes is taken back, and what tells them
+    // apart.
     let lattices: Vec<(Vec<f64>, f64, u32)> = if cubes {
         let third = 1.0 / libm::sqrt(3.0);
         let both = (at[0] + at[1]) * (third - 1.0) / 2.0 + at[2] * third;
@@ -458,8 +460,8 @@ fn the_weighted_gradient_without_weights_is_the_plain_one() {
     }
 }
 
-/// The greatest value a gradient noise reaches with gradients chosen at will, by search on a fine grid and ever finer ones around
-/// the best place: the sum over the corners of each one's best.
+/// The greatest value a gradient noise reaches with gradients chosen at will, by search on a fine grid and ever finer
+/// ones around the best place: the sum over the corners of each one's best.
 fn supremum(gradients: &[Vec<f64>]) -> f64 {
     let axes = gradients[0].len();
     let value = |at: &[f64]| {

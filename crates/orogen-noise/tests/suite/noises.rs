@@ -1,4 +1,5 @@
-//! The one list of noises for the tests that ask as a user asks: a new basis, kind, feature or distance joins every law by being here.
+//! The one list of noises for the tests that ask as a user asks: a new basis, kind, feature or distance joins every law
+//! by being here.
 
 use orogen_noise::{
     Basis, Classic, ClassicVariant, Depth, Distance, Fade, Falloff, Feature, Fractal, Kind, LengthMismatch, Level,
@@ -38,7 +39,7 @@ pub struct Noise {
     pub name: String,
     pub slope: Slope,
     /// Whether its mean is zero.
-    pub centred: bool,
+    pub centerd: bool,
     /// Whether it offers slopes.
     offers_slopes: bool,
     fill: Fill,
@@ -102,12 +103,12 @@ macro_rules! flat {
 
 fn noise(name: impl Into<String>, slope: Slope, (offers_slopes, fill): (bool, Fill)) -> Noise {
     // One-sided are what counts sizes or distances.
-    Noise { name: name.into(), slope, centred: true, offers_slopes, fill }
+    Noise { name: name.into(), slope, centerd: true, offers_slopes, fill }
 }
 
 impl Noise {
     fn one_sided(self, one_sided: bool) -> Noise {
-        Noise { centred: !one_sided, ..self }
+        Noise { centerd: !one_sided, ..self }
     }
 }
 

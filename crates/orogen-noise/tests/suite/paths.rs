@@ -166,7 +166,7 @@ fn lattices_of_wide_cells_have_the_bits_of_points() {
         (axis(0.0, 1), axis(-20.0, 40)),
         (axis(-2.0, 15), axis(90.0, 17)),
     ];
-    // Whether a point beyond the neighbouring cells was the nearest.
+    // Whether a point beyond the neighboring cells was the nearest.
     let mut beyond = false;
     at_each_level(|level| {
         for wavelength in [2.5, 7.0, 15.9, 20.0, 33.0, 64.0, 100.0, 777.0] {

@@ -1,7 +1,8 @@
-//! Numbers over many samples, for every noise there is: mean and range, independence of seeds, sameness in all directions, slopes,
-//! smoothness far away.
+//! Numbers over many samples, for every noise there is: mean and range, independence of seeds, sameness in all
+//! directions, slopes, smoothness far away.
 //!
-//! `cargo test --release -p orogen-noise --test suite statistics -- --ignored --nocapture` takes a hundred times the samples.
+//! `cargo test --release -p orogen-noise --test suite statistics -- --ignored --nocapture` takes a hundred times the
+//! samples.
 
 use crate::noises::{Ask, Noise, Slope, bases, endless, fractals, singles};
 use orogen_noise::{Depth, Fractal, Points};
@@ -43,7 +44,8 @@ fn check_means(windows: usize) {
         for (number, noise) in endless(11, 1.0).iter().enumerate() {
             let (mut sum, mut low, mut high) = (0.0, f32::MAX, f32::MIN);
             for window in 0..windows {
-                // A third of a cell apart and a bit more, so that all parts of cells are met; in space, at another depth each time.
+                // A third of a cell apart and a bit more, so that all parts of cells are met; in space, at another
+                // depth each time.
                 let start = -60.0 + window as f64 * 377.17;
                 let (xs, ys) = (axis(start, 0.371, SIDE), axis(-start * 0.7, 0.371, SIDE));
                 let depth = (place == 1).then_some(Depth::Slice(0.43 + window as f64 * 1.37));
@@ -62,7 +64,7 @@ fn check_means(windows: usize) {
             let bound = noise.bounds()[place];
             assert!(low >= -bound && high <= bound, "{} {name}: {low} to {high}", noise.name);
             assert!(high - low > 0.5, "{} {name}: only {low} to {high}", noise.name);
-            assert!(!noise.centred || mean.abs() < 0.01, "{} {name}: mean {mean}", noise.name);
+            assert!(!noise.centerd || mean.abs() < 0.01, "{} {name}: mean {mean}", noise.name);
         }
     }
 }
@@ -76,9 +78,9 @@ fn correlation(a: &[f32], b: &[f32]) -> f64 {
 }
 
 #[test]
-fn neighbouring_seeds_are_strangers() {
-    // One place of every third cell, of every octave: where a size or distance is greater on the average in one part of its cell than
-    // in another, that says nothing of seeds.
+fn neighboring_seeds_are_strangers() {
+    // One place of every third cell, of every octave: where a size or distance is greater on the average in one part of
+    // its cell than in another, that says nothing of seeds.
     let side = axis(-299.629, 3.0, 500);
     let points = Points::Lattice { xs: &side, ys: &side };
     let ask = |seed: u64| -> Vec<(String, Vec<f32>)> {
@@ -96,9 +98,10 @@ fn neighbouring_seeds_are_strangers() {
                     continue;
                 }
                 let found = correlation(a, &b);
-                // The 2002 table repeats after 65 536 cells: unrelated numbers correlate by .004 there, and at times by thrice that.
+                // The 2002 table repeats after 65 536 cells: unrelated numbers correlate by .004 there, and at times by
+                // thrice that.
                 let most = if name.contains("classic") { 0.015 } else { 0.01 };
-                assert!(found.abs() < most, "{name}, seed {to} and its neighbour: {found}");
+                assert!(found.abs() < most, "{name}, seed {to} and its neighbor: {found}");
             }
         }
     }
@@ -194,7 +197,8 @@ fn slopes_are_those_of_the_values() {
     }
 }
 
-/// Second differences along x: their RMS and the greatest, over 2000 rows of samples, five first wavelengths of 10 each.
+/// Second differences along x: their RMS and the greatest, over 2000 rows of samples, five first wavelengths of 10
+/// each.
 fn bends(noise: &Noise, start: f64) -> [f64; 2] {
     const CELL: f64 = 0.125;
     let (xs, ys) = (axis(start, CELL, 402), axis(start, 17.0, 2000));

@@ -104,8 +104,8 @@ fn every_way_of_asking_gives_the_same_bits_at_every_level() {
     assert!(expected.iter().flat_map(|columns| &columns[0]).all(|x| x.abs() <= 1.0));
 }
 
-/// Windows larger than caches are written past them, in whole registers from where one begins in memory: wherever the window lies
-/// there, and however its rows do, it is the small one's crop.
+/// Windows larger than caches are written past them, in whole registers from where one begins in memory: wherever the
+/// window lies there, and however its rows do, it is the small one's crop.
 #[test]
 fn huge_windows_are_what_small_ones_are() {
     let noise = Fractal::new(5, 90.0).with_octaves(2);

@@ -23,7 +23,8 @@ pub trait Declared {
     fn set_param(&mut self, i: usize, value: &Value) -> Result<(), String>;
     /// The part of parameter `i` that affects results.
     fn param_key(&self, i: usize) -> Value;
-    /// The parameter [`MARGIN`](super::spec::MARGIN) of a solver whose domain may extend beyond the world, in metres; `None` if the op has none.
+    /// The parameter [`MARGIN`](super::spec::MARGIN) of a solver whose domain may extend beyond the world, in metres;
+    /// `None` if the op has none.
     fn margin(&self) -> Option<f64> {
         None
     }

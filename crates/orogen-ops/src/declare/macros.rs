@@ -49,28 +49,32 @@ macro_rules! choice {
     };
 }
 
-/// Declares an op: its struct, defaults, name in recipes, inputs, parameters and layers. The struct then implements [`Field`](crate::op::Field),
-/// [`Filter`](crate::op::Filter), [`Levelled`](crate::op::Levelled) or [`Solver`](crate::op::Solver), the locality that the declaration names.
+/// Declares an op: its struct, defaults, name in recipes, inputs, parameters and layers. The struct then implements
+/// [`Field`](crate::op::Field), [`Filter`](crate::op::Filter), [`Levelled`](crate::op::Levelled) or
+/// [`Solver`](crate::op::Solver), the locality that the declaration names.
 ///
-/// The name of an op that is not part of this crate has a namespace: `"mygame.terraces"`. A `Registry` of the engine makes it known
-/// to recipes. The revision is part of the content key of every node of the op: raise it when the op comes to make other bits.
+/// The name of an op that is not part of this crate has a namespace: `"mygame.terraces"`. A `Registry` of the engine
+/// makes it known to recipes. The revision is part of the content key of every node of the op: raise it when the op
+/// comes to make other bits.
 ///
 /// The blocks, in this order, all of them optional:
 ///
-/// - `inputs { /// .. source: required, /// .. other: optional, }`: the nodes it reads, by their index in the `inputs` that it is given.
-///   `inputs of NAME;` instead reads whatever the expression in its parameter NAME names.
+/// - `inputs { /// .. source: required, /// .. other: optional, }`: the nodes it reads, by their index in the `inputs`
+///   that it is given. `inputs of NAME;` instead reads whatever the expression in its parameter NAME names.
 /// - `params { /// .. name: TYPE = DEFAULT, unit "m", range 0.0 to 1e5; }`: unit and range are optional. A type is any
-///   [`Param`](crate::declare::Param): `f64`, `u32`, `u64` (a seed), `bool`, `[f64; 2]`, `Vec<[f64; 2]>` (a curve), `LinePoints` or `AreaPoints`, `Strokes`, `FileRef`, `Expression`, or a
-///   [`choice!`](crate::choice).
-/// - `layers { /// .. name: height, unit "m"; }`: what a filter or solver makes besides one layer of heights, and how each is read
-///   between samples (`height`, `label`, `flow`, or as its `source`).
+///   [`Param`](crate::declare::Param): `f64`, `u32`, `u64` (a seed), `bool`, `[f64; 2]`, `Vec<[f64; 2]>` (a curve),
+///   `LinePoints` or `AreaPoints`, `Strokes`, `FileRef`, `Expression`, or a [`choice!`](crate::choice).
+/// - `layers { /// .. name: height, unit "m"; }`: what a filter or solver makes besides one layer of heights, and how
+///   each is read between samples (`height`, `label`, `flow`, or as its `source`).
 /// - `check |op| Ok(());`: what a single parameter cannot see, a key and a message if parameters contradict each other.
 ///
-/// After an input's need, or at the end of a parameter, `alias "other"` names another key that recipes may use: a former one, or the word of textbooks. With `octaves;` after its name the op is a fractal: it
-/// gets the parameters all fractals share, beside its own. With `margin;` after its name the op is a solver with the parameter `margin`: its domain
-/// extends beyond the world by that length on each side, and it need not know it ([`Sources::domain`](crate::op::Sources::domain) is the domain).
-/// With `space;` (`octaves in space;` for a fractal) the op is a noise with the parameter `vertical` and a method `depth`: the third coordinate of the
-/// noise, or `None` if it is one of the plane.
+/// After an input's need, or at the end of a parameter, `alias "other"` names another key that recipes may use: a
+/// former one, or the word of textbooks. With `octaves;` after its name the op is a fractal: it gets the parameters all
+/// fractals share, beside its own. With `margin;` after its name the op is a solver with the parameter `margin`: its
+/// domain extends beyond the world by that length on each side, and it need not know it
+/// ([`Sources::domain`](crate::op::Sources::domain) is the domain). With `space;` (`octaves in space;` for a fractal)
+/// the op is a noise with the parameter `vertical` and a method `depth`: the third coordinate of the noise, or `None`
+/// if it is one of the plane.
 ///
 /// ```
 /// use orogen_ops::op::{Context, Filter};
@@ -158,8 +162,9 @@ macro_rules! op {
             space in vertical;
             params {
                 $($params)*
-                /// Wavelength along the altitude, as a multiple of `wavelength`: the noise is one of space, and depends on the altitude at which
-                /// the layer is sampled. 0: the noise is one of the plane, the same at every altitude.
+                /// Wavelength along the altitude, as a multiple of `wavelength`: the noise is one of space, and depends
+                /// on the altitude at which the layer is sampled. 0: the noise is one of the plane, the same at every
+                /// altitude.
                 vertical: f64 = 0.0, range 0.0 to 1e3;
             }
         }
@@ -187,8 +192,9 @@ macro_rules! op {
             $(inputs { $($inputs)* })?
             params {
                 $($($params)*)?
-                /// Width of the strip beyond each side of the world that is solved too. The border of the solved domain shows in drainage, erosion and
-                /// shadows; with a margin it lies outside the world. Nodes that read beyond the world's sides get solved values up to there.
+                /// Width of the strip beyond each side of the world that is solved too. The border of the solved domain
+                /// shows in drainage, erosion and shadows; with a margin it lies outside the world. Nodes that read
+                /// beyond the world's sides get solved values up to there.
                 margin: f64 = 0.0, unit "m", range 0.0 to 1e6;
             }
             $(layers { $($layers)* })?

@@ -117,7 +117,8 @@ impl Reader<'_> {
         (span.clone(), format!("`{}`: {what}", self.name))
     }
 
-    /// The points of one list. `of` names the list, `numbers` is the length of all points, and `left` the number of points that there may still be.
+    /// The points of one list. `of` names the list, `numbers` is the length of all points, and `left` the number of
+    /// points that there may still be.
     pub(super) fn list(
         &self,
         items: &[Spanned<Value>],

@@ -18,8 +18,8 @@ pub type LinePoints = PointLists<2>;
 /// The corners of areas: at least three for each ring.
 pub type AreaPoints = PointLists<3>;
 
-/// Lists of points, each of at least `MIN` points, or none. Recipes write one list as `[[x, y], ...]` and several as `[[[x, y], ...], ...]`; a third
-/// number of every point is its height.
+/// Lists of points, each of at least `MIN` points, or none. Recipes write one list as `[[x, y], ...]` and several as
+/// `[[[x, y], ...], ...]`; a third number of every point is its height.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PointLists<const MIN: usize> {
     lists: Arc<Lists>,
@@ -90,7 +90,8 @@ impl<const MIN: usize> PointLists<MIN> {
         &self.lists
     }
 
-    /// The segments of the points and of the file's outlines. They are made once, and again only for other options or another file.
+    /// The segments of the points and of the file's outlines. They are made once, and again only for other options or
+    /// another file.
     pub fn with_segments<T>(&self, file: &FileRef, options: OutlineOptions, read: impl FnOnce(&Segments) -> T) -> T {
         let drawing = file.drawing();
         let is_current = |made: &Made| {

@@ -197,7 +197,8 @@ impl ParamSpec {
         format!("a finite number{}{}", self.bounds(), self.unit_in_parentheses())
     }
 
-    /// What is wrong within a value of several parts, and its position; `None` if nothing is, or the value is a single part.
+    /// What is wrong within a value of several parts, and its position; `None` if nothing is, or the value is a single
+    /// part.
     #[must_use]
     pub fn problem(&self, value: &Value) -> Option<(Span, String)> {
         match self.shape {

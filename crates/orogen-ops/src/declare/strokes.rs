@@ -167,7 +167,8 @@ fn shortest(number: f64) -> Value {
     if is_whole { Value::Integer(number as i64) } else { Value::Number(number) }
 }
 
-/// Strokes in the order in which they were painted. Recipes write a list of tables: `[{ points = [[x, y], ...], radius = 200 }, ...]`.
+/// Strokes in the order in which they were painted. Recipes write a list of tables: `[{ points = [[x, y], ...], radius
+/// = 200 }, ...]`.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Strokes {
     list: Arc<Vec<Stroke>>,

@@ -9,9 +9,9 @@ use orogen_noise::shader::function::Shader;
 op! {
     /// The altitude at which the layer is sampled, in metres: 0 in the plane, where maps, meshes and points are made.
     ///
-    /// With it a layer is a density in space: `height - altitude` is positive in the ground and negative in the air, and noise with `vertical`
-    /// makes caves and overhangs. Programs sample such a layer at any altitude (`World::volume`). Filters, levelled ops and solvers cannot read
-    /// it.
+    /// With it a layer is a density in space: `height - altitude` is positive in the ground and negative in the air,
+    /// and noise with `vertical` makes caves and overhangs. Programs sample such a layer at any altitude
+    /// (`World::volume`). Filters, levelled ops and solvers cannot read it.
     pub struct Altitude = "altitude", field, revision 1;
 }
 

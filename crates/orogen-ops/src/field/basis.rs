@@ -44,8 +44,8 @@ fn about(basis: Basis) -> &'static str {
     }
 }
 
-/// A block of noise. The engine's blocks always have the length of their points. If a length were wrong, the block would be NaN, so that
-/// the error is visible.
+/// A block of noise. The engine's blocks always have the length of their points. If a length were wrong, the block
+/// would be NaN, so that the error is visible.
 pub(super) fn fill(out: &mut [f32], noise: impl FnOnce(&mut [f32]) -> Result<(), LengthMismatch>) {
     if noise(out).is_err() {
         out.fill(f32::NAN);
@@ -113,14 +113,16 @@ impl Cost {
         Cost { anywhere: octaves * self.anywhere, in_rows: octaves * self.in_rows }
     }
 
-    /// With octaves whose positions are displaced by earlier octaves, so that rows share nothing. The displacement costs time, too.
+    /// With octaves whose positions are displaced by earlier octaves, so that rows share nothing. The displacement
+    /// costs time, too.
     pub(super) fn moved(self) -> Cost {
         let each = self.anywhere + 1.1;
         Cost { anywhere: each, in_rows: each }
     }
 }
 
-/// Cost of one octave of a basis, measured like the figures of `plan/cost.rs`: 512 x 512 samples, wavelength 100 samples, 6 octaves.
+/// Cost of one octave of a basis, measured like the figures of `plan/cost.rs`: 512 x 512 samples, wavelength 100
+/// samples, 6 octaves.
 pub(super) fn cost(basis: Basis) -> Cost {
     let (anywhere, in_rows) = match basis {
         Basis::White => (0.4, 0.06),

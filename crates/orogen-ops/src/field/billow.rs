@@ -7,7 +7,8 @@ use orogen_noise::shader::function::Shader;
 use orogen_noise::{Fractal, Kind, Points};
 
 op! {
-    /// Billow noise: the sum of octaves of 2 |noise| - 1, in -1 ..= 1. It gives round hills with sharp valleys between them.
+    /// Billow noise: the sum of octaves of 2 |noise| - 1, in -1 ..= 1. It gives round hills with sharp valleys between
+    /// them.
     pub struct Billow = "billow", field, revision 1;
     octaves in space;
 }

@@ -13,11 +13,13 @@ use orogen_noise::shader::function::Shader;
 choice! {
     /// The classes of climates or biomes.
     pub enum Scheme {
-        /// Ten biomes by mean temperature and rain (Whittaker 1975, as in Ricklefs 2008), with ice where no month is above 0 degrees C.
+        /// Ten biomes by mean temperature and rain (Whittaker 1975, as in Ricklefs 2008), with ice where no month is
+        /// above 0 degrees C.
         Whittaker = "whittaker",
         /// 38 life zones by biotemperature, rain and potential evapotranspiration (Holdridge 1967).
         Holdridge = "holdridge",
-        /// 30 climates by the temperatures and the rain of months (Köppen and Geiger; Peel, Finlayson and McMahon 2007).
+        /// 30 climates by the temperatures and the rain of months (Köppen and Geiger; Peel, Finlayson and McMahon
+        /// 2007).
         KoppenGeiger = "koppen-geiger",
     }
 }
@@ -35,7 +37,8 @@ impl From<Scheme> for scheme::Scheme {
 op! {
     /// The biome or the climate's class by temperature and rain.
     ///
-    /// The layer has codes; their names and colors are in the chapter on climate. Months have temperatures of a sinusoidal year.
+    /// The layer has codes; their names and colors are in the chapter on climate. Months have temperatures of a
+    /// sinusoidal year.
     pub struct Biome = "biome", field, revision 1;
     inputs {
         /// Mean temperature in degrees C, for example that of `temperature`.
@@ -50,7 +53,8 @@ op! {
     params {
         /// The classes.
         scheme: Scheme = Scheme::Whittaker;
-        /// When rain falls, for `koppen-geiger`: 0 evenly over the year, 1 in summer, -1 in winter. The rain of a month is 1 + `rain_seasonality` cos t of the mean, with t = 0 in the warmest month.
+        /// When rain falls, for `koppen-geiger`: 0 evenly over the year, 1 in summer, -1 in winter. The rain of a month
+        /// is 1 + `rain_seasonality` cos t of the mean, with t = 0 in the warmest month.
         rain_seasonality: f64 = 0.0, range -1.0 to 1.0;
     }
     layers {

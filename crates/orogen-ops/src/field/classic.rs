@@ -29,7 +29,8 @@ impl Variant {
 }
 
 op! {
-    /// Perlin's improved noise with the permutation table of his 2002 reference implementation. It repeats every 256 lattice points.
+    /// Perlin's improved noise with the permutation table of his 2002 reference implementation. It repeats every 256
+    /// lattice points.
     pub struct Classic = "classic", field, revision 1;
     space;
     params {

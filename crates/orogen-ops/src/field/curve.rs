@@ -6,11 +6,12 @@ use orogen_noise::Points;
 use orogen_noise::shader::function::Shader;
 
 op! {
-    /// The source mapped through a smooth monotone curve through the control points. The curve does not overshoot between points.
+    /// The source mapped through a smooth monotone curve through the control points. The curve does not overshoot
+    /// between points.
     ///
-    /// Below the first point and above the last point the result is constant. Two points of equal height give a constant segment: `points =
-    /// [[-1, 0], [0.4, 0], [1, 1]]` maps all values below 0.4 to 0. Method: cubic Hermite interpolation with the tangents of Fritsch and
-    /// Carlson (1980).
+    /// Below the first point and above the last point the result is constant. Two points of equal height give a
+    /// constant segment: `points = [[-1, 0], [0.4, 0], [1, 1]]` maps all values below 0.4 to 0. Method: cubic Hermite
+    /// interpolation with the tangents of Fritsch and Carlson (1980).
     pub struct Curve = "curve", field, revision 1;
     inputs {
         /// The values to map.
@@ -63,7 +64,8 @@ impl Curve {
                 (None, None) => 0.0,
             };
         }
-        // Fritsch and Carlson's condition: tangents within a circle of radius 3 around the secant keep the piece monotone.
+        // Fritsch and Carlson's condition: tangents within a circle of radius 3 around the secant keep the piece
+        // monotone.
         for i in 1..count {
             let secant = knots[i - 1].secant;
             if secant == 0.0 {

@@ -15,8 +15,8 @@ choice! {
     pub enum Shows {
         /// The heights, in metres.
         Height = "height",
-        /// A mask of the file's extent: 1 inside, 0 outside, with a transition of width `fade`. Use it to mix the file with generated
-        /// terrain.
+        /// A mask of the file's extent: 1 inside, 0 outside, with a transition of width `fade`. Use it to mix the file
+        /// with generated terrain.
         Inside = "inside",
     }
 }
@@ -24,17 +24,18 @@ choice! {
 op! {
     /// Heights of a digital elevation model (DEM), read from a file.
     ///
-    /// Supported formats: GeoTIFF (.tif), ESRI ASCII grid (.asc), SRTM tile (.hgt), virtual raster (.vrt), Zarr array, folder of tiles
-    /// (.tif, .hgt or .asc), OpenEXR (.exr), NumPy array (.npy), 16-bit grey PNG (.png) and headerless samples (.r16, .r32). Files of the
-    /// last five kinds lack metadata: it is read from NAME.json or NAME.toml beside the file (`width`, `height`, `cell`, `low`, `high`,
-    /// `byte_order`, `nodata`), from a world file and from a .prj. Stored solutions are reused as long as the content of the file is the
-    /// same; its name does not matter. The heights are kept in memory.
+    /// Supported formats: GeoTIFF (.tif), ESRI ASCII grid (.asc), SRTM tile (.hgt), virtual raster (.vrt), Zarr array,
+    /// folder of tiles (.tif, .hgt or .asc), OpenEXR (.exr), NumPy array (.npy), 16-bit grey PNG (.png) and headerless
+    /// samples (.r16, .r32). Files of the last five kinds lack metadata: it is read from NAME.json or NAME.toml beside
+    /// the file (`width`, `height`, `cell`, `low`, `high`, `byte_order`, `nodata`), from a world file and from a .prj.
+    /// Stored solutions are reused as long as the content of the file is the same; its name does not matter. The
+    /// heights are kept in memory.
     ///
-    /// The file's first sample, its north-west corner, is placed at `at`. Between samples the heights are interpolated by a cubic (Catmull
-    /// and Rom 1974). Geographic coordinates are converted to metres with the length of a degree at the file's middle latitude (WGS 84),
-    /// with one factor per axis for the whole file. Cells that are not square are resampled to squares of their shorter side. Nodata
-    /// samples are filled smoothly from their surroundings. Beyond the file's extent the heights of its border continue; with a `fade` they
-    /// change gradually to `outside`.
+    /// The file's first sample, its north-west corner, is placed at `at`. Between samples the heights are interpolated
+    /// by a cubic (Catmull and Rom 1974). Geographic coordinates are converted to metres with the length of a degree at
+    /// the file's middle latitude (WGS 84), with one factor per axis for the whole file. Cells that are not square are
+    /// resampled to squares of their shorter side. Nodata samples are filled smoothly from their surroundings. Beyond
+    /// the file's extent the heights of its border continue; with a `fade` they change gradually to `outside`.
     pub struct Dem = "dem", field, revision 1;
     params {
         /// Path of the file. A relative path is resolved against the folder of the recipe.
@@ -51,7 +52,8 @@ op! {
         offset: f64 = 0.0, unit "m", range -1e6 to 1e6;
         /// Height far outside the file's extent. It is used only if `fade` is above 0.
         outside: f64 = 0.0, unit "m", range -1e6 to 1e6;
-        /// Distance over which the border's heights change to `outside`. With 0 the border's heights continue without end.
+        /// Distance over which the border's heights change to `outside`. With 0 the border's heights continue without
+        /// end.
         fade: f64 = 0.0, unit "m", range 0.0 to 1e9;
     }
     check |dem| match dem.path.is_empty() {

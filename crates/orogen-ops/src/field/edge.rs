@@ -62,7 +62,8 @@ impl Field for Edge {
             return Lowering::Shader(Shader::new("constant", CONSTANT, &[1.0]));
         };
         let is_square = if self.corners == Corners::Square { 1.0 } else { 0.0 };
-        // Distances from the western and northern edges, and from the eastern and southern ones, in widths of the border.
+        // Distances from the western and northern edges, and from the eastern and southern ones, in widths of the
+        // border.
         let shader = Shader::new("edge", include_str!("edge.wgsl"), &[is_square]);
         let lattices = [[0.0, 0.0], [width, height]].map(|origin| Lattice::metres(self.width, origin));
         Lowering::Shader(shader.on(lattices[0]).on(lattices[1]))

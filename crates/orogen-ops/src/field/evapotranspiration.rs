@@ -10,8 +10,8 @@ use orogen_noise::shader::function::Shader;
 op! {
     /// Potential evapotranspiration: water that plants and soil would evaporate in a year if it were there.
     ///
-    /// It is 58.93 mm for each degree of biotemperature, the mean over the months of temperatures limited to 0 to 30 degrees C (Holdridge 1967). The
-    /// months are those of a sinusoidal year.
+    /// It is 58.93 mm for each degree of biotemperature, the mean over the months of temperatures limited to 0 to 30
+    /// degrees C (Holdridge 1967). The months are those of a sinusoidal year.
     pub struct Evapotranspiration = "evapotranspiration", field, revision 1;
     inputs {
         /// Mean temperature in degrees C, for example that of `temperature`.
@@ -24,12 +24,14 @@ op! {
     layers {
         /// Potential evapotranspiration.
         potential: height, unit "mm/yr";
-        /// Rain over potential evapotranspiration, at most 100 (aridity index of UNEP 1992): below 0.05 hyperarid, 0.2 arid, 0.5 semi-arid, 0.65 dry subhumid.
+        /// Rain over potential evapotranspiration, at most 100 (aridity index of UNEP 1992): below 0.05 hyperarid, 0.2
+        /// arid, 0.5 semi-arid, 0.65 dry subhumid.
         humidity: height;
     }
 }
 
-/// Half the difference between the warmest and the coldest month, in K, and the rain in mm per year, where they are not given.
+/// Half the difference between the warmest and the coldest month, in K, and the rain in mm per year, where they are not
+/// given.
 pub(super) const DEFAULT_RANGE: f32 = 10.0;
 pub(super) const DEFAULT_RAIN: f32 = 1000.0;
 

@@ -8,15 +8,16 @@ use crate::op::Field;
 op! {
     /// The value of an expression, such as "a * smoothstep(0, 1, b) + height^0.5".
     ///
-    /// Each name in the expression is an input. If the node has a key of that name, the key's value is the input; otherwise the input is
-    /// the parameter, the node or the layer (`node.layer`) of that name. Operators, from lowest to highest precedence: `< <= > >= == !=` (1
-    /// if true, else 0), `+ -`, `* / %` (`%` is the remainder of floored division), unary sign, and `^` (right-associative). `pi` and `tau`
-    /// are constants. Functions: `min max clamp mix lerp smoothstep step smin smax abs sign floor ceil round fract sqrt exp log log2 log10
-    /// pow sin cos tan asin acos atan atan2 tanh hypot`; angles are in radians.
+    /// Each name in the expression is an input. If the node has a key of that name, the key's value is the input;
+    /// otherwise the input is the parameter, the node or the layer (`node.layer`) of that name. Operators, from lowest
+    /// to highest precedence: `< <= > >= == !=` (1 if true, else 0), `+ -`, `* / %` (`%` is the remainder of floored
+    /// division), unary sign, and `^` (right-associative). `pi` and `tau` are constants. Functions: `min max clamp mix
+    /// lerp smoothstep step smin smax abs sign floor ceil round fract sqrt exp log log2 log10 pow sin cos tan asin acos
+    /// atan atan2 tanh hypot`; angles are in radians.
     ///
-    /// Expressions compile to the same instructions as the ops `add`, `multiply`, `mix`, `min`, `max` and `clamp`, with the same bits and
-    /// the same cost. Powers with the exponents 0.5, 2, 3 and 4 are computed as roots and products. Values are f32; a division by 0 is
-    /// infinite, and the root of a negative number is NaN.
+    /// Expressions compile to the same instructions as the ops `add`, `multiply`, `mix`, `min`, `max` and `clamp`, with
+    /// the same bits and the same cost. Powers with the exponents 0.5, 2, 3 and 4 are computed as roots and products.
+    /// Values are f32; a division by 0 is infinite, and the root of a negative number is NaN.
     pub struct Expr = "expr", field, revision 1;
     inputs of expr;
     params {

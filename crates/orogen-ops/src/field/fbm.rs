@@ -9,8 +9,8 @@ use orogen_noise::{Fractal, Kind, Points};
 op! {
     /// Fractional Brownian motion (fBm): a sum of octaves of noise, in -1 ..= 1.
     ///
-    /// The sum of gain^i n_i(p lacunarity^i / wavelength), divided by the sum of the amplitudes. Each octave has its own seed and offset.
-    /// Mandelbrot and Van Ness 1968; Musgrave 1989.
+    /// The sum of gain^i n_i(p lacunarity^i / wavelength), divided by the sum of the amplitudes. Each octave has its
+    /// own seed and offset. Mandelbrot and Van Ness 1968; Musgrave 1989.
     pub struct Fbm = "fbm", field, revision 1;
     octaves in space;
 }

@@ -11,19 +11,21 @@ use orogen_noise::{Phacelle, Points};
 op! {
     /// The source with gullies running down its slopes, made by a field without simulation (erosion filter).
     ///
-    /// Phacelle noise makes stripes that run down the slope. The flanks of the stripes turn the stripes of the next octave, so small
-    /// gullies branch off large ones. Let g be the slope, m the mask and t the fade; they start as the slope of the source, softened |g|
-    /// `onset` and `fade`. An octave of wavelength w and strength s adds s w mix(t, c `weight`, m), where c and n are the cosine and sine
-    /// of the stripes along g. Then g -= sign(n) 2 pi s `weight` side, t becomes the added value, and m = (1 - (1 - m)^`detail`) * softened
+    /// Phacelle noise makes stripes that run down the slope. The flanks of the stripes turn the stripes of the next
+    /// octave, so small gullies branch off large ones. Let g be the slope, m the mask and t the fade; they start as the
+    /// slope of the source, softened |g| `onset` and `fade`. An octave of wavelength w and strength s adds s w mix(t, c
+    /// `weight`, m), where c and n are the cosine and sine of the stripes along g. Then g -= sign(n) 2 pi s `weight`
+    /// side, t becomes the added value, and m = (1 - (1 - m)^`detail`) * softened
     /// |n| `sharpness`. The method is local: some gullies end in closed depressions, and valleys do not collect tributaries. A few steps of
-    /// `stream-power` after it correct both. The slope is taken between positions `step` metres to each side, so the source is evaluated
-    /// five times per sample. The source may be a field, a filter or a solver. R. Skovbo Johansen, "Phacelle noise" (2025).
+    /// `stream-power` after it correct both. The slope is taken between positions `step` metres to each side, so the
+    /// source is evaluated five times per sample. The source may be a field, a filter or a solver. R. Skovbo Johansen,
+    /// "Phacelle noise" (2025).
     pub struct Gullies = "gullies", field, revision 1;
     inputs {
         /// The heights, in metres.
         source: required,
-        /// Value shown where the ground is too flat for gullies: -1 where gullies end in a valley floor, 1 where they end on a crest, 0 in
-        /// between. Default: 0 everywhere.
+        /// Value shown where the ground is too flat for gullies: -1 where gullies end in a valley floor, 1 where they
+        /// end on a crest, 0 in between. Default: 0 everywhere.
         fade: optional,
     }
     params {
@@ -39,18 +41,19 @@ op! {
         gain: f64 = 0.5, range 0.0 to 1.0, alias "persistence";
         /// Depth of the largest gullies, as a multiple of their wavelength.
         strength: f64 = 0.22, range 0.0 to 10.0;
-        /// Share of the strength that goes into gullies; the rest raises crests and lowers valleys according to the fade. Higher values
-        /// also turn finer gullies more.
+        /// Share of the strength that goes into gullies; the rest raises crests and lowers valleys according to the
+        /// fade. Higher values also turn finer gullies more.
         weight: f64 = 0.5, range 0.0 to 1.0;
-        /// How far finer gullies extend onto the crests and floors of larger ones: with 1 they cover only the flanks, with 3 nearly
-        /// everything.
+        /// How far finer gullies extend onto the crests and floors of larger ones: with 1 they cover only the flanks,
+        /// with 3 nearly everything.
         detail: f64 = 1.5, range 0.1 to 10.0;
         /// How quickly gullies set in with steepness: they have their full depth where the slope is 1.5 / `onset`.
         onset: f64 = 3.0, range 0.01 to 1000.0;
-        /// How quickly finer gullies set in on the flanks of larger ones: 1.25 gives round crests and floors, higher values make them
-        /// sharp.
+        /// How quickly finer gullies set in on the flanks of larger ones: 1.25 gives round crests and floors, higher
+        /// values make them sharp.
         sharpness: f64 = 1.25, range 0.01 to 1000.0;
-        /// Slope that finer gullies assume for the ground; 0 uses the true slope. The lower the value, the more finer gullies branch off.
+        /// Slope that finer gullies assume for the ground; 0 uses the true slope. The lower the value, the more finer
+        /// gullies branch off.
         assumed_slope: f64 = 0.7, range 0.0 to 100.0;
         /// Side of the noise's cells in wavelengths. It limits the length of a gully.
         cell: f64 = 0.7, range 0.1 to 10.0;

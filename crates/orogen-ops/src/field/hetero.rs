@@ -7,10 +7,12 @@ use orogen_noise::shader::function::Shader;
 use orogen_noise::{Fractal, Kind, Points};
 
 op! {
-    /// Heterogeneous terrain: each octave is scaled by the height so far, so low ground is smooth and high ground is rough. In -1 ..= 1.
+    /// Heterogeneous terrain: each octave is scaled by the height so far, so low ground is smooth and high ground is
+    /// rough. In -1 ..= 1.
     ///
-    /// h = n_0 + offset; h += h gain^i (n_i + offset). The result is divided by the largest possible product, which is rarely approached:
-    /// use `normalise` or `remap` after it. Musgrave in Ebert et al., "Texturing and Modeling" (1994).
+    /// h = n_0 + offset; h += h gain^i (n_i + offset). The result is divided by the largest possible product, which is
+    /// rarely approached: use `normalise` or `remap` after it. Musgrave in Ebert et al., "Texturing and Modeling"
+    /// (1994).
     pub struct Hetero = "hetero", field, revision 1;
     octaves in space;
     params {

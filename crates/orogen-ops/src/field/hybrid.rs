@@ -7,11 +7,12 @@ use orogen_noise::shader::function::Shader;
 use orogen_noise::{Fractal, Kind, Points};
 
 op! {
-    /// Hybrid multifractal: each octave is scaled by the product of those before it, so valleys stay smooth and high ground is rough. In -1
-    /// ..= 1.
+    /// Hybrid multifractal: each octave is scaled by the product of those before it, so valleys stay smooth and high
+    /// ground is rough. In -1 ..= 1.
     ///
-    /// s_i = gain^i (n_i + offset); height += w s_i; w = clamp(w s_i, 0, 1), starting at 1. The result is divided by the largest possible
-    /// sum, which is rarely approached: use `normalise` or `remap` after it. Musgrave in Ebert et al., "Texturing and Modeling" (1994).
+    /// s_i = gain^i (n_i + offset); height += w s_i; w = clamp(w s_i, 0, 1), starting at 1. The result is divided by
+    /// the largest possible sum, which is rarely approached: use `normalise` or `remap` after it. Musgrave in Ebert et
+    /// al., "Texturing and Modeling" (1994).
     pub struct Hybrid = "hybrid", field, revision 1;
     octaves in space;
     params {

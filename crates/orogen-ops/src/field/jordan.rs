@@ -7,12 +7,12 @@ use orogen_noise::shader::function::Shader;
 use orogen_noise::{Fractal, Kind, Points};
 
 op! {
-    /// Jordan turbulence: squared noise, displaced and damped by the slopes of earlier octaves. It gives rounded massifs with worn flanks.
-    /// In -1 ..= 1.
+    /// Jordan turbulence: squared noise, displaced and damped by the slopes of earlier octaves. It gives rounded
+    /// massifs with worn flanks. In -1 ..= 1.
     ///
-    /// n_i at p + warp d, in cells of octave i; height += a_i n_i^2; d += n_i grad n_i; a_0 = 1, a_i = gain^i (1 - 1 / (1 + |damp d|^2)).
-    /// Over `white` and the `worley` bases, which have no slope, only the first octave remains. De Carpentier, "Scape: procedural basics"
-    /// (2011).
+    /// n_i at p + warp d, in cells of octave i; height += a_i n_i^2; d += n_i grad n_i; a_0 = 1, a_i = gain^i (1 - 1 /
+    /// (1 + |damp d|^2)). Over `white` and the `worley` bases, which have no slope, only the first octave remains. De
+    /// Carpentier, "Scape: procedural basics" (2011).
     pub struct Jordan = "jordan", field, revision 1;
     octaves in space;
     params {

@@ -8,8 +8,8 @@ use orogen_noise::shader::function::Shader;
 op! {
     /// The source as labels: rounded to whole numbers, and read at the nearest sample instead of interpolated.
     ///
-    /// Numbers of classes that other ops compute, such as `expr`, are exported as they are once they are labels: a .png has the number in each pixel, and between stored samples
-    /// there are no classes that the source does not have.
+    /// Numbers of classes that other ops compute, such as `expr`, are exported as they are once they are labels: a .png
+    /// has the number in each pixel, and between stored samples there are no classes that the source does not have.
     pub struct Label = "label", field, revision 1;
     inputs {
         /// The numbers.

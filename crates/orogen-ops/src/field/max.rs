@@ -7,8 +7,8 @@ use crate::op::Field;
 op! {
     /// The maximum of a and b. With `smooth` above 0 the seam between them is rounded.
     ///
-    /// Rounded form (quadratic polynomial): max(a, b) + h^2 smooth / 4 with h = max(0, smooth - |a - b|) / smooth (Quilez, "Smooth
-    /// minimum").
+    /// Rounded form (quadratic polynomial): max(a, b) + h^2 smooth / 4 with h = max(0, smooth - |a - b|) / smooth
+    /// (Quilez, "Smooth minimum").
     pub struct Max = "max", field, revision 1;
     inputs {
         /// First value.

@@ -11,12 +11,13 @@ use orogen_noise::shader::function::Shader;
 op! {
     /// Strokes of a brush on the map: a painted mask, or heights that are raised, lowered and levelled by hand.
     ///
-    /// A stroke is the area within `radius` of a line of `points`, in metres of the world, with x to the east and y to the south; one point is a dab. It has
-    /// full effect up to `hardness` times the radius from the line, and falls smoothly to none at the radius. Within one stroke the effect does not
-    /// add up where its line crosses itself.
+    /// A stroke is the area within `radius` of a line of `points`, in metres of the world, with x to the east and y to
+    /// the south; one point is a dab. It has full effect up to `hardness` times the radius from the line, and falls
+    /// smoothly to none at the radius. Within one stroke the effect does not add up where its line crosses itself.
     ///
-    /// Strokes are applied in the order of the list, on top of the background. `add` adds `value`, for heights. `set` mixes with `value`, for
-    /// masks (1 paints, 0 clears) and for level ground. `erase` mixes with the background, so it removes strokes before it.
+    /// Strokes are applied in the order of the list, on top of the background. `add` adds `value`, for heights. `set`
+    /// mixes with `value`, for masks (1 paints, 0 clears) and for level ground. `erase` mixes with the background, so
+    /// it removes strokes before it.
     ///
     /// Time per sample depends on the strokes nearby, not on their total number.
     pub struct Paint = "paint", field, revision 1;

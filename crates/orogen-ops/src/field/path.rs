@@ -9,25 +9,31 @@ use orogen_noise::Points;
 use orogen_noise::shader::function::Shader;
 
 op! {
-    /// Lines drawn on the map, such as rivers, roads or ridges: the distance to them, the position along them, their height, and a mask.
+    /// Lines drawn on the map, such as rivers, roads or ridges: the distance to them, the position along them, their
+    /// height, and a mask.
     ///
-    /// The lines are `points` in metres of the world, with x to the east and y to the south, or those of a `file`. `points = [[x, y], ...]` is one line,
-    /// `points = [[[x, y], ...], [[x, y], ...]]` are several; a third number of each point is the height of the line there. Each layer is that of the
-    /// nearest point of all lines; of several at the same distance it is the first.
+    /// The lines are `points` in metres of the world, with x to the east and y to the south, or those of a `file`.
+    /// `points = [[x, y], ...]` is one line, `points = [[[x, y], ...], [[x, y], ...]]` are several; a third number of
+    /// each point is the height of the line there. Each layer is that of the nearest point of all lines; of several at
+    /// the same distance it is the first.
     ///
-    /// Files: SVG (.svg) and GeoJSON (.geojson, .json). Of SVG the elements `path`, `polyline` and `line` are read, with the transforms of elements and
-    /// groups; `use`, style sheets and units other than px are not. Coordinates are in the user space of the document (that of its `viewBox`), with y to
-    /// the south. Of GeoJSON `LineString` and `MultiLineString` are read, also in features and collections; properties are ignored, and the third
-    /// coordinate is the height. y points north in GeoJSON and is negated. A position in the file is multiplied by `scale`, then `offset` is added.
+    /// Files: SVG (.svg) and GeoJSON (.geojson, .json). Of SVG the elements `path`, `polyline` and `line` are read,
+    /// with the transforms of elements and groups; `use`, style sheets and units other than px are not. Coordinates are
+    /// in the user space of the document (that of its `viewBox`), with y to the south. Of GeoJSON `LineString` and
+    /// `MultiLineString` are read, also in features and collections; properties are ignored, and the third coordinate
+    /// is the height. y points north in GeoJSON and is negated. A position in the file is multiplied by `scale`, then
+    /// `offset` is added.
     ///
-    /// With `smooth` the line is a curve through the points: a centripetal Catmull-Rom spline (Yuksel, Schaefer and Keyser 2011). Curves become straight
-    /// segments that keep within `tolerance`; a drawing that would have more than 1 048 576 of them gets a larger tolerance. Heights are linear
-    /// along the line from point to point. Time per sample depends on the segments nearby, not on their total number.
+    /// With `smooth` the line is a curve through the points: a centripetal Catmull-Rom spline (Yuksel, Schaefer and
+    /// Keyser 2011). Curves become straight segments that keep within `tolerance`; a drawing that would have more than
+    /// 1 048 576 of them gets a larger tolerance. Heights are linear along the line from point to point. Time per
+    /// sample depends on the segments nearby, not on their total number.
     pub struct Path = "path", field, revision 1;
     params {
         /// Points of one line or of several, at most 100 000.
         points: LinePoints = LinePoints::default(), unit "m", range -1e9 to 1e9;
-        /// Path of an SVG or GeoJSON file with lines, in place of `points`. A relative path is resolved against the folder of the recipe.
+        /// Path of an SVG or GeoJSON file with lines, in place of `points`. A relative path is resolved against the
+        /// folder of the recipe.
         file: LineFile = LineFile::default();
         /// Metres per unit of the file, east and south.
         scale: [f64; 2] = [1.0, 1.0], range -1e6 to 1e6;

@@ -9,25 +9,28 @@ use orogen_noise::Points;
 use orogen_noise::shader::function::Shader;
 
 op! {
-    /// Areas drawn on the map, such as lakes, forests or mountains: a mask of them, the distance to their boundary, and its height.
+    /// Areas drawn on the map, such as lakes, forests or mountains: a mask of them, the distance to their boundary, and
+    /// its height.
     ///
-    /// The boundaries are rings of `points` in metres of the world, with x to the east and y to the south, or those of a `file`. `points = [[x, y], ...]`
-    /// is one ring, `points = [[[x, y], ...], [[x, y], ...]]` are several; a third number of each point is the height of the boundary there. The last
-    /// point is joined to the first. What is inside follows from the even-odd rule over all rings: a ring within a ring is a hole, a third one an island in
-    /// it. Areas that overlap leave out what they share.
+    /// The boundaries are rings of `points` in metres of the world, with x to the east and y to the south, or those of
+    /// a `file`. `points = [[x, y], ...]` is one ring, `points = [[[x, y], ...], [[x, y], ...]]` are several; a third
+    /// number of each point is the height of the boundary there. The last point is joined to the first. What is inside
+    /// follows from the even-odd rule over all rings: a ring within a ring is a hole, a third one an island in it.
+    /// Areas that overlap leave out what they share.
     ///
-    /// Files: SVG (.svg) and GeoJSON (.geojson, .json), as for `path`. Of SVG the elements `path`, `polygon`, `rect`, `circle` and `ellipse` are read,
-    /// whatever their fill; of GeoJSON `Polygon` and `MultiPolygon`. For rings that touch, such as those of neighboring countries, the boundary is
-    /// also where they touch.
+    /// Files: SVG (.svg) and GeoJSON (.geojson, .json), as for `path`. Of SVG the elements `path`, `polygon`, `rect`,
+    /// `circle` and `ellipse` are read, whatever their fill; of GeoJSON `Polygon` and `MultiPolygon`. For rings that
+    /// touch, such as those of neighboring countries, the boundary is also where they touch.
     ///
-    /// With `smooth` each ring is a curve through its points: a centripetal Catmull-Rom spline. Curves become straight segments that keep within
-    /// `tolerance`; a drawing that would have more than 1 048 576 of them gets a larger tolerance. Time per sample depends on the segments
-    /// nearby, not on their total number.
+    /// With `smooth` each ring is a curve through its points: a centripetal Catmull-Rom spline. Curves become straight
+    /// segments that keep within `tolerance`; a drawing that would have more than 1 048 576 of them gets a larger
+    /// tolerance. Time per sample depends on the segments nearby, not on their total number.
     pub struct Polygon = "polygon", field, revision 1;
     params {
         /// Corners of one ring or of several, at most 100 000.
         points: AreaPoints = AreaPoints::default(), unit "m", range -1e9 to 1e9;
-        /// Path of an SVG or GeoJSON file with areas, in place of `points`. A relative path is resolved against the folder of the recipe.
+        /// Path of an SVG or GeoJSON file with areas, in place of `points`. A relative path is resolved against the
+        /// folder of the recipe.
         file: AreaFile = AreaFile::default();
         /// Metres per unit of the file, east and south.
         scale: [f64; 2] = [1.0, 1.0], range -1e6 to 1e6;
@@ -37,7 +40,8 @@ op! {
         smooth: bool = false;
         /// Maximum distance between a curve and the straight segments that replace it.
         tolerance: f64 = 0.1, unit "m", range 1e-3 to 1e6;
-        /// Width of the transition of the layer `inside`, half of it on each side of the boundary. With 0 the edge is sharp.
+        /// Width of the transition of the layer `inside`, half of it on each side of the boundary. With 0 the edge is
+        /// sharp.
         falloff: f64 = 0.0, unit "m", range 0.0 to 1e9;
     }
     layers {

@@ -8,16 +8,16 @@ use orogen_noise::shader::function::Shader;
 use orogen_noise::shader::lattice::Lattice;
 
 op! {
-    /// A round hill: 1 at the centre, falling smoothly to 0 at `radius`.
+    /// A round hill: 1 at the center, falling smoothly to 0 at `radius`.
     ///
     /// The falloff is the smoothstep 3t^2 - 2t^3 of t = (radius - distance) / (radius - inner).
     pub struct Radial = "radial", field, revision 1;
     params {
-        /// Position of the centre: metres east, metres south.
+        /// Position of the center: metres east, metres south.
         center: [f64; 2] = [0.0, 0.0], unit "m", range -1e12 to 1e12;
-        /// Distance from the centre beyond which the value is 0.
+        /// Distance from the center beyond which the value is 0.
         radius: f64 = 1000.0, unit "m", range 1e-3 to 1e9;
-        /// Distance from the centre up to which the value is 1; it must be less than `radius`.
+        /// Distance from the center up to which the value is 1; it must be less than `radius`.
         inner: f64 = 0.0, unit "m", range 0.0 to 1e9;
     }
     check |op| match op.inner < op.radius {

@@ -10,7 +10,8 @@ use orogen_noise::shader::lattice::Lattice;
 op! {
     /// An inclined plane: 0 at `origin`, rising by 1 every `length` metres in the direction `azimuth`.
     ///
-    /// With `azimuth = 90` the value is x / length (rising to the east), with 180 it is y / length (rising to the south).
+    /// With `azimuth = 90` the value is x / length (rising to the east), with 180 it is y / length (rising to the
+    /// south).
     pub struct Ramp = "ramp", field, revision 1;
     params {
         /// Direction of the rise, clockwise from north.

@@ -6,7 +6,8 @@ use orogen_noise::Points;
 use orogen_noise::shader::function::Shader;
 
 op! {
-    /// The source with the range `from` mapped linearly to the range `to`. With [1, 0] as either range the source is inverted.
+    /// The source with the range `from` mapped linearly to the range `to`. With [1, 0] as either range the source is
+    /// inverted.
     pub struct Remap = "remap", field, revision 1;
     inputs {
         /// The values to map.

@@ -5,11 +5,12 @@ use crate::op::Field;
 op! {
     /// The source, computed at a fixed cell and interpolated, whatever cell is requested.
     ///
-    /// A filter is computed at the requested cell, so it makes other land at every cell. Behind `resample` it makes the same land at all of them: finer
-    /// samples are interpolated as the source's layer is (heights by a cubic), and coarser ones are samples of the fixed cell, bit for bit where the two
-    /// lattices coincide. `bake` does the same for a whole bounded world; this op computes only what a window needs, also in unbounded worlds. A request
-    /// with a larger cell computes (requested cell / cell)^2 samples of the source for each of its own, until `max_ratio` is reached. Detail
-    /// finer than the cell is lost.
+    /// A filter is computed at the requested cell, so it makes other land at every cell. Behind `resample` it makes the
+    /// same land at all of them: finer samples are interpolated as the source's layer is (heights by a cubic), and
+    /// coarser ones are samples of the fixed cell, bit for bit where the two lattices coincide. `bake` does the same
+    /// for a whole bounded world; this op computes only what a window needs, also in unbounded worlds. A request with a
+    /// larger cell computes (requested cell / cell)^2 samples of the source for each of its own, until `max_ratio` is
+    /// reached. Detail finer than the cell is lost.
     pub struct Resample = "resample", field, revision 1;
     inputs {
         /// The values to compute at the fixed cell.
@@ -18,8 +19,8 @@ op! {
     params {
         /// The cell at which the source is computed; 0 uses the world's cell.
         cell: f64 = 0.0, unit "m", range 0.0 to 1e6;
-        /// Maximum ratio of the requested cell and the one at which the source is computed. At larger requested cells the source is computed at 2, 4, 8 ...
-        /// times `cell`, the smallest that keeps this ratio.
+        /// Maximum ratio of the requested cell and the one at which the source is computed. At larger requested cells
+        /// the source is computed at 2, 4, 8 ... times `cell`, the smallest that keeps this ratio.
         max_ratio: f64 = 8.0, range 1.0 to 64.0;
     }
     layers {

@@ -7,7 +7,8 @@ use orogen_noise::shader::function::Shader;
 use orogen_noise::{Fractal, Kind, Points};
 
 op! {
-    /// Ridged noise: the sum of octaves of 1 - 2 |noise|, in -1 ..= 1. It gives sharp crests and round valleys. Musgrave 1994.
+    /// Ridged noise: the sum of octaves of 1 - 2 |noise|, in -1 ..= 1. It gives sharp crests and round valleys.
+    /// Musgrave 1994.
     pub struct Ridged = "ridged", field, revision 1;
     octaves in space;
 }

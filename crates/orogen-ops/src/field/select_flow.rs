@@ -9,7 +9,8 @@ use orogen_noise::shader::function::Shader;
 op! {
     /// A mask by drainage area: 1 inside a range, falling smoothly to 0 below and above it, on a logarithmic scale.
     ///
-    /// Use it with the layer `flow` of `drainage`, `rivers`, `stream-power` or `local-stream-power` to select brooks, rivers or crests.
+    /// Use it with the layer `flow` of `drainage`, `rivers`, `stream-power` or `local-stream-power` to select brooks,
+    /// rivers or crests.
     pub struct SelectFlow = "select-flow", field, revision 1;
     inputs {
         /// Drainage areas, in m^2.

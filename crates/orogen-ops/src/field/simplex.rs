@@ -7,10 +7,11 @@ use orogen_noise::shader::function::Shader;
 use orogen_noise::{Basis, Points};
 
 op! {
-    /// Perlin's Simplex noise (2001), in -1 ..= 1: gradients at the corners of a triangular lattice. It has no artefacts along the axes.
+    /// Perlin's Simplex noise (2001), in -1 ..= 1: gradients at the corners of a triangular lattice. It has no
+    /// artifacts along the axes.
     ///
-    /// Features are about 0.7 times as wide as those of `perlin` at the same wavelength. Gustavson, "Simplex noise demystified"
-    /// (2005).
+    /// Features are about 0.7 times as wide as those of `perlin` at the same wavelength. Gustavson, "Simplex noise
+    /// demystified" (2005).
     pub struct Simplex = "simplex", field, revision 1;
     space;
     params {

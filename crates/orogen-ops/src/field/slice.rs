@@ -6,8 +6,9 @@ use orogen_noise::Points;
 op! {
     /// The source at one altitude: a horizontal section of what depends on the altitude, the same at all altitudes.
     ///
-    /// Filters, levelled ops and solvers can read it. With noise of space (`vertical` above 0) as the source the altitude is a third axis: land
-    /// whose noises move along it changes smoothly, as if in time. Of a density it is the plan of its caves at that altitude.
+    /// Filters, levelled ops and solvers can read it. With noise of space (`vertical` above 0) as the source the
+    /// altitude is a third axis: land whose noises move along it changes smoothly, as if in time. Of a density it is
+    /// the plan of its caves at that altitude.
     pub struct Slice = "slice", field, revision 1;
     inputs {
         /// The field to cut.

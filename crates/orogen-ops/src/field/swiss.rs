@@ -7,10 +7,12 @@ use orogen_noise::shader::function::Shader;
 use orogen_noise::{Fractal, Kind, Points};
 
 op! {
-    /// Swiss turbulence: ridged noise whose slopes displace the finer octaves, so that crests branch into spurs. In -1 ..= 1.
+    /// Swiss turbulence: ridged noise whose slopes displace the finer octaves, so that crests branch into spurs. In -1
+    /// ..= 1.
     ///
-    /// n_i at p + warp d; height += a_i (1 - |n_i|); d -= a_i n_i grad n_i; a_i+1 = a_i gain clamp(height, 0, 1). Over `white` and the
-    /// `worley` bases, which have no slope, nothing is displaced. De Carpentier, "Scape: procedural basics" (2011).
+    /// n_i at p + warp d; height += a_i (1 - |n_i|); d -= a_i n_i grad n_i; a_i+1 = a_i gain clamp(height, 0, 1). Over
+    /// `white` and the `worley` bases, which have no slope, nothing is displaced. De Carpentier, "Scape: procedural
+    /// basics" (2011).
     pub struct Swiss = "swiss", field, revision 1;
     octaves in space;
     params {

@@ -12,15 +12,17 @@ use orogen_noise::shader::lattice::Lattice;
 op! {
     /// Mean annual temperature of the air near the ground, and its range over the year.
     ///
-    /// At sea level the mean is `equator` - (`equator` - `pole`) sin^2(latitude); the defaults are a fit to the observed means of latitudes (North,
-    /// Cahalan and Coakley 1981). It falls by `lapse_rate` above the world's sea level. The range follows from Conrad's index of
-    /// continentality K (1946): the difference between the warmest and the coldest month is (K + 14) sin(latitude + 10 degrees) / 1.7, with
-    /// K = 0 at the sea and 100 d / (d + `continental_distance`) at a distance d from it. Both hemispheres are alike.
+    /// At sea level the mean is `equator` - (`equator` - `pole`) sin^2(latitude); the defaults are a fit to the
+    /// observed means of latitudes (North, Cahalan and Coakley 1981). It falls by `lapse_rate` above the world's sea
+    /// level. The range follows from Conrad's index of continentality K (1946): the difference between the warmest and
+    /// the coldest month is (K + 14) sin(latitude + 10 degrees) / 1.7, with K = 0 at the sea and 100 d / (d +
+    /// `continental_distance`) at a distance d from it. Both hemispheres are alike.
     pub struct Temperature = "temperature", field, revision 1;
     inputs {
         /// Heights. At and below sea level the temperature is that of the sea level.
         source: required,
-        /// Distance from the sea in metres, for example that of `distance`, for the layer `range`. Default: that where K is `continentality`.
+        /// Distance from the sea in metres, for example that of `distance`, for the layer `range`. Default: that where
+        /// K is `continentality`.
         sea_distance: optional,
         /// Temperature added to the mean in K, for example noise. Default: 0.
         anomaly: optional,
@@ -36,7 +38,8 @@ op! {
         pole: f64 = -13.0, unit "degrees C", range -100.0 to 100.0;
         /// Decrease with height.
         lapse_rate: f64 = 6.5, unit "K/km", range 0.0 to 20.0;
-        /// Index of continentality K where `sea_distance` is not given: 0 at the sea, 100 in the middle of a large continent.
+        /// Index of continentality K where `sea_distance` is not given: 0 at the sea, 100 in the middle of a large
+        /// continent.
         continentality: f64 = 15.0, range 0.0 to 100.0;
         /// Distance from the sea at which K is 50.
         continental_distance: f64 = 900000.0, unit "m", range 1.0 to 1e9;

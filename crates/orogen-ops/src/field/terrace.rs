@@ -8,7 +8,8 @@ use orogen_noise::shader::function::Shader;
 op! {
     /// The source quantised into terraces: level treads with smooth risers between them.
     ///
-    /// Within each step the riser takes the middle share (1 - `sharpness`) as a smoothstep: 0 gives gentle waves, 1 gives vertical cliffs.
+    /// Within each step the riser takes the middle share (1 - `sharpness`) as a smoothstep: 0 gives gentle waves, 1
+    /// gives vertical cliffs.
     pub struct Terrace = "terrace", field, revision 1;
     inputs {
         /// The values to terrace.
@@ -31,7 +32,7 @@ impl Field for Terrace {
         for (sample, source) in out.iter_mut().zip(inputs.required(0)) {
             let steps = (source - offset) / step;
             let tread = (steps + 0.5).floor();
-            // -0.5 ..= 0.5 around the tread; the riser is centred between two treads.
+            // -0.5 ..= 0.5 around the tread; the riser is centerd between two treads.
             let t = steps - tread + 0.5;
             let rise = |t: f32| {
                 let s = ((t - 0.5) / riser + 0.5).clamp(0.0, 1.0);

@@ -6,8 +6,9 @@ use orogen_noise::Points;
 op! {
     /// Domain warp: the value at p is the source's value at p + strength * (x, y).
     ///
-    /// `x` and `y` are usually noise in -1 ..= 1. Displacements beyond `strength` along an axis are limited to it, so that the engine knows
-    /// how far from p the source is read. Sources: Perlin 1985 ("An Image Synthesizer"); Quilez, "Domain warping".
+    /// `x` and `y` are usually noise in -1 ..= 1. Displacements beyond `strength` along an axis are limited to it, so
+    /// that the engine knows how far from p the source is read. Sources: Perlin 1985 ("An Image Synthesizer"); Quilez,
+    /// "Domain warping".
     pub struct Warp = "warp", field, revision 1;
     inputs {
         /// The field to warp.

@@ -32,11 +32,11 @@ impl Falloff {
 }
 
 op! {
-    /// Weighted fBm: octaves of noise, each damped by the slope of the octaves before it. Steep ground stays smooth; detail concentrates on
-    /// flats and crests. In -1 ..= 1.
+    /// Weighted fBm: octaves of noise, each damped by the slope of the octaves before it. Steep ground stays smooth;
+    /// detail concentrates on flats and crests. In -1 ..= 1.
     ///
-    /// d += (gain lacunarity)^i grad n_i; height += gain^i n_i falloff(k |d|^2), divided by the sum of the amplitudes. Quilez, "Value noise
-    /// derivatives" (2008).
+    /// d += (gain lacunarity)^i grad n_i; height += gain^i n_i falloff(k |d|^2), divided by the sum of the amplitudes.
+    /// Quilez, "Value noise derivatives" (2008).
     pub struct WeightedFbm = "weighted-fbm", field, revision 1;
     octaves in space;
     params {

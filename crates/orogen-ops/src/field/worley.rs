@@ -60,12 +60,13 @@ impl Distance {
 }
 
 op! {
-    /// Worley's cellular noise, in -1 ..= 1: each cell of a lattice holds one random point, and the value follows from the distances to the
-    /// nearest points.
+    /// Worley's cellular noise, in -1 ..= 1: each cell of a lattice holds one random point, and the value follows from
+    /// the distances to the nearest points.
     ///
-    /// A distance d becomes 2 d / maximum - 1, where the maximum is the largest possible distance of the feature. F1 is -1 at the points,
-    /// `edge` is -1 on the edges between cells. The search covers all cells that can hold a nearest point, so the noise has no
-    /// discontinuities from missed points. Worley, "A cellular texture basis function" (1996).
+    /// A distance d becomes 2 d / maximum - 1, where the maximum is the largest possible distance of the feature. F1 is
+    /// -1 at the points, `edge` is -1 on the edges between cells. The search covers all cells that can hold a nearest
+    /// point, so the noise has no discontinuities from missed points. Worley, "A cellular texture basis function"
+    /// (1996).
     pub struct Worley = "worley", field, revision 1;
     space;
     params {
@@ -77,8 +78,8 @@ op! {
         feature: Feature = Feature::F1;
         /// Distance metric.
         distance: Distance = Distance::Euclidean;
-        /// Share of its cell, along each axis, in which a point is placed: 0 places it in the middle (a regular lattice), 1 anywhere in the
-        /// cell.
+        /// Share of its cell, along each axis, in which a point is placed: 0 places it in the middle (a regular
+        /// lattice), 1 anywhere in the cell.
         jitter: f64 = 1.0, range 0.0 to 1.0;
     }
 }

@@ -10,8 +10,8 @@ use orogen_grid::parallel;
 op! {
     /// Gaussian blur: the mean of the surrounding samples, weighted by exp(-d^2 / 2 radius^2).
     ///
-    /// The kernel is truncated at three standard deviations and its weights sum to 1. It is applied to rows, then to columns; each sum has
-    /// a fixed order. The time grows with radius / cell.
+    /// The kernel is truncated at three standard deviations and its weights sum to 1. It is applied to rows, then to
+    /// columns; each sum has a fixed order. The time grows with radius / cell.
     pub struct Blur = "blur", filter, revision 1;
     inputs {
         /// The values to blur.
@@ -112,8 +112,8 @@ fn band(reach: usize) -> usize {
     (4 * reach).max(256)
 }
 
-/// Each value of `out` becomes the weighted sum of as many samples of `from` as there are weights, `step` apart, starting at the same
-/// index. Sums run in the order of the weights, many side by side in registers.
+/// Each value of `out` becomes the weighted sum of as many samples of `from` as there are weights, `step` apart,
+/// starting at the same index. Sums run in the order of the weights, many side by side in registers.
 fn weigh(out: &mut [f32], weights: &[f32], from: &[f32], step: usize) {
     const ABREAST: usize = 32;
     let (registers, rest) = out.as_chunks_mut::<ABREAST>();

@@ -11,8 +11,9 @@ use orogen_grid::grid::{Grid, Window};
 op! {
     /// The distance to the nearest sample at which the source reaches a threshold, and a mask of its surroundings.
     ///
-    /// Use it for the distance to a river (`drainage.flow` above a threshold), a lake, the sea or a mask. Distances between samples are
-    /// exact (Meijster, Roerdink and Hesselink 2000) up to `reach`; the halo is `reach`. About 15 ns per sample, for any reach.
+    /// Use it for the distance to a river (`drainage.flow` above a threshold), a lake, the sea or a mask. Distances
+    /// between samples are exact (Meijster, Roerdink and Hesselink 2000) up to `reach`; the halo is `reach`. About 15
+    /// ns per sample, for any reach.
     pub struct Distance = "distance", filter, revision 1;
     inputs {
         /// The values to compare with `threshold`.

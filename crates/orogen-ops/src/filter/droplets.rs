@@ -8,18 +8,20 @@ use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 
 op! {
-    /// Hydraulic erosion by droplets. Each droplet runs downhill, erodes where it is fast and deposits where it slows down. It makes
-    /// gullies on slopes and deposits in hollows.
+    /// Hydraulic erosion by droplets. Each droplet runs downhill, erodes where it is fast and deposits where it slows
+    /// down. It makes gullies on slopes and deposits in hollows.
     ///
-    /// After Beyer, "Implementation of a method for hydraulic erosion" (2015), with lengths in metres. A droplet moves one cell per step
-    /// and can carry capacity * max(slope, least_slope) * speed * water; its speed changes by v^2 = v^2 + gravity * drop. It erodes no
-    /// deeper than the height difference ahead of it, and at the end it deposits all that it carries: mass is conserved up to rounding.
+    /// After Beyer, "Implementation of a method for hydraulic erosion" (2015), with lengths in metres. A droplet moves
+    /// one cell per step and can carry capacity * max(slope, least_slope) * speed * water; its speed changes by v^2 =
+    /// v^2 + gravity * drop. It erodes no deeper than the height difference ahead of it, and at the end it deposits all
+    /// that it carries: mass is conserved up to rounding.
     ///
-    /// If droplets ran one after another, the result would depend on their order. Here they start at hashed positions, in batches: all
-    /// droplets of a batch see the same ground and their changes are summed in fixed point, so the result does not depend on tiles or
-    /// threads. After each batch the deposits slide apart in 16 passes, so that droplets that end in one hollow do not pile up. The halo is
-    /// lifetime + radius + 18 cells per batch. More batches make longer and deeper gullies. The result depends on the cell size. About a
-    /// microsecond per droplet of 30 cells.
+    /// If droplets ran one after another, the result would depend on their order. Here they start at hashed positions,
+    /// in batches: all droplets of a batch see the same ground and their changes are summed in fixed point, so the
+    /// result does not depend on tiles or threads. After each batch the deposits slide apart in 16 passes, so that
+    /// droplets that end in one hollow do not pile up. The halo is lifetime + radius + 18 cells per batch. More batches
+    /// make longer and deeper gullies. The result depends on the cell size. About a microsecond per droplet of 30
+    /// cells.
     pub struct Droplets = "droplets", filter, revision 1;
     inputs {
         /// The initial heights.
@@ -34,7 +36,8 @@ op! {
         lifetime: f64 = 300.0, unit "m", range 0.0 to 1e6;
         /// Radius within which a droplet erodes.
         radius: f64 = 30.0, unit "m", range 0.0 to 1e5;
-        /// Share of its direction that a droplet keeps at each cell: 0 follows the slope, values near 1 run straight on.
+        /// Share of its direction that a droplet keeps at each cell: 0 follows the slope, values near 1 run straight
+        /// on.
         inertia: f64 = 0.05, range 0.0 to 0.99;
         /// Capacity on a vertical slope for each m/s of speed, as a depth over the area that the droplet stands for.
         capacity: f64 = 0.4, unit "s", range 0.0 to 1000.0;

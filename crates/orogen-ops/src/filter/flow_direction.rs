@@ -9,13 +9,15 @@ use orogen_grid::hydrology::direction::{Convention, NONE};
 choice! {
     /// Encoding of flow directions.
     pub enum Codes {
-        /// ArcGIS and pysheds: 1 east, 2 south-east, 4 south, 8 south-west, 16 west, 32 north-west, 64 north, 128 north-east; 0 at outlets.
+        /// ArcGIS and pysheds: 1 east, 2 south-east, 4 south, 8 south-west, 16 west, 32 north-west, 64 north, 128
+        /// north-east; 0 at outlets.
         Esri = "esri",
         /// GRASS (r.watershed): from 1 north-east counter-clockwise to 8 east; 0 at outlets.
         Grass = "grass",
         /// TauDEM: from 1 east counter-clockwise to 8 south-east; 0 at outlets.
         Taudem = "taudem",
-        /// WhiteboxTools: 1 north-east, 2 east, 4 south-east, 8 south, 16 south-west, 32 west, 64 north-west, 128 north; 0 at outlets.
+        /// WhiteboxTools: 1 north-east, 2 east, 4 south-east, 8 south, 16 south-west, 32 west, 64 north-west, 128
+        /// north; 0 at outlets.
         Whitebox = "whitebox",
         /// PCRaster: numeric keypad, 7 north-west to 3 south-east; 5 at outlets.
         Pcraster = "pcraster",
@@ -26,7 +28,8 @@ op! {
     /// Flow directions (`drainage.receiver`), converted to the encoding of another program.
     pub struct FlowDirection = "flow-direction", filter, revision 1;
     inputs {
-        /// Flow directions as `drainage.receiver` encodes them: clockwise from east (0) to north-east (7), 8 at outlets.
+        /// Flow directions as `drainage.receiver` encodes them: clockwise from east (0) to north-east (7), 8 at
+        /// outlets.
         source: required,
     }
     params {

@@ -12,8 +12,9 @@ use orogen_grid::hydrology::wetness::{LevelGround, ls_factor, stream_power, wetn
 op! {
     /// Topographic wetness index, stream power index and LS factor, from the drainage area and the slope.
     ///
-    /// a is the specific catchment area: the drainage area divided by the cell size, at least one cell's. b is the slope angle by Horn's 3
-    /// x 3 method. tan b is limited to at least `least_slope`, because the wetness of level ground would be infinite.
+    /// a is the specific catchment area: the drainage area divided by the cell size, at least one cell's. b is the
+    /// slope angle by Horn's 3 x 3 method. tan b is limited to at least `least_slope`, because the wetness of level
+    /// ground would be infinite.
     pub struct FlowIndices = "flow-indices", filter, revision 1;
     inputs {
         /// The heights.

@@ -10,8 +10,8 @@ use orogen_grid::grid::{Grid, Window};
 choice! {
     /// The test for a level direction.
     pub enum Comparison {
-        /// A direction is level if neither its highest nor its lowest line of sight is steeper than `flat`; otherwise the steeper one
-        /// counts, as in r.geomorphon of GRASS.
+        /// A direction is level if neither its highest nor its lowest line of sight is steeper than `flat`; otherwise
+        /// the steeper one counts, as in r.geomorphon of GRASS.
         Steepest = "steepest",
         /// A direction is level if its zenith and nadir angles differ by no more than `flat`, as in the paper.
         Difference = "difference",
@@ -19,11 +19,11 @@ choice! {
 }
 
 op! {
-    /// Landforms by geomorphons (Jasiewicz and Stepinski 2013): the ground is classified by which of the eight directions lead up and which
-    /// lead down.
+    /// Landforms by geomorphons (Jasiewicz and Stepinski 2013): the ground is classified by which of the eight
+    /// directions lead up and which lead down.
     ///
-    /// Along each direction the highest and the lowest line of sight within `reach` are compared. For different cell sizes the landforms
-    /// agree best at the same `reach`. The time grows with the reach.
+    /// Along each direction the highest and the lowest line of sight within `reach` are compared. For different cell
+    /// sizes the landforms agree best at the same `reach`. The time grows with the reach.
     pub struct Geomorphons = "geomorphons", filter, revision 2;
     inputs {
         /// The heights.

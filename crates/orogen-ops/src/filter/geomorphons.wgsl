@@ -2,7 +2,7 @@
 // cell, then the forms by the numbers of lower and higher directions.
 // Whether a direction leads up (1), down (-1) or is level (0); 2 if a sample is missing.
 fn look(base: u32, at: vec2<i32>, along: vec2<i32>) -> i32 {
-    let centre = plane(0u, at);
+    let center = plane(0u, at);
     let is_diagonal = along.x * along.y != 0;
     let farthest = i32(select(number(base, 0u), number(base, 1u), is_diagonal));
     // The rise and the number of steps of the highest and the lowest line. Products are compared, not quotients: they are exact for heights in whole metres,
@@ -14,7 +14,7 @@ fn look(base: u32, at: vec2<i32>, along: vec2<i32>) -> i32 {
         if (is_missing(there)) {
             return 2;
         }
-        let line = vec2<f32>(there - centre, f32(k));
+        let line = vec2<f32>(there - center, f32(k));
         if (k == 1 || line.x * up.y > up.x * line.y) {
             up = line;
         }

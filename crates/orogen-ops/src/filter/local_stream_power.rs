@@ -9,18 +9,20 @@ use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 
 op! {
-    /// The stream power law as a filter: water erodes valleys and gullies and deposits sediment, with a finite halo. It also works in
-    /// unbounded worlds.
+    /// The stream power law as a filter: water erodes valleys and gullies and deposits sediment, with a finite halo. It
+    /// also works in unbounded worlds.
     ///
-    /// dh/dt = U - K A^m S^n + G Q / A, after Schott et al. (2023) and, for the sediment, Yuan et al. (2019). Each iteration reads the
-    /// result of the one before: drainage areas A and sediment Q come from higher neighbours, shared in proportion to the fourth power of
-    /// the slope. S is the upwind gradient, so there are no grooves along the grid. Steps of any length are stable; no cell is eroded below
-    /// its lowest neighbour. Soil creep works as in `stream-power`.
+    /// dh/dt = U - K A^m S^n + G Q / A, after Schott et al. (2023) and, for the sediment, Yuan et al. (2019). Each
+    /// iteration reads the result of the one before: drainage areas A and sediment Q come from higher neighbors, shared
+    /// in proportion to the fourth power of the slope. S is the upwind gradient, so there are no grooves along the
+    /// grid. Steps of any length are stable; no cell is eroded below its lowest neighbor. Soil creep works as in
+    /// `stream-power`.
     ///
-    /// Water moves one cell per iteration, so rivers that start outside the window are unknown unless `flow` provides them (`drainage.flow`
-    /// or `stream-power.flow` of a coarser solution). Use this filter for detail: the solver `stream-power` shapes the land, this filter
-    /// adds gullies at any cell size. The mass of the sediment is conserved only approximately, because it arrives one iteration late. The
-    /// halo is two cells per iteration. The result depends on the cell size. About 4 ns per sample and iteration.
+    /// Water moves one cell per iteration, so rivers that start outside the window are unknown unless `flow` provides
+    /// them (`drainage.flow` or `stream-power.flow` of a coarser solution). Use this filter for detail: the solver
+    /// `stream-power` shapes the land, this filter adds gullies at any cell size. The mass of the sediment is conserved
+    /// only approximately, because it arrives one iteration late. The halo is two cells per iteration. The result
+    /// depends on the cell size. About 4 ns per sample and iteration.
     pub struct LocalStreamPower = "local-stream-power", filter, revision 1;
     inputs {
         /// The initial heights.
@@ -43,7 +45,8 @@ op! {
         uplift: f64 = 0.0, unit "mm/yr", range 0.0 to 100.0;
         /// G: deposition coefficient. 0 deposits nothing; values around 1 are common in nature.
         deposition: f64 = 0.5, range 0.0 to 100.0;
-        /// Diffusivity of soil creep. It widens the gullies. It is limited to the stable value, a fifth of a cell's area per iteration.
+        /// Diffusivity of soil creep. It widens the gullies. It is limited to the stable value, a fifth of a cell's
+        /// area per iteration.
         creep: f64 = 0.005, unit "m^2/yr", range 0.0 to 100.0;
         /// Whether ground at or below sea level keeps its height.
         sea: bool = true;

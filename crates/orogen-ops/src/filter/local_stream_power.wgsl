@@ -55,7 +55,7 @@ fn take(base: u32, at: vec2<i32>) {
     let h = plane(heights, at);
     var inflow = vec2<f32>(0.0);
     var lowest = h;
-    // The sums of the differences to the neighbours at the sides and the corners.
+    // The sums of the differences to the neighbors at the sides and the corners.
     var sides = 0.0;
     var corners = 0.0;
     for (var y = -1; y <= 1; y += 1) {

@@ -9,18 +9,19 @@ use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 
 op! {
-    /// Hydraulic erosion by rain on a grid of virtual pipes: water runs off, erodes gullies, collects, and deposits sediment.
+    /// Hydraulic erosion by rain on a grid of virtual pipes: water runs off, erodes gullies, collects, and deposits
+    /// sediment.
     ///
-    /// After Mei, Decaudin and Hu (2007) and Stava et al. (2008). Water flows between neighbouring cells according to the difference of the
-    /// water surfaces. It can carry sin(slope) times its discharge times `capacity`; it erodes where it carries less and deposits where it
-    /// carries more. Sediment moves with the water that crosses each side of a cell (not along the velocity as in Mei), so mass is
-    /// conserved up to rounding. Erosion and deposition are spread over 3 x 3 cells. Erosion stops half way to the lowest neighbour;
-    /// deposition stops at the neighbours' mean height plus a quarter of the water depth. This avoids grooves along the grid, pits and
-    /// spikes.
+    /// After Mei, Decaudin and Hu (2007) and Stava et al. (2008). Water flows between neighboring cells according to
+    /// the difference of the water surfaces. It can carry sin(slope) times its discharge times `capacity`; it erodes
+    /// where it carries less and deposits where it carries more. Sediment moves with the water that crosses each side
+    /// of a cell (not along the velocity as in Mei), so mass is conserved up to rounding. Erosion and deposition are
+    /// spread over 3 x 3 cells. Erosion stops half way to the lowest neighbor; deposition stops at the neighbors' mean
+    /// height plus a quarter of the water depth. This avoids grooves along the grid, pits and spikes.
     ///
-    /// The simulated storm is short, with far more rain and erosion than in nature: the product of rain and iterations matters. Water moves
-    /// at most one cell per iteration. The halo is three cells per iteration; put a `bake` after a filter with many iterations. The result
-    /// depends on the cell size. About 4 ns per sample and iteration.
+    /// The simulated storm is short, with far more rain and erosion than in nature: the product of rain and iterations
+    /// matters. Water moves at most one cell per iteration. The halo is three cells per iteration; put a `bake` after a
+    /// filter with many iterations. The result depends on the cell size. About 4 ns per sample and iteration.
     pub struct Pipes = "pipes", filter, revision 1;
     inputs {
         /// The initial heights, without water.
@@ -39,7 +40,8 @@ op! {
         erosion: f64 = 0.3, unit "1/s", range 0.0 to 10.0;
         /// Share of the excess sediment that is deposited per second.
         deposition: f64 = 0.3, unit "1/s", range 0.0 to 10.0;
-        /// Cross-section of a pipe per metre of the cell's side. It equals the water depth at which real waves have the model's wave speed.
+        /// Cross-section of a pipe per metre of the cell's side. It equals the water depth at which real waves have the
+        /// model's wave speed.
         pipe: f64 = 1.0, unit "m", range 1e-3 to 1000.0;
         /// Share of a pipe's flow that is lost per second.
         friction: f64 = 0.05, unit "1/s", range 0.0 to 10.0;

@@ -7,8 +7,8 @@ use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 
 op! {
-    /// Terrain ruggedness index (TRI): the square root of the sum of squared height differences to the eight neighbours (Riley, DeGloria
-    /// and Elliot 1999).
+    /// Terrain ruggedness index (TRI): the square root of the sum of squared height differences to the eight neighbors
+    /// (Riley, DeGloria and Elliot 1999).
     ///
     /// The index depends on the cell size: the same ground has a higher index at a larger cell size.
     pub struct Ruggedness = "ruggedness", filter, revision 1;

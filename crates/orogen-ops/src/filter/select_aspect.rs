@@ -12,8 +12,8 @@ use orogen_grid::parallel;
 op! {
     /// A mask by aspect: 1 where the ground faces a direction, falling smoothly to 0 away from it.
     ///
-    /// Use it for snow on northern slopes or rain from the west. Aspect is the downhill direction by Horn's method (1981). Level ground has
-    /// no aspect: the mask falls to 0 for slopes below `least_slope`.
+    /// Use it for snow on northern slopes or rain from the west. Aspect is the downhill direction by Horn's method
+    /// (1981). Level ground has no aspect: the mask falls to 0 for slopes below `least_slope`.
     pub struct SelectAspect = "select-aspect", filter, revision 1;
     inputs {
         /// The heights.

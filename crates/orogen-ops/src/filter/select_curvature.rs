@@ -23,9 +23,9 @@ choice! {
 op! {
     /// A mask by curvature: 1 inside a range, falling smoothly to 0 below and above it.
     ///
-    /// The curvature is that of the quadric through nine heights `scale` apart (Zevenbergen and Thorne 1987). It is positive where the
-    /// ground is convex; its unit is 1 over the radius of curvature. A large scale selects ridges and valleys, a small one selects details.
-    /// A scale below half a cell counts as one cell.
+    /// The curvature is that of the quadric through nine heights `scale` apart (Zevenbergen and Thorne 1987). It is
+    /// positive where the ground is convex; its unit is 1 over the radius of curvature. A large scale selects ridges
+    /// and valleys, a small one selects details. A scale below half a cell counts as one cell.
     pub struct SelectCurvature = "select-curvature", filter, revision 1;
     inputs {
         /// The heights.

@@ -11,7 +11,8 @@ use orogen_grid::parallel;
 op! {
     /// A mask by slope: 1 inside a range, falling smoothly to 0 below and above it.
     ///
-    /// The slope is Horn's (1981), as in `slope`. It depends on the cell size: the same ground is gentler at a larger cell size.
+    /// The slope is Horn's (1981), as in `slope`. It depends on the cell size: the same ground is gentler at a larger
+    /// cell size.
     pub struct SelectSlope = "select-slope", filter, revision 1;
     inputs {
         /// The heights.

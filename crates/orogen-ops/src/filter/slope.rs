@@ -20,8 +20,8 @@ choice! {
 op! {
     /// Slope of the source, taken as heights in metres, by Horn's 3 x 3 method (1981).
     ///
-    /// The slope depends on the cell size: the same ground is gentler at a larger cell size. The components along the axes are layers: they
-    /// tell the direction that the ground faces, and can displace other fields along it.
+    /// The slope depends on the cell size: the same ground is gentler at a larger cell size. The components along the
+    /// axes are layers: they tell the direction that the ground faces, and can displace other fields along it.
     pub struct Slope = "slope", filter, revision 1;
     inputs {
         /// The heights.

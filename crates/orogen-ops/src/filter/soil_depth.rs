@@ -9,19 +9,21 @@ use orogen_grid::grid::{Grid, Window};
 op! {
     /// Steady-state soil depth: the depth at which soil production from bedrock balances soil creep.
     ///
-    /// Rock turns into soil at the rate P0 exp(-h / h*) (Heimsath and others 1997). Soil creeps downhill with the flux q = K S / (1 - (S /
-    /// Sc)^2) (Roering, Kirchner and Dietrich 1999). h = h* ln(ratio P0 / div q) is the depth at which both are equal (Pelletier and
-    /// Rasmussen 2009). Soil is thin on crests, and thinner the sharper they are. There is none where more is removed than bare rock
-    /// produces, and none on slopes of Sc and above. Hollows and foot slopes, where soil accumulates, have no steady-state depth and get
-    /// `deepest`. Fluxes are taken through the sides of each cell, from 3 x 3 heights: noise in the heights becomes noise in the depth, so
-    /// blur rough ground first.
+    /// Rock turns into soil at the rate P0 exp(-h / h*) (Heimsath and others 1997). Soil creeps downhill with the flux
+    /// q = K S / (1 - (S / Sc)^2) (Roering, Kirchner and Dietrich 1999). h = h* ln(ratio P0 / div q) is the depth at
+    /// which both are equal (Pelletier and Rasmussen 2009). Soil is thin on crests, and thinner the sharper they are.
+    /// There is none where more is removed than bare rock produces, and none on slopes of Sc and above. Hollows and
+    /// foot slopes, where soil accumulates, have no steady-state depth and get `deepest`. Fluxes are taken through the
+    /// sides of each cell, from 3 x 3 heights: noise in the heights becomes noise in the depth, so blur rough ground
+    /// first.
     pub struct SoilDepth = "soil-depth", filter, revision 1;
     inputs {
         /// The heights.
         source: required,
     }
     params {
-        /// P0: soil production rate of bare rock. 77 m per million years was measured at Tennessee Valley (Heimsath and others 1997).
+        /// P0: soil production rate of bare rock. 77 m per million years was measured at Tennessee Valley (Heimsath and
+        /// others 1997).
         production: f64 = 7.7e-5, unit "m/yr", range 1e-9 to 1.0;
         /// h*: depth over which production falls by the factor e.
         decay: f64 = 0.43, unit "m", range 1e-3 to 100.0;

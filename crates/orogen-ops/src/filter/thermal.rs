@@ -8,13 +8,14 @@ use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 
 op! {
-    /// Thermal weathering: ground steeper than the talus angle slides down and accumulates below as straight scree slopes.
+    /// Thermal weathering: ground steeper than the talus angle slides down and accumulates below as straight scree
+    /// slopes.
     ///
-    /// After Musgrave, Kolb and Mace (1989). In each pass the material that crosses the side between two cells is a share of (1 - T / |g|)
-    /// g, where g is the slope there and T the tangent of the talus angle. This is the same in all directions; comparing a cell with its
-    /// eight neighbours would make octagonal cones. Mass is conserved. Material moves one cell per pass, so a cliff of n cells needs about
-    /// n^2 passes to become scree down to its foot. The halo is one sample per pass; where it grows too large, use `bake`. The result
-    /// depends on the cell size.
+    /// After Musgrave, Kolb and Mace (1989). In each pass the material that crosses the side between two cells is a
+    /// share of (1 - T / |g|) g, where g is the slope there and T the tangent of the talus angle. This is the same in
+    /// all directions; comparing a cell with its eight neighbors would make octagonal cones. Mass is conserved.
+    /// Material moves one cell per pass, so a cliff of n cells needs about n^2 passes to become scree down to its foot.
+    /// The halo is one sample per pass; where it grows too large, use `bake`. The result depends on the cell size.
     pub struct Thermal = "thermal", filter, revision 1;
     inputs {
         /// The heights.

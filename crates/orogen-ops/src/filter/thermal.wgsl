@@ -1,4 +1,4 @@
-// Thermal weathering: the height difference between neighbours at the stable slope, and the share that moves.
+// Thermal weathering: the height difference between neighbors at the stable slope, and the share that moves.
 // `frame.step` holds the plane that is read in its lower eight bits, and the one that is written in the next eight.
 // What crosses a side, by the height differences across and along it.
 fn moved(base: u32, across: f32, along: f32) -> f32 {

@@ -10,13 +10,13 @@ use orogen_grid::grid::{Grid, Window};
 use orogen_grid::parallel;
 
 op! {
-    /// Topographic position index (TPI): the height above the mean of a surrounding disc, and the slope position derived from it (Weiss
-    /// 2001).
+    /// Topographic position index (TPI): the height above the mean of a surrounding disc, and the slope position
+    /// derived from it (Weiss 2001).
     ///
-    /// The disc holds all samples within `radius`, including the centre; a radius below one cell counts as one cell. Weiss divides the
-    /// index by its standard deviation over the map. Here it is divided by the standard deviation of the heights in the disc (Wilson and
-    /// Gallant 2000), so that each sample depends only on the ground within the radius. Heights are rounded to 1/256 m. The time grows with
-    /// the radius.
+    /// The disc holds all samples within `radius`, including the center; a radius below one cell counts as one cell.
+    /// Weiss divides the index by its standard deviation over the map. Here it is divided by the standard deviation of
+    /// the heights in the disc (Wilson and Gallant 2000), so that each sample depends only on the ground within the
+    /// radius. Heights are rounded to 1/256 m. The time grows with the radius.
     pub struct TopographicPosition = "topographic-position", filter, revision 1;
     inputs {
         /// The heights.
@@ -31,8 +31,8 @@ op! {
         position: height, unit "m";
         /// Height above the mean in standard deviations of the heights in the disc; 0 on level ground.
         deviation: height;
-        /// Slope position: 1 ridge (deviation above 1), 2 upper slope (above 0.5), 3 middle slope, 4 flat (deviation as for 3, but a slope
-        /// of up to 5 degrees), 5 lower slope (below -0.5), 6 valley (below -1).
+        /// Slope position: 1 ridge (deviation above 1), 2 upper slope (above 0.5), 3 middle slope, 4 flat (deviation as
+        /// for 3, but a slope of up to 5 degrees), 5 lower slope (below -0.5), 6 valley (below -1).
         class: label;
     }
 }

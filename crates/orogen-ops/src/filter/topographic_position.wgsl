@@ -116,11 +116,11 @@ fn compare(base: u32, at: vec2<i32>) {
     // Only the lower 48 bits of the sum are known: the disc's own sum has fewer.
     sum.y = bitcast<u32>(bitcast<i32>(sum.y << 16u) >> 16u);
     let height = plane(0u, at);
-    let centre = counts(height);
-    // Relative to the centre, then to the mean, so that f32 suffices for what is left.
+    let center = counts(height);
+    // Relative to the center, then to the mean, so that f32 suffices for what is left.
     let n = f32(count);
-    let from_centre = rounded(minus(sum, times(vec2<u32>(count, 0u), centre))) / n;
-    let mean = centre + i32(round(from_centre));
+    let from_center = rounded(minus(sum, times(vec2<u32>(count, 0u), center))) / n;
+    let mean = center + i32(round(from_center));
     let rest = rounded(minus(sum, times(vec2<u32>(count, 0u), mean))) / n;
     let size_of_mean = u32(abs(mean));
     let square_of_mean = product(size_of_mean, size_of_mean);
@@ -129,7 +129,7 @@ fn compare(base: u32, at: vec2<i32>) {
     let total = minus(plus(squares, around), times(sum, 2 * mean));
     let variance = rounded(total) / n - rest * rest;
     // Heights are not always multiples of 1/256 m.
-    let position = (height - f32(centre) / 256.0) - from_centre / 256.0;
+    let position = (height - f32(center) / 256.0) - from_center / 256.0;
     // A variance below one unit is rounding.
     var deviation = 0.0;
     if (variance >= 1.0) {

@@ -58,8 +58,8 @@ impl Inflow {
     }
 }
 
-/// Computes the layers from complete receivers: every cell leads to an outlet, which has the code [`NONE`]. Areas are weighted by the factors of the
-/// `rain`, if they are given.
+/// Computes the layers from complete receivers: every cell leads to an outlet, which has the code [`NONE`]. Areas are
+/// weighted by the factors of the `rain`, if they are given.
 ///
 /// # Errors
 /// If the disk fails, or the work is cancelled.

@@ -62,7 +62,8 @@ impl Water<'_> {
         flats::resolve(self.heights, &self.tiling, self.sea, codes, self.progress)
     }
 
-    /// Computes areas, watersheds and orders from complete receivers. Areas are weighted by the factors of the `rain`, if they are given: the same as
+    /// Computes areas, watersheds and orders from complete receivers. Areas are weighted by the factors of the `rain`,
+    /// if they are given: the same as
     /// [`hydrology::accumulation::accumulate_rain_with`](crate::hydrology::accumulation::accumulate_rain_with).
     ///
     /// # Errors

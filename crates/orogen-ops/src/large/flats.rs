@@ -7,7 +7,7 @@
 use super::tiling::{Border, Queue, Tiling};
 use orogen_grid::error::Result;
 use orogen_grid::grid::Grid;
-use orogen_grid::hydrology::direction::{NONE, STEPS, hashed, neighbour, one_of, strides};
+use orogen_grid::hydrology::direction::{NONE, STEPS, hashed, neighbor, one_of, strides};
 use orogen_grid::hydrology::outlets::Outlets;
 use orogen_grid::hydrology::receivers::Receivers;
 use orogen_grid::hydrology::steepest::{self, Descent};
@@ -182,21 +182,21 @@ impl<'a> FlatTile<'a> {
         Ok(FlatTile { tiling, heights, receivers, strides, flat, places, own, numbers })
     }
 
-    /// The flat neighbours of a cell with the same height: their indices and directions.
+    /// The flat neighbors of a cell with the same height: their indices and directions.
     fn beside(&self, cell: usize) -> impl Iterator<Item = (usize, usize)> {
         let h = self.heights.data();
         let level = move |(k, stride): (usize, &isize)| {
-            let n = neighbour(cell, *stride);
+            let n = neighbor(cell, *stride);
             (h[n] == h[cell] && self.places[n] != NO_PLACE).then(|| (k, self.places[n] as usize))
         };
         self.strides.iter().enumerate().filter_map(level)
     }
 
-    /// The directions with a neighbour as high as the cell that has a receiver of its own.
+    /// The directions with a neighbor as high as the cell that has a receiver of its own.
     fn drained_beside(&self, cell: usize) -> u8 {
         let h = self.heights.data();
         let drains = |n: usize| h[n] == h[cell] && self.places[n] == NO_PLACE;
-        (0..8).filter(|k| drains(neighbour(cell, self.strides[*k]))).fold(0, |set, k| set | 1 << k)
+        (0..8).filter(|k| drains(neighbor(cell, self.strides[*k]))).fold(0, |set, k| set | 1 << k)
     }
 
     /// 1 for each flat cell of the tile for which `at` is true, given its index among flat cells and in the tile.
@@ -207,7 +207,7 @@ impl<'a> FlatTile<'a> {
 
     fn away_seeds(&self) -> Vec<u64> {
         let h = self.heights.data();
-        self.seeds(|_, cell| self.strides.iter().any(|stride| h[neighbour(cell, *stride)] > h[cell]))
+        self.seeds(|_, cell| self.strides.iter().any(|stride| h[neighbor(cell, *stride)] > h[cell]))
     }
 
     fn rim_seeds(&self) -> Vec<u64> {

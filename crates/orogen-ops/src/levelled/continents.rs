@@ -14,23 +14,26 @@ use orogen_grid::multiscale::level::Level;
 use orogen_grid::multiscale::refinement::{MAX_LEVELS, Refinement};
 
 op! {
-    /// Eroded land without bounds: continents with ranges, plains and plateaus, coasts, inland basins with lakes, and rivers from their sources
-    /// to the sea.
+    /// Eroded land without bounds: continents with ranges, plains and plateaus, coasts, inland basins with lakes, and
+    /// rivers from their sources to the sea.
     ///
-    /// The land is made level by level. The coarsest level places sea, uplift and the courses of the largest rivers by noise. Each finer level has half
-    /// the cell: rivers keep their course, area and fall, and new branches grow between them, with slopes by the steady state of the stream power
-    /// law, S = (U/K) A^-m, limited on hillslopes. A window of a level depends on the coarser level around it only, so any window is made by
-    /// itself, a river of 4000 km runs through tiles that know nothing of each other, and a larger cell shows the same land coarsely. Sea
-    /// level is at 0.
+    /// The land is made level by level. The coarsest level places sea, uplift and the courses of the largest rivers by
+    /// noise. Each finer level has half the cell: rivers keep their course, area and fall, and new branches grow
+    /// between them, with slopes by the steady state of the stream power law, S = (U/K) A^-m, limited on hillslopes. A
+    /// window of a level depends on the coarser level around it only, so any window is made by itself, a river of 4000
+    /// km runs through tiles that know nothing of each other, and a larger cell shows the same land coarsely. Sea level
+    /// is at 0.
     ///
-    /// Related: hydrology-based terrain (Génevaux and others 2013), Dendry (Gaillard and others 2019), multi-scale terrain amplification
-    /// (Schott and others 2024).
+    /// Related: hydrology-based terrain (Génevaux and others 2013), Dendry (Gaillard and others 2019), multi-scale
+    /// terrain amplification (Schott and others 2024).
     pub struct Continents = "continents", levelled, revision 3;
     inputs {
-        /// Distance to the shore in metres, positive on land, in place of the op's own continents. Lakes and rivers keep what they need; rivers end in its sea or, where
-        /// a coarse level saw a sea that is not there, in a lake. Where it is NaN, the op's own is used.
+        /// Distance to the shore in metres, positive on land, in place of the op's own continents. Lakes and rivers
+        /// keep what they need; rivers end in its sea or, where a coarse level saw a sea that is not there, in a lake.
+        /// Where it is NaN, the op's own is used.
         shore: optional,
-        /// Uplift over erodibility in place of the op's own ranges and plains: about 1.5 in high mountains, 0.5 in hills, 0.1 in plains. Where it is NaN, the op's own is used.
+        /// Uplift over erodibility in place of the op's own ranges and plains: about 1.5 in high mountains, 0.5 in
+        /// hills, 0.1 in plains. Where it is NaN, the op's own is used.
         uplift: optional,
         /// Factor of the stable slope of hillsides, greater where rock is harder. Default: 1.
         stability_factor: optional,
@@ -38,7 +41,8 @@ op! {
         creep_factor: optional,
         /// Factor of the width of valley floors. Default: 1.
         floor_factor: optional,
-        /// Factor of the rain: `flow` and the slopes of rivers follow the discharge, which is that of a larger drainage area where more rain falls. Default: 1.
+        /// Factor of the rain: `flow` and the slopes of rivers follow the discharge, which is that of a larger drainage
+        /// area where more rain falls. Default: 1.
         rain: optional,
     }
     params {
@@ -46,15 +50,18 @@ op! {
         seed: u64 = 0;
         /// Cell of the finest level of valleys.
         cell: f64 = 60.0, unit "m", range 1e-2 to 1e4;
-        /// Number of times the coarsest cell is halved. Continents and ranges are placed at the coarsest cell: 122.88 km by default.
+        /// Number of times the coarsest cell is halved. Continents and ranges are placed at the coarsest cell: 122.88
+        /// km by default.
         halvings: u32 = 11, range 1 to 24;
         /// Share of land, about.
         land: f64 = 0.37, range 0.05 to 0.95;
         /// Factor of the uplift, and so of heights and slopes.
         relief: f64 = 1.0, range 0.01 to 10.0;
-        /// Distance over which soil creep rounds hillsides at `cell`, in cells. Detail levels have creep, too, unless it is 0.
+        /// Distance over which soil creep rounds hillsides at `cell`, in cells. Detail levels have creep, too, unless
+        /// it is 0.
         creep: f64 = 1.0, range 0.0 to 5.0;
-        /// Factor of the variation of the rock, which each level adds to: 0 makes even slopes and straight side valleys.
+        /// Factor of the variation of the rock, which each level adds to: 0 makes even slopes and straight side
+        /// valleys.
         variation: f64 = 1.0, range 0.0 to 4.0;
         /// Factor of the size of continents and ranges.
         size: f64 = 1.0, range 0.01 to 100.0;
@@ -62,13 +69,16 @@ op! {
         basins: f64 = 0.8, range 0.0 to 1.0;
         /// Drainage area from which on there is a river, for `width` and `depth`.
         stream: f64 = 1e6, unit "m^2", range 0.0 to 1e15;
-        /// Runoff from the ground: a river with discharge Q (m^3/s) is 5 Q^0.5 m wide and 0.3 Q^0.4 m deep (Leopold and Maddock 1953).
+        /// Runoff from the ground: a river with discharge Q (m^3/s) is 5 Q^0.5 m wide and 0.3 Q^0.4 m deep (Leopold and
+        /// Maddock 1953).
         runoff: f64 = 0.5, unit "m/yr", range 0.0 to 1000.0;
-        /// Number of further halvings, below `cell`: 6 make levels from 30 m to 0.94 m. Their slopes are those of the finest valleys, with gullies on them,
-        /// rough rock where they are steep, and beds and banks of rivers that are wider than a sample. Finer samples are interpolated.
+        /// Number of further halvings, below `cell`: 6 make levels from 30 m to 0.94 m. Their slopes are those of the
+        /// finest valleys, with gullies on them, rough rock where they are steep, and beds and banks of rivers that are
+        /// wider than a sample. Finer samples are interpolated.
         details: u32 = 0, range 0 to 10;
-        /// How frequent lakes with an outlet are along rivers, from none to many. Their regions are about 100 km wide; there are few in plains. They
-        /// begin at cells of 5 km to 400 m: levels that begin with a smaller cell have none.
+        /// How frequent lakes with an outlet are along rivers, from none to many. Their regions are about 100 km wide;
+        /// there are few in plains. They begin at cells of 5 km to 400 m: levels that begin with a smaller cell have
+        /// none.
         lakes: f64 = 0.0, range 0.0 to 1.0;
     }
     layers {
@@ -86,20 +96,24 @@ op! {
         width: label, unit "m";
         /// Depth of the river from bank to bed; 0 outside rivers.
         depth: label, unit "m";
-        /// Depth of the water over the ground in a flood; 0 where there is none. It is max(0, b + 3 d - z) over ground of height z, with the height b of the banks and the
-        /// `depth` d of the first river downstream (height above the nearest drainage; Rennó and others 2008, Nobre and others 2011), and 4 d in rivers: about
-        /// twice as deep as between full banks (Rosgen 1994). It reaches at most 4000 m or 96 samples from a river.
+        /// Depth of the water over the ground in a flood; 0 where there is none. It is max(0, b + 3 d - z) over ground
+        /// of height z, with the height b of the banks and the `depth` d of the first river downstream (height above
+        /// the nearest drainage; Rennó and others 2008, Nobre and others 2011), and 4 d in rivers: about twice as deep
+        /// as between full banks (Rosgen 1994). It reaches at most 4000 m or 96 samples from a river.
         floodplain: height, unit "m";
-        /// Thickness of the sediment of rivers on valley floors; 0 on hillsides and in standing water. It is 100 f / (100 + f) m for f = 0.25 min(e, w - r): below the
-        /// floor the sides of the valley go on with a slope of 0.25 (Jaboyedoff and Derron 2005). e is the distance to the foot of the hillside, r that from the
-        /// river, and w half the width of the river's floor, at most 4000 m or 128 samples.
+        /// Thickness of the sediment of rivers on valley floors; 0 on hillsides and in standing water. It is 100 f /
+        /// (100 + f) m for f = 0.25 min(e, w - r): below the floor the sides of the valley go on with a slope of 0.25
+        /// (Jaboyedoff and Derron 2005). e is the distance to the foot of the hillside, r that from the river, and w
+        /// half the width of the river's floor, at most 4000 m or 128 samples.
         sediment: height, unit "m";
-        /// Height of the node in the cell south-east of the sample; the water level of water. It falls from each node to its receiver. At `cell`
-        /// nodes are at the samples; on other levels the other layers are interpolated between them, or are those of the nearest one.
+        /// Height of the node in the cell south-east of the sample; the water level of water. It falls from each node
+        /// to its receiver. At `cell` nodes are at the samples; on other levels the other layers are interpolated
+        /// between them, or are those of the nearest one.
         node_height: label, unit "m";
         /// Drainage area of this node, including its cell.
         node_flow: label, unit "m^2";
-        /// Flow direction of this node, to the node in the next cell; 8 in water, 16 more than the direction in lakes with an outlet.
+        /// Flow direction of this node, to the node in the next cell; 8 in water, 16 more than the direction in lakes
+        /// with an outlet.
         node_receiver: label;
         /// Distance of this node east of the sample.
         node_east: label, unit "m";

@@ -101,7 +101,8 @@ pub struct Reading {
     pub sea_level: f32,
 }
 
-/// The layers height, flow, lake, surface, receiver, width, depth, floodplain and sediment, and those of the nodes, if the op has them: height, flow, receiver, east and south.
+/// The layers height, flow, lake, surface, receiver, width, depth, floodplain and sediment, and those of the nodes, if
+/// the op has them: height, flow, receiver, east and south.
 ///
 /// # Errors
 /// If the planes are not those of a level, or the work was cancelled.

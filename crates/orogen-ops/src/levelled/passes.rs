@@ -43,7 +43,7 @@ const SCRATCH: usize = 12;
 const LAKE_SCRATCH: usize = 14;
 const SCRATCH_ABOVE: usize = 5;
 
-/// Samples that a call reads, about: of few planes, of the neighbours, and of the links around a cell.
+/// Samples that a call reads, about: of few planes, of the neighbors, and of the links around a cell.
 pub(super) const FEW: usize = 10;
 pub(super) const AROUND: usize = 40;
 const LINKS_AROUND: usize = 200;
@@ -68,7 +68,8 @@ pub struct GivenInputs {
     pub rain: Option<usize>,
 }
 
-/// How a graphics card computes a level of an op whose lattices are `ahead` of the samples of windows by this number of samples.
+/// How a graphics card computes a level of an op whose lattices are `ahead` of the samples of windows by this number of
+/// samples.
 #[must_use]
 pub fn lower(
     refinement: &Refinement,
@@ -182,7 +183,7 @@ impl List {
         self.passes.push(LevelPass { code, is_above: true, pass });
     }
 
-    /// One pass further from the edge, over neighbours.
+    /// One pass further from the edge, over neighbors.
     fn further(&mut self, code: &'static str, function: &'static str, step: u32) {
         self.inset += 1;
         self.pass(code, function, step, AROUND);

@@ -6,12 +6,13 @@ use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
 
 op! {
-    /// The source, evaluated once over the whole world at a fixed cell size and stored. Readers interpolate between the stored samples.
+    /// The source, evaluated once over the whole world at a fixed cell size and stored. Readers interpolate between the
+    /// stored samples.
     ///
-    /// Bake what is expensive, what must not change with the requested resolution (a filter gives different results at different cell
-    /// sizes), or what would need a halo larger than a tile. Values between samples are interpolated as the source's layer is (heights by a
-    /// cubic). At the samples themselves readers get the stored values bit for bit. Detail finer than the cell is lost. `resample` computes only what a
-    /// window needs, also in unbounded worlds.
+    /// Bake what is expensive, what must not change with the requested resolution (a filter gives different results at
+    /// different cell sizes), or what would need a halo larger than a tile. Values between samples are interpolated as
+    /// the source's layer is (heights by a cubic). At the samples themselves readers get the stored values bit for bit.
+    /// Detail finer than the cell is lost. `resample` computes only what a window needs, also in unbounded worlds.
     pub struct Bake = "bake", solver, revision 1;
     margin;
     inputs {

@@ -12,21 +12,24 @@ use orogen_grid::hydrology::least_cost::{self, Limits};
 choice! {
     /// Route of the breach channels.
     pub enum Way {
-        /// Along the valleys of the ground, from the bottom of the depression over its lowest spill point (Cordonnier, Bovy and Braun
-        /// 2019).
+        /// Along the valleys of the ground, from the bottom of the depression over its lowest spill point (Cordonnier,
+        /// Bovy and Braun 2019).
         Valley = "valley",
-        /// Along the path with the least excavation to lower ground, for example through a thin dam rather than around it (Lindsay 2016).
+        /// Along the path with the least excavation to lower ground, for example through a thin dam rather than around
+        /// it (Lindsay 2016).
         LeastCost = "least-cost",
     }
 }
 
 op! {
-    /// The source with every depression drained by a channel cut through its rim, or filled where the channel would be too deep.
+    /// The source with every depression drained by a channel cut through its rim, or filled where the channel would be
+    /// too deep.
     ///
-    /// Channels follow the valleys of the ground from the bottom of the depression over its spill point (Cordonnier, Bovy and Braun 2019),
-    /// or the path of least excavation (Lindsay 2016). Where the cut would be deeper than `deepest`, the depression is first filled as far
-    /// as necessary (`way = "valley"`) or filled completely (`"least-cost"`). In the result water never runs uphill; channel beds and
-    /// filled ground are level. Time and memory grow with the world: 30 bytes per cell for `"valley"`, 60 for `"least-cost"`.
+    /// Channels follow the valleys of the ground from the bottom of the depression over its spill point (Cordonnier,
+    /// Bovy and Braun 2019), or the path of least excavation (Lindsay 2016). Where the cut would be deeper than
+    /// `deepest`, the depression is first filled as far as necessary (`way = "valley"`) or filled completely
+    /// (`"least-cost"`). In the result water never runs uphill; channel beds and filled ground are level. Time and
+    /// memory grow with the world: 30 bytes per cell for `"valley"`, 60 for `"least-cost"`.
     pub struct Breach = "breach", solver, revision 1;
     margin;
     inputs {

@@ -10,18 +10,19 @@ use orogen_grid::grid::{Grid, Window};
 op! {
     /// Mountains with branching ridges, made by diffusion-limited aggregation (Witten and Sander 1981) at many scales.
     ///
-    /// On a grid of 12 cells random walkers move until they attach to the aggregate that grows from the world's centre. Each finer grid
-    /// takes over the aggregate, slightly bent, and continues the growth, so that coarse branches become ranges and fine ones their spurs.
-    /// At each scale the height of a ridge grows with the distance d from its tip, by 1 - 1 / (1 + d / `taper`). The scales are added;
-    /// coarse ones are smoothed at each refinement. The grid spacing halves from the world's longer side down to its cell, so a smaller
-    /// cell adds finer spurs and leaves the rest in place. The result has no valleys carved by water: put `stream-power` after it. Time
-    /// grows with the world, about 0.3 microseconds per cell; memory is up to 120 bytes per cell.
+    /// On a grid of 12 cells random walkers move until they attach to the aggregate that grows from the world's center.
+    /// Each finer grid takes over the aggregate, slightly bent, and continues the growth, so that coarse branches
+    /// become ranges and fine ones their spurs. At each scale the height of a ridge grows with the distance d from its
+    /// tip, by 1 - 1 / (1 + d / `taper`). The scales are added; coarse ones are smoothed at each refinement. The grid
+    /// spacing halves from the world's longer side down to its cell, so a smaller cell adds finer spurs and leaves the
+    /// rest in place. The result has no valleys carved by water: put `stream-power` after it. Time grows with the
+    /// world, about 0.3 microseconds per cell; memory is up to 120 bytes per cell.
     pub struct Dla = "dla", solver, revision 1;
     margin;
     params {
         /// Height of the highest summit.
         height: f64 = 2500.0, unit "m", range 0.0 to 1e6;
-        /// Extent of the aggregate from the centre, as a share of the distance to the world's edges.
+        /// Extent of the aggregate from the center, as a share of the distance to the world's edges.
         reach: f64 = 0.95, range 0.05 to 1.0;
         /// Share of the ground covered by ridges at each scale. Higher values give a denser network of spurs.
         density: f64 = 0.2, range 0.01 to 0.6;
@@ -62,7 +63,7 @@ impl Solver for Dla {
         let samples = map.into_iter().map(|h| h * factor).collect();
         let map = Grid::from_data(Window::new(across, down, 1.0), samples)
             .unwrap_or_else(|| Grid::filled(Window::new(1, 1, 1.0), 0.0));
-        // Cells of the relief per cell of the world, from centre to centre.
+        // Cells of the relief per cell of the world, from center to center.
         let along = |i: i64, count: usize| ((i as f64 / longest * fine) - 0.5).clamp(0.0, count as f64 - 1.0);
         let rows: Vec<f64> = (0..padded.height).map(|j| along(padded.y + j as i64 - domain.y, down)).collect();
         let columns: Vec<f64> = (0..padded.width).map(|i| along(padded.x + i as i64 - domain.x, across)).collect();

@@ -16,28 +16,29 @@ use orogen_grid::hydrology::{drainage, fill, strahler, watersheds};
 choice! {
     /// Flow routing through depressions.
     pub enum Over {
-        /// Carving: flow crosses a depression along its valleys to the pit and from there back up to the spill point (Cordonnier, Bovy and
-        /// Braun 2019).
+        /// Carving: flow crosses a depression along its valleys to the pit and from there back up to the spill point
+        /// (Cordonnier, Bovy and Braun 2019).
         Bed = "bed",
-        /// Filling: flow is routed on the filled ground. On level water it follows two integer gradients, away from higher ground and
-        /// towards the outlet (Barnes, Lehman and Mulla 2014); ties are broken by a hash.
+        /// Filling: flow is routed on the filled ground. On level water it follows two integer gradients, away from
+        /// higher ground and towards the outlet (Barnes, Lehman and Mulla 2014); ties are broken by a hash.
         Surface = "surface",
     }
 }
 
 op! {
-    /// Drainage of the source by steepest descent (D8): each cell drains to its steepest lower neighbour (O'Callaghan and Mark 1984).
+    /// Drainage of the source by steepest descent (D8): each cell drains to its steepest lower neighbor (O'Callaghan
+    /// and Mark 1984).
     ///
-    /// Every cell drains to the sea or to the world's border. Ties are broken by a hash of the cell's position. Areas are counted in whole
-    /// cells, so they are exact; with `rain` in 65536ths of a cell. Time and memory grow with the world, 54 bytes per cell; with less memory available, flow is routed tile by
-    /// tile on disk (Barnes 2016).
+    /// Every cell drains to the sea or to the world's border. Ties are broken by a hash of the cell's position. Areas
+    /// are counted in whole cells, so they are exact; with `rain` in 65536ths of a cell. Time and memory grow with the
+    /// world, 54 bytes per cell; with less memory available, flow is routed tile by tile on disk (Barnes 2016).
     pub struct Drainage = "drainage", solver, revision 1;
     margin;
     inputs {
         /// The heights.
         source: required,
-        /// Factor of the rain, 0.01 to 100: `flow` is the drainage area with the same discharge where the factor is 1, and `stream` is compared with
-        /// that. Default: 1.
+        /// Factor of the rain, 0.01 to 100: `flow` is the drainage area with the same discharge where the factor is 1,
+        /// and `stream` is compared with that. Default: 1.
         rain: optional,
     }
     params {
@@ -156,7 +157,8 @@ impl Solver for Drainage {
     }
 }
 
-/// Number of planes beside inputs, layers, the routing and counters, and the plane of the filled heights, in the shaders.
+/// Number of planes beside inputs, layers, the routing and counters, and the plane of the filled heights, in the
+/// shaders.
 const SCRATCH: usize = 3;
 const FILLED: u32 = 6;
 

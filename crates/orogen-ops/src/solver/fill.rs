@@ -13,10 +13,10 @@ use orogen_grid::hydrology::fill;
 op! {
     /// The source with every depression filled to the level of its spill point.
     ///
-    /// The result is the lowest surface on which water reaches the sea or the world's border without running uphill. It equals that of
-    /// Priority-Flood without an epsilon (Barnes, Lehman and Mulla 2014) bit for bit and is computed by flooding the graph of basins
-    /// (Cordonnier, Bovy and Braun 2019). Filled ground is level. Time and memory grow with the world, 24 bytes per cell; with less memory
-    /// available, filling works tile by tile on disk (Barnes 2016).
+    /// The result is the lowest surface on which water reaches the sea or the world's border without running uphill. It
+    /// equals that of Priority-Flood without an epsilon (Barnes, Lehman and Mulla 2014) bit for bit and is computed by
+    /// flooding the graph of basins (Cordonnier, Bovy and Braun 2019). Filled ground is level. Time and memory grow
+    /// with the world, 24 bytes per cell; with less memory available, filling works tile by tile on disk (Barnes 2016).
     pub struct Fill = "fill", solver, revision 1;
     margin;
     inputs {

@@ -14,12 +14,13 @@ use orogen_grid::hydrology::accumulation::accumulate_with;
 use orogen_grid::hydrology::fill;
 
 op! {
-    /// Height above nearest drainage (HAND), and the distance to the nearest stream along the flow and in a straight line.
+    /// Height above nearest drainage (HAND), and the distance to the nearest stream along the flow and in a straight
+    /// line.
     ///
-    /// Flow is routed as in `drainage` (D8, carving through depressions). Streams are the cells with a drainage area of at least `stream`.
-    /// The height is that of the filled source minus that of the first stream cell downstream (Rennó and others 2008, Nobre and others
-    /// 2011), so it is never negative. Ground that reaches the sea or the world's border before a stream is measured down to that outlet.
-    /// Time and memory grow with the world, 56 bytes per cell.
+    /// Flow is routed as in `drainage` (D8, carving through depressions). Streams are the cells with a drainage area of
+    /// at least `stream`. The height is that of the filled source minus that of the first stream cell downstream (Rennó
+    /// and others 2008, Nobre and others 2011), so it is never negative. Ground that reaches the sea or the world's
+    /// border before a stream is measured down to that outlet. Time and memory grow with the world, 56 bytes per cell.
     pub struct HeightAboveDrainage = "height-above-drainage", solver, revision 1;
     margin;
     inputs {
@@ -35,9 +36,11 @@ op! {
     layers {
         /// Height above the stream that the ground drains to; 0 in streams.
         height: height, unit "m";
-        /// Length of the flow path to that stream, with diagonal steps counted as the square root of 2 cells; 0 in streams.
+        /// Length of the flow path to that stream, with diagonal steps counted as the square root of 2 cells; 0 in
+        /// streams.
         flow_distance: height, unit "m";
-        /// Straight-line distance to the nearest stream. In a world without streams it is the length of the world's diagonal.
+        /// Straight-line distance to the nearest stream. In a world without streams it is the length of the world's
+        /// diagonal.
         distance: height, unit "m";
     }
 }

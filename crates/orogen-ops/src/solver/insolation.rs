@@ -10,13 +10,14 @@ use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
 
 op! {
-    /// Solar energy on the source, on an average day of a period, under a clear sky: direct, diffuse and reflected light, with cast
-    /// shadows.
+    /// Solar energy on the source, on an average day of a period, under a clear sky: direct, diffuse and reflected
+    /// light, with cast shadows.
     ///
-    /// Clear-sky model of the European Solar Radiation Atlas (Rigollier, Bauer and Wald 2000), with Muneer's model (1990) of diffuse light
-    /// on slopes. The sun's position follows Spencer's series (1971), in true solar time. One day represents at most 30 days, and the
-    /// middle of each `step` represents the step. Shadows have no maximum length; the earth's curvature is neglected. Time grows with the
-    /// world and the number of sun positions: about 25 per day, 300 for a year. Memory is 28 bytes per cell.
+    /// Clear-sky model of the European Solar Radiation Atlas (Rigollier, Bauer and Wald 2000), with Muneer's model
+    /// (1990) of diffuse light on slopes. The sun's position follows Spencer's series (1971), in true solar time. One
+    /// day represents at most 30 days, and the middle of each `step` represents the step. Shadows have no maximum
+    /// length; the earth's curvature is neglected. Time grows with the world and the number of sun positions: about 25
+    /// per day, 300 for a year. Memory is 28 bytes per cell.
     pub struct Insolation = "insolation", solver, revision 1;
     margin;
     inputs {
@@ -26,7 +27,8 @@ op! {
     params {
         /// Latitude; positive north of the equator.
         latitude: f64 = 45.0, unit "degrees", range -90.0 to 90.0;
-        /// First and last day of the year, 1 to 365. If the first is greater than the last, the period includes the turn of the year.
+        /// First and last day of the year, 1 to 365. If the first is greater than the last, the period includes the
+        /// turn of the year.
         days: [f64; 2] = [1.0, 365.0], range 1.0 to 365.0;
         /// Maximum time step within a day.
         step: f64 = 0.5, unit "h", range 0.01 to 6.0;

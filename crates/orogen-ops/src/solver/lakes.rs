@@ -11,11 +11,12 @@ use orogen_grid::grid::Window;
 use orogen_grid::hydrology::lakes;
 
 op! {
-    /// Depressions of the source filled with water up to their spill point. Small depressions are filled with ground instead.
+    /// Depressions of the source filled with water up to their spill point. Small depressions are filled with ground
+    /// instead.
     ///
-    /// Every lake has an outlet that drains, and all other land drains to a lake, the sea or the world's border. Ground in depressions too
-    /// small for a lake is raised to a gentle slope of 1 in 10 000 until water runs off. Time and memory grow with the world, 35 bytes per
-    /// cell.
+    /// Every lake has an outlet that drains, and all other land drains to a lake, the sea or the world's border. Ground
+    /// in depressions too small for a lake is raised to a gentle slope of 1 in 10 000 until water runs off. Time and
+    /// memory grow with the world, 35 bytes per cell.
     pub struct Lakes = "lakes", solver, revision 1;
     margin;
     inputs {

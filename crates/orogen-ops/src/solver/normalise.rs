@@ -8,10 +8,11 @@ use orogen_grid::parallel;
 use orogen_noise::shader::function::Shader;
 
 op! {
-    /// The source scaled linearly so that its minimum over the whole world becomes `low` and its maximum becomes `high`.
+    /// The source scaled linearly so that its minimum over the whole world becomes `low` and its maximum becomes
+    /// `high`.
     ///
-    /// Minimum and maximum are computed once, on the world's own lattice; all tiles at all resolutions are scaled by the same two values. A
-    /// source without relief becomes `low`. Samples that are not finite are ignored.
+    /// Minimum and maximum are computed once, on the world's own lattice; all tiles at all resolutions are scaled by
+    /// the same two values. A source without relief becomes `low`. Samples that are not finite are ignored.
     pub struct Normalise = "normalise", solver, revision 1;
     margin;
     inputs {
@@ -86,7 +87,8 @@ fn join(a: (f32, f32), b: (f32, f32)) -> (f32, f32) {
     (a.0.min(b.0), a.1.max(b.1))
 }
 
-/// Minimum and maximum of the finite samples. They do not depend on the order of the samples, so the rows may be processed in parallel.
+/// Minimum and maximum of the finite samples. They do not depend on the order of the samples, so the rows may be
+/// processed in parallel.
 fn range_of(tile: &Grid) -> (f32, f32) {
     const SAMPLES: usize = 1 << 16;
     let range = |samples: &[f32]| {

@@ -9,16 +9,19 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
 
 op! {
-    /// Rain of a year by the linear theory of orographic precipitation (Smith and Barstad 2004): it is wet where the wind blows uphill, and dry in the lee of mountains.
+    /// Rain of a year by the linear theory of orographic precipitation (Smith and Barstad 2004): it is wet where the
+    /// wind blows uphill, and dry in the lee of mountains.
     ///
-    /// Air that the ground lifts condenses water, which drifts with the wind while it turns into rain and falls; descending air takes water up. The theory is a factor for each wave of
-    /// the heights: P = Cw i sigma h / ((1 - i m Hw) (1 + i sigma tau_c) (1 + i sigma tau_f)) with the intrinsic frequency sigma and the vertical wavenumber m of
-    /// the wave. The result is multiplied by `rain_hours` and added to `background`; negative sums become 0. The sea counts as level. The
-    /// air does not lose the water that it rains: behind a range all sea winds are alike.
+    /// Air that the ground lifts condenses water, which drifts with the wind while it turns into rain and falls;
+    /// descending air takes water up. The theory is a factor for each wave of the heights: P = Cw i sigma h / ((1 - i m
+    /// Hw) (1 + i sigma tau_c) (1 + i sigma tau_f)) with the intrinsic frequency sigma and the vertical wavenumber m of
+    /// the wave. The result is multiplied by `rain_hours` and added to `background`; negative sums become 0. The sea
+    /// counts as level. The air does not lose the water that it rains: behind a range all sea winds are alike.
     ///
-    /// Beyond the sides of the solved domain heights change smoothly to those of the opposite side; with a `margin` this happens further from the world. Rain varies over some
-    /// kilometres, so a `cell` of 1 to 2 km is enough. Time grows with the domain, about 0.3 microseconds per sample; memory is 20 to 150 bytes per sample, more in small worlds, because sides
-    /// become powers of two after a strip is added.
+    /// Beyond the sides of the solved domain heights change smoothly to those of the opposite side; with a `margin`
+    /// this happens further from the world. Rain varies over some kilometres, so a `cell` of 1 to 2 km is enough. Time
+    /// grows with the domain, about 0.3 microseconds per sample; memory is 20 to 150 bytes per sample, more in small
+    /// worlds, because sides become powers of two after a strip is added.
     pub struct OrographicRain = "orographic-rain", solver, revision 1;
     margin;
     inputs {
@@ -30,7 +33,8 @@ op! {
         wind_speed: f64 = 15.0, unit "m/s", range 0.0 to 100.0;
         /// Direction that the wind comes from, clockwise from north: 270 is a west wind.
         wind_direction: f64 = 270.0, unit "degrees", range -360.0 to 360.0;
-        /// Nm: moist stability frequency. Stable air (0.01) flows around the ground more than over it: there is less rain, and it begins before the mountain.
+        /// Nm: moist stability frequency. Stable air (0.01) flows around the ground more than over it: there is less
+        /// rain, and it begins before the mountain.
         stability: f64 = 0.005, unit "1/s", range 0.0 to 0.1;
         /// tau_c: time in which cloud water turns into rain and snow, 200 to 2000 s.
         conversion_time: f64 = 1000.0, unit "s", range 0.0 to 1e5;

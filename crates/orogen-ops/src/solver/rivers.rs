@@ -11,11 +11,12 @@ use orogen_grid::hydrology::rivers::{Channel, carve_with};
 use orogen_grid::hydrology::{breach, strahler};
 
 op! {
-    /// Rivers where the drainage area is large enough, with beds cut into the source that descend all the way downstream.
+    /// Rivers where the drainage area is large enough, with beds cut into the source that descend all the way
+    /// downstream.
     ///
-    /// Depressions are drained first, as by `breach`. A river with discharge Q (m^3/s) is `width` Q^0.5 metres wide and `depth` Q^0.4
-    /// metres deep (Leopold and Maddock 1953). Its bed is cut by that depth into the cells that it crosses, whatever its width. Time and
-    /// memory grow with the world, 40 bytes per cell.
+    /// Depressions are drained first, as by `breach`. A river with discharge Q (m^3/s) is `width` Q^0.5 metres wide and
+    /// `depth` Q^0.4 metres deep (Leopold and Maddock 1953). Its bed is cut by that depth into the cells that it
+    /// crosses, whatever its width. Time and memory grow with the world, 40 bytes per cell.
     pub struct Rivers = "rivers", solver, revision 1;
     margin;
     inputs {

@@ -1,8 +1,9 @@
 //! Drainage on a graphics card: the passes of `routing.wgsl`.
 //!
-//! Depressions are drained as on the processor, by the passes between basins, but the spanning tree of basins is found by Boruvka's algorithm, whose rounds run
-//! for all basins at once (compare Jain, Kerbl, Gain, Finley and Cordonnier, "FastFlow: GPU acceleration of flow and depression routing for landscape
-//! simulation", 2024). Paths are followed by pointer doubling.
+//! Depressions are drained as on the processor, by the passes between basins, but the spanning tree of basins is found
+//! by Boruvka's algorithm, whose rounds run for all basins at once (compare Jain, Kerbl, Gain, Finley and Cordonnier,
+//! "FastFlow: GPU acceleration of flow and depression routing for landscape simulation", 2024). Paths are followed by
+//! pointer doubling.
 
 use crate::lower::Passes;
 use orogen_grid::grid::Window;
@@ -112,7 +113,8 @@ fn counter_planes(padded: &Window) -> usize {
 /// The farthest that cells of flats look for the rim, in cells.
 const FARTHEST: usize = 512;
 
-/// Number of rounds over basins in a step that begins with drained ground: there are few pits then. If basins are left, their pits wait for the next step.
+/// Number of rounds over basins in a step that begins with drained ground: there are few pits then. If basins are left,
+/// their pits wait for the next step.
 pub(crate) const FEW_ROUNDS: usize = 5;
 
 /// Number of rounds over basins that drain everything: each at least halves the basins.
@@ -145,7 +147,8 @@ pub(crate) enum Flats {
     Basins,
 }
 
-/// `passes`, and those that find the receivers of all cells from the heights in a plane. The number of the step is that of the time step.
+/// `passes`, and those that find the receivers of all cells from the heights in a plane. The number of the step is that
+/// of the time step.
 pub(crate) fn route(passes: Passes, padded: &Window, rounds: usize, flats: Flats, step: u32) -> Passes {
     let heights = step & 0xff;
     let at = |passes: Passes, function, number: usize| then(passes, function, heights | (number as u32) << 16);

@@ -56,16 +56,16 @@ fn offset_of(code: u32) -> vec2<i32> {
     return vec2<i32>(east, south);
 }
 
-// The neighbour in a direction of a cell that is not on the border.
-fn neighbour(cell: u32, code: u32) -> u32 {
+// The neighbor in a direction of a cell that is not on the border.
+fn neighbor(cell: u32, code: u32) -> u32 {
     let offset = offset_of(code);
     return cell + u32(offset.y) * frame.columns + u32(offset.x);
 }
 
-// The direction from a cell to a neighbour.
+// The direction from a cell to a neighbor.
 fn code_between(cell: u32, to: u32) -> u32 {
     for (var code = 0u; code < 8u; code += 1u) {
-        if (neighbour(cell, code) == to) {
+        if (neighbor(cell, code) == to) {
             return code;
         }
     }
@@ -122,13 +122,13 @@ fn point_of(base: u32, hash: u32) -> vec2<f32> {
     return (bits * (2.0 / 65535.0) - vec2<f32>(1.0)) * reach(base);
 }
 
-// The vector between the points of a cell and its neighbour in a direction, in cells.
+// The vector between the points of a cell and its neighbor in a direction, in cells.
 fn between_points(base: u32, cell: u32, code: u32) -> vec2<f32> {
-    let there = point_of(base, word(POINT, neighbour(cell, code)));
+    let there = point_of(base, word(POINT, neighbor(cell, code)));
     return vec2<f32>(offset_of(code)) + there - point_of(base, word(POINT, cell));
 }
 
-// Border, sea, cells that are not finite, and their neighbours.
+// Border, sea, cells that are not finite, and their neighbors.
 fn outlets(base: u32, at: vec2<i32>) {
     let here = word(heights_plane(), cell_at(at));
     var is_outlet = any(at == vec2<i32>(0)) || any(at == size() - vec2<i32>(1)) || bitcast<f32>(here) <= sea_level(base);
@@ -143,7 +143,7 @@ fn outlets(base: u32, at: vec2<i32>) {
     set_word(OUTLET, cell_at(at), select(0u, 1u, is_outlet));
 }
 
-// The direction of steepest descent; 8 without a lower neighbour.
+// The direction of steepest descent; 8 without a lower neighbor.
 fn steepest(base: u32, cell: u32) -> u32 {
     let h = sample(heights_plane(), cell);
     let on_lattice = is_last() || !is_between_points(base);
@@ -155,7 +155,7 @@ fn steepest(base: u32, cell: u32) -> u32 {
     var most = 1.1754944e-38;
     var found = 0u;
     for (var code = 0u; code < 8u; code += 1u) {
-        let drop = h - sample(heights_plane(), neighbour(cell, code));
+        let drop = h - sample(heights_plane(), neighbor(cell, code));
         var per = select(1.0, diagonal, (code & 1u) == 1u);
         if (!on_lattice) {
             let away = between_points(base, cell, code);
@@ -201,7 +201,7 @@ fn receive(base: u32, at: vec2<i32>) {
     if (word(OUTLET, cell) == 0u) {
         let code = steepest(base, cell);
         if (code < 8u) {
-            receiver = neighbour(cell, code);
+            receiver = neighbor(cell, code);
         }
         label = select(receiver, cell, receiver == NONE);
     }
@@ -230,7 +230,7 @@ fn begin_flats(base: u32, at: vec2<i32>) {
         away = NONE;
         let height = ordered(word(heights_plane(), cell));
         for (var code = 0u; code < 8u; code += 1u) {
-            let there = neighbour(cell, code);
+            let there = neighbor(cell, code);
             let height_there = ordered(word(heights_plane(), there));
             if (height_there > height) {
                 away = 1u;
@@ -244,7 +244,7 @@ fn begin_flats(base: u32, at: vec2<i32>) {
     set_word(TOWARD, cell, toward);
 }
 
-// Whether a neighbour belongs to the same flat.
+// Whether a neighbor belongs to the same flat.
 fn is_level(cell: u32, there: u32) -> bool {
     return word(AWAY, there) != 0u && ordered(word(heights_plane(), there)) == ordered(word(heights_plane(), cell));
 }
@@ -259,7 +259,7 @@ fn spread_flats(base: u32, at: vec2<i32>) {
     var is_away = false;
     var is_toward = false;
     for (var code = 0u; code < 8u; code += 1u) {
-        let there = neighbour(cell, code);
+        let there = neighbor(cell, code);
         if (is_level(cell, there)) {
             is_away = is_away || word(AWAY, there) == steps;
             is_toward = is_toward || word(TOWARD, there) == steps;
@@ -291,7 +291,7 @@ fn drain_flats(base: u32, at: vec2<i32>) {
     var directions = 0u;
     var least = slope_of_flat(cell);
     for (var code = 0u; code < 8u; code += 1u) {
-        let there = neighbour(cell, code);
+        let there = neighbor(cell, code);
         if (ordered(word(heights_plane(), there)) != height) {
             continue;
         }
@@ -310,7 +310,7 @@ fn drain_flats(base: u32, at: vec2<i32>) {
             }
         }
     }
-    let receiver = neighbour(cell, one_of(base, cell, directions));
+    let receiver = neighbor(cell, one_of(base, cell, directions));
     set_word(RECEIVER, cell, receiver);
     set_word(LABEL, cell, receiver);
 }
@@ -342,13 +342,13 @@ fn component_of(cell: u32) -> u32 {
     return word(COMPONENT, label);
 }
 
-// The ends of an edge: two neighbours. Edges are numbered by their first cell and the direction of the other one, which is below or to the east.
+// The ends of an edge: two neighbors. Edges are numbered by their first cell and the direction of the other one, which is below or to the east.
 fn edge_between(a: u32, b: u32) -> u32 {
     return 4u * min(a, b) + code_between(min(a, b), max(a, b));
 }
 
 fn edge_ends(edge: u32) -> vec2<u32> {
-    return vec2<u32>(edge >> 2u, neighbour(edge >> 2u, edge & 3u));
+    return vec2<u32>(edge >> 2u, neighbor(edge >> 2u, edge & 3u));
 }
 
 // The height of the pass between two cells, as an ordered integer.
@@ -368,7 +368,7 @@ fn offer_pass(base: u32, at: vec2<i32>) {
     }
     var lowest = NONE;
     for (var code = 0u; code < 8u; code += 1u) {
-        let there = neighbour(cell, code);
+        let there = neighbor(cell, code);
         if (component_of(there) != mine) {
             lowest = min(lowest, pass_key(cell, there));
         }
@@ -394,7 +394,7 @@ fn choose_pass(base: u32, at: vec2<i32>) {
         return;
     }
     for (var code = 0u; code < 8u; code += 1u) {
-        let there = neighbour(cell, code);
+        let there = neighbor(cell, code);
         if (component_of(there) != mine && pass_key(cell, there) == lowest) {
             lower_word(EDGE, mine, edge_between(cell, there));
         }

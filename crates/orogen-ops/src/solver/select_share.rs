@@ -10,18 +10,21 @@ use orogen_io::raster::Raster;
 op! {
     /// A mask of an exact share: 1 at the lowest samples of the world, or the highest ones, and 0 at all others.
     ///
-    /// Of the N samples with a value that a map of the world at the solution's cell has, round(`share` N) are 1. Of equal values those further north are taken first, and in a row
-    /// those further west. The threshold is found by radix selection: the values are counted by the upper and then by the lower half of their bits, as integers of the same order, so it is
-    /// exact, and the same in memory and on disk.
+    /// Of the N samples with a value that a map of the world at the solution's cell has, round(`share` N) are 1. Of
+    /// equal values those further north are taken first, and in a row those further west. The threshold is found by
+    /// radix selection: the values are counted by the upper and then by the lower half of their bits, as integers of
+    /// the same order, so it is exact, and the same in memory and on disk.
     ///
-    /// The solution is the threshold, with which readers compare the source where they are. So at a finer cell the border is finer, too, and at any other cell the share is that of the threshold, which is
-    /// not quite exact. With a `margin` it is a share of the wider domain. Solving takes 4 bytes per sample.
+    /// The solution is the threshold, with which readers compare the source where they are. So at a finer cell the
+    /// border is finer, too, and at any other cell the share is that of the threshold, which is not quite exact. With a
+    /// `margin` it is a share of the wider domain. Solving takes 4 bytes per sample.
     pub struct SelectShare = "select-share", solver, revision 1;
     margin;
     inputs {
         /// The values to select by, for example heights.
         source: required,
-        /// Where samples can be selected: where this is at least 0.5. If there are fewer such samples than wanted, all of them are selected. Default: everywhere.
+        /// Where samples can be selected: where this is at least 0.5. If there are fewer such samples than wanted, all
+        /// of them are selected. Default: everywhere.
         among: optional,
     }
     params {
@@ -128,7 +131,8 @@ fn drawn(domain: &Window, world: &WorldParams) -> Window {
     }
 }
 
-/// The place of a value in the order of selection: smaller numbers first. Zeros of both signs are equal; NaN has no rank.
+/// The place of a value in the order of selection: smaller numbers first. Zeros of both signs are equal; NaN has no
+/// rank.
 fn rank(value: f32, highest: bool) -> Option<u32> {
     const SIGN: u32 = 1 << 31;
     if value.is_nan() {
@@ -218,7 +222,8 @@ impl Ranked<'_> {
     }
 }
 
-/// The bin of the `n`th sample, from 1, and the number of samples in the bins before it; `None` if there are fewer samples.
+/// The bin of the `n`th sample, from 1, and the number of samples in the bins before it; `None` if there are fewer
+/// samples.
 fn nth(counts: &[u64], n: u64) -> Option<(u32, u64)> {
     let mut before = 0;
     for (bin, count) in (0..).zip(counts) {

@@ -15,16 +15,18 @@ use orogen_grid::hydrology::points::Points;
 use orogen_grid::hydrology::stream_power::{StreamPower as Law, Substrate};
 
 op! {
-    /// The source eroded by rivers under uplift: the stream power law, dh/dt = U - K A^m S^n, with landslides and soil creep.
+    /// The source eroded by rivers under uplift: the stream power law, dh/dt = U - K A^m S^n, with landslides and soil
+    /// creep.
     ///
-    /// U is the uplift rate, K the erodibility, A the drainage area and S the slope. Each time step routes the flow (carving through
-    /// depressions, see `drainage`), then solves the heights implicitly from the outlets upstream (Braun and Willett 2013), which is stable
-    /// for any step length. Then slopes above the talus angle slide, and soil creeps by linear diffusion (Culling 1960). The sea and the
-    /// world's border keep their heights. At the end every cell is higher than its receiver: there are no depressions and no flats. Ten
-    /// steps turn any relief into valleys; a few hundred reach the balance of uplift and erosion. Use `erodibility_factor` and
-    /// `uplift_factor` to vary rock and uplift over the world; uniform values look less real. The result depends on the cell size. Time
-    /// grows with the world and the number of steps; memory is 45 bytes per cell, and 16 more if `jitter` is above 0. With `rain` it is 16 more,
-    /// and the time is longer by about a half.
+    /// U is the uplift rate, K the erodibility, A the drainage area and S the slope. Each time step routes the flow
+    /// (carving through depressions, see `drainage`), then solves the heights implicitly from the outlets upstream
+    /// (Braun and Willett 2013), which is stable for any step length. Then slopes above the talus angle slide, and soil
+    /// creeps by linear diffusion (Culling 1960). The sea and the world's border keep their heights. At the end every
+    /// cell is higher than its receiver: there are no depressions and no flats. Ten steps turn any relief into valleys;
+    /// a few hundred reach the balance of uplift and erosion. Use `erodibility_factor` and `uplift_factor` to vary rock
+    /// and uplift over the world; uniform values look less real. The result depends on the cell size. Time grows with
+    /// the world and the number of steps; memory is 45 bytes per cell, and 16 more if `jitter` is above 0. With `rain`
+    /// it is 16 more, and the time is longer by about a half.
     pub struct StreamPower = "stream-power", solver, revision 2;
     margin;
     inputs {
@@ -34,7 +36,8 @@ op! {
         erodibility_factor: optional, alias "softness",
         /// Factor of the uplift rate. Default: 1.
         uplift_factor: optional, alias "rise",
-        /// Factor of the rain, 0.01 to 100: the erosion follows the discharge, so A is the drainage area weighted by it. Default: 1.
+        /// Factor of the rain, 0.01 to 100: the erosion follows the discharge, so A is the drainage area weighted by
+        /// it. Default: 1.
         rain: optional,
     }
     params {
@@ -54,19 +57,21 @@ op! {
         talus_angle: f64 = 50.0, unit "deg", range 1.0 to 89.0;
         /// Diffusivity of soil creep. It rounds crests, and widens hills to about sqrt(creep * time).
         creep: f64 = 0.01, unit "m^2/yr", range 0.0 to 100.0;
-        /// Whether flow that falls between two of the eight grid directions takes one of them at random (Rho8, Fairfield and Leymarie
-        /// 1991), with a new choice in each step. It only has an effect if `jitter` is 0. Without both, slopes show straight parallel
-        /// grooves.
+        /// Whether flow that falls between two of the eight grid directions takes one of them at random (Rho8,
+        /// Fairfield and Leymarie 1991), with a new choice in each step. It only has an effect if `jitter` is 0.
+        /// Without both, slopes show straight parallel grooves.
         random_receivers: bool = true, alias "scatter";
-        /// Displacement of the solution points from the grid, as a share of the cell: up to half of this share to each side. It prevents
-        /// valleys and slopes at the talus angle from aligning with the grid. At the end the heights are interpolated back to the grid.
+        /// Displacement of the solution points from the grid, as a share of the cell: up to half of this share to each
+        /// side. It prevents valleys and slopes at the talus angle from aligning with the grid. At the end the heights
+        /// are interpolated back to the grid.
         jitter: f64 = 1.0, range 0.0 to 1.0, alias "irregular";
         /// Seed of the random choices.
         seed: u64 = 0;
         /// Whether ground at or below sea level keeps its height and is an outlet.
         sea: bool = true;
-        /// Cell size of the solution; 0 uses the world's cell. A cell four times as large takes a sixteenth of the time: solve large
-        /// valleys at a large cell with many steps, then add small valleys with a second `stream-power` at the world's cell.
+        /// Cell size of the solution; 0 uses the world's cell. A cell four times as large takes a sixteenth of the
+        /// time: solve large valleys at a large cell with many steps, then add small valleys with a second
+        /// `stream-power` at the world's cell.
         cell: f64 = 0.0, unit "m", range 0.0 to 1e6;
     }
     layers {
@@ -167,8 +172,8 @@ const HEIGHTS: [u32; 3] = [4, 16, 17];
 /// Number of planes beside inputs, layers, the routing, counters and the rain.
 const SCRATCH: usize = 7;
 
-/// Number of times that the pieces of the law are chosen in a step: if nothing is known of them, and if those of the step before are a good guess. Passes after
-/// the last change end at once.
+/// Number of times that the pieces of the law are chosen in a step: if nothing is known of them, and if those of the
+/// step before are a good guess. Passes after the last change end at once.
 const ITERATIONS: [u32; 2] = [12, 8];
 
 /// More of them in a step whose law is not affine in the heights.
@@ -268,14 +273,15 @@ impl StreamPower {
         let to = next();
         passes = routing::route(passes, padded, all, Flats::Basins, step(here, 0, 0) | LAST);
         passes = solved(passes, padded, [here, to], LAST, 0);
-        // The heights may have pits where the last digits of a gentle slope were lost, so the flow is routed through depressions again.
+        // The heights may have pits where the last digits of a gentle slope were lost, so the flow is routed through
+        // depressions again.
         passes = routing::route(passes, padded, all, Flats::Basins, step(to, 0, 0) | LAST);
         then(routing::gather(passes, padded), "finish", step(to, 0, 0))
     }
 }
 
-/// `passes`, and those that solve the law for the heights of a plane, and write them to another one. The kind is [`LAST`], or 1 if there was a time step before,
-/// or 0.
+/// `passes`, and those that solve the law for the heights of a plane, and write them to another one. The kind is
+/// [`LAST`], or 1 if there was a time step before, or 0.
 fn solved(mut passes: Passes, padded: &Window, [from, to]: [u32; 2], kind: u32, more: u32) -> Passes {
     let (last, known) = (kind & LAST, kind & 1);
     // An odd number of passes leaves the result in the second of two planes.

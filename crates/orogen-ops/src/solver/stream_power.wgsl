@@ -247,8 +247,8 @@ fn creep(base: u32, at: vec2<i32>) {
     var sides = 0.0;
     var corners = 0.0;
     for (var code = 0u; code < 8u; code += 2u) {
-        sides += sample(heights_plane(), neighbour(cell, code)) - h;
-        corners += sample(heights_plane(), neighbour(cell, code + 1u)) - h;
+        sides += sample(heights_plane(), neighbor(cell, code)) - h;
+        corners += sample(heights_plane(), neighbor(cell, code + 1u)) - h;
     }
     let stage = f32(step_number());
     let last = HEIGHT + 2u * SPARE + 1u - heights_plane() - other_plane();
@@ -273,7 +273,7 @@ fn onto_lattice(base: u32, at: vec2<i32>) {
     var rises = vec2<f32>(0.0);
     for (var code = 0u; code < 8u; code += 1u) {
         let away = between_points(base, cell, code);
-        let rise = sample(heights_plane(), neighbour(cell, code)) - h;
+        let rise = sample(heights_plane(), neighbor(cell, code)) - h;
         squares += vec3<f32>(away.x * away.x, away.x * away.y, away.y * away.y);
         rises += away * rise;
     }

@@ -11,9 +11,9 @@ use orogen_grid::grid::Window;
 op! {
     /// Viewshed: which ground an observer sees, and how far a target must rise to be seen where the ground is hidden.
     ///
-    /// Exact lines of sight from the eye to every sample (R3; Franklin and Ray 1994). The ground is linear between samples along the
-    /// columns or rows that a line crosses, whichever are more. Time grows slightly faster than the world; blocks of hidden ground are
-    /// skipped. Memory is 24 bytes per cell.
+    /// Exact lines of sight from the eye to every sample (R3; Franklin and Ray 1994). The ground is linear between
+    /// samples along the columns or rows that a line crosses, whichever are more. Time grows slightly faster than the
+    /// world; blocks of hidden ground are skipped. Memory is 24 bytes per cell.
     pub struct Viewshed = "viewshed", solver, revision 1;
     margin;
     inputs {
@@ -37,7 +37,8 @@ op! {
     layers {
         /// 1 where the target is visible, else 0.
         visible: label;
-        /// Height above the ground at which a target becomes visible: 0 where the ground is visible, -1 beyond the radius.
+        /// Height above the ground at which a target becomes visible: 0 where the ground is visible, -1 beyond the
+        /// radius.
         hidden: height, unit "m";
     }
 }

@@ -16,13 +16,14 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 /// Levels below the lowest ground that leave room for caves.
 pub const BELOW: u32 = 48;
 
-/// Wavelength of the tubes and of the areas where they open to the surface, in blocks, and how much flatter than wide the tubes wind.
+/// Wavelength of the tubes and of the areas where they open to the surface, in blocks, and how much flatter than wide
+/// the tubes wind.
 const WAVELENGTH: f64 = 60.0;
 const OPENINGS: f64 = 90.0;
 const FLATTENED: f64 = 0.7;
 
-/// Distance from water, in blocks, below which there is no cave, and from which they are as wide as elsewhere. Density is sampled at every fourth column, so less than six
-/// blocks would reach into the columns of water.
+/// Distance from water, in blocks, below which there is no cave, and from which they are as wide as elsewhere. Density
+/// is sampled at every fourth column, so less than six blocks would reach into the columns of water.
 const DRY: [f64; 2] = [7.0, 14.0];
 
 /// Depth of the lowest caves, in blocks: where they become narrow, and where they end.

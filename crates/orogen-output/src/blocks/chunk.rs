@@ -24,7 +24,8 @@ const ORES: [(Block, f64, i32); 3] = [(Block::Coal, 0.012, 4), (Block::Iron, 0.0
 const RICH: u64 = 3;
 
 impl Land {
-    /// The blocks of a part of the window, as numbers of kinds: level by level from the bottom, in each row by row from the north.
+    /// The blocks of a part of the window, as numbers of kinds: level by level from the bottom, in each row by row from
+    /// the north.
     ///
     /// They are the same in any land that contains the part, whatever its levels.
     ///
@@ -107,7 +108,8 @@ fn each<'a>(land: &'a Land, at: [i64; 2], solid: &mut Solid<'a>, mut visit: impl
     }
 }
 
-/// The depth of the water above a surface, in blocks: 0 if there is none, otherwise as it follows from the water's level, whatever the levels that were counted.
+/// The depth of the water above a surface, in blocks: 0 if there is none, otherwise as it follows from the water's
+/// level, whatever the levels that were counted.
 fn water_above(counted: i32, surface: i32, column: &Column, cell: f64) -> i32 {
     if counted == 0 { 0 } else { (Levels::of(f64::from(column.water), cell) - surface).max(1) }
 }

@@ -47,8 +47,8 @@ impl Cover {
         if is_bare || code == 0 { self } else { of_biome(scheme, code) }
     }
 
-    /// The block of a column `depth` blocks below its surface (0: the surface itself), in a soil; `None` below the soil. `water` is the depth of the water above
-    /// the surface, in blocks.
+    /// The block of a column `depth` blocks below its surface (0: the surface itself), in a soil; `None` below the
+    /// soil. `water` is the depth of the water above the surface, in blocks.
     #[must_use]
     pub fn block(self, depth: i32, water: i32, [x, y]: [i64; 2], seed: u64) -> Option<Block> {
         let uneven = (hash(seed ^ 0x51, [x, y, 0]) & 1) as i32;

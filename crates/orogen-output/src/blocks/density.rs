@@ -1,7 +1,8 @@
 //! The shape of the ground in space: what the output `density` of a recipe adds to its heights.
 //!
-//! The density less the distance to the ground, density - (height - altitude), is sampled at every fourth column, row and level of the world and interpolated linearly
-//! between them. So the ground keeps the detail of its heights, and a chunk needs few samples in space.
+//! The density less the distance to the ground, density - (height - altitude), is sampled at every fourth column, row
+//! and level of the world and interpolated linearly between them. So the ground keeps the detail of its heights, and a
+//! chunk needs few samples in space.
 
 use super::levels::Levels;
 use orogen_engine::World;
@@ -35,7 +36,8 @@ pub(super) struct Offsets {
 }
 
 impl Offsets {
-    /// The offsets over a window of columns and a range of levels, of a density in land whose altitudes are exaggerated.
+    /// The offsets over a window of columns and a range of levels, of a density in land whose altitudes are
+    /// exaggerated.
     ///
     /// Fails if the layers cannot be made, or `progress` is cancelled.
     pub(super) fn of(

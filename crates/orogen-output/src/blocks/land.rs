@@ -43,7 +43,8 @@ pub(super) struct Column {
 }
 
 impl Column {
-    /// A column of the class water has at least one block of it, also where the water is shallower than a block, or a river whose surface is not known.
+    /// A column of the class water has at least one block of it, also where the water is shallower than a block, or a
+    /// river whose surface is not known.
     fn drowned(self, cell: f64) -> Column {
         if self.cover != Cover::Bed {
             return self;
@@ -77,8 +78,9 @@ pub struct Land {
     pub(super) sea_level: f64,
 }
 
-/// Adds what blocks need to a recipe: its own classes with the numbers of the standard ones of their names, or the [standard classes](orogen_engine::recipe::class::standard), if it has none and no
-/// output `class`. `cell` is the size of a block in metres.
+/// Adds what blocks need to a recipe: its own classes with the numbers of the standard ones of their names, or the
+/// [standard classes](orogen_engine::recipe::class::standard), if it has none and no output `class`. `cell` is the size
+/// of a block in metres.
 ///
 /// # Errors
 /// If the recipe has no output `height`, or a class that is none of the standard ones.
@@ -92,12 +94,12 @@ pub fn prepare(recipe: &mut Recipe, cell: f64) -> Result<()> {
 }
 
 impl Land {
-    /// The columns of a window, with heights and water times `exaggeration`. `world` is of a [prepared](prepare) recipe. `fits` checks the levels once they are known, before the density of the ground
-    /// is computed.
+    /// The columns of a window, with heights and water times `exaggeration`. `world` is of a [prepared](prepare)
+    /// recipe. `fits` checks the levels once they are known, before the density of the ground is computed.
     ///
     /// # Errors
-    /// If the window is not in the world or has no height, if a class is no number from 0 to 5, if heights are more than [`MAX_LEVEL`] blocks from 0, if
-    /// `fits` fails, or if `progress` is cancelled.
+    /// If the window is not in the world or has no height, if a class is no number from 0 to 5, if heights are more
+    /// than [`MAX_LEVEL`] blocks from 0, if `fits` fails, or if `progress` is cancelled.
     pub fn of(
         world: &World,
         window: &Window,
@@ -199,7 +201,8 @@ impl Land {
         is_inside.then(|| &self.columns[y as usize * self.around.width + x as usize])
     }
 
-    /// The lowest altitude of the ground in a part of the land, and the highest of ground or water; `None` if there is neither.
+    /// The lowest altitude of the ground in a part of the land, and the highest of ground or water; `None` if there is
+    /// neither.
     fn range(&self, part: &Window) -> Option<[f32; 2]> {
         let left = (part.x - self.around.x) as usize;
         let rows = ((part.y - self.around.y) as usize..).take(part.height).map(|row| row * self.around.width + left);

@@ -14,7 +14,8 @@ pub(super) struct Daylight<'a> {
     light: Vec<u8>,
 }
 
-/// Light falls from above through air, and spreads by a level less with each block to the sides and down, through water and leaves too.
+/// Light falls from above through air, and spreads by a level less with each block to the sides and down, through water
+/// and leaves too.
 ///
 /// Fails if `progress` is cancelled.
 pub(super) fn daylight<'a>(volume: &'a BlockVolume, progress: &Progress) -> Result<Daylight<'a>> {
@@ -55,7 +56,8 @@ pub(super) fn daylight<'a>(volume: &'a BlockVolume, progress: &Progress) -> Resu
 }
 
 impl Daylight<'_> {
-    /// The light of a block: see [`BlockVolume::block`]. Beyond the sides and above it is that of the open, below it is dark.
+    /// The light of a block: see [`BlockVolume::block`]. Beyond the sides and above it is that of the open, below it is
+    /// dark.
     pub(super) fn at(&self, [column, row, level]: [i64; 3]) -> u8 {
         let [width, count, height] = self.volume.size();
         let is_inside = (0..width as i64).contains(&column) && (0..height as i64).contains(&row);

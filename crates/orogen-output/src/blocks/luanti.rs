@@ -1,6 +1,7 @@
 //! Blocks as a Luanti (Minetest) world: the map and its settings, and a mod with the nodes.
 //!
-//! The middle of the window is at x = z = 0, and the surface of the sea below y = 0. The nodes belong to the mod; in games that have nodes of the same kind, these are taken.
+//! The middle of the window is at x = z = 0, and the surface of the sea below y = 0. The nodes belong to the mod; in
+//! games that have nodes of the same kind, these are taken.
 
 use std::io::{self, Write};
 

@@ -1,6 +1,7 @@
 //! The surface of a land as triangles, with the colors of its blocks.
 //!
-//! Surface nets of the densities in the middles of the blocks, in chunks. Chunks share the vertices along their borders, bit for bit.
+//! Surface nets of the densities in the middles of the blocks, in chunks. Chunks share the vertices along their
+//! borders, bit for bit.
 
 use std::io::{self, Write};
 

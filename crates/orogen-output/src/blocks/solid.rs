@@ -39,8 +39,8 @@ impl<'a> Solid<'a> {
 }
 
 impl Land {
-    /// Calls a function for the density in the middle of each block of a column, from the bottom: positive where it is solid, in metres. Beyond the land the column is
-    /// the nearest of it.
+    /// Calls a function for the density in the middle of each block of a column, from the bottom: positive where it is
+    /// solid, in metres. Beyond the land the column is the nearest of it.
     pub(super) fn densities(&self, x: i64, y: i64, mut visit: impl FnMut(usize, f32)) {
         let x = x.clamp(self.around.x, self.around.right() - 1);
         let y = y.clamp(self.around.y, self.around.bottom() - 1);

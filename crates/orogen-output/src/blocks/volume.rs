@@ -88,7 +88,8 @@ impl BlockVolume {
         Block::of(self.blocks[(level as usize * height + row as usize) * width + column as usize])
     }
 
-    /// The level of the highest solid block of a column and a row that is no tree, above the bottom: what is free below it is in a cave or below an overhang.
+    /// The level of the highest solid block of a column and a row that is no tree, above the bottom: what is free below
+    /// it is in a cave or below an overhang.
     #[must_use]
     pub fn ground(&self, [column, row]: [usize; 2]) -> Option<usize> {
         let is_ground = |level: &usize| {

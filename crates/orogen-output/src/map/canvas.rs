@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use orogen_io::format::png::{self, Picture, Pixel};
 
-/// A colour in sRGB bytes: red, green, blue.
+/// A color in sRGB bytes: red, green, blue.
 pub type Ink = [u8; 3];
 
 /// A page of pixels. Columns and rows count from the upper left corner; pixels outside of it are ignored.
@@ -17,7 +17,7 @@ pub struct Canvas {
 }
 
 impl Canvas {
-    /// A page of one colour.
+    /// A page of one color.
     #[must_use]
     pub fn new(width: usize, height: usize, paper: Ink) -> Canvas {
         Canvas { width, height, pixels: vec![paper; width * height] }
@@ -85,7 +85,7 @@ impl Canvas {
         }
     }
 
-    /// Writes the page as a PNG, in greyscale if it has no colours.
+    /// Writes the page as a PNG, in greyscale if it has no colors.
     pub fn write_png(&self, out: &mut dyn Write, notes: &[(&str, &str)]) -> io::Result<()> {
         let grey = self.pixels.iter().all(|[red, green, blue]| red == green && green == blue);
         let pixel = if grey { Pixel::Grey8 } else { Pixel::Rgb8 };
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn a_page_without_colour_is_written_as_greys() {
+    fn a_page_without_color_is_written_as_greys() {
         let mut canvas = Canvas::new(3, 2, [255; 3]);
         canvas.set(2, 1, [7; 3]);
         assert_eq!(written(&canvas), [255, 255, 255, 255, 255, 7]);

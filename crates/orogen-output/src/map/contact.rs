@@ -57,7 +57,8 @@ pub struct Drawn {
 }
 
 impl Sheet {
-    /// The painter of maps, with the same colors and light for all pictures. While it is made it takes [`fitting`] bytes.
+    /// The painter of maps, with the same colors and light for all pictures. While it is made it takes [`fitting`]
+    /// bytes.
     #[must_use]
     pub fn painter(&self, variants: &[Variant]) -> Painter {
         let all = together(variants);

@@ -12,11 +12,11 @@ use orogen_io::format::png::{self, Picture, Pixel};
 use orogen_io::palette::color::{Encoder, Rgb, decode};
 use orogen_io::palette::tint::Tint;
 
-/// Colour of lakes at the shore, and in deep water.
+/// Color of lakes at the shore, and in deep water.
 pub const LAKES: Rgb = [170, 211, 233];
 const DEEP_LAKES: Rgb = [92, 152, 200];
 
-/// Depth in metres at which the colour is half of both.
+/// Depth in metres at which the color is half of both.
 const HALF_DEPTH: f32 = 60.0;
 
 /// The style of a relief map: fitted to a world once, then the same for every window of it.
@@ -47,8 +47,8 @@ impl Painter {
         Painter::new(tint, Shade::fit(grid, sea_level as f32))
     }
 
-    /// Shades colors that were made apart: four sRGB bytes for each sample of a whole grid of heights, of which the first three change. Where the
-    /// tint shows water, the shading is weak.
+    /// Shades colors that were made apart: four sRGB bytes for each sample of a whole grid of heights, of which the
+    /// first three change. Where the tint shows water, the shading is weak.
     pub fn shade(&self, grid: &Grid, bytes: &mut [u8]) {
         let width = grid.width();
         let table: Vec<f32> = (0..=u8::MAX).map(decode).collect();
@@ -96,8 +96,8 @@ impl Painter {
         });
     }
 
-    /// Writes the map of a whole grid as an RGB PNG, one pixel per sample, with lakes where `lakes`, their depth in metres over the same
-    /// window, is above 0. Beyond its edges heights are extrapolated linearly.
+    /// Writes the map of a whole grid as an RGB PNG, one pixel per sample, with lakes where `lakes`, their depth in
+    /// metres over the same window, is above 0. Beyond its edges heights are extrapolated linearly.
     pub fn write_png(
         &self,
         out: &mut dyn Write,
@@ -141,20 +141,20 @@ impl Painter {
     }
 }
 
-/// Row `j` of a grid between its neighbours, each extended by one sample at both ends, in `wide`.
+/// Row `j` of a grid between its neighbors, each extended by one sample at both ends, in `wide`.
 fn around<'a>(grid: &Grid, j: usize, wide: &'a mut [f32]) -> [&'a [f32]; 3] {
     let width = grid.width();
     let (above, rest) = wide.split_at_mut(width + 2);
     let (here, below) = rest.split_at_mut(width + 2);
     extend_row(grid.row(j), here);
-    neighbour(grid, j, j.checked_sub(1), here, above);
-    neighbour(grid, j, (j + 1 < grid.height()).then_some(j + 1), here, below);
+    neighbor(grid, j, j.checked_sub(1), here, above);
+    neighbor(grid, j, (j + 1 < grid.height()).then_some(j + 1), here, below);
     [above, here, below]
 }
 
 /// Row `there` of the grid, extended; if there is none, extrapolated from row `j` (extended in `here`) and its other
-/// neighbour.
-fn neighbour(grid: &Grid, j: usize, there: Option<usize>, here: &[f32], out: &mut [f32]) {
+/// neighbor.
+fn neighbor(grid: &Grid, j: usize, there: Option<usize>, here: &[f32], out: &mut [f32]) {
     match there {
         Some(there) => extend_row(grid.row(there), out),
         None => {

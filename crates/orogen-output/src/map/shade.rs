@@ -38,7 +38,7 @@ pub const PRINTED: f32 = 1.8;
 /// Number of rows for fitting the z factor.
 pub(crate) const PROBES: usize = 64;
 
-/// A shading: lights and a z factor. Level ground keeps its colour; slopes towards the light become brighter, others
+/// A shading: lights and a z factor. Level ground keeps its color; slopes towards the light become brighter, others
 /// darker and bluer.
 #[derive(Debug, Clone)]
 pub struct Shade {
@@ -80,7 +80,8 @@ impl Shade {
         Shade::of_typical(lights, typical)
     }
 
-    /// The same with a z factor fitted to samples, each with its steepness and its height, such as those of [`PROBES`] rows.
+    /// The same with a z factor fitted to samples, each with its steepness and its height, such as those of [`PROBES`]
+    /// rows.
     pub(crate) fn fit_samples(samples: &[(f32, f32)], sea_level: f32) -> Shade {
         let typical = |is_land: bool| {
             let kind = samples.iter().filter(|(steepness, height)| {
@@ -100,7 +101,7 @@ impl Shade {
         Shade::lit(lights, z_factor)
     }
 
-    /// Factors for the red, green and blue light of a colour.
+    /// Factors for the red, green and blue light of a color.
     #[must_use]
     pub fn on(&self, gradient: Gradient) -> [f32; 3] {
         let light: f32 = self.lights.iter().map(|(light, weight)| weight * light.on(gradient)).sum();
@@ -172,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn level_ground_keeps_its_colour() {
+    fn level_ground_keeps_its_color() {
         for z_factor in [0.1, 1.0, 30.0] {
             let factors = Shade::new(z_factor).on(Gradient { east: 0.0, north: 0.0 });
             assert!(factors.iter().all(|f| (f - 1.0).abs() < 1e-6));

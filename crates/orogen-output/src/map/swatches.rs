@@ -19,7 +19,7 @@ pub struct Swatch {
     pub palette: Palette,
     /// Description and author.
     pub about: String,
-    /// Whether colour-blind readers can distinguish its heights.
+    /// Whether color-blind readers can distinguish its heights.
     pub safe: bool,
 }
 
@@ -57,7 +57,7 @@ pub fn draw(swatches: &[Swatch]) -> Result<Canvas> {
     let note = "each as a bar from lowest to highest, and on an island";
     let end = page.font.write(&mut page.canvas, x, 54, note, style(Face::Regular, 15.0, SOFT));
     page.dot(end as i64 + 30, 49);
-    let told = "distinguishable by colour-blind readers";
+    let told = "distinguishable by color-blind readers";
     page.font.write(&mut page.canvas, end + 42.0, 54, told, style(Face::Regular, 15.0, SOFT));
     for (k, swatch) in swatches.iter().enumerate() {
         // Down the first column, then down the second.
@@ -89,7 +89,7 @@ impl Page {
         self.picture(&swatch.palette, x + (COLUMN - PICTURE[0]) as i64, y + 6);
     }
 
-    /// The colours from the lowest position to the highest.
+    /// The colors from the lowest position to the highest.
     fn bar(&mut self, palette: &Palette, left: i64, top: i64) {
         let places = |of: fn(Position) -> Option<f64>| palette.stops.iter().filter_map(move |stop| of(stop.at));
         let ends = |of: fn(Position) -> Option<f64>| {

@@ -26,7 +26,7 @@ pub struct Style {
     pub face: Face,
     /// The size in pixels per em; line spacing is usually 1.3 times the size.
     pub size: f32,
-    /// The colour.
+    /// The color.
     pub ink: Ink,
 }
 

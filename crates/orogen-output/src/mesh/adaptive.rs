@@ -271,6 +271,6 @@ mod tests {
         }
         let mut lonely = Grid::filled(Window::new(3, 3, 1.0), f32::NAN);
         lonely.row_mut(1)[1] = 1.0;
-        assert!(Shape::lattice(&lonely, 1).unwrap_err().to_string().contains("no three neighbouring samples"));
+        assert!(Shape::lattice(&lonely, 1).unwrap_err().to_string().contains("no three neighboring samples"));
     }
 }

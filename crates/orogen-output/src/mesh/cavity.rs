@@ -32,9 +32,11 @@ pub(super) struct Ceiling {
 impl Ceiling {
     /// The ceiling below a surface, at least `wall` millimetres from it and from its sides.
     ///
-    /// With `is_cut`, samples that are not above the base are not part of the solid: the ceiling is below 0 where it would be less than `wall` from one.
+    /// With `is_cut`, samples that are not above the base are not part of the solid: the ceiling is below 0 where it
+    /// would be less than `wall` from one.
     ///
-    /// The ceiling is the lower end of balls of that radius around all samples, and as low as everywhere within a cell of it, so that it is nowhere too high.
+    /// The ceiling is the lower end of balls of that radius around all samples, and as low as everywhere within a cell
+    /// of it, so that it is nowhere too high.
     ///
     /// # Errors
     /// If the base or the solid is too small for such walls.
@@ -68,7 +70,8 @@ impl Ceiling {
         };
         let (xs, mut ys) = (along(sides[0]), along(sides[1]));
         ys.reverse();
-        // The ceiling between two vertices is not above either, so each is as low as all places within this distance. Vertices are up to one and a half steps apart.
+        // The ceiling between two vertices is not above either, so each is as low as all places within this distance.
+        // Vertices are up to one and a half steps apart.
         let slack = (1.5 * step + 1.0) * cell * DIAGONAL;
         let reach = wall + slack;
         let (level, clear) = (scale.base as f32, if is_cut { reach + cell * DIAGONAL } else { reach });
@@ -107,7 +110,8 @@ impl Ceiling {
         Ok(Ceiling { xs: narrow(xs), ys: narrow(ys), heights: rows.concat(), cell: cell as f32 })
     }
 
-    /// The height at a position between its vertices; below 0 where there must not be a cavity. It is linear between positions that are as close as samples.
+    /// The height at a position between its vertices; below 0 where there must not be a cavity. It is linear between
+    /// positions that are as close as samples.
     pub fn at(&self, [x, y]: [f32; 2]) -> f32 {
         let (column, row) = (self.xs.partition_point(|at| *at <= x), self.ys.partition_point(|at| *at > y));
         let [width, height] = [self.xs.len(), self.ys.len()];
@@ -134,7 +138,8 @@ impl Ceiling {
         mix(along(row - 1), along(row), down)
     }
 
-    /// The vertices along each side, counter-clockwise from above: along the north, the west, the south and the east, each with both of its ends.
+    /// The vertices along each side, counter-clockwise from above: along the north, the west, the south and the east,
+    /// each with both of its ends.
     pub fn sides(&self) -> [Vec<u32>; 4] {
         let [width, height] = [self.xs.len() as u32, self.ys.len() as u32];
         let at = |column: u32, row: u32| row * width + column;

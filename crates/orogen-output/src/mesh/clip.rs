@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-/// The part of an edge, from either end, in which it is never cut, so that vertices on the level do not coincide with those of the triangles. The outline is off by
-/// no more than this part of an edge.
+/// The part of an edge, from either end, in which it is never cut, so that vertices on the level do not coincide with
+/// those of the triangles. The outline is off by no more than this part of an edge.
 const MARGIN: f64 = 1.0 / 64.0;
 
 /// The number of a vertex that is not in the result.
@@ -20,9 +20,11 @@ pub(super) struct Clipped {
     pub around: Vec<[u32; 2]>,
 }
 
-/// Cuts triangles at the level `z`, and keeps what is above it. `around` is the border of the triangles, counter-clockwise, edge by edge.
+/// Cuts triangles at the level `z`, and keeps what is above it. `around` is the border of the triangles,
+/// counter-clockwise, edge by edge.
 ///
-/// A vertex at the level counts as below it, and edges are cut inside: so if the triangles are a surface whose edges have a triangle on each side, except along the border, the result is one too.
+/// A vertex at the level counts as below it, and edges are cut inside: so if the triangles are a surface whose edges
+/// have a triangle on each side, except along the border, the result is one too.
 pub(super) fn clip(corners: &[[f32; 3]], triangles: &[[u32; 3]], around: &[[u32; 2]], z: f32) -> Clipped {
     let vertices = vec![NONE; corners.len()];
     let mut cut = Cut { corners, z, made: Vec::new(), vertices, cuts: HashMap::new() };
@@ -74,7 +76,8 @@ pub(super) struct Parted {
     pub between: Vec<[u32; 2]>,
 }
 
-/// Divides triangles at the level `z`. Both parts share the vertices between them, so together they are the surface that was cut; the vertices follow the rules of [`clip`].
+/// Divides triangles at the level `z`. Both parts share the vertices between them, so together they are the surface
+/// that was cut; the vertices follow the rules of [`clip`].
 pub(super) fn part(corners: &[[f32; 3]], triangles: &[[u32; 3]], z: f32) -> Parted {
     let vertices = (0..corners.len() as u32).collect();
     let mut cut = Cut { corners, z, made: corners.to_vec(), vertices, cuts: HashMap::new() };

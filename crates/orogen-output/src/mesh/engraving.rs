@@ -13,8 +13,8 @@ const DEPTH: f32 = 0.6;
 const BEHIND: f32 = 0.2;
 
 impl Solid {
-    /// Engraves letters in the middle of the southern wall, which goes from the western to the eastern side; returns their size in millimetres per em. Of a wall of the thickness
-    /// `hollow` they take at most half.
+    /// Engraves letters in the middle of the southern wall, which goes from the western to the eastern side; returns
+    /// their size in millimetres per em. Of a wall of the thickness `hollow` they take at most half.
     ///
     /// The wall is divided anew around them, so the solid stays one closed surface.
     ///
@@ -59,7 +59,8 @@ impl Solid {
             let [[a, b], [c, d]] = [&face, &floor].map(|copy| [from, to].map(|corner| copy[*corner as usize]));
             self.triangles.extend([[a, b, d], [a, d, c]]);
         }
-        // Around the lattice of the letters: down its western side, along the bottom, and up the eastern one; and along its top.
+        // Around the lattice of the letters: down its western side, along the bottom, and up the eastern one; and along
+        // its top.
         let at = |column: usize, row: usize| face[row * columns + column];
         let under: Vec<u32> = (0..rows)
             .map(|row| at(0, row))

@@ -2,10 +2,10 @@
 //!
 //! The Khronos Group's specification, 2.0.1. Metres; X east, Y up, Z south, with the first sample of the grid at the
 //! node's origin; the node's translation is the position of that sample in its world. Vertices are interleaved:
-//! position, normal, texture coordinate and, on request, colour (linear, four u16) and tangent (eastward along the
-//! ground). Indices have two bytes if they fit. Objects are instances by EXT_mesh_gpu_instancing: a reader without support
-//! for it shows one placeholder of each kind. Levels of detail use MSFT_lod: a reader without support for it shows
-//! the first level.
+//! position, normal, texture coordinate and, on request, color (linear, four u16) and tangent (eastward along the
+//! ground). Indices have two bytes if they fit. Objects are instances by EXT_mesh_gpu_instancing: a reader without
+//! support for it shows one placeholder of each kind. Levels of detail use MSFT_lod: a reader without support for it
+//! shows the first level.
 
 use std::io::{self, Write};
 

@@ -1,9 +1,11 @@
 //! Triangles of polygons between two lines from west to east.
 
-/// The triangles of the polygon between an upper and a lower line, counter-clockwise. Positions are along and up; both lines begin west of `start` never and end east of `end` never,
-/// go never westward, and do not touch. Vertices are indices of `at`.
+/// The triangles of the polygon between an upper and a lower line, counter-clockwise. Positions are along and up; both
+/// lines begin west of `start` never and end east of `end` never, go never westward, and do not touch. Vertices are
+/// indices of `at`.
 ///
-/// Every vertex is used, also those within straight lines: the edges of the triangles along the polygon are its own. By the sweep of Garey et al., "Triangulating a simple polygon" (1978).
+/// Every vertex is used, also those within straight lines: the edges of the triangles along the polygon are its own. By
+/// the sweep of Garey et al., "Triangulating a simple polygon" (1978).
 pub(super) fn triangles(
     at: &impl Fn(u32) -> [f64; 2],
     [start, end]: [u32; 2],

@@ -1,7 +1,7 @@
 //! Wavefront OBJ (.obj), text, with its material (.mtl).
 //!
 //! The Advanced Visualizer's appendix B1. Metres; x east, y up, z south, with the first sample of the grid at the
-//! origin. Each vertex has a texture coordinate (u to the right, v up) and a normal with the same index; colours follow
+//! origin. Each vertex has a texture coordinate (u to the right, v up) and a normal with the same index; colors follow
 //! the position, a common extension. Numbers have enough digits to restore the same f32.
 
 use std::io::{self, Write};

@@ -28,8 +28,8 @@ pub struct Instance {
 pub const CORNERS: usize = 12;
 
 impl ObjectMesh {
-    /// The placeholder, a pyramid with four sides that stands on the ground: a position and a normal for each vertex, three
-    /// vertices a triangle, counter-clockwise seen from outside.
+    /// The placeholder, a pyramid with four sides that stands on the ground: a position and a normal for each vertex,
+    /// three vertices a triangle, counter-clockwise seen from outside.
     #[must_use]
     pub fn placeholder(&self) -> [[[f32; 3]; 2]; CORNERS] {
         let (half, high) = (self.width / 2.0, self.width * 1.5);

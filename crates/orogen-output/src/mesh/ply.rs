@@ -2,8 +2,8 @@
 //!
 //! G. Turk, "The PLY polygon file format", 1994. Metres; x east, y north, z up, with the first sample of the grid at
 //! the origin: y is zero along the first row and negative south of it. Each vertex has its normal and either its sRGB
-//! colour or its texture coordinates (s to the right, t up): readers that support both use the texture coordinates and
-//! ignore the colours.
+//! color or its texture coordinates (s to the right, t up): readers that support both use the texture coordinates and
+//! ignore the colors.
 
 use std::io::{self, Write};
 

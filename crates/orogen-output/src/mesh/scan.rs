@@ -344,7 +344,7 @@ mod tests {
 
     /// Two triangles with a shared edge together visit every sample inside their square once.
     #[test]
-    fn neighbours_leave_no_sample_out() {
+    fn neighbors_leave_no_sample_out() {
         let side = 40;
         let tile = bumpy(side as usize);
         for [from, to] in [[[5, 5], [30, 22]], [[30, 3], [5, 35]], [[5, 20], [30, 20]], [[17, 2], [17, 37]]] {

@@ -122,7 +122,7 @@ impl Shape {
         if triangles.is_empty() {
             return Err(Error::new(
                 ErrorKind::Request,
-                "the mesh would be empty: no three neighbouring samples are finite",
+                "the mesh would be empty: no three neighboring samples are finite",
             ));
         }
         Ok(Shape { kind: Kind::Listed { samples, triangles } })

@@ -1,7 +1,8 @@
 //! Closed solids of surfaces, to print.
 //!
-//! Millimetres; x east, y north, z up, with the south-western corner of the window at the origin. The surface is closed by walls and a flat base, so that the
-//! solid is watertight: every edge has a triangle on both sides, and every normal points outward.
+//! Millimetres; x east, y north, z up, with the south-western corner of the window at the origin. The surface is closed
+//! by walls and a flat base, so that the solid is watertight: every edge has a triangle on both sides, and every normal
+//! points outward.
 
 use super::bounds::bounds;
 use super::cavity::Ceiling;
@@ -24,13 +25,14 @@ pub const LEGIBLE: f64 = 4.0;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Print {
-    /// Length of the longer side in millimetres, between the centres of its first and last sample.
+    /// Length of the longer side in millimetres, between the centers of its first and last sample.
     pub size: f64,
     /// Thickness of the base in millimetres, below the lowest sample or the level of the cut; 3 by default.
     pub base: f64,
     /// The level in metres, before exaggeration, above which the land is kept; all of it by default.
     pub cut: Option<f64>,
-    /// Least thickness of the walls and the ceiling around a cavity that is open below, in millimetres; without it the solid is full.
+    /// Least thickness of the walls and the ceiling around a cavity that is open below, in millimetres; without it the
+    /// solid is full.
     pub hollow: Option<f64>,
 }
 
@@ -125,7 +127,8 @@ impl Solid {
         Ok(solid)
     }
 
-    /// Adds raised letters in the middle of the southern wall, or of that straight piece of it where they are largest; returns their size in millimetres per em.
+    /// Adds raised letters in the middle of the southern wall, or of that straight piece of it where they are largest;
+    /// returns their size in millimetres per em.
     ///
     /// They are bodies of their own that reach into the wall, which printers' programs join with it.
     ///
@@ -183,7 +186,8 @@ impl Solid {
 
     /// Adds land above a cut with walls, a base, and a cavity in each part that has room for it, open below.
     ///
-    /// The lines around the cavities divide the triangles of the land: those outside have a copy on the ground, those inside one at the ceiling.
+    /// The lines around the cavities divide the triangles of the land: those outside have a copy on the ground, those
+    /// inside one at the ceiling.
     ///
     /// # Errors
     /// If the base is too thin, no part has room, or the surface is not one of all samples.

@@ -22,7 +22,7 @@ pub struct Surface<'a> {
     pub shape: &'a Shape,
     /// Factor of the heights.
     pub exaggeration: f32,
-    /// The colours of vertices, on request.
+    /// The colors of vertices, on request.
     pub painter: Option<&'a Painter>,
     /// Receives the progress of the triangles, if present.
     pub progress: Option<&'a Progress>,
@@ -39,7 +39,7 @@ pub struct Corner {
     pub south: f32,
     /// The unit normal of the height field: east, up, south. Upward if it was not requested.
     pub normal: [f32; 3],
-    /// The centre of the sample's pixel in a picture with one pixel per sample: to the right and down, 0 to 1.
+    /// The center of the sample's pixel in a picture with one pixel per sample: to the right and down, 0 to 1.
     pub texture: [f32; 2],
     /// sRGB; white if it was not requested or there is no painter.
     pub color: [u8; 3],
@@ -50,7 +50,7 @@ pub struct Corner {
 pub struct Wanted {
     /// Normals.
     pub normals: bool,
-    /// Colours.
+    /// Colors.
     pub colors: bool,
 }
 
@@ -164,7 +164,7 @@ impl Surface<'_> {
         normals
     }
 
-    /// Computes the normals and colours of a whole row.
+    /// Computes the normals and colors of a whole row.
     fn prepare(&self, row: usize, wanted: Wanted, scratch: &mut Scratch) {
         let painter = self.painter.filter(|_| wanted.colors);
         if !wanted.normals && painter.is_none() {

@@ -25,7 +25,7 @@ impl Sample {
         Sample(number)
     }
 
-    /// The difference between the numbers of a sample and its southern neighbour. Eastern neighbours have consecutive
+    /// The difference between the numbers of a sample and its southern neighbor. Eastern neighbors have consecutive
     /// numbers.
     pub const ROW: u32 = 1 << 16;
 
@@ -42,7 +42,7 @@ impl Sample {
     }
 }
 
-/// The samples of a part of a grid. Rows are an odd number of cache lines apart, so that neighbouring rows do not map
+/// The samples of a part of a grid. Rows are an odd number of cache lines apart, so that neighboring rows do not map
 /// to the same cache sets. A register can be read from any sample.
 pub(super) struct Tile {
     heights: Vec<f32>,

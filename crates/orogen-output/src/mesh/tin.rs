@@ -59,11 +59,11 @@ pub(super) fn triangulate<'a>(
     Ok(workspace.triangles.iter().map(|triangle| triangle.corners))
 }
 
-/// A triangle and its neighbours. Edge 4 t + k leads from vertex k of triangle t to the next.
+/// A triangle and its neighbors. Edge 4 t + k leads from vertex k of triangle t to the next.
 #[derive(Clone, Copy)]
 struct Triangle {
     corners: [Sample; 3],
-    /// The same edges in the neighbouring triangles.
+    /// The same edges in the neighboring triangles.
     twins: [u32; 3],
     /// Its sample with the largest error, or [`Worst::UNKNOWN`].
     worst: Worst,
@@ -295,7 +295,7 @@ impl<'a> Tin<'a> {
         [near, far]
     }
 
-    /// Flips the edge of a triangle that brings it and its neighbour within the limit, the best of the three; returns
+    /// Flips the edge of a triangle that brings it and its neighbor within the limit, the best of the three; returns
     /// whether there is one.
     fn flip(&mut self, triangle: u32) -> bool {
         let mut best: Option<(f32, u32)> = None;

@@ -33,10 +33,12 @@ pub(super) struct StraightWall {
     pub height: f32,
 }
 
-/// A line of letters as triangles: along the wall, up, and in the third coordinate how much of it is ink; letters are where that is above [`EDGE`].
+/// A line of letters as triangles: along the wall, up, and in the third coordinate how much of it is ink; letters are
+/// where that is above [`EDGE`].
 pub(super) struct WallText {
     corners: Vec<[f32; 3]>,
-    /// Number of vertices along the wall and up it; they go row by row from the top, and there is no ink in those at the border.
+    /// Number of vertices along the wall and up it; they go row by row from the top, and there is no ink in those at
+    /// the border.
     pub lattice: [usize; 2],
     /// Size of the letters in millimetres per em.
     pub size: f64,
@@ -46,8 +48,8 @@ pub(super) struct WallText {
 const EDGE: f32 = 0.5;
 
 impl WallText {
-    /// A line of text in the middle of that wall where it is largest, of a model of this length in millimetres. With `is_within` all of its letters are within the height of the
-    /// wall, otherwise the capitals.
+    /// A line of text in the middle of that wall where it is largest, of a model of this length in millimetres. With
+    /// `is_within` all of its letters are within the height of the wall, otherwise the capitals.
     ///
     /// # Errors
     /// If the font lacks a letter, there are none or too many, or no wall has room for them.

@@ -90,7 +90,7 @@ impl Noise {
     }
 }
 
-/// Samples a square of `across` cells per side over the picture, with nearest-neighbour interpolation.
+/// Samples a square of `across` cells per side over the picture, with nearest-neighbor interpolation.
 fn sample(cells: &[f32], across: usize, xs: &[f64], ys: &[f64], out: &mut [f32]) {
     let index = |at: f64| ((at / SIDE * across as f64) as usize).min(across - 1);
     for (row, y) in out.chunks_mut(xs.len().max(1)).zip(ys) {

@@ -1,6 +1,7 @@
 //! Textbook textures made of noise.
 //!
-//! K. Perlin, "An Image Synthesizer" (SIGGRAPH 1985) for marble; D. Ebert and others, "Texturing and Modeling" for all three.
+//! K. Perlin, "An Image Synthesizer" (SIGGRAPH 1985) for marble; D. Ebert and others, "Texturing and Modeling" for all
+//! three.
 
 use std::f32::consts::TAU;
 use std::ops::Range;

@@ -7,20 +7,20 @@ use super::vector::Vector;
 /// Position and direction of a camera, in the world's metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum View {
-    /// On a sphere around the centre of the land.
+    /// On a sphere around the center of the land.
     Around {
-        /// Direction of the camera from the centre, in degrees clockwise from north.
+        /// Direction of the camera from the center, in degrees clockwise from north.
         azimuth: f64,
         /// Elevation of the camera, in degrees above the horizon.
         elevation: f64,
-        /// Distance from the centre, in metres; `None` chooses it so that all of the land is visible.
+        /// Distance from the center, in metres; `None` chooses it so that all of the land is visible.
         distance: Option<f64>,
     },
     /// At a given position.
     At {
         /// Position: metres east and south of the world's origin, and height in metres.
         eye: [f64; 3],
-        /// The target at the centre of the picture: metres east and south, at ground level.
+        /// The target at the center of the picture: metres east and south, at ground level.
         look: [f64; 2],
     },
 }
@@ -119,9 +119,9 @@ impl Camera {
                     Some(distance) => distance / relief.cell(),
                     None => look.framing(frame, out),
                 };
-                // Seen from above, the near half takes more of the picture, so the frame's centre is not the land's.
+                // Seen from above, the near half takes more of the picture, so the frame's center is not the land's.
                 let mut camera = Camera { eye: middle + out * distance, ..look };
-                camera.centre(frame);
+                camera.center(frame);
                 camera
             }
             View::At { eye, look } => {
@@ -172,7 +172,7 @@ impl Camera {
         let middle = self.eye;
         let fits = |distance: f64| {
             let mut camera = Camera { eye: middle + out * distance, ..*self };
-            camera.centre(frame);
+            camera.center(frame);
             frame.corners().all(|corner| {
                 camera.project(corner).is_some_and(|at| at.iter().all(|at| at.abs() <= 1.0 - 2.0 * MARGIN))
             })
@@ -191,7 +191,7 @@ impl Camera {
 
     /// Moves the camera perpendicular to its line of sight until the box has equal distances from the upper and lower
     /// edges of the picture, and from the left and right edges.
-    fn centre(&mut self, frame: &Frame) {
+    fn center(&mut self, frame: &Frame) {
         let depth = (frame.middle() - self.eye).dot(self.ahead);
         for _ in 0..8 {
             let mut low = [f64::INFINITY; 2];
@@ -300,7 +300,7 @@ mod tests {
             let at = camera.project(place).unwrap();
             assert!((at[0] - (2.0 * across - 1.0)).abs() < 1e-9 && (at[1] - (2.0 * down - 1.0)).abs() < 1e-9);
         }
-        // The centre of the picture is the point that the camera looks at.
+        // The center of the picture is the point that the camera looks at.
         let hit = relief.hit(&camera.ray(0.5, 0.5), 0.0).unwrap();
         let place = camera.ray(0.5, 0.5).at(hit.distance);
         assert!((place.x - 12.0).abs() < 1e-6 && (place.y - 4.0).abs() < 1e-6, "{place:?}");

@@ -9,8 +9,8 @@ use super::skylight::SkylightDevice;
 use orogen_grid::error::Result;
 use orogen_grid::progress::Progress;
 
-/// A device that paints scenes, such as a graphics card. Its pictures look like those of [`Scene::paint`], but may differ
-/// in their last bits.
+/// A device that paints scenes, such as a graphics card. Its pictures look like those of [`Scene::paint`], but may
+/// differ in their last bits.
 pub trait RenderDevice: SkylightDevice + Send + Sync {
     /// Paints some rows of a picture of `size` pixels as sRGB bytes, three per pixel, like [`Scene::paint`].
     ///

@@ -1,8 +1,8 @@
 //! A scene as named numbers and grids, for renderers on other devices.
 //!
-//! What such a renderer shares with this one is here and nowhere else, so that the two cannot drift apart: constants, the
-//! numbers of the scene and of the camera, and the grids of the land. Names and lengths of constants and numbers do not
-//! depend on the scene.
+//! What such a renderer shares with this one is here and nowhere else, so that the two cannot drift apart: constants,
+//! the numbers of the scene and of the camera, and the grids of the land. Names and lengths of constants and numbers do
+//! not depend on the scene.
 //!
 //! Positions are relative to an origin near the camera, so that single precision suffices: an error of a position is a
 //! share of its distance from the camera, like the width of a pixel.
@@ -205,8 +205,8 @@ impl Scene {
 }
 
 impl Lighting {
-    /// The light without any land, for renderers that have their own: in haze of this density over a block with this diagonal and highest ground, and on the sea
-    /// of land with this cell in metres.
+    /// The light without any land, for renderers that have their own: in haze of this density over a block with this
+    /// diagonal and highest ground, and on the sea of land with this cell in metres.
     #[must_use]
     pub fn data(&self, haze: f64, [across, highest]: [f64; 2], cell: f64) -> SceneData<'_> {
         let mut data = SceneData::default();

@@ -13,7 +13,7 @@ use orogen_io::palette::color::{Light, decode};
 use orogen_io::palette::palette::{NO_DATA, Palette};
 use orogen_io::palette::tint::Tint;
 
-/// The colouring of the ground.
+/// The coloring of the ground.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Colors {
     /// Forest, grass, scree, rock and snow, by height, slope and aspect.
@@ -25,7 +25,7 @@ pub enum Colors {
     Surfaces,
     /// The tint of the relief map.
     Map,
-    /// A single colour, like a clay model.
+    /// A single color, like a clay model.
     Clay,
 }
 
@@ -94,8 +94,8 @@ pub(super) const PAPER: f32 = 0.55;
 const MISSING: f32 = 0.3;
 
 impl GroundCover {
-    /// Prepares the ground of a land. The map's tint uses `palette`, over `range` or the heights of the land. Snow starts at `snow_line`, in metres, or at a
-    /// share of the relief.
+    /// Prepares the ground of a land. The map's tint uses `palette`, over `range` or the heights of the land. Snow
+    /// starts at `snow_line`, in metres, or at a share of the relief.
     pub fn new(land: &Land, relief: &Relief, dress: &Dress) -> GroundCover {
         let Dress { colors, palette, range, cover, snow_line } = *dress;
         let [columns, rows] = relief.samples();
@@ -224,7 +224,7 @@ impl GroundCover {
         ([red, green, blue].map(|part| (part * grain).clamp(0.0, 1.0)), 0.25 * roughness)
     }
 
-    /// Land in a temperate climate: its colour and roughness.
+    /// Land in a temperate climate: its color and roughness.
     fn natural(&self, site: &GroundPoint, [east, south, hollow, flow]: [f32; 4]) -> (Light, f32) {
         let steep = (east * east + south * south).sqrt();
         // 1 on slopes that face north.
@@ -326,7 +326,7 @@ impl GroundCover {
         (self.colors != Colors::Clay).then_some(SOIL)
     }
 
-    /// The colour of a block's side at a depth below the ground, in metres.
+    /// The color of a block's side at a depth below the ground, in metres.
     pub fn section(&self, along: f64, height: f32, depth: f32, thickness: f32) -> Light {
         let scale = f64::from(self.cell) / f64::from(thickness);
         let wave = self.grain.at(along * scale * 0.25, 0.7, 7).value;
@@ -470,7 +470,7 @@ mod tests {
     }
 
     #[test]
-    fn every_site_has_a_colour() {
+    fn every_site_has_a_color() {
         for colors in [Colors::Natural, Colors::Desert, Colors::Map, Colors::Clay] {
             let ground = ground(0.5, colors, None);
             for k in 0..300u16 {

@@ -42,7 +42,7 @@ impl Lighting {
 }
 
 /// The exposure: factors that light is multiplied by before tone mapping. Sunlit, slightly inclined ground is exposed
-/// correctly, and the colour of the light is partly compensated (white balance).
+/// correctly, and the color of the light is partly compensated (white balance).
 fn exposure(sky: &Sky, level_sky: Light) -> Light {
     let facing = (sky.sun().z.max(0.0) as f32).max(0.45);
     let light: Light = std::array::from_fn(|c| sky.sunlight()[c] * facing + level_sky[c]);

@@ -42,7 +42,7 @@ pub struct Style<'a> {
     pub haze: f64,
     /// The surroundings; by default the sea if most of the edge is in it, otherwise a cut block.
     pub edge: Option<Edge>,
-    /// The colouring of the ground.
+    /// The coloring of the ground.
     pub colors: Colors,
     /// The palette of [`Colors::Map`]; by default that of the relief map.
     pub palette: Option<&'a Palette>,

@@ -150,7 +150,7 @@ impl Sky {
     pub fn seen(&self, along: Vector) -> Light {
         let sky = self.light(along);
         let radius = SUN_RADIUS.to_radians();
-        // 1 - cos of the angle to the centre of the sun, relative to that of its limb.
+        // 1 - cos of the angle to the center of the sun, relative to that of its limb.
         let away = (1.0 - along.dot(self.sun)) / (0.5 * radius * radius);
         if away >= 1.5 || along.z < 0.0 {
             return sky;
@@ -163,7 +163,7 @@ impl Sky {
     }
 }
 
-/// Air masses from a height (metres from the Earth's centre) to space in a direction: of molecules, of droplets, of
+/// Air masses from a height (metres from the Earth's center) to space in a direction: of molecules, of droplets, of
 /// ozone; none if the Earth is in the way.
 fn depths(from: f32, up: f32) -> Option<[f32; 3]> {
     let grazing = from * (1.0 - up * up).max(0.0).sqrt();
@@ -186,12 +186,12 @@ fn out(from: f32, up: f32) -> f32 {
     (b * b + (TOP - from) * (TOP + from)).max(0.0).sqrt() - b
 }
 
-/// The distance from the Earth's centre after moving by `way`.
+/// The distance from the Earth's center after moving by `way`.
 fn risen(from: f32, up: f32, way: f32) -> f32 {
     (from * from + way * (way + 2.0 * from * up)).max(0.0).sqrt()
 }
 
-/// Relative densities at a distance from the Earth's centre; 1 at the maximum.
+/// Relative densities at a distance from the Earth's center; 1 at the maximum.
 fn densities(at: f32) -> [f32; 3] {
     let height = (at - EARTH).max(0.0);
     let ozone = (1.0 - (height - 25_000.0).abs() / 15_000.0).max(0.0);
@@ -256,8 +256,8 @@ pub(super) struct Haze {
 const BLOCK: f64 = 0.30;
 
 impl Haze {
-    /// Haze of this density over a block: 0 is none, 1 that of a clear day. Lengths are the diagonal of the block and the height of its highest ground above the
-    /// lowest.
+    /// Haze of this density over a block: 0 is none, 1 that of a clear day. Lengths are the diagonal of the block and
+    /// the height of its highest ground above the lowest.
     pub fn of_block(density: f64, across: f64, highest: f64) -> Haze {
         Haze::new(BLOCK * density, across, (1.2 * highest).max(0.02 * across))
     }
@@ -265,7 +265,7 @@ impl Haze {
     /// Haze with the optical depth `amount` of green light over `way` cells along the lowest ground, and a scale height
     /// of `thins` cells.
     pub fn new(amount: f64, way: f64, thins: f64) -> Haze {
-        // Between clean air, which absorbs blue, and mist, which absorbs all colours equally.
+        // Between clean air, which absorbs blue, and mist, which absorbs all colors equally.
         const COLOUR: Light = [0.62, 1.0, 1.75];
         let green = (amount / way) as f32;
         Haze { dims: COLOUR.map(|c| c * green), thins: thins as f32 }

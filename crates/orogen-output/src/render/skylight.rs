@@ -1,4 +1,4 @@
-//! Light of the sky on each sample, with the horizon and the colour of every direction.
+//! Light of the sky on each sample, with the horizon and the color of every direction.
 //!
 //! In each of sixteen directions the horizon of every sample is found exactly: lines through the land are
 //! traversed against the direction, with the convex hull of the ground passed (V. Timonen, J. Westerholm, "Scalable

@@ -1,4 +1,4 @@
-//! Tone mapping: from light to displayable colours.
+//! Tone mapping: from light to displayable colors.
 
 use orogen_io::palette::color::Light;
 
@@ -11,7 +11,7 @@ pub(super) const OUTPUT: [Light; 3] =
 /// The coefficients a to e of the curve (v (v + a) - b) / (v (c v + d) + e).
 pub(super) const CURVE: [f32; 5] = [0.024_578_6, 0.000_090_537, 0.983_729, 0.432_951, 0.238_081];
 
-/// Filmic tone mapping of red, green and blue light: shadows keep their colour, highlights roll off to white.
+/// Filmic tone mapping of red, green and blue light: shadows keep their color, highlights roll off to white.
 ///
 /// S. Hill's fit of the ACES reference rendering and output transforms (2014), including its mixing of channels, which
 /// desaturates bright light. `light` is 1 for a white sheet in the sun.
@@ -43,7 +43,7 @@ mod tests {
     }
 
     #[test]
-    fn bright_colours_pale() {
+    fn bright_colors_pale() {
         let [r, g, b] = tone_map([0.2, 0.1, 0.05]);
         let [bright_r, bright_g, bright_b] = tone_map([20.0, 10.0, 5.0]);
         assert!(b / r < bright_b / bright_r && g / r < bright_g / bright_r && bright_b > 0.8);

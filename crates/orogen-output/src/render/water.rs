@@ -1,4 +1,4 @@
-//! Water: waves, reflection, and colour by depth.
+//! Water: waves, reflection, and color by depth.
 
 use super::grain::Grain;
 use super::vector::Vector;
@@ -92,7 +92,7 @@ impl Water {
         })
     }
 
-    /// The colour of a section through water, at a depth in metres.
+    /// The color of a section through water, at a depth in metres.
     pub fn section(&self, depth: f32) -> Light {
         let left: Light = self.takes.map(|takes| libm::expf(-takes * depth * 0.12));
         std::array::from_fn(|c| DARK[c] + (SHALLOW[c] - DARK[c]) * left[c].max(left[1] * 0.6))

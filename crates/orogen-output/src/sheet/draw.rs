@@ -35,7 +35,7 @@ pub struct Sheet {
     pub levels: Vec<f64>,
     /// Resolution in pixels per inch, for [`raster::draw`](super::raster::draw).
     pub dpi: f64,
-    /// The rectangle of the ground on the page, between the centres of its first and its last samples.
+    /// The rectangle of the ground on the page, between the centers of its first and its last samples.
     pub ground: Rect,
 }
 

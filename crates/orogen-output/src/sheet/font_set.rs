@@ -89,7 +89,7 @@ impl FontSet {
         steps
     }
 
-    /// The outline of each character separately, at the position that `place` returns for the distance of its centre
+    /// The outline of each character separately, at the position that `place` returns for the distance of its center
     /// along the line: for curved text.
     pub fn each(&self, text: &str, face: Face, size: f32, mut place: impl FnMut(f32) -> (Point, f32)) -> Vec<Step> {
         let mut steps = Vec::new();

@@ -1,4 +1,4 @@
-//! Elements around a map: heading, coordinates along the sides, colour bar, scale, north arrow, legend.
+//! Elements around a map: heading, coordinates along the sides, color bar, scale, north arrow, legend.
 
 use super::font_set::FontSet;
 use super::geometry::{Point, Rect};
@@ -32,7 +32,7 @@ pub struct Desk<'a> {
 pub enum Align {
     /// The text starts at the anchor.
     Start,
-    /// The text is centred at the anchor.
+    /// The text is centerd at the anchor.
     Middle,
     /// The text ends at the anchor.
     End,
@@ -124,7 +124,7 @@ impl Desk<'_> {
         self.scene.lines(marks, 0.2, self.colors.ink, 1.0);
     }
 
-    /// A colour bar with heights; `width` includes its unit.
+    /// A color bar with heights; `width` includes its unit.
     pub fn colors(&mut self, at: Point, width: f32, tint: &Tint, [low, high]: [f64; 2]) {
         const STEPS: usize = 600;
         let encoder = Encoder::new();
@@ -292,7 +292,7 @@ fn columns(entries: &[Entry], letters: &FontSet, rows: usize) -> Vec<f32> {
     entries.chunks(rows.max(1)).map(|pair| pair.iter().map(width).fold(0.0, f32::max)).collect()
 }
 
-/// The block of the colour bar; in a column it takes the full width.
+/// The block of the color bar; in a column it takes the full width.
 #[must_use]
 pub fn colors_block() -> Block {
     Block { widths: [COLORS, 0.0], height: ROW }

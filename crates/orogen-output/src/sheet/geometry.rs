@@ -206,7 +206,8 @@ impl Affine {
         Affine { origin, right: Vector { x: across, y: 0.0 }, down: Vector { x: 0.0, y: down } }
     }
 
-    /// Moves (0, 0) to `origin` and turns by `angle` radians counter-clockwise. The points have y up, as those of fonts.
+    /// Moves (0, 0) to `origin` and turns by `angle` radians counter-clockwise. The points have y up, as those of
+    /// fonts.
     #[must_use]
     pub fn turning(origin: Point, angle: f32) -> Affine {
         let (sin, cos) = libm::sincosf(angle);

@@ -41,7 +41,8 @@ pub struct Inks {
 }
 
 impl Inks {
-    /// Inks visible on a color: dark ones, or bright ones on dark ground. Inks that were chosen are the same on any ground.
+    /// Inks visible on a color: dark ones, or bright ones on dark ground. Inks that were chosen are the same on any
+    /// ground.
     pub fn over([red, green, blue]: Light, is_land: bool, colors: &PageColors) -> Inks {
         let chosen = if is_land { colors.contours } else { colors.water };
         if let Some(line) = chosen {

@@ -12,7 +12,7 @@ pub struct Label {
     pub size: f32,
     /// Factor of the distances between letters.
     pub spacing: f32,
-    /// Points along its centre line, at most a letter's width apart, in reading order.
+    /// Points along its center line, at most a letter's width apart, in reading order.
     pub path: Vec<Point>,
 }
 
@@ -54,7 +54,8 @@ pub struct LabelStyle {
 }
 
 /// Finds positions for a line's labels. `line` has higher ground to its left, so a text along it points uphill. Where
-/// such a text would be upside down it is reversed, if there is no better position. `width` includes the distances between letters.
+/// such a text would be upside down it is reversed, if there is no better position. `width` includes the distances
+/// between letters.
 ///
 /// A label lies where `is_clear` holds for all points of its path. The area of the labels is marked as occupied.
 pub fn place(

@@ -202,7 +202,7 @@ mod tests {
         }
     }
 
-    /// The blocks of colours, scale, north and legend.
+    /// The blocks of colors, scale, north and legend.
     fn blocks() -> [Block; 4] {
         let block = |row: f32, column: f32, height: f32| Block { widths: [row, column], height };
         [block(88.0, 0.0, ROW), block(53.0, 53.0, 9.5), block(10.0, 10.0, ROW), block(98.0, 50.0, 24.0)]

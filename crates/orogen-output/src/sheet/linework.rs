@@ -1,4 +1,5 @@
-//! Lines of a map: contours, rivers, lakes, shores and summits, found in the heights at the scale of the map, unless the water is known.
+//! Lines of a map: contours, rivers, lakes, shores and summits, found in the heights at the scale of the map, unless
+//! the water is known.
 
 use super::furniture::{Entry, Sign};
 use super::ground::laid;

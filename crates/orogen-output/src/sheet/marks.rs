@@ -33,8 +33,8 @@ pub fn summit(desk: &mut Desk, taken: &mut Taken, at: Point, text: &str) {
     shares().for_each(|share| taken.take(middle(start, share), SIZE * 0.75));
 }
 
-/// Draws a place and its name, if there is room: to the right, otherwise to the left, above or below. Marks the room as occupied. Returns whether there was
-/// room.
+/// Draws a place and its name, if there is room: to the right, otherwise to the left, above or below. Marks the room as
+/// occupied. Returns whether there was room.
 pub fn place_name(desk: &mut Desk, taken: &mut Taken, at: Point, text: &str) -> bool {
     let width = desk.letters.width(text, Face::Bold, NAME);
     let beside = DOT + 0.8;
@@ -66,7 +66,8 @@ pub fn place_name(desk: &mut Desk, taken: &mut Taken, at: Point, text: &str) -> 
     true
 }
 
-/// Draws a summit with its name, and its height below it, if there is room. Marks the room as occupied. Returns whether there was room.
+/// Draws a summit with its name, and its height below it, if there is room. Marks the room as occupied. Returns whether
+/// there was room.
 pub fn named_summit(desk: &mut Desk, taken: &mut Taken, at: Point, name: &str, height: Option<&str>) -> bool {
     let lines: Vec<(&str, Face, f32)> =
         std::iter::once((name, Face::Bold, NAME)).chain(height.map(|height| (height, Face::Regular, SIZE))).collect();
@@ -103,8 +104,8 @@ pub fn named_summit(desk: &mut Desk, taken: &mut Taken, at: Point, name: &str, h
     true
 }
 
-/// Draws the name of a lake or a sea around a point, or a little above or below it, if there is room, and marks the room as occupied. Returns whether there
-/// was room.
+/// Draws the name of a lake or a sea around a point, or a little above or below it, if there is room, and marks the
+/// room as occupied. Returns whether there was room.
 pub fn water_name(desk: &mut Desk, taken: &mut Taken, at: Point, text: &str) -> bool {
     let width = desk.letters.width(text, Face::Italic, NAME);
     let parts = (width / (NAME * 0.5)).ceil().max(1.0);
@@ -180,7 +181,7 @@ mod tests {
         assert_eq!(name(&mut desk, &mut taken, 58.0, 10.0), (true, 6));
         assert_eq!(name(&mut desk, &mut taken, 20.5, 30.5), (true, 9));
         assert!(!taken.is_free(Point::new(26.0, 30.0), 0.3) && !taken.is_free(Point::new(52.0, 10.0), 0.3));
-        // Around a place with many neighbours there is no room.
+        // Around a place with many neighbors there is no room.
         let more: Vec<bool> = (0..12).map(|k| name(&mut desk, &mut taken, 20.0 + 0.1 * k as f32, 30.0).0).collect();
         assert!(more.contains(&false), "{more:?}");
     }

@@ -141,7 +141,8 @@ pub struct Room<'a> {
     pub all: &'a mut Taken,
 }
 
-/// Draws a name beside a line of this width, if there is room on one of its sides: first where nothing else is, then across lines.
+/// Draws a name beside a line of this width, if there is room on one of its sides: first where nothing else is, then
+/// across lines.
 fn name_along(desk: &mut Desk, room: &mut Room, line: &[Point], width: f32, name: &str, ink: Rgb) -> bool {
     let even = smoothed(line);
     let wide = desk.letters.width(name, Face::Italic, ALONG.size) * ALONG.spacing;
@@ -247,8 +248,8 @@ fn moved(line: &[Point], by: f32) -> Vec<Point> {
     if line.len() < 2 { Vec::new() } else { (0..line.len()).map(aside).collect() }
 }
 
-/// The course of the river nearest to a point, downstream, and its largest width: the stretch there with those that it flows into, and the widest of
-/// those that flow into it.
+/// The course of the river nearest to a point, downstream, and its largest width: the stretch there with those that it
+/// flows into, and the widest of those that flow into it.
 fn course(rivers: &[(f32, Vec<Point>)], at: Point) -> Option<(f32, Vec<Point>)> {
     /// Maximum distance between the ends of stretches, in millimetres.
     const JOINED: f32 = 0.6;

@@ -60,7 +60,7 @@ pub struct Parts {
     pub lakes: bool,
     /// The legend.
     pub legend: bool,
-    /// The colour bar.
+    /// The color bar.
     pub colors: bool,
     /// The scale bar.
     pub scale: bool,
@@ -107,7 +107,8 @@ pub struct PageColors {
     pub page: Rgb,
     /// Texts, frames and symbols; almost black by default.
     pub ink: Rgb,
-    /// Rivers, shores, lakes and contours under water; shades of blue by default. The sea has the colors of the palette.
+    /// Rivers, shores, lakes and contours under water; shades of blue by default. The sea has the colors of the
+    /// palette.
     pub water: Option<Rgb>,
     /// Contours on land, on any ground; by default brown, and bright on dark ground.
     pub contours: Option<Rgb>,
@@ -128,18 +129,18 @@ pub enum GridStep {
     Every(f64),
 }
 
-/// The mapping from values of a layer to colours.
+/// The mapping from values of a layer to colors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scale {
     /// Linear.
     Linear,
     /// Logarithmic, for values over orders of magnitude.
     Log,
-    /// A separate colour for each number.
+    /// A separate color for each number.
     Labels,
 }
 
-/// A layer that colours the sheet in place of the heights.
+/// A layer that colors the sheet in place of the heights.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Layer {
@@ -149,7 +150,7 @@ pub struct Layer {
     pub name: String,
     /// The unit, or empty.
     pub unit: &'static str,
-    /// The mapping from values to colours.
+    /// The mapping from values to colors.
     pub scale: Scale,
     /// The values at the ends of the palette; by default the minimum and maximum.
     pub range: Option<[f32; 2]>,
@@ -285,7 +286,8 @@ pub struct SheetOptions {
     pub parts: Parts,
     /// The page; by default fitted to a map with a longer side of 240 mm.
     pub page: Page,
-    /// The resolution of the relief picture, and of the page if it is written as pixels; 150 pixels per inch by default.
+    /// The resolution of the relief picture, and of the page if it is written as pixels; 150 pixels per inch by
+    /// default.
     pub resolution: Resolution,
     /// Sea level in metres; without it, the default, everything is land.
     pub sea_level: Option<f64>,

@@ -70,8 +70,8 @@ impl Linework {
             false => Vec::new(),
         };
         let shore: Vec<Vec<Point>> = self.shore.iter().map(path).collect();
-        // Names and summits are drawn last, on top of the lines, but reserve their room first; names may cross rivers and shores, because harbours and towns
-        // at rivers have no other room.
+        // Names and summits are drawn last, on top of the lines, but reserve their room first; names may cross rivers
+        // and shores, because harbours and towns at rivers have no other room.
         let mut over =
             Desk { scene: Scene::new(desk.scene.size, String::new()), letters: desk.letters, colors: desk.colors };
         let mut left_out = LeftOut::default();

@@ -189,7 +189,7 @@ impl Profile {
         let [start, end] = self.direction.names();
         for (name, end, inward) in [(start, 0.0, 1.0), (end, 1.0, -1.0)] {
             let wide = desk.letters.width(name, Face::Bold, SMALL);
-            // The arrow's tip, both ends of its base, and the centre of the label.
+            // The arrow's tip, both ends of its base, and the center of the label.
             let (tip, feet, middle) = match self.direction {
                 Direction::Eastward => {
                     let at = map.at(end, self.at);
@@ -212,7 +212,7 @@ impl Profile {
         }
     }
 
-    /// The land under the line in the map's colours or in grey, and the sea above it.
+    /// The land under the line in the map's colors or in grey, and the sea above it.
     fn ground(&self, desk: &mut Desk, tint: Option<&Tint>, dpi: f64) {
         let Rect { width, height, .. } = self.area;
         let side = |millimetres: f32| ((f64::from(millimetres) * dpi / 25.4).round() as usize).clamp(2, 8000);
@@ -222,7 +222,7 @@ impl Profile {
         let mut pixels = Vec::with_capacity(3 * columns * rows);
         for j in 0..rows {
             let metres = self.span[1] - (j as f64 + 0.5) * rise;
-            // Below the lowest ground on the line the colour is that of the lowest ground; rock below the sea is not
+            // Below the lowest ground on the line the color is that of the lowest ground; rock below the sea is not
             // blue.
             let is_land = self.sea_level.is_none_or(|sea| metres > sea);
             let color = match tint {

@@ -1,4 +1,4 @@
-//! Colours of a layer other than height: along a linear or a logarithmic ramp, or one colour per number.
+//! Colors of a layer other than height: along a linear or a logarithmic ramp, or one color per number.
 
 use orogen_grid::parallel;
 use orogen_noise::Points;
@@ -20,10 +20,10 @@ use orogen_io::palette::color::{Encoder, Light, decode};
 use orogen_io::palette::fitted::{Fitted, of_hsv};
 use orogen_io::palette::palette::{Palette, Position};
 
-/// Maximum number of decades of a logarithmic ramp; smaller values have the colour of its lower end.
+/// Maximum number of decades of a logarithmic ramp; smaller values have the color of its lower end.
 const MAX_DECADES: f64 = 8.0;
 
-/// A mapping from the samples of a layer to colours.
+/// A mapping from the samples of a layer to colors.
 pub struct Ramp {
     fitted: Fitted,
     scale: Scale,
@@ -36,7 +36,7 @@ pub struct Ramp {
 }
 
 impl Ramp {
-    /// The colours of `palette` over the samples of a layer, or over its range if that is given.
+    /// The colors of `palette` over the samples of a layer, or over its range if that is given.
     ///
     /// # Errors
     /// If the palette is the atlas tint, or a logarithmic ramp has no positive value.
@@ -67,7 +67,7 @@ impl Ramp {
         }
         let mut palette = palette.clone();
         if layer.scale == Scale::Log {
-            // Colours at values stay at them; shares refer to the decades.
+            // Colors at values stay at them; shares refer to the decades.
             palette.stops.retain(|stop| !matches!(stop.at, Position::Value(value) if value <= 0.0));
             for stop in &mut palette.stops {
                 if let Position::Value(value) = stop.at {
@@ -96,7 +96,7 @@ impl Ramp {
         }
     }
 
-    /// The values at pixel centres: means of numbers, or the nearest label.
+    /// The values at pixel centers: means of numbers, or the nearest label.
     pub fn at_pixels(&self, values: &Grid, pixels: [usize; 2]) -> Grid {
         let mut out = at_pixels(values, pixels);
         if self.scale != Scale::Labels {
@@ -170,7 +170,7 @@ fn label(value: f32) -> Light {
 }
 
 impl Desk<'_> {
-    /// A bar of the ramp's colours with its values and its name; `width` is the total width.
+    /// A bar of the ramp's colors with its values and its name; `width` is the total width.
     pub fn ramp(&mut self, Point { x: left, y: top }: Point, width: f32, ramp: &Ramp) {
         const STEPS: usize = 600;
         let encoder = Encoder::new();
@@ -186,7 +186,7 @@ impl Desk<'_> {
                 self.scene.block(part, color);
                 self.scene.frame(part, 0.15, self.colors.ink);
             }
-            self.small(&format!("{named}, one colour each"), Point::new(left, top + 7.4), Align::Start);
+            self.small(&format!("{named}, one color each"), Point::new(left, top + 7.4), Align::Start);
             return;
         }
         let pixels = (0..STEPS).flat_map(|k| {
@@ -238,7 +238,7 @@ mod tests {
         for decade in 2..=8 {
             assert_eq!(ramp.at(libm::powf(10.0, decade as f32)), plain.at(decade as f32), "{decade}");
         }
-        // Values of 0 and below have the colour of the lower end.
+        // Values of 0 and below have the color of the lower end.
         assert_eq!(ramp.at(0.0), ramp.at(100.0));
         let marks = ramp.marks();
         let names: Vec<&str> = marks.iter().map(|mark| mark.1.as_str()).collect();

@@ -31,7 +31,8 @@ pub fn draw(scene: &Scene, dpi: f64) -> Canvas {
     Canvas::of(width, height, bands.concat())
 }
 
-/// Draws the items of a scene over rows of a picture from `top`, with `pixels` for each millimetre and the scene's upper left corner at `corner`, in pixels.
+/// Draws the items of a scene over rows of a picture from `top`, with `pixels` for each millimetre and the scene's
+/// upper left corner at `corner`, in pixels.
 pub fn draw_over(scene: &Scene, pixels: f32, corner: Point, top: usize, width: usize, bytes: &mut [u8]) {
     let rows: Vec<Rgb> = bytes.as_chunks::<3>().0.to_vec();
     if width == 0 || rows.len() < width {
@@ -173,7 +174,7 @@ impl Band {
         }
     }
 
-    /// A picture, with nearest-neighbour sampling.
+    /// A picture, with nearest-neighbor sampling.
     fn picture(&mut self, area: Rect, size: [usize; 2], pixels: &[u8]) {
         let columns: Vec<Option<usize>> = (0..self.width)
             .map(|i| {
@@ -196,7 +197,7 @@ impl Band {
         }
     }
 
-    /// A segment of a line: coverage by the distance to each pixel's centre.
+    /// A segment of a line: coverage by the distance to each pixel's center.
     fn stretch(&mut self, a: Point, b: Point, half: f32, rows: &mut [usize; 2]) {
         let reach = half + 1.0;
         let way = a.to(b);
@@ -279,7 +280,7 @@ fn accumulate(row: &mut [f32], height: f32, x0: f32, x1: f32) {
     let first = x0 as usize;
     let last = x1 as usize;
     if first == last {
-        // The share of the pixel to the right of the edge's centre.
+        // The share of the pixel to the right of the edge's center.
         let middle = (x0 + x1) / 2.0 - first as f32;
         row[first] += height * (1.0 - middle);
         row[first + 1] += height * middle;

@@ -11,17 +11,17 @@ use orogen_grid::grid::Grid;
 use orogen_io::palette::color::{Encoder, Light};
 use orogen_io::palette::tint::Tint;
 
-/// Strength of the shading on colours of a layer, which must remain readable on the colour bar.
+/// Strength of the shading on colors of a layer, which must remain readable on the color bar.
 const ON_LAYER: f32 = 0.5;
 
-/// Swiss shading: contrast in the lowlands and on the summits, amount and colour of the haze over the lowlands, and
+/// Swiss shading: contrast in the lowlands and on the summits, amount and color of the haze over the lowlands, and
 /// smoothing of the lowlands in pixels.
 const CONTRAST: [f32; 2] = [0.62, 1.22];
 const HAZE: f32 = 0.16;
 const AIR: Light = [0.62, 0.72, 0.84];
 const SOFT: usize = 7;
 
-/// The source of the relief's colours.
+/// The source of the relief's colors.
 #[derive(Clone, Copy)]
 pub enum Paint<'a> {
     /// The tint of the heights.
@@ -32,7 +32,7 @@ pub enum Paint<'a> {
     Albedo(&'a [Grid; 3]),
 }
 
-/// The same at pixel centres.
+/// The same at pixel centers.
 enum Painted<'a> {
     Tint,
     Layer(Grid, &'a Ramp),

@@ -40,7 +40,7 @@ pub enum Item {
         lines: Vec<Vec<Point>>,
         /// Width in millimetres.
         width: f32,
-        /// The colour.
+        /// The color.
         ink: Rgb,
         /// Opacity, 0 to 1.
         cover: f32,
@@ -49,7 +49,7 @@ pub enum Item {
     Area {
         /// The outlines, closed implicitly.
         outline: Vec<Step>,
-        /// The colour.
+        /// The color.
         ink: Rgb,
         /// Opacity, 0 to 1.
         cover: f32,

@@ -13,7 +13,7 @@ use orogen_io::palette::color::hex;
 /// Side of a picture tile in pixels: even an incompressible tile takes less than 1 MiB in base64.
 const TILE: usize = 432;
 
-/// Overlap of a tile with its right and lower neighbours, in pixels. Viewers blend the edge of a picture with the
+/// Overlap of a tile with its right and lower neighbors, in pixels. Viewers blend the edge of a picture with the
 /// background; with the overlap the background of a tile's left and upper edge is the same picture, down to a scale of
 /// 1 to this many pixels.
 const OVERLAP: usize = 16;

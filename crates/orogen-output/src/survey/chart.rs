@@ -3,21 +3,21 @@
 use crate::map::canvas::{Canvas, Ink};
 use crate::map::text::{BuiltinFont, Face, Style};
 
-/// Colour of the page.
+/// Color of the page.
 pub const PAPER: Ink = [253, 253, 251];
-/// Colour of text.
+/// Color of text.
 pub const INK: Ink = [30, 30, 32];
-/// Colour of small print.
+/// Color of small print.
 pub const SOFT: Ink = [105, 105, 108];
-/// Colour of thin lines.
+/// Color of thin lines.
 pub const LINE: Ink = [206, 206, 204];
-/// Colour of the range of real terrain.
+/// Color of the range of real terrain.
 pub const BAND: Ink = [226, 232, 220];
-/// Colour of marks.
+/// Color of marks.
 pub const MARK: Ink = [176, 58, 34];
-/// Colour of water.
+/// Color of water.
 pub const WATER: Ink = [36, 92, 160];
-/// Colour of ground.
+/// Color of ground.
 pub const GROUND: Ink = [146, 120, 92];
 
 /// A page with its font.
@@ -103,7 +103,7 @@ fn label(value: f64) -> String {
 }
 
 impl Sheet {
-    /// Draws text at a column; `align` is 0 to start there, 1 to end there, 0.5 to centre.
+    /// Draws text at a column; `align` is 0 to start there, 1 to end there, 0.5 to center.
     pub fn text(&mut self, x: f64, y: f64, align: f64, text: &str, style: Style) {
         let width = f64::from(self.font.width(text, style));
         self.font.write(&mut self.canvas, (x - align * width) as f32, y.round() as i64, text, style);

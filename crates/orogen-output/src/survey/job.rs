@@ -10,7 +10,8 @@ use orogen_grid::error::Result;
 use orogen_grid::grid::Grid;
 use orogen_grid::progress::Progress;
 
-/// The measuring of a piece of land. Land on disk has the numbers of land in memory, to the bit, and needs little memory.
+/// The measuring of a piece of land. Land on disk has the numbers of land in memory, to the bit, and needs little
+/// memory.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct SurveyJob<'a> {

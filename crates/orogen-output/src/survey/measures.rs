@@ -65,7 +65,7 @@ pub struct Measures {
     pub curvature: f64,
     /// Skew of the curvature: how much heavier its concave tail is than the convex one, -1 to 1.
     pub curvature_skew: f64,
-    /// Mean difference between neighbours, in metres.
+    /// Mean difference between neighbors, in metres.
     pub ruggedness: f64,
     /// Preference of slopes for multiples of 45 degrees, 0 to 1.
     pub grid_bias: f64,

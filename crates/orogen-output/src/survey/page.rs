@@ -119,7 +119,7 @@ impl Shown {
         if scale >= 1.0 {
             let heights = land.ground(0..window.height)?;
             let own = Grid::from_data(Window::new(window.width, window.height, 1.0), heights.data().to_vec());
-            // Pixel centres, in samples.
+            // Pixel centers, in samples.
             let at = |count: usize| (0..count).map(|k| (k as f64 + 0.5) / scale - 0.5).collect::<Vec<f64>>();
             let (xs, ys) = (at(size[0]), at(size[1]));
             if let Some(own) = own {
@@ -147,7 +147,7 @@ impl Shown {
         Ok(Shown { grid, scale, width: window.width })
     }
 
-    /// Draws a picture of this size on the sheet, centred in its square.
+    /// Draws a picture of this size on the sheet, centerd in its square.
     fn put(&self, sheet: &mut Sheet, corner: [f64; 2], pixel: impl Fn(usize, usize) -> [u8; 3]) -> [f64; 2] {
         let [left, top] = self.corner(corner);
         for j in 0..self.grid.height() {
@@ -159,7 +159,7 @@ impl Shown {
     }
 
     fn corner(&self, [left, top]: [f64; 2]) -> [f64; 2] {
-        // Tall pictures are centred, wide ones are aligned at the top.
+        // Tall pictures are centerd, wide ones are aligned at the top.
         [left + ((PICTURE - self.grid.width() as f64) / 2.0).floor(), top]
     }
 
@@ -171,7 +171,7 @@ impl Shown {
 
 fn relief(sheet: &mut Sheet, shown: &Shown, sea_level: Option<f32>, corner: [f64; 2]) {
     let sea = sea_level.map_or(f64::NEG_INFINITY, f64::from);
-    // Without a sea, colours start at the lowest ground.
+    // Without a sea, colors start at the lowest ground.
     let lowest = shown.grid.data().iter().copied().filter(|h| h.is_finite()).fold(f32::MAX, f32::min);
     let painter = Painter::fit(&shown.grid, if sea.is_finite() { sea } else { f64::from(lowest) - 1.0 });
     let wide = extended(&shown.grid);
@@ -367,7 +367,7 @@ struct Track {
     end: f64,
 }
 
-/// Maximum distance of marks from the centre, in half widths of the range; values further out are drawn at the end.
+/// Maximum distance of marks from the center, in half widths of the range; values further out are drawn at the end.
 const FARTHEST: f64 = 2.4;
 
 /// The track of a row from `left`, `width` pixels wide.

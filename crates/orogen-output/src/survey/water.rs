@@ -12,7 +12,7 @@ use orogen_engine::large::tiling::Tiling;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::hydrology::accumulation::accumulate;
-use orogen_grid::hydrology::direction::{DISTANCES, neighbour, strides};
+use orogen_grid::hydrology::direction::{DISTANCES, neighbor, strides};
 use orogen_grid::hydrology::drainage;
 use orogen_grid::hydrology::fill;
 use orogen_grid::hydrology::outlets::Outlets;
@@ -167,7 +167,7 @@ pub fn measure_on_disk(land: &Land, folder: &Path, budget: &Budget, progress: &P
                         continue;
                     }
                     let cell = j * window.width + i;
-                    let receiver = strides.get(usize::from(code)).map_or(cell, |stride| neighbour(cell, *stride));
+                    let receiver = strides.get(usize::from(code)).map_or(cell, |stride| neighbor(cell, *stride));
                     let height = |cell: usize| filled.data()[cell - around.start * window.width];
                     if let Some(hack) = &mut hack {
                         hack.add(area, strip.ways[c].length());
@@ -200,7 +200,7 @@ fn bands(rows: Range<usize>, most: usize) -> impl Iterator<Item = Range<usize>> 
     rows.step_by(most).map(move |first| first..(first + most).min(end))
 }
 
-/// The rows and their neighbours, where they exist.
+/// The rows and their neighbors, where they exist.
 fn near(rows: &Range<usize>, height: usize) -> Range<usize> {
     rows.start.saturating_sub(1)..(rows.end + 1).min(height)
 }

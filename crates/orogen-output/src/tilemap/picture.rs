@@ -20,7 +20,8 @@ impl Tileset {
         })
     }
 
-    /// Draws a row of tiles over a line of pixels of `depth` bytes: row `y` of their pixels, every `by`th pixel, or one pixel for each `by / size` tiles.
+    /// Draws a row of tiles over a line of pixels of `depth` bytes: row `y` of their pixels, every `by`th pixel, or one
+    /// pixel for each `by / size` tiles.
     pub fn draw(&self, tiles: &[u32], [by, y]: [usize; 2], line: &mut [u8], depth: usize) {
         // Pixels of the picture for each tile, and tiles of the map for each of the picture.
         let [side, step] = [(self.size / by).max(1), (by / self.size).max(1)];
@@ -33,7 +34,7 @@ impl Tileset {
     }
 }
 
-/// Draws a colour over a pixel of three or four bytes.
+/// Draws a color over a pixel of three or four bytes.
 fn blend(pixel: &mut [u8], over: Rgba) {
     let opacity = u32::from(over[3]);
     if opacity == 255 {

@@ -20,7 +20,8 @@ pub fn listed(numbers: &[u32]) -> String {
     text
 }
 
-/// The cells of a row of a `TileMapLayer` of Godot: column, row, source, column and row in the picture, and flips, two bytes each.
+/// The cells of a row of a `TileMapLayer` of Godot: column, row, source, column and row in the picture, and flips, two
+/// bytes each.
 #[must_use]
 pub fn godot_cells(tileset: &Tileset, tiles: &[u32], row: usize) -> Vec<u8> {
     let bit = |is_set: bool, bit: u16| if is_set { bit } else { 0 };

@@ -5,7 +5,7 @@ use orogen_grid::autotile::drawable::Drawable;
 use orogen_grid::autotile::flip::{Flip, Flips};
 use orogen_grid::autotile::mask::Layout;
 
-/// A colour in sRGB bytes: red, green, blue, opacity (0 or 255).
+/// A color in sRGB bytes: red, green, blue, opacity (0 or 255).
 pub type Rgba = [u8; 4];
 
 /// A terrain class of a tileset.
@@ -13,7 +13,7 @@ pub type Rgba = [u8; 4];
 pub struct Terrain {
     /// Its name, such as `grass`.
     pub name: String,
-    /// The colour that stands for it in lists and editors: red, green, blue.
+    /// The color that stands for it in lists and editors: red, green, blue.
     pub color: [u8; 3],
 }
 
@@ -77,7 +77,8 @@ pub fn parts(number: u32) -> (u32, Flip) {
     (number & (DIAGONAL - 1), Flip { diagonal: has(DIAGONAL), x: has(MIRRORED), y: has(UPSIDE_DOWN) })
 }
 
-/// The number in the picture and the flips of a tile in the files of a map, which has 0 where there is no tile, and otherwise 1 more than its [number].
+/// The number in the picture and the flips of a tile in the files of a map, which has 0 where there is no tile, and
+/// otherwise 1 more than its [number].
 #[must_use]
 pub fn shown(tile: u32) -> Option<(u32, Flip)> {
     tile.checked_sub(1).map(parts)

@@ -96,7 +96,8 @@ impl Brush {
     }
 }
 
-/// A number to decimal places, as the text can have it without further digits; negative places are tens, hundreds and so on.
+/// A number to decimal places, as the text can have it without further digits; negative places are tens, hundreds and
+/// so on.
 fn rounded(number: f64, digits: i32) -> f64 {
     let scale = libm::pow(10.0, f64::from(digits.abs()));
     match digits >= 0 {
@@ -126,8 +127,9 @@ pub struct Painting {
 }
 
 impl Painting {
-    /// Begins a stroke at a position. It goes to the selected node if that paints and the effect fits it, to one that is connected with it, or to a new one.
-    /// `surface` is the output of the heights. `None` if there is nothing to erase.
+    /// Begins a stroke at a position. It goes to the selected node if that paints and the effect fits it, to one that
+    /// is connected with it, or to a new one. `surface` is the output of the heights. `None` if there is nothing to
+    /// erase.
     #[must_use]
     pub fn begin(
         brush: Brush,

@@ -73,7 +73,8 @@ impl Document {
         Ok(document)
     }
 
-    /// The document of a file with this text. A recipe that is not valid opens, too: its errors are shown, and its recipe is empty until they are mended.
+    /// The document of a file with this text. A recipe that is not valid opens, too: its errors are shown, and its
+    /// recipe is empty until they are mended.
     #[must_use]
     pub fn of_file(path: &Path, text: String) -> Document {
         let title = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
@@ -92,7 +93,8 @@ impl Document {
         document
     }
 
-    /// A recipe that was written as JSON, as TOML: it has no file of its own yet, and relative paths start in the folder of its file.
+    /// A recipe that was written as JSON, as TOML: it has no file of its own yet, and relative paths start in the
+    /// folder of its file.
     ///
     /// # Errors
     /// If it is no valid recipe.

@@ -17,7 +17,8 @@ pub fn value(points: &[[f64; 2]]) -> Value {
     Value::List(points.iter().map(|point| Spanned::unplaced(pair(point))).collect())
 }
 
-/// The points of a node that is one line or one area in the plane; `None` for other nodes, several lines, and points with heights, which are edited as text.
+/// The points of a node that is one line or one area in the plane; `None` for other nodes, several lines, and points
+/// with heights, which are edited as text.
 #[must_use]
 pub fn points_of(node: &Node) -> Option<Vec<[f64; 2]>> {
     let spec = node.spec();

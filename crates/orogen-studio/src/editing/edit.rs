@@ -38,7 +38,8 @@ pub enum Edit {
     Colors { ground: Ground, index: usize, colors: Vec<Rgb> },
     /// A new node with some inputs and parameters. Required inputs that `inputs` lacks are 0.
     Add { name: String, op: String, inputs: Vec<(String, String)>, params: Vec<(String, Value)> },
-    /// Stroke number `at`, from 0, of a node that paints: a new one, or a longer form of the last one. A node that is not there is made at `placement`.
+    /// Stroke number `at`, from 0, of a node that paints: a new one, or a longer form of the last one. A node that is
+    /// not there is made at `placement`.
     Stroke { node: String, placement: Placement, at: usize, stroke: Stroke },
     /// Nodes are removed; what read one reads its first input.
     Delete(Vec<String>),

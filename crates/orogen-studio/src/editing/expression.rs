@@ -77,7 +77,8 @@ impl Site {
         Err(ExpressionDiagnostic { span: visible(text, span), message })
     }
 
-    /// The words that can stand in the expression: functions, parameters, and, unless it is a formula, nodes and their layers.
+    /// The words that can stand in the expression: functions, parameters, and, unless it is a formula, nodes and their
+    /// layers.
     #[must_use]
     pub fn words(&self, recipe: &Recipe) -> Vec<Word> {
         let functions = Expression::functions()

@@ -24,8 +24,8 @@ impl Ground {
         }
     }
 
-    /// The names of a recipe's surfaces or classes with their colors, in the order of the recipe: one, or those of a gradient. Surfaces with a picture are
-    /// left out.
+    /// The names of a recipe's surfaces or classes with their colors, in the order of the recipe: one, or those of a
+    /// gradient. Surfaces with a picture are left out.
     #[must_use]
     pub fn of(self, recipe: &Recipe) -> Vec<(usize, String, Vec<Rgb>)> {
         match self {

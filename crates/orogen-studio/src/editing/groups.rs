@@ -1,5 +1,6 @@
-//! Groups of nodes. A node is in a group if its name begins with that of the group: `hills/noise` is in `hills`, and `hills/rocks/noise` in
-//! the group `rocks` within it. The nodes of a recipe that `[use.NAME]` includes are such a group, too.
+//! Groups of nodes. A node is in a group if its name begins with that of the group: `hills/noise` is in `hills`, and
+//! `hills/rocks/noise` in the group `rocks` within it. The nodes of a recipe that `[use.NAME]` includes are such a
+//! group, too.
 
 use std::collections::HashSet;
 
@@ -31,7 +32,8 @@ pub fn rest<'a>(name: &'a str, group: &str) -> Option<&'a str> {
     if group.is_empty() { Some(name) } else { name.strip_prefix(group)?.strip_prefix('/') }
 }
 
-/// The group directly within `group` that a node is in, with its whole name; `None` if it is directly in `group`, or outside.
+/// The group directly within `group` that a node is in, with its whole name; `None` if it is directly in `group`, or
+/// outside.
 #[must_use]
 pub fn inner<'a>(name: &'a str, group: &str) -> Option<&'a str> {
     let rest = rest(name, group)?;

@@ -33,8 +33,8 @@ impl History {
         &self.steps[self.at].text
     }
 
-    /// Makes a text the current one. Changes of one gesture, such as the drag of a slider, are one step: they have the same name, and nothing came
-    /// between them. What was undone is forgotten.
+    /// Makes a text the current one. Changes of one gesture, such as the drag of a slider, are one step: they have the
+    /// same name, and nothing came between them. What was undone is forgotten.
     pub fn push(&mut self, text: String, label: &'static str, gesture: Option<&str>) {
         if text == self.text() {
             return;

@@ -30,7 +30,8 @@ pub fn of_op(op: &str) -> String {
     op.rsplit('.').next().unwrap_or(op).replace('-', "_")
 }
 
-/// Why a node or a group cannot have a name, as a key of the catalogue of texts. A `/` stands between a group and what is in it.
+/// Why a node or a group cannot have a name, as a key of the catalogue of texts. A `/` stands between a group and what
+/// is in it.
 #[must_use]
 pub fn fault(name: &str) -> Option<&'static str> {
     let is_word = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');

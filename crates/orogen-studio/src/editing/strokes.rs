@@ -22,7 +22,8 @@ pub enum Placement {
     Over(String),
 }
 
-/// Writes stroke number `at`, from 0, of a node: a new one at the end, or another form of the last one. A node that is not there is made.
+/// Writes stroke number `at`, from 0, of a node: a new one at the end, or another form of the last one. A node that is
+/// not there is made.
 pub(super) fn write(
     document: &mut DocumentMut,
     name: &str,

@@ -1,7 +1,7 @@
 //! Lines with fewer points.
 
-/// The points of a line that it needs so that no point of the line is further than `tolerance` from the result (Douglas and Peucker 1973). Both ends
-/// stay.
+/// The points of a line that it needs so that no point of the line is further than `tolerance` from the result (Douglas
+/// and Peucker 1973). Both ends stay.
 #[must_use]
 pub fn thinned(points: &[[f64; 2]], tolerance: f64) -> Vec<[f64; 2]> {
     let mut is_kept = vec![false; points.len()];

@@ -94,7 +94,8 @@ impl EngineExport {
     /// Makes the files. Returns a description with the values for the engine's import dialog.
     ///
     /// # Errors
-    /// If the engine does not support what is chosen, or the export fails; then there are no files, or those which were there.
+    /// If the engine does not support what is chosen, or the export fails; then there are no files, or those which were
+    /// there.
     pub fn make(&self, mut work: Work, region: Region) -> Result<String> {
         let format = format_of(&work.path, self.formats())?;
         let job = EngineJob::new(self.target, format)

@@ -44,8 +44,9 @@ impl LayerExport {
         LayerExport { format, layer: HEIGHT.into(), size: None, options: Given::new(), layer_options: Given::new() }
     }
 
-    /// Another format: options that it lacks are dropped. A layer that it cannot hold becomes the heights. A mesh gets few triangles: its error is a round number of metres near
-    /// a thousandth of `relief`, the difference of the highest and the lowest height.
+    /// Another format: options that it lacks are dropped. A layer that it cannot hold becomes the heights. A mesh gets
+    /// few triangles: its error is a round number of metres near a thousandth of `relief`, the difference of the
+    /// highest and the lowest height.
     pub fn set_format(&mut self, format: &'static Format, relief: Option<f64>) {
         let was_mesh = self.format.knows(MAX_ERROR);
         self.format = format;

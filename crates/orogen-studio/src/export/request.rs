@@ -39,7 +39,8 @@ pub struct Export {
 }
 
 impl Export {
-    /// The heights of a part of a world as GeoTIFF, in a folder. `title` is the name of the recipe, and `is_place` whether it is a file of heights.
+    /// The heights of a part of a world as GeoTIFF, in a folder. `title` is the name of the recipe, and `is_place`
+    /// whether it is a file of heights.
     #[must_use]
     pub fn new(region: Region, title: &str, is_place: bool, folder: &Path) -> Option<Export> {
         let format = registry::named("tif").or(registry::all().first().copied())?;

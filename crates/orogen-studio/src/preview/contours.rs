@@ -10,7 +10,8 @@ use super::statistics::range;
 /// Most lines between the lowest and the highest height where the interval is not given.
 const MOST: usize = 25;
 
-/// Samples along the longer side of the grid that lines are traced on: finer ones would have more points than a window shows.
+/// Samples along the longer side of the grid that lines are traced on: finer ones would have more points than a window
+/// shows.
 const FINEST: usize = 1024;
 
 /// Contour lines.

@@ -36,11 +36,11 @@ pub struct Frame {
     pub quality: Quality,
     /// The heights of the surface, in metres.
     pub heights: Arc<Grid>,
-    /// The layer that is coloured, unless it is the surface.
+    /// The layer that is colored, unless it is the surface.
     pub values: Option<Arc<Grid>>,
-    /// What kind of quantity the coloured layer is.
+    /// What kind of quantity the colored layer is.
     pub kind: LayerKind,
-    /// The unit of the coloured layer, or empty.
+    /// The unit of the colored layer, or empty.
     pub unit: &'static str,
     /// Colors without light: red, green, blue and 255 for each sample, sRGB.
     pub albedo: Vec<u8>,
@@ -50,11 +50,12 @@ pub struct Frame {
     pub shaded: Vec<u8>,
     /// Contour lines of the heights, if they are wanted.
     pub contours: Option<Arc<Contours>>,
-    /// How much of the sun each sample sees, 0 to 255: two bytes for each sample, of the ground and of the surface of land and sea.
+    /// How much of the sun each sample sees, 0 to 255: two bytes for each sample, of the ground and of the surface of
+    /// land and sea.
     pub light: Vec<u8>,
     /// The height of the sea.
     pub sea_level: f64,
-    /// Figures of the coloured layer.
+    /// Figures of the colored layer.
     pub statistics: Statistics,
     /// The seconds since the request.
     pub seconds: f64,
@@ -63,7 +64,8 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Memory of a picture of a window while it is made, in bytes: heights, values, colors with and without light, the light, and what makes them.
+    /// Memory of a picture of a window while it is made, in bytes: heights, values, colors with and without light, the
+    /// light, and what makes them.
     #[must_use]
     pub fn memory(window: &Window) -> u64 {
         (window.width as u64).saturating_mul(window.height as u64).saturating_mul(BYTES)
@@ -81,13 +83,13 @@ impl Frame {
         self.heights.window()
     }
 
-    /// The layer that is coloured.
+    /// The layer that is colored.
     #[must_use]
     pub fn shown(&self) -> &Grid {
         self.values.as_deref().unwrap_or(&self.heights)
     }
 
-    /// The value of the coloured layer and the height at a position in metres; `None` outside.
+    /// The value of the colored layer and the height at a position in metres; `None` outside.
     #[must_use]
     pub fn at(&self, [east, south]: [f64; 2]) -> Option<[f32; 2]> {
         let window = self.window();

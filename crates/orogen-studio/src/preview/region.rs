@@ -52,7 +52,8 @@ impl Region {
         Some(if part.width > 1 && part.height > 1 { part } else { whole })
     }
 
-    /// West, north and the length of the sides of a square, moved and made smaller so that it is inside a world of this size; `None` for the whole.
+    /// West, north and the length of the sides of a square, moved and made smaller so that it is inside a world of this
+    /// size; `None` for the whole.
     #[must_use]
     pub fn square(&self, world: Option<[f64; 2]>) -> Option<[f64; 3]> {
         let Region::Square { center, side } = *self else { return None };

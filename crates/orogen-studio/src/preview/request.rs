@@ -14,7 +14,7 @@ use super::region::Region;
 pub struct Request {
     /// The recipe.
     pub recipe: Recipe,
-    /// What is coloured: an output, `node`, `node.layer`, or a layer derived from the heights.
+    /// What is colored: an output, `node`, `node.layer`, or a layer derived from the heights.
     pub layer: String,
     /// The layer that gives the surface its heights.
     pub surface: String,

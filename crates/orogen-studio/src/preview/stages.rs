@@ -24,7 +24,8 @@ pub const FIRST: usize = 256;
 /// Samples of the pictures after it, up to the finest.
 const NEXT: [usize; 3] = [1024, 2048, 4096];
 
-/// The time on one core, in nanoseconds, that solvers may take before the first picture: with more, a draft comes first.
+/// The time on one core, in nanoseconds, that solvers may take before the first picture: with more, a draft comes
+/// first.
 const PATIENCE: f64 = 1.2e8;
 
 /// How much coarser drafts can be.

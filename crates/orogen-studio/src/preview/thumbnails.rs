@@ -178,8 +178,8 @@ fn make(
     Ok(())
 }
 
-/// The picture of a layer: a known one, of the recipe itself if that takes little time (its solvers are in the store, or quick), otherwise of its draft. The
-/// flag tells whether it was computed.
+/// The picture of a layer: a known one, of the recipe itself if that takes little time (its solvers are in the store,
+/// or quick), otherwise of its draft. The flag tells whether it was computed.
 fn one(worlds: &[World; 2], layer: &str, window: &Window, known: &[Made], progress: &Progress) -> Result<(Made, bool)> {
     let mut last = None;
     for world in worlds {

@@ -172,9 +172,10 @@ fn status(key: &str) -> u64 {
     line.trim().trim_end_matches(" kB").parse::<u64>().unwrap() * 1024
 }
 
-/// The settings of glibc's allocator with which it gives back what is freed: all threads share one heap, its end is trimmed, and blocks from 16 KiB on have
-/// pages of their own. Without them it keeps holes between blocks that are in use, and some memory for each thread that there was, so that the memory of the
-/// process says little about what is in use.
+/// The settings of glibc's allocator with which it gives back what is freed: all threads share one heap, its end is
+/// trimmed, and blocks from 16 KiB on have pages of their own. Without them it keeps holes between blocks that are in
+/// use, and some memory for each thread that there was, so that the memory of the process says little about what is in
+/// use.
 #[cfg(target_os = "linux")]
 const ALLOCATOR: [(&str, &str); 4] = [
     ("MALLOC_ARENA_MAX", "1"),
@@ -201,7 +202,8 @@ fn half_an_hour_of_random_edits_leaks_nothing() {
         edit_for(Duration::from_secs(300), 3 + part);
         println!("{} KiB", resident() >> 10);
     }
-    // Nothing is open at these moments: what has been added since is compared with what the studio needs while it works.
+    // Nothing is open at these moments: what has been added since is compared with what the studio needs while it
+    // works.
     let (after, most) = (resident(), status("VmHWM:"));
     println!("at most {} KiB", most >> 10);
     assert!(after < before + most / 20, "{} KiB, then {} KiB; at most {}", before >> 10, after >> 10, most >> 10);

@@ -9,7 +9,8 @@ use super::scene::{End, Scene};
 /// Distances between boxes, wires and columns, in points.
 const SPACING: Spacing = Spacing { gap: 22.0, wire_gap: 12.0, alley: 62.0 };
 
-/// The upper left corners of all boxes. `sizes` are widths and heights, `outlet` and `port` the distance of a wire's ends from the top of its box.
+/// The upper left corners of all boxes. `sizes` are widths and heights, `outlet` and `port` the distance of a wire's
+/// ends from the top of its box.
 #[must_use]
 pub fn tidy(
     scene: &Scene,

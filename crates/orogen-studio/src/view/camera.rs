@@ -1,6 +1,7 @@
 //! The camera of the view in space.
 //!
-//! Lengths are in units of half the longer side of what is shown, whose middle is the origin: x points east, y up and z south.
+//! Lengths are in units of half the longer side of what is shown, whose middle is the origin: x points east, y up and z
+//! south.
 
 use glam::{Mat4, Vec3, Vec4};
 
@@ -50,7 +51,8 @@ impl Camera {
         -Vec3::new(libm::sinf(self.yaw) * level, libm::sinf(self.pitch), libm::cosf(self.yaw) * level)
     }
 
-    /// The direction from the target to the camera, in degrees clockwise from north, and its elevation in degrees above the horizon: to a tenth, and never below the horizon.
+    /// The direction from the target to the camera, in degrees clockwise from north, and its elevation in degrees above
+    /// the horizon: to a tenth, and never below the horizon.
     #[must_use]
     pub fn bearing(&self) -> [f64; 2] {
         let tenths = |degrees: f64| (degrees * 10.0).round() / 10.0;
@@ -62,7 +64,8 @@ impl Camera {
         Vec3::new(libm::cosf(self.yaw), 0.0, -libm::sinf(self.yaw))
     }
 
-    /// The matrix from the view's space to clip space, for a picture of this width over height. Depths are reversed: 1 is near, 0 is far.
+    /// The matrix from the view's space to clip space, for a picture of this width over height. Depths are reversed: 1
+    /// is near, 0 is far.
     #[must_use]
     pub fn matrix(&self, aspect: f32) -> Mat4 {
         let near = (self.distance * 0.01).max(1e-3);
@@ -99,7 +102,8 @@ impl Camera {
         self.target = (self.target + step).clamp(Vec3::splat(-REACH), Vec3::splat(REACH));
     }
 
-    /// The ray through a position of the picture, from its upper left corner at 0, 0 to its lower right one at 1, 1: its start and its unit vector.
+    /// The ray through a position of the picture, from its upper left corner at 0, 0 to its lower right one at 1, 1:
+    /// its start and its unit vector.
     #[must_use]
     pub fn ray(&self, [right, down]: [f32; 2], aspect: f32) -> [Vec3; 2] {
         let inverse = self.matrix(aspect).inverse();

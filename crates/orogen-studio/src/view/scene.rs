@@ -1,4 +1,5 @@
-//! The graph of a recipe as it is drawn: the nodes of one group, the groups in it as boxes, and what they are connected to outside.
+//! The graph of a recipe as it is drawn: the nodes of one group, the groups in it as boxes, and what they are connected
+//! to outside.
 
 use std::collections::{HashMap, HashSet};
 

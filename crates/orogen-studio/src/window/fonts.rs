@@ -20,7 +20,8 @@ const FAMILIES: [&str; 12] = [
     "SimSun",
 ];
 
-/// Adds a font of the system with Chinese letters. Returns its family, or `None` if the system has none; then they are shown as boxes.
+/// Adds a font of the system with Chinese letters. Returns its family, or `None` if the system has none; then they are
+/// shown as boxes.
 #[must_use]
 pub fn add_chinese(context: &Context) -> Option<String> {
     let mut database = fontdb::Database::new();

@@ -30,8 +30,8 @@ pub struct Light {
 }
 
 impl Light {
-    /// The light for a sun (degrees clockwise from north, and above the horizon) and a block of land. While the sky for another elevation is being made, it is
-    /// the last one.
+    /// The light for a sun (degrees clockwise from north, and above the horizon) and a block of land. While the sky for
+    /// another elevation is being made, it is the last one.
     pub fn of(&mut self, studio: &Studio, context: &Context, sun: [f64; 2], block: Block) -> Arc<LightShader> {
         let [azimuth, elevation] = sun;
         let made = self.making.as_ref().map(Receiver::try_recv);

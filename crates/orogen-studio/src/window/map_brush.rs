@@ -126,7 +126,8 @@ impl MapBrush {
         }
     }
 
-    /// Draws the ring of the radius and of the hardness around the pointer, and the line of the stroke that is being painted.
+    /// Draws the ring of the radius and of the hardness around the pointer, and the line of the stroke that is being
+    /// painted.
     pub fn draw(
         &self,
         painter: &egui::Painter,

@@ -458,7 +458,8 @@ fn image(frame: &Frame) -> ColorImage {
     ColorImage::from_rgba_unmultiplied([window.width.div_ceil(step), rows.count()], &pixels)
 }
 
-/// The sides of the picture of a frame: west, north, east and south in metres. Samples are points: a pixel of the picture is around one.
+/// The sides of the picture of a frame: west, north, east and south in metres. Samples are points: a pixel of the
+/// picture is around one.
 fn sides(frame: &Frame) -> [f64; 4] {
     let window = frame.window();
     [window.x, window.y, window.right(), window.bottom()].map(|side| (side as f64 - 0.5) * window.cell)

@@ -21,7 +21,8 @@ pub struct RealismPanel {
 const COLUMN: f32 = 470.0;
 const BAR: f32 = 130.0;
 
-/// Places beyond this many times the distance from the median to the 10 % or 90 % quantile are drawn at the end of the bar.
+/// Places beyond this many times the distance from the median to the 10 % or 90 % quantile are drawn at the end of the
+/// bar.
 const FURTHEST: f64 = 3.0;
 
 impl RealismPanel {

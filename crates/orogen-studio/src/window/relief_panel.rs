@@ -123,7 +123,8 @@ impl ReliefPanel {
         }
     }
 
-    /// The view as the choices of a render: where the camera is, and how many times as high heights are drawn, to a tenth.
+    /// The view as the choices of a render: where the camera is, and how many times as high heights are drawn, to a
+    /// tenth.
     #[must_use]
     pub fn shown(&self, studio: &Studio) -> ShownView {
         let times = self.times(studio.frame.as_deref());
@@ -215,7 +216,8 @@ impl ReliefPanel {
         }
     }
 
-    /// How many times as high heights are drawn: by default a whole number with which the relief is at most a seventh of the width, or once.
+    /// How many times as high heights are drawn: by default a whole number with which the relief is at most a seventh
+    /// of the width, or once.
     fn times(&self, frame: Option<&Frame>) -> f64 {
         let suiting = |frame: &Frame| {
             let [low, high, _] = Self::levels(frame);

@@ -77,8 +77,8 @@ pub fn run() -> ExitCode {
     let end = End { watch, is_after_loss: arguments.after_loss, begun: Instant::now() };
     let at_panic = end.clone();
     let print_panic = std::panic::take_hook();
-    // What draws the window panics when its device is gone, in the same frame; the text was kept before. A hook, because the
-    // release profile does not unwind.
+    // What draws the window panics when its device is gone, in the same frame; the text was kept before. A hook,
+    // because the release profile does not unwind.
     std::panic::set_hook(Box::new(move |panic| {
         print_panic(panic);
         std::process::exit(at_panic.conclude(None));

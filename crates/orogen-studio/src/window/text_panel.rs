@@ -156,7 +156,8 @@ impl TextPanel {
     }
 }
 
-/// What can complete the word before a character of the text: in quotes after `op` the ops, in other quotes nodes, otherwise the keys of the node's op.
+/// What can complete the word before a character of the text: in quotes after `op` the ops, in other quotes nodes,
+/// otherwise the keys of the node's op.
 #[must_use]
 pub fn complete(text: &str, cursor: usize, studio: &Studio) -> (Vec<String>, Option<(usize, usize)>) {
     let chars: Vec<char> = text.chars().collect();

@@ -1,4 +1,5 @@
-//! The main views, compared with pictures of them. `UPDATE_SNAPSHOTS=1` makes the pictures anew; look at them before they are committed.
+//! The main views, compared with pictures of them. `UPDATE_SNAPSHOTS=1` makes the pictures anew; look at them before
+//! they are committed.
 
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
@@ -13,7 +14,8 @@ use super::{press, until, window};
 /// The difference of a pixel that counts, as the library measures it: drivers draw edges differently.
 const DIFFERENCE: f32 = 2.0;
 
-/// The most pixels that may differ by more, of 540 000: the seconds in the bottom line do, and a few along edges of the land.
+/// The most pixels that may differ by more, of 540 000: the seconds in the bottom line do, and a few along edges of the
+/// land.
 const PIXELS: usize = 2500;
 
 fn compare(harness: &mut Harness<'_, App>, name: &str) {

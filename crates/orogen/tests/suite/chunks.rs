@@ -47,7 +47,7 @@ fn finest(lod: &LodConfig, [x, y]: [f64; 2]) -> ChunkId {
 }
 
 #[test]
-fn the_ground_in_range_is_covered_once_and_neighbours_differ_by_one_level() {
+fn the_ground_in_range_is_covered_once_and_neighbors_differ_by_one_level() {
     for detail in [1.25, 2.0] {
         let lod = RINGS.with_detail(detail);
         let mut chunks = Chunks::new(lod, None).unwrap();
@@ -220,7 +220,7 @@ fn every_chunk_is_the_window_and_shares_its_borders() {
                 // A filter softens the inputs of nodes. Its result depends on the cell size: levels agree for fields
                 // only.
             }
-            assert!(met > 10, "{met} neighbours met");
+            assert!(met > 10, "{met} neighbors met");
         }
     }
 }
@@ -279,13 +279,13 @@ fn levels_meet_without_cracks() {
             continue;
         }
         let coarse = id.beside(1, 0).parent();
-        let Some(neighbour) = made.get(&coarse) else { panic!("{id:?} has a coarser neighbour in the east") };
+        let Some(neighbor) = made.get(&coarse) else { panic!("{id:?} has a coarser neighbor in the east") };
         let top = (chunks.window(*id).y / 2 - chunks.window(coarse).y) as usize;
         for j in 0..=16 {
             let here = grid[(16, j)];
             let there = match j % 2 {
-                0 => neighbour[(0, top + j / 2)],
-                _ => 0.5 * neighbour[(0, top + j / 2)] + 0.5 * neighbour[(0, top + j / 2 + 1)],
+                0 => neighbor[(0, top + j / 2)],
+                _ => 0.5 * neighbor[(0, top + j / 2)] + 0.5 * neighbor[(0, top + j / 2 + 1)],
             };
             assert_eq!(here.to_bits(), there.to_bits(), "{id:?} row {j}");
         }

@@ -32,8 +32,8 @@ impl Flight {
         (0..=count).map(move |k| Window::new(side, side, cell).at(x + k * east, y + k * south))
     }
 
-    /// Makes the views in two sessions in turn, so that successive ones share nothing, and compares them where they overlap. Returns the number of
-    /// views and of samples that were compared.
+    /// Makes the views in two sessions in turn, so that successive ones share nothing, and compares them where they
+    /// overlap. Returns the number of views and of samples that were compared.
     fn run(&self) -> (usize, usize) {
         let worlds = [endless(), endless()];
         let mut last: Option<Vec<Grid>> = None;
@@ -93,7 +93,8 @@ fn zoom(cells: impl Iterator<Item = f64>, side: usize, places: &[[f64; 2]]) -> V
     changes
 }
 
-/// The largest difference of the finest levels from the next finer one, in metres: the bounds of docs/resolution.md for 2, 4 and 8 times the finest cell.
+/// The largest difference of the finest levels from the next finer one, in metres: the bounds of docs/resolution.md for
+/// 2, 4 and 8 times the finest cell.
 const FINEST: [f64; 3] = [18.0, 48.0, 104.0];
 
 /// The largest difference of the levels above, as a share of the relief of a view.

@@ -168,7 +168,8 @@ fn texts(recipe: &Recipe, window: &Window, same: &dyn Fn(&str, Result<Vec<Grid>>
     same("solutions on disk", World::open(recipe.clone()).unwrap().run(&plan, &Progress::none()));
 }
 
-/// Under a memory limit a window has the same bits, or is refused before the work. The memory that a refusal names is enough.
+/// Under a memory limit a window has the same bits, or is refused before the work. The memory that a refusal names is
+/// enough.
 fn limits(recipe: &Recipe, window: &Window, same: &dyn Fn(&str, Result<Vec<Grid>>), tally: &mut Tally) {
     let limited = |bytes: u64| {
         let options = Options { threads: Some(2), memory: Budget::of(bytes), ..Options::default() };

@@ -201,7 +201,7 @@ fn layers_are_read_by_name_and_only_those_wanted_are_made() {
     };
     assert!(matches!(out.as_slice(), [None, None, Some(_)]), "{}", world.explain(&plan).unwrap());
     assert!(world.explain(&plan).unwrap().contains("apply `s` (south)"), "{}", world.explain(&plan).unwrap());
-    // The layer is the rise per metre; together with its neighbour it gives the whole slope.
+    // The layer is the rise per metre; together with its neighbor it gives the whole slope.
     let source = world.window("a", &window.grown(1)).unwrap();
     let [east, south] = ["s.east", "s.south"].map(|layer| world.window(layer, &window).unwrap());
     let steep = (source[(5, 6)] - source[(5, 4)]) / 20.0;

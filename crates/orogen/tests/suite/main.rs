@@ -13,7 +13,7 @@ mod large_water;
 mod laws;
 mod level_tiles;
 mod meshes;
-mod neighbours;
+mod neighbors;
 #[cfg(target_os = "linux")]
 mod peaks;
 mod prints;

@@ -341,7 +341,7 @@ fn a_level_with_a_normal_map_has_tangents_and_a_material_of_its_own() {
 }
 
 #[test]
-fn colours_of_corners_are_those_of_the_map() {
+fn colors_of_corners_are_those_of_the_map() {
     let grid = land(31, 33);
     let shape = adaptive(&grid, 5.0).unwrap();
     let painter = Painter::fit(&grid, 950.0);

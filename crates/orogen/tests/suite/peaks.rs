@@ -8,7 +8,8 @@ use std::process::Command;
 /// What a process takes beside its plan: the program, and the threads' stacks.
 const BESIDE: u64 = 16 << 20;
 
-/// Tells a process of the test's own program what to run: a preset or `op NAME`, and the least memory of its plan in bytes.
+/// Tells a process of the test's own program what to run: a preset or `op NAME`, and the least memory of its plan in
+/// bytes.
 const JOB: &str = "OROGEN_PEAK_JOB";
 
 /// The most samples along a side.
@@ -80,8 +81,8 @@ fn run(job: &str) {
 fn measured(name: &str, least: u64) -> Run {
     let mut command = Command::new(std::env::current_exe().unwrap());
     command.args(["--exact", "peaks::plans_of_some_presets_keep_their_memory", "--nocapture"]);
-    // Blocks that are freed go back to the system at once. Otherwise glibc's allocator keeps freed blocks of up to 32 MiB for later, which a
-    // plan does not know: up to 46 MiB with the presets.
+    // Blocks that are freed go back to the system at once. Otherwise glibc's allocator keeps freed blocks of up to 32
+    // MiB for later, which a plan does not know: up to 46 MiB with the presets.
     command.env("MALLOC_MMAP_THRESHOLD_", "131072");
     let output = command.env(JOB, format!("{name} {least}")).output().unwrap();
     let text = String::from_utf8_lossy(&output.stdout);

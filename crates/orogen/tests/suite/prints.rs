@@ -97,7 +97,8 @@ fn land_above_a_cut_has_its_outline_and_a_base_there() {
             // Two cones of 8 mm on cylinders of 2 mm with a radius of 13.3 mm.
             near(volume, 2.0 * std::f64::consts::PI * 13.33 * 13.33 * (2.0 + 8.0 / 3.0), 60.0);
         }
-        // At the level of the ground and at that of the pass, where vertices are on the cut; below all of it, and above.
+        // At the level of the ground and at that of the pass, where vertices are on the cut; below all of it, and
+        // above.
         for level in [0.0, 10.0, 25.0, -5.0] {
             closed(&cut(level).unwrap());
         }

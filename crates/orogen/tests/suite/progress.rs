@@ -122,7 +122,8 @@ fn whatever_is_cancelled_at_any_moment_ends_at_once() {
     }
 }
 
-/// Sides of large worlds, the longest time that work may go on in them after it was asked to stop, and the moments at which it is asked.
+/// Sides of large worlds, the longest time that work may go on in them after it was asked to stop, and the moments at
+/// which it is asked.
 const LARGE: [(usize, Duration, usize); 2] =
     [(1024, Duration::from_millis(100), 8), (4096, Duration::from_millis(300), 4)];
 
@@ -171,7 +172,8 @@ fn large_work_that_is_cancelled_at_random_moments_ends_soon() {
         let mut all = Duration::ZERO;
         for (side, limit, moments) in LARGE {
             let mut told = Told::new();
-            // Sixteen times the samples take about sixteen times as long; one more run would take as long as all others.
+            // Sixteen times the samples take about sixteen times as long; one more run would take as long as all
+            // others.
             match all.is_zero() {
                 true => (told, all) = recorded(&open(&recipe(&node, side), 2), side),
                 false => all *= 16,

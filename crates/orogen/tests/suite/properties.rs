@@ -1,4 +1,5 @@
-//! Laws of windows, texts and files over generated values. A failure is shrunk to a small case. The cases are the same in every run.
+//! Laws of windows, texts and files over generated values. A failure is shrunk to a small case. The cases are the same
+//! in every run.
 
 #![allow(clippy::field_reassign_with_default, reason = "options may get more fields")]
 
@@ -40,7 +41,7 @@ fn window() -> impl Strategy<Value = Window> {
 }
 
 /// A window and another one that may overlap it.
-fn neighbours() -> impl Strategy<Value = (Window, Window)> {
+fn neighbors() -> impl Strategy<Value = (Window, Window)> {
     (window(), -50i64..50, -50i64..50, 1usize..40, 1usize..40)
         .prop_map(|(a, dx, dy, w, h)| (a, Window::new(w, h, a.cell).at(a.x + dx, a.y + dy)))
 }
@@ -58,7 +59,7 @@ fn marked(window: Window) -> Grid<i64> {
 
 #[test]
 fn windows_obey_the_algebra_of_sets() {
-    check(2000, neighbours(), |(a, b)| {
+    check(2000, neighbors(), |(a, b)| {
         let (both, all) = (a.intersection(&b), a.union(&b));
         prop_assert_eq!(both.len(), b.intersection(&a).len());
         prop_assert!(all.contains(&a) && all.contains(&b));
@@ -106,7 +107,7 @@ fn tiles_cover_every_sample_once() {
 
 #[test]
 fn crops_of_crops_are_crops_and_pasted_tiles_are_the_whole() {
-    check(300, (neighbours(), 1usize..20), |((a, b), side)| {
+    check(300, (neighbors(), 1usize..20), |((a, b), side)| {
         let whole = marked(a.union(&b));
         let (cut, direct) = (whole.crop(&a).unwrap(), a.intersection(&b));
         prop_assert!(cut == marked(a));
@@ -199,7 +200,7 @@ fn numbers_are_readable_and_near_what_they_say() {
     });
 }
 
-/// Stops at rising heights, each with a colour.
+/// Stops at rising heights, each with a color.
 fn stops() -> impl Strategy<Value = Vec<(i32, [u8; 3])>> {
     vec((1i32..500, any::<[u8; 3]>()), 2..12).prop_map(|steps| {
         let mut height = -900;

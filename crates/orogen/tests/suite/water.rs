@@ -2,7 +2,7 @@
 
 use orogen::{Grid, Progress, Recipe, Window, World, presets};
 
-/// Offsets and distances of the eight neighbours.
+/// Offsets and distances of the eight neighbors.
 const AROUND: [(i64, i64, f32); 8] = [
     (1, 0, 1.0),
     (1, 1, std::f32::consts::SQRT_2),
@@ -51,7 +51,7 @@ impl Land {
         border || self.height[(i, j)] <= self.sea_level
     }
 
-    fn neighbours(&self, (i, j): (usize, usize)) -> impl Iterator<Item = ((usize, usize), f32)> {
+    fn neighbors(&self, (i, j): (usize, usize)) -> impl Iterator<Item = ((usize, usize), f32)> {
         let (width, height) = (self.height.width() as i64, self.height.height() as i64);
         AROUND.into_iter().filter_map(move |(x, y, distance)| {
             let (x, y) = (i as i64 + x, j as i64 + y);
@@ -59,11 +59,11 @@ impl Land {
         })
     }
 
-    /// The D8 receiver over `heights`, if there is a lower neighbour.
+    /// The D8 receiver over `heights`, if there is a lower neighbor.
     fn receiver(&self, heights: &Grid, (i, j): (usize, usize)) -> Option<(usize, usize)> {
         let here = heights[(i, j)];
         let mut best = (0.0, None);
-        for (cell, distance) in self.neighbours((i, j)) {
+        for (cell, distance) in self.neighbors((i, j)) {
             let slope = (here - heights[(cell.0, cell.1)]) / distance;
             if slope > best.0 {
                 best = (slope, Some(cell));
@@ -73,7 +73,7 @@ impl Land {
     }
 
     /// Checks that every land cell outside lakes drains to the sea, the border or a lake. Each step goes strictly down,
-    /// so it is sufficient that each cell has a lower neighbour.
+    /// so it is sufficient that each cell has a lower neighbor.
     fn drains(&self) {
         for cell in self.cells().filter(|cell| !self.is_outside(*cell) && self.lake(*cell) == 0) {
             assert!(self.receiver(&self.height, cell).is_some(), "{cell:?} is a pit");
@@ -95,7 +95,7 @@ impl Land {
             assert!(level[lake].is_nan() || level[lake] == surface, "lake {lake} is level");
             level[lake] = surface;
             assert!(surface >= self.height[(i, j)], "water is above its bed");
-            for (shore, _) in self.neighbours((i, j)).filter(|(cell, _)| self.lake(*cell) as usize != lake) {
+            for (shore, _) in self.neighbors((i, j)).filter(|(cell, _)| self.lake(*cell) as usize != lake) {
                 // The outlet must not be at a shore from which water returns.
                 let low = self.surface[(shore.0, shore.1)] <= surface;
                 let on = || self.receiver(&self.surface, shore).is_some_and(|to| self.lake(to) as usize != lake);
@@ -118,7 +118,7 @@ impl Land {
         for (i, j) in self.cells().filter(|cell| !self.is_outside(*cell) && self.flow[(cell.0, cell.1)] >= 1e6) {
             let (flow, surface) = (self.flow[(i, j)], self.surface[(i, j)]);
             let on = |(x, y): (usize, usize)| self.flow[(x, y)] > flow && self.surface[(x, y)] <= surface;
-            assert!(self.neighbours((i, j)).any(|(cell, _)| on(cell)), "the river at ({i}, {j}) ends or would rise");
+            assert!(self.neighbors((i, j)).any(|(cell, _)| on(cell)), "the river at ({i}, {j}) ends or would rise");
             rivers += 1;
         }
         rivers

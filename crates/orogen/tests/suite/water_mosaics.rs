@@ -1,8 +1,9 @@
-//! Water on mosaics of tiles that are made apart: depressions, beds of rivers, agreement of heights and drainage areas, borders.
+//! Water on mosaics of tiles that are made apart: depressions, beds of rivers, agreement of heights and drainage areas,
+//! borders.
 
 use crate::support::water::borders::{self, Places};
 use crate::support::water::faults;
-use crate::support::water::layers::{Tiles, Water, cells_to_edge, neighbours, tiles_in, tiles_of};
+use crate::support::water::layers::{Tiles, Water, cells_to_edge, neighbors, tiles_in, tiles_of};
 use crate::support::water::mosaic::Mosaic;
 use crate::support::water::network::Network;
 use crate::support::water::report::{Figure, measure, of_pairs, table};
@@ -192,13 +193,13 @@ fn faults_are_found() {
 fn lake_cell(water: &Water) -> [i64; 2] {
     let window = *water.window();
     let is_lake = |cell: usize| water.lakes.data()[cell] > 0.0;
-    let amid = |cell: &usize| is_lake(*cell) && neighbours(&window, *cell).all(|(_, near)| is_lake(near));
+    let amid = |cell: &usize| is_lake(*cell) && neighbors(&window, *cell).all(|(_, near)| is_lake(near));
     let cell = (0..window.len()).find(amid).expect("a lake");
     [window.x + (cell % window.width) as i64, window.y + (cell / window.width) as i64]
 }
 
-/// A single river is cut in a single tile, on either side of the border. With known receivers every cut is found; without,
-/// a tributary or a parallel river beside the border may explain the areas.
+/// A single river is cut in a single tile, on either side of the border. With known receivers every cut is found;
+/// without, a tributary or a parallel river beside the border may explain the areas.
 #[test]
 fn one_cut_river_is_found() {
     for directions in [false, true] {
@@ -206,7 +207,7 @@ fn one_cut_river_is_found() {
         let network = Network::new(&water);
         let window = MOSAIC.window();
         let tile = |cell: usize| (cell % window.width / MOSAIC.side, cell / window.width / MOSAIC.side);
-        let dry = |cell: usize| neighbours(&window, cell).all(|(_, near)| !water.is_standing(near));
+        let dry = |cell: usize| neighbors(&window, cell).all(|(_, near)| !water.is_standing(near));
         let (mut cut, mut seen) = (0, 0);
         for cell in (0..window.len()).filter(|cell| water.area(*cell) > 2e6 && cells_to_edge(&window, *cell) > 2) {
             let Some(to) = network.receiver(cell).filter(|to| tile(*to) != tile(cell) && dry(cell) && dry(*to)) else {
@@ -242,7 +243,8 @@ fn drainage_of_single_tiles_is_cut() {
     assert!(found.cut + found.unbalanced > 10, "{found:?}");
 }
 
-/// Pairs of windows of which one comes from one session and the other from another: no tile of a level and no solution is shared across a border.
+/// Pairs of windows of which one comes from one session and the other from another: no tile of a level and no solution
+/// is shared across a border.
 fn pairs(recipe: &Recipe, places: &Places) -> borders::Pairs {
     let sessions = [(); 2].map(|()| Session::new(Options { threads: Some(1), ..Options::default() }).unwrap());
     let tiles = sessions.each_ref().map(|session| tiles_in(recipe, session));
@@ -260,8 +262,8 @@ fn threads() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// No river of `endless` is cut between windows that are made apart, in a square of `width` cells around the origin. Areas of levels are carried down with a
-/// small error, so some are not balanced, inside of windows, too.
+/// No river of `endless` is cut between windows that are made apart, in a square of `width` cells around the origin.
+/// Areas of levels are carried down with a small error, so some are not balanced, inside of windows, too.
 fn no_river_is_cut(width: usize, count: usize, near: usize) -> borders::Borders {
     let recipe = presets::find("endless").unwrap().recipe().unwrap();
     let half = width as i64 / 2;

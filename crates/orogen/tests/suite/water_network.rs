@@ -40,8 +40,8 @@ fn quarters(window: &Window) -> Vec<Window> {
     vec![part(0, 0), part(1, 0), part(0, 1), part(1, 1)]
 }
 
-/// Windows of `endless`: mountains at the finest cell, a coast with rivers at coarse ones, a cell between two levels and one below the finest, and two
-/// shores of a large lake.
+/// Windows of `endless`: mountains at the finest cell, a coast with rivers at coarse ones, a cell between two levels
+/// and one below the finest, and two shores of a large lake.
 fn windows() -> Vec<Window> {
     vec![
         Window::new(300, 300, 60.0),
@@ -350,7 +350,8 @@ fn it_can_be_cancelled_and_needs_its_memory() {
     assert!(FeatureSource::of(&endless, &far, &options, 0, &Progress::none()).is_err());
 }
 
-/// Samples around the end of a river where its sea has to be, as a bay may be narrower than a sample; how many of them are sea, and samples of a lake.
+/// Samples around the end of a river where its sea has to be, as a bay may be narrower than a sample; how many of them
+/// are sea, and samples of a lake.
 const AROUND: usize = 6;
 const SEA_SAMPLES: usize = 4;
 const LAKE_SAMPLES: usize = 2;

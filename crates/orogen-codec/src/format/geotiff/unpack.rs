@@ -271,7 +271,8 @@ impl Row {
     }
 }
 
-/// Makes heights NaN where a mask is 0: pixel `first` of `row` and those after it. A pixel is a bit, or one of `bands` bytes: the one with the index `band`.
+/// Makes heights NaN where a mask is 0: pixel `first` of `row` and those after it. A pixel is a bit, or one of `bands`
+/// bytes: the one with the index `band`.
 pub fn mask(row: &[u8], bits: u64, bands: usize, band: usize, first: usize, heights: &mut [f32]) {
     for (height, column) in heights.iter_mut().zip(first..) {
         let valid = match bits {

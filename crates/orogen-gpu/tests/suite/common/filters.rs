@@ -61,7 +61,8 @@ fn fbm(x: f64, y: f64, seed: i64, octaves: i64) -> f64 {
     (0..octaves).map(octave).sum()
 }
 
-/// Heights in metres over a window: hills with a wavelength of 60 cells, cliffs, and lowland that is flat or below the sea.
+/// Heights in metres over a window: hills with a wavelength of 60 cells, cliffs, and lowland that is flat or below the
+/// sea.
 pub fn heights(window: &Window) -> Grid {
     sampled(window, |x, y| {
         let hills = fbm(x / 60.0, y / 60.0, 3, 6);

@@ -23,7 +23,8 @@ pub struct Climate {
     pub year: Year,
     /// Rain of a year, in mm.
     pub rain: f64,
-    /// When the rain falls, -1 to 1: 0 evenly over the year; the rain of a month is 1 + `seasonality` cos t of the mean, with t = 0 in the warmest month.
+    /// When the rain falls, -1 to 1: 0 evenly over the year; the rain of a month is 1 + `seasonality` cos t of the
+    /// mean, with t = 0 in the warmest month.
     pub seasonality: f64,
 }
 

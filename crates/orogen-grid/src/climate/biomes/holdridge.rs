@@ -48,7 +48,8 @@ pub(super) const CLASSES: &[Class] = &[
 /// The code of the polar desert.
 const POLAR_DESERT: u8 = 1;
 
-/// The first code of each belt of temperature and the number of its zones: subpolar, boreal, cool temperate, warm temperate, tropical. The subtropical zones follow those of the warm temperate belt.
+/// The first code of each belt of temperature and the number of its zones: subpolar, boreal, cool temperate, warm
+/// temperate, tropical. The subtropical zones follow those of the warm temperate belt.
 const BELTS: [(u8, i32); 5] = [(2, 4), (6, 5), (11, 6), (17, 7), (31, 8)];
 
 /// Index of the belt that the frost line divides, and the number of its zones.
@@ -79,7 +80,8 @@ pub(super) fn code(climate: &Climate) -> u8 {
     }
 }
 
-/// The hexagon that contains a point: its column and row. Hexagons are regular if the axes of columns, of rows and of their difference are at 120 degrees to each other.
+/// The hexagon that contains a point: its column and row. Hexagons are regular if the axes of columns, of rows and of
+/// their difference are at 120 degrees to each other.
 fn hexagon(column: f64, row: f64) -> (i32, i32) {
     let axes = [column, -row, row - column];
     let [mut q, mut r, s] = axes.map(f64::round);

@@ -92,7 +92,8 @@ pub(super) fn code(climate: &Climate) -> u8 {
     }
 }
 
-/// What the threshold of aridity is above twice the mean temperature: 0 if seven tenths of the rain fall in winter, 28 if they fall in summer, else 14.
+/// What the threshold of aridity is above twice the mean temperature: 0 if seven tenths of the rain fall in winter, 28
+/// if they fall in summer, else 14.
 fn extra(rain: f64, summer: f64, winter: f64) -> f64 {
     match () {
         () if winter >= 0.7 * rain => 0.0,

@@ -16,11 +16,13 @@ use super::{holdridge, koppen_geiger, whittaker};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scheme {
-    /// Biomes by mean temperature and rain (Whittaker 1975), with straight lines along the borders of the diagram in Ricklefs (2008), and ice where no month is above 0 degrees C.
+    /// Biomes by mean temperature and rain (Whittaker 1975), with straight lines along the borders of the diagram in
+    /// Ricklefs (2008), and ice where no month is above 0 degrees C.
     Whittaker,
     /// Life zones by biotemperature, rain and their ratio (Holdridge 1967): hexagons in the logarithms.
     Holdridge,
-    /// Climates by the temperatures and the rain of months (Köppen and Geiger; criteria and colors of Peel, Finlayson and McMahon 2007, and Beck and others 2018).
+    /// Climates by the temperatures and the rain of months (Köppen and Geiger; criteria and colors of Peel, Finlayson
+    /// and McMahon 2007, and Beck and others 2018).
     KoppenGeiger,
 }
 

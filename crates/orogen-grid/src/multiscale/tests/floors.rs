@@ -14,8 +14,8 @@ const CELL: f64 = 60.0;
 /// Drainage area of the river, in cells.
 const AREA: f32 = 1e6;
 
-/// A river along the middle column, which falls to the south by a metre per cell; `side` is the height of the ground over it at that many cells beside.
-/// All ground drains straight to the river. In the south there is a lake.
+/// A river along the middle column, which falls to the south by a metre per cell; `side` is the height of the ground
+/// over it at that many cells beside. All ground drains straight to the river. In the south there is a lake.
 fn valley(side: impl Fn(i64) -> f32) -> (Refinement, Level) {
     let land = Refinement::default().with_levels(0).with_cell(CELL);
     let window = Window::new(SIDE, SIDE, CELL).at(-150, -150);

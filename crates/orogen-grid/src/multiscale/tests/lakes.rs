@@ -68,7 +68,7 @@ fn water_leaves_lakes_only_along_rivers() {
         let level = level(&land, depth, &window(&land, depth, district(depth), (200, 200)));
         let (mut shores, mut lower) = (0, 0);
         for q in (0..level.window.len()).filter(|q| level.receiver[*q] >= LAKE) {
-            let around = STEPS.into_iter().filter_map(|step| level.neighbour(q, step));
+            let around = STEPS.into_iter().filter_map(|step| level.neighbor(q, step));
             for near in around.filter(|near| level.receiver[*near] < NONE) {
                 shores += 1;
                 let is_river = level.area[near] >= 64.0;

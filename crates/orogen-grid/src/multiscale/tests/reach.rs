@@ -1,5 +1,6 @@
-//! The declared reach of levels: it is enough, and not much larger than what changes nodes. That a reach one sample too small breaks the laws is tested with
-//! an op that reads exactly as far as it says (`registered_ops` in the crate `orogen`).
+//! The declared reach of levels: it is enough, and not much larger than what changes nodes. That a reach one sample too
+//! small breaks the laws is tested with an op that reads exactly as far as it says (`registered_ops` in the crate
+//! `orogen`).
 
 use super::{Continents, Given, Level, NONE, Progress, STEPS, Window};
 use super::{bits, coast, level, window};
@@ -80,8 +81,9 @@ fn slack(land: &Continents, depth: usize, places: &[(i64, i64)]) -> usize {
     least
 }
 
-/// The reach is that of the longest chain of passes, each of which reads one sample further, so it is an upper bound: no parent that was tried changes a node
-/// from its whole reach. If it were much larger than what changes a node, windows would cost more than they have to.
+/// The reach is that of the longest chain of passes, each of which reads one sample further, so it is an upper bound:
+/// no parent that was tried changes a node from its whole reach. If it were much larger than what changes a node,
+/// windows would cost more than they have to.
 #[test]
 fn nodes_depend_on_more_than_a_third_of_their_reach() {
     let land = Continents::new(1);

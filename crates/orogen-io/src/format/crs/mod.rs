@@ -3,8 +3,8 @@
 //! [`keys`] converts in both directions: [`keys::to_wkt`] writes the text for a sidecar of a file without
 //! georeferencing, [`keys::of_wkt`] reads it. `epsg` knows systems by their parameters, the [`registry`] knows all
 //! systems by their codes. `rebuilt` writes the keys of a file again from what is known of them, without its vertical
-//! system: [`vertical`] knows its unit, and heights are converted to metres. Any other text is kept unchanged, in the key where ESRI's programs and GDAL look for it.
-//! Coordinates are never transformed.
+//! system: [`vertical`] knows its unit, and heights are converted to metres. Any other text is kept unchanged, in the
+//! key where ESRI's programs and GDAL look for it. Coordinates are never transformed.
 
 pub(crate) mod arc_info;
 pub(crate) mod epsg;

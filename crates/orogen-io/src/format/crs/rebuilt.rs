@@ -61,8 +61,8 @@ fn is_horizontal(key: u16) -> bool {
     matches!(key, MODEL | 1026 | GEOGRAPHIC..=2062 | PROJECTED..=3096)
 }
 
-/// A text, in ASCII as GeoTIFF requires. Of well-known text only the horizontal system is kept. A key states the length of
-/// its text, so bars within it remain: GDAL separates the names of a datum, ellipsoid and meridian by them.
+/// A text, in ASCII as GeoTIFF requires. Of well-known text only the horizontal system is kept. A key states the length
+/// of its text, so bars within it remain: GDAL separates the names of a datum, ellipsoid and meridian by them.
 fn text_of(text: &str) -> String {
     let (before, wkt) = text.split_once(ESRI_TEXT).map_or((text, None), |(before, wkt)| (before, Some(wkt)));
     let horizontal = wkt.map(|wkt| {

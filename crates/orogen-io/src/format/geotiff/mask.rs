@@ -1,5 +1,5 @@
-//! Masks: a raster of one bit or one byte per sample, 0 where the heights are missing. In the file it has a directory of
-//! its own; beside it, GDAL writes NAME.EXT.msk, which is a TIFF as well.
+//! Masks: a raster of one bit or one byte per sample, 0 where the heights are missing. In the file it has a directory
+//! of its own; beside it, GDAL writes NAME.EXT.msk, which is a TIFF as well.
 
 use super::blocks::{Blocks, Limits};
 use super::entries::Tiff;

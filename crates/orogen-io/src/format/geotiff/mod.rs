@@ -12,10 +12,10 @@
 //! **Position.** A real place keeps its map and coordinate system. Otherwise coordinates are local metres without an
 //! EPSG code: easting = x, northing = -y, in a user-defined system of metres. Samples are lattice points, so the raster
 //! is *pixel-is-point*: the tie point is the first sample. Readers that treat pixels as areas (GDAL, rasterio) place
-//! the corner of the raster half a cell to the north-west of it, and the centre of their first pixel on the sample.
+//! the corner of the raster half a cell to the north-west of it, and the center of their first pixel on the sample.
 //!
 //! **Overviews** halve each side, rounded up, until one tile holds the whole raster. Every reader stretches an overview
-//! over the whole area of the raster, so its samples are at the *centre* of those that they represent. Decimation
+//! over the whole area of the raster, so its samples are at the *center* of those that they represent. Decimation
 //! (every second sample) would shift the terrain by half a cell at the first overview and by nearly half an overview's
 //! cell at the coarse ones; averaging does not. A sample of an overview is therefore the mean over its own area: of
 //! four samples or, where a side is odd, of all samples that it touches, weighted by the covered area.

@@ -3,7 +3,8 @@
 //! Supported: classic TIFF and BigTIFF of both byte orders; one band, of several that are interleaved or separate, of
 //! integers (8, 16, 32, 64 bits, signed or unsigned) or floats (16, 32, 64); strips and tiles; no compression, LZW,
 //! deflate, PackBits, Zstandard, LZMA and LERC (with deflate and Zstandard); predictors 1, 2 and 3; GDAL's nodata; a
-//! band's scale, offset and unit in GDAL's metadata; masks in the file and beside it; an alpha band; absent blocks. Sizes in a file are checked against its length.
+//! band's scale, offset and unit in GDAL's metadata; masks in the file and beside it; an alpha band; absent blocks.
+//! Sizes in a file are checked against its length.
 
 use super::blocks::{Blocks, Limits};
 use super::entries::Tiff;
@@ -63,7 +64,8 @@ struct Samples {
     band: usize,
     /// The number of bands before it, if each band has its own blocks.
     plane: usize,
-    /// The plane of the alpha band, and its index among those interleaved in a block: samples where it is 0 are missing.
+    /// The plane of the alpha band, and its index among those interleaved in a block: samples where it is 0 are
+    /// missing.
     alpha: Option<[usize; 2]>,
     metadata: BandMetadata,
 }

@@ -245,7 +245,7 @@ fn it_says_where_it_lies() {
 
 #[test]
 fn overviews_stand_where_readers_put_them() {
-    // On a plane, the mean of the area of a sample is the value at its centre.
+    // On a plane, the mean of the area of a sample is the value at its center.
     for (width, height) in [(128, 96), (127, 97), (1001, 333)] {
         let plane = |x: f64, y: f64| 3.0 * x - 2.0 * y;
         let window = Window::new(width, height, 1.0);

@@ -1,9 +1,9 @@
 //! Reading a grid of a NetCDF-3 file.
 //!
 //! A grid is a variable of numbers whose last two dimensions are rows and columns; each step of other dimensions is a
-//! band, and so is each of several variables. The position is taken from variables with the names of the dimensions, with GMT's
-//! `actual_range` and `node_offset`, or from GDAL's `GeoTransform`; the system from `grid_mapping`. Packed values have
-//! `scale_factor` and `add_offset`.
+//! band, and so is each of several variables. The position is taken from variables with the names of the dimensions,
+//! with GMT's `actual_range` and `node_offset`, or from GDAL's `GeoTransform`; the system from `grid_mapping`. Packed
+//! values have `scale_factor` and `add_offset`.
 
 use std::io::SeekFrom;
 use std::path::Path;
@@ -298,8 +298,8 @@ impl Axis {
     }
 }
 
-/// The first coordinate and the distance of the next by GMT's `actual_range`, which is that of edges if `node_offset` is 1. It is more precise than
-/// coordinates of 32 bits. `None` if it is absent or contradicts them.
+/// The first coordinate and the distance of the next by GMT's `actual_range`, which is that of edges if `node_offset`
+/// is 1. It is more precise than coordinates of 32 bits. `None` if it is absent or contradicts them.
 fn ranged(file: &Header, variable: &Variable, first: f64, step: f64, cells: f64) -> Option<[f64; 2]> {
     let [low, high] = variable.attributes.numbers("actual_range") else { return None };
     let is_pixels = file.attributes.number("node_offset") == Some(1.0);

@@ -1,5 +1,5 @@
-//! Files of the corpus that are built by hand, and damaged ones. The heights and positions of the corpus are compared with GDAL's
-//! where it reads them (`crates/orogen/tests/suite/dems.rs`).
+//! Files of the corpus that are built by hand, and damaged ones. The heights and positions of the corpus are compared
+//! with GDAL's where it reads them (`crates/orogen/tests/suite/dems.rs`).
 
 use std::io::Cursor;
 

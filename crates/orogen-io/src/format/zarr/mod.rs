@@ -1,7 +1,7 @@
 //! Zarr v3: arrays in chunks, each a file, in folders with metadata.
 //!
 //! Zarr core specification 3.1, with the codecs `bytes` (little-endian) and `blosc` (byte shuffle, then zlib). The
-//! shuffle groups similar bytes of neighbouring samples: a height map takes half the space and half the time of plain
+//! shuffle groups similar bytes of neighboring samples: a height map takes half the space and half the time of plain
 //! gzip.
 //!
 //! **Position.** Coordinates are separate arrays, in metres: `x` increases eastward, `y` is the northing and decreases

@@ -90,7 +90,7 @@ fn days(to: &Appended, latitude: f64) -> Result<Option<[f64; 2]>> {
     }
 }
 
-/// The latitude of the centre of the world, if its heights are a real place and its map gives the latitude.
+/// The latitude of the center of the world, if its heights are a real place and its map gives the latitude.
 fn latitude_of(to: &Appended) -> Option<f64> {
     let size = to.recipe().world.size?;
     latitude::latitude(&to.recipe().georeference()?, size[0] / 2.0, size[1] / 2.0)

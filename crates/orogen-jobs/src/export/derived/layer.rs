@@ -89,7 +89,8 @@ pub struct RowLayer {
 
 /// How a graphics card computes a row layer in place of [`RowLayer::make`].
 pub struct LoweredRows {
-    /// The passes for a cell in metres and the options of the layer. They read the heights as plane 0, and write the channels as the next planes.
+    /// The passes for a cell in metres and the options of the layer. They read the heights as plane 0, and write the
+    /// channels as the next planes.
     pub passes: fn(f64, &Options) -> Passes,
     /// The heights over a window grown by the reach of the layer.
     pub heights: fn(&Around, &Window) -> Grid,

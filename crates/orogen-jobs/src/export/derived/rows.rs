@@ -116,7 +116,8 @@ impl<'w> Rows<'w> {
         Ok((out, finite))
     }
 
-    /// The channels over a band, made by the device of the world; `None` if there is none, or the processor is to do it.
+    /// The channels over a band, made by the device of the world; `None` if there is none, or the processor is to do
+    /// it.
     fn on_device(&self, around: &Around, band: &Window) -> Result<Option<Vec<Grid>>> {
         let Some((device, lowered)) = self.world.device().zip(self.derived.lowered.as_ref()) else { return Ok(None) };
         let (passes, heights) =
@@ -217,7 +218,7 @@ mod tests {
             let Some(derived) = layer.rows() else { continue };
             for size in ["size = [6000, 8000]", ""] {
                 let world = world(size, layer.name);
-                // More rows than are computed at once, up to the far edge that belongs to the neighbour.
+                // More rows than are computed at once, up to the far edge that belongs to the neighbor.
                 let window = Window::new(301, 401, 20.0);
                 let whole = made(derived, &world, &window);
                 for part in [

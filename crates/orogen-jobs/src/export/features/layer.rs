@@ -49,12 +49,12 @@ pub enum Maker {
 /// The style of features in a drawing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Style {
-    /// The colour of lines and of the borders of polygons, in SVG syntax.
+    /// The color of lines and of the borders of polygons, in SVG syntax.
     pub stroke: &'static str,
     /// Width of lines, in thousandths of the longer side.
     pub width: f64,
     /// The field whose square root scales the width of lines, from half the width to four times the width.
     pub by: Option<&'static str>,
-    /// The fill colour of polygons, or `none`.
+    /// The fill color of polygons, or `none`.
     pub fill: &'static str,
 }

@@ -1,5 +1,5 @@
-//! Vector features from heights: options (`options`, `outlets`, `layer`), the terrain that they are made of (`source`; `ground`: that of an area), and layers
-//! prepared for writing (`drawing`). The layers are in `vectors`.
+//! Vector features from heights: options (`options`, `outlets`, `layer`), the terrain that they are made of (`source`;
+//! `ground`: that of an area), and layers prepared for writing (`drawing`). The layers are in `vectors`.
 
 pub(crate) mod drawing;
 pub(crate) mod ground;

@@ -130,8 +130,8 @@ impl Outlet {
         Error::new(ErrorKind::Request, format!("the outlet {name}at {east},{north} {why}"))
     }
 
-    /// The error about an outlet without a stream that drains `least` m^2 within `snap` metres. `beside` says why there is none at the
-    /// outlet itself; the nearest stream is `nearest` metres away.
+    /// The error about an outlet without a stream that drains `least` m^2 within `snap` metres. `beside` says why there
+    /// is none at the outlet itself; the nearest stream is `nearest` metres away.
     #[must_use]
     pub fn far(&self, beside: Option<&str>, least: f64, snap: f64, nearest: Option<f64>) -> Error {
         let next = match nearest {

@@ -75,8 +75,8 @@ fn covering(window: &Window, cell: f64) -> Window {
     Window { x, y, width, height, cell }
 }
 
-/// The water of a level from its layers: the recipe's height, then height, flow, lake and surface of the levelled node, then its nodes. Where the
-/// recipe changes the heights, water levels change by as much.
+/// The water of a level from its layers: the recipe's height, then height, flow, lake and surface of the levelled node,
+/// then its nodes. Where the recipe changes the heights, water levels change by as much.
 fn given(grids: Vec<Grid>, at_samples: bool, is_height: bool) -> Result<GivenWater> {
     let missing = || Error::new(ErrorKind::Internal, "a layer of the network is missing");
     let mut grids = grids.into_iter();
@@ -176,7 +176,8 @@ impl FeatureSource {
         let [spring, fewest] = options.fewest(cell);
         let [even, cut] = options.rounds();
         let samples = covering(window, cell);
-        // So far from the border, lines are those of every other window, and a lake of few samples at a side does not reach it.
+        // So far from the border, lines are those of every other window, and a lake of few samples at a side does not
+        // reach it.
         let halo = HALO + even + (fewest as usize).min(MAX_LAKE);
         let all = samples.grown(halo);
         let held = affordable(&all)?.saturating_mul(OWN_MEMORY).saturating_add(reserved);
@@ -197,7 +198,7 @@ impl FeatureSource {
             let sea_level = options.sea.then_some(world.recipe().world.sea_level as f32);
             let water = Water::given(given, sea_level, least, progress)?;
             let side = |first: i64, count: usize, origin: i64| {
-                // Snapped before the origin is subtracted, so that it is the same for the neighbour.
+                // Snapped before the origin is subtracted, so that it is the same for the neighbor.
                 let side = |sample: f64| snapped(sample * window.cell / cell) - origin as f64;
                 [side(first as f64 - 0.5), side(first as f64 + count as f64 - 0.5)]
             };

@@ -15,7 +15,7 @@ use orogen_output::mesh::ply;
 pub static FORMAT: Format = Format {
     name: "ply",
     aliases: &[],
-    about: "Stanford PLY mesh (binary): metres, Z up, normals, colours or texture coordinates",
+    about: "Stanford PLY mesh (binary): metres, Z up, normals, colors or texture coordinates",
     options: &[MAX_ERROR, COLOR, COLOR_RANGE, EXAGGERATION, HEIGHT_CURVE],
     channels: 1,
     features: false,

@@ -1,4 +1,4 @@
-//! Greyscale pictures, heights encoded in colours, normal maps and splat maps.
+//! Greyscale pictures, heights encoded in colors, normal maps and splat maps.
 
 use std::io;
 
@@ -22,7 +22,7 @@ use orogen_io::format::png::{self, Picture, Pixel};
 pub static FORMAT: Format = Format {
     name: "png",
     aliases: &[],
-    about: "Grey PNG of 16 or 8 bits (black is the lowest value, white the highest), heights encoded as colours (--encoding), normals, weights or colors",
+    about: "Grey PNG of 16 or 8 bits (black is the lowest value, white the highest), heights encoded as colors (--encoding), normals, weights or colors",
     options: &[BITS, RANGE, FIRST_ROW, ENCODING, NORMAL, WEIGHTS, PREVIEW, NO_SIDECAR],
     channels: MAX_SURFACES,
     features: false,
@@ -30,7 +30,7 @@ pub static FORMAT: Format = Format {
     write,
 };
 
-/// The option for heights encoded in colours.
+/// The option for heights encoded in colors.
 const ENCODING: OptionSpec = OptionSpec::new(
     "encoding",
     "NAME",
@@ -93,7 +93,7 @@ fn write_encoded(
         return refuse(format!("--encoding {} sets bits and range; leave out --{other}", encoding.name()));
     }
     let window = *source.window();
-    let about = format!("heights in metres as {} colours; {} metres a sample", encoding.name(), window.cell);
+    let about = format!("heights in metres as {} colors; {} metres a sample", encoding.name(), window.cell);
     let notes = [("Software", SOFTWARE), ("Description", about.as_str())];
     let picture = Picture::new(window.width, window.height, Pixel::Data8).with_notes(&notes);
     let mut quantized = Quantizer::plain(source, options, files)?;
@@ -114,5 +114,5 @@ fn write_encoded(
     };
     let told = place::write_with_sidecar(files, source, options, &held)?;
     let levels = source.levels();
-    Ok(format!("{} to {} as {} colours{told}", levels.low(), levels.high(), encoding.name()))
+    Ok(format!("{} to {} as {} colors{told}", levels.low(), levels.high(), encoding.name()))
 }

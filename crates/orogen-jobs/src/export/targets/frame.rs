@@ -22,7 +22,8 @@ pub struct FrameSpec {
     pub cell: Option<f64>,
     /// The window; its size is optional for the target.
     pub window: Option<Window>,
-    /// West, north, east and south of an area, in metres from the world's north-west corner, that is resampled to a size of the target.
+    /// West, north, east and south of an area, in metres from the world's north-west corner, that is resampled to a
+    /// size of the target.
     pub area: Option<[f64; 4]>,
     /// Number of tiles, east and south.
     pub tiles: Option<[usize; 2]>,
@@ -77,9 +78,10 @@ pub struct Frame {
 impl Frame {
     /// The samples of a world for a target.
     ///
-    /// Without a cell or a window, the shorter extent of the area or the world (with several tiles, the extent that they cover) is resampled; the
-    /// default size is the one whose cell is nearest to the world's. With a cell it is the largest that the world has samples for, and with either, they
-    /// start at the window's first sample. The samples of an area are moved to the lattice, by less than a cell to the west and north.
+    /// Without a cell or a window, the shorter extent of the area or the world (with several tiles, the extent that
+    /// they cover) is resampled; the default size is the one whose cell is nearest to the world's. With a cell it is
+    /// the largest that the world has samples for, and with either, they start at the window's first sample. The
+    /// samples of an area are moved to the lattice, by less than a cell to the west and north.
     ///
     /// # Errors
     /// If the target does not support a size or tiles; the message names the closest.
@@ -175,7 +177,8 @@ impl Frame {
         Ok(Frame { window, side, tiles, note })
     }
 
-    /// The output of each tile, row by row. Those that may not be replaced are rejected before the first tile is computed.
+    /// The output of each tile, row by row. Those that may not be replaced are rejected before the first tile is
+    /// computed.
     pub(super) fn outputs(&self, target: &EngineTarget, output: &Output) -> Result<Vec<Output>> {
         let tiles = (0..self.tiles[1]).flat_map(|row| (0..self.tiles[0]).map(move |column| (column, row)));
         tiles

@@ -18,8 +18,8 @@ use orogen_grid::progress::Progress;
 use orogen_io::file::{self, Output};
 
 impl EngineJob {
-    /// Exports all tiles, or none. Heights use the engine's format and scale, weights and normals its conventions; other
-    /// layers are 8-bit greyscale pictures.
+    /// Exports all tiles, or none. Heights use the engine's format and scale, weights and normals its conventions;
+    /// other layers are 8-bit greyscale pictures.
     ///
     /// # Errors
     /// The errors of [`Frame::new`]; if the engine does not support the format; or those of

@@ -17,8 +17,8 @@ pub fn is_file(name: &str) -> bool {
     has("tsx") || has("toml")
 }
 
-/// Reads a tileset of Tiled (.tsx) or a [description] (.toml). `layout` is how tiles on corners lie: [`Layout::Corner`] or [`Layout::Dual`].
-/// `wang_set` names the wang set to use of a .tsx that has several.
+/// Reads a tileset of Tiled (.tsx) or a [description] (.toml). `layout` is how tiles on corners lie: [`Layout::Corner`]
+/// or [`Layout::Dual`]. `wang_set` names the wang set to use of a .tsx that has several.
 ///
 /// # Errors
 /// If a file cannot be read, or is not such a tileset.

@@ -23,7 +23,7 @@ pub(super) struct Grid {
     pub margin: usize,
     /// Pixels between tiles.
     pub spacing: usize,
-    /// A colour that is transparent.
+    /// A color that is transparent.
     pub transparent: Option<[u8; 3]>,
 }
 
@@ -81,7 +81,7 @@ pub(super) fn cut(path: &Path, grid: &Grid) -> Result<Cut> {
     Ok(Cut { count: columns * rows, columns, pixels: pixels.map(|(x, y)| at(x, y)).collect() })
 }
 
-/// A colour as #rrggbb, with or without the #.
+/// A color as #rrggbb, with or without the #.
 pub(super) fn color(text: &str) -> Option<[u8; 3]> {
     let digits = text.strip_prefix('#').unwrap_or(text);
     // Tiled writes the opacity first, if there is one.

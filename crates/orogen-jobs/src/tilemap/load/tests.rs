@@ -11,7 +11,8 @@ use crate::tilemap::art::set::SETS;
 use crate::tilemap::tiled::write_tsx;
 use crate::tilemap::tileset::{Fit, Tileset};
 
-/// A folder with a picture of 8 x 2 tiles of 4 pixels in a margin of 1 with a spacing of 2; the tile n has n in its first channel.
+/// A folder with a picture of 8 x 2 tiles of 4 pixels in a margin of 1 with a spacing of 2; the tile n has n in its
+/// first channel.
 fn folder() -> TestFolder {
     let folder = TestFolder::new("tilesets").unwrap();
     let [width, height] = [8, 2].map(|tiles| 2 + tiles * 4 + (tiles - 1) * 2);
@@ -167,7 +168,7 @@ fn tsx(content: &str) -> String {
     )
 }
 
-/// A wang set of a type with two colours.
+/// A wang set of a type with two colors.
 fn set(name: &str, kind: &str, tiles: &[(usize, &str)]) -> String {
     let tiles: String =
         tiles.iter().map(|(id, wang)| format!("<wangtile tileid=\"{id}\" wangid=\"{wang}\"/>")).collect();
@@ -233,7 +234,7 @@ fn wrong_tilesets_of_tiled_are_explained() {
         (tsx("").replace("tileheight=\"4\"", "tileheight=\"8\""), "4 x 8 pixels; they must be squares"),
         (tsx("").replace("tilewidth=\"4\"", "tilewidth=\"x\""), "`tilewidth` is `x`"),
         (sets(set("a", "corner", &[(16, "0,1,0,1,0,1,0,1")])), "the tile 16, but the picture has 16 tiles"),
-        (sets(set("a", "corner", &[(0, "0,9,0,1,0,1,0,1")])), "the colour 9, but the wang set `a` has 2"),
+        (sets(set("a", "corner", &[(0, "0,9,0,1,0,1,0,1")])), "the color 9, but the wang set `a` has 2"),
         (sets(set("a", "corner", &[(0, "0x1111")])), "is not eight numbers"),
         (sets(set("a", "", &[(0, "0,1,0,1,0,1,0,1")])), "has no type"),
         (sets(set("a", "corner", &[(0, "0,1,0,2,0,0,0,0")])), "no tile with all its sides and corners"),

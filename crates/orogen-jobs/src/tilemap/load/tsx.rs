@@ -1,8 +1,9 @@
 //! Tilesets of the map editor Tiled (.tsx) with wang sets, which Tiled also calls terrain sets.
 //!
-//! Each colour of a wang set is a terrain class. If every tile has one colour, the tiles are those of layers, and all wang sets of the file are used: their colours
-//! are the classes, bottom to top. If the first of them has tiles for its borders, there is a class `none` without tiles below it. If there are tiles of several
-//! colours, they are wang tiles of one wang set.
+//! Each color of a wang set is a terrain class. If every tile has one color, the tiles are those of layers, and all
+//! wang sets of the file are used: their colors are the classes, bottom to top. If the first of them has tiles for its
+//! borders, there is a class `none` without tiles below it. If there are tiles of several colors, they are wang tiles
+//! of one wang set.
 
 use std::path::Path;
 
@@ -19,7 +20,7 @@ use crate::tilemap::tileset::{Fit, Terrain, Tile, Tileset};
 /// Maximum number of terrain classes.
 const MAX_CLASSES: usize = 254;
 
-/// A wang set as the file has it. Colours are numbered from 1; 0 is none.
+/// A wang set as the file has it. Colors are numbered from 1; 0 is none.
 struct Set {
     name: String,
     layout: Layout,
@@ -127,7 +128,7 @@ fn whole(node: &Node, name: &str) -> std::result::Result<usize, String> {
     number.ok_or_else(|| format!("`{name}` is `{text}`, not a whole number up to 16777216"))
 }
 
-/// Whether a wang id has several colours.
+/// Whether a wang id has several colors.
 fn several(id: &[u8; 8]) -> bool {
     let mut colors = id.iter().filter(|color| **color != 0);
     let first = colors.next();
@@ -170,7 +171,7 @@ fn sets(root: &Node, count: usize) -> std::result::Result<Vec<Set>, String> {
             };
             if let Some(unknown) = wang.iter().find(|color| usize::from(**color) > colors.len()) {
                 return Err(format!(
-                    "the wang id of the tile {id} has the colour {unknown}, but the wang set `{name}` has {}",
+                    "the wang id of the tile {id} has the color {unknown}, but the wang set `{name}` has {}",
                     colors.len()
                 ));
             }
@@ -201,7 +202,7 @@ fn weights(root: &Node) -> std::result::Result<Vec<(u32, f32)>, String> {
     tiles.filter_map(weight).collect()
 }
 
-/// The classes and tiles of a set with tiles of several colours. Tiles without a colour somewhere are left out.
+/// The classes and tiles of a set with tiles of several colors. Tiles without a color somewhere are left out.
 fn wang(set: &Set) -> (Vec<Terrain>, Vec<Tile>) {
     let directions = set.layout.directions();
     let is_whole = |id: &[u8; 8]| (0..8).all(|bit| directions >> bit & 1 == 0 || id[bit] != 0);
@@ -213,7 +214,7 @@ fn wang(set: &Set) -> (Vec<Terrain>, Vec<Tile>) {
     (set.colors.clone(), tiles.map(tile).collect())
 }
 
-/// The classes and tiles of sets whose tiles have one colour.
+/// The classes and tiles of sets whose tiles have one color.
 fn layered(sets: &[Set], layout: Layout) -> (Vec<Terrain>, Vec<Tile>) {
     let mut terrains = Vec::new();
     let mut tiles = Vec::new();

@@ -50,7 +50,7 @@ fn worley_value(source: u32, octave: u32, x: Cell, y: Cell) -> f32 {
     var second = WORLEY_FAR;
     var way = vec2<f32>(WORLEY_FAR);
     var hash = 0u;
-    // The neighbouring cells first, then shells of cells as far as points can be nearer. The order of the cells is that of the processor's kernel.
+    // The neighboring cells first, then shells of cells as far as points can be nearer. The order of the cells is that of the processor's kernel.
     for (var shell = 1; shell <= WORLEY_SHELLS; shell = shell + 1) {
         if (shell > 1) {
             let reach = (side + f32(shell - 1)) * 0.999999;

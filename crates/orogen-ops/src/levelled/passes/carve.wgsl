@@ -215,7 +215,7 @@ fn is_falling(at: vec2<i32>) -> bool {
     return between(at, 1u) < between(east, 3u);
 }
 
-// Distances between the nodes of neighbouring cells: `distances.rs`.
+// Distances between the nodes of neighboring cells: `distances.rs`.
 fn measure_cells(base: u32, at: vec2<i32>) {
     set_plane(DISTANCE, at, between(at, 0u));
     set_plane(DISTANCE + 2u, at, between(at, 2u));

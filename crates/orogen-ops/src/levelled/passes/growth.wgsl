@@ -13,7 +13,7 @@ fn distance_in(code: u32, at: vec2<i32>, base: u32) -> f32 {
     return plane(DISTANCE + code - 4u, at + step_of(code));
 }
 
-// What all neighbours of a node are measured by, and the best so far.
+// What all neighbors of a node are measured by, and the best so far.
 struct Growing {
     rise: f32,
     flat_rise: f32,
@@ -32,7 +32,7 @@ fn begin(base: u32, at: vec2<i32>, height: f32, area: f32) -> Growing {
     return Growing(rise, min(0.02 * cell(base), rise), select(-UNKNOWN, height, fixed == FREE), fixed, UNKNOWN, -1.0, 0.0);
 }
 
-// Takes the height over the neighbour in a direction where it is the lowest so far. No link crosses a river from one of the two cells beside a diagonal to the
+// Takes the height over the neighbor in a direction where it is the lowest so far. No link crosses a river from one of the two cells beside a diagonal to the
 // other: `beside` are their fixed receivers.
 fn offer(base: u32, at: vec2<i32>, code: u32, there: f32, beside: vec2<f32>, before: Growing) -> Growing {
     var growing = before;
@@ -54,7 +54,7 @@ fn offer(base: u32, at: vec2<i32>, code: u32, there: f32, beside: vec2<f32>, bef
     return growing;
 }
 
-// Takes the height of a front that passes between a neighbour and the lower one beside it where it is the lowest so far.
+// Takes the height of a front that passes between a neighbor and the lower one beside it where it is the lowest so far.
 fn front(here: f32, there: f32, corner: f32, beside: u32, before: Growing) -> Growing {
     var growing = before;
     let fall = there - corner;

@@ -1,7 +1,7 @@
 // The law of slopes, and the last that is done to rivers before growth: `law.rs`, and `free_rivers` of `detail.rs`.
 const FIRST_FLOOR = 14u;
 
-// Distances from a node to its neighbours.
+// Distances from a node to its neighbors.
 fn distance_in(code: u32, at: vec2<i32>) -> f32 {
     if (code < 4u) {
         return plane(DISTANCE + code, at);

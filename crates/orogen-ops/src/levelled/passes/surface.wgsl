@@ -84,7 +84,7 @@ fn at_node(base: u32, at: vec2<i32>) {
     set_point(base, at, bed, area, select(0.0, height - bed, height > 0.0), height, receiver);
 }
 
-// The rise in metres from a node to its neighbour at the source of a river.
+// The rise in metres from a node to its neighbor at the source of a river.
 fn slope_of_one_cell(base: u32, logarithm: f32) -> f32 {
     let river = river_slope(base) * exponential(logarithm);
     let stable = stable_slope(base) * exponential(0.3 * logarithm);

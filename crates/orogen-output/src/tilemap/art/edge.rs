@@ -1,7 +1,8 @@
 //! The shape of a layer within a tile: how far a pixel is from its border.
 //!
-//! A tile is drawn in quadrants. A quadrant belongs to one cell, and its shape follows from whether the layer goes on across its two sides and its corner. In tiles of
-//! cells all four quadrants are those of one cell; tiles on corners have one quadrant of each of four cells. So all layouts show the same borders.
+//! A tile is drawn in quadrants. A quadrant belongs to one cell, and its shape follows from whether the layer goes on
+//! across its two sides and its corner. In tiles of cells all four quadrants are those of one cell; tiles on corners
+//! have one quadrant of each of four cells. So all layouts show the same borders.
 
 use orogen_grid::autotile::mask::{E, Layout, N, NE, NW, S, SE, SW, W};
 
@@ -39,9 +40,10 @@ impl Border {
         self.inset + offset(before) * (1.0 - part) + offset(before + 1.0) * part
     }
 
-    /// The place of a pixel in a quadrant of a covered cell. `side` and `end` are the distances to the quadrant's horizontal and vertical side;
-    /// `goes_on` tells whether the layer goes on across the horizontal side, the vertical side and the corner between. `down` is 1 if the horizontal side is the southern one, else -1. `along` is the pixel's
-    /// column and row, for the waves.
+    /// The place of a pixel in a quadrant of a covered cell. `side` and `end` are the distances to the quadrant's
+    /// horizontal and vertical side; `goes_on` tells whether the layer goes on across the horizontal side, the vertical
+    /// side and the corner between. `down` is 1 if the horizontal side is the southern one, else -1. `along` is the
+    /// pixel's column and row, for the waves.
     fn quadrant(&self, [side, end]: [f64; 2], goes_on: [bool; 3], down: f64, [column, row]: [f64; 2]) -> BorderPoint {
         let (across, beside) = (side - self.at(column), end - self.at(row));
         match goes_on {
@@ -62,7 +64,8 @@ impl Border {
         }
     }
 
-    /// The place of the pixel at (x, y), in pixels of a tile of 16, of the tile for a mask; `None` where its layer has no cell.
+    /// The place of the pixel at (x, y), in pixels of a tile of 16, of the tile for a mask; `None` where its layer has
+    /// no cell.
     #[must_use]
     pub fn place(&self, layout: Layout, mask: u8, [x, y]: [f64; 2]) -> Option<BorderPoint> {
         let has = |bit: u8| mask & bit != 0;

@@ -32,7 +32,8 @@ pub struct Ground {
     rim: Ink,
     /// A wall where the border faces south: its inks, and its height in pixels of a tile of 16.
     wall: Option<([Ink; 2], f64)>,
-    /// Bands that are drawn outside of the border, on the ground below, from the border outward: the ink and the outer side of each in pixels of a tile of 16.
+    /// Bands that are drawn outside of the border, on the ground below, from the border outward: the ink and the outer
+    /// side of each in pixels of a tile of 16.
     halo: &'static [(Ink, f64)],
     /// Its border.
     pub border: Border,
@@ -147,7 +148,8 @@ pub const GROUNDS: [Ground; 6] = [
     },
 ];
 
-/// Variants of a full tile, with their weights: the plain one, others with the same marks elsewhere, and one with a rare mark.
+/// Variants of a full tile, with their weights: the plain one, others with the same marks elsewhere, and one with a
+/// rare mark.
 pub const VARIANTS: [f32; 4] = [6.0, 3.0, 3.0, 1.0];
 
 /// How the four trees of a tile differ: to the right, down and larger, in parts of the distance between trees.
@@ -202,7 +204,8 @@ impl Texture {
         texture
     }
 
-    /// Round tree tops in staggered rows, which go on across the tile's sides. Variants differ in which trees are light.
+    /// Round tree tops in staggered rows, which go on across the tile's sides. Variants differ in which trees are
+    /// light.
     fn roof(&mut self, ground: &Ground, variant: usize) {
         let step = self.side as f64 / 2.0;
         // From back to front, so that each row covers the one behind.
@@ -250,7 +253,7 @@ impl Texture {
 }
 
 impl Ground {
-    /// The colour that stands for it.
+    /// The color that stands for it.
     #[must_use]
     pub fn color(&self) -> Ink {
         self.inks[0]

@@ -90,7 +90,7 @@ fn a_draft_comes_first_where_solvers_take_long() {
 }
 
 #[test]
-fn other_layers_are_coloured_on_the_surface() {
+fn other_layers_are_colored_on_the_surface() {
     let mut worker = worker();
     for layer in ["slope", "noise", "drainage-area"] {
         worker.ask(Request { finest: 256, layer: layer.into(), ..Request::new(preset("classic")) });

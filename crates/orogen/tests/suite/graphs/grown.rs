@@ -27,7 +27,8 @@ pub struct Tally {
     pub limited: [usize; 2],
 }
 
-/// Memory of a plan in bytes, and work in nanoseconds, from which on a graph is too expensive to be made again and again.
+/// Memory of a plan in bytes, and work in nanoseconds, from which on a graph is too expensive to be made again and
+/// again.
 const MEMORY: u64 = 256 << 20;
 const WORK: f64 = 2e8;
 /// What the last node may take with those below it: the levels of `continents` are made in tiles.

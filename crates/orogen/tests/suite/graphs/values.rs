@@ -8,8 +8,8 @@ use orogen::value::{Spanned, Value};
 /// What stands in for a bound that is not declared.
 const UNBOUNDED: f64 = 1e9;
 
-/// A value of the declared kind and range. Half of the lengths and areas are of the order of `cell`, as most others have no effect that a small
-/// window shows. `file` is what a file name may be.
+/// A value of the declared kind and range. Half of the lengths and areas are of the order of `cell`, as most others
+/// have no effect that a small window shows. `file` is what a file name may be.
 pub fn value(spec: &ParamSpec, cell: f64, file: &str, random: &mut Random) -> Value {
     let number = |random: &mut Random| number(spec, cell, random);
     match spec.shape {

@@ -119,7 +119,8 @@ orogen::op! {
 }
 
 orogen::op! {
-    /// Midpoint displacement (Fournier, Fussell and Carpenter 1982): each level halves the one above it and is displaced by chance.
+    /// Midpoint displacement (Fournier, Fussell and Carpenter 1982): each level halves the one above it and is
+    /// displaced by chance.
     pub struct Midpoints = "mygame.midpoints", levelled, revision 1;
     inputs {
         /// Strength of the displacement.

@@ -85,7 +85,8 @@ fn strokes(cell: f64) -> Strokes {
     ])
 }
 
-/// The node alone, each input a noise of its own: see [`laws::recipe_of`]. Lengths are fitted so that a small world shows every effect.
+/// The node alone, each input a noise of its own: see [`laws::recipe_of`]. Lengths are fitted so that a small world
+/// shows every effect.
 pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
     let mut node = node.clone();
     let spec = node.spec();

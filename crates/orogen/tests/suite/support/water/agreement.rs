@@ -1,6 +1,6 @@
 //! Agreement of the heights with the drainage areas: whether D8 on the heights finds the rivers of `flow`.
 
-use super::layers::{cells_to_edge, neighbours};
+use super::layers::{cells_to_edge, neighbors};
 use super::network::Network;
 use orogen::hydrology::accumulation::accumulate;
 use orogen::hydrology::drainage::route_carving;
@@ -27,8 +27,9 @@ pub struct Agreement {
 /// Routes the bed by steepest descent, with depressions carved, and compares drainage areas in each range.
 ///
 /// A catchment lies in the window if no water enters it from the edge, neither by D8 on the heights nor in rivers of
-/// `flow`. By D8, water enters wherever the catchment touches the row of cells beside the edge. Cells beside one with water
-/// from the edge are excluded, too, and rivers below a lake that crosses the edge: its water leaves there. Cells in lakes and the sea are not compared.
+/// `flow`. By D8, water enters wherever the catchment touches the row of cells beside the edge. Cells beside one with
+/// water from the edge are excluded, too, and rivers below a lake that crosses the edge: its water leaves there. Cells
+/// in lakes and the sea are not compared.
 pub fn measure(network: &Network, ranges: &[[f64; 2]]) -> Vec<Agreement> {
     let water = network.water;
     let window = water.window();
@@ -47,7 +48,7 @@ pub fn measure(network: &Network, ranges: &[[f64; 2]]) -> Vec<Agreement> {
     let mut crossing: Vec<usize> =
         (0..window.len()).filter(|cell| rivers_entered[*cell] && water.is_standing(*cell)).collect();
     while let Some(cell) = crossing.pop() {
-        for (_, near) in neighbours(window, cell).filter(|(_, near)| water.is_standing(*near)) {
+        for (_, near) in neighbors(window, cell).filter(|(_, near)| water.is_standing(*near)) {
             if !std::mem::replace(&mut rivers_entered[near], true) {
                 crossing.push(near);
             }
@@ -61,7 +62,7 @@ pub fn measure(network: &Network, ranges: &[[f64; 2]]) -> Vec<Agreement> {
     for cell in (0..window.len()).filter(|cell| !water.is_standing(*cell) && !rivers_entered[*cell]) {
         let area = water.area(cell);
         let mut matching = found.iter_mut().filter(|part| part.range[0] <= area && area < part.range[1]).peekable();
-        let around = || neighbours(window, cell).map(|(_, near)| near).chain([cell]);
+        let around = || neighbors(window, cell).map(|(_, near)| near).chain([cell]);
         if matching.peek().is_none() || around().any(|near| entered[near]) {
             continue;
         }

@@ -1,6 +1,6 @@
 //! Beds of rivers: whether they descend.
 
-use super::layers::{cells_to_edge, neighbours};
+use super::layers::{cells_to_edge, neighbors};
 use super::network::Network;
 use orogen::hydrology::direction::DISTANCES;
 
@@ -16,12 +16,12 @@ pub struct Beds {
     pub rising: usize,
     /// The greatest rise, in m.
     pub greatest: f32,
-    /// Rivers that end on land: cells with no neighbour downstream, in a lake or in the sea.
+    /// Rivers that end on land: cells with no neighbor downstream, in a lake or in the sea.
     pub ends: usize,
 }
 
 /// Compares the bed of every river cell with that of its receiver; in a receiver that is a lake or the sea, with the
-/// water surface. Cells in lakes and the sea have no link. A river that ends on land is linked to the neighbour in
+/// water surface. Cells in lakes and the sea have no link. A river that ends on land is linked to the neighbor in
 /// the direction of steepest descent.
 pub fn measure(network: &Network) -> Beds {
     let water = network.water;
@@ -30,9 +30,9 @@ pub fn measure(network: &Network) -> Beds {
     let rivers = (0..bed.len()).filter(|cell| water.area(*cell) > RIVER && !water.is_standing(*cell));
     for cell in rivers.filter(|cell| cells_to_edge(window, *cell) > 0) {
         let receiver = network.receiver(cell).or_else(|| {
-            found.ends += usize::from(neighbours(window, cell).all(|(_, to)| !water.is_standing(to)));
+            found.ends += usize::from(neighbors(window, cell).all(|(_, to)| !water.is_standing(to)));
             let drop = |(code, to): (usize, usize)| f64::from(bed[cell] - water.surface(to)) / DISTANCES[code];
-            neighbours(window, cell).max_by(|a, b| drop(*a).total_cmp(&drop(*b))).map(|(_, to)| to)
+            neighbors(window, cell).max_by(|a, b| drop(*a).total_cmp(&drop(*b))).map(|(_, to)| to)
         });
         let Some(receiver) = receiver else { continue };
         let rise = water.surface(receiver) - bed[cell];

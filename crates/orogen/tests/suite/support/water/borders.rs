@@ -1,6 +1,6 @@
 //! Borders of tiles: whether rivers continue on the other side.
 
-use super::layers::{Tiles, Water, cells_to_edge, neighbours};
+use super::layers::{Tiles, Water, cells_to_edge, neighbors};
 use super::mosaic::{Mosaic, TILES};
 use super::network::Network;
 use orogen::hydrology::direction::hashed;
@@ -21,7 +21,8 @@ pub struct Borders {
     pub borders: usize,
     /// Rivers that cross them.
     pub crossings: usize,
-    /// Cells at the borders where a river is cut: without a receiver, or with one across the border that has less than half of the area.
+    /// Cells at the borders where a river is cut: without a receiver, or with one across the border that has less than
+    /// half of the area.
     pub cut: usize,
     /// Cells at the borders that are not cut, but whose receiver across the border has a smaller area.
     pub falling: usize,
@@ -73,7 +74,8 @@ pub fn measure(network: &Network, mosaic: &Mosaic) -> Borders {
     measure_lines(network, (1..TILES).map(|k| k * mosaic.side))
 }
 
-/// The middle lines of the tiles of a mosaic, as if they were borders, for comparison: what is found there is not due to tiles.
+/// The middle lines of the tiles of a mosaic, as if they were borders, for comparison: what is found there is not due
+/// to tiles.
 pub fn measure_middles(network: &Network, mosaic: &Mosaic) -> Borders {
     measure_lines(network, (0..TILES).map(|k| k * mosaic.side + mosaic.side / 2))
 }
@@ -89,8 +91,8 @@ fn measure_lines(network: &Network, lines: impl Iterator<Item = usize>) -> Borde
     found
 }
 
-/// Pairs of adjacent windows of `side` x `side` cells: the first of each is made by one of `tiles`, the second by the other. Pairs are made side by
-/// side, on `threads` threads. They lie inside `extent`; `seed` chooses where.
+/// Pairs of adjacent windows of `side` x `side` cells: the first of each is made by one of `tiles`, the second by the
+/// other. Pairs are made side by side, on `threads` threads. They lie inside `extent`; `seed` chooses where.
 pub fn measure_pairs(tiles: [Tiles; 2], places: &Places, threads: usize) -> Result<Pairs> {
     let next = AtomicUsize::new(0);
     let work = || {
@@ -141,7 +143,8 @@ pub struct Places {
     pub side: usize,
     /// Number of pairs.
     pub pairs: usize,
-    /// Number of pairs in the same region, which are made from the same coarse tiles. The regions are at random positions, too.
+    /// Number of pairs in the same region, which are made from the same coarse tiles. The regions are at random
+    /// positions, too.
     pub near: usize,
     /// Chooses the positions.
     pub seed: i64,
@@ -220,7 +223,7 @@ fn measure_border(network: &Network, border: Border) -> Borders {
         let crosses = receiver.is_some_and(|to| border.is_behind(window, to) != behind);
         found.crossings += usize::from(crosses);
         // The area of lakes and the sea is not defined: rivers end and begin there.
-        if neighbours(window, cell).any(|(_, to)| water.is_standing(to)) {
+        if neighbors(window, cell).any(|(_, to)| water.is_standing(to)) {
             continue;
         }
         let holds = |share: f64| !crosses || receiver.is_some_and(|to| water.area(to) >= share * water.area(cell));

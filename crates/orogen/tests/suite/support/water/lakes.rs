@@ -1,6 +1,6 @@
 //! Lakes: whether their surface is level and their shores hold it.
 
-use super::layers::neighbours;
+use super::layers::neighbors;
 use super::network::Network;
 
 /// Cells of the river below an outlet that may lie beside the lake.
@@ -11,13 +11,13 @@ const OUTLET: usize = 3;
 pub struct Lakes {
     /// Cells of lakes.
     pub cells: usize,
-    /// The greatest difference between the surfaces of two neighbours in lakes, in m.
+    /// The greatest difference between the surfaces of two neighbors in lakes, in m.
     pub step: f32,
-    /// The greatest height of a surface above a dry neighbour that is not in the river below the outlet, in m.
+    /// The greatest height of a surface above a dry neighbor that is not in the river below the outlet, in m.
     pub above_shore: f32,
 }
 
-/// Compares the surface of every lake cell with its neighbours.
+/// Compares the surface of every lake cell with its neighbors.
 pub fn measure(network: &Network) -> Lakes {
     let mut found = Lakes::default();
     let water = network.water;
@@ -29,7 +29,7 @@ pub fn measure(network: &Network) -> Lakes {
     }
     for cell in (0..depth.len()).filter(|cell| depth[*cell] > 0.0) {
         found.cells += 1;
-        for (_, near) in neighbours(water.window(), cell).filter(|(_, near)| !is_outlet[*near]) {
+        for (_, near) in neighbors(water.window(), cell).filter(|(_, near)| !is_outlet[*near]) {
             let above = water.surface(cell) - water.surface(near);
             let greatest = if depth[near] > 0.0 { &mut found.step } else { &mut found.above_shore };
             *greatest = greatest.max(above);

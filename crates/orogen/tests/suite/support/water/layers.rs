@@ -112,8 +112,8 @@ fn depth(labels: &Grid, surface: &Grid, bed: &Grid) -> Grid {
     depth
 }
 
-/// The neighbours of a cell inside the window: the code of the direction and the cell.
-pub fn neighbours(window: &Window, cell: usize) -> impl Iterator<Item = (usize, usize)> + use<> {
+/// The neighbors of a cell inside the window: the code of the direction and the cell.
+pub fn neighbors(window: &Window, cell: usize) -> impl Iterator<Item = (usize, usize)> + use<> {
     let (width, height) = (window.width as isize, window.height as isize);
     let (i, j) = (cell as isize % width, cell as isize / width);
     STEPS.into_iter().enumerate().filter_map(move |(code, (east, south))| {

@@ -1,7 +1,7 @@
 //! Measures whether the water of a world holds on a mosaic of tiles that are made apart and pasted without any repair.
 //!
-//! Reads the layers `height` (the bed, in m), `flow` (drainage area, in m²) and, if the recipe has them, `lakes` (depth of
-//! standing water, in m; or numbers of lakes, with their water surface in the layer `surface`) and `receiver` (flow
+//! Reads the layers `height` (the bed, in m), `flow` (drainage area, in m²) and, if the recipe has them, `lakes` (depth
+//! of standing water, in m; or numbers of lakes, with their water surface in the layer `surface`) and `receiver` (flow
 //! direction, clockwise from east). The sea is where the bed is below the sea level.
 //!
 //! `water_mosaics.rs` tests it; `cargo xtask bench water` runs it for any recipe.

@@ -1,14 +1,14 @@
 //! The receiver of every cell, found from drainage areas.
 //!
-//! Drainage areas alone determine the network almost everywhere: the area of a cell is its own area plus the areas of its
-//! donors. From the largest area to the smallest, each cell therefore takes, of the neighbours downstream, the one
-//! whose area without its donors so far fits best. The neighbour with the largest area is often not the receiver: at a bend
-//! it is the cell after the receiver, and where two rivers run side by side, it may belong to the other river. One
+//! Drainage areas alone determine the network almost everywhere: the area of a cell is its own area plus the areas of
+//! its donors. From the largest area to the smallest, each cell therefore takes, of the neighbors downstream, the one
+//! whose area without its donors so far fits best. The neighbor with the largest area is often not the receiver: at a
+//! bend it is the cell after the receiver, and where two rivers run side by side, it may belong to the other river. One
 //! receiver of a river in some thousands is still another one than the world's.
 //!
-//! Of two neighbours with the same area, the one with the lower surface is downstream.
+//! Of two neighbors with the same area, the one with the lower surface is downstream.
 
-use super::layers::{Water, neighbours};
+use super::layers::{Water, neighbors};
 use orogen::hydrology::direction::NONE;
 use std::cmp::Ordering;
 
@@ -43,7 +43,7 @@ impl Network<'_> {
             let to = match &water.receiver {
                 Some(codes) => {
                     let code = codes.data()[cell] as usize;
-                    neighbours(window, cell).find(|(k, _)| *k == code && code < usize::from(NONE)).map(|(_, to)| to)
+                    neighbors(window, cell).find(|(k, _)| *k == code && code < usize::from(NONE)).map(|(_, to)| to)
                 }
                 None => network.best(cell),
             };
@@ -56,7 +56,7 @@ impl Network<'_> {
         network
     }
 
-    /// Of the neighbours downstream, the one whose unexplained area exceeds that of the cell by the least; if none
+    /// Of the neighbors downstream, the one whose unexplained area exceeds that of the cell by the least; if none
     /// does, the one with the largest unexplained area.
     fn best(&self, cell: usize) -> Option<usize> {
         // Areas are rounded to f32.
@@ -72,9 +72,9 @@ impl Network<'_> {
         Some(self.receivers[cell]).filter(|to| *to != MISSING).map(|to| to as usize)
     }
 
-    /// Whether the area of a cell does not continue: the cell has no receiver, or no neighbour is large enough to hold half
-    /// of the area beside its other donors. Where the receivers are not known, those are the cells with no
-    /// other neighbour downstream.
+    /// Whether the area of a cell does not continue: the cell has no receiver, or no neighbor is large enough to hold
+    /// half of the area beside its other donors. Where the receivers are not known, those are the cells with no other
+    /// neighbor downstream.
     pub fn ends(&self, cell: usize) -> bool {
         let water = self.water;
         if self.receivers[cell] == MISSING || water.receiver.is_some() {
@@ -89,8 +89,8 @@ impl Network<'_> {
         self.starved[cell] && !downstream(water, cell).any(holds)
     }
 
-    /// Whether at least half of the area of a cell comes from nowhere: neither from the cell nor from its donors. Where the
-    /// receivers are not known, every neighbour upstream may be a donor.
+    /// Whether at least half of the area of a cell comes from nowhere: neither from the cell nor from its donors. Where
+    /// the receivers are not known, every neighbor upstream may be a donor.
     pub fn begins(&self, cell: usize) -> bool {
         let (water, half) = (self.water, 0.5 * self.water.area(cell));
         let possible = || upstream(water, cell).map(|from| water.area(from)).sum::<f64>();
@@ -124,12 +124,12 @@ fn compare(water: &Water, a: usize, b: usize) -> Ordering {
     water.area(b).total_cmp(&water.area(a)).then_with(|| water.surface(a).total_cmp(&water.surface(b)))
 }
 
-/// The neighbours to which a cell may drain.
+/// The neighbors to which a cell may drain.
 fn downstream(water: &Water, cell: usize) -> impl Iterator<Item = usize> + '_ {
-    neighbours(water.window(), cell).map(|(_, to)| to).filter(move |to| is_downstream(water, cell, *to))
+    neighbors(water.window(), cell).map(|(_, to)| to).filter(move |to| is_downstream(water, cell, *to))
 }
 
-/// The neighbours that may drain to a cell.
+/// The neighbors that may drain to a cell.
 fn upstream(water: &Water, cell: usize) -> impl Iterator<Item = usize> + '_ {
-    neighbours(water.window(), cell).map(|(_, from)| from).filter(move |from| is_downstream(water, *from, cell))
+    neighbors(water.window(), cell).map(|(_, from)| from).filter(move |from| is_downstream(water, *from, cell))
 }

@@ -64,7 +64,7 @@ fn ply_colors(path: &Path) -> Vec<[u8; 3]> {
 
 #[test]
 fn colors_of_meshes() {
-    let folder = TestFolder::new("neighbours-colors").unwrap();
+    let folder = TestFolder::new("neighbors-colors").unwrap();
     for (size, range) in [("size = [2400, 1600]", None), ("", None), ("size = [2400, 1600]", Some("0,900"))] {
         let world = World::open(recipe(size)).unwrap();
         let mut options = Options::default();
@@ -110,7 +110,7 @@ fn textures_of_surfaces() {
 
 #[test]
 fn layers_of_engine_tiles() {
-    let folder = TestFolder::new("neighbours-tiles").unwrap();
+    let folder = TestFolder::new("neighbors-tiles").unwrap();
     for layer in ["normal", "splat", "albedo", "roughness", "occlusion", "slope", "curvature"] {
         let mut recipe = recipe("size = [2400, 2400]");
         let target = targets::list::named("unity").unwrap();
