@@ -37,6 +37,11 @@
 //! This is the only crate of the workspace with `unsafe` code. It is sound because lane values and the tokens of the
 //! hardware levels have private contents: a token comes from [`dispatch`] or from detection, a lane value from a token.
 
+// First, because the modules of the levels use its macros.
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64", all(target_arch = "wasm32", target_feature = "simd128")))]
+#[macro_use]
+mod table;
+
 mod double;
 mod fma;
 mod lanes;

@@ -2,91 +2,120 @@
 //! (`-C target-feature=+simd128`), so the token needs no check. They have no fused multiply-add with defined rounding: it
 //! is emulated with f64, as at the scalar level.
 
-use crate::{Body, F32Lanes, F64Lanes, Level, MaskLanes, Simd, U32Lanes};
+use crate::Level;
 use core::arch::wasm32::*;
-use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
-/// The token of WebAssembly's vectors.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Simd128(());
-
-/// 4 f32.
-#[derive(Clone, Copy, Debug)]
-pub struct F32x4(v128);
-/// 4 u32.
-#[derive(Clone, Copy, Debug)]
-pub struct U32x4(v128);
-/// 4 f64.
-#[derive(Clone, Copy, Debug)]
-pub struct F64x4(v128, v128);
-/// 4 truth values, each all ones or all zeros.
-#[derive(Clone, Copy, Debug)]
-pub struct Mask4(v128);
 /// 8 f32, as bytes to look up.
 #[derive(Clone, Copy, Debug)]
-pub struct Table8x128([v128; 2]);
+pub struct Table8([v128; 2]);
 /// 16 f32, as bytes to look up.
 #[derive(Clone, Copy, Debug)]
-pub struct Table16x128([v128; 4]);
+pub struct Table16([v128; 4]);
 
-impl Simd128 {
-    /// The token.
-    #[inline(always)]
-    #[must_use]
-    pub const fn new() -> Simd128 {
-        Simd128(())
+level! {
+    /// The token of WebAssembly's vectors.
+    Simd128: 4 lanes, requires [];
+
+    Simd {
+        fn f32(value: f32) -> F32 => f32x4_splat(value);
+        fn u32(value: u32) -> U32 => u32x4_splat(value);
+        fn f64(value: f64) -> F64 => f64x2_splat(value);
+        fn iota() -> U32 => u32x4(0, 1, 2, 3);
+        fn load(from: [f32]) -> F32 => v128_load(from.cast());
+        fn load_u32(from: [u32]) -> U32 => v128_load(from.cast());
+        fn load_f64(from: [f64]) -> F64 => v128_load(from.cast());
+        fn table8(entries: &[f32; 8]) -> Table8 => [0, 4].map(|first| v128_load(entries[first..].as_ptr().cast()));
+        fn table16(entries: &[f32; 16]) -> Table16 =>
+            [0, 4, 8, 12].map(|first| v128_load(entries[first..].as_ptr().cast()));
+        fn lookup8(table: Table8, index: U32) -> F32 => look_up(table, byte_numbers(v128_and(index, u32x4_splat(7))));
+        fn lookup16(table: Table16, index: U32) -> F32 => look_up(table, byte_numbers(v128_and(index, u32x4_splat(15))));
+    }
+    by_hand {
+        type Table8 = Table8;
+        type Table16 = Table16;
+        const LEVEL: Level = Level::Simd128;
+        const WIDE_LOOKUP: bool = false;
+    }
+
+    /// 4 f32.
+    F32(v128): F32Lanes {
+        impl Add: add(a, b) => f32x4_add(a, b);
+        impl Sub: sub(a, b) => f32x4_sub(a, b);
+        impl Mul: mul(a, b) => f32x4_mul(a, b);
+        impl Div: div(a, b) => f32x4_div(a, b);
+        impl Neg: neg(a) => f32x4_neg(a);
+        fn store(a, to: [f32]) => v128_store(to.cast(), a);
+        fn mul_add(a, factor, term) => fused(a, factor, term);
+        fn neg_mul_add(a, factor, term) => fused(f32x4_neg(a), factor, term);
+        fn min(a, b) => f32x4_pmin(b, a);
+        fn max(a, b) => f32x4_pmax(b, a);
+        fn abs(a) => f32x4_abs(a);
+        fn sqrt(a) => f32x4_sqrt(a);
+        fn floor(a) => f32x4_floor(a);
+        fn lt(a, b) -> Mask => f32x4_lt(a, b);
+        fn le(a, b) -> Mask => f32x4_le(a, b);
+        fn eq(a, b) -> Mask => f32x4_eq(a, b);
+        fn select(a, mask: Mask, b) => v128_bitselect(a, b, mask);
+        fn to_i32(a) -> U32 => {
+            // The instruction saturates; values out of range and NaN must give the lowest number.
+            let (lowest, above) = (f32x4_splat(-2_147_483_648.0), f32x4_splat(2_147_483_648.0));
+            let fits = v128_and(f32x4_ge(a, lowest), f32x4_lt(a, above));
+            v128_bitselect(i32x4_trunc_sat_f32x4(a), u32x4_splat(0x8000_0000), fits)
+        };
+        fn bits(a) -> U32 => a;
+        fn widen(a) -> F64 => (f64x2_promote_low_f32x4(a), promote_high(a));
+        fn permute(a, index: U32) => permute(a, index);
+    }
+
+    /// 4 u32.
+    U32(v128): U32Lanes {
+        impl Add: add(a, b) => i32x4_add(a, b);
+        impl Sub: sub(a, b) => i32x4_sub(a, b);
+        impl Mul: mul(a, b) => i32x4_mul(a, b);
+        impl BitAnd: bitand(a, b) => v128_and(a, b);
+        impl BitOr: bitor(a, b) => v128_or(a, b);
+        impl BitXor: bitxor(a, b) => v128_xor(a, b);
+        impl Not: not(a) => v128_not(a);
+        fn store(a, to: [u32]) => v128_store(to.cast(), a);
+        fn shl(a, count: u32) => u32x4_shl(a, count);
+        fn shr(a, count: u32) => u32x4_shr(a, count);
+        fn sar(a, count: u32) => i32x4_shr(a, count);
+        fn eq(a, b) -> Mask => i32x4_eq(a, b);
+        fn lt_i32(a, b) -> Mask => i32x4_lt(a, b);
+        fn select(a, mask: Mask, b) => v128_bitselect(a, b, mask);
+        fn i32_to_f32(a) -> F32 => f32x4_convert_i32x4(a);
+        fn as_f32(a) -> F32 => a;
+        fn permute(a, index: U32) => permute(a, index);
+    }
+
+    /// 4 f64.
+    F64(v128, v128): F64Lanes {
+        impl Add: add(a, b) => f64x2_add(a, b);
+        impl Sub: sub(a, b) => f64x2_sub(a, b);
+        impl Mul: mul(a, b) => f64x2_mul(a, b);
+        fn store(a, to: [f64]) => v128_store(to.cast(), a);
+        fn min(a, b) => f64x2_pmin(b, a);
+        fn max(a, b) => f64x2_pmax(b, a);
+        fn floor(a) => f64x2_floor(a);
+        fn narrow(low, high) -> F32 => demote(low, high);
+        fn words(low, high) => (i32x4_shuffle::<0, 2, 4, 6>(low, high), i32x4_shuffle::<1, 3, 5, 7>(low, high));
+    }
+
+    /// 4 truth values, each all ones or all zeros.
+    Mask(v128): MaskLanes {
+        impl BitAnd: bitand(a, b) => v128_and(a, b);
+        impl BitOr: bitor(a, b) => v128_or(a, b);
+        impl Not: not(a) => v128_not(a);
+        fn to_bits(a) -> u32 => u32::from(i32x4_bitmask(a));
     }
 }
 
-macro_rules! lanewise {
-    ($type:ident: $($trait:ident $method:ident $op:ident;)*) => {$(
-        impl $trait for $type {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                $type($op(self.0, other.0))
-            }
-        }
-    )*};
-}
-lanewise!(F32x4: Add add f32x4_add; Sub sub f32x4_sub; Mul mul f32x4_mul; Div div f32x4_div;);
-lanewise!(U32x4: Add add i32x4_add; Sub sub i32x4_sub; Mul mul i32x4_mul;
-    BitAnd bitand v128_and; BitOr bitor v128_or; BitXor bitxor v128_xor;);
-lanewise!(Mask4: BitAnd bitand v128_and; BitOr bitor v128_or;);
-
-macro_rules! lanewise_f64 {
-    ($($trait:ident $method:ident $op:ident;)*) => {$(
-        impl $trait for F64x4 {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                F64x4($op(self.0, other.0), $op(self.1, other.1))
-            }
-        }
-    )*};
-}
-lanewise_f64!(Add add f64x2_add; Sub sub f64x2_sub; Mul mul f64x2_mul;);
-
-impl Neg for F32x4 {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        F32x4(f32x4_neg(self.0))
-    }
-}
-impl Not for U32x4 {
-    type Output = Self;
-    #[inline(always)]
-    fn not(self) -> Self {
-        U32x4(v128_not(self.0))
-    }
-}
-impl Not for Mask4 {
-    type Output = Self;
-    #[inline(always)]
-    fn not(self) -> Self {
-        Mask4(v128_not(self.0))
-    }
+/// `a * b + c`, rounded once.
+#[inline(always)]
+fn fused(a: v128, b: v128, c: v128) -> v128 {
+    let low = f64x2_promote_low_f32x4;
+    let sum = fma_to_odd(low(a), low(b), low(c));
+    demote(sum, fma_to_odd(promote_high(a), promote_high(b), promote_high(c)))
 }
 
 /// `a * b + c` of f32 widened to f64, rounded to odd: rounded to f32 it is the fused multiply-add (see [`crate::fma`]).
@@ -134,236 +163,8 @@ fn look_up<const N: usize>(table: [v128; N], mut numbers: v128) -> v128 {
     found
 }
 
-impl Simd for Simd128 {
-    type F32 = F32x4;
-    type U32 = U32x4;
-    type F64 = F64x4;
-    type Mask = Mask4;
-    type Table8 = Table8x128;
-    type Table16 = Table16x128;
-    const LANES: usize = 4;
-    const LEVEL: Level = Level::Simd128;
-    const WIDE_LOOKUP: bool = false;
-
-    #[inline(always)]
-    fn run<B: Body>(self, body: B) -> B::Output {
-        #[inline(never)]
-        fn inner<B: Body>(token: Simd128, body: B) -> B::Output {
-            body.run(token)
-        }
-        inner(self, body)
-    }
-    #[inline(always)]
-    fn f32(self, value: f32) -> F32x4 {
-        F32x4(f32x4_splat(value))
-    }
-    #[inline(always)]
-    fn u32(self, value: u32) -> U32x4 {
-        U32x4(u32x4_splat(value))
-    }
-    #[inline(always)]
-    fn f64(self, value: f64) -> F64x4 {
-        F64x4(f64x2_splat(value), f64x2_splat(value))
-    }
-    #[inline(always)]
-    fn iota(self) -> U32x4 {
-        U32x4(u32x4(0, 1, 2, 3))
-    }
-    #[inline(always)]
-    fn load(self, from: &[f32]) -> F32x4 {
-        let from = &from[..4];
-        // SAFETY: the slice has four values; the instruction takes any alignment.
-        F32x4(unsafe { v128_load(from.as_ptr().cast()) })
-    }
-    #[inline(always)]
-    fn load_u32(self, from: &[u32]) -> U32x4 {
-        let from = &from[..4];
-        // SAFETY: as above.
-        U32x4(unsafe { v128_load(from.as_ptr().cast()) })
-    }
-    #[inline(always)]
-    fn load_f64(self, from: &[f64]) -> F64x4 {
-        let from = &from[..4];
-        // SAFETY: as above, two values each.
-        unsafe { F64x4(v128_load(from.as_ptr().cast()), v128_load(from[2..].as_ptr().cast())) }
-    }
-    #[inline(always)]
-    fn table8(self, entries: &[f32; 8]) -> Table8x128 {
-        Table8x128([self.load(entries).0, self.load(&entries[4..]).0])
-    }
-    #[inline(always)]
-    fn table16(self, entries: &[f32; 16]) -> Table16x128 {
-        Table16x128([0, 4, 8, 12].map(|first| self.load(&entries[first..]).0))
-    }
-    #[inline(always)]
-    fn lookup8(self, table: Table8x128, index: U32x4) -> F32x4 {
-        F32x4(look_up(table.0, byte_numbers(v128_and(index.0, u32x4_splat(7)))))
-    }
-    #[inline(always)]
-    fn lookup16(self, table: Table16x128, index: U32x4) -> F32x4 {
-        F32x4(look_up(table.0, byte_numbers(v128_and(index.0, u32x4_splat(15)))))
-    }
-}
-
-impl F32Lanes<Simd128> for F32x4 {
-    #[inline(always)]
-    fn store(self, to: &mut [f32]) {
-        let to = &mut to[..4];
-        // SAFETY: the slice has room for four values; the instruction takes any alignment.
-        unsafe { v128_store(to.as_mut_ptr().cast(), self.0) }
-    }
-    #[inline(always)]
-    fn mul_add(self, factor: Self, term: Self) -> Self {
-        let low = f64x2_promote_low_f32x4;
-        let sum = [
-            fma_to_odd(low(self.0), low(factor.0), low(term.0)),
-            fma_to_odd(promote_high(self.0), promote_high(factor.0), promote_high(term.0)),
-        ];
-        F32x4(demote(sum[0], sum[1]))
-    }
-    #[inline(always)]
-    fn neg_mul_add(self, factor: Self, term: Self) -> Self {
-        (-self).mul_add(factor, term)
-    }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        F32x4(f32x4_pmin(other.0, self.0))
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        F32x4(f32x4_pmax(other.0, self.0))
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        F32x4(f32x4_abs(self.0))
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        F32x4(f32x4_sqrt(self.0))
-    }
-    #[inline(always)]
-    fn floor(self) -> Self {
-        F32x4(f32x4_floor(self.0))
-    }
-    #[inline(always)]
-    fn lt(self, other: Self) -> Mask4 {
-        Mask4(f32x4_lt(self.0, other.0))
-    }
-    #[inline(always)]
-    fn le(self, other: Self) -> Mask4 {
-        Mask4(f32x4_le(self.0, other.0))
-    }
-    #[inline(always)]
-    fn eq(self, other: Self) -> Mask4 {
-        Mask4(f32x4_eq(self.0, other.0))
-    }
-    #[inline(always)]
-    fn select(self, mask: Mask4, other: Self) -> Self {
-        F32x4(v128_bitselect(self.0, other.0, mask.0))
-    }
-    #[inline(always)]
-    fn to_i32(self) -> U32x4 {
-        // The instruction saturates; values out of range and NaN must give the lowest number.
-        let fits =
-            v128_and(f32x4_ge(self.0, f32x4_splat(-2_147_483_648.0)), f32x4_lt(self.0, f32x4_splat(2_147_483_648.0)));
-        U32x4(v128_bitselect(i32x4_trunc_sat_f32x4(self.0), u32x4_splat(0x8000_0000), fits))
-    }
-    #[inline(always)]
-    fn bits(self) -> U32x4 {
-        U32x4(self.0)
-    }
-    #[inline(always)]
-    fn widen(self) -> F64x4 {
-        F64x4(f64x2_promote_low_f32x4(self.0), promote_high(self.0))
-    }
-    #[inline(always)]
-    fn permute(self, index: U32x4) -> Self {
-        F32x4(u8x16_swizzle(self.0, byte_numbers(v128_and(index.0, u32x4_splat(3)))))
-    }
-}
-
-impl U32Lanes<Simd128> for U32x4 {
-    #[inline(always)]
-    fn store(self, to: &mut [u32]) {
-        let to = &mut to[..4];
-        // SAFETY: as for f32.
-        unsafe { v128_store(to.as_mut_ptr().cast(), self.0) }
-    }
-    #[inline(always)]
-    fn shl(self, count: u32) -> Self {
-        U32x4(u32x4_shl(self.0, count & 31))
-    }
-    #[inline(always)]
-    fn shr(self, count: u32) -> Self {
-        U32x4(u32x4_shr(self.0, count & 31))
-    }
-    #[inline(always)]
-    fn sar(self, count: u32) -> Self {
-        U32x4(i32x4_shr(self.0, count & 31))
-    }
-    #[inline(always)]
-    fn eq(self, other: Self) -> Mask4 {
-        Mask4(i32x4_eq(self.0, other.0))
-    }
-    #[inline(always)]
-    fn lt_i32(self, other: Self) -> Mask4 {
-        Mask4(i32x4_lt(self.0, other.0))
-    }
-    #[inline(always)]
-    fn select(self, mask: Mask4, other: Self) -> Self {
-        U32x4(v128_bitselect(self.0, other.0, mask.0))
-    }
-    #[inline(always)]
-    fn i32_to_f32(self) -> F32x4 {
-        F32x4(f32x4_convert_i32x4(self.0))
-    }
-    #[inline(always)]
-    fn as_f32(self) -> F32x4 {
-        F32x4(self.0)
-    }
-    #[inline(always)]
-    fn permute(self, index: Self) -> Self {
-        self.as_f32().permute(index).bits()
-    }
-}
-
-impl F64Lanes<Simd128> for F64x4 {
-    #[inline(always)]
-    fn store(self, to: &mut [f64]) {
-        let to = &mut to[..4];
-        // SAFETY: as for f32, two values each.
-        unsafe {
-            v128_store(to.as_mut_ptr().cast(), self.0);
-            v128_store(to[2..].as_mut_ptr().cast(), self.1);
-        }
-    }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        F64x4(f64x2_pmin(other.0, self.0), f64x2_pmin(other.1, self.1))
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        F64x4(f64x2_pmax(other.0, self.0), f64x2_pmax(other.1, self.1))
-    }
-    #[inline(always)]
-    fn floor(self) -> Self {
-        F64x4(f64x2_floor(self.0), f64x2_floor(self.1))
-    }
-    #[inline(always)]
-    fn narrow(self) -> F32x4 {
-        F32x4(demote(self.0, self.1))
-    }
-    #[inline(always)]
-    fn words(self) -> (U32x4, U32x4) {
-        let (a, b) = (self.0, self.1);
-        (U32x4(i32x4_shuffle::<0, 2, 4, 6>(a, b)), U32x4(i32x4_shuffle::<1, 3, 5, 7>(a, b)))
-    }
-}
-
-impl MaskLanes for Mask4 {
-    const LANES: usize = 4;
-    #[inline(always)]
-    fn to_bits(self) -> u32 {
-        u32::from(i32x4_bitmask(self.0))
-    }
+/// The lanes with these indices; the lower bits of an index count.
+#[inline(always)]
+fn permute(a: v128, index: v128) -> v128 {
+    u8x16_swizzle(a, byte_numbers(v128_and(index, u32x4_splat(3))))
 }

@@ -4,33 +4,129 @@
 //! SSE2 has no fused multiply-add, no floor and no lookup. They are emulated, each in one function that is not inlined:
 //! copies in every body would make the code of the slowest level the largest.
 
-use crate::{Body, F32Lanes, F64Lanes, Level, MaskLanes, Simd, U32Lanes};
+use crate::Level;
 use core::arch::x86_64::*;
-use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
-/// The token of SSE2.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Sse2(());
+level! {
+    /// The token of SSE2.
+    Sse2: 4 lanes, requires [];
 
-/// 4 f32.
-#[derive(Clone, Copy, Debug)]
-pub struct F32x4(__m128);
-/// 4 u32.
-#[derive(Clone, Copy, Debug)]
-pub struct U32x4(__m128i);
-/// 4 f64.
-#[derive(Clone, Copy, Debug)]
-pub struct F64x4(__m128d, __m128d);
-/// 4 truth values, each all ones or all zeros.
-#[derive(Clone, Copy, Debug)]
-pub struct Mask4(__m128i);
+    Simd {
+        fn f32(value: f32) -> F32 => _mm_set1_ps(value);
+        fn u32(value: u32) -> U32 => _mm_set1_epi32(value as i32);
+        fn f64(value: f64) -> F64 => _mm_set1_pd(value);
+        fn iota() -> U32 => _mm_setr_epi32(0, 1, 2, 3);
+        fn load(from: [f32]) -> F32 => _mm_loadu_ps(from);
+        fn load_u32(from: [u32]) -> U32 => _mm_loadu_si128(from.cast());
+        fn load_f64(from: [f64]) -> F64 => _mm_loadu_pd(from);
+    }
+    by_hand {
+        type Table8 = [f32; 8];
+        type Table16 = [f32; 16];
+        const LEVEL: Level = Level::Scalar;
+        const WIDE_LOOKUP: bool = true;
 
-impl Sse2 {
-    /// The token.
-    #[inline(always)]
-    #[must_use]
-    pub const fn new() -> Sse2 {
-        Sse2(())
+        #[inline(always)]
+        fn table8(self, entries: &[f32; 8]) -> [f32; 8] {
+            *entries
+        }
+        #[inline(always)]
+        fn table16(self, entries: &[f32; 16]) -> [f32; 16] {
+            *entries
+        }
+        #[inline(always)]
+        fn lookup8(self, table: [f32; 8], index: U32) -> F32 {
+            F32(look_up(&table, index.0))
+        }
+        #[inline(always)]
+        fn lookup16(self, table: [f32; 16], index: U32) -> F32 {
+            F32(look_up(&table, index.0))
+        }
+        #[inline(always)]
+        fn gather(self, from: &[f32], index: U32) -> F32 {
+            self.load(&picked(from, index))
+        }
+        #[inline(always)]
+        fn gather_u32(self, from: &[u32], index: U32) -> U32 {
+            self.load_u32(&picked(from, index))
+        }
+    }
+
+    /// 4 f32.
+    F32(__m128): F32Lanes {
+        impl Add: add(a, b) => _mm_add_ps(a, b);
+        impl Sub: sub(a, b) => _mm_sub_ps(a, b);
+        impl Mul: mul(a, b) => _mm_mul_ps(a, b);
+        impl Div: div(a, b) => _mm_div_ps(a, b);
+        impl Neg: neg(a) => _mm_xor_ps(a, _mm_set1_ps(-0.0));
+        fn store(a, to: [f32]) => _mm_storeu_ps(to, a);
+        fn mul_add(a, factor, term) => fused(a, factor, term);
+        fn neg_mul_add(a, factor, term) => fused(_mm_xor_ps(a, _mm_set1_ps(-0.0)), factor, term);
+        fn min(a, b) => _mm_min_ps(a, b);
+        fn max(a, b) => _mm_max_ps(a, b);
+        fn abs(a) => _mm_andnot_ps(_mm_set1_ps(-0.0), a);
+        fn sqrt(a) => _mm_sqrt_ps(a);
+        fn floor(a) => floor(a);
+        fn lt(a, b) -> Mask => _mm_castps_si128(_mm_cmplt_ps(a, b));
+        fn le(a, b) -> Mask => _mm_castps_si128(_mm_cmple_ps(a, b));
+        fn eq(a, b) -> Mask => _mm_castps_si128(_mm_cmpeq_ps(a, b));
+        fn select(a, mask: Mask, b) => _mm_castsi128_ps(choose(mask, _mm_castps_si128(a), _mm_castps_si128(b)));
+        fn to_i32(a) -> U32 => _mm_cvttps_epi32(a);
+        fn bits(a) -> U32 => _mm_castps_si128(a);
+        fn widen(a) -> F64 => (_mm_cvtps_pd(a), widen_high(a));
+        fn permute(a, index: U32) => permute(a, index);
+    }
+
+    /// 4 u32.
+    U32(__m128i): U32Lanes {
+        impl Add: add(a, b) => _mm_add_epi32(a, b);
+        impl Sub: sub(a, b) => _mm_sub_epi32(a, b);
+        impl Mul: mul(a, b) => {
+            // The instruction multiplies the even lanes.
+            let (odd_a, odd_b) = (_mm_srli_epi64::<32>(a), _mm_srli_epi64::<32>(b));
+            let even = _mm_shuffle_epi32::<0b10_00>(_mm_mul_epu32(a, b));
+            let odd = _mm_shuffle_epi32::<0b10_00>(_mm_mul_epu32(odd_a, odd_b));
+            _mm_unpacklo_epi32(even, odd)
+        };
+        impl BitAnd: bitand(a, b) => _mm_and_si128(a, b);
+        impl BitOr: bitor(a, b) => _mm_or_si128(a, b);
+        impl BitXor: bitxor(a, b) => _mm_xor_si128(a, b);
+        impl Not: not(a) => _mm_xor_si128(a, _mm_set1_epi32(-1));
+        fn store(a, to: [u32]) => _mm_storeu_si128(to.cast(), a);
+        fn shl(a, count: u32) => _mm_sll_epi32(a, _mm_cvtsi32_si128(count as i32));
+        fn shr(a, count: u32) => _mm_srl_epi32(a, _mm_cvtsi32_si128(count as i32));
+        fn sar(a, count: u32) => _mm_sra_epi32(a, _mm_cvtsi32_si128(count as i32));
+        fn eq(a, b) -> Mask => _mm_cmpeq_epi32(a, b);
+        fn lt_i32(a, b) -> Mask => _mm_cmplt_epi32(a, b);
+        fn select(a, mask: Mask, b) => choose(mask, a, b);
+        fn i32_to_f32(a) -> F32 => _mm_cvtepi32_ps(a);
+        fn as_f32(a) -> F32 => _mm_castsi128_ps(a);
+        fn permute(a, index: U32) => _mm_castps_si128(permute(_mm_castsi128_ps(a), index));
+    }
+
+    /// 4 f64.
+    F64(__m128d, __m128d): F64Lanes {
+        impl Add: add(a, b) => _mm_add_pd(a, b);
+        impl Sub: sub(a, b) => _mm_sub_pd(a, b);
+        impl Mul: mul(a, b) => _mm_mul_pd(a, b);
+        fn store(a, to: [f64]) => _mm_storeu_pd(to, a);
+        fn min(a, b) => _mm_min_pd(a, b);
+        fn max(a, b) => _mm_max_pd(a, b);
+        fn floor(a) => floor_f64(a);
+        fn narrow(low, high) -> F32 => _mm_movelh_ps(_mm_cvtpd_ps(low), _mm_cvtpd_ps(high));
+        fn words(low, high) => {
+            let (a, b) = (_mm_castpd_ps(low), _mm_castpd_ps(high));
+            let (even, odd) = (_mm_shuffle_ps::<0b10_00_10_00>(a, b), _mm_shuffle_ps::<0b11_01_11_01>(a, b));
+            (_mm_castps_si128(even), _mm_castps_si128(odd))
+        };
+    }
+
+    /// 4 truth values, each all ones or all zeros.
+    Mask(__m128i): MaskLanes {
+        impl BitAnd: bitand(a, b) => _mm_and_si128(a, b);
+        impl BitOr: bitor(a, b) => _mm_or_si128(a, b);
+        impl Not: not(a) => _mm_xor_si128(a, _mm_set1_epi32(-1));
+        fn to_bits(a) -> u32 => _mm_movemask_ps(_mm_castsi128_ps(a)) as u32;
     }
 }
 
@@ -41,70 +137,6 @@ macro_rules! sse2 {
         // memory stand in blocks of their own.
         unsafe { $expression }
     };
-}
-
-macro_rules! lanewise {
-    ($type:ident: $($trait:ident $method:ident $op:ident;)*) => {$(
-        impl $trait for $type {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                $type(sse2!($op(self.0, other.0)))
-            }
-        }
-    )*};
-}
-lanewise!(F32x4: Add add _mm_add_ps; Sub sub _mm_sub_ps; Mul mul _mm_mul_ps; Div div _mm_div_ps;);
-lanewise!(U32x4: Add add _mm_add_epi32; Sub sub _mm_sub_epi32;
-    BitAnd bitand _mm_and_si128; BitOr bitor _mm_or_si128; BitXor bitxor _mm_xor_si128;);
-lanewise!(Mask4: BitAnd bitand _mm_and_si128; BitOr bitor _mm_or_si128;);
-
-macro_rules! lanewise_f64 {
-    ($($trait:ident $method:ident $op:ident;)*) => {$(
-        impl $trait for F64x4 {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                sse2!(F64x4($op(self.0, other.0), $op(self.1, other.1)))
-            }
-        }
-    )*};
-}
-lanewise_f64!(Add add _mm_add_pd; Sub sub _mm_sub_pd; Mul mul _mm_mul_pd;);
-
-impl Mul for U32x4 {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        sse2!({
-            // The instruction multiplies the even lanes.
-            let (a, b) = (_mm_srli_epi64::<32>(self.0), _mm_srli_epi64::<32>(other.0));
-            let even = _mm_shuffle_epi32::<0b10_00>(_mm_mul_epu32(self.0, other.0));
-            let odd = _mm_shuffle_epi32::<0b10_00>(_mm_mul_epu32(a, b));
-            U32x4(_mm_unpacklo_epi32(even, odd))
-        })
-    }
-}
-impl Neg for F32x4 {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        sse2!(F32x4(_mm_xor_ps(self.0, _mm_set1_ps(-0.0))))
-    }
-}
-impl Not for U32x4 {
-    type Output = Self;
-    #[inline(always)]
-    fn not(self) -> Self {
-        sse2!(U32x4(_mm_xor_si128(self.0, _mm_set1_epi32(-1))))
-    }
-}
-impl Not for Mask4 {
-    type Output = Self;
-    #[inline(always)]
-    fn not(self) -> Self {
-        sse2!(Mask4(_mm_xor_si128(self.0, _mm_set1_epi32(-1))))
-    }
 }
 
 /// `a` where the mask holds, else `b`.
@@ -200,247 +232,17 @@ extern "sysv64" fn look_up<const N: usize>(table: &[f32; N], index: __m128i) -> 
     sse2!(_mm_setr_ps(a, b, c, d))
 }
 
+/// The lanes with these indices.
+#[inline(always)]
+fn permute(a: __m128, index: __m128i) -> __m128 {
+    let mut entries = [0.0; 4];
+    // SAFETY: there is room for four values; the instruction takes any alignment.
+    unsafe { _mm_storeu_ps(entries.as_mut_ptr(), a) };
+    look_up(&entries, index)
+}
+
 /// `from[index]` per lane; an index beyond the end reads the last entry, an empty slice gives 0.
 #[inline(always)]
-fn picked<T: Copy + Default>(from: &[T], index: U32x4) -> [T; 4] {
+fn picked<T: Copy + Default>(from: &[T], index: U32) -> [T; 4] {
     lanes(index.0).map(|index| from.get(index as usize).or(from.last()).copied().unwrap_or_default())
-}
-
-impl Simd for Sse2 {
-    type F32 = F32x4;
-    type U32 = U32x4;
-    type F64 = F64x4;
-    type Mask = Mask4;
-    type Table8 = [f32; 8];
-    type Table16 = [f32; 16];
-    const LANES: usize = 4;
-    const LEVEL: Level = Level::Scalar;
-    const WIDE_LOOKUP: bool = true;
-
-    #[inline(always)]
-    fn run<B: Body>(self, body: B) -> B::Output {
-        #[inline(never)]
-        fn inner<B: Body>(token: Sse2, body: B) -> B::Output {
-            body.run(token)
-        }
-        inner(self, body)
-    }
-    #[inline(always)]
-    fn f32(self, value: f32) -> F32x4 {
-        sse2!(F32x4(_mm_set1_ps(value)))
-    }
-    #[inline(always)]
-    fn u32(self, value: u32) -> U32x4 {
-        sse2!(U32x4(_mm_set1_epi32(value as i32)))
-    }
-    #[inline(always)]
-    fn f64(self, value: f64) -> F64x4 {
-        sse2!(F64x4(_mm_set1_pd(value), _mm_set1_pd(value)))
-    }
-    #[inline(always)]
-    fn iota(self) -> U32x4 {
-        sse2!(U32x4(_mm_setr_epi32(0, 1, 2, 3)))
-    }
-    #[inline(always)]
-    fn load(self, from: &[f32]) -> F32x4 {
-        let from = &from[..4];
-        // SAFETY: the slice has four values; the instruction takes any alignment.
-        F32x4(unsafe { _mm_loadu_ps(from.as_ptr()) })
-    }
-    #[inline(always)]
-    fn load_u32(self, from: &[u32]) -> U32x4 {
-        let from = &from[..4];
-        // SAFETY: as above.
-        U32x4(unsafe { _mm_loadu_si128(from.as_ptr().cast()) })
-    }
-    #[inline(always)]
-    fn load_f64(self, from: &[f64]) -> F64x4 {
-        let from = &from[..4];
-        // SAFETY: as above, two values each.
-        unsafe { F64x4(_mm_loadu_pd(from.as_ptr()), _mm_loadu_pd(from[2..].as_ptr())) }
-    }
-    #[inline(always)]
-    fn table8(self, entries: &[f32; 8]) -> [f32; 8] {
-        *entries
-    }
-    #[inline(always)]
-    fn table16(self, entries: &[f32; 16]) -> [f32; 16] {
-        *entries
-    }
-    #[inline(always)]
-    fn lookup8(self, table: [f32; 8], index: U32x4) -> F32x4 {
-        F32x4(look_up(&table, index.0))
-    }
-    #[inline(always)]
-    fn lookup16(self, table: [f32; 16], index: U32x4) -> F32x4 {
-        F32x4(look_up(&table, index.0))
-    }
-    #[inline(always)]
-    fn gather(self, from: &[f32], index: U32x4) -> F32x4 {
-        self.load(&picked(from, index))
-    }
-    #[inline(always)]
-    fn gather_u32(self, from: &[u32], index: U32x4) -> U32x4 {
-        self.load_u32(&picked(from, index))
-    }
-}
-
-impl F32Lanes<Sse2> for F32x4 {
-    #[inline(always)]
-    fn store(self, to: &mut [f32]) {
-        let to = &mut to[..4];
-        // SAFETY: the slice has room for four values; the instruction takes any alignment.
-        unsafe { _mm_storeu_ps(to.as_mut_ptr(), self.0) }
-    }
-    #[inline(always)]
-    fn mul_add(self, factor: Self, term: Self) -> Self {
-        F32x4(fused(self.0, factor.0, term.0))
-    }
-    #[inline(always)]
-    fn neg_mul_add(self, factor: Self, term: Self) -> Self {
-        (-self).mul_add(factor, term)
-    }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        sse2!(F32x4(_mm_min_ps(self.0, other.0)))
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        sse2!(F32x4(_mm_max_ps(self.0, other.0)))
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        sse2!(F32x4(_mm_andnot_ps(_mm_set1_ps(-0.0), self.0)))
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        sse2!(F32x4(_mm_sqrt_ps(self.0)))
-    }
-    #[inline(always)]
-    fn floor(self) -> Self {
-        F32x4(floor(self.0))
-    }
-    #[inline(always)]
-    fn lt(self, other: Self) -> Mask4 {
-        sse2!(Mask4(_mm_castps_si128(_mm_cmplt_ps(self.0, other.0))))
-    }
-    #[inline(always)]
-    fn le(self, other: Self) -> Mask4 {
-        sse2!(Mask4(_mm_castps_si128(_mm_cmple_ps(self.0, other.0))))
-    }
-    #[inline(always)]
-    fn eq(self, other: Self) -> Mask4 {
-        sse2!(Mask4(_mm_castps_si128(_mm_cmpeq_ps(self.0, other.0))))
-    }
-    #[inline(always)]
-    fn select(self, mask: Mask4, other: Self) -> Self {
-        self.bits().select(mask, other.bits()).as_f32()
-    }
-    #[inline(always)]
-    fn to_i32(self) -> U32x4 {
-        sse2!(U32x4(_mm_cvttps_epi32(self.0)))
-    }
-    #[inline(always)]
-    fn bits(self) -> U32x4 {
-        sse2!(U32x4(_mm_castps_si128(self.0)))
-    }
-    #[inline(always)]
-    fn widen(self) -> F64x4 {
-        sse2!(F64x4(_mm_cvtps_pd(self.0), widen_high(self.0)))
-    }
-    #[inline(always)]
-    fn permute(self, index: U32x4) -> Self {
-        let mut entries = [0.0; 4];
-        self.store(&mut entries);
-        F32x4(look_up(&entries, index.0))
-    }
-}
-
-impl U32Lanes<Sse2> for U32x4 {
-    #[inline(always)]
-    fn store(self, to: &mut [u32]) {
-        let to = &mut to[..4];
-        // SAFETY: as for f32.
-        unsafe { _mm_storeu_si128(to.as_mut_ptr().cast(), self.0) }
-    }
-    #[inline(always)]
-    fn shl(self, count: u32) -> Self {
-        sse2!(U32x4(_mm_sll_epi32(self.0, _mm_cvtsi32_si128((count & 31) as i32))))
-    }
-    #[inline(always)]
-    fn shr(self, count: u32) -> Self {
-        sse2!(U32x4(_mm_srl_epi32(self.0, _mm_cvtsi32_si128((count & 31) as i32))))
-    }
-    #[inline(always)]
-    fn sar(self, count: u32) -> Self {
-        sse2!(U32x4(_mm_sra_epi32(self.0, _mm_cvtsi32_si128((count & 31) as i32))))
-    }
-    #[inline(always)]
-    fn eq(self, other: Self) -> Mask4 {
-        sse2!(Mask4(_mm_cmpeq_epi32(self.0, other.0)))
-    }
-    #[inline(always)]
-    fn lt_i32(self, other: Self) -> Mask4 {
-        sse2!(Mask4(_mm_cmplt_epi32(self.0, other.0)))
-    }
-    #[inline(always)]
-    fn select(self, mask: Mask4, other: Self) -> Self {
-        U32x4(choose(mask.0, self.0, other.0))
-    }
-    #[inline(always)]
-    fn i32_to_f32(self) -> F32x4 {
-        sse2!(F32x4(_mm_cvtepi32_ps(self.0)))
-    }
-    #[inline(always)]
-    fn as_f32(self) -> F32x4 {
-        sse2!(F32x4(_mm_castsi128_ps(self.0)))
-    }
-    #[inline(always)]
-    fn permute(self, index: Self) -> Self {
-        self.as_f32().permute(index).bits()
-    }
-}
-
-impl F64Lanes<Sse2> for F64x4 {
-    #[inline(always)]
-    fn store(self, to: &mut [f64]) {
-        let to = &mut to[..4];
-        // SAFETY: as for f32, two values each.
-        unsafe {
-            _mm_storeu_pd(to.as_mut_ptr(), self.0);
-            _mm_storeu_pd(to[2..].as_mut_ptr(), self.1);
-        }
-    }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        sse2!(F64x4(_mm_min_pd(self.0, other.0), _mm_min_pd(self.1, other.1)))
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        sse2!(F64x4(_mm_max_pd(self.0, other.0), _mm_max_pd(self.1, other.1)))
-    }
-    #[inline(always)]
-    fn floor(self) -> Self {
-        F64x4(floor_f64(self.0), floor_f64(self.1))
-    }
-    #[inline(always)]
-    fn narrow(self) -> F32x4 {
-        sse2!(F32x4(_mm_movelh_ps(_mm_cvtpd_ps(self.0), _mm_cvtpd_ps(self.1))))
-    }
-    #[inline(always)]
-    fn words(self) -> (U32x4, U32x4) {
-        sse2!({
-            let (a, b) = (_mm_castpd_ps(self.0), _mm_castpd_ps(self.1));
-            let (low, high) = (_mm_shuffle_ps::<0b10_00_10_00>(a, b), _mm_shuffle_ps::<0b11_01_11_01>(a, b));
-            (U32x4(_mm_castps_si128(low)), U32x4(_mm_castps_si128(high)))
-        })
-    }
-}
-
-impl MaskLanes for Mask4 {
-    const LANES: usize = 4;
-    #[inline(always)]
-    fn to_bits(self) -> u32 {
-        sse2!(_mm_movemask_ps(_mm_castsi128_ps(self.0)) as u32)
-    }
 }
