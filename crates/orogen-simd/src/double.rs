@@ -134,6 +134,16 @@ impl<S: Simd> Simd for Double<S> {
     }
 }
 
+/// Methods that do the same in either half.
+macro_rules! in_halves {
+    ($(fn $name:ident($($other:ident: $type:ty),*) -> $result:ty;)*) => {$(
+        #[inline(always)]
+        fn $name(self $(, $other: $type)*) -> $result {
+            Pair(self.0.$name($($other.0),*), self.1.$name($($other.1),*))
+        }
+    )*};
+}
+
 /// Lanes from either half, selected by the highest significant bit of the index.
 #[inline(always)]
 fn half<S: Simd>(from: Pair<S::F32>, index: S::U32) -> S::F32 {
@@ -150,61 +160,21 @@ impl<S: Simd> F32Lanes<Double<S>> for Pair<S::F32> {
         self.0.store(to);
         self.1.store(&mut to[S::LANES..]);
     }
-    #[inline(always)]
-    fn mul_add(self, factor: Self, term: Self) -> Self {
-        Pair(self.0.mul_add(factor.0, term.0), self.1.mul_add(factor.1, term.1))
-    }
-    #[inline(always)]
-    fn neg_mul_add(self, factor: Self, term: Self) -> Self {
-        Pair(self.0.neg_mul_add(factor.0, term.0), self.1.neg_mul_add(factor.1, term.1))
-    }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        Pair(self.0.min(other.0), self.1.min(other.1))
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        Pair(self.0.max(other.0), self.1.max(other.1))
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        Pair(self.0.abs(), self.1.abs())
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        Pair(self.0.sqrt(), self.1.sqrt())
-    }
-    #[inline(always)]
-    fn floor(self) -> Self {
-        Pair(self.0.floor(), self.1.floor())
-    }
-    #[inline(always)]
-    fn lt(self, other: Self) -> Pair<S::Mask> {
-        Pair(self.0.lt(other.0), self.1.lt(other.1))
-    }
-    #[inline(always)]
-    fn le(self, other: Self) -> Pair<S::Mask> {
-        Pair(self.0.le(other.0), self.1.le(other.1))
-    }
-    #[inline(always)]
-    fn eq(self, other: Self) -> Pair<S::Mask> {
-        Pair(self.0.eq(other.0), self.1.eq(other.1))
-    }
-    #[inline(always)]
-    fn select(self, mask: Pair<S::Mask>, other: Self) -> Self {
-        Pair(self.0.select(mask.0, other.0), self.1.select(mask.1, other.1))
-    }
-    #[inline(always)]
-    fn to_i32(self) -> Pair<S::U32> {
-        Pair(self.0.to_i32(), self.1.to_i32())
-    }
-    #[inline(always)]
-    fn bits(self) -> Pair<S::U32> {
-        Pair(self.0.bits(), self.1.bits())
-    }
-    #[inline(always)]
-    fn widen(self) -> Pair<S::F64> {
-        Pair(self.0.widen(), self.1.widen())
+    in_halves! {
+        fn mul_add(factor: Self, term: Self) -> Self;
+        fn neg_mul_add(factor: Self, term: Self) -> Self;
+        fn min(other: Self) -> Self;
+        fn max(other: Self) -> Self;
+        fn abs() -> Self;
+        fn sqrt() -> Self;
+        fn floor() -> Self;
+        fn lt(other: Self) -> Pair<S::Mask>;
+        fn le(other: Self) -> Pair<S::Mask>;
+        fn eq(other: Self) -> Pair<S::Mask>;
+        fn select(mask: Pair<S::Mask>, other: Self) -> Self;
+        fn to_i32() -> Pair<S::U32>;
+        fn bits() -> Pair<S::U32>;
+        fn widen() -> Pair<S::F64>;
     }
     #[inline(always)]
     fn permute(self, index: Pair<S::U32>) -> Self {
@@ -231,25 +201,12 @@ impl<S: Simd> U32Lanes<Double<S>> for Pair<S::U32> {
     fn sar(self, count: u32) -> Self {
         Pair(self.0.sar(count), self.1.sar(count))
     }
-    #[inline(always)]
-    fn eq(self, other: Self) -> Pair<S::Mask> {
-        Pair(self.0.eq(other.0), self.1.eq(other.1))
-    }
-    #[inline(always)]
-    fn lt_i32(self, other: Self) -> Pair<S::Mask> {
-        Pair(self.0.lt_i32(other.0), self.1.lt_i32(other.1))
-    }
-    #[inline(always)]
-    fn select(self, mask: Pair<S::Mask>, other: Self) -> Self {
-        Pair(self.0.select(mask.0, other.0), self.1.select(mask.1, other.1))
-    }
-    #[inline(always)]
-    fn i32_to_f32(self) -> Pair<S::F32> {
-        Pair(self.0.i32_to_f32(), self.1.i32_to_f32())
-    }
-    #[inline(always)]
-    fn as_f32(self) -> Pair<S::F32> {
-        Pair(self.0.as_f32(), self.1.as_f32())
+    in_halves! {
+        fn eq(other: Self) -> Pair<S::Mask>;
+        fn lt_i32(other: Self) -> Pair<S::Mask>;
+        fn select(mask: Pair<S::Mask>, other: Self) -> Self;
+        fn i32_to_f32() -> Pair<S::F32>;
+        fn as_f32() -> Pair<S::F32>;
     }
     #[inline(always)]
     fn permute(self, index: Pair<S::U32>) -> Self {
@@ -265,21 +222,11 @@ impl<S: Simd> F64Lanes<Double<S>> for Pair<S::F64> {
         self.0.store(to);
         self.1.store(&mut to[S::LANES..]);
     }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        Pair(self.0.min(other.0), self.1.min(other.1))
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        Pair(self.0.max(other.0), self.1.max(other.1))
-    }
-    #[inline(always)]
-    fn floor(self) -> Self {
-        Pair(self.0.floor(), self.1.floor())
-    }
-    #[inline(always)]
-    fn narrow(self) -> Pair<S::F32> {
-        Pair(self.0.narrow(), self.1.narrow())
+    in_halves! {
+        fn min(other: Self) -> Self;
+        fn max(other: Self) -> Self;
+        fn floor() -> Self;
+        fn narrow() -> Pair<S::F32>;
     }
     #[inline(always)]
     fn words(self) -> (Pair<S::U32>, Pair<S::U32>) {

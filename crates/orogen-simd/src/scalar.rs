@@ -22,43 +22,61 @@ pub struct ScalarF64<const N: usize>([f64; N]);
 #[derive(Clone, Copy, Debug)]
 pub struct ScalarMask<const N: usize>([bool; N]);
 
-macro_rules! lanewise {
-    ($type:ident: $($trait:ident $method:ident $f:expr;)*) => {$(
+/// Methods that work lane by lane: `self` and the other parameters stand for their values in one lane.
+macro_rules! by_lane {
+    ($(fn $name:ident $lanes:tt -> $result:ident => $value:expr;)*) => {$(
+        by_lane!(@fn $name $lanes $result $value);
+    )*};
+    (@fn $name:ident($a:ident) $result:ident $value:expr) => {
+        #[inline]
+        fn $name(self) -> $result<N> {
+            $result(self.0.map(|$a| $value))
+        }
+    };
+    (@fn $name:ident($a:ident $(, $b:ident: $type:ty)+) $result:ident $value:expr) => {
+        #[inline]
+        fn $name(self $(, $b: $type)+) -> $result<N> {
+            $result(from_fn(|i| {
+                let $a = self.0[i];
+                $(let $b = $b.0[i];)+
+                $value
+            }))
+        }
+    };
+}
+macro_rules! operators {
+    ($type:ident: $($trait:ident $method:ident($a:ident $(, $b:ident)?) => $value:expr;)*) => {$(
         impl<const N: usize> $trait for $type<N> {
             type Output = Self;
-            #[inline]
-            fn $method(self, other: Self) -> Self {
-                $type(from_fn(|i| $f(self.0[i], other.0[i])))
-            }
+            by_lane!(fn $method($a $(, $b: Self)?) -> $type => $value;);
         }
     )*};
 }
-lanewise!(ScalarF32: Add add |a, b| a + b; Sub sub |a, b| a - b; Mul mul |a, b| a * b; Div div |a, b| a / b;);
-lanewise!(ScalarF64: Add add |a, b| a + b; Sub sub |a, b| a - b; Mul mul |a, b| a * b;);
-lanewise!(ScalarU32: Add add u32::wrapping_add; Sub sub u32::wrapping_sub; Mul mul u32::wrapping_mul;
-    BitAnd bitand |a, b| a & b; BitOr bitor |a, b| a | b; BitXor bitxor |a, b| a ^ b;);
-lanewise!(ScalarMask: BitAnd bitand |a, b| a & b; BitOr bitor |a, b| a | b;);
-
-impl<const N: usize> Neg for ScalarF32<N> {
-    type Output = Self;
-    #[inline]
-    fn neg(self) -> Self {
-        ScalarF32(self.0.map(|a| -a))
-    }
+operators! { ScalarF32:
+    Add add(a, b) => a + b;
+    Sub sub(a, b) => a - b;
+    Mul mul(a, b) => a * b;
+    Div div(a, b) => a / b;
+    Neg neg(a) => -a;
 }
-impl<const N: usize> Not for ScalarU32<N> {
-    type Output = Self;
-    #[inline]
-    fn not(self) -> Self {
-        ScalarU32(self.0.map(|a| !a))
-    }
+operators! { ScalarF64:
+    Add add(a, b) => a + b;
+    Sub sub(a, b) => a - b;
+    Mul mul(a, b) => a * b;
 }
-impl<const N: usize> Not for ScalarMask<N> {
-    type Output = Self;
-    #[inline]
-    fn not(self) -> Self {
-        ScalarMask(self.0.map(|a| !a))
-    }
+operators! { ScalarU32:
+    Add add(a, b) => a.wrapping_add(b);
+    Sub sub(a, b) => a.wrapping_sub(b);
+    Mul mul(a, b) => a.wrapping_mul(b);
+    BitAnd bitand(a, b) => a & b;
+    BitOr bitor(a, b) => a | b;
+    BitXor bitxor(a, b) => a ^ b;
+    Not not(a) => !a;
+}
+operators! { ScalarMask:
+    BitAnd bitand(a, b) => a & b;
+    BitOr bitor(a, b) => a | b;
+    Not not(a) => !a;
 }
 
 impl<const N: usize> Simd for Scalar<N> {
@@ -159,6 +177,19 @@ fn clamped<T: Copy + Default>(from: &[T], index: u32) -> T {
 }
 
 impl<const N: usize> F32Lanes<Scalar<N>> for ScalarF32<N> {
+    by_lane! {
+        fn min(a, b: Self) -> ScalarF32 => if a < b { a } else { b };
+        fn max(a, b: Self) -> ScalarF32 => if a > b { a } else { b };
+        fn abs(a) -> ScalarF32 => a.abs();
+        fn sqrt(a) -> ScalarF32 => a.sqrt();
+        fn lt(a, b: Self) -> ScalarMask => a < b;
+        fn le(a, b: Self) -> ScalarMask => a <= b;
+        fn eq(a, b: Self) -> ScalarMask => a == b;
+        fn select(a, mask: ScalarMask<N>, b: Self) -> ScalarF32 => if mask { a } else { b };
+        fn to_i32(a) -> ScalarU32 => to_i32(a) as u32;
+        fn bits(a) -> ScalarU32 => a.to_bits();
+        fn widen(a) -> ScalarF64 => f64::from(a);
+    }
     #[inline]
     fn store(self, to: &mut [f32]) {
         to[..N].copy_from_slice(&self.0);
@@ -174,52 +205,8 @@ impl<const N: usize> F32Lanes<Scalar<N>> for ScalarF32<N> {
         (-self).mul_add(factor, term)
     }
     #[inline]
-    fn min(self, other: Self) -> Self {
-        ScalarF32(from_fn(|i| if self.0[i] < other.0[i] { self.0[i] } else { other.0[i] }))
-    }
-    #[inline]
-    fn max(self, other: Self) -> Self {
-        ScalarF32(from_fn(|i| if self.0[i] > other.0[i] { self.0[i] } else { other.0[i] }))
-    }
-    #[inline]
-    fn abs(self) -> Self {
-        ScalarF32(self.0.map(f32::abs))
-    }
-    #[inline]
-    fn sqrt(self) -> Self {
-        ScalarF32(self.0.map(f32::sqrt))
-    }
-    #[inline]
     fn floor(self) -> Self {
         ScalarF32(each(&self.0, floor32))
-    }
-    #[inline]
-    fn lt(self, other: Self) -> ScalarMask<N> {
-        ScalarMask(from_fn(|i| self.0[i] < other.0[i]))
-    }
-    #[inline]
-    fn le(self, other: Self) -> ScalarMask<N> {
-        ScalarMask(from_fn(|i| self.0[i] <= other.0[i]))
-    }
-    #[inline]
-    fn eq(self, other: Self) -> ScalarMask<N> {
-        ScalarMask(from_fn(|i| self.0[i] == other.0[i]))
-    }
-    #[inline]
-    fn select(self, mask: ScalarMask<N>, other: Self) -> Self {
-        ScalarF32(from_fn(|i| if mask.0[i] { self.0[i] } else { other.0[i] }))
-    }
-    #[inline]
-    fn to_i32(self) -> ScalarU32<N> {
-        ScalarU32(self.0.map(|x| to_i32(x) as u32))
-    }
-    #[inline]
-    fn bits(self) -> ScalarU32<N> {
-        ScalarU32(self.0.map(f32::to_bits))
-    }
-    #[inline]
-    fn widen(self) -> ScalarF64<N> {
-        ScalarF64(self.0.map(f64::from))
     }
     #[inline]
     fn permute(self, index: ScalarU32<N>) -> Self {
@@ -228,6 +215,13 @@ impl<const N: usize> F32Lanes<Scalar<N>> for ScalarF32<N> {
 }
 
 impl<const N: usize> U32Lanes<Scalar<N>> for ScalarU32<N> {
+    by_lane! {
+        fn eq(a, b: Self) -> ScalarMask => a == b;
+        fn lt_i32(a, b: Self) -> ScalarMask => (a as i32) < b as i32;
+        fn select(a, mask: ScalarMask<N>, b: Self) -> ScalarU32 => if mask { a } else { b };
+        fn i32_to_f32(a) -> ScalarF32 => a as i32 as f32;
+        fn as_f32(a) -> ScalarF32 => f32::from_bits(a);
+    }
     #[inline]
     fn store(self, to: &mut [u32]) {
         to[..N].copy_from_slice(&self.0);
@@ -245,51 +239,24 @@ impl<const N: usize> U32Lanes<Scalar<N>> for ScalarU32<N> {
         ScalarU32(self.0.map(|a| ((a as i32) >> (count & 31)) as u32))
     }
     #[inline]
-    fn eq(self, other: Self) -> ScalarMask<N> {
-        ScalarMask(from_fn(|i| self.0[i] == other.0[i]))
-    }
-    #[inline]
-    fn lt_i32(self, other: Self) -> ScalarMask<N> {
-        ScalarMask(from_fn(|i| (self.0[i] as i32) < other.0[i] as i32))
-    }
-    #[inline]
-    fn select(self, mask: ScalarMask<N>, other: Self) -> Self {
-        ScalarU32(from_fn(|i| if mask.0[i] { self.0[i] } else { other.0[i] }))
-    }
-    #[inline]
-    fn i32_to_f32(self) -> ScalarF32<N> {
-        ScalarF32(self.0.map(|a| a as i32 as f32))
-    }
-    #[inline]
-    fn as_f32(self) -> ScalarF32<N> {
-        ScalarF32(self.0.map(f32::from_bits))
-    }
-    #[inline]
     fn permute(self, index: Self) -> Self {
         ScalarU32(from_fn(|i| self.0[index.0[i] as usize % N]))
     }
 }
 
 impl<const N: usize> F64Lanes<Scalar<N>> for ScalarF64<N> {
+    by_lane! {
+        fn min(a, b: Self) -> ScalarF64 => if a < b { a } else { b };
+        fn max(a, b: Self) -> ScalarF64 => if a > b { a } else { b };
+        fn narrow(a) -> ScalarF32 => a as f32;
+    }
     #[inline]
     fn store(self, to: &mut [f64]) {
         to[..N].copy_from_slice(&self.0);
     }
     #[inline]
-    fn min(self, other: Self) -> Self {
-        ScalarF64(from_fn(|i| if self.0[i] < other.0[i] { self.0[i] } else { other.0[i] }))
-    }
-    #[inline]
-    fn max(self, other: Self) -> Self {
-        ScalarF64(from_fn(|i| if self.0[i] > other.0[i] { self.0[i] } else { other.0[i] }))
-    }
-    #[inline]
     fn floor(self) -> Self {
         ScalarF64(each(&self.0, floor64))
-    }
-    #[inline]
-    fn narrow(self) -> ScalarF32<N> {
-        ScalarF32(self.0.map(|x| x as f32))
     }
     #[inline]
     fn words(self) -> (ScalarU32<N>, ScalarU32<N>) {
