@@ -3,9 +3,13 @@
 pub use super::text::LONGEST_TEXT;
 
 use crate::recipe::class::document::{CLASS, ExpandedClass, TerrainClass};
+use crate::recipe::class::list::CLASSES;
 use crate::recipe::parameters::{Formula, Parameter, Parameters, Step};
 use crate::recipe::scatter::document::{ExpandedScatter, Scatter};
+use crate::recipe::scatter::list::SCATTERS;
+use crate::recipe::schema::world_values;
 use crate::recipe::surface::document::{Expanded, RAMP, Surface};
+use crate::recipe::surface::list::SURFACES;
 use orogen_grid::error::{Diagnostic, Error, ErrorKind, Result};
 use orogen_io::dem::file_ref::{FileKind, FileRef};
 use orogen_io::dem::open;
@@ -521,15 +525,8 @@ impl Recipe {
         }
         self.parameters.write_toml(&mut text);
         let _ = writeln!(text, "\n[world]\nseed = {}", self.world.seed);
-        if let Some([width, height]) = self.world.size {
-            let _ = writeln!(text, "size = [{width:?}, {height:?}]");
-        }
-        let _ = writeln!(text, "cell = {:?}\nsea_level = {:?}", self.world.cell, self.world.sea_level);
-        if let Some(crs) = self.world.crs {
-            let _ = writeln!(text, "crs = \"EPSG:{}\"", crs.code());
-        }
-        if let Some([east, north]) = self.world.origin {
-            let _ = writeln!(text, "origin = [{east:?}, {north:?}]");
+        for (key, value) in world_values(&self.world).filter(|(key, _)| *key != "seed") {
+            let _ = writeln!(text, "{key} = {}", value.to_toml());
         }
         let bound = self.parameters.bound();
         let surfaces = self.expanded.iter().map(|surface| &surface.nodes);
@@ -566,9 +563,9 @@ impl Recipe {
         for (layer, input) in self.outputs.iter().filter(|(layer, _)| !(has_classes && layer == CLASS)) {
             write_input(&mut text, &toml_key(layer), input);
         }
-        self.surfaces.iter().for_each(|surface| surface.write_toml(&mut text));
-        self.scatter.iter().for_each(|scatter| scatter.write_toml(&mut text));
-        self.classes.iter().for_each(|class| class.write_toml(&mut text));
+        self.surfaces.iter().for_each(|surface| SURFACES.write(surface, &mut text));
+        self.scatter.iter().for_each(|scatter| SCATTERS.write(scatter, &mut text));
+        self.classes.iter().for_each(|class| CLASSES.write(class, &mut text));
         let specs = self.nodes.iter().map(|named| named.node.spec());
         self.parameters.restore(text, |op| specs.clone().find(|spec| spec.op == op))
     }

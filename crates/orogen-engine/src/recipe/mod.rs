@@ -1,5 +1,8 @@
 //! Recipes: documents that describe a world.
 
+#[macro_use]
+mod table;
+
 pub mod biomes;
 pub mod class;
 pub mod condition;

@@ -1,10 +1,14 @@
 //! Conversion of a tree of values to a recipe, with diagnostics at their keys.
 
-use super::condition::read::Places;
+use super::class::list::CLASSES;
 use super::document::{MAX_NODES, Recipe, VERSION, WorldSpec};
 use super::graph::{At, Graph, MAX_FAULTS};
 use super::parameters::{Formula, Parameters, Step, resolve};
+use super::scatter::list::SCATTERS;
 use super::subgraph::{Origin, Shared, UseDiagnostic, Uses, take_in};
+use super::surface::list::SURFACES;
+use super::table::list::List;
+use super::table::reader::ValueReader;
 use super::text::{LONGEST_TEXT, Text, text_of, too_long};
 use super::{class, json, scatter, surface, toml};
 use crate::registry::Registry;
@@ -42,6 +46,17 @@ fn unknown_key(key: &str, node: &Node) -> String {
         Some((_, name)) => format!("it is called `{name}` here"),
         None => suggestion(key, known.chain(["op", "mask"])),
     }
+}
+
+/// Reads a list of tables, and returns their positions.
+fn tables<T: Clone>(top: &Table, list: &List<T>, values: &mut ValueReader, mut add: impl FnMut(T)) -> Vec<Span> {
+    let Some((_, value)) = top.iter().find(|(key, _)| key.value == list.key) else { return Vec::new() };
+    let entries = list.read(value, values).into_iter();
+    let place = |(entry, place)| {
+        add(entry);
+        place
+    };
+    entries.map(place).collect()
 }
 
 type Table = [(Spanned<String>, Spanned<Value>)];
@@ -257,18 +272,22 @@ impl Walk<'_> {
                 }
             }
         }
-        let places = match top.iter().find(|(key, _)| key.value == "surface") {
-            Some((_, value)) => self.surfaces(value, &mut recipe),
-            None => Places::default(),
-        };
-        let scattered = match top.iter().find(|(key, _)| key.value == "scatter") {
-            Some((_, value)) => self.scatter(value, &mut recipe),
-            None => Places::default(),
-        };
-        let classes = match top.iter().find(|(key, _)| key.value == "class") {
-            Some((key, value)) => self.classes(&key.span, value, &mut recipe),
-            None => Places::default(),
-        };
+        let mut values = ValueReader::new(recipe.world.size.is_some());
+        let surfaces = tables(top, &SURFACES, &mut values, |surface| _ = recipe.surface(surface));
+        let scatter = tables(top, &SCATTERS, &mut values, |entry| _ = recipe.add_scatter(entry));
+        let classes = tables(top, &CLASSES, &mut values, |class| _ = recipe.add_class(class));
+        let ValueReader { mut names, diagnostics, .. } = values;
+        // A problem of a node is reported at the first name in the text that it is about.
+        names.sort_by_key(|(_, span)| span.start);
+        diagnostics.into_iter().for_each(|(span, message)| self.complain(&span, message));
+        if let Some((key, _)) = top.iter().find(|(key, _)| key.value == CLASSES.key) {
+            let has = |name: &str| recipe.outputs().any(|output| output == name);
+            if has(class::document::CLASS) {
+                self.complain(&key.span, class::expand::BOTH);
+            } else if !has(class::document::HEIGHT) {
+                self.complain(&key.span, class::expand::NO_HEIGHT);
+            }
+        }
         if let Some(folder) = &origin.folder {
             recipe.set_base_dir(folder);
         }
@@ -300,15 +319,21 @@ impl Walk<'_> {
                 self.complain(&span, diagnostic.message);
             }
         }
-        if self.is_sound() && !places.tables.is_empty() {
-            self.check_surfaces(&recipe, &places);
-        }
-        if self.is_sound() && !scattered.tables.is_empty() {
-            self.check_scatter(&recipe, &scattered);
-        }
-        if self.is_sound() && !classes.tables.is_empty() {
-            self.check_classes(&recipe, &classes);
-        }
+        self.check_tables(&recipe, "surface", &surfaces, &names, |whole| {
+            surface::expand::expand(whole);
+            whole.expanded().iter().map(|it| (it.surface.name.clone(), it.nodes.clone())).collect()
+        });
+        self.check_tables(&recipe, "scatter", &scatter, &names, |whole| {
+            scatter::expand::expand(whole);
+            let expanded = whole.scatter().iter().zip(whole.expanded_scatter());
+            expanded.map(|(entry, it)| (entry.name.clone(), it.nodes.clone())).collect()
+        });
+        self.check_tables(&recipe, "class", &classes, &names, |whole| {
+            // Why it cannot have classes was reported.
+            let _ = class::expand::expand(whole);
+            let expanded = whole.classes().iter().zip(whole.expanded_classes());
+            expanded.map(|(class, it)| (class.name.clone(), it.nodes.clone())).collect()
+        });
         match self.is_sound() {
             true => {
                 recipe.set_used(uses.files);
@@ -340,84 +365,26 @@ impl Walk<'_> {
         uses
     }
 
-    /// Reads the surfaces, and returns their positions.
-    fn surfaces(&mut self, value: &Spanned<Value>, recipe: &mut Recipe) -> Places {
-        let read = surface::read::read(value, recipe.world.size.is_some());
-        read.diagnostics.into_iter().for_each(|(span, message)| self.complain(&span, message));
-        read.surfaces.into_iter().for_each(|surface| {
-            recipe.surface(surface);
-        });
-        read.places
-    }
-
-    /// Reads the kinds of objects, and returns their positions.
-    fn scatter(&mut self, value: &Spanned<Value>, recipe: &mut Recipe) -> Places {
-        let read = scatter::read::read(value, recipe.world.size.is_some());
-        read.diagnostics.into_iter().for_each(|(span, message)| self.complain(&span, message));
-        read.entries.into_iter().for_each(|entry| {
-            recipe.add_scatter(entry);
-        });
-        read.places
-    }
-
-    /// Reads the terrain classes, and returns their positions.
-    fn classes(&mut self, key: &Span, value: &Spanned<Value>, recipe: &mut Recipe) -> Places {
-        let read = class::read::read(value, recipe.world.size.is_some());
-        read.diagnostics.into_iter().for_each(|(span, message)| self.complain(&span, message));
-        let output = |name: &str| recipe.outputs().any(|output| output == name);
-        if output(class::document::CLASS) {
-            self.complain(key, class::expand::BOTH);
-        } else if !output(class::document::HEIGHT) {
-            self.complain(key, class::expand::NO_HEIGHT);
-        }
-        read.classes.into_iter().for_each(|class| {
-            recipe.add_class(class);
-        });
-        read.places
-    }
-
-    /// Problems of classes appear in the nodes that compute them.
-    fn check_classes(&mut self, recipe: &Recipe, places: &Places) {
-        let mut whole = recipe.clone();
-        if class::expand::expand(&mut whole).is_ok() {
-            let nodes: Vec<Range<usize>> = whole.expanded_classes().iter().map(|class| class.nodes.clone()).collect();
-            self.check_expanded(
-                [recipe, &whole],
-                &nodes,
-                |at| format!("class `{}`", recipe.classes()[at].name),
-                places,
-            );
-        }
-    }
-
-    /// Problems of scatter appear in the nodes that compute its densities.
-    fn check_scatter(&mut self, recipe: &Recipe, places: &Places) {
-        let mut whole = recipe.clone();
-        scatter::expand::expand(&mut whole);
-        let nodes: Vec<Range<usize>> = whole.expanded_scatter().iter().map(|entry| entry.nodes.clone()).collect();
-        self.check_expanded([recipe, &whole], &nodes, |at| format!("scatter `{}`", recipe.scatter()[at].name), places);
-    }
-
-    /// Problems of surfaces appear in the nodes that compute them.
-    fn check_surfaces(&mut self, recipe: &Recipe, places: &Places) {
-        let mut whole = recipe.clone();
-        surface::expand::expand(&mut whole);
-        let nodes: Vec<Range<usize>> = whole.expanded().iter().map(|surface| surface.nodes.clone()).collect();
-        self.check_expanded([recipe, &whole], &nodes, |at| format!("surface `{}`", recipe.surfaces()[at].name), places);
-    }
-
-    /// Reports problems of generated nodes of `whole`, to which `written` was expanded: `nodes` are those of each table, `name`
-    /// describes it, `places` are the positions.
-    fn check_expanded(
+    /// Reports problems of the tables of a list at these `places`, which appear in the nodes that `expand` adds to a recipe: it
+    /// returns the name and the nodes of each table. `names` are those of nodes in all tables.
+    fn check_tables(
         &mut self,
-        [written, whole]: [&Recipe; 2],
-        nodes: &[Range<usize>],
-        name: impl Fn(usize) -> String,
-        places: &Places,
+        written: &Recipe,
+        list: &str,
+        places: &[Span],
+        names: &[(String, Span)],
+        expand: impl Fn(&mut Recipe) -> Vec<(String, Range<usize>)>,
     ) {
-        for diagnostic in Graph::resolve(whole).err().unwrap_or_default() {
+        if !self.is_sound() || places.is_empty() {
+            return;
+        }
+        let mut whole = written.clone();
+        let nodes = expand(&mut whole);
+        let name = |at: usize| format!("{list} `{}`", nodes[at].0);
+        let start = |table: usize| places.get(table).map_or(usize::MAX, |span| span.start);
+        for diagnostic in Graph::resolve(&whole).err().unwrap_or_default() {
             let at = match diagnostic.at {
-                At::Node(node, _) => nodes.iter().position(|nodes| nodes.contains(&node)),
+                At::Node(node, _) => nodes.iter().position(|(_, nodes)| nodes.contains(&node)),
                 _ => None,
             };
             // A name that is wrong, with a suggestion from the nodes that were written.
@@ -426,14 +393,15 @@ impl Walk<'_> {
                 diagnostic.message.contains(&format!("`{node}`"))
             };
             let wrong = at.and_then(|at| {
-                let mut names = places.names_in(at).filter(|(name, _)| is_told(name));
+                let within = start(at)..start(at + 1);
+                let mut names = names.iter().filter(|(name, span)| within.contains(&span.start) && is_told(name));
                 names.find_map(|(name, span)| Some((at, span, Graph::find(written, name).err()?)))
             });
             if let Some((at, span, what)) = wrong {
                 self.complain(span, format!("{}: {what}", name(at)));
                 continue;
             }
-            let span = at.and_then(|at| places.tables.get(at)).cloned().unwrap_or(0..0);
+            let span = at.and_then(|at| places.get(at)).cloned().unwrap_or(0..0);
             // Names of generated nodes would not help the user.
             let message = match (at, diagnostic.message.split_once("`: ")) {
                 (Some(at), Some((_, what))) => format!("{}: {what}", name(at)),

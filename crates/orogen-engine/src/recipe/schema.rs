@@ -1,6 +1,7 @@
 //! The JSON Schema of recipes, made from the declarations.
 
 use super::document::{VERSION, WorldSpec};
+use super::{class, scatter, surface};
 use crate::registry::Registry;
 use orogen_grid::words::respelled;
 use orogen_ops::declare::point_lists::MAX_POINTS;
@@ -85,14 +86,12 @@ pub fn read_world(spec: &ParamSpec, value: &Value, world: &mut WorldSpec) -> Res
     Ok(())
 }
 
-/// The world's parameters as values.
-#[must_use]
-pub fn world_values(world: &WorldSpec) -> Vec<(&'static str, Value)> {
-    let mut values =
-        vec![("seed", world.seed.write()), ("cell", world.cell.write()), ("sea_level", world.sea_level.write())];
-    values.extend(world.size.map(|size| ("size", size.write())));
-    values.extend(world.origin.map(|origin| ("origin", origin.write())));
-    values
+/// The world's parameters as values, in the order of [`WORLD`].
+pub fn world_values(world: &WorldSpec) -> impl Iterator<Item = (&'static str, Value)> {
+    let crs = world.crs.map(|crs| Value::Text(format!("EPSG:{}", crs.code())));
+    let [size, origin] = [world.size, world.origin].map(|pair| pair.map(|pair| pair.write()));
+    let values = [Some(world.seed.write()), size, Some(world.cell.write()), Some(world.sea_level.write()), crs, origin];
+    WORLD.iter().zip(values).filter_map(|(spec, value)| Some((spec.name, value?)))
 }
 
 /// The schema (draft 7) that editors check recipes of built-in ops against.
@@ -144,9 +143,9 @@ pub fn json_schema_of(registry: &Registry) -> Json {
                 "propertyNames": name,
                 "additionalProperties": { "$ref": "#/definitions/input" },
             },
-            "surface": super::surface::schema::list(),
-            "scatter": super::scatter::schema::list(),
-            "class": super::class::schema::list(),
+            "surface": surface::list::schema(),
+            "scatter": scatter::list::SCATTERS.schema(),
+            "class": class::list::CLASSES.schema(),
         },
         "definitions": {
             "input": {

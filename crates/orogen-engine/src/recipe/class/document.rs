@@ -1,10 +1,8 @@
 //! A terrain class in memory.
 
-use crate::recipe::condition::document::{Condition, rename_layers, rename_mask, write_toml};
-use orogen_io::palette::color::{Rgb, hex, rgb};
+use crate::recipe::condition::part::rename_layer;
+use orogen_io::palette::color::{Rgb, rgb};
 use orogen_ops::declare::Input;
-use orogen_ops::value::toml_string;
-use std::fmt::Write as _;
 use std::ops::Range;
 
 /// The output with the number of each sample's class, from 0.
@@ -37,23 +35,19 @@ const COLORS: [(&str, u32); 14] = [
 /// Colors of classes without one that have other names, one after the other.
 const OTHERS: [u32; 8] = [0xb0_6a55, 0xc9_a04c, 0x86_9c4e, 0x4f_9a86, 0x59_7fb5, 0x8a_6fae, 0xb7_6c96, 0x9a_8468];
 
-/// A terrain class, which takes the cells where its conditions hold.
-///
-/// Classes are in the order of the recipe: the first one is everywhere, and each covers those before it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TerrainClass {
-    /// The name: 1 to 64 letters, digits, `_` and `-`. No two classes of a recipe have the same.
-    pub name: String,
-    /// The color in maps and legends; `None` for one by its name or number.
-    pub color: Option<Rgb>,
-    /// Conditions that must all hold; their shares are multiplied. The class is where the product is at least one half.
-    pub all: Vec<Condition>,
-    /// Alternatives, of which the largest share counts. If empty, only `all` counts.
-    pub any: Vec<Vec<Condition>>,
-    /// A node, a layer or a number that multiplies the share.
-    pub mask: Input,
-    /// An exact number of cells, selected among those where the conditions hold.
-    pub share: Option<Share>,
+table! {
+    /// A terrain class, which takes the cells where its conditions hold: where the product of their shares is at least one half.
+    ///
+    /// Classes are in the order of the recipe: the first one is everywhere, and each covers those before it. No two have the same
+    /// name.
+    pub struct TerrainClass;
+    /// Name of the class. `orogen tilemap` draws it with the tileset's terrain of this name.
+    name: String = String::new();
+    /// A color: #rrggbb, #rgb or a name. Default: one by the name or the number of the class.
+    color: Option<Rgb> = None;
+    conditions of "share";
+    /// An exact share of all cells of a bounded world, selected among the cells where the conditions hold.
+    share: Option<Share> = None;
 }
 
 /// An exact share of all cells of a bounded world.
@@ -81,19 +75,6 @@ impl End {
     pub const ALL: [(&'static str, End); 2] = [("lowest", End::Lowest), ("highest", End::Highest)];
 }
 
-impl Default for TerrainClass {
-    fn default() -> TerrainClass {
-        TerrainClass {
-            name: String::new(),
-            color: None,
-            all: Vec::new(),
-            any: Vec::new(),
-            mask: Input::None,
-            share: None,
-        }
-    }
-}
-
 /// A class whose nodes were added to the recipe.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExpandedClass {
@@ -111,26 +92,10 @@ impl TerrainClass {
 
     /// Renames the nodes and layers that it reads.
     pub(in crate::recipe) fn rename_inputs(&mut self, of: &impl Fn(&str) -> Option<Input>) {
-        rename_mask(&mut self.mask, of);
-        rename_layers(self.all.iter_mut().chain(self.any.iter_mut().flatten()), of);
+        self.conditions().rename_inputs(of);
         // The heights are no node.
-        if let Some(share) = self.share.as_mut().filter(|share| share.of != HEIGHT)
-            && let Some(Input::Node(name)) = of(&share.of)
-        {
-            share.of = name;
-        }
-    }
-
-    /// Appends the class to a recipe's text.
-    pub fn write_toml(&self, text: &mut String) {
-        let _ = writeln!(text, "\n[[class]]\nname = {}", toml_string(&self.name));
-        if let Some(color) = self.color {
-            let _ = writeln!(text, "color = \"{}\"", hex(color));
-        }
-        write_toml(text, &self.all, &self.any, &self.mask);
-        if let Some(Share { of, end, part }) = &self.share {
-            let end = End::ALL.iter().find(|(_, other)| other == end).map_or("", |(name, _)| *name);
-            let _ = writeln!(text, "share = {{ of = {}, {end} = {part:?} }}", toml_string(of));
+        if let Some(share) = self.share.as_mut().filter(|share| share.of != HEIGHT) {
+            rename_layer(&mut share.of, of);
         }
     }
 }

@@ -1,8 +1,6 @@
 //! Conditions in memory.
 
-use orogen_ops::declare::Input;
-use orogen_ops::value::{toml_key, toml_string};
-use std::fmt::Write as _;
+use orogen_ops::value::toml_key;
 
 /// Maximum number of alternatives in an `any`.
 pub const MAX_ALTERNATIVES: usize = 16;
@@ -59,55 +57,8 @@ pub struct Noise {
     pub seed: u64,
 }
 
-/// Renames the layers that conditions read.
-pub(in crate::recipe) fn rename_layers<'c>(
-    conditions: impl Iterator<Item = &'c mut Condition>,
-    of: &impl Fn(&str) -> Option<Input>,
-) {
-    for condition in conditions {
-        if let Quantity::Layer(layer) = &mut condition.of
-            && let Some(Input::Node(name)) = of(layer)
-        {
-            *layer = name;
-        }
-    }
-}
-
-/// Renames the node of a mask or of another input.
-pub(in crate::recipe) fn rename_mask(mask: &mut Input, of: &impl Fn(&str) -> Option<Input>) {
-    if let Input::Node(name) = mask
-        && let Some(input) = of(name)
-    {
-        *mask = input;
-    }
-}
-
-/// Appends conditions, alternatives and a mask to a recipe's text, one key a line.
-pub(in crate::recipe) fn write_toml(text: &mut String, all: &[Condition], any: &[Vec<Condition>], mask: &Input) {
-    for entry in entries(all) {
-        let _ = writeln!(text, "{entry}");
-    }
-    if !any.is_empty() {
-        text.push_str("any = [\n");
-        for alternative in any {
-            let _ = writeln!(text, "  {{ {} }},", entries(alternative).join(", "));
-        }
-        text.push_str("]\n");
-    }
-    write_input(text, "mask", mask);
-}
-
-/// Appends an input, if there is one.
-pub(in crate::recipe) fn write_input(text: &mut String, key: &str, input: &Input) {
-    let _ = match input {
-        Input::None => Ok(()),
-        Input::Node(name) => writeln!(text, "{key} = {}", toml_string(name)),
-        Input::Value(value) => writeln!(text, "{key} = {value:?}"),
-    };
-}
-
 /// Conditions as TOML entries on one line each.
-fn entries(conditions: &[Condition]) -> Vec<String> {
+pub(super) fn entries(conditions: &[Condition]) -> Vec<String> {
     let (layers, others): (Vec<&Condition>, Vec<&Condition>) =
         conditions.iter().partition(|condition| matches!(condition.of, Quantity::Layer(_)));
     let mut out: Vec<String> = (others.iter())

@@ -1,16 +1,9 @@
-//! Conversion of keys to conditions and values, with diagnostics at their keys.
-
-use std::collections::HashSet;
+//! Conversion of keys to conditions, with diagnostics at their keys.
 
 use super::document::{Condition, MAX_ALTERNATIVES, Noise, Quantity};
+use crate::recipe::table::reader::ValueReader;
 use orogen_grid::words::suggestion;
-use orogen_io::palette::color::Rgb;
-use orogen_io::palette::names;
-use orogen_ops::declare::Input;
-use orogen_ops::value::{Span, Spanned, Value};
-
-/// A key with its value.
-pub type Entry = (Spanned<String>, Spanned<Value>);
+use orogen_ops::value::{Spanned, Value};
 
 /// Bounds of the ends of each condition, and the default scale of a curvature in metres.
 const HEIGHTS: [f64; 2] = [-1e6, 1e6];
@@ -24,79 +17,7 @@ const SCALE: f64 = 50.0;
 /// The keys of conditions.
 pub const CONDITIONS: [&str; 6] = ["height", "slope", "curvature", "flow", "noise", "layers"];
 
-/// The positions of what a list of tables has, for problems that appear only in the nodes that compute it.
-#[derive(Debug, Default)]
-pub struct Places {
-    /// The position of each table, in the order of the text.
-    pub tables: Vec<Span>,
-    /// The names of nodes and layers in the tables, and the position of each.
-    pub names: Vec<(String, Span)>,
-}
-
-impl Places {
-    /// The names in a table.
-    pub fn names_in(&self, table: usize) -> impl Iterator<Item = &(String, Span)> {
-        let start = |table: usize| self.tables.get(table).map_or(usize::MAX, |span| span.start);
-        let within = start(table)..start(table + 1);
-        self.names.iter().filter(move |(_, span)| within.contains(&span.start))
-    }
-}
-
-/// Reads values, and collects their problems.
-pub struct ValueReader {
-    /// The problems, with positions.
-    pub diagnostics: Vec<(Span, String)>,
-    /// The names of nodes and layers, with positions.
-    pub names: Vec<(String, Span)>,
-    bounded: bool,
-}
-
 impl ValueReader {
-    /// `bounded` tells whether the world is bounded: only then are drainage areas known.
-    pub fn new(bounded: bool) -> ValueReader {
-        ValueReader { diagnostics: Vec::new(), names: Vec::new(), bounded }
-    }
-
-    /// Reports a problem.
-    pub fn diagnostic(&mut self, span: &Span, message: impl Into<String>) {
-        self.diagnostics.push((span.clone(), message.into()));
-    }
-
-    /// The entries of a table; `None` if the value is not one.
-    pub fn table<'v>(&mut self, what: &str, value: &'v Spanned<Value>) -> Option<&'v [Entry]> {
-        match &value.value {
-            Value::Table(entries) => {
-                let mut seen = HashSet::new();
-                for (key, _) in entries {
-                    if !seen.insert(key.value.as_str()) {
-                        self.diagnostic(&key.span, format!("the key `{}` appears twice in this table", key.value));
-                    }
-                }
-                Some(entries)
-            }
-            other => {
-                self.diagnostic(&value.span, format!("{what} must be a table, not {}", other.describe()));
-                None
-            }
-        }
-    }
-
-    /// The `name` of the table of a `what`, such as "a surface", with an example for the message.
-    pub fn name(&mut self, entries: &[Entry], table: &Span, what: &str, example: &str) -> String {
-        match entries.iter().find(|(key, _)| key.value == "name") {
-            Some((_, name)) => match &name.value {
-                Value::Text(text) if is_name(text) => return text.clone(),
-                other => {
-                    let message =
-                        format!("`name` must be 1 to 64 letters, digits, `_` and `-`, not {}", other.describe());
-                    self.diagnostic(&name.span, message);
-                }
-            },
-            None => self.diagnostic(table, format!("{what} needs a `name`, such as \"{example}\"")),
-        }
-        String::new()
-    }
-
     /// The alternatives of an `any`.
     pub fn alternatives(&mut self, value: &Spanned<Value>) -> Vec<Vec<Condition>> {
         let Value::List(items) = &value.value else {
@@ -241,68 +162,4 @@ impl ValueReader {
             _ => [self.number("fade", value, [0.0, most]).unwrap_or(0.0); 2],
         }
     }
-
-    /// A number within these bounds.
-    pub fn number(&mut self, key: &str, value: &Spanned<Value>, [low, high]: [f64; 2]) -> Option<f64> {
-        let number = value.value.number().filter(|number| (low..=high).contains(number));
-        if number.is_none() {
-            let message = format!("`{key}` must be a number from {low:?} to {high:?}, not {}", value.value.describe());
-            self.diagnostic(&value.span, message);
-        }
-        number
-    }
-
-    /// A whole number from 0 to `most`.
-    pub fn whole(&mut self, key: &str, value: &Spanned<Value>, most: i64) -> i64 {
-        match value.value {
-            Value::Integer(number) if (0..=most).contains(&number) => number,
-            _ => {
-                let message = format!(
-                    "`{key}` must be a whole number from 0 to {most}, not {}",
-                    value.value.describe_as_integer()
-                );
-                self.diagnostic(&value.span, message);
-                1
-            }
-        }
-    }
-
-    /// A number from 0 to 1.
-    pub fn share(&mut self, key: &str, value: &Spanned<Value>) -> f64 {
-        self.number(key, value, [0.0, 1.0]).unwrap_or(1.0)
-    }
-
-    /// A color: `#rrggbb`, `#rgb` or a name.
-    pub fn color(&mut self, value: &Spanned<Value>) -> Option<Rgb> {
-        let color = match &value.value {
-            Value::Text(text) => names::hexadecimal(text).or_else(|| names::named(text)),
-            _ => None,
-        };
-        if color.is_none() {
-            let message =
-                format!("a color must be \"#rrggbb\" or a name such as \"khaki\", not {}", value.value.describe());
-            self.diagnostic(&value.span, message);
-        }
-        color
-    }
-
-    /// A node, a layer or a number.
-    pub fn input(&mut self, key: &str, value: &Spanned<Value>) -> Input {
-        match (&value.value, value.value.number()) {
-            (Value::Text(name), _) => {
-                self.names.push((name.clone(), value.span.clone()));
-                Input::Node(name.clone())
-            }
-            (_, Some(number)) if number.is_finite() => Input::Value(number),
-            (other, _) => {
-                let message = format!("`{key}` must name a node or a layer, or be a number, not {}", other.describe());
-                self.diagnostic(&value.span, message);
-                Input::None
-            }
-        }
-    }
-}
-
-fn is_name(name: &str) -> bool {
-    (1..=64).contains(&name.len()) && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_' || b == b'-')
 }

@@ -1,20 +1,22 @@
 //! The JSON Schema of conditions.
 
-use serde_json::{Value as Json, json};
+use serde_json::{Map, Value as Json, json};
 
 use super::document::MAX_ALTERNATIVES;
+use super::read::CONDITIONS;
 
 /// The schema of `any`.
 pub fn any() -> Json {
+    let properties: Map<String, Json> = conditions().map(|(key, schema)| (key.to_string(), schema)).collect();
     json!({
         "type": "array", "minItems": 1, "maxItems": MAX_ALTERNATIVES,
-        "items": { "type": "object", "additionalProperties": false, "minProperties": 1, "properties": conditions() },
+        "items": { "type": "object", "additionalProperties": false, "minProperties": 1, "properties": properties },
         "description": "Alternatives: the largest share of them is used.",
     })
 }
 
 /// The schema of conditions.
-pub fn conditions() -> Json {
+pub fn conditions() -> impl Iterator<Item = (&'static str, Json)> {
     let range = |about: &str, more: Json| {
         let number = json!({ "type": "number" });
         let pair = json!({ "type": "array", "minItems": 2, "maxItems": 2, "items": number });
@@ -35,16 +37,18 @@ pub fn conditions() -> Json {
         "seed": { "type": "integer", "minimum": 0, "default": 0, "description": "Hashed with the world's seed." },
     });
     let scale = json!({ "scale": { "type": "number", "minimum": 0, "maximum": 1e6, "default": 50, "description": "Distance between the heights that the curvature is computed from. Unit: m." } });
-    json!({
-        "height": range("Height above the sea. Unit: m.", json!({})),
-        "slope": range("Slope. Unit: degrees.", json!({})),
-        "curvature": range("Total curvature, positive where the ground is convex. Unit: 1/m.", scale),
-        "flow": range("Drainage area. `fade` is in powers of ten. Unit: m^2.", json!({})),
-        "noise": range("Fractal noise, -1 to 1.", noise),
-        "layers": {
-            "type": "object",
-            "additionalProperties": range("A node or layer, in its own unit.", json!({})),
-            "description": "Conditions on nodes or layers of the recipe, by name.",
-        },
-    })
+    let layers = json!({
+        "type": "object",
+        "additionalProperties": range("A node or layer, in its own unit.", json!({})),
+        "description": "Conditions on nodes or layers of the recipe, by name.",
+    });
+    let schemas = [
+        range("Height above the sea. Unit: m.", json!({})),
+        range("Slope. Unit: degrees.", json!({})),
+        range("Total curvature, positive where the ground is convex. Unit: 1/m.", scale),
+        range("Drainage area. `fade` is in powers of ten. Unit: m^2.", json!({})),
+        range("Fractal noise, -1 to 1.", noise),
+        layers,
+    ];
+    CONDITIONS.into_iter().zip(schemas)
 }

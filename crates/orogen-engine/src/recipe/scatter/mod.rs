@@ -1,14 +1,12 @@
 //! Scatter: objects such as trees, rocks and houses, and the conditions of where they stand.
 //!
-//! - [`document`]: a kind of object in memory, and as TOML
-//! - `read`: conversion of `[[scatter]]` tables, with diagnostics at their keys
+//! - [`document`]: a kind of object, with its keys
+//! - `list`: the list of `[[scatter]]` tables, and types of their values
 //! - [`expand`]: expansion to nodes that compute densities
-//! - `schema`: their part of the JSON Schema
 
 pub mod document;
 pub mod expand;
-pub(crate) mod read;
-pub(crate) mod schema;
+pub(crate) mod list;
 
 #[cfg(test)]
 mod tests;

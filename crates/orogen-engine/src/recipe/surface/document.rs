@@ -1,12 +1,11 @@
 //! A surface in memory.
 
+use super::list::Colors;
 pub use crate::recipe::condition::document::{Condition, Noise, Quantity};
-use crate::recipe::condition::document::{rename_layers, rename_mask, write_toml};
+use crate::recipe::condition::part::rename_layer;
 use orogen_io::dem::file_ref::FileRef;
-use orogen_io::palette::color::{Light, Rgb, decode, hex, linear, mix, oklab};
+use orogen_io::palette::color::{Light, Rgb, decode, linear, mix, oklab};
 use orogen_ops::declare::Input;
-use orogen_ops::value::toml_string;
-use std::fmt::Write as _;
 
 /// Number of colors of a gradient or a picture, including the first and the last.
 pub const RAMP: usize = 128;
@@ -23,40 +22,21 @@ pub const DEFAULT_GRAIN: f64 = 200.0;
 /// Default roughness: that of soil and plants.
 pub const DEFAULT_ROUGHNESS: f64 = 0.9;
 
-/// A surface: a material that covers the ground where its conditions hold.
-///
-/// Surfaces are layered in the order of the recipe. Each covers those below it by its share, 0 to 1; the first one is
-/// everywhere. The weights of all surfaces therefore add up to 1.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Surface {
-    /// The name, which is also the name of its weight map. Surfaces with the same name share a weight map.
-    pub name: String,
+table! {
+    /// A surface: a material that covers the ground where its conditions hold.
+    ///
+    /// Surfaces are layered in the order of the recipe. Each covers those below it by its share, 0 to 1; the first one is
+    /// everywhere. The weights of all surfaces therefore add up to 1.
+    pub struct Surface;
+    /// Name of the surface and of its weight map. Surfaces with the same name share a weight map.
+    name: String = String::new();
     /// The color.
-    pub color: Coloring,
-    /// The roughness as in glTF: 0 is a mirror, 1 is matt.
-    pub roughness: f64,
-    /// The maximum share, 0 to 1.
-    pub opacity: f64,
-    /// Conditions that must all hold; their shares are multiplied.
-    pub all: Vec<Condition>,
-    /// Alternatives, of which the largest share counts. If empty, only `all` counts.
-    pub any: Vec<Vec<Condition>>,
-    /// A node, a layer or a number that multiplies the share.
-    pub mask: Input,
-}
-
-impl Default for Surface {
-    fn default() -> Surface {
-        Surface {
-            name: String::new(),
-            color: Coloring::Plain([128; 3]),
-            roughness: DEFAULT_ROUGHNESS,
-            opacity: 1.0,
-            all: Vec::new(),
-            any: Vec::new(),
-            mask: Input::None,
-        }
-    }
+    color: Coloring = Coloring::Plain([128; 3]), part Colors;
+    /// 0 is a mirror, 1 is matt.
+    roughness: f64 = DEFAULT_ROUGHNESS, range [0.0, 1.0], stated DEFAULT_ROUGHNESS;
+    /// Maximum share of the surface.
+    opacity: f64 = 1.0, range [0.0, 1.0], stated 1.0, omitted 1.0;
+    conditions of "share";
 }
 
 /// A surface whose share is computed by nodes of the recipe.
@@ -136,13 +116,11 @@ impl Surface {
 
     /// Renames the nodes and layers that it reads.
     pub(in crate::recipe) fn rename_inputs(&mut self, of: &impl Fn(&str) -> Option<Input>) {
-        rename_mask(&mut self.mask, of);
-        rename_layers(self.all.iter_mut().chain(self.any.iter_mut().flatten()), of);
+        self.conditions().rename_inputs(of);
         if let Coloring::Gradient(_, Along::Layer(layer, _)) | Coloring::Picture(_, Along::Layer(layer, _)) =
             &mut self.color
-            && let Some(Input::Node(name)) = of(layer)
         {
-            *layer = name;
+            rename_layer(layer, of);
         }
     }
 
@@ -152,38 +130,5 @@ impl Surface {
             Coloring::Picture(file, _) => Some(file),
             _ => None,
         }
-    }
-
-    /// Appends the surface to a recipe's text.
-    pub fn write_toml(&self, text: &mut String) {
-        let _ = writeln!(text, "\n[[surface]]\nname = {}", toml_string(&self.name));
-        let along = match &self.color {
-            Coloring::Plain(color) => {
-                let _ = writeln!(text, "color = \"{}\"", hex(*color));
-                None
-            }
-            Coloring::Gradient(colors, along) => {
-                let colors: Vec<String> = colors.iter().map(|color| format!("\"{}\"", hex(*color))).collect();
-                let _ = writeln!(text, "gradient = [{}]", colors.join(", "));
-                Some(along)
-            }
-            Coloring::Picture(file, along) => {
-                let _ = writeln!(text, "picture = {}", toml_string(&file.text()));
-                Some(along)
-            }
-        };
-        let _ = match along {
-            None => Ok(()),
-            Some(Along::Noise(grain)) => writeln!(text, "grain = {grain:?}"),
-            Some(Along::Height(span)) => writeln!(text, "along = \"height\"\nspan = {span:?}"),
-            Some(Along::Slope(span)) => writeln!(text, "along = \"slope\"\nspan = {span:?}"),
-            Some(Along::Layer(name, span)) => writeln!(text, "along = {}\nspan = {span:?}", toml_string(name)),
-        };
-        let _ = writeln!(text, "roughness = {:?}", self.roughness);
-        // The first surface has none.
-        if self.opacity != 1.0 {
-            let _ = writeln!(text, "opacity = {:?}", self.opacity);
-        }
-        write_toml(text, &self.all, &self.any, &self.mask);
     }
 }

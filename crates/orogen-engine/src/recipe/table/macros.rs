@@ -1,0 +1,60 @@
+//! `table!`.
+
+/// Declares an entry of a list of tables: its struct, its defaults, and its keys as `PARTS`.
+///
+/// A key is a field, `name: TYPE = DEFAULT`, with the doc of both; the facts of a [`Key`](super::key::Key) may follow, such as
+/// `range [0.0, 1.0]`, or `part PART` for a field that several keys make. Where `conditions of NOUN;` stands, the entry has conditions of where that noun is.
+macro_rules! table {
+    (@part $name:ident $key:ident $doc:expr, part $part:expr) => { &$part };
+    (@part $name:ident $key:ident $doc:expr $(, $fact:ident $value:expr)*) => {
+        &$crate::recipe::table::key::Field {
+            key: $crate::recipe::table::key::Key {
+                $($fact: Some($value),)*
+                ..$crate::recipe::table::key::Key::new(stringify!($key), $doc)
+            },
+            of: |entry: &mut $name| &mut entry.$key,
+        }
+    };
+    (
+        $(#[doc = $doc:literal])+
+        pub struct $name:ident;
+        $( $(#[doc = $key_doc:literal])+ $key:ident: $type:ty = $default:expr $(, $fact:ident $value:expr)*; )+
+        conditions of $noun:literal;
+        $( $(#[doc = $last_doc:literal])+ $last:ident: $last_type:ty = $last_default:expr; )?
+    ) => {
+        $(#[doc = $doc])+
+        #[derive(Debug, Clone, PartialEq)]
+        pub struct $name {
+            $( $(#[doc = $key_doc])+ pub $key: $type, )+
+            /// Conditions that must all hold; their shares are multiplied.
+            pub all: Vec<$crate::recipe::condition::document::Condition>,
+            /// Alternatives, of which the largest share counts. If empty, only `all` counts.
+            pub any: Vec<Vec<$crate::recipe::condition::document::Condition>>,
+            #[doc = concat!("A node, a layer or a number that multiplies the ", $noun, ".")]
+            pub mask: orogen_ops::declare::Input,
+            $( $(#[doc = $last_doc])+ pub $last: $last_type, )?
+        }
+
+        impl Default for $name {
+            fn default() -> $name {
+                let (all, any, mask) = (Vec::new(), Vec::new(), orogen_ops::declare::Input::None);
+                $name { $($key: $default,)+ all, any, mask, $($last: $last_default)? }
+            }
+        }
+
+        impl $name {
+            /// Its keys.
+            pub(crate) const PARTS: &'static [&'static dyn $crate::recipe::table::key::Part<$name>] = &[
+                $( table!(@part $name $key concat!($($key_doc, "\n"),+) $(, $fact $value)*), )+
+                &$crate::recipe::condition::part::Where { noun: $noun, of: $name::conditions },
+                $( table!(@part $name $last concat!($($last_doc, "\n"),+)), )?
+            ];
+
+            /// Its conditions.
+            pub(in crate::recipe) fn conditions(&mut self) -> $crate::recipe::condition::part::Conditions<'_> {
+                let $name { all, any, mask, .. } = self;
+                $crate::recipe::condition::part::Conditions { all, any, mask }
+            }
+        }
+    };
+}
