@@ -97,10 +97,10 @@ pub trait Simd: Copy + Send + Sync + 'static {
         let (low, high) = (whole + self.f64(FAR)).words();
         (whole, low, high)
     }
-    /// The floor of each number, and its index among the `count` integers that start at `from`. The last result is zero in all
-    /// lanes if all floors are in that range. Otherwise at least one of its lanes, not always that of the number outside, is not
-    /// zero, and the indices are unspecified. `from` is an integer below 2^50 in absolute value, `count` a power of two up to
-    /// 2^31; the numbers may have any value.
+    /// The floor of each number, and its index among the `count` integers that start at `from`. The last result is zero
+    /// in all lanes if all floors are in that range. Otherwise at least one of its lanes, not always that of the number
+    /// outside, is not zero, and the indices are unspecified. `from` is an integer below 2^50 in absolute value,
+    /// `count` a power of two up to 2^31; the numbers may have any value.
     #[inline(always)]
     fn place(self, number: Self::F64, from: f64, count: u32) -> (Self::F64, Self::U32, Self::U32) {
         // A sum of that size is exact, and no other has its high word.
@@ -140,7 +140,8 @@ fn picked<S: Simd, I: U32Lanes<S>, T: Copy + Default>(from: &[T], index: I) -> [
     entries
 }
 
-/// `S::LANES` f32. `+ - * /`, [`sqrt`](Self::sqrt) and [`mul_add`](Self::mul_add) round correctly (to nearest, ties to even); subnormals are kept.
+/// `S::LANES` f32. `+ - * /`, [`sqrt`](Self::sqrt) and [`mul_add`](Self::mul_add) round correctly (to nearest, ties to
+/// even); subnormals are kept.
 pub trait F32Lanes<S: Simd>:
     Copy
     + Send

@@ -155,9 +155,9 @@ impl<const N: usize> Simd for Scalar<N> {
     }
 }
 
-// Unlike the other levels' operations, these are inlined at the compiler's discretion, because unrolled arrays are long.
-// The long operations are separate functions: eight copies of each in every body would make the code of this level by far
-// the largest.
+// Unlike the other levels' operations, these are inlined at the compiler's discretion, because unrolled arrays are
+// long. The long operations are separate functions: eight copies of each in every body would make the code of this
+// level by far the largest.
 
 #[inline(never)]
 fn fma_lanes<const N: usize>(a: &[f32; N], b: &[f32; N], c: &mut [f32; N]) {

@@ -1,6 +1,6 @@
-//! WebAssembly's 128-bit vectors: 4 lanes in one register, f64 in two. A module is built with them or without
-//! (`-C target-feature=+simd128`), so the token needs no check. They have no fused multiply-add with defined rounding: it
-//! is emulated with f64, as at the scalar level.
+//! WebAssembly's 128-bit vectors: 4 lanes in one register, f64 in two. A module is built with them or without (`-C
+//! target-feature=+simd128`), so the token needs no check. They have no fused multiply-add with defined rounding: it is
+//! emulated with f64, as at the scalar level.
 
 use crate::Level;
 use core::arch::wasm32::*;

@@ -1,5 +1,5 @@
-//! The scalar level of x86-64, in SSE2 registers, which belong to that target: 4 lanes in one register, f64 in two. Arrays
-//! of lanes (see [`crate::Scalar`]) give the same bits, but take longer to compile and to run.
+//! The scalar level of x86-64, in SSE2 registers, which belong to that target: 4 lanes in one register, f64 in two.
+//! Arrays of lanes (see [`crate::Scalar`]) give the same bits, but take longer to compile and to run.
 //!
 //! SSE2 has no fused multiply-add, no floor and no lookup. They are emulated, each in one function that is not inlined:
 //! copies in every body would make the code of the slowest level the largest.
@@ -152,8 +152,8 @@ fn lanes(a: __m128i) -> [u32; 4] {
     [low as u32, (low >> 32) as u32, high as u32, (high >> 32) as u32]
 }
 
-// The functions that are not inlined have a calling convention that passes vectors in registers; Rust's own passes them in
-// memory. They are never called from outside, so that it is no foreign interface.
+// The functions that are not inlined have a calling convention that passes vectors in registers; Rust's own passes them
+// in memory. They are never called from outside, so that it is no foreign interface.
 
 /// `a * b + c`, rounded once.
 #[allow(improper_ctypes_definitions)]

@@ -14,8 +14,9 @@ impl Drop for Stream {
     }
 }
 
-/// Runs work that writes results with [`crate::F32Lanes::stream`], which bypasses the caches. This is faster for results
-/// that are larger than the caches and are not read again soon. When it returns, the results are visible to all threads.
+/// Runs work that writes results with [`crate::F32Lanes::stream`], which bypasses the caches. This is faster for
+/// results that are larger than the caches and are not read again soon. When it returns, the results are visible to all
+/// threads.
 pub fn streaming<R>(work: impl FnOnce(&Stream) -> R) -> R {
     // Dropped here in any case, because only this function owns one.
     let stream = Stream(());

@@ -1,10 +1,10 @@
 //! The macro that makes a level from its table: the intrinsics of each operation.
 
-/// Declares a level in a module of its own: the token, the lane types `F32`, `U32`, `F64` and `Mask`, and all their traits.
-/// `requires` lists the target features; it is empty if every processor of the target has them.
+/// Declares a level in a module of its own: the token, the lane types `F32`, `U32`, `F64` and `Mask`, and all their
+/// traits. `requires` lists the target features; it is empty if every processor of the target has them.
 ///
-/// A row is the signature of a method and the expression that it returns: `fn min(a, b) => _mm256_min_ps(a, b);`. The names in the
-/// expression are registers:
+/// A row is the signature of a method and the expression that it returns: `fn min(a, b) => _mm256_min_ps(a, b);`. The
+/// names in the expression are registers:
 ///
 /// - The first parameter is `self`. Rows of `Simd` leave it out, because the token has no contents.
 /// - A parameter or result without a type has the type of the row's block.
@@ -15,8 +15,8 @@
 ///
 /// Rows that start with `impl` are operators. `by_hand` is the rest of the impl of `Simd`.
 ///
-/// The expressions are evaluated in `unsafe` blocks. They may call intrinsics of the required features and access one register at a
-/// pointer, and nothing else that is unsafe.
+/// The expressions are evaluated in `unsafe` blocks. They may call intrinsics of the required features and access one
+/// register at a pointer, and nothing else that is unsafe.
 macro_rules! level {
     (
         $(#[$token_doc:meta])*
@@ -129,8 +129,8 @@ macro_rules! lane_impl {
 macro_rules! evaluate {
     ($value:expr; $($name:ident = $of:expr),*) => {{
         $(let $name = $of;)*
-        // SAFETY: tokens and lane values have private contents, and lane values come from a token, which exists only where the
-        // processor has the required features. The pointers are those of slices whose length was checked.
+        // SAFETY: tokens and lane values have private contents, and lane values come from a token, which exists only
+        // where the processor has the required features. The pointers are those of slices whose length was checked.
         unsafe { $value }
     }};
 }

@@ -281,7 +281,8 @@ fn exact_fma(a: f32, b: f32, c: f32) -> f32 {
     };
     let ((ma, ea), (mb, eb), (mc, ec)) = (parts(a), parts(b), parts(c));
     let (product, ep) = (ma * mb, ea + eb);
-    // Where one term is so far above the other that they do not fit 128 bits, the lower only breaks ties: a stub of it does.
+    // Where one term is so far above the other that they do not fit 128 bits, the lower only breaks ties: a stub of it
+    // does.
     let (mut high, mut eh, mut low, mut el) = if ep >= ec { (product, ep, mc, ec) } else { (mc, ec, product, ep) };
     if high == 0 {
         (high, eh, low, el) = (low, el, 0, el);

@@ -262,7 +262,8 @@ impl Recipe {
         &self.expanded_classes
     }
 
-    /// Sets the nodes that compute terrain classes. These and the output that they make are not written with the recipe.
+    /// Sets the nodes that compute terrain classes. These and the output that they make are not written with the
+    /// recipe.
     pub(super) fn set_expanded_classes(&mut self, expanded: Vec<ExpandedClass>) {
         self.expanded_classes = expanded;
     }

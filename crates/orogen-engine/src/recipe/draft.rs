@@ -15,9 +15,9 @@ const STEPS: &str = "steps";
 const FEWEST_STEPS: f64 = 8.0;
 
 impl Recipe {
-    /// The same world with solvers at `coarser` times their cell and with as many fewer time steps, at least 8 of them. Fields, filters and levels stay
-    /// as they are. For a first picture while the solutions of the recipe itself are made: solvers take `coarser` cubed times less work. The land differs in detail: its valleys lie
-    /// elsewhere.
+    /// The same world with solvers at `coarser` times their cell and with as many fewer time steps, at least 8 of them.
+    /// Fields, filters and levels stay as they are. For a first picture while the solutions of the recipe itself are
+    /// made: solvers take `coarser` cubed times less work. The land differs in detail: its valleys lie elsewhere.
     ///
     /// ```
     /// let recipe = orogen_engine::presets::find("alpine").ok_or("no such preset")?.recipe()?;

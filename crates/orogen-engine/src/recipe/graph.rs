@@ -115,7 +115,8 @@ impl Graph {
         Ok(graph)
     }
 
-    /// Finds the nodes that depend on the altitude. Only fields may read them: what is computed on a grid has one result for all altitudes.
+    /// Finds the nodes that depend on the altitude. Only fields may read them: what is computed on a grid has one
+    /// result for all altitudes.
     fn find_altitude(&mut self, recipe: &Recipe) -> Result<(), Vec<GraphDiagnostic>> {
         let mut diagnostics = Vec::new();
         for &id in &self.order {

@@ -6,12 +6,12 @@ use orogen_ops::declare::Input;
 use orogen_ops::ids::Id;
 use orogen_ops::op::{Levels, Op};
 
-/// The network of a levelled node, which every window of the world shares: drainage areas and receivers are functions of the position, not of
-/// the window.
+/// The network of a levelled node, which every window of the world shares: drainage areas and receivers are functions
+/// of the position, not of the window.
 ///
-/// A recipe has one if its output `flow` is the layer `flow` of a levelled node, and its output `receiver` reads the layer `receiver` of the
-/// same node, directly or through other nodes (which may, for example, remove the receivers below sea level). The heights of the recipe must
-/// fall along the receivers.
+/// A recipe has one if its output `flow` is the layer `flow` of a levelled node, and its output `receiver` reads the
+/// layer `receiver` of the same node, directly or through other nodes (which may, for example, remove the receivers
+/// below sea level). The heights of the recipe must fall along the receivers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OwnNetwork {
     node: String,
@@ -61,7 +61,8 @@ impl OwnNetwork {
         format!("{}.{name}", self.node)
     }
 
-    /// The name of the layer of drainage areas: of the nodes, if the levels have them, so that areas and receivers agree at every level.
+    /// The name of the layer of drainage areas: of the nodes, if the levels have them, so that areas and receivers
+    /// agree at every level.
     #[must_use]
     pub fn flow(&self) -> &'static str {
         if self.has_nodes { "node_flow" } else { "flow" }
@@ -85,7 +86,8 @@ impl OwnNetwork {
         self.is_height
     }
 
-    /// The cell of the level whose rivers a window with this cell shows; none if the node has only those of another level.
+    /// The cell of the level whose rivers a window with this cell shows; none if the node has only those of another
+    /// level.
     #[must_use]
     pub fn cell_for(&self, cell: f64) -> Option<f64> {
         let serving = self.levels.cell(self.levels.serving(cell));

@@ -156,8 +156,8 @@ impl Parameters {
         self.list.iter().for_each(|parameter| parameter.write_toml(text));
     }
 
-    /// Puts formulas back into the text of a recipe, where the number there is still the one that the formula makes. `spec` says what is declared of
-    /// an op.
+    /// Puts formulas back into the text of a recipe, where the number there is still the one that the formula makes.
+    /// `spec` says what is declared of an op.
     pub fn restore(&self, text: String, spec: impl Fn(&str) -> Option<&'static Spec>) -> String {
         if self.formulas.is_empty() {
             return text;

@@ -83,8 +83,8 @@ impl Registry {
         parse(&text_of(bytes, path)?, &path.display().to_string(), set, &Origin::file(path, &shared))
     }
 
-    /// Reads a recipe of these ops from a text in place of the content of a file, such as one that is being edited: relative paths in it start at the
-    /// file's folder, and diagnostics name the file, which need not exist.
+    /// Reads a recipe of these ops from a text in place of the content of a file, such as one that is being edited:
+    /// relative paths in it start at the file's folder, and diagnostics name the file, which need not exist.
     ///
     /// # Errors
     /// As [`Registry::parse`].
@@ -93,7 +93,8 @@ impl Registry {
         parse(text, &path.display().to_string(), &[], &Origin::file(path, &shared))
     }
 
-    /// Reads a recipe of these ops from a text, TOML or (if it begins with a brace) JSON; `name` is what diagnostics call it.
+    /// Reads a recipe of these ops from a text, TOML or (if it begins with a brace) JSON; `name` is what diagnostics
+    /// call it.
     ///
     /// # Errors
     /// If it is no valid recipe. All diagnostics are told at once, in the order of the text.
@@ -135,7 +136,8 @@ impl Recipe {
         parse(text, &format!("recipes/{name}.toml"), set, &Origin::preset(name, &shared))
     }
 
-    /// Reads a recipe of built-in ops from a text, TOML or (if it begins with a brace) JSON; `name` is what diagnostics call it.
+    /// Reads a recipe of built-in ops from a text, TOML or (if it begins with a brace) JSON; `name` is what diagnostics
+    /// call it.
     ///
     /// # Errors
     /// As [`Registry::parse`].
@@ -251,8 +253,8 @@ impl Walk<'_> {
                 "world" => recipe.world = self.world(value),
                 "nodes" => self.nodes(value, &mut recipe)?,
                 "outputs" => self.outputs(value, &mut recipe),
-                // Read last: conditions depend on whether the world is bounded, and nodes of used recipes follow its own
-                // nodes.
+                // Read last: conditions depend on whether the world is bounded, and nodes of used recipes follow its
+                // own nodes.
                 "surface" | "scatter" | "class" | "use" => {}
                 unknown => {
                     let known = [
@@ -365,8 +367,8 @@ impl Walk<'_> {
         uses
     }
 
-    /// Reports problems of the tables of a list at these `places`, which appear in the nodes that `expand` adds to a recipe: it
-    /// returns the name and the nodes of each table. `names` are those of nodes in all tables.
+    /// Reports problems of the tables of a list at these `places`, which appear in the nodes that `expand` adds to a
+    /// recipe: it returns the name and the nodes of each table. `names` are those of nodes in all tables.
     fn check_tables(
         &mut self,
         written: &Recipe,

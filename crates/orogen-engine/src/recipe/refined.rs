@@ -21,23 +21,25 @@ const MAX_HALVINGS: f64 = 8.0;
 /// Maximum depth, in metres, of a channel through the rim of a depression. Rivers of deeper ones run over the rim.
 const DEEPEST: f64 = 100.0;
 
-/// Steps that correct the heights, and the radius of each as a share of the place's cell: fewer or wider ones leave larger errors, more or
-/// narrower ones flatten the new slopes.
+/// Steps that correct the heights, and the radius of each as a share of the place's cell: fewer or wider ones leave
+/// larger errors, more or narrower ones flatten the new slopes.
 const CORRECTIONS: usize = 3;
 const CORRECTION_RADIUS: f64 = 0.5;
 
-/// Uplift over erodibility of which `amplify` makes slopes like those of the place: its law S = s t / (s + t) with s = 0.25 U A^-0.45 (A in km^2)
-/// and t = 0.9, solved for U. The factor 6 instead of 4 balances that slopes at a large cell are gentler. Gentle ground needs a limit because it may
-/// be level, steep ground because the law has no solution from t on.
+/// Uplift over erodibility of which `amplify` makes slopes like those of the place: its law S = s t / (s + t) with s =
+/// 0.25 U A^-0.45 (A in km^2) and t = 0.9, solved for U. The factor 6 instead of 4 balances that slopes at a large cell
+/// are gentler. Gentle ground needs a limit because it may be level, steep ground because the law has no solution from
+/// t on.
 const UPLIFT: &str = "log(6 * max(slope, 0.003) / (1 - min(slope / 0.9, 0.7)) * pow(flow * 1e-6, 0.45))";
 
 /// Factor of the width of valley floors. Wide floors are in the heights of the place.
 const FLOORS: f64 = 0.2;
 
 impl Recipe {
-    /// Refines a real place, the recipe of [`Recipe::from_dem`], to a smaller cell: the rivers of its heights are led through smaller cells, side
-    /// valleys and slopes grow between them that are as steep as those of the place, and what the heights then differ from those of the place is
-    /// corrected smoothly. The outputs are `height` and, solved from it if it is read, `flow`.
+    /// Refines a real place, the recipe of [`Recipe::from_dem`], to a smaller cell: the rivers of its heights are led
+    /// through smaller cells, side valleys and slopes grow between them that are as steep as those of the place, and
+    /// what the heights then differ from those of the place is corrected smoothly. The outputs are `height` and, solved
+    /// from it if it is read, `flow`.
     ///
     /// # Errors
     /// If the recipe is not a place, or the cell is not smaller than its cell or too small.

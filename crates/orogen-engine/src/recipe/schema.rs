@@ -247,8 +247,9 @@ fn uses_schema(name: &Json) -> Json {
     })
 }
 
-/// A node: by its op, one of the ops' schemas. `if` and `then` rather than `oneOf`, so that a wrong key is named and not just the
-/// whole node called wrong; all keys of all ops beside them, because that is where editors look for completions.
+/// A node: by its op, one of the ops' schemas. `if` and `then` rather than `oneOf`, so that a wrong key is named and
+/// not just the whole node called wrong; all keys of all ops beside them, because that is where editors look for
+/// completions.
 fn node_schema(nodes: &[Node]) -> Json {
     let ops: Vec<Json> = nodes
         .iter()

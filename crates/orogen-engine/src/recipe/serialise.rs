@@ -18,8 +18,8 @@ const NAME: &str = "the recipe";
 /// Deepest nesting read. A recipe needs four levels; what recurses must never meet more than its stack holds.
 const DEEPEST: usize = 64;
 
-/// As the document that [`Recipe::to_toml`] writes: the same keys in the same order, every default written out.
-/// What is read back is equal to it; nodes that were added to compute its surfaces are made again when a world is opened.
+/// As the document that [`Recipe::to_toml`] writes: the same keys in the same order, every default written out. What is
+/// read back is equal to it; nodes that were added to compute its surfaces are made again when a world is opened.
 impl Serialize for Recipe {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let text = self.to_toml();
@@ -28,11 +28,11 @@ impl Serialize for Recipe {
     }
 }
 
-/// From the keys of a recipe's file, through the same checks as [`Recipe::parse`]. An error has all diagnostics, each behind the key that it
-/// is about (`nodes.hills.radius: ...`).
+/// From the keys of a recipe's file, through the same checks as [`Recipe::parse`]. An error has all diagnostics, each
+/// behind the key that it is about (`nodes.hills.radius: ...`).
 ///
-/// The format must describe itself, as JSON and TOML do. Nodes stand in the order in which it hands over keys. Relative paths count from
-/// the folder that [`Recipe::set_base_dir`] is told.
+/// The format must describe itself, as JSON and TOML do. Nodes stand in the order in which it hands over keys. Relative
+/// paths count from the folder that [`Recipe::set_base_dir`] is told.
 impl<'de> Deserialize<'de> for Recipe {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Recipe, D::Error> {
         let Value::Table(entries) = deserializer.deserialize_map(Reader { depth: 0 })? else {
@@ -150,7 +150,8 @@ impl Lines {
         self.keys.push(key.to_string());
     }
 
-    /// The entries of the table that is called `name` in TOML and `key` in messages: first those of one line, as TOML asks.
+    /// The entries of the table that is called `name` in TOML and `key` in messages: first those of one line, as TOML
+    /// asks.
     fn table(&mut self, name: &str, key: &str, entries: &[(Spanned<String>, Spanned<Value>)]) {
         let joined = |parent: &str, name: &str| match parent {
             "" => name.to_string(),

@@ -36,10 +36,11 @@ const COLORS: [(&str, u32); 14] = [
 const OTHERS: [u32; 8] = [0xb0_6a55, 0xc9_a04c, 0x86_9c4e, 0x4f_9a86, 0x59_7fb5, 0x8a_6fae, 0xb7_6c96, 0x9a_8468];
 
 table! {
-    /// A terrain class, which takes the cells where its conditions hold: where the product of their shares is at least one half.
+    /// A terrain class, which takes the cells where its conditions hold: where the product of their shares is at least
+    /// one half.
     ///
-    /// Classes are in the order of the recipe: the first one is everywhere, and each covers those before it. No two have the same
-    /// name.
+    /// Classes are in the order of the recipe: the first one is everywhere, and each covers those before it. No two
+    /// have the same name.
     pub struct TerrainClass;
     /// Name of the class. `orogen tilemap` draws it with the tileset's terrain of this name.
     name: String = String::new();

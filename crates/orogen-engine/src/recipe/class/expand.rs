@@ -9,8 +9,8 @@ use orogen_ops::field::expr::Expr;
 use orogen_ops::field::label::Label;
 use orogen_ops::solver::select_share::SelectShare;
 
-/// Adds the nodes to a recipe that compute its classes, and the output with their numbers, unless they exist. Opening a world does this. Shares are exact at the world's
-/// cell.
+/// Adds the nodes to a recipe that compute its classes, and the output with their numbers, unless they exist. Opening a
+/// world does this. Shares are exact at the world's cell.
 ///
 /// # Errors
 /// If the recipe has classes and no output `height`, or an output `class` of its own.

@@ -1,4 +1,5 @@
-//! Terrain classes: water, sand, grass and others, each with the conditions of where it is, as an output with the number of each sample's class.
+//! Terrain classes: water, sand, grass and others, each with the conditions of where it is, as an output with the
+//! number of each sample's class.
 //!
 //! - [`document`]: a class, with its keys
 //! - `list`: the list of `[[class]]` tables, and shares as values

@@ -4,8 +4,8 @@ use crate::recipe::class::expand::expand_at;
 use crate::recipe::document::Recipe;
 use orogen_grid::error::{Error, ErrorKind, Result};
 
-/// Gives the classes of a recipe the numbers of their names in a list. `list` is what has these names, for messages: "terrain of the tileset `fields-16`". `cell` is that of
-/// the map, in metres.
+/// Gives the classes of a recipe the numbers of their names in a list. `list` is what has these names, for messages:
+/// "terrain of the tileset `fields-16`". `cell` is that of the map, in metres.
 ///
 /// # Errors
 /// If a class has another name, or the recipe has an output `class`, too.

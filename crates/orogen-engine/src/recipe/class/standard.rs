@@ -1,4 +1,5 @@
-//! The terrain classes of a recipe that has none of its own: water, sand, grass, forest, rock and snow by height, slope and distance from water.
+//! The terrain classes of a recipe that has none of its own: water, sand, grass, forest, rock and snow by height, slope
+//! and distance from water.
 //!
 //! | class | where |
 //! |---|---|
@@ -37,7 +38,8 @@ const CELLS: [f64; 2] = [1e-4, 4e5];
 /// Adds the output [`CLASS`] to a recipe that has none. `cell` is the cell of the map in metres.
 ///
 /// # Errors
-/// If the recipe has neither this output nor the output `height`, or the cell is too small or too large for beaches and forests.
+/// If the recipe has neither this output nor the output `height`, or the cell is too small or too large for beaches and
+/// forests.
 pub fn classify(recipe: &mut Recipe, cell: f64) -> Result<()> {
     let input =
         |name: &str| recipe.output_inputs().iter().find(|(output, _)| output == name).map(|(_, input)| input.clone());

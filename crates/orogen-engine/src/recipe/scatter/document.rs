@@ -16,8 +16,8 @@ pub const SIZES: [f64; 2] = [1e-3, 1e3];
 table! {
     /// A kind of objects that stand where its conditions hold, at distances of at least its spacing.
     ///
-    /// The objects are points with a size and a turn (see [`World::objects`](crate::world::World::objects)). Several entries may
-    /// have the same name. Entries with the same seed and spacing have the same candidates.
+    /// The objects are points with a size and a turn (see [`World::objects`](crate::world::World::objects)). Several
+    /// entries may have the same name. Entries with the same seed and spacing have the same candidates.
     pub struct Scatter;
     /// Name of the kind of objects.
     name: String = String::new();

@@ -25,8 +25,8 @@ pub const DEFAULT_ROUGHNESS: f64 = 0.9;
 table! {
     /// A surface: a material that covers the ground where its conditions hold.
     ///
-    /// Surfaces are layered in the order of the recipe. Each covers those below it by its share, 0 to 1; the first one is
-    /// everywhere. The weights of all surfaces therefore add up to 1.
+    /// Surfaces are layered in the order of the recipe. Each covers those below it by its share, 0 to 1; the first one
+    /// is everywhere. The weights of all surfaces therefore add up to 1.
     pub struct Surface;
     /// Name of the surface and of its weight map. Surfaces with the same name share a weight map.
     name: String = String::new();

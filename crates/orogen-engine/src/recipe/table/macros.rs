@@ -2,8 +2,9 @@
 
 /// Declares an entry of a list of tables: its struct, its defaults, and its keys as `PARTS`.
 ///
-/// A key is a field, `name: TYPE = DEFAULT`, with the doc of both; the facts of a [`Key`](super::key::Key) may follow, such as
-/// `range [0.0, 1.0]`, or `part PART` for a field that several keys make. Where `conditions of NOUN;` stands, the entry has conditions of where that noun is.
+/// A key is a field, `name: TYPE = DEFAULT`, with the doc of both; the facts of a [`Key`](super::key::Key) may follow,
+/// such as `range [0.0, 1.0]`, or `part PART` for a field that several keys make. Where `conditions of NOUN;` stands,
+/// the entry has conditions of where that noun is.
 macro_rules! table {
     (@part $name:ident $key:ident $doc:expr, part $part:expr) => { &$part };
     (@part $name:ident $key:ident $doc:expr $(, $fact:ident $value:expr)*) => {

@@ -1,4 +1,5 @@
-//! Lists of tables such as `[[scatter]]`, by declaration: a key is declared once, and is read, written and described from that.
+//! Lists of tables such as `[[scatter]]`, by declaration: a key is declared once, and is read, written and described
+//! from that.
 //!
 //! - `macros`: `table!`, which declares an entry with its keys and their defaults
 //! - [`key`]: a key, and what types of values do with it

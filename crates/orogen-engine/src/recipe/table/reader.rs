@@ -29,7 +29,8 @@ impl Table<'_> {
 pub struct ValueReader {
     /// The problems, with positions.
     pub diagnostics: Vec<(Span, String)>,
-    /// The names of nodes and layers with their positions, for problems that appear only in the nodes that compute tables.
+    /// The names of nodes and layers with their positions, for problems that appear only in the nodes that compute
+    /// tables.
     pub names: Vec<(String, Span)>,
     /// Whether the world is bounded: only then are drainage areas and shares known.
     pub bounded: bool,
