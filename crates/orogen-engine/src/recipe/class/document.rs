@@ -46,7 +46,7 @@ table! {
     name: String = String::new();
     /// A color: #rrggbb, #rgb or a name. Default: one by the name or the number of the class.
     color: Option<Rgb> = None;
-    conditions of "share";
+    conditions and mask "A node, a layer or a number that multiplies the share.";
     /// An exact share of all cells of a bounded world, selected among the cells where the conditions hold.
     share: Option<Share> = None;
 }

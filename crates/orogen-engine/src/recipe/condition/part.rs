@@ -47,26 +47,25 @@ pub fn rename_layer(layer: &mut String, of: &impl Fn(&str) -> Option<Input>) {
 
 /// The part of a table that has the conditions of a `T`.
 pub struct Where<T> {
-    /// What is where they hold.
-    pub noun: &'static str,
+    /// The key `mask`.
+    pub mask: Key,
     pub of: fn(&mut T) -> Conditions<'_>,
 }
 
-const MASK: Key = Key::new("mask", "");
-
 impl<T> Part<T> for Where<T> {
-    fn schemas(&self) -> Vec<(&'static str, Json)> {
-        let about = format!("A node, a layer or a number that multiplies the {}.", self.noun);
-        let mut keys = vec![("any", any()), (MASK.name, described(Input::schema(&MASK), &about))];
-        keys.extend(conditions());
-        keys
+    fn keys(&self) -> Vec<&'static str> {
+        ["any", "mask"].into_iter().chain(CONDITIONS).collect()
+    }
+
+    fn schemas(&self) -> Vec<Json> {
+        [any(), described::<Input>(&self.mask)].into_iter().chain(conditions()).collect()
     }
 
     fn read(&self, table: &Table, values: &mut ValueReader, out: &mut T) {
         let conditions = (self.of)(out);
         for (key, value) in table.entries {
             match key.value.as_str() {
-                "mask" => *conditions.mask = Input::read(&MASK, value, values).unwrap_or(Input::None),
+                "mask" => *conditions.mask = Input::read(&self.mask, value, values).unwrap_or(Input::None),
                 "any" => *conditions.any = values.alternatives(value),
                 key if CONDITIONS.contains(&key) => conditions.all.extend(values.condition(key, value)),
                 _ => {}
@@ -86,7 +85,7 @@ impl<T> Part<T> for Where<T> {
             }
             text.push_str("]\n");
         }
-        write(mask, &MASK, text);
+        write(mask, &self.mask, text);
     }
 }
 

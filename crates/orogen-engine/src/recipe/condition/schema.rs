@@ -7,7 +7,7 @@ use super::read::CONDITIONS;
 
 /// The schema of `any`.
 pub fn any() -> Json {
-    let properties: Map<String, Json> = conditions().map(|(key, schema)| (key.to_string(), schema)).collect();
+    let properties: Map<String, Json> = CONDITIONS.into_iter().map(String::from).zip(conditions()).collect();
     json!({
         "type": "array", "minItems": 1, "maxItems": MAX_ALTERNATIVES,
         "items": { "type": "object", "additionalProperties": false, "minProperties": 1, "properties": properties },
@@ -15,8 +15,8 @@ pub fn any() -> Json {
     })
 }
 
-/// The schema of conditions.
-pub fn conditions() -> impl Iterator<Item = (&'static str, Json)> {
+/// The schemas of conditions, in the order of their keys.
+pub fn conditions() -> [Json; CONDITIONS.len()] {
     let range = |about: &str, more: Json| {
         let number = json!({ "type": "number" });
         let pair = json!({ "type": "array", "minItems": 2, "maxItems": 2, "items": number });
@@ -42,13 +42,12 @@ pub fn conditions() -> impl Iterator<Item = (&'static str, Json)> {
         "additionalProperties": range("A node or layer, in its own unit.", json!({})),
         "description": "Conditions on nodes or layers of the recipe, by name.",
     });
-    let schemas = [
+    [
         range("Height above the sea. Unit: m.", json!({})),
         range("Slope. Unit: degrees.", json!({})),
         range("Total curvature, positive where the ground is convex. Unit: 1/m.", scale),
         range("Drainage area. `fade` is in powers of ten. Unit: m^2.", json!({})),
         range("Fractal noise, -1 to 1.", noise),
         layers,
-    ];
-    CONDITIONS.into_iter().zip(schemas)
+    ]
 }

@@ -37,7 +37,7 @@ table! {
     cell: Option<f64> = None, range [1e-4, 1e7];
     /// Hashed with the world's seed. Default: the number of the entry, from 0.
     seed: u64 = 0;
-    conditions of "density";
+    conditions and mask "A node, a layer or a number that multiplies the density.";
 }
 
 /// The turn of objects about the vertical axis.

@@ -36,7 +36,7 @@ table! {
     roughness: f64 = DEFAULT_ROUGHNESS, range [0.0, 1.0], stated DEFAULT_ROUGHNESS;
     /// Maximum share of the surface.
     opacity: f64 = 1.0, range [0.0, 1.0], stated 1.0, omitted 1.0;
-    conditions of "share";
+    conditions and mask "A node, a layer or a number that multiplies the share.";
 }
 
 /// A surface whose share is computed by nodes of the recipe.

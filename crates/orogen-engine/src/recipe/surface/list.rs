@@ -55,9 +55,13 @@ const ALONG: [&str; 3] = ["along", "span", "grain"];
 pub struct Colors;
 
 impl Part<Surface> for Colors {
-    fn schemas(&self) -> Vec<(&'static str, Json)> {
-        let color = described(Rgb::schema(&COLOR), COLOR.doc);
-        let schemas = [
+    fn keys(&self) -> Vec<&'static str> {
+        COLORINGS.into_iter().chain(ALONG).collect()
+    }
+
+    fn schemas(&self) -> Vec<Json> {
+        let color = described::<Rgb>(&COLOR);
+        vec![
             color.clone(),
             json!({
                 "type": "array", "minItems": 2, "maxItems": MAX_COLORS, "items": color,
@@ -72,9 +76,8 @@ impl Part<Surface> for Colors {
                 "type": "array", "minItems": 2, "maxItems": 2, "items": { "type": "number" },
                 "description": "Values of the first and the last color, in the unit of the gradient's quantity.",
             }),
-            described(f64::schema(&GRAIN), GRAIN.doc),
-        ];
-        COLORINGS.into_iter().chain(ALONG).zip(schemas).collect()
+            described::<f64>(&GRAIN),
+        ]
     }
 
     fn read(&self, table: &Table, values: &mut ValueReader, out: &mut Surface) {

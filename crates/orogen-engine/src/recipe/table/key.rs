@@ -37,8 +37,10 @@ pub trait OfKey: Sized {
 
 /// A part of a table that makes a `T`.
 pub trait Part<T>: Sync {
-    /// The keys with their schemas.
-    fn schemas(&self) -> Vec<(&'static str, Json)>;
+    /// The keys.
+    fn keys(&self) -> Vec<&'static str>;
+    /// The schemas of the keys.
+    fn schemas(&self) -> Vec<Json>;
     /// Reads the part from a table.
     fn read(&self, table: &Table, values: &mut ValueReader, out: &mut T);
     /// Appends the part to a recipe's text. The entry stays as it is.
@@ -52,15 +54,19 @@ pub struct Field<T, V> {
 }
 
 impl<T, V: OfKey> Part<T> for Field<T, V> {
-    fn schemas(&self) -> Vec<(&'static str, Json)> {
-        vec![(self.key.name, described(V::schema(&self.key), self.key.doc))]
+    fn keys(&self) -> Vec<&'static str> {
+        vec![self.key.name]
+    }
+
+    fn schemas(&self) -> Vec<Json> {
+        vec![described::<V>(&self.key)]
     }
 
     fn read(&self, table: &Table, values: &mut ValueReader, out: &mut T) {
-        for (_, value) in table.entries.iter().filter(|(name, _)| name.value == self.key.name) {
-            if let Some(value) = V::read(&self.key, value, values) {
-                *(self.of)(out) = value;
-            }
+        if let Some((_, value)) = table.find(self.key.name)
+            && let Some(value) = V::read(&self.key, value, values)
+        {
+            *(self.of)(out) = value;
         }
     }
 
@@ -76,8 +82,9 @@ pub fn write(value: &impl OfKey, key: &Key, text: &mut String) {
     }
 }
 
-/// A schema with a description.
-pub fn described(mut schema: Json, doc: &str) -> Json {
-    schema["description"] = json!(short(doc));
+/// The schema of a key.
+pub fn described<V: OfKey>(key: &Key) -> Json {
+    let mut schema = V::schema(key);
+    schema["description"] = json!(short(key.doc));
     schema
 }

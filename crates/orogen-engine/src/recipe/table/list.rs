@@ -56,7 +56,7 @@ impl<T: Clone> List<T> {
             values.diagnostic(table.span, format!("{} needs a {what}", self.names[0]));
         }
         self.parts.iter().for_each(|part| part.read(table, values, &mut entry));
-        let mut known: Vec<&str> = self.parts.iter().flat_map(|part| part.schemas()).map(|(key, _)| key).collect();
+        let mut known: Vec<&str> = self.parts.iter().flat_map(|part| part.keys()).collect();
         known.sort_by_key(|key| CONDITIONS.contains(key));
         for (key, _) in table.entries.iter().filter(|(key, _)| !known.contains(&key.value.as_str())) {
             let hint = suggestion(&key.value, known.iter().copied());
@@ -74,7 +74,7 @@ impl<T: Clone> List<T> {
 
     /// The schema of the list.
     pub fn schema(&self) -> Json {
-        let keys = self.parts.iter().flat_map(|part| part.schemas());
+        let keys = self.parts.iter().flat_map(|part| part.keys().into_iter().zip(part.schemas()));
         let properties: Map<String, Json> = keys.map(|(key, schema)| (key.to_string(), schema)).collect();
         let [least, most] = self.count;
         let mut schema = json!({

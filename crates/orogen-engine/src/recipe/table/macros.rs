@@ -3,8 +3,8 @@
 /// Declares an entry of a list of tables: its struct, its defaults, and its keys as `PARTS`.
 ///
 /// A key is a field, `name: TYPE = DEFAULT`, with the doc of both; the facts of a [`Key`](super::key::Key) may follow,
-/// such as `range [0.0, 1.0]`, or `part PART` for a field that several keys make. Where `conditions of NOUN;` stands,
-/// the entry has conditions of where that noun is.
+/// such as `range [0.0, 1.0]`, or `part PART` for a field that several keys make. At `conditions and mask DOC;` the
+/// entry has conditions, alternatives and a mask with this doc.
 macro_rules! table {
     (@part $name:ident $key:ident $doc:expr, part $part:expr) => { &$part };
     (@part $name:ident $key:ident $doc:expr $(, $fact:ident $value:expr)*) => {
@@ -20,7 +20,7 @@ macro_rules! table {
         $(#[doc = $doc:literal])+
         pub struct $name:ident;
         $( $(#[doc = $key_doc:literal])+ $key:ident: $type:ty = $default:expr $(, $fact:ident $value:expr)*; )+
-        conditions of $noun:literal;
+        conditions and mask $mask:literal;
         $( $(#[doc = $last_doc:literal])+ $last:ident: $last_type:ty = $last_default:expr; )?
     ) => {
         $(#[doc = $doc])+
@@ -31,7 +31,7 @@ macro_rules! table {
             pub all: Vec<$crate::recipe::condition::document::Condition>,
             /// Alternatives, of which the largest share counts. If empty, only `all` counts.
             pub any: Vec<Vec<$crate::recipe::condition::document::Condition>>,
-            #[doc = concat!("A node, a layer or a number that multiplies the ", $noun, ".")]
+            #[doc = $mask]
             pub mask: orogen_ops::declare::Input,
             $( $(#[doc = $last_doc])+ pub $last: $last_type, )?
         }
@@ -47,7 +47,10 @@ macro_rules! table {
             /// Its keys.
             pub(crate) const PARTS: &'static [&'static dyn $crate::recipe::table::key::Part<$name>] = &[
                 $( table!(@part $name $key concat!($($key_doc, "\n"),+) $(, $fact $value)*), )+
-                &$crate::recipe::condition::part::Where { noun: $noun, of: $name::conditions },
+                &$crate::recipe::condition::part::Where {
+                    mask: $crate::recipe::table::key::Key::new("mask", $mask),
+                    of: $name::conditions,
+                },
                 $( table!(@part $name $last concat!($($last_doc, "\n"),+)), )?
             ];
 
