@@ -1,6 +1,7 @@
 //! The outlines that readers of vector files find.
 
 use orogen_grid::polylines::outline::{Outline, Piece};
+use sha2::{Digest, Sha256};
 
 /// Maximum number of points of a file.
 pub const MAX_POINTS: usize = 1 << 20;
@@ -97,4 +98,29 @@ impl Collector {
         }
         Ok(())
     }
+}
+
+/// A hash of all that outlines have.
+#[doc(hidden)]
+#[must_use]
+pub fn hash(outlines: &[Outline]) -> [u8; 32] {
+    let mut hash = Sha256::new();
+    let mut put = |tag: u8, numbers: &[f64]| {
+        hash.update([tag]);
+        numbers.iter().for_each(|number| hash.update(number.to_bits().to_le_bytes()));
+    };
+    for outline in outlines {
+        put(u8::from(outline.closed), &outline.start);
+        for piece in &outline.pieces {
+            match piece {
+                Piece::Straight(end) => put(2, end),
+                Piece::Curve([b, c], end) => {
+                    put(3, b);
+                    put(4, c);
+                    put(5, end);
+                }
+            }
+        }
+    }
+    hash.finalize().into()
 }

@@ -5,10 +5,9 @@ use std::path::Path;
 use orogen_grid::error::Result;
 use orogen_grid::polylines::outline::{Outline, Piece};
 use orogen_grid::words::{bytes_apart, count};
-use sha2::{Digest, Sha256};
 
 use super::dem::refused;
-use super::outlines::{Collector, DrawingKind};
+use super::outlines::{self, Collector, DrawingKind};
 use super::{geojson_reader, svg_shapes};
 use crate::open;
 
@@ -99,7 +98,7 @@ impl Drawing {
                 ));
             }
         }
-        Ok(Drawing { hash: hash(&collector.outlines), outlines: collector.outlines })
+        Ok(Drawing { hash: outlines::hash(&collector.outlines), outlines: collector.outlines })
     }
 
     /// Memory that it takes, in bytes.
@@ -118,28 +117,6 @@ fn elements(kind: DrawingKind, format: Format) -> &'static str {
         (DrawingKind::Lines, Format::GeoJson) => "`LineString` and `MultiLineString`",
         (DrawingKind::Areas, Format::GeoJson) => "`Polygon` and `MultiPolygon`",
     }
-}
-
-fn hash(outlines: &[Outline]) -> [u8; 32] {
-    let mut hash = Sha256::new();
-    let mut put = |tag: u8, numbers: &[f64]| {
-        hash.update([tag]);
-        numbers.iter().for_each(|number| hash.update(number.to_bits().to_le_bytes()));
-    };
-    for outline in outlines {
-        put(u8::from(outline.closed), &outline.start);
-        for piece in &outline.pieces {
-            match piece {
-                Piece::Straight(end) => put(2, end),
-                Piece::Curve([b, c], end) => {
-                    put(3, b);
-                    put(4, c);
-                    put(5, end);
-                }
-            }
-        }
-    }
-    hash.finalize().into()
 }
 
 #[cfg(test)]
