@@ -39,7 +39,7 @@ pub struct Noise {
     pub name: String,
     pub slope: Slope,
     /// Whether its mean is zero.
-    pub centerd: bool,
+    pub centered: bool,
     /// Whether it offers slopes.
     offers_slopes: bool,
     fill: Fill,
@@ -103,12 +103,12 @@ macro_rules! flat {
 
 fn noise(name: impl Into<String>, slope: Slope, (offers_slopes, fill): (bool, Fill)) -> Noise {
     // One-sided are what counts sizes or distances.
-    Noise { name: name.into(), slope, centerd: true, offers_slopes, fill }
+    Noise { name: name.into(), slope, centered: true, offers_slopes, fill }
 }
 
 impl Noise {
     fn one_sided(self, one_sided: bool) -> Noise {
-        Noise { centerd: !one_sided, ..self }
+        Noise { centered: !one_sided, ..self }
     }
 }
 

@@ -64,7 +64,7 @@ fn check_means(windows: usize) {
             let bound = noise.bounds()[place];
             assert!(low >= -bound && high <= bound, "{} {name}: {low} to {high}", noise.name);
             assert!(high - low > 0.5, "{} {name}: only {low} to {high}", noise.name);
-            assert!(!noise.centerd || mean.abs() < 0.01, "{} {name}: mean {mean}", noise.name);
+            assert!(!noise.centered || mean.abs() < 0.01, "{} {name}: mean {mean}", noise.name);
         }
     }
 }

@@ -32,7 +32,7 @@ impl Field for Terrace {
         for (sample, source) in out.iter_mut().zip(inputs.required(0)) {
             let steps = (source - offset) / step;
             let tread = (steps + 0.5).floor();
-            // -0.5 ..= 0.5 around the tread; the riser is centerd between two treads.
+            // -0.5 ..= 0.5 around the tread; the riser is centered between two treads.
             let t = steps - tread + 0.5;
             let rise = |t: f32| {
                 let s = ((t - 0.5) / riser + 0.5).clamp(0.0, 1.0);

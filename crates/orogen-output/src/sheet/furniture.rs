@@ -32,7 +32,7 @@ pub struct Desk<'a> {
 pub enum Align {
     /// The text starts at the anchor.
     Start,
-    /// The text is centerd at the anchor.
+    /// The text is centered at the anchor.
     Middle,
     /// The text ends at the anchor.
     End,

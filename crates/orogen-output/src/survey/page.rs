@@ -147,7 +147,7 @@ impl Shown {
         Ok(Shown { grid, scale, width: window.width })
     }
 
-    /// Draws a picture of this size on the sheet, centerd in its square.
+    /// Draws a picture of this size on the sheet, centered in its square.
     fn put(&self, sheet: &mut Sheet, corner: [f64; 2], pixel: impl Fn(usize, usize) -> [u8; 3]) -> [f64; 2] {
         let [left, top] = self.corner(corner);
         for j in 0..self.grid.height() {
@@ -159,7 +159,7 @@ impl Shown {
     }
 
     fn corner(&self, [left, top]: [f64; 2]) -> [f64; 2] {
-        // Tall pictures are centerd, wide ones are aligned at the top.
+        // Tall pictures are centered, wide ones are aligned at the top.
         [left + ((PICTURE - self.grid.width() as f64) / 2.0).floor(), top]
     }
 
