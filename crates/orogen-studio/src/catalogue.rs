@@ -104,6 +104,7 @@ impl Language {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::export::given::SAME;
     use orogen::jobs::map::MapJob;
     use orogen::jobs::render::RenderJob;
     use orogen::options::ValueKind;
@@ -117,7 +118,6 @@ mod tests {
 
     /// The keys of the options of jobs, and of their choices.
     fn declared() -> BTreeSet<String> {
-        use crate::window::export_fields::option_rows::SAME;
         let mut keys = BTreeSet::from(["choice.palette-auto".to_owned(), "choice.paper-auto".to_owned()]);
         let specs = [MapJob::OPTIONS, RenderJob::OPTIONS, TilemapJob::OPTIONS].into_iter().flatten();
         for spec in specs.filter(|spec| !SAME.contains(&spec.name)) {

@@ -10,6 +10,9 @@ use super::command_line::CommandLine;
 /// Options as texts, by their names; a switch has an empty one.
 pub type Given = BTreeMap<&'static str, String>;
 
+/// Options that are other names for a choice of another one, so that a dialog needs no field for them.
+pub const SAME: [&str; 1] = ["no-shade"];
+
 /// Whether an option applies beside the others that are given.
 #[must_use]
 pub fn applies(spec: &OptionSpec, specs: &[OptionSpec], given: &Given) -> bool {

@@ -12,16 +12,13 @@ use orogen::tilemap::art::set::SETS;
 
 use super::rows::{self, WIDTH};
 use crate::catalogue::Language;
-use crate::export::given::{Given, applies};
+use crate::export::given::{Given, SAME, applies};
 
 /// Columns of the parts.
 const COLUMNS: usize = 3;
 
 /// The word for a value that suits the data.
 const AUTO: &str = "auto";
-
-/// Options that are other names for a choice of another one.
-pub const SAME: [&str; 1] = ["no-shade"];
 
 /// What fields show besides their declarations.
 pub struct Fields<'a> {
