@@ -1,7 +1,8 @@
 //! What file formats compute sample by sample and byte by byte, and the buffers that they need. Programs use it as
-//! parts of `orogen-io`, which holds the formats: what they read and write once a file, a row or a feature.
+//! parts of `orogen-io`, which holds the formats: what they read and write once a file or a row.
 //!
-//! - [`mod@format`]: compression, pictures, samples as bytes and text, and the formats that consist of little else.
+//! - [`mod@format`]: compression, pictures, samples and features as bytes and text, and the formats that consist of
+//!   little else.
 //! - [`palette`]: colors of heights.
 //! - [`raster`]: a layer in memory or in pages on disk; both give the same bits.
 //! - [`read_at`]: bytes that are read by position, from any thread.

@@ -64,6 +64,12 @@ pub fn halved(samples: &[f32], side: usize) -> Vec<f32> {
 /// Values above this are not heights: some programs write the largest float as nodata.
 const HIGHEST: f32 = 1e30;
 
+/// Whether bytes contain others.
+#[must_use]
+pub fn contains(bytes: &[u8], part: &[u8]) -> bool {
+    bytes.windows(part.len().max(1)).any(|own| own == part)
+}
+
 /// So many samples of one value.
 #[must_use]
 pub fn filled(value: f32, count: usize) -> Vec<f32> {

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::mark;
 use crate::fs::{self, File};
+use crate::samples;
 
 /// Bytes that are read: enough for the head of a recipe, and for the longest title before a document's first element.
 const HEAD: u64 = 64 << 10;
@@ -205,7 +206,7 @@ impl Found {
 const STL: &str = "an STL mesh";
 
 fn holds(head: &[u8], word: &str) -> bool {
-    head.windows(word.len()).any(|part| part == word.as_bytes())
+    samples::contains(head, word.as_bytes())
 }
 
 fn trimmed(head: &[u8]) -> &[u8] {

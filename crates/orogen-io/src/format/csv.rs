@@ -1,10 +1,9 @@
 //! Points as comma-separated values (RFC 4180), with a header line.
 
-use std::fmt::Write as _;
 use std::io::{self, Write};
 
-use super::features::{FeatureLayer, Geometry, Value};
-use super::number::number;
+use super::feature_text;
+use super::features::FeatureLayer;
 use orogen_grid::error::{Error, ErrorKind};
 
 pub use super::number::append_samples;
@@ -16,40 +15,19 @@ pub use super::number::append_samples;
 pub fn write(out: &mut dyn Write, layer: &FeatureLayer, decimals: usize) -> io::Result<()> {
     let names: String = layer.fields.iter().map(|field| format!(",{}", field.name)).collect();
     writeln!(out, "x,y,z{names}")?;
-    let mut text = String::new();
-    for feature in &layer.features {
-        let Geometry::Point([x, y, z]) = feature.geometry else {
+    match feature_text::write_lines(out, &layer.features, decimals)? {
+        true => Ok(()),
+        false => {
             let message = format!("a .csv file holds points, and the features of `{}` are not", layer.name);
-            return Err(Error::new(ErrorKind::Request, message).into());
-        };
-        text.clear();
-        for (k, (value, decimals)) in [(x, decimals), (y, decimals), (z, 3)].into_iter().enumerate() {
-            text.push_str(if k > 0 { "," } else { "" });
-            number(&mut text, value, decimals);
+            Err(Error::new(ErrorKind::Request, message).into())
         }
-        for value in &feature.values {
-            text.push(',');
-            let _ = match value {
-                Value::Integer(number) => write!(text, "{number}"),
-                Value::Real(number) if number.is_finite() => write!(text, "{number}"),
-                Value::Boolean(is) => write!(text, "{is}"),
-                Value::Text(word) if word.contains([',', '"', '\n', '\r']) => {
-                    write!(text, "\"{}\"", word.replace('"', "\"\""))
-                }
-                Value::Text(word) => write!(text, "{word}"),
-                Value::Null | Value::Real(_) => Ok(()),
-            };
-        }
-        text.push('\n');
-        out.write_all(text.as_bytes())?;
     }
-    Ok(())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::format::features::{GeometryType, samples};
+    use crate::format::features::{GeometryType, Value, samples};
 
     #[test]
     fn a_line_for_each_point() {

@@ -2,56 +2,24 @@
 
 use std::io::{self, Write};
 
-use super::coordinates::append_bytes;
-use super::features::{Crs, Definition, Feature, FeatureLayer, FieldType, Geometry, GeometryType, LOCAL_NAME, Value};
+use super::features::{Crs, Definition, FeatureLayer, FieldType, GeometryType, LOCAL_NAME};
 use super::flatbuffer::{Builder, Offset, Slot};
-use super::packed_tree::{Bounds, hilbert_order, levels};
+use super::sorted_features::{FANOUT, MULTI_POLYGON, Sorted};
 
 const MAGIC: [u8; 8] = [0x66, 0x67, 0x62, 0x03, 0x66, 0x67, 0x62, 0x01];
-
-/// Entries of a node of the R-tree.
-const FANOUT: usize = 16;
 
 /// Numbers of the geometry types.
 const POINT: u8 = 1;
 const LINE: u8 = 2;
-const POLYGON: u8 = 3;
-const MULTI_POLYGON: u8 = 6;
 
 /// Writes a layer with coordinates of `crs`. Features are in the order of a Hilbert curve.
 ///
 /// Fails if `out` fails.
 pub fn write(out: &mut dyn Write, layer: &FeatureLayer, crs: Crs) -> io::Result<()> {
-    // Features without vertices cannot be in the index.
-    let there: Vec<&Feature> = layer.features.iter().filter(|feature| feature.geometry.vertices() > 0).collect();
-    let boxes: Vec<Bounds> = there.iter().filter_map(|feature| feature.geometry.bounds()).collect();
-    let order = hilbert_order(&boxes);
+    let sorted = Sorted::of(&layer.features);
     out.write_all(&MAGIC)?;
-    out.write_all(&head(layer, order.len(), crs))?;
-    let packed: Vec<Vec<u8>> = order.iter().map(|k| packed(there[*k], layer)).collect();
-    let sorted: Vec<Bounds> = order.iter().map(|k| boxes[*k]).collect();
-    let levels = levels(&sorted, FANOUT);
-    let mut node = |bounds: &Bounds, leads_to: u64| {
-        bounds.iter().try_for_each(|number| out.write_all(&number.to_le_bytes()))?;
-        out.write_all(&leads_to.to_le_bytes())
-    };
-    // The root first, each node with the number of its first child; last the boxes of features, each with its byte
-    // offset.
-    let mut first_child = 0u64;
-    for (depth, level) in levels.iter().enumerate().rev() {
-        first_child += level.len() as u64;
-        let below = if depth == 0 { sorted.len() } else { levels[depth - 1].len() };
-        debug_assert_eq!(below.div_ceil(FANOUT), level.len());
-        for (k, bounds) in level.iter().enumerate() {
-            node(bounds, first_child + (k * FANOUT) as u64)?;
-        }
-    }
-    let mut at = 0u64;
-    for (bounds, bytes) in sorted.iter().zip(&packed) {
-        node(bounds, at)?;
-        at += bytes.len() as u64;
-    }
-    packed.iter().try_for_each(|bytes| out.write_all(bytes))
+    out.write_all(&head(layer, sorted.features.len(), crs))?;
+    sorted.write(out, layer.geometry.has_z())
 }
 
 /// The header of the file.
@@ -113,66 +81,6 @@ fn head(layer: &FeatureLayer, count: usize, crs: Crs) -> Vec<u8> {
         Slot::Reference(about),
     ]);
     builder.finish(root)
-}
-
-/// A feature.
-fn packed(feature: &Feature, layer: &FeatureLayer) -> Vec<u8> {
-    let mut builder = Builder::new();
-    let geometry = match &feature.geometry {
-        Geometry::Point(at) => points(&mut builder, &[*at], true),
-        Geometry::Line(line) => points(&mut builder, line, layer.geometry.has_z()),
-        Geometry::MultiPolygon(parts) => {
-            let parts: Vec<Offset> = (parts.iter())
-                .map(|part| {
-                    let ends: Vec<u32> = (part.iter())
-                        .scan(0, |end, ring| {
-                            *end += ring.len() as u32;
-                            Some(*end)
-                        })
-                        .collect();
-                    let ends = if ends.len() > 1 { Slot::Reference(builder.wholes(&ends)) } else { Slot::Absent };
-                    let mut xy = Vec::new();
-                    part.iter().for_each(|ring| append_bytes(ring.as_flattened(), 2, 0..2, &mut xy));
-                    let xy = builder.numbers(&xy);
-                    let slots = [ends, Slot::Reference(xy)].into_iter().chain([Slot::Absent; 4]);
-                    builder.table(&slots.chain([Slot::Byte(POLYGON)]).collect::<Vec<Slot>>())
-                })
-                .collect();
-            let parts = builder.references(&parts);
-            let slots = [Slot::Absent; 6].into_iter().chain([Slot::Byte(MULTI_POLYGON), Slot::Reference(parts)]);
-            builder.table(&slots.collect::<Vec<Slot>>())
-        }
-    };
-    let mut values = Vec::new();
-    for (column, value) in feature.values.iter().enumerate() {
-        if matches!(value, Value::Null) || matches!(value, Value::Real(number) if !number.is_finite()) {
-            continue;
-        }
-        values.extend_from_slice(&(column as u16).to_le_bytes());
-        match value {
-            Value::Integer(number) => values.extend_from_slice(&number.to_le_bytes()),
-            Value::Real(number) => values.extend_from_slice(&number.to_le_bytes()),
-            Value::Boolean(is) => values.push(u8::from(*is)),
-            Value::Text(text) => {
-                values.extend_from_slice(&(text.len() as u32).to_le_bytes());
-                values.extend_from_slice(text.as_bytes());
-            }
-            Value::Null => {}
-        }
-    }
-    let values = builder.bytes(&values);
-    let root = builder.table(&[Slot::Reference(geometry), Slot::Reference(values)]);
-    builder.finish(root)
-}
-
-fn points(builder: &mut Builder, points: &[[f64; 3]], z: bool) -> Offset {
-    let mut bytes = Vec::new();
-    append_bytes(points.as_flattened(), 3, 0..2, &mut bytes);
-    let xy = builder.numbers(&bytes);
-    bytes.clear();
-    append_bytes(points.as_flattened(), 3, 2..3, &mut bytes);
-    let heights = if z { Slot::Reference(builder.numbers(&bytes)) } else { Slot::Absent };
-    builder.table(&[Slot::Absent, Slot::Reference(xy), heights])
 }
 
 #[cfg(test)]

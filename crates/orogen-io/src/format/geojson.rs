@@ -1,10 +1,9 @@
 //! GeoJSON (RFC 7946).
 
-use std::fmt::Write as _;
 use std::io::{self, Write};
 
-use super::coordinates::{append_list, append_position};
-use super::features::{Crs, Definition, FeatureLayer, Geometry, Value};
+use super::feature_text;
+use super::features::{Crs, Definition, FeatureLayer};
 
 pub use super::number::{decimals, number};
 
@@ -27,61 +26,8 @@ pub fn write(out: &mut dyn Write, layer: &FeatureLayer, crs: Crs, step: f64) -> 
         write!(out, "\"crs\":{{\"type\":\"name\",\"properties\":{{\"name\":\"{system}\"}}}},")?;
     }
     writeln!(out, "\"features\":[")?;
-    let decimals = decimals(step);
-    let mut text = String::new();
-    for (k, feature) in layer.features.iter().enumerate() {
-        text.clear();
-        if k > 0 {
-            text.push_str(",\n");
-        }
-        let _ = write!(text, "{{\"type\":\"Feature\",\"id\":{},\"properties\":{{", k + 1);
-        for (i, (field, value)) in layer.fields.iter().zip(&feature.values).enumerate() {
-            let _ = write!(text, "{}\"{}\":", if i > 0 { "," } else { "" }, field.name);
-            let _ = match value {
-                Value::Integer(number) => write!(text, "{number}"),
-                Value::Real(number) if number.is_finite() => write!(text, "{number}"),
-                Value::Boolean(is) => write!(text, "{is}"),
-                Value::Text(word) => write!(text, "{}", serde_json::Value::from(word.as_ref())),
-                Value::Null | Value::Real(_) => write!(text, "null"),
-            };
-        }
-        text.push_str("},\"geometry\":{");
-        geometry(&mut text, &feature.geometry, layer.geometry.has_z(), decimals);
-        text.push_str("}}");
-        out.write_all(text.as_bytes())?;
-    }
+    feature_text::write_json(out, layer.fields, &layer.features, layer.geometry.has_z(), decimals(step))?;
     writeln!(out, "\n]}}")
-}
-
-fn geometry(text: &mut String, geometry: &Geometry, z: bool, decimals: usize) {
-    let numbers = if z { 3 } else { 2 };
-    match geometry {
-        Geometry::Point(at) => {
-            text.push_str("\"type\":\"Point\",\"coordinates\":");
-            append_position(text, &at[..numbers], decimals);
-        }
-        Geometry::Line(points) => {
-            text.push_str("\"type\":\"LineString\",\"coordinates\":");
-            append_list(text, points.as_flattened(), 3, numbers, decimals);
-        }
-        Geometry::MultiPolygon(parts) => {
-            text.push_str("\"type\":\"MultiPolygon\",\"coordinates\":");
-            list(text, parts, |text, part| {
-                list(text, part, |text, ring| append_list(text, ring.as_flattened(), 2, 2, decimals));
-            });
-        }
-    }
-}
-
-fn list<T>(text: &mut String, items: &[T], mut item: impl FnMut(&mut String, &T)) {
-    text.push('[');
-    for (k, one) in items.iter().enumerate() {
-        if k > 0 {
-            text.push(',');
-        }
-        item(text, one);
-    }
-    text.push(']');
 }
 
 #[cfg(test)]
@@ -89,7 +35,7 @@ mod tests {
     use super::*;
     use crate::format::crs::keys::GeoKeys;
     use crate::format::dem::Georeference;
-    use crate::format::features::{Feature, GeometryType, samples};
+    use crate::format::features::{Feature, Geometry, GeometryType, Value, samples};
     use serde_json::{Value as Json, json};
 
     fn lines() -> FeatureLayer {

@@ -42,8 +42,8 @@ pub mod zarr;
 #[doc(hidden)]
 pub use orogen_codec::format::weights;
 pub(crate) use orogen_codec::format::{
-    conversion, coordinates, exr_block, flatbuffer, geojson_reader, grey_rows, input, metres16, number, packed_tree,
-    sqlite, stored, svg_path, words, xyz_rows, zip,
+    conversion, coordinates, exr_block, feature_text, flatbuffer, geojson_reader, gpkg_rows, grey_rows, input,
+    metres16, number, sorted_features, sqlite, stored, svg_path, words, xyz_rows, zip,
 };
 pub use orogen_codec::format::{
     encoding, exr, gif, half, lerc, levels, luanti, npy, outlines, png, schem, vox, zip_writer,
