@@ -186,6 +186,8 @@ fn arg(spec: &'static OptionSpec, known: &[&str], heading: Option<&'static str>)
             arg.allow_negative_numbers(true).value_parser(checked)
         }
         ValueKind::Numbers | ValueKind::Range | ValueKind::Point => arg.allow_hyphen_values(true).value_parser(checked),
+        // Lists of heights and letters may begin with a minus.
+        ValueKind::Text if !known.is_empty() => arg.allow_hyphen_values(true).value_parser(checked),
         _ => arg.value_parser(checked),
     }
 }

@@ -444,7 +444,7 @@ fn what_cannot_be_asked_for_is_usage() {
         (&["-o", "a.png", "--format", "npy"], "does not match the extension"),
         (&["-o", "a.npy", "--format", "bmp"], "invalid value"),
         (&["-o", "a.npy", "--bits", "8"], "--bits does not apply to the format npy; it applies to: .pgm and .png"),
-        (&["-o", "a.png", "--bits", "12"], "`12` is not a value for --bits: it must be 8 or 16"),
+        (&["-o", "a.png", "--bits", "12"], "invalid value '12' for '--bits <N>': it must be 8 or 16"),
         (&["-o", "a.png", "--range", "9,3"], "the lower first"),
         (&["-o", "a.png", "--encoding", "terrarium", "--range", "1,2"], "leave out --range"),
         (&["-o", "a.hgt"], "not 64 x 48; the nearest is --cell 0.4 --window 0,0,1201,1201"),
@@ -493,13 +493,13 @@ fn contours_are_lines_of_the_heights_asked_for() {
             assert!((between - told).abs() < 0.05, "{x} {y}: {between}, {told}");
         }
     }
-    folder.good(&["export", "small.toml", "-o", "b.geojson", "--levels", "100,-10", "--smooth", "2", "-q"]);
+    folder.good(&["export", "small.toml", "-o", "b.geojson", "--levels", "-10,100", "--smooth", "2", "-q"]);
     let smooth = lines("b.geojson");
     assert!(smooth.iter().any(|line| line["properties"]["elevation"] == -10));
     folder.good(&["export", "small.toml", "-o", "a.svg", "-q"]);
     assert!(folder.text("a.svg").starts_with("<svg xmlns=") && folder.text("a.svg").contains("id=\"h100\""));
     for (given, expect) in [
-        (["--interval", "0"], "`0` is not a value for --interval"),
+        (["--interval", "0"], "invalid value '0' for '--interval <M>'"),
         (["--levels", "1,two"], "`two` in --levels is not a height"),
         (["--smooth", "9"], "a whole number from 0 to 6"),
     ] {
