@@ -1,7 +1,7 @@
 //! Blocks of a world as one job.
 
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::render::EXAGGERATION;
 use crate::options::{OptionSpec, Options, ValueKind};
@@ -17,6 +17,7 @@ use orogen_io::file::cancellable::CancellableWriter;
 use orogen_io::file::{self, Existing, Output, OutputFolder, OutputPolicy};
 use orogen_io::format::notes::SOFTWARE;
 use orogen_io::format::{schem, vox};
+use orogen_io::fs;
 use orogen_output::blocks::caves;
 use orogen_output::blocks::kind::{Block, KINDS};
 use orogen_output::blocks::land::{self, COLUMN_BYTES, HALO, Land};
@@ -318,7 +319,7 @@ impl LuantiFolder {
     /// # Errors
     /// If Luanti has opened a world there, a file may not be replaced, or a folder cannot be made.
     pub fn new(path: &Path, policy: &OutputPolicy) -> Result<LuantiFolder> {
-        if policy.existing() != Existing::Replace && path.join(OPENED).exists() {
+        if policy.existing() != Existing::Replace && fs::is_present(&path.join(OPENED)) {
             let message = format!(
                 "cannot write {}: Luanti has opened this world, so it may have been changed; choose another name, or \
                  replace its map with --force",
@@ -327,8 +328,8 @@ impl LuantiFolder {
             return Err(Error::new(ErrorKind::File, message));
         }
         let outputs = FILES.iter().map(|name| policy.output(path.join(name))).collect::<Result<_>>()?;
-        let innermost = path.join(FILES[0]).parent().map_or_else(|| path.to_path_buf(), Path::to_path_buf);
-        Ok(LuantiFolder { folder: OutputFolder::ready(&innermost as &PathBuf)?, outputs })
+        let textures = path.join(FILES[0]);
+        Ok(LuantiFolder { folder: OutputFolder::ready(textures.parent().unwrap_or(path))?, outputs })
     }
 }
 

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::words::nearest;
+use orogen_io::fs;
 use orogen_io::palette::palette::Palette;
 use orogen_io::palette::{named, read};
 
@@ -16,7 +17,7 @@ pub fn find_palette(palette: &Path) -> Result<Palette> {
     if let Some(named) = named::find(&name) {
         return Ok(named.palette());
     }
-    if palette.extension().is_some() || palette.exists() {
+    if palette.extension().is_some() || fs::is_present(palette) {
         return read::read(palette);
     }
     let hint = match nearest(&name, named::all().iter().map(|named| named.name)) {
