@@ -136,7 +136,9 @@ fn faults(line: &str) -> Vec<String> {
         faults.extend(name.or(prefix).map(|(_, instead)| format!("`{}`: {instead}", pair[1])));
     }
     // What is quoted may be typed by a user, or stand in a file.
-    let is_quoted = |word: &str| line.contains(&format!("\"{word}")) || line.contains(&format!("-{word}"));
+    let is_quoted = |word: &str| {
+        line.contains(&format!("\"{word}")) || line.contains(&format!("-{word}")) || line.contains(&format!("__{word}"))
+    };
     let spelled = SPELLINGS.iter().filter(|(british, _)| text_of(line).contains(british) && !is_quoted(british));
     faults.extend(spelled.map(|(british, american)| format!("`{british}`: {american}")));
     let text = line.trim_start();

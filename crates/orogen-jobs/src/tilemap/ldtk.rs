@@ -87,7 +87,7 @@ impl Tilemap {
         let level = json!({
             "identifier": "Level_0", "iid": self.iid(2), "uid": LEVEL, "worldX": 0, "worldY": 0, "worldDepth": 0, "pxWid": width, "pxHei": height,
             "__bgColor": "#696A79", "bgColor": null, "useAutoIdentifier": true, "bgRelPath": null, "bgPos": null, "bgPivotX": 0.5, "bgPivotY": 0.5,
-            "__smartColor": "#ADADB5", "__bgPos": null, "externalRelPath": null, "fieldInstances": [], "__neighbors": [],
+            "__smartColor": "#ADADB5", "__bgPos": null, "externalRelPath": null, "fieldInstances": [], "__neighbours": [],
         });
         write!(out, "{},\n\"levels\": [{},\n\"layerInstances\": [", open(&root), open(&level))?;
         for (nth, layer) in layers.iter().enumerate() {
