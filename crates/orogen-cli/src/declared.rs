@@ -16,7 +16,7 @@ use orogen::tilemap::job::TilemapJob;
 /// A source of option declarations.
 pub trait Declares {
     /// The heading in the help, of options without one of their own.
-    const HEADING: Option<&str>;
+    const HEADING: Option<&str> = None;
 
     /// All options, each with the names of the formats or layers that have it.
     fn options() -> Vec<(&'static OptionSpec, Vec<&'static str>)>;
@@ -49,57 +49,18 @@ impl Declares for Layers {
     }
 }
 
-/// Map sheets.
-#[derive(Debug, Clone, Default)]
-pub struct Maps;
-
-impl Declares for Maps {
-    const HEADING: Option<&str> = None;
-
-    fn options() -> Vec<(&'static OptionSpec, Vec<&'static str>)> {
-        of_job(MapJob::OPTIONS)
-    }
+/// The options of a job.
+macro_rules! jobs {
+    ($($job:ident),*) => { $(
+        impl Declares for $job {
+            fn options() -> Vec<(&'static OptionSpec, Vec<&'static str>)> {
+                $job::OPTIONS.iter().map(|spec| (spec, Vec::new())).collect()
+            }
+        }
+    )* };
 }
 
-/// Rendered pictures.
-#[derive(Debug, Clone, Default)]
-pub struct Renders;
-
-impl Declares for Renders {
-    const HEADING: Option<&str> = None;
-
-    fn options() -> Vec<(&'static OptionSpec, Vec<&'static str>)> {
-        of_job(RenderJob::OPTIONS)
-    }
-}
-
-/// Blocks.
-#[derive(Debug, Clone, Default)]
-pub struct Blocks;
-
-impl Declares for Blocks {
-    const HEADING: Option<&str> = None;
-
-    fn options() -> Vec<(&'static OptionSpec, Vec<&'static str>)> {
-        of_job(BlocksJob::OPTIONS)
-    }
-}
-
-/// Tilemaps.
-#[derive(Debug, Clone, Default)]
-pub struct Tilemaps;
-
-impl Declares for Tilemaps {
-    const HEADING: Option<&str> = None;
-
-    fn options() -> Vec<(&'static OptionSpec, Vec<&'static str>)> {
-        of_job(TilemapJob::OPTIONS)
-    }
-}
-
-fn of_job(specs: &'static [OptionSpec]) -> Vec<(&'static OptionSpec, Vec<&'static str>)> {
-    specs.iter().map(|spec| (spec, Vec::new())).collect()
-}
+jobs!(MapJob, RenderJob, BlocksJob, TilemapJob);
 
 /// Those that were given.
 #[derive(Debug, Clone, Default)]
@@ -115,31 +76,14 @@ pub type FormatOptions = OptionsOf<Formats>;
 /// The options of layers.
 pub type LayerOptions = OptionsOf<Layers>;
 
-/// The options of map sheets.
-pub type MapOptions = OptionsOf<Maps>;
-
-/// The options of rendered pictures.
-pub type RenderOptions = OptionsOf<Renders>;
-
-/// The options of blocks.
-pub type BlockOptions = OptionsOf<Blocks>;
-
-/// The options of tilemaps.
-pub type TilemapOptions = OptionsOf<Tilemaps>;
-
 impl<D: Declares> OptionsOf<D> {
     /// The options, as the library takes them.
     ///
     /// # Errors
     /// If a value is not valid.
     pub fn read(&self) -> orogen::Result<Options> {
-        let mut options = Options::default();
-        for (spec, _) in D::options() {
-            for (_, text) in self.given.iter().filter(|(name, _)| *name == spec.name) {
-                options.give(spec, text)?;
-            }
-        }
-        Ok(options)
+        let specs = D::options().into_iter().map(|(spec, _)| spec);
+        Options::of(specs, self.given.iter().map(|(name, text)| (*name, text.as_str())))
     }
 }
 

@@ -104,7 +104,7 @@ impl Language {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::export::given::SAME;
+    use crate::export::given::WITHOUT_FIELD;
     use orogen::jobs::map::MapJob;
     use orogen::jobs::render::RenderJob;
     use orogen::options::ValueKind;
@@ -120,7 +120,7 @@ mod tests {
     fn declared() -> BTreeSet<String> {
         let mut keys = BTreeSet::from(["choice.palette-auto".to_owned(), "choice.paper-auto".to_owned()]);
         let specs = [MapJob::OPTIONS, RenderJob::OPTIONS, TilemapJob::OPTIONS].into_iter().flatten();
-        for spec in specs.filter(|spec| !SAME.contains(&spec.name)) {
+        for spec in specs.filter(|spec| !WITHOUT_FIELD.contains(&spec.name)) {
             keys.insert(format!("option.{}", spec.name));
             let names: Vec<&str> = match spec.kind {
                 // Layouts of tiles are called by their names.

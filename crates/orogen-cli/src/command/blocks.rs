@@ -8,7 +8,7 @@ use orogen::jobs::blocks::{BlockFormat, BlocksJob, LuantiFolder};
 use orogen::world::HEIGHT;
 
 use crate::bar::Bar;
-use crate::declared::BlockOptions;
+use crate::declared::OptionsOf;
 use crate::failure::Failure;
 use crate::finite;
 use crate::interrupt;
@@ -28,7 +28,7 @@ pub struct Args {
     #[command(flatten)]
     samples: SizedView,
     #[command(flatten)]
-    options: BlockOptions,
+    options: OptionsOf<BlocksJob>,
     /// Format [default: by the extension of the output; a Luanti world if it has none]
     #[arg(long, value_enum)]
     format: Option<Kind>,

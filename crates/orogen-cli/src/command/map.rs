@@ -8,7 +8,7 @@ use orogen::jobs::map::MapJob;
 use orogen::jobs::sheet_format::SheetFormat;
 
 use crate::bar::Bar;
-use crate::declared::{LayerOptions, MapOptions};
+use crate::declared::{LayerOptions, OptionsOf};
 use crate::failure::Failure;
 use crate::options::Limits;
 use crate::replace::Replace;
@@ -29,7 +29,7 @@ pub struct Args {
     #[arg(long)]
     format: Option<Kind>,
     #[command(flatten)]
-    options: MapOptions,
+    options: OptionsOf<MapJob>,
     #[command(flatten)]
     view: View,
     #[command(flatten)]

@@ -9,7 +9,7 @@ use orogen::render::camera::View as Shot;
 use orogen::words::count;
 
 use crate::bar::Bar;
-use crate::declared::RenderOptions;
+use crate::declared::OptionsOf;
 use crate::device::DeviceOption;
 use crate::failure::Failure;
 use crate::moving::{AnimationTarget, Moving};
@@ -32,7 +32,7 @@ pub struct Args {
     #[arg(short, long, value_name = "FILE", default_value = "view.png")]
     out: PathBuf,
     #[command(flatten)]
-    options: RenderOptions,
+    options: OptionsOf<RenderJob>,
     /// Orbit the camera around the land in N frames: an animated .png (APNG), a .gif, or a file for each frame
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=3600), conflicts_with = "look",
           allow_negative_numbers = true)]

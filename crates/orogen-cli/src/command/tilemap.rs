@@ -9,7 +9,7 @@ use orogen::tilemap::job::TilemapJob;
 use orogen::world::HEIGHT;
 
 use crate::bar::Bar;
-use crate::declared::TilemapOptions;
+use crate::declared::OptionsOf;
 use crate::failure::Failure;
 use crate::options::RunOptions;
 use crate::sink::is_stdout;
@@ -27,7 +27,7 @@ pub struct Args {
     #[command(flatten)]
     samples: SizedView,
     #[command(flatten)]
-    options: TilemapOptions,
+    options: OptionsOf<TilemapJob>,
     /// Output folder; it is created if needed
     #[arg(short, long, value_name = "DIR", default_value = "tilemap")]
     out: PathBuf,

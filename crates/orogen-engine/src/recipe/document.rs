@@ -7,23 +7,21 @@ use crate::recipe::class::list::CLASSES;
 use crate::recipe::parameters::{Formula, Parameter, Parameters, Step};
 use crate::recipe::scatter::document::{ExpandedScatter, Scatter};
 use crate::recipe::scatter::list::SCATTERS;
-use crate::recipe::schema::world_values;
 use crate::recipe::surface::document::{Expanded, RAMP, Surface};
 use crate::recipe::surface::list::SURFACES;
+pub use crate::recipe::world_spec::WorldSpec;
+use crate::recipe::world_spec::world_values;
 use orogen_grid::error::{Diagnostic, Error, ErrorKind, Result};
 use orogen_io::dem::file_ref::{FileKind, FileRef};
 use orogen_io::dem::open;
 use orogen_io::dem::prepared::PreparedDem;
-use orogen_io::dem::square::metres_of_degrees;
-use orogen_io::format::crs::registry::Crs;
-use orogen_io::format::crs::unit::Unit;
 use orogen_io::format::dem::{Georeference, Request};
 use orogen_io::format::drawing::Drawing;
 use orogen_io::palette::histogram;
 use orogen_ops::declare::{Input, Shape};
 use orogen_ops::field::dem::Dem;
 use orogen_ops::node::Node;
-use orogen_ops::op::{Op, WorldParams};
+use orogen_ops::op::Op;
 use orogen_ops::value::{toml_key, toml_string};
 use std::collections::{BTreeMap, HashSet};
 use std::fmt::Write as _;
@@ -35,63 +33,6 @@ pub const VERSION: i64 = 1;
 
 /// Maximum number of nodes of a recipe.
 pub const MAX_NODES: usize = 65_536;
-
-/// The `[world]` of a recipe. Lengths are in metres.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub struct WorldSpec {
-    /// The seed of the world, which is hashed with every node's own seed.
-    pub seed: u64,
-    /// Extent east and south; `None` for an unbounded world.
-    pub size: Option<[f64; 2]>,
-    /// Distance between samples of the world's own lattice: the cell of solvers, and the default cell of requests.
-    pub cell: f64,
-    /// Height of the sea level.
-    pub sea_level: f64,
-    /// The map of the world; `None` for local metres, or for the map of a real place in the recipe.
-    pub crs: Option<Crs>,
-    /// East and north of the world's first sample, its north-west corner, in the units of `crs`.
-    pub origin: Option<[f64; 2]>,
-}
-
-impl Default for WorldSpec {
-    fn default() -> WorldSpec {
-        WorldSpec { seed: 0, size: None, cell: 10.0, sea_level: 0.0, crs: None, origin: None }
-    }
-}
-
-orogen_noise::builder!(
-    WorldSpec: with_seed(seed: u64),
-    with_size(size: Option<[f64; 2]>),
-    with_cell(cell: f64),
-    with_sea_level(sea_level: f64),
-    with_crs(crs: Option<Crs>),
-    with_origin(origin: Option<[f64; 2]>)
-);
-
-impl WorldSpec {
-    /// The parameters of the world for ops.
-    #[must_use]
-    pub fn world_params(&self) -> WorldParams {
-        WorldParams { seed: self.seed, size: self.size, cell: self.cell, sea_level: self.sea_level }
-    }
-
-    /// The position of the world on the map of its `crs`, if it has both that and an `origin`. In degrees, metres are
-    /// converted with the length of a degree at the world's middle latitude.
-    fn georeference(&self) -> Option<Georeference> {
-        let (crs, origin) = (self.crs?, self.origin?);
-        let per_metre = match crs.unit() {
-            Unit::Metres(unit) => [1.0 / unit; 2],
-            unit @ (Unit::Degrees | Unit::Grads) => {
-                let degrees = unit.degrees().unwrap_or(1.0);
-                let half = self.size.map_or(0.0, |size| size[1] / 2.0);
-                let middle = origin[1] * degrees - half / metres_of_degrees(origin[1] * degrees)[1];
-                metres_of_degrees(middle).map(|metres| 1.0 / (metres * degrees))
-            }
-        };
-        Some(Georeference { origin, per_metre, keys: Some(crs.keys()) })
-    }
-}
 
 /// A node with its name and its mask.
 #[derive(Debug, Clone, PartialEq)]

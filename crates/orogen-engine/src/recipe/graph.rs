@@ -309,9 +309,9 @@ impl<'a> Resolver<'a> {
 
     fn check_world(&mut self) {
         let world = self.recipe.world;
-        for (name, value) in super::schema::world_values(&world) {
-            let Some(spec) = super::schema::world_param(name) else { continue };
-            if let Err(message) = super::schema::read_world(spec, &value, &mut world.clone()) {
+        for (name, value) in super::world_spec::world_values(&world) {
+            let Some(spec) = super::world_spec::world_param(name) else { continue };
+            if let Err(message) = super::world_spec::read_world(spec, &value, &mut world.clone()) {
                 self.diagnostic(At::World, message);
             }
         }

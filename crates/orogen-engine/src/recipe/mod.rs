@@ -24,3 +24,4 @@ mod subgraph;
 pub mod surface;
 mod text;
 mod toml;
+mod world_spec;

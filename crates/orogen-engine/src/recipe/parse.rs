@@ -452,14 +452,14 @@ impl Walk<'_> {
             if self.repeated(&mut seen, key) {
                 continue;
             }
-            match super::schema::world_param(&key.value) {
-                Some(spec) => match super::schema::read_world(spec, &value.value, &mut world) {
+            match super::world_spec::world_param(&key.value) {
+                Some(spec) => match super::world_spec::read_world(spec, &value.value, &mut world) {
                     Ok(()) if spec.name == "cell" => cell = Some(value.span.clone()),
                     Ok(()) => {}
                     Err(message) => self.complain(&value.span, message),
                 },
                 None => {
-                    let hint = suggestion(&key.value, super::schema::WORLD.iter().map(|spec| spec.name));
+                    let hint = suggestion(&key.value, super::world_spec::WORLD.iter().map(|spec| spec.name));
                     self.complain(&key.span, format!("unknown key `{}` in `world`; {hint}", key.value));
                 }
             }

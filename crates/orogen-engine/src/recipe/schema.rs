@@ -1,98 +1,16 @@
 //! The JSON Schema of recipes, made from the declarations.
 
-use super::document::{VERSION, WorldSpec};
+use super::document::VERSION;
+use super::world_spec::WORLD;
 use super::{class, scatter, surface};
 use crate::registry::Registry;
 use orogen_grid::words::respelled;
 use orogen_ops::declare::point_lists::MAX_POINTS;
-use orogen_ops::declare::{Param, ParamSpec, Shape, TableSpec, read_param, short};
+use orogen_ops::declare::{ParamSpec, Shape, TableSpec, short};
 use orogen_ops::node::Node;
 use orogen_ops::value::Value;
 use serde_json::{Map, Value as Json, json};
 use std::collections::BTreeMap;
-
-/// Parameters of `world`.
-pub static WORLD: &[ParamSpec] = &[
-    ParamSpec {
-        name: "seed",
-        alias: "",
-        doc: "The seed of the world. Every node's own seed is hashed with it.",
-        unit: "",
-        shape: Shape::Seed,
-        range: [0.0, f64::INFINITY],
-    },
-    ParamSpec {
-        name: "size",
-        alias: "",
-        doc: "Extent of the world to the east and south, [width, height], or one number for a square. Without it the world is \
-              unbounded, and solvers cannot be used.",
-        unit: "m",
-        shape: Shape::Pair,
-        range: [1e-3, 1e9],
-    },
-    ParamSpec {
-        name: "cell",
-        alias: "",
-        doc: "Cell size of the world's own lattice, on which solvers work. Default: 1/1024 of the longer side, or 10 m in an \
-              unbounded world.",
-        unit: "m",
-        shape: Shape::Number,
-        range: [1e-4, 1e7],
-    },
-    ParamSpec { name: "sea_level", alias: "", doc: "Sea level.", unit: "m", shape: Shape::Number, range: [-1e6, 1e6] },
-    ParamSpec {
-        name: "crs",
-        alias: "",
-        doc: "Coordinate reference system of the world, as an EPSG code; it needs `origin`. It is written to GeoTIFF, GeoJSON and other \
-              georeferenced files. Default: the system of the file that a node `dem` reads, else local metres.",
-        unit: "",
-        shape: Shape::Crs,
-        range: [f64::NEG_INFINITY, f64::INFINITY],
-    },
-    ParamSpec {
-        name: "origin",
-        alias: "",
-        doc: "Easting and northing of the world's north-west corner in the units of `crs`; longitude and latitude if these are degrees.",
-        unit: "",
-        shape: Shape::Pair,
-        range: [-1e9, 1e9],
-    },
-];
-
-/// The world's parameter with this name.
-#[must_use]
-pub fn world_param(name: &str) -> Option<&'static ParamSpec> {
-    WORLD.iter().find(|spec| spec.name == name)
-}
-
-/// Reads one of the world's parameters.
-pub fn read_world(spec: &ParamSpec, value: &Value, world: &mut WorldSpec) -> Result<(), String> {
-    match spec.name {
-        "seed" => world.seed = read_param(spec, value)?,
-        "size" => {
-            world.size = Some(match value.number() {
-                Some(side) => read_param(spec, &[side, side].write())?,
-                None => read_param(spec, value)?,
-            });
-        }
-        "cell" => world.cell = read_param(spec, value)?,
-        "crs" => match value {
-            Value::Text(text) => world.crs = Some(text.parse().map_err(|why| format!("`crs`: {why}"))?),
-            other => return Err(format!("`crs` must be {}, not {}", spec.expected(), other.describe())),
-        },
-        "origin" => world.origin = Some(read_param(spec, value)?),
-        _ => world.sea_level = read_param(spec, value)?,
-    }
-    Ok(())
-}
-
-/// The world's parameters as values, in the order of [`WORLD`].
-pub fn world_values(world: &WorldSpec) -> impl Iterator<Item = (&'static str, Value)> {
-    let crs = world.crs.map(|crs| Value::Text(format!("EPSG:{}", crs.code())));
-    let [size, origin] = [world.size, world.origin].map(|pair| pair.map(|pair| pair.write()));
-    let values = [Some(world.seed.write()), size, Some(world.cell.write()), Some(world.sea_level.write()), crs, origin];
-    WORLD.iter().zip(values).filter_map(|(spec, value)| Some((spec.name, value?)))
-}
 
 /// The schema (draft 7) that editors check recipes of built-in ops against.
 #[must_use]

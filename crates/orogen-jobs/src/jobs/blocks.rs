@@ -340,10 +340,7 @@ mod tests {
     #[test]
     fn options_choose_levels_caves_and_a_section() {
         let job = |format: BlockFormat, given: &[(&str, &str)]| {
-            let mut options = Options::default();
-            for (name, text) in given {
-                options.give(OPTIONS.iter().find(|spec| spec.name == *name).unwrap(), text).unwrap();
-            }
+            let options = Options::of(OPTIONS, given.iter().copied()).unwrap();
             BlocksJob::new(format).with_options(&options).map_err(|error| error.to_string())
         };
         let own = job(BlockFormat::Vox, &[]).unwrap();

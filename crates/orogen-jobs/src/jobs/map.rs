@@ -1,15 +1,16 @@
 //! A map sheet as one job.
 
-use std::io::{self, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 
+pub use super::drawn_map::DrawnMap;
+use super::drawn_map::numbers;
 use super::sheet_format::SheetFormat;
-use super::{finite, map_names, map_options, map_water};
+use super::{finite, map_names, map_water};
 use crate::export::derived::list;
 use crate::export::layer_source::LayerSource;
-use crate::export::{biome_cover, place, sheet_cover};
-use crate::options::{OptionSpec, Options};
-use orogen_engine::budget::Reservation;
+use crate::export::{biome_cover, sheet_cover};
+use crate::options::Options;
 use orogen_engine::layer::LayerKind;
 use orogen_engine::recipe::document::Recipe;
 use orogen_engine::world::{HEIGHT, World};
@@ -18,21 +19,16 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 use orogen_grid::words::number;
-use orogen_io::file::cancellable::CancellableWriter;
 use orogen_io::file::{self, Output};
-use orogen_io::format::affine::Affine;
 use orogen_io::format::dem::Georeference;
-use orogen_io::format::notes::SOFTWARE;
 use orogen_io::format::points::NamedPoints;
 use orogen_io::palette::named;
 use orogen_io::palette::palette::Palette;
-use orogen_output::sheet::draw::{Sheet, draw};
-use orogen_output::sheet::geometry::{Rect, Size};
+use orogen_output::sheet::draw::draw;
 use orogen_output::sheet::linework::{least_areas, lines_at};
 use orogen_output::sheet::options::{
     Coloring, GridStep, Labels, Layer, Page, PageColors, Parts, Resolution, Scale, Shading, SheetOptions,
 };
-use orogen_output::sheet::{pdf, raster, vector};
 
 /// What the colors of a map show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -219,17 +215,6 @@ impl MapJob {
     #[must_use]
     pub fn with_window(self, window: Window) -> MapJob {
         MapJob { window: Some(window), ..self }
-    }
-
-    /// The options, for front ends.
-    pub const OPTIONS: &[OptionSpec] = map_options::OPTIONS;
-
-    /// The same with all that is chosen by [`OPTIONS`](MapJob::OPTIONS).
-    ///
-    /// # Errors
-    /// If an option does not apply, a palette cannot be read, or the errors of [`check`](MapJob::check).
-    pub fn with_options(self, options: &Options) -> Result<MapJob> {
-        map_options::read(self, options)
     }
 
     /// Checks that the options do not contradict each other.
@@ -536,114 +521,10 @@ fn longer_side(window: &Window) -> f64 {
     (window.width.max(window.height) - 1) as f64 * window.cell
 }
 
-/// The first numbers of a list, and how many more there are.
-fn numbers(list: &[f64]) -> String {
-    const SHOWN: usize = 8;
-    let shown: Vec<String> = list.iter().take(SHOWN).map(|value| number(*value)).collect();
-    match list.len().saturating_sub(SHOWN) {
-        0 => shown.join(", "),
-        more => format!("{} and {more} more", shown.join(", ")),
-    }
-}
-
 /// Approximate longer side of a page, in millimetres.
 fn longer(page: Page) -> f64 {
     match page {
         Page::Fitted(longer) => longer + 36.0,
         Page::Paper([width, height]) => width.max(height),
-    }
-}
-
-/// A drawn map sheet.
-pub struct DrawnMap {
-    format: SheetFormat,
-    /// What the colors show, for the final message.
-    what: String,
-    title: String,
-    /// The position on a map, if it is written beside a picture.
-    map: Option<Georeference>,
-    window: Window,
-    sheet: Sheet,
-    warnings: Vec<String>,
-    writing: Progress,
-    _reserved: Reservation,
-}
-
-impl DrawnMap {
-    /// Messages about samples that are NaN or infinite.
-    #[must_use]
-    pub fn warnings(&self) -> &[String] {
-        &self.warnings
-    }
-
-    /// Characters of its texts that no installed font has; they are left out.
-    #[must_use]
-    pub fn lacking(&self) -> &[char] {
-        &self.sheet.lacking
-    }
-
-    /// A description: its layer, its size, its samples, and its contours.
-    #[must_use]
-    pub fn words(&self) -> String {
-        let Size { width, height } = self.sheet.scene.size;
-        let size = match self.format {
-            SheetFormat::Png => {
-                let [width, height] = raster::pixels(&self.sheet.scene, self.sheet.dpi);
-                format!("{width} x {height} pixels")
-            }
-            _ => format!("{width:.0} x {height:.0} mm"),
-        };
-        let contours = match (self.sheet.interval, self.sheet.levels.as_slice()) {
-            (Some(interval), _) => format!(", contours {} m apart", number(interval)),
-            (None, []) => String::new(),
-            (None, levels) => format!(", contours at {} m", numbers(levels)),
-        };
-        let Window { width, height, cell, .. } = self.window;
-        format!("{}{size}, {width} x {height} samples of {} m{contours}", self.what, number(cell))
-    }
-
-    /// Writes the sheet to a file, with georeferencing files beside a picture, atomically.
-    ///
-    /// # Errors
-    /// If a file cannot be written, or the work was cancelled.
-    pub fn to_file(&self, output: &Output) -> Result<()> {
-        let beside = match (self.format, &self.map) {
-            (SheetFormat::Png, Some(map)) => place::stage(output, map, self.on_page(&map.affine(&self.window, false)))?,
-            _ => Vec::new(),
-        };
-        file::write_whole(output, |out| self.to_stream(out))?;
-        file::commit(beside)
-    }
-
-    /// Writes the sheet to a stream.
-    ///
-    /// # Errors
-    /// If the stream fails, or the work was cancelled.
-    pub fn to_stream(&self, out: &mut dyn Write) -> io::Result<()> {
-        let out = &mut CancellableWriter { out, progress: &self.writing };
-        let scene = &self.sheet.scene;
-        match self.format {
-            SheetFormat::Png => {
-                let mut notes = vec![("Software", SOFTWARE)];
-                // PNG text chunks contain Latin-1 only.
-                if self.title.chars().all(|letter| letter <= '\u{ff}' && !letter.is_control()) {
-                    notes.push(("Title", &self.title));
-                }
-                raster::draw(scene, self.sheet.dpi).write_png(out, &notes)?;
-            }
-            SheetFormat::Svg => vector::write(out, scene)?,
-            SheetFormat::Pdf => pdf::write(out, scene)?,
-        }
-        self.writing.finish();
-        Ok(())
-    }
-
-    /// The transform from pixels of the page to map coordinates, from that of the ground on it.
-    fn on_page(&self, samples: &Affine) -> Affine {
-        let Rect { left, top, width, height } = self.sheet.ground;
-        let [left, top, width, height] =
-            [left, top, width, height].map(|millimetres| f64::from(millimetres) * self.sheet.dpi / 25.4);
-        let scale = [(self.window.width - 1) as f64 / width, (self.window.height - 1) as f64 / height];
-        samples.resampled(scale, [(0.5 - left) * scale[0], (0.5 - top) * scale[1]])
     }
 }

@@ -42,7 +42,7 @@ const fn part(name: &'static str, about: &'static str) -> OptionSpec {
 }
 
 /// The options, in the order of a help.
-pub(super) const OPTIONS: &[OptionSpec] = &[
+const OPTIONS: &[OptionSpec] = &[
     OptionSpec::new(
         "color",
         "WHAT",
@@ -211,8 +211,21 @@ pub(super) const OPTIONS: &[OptionSpec] = &[
     part("no-profile", "Profiles in the free space of --paper"),
 ];
 
+impl MapJob {
+    /// The options, for front ends.
+    pub const OPTIONS: &[OptionSpec] = OPTIONS;
+
+    /// The same with all that is chosen by [`OPTIONS`](MapJob::OPTIONS).
+    ///
+    /// # Errors
+    /// If an option does not apply, a palette cannot be read, or the errors of [`check`](MapJob::check).
+    pub fn with_options(self, options: &Options) -> Result<MapJob> {
+        read(self, options)
+    }
+}
+
 /// Sets the fields of a job from its options.
-pub(super) fn read(mut job: MapJob, options: &Options) -> Result<MapJob> {
+fn read(mut job: MapJob, options: &Options) -> Result<MapJob> {
     options.check(OPTIONS)?;
     let without = |name: &str| options.has(name);
     job.colors = match options.word("color") {
@@ -222,10 +235,7 @@ pub(super) fn read(mut job: MapJob, options: &Options) -> Result<MapJob> {
         _ => MapColors::Palette,
     };
     job.layer = options.text("layer").unwrap_or(HEIGHT).to_owned();
-    job.palette = options.palette("palette")?;
-    if without("nearest-color") {
-        job.palette = job.palette.map(|palette| palette.nearest());
-    }
+    job.palette = options.palette()?;
     job.scale = options.word("ramp").map(|word| match word {
         "log" => Scale::Log,
         "labels" => Scale::Labels,
@@ -288,10 +298,7 @@ mod tests {
 
     /// The job for options.
     fn job(given: &[(&str, &str)]) -> Result<MapJob> {
-        let mut options = Options::default();
-        for (name, text) in given {
-            options.give(OPTIONS.iter().find(|spec| spec.name == *name).unwrap(), text)?;
-        }
+        let options = Options::of(OPTIONS, given.iter().copied())?;
         MapJob::new(SheetFormat::Png).with_options(&options)
     }
 

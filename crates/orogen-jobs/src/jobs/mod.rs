@@ -5,6 +5,7 @@
 
 pub mod blocks;
 mod color_bar;
+mod drawn_map;
 mod finite;
 pub mod map;
 mod map_names;

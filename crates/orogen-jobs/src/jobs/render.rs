@@ -5,12 +5,11 @@ use std::ops::{Range, RangeInclusive};
 use std::sync::{Arc, OnceLock};
 
 use super::color_bar::ColorBar;
-pub use super::render_options::around;
-use super::{finite, render_options};
+use super::finite;
 use crate::export::derived::layer::Derived;
 use crate::export::derived::rows::Rows;
 use crate::export::derived::{albedo, list, roughness};
-use crate::options::{OptionSpec, Options};
+use crate::options::Options;
 use orogen_engine::budget::Reservation;
 use orogen_engine::recipe::document::Recipe;
 use orogen_engine::world::{HEIGHT, World};
@@ -91,6 +90,36 @@ pub struct RenderJob {
     pub device: Option<Arc<dyn RenderDevice>>,
 }
 
+/// The view around the center of the land: azimuth and elevation in degrees, and the distance in metres, if it is
+/// given.
+///
+/// # Errors
+/// If there are other numbers, the elevation is not above the horizon, or the distance is not greater than 0.
+pub fn around(camera: &[f64]) -> Result<View> {
+    let refused = |message: String| Err(Error::new(ErrorKind::Request, message));
+    let (azimuth, elevation, distance) = match *camera {
+        [azimuth, elevation] => (azimuth, elevation, None),
+        [azimuth, elevation, distance] => (azimuth, elevation, Some(distance)),
+        _ => return refused("--camera must be AZIMUTH,ELEVATION[,DISTANCE], such as 200,24".into()),
+    };
+    if !(-90.0..=90.0).contains(&elevation) {
+        return refused(format!(
+            "the elevation of --camera must be from -90 to 90 degrees, not {elevation} (with --look, --camera is a \
+             position)"
+        ));
+    }
+    if elevation < 0.0 {
+        return refused(format!(
+            "the elevation of --camera must be above the horizon, not {} degrees below it",
+            -elevation
+        ));
+    }
+    match distance.filter(|distance| *distance <= 0.0) {
+        Some(distance) => refused(format!("the distance of --camera must be greater than 0 m, not {distance}")),
+        None => Ok(View::Around { azimuth, elevation, distance }),
+    }
+}
+
 impl Default for RenderJob {
     fn default() -> RenderJob {
         let style = Style::default();
@@ -129,17 +158,6 @@ const PREPARING: f64 = 1600.0;
 const RAY: f64 = 500.0;
 
 impl RenderJob {
-    /// The options, for front ends.
-    pub const OPTIONS: &[OptionSpec] = render_options::OPTIONS;
-
-    /// The same with all that is chosen by [`OPTIONS`](RenderJob::OPTIONS).
-    ///
-    /// # Errors
-    /// If an option does not apply, a palette cannot be read, or the errors of [`check`](RenderJob::check).
-    pub fn with_options(self, options: &Options) -> Result<RenderJob> {
-        render_options::read(self, options)
-    }
-
     /// The same over this window.
     #[must_use]
     pub fn with_window(self, window: Window) -> RenderJob {

@@ -1,6 +1,6 @@
 //! The options of a rendered picture.
 
-use super::render::{EXAGGERATION, FOV, HAZE, MAX_SIDE, RenderJob, SAMPLES, SUN};
+use super::render::{EXAGGERATION, FOV, HAZE, MAX_SIDE, RenderJob, SAMPLES, SUN, around};
 use crate::options::Condition::{Given, Is};
 use crate::options::{Choice, Component, OptionSpec, Options, ValueKind};
 use orogen_grid::analysis::sun::Moment;
@@ -31,7 +31,7 @@ const LIGHT: &[Component] =
     &[Component::new("azimuth", "°", [0.0, 360.0]), Component::new("elevation", "°", [*SUN.start(), *SUN.end()])];
 
 /// The options, in the order of a help.
-pub(super) const OPTIONS: &[OptionSpec] = &[
+const OPTIONS: &[OptionSpec] = &[
     OptionSpec::new("size", "WxH", ValueKind::Size(MAX_SIDE), "Size of the picture in pixels")
         .with_default("1920x1080"),
     OptionSpec::new(
@@ -158,8 +158,21 @@ pub(super) const OPTIONS: &[OptionSpec] = &[
         .when(Is("color", "map")),
 ];
 
+impl RenderJob {
+    /// The options, for front ends.
+    pub const OPTIONS: &[OptionSpec] = OPTIONS;
+
+    /// The same with all that is chosen by [`OPTIONS`](RenderJob::OPTIONS).
+    ///
+    /// # Errors
+    /// If an option does not apply, a palette cannot be read, or the errors of [`check`](RenderJob::check).
+    pub fn with_options(self, options: &Options) -> Result<RenderJob> {
+        read(self, options)
+    }
+}
+
 /// Sets the fields of a job from its options.
-pub(super) fn read(mut job: RenderJob, options: &Options) -> Result<RenderJob> {
+fn read(mut job: RenderJob, options: &Options) -> Result<RenderJob> {
     options.check(OPTIONS)?;
     job.size = match options.numbers("size") {
         Some(&[width, height]) => [width as usize, height as usize],
@@ -191,10 +204,7 @@ pub(super) fn read(mut job: RenderJob, options: &Options) -> Result<RenderJob> {
     };
     job.snow_line = options.number("snow-line");
     job.samples = options.whole("samples").map_or(job.samples, |samples| samples as u32);
-    job.palette = options.palette("palette")?;
-    if options.has("nearest-color") {
-        job.palette = job.palette.map(|palette| palette.nearest());
-    }
+    job.palette = options.palette()?;
     job.range = options.pair("range");
     job.color_bar = options.has("color-bar");
     job.check()?;
@@ -213,35 +223,6 @@ fn at(camera: &[f64], look: [f64; 2]) -> Result<View> {
         ));
     }
     Ok(View::At { eye: [x, y, height], look })
-}
-
-/// The view around the center of the land: azimuth and elevation in degrees, and the distance in metres, if it is
-/// given.
-///
-/// # Errors
-/// If there are other numbers, the elevation is not above the horizon, or the distance is not greater than 0.
-pub fn around(camera: &[f64]) -> Result<View> {
-    let (azimuth, elevation, distance) = match *camera {
-        [azimuth, elevation] => (azimuth, elevation, None),
-        [azimuth, elevation, distance] => (azimuth, elevation, Some(distance)),
-        _ => return refuse("--camera must be AZIMUTH,ELEVATION[,DISTANCE], such as 200,24".into()),
-    };
-    if !(-90.0..=90.0).contains(&elevation) {
-        return refuse(format!(
-            "the elevation of --camera must be from -90 to 90 degrees, not {elevation} (with --look, --camera is a \
-             position)"
-        ));
-    }
-    if elevation < 0.0 {
-        return refuse(format!(
-            "the elevation of --camera must be above the horizon, not {} degrees below it",
-            -elevation
-        ));
-    }
-    match distance.filter(|distance| *distance <= 0.0) {
-        Some(distance) => refuse(format!("the distance of --camera must be greater than 0 m, not {distance}")),
-        None => Ok(View::Around { azimuth, elevation, distance }),
-    }
 }
 
 /// The position of the sun at a moment at which it gives light.

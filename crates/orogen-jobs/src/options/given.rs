@@ -1,28 +1,16 @@
 //! Options that are given.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::palette::find_palette;
 use super::spec::{Condition, OptionSpec};
+use super::value::Value;
 use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::words::nearest;
 use orogen_io::palette::color::Rgb;
 use orogen_io::palette::palette::Palette;
 use orogen_output::sheet::paper::Paper;
-
-/// A given value.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum Value {
-    Given,
-    Whole(u64),
-    Number(f64),
-    Numbers(Vec<f64>),
-    Word(&'static str),
-    Text(String),
-    Color(Rgb),
-    Paper(Paper),
-    File(PathBuf),
-}
 
 /// The given options, by name.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -31,6 +19,27 @@ pub struct Options {
 }
 
 impl Options {
+    /// The options of these declarations with their values as text; of a switch the text is ignored.
+    ///
+    /// # Errors
+    /// If no declaration has such a name, or a value is not valid.
+    pub fn of<'a>(
+        specs: impl IntoIterator<Item = &'static OptionSpec>,
+        given: impl IntoIterator<Item = (&'a str, &'a str)>,
+    ) -> Result<Options> {
+        let specs: Vec<&OptionSpec> = specs.into_iter().collect();
+        let mut options = Options::default();
+        for (name, text) in given {
+            let Some(spec) = specs.iter().find(|spec| spec.name == name) else {
+                let hint = nearest(name, specs.iter().map(|spec| spec.name));
+                let hint = hint.map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+                return Err(request(format!("there is no option `{}`{hint}", name.escape_debug())));
+            };
+            options.give(spec, text)?;
+        }
+        Ok(options)
+    }
+
     /// Sets an option from text. For a switch the text is ignored.
     ///
     /// # Errors
@@ -152,12 +161,13 @@ impl Options {
         }
     }
 
-    /// The palette of a palette option, read from its file unless it has a name.
+    /// The palette of `palette`, read from its file unless it has a name; with `nearest-color` its colors are not mixed.
     ///
     /// # Errors
     /// If there is none, or its file cannot be read.
-    pub fn palette(&self, name: &str) -> Result<Option<Palette>> {
-        self.file(name).map(find_palette).transpose()
+    pub fn palette(&self) -> Result<Option<Palette>> {
+        let palette = self.file("palette").map(find_palette).transpose()?;
+        Ok(if self.has("nearest-color") { palette.map(Palette::nearest) } else { palette })
     }
 
     /// The value of a file or palette option.
@@ -262,20 +272,24 @@ mod tests {
         }
     }
 
+    #[test]
+    fn options_without_a_declaration_are_refused() {
+        const SPECS: &[OptionSpec] = &[OptionSpec::switch("landscape", "")];
+        let why = Options::of(SPECS, [("landscap", "")]).unwrap_err().to_string();
+        assert_eq!(why, "there is no option `landscap`; did you mean `landscape`?");
+    }
+
     /// What is said of these options.
     fn checked(given: &[(&str, &str)]) -> std::result::Result<(), String> {
-        const SPECS: [OptionSpec; 5] = [
+        const SPECS: &[OptionSpec] = &[
             OptionSpec::new("color", "WHAT", ValueKind::Word(&["map", "clay"]), "").with_default("map"),
             OptionSpec::new("palette", "NAME", ValueKind::Palette, "").when(Condition::Is("color", "map")),
             OptionSpec::switch("nearest", "").when(Condition::Given("palette")),
             OptionSpec::switch("gloss", "").when(Condition::IsNot("color", "map")),
             OptionSpec::switch("matt", "").without(&["gloss"]),
         ];
-        let mut options = Options::default();
-        for (name, text) in given {
-            options.give(SPECS.iter().find(|spec| spec.name == *name).unwrap(), text).unwrap();
-        }
-        options.check(&SPECS).map_err(|error| error.to_string())
+        let options = Options::of(SPECS, given.iter().copied()).unwrap();
+        options.check(SPECS).map_err(|error| error.to_string())
     }
 
     #[test]

@@ -4,6 +4,7 @@
 mod given;
 mod palette;
 mod spec;
+mod value;
 
 pub use given::Options;
 pub use palette::find_palette;

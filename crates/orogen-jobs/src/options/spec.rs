@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::given::Value;
+use super::value::Value;
 use orogen_io::palette::names::{hexadecimal, named};
 use orogen_output::sheet::paper::Paper;
 
@@ -22,7 +22,7 @@ pub struct OptionSpec {
     /// A usual value, as text, from which a dialog starts; empty if there is none.
     pub example: &'static str,
     /// What stands before and after the value in a dialog: the unit.
-    pub around: [&'static str; 2],
+    pub affixes: [&'static str; 2],
     /// Other spellings of the name.
     pub aliases: &'static [&'static str],
     /// The options that exclude this one.
@@ -140,7 +140,7 @@ impl OptionSpec {
             kind,
             default: "",
             example: "",
-            around: ["", ""],
+            affixes: ["", ""],
             aliases: &[],
             excludes: &[],
             condition: Condition::Always,
@@ -162,8 +162,8 @@ impl OptionSpec {
 
     /// The same with this usual value, and what stands before and after it.
     #[must_use]
-    pub const fn with_example(self, example: &'static str, around: [&'static str; 2]) -> OptionSpec {
-        OptionSpec { example, around, ..self }
+    pub const fn with_example(self, example: &'static str, affixes: [&'static str; 2]) -> OptionSpec {
+        OptionSpec { example, affixes, ..self }
     }
 
     /// The same with these other spellings of its name.

@@ -17,9 +17,7 @@ use super::class_rows::ClassRows;
 use super::drawing::{Drawing, IN_MEMORY, Stores, seen, sides};
 use super::map::Tilemap;
 use super::map_objects::{has_objects, objects};
-use super::tilemap_options;
 use super::tileset::Tileset;
-use crate::options::{OptionSpec, Options};
 
 /// How many cells are made at once. Maps are the same for any numbers.
 #[derive(Debug, Clone, Copy)]
@@ -50,17 +48,6 @@ pub struct TilemapJob {
 }
 
 impl TilemapJob {
-    /// The options, for front ends.
-    pub const OPTIONS: &[OptionSpec] = tilemap_options::OPTIONS;
-
-    /// A map with all that is chosen by [`OPTIONS`](TilemapJob::OPTIONS), cleaned.
-    ///
-    /// # Errors
-    /// If an option does not apply, there is no such tileset, or it cannot be read.
-    pub fn with_options(options: &Options) -> Result<TilemapJob> {
-        tilemap_options::read(options)
-    }
-
     /// A map with these tiles, cleaned.
     #[must_use]
     pub fn new(tileset: Tileset) -> TilemapJob {

@@ -15,7 +15,7 @@ const fn layout(layout: Layout) -> Choice {
 const LAYOUTS: &[Choice] = &[layout(Layout::Blob), layout(Layout::Edge), layout(Layout::Corner), layout(Layout::Dual)];
 
 /// The options, in the order of a help.
-pub(super) const OPTIONS: &[OptionSpec] = &[
+const OPTIONS: &[OptionSpec] = &[
     OptionSpec::new(
         "tileset",
         "T",
@@ -39,8 +39,21 @@ pub(super) const OPTIONS: &[OptionSpec] = &[
     ),
 ];
 
+impl TilemapJob {
+    /// The options, for front ends.
+    pub const OPTIONS: &[OptionSpec] = OPTIONS;
+
+    /// A map with all that is chosen by [`OPTIONS`](TilemapJob::OPTIONS), cleaned.
+    ///
+    /// # Errors
+    /// If an option does not apply, there is no such tileset, or it cannot be read.
+    pub fn with_options(options: &Options) -> Result<TilemapJob> {
+        read(options)
+    }
+}
+
 /// The job for options.
-pub(super) fn read(options: &Options) -> Result<TilemapJob> {
+fn read(options: &Options) -> Result<TilemapJob> {
     options.check(OPTIONS)?;
     let name = options.text("tileset").unwrap_or(SETS[0].name);
     let source = tileset_source::find(name, options.word("layout").and_then(Layout::named), options.text("wang-set"))?;
@@ -56,10 +69,7 @@ mod tests {
     #[test]
     fn options_choose_tiles_layout_and_chunks() {
         let job = |given: &[(&str, &str)]| {
-            let mut options = Options::default();
-            for (name, text) in given {
-                options.give(OPTIONS.iter().find(|spec| spec.name == *name).unwrap(), text).unwrap();
-            }
+            let options = Options::of(OPTIONS, given.iter().copied()).unwrap();
             read(&options)
         };
         let own = job(&[]).unwrap();

@@ -11,7 +11,7 @@ use super::command_line::CommandLine;
 pub type Given = BTreeMap<&'static str, String>;
 
 /// Options that are other names for a choice of another one, so that a dialog needs no field for them.
-pub const SAME: [&str; 1] = ["no-shade"];
+pub const WITHOUT_FIELD: [&str; 1] = ["no-shade"];
 
 /// Whether an option applies beside the others that are given.
 #[must_use]
@@ -33,9 +33,7 @@ fn applying<'a>(
 /// # Errors
 /// If a value is not valid.
 pub fn read(specs: &'static [OptionSpec], given: &Given) -> Result<Options> {
-    let mut options = Options::default();
-    applying(specs, given).try_for_each(|(spec, text)| options.give(spec, text))?;
-    Ok(options)
+    Options::of(specs, applying(specs, given).map(|(spec, text)| (spec.name, text)))
 }
 
 /// Adds the options to a command line.

@@ -1,23 +1,15 @@
 //! A surface in memory.
 
-use super::list::Colors;
+pub use super::coloring::{Along, Coloring, DEFAULT_GRAIN, MAX_COLORS, RAMP};
+use super::coloring::{Colored, Colors};
 pub use crate::recipe::condition::document::{Condition, Noise, Quantity};
 use crate::recipe::condition::part::rename_layer;
 use orogen_io::dem::file_ref::FileRef;
-use orogen_io::palette::color::{Light, Rgb, decode, linear, mix, oklab};
+use orogen_io::palette::color::Light;
 use orogen_ops::declare::Input;
-
-/// Number of colors of a gradient or a picture, including the first and the last.
-pub const RAMP: usize = 128;
 
 /// Maximum number of surfaces of a recipe.
 pub const MAX_SURFACES: usize = 64;
-
-/// Maximum number of colors in a gradient.
-pub const MAX_COLORS: usize = 256;
-
-/// Default wavelength of the noise along which a gradient runs, in metres.
-pub const DEFAULT_GRAIN: f64 = 200.0;
 
 /// Default roughness: that of soil and plants.
 pub const DEFAULT_ROUGHNESS: f64 = 0.9;
@@ -54,53 +46,9 @@ pub struct Expanded {
     pub colors: Vec<Light>,
 }
 
-/// The coloring of a surface.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Coloring {
-    /// A single color.
-    Plain(Rgb),
-    /// Colors along a quantity, mixed in Oklab.
-    Gradient(Vec<Rgb>, Along),
-    /// The colors of a picture along a quantity, each with its frequency in the picture (histogram).
-    Picture(FileRef, Along),
-}
-
-/// The quantity along which a gradient runs from its first color to its last.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Along {
-    /// Noise with this wavelength in metres; every color covers the same area.
-    Noise(f64),
-    /// Height above sea level, over this range in metres.
-    Height([f64; 2]),
-    /// Slope, over this range in degrees.
-    Slope([f64; 2]),
-    /// A node or layer, over this range of values.
-    Layer(String, [f64; 2]),
-}
-
-impl Default for Along {
-    fn default() -> Along {
-        Along::Noise(DEFAULT_GRAIN)
-    }
-}
-
-impl Coloring {
-    /// The colors in linear light, evenly spaced; empty for a picture that was not read yet.
-    pub fn ramp(&self) -> Vec<Light> {
-        match self {
-            Coloring::Plain(color) => vec![color.map(decode)],
-            Coloring::Picture(..) => Vec::new(),
-            Coloring::Gradient(colors, _) => {
-                let stops: Vec<[f32; 3]> = colors.iter().map(|color| oklab(color.map(decode))).collect();
-                let last = stops.len().saturating_sub(1);
-                let step = |k: usize| {
-                    let at = k as f32 / (RAMP - 1) as f32 * last as f32;
-                    let from = (at as usize).min(last.saturating_sub(1));
-                    mix(stops[from], stops[(from + 1).min(last)], at - from as f32)
-                };
-                (0..RAMP).map(|k| linear(step(k)).map(|part| part.clamp(0.0, 1.0))).collect()
-            }
-        }
+impl Colored for Surface {
+    fn coloring(&mut self) -> &mut Coloring {
+        &mut self.color
     }
 }
 

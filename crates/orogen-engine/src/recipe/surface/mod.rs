@@ -1,10 +1,12 @@
 //! Surfaces: the materials of the ground, their conditions and appearance.
 //!
 //! - [`document`]: a surface, with its keys
-//! - `list`: the list of `[[surface]]` tables, and colorings as values
+//! - `coloring`: the color, gradient or picture of a surface, with its keys
+//! - `list`: the list of `[[surface]]` tables
 //! - [`standard`]: the surfaces of a recipe without any
 //! - [`expand`]: expansion of surfaces to nodes that compute their shares
 
+pub(crate) mod coloring;
 pub mod document;
 pub mod expand;
 pub(crate) mod list;

@@ -12,7 +12,7 @@ use orogen::tilemap::art::set::SETS;
 
 use super::rows::{self, WIDTH};
 use crate::catalogue::Language;
-use crate::export::given::{Given, SAME, applies};
+use crate::export::given::{Given, WITHOUT_FIELD, applies};
 
 /// Columns of the parts.
 const COLUMNS: usize = 3;
@@ -43,7 +43,7 @@ pub struct OptionRows<'a> {
 impl OptionRows<'_> {
     /// Shows a row for each option but the parts.
     pub fn rows(&mut self, ui: &mut Ui) {
-        for spec in self.specs.iter().filter(|spec| !is_part(spec) && !SAME.contains(&spec.name)) {
+        for spec in self.specs.iter().filter(|spec| !is_part(spec) && !WITHOUT_FIELD.contains(&spec.name)) {
             if applies(spec, self.specs, self.given) {
                 ui.label(self.label(spec)).on_hover_text(spec.about);
                 self.field(ui, spec);
@@ -57,7 +57,7 @@ impl OptionRows<'_> {
         ui.add_space(4.0);
         ui.strong(self.fields.language.text("export.parts"));
         Grid::new("parts").num_columns(COLUMNS).spacing([16.0, 4.0]).show(ui, |ui| {
-            let parts = self.specs.iter().filter(|spec| is_part(spec) && !SAME.contains(&spec.name));
+            let parts = self.specs.iter().filter(|spec| is_part(spec) && !WITHOUT_FIELD.contains(&spec.name));
             for (nth, spec) in parts.enumerate() {
                 let is_enabled = applies(spec, self.specs, self.given);
                 let label = self.label(spec);
@@ -263,7 +263,7 @@ impl OptionRows<'_> {
             let [from, to] = component.ends;
             let speed = if is_whole { 0.2 } else { (value.abs() / 200.0).clamp(0.01, 100.0) };
             let field = DragValue::new(value).range::<f64>(RangeInclusive::new(from, to)).speed(speed);
-            let field = field.prefix(spec.around[0]).suffix(component.unit);
+            let field = field.prefix(spec.affixes[0]).suffix(component.unit);
             let field = if is_whole { field.max_decimals(0) } else { field };
             let response = ui.add(field);
             is_changed |= response.changed();
@@ -306,7 +306,7 @@ const ANY: [f64; 2] = [-1e9, 1e9];
 
 /// The number of an option with one.
 fn number(spec: &OptionSpec, ends: [f64; 2]) -> Component {
-    Component::new("", spec.around[1], ends)
+    Component::new("", spec.affixes[1], ends)
 }
 
 fn leaves_out(spec: &OptionSpec) -> bool {
