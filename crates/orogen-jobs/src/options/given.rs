@@ -161,7 +161,8 @@ impl Options {
         }
     }
 
-    /// The palette of `palette`, read from its file unless it has a name; with `nearest-color` its colors are not mixed.
+    /// The palette of `palette`, read from its file unless it has a name; with `nearest-color` its colors are not
+    /// mixed.
     ///
     /// # Errors
     /// If there is none, or its file cannot be read.
