@@ -1,8 +1,8 @@
 //! `cargo xtask codegen`: generates the lists of nodes, formats and layers.
 //!
-//! A node is a file with one `op!` block. Its module line, its entry in the list of nodes and its part of the JSON
-//! Schema are generated from that file. An export format is a file that declares a `FORMAT`, a layer of vector features
-//! one that declares a `LAYER`.
+//! A node is a file with one `op!` block. The lines of its module, its entry in the list of nodes and its part of the
+//! JSON Schema are generated from that file. An export format is a file that declares a `FORMAT`, a layer of vector
+//! features one that declares a `LAYER`.
 
 mod lists;
 mod op;
@@ -19,7 +19,7 @@ pub const HELP: &str = "
 Usage: cargo xtask codegen [--check]
 
 Reads the op! block of every file in crates/orogen-ops/src/{field,filter,levelled,solver} and rewrites
-  - the module lines at the end of each folder's mod.rs
+  - the modules and their items at the end of each folder's mod.rs
   - crates/orogen-ops/src/node_list.rs
   - crates/orogen-jobs/src/export/format_list.rs, of the files in export/formats that declare a FORMAT
   - crates/orogen-jobs/src/export/vector_list.rs, of the files in export/vectors that declare a LAYER
@@ -53,12 +53,14 @@ pub fn lists(check: bool) -> Result {
     let mut ops = Vec::new();
     for locality in LOCALITIES {
         let folder = src.join(locality);
-        let names = modules(&folder)?;
-        for name in &names {
+        let mut listed = Vec::new();
+        for name in modules(&folder)? {
             let path = folder.join(format!("{name}.rs"));
             let text = shell::read(&path)?;
             let found = op::find(&text).map_err(|e| Failure::new(format!("{}: {e}", shell::relative(&path))))?;
+            let mut items = Vec::new();
             if let Some(declared) = found {
+                items = op::public_types(&text);
                 if declared.locality != locality {
                     return Err(Failure::new(format!(
                         "{}: its op! block says {}, its folder says {locality}",
@@ -68,8 +70,9 @@ pub fn lists(check: bool) -> Result {
                 }
                 ops.push(Op { module: name.clone(), ..declared });
             }
+            listed.push((name, items));
         }
-        settle_modules(&folder, &names, check)?;
+        settle_modules(&folder, &lists::op_modules(&listed), check)?;
     }
     lists::distinct(&ops).map_err(Failure::new)?;
     settle(&src.join("node_list.rs"), &lists::node_list(&LOCALITIES, &ops), check)?;
@@ -92,17 +95,17 @@ fn exports(export: &Path, check: bool) -> Result {
                 declared.push(name.clone());
             }
         }
-        settle_modules(&export.join(folder), &names, check)?;
+        settle_modules(&export.join(folder), &lists::public_modules(&names), check)?;
         settle(&export.join(list), &lists::declared_list(folder, constant, &declared), check)?;
     }
     Ok(())
 }
 
-/// Writes the module lines at the end of a folder's mod.rs.
-fn settle_modules(folder: &Path, names: &[String], check: bool) -> Result {
+/// Writes the lines of modules at the end of a folder's mod.rs.
+fn settle_modules(folder: &Path, lines: &[String], check: bool) -> Result {
     let list = folder.join("mod.rs");
     let head = shell::read(&list)?;
-    let text = lists::module_file(&head, names)
+    let text = lists::module_file(&head, lines)
         .ok_or_else(|| Failure::new(format!("{}: the line '{}' is missing", shell::relative(&list), lists::MARKER)))?;
     settle(&list, &text, check)
 }

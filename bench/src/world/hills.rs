@@ -1,7 +1,7 @@
 //! The measured worlds, all based on hills of noise: the former preset `hills`, whose figures stay comparable.
 
-use orogen::filter::blur::Blur;
-use orogen::solver::normalise::Normalise;
+use orogen::filter::Blur;
+use orogen::solver::Normalise;
 use orogen::{Options, Recipe, World};
 
 /// The hills themselves: fields only.

@@ -13,19 +13,19 @@ use std::sync::LazyLock;
 
 macro_rules! nodes {
     (
-        field { $( $field_mod:ident :: $field:ident, )* }
-        filter { $( $filter_mod:ident :: $filter:ident, )* }
-        levelled { $( $levelled_mod:ident :: $levelled:ident, )* }
-        solver { $( $solver_mod:ident :: $solver:ident, )* }
+        field { $( $field:ident, )* }
+        filter { $( $filter:ident, )* }
+        levelled { $( $levelled:ident, )* }
+        solver { $( $solver:ident, )* }
     ) => {
         /// One node of a recipe: an op with its inputs and parameters.
         #[derive(Debug, Clone, PartialEq)]
         #[allow(missing_docs, reason = "each variant is the struct of the same name")]
         pub enum Node {
-            $( $field(field::$field_mod::$field), )*
-            $( $filter(filter::$filter_mod::$filter), )*
-            $( $levelled(levelled::$levelled_mod::$levelled), )*
-            $( $solver(solver::$solver_mod::$solver), )*
+            $( $field(field::$field), )*
+            $( $filter(filter::$filter), )*
+            $( $levelled(levelled::$levelled), )*
+            $( $solver(solver::$solver), )*
             /// An op of the program that uses this crate.
             Registered(RegisteredOp),
         }
@@ -42,10 +42,10 @@ macro_rules! nodes {
 
         /// A function of its own, because `From` is compiled once per op and crate.
         fn built_in(op: &dyn Any) -> Option<Node> {
-            $( if let Some(op) = op.downcast_ref::<field::$field_mod::$field>() { return Some(Node::$field(op.clone())); } )*
-            $( if let Some(op) = op.downcast_ref::<filter::$filter_mod::$filter>() { return Some(Node::$filter(op.clone())); } )*
-            $( if let Some(op) = op.downcast_ref::<levelled::$levelled_mod::$levelled>() { return Some(Node::$levelled(op.clone())); } )*
-            $( if let Some(op) = op.downcast_ref::<solver::$solver_mod::$solver>() { return Some(Node::$solver(op.clone())); } )*
+            $( if let Some(op) = op.downcast_ref::<field::$field>() { return Some(Node::$field(op.clone())); } )*
+            $( if let Some(op) = op.downcast_ref::<filter::$filter>() { return Some(Node::$filter(op.clone())); } )*
+            $( if let Some(op) = op.downcast_ref::<levelled::$levelled>() { return Some(Node::$levelled(op.clone())); } )*
+            $( if let Some(op) = op.downcast_ref::<solver::$solver>() { return Some(Node::$solver(op.clone())); } )*
             None
         }
 

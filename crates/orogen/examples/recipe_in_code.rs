@@ -2,8 +2,8 @@
 //!
 //! `cargo run --release --example recipe_in_code`
 
-use orogen::field::{add::Add, edge::Edge, fbm::Fbm, multiply::Multiply, remap::Remap};
-use orogen::solver::normalise::Normalise;
+use orogen::field::{Add, Edge, Fbm, Multiply, Remap};
+use orogen::solver::Normalise;
 use orogen::{Recipe, World, WorldSpec};
 
 fn main() -> Result<(), orogen::Error> {

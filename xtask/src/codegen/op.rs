@@ -34,6 +34,17 @@ pub fn find(text: &str) -> Result<Option<Op>, String> {
     Ok(found)
 }
 
+/// The names of the public types of a source text, sorted: the op, and the choices of its parameters.
+pub fn public_types(text: &str) -> Vec<String> {
+    let named = |line: &str| {
+        let rest = line.trim().strip_prefix("pub struct ").or(line.trim().strip_prefix("pub enum "))?;
+        rest.split(|c: char| !c.is_alphanumeric()).next().map(str::to_owned)
+    };
+    let mut names: Vec<String> = text.lines().take_while(|line| *line != "#[cfg(test)]").filter_map(named).collect();
+    names.sort();
+    names
+}
+
 /// Whether a line is `op! {`, also with a path; not in a comment or a doc example.
 fn opens(line: &str) -> bool {
     let call = line.strip_prefix("crate::op::").or(line.strip_prefix("crate::")).unwrap_or(line);
@@ -76,6 +87,13 @@ op! {
     radius: f64 = 10.0,
 }
 "#;
+
+    #[test]
+    fn types_are_found_in_and_outside_of_macros() {
+        let text = format!("choice! {{\n    pub enum Edges {{\n    }}\n}}\n{BLUR}\n#[cfg(test)]\npub struct Test;\n");
+        assert_eq!(public_types(&text), ["Blur", "Edges"]);
+        assert_eq!(public_types("pub fn alone() {}\nstruct Hidden;\n"), [""; 0]);
+    }
 
     fn op(name: &str, op: &str, locality: &str) -> Op {
         Op { module: String::new(), name: name.into(), op: op.into(), locality: locality.into() }

@@ -15,7 +15,7 @@
 //! | [`Law::Cancel`] | work stops within [`LONGEST_CANCEL`] after a request to cancel |
 //!
 //! ```
-//! use orogen_engine::filter::blur::Blur;
+//! use orogen_engine::filter::Blur;
 //! use orogen_engine::laws::Laws;
 //!
 //! let violations = Laws::of(|cell| Blur { radius: 2.5 * cell, ..Blur::default() }).check();

@@ -3,8 +3,8 @@
 use crate::recipe::document::{Recipe, WorldSpec};
 use orogen_grid::grid::Window;
 use orogen_ops::declare::Input;
-use orogen_ops::field::{fbm::Fbm, perlin::Perlin};
-use orogen_ops::filter::blur::Blur;
+use orogen_ops::field::{Fbm, Perlin};
+use orogen_ops::filter::Blur;
 use orogen_ops::layer::Layer;
 use orogen_ops::node::Node;
 

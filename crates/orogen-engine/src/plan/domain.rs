@@ -48,7 +48,7 @@ fn whole_cells(length: f64, cell: f64, round: impl Fn(f64) -> f64) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use orogen_ops::solver::fill::Fill;
+    use orogen_ops::solver::Fill;
 
     #[test]
     fn domains_cover_the_world_and_its_margin() {

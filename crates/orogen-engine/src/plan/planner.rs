@@ -123,8 +123,8 @@ mod tests {
     use crate::recipe::document::WorldSpec;
     use crate::recipe::graph::LayerRef;
     use orogen_grid::error::ErrorKind;
-    use orogen_ops::field::fbm::Fbm;
-    use orogen_ops::filter::blur::Blur;
+    use orogen_ops::field::Fbm;
+    use orogen_ops::filter::Blur;
     use orogen_ops::ids::Id;
 
     #[test]

@@ -19,7 +19,7 @@ use orogen_io::format::dem::{Georeference, Request};
 use orogen_io::format::drawing::Drawing;
 use orogen_io::palette::histogram;
 use orogen_ops::declare::{Input, Shape};
-use orogen_ops::field::dem::Dem;
+use orogen_ops::field::Dem;
 use orogen_ops::node::Node;
 use orogen_ops::op::Op;
 use orogen_ops::value::{toml_key, toml_string};
@@ -48,8 +48,8 @@ pub struct NamedNode {
 /// A recipe: the complete description of a world.
 ///
 /// ```
-/// use orogen_engine::field::fbm::Fbm;
-/// use orogen_engine::solver::normalise::Normalise;
+/// use orogen_engine::field::Fbm;
+/// use orogen_engine::solver::Normalise;
 /// use orogen_engine::{Recipe, WorldSpec};
 ///
 /// let world = WorldSpec::default().with_seed(7).with_size(Some([2000.0, 2000.0])).with_cell(10.0);

@@ -27,8 +27,8 @@ use std::time::Duration;
 ///
 /// ```
 /// use orogen_engine::store::solution_store::{Entry, EntryKey, SolutionStore};
-/// use orogen_engine::field::fbm::Fbm;
-/// use orogen_engine::solver::normalise::Normalise;
+/// use orogen_engine::field::Fbm;
+/// use orogen_engine::solver::Normalise;
 /// use orogen_engine::{Options, Recipe, Session, Window, WorldSpec};
 /// use orogen_io::read_at::ReadAt;
 /// use std::collections::HashMap;

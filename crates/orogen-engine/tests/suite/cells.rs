@@ -1,7 +1,7 @@
 //! Solvers at a cell of their own.
 
 use orogen_engine::declare::Input;
-use orogen_engine::field::{fbm::Fbm, multiply::Multiply};
+use orogen_engine::field::{Fbm, Multiply};
 use orogen_engine::node::Node;
 use orogen_engine::value::Value;
 use orogen_engine::{Grid, Progress, Recipe, Window, World, WorldSpec};

@@ -1,7 +1,7 @@
 //! How a graphics card computes the built-in fields, filters, levels and solvers.
 
-use orogen_engine::levelled::amplify::Amplify;
-use orogen_engine::levelled::continents::Continents;
+use orogen_engine::levelled::Amplify;
+use orogen_engine::levelled::Continents;
 use orogen_engine::lower::{LevelPasses, Lowering};
 use orogen_engine::node::Node;
 use orogen_engine::op::{Levelled, Op, WorldParams};

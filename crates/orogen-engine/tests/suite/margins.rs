@@ -1,11 +1,11 @@
 //! Solvers whose domain extends beyond the world.
 
 use orogen_engine::declare::{Input, MARGIN};
-use orogen_engine::field::{fbm::Fbm, multiply::Multiply, transform::Transform};
+use orogen_engine::field::{Fbm, Multiply, Transform};
 use orogen_engine::laws::Laws;
 use orogen_engine::node::Node;
 use orogen_engine::op::{Context, Reading, Solution, Solver, Sources};
-use orogen_engine::solver::{drainage::Drainage, fill::Fill, normalise::Normalise};
+use orogen_engine::solver::{Drainage, Fill, Normalise};
 use orogen_engine::value::{Spanned, Value};
 use orogen_engine::{Budget, ErrorKind, Grid, Options, Progress, Recipe, Result, Window, World, WorldSpec};
 

@@ -1,7 +1,7 @@
 //! Strokes of the op `paint`.
 
 use orogen_engine::declare::strokes::{Stroke, StrokeMode};
-use orogen_engine::field::paint::Paint;
+use orogen_engine::field::Paint;
 use orogen_engine::{Recipe, World, WorldSpec};
 
 fn stroke(points: &[[f64; 2]], mode: StrokeMode, value: f64) -> Stroke {

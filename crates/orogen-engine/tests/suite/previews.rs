@@ -1,14 +1,14 @@
 //! Windows that a device computes, and what is kept of them.
 
 use orogen_engine::device::{Device, DeviceGrid, FilterExtent, LoweredProgram, PlanGrid};
-use orogen_engine::field::{fbm::Fbm, multiply::Multiply};
-use orogen_engine::filter::blur::Blur;
-use orogen_engine::filter::pipes::Pipes;
-use orogen_engine::levelled::amplify::Amplify;
+use orogen_engine::field::{Fbm, Multiply};
+use orogen_engine::filter::Blur;
+use orogen_engine::filter::Pipes;
+use orogen_engine::levelled::Amplify;
 use orogen_engine::lower::{Lowering, Passes};
 use orogen_engine::op::{Context, Solution, Solver, Sources, WorldParams};
-use orogen_engine::solver::drainage::Drainage;
-use orogen_engine::solver::normalise::Normalise;
+use orogen_engine::solver::Drainage;
+use orogen_engine::solver::Normalise;
 use orogen_engine::{Grid, Options, Progress, Recipe, Result, Session, Window, WorldSpec};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};

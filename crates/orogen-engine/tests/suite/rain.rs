@@ -1,11 +1,11 @@
 //! Drainage areas weighted by the rain.
 
 use orogen_engine::declare::Input;
-use orogen_engine::field::{fbm::Fbm, multiply::Multiply, ramp::Ramp};
+use orogen_engine::field::{Fbm, Multiply, Ramp};
 use orogen_engine::node::Node;
 use orogen_engine::session::Options;
-use orogen_engine::solver::drainage::{Drainage, Over};
-use orogen_engine::solver::stream_power::StreamPower;
+use orogen_engine::solver::StreamPower;
+use orogen_engine::solver::{DepressionRouting, Drainage};
 use orogen_engine::{Grid, Progress, Recipe, Window, World, WorldSpec};
 
 const CELL: f64 = 10.0;
@@ -38,7 +38,7 @@ fn bits(grids: &[Grid]) -> Vec<Vec<u32>> {
     grids.iter().map(|grid| grid.data().iter().map(|sample| sample.to_bits()).collect()).collect()
 }
 
-fn drainage(rain: Input, over: Over) -> Drainage {
+fn drainage(rain: Input, over: DepressionRouting) -> Drainage {
     Drainage { source: "land".into(), rain, over, stream: 8000.0, ..Drainage::default() }
 }
 
@@ -48,7 +48,7 @@ fn stream_power(rain: Input) -> StreamPower {
 
 #[test]
 fn even_rain_changes_nothing() {
-    for over in [Over::Bed, Over::Surface] {
+    for over in [DepressionRouting::Bed, DepressionRouting::Surface] {
         let made = |rain: Input, on_disk| bits(&layers_of(drainage(rain, over), 2, on_disk));
         let none = made(Input::None, None);
         assert_eq!(made(1.0.into(), None), none);
@@ -60,7 +60,7 @@ fn even_rain_changes_nothing() {
 
 #[test]
 fn rain_weights_the_flow_in_memory_and_on_disk() {
-    for over in [Over::Bed, Over::Surface] {
+    for over in [DepressionRouting::Bed, DepressionRouting::Surface] {
         let dry = layers_of(drainage(Input::None, over), 1, None);
         let wet = layers_of(drainage("rain".into(), over), 1, None);
         for (threads, side) in [(3, None), (1, Some(1000)), (2, Some(41))] {

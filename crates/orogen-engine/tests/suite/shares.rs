@@ -1,8 +1,8 @@
 //! Exact shares: in memory, on disk, with ties and without values.
 
-use orogen_engine::field::expr::Expr;
-use orogen_engine::field::{fbm::Fbm, multiply::Multiply};
-use orogen_engine::solver::select_share::SelectShare;
+use orogen_engine::field::Expr;
+use orogen_engine::field::{Fbm, Multiply};
+use orogen_engine::solver::SelectShare;
 use orogen_engine::{Budget, Options, Progress, Recipe, Window, World, WorldSpec};
 
 /// A world of 300 x 230 samples at 10 m with a mask of a share of the node `land`.

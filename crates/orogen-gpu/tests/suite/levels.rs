@@ -6,8 +6,8 @@ use crate::common::levels::{
     ALL_INPUTS, ALPINE_INPUTS, AREA, Chain, HEIGHT, NO_INPUTS, PLANES, RECEIVER, alpine, passes, windows,
 };
 use orogen_engine::device::{Device, LevelStep};
-use orogen_engine::levelled::amplify::Amplify;
-use orogen_engine::levelled::continents::Continents;
+use orogen_engine::levelled::Amplify;
+use orogen_engine::levelled::Continents;
 use orogen_engine::op::Levelled;
 use orogen_gpu::Gpu;
 use orogen_gpu::levels::refine;

@@ -1,6 +1,6 @@
 //! Noise on graphics cards against the processor's.
 
-use orogen_engine::field::gullies::Gullies;
+use orogen_engine::field::Gullies;
 use orogen_engine::lower::Lowering;
 use orogen_engine::op::{Field, Inputs, WorldParams};
 use orogen_gpu::gpu::Options;
@@ -334,22 +334,22 @@ const WORLD: WorldParams = WorldParams { seed: 5, size: None, cell: 1.0, sea_lev
 
 #[test]
 fn ops_of_noise_are_lowered() {
-    use orogen_engine::field::billow::Billow;
-    use orogen_engine::field::classic::Classic;
-    use orogen_engine::field::fbm::Fbm;
-    use orogen_engine::field::hetero::Hetero;
-    use orogen_engine::field::hybrid::Hybrid;
-    use orogen_engine::field::jordan::Jordan;
-    use orogen_engine::field::open_simplex2::OpenSimplex2;
-    use orogen_engine::field::perlin::Perlin;
-    use orogen_engine::field::ping_pong::PingPong;
-    use orogen_engine::field::ridged::Ridged;
-    use orogen_engine::field::simplex::Simplex;
-    use orogen_engine::field::swiss::Swiss;
-    use orogen_engine::field::value::Value;
-    use orogen_engine::field::weighted_fbm::WeightedFbm;
-    use orogen_engine::field::white::White;
-    use orogen_engine::field::worley::Worley;
+    use orogen_engine::field::Billow;
+    use orogen_engine::field::Classic;
+    use orogen_engine::field::Fbm;
+    use orogen_engine::field::Hetero;
+    use orogen_engine::field::Hybrid;
+    use orogen_engine::field::Jordan;
+    use orogen_engine::field::OpenSimplex2;
+    use orogen_engine::field::Perlin;
+    use orogen_engine::field::PingPong;
+    use orogen_engine::field::Ridged;
+    use orogen_engine::field::Simplex;
+    use orogen_engine::field::Swiss;
+    use orogen_engine::field::Value;
+    use orogen_engine::field::WeightedFbm;
+    use orogen_engine::field::White;
+    use orogen_engine::field::Worley;
     let gpu = Gpu::open(&Options::new(Choice::Any)).unwrap();
     let ops: Vec<Noise> = op![
         Billow,

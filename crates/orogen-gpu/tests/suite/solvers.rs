@@ -8,10 +8,10 @@ use orogen_engine::device::Device;
 use orogen_engine::lower::Lowering;
 use orogen_engine::node::Node;
 use orogen_engine::op::Op;
-use orogen_engine::solver::drainage::{Drainage, Over};
-use orogen_engine::solver::height_above_drainage::HeightAboveDrainage;
-use orogen_engine::solver::lakes::Lakes;
-use orogen_engine::solver::stream_power::StreamPower;
+use orogen_engine::solver::HeightAboveDrainage;
+use orogen_engine::solver::Lakes;
+use orogen_engine::solver::StreamPower;
+use orogen_engine::solver::{DepressionRouting, Drainage};
 use orogen_gpu::Failure;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::hydrology::direction::STEPS;
@@ -109,8 +109,9 @@ fn filled_ground_lakes_and_heights_above_drainage_are_those_of_the_processor() {
 #[test]
 fn drainage_is_that_of_the_processor() {
     let gpu = gpu();
-    for (over, window) in
-        [Over::Bed, Over::Surface].into_iter().flat_map(|over| windows().into_iter().map(move |window| (over, window)))
+    for (over, window) in [DepressionRouting::Bed, DepressionRouting::Surface]
+        .into_iter()
+        .flat_map(|over| windows().into_iter().map(move |window| (over, window)))
     {
         let node: Node = Drainage { over, stream: 5000.0, ..Default::default() }.into();
         for (land, heights) in lands(&window) {

@@ -1,9 +1,9 @@
 //! The fitted recipe: noise eroded by rivers, stretched and scaled.
 
-use orogen_engine::field::{curve::Curve, fbm::Fbm, remap::Remap, transform::Transform};
-use orogen_engine::filter::blur::Blur;
+use orogen_engine::field::{Curve, Fbm, Remap, Transform};
+use orogen_engine::filter::Blur;
 use orogen_engine::recipe::document::{Recipe, WorldSpec};
-use orogen_engine::solver::stream_power::StreamPower;
+use orogen_engine::solver::StreamPower;
 
 /// A parameter of the search.
 #[derive(Debug, Clone, Copy)]

@@ -12,7 +12,7 @@ use orogen_noise::shader::function::Shader;
 
 choice! {
     /// The classes of climates or biomes.
-    pub enum Scheme {
+    pub enum BiomeScheme {
         /// Ten biomes by mean temperature and rain (Whittaker 1975, as in Ricklefs 2008), with ice where no month is
         /// above 0 degrees C.
         Whittaker = "whittaker",
@@ -24,12 +24,12 @@ choice! {
     }
 }
 
-impl From<Scheme> for scheme::Scheme {
-    fn from(scheme: Scheme) -> scheme::Scheme {
+impl From<BiomeScheme> for scheme::Scheme {
+    fn from(scheme: BiomeScheme) -> scheme::Scheme {
         match scheme {
-            Scheme::Whittaker => scheme::Scheme::Whittaker,
-            Scheme::Holdridge => scheme::Scheme::Holdridge,
-            Scheme::KoppenGeiger => scheme::Scheme::KoppenGeiger,
+            BiomeScheme::Whittaker => scheme::Scheme::Whittaker,
+            BiomeScheme::Holdridge => scheme::Scheme::Holdridge,
+            BiomeScheme::KoppenGeiger => scheme::Scheme::KoppenGeiger,
         }
     }
 }
@@ -52,7 +52,7 @@ op! {
     }
     params {
         /// The classes.
-        scheme: Scheme = Scheme::Whittaker;
+        scheme: BiomeScheme = BiomeScheme::Whittaker;
         /// When rain falls, for `koppen-geiger`: 0 evenly over the year, 1 in summer, -1 in winter. The rain of a month
         /// is 1 + `rain_seasonality` cos t of the mean, with t = 0 in the warmest month.
         rain_seasonality: f64 = 0.0, range -1.0 to 1.0;
@@ -91,8 +91,8 @@ impl Field for Biome {
 
     fn cost(&self) -> f64 {
         match self.scheme {
-            Scheme::Whittaker => 5.0,
-            Scheme::Holdridge | Scheme::KoppenGeiger => 60.0,
+            BiomeScheme::Whittaker => 5.0,
+            BiomeScheme::Holdridge | BiomeScheme::KoppenGeiger => 60.0,
         }
     }
 

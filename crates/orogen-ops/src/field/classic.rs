@@ -8,7 +8,7 @@ use orogen_noise::shader::function::Shader;
 
 choice! {
     /// The gradient set of classic Perlin noise in 2D.
-    pub enum Variant {
+    pub enum ClassicVariant {
         /// Four diagonals, each listed twice, as in most textbook implementations.
         Diagonal = "diagonal",
         /// Four diagonals and four axis directions.
@@ -18,12 +18,12 @@ choice! {
     }
 }
 
-impl Variant {
+impl ClassicVariant {
     fn noise(self) -> orogen_noise::ClassicVariant {
         match self {
-            Variant::Diagonal => orogen_noise::ClassicVariant::Diagonal,
-            Variant::Eight => orogen_noise::ClassicVariant::Eight,
-            Variant::Angle => orogen_noise::ClassicVariant::Angle,
+            ClassicVariant::Diagonal => orogen_noise::ClassicVariant::Diagonal,
+            ClassicVariant::Eight => orogen_noise::ClassicVariant::Eight,
+            ClassicVariant::Angle => orogen_noise::ClassicVariant::Angle,
         }
     }
 }
@@ -39,7 +39,7 @@ op! {
         /// Distance between lattice points.
         wavelength: f64 = 1000.0, unit "m", range 1e-3 to 1e9, alias "scale";
         /// The gradient set.
-        variant: Variant = Variant::Diagonal;
+        variant: ClassicVariant = ClassicVariant::Diagonal;
     }
 }
 

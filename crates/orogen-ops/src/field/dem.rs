@@ -12,7 +12,7 @@ use orogen_noise::shader::function::Shader;
 
 choice! {
     /// What the field shows of a file of heights.
-    pub enum Shows {
+    pub enum DemShows {
         /// The heights, in metres.
         Height = "height",
         /// A mask of the file's extent: 1 inside, 0 outside, with a transition of width `fade`. Use it to mix the file
@@ -43,7 +43,7 @@ op! {
         /// Band of a multi-band file, counted from 1. 0 stands for the only band of a single-band file.
         band: u32 = 0, range 0.0 to 65535.0;
         /// What the field shows: heights, or a mask of the file's extent.
-        shows: Shows = Shows::Height;
+        shows: DemShows = DemShows::Height;
         /// Position of the file's north-west corner: metres east, metres south.
         at: [f64; 2] = [0.0, 0.0], unit "m", range -1e9 to 1e9;
         /// Factor applied to the heights.
@@ -67,7 +67,8 @@ impl Dem {
     /// and the window is not inside it.
     #[must_use]
     pub fn holds(&self, window: &Window) -> bool {
-        let Some(ground) = self.path.ground().filter(|ground| ground.is_part() && self.shows == Shows::Height) else {
+        let Some(ground) = self.path.ground().filter(|ground| ground.is_part() && self.shows == DemShows::Height)
+        else {
             return true;
         };
         let cell = ground.grid.window().cell;
@@ -104,7 +105,7 @@ impl Field for Dem {
         let cell = ground.grid.window().cell;
         let size = ground.size.map(|samples| (samples as f64 - 1.0) * cell);
         let finish = |xs: &[f64], ys: &[f64], points: &Points, out: &mut [f32]| {
-            if self.shows == Shows::Height {
+            if self.shows == DemShows::Height {
                 resample::read(&ground.grid, LayerKind::Height, points, out);
             }
             let lattice = matches!(points, Points::Lattice { .. });
@@ -116,8 +117,8 @@ impl Field for Dem {
                     false => self.beyond(x, y, size),
                 };
                 *sample = match self.shows {
-                    Shows::Inside => (1.0 - beyond) as f32,
-                    Shows::Height => {
+                    DemShows::Inside => (1.0 - beyond) as f32,
+                    DemShows::Height => {
                         let height = f64::from(*sample) * self.scale + self.offset;
                         let share = if self.fade == 0.0 { 0.0 } else { beyond };
                         (height + (self.outside - height) * share) as f32

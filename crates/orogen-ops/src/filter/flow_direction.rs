@@ -8,7 +8,7 @@ use orogen_grid::hydrology::direction::{Convention, NONE};
 
 choice! {
     /// Encoding of flow directions.
-    pub enum Codes {
+    pub enum FlowCodes {
         /// ArcGIS and pysheds: 1 east, 2 south-east, 4 south, 8 south-west, 16 west, 32 north-west, 64 north, 128
         /// north-east; 0 at outlets.
         Esri = "esri",
@@ -34,7 +34,7 @@ op! {
     }
     params {
         /// The target encoding.
-        codes: Codes = Codes::Esri;
+        codes: FlowCodes = FlowCodes::Esri;
     }
     layers {
         /// The flow direction.
@@ -68,11 +68,11 @@ impl Filter for FlowDirection {
 impl FlowDirection {
     fn convention(&self) -> Convention {
         match self.codes {
-            Codes::Esri => Convention::ESRI,
-            Codes::Grass => Convention::GRASS,
-            Codes::Taudem => Convention::TAUDEM,
-            Codes::Whitebox => Convention::WHITEBOX,
-            Codes::Pcraster => Convention::PCRASTER,
+            FlowCodes::Esri => Convention::ESRI,
+            FlowCodes::Grass => Convention::GRASS,
+            FlowCodes::Taudem => Convention::TAUDEM,
+            FlowCodes::Whitebox => Convention::WHITEBOX,
+            FlowCodes::Pcraster => Convention::PCRASTER,
         }
     }
 }

@@ -1,19 +1,36 @@
 //! Filters: ops that read a finite halo.
 
 // The list below is written by `cargo xtask codegen`.
-pub mod blur;
-pub mod distance;
-pub mod droplets;
-pub mod flow_direction;
-pub mod flow_indices;
-pub mod geomorphons;
-pub mod local_stream_power;
-pub mod pipes;
-pub mod ruggedness;
-pub mod select_aspect;
-pub mod select_curvature;
-pub mod select_slope;
-pub mod slope;
-pub mod soil_depth;
-pub mod thermal;
-pub mod topographic_position;
+mod blur;
+mod distance;
+mod droplets;
+mod flow_direction;
+mod flow_indices;
+mod geomorphons;
+mod local_stream_power;
+mod pipes;
+mod ruggedness;
+mod select_aspect;
+mod select_curvature;
+mod select_slope;
+mod slope;
+mod soil_depth;
+mod thermal;
+mod topographic_position;
+
+pub use blur::Blur;
+pub use distance::Distance;
+pub use droplets::Droplets;
+pub use flow_direction::{FlowCodes, FlowDirection};
+pub use flow_indices::FlowIndices;
+pub use geomorphons::{Comparison, Geomorphons};
+pub use local_stream_power::LocalStreamPower;
+pub use pipes::Pipes;
+pub use ruggedness::Ruggedness;
+pub use select_aspect::SelectAspect;
+pub use select_curvature::{CurvatureKind, SelectCurvature};
+pub use select_slope::SelectSlope;
+pub use slope::{Slope, SlopeUnit};
+pub use soil_depth::SoilDepth;
+pub use thermal::Thermal;
+pub use topographic_position::TopographicPosition;

@@ -10,7 +10,7 @@ use orogen_grid::parallel;
 
 choice! {
     /// Kind of curvature.
-    pub enum Bend {
+    pub enum CurvatureKind {
         /// Mean curvature: convex on summits and crests, concave in hollows.
         Total = "total",
         /// Profile curvature, along the slope: convex at the upper edge of a slope, concave at its foot.
@@ -33,7 +33,7 @@ op! {
     }
     params {
         /// Kind of curvature.
-        kind: Bend = Bend::Total;
+        kind: CurvatureKind = CurvatureKind::Total;
         /// Distance between the heights, rounded to whole samples.
         scale: f64 = 50.0, unit "m", range 0.0 to 1e6;
         /// Lowest and highest curvature where the mask is 1. Concave ground has negative curvature.
@@ -74,9 +74,9 @@ impl Filter for SelectCurvature {
         let apart = self.halo(window.cell);
         let distance = apart as f64 * window.cell;
         let kind = match self.kind {
-            Bend::Total => Curvature::Total,
-            Bend::Profile => Curvature::Profile,
-            Bend::Plan => Curvature::Plan,
+            CurvatureKind::Total => Curvature::Total,
+            CurvatureKind::Profile => Curvature::Profile,
+            CurvatureKind::Plan => Curvature::Plan,
         };
         context.progress.expect(window.height as f64);
         parallel::try_for_each(out.data_mut().chunks_mut(window.width.max(1)).enumerate(), |(j, row)| {
@@ -93,9 +93,9 @@ impl Filter for SelectCurvature {
     fn lower(&self, cell: f64, _: &WorldParams) -> Lowering<Passes> {
         let apart = self.halo(cell);
         let kind = match self.kind {
-            Bend::Total => 0.0,
-            Bend::Profile => 1.0,
-            Bend::Plan => 2.0,
+            CurvatureKind::Total => 0.0,
+            CurvatureKind::Profile => 1.0,
+            CurvatureKind::Plan => 2.0,
         };
         let mut numbers = vec![apart as f32, (apart as f64 * cell) as f32, kind];
         numbers.extend(Selection::new(self.range, self.falloff).numbers());

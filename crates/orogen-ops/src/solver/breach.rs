@@ -11,7 +11,7 @@ use orogen_grid::hydrology::least_cost::{self, Limits};
 
 choice! {
     /// Route of the breach channels.
-    pub enum Way {
+    pub enum BreachRoute {
         /// Along the valleys of the ground, from the bottom of the depression over its lowest spill point (Cordonnier,
         /// Bovy and Braun 2019).
         Valley = "valley",
@@ -40,7 +40,7 @@ op! {
         /// Maximum depth of a cut. 0 only fills.
         deepest: f64 = 50.0, unit "m", range 0.0 to 1e6;
         /// Route of the breach channels.
-        way: Way = Way::Valley;
+        way: BreachRoute = BreachRoute::Valley;
         /// Maximum length of a channel with `way = "least-cost"`.
         longest: f64 = 3000.0, unit "m", range 0.0 to 1e6;
         /// Whether cells at or below sea level are outlets.
@@ -63,8 +63,8 @@ impl Solver for Breach {
 
     fn scratch(&self, padded: &Window) -> u64 {
         let each = match self.way {
-            Way::Valley => 30,
-            Way::LeastCost => 60,
+            BreachRoute::Valley => 30,
+            BreachRoute::LeastCost => 60,
         };
         memory(padded, each)
     }
@@ -77,12 +77,12 @@ impl Solver for Breach {
         let land = Terrain::read(sources, self.sea, context)?;
         let deepest = self.deepest as f32;
         let out = match self.way {
-            Way::Valley => {
+            BreachRoute::Valley => {
                 let [routing, cutting] = context.progress.parts([2.0, 1.0]);
                 let drainage = land.route(&routing)?;
                 breach::breach_with(&land.heights, &land.outlets, &drainage, deepest, &cutting)?
             }
-            Way::LeastCost => {
+            BreachRoute::LeastCost => {
                 let longest = (self.longest / land.heights.window().cell).min(f64::from(u32::MAX)) as u32;
                 least_cost::breach(&land.heights, &land.outlets, &Limits::new(deepest, longest), context.progress)?
             }

@@ -15,7 +15,7 @@ use orogen_grid::hydrology::{drainage, fill, strahler, watersheds};
 
 choice! {
     /// Flow routing through depressions.
-    pub enum Over {
+    pub enum DepressionRouting {
         /// Carving: flow crosses a depression along its valleys to the pit and from there back up to the spill point
         /// (Cordonnier, Bovy and Braun 2019).
         Bed = "bed",
@@ -43,7 +43,7 @@ op! {
     }
     params {
         /// Flow routing through depressions: carving (`bed`) or filling (`surface`).
-        over: Over = Over::Bed;
+        over: DepressionRouting = DepressionRouting::Bed;
         /// Drainage area from which on a cell is a stream, for the layer `strahler`.
         stream: f64 = 1e6, unit "m^2", range 0.0 to 1e15;
         /// Whether cells at or below sea level are outlets.
@@ -99,8 +99,8 @@ impl Solver for Drainage {
         drop(heights);
         context.progress.check()?;
         let receivers = match self.over {
-            Over::Bed => drained.receivers,
-            Over::Surface => drainage::over_surface_with(&filled, &outlets, Descent::Steepest, &surface)?,
+            DepressionRouting::Bed => drained.receivers,
+            DepressionRouting::Surface => drainage::over_surface_with(&filled, &outlets, Descent::Steepest, &surface)?,
         };
         let filled = sources.keep(filled)?;
         surface.finish();
@@ -137,11 +137,11 @@ impl Solver for Drainage {
         let cell_area = ((padded.cell * padded.cell) as f32).to_bits();
         let own_words = [cell_area, cells_of(self.stream, padded, 0)];
         let sea_level = sea_level_of(self.sea, world_params);
-        let over_bed = if self.over == Over::Bed { Flats::Graded } else { Flats::Basins };
+        let over_bed = if self.over == DepressionRouting::Bed { Flats::Graded } else { Flats::Basins };
         let passes = routing::routed(CODE, padded, sea_level, &own_words, planes, over_bed);
         let (passes, turn) = routing::spill(passes, padded);
         let mut passes = then(passes, "fill", step(0, 0, turn));
-        if self.over == Over::Surface {
+        if self.over == DepressionRouting::Surface {
             let rounds = routing::all_rounds(padded);
             passes = routing::route(passes, padded, rounds, Flats::Graded, step(FILLED, 0, 0));
         }
@@ -175,7 +175,7 @@ impl Drainage {
         let (mut codes, mut filled) = (sources.raster()?, sources.raster()?);
         land.water(&land.heights, context.progress).route_carving(&mut codes, &mut filled)?;
         let water = land.water(&filled, context.progress);
-        if self.over == Over::Surface {
+        if self.over == DepressionRouting::Surface {
             water.over_surface(&mut codes)?;
         }
         let threshold = u64::from(cells_of(self.stream, sources.padded(), 0));

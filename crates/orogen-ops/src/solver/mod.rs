@@ -1,19 +1,34 @@
 //! Solvers: ops that read the whole bounded world.
 
 // The list below is written by `cargo xtask codegen`.
-pub mod bake;
-pub mod breach;
-pub mod dla;
-pub mod drainage;
-pub mod fill;
-pub mod height_above_drainage;
-pub mod insolation;
-pub mod lakes;
-pub mod normalise;
-pub mod orographic_rain;
-pub mod rivers;
-pub mod routing;
-pub mod select_share;
-pub mod stream_power;
-pub mod terrain;
-pub mod viewshed;
+mod bake;
+mod breach;
+mod dla;
+mod drainage;
+mod fill;
+mod height_above_drainage;
+mod insolation;
+mod lakes;
+mod normalise;
+mod orographic_rain;
+mod rivers;
+pub(crate) mod routing;
+mod select_share;
+mod stream_power;
+pub(crate) mod terrain;
+mod viewshed;
+
+pub use bake::Bake;
+pub use breach::{Breach, BreachRoute};
+pub use dla::Dla;
+pub use drainage::{DepressionRouting, Drainage};
+pub use fill::Fill;
+pub use height_above_drainage::HeightAboveDrainage;
+pub use insolation::Insolation;
+pub use lakes::Lakes;
+pub use normalise::Normalise;
+pub use orographic_rain::OrographicRain;
+pub use rivers::Rivers;
+pub use select_share::SelectShare;
+pub use stream_power::StreamPower;
+pub use viewshed::Viewshed;

@@ -4,11 +4,11 @@
 
 use super::density::DENSITY;
 use orogen_engine::Recipe;
-use orogen_engine::field::altitude::Altitude;
-use orogen_engine::field::expr::Expr;
-use orogen_engine::field::fbm::Fbm;
-use orogen_engine::field::resample::Resample;
-use orogen_engine::filter::distance::Distance;
+use orogen_engine::field::Altitude;
+use orogen_engine::field::Expr;
+use orogen_engine::field::Fbm;
+use orogen_engine::field::Resample;
+use orogen_engine::filter::Distance;
 use orogen_engine::recipe::class::document::CLASS;
 use orogen_engine::world::{HEIGHT, LAKES};
 use orogen_grid::error::{Error, ErrorKind, Result};

@@ -1,7 +1,7 @@
 //! Remapping of heights by a curve, before a mesh is made.
 
 use orogen_engine::declare::Input;
-use orogen_engine::field::curve::Curve;
+use orogen_engine::field::Curve;
 use orogen_engine::op::{Field, Inputs, WorldParams};
 use orogen_engine::recipe::document::WorldSpec;
 use orogen_grid::analysis::halo::Halo;

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use orogen::declare::{Input, Stroke, StrokeMode};
-use orogen::field::paint::Paint;
+use orogen::field::Paint;
 use orogen::node::Node;
 use orogen::recipe::document::Recipe;
 

@@ -3,8 +3,8 @@
 use crate::support::Random;
 use orogen::dem::open;
 use orogen::dem::prepared::PreparedDem;
-use orogen::field::dem::{Dem as Node, Shows};
-use orogen::filter::blur::Blur;
+use orogen::field::{Dem as Node, DemShows};
+use orogen::filter::Blur;
 use orogen::format::crs::keys::{self, GeoKeys};
 use orogen::format::crs::unit::Unit;
 use orogen::format::dem::{Dem, Part, Request};
@@ -450,7 +450,7 @@ fn a_dem_is_a_field() {
     assert_eq!(faded.height(-100.0, 30.0).unwrap(), -50.0);
     let half = faded.height(-50.0, 30.0).unwrap();
     assert!((half - (formula(0, 1) + 0.25 - 50.0) / 2.0).abs() < 1e-3, "{half}");
-    let inside = world(Node { fade: 100.0, shows: Shows::Inside, ..node("f32-strips.tif") }, None);
+    let inside = world(Node { fade: 100.0, shows: DemShows::Inside, ..node("f32-strips.tif") }, None);
     let at = |x: f64| inside.height(x, 30.0).unwrap();
     assert_eq!((at(5.0), at(-50.0), at(-100.0)), (1.0, 0.5, 0.0));
 }

@@ -2,13 +2,13 @@
 
 use crate::support::{laws_of, open, recipe_of, world_of};
 use orogen::declare::Shape;
-use orogen::field::{add::Add, constant::Constant, fbm::Fbm, perlin::Perlin, warp::Warp};
+use orogen::field::{Add, Constant, Fbm, Perlin, Warp};
 use orogen::ids::Id;
 use orogen::laws::{CELLS, Violation};
 use orogen::node::Node;
 use orogen::op::Op;
 use orogen::plan::steps::{Plan, Step};
-use orogen::solver::normalise::Normalise;
+use orogen::solver::Normalise;
 use orogen::value::Value;
 use orogen::{Grid, Progress, Recipe, Window, World, WorldSpec};
 

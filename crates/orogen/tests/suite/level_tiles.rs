@@ -2,7 +2,7 @@
 
 use orogen::op::{Context, Levelled, Levels};
 use orogen::read_at::ReadAt;
-use orogen::solver::normalise::Normalise;
+use orogen::solver::Normalise;
 use orogen::store::solution_store::{Entry, EntryKey};
 use orogen::test_folder::TestFolder;
 use orogen::{

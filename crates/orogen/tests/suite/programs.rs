@@ -322,7 +322,7 @@ fn layers_masks_and_names_in_expressions() {
     let world = World::open(recipe).unwrap();
     assert!(world.window("height", &Window::new(8, 8, 10.0)).is_ok());
     // In code.
-    use orogen::field::{expr::Expr, fbm::Fbm};
+    use orogen::field::{Expr, Fbm};
     let mut recipe = Recipe::new(orogen::WorldSpec::default());
     recipe.add("base", Fbm::default()).add("n", Expr::new("base * gain").with("gain", 3.0)).output("height", "n");
     let thrice = World::open(recipe.clone()).unwrap().height(50.0, 50.0).unwrap();

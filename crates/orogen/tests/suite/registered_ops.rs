@@ -158,7 +158,7 @@ fn recipes_of_them_are_written_and_read_again() {
     assert_eq!(code, registry.parse(toml, "t").unwrap());
     let Node::Registered(op) = &code.nodes()[0].node else { panic!("not a built-in op") };
     assert!(op.get::<Ripples>().is_some_and(|op| op.wave == Wave::Square) && op.get::<Crests>().is_none());
-    assert!(matches!(Node::from(orogen::field::fbm::Fbm::default()), Node::Fbm(_)), "a built-in op stays one");
+    assert!(matches!(Node::from(orogen::field::Fbm::default()), Node::Fbm(_)), "a built-in op stays one");
 }
 
 #[test]
@@ -173,7 +173,7 @@ fn used_recipes_may_have_them() {
     let recipe = read(&registry()).unwrap();
     let by_hand = |seed| {
         let mut recipe = Recipe::new(WorldSpec::default());
-        recipe.add("n", orogen::field::fbm::Fbm::default());
+        recipe.add("n", orogen::field::Fbm::default());
         recipe.add("r", Ripples { source: "n".into(), seed, ..Ripples::default() }).output("height", "r");
         World::open(recipe).unwrap().window("height", &window()).unwrap()
     };
@@ -262,7 +262,7 @@ fn bad_and_double_names_are_refused() {
         (refuses::<refused::Gray>(&registry), "another spelling of the op `mygame.grey`"),
         (refuses::<refused::Masked>(&registry), "a key `mask`"),
         (refuses::<refused::Outside>(&registry), "defaults: `value` must be a finite number from 0 to 10"),
-        (refuses::<orogen::field::fbm::Fbm>(&registry), "a built-in op"),
+        (refuses::<orogen::field::Fbm>(&registry), "a built-in op"),
     ] {
         assert!(error.contains(said), "{said} is not in: {error}");
     }

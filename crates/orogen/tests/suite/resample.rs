@@ -2,8 +2,8 @@
 
 use crate::support::open;
 use orogen::declare::Input;
-use orogen::field::{fbm::Fbm, resample::Resample, warp::Warp};
-use orogen::filter::{geomorphons::Geomorphons, thermal::Thermal};
+use orogen::field::{Fbm, Resample, Warp};
+use orogen::filter::{Geomorphons, Thermal};
 use orogen::resample::{self, LayerKind};
 use orogen::tiles::Tiling;
 use orogen::{Budget, ErrorKind, Grid, Options, Points, Progress, Recipe, Sampler, Window, World, WorldSpec};
@@ -16,7 +16,7 @@ fn recipe(size: Option<f64>, cell: f64) -> Recipe {
     let mut recipe =
         Recipe::new(WorldSpec::default().with_seed(5).with_size(size.map(|side| [side; 2])).with_cell(CELL));
     recipe.add("noise", Fbm { wavelength: 700.0, octaves: 5, ..Fbm::default() });
-    recipe.add("heights", orogen::field::multiply::Multiply { a: "noise".into(), b: 400.0.into() });
+    recipe.add("heights", orogen::field::Multiply { a: "noise".into(), b: 400.0.into() });
     recipe.add("worn", Thermal { source: "heights".into(), talus_angle: 20.0, iterations: 6, ..Thermal::default() });
     recipe.add("land", Resample { source: "worn".into(), cell, ..Resample::default() });
     recipe.output("height", "land").output("worn", "worn");

@@ -1,8 +1,8 @@
 //! A sampler returns the values of its world, independent of earlier requests and the number of threads.
 
 use crate::support::{Random, open, recipe_of, world_of};
-use orogen::field::{fbm::Fbm, warp::Warp};
-use orogen::filter::blur::Blur;
+use orogen::field::{Fbm, Warp};
+use orogen::filter::Blur;
 use orogen::node::Node;
 use orogen::{Budget, ErrorKind, Options, Recipe, Sampler, Window, World, WorldSpec};
 use std::sync::Arc;

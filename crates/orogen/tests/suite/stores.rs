@@ -1,10 +1,10 @@
 //! The storage of solutions changes no bit: in memory, on disk, in a cache folder for later runs.
 
 use crate::support::world_of;
-use orogen::field::{fbm::Fbm, warp::Warp};
-use orogen::filter::{blur::Blur, slope::Slope};
+use orogen::field::{Fbm, Warp};
+use orogen::filter::{Blur, Slope};
 use orogen::read_at::ReadAt;
-use orogen::solver::{bake::Bake, normalise::Normalise};
+use orogen::solver::{Bake, Normalise};
 use orogen::store::solution_store::{Entry, EntryKey};
 use orogen::test_folder::TestFolder;
 use orogen::{

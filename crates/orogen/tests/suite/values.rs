@@ -1,8 +1,8 @@
 //! Compares the values of each op with its documentation, computed independently.
 
 use crate::support::open;
-use orogen::field::{edge, radial::Radial, ramp::Ramp, transform::Transform, warp::Warp};
-use orogen::filter::{blur::Blur, slope};
+use orogen::field::{Corners, Edge, Radial, Ramp, Transform, Warp};
+use orogen::filter::{Blur, Slope, SlopeUnit};
 use orogen::node::Node;
 use orogen::{Recipe, Window, World, WorldSpec};
 
@@ -49,13 +49,13 @@ fn ramps_rise_where_they_say() {
 fn radial_and_edge_fall_off() {
     let hill = of(vec![("r", Radial { center: [500.0, 400.0], radius: 200.0, inner: 100.0 }.into())]);
     near(&hill, &[(500.0, 400.0, 1.0), (590.0, 400.0, 1.0), (500.0, 550.0, 0.5), (500.0, 600.0, 0.0), (0.0, 0.0, 0.0)]);
-    let rim = |corners| of(vec![("e", edge::Edge { width: 200.0, corners }.into())]);
-    let square = rim(edge::Corners::Square);
+    let rim = |corners| of(vec![("e", Edge { width: 200.0, corners }.into())]);
+    let square = rim(Corners::Square);
     near(
         &square,
         &[(0.0, 500.0, 0.0), (1000.0, 1000.0, 0.0), (100.0, 500.0, 0.5), (100.0, 100.0, 0.5), (500.0, 800.0, 1.0)],
     );
-    let round = rim(edge::Corners::Round);
+    let round = rim(Corners::Round);
     near(&round, &[(100.0, 500.0, 0.5), (500.0, 500.0, 1.0), (0.0, 0.0, 0.0), (200.0, 500.0, 1.0)]);
     assert!(round.height(100.0, 100.0).unwrap() < 0.5, "corners are rounded off");
 }
@@ -120,7 +120,7 @@ fn warp_reads_the_source_where_it_is_sent() {
 
 #[test]
 fn blur_is_the_gaussian_mean() {
-    let noise = orogen::field::white::White { seed: 3, wavelength: 10.0, ..Default::default() };
+    let noise = orogen::field::White { seed: 3, wavelength: 10.0, ..Default::default() };
     let sharp = of(vec![("n", noise.clone().into())]);
     let radius = 23.0;
     let soft = of(vec![("n", noise.into()), ("b", Blur { source: "n".into(), radius }.into())]);
@@ -146,13 +146,13 @@ fn blur_is_the_gaussian_mean() {
 #[test]
 fn slope_of_a_plane_is_its_slope() {
     let plane = Ramp { azimuth: 137.0, length: 2.0, origin: [0.0, 0.0] };
-    let told = |unit| of(vec![("r", plane.clone().into()), ("s", slope::Slope { source: "r".into(), unit }.into())]);
+    let told = |unit| of(vec![("r", plane.clone().into()), ("s", Slope { source: "r".into(), unit }.into())]);
     let close = |world: World, expect: f32| {
         let made = world.height(500.0, 500.0).unwrap();
         assert!((made - expect).abs() < 1e-3, "{made}, expected {expect}");
     };
-    close(told(slope::SlopeUnit::Ratio), 0.5);
-    close(told(slope::SlopeUnit::Degrees), 26.565_05);
+    close(told(SlopeUnit::Ratio), 0.5);
+    close(told(SlopeUnit::Degrees), 26.565_05);
 }
 
 #[test]

@@ -5,9 +5,9 @@ use crate::recipe::condition::expand::ShareNodes;
 use crate::recipe::document::Recipe;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_ops::declare::Input;
-use orogen_ops::field::expr::Expr;
-use orogen_ops::field::label::Label;
-use orogen_ops::solver::select_share::SelectShare;
+use orogen_ops::field::Expr;
+use orogen_ops::field::Label;
+use orogen_ops::solver::SelectShare;
 
 /// Adds the nodes to a recipe that compute its classes, and the output with their numbers, unless they exist. Opening a
 /// world does this. Shares are exact at the world's cell.

@@ -6,16 +6,16 @@ use std::collections::HashSet;
 use super::document::{Condition, Noise, Quantity};
 use crate::recipe::document::Recipe;
 use orogen_ops::declare::Input;
-use orogen_ops::field::constant::Constant;
-use orogen_ops::field::fbm::Fbm;
-use orogen_ops::field::max::Max;
-use orogen_ops::field::multiply::Multiply;
-use orogen_ops::field::select_flow::SelectFlow;
-use orogen_ops::field::select_height::SelectHeight;
-use orogen_ops::filter::select_curvature::SelectCurvature;
-use orogen_ops::filter::select_slope::SelectSlope;
+use orogen_ops::field::Constant;
+use orogen_ops::field::Fbm;
+use orogen_ops::field::Max;
+use orogen_ops::field::Multiply;
+use orogen_ops::field::SelectFlow;
+use orogen_ops::field::SelectHeight;
+use orogen_ops::filter::SelectCurvature;
+use orogen_ops::filter::SelectSlope;
 use orogen_ops::node::Node;
-use orogen_ops::solver::drainage::Drainage;
+use orogen_ops::solver::Drainage;
 
 /// The output with drainage areas, if a recipe has one.
 const FLOW: &str = "flow";

@@ -6,10 +6,10 @@ use super::standard;
 use crate::recipe::condition::expand::ShareNodes;
 use crate::recipe::document::Recipe;
 use orogen_ops::declare::Input;
-use orogen_ops::field::curve::Curve;
-use orogen_ops::field::fbm::Fbm;
-use orogen_ops::field::remap::Remap;
-use orogen_ops::filter::slope::Slope;
+use orogen_ops::field::Curve;
+use orogen_ops::field::Fbm;
+use orogen_ops::field::Remap;
+use orogen_ops::filter::Slope;
 
 /// The output with the heights.
 const HEIGHT: &str = "height";

@@ -2,20 +2,20 @@
 #![allow(dead_code, clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
 use orogen_engine::device::{Device, FilterExtent, PlanGrid};
-use orogen_engine::filter::blur::Blur;
-use orogen_engine::filter::distance::Distance;
-use orogen_engine::filter::flow_direction::{Codes, FlowDirection};
-use orogen_engine::filter::flow_indices::FlowIndices;
-use orogen_engine::filter::geomorphons::{Comparison, Geomorphons};
-use orogen_engine::filter::local_stream_power::LocalStreamPower;
-use orogen_engine::filter::pipes::Pipes;
-use orogen_engine::filter::select_aspect::SelectAspect;
-use orogen_engine::filter::select_curvature::{Bend, SelectCurvature};
-use orogen_engine::filter::select_slope::SelectSlope;
-use orogen_engine::filter::slope::{Slope, SlopeUnit};
-use orogen_engine::filter::soil_depth::SoilDepth;
-use orogen_engine::filter::thermal::Thermal;
-use orogen_engine::filter::topographic_position::TopographicPosition;
+use orogen_engine::filter::Blur;
+use orogen_engine::filter::Distance;
+use orogen_engine::filter::FlowIndices;
+use orogen_engine::filter::LocalStreamPower;
+use orogen_engine::filter::Pipes;
+use orogen_engine::filter::SelectAspect;
+use orogen_engine::filter::SelectSlope;
+use orogen_engine::filter::SoilDepth;
+use orogen_engine::filter::Thermal;
+use orogen_engine::filter::TopographicPosition;
+use orogen_engine::filter::{Comparison, Geomorphons};
+use orogen_engine::filter::{CurvatureKind, SelectCurvature};
+use orogen_engine::filter::{FlowCodes, FlowDirection};
+use orogen_engine::filter::{Slope, SlopeUnit};
 use orogen_engine::lower::{Lowering, Passes};
 use orogen_engine::node::Node;
 use orogen_engine::op::{Context, Filter, Op, WorldParams};
@@ -205,7 +205,7 @@ pub fn variants(node: &Node) -> Vec<Node> {
                 .into(),
             SelectAspect { direction: -80.0, width: 100.0, falloff: 80.0, ..Default::default() }.into(),
         ],
-        "select-curvature" => [Bend::Total, Bend::Profile, Bend::Plan]
+        "select-curvature" => [CurvatureKind::Total, CurvatureKind::Profile, CurvatureKind::Plan]
             .map(|kind| {
                 let (range, falloff) = ([-2e-3, 3e-3], [0.05, 0.02]);
                 SelectCurvature { kind, scale: 2.0, range, falloff, ..Default::default() }.into()
@@ -223,7 +223,7 @@ pub fn variants(node: &Node) -> Vec<Node> {
             Geomorphons { comparison: Comparison::Difference, reach: 90.0, flat: 4.0, ..Default::default() }.into(),
             Geomorphons { reach: 1.0, flat: 0.0, ..Default::default() }.into(),
         ],
-        "flow-direction" => [Codes::Grass, Codes::Taudem, Codes::Whitebox, Codes::Pcraster]
+        "flow-direction" => [FlowCodes::Grass, FlowCodes::Taudem, FlowCodes::Whitebox, FlowCodes::Pcraster]
             .map(|codes| FlowDirection { codes, ..Default::default() }.into())
             .to_vec(),
         "flow-indices" => vec![FlowIndices { least_slope: 0.1, ..Default::default() }.into()],

@@ -3,7 +3,7 @@
 
 use super::filters::sampled;
 use orogen_engine::device::LevelStep;
-use orogen_engine::levelled::amplify::Amplify;
+use orogen_engine::levelled::Amplify;
 use orogen_engine::lower::{LevelPasses, Lowering};
 use orogen_engine::op::{Context, Levelled, WorldParams};
 use orogen_engine::{Options, Recipe, Session};

@@ -2,11 +2,11 @@
 
 use crate::options::{OptionSpec, Options, ValueKind};
 use orogen_engine::declare::Input;
-use orogen_engine::field::expr::Expr;
+use orogen_engine::field::Expr;
 use orogen_engine::node::Node;
 use orogen_engine::recipe::document::Recipe;
 use orogen_engine::recipe::network::OwnNetwork;
-use orogen_engine::solver::drainage::Drainage;
+use orogen_engine::solver::Drainage;
 
 /// The option for the drainage area at which streams start.
 pub const STREAM: OptionSpec = OptionSpec::new(

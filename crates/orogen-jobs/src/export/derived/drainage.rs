@@ -3,8 +3,8 @@
 use super::appended::STREAM;
 use super::layer::{Derived, Made, NodeLayer};
 use crate::options::{OptionSpec, ValueKind};
-use orogen_engine::filter::flow_direction::{Codes, FlowDirection};
-use orogen_engine::solver::fill::Fill;
+use orogen_engine::filter::{FlowCodes, FlowDirection};
+use orogen_engine::solver::Fill;
 
 /// Option for the codes of directions: esri (1 east, 2 south-east, 4 south ...), grass, taudem, whitebox or pcraster.
 const CODES: OptionSpec = OptionSpec::new(
@@ -34,11 +34,11 @@ pub static DIRECTION: Derived = Derived {
         network: true,
         append: |to| {
             let codes = match to.options().word(CODES.name) {
-                Some("grass") => Codes::Grass,
-                Some("taudem") => Codes::Taudem,
-                Some("whitebox") => Codes::Whitebox,
-                Some("pcraster") => Codes::Pcraster,
-                _ => Codes::Esri,
+                Some("grass") => FlowCodes::Grass,
+                Some("taudem") => FlowCodes::Taudem,
+                Some("whitebox") => FlowCodes::Whitebox,
+                Some("pcraster") => FlowCodes::Pcraster,
+                _ => FlowCodes::Esri,
             };
             let source = to.receiver();
             Ok(to.add(FlowDirection { source, codes }).layer("direction"))

@@ -2,7 +2,7 @@
 
 use super::layer::{Derived, Made, NodeLayer};
 use crate::options::{OptionSpec, ValueKind};
-use orogen_engine::filter::geomorphons::Geomorphons;
+use orogen_engine::filter::Geomorphons;
 
 /// Option for the search radius, in metres.
 const REACH: OptionSpec = OptionSpec::new(

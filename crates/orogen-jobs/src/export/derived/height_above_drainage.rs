@@ -2,7 +2,7 @@
 
 use super::appended::{Appended, AppendedNode, STREAM};
 use super::layer::{Derived, Made, NodeLayer};
-use orogen_engine::solver::height_above_drainage::HeightAboveDrainage;
+use orogen_engine::solver::HeightAboveDrainage;
 
 /// Appends the node.
 fn append(to: &mut Appended) -> AppendedNode {

@@ -3,7 +3,7 @@
 use super::appended::Appended;
 use super::layer::{Derived, Made, NodeLayer};
 use crate::options::{OptionSpec, ValueKind};
-use orogen_engine::solver::insolation::Insolation;
+use orogen_engine::solver::Insolation;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_io::dem::latitude;
 

@@ -3,7 +3,7 @@
 use super::appended::{Appended, AppendedNode};
 use super::layer::{Derived, Made, NodeLayer};
 use crate::options::{OptionSpec, ValueKind};
-use orogen_engine::filter::topographic_position::TopographicPosition;
+use orogen_engine::filter::TopographicPosition;
 
 /// Option for the radius of the disc, in metres.
 const RADIUS: OptionSpec =

@@ -1,7 +1,7 @@
 //! The layer `tri`.
 
 use super::layer::{Derived, Made, NodeLayer};
-use orogen_engine::filter::ruggedness::Ruggedness;
+use orogen_engine::filter::Ruggedness;
 
 /// The layer.
 pub static LAYER: Derived = Derived {

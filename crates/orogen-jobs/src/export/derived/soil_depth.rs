@@ -1,7 +1,7 @@
 //! The layer `soil-depth`.
 
 use super::layer::{Derived, Made, NodeLayer};
-use orogen_engine::filter::soil_depth::SoilDepth;
+use orogen_engine::filter::SoilDepth;
 
 /// The layer.
 pub static LAYER: Derived = Derived {

@@ -2,7 +2,7 @@
 
 use super::layer::{Derived, Made, NodeLayer};
 use crate::options::{OptionSpec, ValueKind};
-use orogen_engine::solver::viewshed::Viewshed;
+use orogen_engine::solver::Viewshed;
 use orogen_grid::error::{Error, ErrorKind};
 
 /// Option for the position of the observer.

@@ -2,7 +2,7 @@
 
 use super::appended::{Appended, AppendedNode};
 use super::layer::{Derived, Made, NodeLayer};
-use orogen_engine::filter::flow_indices::FlowIndices;
+use orogen_engine::filter::FlowIndices;
 
 /// Appends the nodes.
 fn append(to: &mut Appended) -> AppendedNode {

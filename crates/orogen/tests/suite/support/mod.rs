@@ -3,7 +3,7 @@
 pub mod water;
 
 use orogen::declare::{Input, Param as _, Stroke, StrokeMode, Strokes};
-use orogen::field::remap::Remap;
+use orogen::field::Remap;
 use orogen::laws::{self, Laws};
 use orogen::node::Node;
 use orogen::value::{Spanned, Value};
