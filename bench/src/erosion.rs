@@ -5,11 +5,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use cpu_time::ThreadTime;
-use orogen::hydrology::accumulation::accumulate;
-use orogen::hydrology::outlets::Outlets;
-use orogen::hydrology::steepest::Descent;
-use orogen::hydrology::stream_power::{StreamPower, Substrate};
-use orogen::hydrology::{drainage, fill};
+use orogen::grid::hydrology::steepest::Descent;
+use orogen::grid::hydrology::{Outlets, StreamPower, Substrate, accumulate, drainage, fill};
 use orogen::{Grid, Recipe, Window, World};
 use serde_json::{Value, json};
 
@@ -127,12 +124,12 @@ fn seconds(work: fn(&Grid), ground: &Grid) -> f64 {
 }
 
 fn filled(ground: &Grid) -> Grid {
-    fill::fill(ground, &Outlets::new(ground, None))
+    fill(ground, &Outlets::new(ground, None))
 }
 
 fn over_surface(ground: &Grid) {
     let outlets = Outlets::new(ground, None);
-    let filled = fill::fill(ground, &outlets);
+    let filled = fill(ground, &outlets);
     std::hint::black_box(accumulate(&drainage::over_surface(&filled, &outlets, Descent::Steepest)));
 }
 
@@ -159,7 +156,7 @@ fn peer_seconds(
     parts: &[&str],
 ) -> Result<f64, String> {
     let file = folder.join("ground.npy");
-    let written = std::fs::File::create(&file).and_then(|mut out| orogen::format::npy::write(&mut out, ground));
+    let written = std::fs::File::create(&file).and_then(|mut out| orogen::io::format::npy::write(&mut out, ground));
     written.map_err(|e| format!("{}: {e}", file.display()))?;
     let script = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("peers/erosion.py");
     let mut command = Command::new(python);

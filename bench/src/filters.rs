@@ -5,13 +5,11 @@ use std::time::Instant;
 
 use cpu_time::ThreadTime;
 use orogen::Grid;
-use orogen::analysis::hillshade::{Light, hillshade};
-use orogen::analysis::slope::extended;
-use orogen::erosion::droplets::Droplets;
-use orogen::erosion::local_stream_power::{self, LocalStreamPower};
-use orogen::erosion::pipes::{self, Pipes, Wet};
-use orogen::erosion::planes::Planes;
-use orogen::erosion::thermal::Thermal;
+use orogen::grid::analysis::slope::extended;
+use orogen::grid::analysis::{Light, hillshade};
+use orogen::grid::erosion::pipes::Wet;
+use orogen::grid::erosion::planes::Planes;
+use orogen::grid::erosion::{Droplets, LocalStreamPower, Pipes, Thermal, local_stream_power, pipes};
 
 use crate::measure::median;
 use crate::options::Options;

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use orogen::gpu::gpu::Options as GpuOptions;
 use orogen::gpu::{Choice, Gpu, adapters::Kind};
-use orogen::jobs::render::RenderJob;
+use orogen::jobs::RenderJob;
 use orogen::node::Node;
 use orogen::{Options as SessionOptions, Progress, Recipe, Session, Window, presets};
 use serde_json::{Value, json};

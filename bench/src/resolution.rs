@@ -1,7 +1,7 @@
 //! Area `resolution`: the differences of each preset at larger cells. Nothing is timed.
 
 use orogen::layer::LayerKind;
-use orogen::{Grid, Points, Window, World, presets, resample};
+use orogen::{Grid, Points, Window, World, grid::resample, presets};
 use serde_json::{Value, json};
 
 use crate::options::Options;

@@ -5,13 +5,12 @@ mod streamed;
 
 use std::time::Instant;
 
-use orogen::autotile::choose::{ClassTiles, Tiles, Variant, layers};
-use orogen::autotile::classes::Classes;
-use orogen::autotile::clean::clean;
-use orogen::autotile::drawable::Drawable;
-use orogen::autotile::mask::{Layout, SIMPLE_BLOB};
-use orogen::blocks::land::{Land, prepare};
-use orogen::blocks::levels::{DEFAULT_BELOW, Extent};
+use orogen::grid::autotile::choose::{Variant, layers};
+use orogen::grid::autotile::mask::SIMPLE_BLOB;
+use orogen::grid::autotile::{ClassTiles, Classes, Drawable, Layout, Tiles, clean};
+use orogen::output::blocks::land::prepare;
+use orogen::output::blocks::levels::DEFAULT_BELOW;
+use orogen::output::blocks::{Extent, Land};
 use orogen::{Progress, Recipe, Window, World, presets};
 use serde_json::{Value, json};
 
@@ -129,7 +128,7 @@ pub fn run(options: &Options) -> Result<Value, String> {
         for _ in 0..options.repetitions.div_ceil(2) {
             let begun = Instant::now();
             let class = |height: &f32| THRESHOLDS.iter().filter(|from| height >= from).count() as u8;
-            let samples = orogen::parallel::samples(grid.data().len(), |at| class(&grid.data()[at]));
+            let samples = orogen::grid::parallel::samples(grid.data().len(), |at| class(&grid.data()[at]));
             let mut classes = Classes::new([0, 0], SIDE, SIDE, samples);
             let classified = begun.elapsed().as_secs_f64();
             clean(&mut classes, &drawable, &Progress::none()).map_err(|e| e.to_string())?;

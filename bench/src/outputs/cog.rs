@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 
 use cpu_time::ThreadTime;
 use orogen::Grid;
-use orogen::format::geotiff::{options::Options as Layout, writer};
-use orogen::format::raw;
-use orogen::spool::Spool;
+use orogen::io::format::geotiff::{options::Options as Layout, writer};
+use orogen::io::format::raw;
+use orogen::io::spool::Spool;
 
 use super::ground::ground;
 use crate::measure::median;

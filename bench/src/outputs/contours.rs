@@ -3,7 +3,7 @@
 use std::hint::black_box;
 
 use cpu_time::ThreadTime;
-use orogen::contour::trace::contours;
+use orogen::grid::contour::contours;
 
 use super::ground::ground;
 use super::python;

@@ -7,8 +7,8 @@ use std::io;
 use cpu_time::ThreadTime;
 use miniz_oxide::deflate::compress_to_vec_zlib;
 use orogen::Grid;
-use orogen::format::exr::{Picture, Sample, Writer};
-use orogen::spool::Spool;
+use orogen::io::format::exr::{Picture, Sample, Writer};
+use orogen::io::spool::Spool;
 
 use super::counted::Counted;
 use super::ground::ground;

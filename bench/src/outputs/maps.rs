@@ -4,11 +4,9 @@ use std::io::{self, Write};
 use std::time::Instant;
 
 use orogen::Grid;
-use orogen::map::paint::Painter;
-use orogen::palette::named;
-use orogen::sheet::draw::draw;
-use orogen::sheet::options::SheetOptions;
-use orogen::sheet::raster;
+use orogen::io::palette::named;
+use orogen::output::map::Painter;
+use orogen::output::sheet::{SheetOptions, draw, raster};
 
 use super::ground::ground;
 use crate::measure::median;

@@ -3,12 +3,10 @@
 use std::hint::black_box;
 
 use cpu_time::ThreadTime;
-use orogen::analysis::halo::Halo;
-use orogen::map::paint::Painter;
-use orogen::mesh::adaptive::adaptive;
-use orogen::mesh::glb::{Model, write as write_glb};
-use orogen::mesh::shape::Shape;
-use orogen::mesh::surface::Surface;
+use orogen::grid::analysis::halo::Halo;
+use orogen::output::map::Painter;
+use orogen::output::mesh::glb::write as write_glb;
+use orogen::output::mesh::{Model, Shape, Surface, adaptive};
 use orogen::{Grid, World};
 
 use super::counted::Counted;

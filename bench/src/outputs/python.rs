@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::process::Command;
 
 use orogen::Grid;
-use orogen::format::npy;
+use orogen::io::format::npy;
 use serde_json::Value;
 
 use crate::measure::median;

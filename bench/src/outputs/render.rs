@@ -3,9 +3,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use orogen::render::camera::{CameraSpec, View};
-use orogen::render::relief::Land;
-use orogen::render::scene::{Scene, Style};
+use orogen::output::render::{CameraSpec, Land, Scene, Style, View};
 use orogen::{Progress, World, presets};
 
 use crate::measure::median;

@@ -7,11 +7,9 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use orogen::export::derived::list;
 use orogen::export::registry;
-use orogen::jobs::blocks::BlocksJob;
-use orogen::jobs::map::MapJob;
-use orogen::jobs::render::RenderJob;
+use orogen::jobs::{BlocksJob, MapJob, RenderJob};
 use orogen::options::{Choice, Condition, OptionSpec, Options, ValueKind};
-use orogen::tilemap::job::TilemapJob;
+use orogen::tilemap::TilemapJob;
 
 /// A source of option declarations.
 pub trait Declares {
@@ -30,7 +28,7 @@ impl Declares for Formats {
     const HEADING: Option<&str> = Some("Format options [formats that take them]");
 
     fn options() -> Vec<(&'static OptionSpec, Vec<&'static str>)> {
-        let names = |(spec, formats): (_, Vec<&orogen::export::format::Format>)| {
+        let names = |(spec, formats): (_, Vec<&orogen::export::Format>)| {
             (spec, formats.iter().map(|format| format.name).collect())
         };
         registry::options().into_iter().map(names).collect()

@@ -45,7 +45,7 @@ mod with_gpu {
     use orogen::budget::Reservation;
     use orogen::device_choice::DeviceChoice;
     use orogen::gpu::Gpu;
-    use orogen::render::device::RenderDevice;
+    use orogen::output::render::device::RenderDevice;
     use orogen::{Budget, Session};
     use std::sync::Arc;
 
@@ -110,7 +110,7 @@ mod without_gpu {
     use super::stands_in;
     use crate::failure::Failure;
     use orogen::device_choice::DeviceChoice;
-    use orogen::render::device::RenderDevice;
+    use orogen::output::render::device::RenderDevice;
     use orogen::{Budget, Session};
     use std::sync::Arc;
 

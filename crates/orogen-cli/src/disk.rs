@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use orogen::{Error, ErrorKind, words};
+use orogen::{Error, ErrorKind, grid::words};
 
 /// Free space, in bytes, on the disk that `path` is or would be on; `None` if the system does not tell.
 pub fn free_at(path: &Path) -> Option<u64> {

@@ -3,7 +3,7 @@
 use std::io;
 use std::process::ExitCode;
 
-use orogen::{Error, ErrorKind, file};
+use orogen::{Error, ErrorKind, io::file};
 
 /// The failure of a command.
 #[derive(Debug)]

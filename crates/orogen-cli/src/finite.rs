@@ -1,6 +1,6 @@
 //! Messages about samples that are NaN or infinite.
 
-use orogen::analysis::finite::FiniteCount;
+use orogen::grid::analysis::FiniteCount;
 use orogen::{Error, Grid};
 
 use crate::say;

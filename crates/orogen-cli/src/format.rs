@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use orogen::nearest;
+use orogen::grid::words::nearest;
 
 /// A format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

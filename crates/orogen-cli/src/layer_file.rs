@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use orogen::export::job::{ExportJob, Written};
-use orogen::words::number;
+use orogen::export::ExportJob;
+use orogen::export::job::Written;
+use orogen::grid::words::number;
 use orogen::{Window, World};
 
 use crate::bar::Bar;

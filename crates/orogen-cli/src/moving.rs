@@ -3,9 +3,9 @@
 use std::io;
 use std::path::Path;
 
-use orogen::file::{self, OutputPolicy, Staged};
-use orogen::format::gif::{self, Palette};
-use orogen::format::png::{self, Animation, Picture, Pixel};
+use orogen::io::file::{self, OutputPolicy, Staged};
+use orogen::io::format::gif::{self, Palette};
+use orogen::io::format::png::{self, Animation, Picture, Pixel};
 
 use crate::failure::Failure;
 use crate::sink::{Sink, is_stdout};

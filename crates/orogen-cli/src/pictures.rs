@@ -3,14 +3,12 @@
 use std::io::Write;
 use std::path::Path;
 
-use orogen::analysis::summary::{self, Summary};
 use orogen::export::place;
-use orogen::file::{self, Output, OutputPolicy, Staged, mark};
-use orogen::format::dem::Georeference;
-use orogen::format::levels::Levels;
-use orogen::format::notes;
-use orogen::format::png;
-use orogen::map::paint::Painter;
+use orogen::grid::analysis::{Summary, summary};
+use orogen::io::file::{self, Output, OutputPolicy, Staged, mark};
+use orogen::io::format::levels::Levels;
+use orogen::io::format::{Georeference, notes, png};
+use orogen::output::map::Painter;
 use orogen::{Grid, Recipe, Result, Window};
 use serde::Serialize;
 
@@ -98,7 +96,7 @@ pub fn write(
                 },
             )
         },
-        || summary::summary(grid.data(), recipe.world.sea_level),
+        || summary(grid.data(), recipe.world.sea_level),
     );
     let (map, greys) = (pictures.0?, pictures.1?);
     let places = places(&outputs[..3], recipe, grid.window())?;

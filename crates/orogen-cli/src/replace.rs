@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use orogen::file::{Existing, OutputPolicy};
+use orogen::io::file::{Existing, OutputPolicy};
 
 /// The options `--force` and `--no-clobber`.
 #[derive(Debug, Clone, Copy, clap::Args)]

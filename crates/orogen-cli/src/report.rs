@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 use std::io::{self, IsTerminal};
 
-use orogen::error::{Diagnostic, Location};
-use orogen::words;
+use orogen::grid::error::{Diagnostic, Location};
+use orogen::grid::words;
 
 use crate::failure::Failure;
 use crate::{say, usage};

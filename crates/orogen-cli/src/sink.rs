@@ -3,7 +3,7 @@
 use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::Path;
 
-use orogen::file::{self, Output, OutputPolicy};
+use orogen::io::file::{self, Output, OutputPolicy};
 
 use crate::failure::Failure;
 use crate::interrupt::Stoppable;

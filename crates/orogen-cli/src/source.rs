@@ -4,10 +4,10 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-use orogen::dem::prepared::{DEFAULT_MEMORY, PreparedDem};
+use orogen::io::dem::PreparedDem;
+use orogen::io::dem::prepared::DEFAULT_MEMORY;
 use orogen::recipe::document::LONGEST_TEXT;
-use orogen::recipe::presets::{self, Preset};
-use orogen::recipe::source::{self, RecipeSource};
+use orogen::recipe::{Preset, RecipeSource, presets, source};
 use orogen::{Budget, Error, ErrorKind, Recipe};
 
 use crate::failure::Failure;

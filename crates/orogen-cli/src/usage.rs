@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use clap::error::{ContextKind, ContextValue};
-use orogen::words;
+use orogen::grid::words;
 
 use crate::failure::Failure;
 use crate::say;

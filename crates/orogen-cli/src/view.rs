@@ -5,10 +5,11 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use orogen::dem::prepared::{DEFAULT_MEMORY, PreparedDem};
-use orogen::format::crs::registry::Crs;
-use orogen::format::dem::Georeference;
-use orogen::words::number;
+use orogen::grid::words::number;
+use orogen::io::dem::PreparedDem;
+use orogen::io::dem::prepared::DEFAULT_MEMORY;
+use orogen::io::format::Georeference;
+use orogen::io::format::crs::Crs;
 use orogen::{Budget, ErrorKind, Recipe, Window, World};
 
 use crate::failure::Failure;

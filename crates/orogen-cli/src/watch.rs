@@ -90,7 +90,7 @@ struct SeenFile {
 
 /// The content of a file, if it is not longer than a recipe may be.
 fn read(path: &Path) -> Option<Vec<u8>> {
-    orogen::open::bytes(path, "read the recipe", LONGEST_TEXT).ok().flatten()
+    orogen::io::open::bytes(path, "read the recipe", LONGEST_TEXT).ok().flatten()
 }
 
 impl Seen {
@@ -153,7 +153,7 @@ impl SeenFile {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use orogen::test_folder::TestFolder;
+    use orogen::io::test_folder::TestFolder;
 
     #[test]
     fn recipes_that_are_used_are_watched() {

@@ -10,17 +10,31 @@
 //! - [`samples`]: samples as bytes, whole rows at a time; [`fill`]: missing samples from those around.
 #![forbid(unsafe_code)]
 
+#[doc(hidden)]
 pub mod buffered;
+#[doc(hidden)]
 pub mod fill;
+#[doc(hidden)]
 pub mod format;
+#[doc(hidden)]
 pub mod fs;
+#[doc(hidden)]
 pub mod full_disk;
+#[doc(hidden)]
 pub mod pages;
+#[doc(hidden)]
 pub mod palette;
+#[doc(hidden)]
 pub mod raster;
+#[doc(hidden)]
 pub mod read_at;
+#[doc(hidden)]
 pub mod records;
+#[doc(hidden)]
 pub mod samples;
+#[doc(hidden)]
 pub mod spool;
+#[doc(hidden)]
 pub mod temporary;
+#[doc(hidden)]
 pub mod test_folder;

@@ -5,9 +5,9 @@
 //! This crate alone is for programs that want terrain and write no files.
 //!
 //! ```
-//! use orogen_engine::{Window, World, presets};
+//! use orogen_engine::Window;
 //!
-//! let world = World::open(presets::find("hills").ok_or("no such preset")?.recipe()?)?;
+//! let world = orogen_engine::open("hills")?;
 //! let tile = world.window("height", &Window::new(64, 64, 30.0).at(100, 50))?;
 //! assert_eq!(tile[(10, 20)], world.height(tile.window().east(10), tile.window().south(20))?);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -24,6 +24,7 @@ mod engine;
 pub mod growth;
 pub mod laws;
 pub mod objects;
+mod open;
 pub mod plan;
 pub mod recipe;
 pub mod registry;
@@ -36,16 +37,17 @@ pub mod world;
 
 #[doc(inline)]
 pub use orogen_ops::{
-    budget, choice, declare, expression, field, filter, ids, layer, levelled, node, op, registered, solver, value,
+    budget, choice, declare, expression, field, filter, layer, levelled, node, op, registered, solver, value,
 };
 #[doc(hidden)]
-pub use orogen_ops::{large, lower};
+pub use orogen_ops::{ids, large, lower};
 
 pub use budget::Budget;
 pub use chunks::id::ChunkId;
 pub use chunks::lod::LodConfig;
 pub use chunks::stream::{ChunkStep, Chunks};
 pub use objects::Object;
+pub use open::open;
 pub use orogen_grid::{Error, ErrorKind, Grid, Progress, Result, Window};
 pub use orogen_io::raster::Raster;
 pub use orogen_noise::Points;

@@ -281,6 +281,32 @@ impl<T: Copy> Grid<T> {
         Some(Grid { window: *window, data })
     }
 
+    /// The grid with a border of `samples` more on each side, which repeat the samples at the edges. Filters on grids
+    /// return a window that is smaller by their halo: of a padded grid, the window of the grid itself.
+    ///
+    /// ```
+    /// use orogen_grid::{Grid, Progress, Window};
+    /// use orogen_grid::erosion::Thermal;
+    ///
+    /// let heights = Grid::from_data(Window::new(3, 1, 10.0), vec![0.0, 0.0, 50.0]).expect("3 samples");
+    /// let settled = Thermal::new(0.6).run(&heights.padded(20), 20, &Progress::none())?;
+    /// assert_eq!(settled.window(), heights.window());
+    /// # Ok::<(), orogen_grid::Error>(())
+    /// ```
+    #[must_use]
+    pub fn padded(&self, samples: usize) -> Grid<T> {
+        let window = self.window.grown(samples);
+        let mut data = Vec::with_capacity(window.len());
+        for j in 0..window.height {
+            let row = self.row(j.saturating_sub(samples).min(self.window.height.saturating_sub(1)));
+            let (Some(&first), Some(&last)) = (row.first(), row.last()) else { return self.clone() };
+            data.extend(std::iter::repeat_n(first, samples));
+            data.extend_from_slice(row);
+            data.extend(std::iter::repeat_n(last, samples));
+        }
+        Grid { window, data }
+    }
+
     /// Copies the samples of `other` that lie in this grid's window.
     pub fn paste(&mut self, other: &Grid<T>) {
         let (ours, theirs) = (self.window, other.window);
@@ -337,6 +363,18 @@ pub fn transposed<T: Copy + Default + Send + Sync>(samples: &[T], columns: usize
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_padded_grid_repeats_its_edges_and_crops_back() {
+        let grid = Grid::from_data(Window::new(2, 2, 1.0).at(-1, 5), vec![1, 2, 3, 4]).unwrap();
+        let padded = grid.padded(1);
+        assert_eq!(padded.data(), [1, 1, 2, 2, 1, 1, 2, 2, 3, 3, 4, 4, 3, 3, 4, 4]);
+        assert_eq!((padded.window().x, padded.window().y), (-2, 4));
+        assert_eq!(padded.crop(grid.window()), Some(grid.clone()));
+        assert_eq!(grid.padded(0), grid);
+        let empty = Grid::from_data(Window::new(0, 3, 1.0), Vec::<u8>::new()).unwrap();
+        assert_eq!(empty.padded(2), empty);
+    }
 
     #[test]
     fn grids_are_read_as_they_were_written() {

@@ -71,6 +71,7 @@ pub mod hex;
 pub mod hydrography;
 pub mod hydrology;
 mod interop;
+#[doc(hidden)]
 pub mod multiscale;
 #[doc(hidden)]
 pub mod parallel;

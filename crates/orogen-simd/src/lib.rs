@@ -60,17 +60,23 @@ mod simd128;
 #[cfg(target_arch = "x86_64")]
 mod sse2;
 
+#[doc(hidden)]
 pub use double::{Double, Pair};
 pub use fma::fma;
 pub use lanes::{F32Lanes, F64Lanes, MaskLanes, Simd, U32Lanes};
 pub use level::{LEVEL_VARIABLE, Level, LevelError};
+#[doc(hidden)]
 pub use scalar::{Scalar, ScalarF32, ScalarF64, ScalarMask, ScalarU32};
+#[doc(hidden)]
 pub use stream::{Stream, streaming};
 
+#[doc(hidden)]
 #[cfg(target_arch = "x86_64")]
 pub use avx2::Avx2;
+#[doc(hidden)]
 #[cfg(target_arch = "x86_64")]
 pub use avx512::Avx512;
+#[doc(hidden)]
 #[cfg(target_arch = "aarch64")]
 pub use neon::Neon;
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]

@@ -105,10 +105,9 @@ impl Language {
 mod tests {
     use super::*;
     use crate::export::given::WITHOUT_FIELD;
-    use orogen::jobs::map::MapJob;
-    use orogen::jobs::render::RenderJob;
+    use orogen::jobs::{MapJob, RenderJob};
     use orogen::options::ValueKind;
-    use orogen::tilemap::job::TilemapJob;
+    use orogen::tilemap::TilemapJob;
     use std::collections::BTreeSet;
 
     /// The names in braces in a text.

@@ -5,7 +5,7 @@
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use orogen::open;
+use orogen::io::open;
 use orogen::recipe::document::LONGEST_TEXT;
 use orogen::{Error, ErrorKind, Result};
 
@@ -28,7 +28,7 @@ pub fn write(path: &Path, text: &str) -> Result<()> {
     if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         std::fs::create_dir_all(folder).map_err(|cause| Error::file("create the folder", folder, &cause))?;
     }
-    orogen::file::replace_whole(path, |out| out.write_all(text.as_bytes()))
+    orogen::io::file::replace_whole(path, |out| out.write_all(text.as_bytes()))
 }
 
 /// When a file was changed last; `None` if it is not there.

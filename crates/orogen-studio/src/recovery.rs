@@ -54,8 +54,8 @@ impl Recovery {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use orogen::io::test_folder::TestFolder;
     use orogen::presets;
-    use orogen::test_folder::TestFolder;
 
     #[test]
     fn what_is_not_saved_is_found_again() {

@@ -98,7 +98,7 @@ impl Settings {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use orogen::test_folder::TestFolder;
+    use orogen::io::test_folder::TestFolder;
 
     #[test]
     fn settings_are_read_as_they_were_written() {

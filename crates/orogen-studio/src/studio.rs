@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use orogen::declare::Input;
-use orogen::dem::prepared::{DEFAULT_MEMORY, PreparedDem};
-use orogen::recipe::document::{NamedNode, Recipe};
-use orogen::recipe::source::RecipeSource;
+use orogen::io::dem::PreparedDem;
+use orogen::io::dem::prepared::DEFAULT_MEMORY;
+use orogen::recipe::{NamedNode, Recipe, RecipeSource};
 use orogen::world::HEIGHT;
 use orogen::{Error, ErrorKind, Result, Session};
 

@@ -8,7 +8,7 @@
 
 use std::process::ExitCode;
 
-use orogen::analysis::summary::summary;
+use orogen::grid::analysis::summary;
 use orogen::{Level, Options, Session, Window, presets};
 
 const GOLDEN: &str = include_str!("../../../golden/presets.txt");

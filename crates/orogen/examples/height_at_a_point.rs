@@ -2,11 +2,8 @@
 //!
 //! `cargo run --release --example height_at_a_point`
 
-use orogen::{World, presets};
-
-fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let preset = presets::find("alpine").ok_or("there is no such preset")?;
-    let world = World::open(preset.recipe()?)?;
+fn main() -> orogen::Result<()> {
+    let world = orogen::open("alpine")?;
 
     let (east, south) = (30_720.0, 30_720.0);
     println!("{east} m east and {south} m south stands {:.1} m high", world.height(east, south)?);

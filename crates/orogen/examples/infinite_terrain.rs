@@ -3,9 +3,9 @@
 //! `cargo run --release --example infinite_terrain` prints the state after each kilometre and writes the last view to
 //! `infinite_terrain.png`.
 
-use orogen::file::{OutputPolicy, write_whole};
-use orogen::map::canvas::Canvas;
-use orogen::map::paint::Painter;
+use orogen::io::file::{OutputPolicy, write_whole};
+use orogen::output::map::Painter;
+use orogen::output::map::canvas::Canvas;
 use orogen::{ChunkId, ChunkStep, Grid, LodConfig, Recipe, Sampler, Window, World};
 use std::collections::HashMap;
 use std::path::Path;

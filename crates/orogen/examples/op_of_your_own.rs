@@ -2,9 +2,9 @@
 //!
 //! `cargo run --release --example op_of_your_own` writes terraces.png.
 
-use orogen::file::{OutputPolicy, write_whole};
-use orogen::map::paint::Painter;
+use orogen::io::file::{OutputPolicy, write_whole};
 use orogen::op::{Context, Filter};
+use orogen::output::map::Painter;
 use orogen::{Grid, Registry, Result, Window, World};
 use std::path::Path;
 

@@ -5,20 +5,81 @@
 //! [`World`] is an opened recipe. It returns a [`Grid`] of heights for a [`Window`] of a layer, and exactly the same
 //! numbers for single points.
 //!
-//! ```
-//! use orogen::{Window, World};
-//!
-//! let preset = orogen::presets::find("hills").ok_or("no such preset")?;
-//! let world = World::open(preset.recipe()?)?;
-//! let tile = world.window("height", &Window::new(64, 64, 30.0).at(100, 50))?;
-//! let highest = tile.data().iter().copied().fold(f32::MIN, f32::max);
-//! println!("the highest of {} samples stands at {highest} m", tile.data().len());
-//! assert_eq!(tile[(10, 20)], world.height(tile.window().east(10), tile.window().south(20))?);
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
-//!
 //! A program beside a clone of Orogen depends on it with `cargo add orogen --path ../orogen/crates/orogen`. Build it
-//! with `--release`: code without optimisation is slow.
+//! with `--release`: code without optimization is slow.
+//!
+//! # Five programs
+//!
+//! **A preset to a file.** [`open`] takes a preset, a recipe file or a file of heights. The extension of the file
+//! determines its format.
+//!
+//! ```no_run
+//! use orogen::{Export, Window};
+//!
+//! let world = orogen::open("alpine")?;
+//! world.export("height", &Window::new(800, 600, 25.0).at(820, 930), "alpine.tif")?;
+//! # Ok::<(), orogen::Error>(())
+//! ```
+//!
+//! **The height at a point**, and the tile around it with the same bits.
+//!
+//! ```
+//! use orogen::Window;
+//!
+//! let world = orogen::open("hills")?;
+//! let tile = world.window("height", &Window::new(64, 64, 30.0).at(100, 50))?;
+//! let (east, south) = (tile.window().east(10), tile.window().south(20));
+//! assert_eq!(world.height(east, south)?, tile[(10, 20)]);
+//! # Ok::<(), orogen::Error>(())
+//! ```
+//!
+//! **Terrain around a moving viewer.** [`Chunks`] tells which chunk to make or to drop next.
+//!
+//! ```
+//! use orogen::{ChunkStep, LodConfig, Sampler};
+//! use std::collections::HashMap;
+//!
+//! let world = orogen::open("hills")?;
+//! let ground = Sampler::new(&world, "height")?;
+//! let mut chunks = world.chunks(LodConfig::default().with_cells(32).with_levels(3).with_range(500.0))?;
+//! let mut scene = HashMap::new();
+//! chunks.set_viewer(10_000.0, 8_000.0)?;
+//! while let Some(step) = chunks.next_step() {
+//!     match step {
+//!         ChunkStep::Make(id) => drop(scene.insert(id, ground.window(&chunks.window(id))?)),
+//!         ChunkStep::Drop(id) => drop(scene.remove(&id)),
+//!     }
+//! }
+//! # Ok::<(), orogen::Error>(())
+//! ```
+//!
+//! **A recipe in code.** Ops are plain structs; write `..Default::default()` after the parameters that you set.
+//!
+//! ```
+//! use orogen::field::{Fbm, Remap};
+//! use orogen::{Recipe, Window, World, WorldSpec};
+//!
+//! let mut recipe = Recipe::new(WorldSpec::default().with_seed(7));
+//! recipe
+//!     .add("hills", Fbm { wavelength: 800.0, ..Fbm::default() })
+//!     .add("land", Remap { source: "hills".into(), to: [0.0, 250.0], ..Remap::default() })
+//!     .output("height", "land");
+//! let heights = World::open(recipe)?.window("height", &Window::new(32, 32, 20.0))?;
+//! # assert_eq!(heights.data().len(), 32 * 32);
+//! # Ok::<(), orogen::Error>(())
+//! ```
+//!
+//! **Erosion of your own heights.** Hydrology and erosion work on any grid.
+//!
+//! ```
+//! use orogen::grid::erosion::Thermal;
+//! use orogen::{Grid, Progress, Window};
+//!
+//! let heights = Grid::from_data(Window::new(3, 2, 10.0), vec![0.0, 9.0, 40.0, 1.0, 8.0, 44.0]).expect("6 samples");
+//! let settled = Thermal::new(0.6).run(&heights.padded(25), 25, &Progress::none())?;
+//! assert_eq!(settled.window(), heights.window());
+//! # Ok::<(), orogen::Error>(())
+//! ```
 //!
 //! # Reading a grid
 //!
@@ -27,103 +88,78 @@
 //! [`Window::south`] tell its position in metres from the origin of the world. Heights are `f32` metres; samples
 //! without a value, such as those of a file with gaps, are NaN.
 //!
-//! ```
-//! use orogen::{Window, World};
-//!
-//! let world = World::open(orogen::presets::find("hills").ok_or("no such preset")?.recipe()?)?;
-//! let grid = world.window("height", &Window::new(4, 3, 30.0).at(100, 50))?;
-//! for (row, j) in grid.data().chunks(grid.width()).zip(0..) {
-//!     for (height, i) in row.iter().zip(0..) {
-//!         let (east, south) = (grid.window().east(i), grid.window().south(j));
-//!         assert_eq!((east, south), (30.0 * (100 + i) as f64, 30.0 * (50 + j) as f64));
-//!         assert_eq!(*height, grid[(i, j)]);
-//!     }
-//! }
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
-//!
 //! # Locality
 //!
-//! Ops have one of three localities. A **field** depends on one position and the seed (noise, curves, warps). A
-//! **filter** depends on a finite halo (blur, slope). A **solver** depends on the whole bounded world and runs once
-//! (normalise, bake). Therefore any tile equals the crop of the whole, bit for bit, for any tile size, number of
-//! threads, SIMD level and machine.
+//! A **field** depends on one position and the seed (noise, curves, warps). A **filter** depends on a finite halo
+//! (blur, slope). A **levelled** op depends on a finite halo of the next coarser level (`continents`, `amplify`). A
+//! **solver** depends on the whole bounded world and runs once (stream power, drainage). Therefore any tile equals the
+//! crop of the whole, bit for bit, for any tile size, number of threads, SIMD level and machine.
 //!
 //! # Where to look
 //!
 //! | task | entry point |
 //! |---|---|
-//! | build a recipe in code | [`Recipe`], [`WorldSpec`], and the ops in [`field`], [`filter`] and [`solver`] ([`node::Node::all`] lists them) |
+//! | build a recipe in code | [`Recipe`], [`WorldSpec`], and the ops in [`field`], [`filter`], [`levelled`] and [`solver`] ([`Node::all`] lists them) |
 //! | start from a recipe of the library | [`presets`] |
 //! | many points or small windows | [`Sampler`] |
 //! | a layer in space, such as caves | [`World::volume`], [`Sampler::fill_volume`] |
 //! | terrain around a moving viewer | [`Chunks`], [`LodConfig`] |
 //! | trees, rocks and other objects | [`World::objects`] |
-//! | chunks of blocks, with caves and overhangs | [`blocks::land::Land`] |
-//! | a large area in tiles or rows | [`World::tiles`], [`bands`] |
+//! | chunks of blocks, with caves and overhangs | [`output::blocks::Land`] |
+//! | a large area in tiles or rows | [`World::tiles`], [`Bands`] |
 //! | several worlds with shared threads, memory and solutions | [`Session`] |
+//! | files with options, progress or streams | [`export`], [`builder`] for large ones |
+//! | maps, renders, blocks and tilemaps as files | [`jobs`], [`tilemap`] |
+//! | maps, renders and meshes of your own | [`output`] |
+//! | reading and writing formats, palettes | [`io`] |
+//! | terrain analysis, hydrology, erosion, contours on any grid | [`grid`] |
+//! | noise without recipes | [`noise`] |
 //! | previews on a graphics card | `gpu::WithGpu`, with the feature `gpu` |
 //! | ops of your own | [`op!`], [`Registry`], and [`laws`], which tests them |
-//! | files and pictures of grids | [`mod@format`], [`export`], [`map`], [`palette`], [`mesh`], [`render`], [`sheet`] |
-//! | lines and areas drawn on a map | [`polylines`], and the ops `path` and `polygon` |
-//! | terrain analysis, hydrology and erosion on any grid | [`analysis`], [`hydrology`], [`hydrography`], [`erosion`], [`contour`] |
 //!
 //! Structs with options are built with `new` or `Default` and `with_*` methods, so that later versions can add options.
-//! Ops are plain structs; write `..Default::default()` after the parameters that you set. Noises without recipes are in
-//! the crate `orogen-noise`.
 #![forbid(unsafe_code)]
 
+#[doc(hidden)]
+pub use orogen_engine::{
+    bands, device, device_choice, ids, lower, objects, registry, sampler, session, tiles, volume, world,
+};
 #[doc(inline)]
 pub use orogen_engine::{
-    bands, budget, choice, chunks, declare, expression, field, filter, growth, ids, laws, layer, node, objects, op,
-    plan, recipe, registered, registry, sampler, session, solver, store, tiles, value, volume, world,
+    budget, choice, chunks, declare, expression, field, filter, growth, laws, layer, levelled, node, op, plan, recipe,
+    registered, solver, store, value,
 };
-#[doc(hidden)]
-pub use orogen_engine::{device, device_choice, lower};
-/// Windows on a graphics card, for previews (feature `gpu`).
 #[cfg(feature = "gpu")]
 #[doc(inline)]
 pub use orogen_gpu as gpu;
-#[doc(hidden)]
-pub use orogen_grid::parallel;
 #[doc(inline)]
-pub use orogen_grid::{
-    aggregate, analysis, autotile, climate, contour, erosion, error, grid, hydrography, hydrology, poisson_discs,
-    polylines, progress, resample, surface_nets, triangles, words,
-};
-#[doc(hidden)]
-pub use orogen_io::test_folder;
+pub use orogen_grid as grid;
 #[doc(inline)]
-pub use orogen_io::{dem, file, format, open, palette, raster, read_at, spool};
+pub use orogen_io as io;
 #[doc(hidden)]
 pub use orogen_jobs::graph_layout;
 #[doc(inline)]
 pub use orogen_jobs::{builder, export, fit, jobs, options, tilemap};
-#[doc(hidden)]
-pub use orogen_output::noise_pictures;
 #[doc(inline)]
-pub use orogen_output::{blocks, map, mesh, render, sheet, survey};
+pub use orogen_noise as noise;
+#[doc(inline)]
+pub use orogen_output as output;
 
 pub use budget::Budget;
-pub use chunks::id::ChunkId;
-pub use chunks::lod::LodConfig;
-pub use chunks::stream::{ChunkStep, Chunks};
-pub use error::{Error, ErrorKind, Result};
-pub use grid::{Grid, Window};
+pub use chunks::{ChunkId, ChunkStep, Chunks, LodConfig};
+pub use export::Export;
+pub use grid::{Error, ErrorKind, Grid, Progress, Result, Window};
+pub use node::Node;
+pub use noise::{Level, Points};
+pub use orogen_engine::open;
+pub use recipe::{Recipe, WorldSpec, presets};
+pub use store::{FolderStore, MemoryStore, SolutionStore};
+
+pub use bands::Bands;
 pub use objects::Object;
-/// The SIMD level that computes noise, and how to select one. The results are bit-identical at all levels.
-pub use orogen_noise::Level;
-/// The positions where a field is evaluated.
-pub use orogen_noise::Points;
-pub use progress::Progress;
-pub use recipe::document::{Recipe, WorldSpec};
-pub use recipe::presets;
 pub use registry::Registry;
 pub use sampler::Sampler;
 pub use session::{Options, Session};
-pub use store::folder::FolderStore;
-pub use store::memory::MemoryStore;
-pub use store::solution_store::SolutionStore;
+pub use tiles::{Tile, Tiles, Tiling};
 pub use volume::Volume;
-pub use words::nearest;
 pub use world::World;

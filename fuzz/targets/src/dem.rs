@@ -1,8 +1,7 @@
 //! Every reader of heights: any bytes are heights or a message.
 
-use orogen::format::dem::{Dem, Part, Request};
-use orogen::format::import;
-use orogen::format::sidecar::Sidecar;
+use orogen::io::format::dem::Part;
+use orogen::io::format::{Dem, Request, Sidecar, import};
 use std::io::Cursor;
 
 /// Runs the target on an input.

@@ -1,10 +1,9 @@
 //! SVG and GeoJSON: any text is a drawing, or refused with a message. The distance to it and its inside are known
 //! everywhere.
 
-use orogen::format::drawing::{Drawing, Format};
-use orogen::format::outlines::DrawingKind;
-use orogen::polylines::outline::Outline;
-use orogen::polylines::segments::Segments;
+use orogen::grid::polylines::{Outline, Segments};
+use orogen::io::format::drawing::{Drawing, Format};
+use orogen::io::format::outlines::DrawingKind;
 
 /// Runs the target on an input; one that is no text is skipped.
 pub fn run(input: &[u8]) {

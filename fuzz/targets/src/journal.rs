@@ -7,9 +7,9 @@
 use crate::edits::edited;
 use crate::scratch::Scratch;
 use orogen::builder::journal::JournalState;
-use orogen::builder::run::{Build, Start};
-use orogen::builder::spec::{BuildSpec, Form};
-use orogen::file::OutputPolicy;
+use orogen::builder::run::Start;
+use orogen::builder::{Build, BuildSpec, Form};
+use orogen::io::file::OutputPolicy;
 use orogen::{Options, Progress, Recipe, Window, World};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;

@@ -8,15 +8,13 @@ use crate::values::{arguments, seeds};
 use clap::{Args, Command, FromArgMatches};
 use orogen::export::derived::list;
 use orogen::export::registry;
-use orogen::expression::text::Expression;
-use orogen::format::crs::registry::Crs;
-use orogen::jobs::blocks::BlocksJob;
-use orogen::jobs::map::MapJob;
-use orogen::jobs::render::RenderJob;
+use orogen::expression::Expression;
+use orogen::io::format::crs::Crs;
+use orogen::io::palette::names;
+use orogen::jobs::{BlocksJob, MapJob, RenderJob};
 use orogen::options::Options;
-use orogen::palette::names;
-use orogen::sheet::paper;
-use orogen::tilemap::job::TilemapJob;
+use orogen::output::sheet::paper;
+use orogen::tilemap::TilemapJob;
 
 /// Runs the target on an input; one that is no text is skipped.
 pub fn run(input: &[u8]) {

@@ -1,8 +1,8 @@
 //! Palette files: any text is a palette in each of the formats, or refused with a message. A palette has a color
 //! everywhere.
 
-use orogen::palette::fitted::Fitted;
-use orogen::palette::read::parse;
+use orogen::io::palette::fitted::Fitted;
+use orogen::io::palette::read::parse;
 
 /// Runs the target on an input; one that is no text is skipped.
 pub fn run(input: &[u8]) {

@@ -1,8 +1,7 @@
 //! What stands beside heights and tells their place: any text is understood or refused with a message.
 
-use orogen::format::crs::keys;
-use orogen::format::sidecar::Sidecar;
-use orogen::format::{aux_xml, vrt, world_file};
+use orogen::io::format::crs::keys;
+use orogen::io::format::{Sidecar, aux_xml, vrt, world_file};
 
 /// Runs the target on an input; one that is no text is skipped.
 pub fn run(input: &[u8]) {

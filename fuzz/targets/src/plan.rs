@@ -3,7 +3,7 @@
 //! The first byte of the input chooses a plan, the others change its JSON.
 
 use crate::edits::edited;
-use orogen::plan::steps::Plan;
+use orogen::plan::Plan;
 use orogen::{Options, Recipe, Window, World};
 use std::sync::LazyLock;
 

@@ -1,6 +1,6 @@
 //! Points of CSV and GeoJSON: any text has points with coordinates, or is refused with a message.
 
-use orogen::format::points::NamedPoints;
+use orogen::io::format::NamedPoints;
 
 /// Runs the target on an input; one that is no text is skipped.
 pub fn run(input: &[u8]) {

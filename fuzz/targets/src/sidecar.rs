@@ -3,8 +3,8 @@
 //! The input is the content of the files in [`NAMES`], in this order, separated by lines of `---`.
 
 use crate::scratch::Scratch;
-use orogen::dem::prepared::PreparedDem;
-use orogen::format::import;
+use orogen::io::dem::PreparedDem;
+use orogen::io::format::import;
 
 /// What may stand beside a picture.
 pub const NAMES: [&str; 6] = ["a.png.json", "a.json", "a.toml", "a.pgw", "a.prj", "a.png.aux.xml"];

@@ -5,8 +5,8 @@
 //! up to the largest length that the target makes follow. The target puts the right checksums in their places, so that
 //! it reaches what they protect.
 
+use orogen::store::EntryKey;
 use orogen::store::fuzzing::{read, tile_windows, windows};
-use orogen::store::solution_store::EntryKey;
 use orogen_io::pages::{BYTES, checksum};
 use std::path::Path;
 

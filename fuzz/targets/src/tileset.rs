@@ -2,9 +2,8 @@
 //! it fits.
 
 use orogen::Progress;
-use orogen::autotile::choose::layers;
-use orogen::autotile::classes::Classes;
-use orogen::autotile::clean::clean;
+use orogen::grid::autotile::choose::layers;
+use orogen::grid::autotile::{Classes, clean};
 use orogen::tilemap::load::any::parse;
 use orogen::tilemap::tiled::write_tsx;
 use orogen::tilemap::tileset::parts;
@@ -19,7 +18,7 @@ pub fn run(input: &[u8]) {
         let drawable = set.drawable();
         clean(&mut classes, &drawable, &Progress::none()).unwrap();
         for layer in layers(&classes, &drawable, &set.choices(), 1) {
-            for tile in layer.into_iter().filter(|tile| *tile != orogen::autotile::choose::NONE) {
+            for tile in layer.into_iter().filter(|tile| *tile != orogen::grid::autotile::choose::NONE) {
                 assert!((parts(tile).0 as usize) < set.count, "{text}");
             }
         }

@@ -3,8 +3,8 @@
 //! The input is the content of the files in [`NAMES`], in this order, separated by lines of `---`.
 
 use crate::scratch::Scratch;
-use orogen::dem::open;
-use orogen::format::dem::Request;
+use orogen::io::dem::open;
+use orogen::io::format::Request;
 
 /// The metadata of the array, of version 3 or 2, and its attributes of version 2; that of the coordinates; chunks of
 /// the names of both versions.

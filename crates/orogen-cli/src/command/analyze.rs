@@ -3,15 +3,13 @@
 use std::path::PathBuf;
 
 use orogen::budget::Reservation;
-use orogen::map::canvas::Canvas;
-use orogen::plan::steps::Plan;
-use orogen::raster::Raster;
-use orogen::survey::job::SurveyJob;
-use orogen::survey::land::Land;
-use orogen::survey::measures::Measures;
-use orogen::survey::page::{self, Title};
-use orogen::survey::real::{FIGURES, SOURCE, table};
-use orogen::words::number;
+use orogen::grid::words::number;
+use orogen::io::raster::Raster;
+use orogen::output::map::canvas::Canvas;
+use orogen::output::survey::page::{self, Title};
+use orogen::output::survey::real::{FIGURES, SOURCE, table};
+use orogen::output::survey::{Land, Measures, SurveyJob};
+use orogen::plan::Plan;
 use orogen::{Error, ErrorKind, Progress, Window, World};
 use serde_json::{Map, Value, json};
 
@@ -228,7 +226,7 @@ fn json(args: &Args, window: &Window, measures: &Measures) -> String {
             json!({ "value": value, "unit": figure.unit, "real": figure.real, "verdict": value.map(|v| figure.verdict(v)) }),
         );
     }
-    let forms: Map<String, Value> = (orogen::analysis::geomorphons::FORMS.iter().zip(&measures.forms))
+    let forms: Map<String, Value> = (orogen::grid::analysis::FORMS.iter().zip(&measures.forms))
         .map(|(name, share)| ((*name).to_string(), json!(share)))
         .collect();
     let bands: Vec<Value> =

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 use orogen::Progress;
-use orogen::jobs::blocks::{BlockFormat, BlocksJob, LuantiFolder};
+use orogen::jobs::blocks::LuantiFolder;
+use orogen::jobs::{BlockFormat, BlocksJob};
 use orogen::world::HEIGHT;
 
 use crate::bar::Bar;

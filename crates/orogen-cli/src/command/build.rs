@@ -4,11 +4,10 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::ValueEnum;
-use orogen::builder::run::{Build, Report, Start};
-use orogen::builder::spec::{BuildSpec, Form, Samples};
-use orogen::builder::xyz;
-use orogen::format::encoding::Encoding;
-use orogen::words::{self, bytes, count, number};
+use orogen::builder::run::Start;
+use orogen::builder::{Build, BuildSpec, Form, Report, Samples, xyz};
+use orogen::grid::words::{self, bytes, count, number};
+use orogen::io::format::encoding::Encoding;
 use orogen::{Window, World};
 
 use crate::bar::Bar;

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 use std::time::{Duration, SystemTime};
 
-use orogen::store::listing::Stored;
-use orogen::words::{bytes, count, number};
+use orogen::grid::words::{bytes, count, number};
+use orogen::store::Stored;
 use orogen::{FolderStore, Window};
 use serde_json::json;
 

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use orogen::error::Diagnostic;
-use orogen::words::count;
+use orogen::grid::error::Diagnostic;
+use orogen::grid::words::count;
 use orogen::{Options, World};
 use serde_json::{Value, json};
 

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use orogen::noise_pictures::{page, row};
+use orogen::output::noise_pictures::{page, row};
 
 use crate::bar::Bar;
 use crate::failure::Failure;

@@ -4,14 +4,12 @@ use std::path::PathBuf;
 
 use orogen::World;
 use orogen::export::derived::list;
-use orogen::export::format::Format;
-use orogen::export::job::ExportJob;
 use orogen::export::targets::frame::FrameSpec;
 use orogen::export::targets::job::EngineJob;
 use orogen::export::targets::target::EngineTarget;
-use orogen::export::{registry, targets};
-use orogen::file::OutputPolicy;
-use orogen::words::{count, number};
+use orogen::export::{ExportJob, Format, registry, targets};
+use orogen::grid::words::{count, number};
+use orogen::io::file::OutputPolicy;
 
 use crate::bar::Bar;
 use crate::declared::{FormatOptions, LayerOptions};

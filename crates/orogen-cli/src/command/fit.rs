@@ -3,13 +3,14 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use orogen::dem::prepared::{DEFAULT_MEMORY, PreparedDem};
-use orogen::file::mark;
-use orogen::fit::features::{self, FeatureVector};
-use orogen::fit::search::{Effort, FitTarget, MAX_WINDOWS, SIDE, search};
+use orogen::fit::search::{MAX_WINDOWS, SIDE};
+use orogen::fit::{Effort, FeatureVector, FitTarget, features, search};
+use orogen::io::dem::PreparedDem;
+use orogen::io::dem::prepared::DEFAULT_MEMORY;
+use orogen::io::file::mark;
+use orogen::output::survey::Measures;
+use orogen::output::survey::real::FIGURES;
 use orogen::recipe::presets;
-use orogen::survey::measures::Measures;
-use orogen::survey::real::FIGURES;
 use orogen::world::HEIGHT;
 use orogen::{Budget, Error, ErrorKind, Grid, Progress, Recipe, Window, World};
 use serde_json::json;

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use orogen::Progress;
-use orogen::file::OutputFolder;
-use orogen::words::number;
+use orogen::grid::words::number;
+use orogen::io::file::OutputFolder;
 use orogen::world::{HEIGHT, LAKES};
 
 use crate::bar::Bar;

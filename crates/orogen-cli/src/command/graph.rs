@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 
-use orogen::sheet::{pdf, raster, vector};
-use orogen::words::count;
+use orogen::grid::words::count;
+use orogen::output::sheet::{pdf, raster, vector};
 
 use crate::failure::Failure;
 use crate::graph::diagram::Diagram;

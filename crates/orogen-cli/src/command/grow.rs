@@ -6,13 +6,12 @@ use std::io;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
-use orogen::format::png::{Animation, Picture, Pixel};
-use orogen::growth::frame_spool::FrameSpool;
-use orogen::growth::run::Growth;
-use orogen::map::paint::Painter;
+use orogen::grid::words::count;
+use orogen::growth::{FrameSpool, Growth};
+use orogen::io::format::png::{Animation, Picture, Pixel};
+use orogen::io::spool::Spool;
 use orogen::node::Node;
-use orogen::spool::Spool;
-use orogen::words::count;
+use orogen::output::map::Painter;
 use orogen::world::HEIGHT;
 use orogen::{Budget, Error, Grid, Progress, Recipe};
 

@@ -3,9 +3,8 @@
 use std::path::PathBuf;
 
 use clap::ValueEnum;
-use orogen::file;
-use orogen::jobs::map::MapJob;
-use orogen::jobs::sheet_format::SheetFormat;
+use orogen::io::file;
+use orogen::jobs::{MapJob, SheetFormat};
 
 use crate::bar::Bar;
 use crate::declared::{LayerOptions, OptionsOf};

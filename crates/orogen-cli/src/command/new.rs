@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use orogen::file::{self, Existing, OutputPolicy};
+use orogen::io::file::{self, Existing, OutputPolicy};
 use orogen::recipe::presets;
 use orogen::{Error, ErrorKind};
 

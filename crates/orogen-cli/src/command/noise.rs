@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use orogen::Progress;
-use orogen::format::png::{Animation, Picture};
-use orogen::format::{npy, png};
-use orogen::noise_pictures::look::{Drawing, Look};
-use orogen::noise_pictures::slice::Slice;
-use orogen::noise_pictures::texture::Texture;
-use orogen::words;
+use orogen::grid::words;
+use orogen::io::format::png::{Animation, Picture};
+use orogen::io::format::{npy, png};
+use orogen::output::noise_pictures::look::{Drawing, Look};
+use orogen::output::noise_pictures::slice::Slice;
+use orogen::output::noise_pictures::texture::Texture;
 use orogen_noise::{Basis, Fractal, MAX_OCTAVES, TileError};
 
 use crate::bar::Bar;

@@ -1,8 +1,8 @@
 //! `orogen ops`.
 
+use orogen::grid::words::suggestion;
 use orogen::node::Node;
 use orogen::recipe::reference;
-use orogen::words::suggestion;
 
 use crate::failure::Failure;
 use crate::say;

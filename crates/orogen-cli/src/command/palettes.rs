@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use orogen::map::swatches::{self, Swatch};
-use orogen::palette::{named, read};
+use orogen::io::palette::{named, read};
+use orogen::output::map::swatches::{self, Swatch};
 
 use crate::failure::Failure;
 use crate::replace::Replace;
@@ -40,7 +40,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         .map(|named| Swatch { palette: named.palette(), about: named.about.into(), safe: named.safe })
         .collect();
     for path in &args.files {
-        let palette = read::read(path)?;
+        let palette = read(path)?;
         shown.push(Swatch { about: path.display().to_string(), palette, safe: false });
     }
     if let Some(sink) = &sink {

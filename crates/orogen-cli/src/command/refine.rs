@@ -3,10 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use orogen::Recipe;
-use orogen::export::job::ExportJob;
-use orogen::export::registry;
-use orogen::file::mark;
-use orogen::words::number;
+use orogen::export::{ExportJob, registry};
+use orogen::grid::words::number;
+use orogen::io::file::mark;
 
 use crate::declared::FormatOptions;
 use crate::failure::Failure;

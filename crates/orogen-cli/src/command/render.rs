@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use orogen::file;
-use orogen::format::png::Animation;
-use orogen::jobs::render::{RenderJob, Rendering};
-use orogen::render::camera::View as Shot;
-use orogen::words::count;
+use orogen::grid::words::count;
+use orogen::io::file;
+use orogen::io::format::png::Animation;
+use orogen::jobs::RenderJob;
+use orogen::jobs::render::Rendering;
+use orogen::output::render::View as Shot;
 
 use crate::bar::Bar;
 use crate::declared::OptionsOf;

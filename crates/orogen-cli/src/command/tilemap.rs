@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use orogen::Progress;
 use orogen::recipe::class::document::CLASS;
+use orogen::tilemap::TilemapJob;
 use orogen::tilemap::files::SIDE;
-use orogen::tilemap::job::TilemapJob;
 use orogen::world::HEIGHT;
 
 use crate::bar::Bar;

@@ -3,12 +3,14 @@
 use std::path::PathBuf;
 
 use orogen::budget::Reservation;
-use orogen::format::png::{Animation, Picture, Pixel};
-use orogen::jobs::render::{RenderJob, around};
-use orogen::map::contact::{self, Drawn, Sheet, Variant};
+use orogen::io::format::png::{Animation, Picture, Pixel};
+use orogen::io::palette::Palette;
+use orogen::jobs::RenderJob;
+use orogen::jobs::render::around;
 use orogen::options::find_palette;
-use orogen::palette::palette::Palette;
-use orogen::render::scene::Colors;
+use orogen::output::map::contact::Drawn;
+use orogen::output::map::{Sheet, Variant, contact};
+use orogen::output::render::scene::Colors;
 use orogen::world::HEIGHT;
 use orogen::{Budget, Grid, Progress, Recipe, Window, World};
 
@@ -230,7 +232,7 @@ fn asked(args: &Args, recipe: &Recipe) -> Result<Vec<Asked>, Failure> {
         .map(|parameter| parameter.unit.clone());
     let unit = unit.unwrap_or_default();
     let asked = sweep.values.iter().map(|&value| Asked {
-        label: format!("{} {} {unit}", sweep.name, orogen::words::number(value)).trim_end().to_string(),
+        label: format!("{} {} {unit}", sweep.name, orogen::grid::words::number(value)).trim_end().to_string(),
         seed: args.seed,
         set: Some((sweep.name.clone(), value)),
     });

@@ -1,11 +1,11 @@
 //! The boxes and wires of a recipe.
 
 use orogen::declare::Input;
+use orogen::grid::words::number;
 use orogen::ids::Id;
 use orogen::node::Node;
-use orogen::recipe::graph::Graph;
+use orogen::recipe::Graph;
 use orogen::value::Value;
-use orogen::words::number;
 use orogen::{Recipe, Result};
 
 /// The kind of a box.

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::diagram::{Block, Diagram};
 use super::draw::color;
-use orogen::palette::color::hex;
+use orogen::io::palette::color::hex;
 
 /// The source: boxes with their lines, colored by kind, and wires labelled with layers.
 pub fn text(diagram: &Diagram, title: &str) -> String {

@@ -2,11 +2,11 @@
 
 use orogen::Result;
 use orogen::graph_layout::layout::{Layout, Link, Spacing};
-use orogen::map::text::Face;
-use orogen::palette::color::Rgb;
-use orogen::sheet::font_set::FontSet;
-use orogen::sheet::geometry::{Point, Rect, Size};
-use orogen::sheet::scene::{INK, Scene, Step, polygon};
+use orogen::io::palette::Rgb;
+use orogen::output::map::text::Face;
+use orogen::output::sheet::font_set::FontSet;
+use orogen::output::sheet::scene::{INK, Scene, Step, polygon};
+use orogen::output::sheet::{Point, Rect, Size};
 
 use super::diagram::{Block, Diagram, Kind};
 

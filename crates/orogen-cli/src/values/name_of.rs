@@ -1,9 +1,8 @@
 //! Values that are names of formats or engines.
 
 use clap::builder::PossibleValue;
-use orogen::export::format::Format;
 use orogen::export::targets::target::EngineTarget;
-use orogen::export::{registry, targets};
+use orogen::export::{Format, registry, targets};
 
 /// The parser of a value that is one of several names, with a line of help for each.
 #[derive(Clone)]

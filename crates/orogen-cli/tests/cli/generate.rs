@@ -16,7 +16,7 @@ fn it_writes_its_files_and_they_agree() {
     folder.good(&["export", "small.toml", "-o", "h.npy", "-q"]);
     let heights = npy(&folder.read("h.npy"));
     let summary = folder.json("a/b/summary.json");
-    let expect = orogen::analysis::summary::summary(heights.data(), 0.0);
+    let expect = orogen::grid::analysis::summary(heights.data(), 0.0);
     assert_eq!(summary["sha256"], expect.sha256);
     assert_eq!((&summary["seed"], &summary["width"], &summary["height"]), (&3.into(), &64.into(), &48.into()));
     for (key, value) in [

@@ -7,7 +7,7 @@ use std::process::{Child, Command, Output, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
-use orogen::test_folder::TestFolder;
+use orogen::io::test_folder::TestFolder;
 
 /// A world of 64 x 48 samples that takes almost no time.
 pub const SMALL: &str = r#"
@@ -244,7 +244,7 @@ impl Outcome {
 
 /// Reads the samples of a .npy file.
 pub fn npy(bytes: &[u8]) -> orogen::Grid {
-    orogen::format::npy::read(&mut &bytes[..], "test.npy", 1.0).unwrap()
+    orogen::io::format::npy::read(&mut &bytes[..], "test.npy", 1.0).unwrap()
 }
 
 /// A decoded PNG.

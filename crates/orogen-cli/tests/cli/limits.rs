@@ -8,11 +8,9 @@ use std::time::{Duration, Instant};
 use orogen::export::derived::layer::{Made, Nature};
 use orogen::export::derived::list as derived;
 use orogen::export::registry;
-use orogen::jobs::blocks::BlocksJob;
-use orogen::jobs::map::MapJob;
-use orogen::jobs::render::RenderJob;
+use orogen::jobs::{BlocksJob, MapJob, RenderJob};
 use orogen::options::{Condition, OptionSpec, ValueKind};
-use orogen::tilemap::job::TilemapJob;
+use orogen::tilemap::TilemapJob;
 
 use crate::commands::{WRITERS, Writer, prepare, workplace};
 use crate::harness::{Folder, Running, SMALL, bless, slow};

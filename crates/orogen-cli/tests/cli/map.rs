@@ -227,7 +227,7 @@ fn terrain_classes_color_a_map_and_are_exported() {
 
 #[test]
 fn the_docs_list_all_classes() {
-    use orogen::climate::biomes::scheme::Scheme;
+    use orogen::grid::climate::biomes::Scheme;
     let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/climate.md")).unwrap();
     for scheme in [Scheme::Whittaker, Scheme::Holdridge, Scheme::KoppenGeiger] {
         for class in scheme.classes() {

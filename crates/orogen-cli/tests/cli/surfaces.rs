@@ -152,8 +152,8 @@ fn a_preview_shows_what_weights_mean() {
     // albedo.
     let pixel = |i: usize| [0, 1, 2].map(|c| picture.data[3 * (20 * 100 + i) + c]);
     let shaded = |color: [u8; 3], i: usize| {
-        let light = color.map(orogen::palette::color::decode);
-        [0, 1, 2].map(|c| orogen::palette::color::decode(pixel(i)[c]) / light[c])
+        let light = color.map(orogen::io::palette::color::decode);
+        [0, 1, 2].map(|c| orogen::io::palette::color::decode(pixel(i)[c]) / light[c])
     };
     let [rock, moss] = [shaded([0x80; 3], 80), shaded([0x20, 0x40, 0x10], 45)];
     for (a, b) in rock.iter().zip(moss) {

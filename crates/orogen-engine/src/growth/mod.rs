@@ -1,5 +1,10 @@
 //! Terrain after each of its erosion steps, from a single run.
 
 pub(crate) mod draft;
+#[doc(hidden)]
 pub mod frame_spool;
+#[doc(hidden)]
 pub mod run;
+
+pub use frame_spool::FrameSpool;
+pub use run::{Growth, Visit};

@@ -7,6 +7,7 @@ mod assemble;
 mod compile;
 mod coord_sets;
 pub(crate) mod cost;
+#[doc(hidden)]
 pub mod domain;
 pub(crate) mod explain;
 mod grid_merge;
@@ -15,14 +16,18 @@ pub(crate) mod key;
 pub(crate) mod levels;
 pub(crate) mod memory;
 pub(crate) mod parts;
+#[doc(hidden)]
 pub mod planner;
 mod request;
 mod schedule;
 mod solves;
 mod space;
 pub(crate) mod split;
+#[doc(hidden)]
 pub mod steps;
 mod stored;
 
-#[doc(inline)]
+pub use steps::Plan;
+
+#[doc(hidden)]
 pub use orogen_ops::program;

@@ -51,7 +51,12 @@ const COARSEST: usize = 12;
 ///
 /// # Errors
 /// If the work is cancelled.
-pub fn heights(width: usize, height: usize, ridges: &Ridges, progress: &Progress) -> Result<(usize, usize, Vec<f32>)> {
+pub fn ridge_heights(
+    width: usize,
+    height: usize,
+    ridges: &Ridges,
+    progress: &Progress,
+) -> Result<(usize, usize, Vec<f32>)> {
     let longest = width.max(height).max(1);
     let mut scales = 0u32;
     while COARSEST << scales < longest {
@@ -152,7 +157,7 @@ mod tests {
     #[test]
     fn it_is_highest_within_and_low_at_the_edges() {
         for (width, height) in [(100, 100), (150, 70), (13, 13), (5, 40), (1, 1)] {
-            let (across, down, map) = heights(width, height, &RIDGES, &Progress::none()).unwrap();
+            let (across, down, map) = ridge_heights(width, height, &RIDGES, &Progress::none()).unwrap();
             assert!(across >= width && down >= height && map.len() == across * down);
             assert!(map.iter().all(|h| (0.0..=1.5).contains(h)));
             if width > 20 && height > 20 {
@@ -174,9 +179,9 @@ mod tests {
 
     #[test]
     fn other_seeds_are_other_mountains_and_threads_change_nothing() {
-        let one = heights(90, 90, &RIDGES, &Progress::none()).unwrap();
+        let one = ridge_heights(90, 90, &RIDGES, &Progress::none()).unwrap();
         let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
-        assert_eq!(one, pool.install(|| heights(90, 90, &RIDGES, &Progress::none()).unwrap()));
-        assert!(one.2 != heights(90, 90, &Ridges { seed: 5, ..RIDGES }, &Progress::none()).unwrap().2);
+        assert_eq!(one, pool.install(|| ridge_heights(90, 90, &RIDGES, &Progress::none()).unwrap()));
+        assert!(one.2 != ridge_heights(90, 90, &Ridges { seed: 5, ..RIDGES }, &Progress::none()).unwrap().2);
     }
 }

@@ -5,7 +5,7 @@ use crate::grid::Grid;
 /// The hypsometric curve (Strahler 1952): the share of the area, 0 to 1, at or above each of `steps` + 1 evenly spaced
 /// heights from the lowest to the highest. None if no sample is finite or `steps` is 0.
 #[must_use]
-pub fn curve(grid: &Grid, steps: usize) -> Option<Vec<f64>> {
+pub fn hypsometric_curve(grid: &Grid, steps: usize) -> Option<Vec<f64>> {
     let (low, high) = range(grid)?;
     if steps == 0 {
         return None;
@@ -34,7 +34,7 @@ pub fn curve(grid: &Grid, steps: usize) -> Option<Vec<f64>> {
 
 /// The hypsometric integral, 0 to 1: (mean - lowest) / (highest - lowest). None if there is no relief.
 #[must_use]
-pub fn integral(grid: &Grid) -> Option<f64> {
+pub fn hypsometric_integral(grid: &Grid) -> Option<f64> {
     let (low, high) = range(grid)?;
     let (mut sum, mut count) = (0.0, 0u64);
     for h in grid.data().iter().filter(|h| h.is_finite()) {
@@ -59,20 +59,20 @@ mod tests {
     fn a_ramp_is_a_straight_line() {
         let data = (0..=1000).map(|k| k as f32 * 0.5).collect();
         let ramp = Grid::from_data(Window::new(1001, 1, 1.0), data).unwrap();
-        let curve = curve(&ramp, 10).unwrap();
+        let curve = hypsometric_curve(&ramp, 10).unwrap();
         for (k, share) in curve.iter().enumerate() {
             assert!((share - (1.0 - k as f64 / 10.0)).abs() < 2e-3, "{curve:?}");
         }
-        assert!((integral(&ramp).unwrap() - 0.5).abs() < 1e-9);
+        assert!((hypsometric_integral(&ramp).unwrap() - 0.5).abs() < 1e-9);
     }
 
     #[test]
     fn missing_samples_and_level_ground() {
         let grid = Grid::from_data(Window::new(4, 1, 1.0), vec![f32::NAN, 1.0, 3.0, 3.0]).unwrap();
-        assert_eq!(curve(&grid, 2).unwrap(), [1.0, 2.0 / 3.0, 2.0 / 3.0]);
+        assert_eq!(hypsometric_curve(&grid, 2).unwrap(), [1.0, 2.0 / 3.0, 2.0 / 3.0]);
         let level = Grid::filled(Window::new(3, 3, 1.0), 2.0);
-        assert_eq!((curve(&level, 2).unwrap(), integral(&level)), (vec![1.0; 3], None));
-        assert_eq!(curve(&Grid::filled(Window::new(2, 2, 1.0), f32::NAN), 5), None);
-        assert_eq!(curve(&grid, 0), None);
+        assert_eq!((hypsometric_curve(&level, 2).unwrap(), hypsometric_integral(&level)), (vec![1.0; 3], None));
+        assert_eq!(hypsometric_curve(&Grid::filled(Window::new(2, 2, 1.0), f32::NAN), 5), None);
+        assert_eq!(hypsometric_curve(&grid, 0), None);
     }
 }

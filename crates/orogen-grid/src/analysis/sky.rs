@@ -41,7 +41,7 @@ fn looks(reach: usize, cell: f64) -> (Vec<Look>, Vec<f64>) {
     (looks, shares)
 }
 
-/// A step of [`view`], for other devices.
+/// A step of [`sky_view`], for other devices.
 #[doc(hidden)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ViewStep {
@@ -53,7 +53,7 @@ pub struct ViewStep {
     pub share: f32,
 }
 
-/// The steps of [`view`], direction by direction.
+/// The steps of [`sky_view`], direction by direction.
 #[doc(hidden)]
 #[must_use]
 pub fn steps_of_view(reach: usize, cell: f64) -> Vec<ViewStep> {
@@ -74,7 +74,7 @@ fn steps() -> impl Iterator<Item = i64> {
 /// The sky-view factor, 0 to 1, at the samples of `window`, with horizons up to `reach` samples away. `heights` covers
 /// the window and its surroundings; beyond it the sky is open. NaN at samples that are not finite; they hide nothing.
 #[must_use]
-pub fn view(heights: &Grid, window: &Window, reach: usize) -> Grid {
+pub fn sky_view(heights: &Grid, window: &Window, reach: usize) -> Grid {
     let (looks, shares) = looks(reach, window.cell);
     let all = heights.window();
     let mut out = Grid::filled(*window, f32::NAN);
@@ -125,7 +125,7 @@ mod tests {
     }
 
     fn middle(grid: &Grid, reach: usize) -> f32 {
-        view(grid, &Window::new(1, 1, 2.0), reach)[(0, 0)]
+        sky_view(grid, &Window::new(1, 1, 2.0), reach)[(0, 0)]
     }
 
     #[test]
@@ -154,10 +154,10 @@ mod tests {
     fn a_window_is_the_crop_of_the_whole() {
         let ground = made(81, |x, y| libm::sin(x * 0.3) * 8.0 + libm::cos(y * 0.2 + x * 0.05) * 6.0);
         let inner = ground.window().shrunk(12);
-        let whole = view(&ground, &inner, 12);
+        let whole = sky_view(&ground, &inner, 12);
         let part = Window { x: 3, y: -7, width: 9, height: 14, ..inner };
         let cut = ground.crop(&part.grown(12)).unwrap();
-        assert_eq!(Some(view(&cut, &part, 12)), whole.crop(&part));
+        assert_eq!(Some(sky_view(&cut, &part, 12)), whole.crop(&part));
     }
 
     #[test]
@@ -165,6 +165,6 @@ mod tests {
         let mut ground = made(33, libm::hypot);
         ground.row_mut(16)[20] = f32::NAN;
         assert!(middle(&ground, 16) > 0.28);
-        assert!(view(&ground, &Window::new(1, 1, 2.0).at(4, 0), 16)[(0, 0)].is_nan());
+        assert!(sky_view(&ground, &Window::new(1, 1, 2.0).at(4, 0), 16)[(0, 0)].is_nan());
     }
 }

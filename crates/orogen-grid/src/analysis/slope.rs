@@ -117,7 +117,7 @@ pub fn steepness(grid: &Grid) -> Grid {
 
 /// The slope angle in degrees, 0 to 90.
 #[must_use]
-pub fn degrees(grid: &Grid) -> Grid {
+pub fn slope_degrees(grid: &Grid) -> Grid {
     from_gradients(grid, |gradient| libm::atanf(gradient.steepness()).to_degrees())
 }
 
@@ -202,7 +202,7 @@ mod tests {
     #[test]
     fn degrees_of_one_in_one_are_45() {
         let plane = grid(Window::new(4, 4, 2.0), |x, _| x);
-        assert!(degrees(&plane).data().iter().all(|&d| (d - 45.0).abs() < 1e-4));
+        assert!(slope_degrees(&plane).data().iter().all(|&d| (d - 45.0).abs() < 1e-4));
     }
 
     #[test]

@@ -98,7 +98,7 @@ pub fn spectrum_of_rows(window: &Window, rows: impl Fn(Range<usize>) -> Result<G
 /// terrain has 3.2 to 4.4 at 30 to 90 m. A surface of Hurst exponent H has beta = 2 H + 2. None if there are too few
 /// classes.
 #[must_use]
-pub fn slope(bands: &[Band], cell: f64) -> Option<f64> {
+pub fn spectral_slope(bands: &[Band], cell: f64) -> Option<f64> {
     let points: Vec<(f64, f64)> = bands
         .iter()
         .filter(|band| (4.0 * cell..=64.0 * cell).contains(&band.wavelength))
@@ -220,7 +220,7 @@ mod tests {
             let (xs, ys) = (window.eastings(), window.southings());
             fractal.fill(&Points::Lattice { xs: &xs, ys: &ys }, grid.data_mut()).unwrap();
             let bands = spectrum(&grid);
-            let beta = slope(&bands, 30.0).unwrap();
+            let beta = spectral_slope(&bands, 30.0).unwrap();
             assert!((beta - (2.0 * hurst_exponent + 2.0)).abs() < 0.25, "{beta} for {hurst_exponent}");
             let found = hurst(&grid).unwrap();
             assert!((found - hurst_exponent).abs() < 0.12, "{found} for {hurst_exponent}");

@@ -48,7 +48,7 @@ pub fn sinking(refraction: f64) -> f64 {
     (1.0 - refraction) / (2.0 * EARTH)
 }
 
-/// The value of [`hidden`] beyond the observer's radius.
+/// The value of [`viewshed`] beyond the observer's radius.
 pub const BEYOND: f32 = -1.0;
 
 /// The height, in metres above the ground of each sample, from which the observer is visible; 0 where the ground itself
@@ -62,7 +62,7 @@ pub const BEYOND: f32 = -1.0;
 ///
 /// # Errors
 /// The error of `check`, which is called repeatedly.
-pub fn hidden(heights: &Grid, observer: &Observer, check: Check) -> Result<Grid> {
+pub fn viewshed(heights: &Grid, observer: &Observer, check: Check) -> Result<Grid> {
     let (window, [x, y]) = (*heights.window(), observer.at);
     let mut out = Grid::filled(window, BEYOND);
     if window.is_empty() {
@@ -245,7 +245,7 @@ mod tests {
             let heights = ground(columns, rows);
             for sinking in [0.0, sinking(0.13), 1e-4] {
                 let observer = Observer { at, height: 3.0, radius: 1e9, sinking };
-                let found = hidden(&heights, &observer, &|| Ok(())).unwrap();
+                let found = viewshed(&heights, &observer, &|| Ok(())).unwrap();
                 let plain = MaxPyramid::new(heights.data().to_vec(), columns);
                 let eye = plain.at(at[0], at[1]) + 3.0;
                 for (k, found) in found.data().iter().enumerate() {
@@ -285,14 +285,14 @@ mod tests {
             ([20.0, -30.0], (22, 10), (40, 10), 0.0),
             ([0.0, -10.0], (19, 10), (40, 10), 2.0 + 10.0 / 20.0 * 40.0),
         ] {
-            let found = hidden(&heights, &Observer::new(at, 2.0), &|| Ok(())).unwrap();
+            let found = viewshed(&heights, &Observer::new(at, 2.0), &|| Ok(())).unwrap();
             assert_eq!(found[shown], 0.0, "{at:?}");
             assert!((f64::from(found[behind]) - hidden_to).abs() < 1e-3, "{at:?}: {}, not {hidden_to}", found[behind]);
         }
         // As far as recipes can say, in any direction.
         for at in [[-1e13, -1e13], [1e13, 4.0], [7.5, -1e13], [1e13, 0.0]] {
             assert!(
-                hidden(&heights, &Observer::new(at, 2.0), &|| Ok(())).unwrap().data().iter().all(|h| h.is_finite())
+                viewshed(&heights, &Observer::new(at, 2.0), &|| Ok(())).unwrap().data().iter().all(|h| h.is_finite())
             );
         }
     }
@@ -302,7 +302,7 @@ mod tests {
         let mut heights = Grid::filled(Window::new(50, 21, 10.0), 0.0f32);
         (0..21).for_each(|j| heights.row_mut(j)[20] = 12.0);
         let observer = Observer { at: [10.0, 10.0], height: 2.0, radius: 350.0, sinking: 0.0 };
-        let found = hidden(&heights, &observer, &|| Ok(())).unwrap();
+        let found = viewshed(&heights, &observer, &|| Ok(())).unwrap();
         // From 2 m over the top of the wall, 100 m away and 10 m higher: at 300 m, 32 m.
         assert!((found[(40, 10)] - 32.0).abs() < 1e-3, "{}", found[(40, 10)]);
         assert_eq!([found[(15, 10)], found[(20, 10)], found[(10, 10)]], [0.0; 3]);

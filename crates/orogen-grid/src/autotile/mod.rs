@@ -18,14 +18,30 @@
 //! # Ok::<(), orogen_grid::Error>(())
 //! ```
 
+#[doc(hidden)]
 pub mod choose;
+#[doc(hidden)]
 pub mod classes;
+#[doc(hidden)]
 pub mod clean;
+#[doc(hidden)]
 pub mod drawable;
+#[doc(hidden)]
 pub mod flip;
+#[doc(hidden)]
 pub mod mask;
+#[doc(hidden)]
 pub mod rule;
 mod variants;
+
+pub use choose::{ClassTiles, Tiles, WangTiles};
+pub use classes::Classes;
+pub use clean::clean;
+pub use drawable::{Drawable, Gap, MissingTile};
+pub use flip::{Flip, Flips};
+pub use mask::Layout;
+pub use rule::Pattern;
+pub use variants::Variant;
 
 #[cfg(test)]
 mod tests;

@@ -9,7 +9,7 @@ use super::line::Line;
 /// The ends of an open line stay, on the border. A point moves by at most a quarter of the longer adjacent segment, so
 /// neighboring lines rarely touch, but they may if they were very close.
 #[must_use]
-pub fn smooth(line: &Line, rounds: usize) -> Line {
+pub fn chaikin(line: &Line, rounds: usize) -> Line {
     let mut points = line.points.clone();
     for _ in 0..rounds {
         points = if line.closed { ring(&points) } else { open(&points) };
@@ -54,20 +54,20 @@ mod tests {
     #[test]
     fn ends_stay_and_corners_go() {
         let corner = line(false, &[[0.0, 0.0], [8.0, 0.0], [8.0, 8.0]]);
-        let round = smooth(&corner, 1);
+        let round = chaikin(&corner, 1);
         assert_eq!(round.points, [[0.0, 0.0], [6.0, 0.0], [8.0, 2.0], [8.0, 8.0]]);
-        let rounder = smooth(&corner, 4);
+        let rounder = chaikin(&corner, 4);
         assert_eq!((rounder.points[0], *rounder.points.last().unwrap()), ([0.0, 0.0], [8.0, 8.0]));
         assert!(rounder.length() < round.length());
-        assert_eq!(smooth(&corner, 0), corner);
+        assert_eq!(chaikin(&corner, 0), corner);
         let straight = line(false, &[[0.0, 0.0], [8.0, 0.0]]);
-        assert_eq!(smooth(&straight, 3), straight);
+        assert_eq!(chaikin(&straight, 3), straight);
     }
 
     #[test]
     fn a_ring_stays_one_and_keeps_most_of_its_area() {
         let square = line(true, &[[0.0, 0.0], [0.0, 8.0], [8.0, 8.0], [8.0, 0.0]]);
-        let round = smooth(&square, 5);
+        let round = chaikin(&square, 5);
         assert!(round.closed && round.points.len() == 4 << 5);
         // The limit of a square is five sixths of it.
         assert!((round.area() / 64.0 - 5.0 / 6.0).abs() < 1e-3, "{}", round.area());

@@ -9,7 +9,7 @@ pub const MOST: usize = 65_000;
 ///
 /// # Errors
 /// If the interval is not above 0, or there would be more than [`MOST`] levels.
-pub fn every(interval: f64, low: f64, high: f64) -> Result<Vec<f64>> {
+pub fn levels_every(interval: f64, low: f64, high: f64) -> Result<Vec<f64>> {
     let fault = |message: String| Err(Error::new(ErrorKind::Request, message));
     if !(interval > 0.0 && interval.is_finite()) {
         return fault(format!("the contour interval must be greater than 0 m, not {interval}"));
@@ -79,13 +79,13 @@ mod tests {
             (50.0, 7.0, 7.0, vec![]),
             (50.0, f64::NAN, 7.0, vec![]),
         ] {
-            assert_eq!(every(interval, low, high).unwrap(), expect, "{interval} {low} {high}");
+            assert_eq!(levels_every(interval, low, high).unwrap(), expect, "{interval} {low} {high}");
         }
         for interval in [0.0, -5.0, f64::NAN, f64::INFINITY] {
-            assert!(every(interval, 0.0, 1.0).unwrap_err().to_string().contains("must be greater than 0 m"));
+            assert!(levels_every(interval, 0.0, 1.0).unwrap_err().to_string().contains("must be greater than 0 m"));
         }
-        assert!(every(1e-3, 0.0, 3000.0).unwrap_err().to_string().contains("use a larger interval"));
-        assert!(every(1e-300, 0.0, 1.0).is_err());
+        assert!(levels_every(1e-3, 0.0, 3000.0).unwrap_err().to_string().contains("use a larger interval"));
+        assert!(levels_every(1e-300, 0.0, 1.0).is_err());
     }
 
     #[test]

@@ -43,7 +43,8 @@ orogen_noise::builder!(Thermal: with_talus(talus: f64), with_rate(rate: f64));
 const FASTEST: f64 = 0.2;
 
 impl Thermal {
-    /// The heights after `passes` passes, over a window that is smaller by one sample per pass on each side.
+    /// The heights after `passes` passes, over a window that is smaller by one sample per pass on each side: use
+    /// [`Grid::padded`] for a result as large as the heights.
     ///
     /// # Errors
     /// If the work is cancelled.
@@ -173,7 +174,7 @@ mod tests {
             let window = Window::new(41, 41, 5.0).at(-20, -20).grown(passes);
             let cone = made(window, |x, y| (75.0 - 1.5 * (x * x + y * y).sqrt()).max(0.0));
             let done = weathered(&cone, angle, passes);
-            let degrees = slope::degrees(&done);
+            let degrees = slope::slope_degrees(&done);
             let mut seen = [0; 16];
             for j in 0..degrees.height() {
                 for i in 0..degrees.width() {

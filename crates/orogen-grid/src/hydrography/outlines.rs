@@ -6,7 +6,7 @@
 
 use super::joints::Path;
 use super::rings::nested;
-use crate::contour::chaikin::smooth;
+use crate::contour::chaikin::chaikin;
 use crate::contour::line::Line;
 use crate::grid::Grid;
 
@@ -116,12 +116,12 @@ impl Squares<'_> {
         let nodes: Vec<usize> = (0..ring.len()).filter(|k| self.is_node(ring[*k])).collect();
         let mut points: Path = Vec::new();
         match nodes.first() {
-            None => points = smooth(&line(ring.iter().map(point).collect(), true), rounds).points,
+            None => points = chaikin(&line(ring.iter().map(point).collect(), true), rounds).points,
             Some(first) => {
                 let ends = nodes.iter().skip(1).copied().chain([first + ring.len()]);
                 for (start, end) in nodes.iter().zip(ends) {
                     let arc = (*start..=end).map(|k| point(&ring[k % ring.len()])).collect();
-                    let arc = smooth(&line(arc, false), rounds).points;
+                    let arc = chaikin(&line(arc, false), rounds).points;
                     points.extend_from_slice(&arc[..arc.len() - 1]);
                 }
             }

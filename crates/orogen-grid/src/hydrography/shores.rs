@@ -7,7 +7,7 @@ use super::given::snapped;
 use super::joints::Path;
 use super::rings::nested;
 use super::water::{Frame, Water};
-use crate::contour::chaikin::smooth;
+use crate::contour::chaikin::chaikin;
 use crate::contour::line::Line;
 use crate::contour::trace::contours;
 use crate::error::Result;
@@ -37,12 +37,12 @@ impl Shores {
         let mut shores = Shores::default();
         for line in contours(&depths(water, frame), &[0.0])? {
             let Some(lake) = line.points.iter().find_map(|at| wet_beside(*at, &water.labels)) else { continue };
-            shores.lines.push(smooth(&shared(line, water), rounds).path().collect());
+            shores.lines.push(chaikin(&shared(line, water), rounds).path().collect());
             shores.waters.push(lake);
         }
         if let Some(rise) = water.sea_level.and_then(|sea| over_the_sea(water, frame, sea)) {
             for line in contours(&rise, &[0.0])? {
-                shores.lines.push(smooth(&shared(line, water), rounds).path().collect());
+                shores.lines.push(chaikin(&shared(line, water), rounds).path().collect());
                 shores.waters.push(0);
             }
         }

@@ -152,7 +152,7 @@ impl Water {
         }
         found.labels.data_mut().iter_mut().for_each(|label| *label = kept[*label as usize]);
         let drained = accumulate(&receivers);
-        let orders = strahler::orders(&receivers, &drained, least.spring.max(1));
+        let orders = strahler::strahler_orders(&receivers, &drained, least.spring.max(1));
         let reaches = network(&receivers, &orders);
         progress.check()?;
         Ok(Water {

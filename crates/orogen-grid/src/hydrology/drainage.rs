@@ -133,7 +133,7 @@ mod tests {
             let outlets = Outlets::new(&heights, Some(2.0));
             let descent = if k % 2 == 0 { Descent::Steepest } else { Descent::Scattered(k as u32) };
             ends(&route_carving(&heights, &outlets, descent).receivers, &outlets);
-            let filled = fill::fill(&heights, &outlets);
+            let filled = fill(&heights, &outlets);
             ends(&over_surface(&filled, &outlets, descent), &outlets);
         }
     }

@@ -178,7 +178,7 @@ mod tests {
             for (deepest, longest) in [(0.0, 50), (20.0, 4), (150.0, 50), (1e9, 1000)] {
                 let outlets = Outlets::new(&heights, None);
                 let out = breach(&heights, &outlets, &Limits { deepest, longest }, &Progress::none()).unwrap();
-                let full = fill::fill(&out, &outlets);
+                let full = fill(&out, &outlets);
                 for (c, (new, old)) in out.data().iter().zip(heights.data()).enumerate() {
                     assert!(new.to_bits() == full.data()[c].to_bits() || new.is_nan(), "a depression at {c}");
                     assert!(old.is_nan() || old - new <= deepest, "{old} to {new}");
@@ -227,7 +227,7 @@ mod tests {
                 moved(&breach(&heights, &outlets, &Limits { deepest: 1e9, longest: 1000 }, &Progress::none()).unwrap());
             let drainage = drainage::route_carving(&heights, &outlets, Descent::Steepest);
             let valleys = moved(&along_valleys::breach(&heights, &outlets, &drainage, 1e9));
-            let full = moved(&fill::fill(&heights, &outlets));
+            let full = moved(&fill(&heights, &outlets));
             assert!(least < full, "{least}, to fill {full}");
             by_cost += least;
             by_valleys += valleys;

@@ -64,8 +64,8 @@ impl Channel {
     }
 }
 
-/// The network of all cells with an order above 0 (see [`orders`](super::strahler::orders)): reaches from source or
-/// confluence to confluence or outlet, in row order of their first cells. Costs O(cells).
+/// The network of all cells with an order above 0 (see [`strahler_orders`](super::strahler::strahler_orders)): reaches
+/// from source or confluence to confluence or outlet, in row order of their first cells. Costs O(cells).
 #[must_use]
 pub fn network(receivers: &Receivers, orders: &Grid<u8>) -> Vec<Reach> {
     let mut streams = Streams::default();
@@ -188,7 +188,7 @@ mod tests {
             let receivers =
                 drainage::route_carving(&heights, &Outlets::new(&heights, None), Descent::Steepest).receivers;
             let drained = accumulate(&receivers);
-            let orders = strahler::orders(&receivers, &drained, 5);
+            let orders = strahler::strahler_orders(&receivers, &drained, 5);
             let reaches = network(&receivers, &orders);
             let mut covered = vec![0u32; orders.data().len()];
             for reach in &reaches {
@@ -219,9 +219,9 @@ mod tests {
         for heights in samples::grids() {
             let outlets = Outlets::new(&heights, None);
             let drainage = drainage::route_carving(&heights, &outlets, Descent::Steepest);
-            let mut ground = breach::breach(&heights, &outlets, &drainage, 30.0);
+            let mut ground = breach(&heights, &outlets, &drainage, 30.0);
             let drained = accumulate(&drainage.receivers);
-            let orders = strahler::orders(&drainage.receivers, &drained, 5);
+            let orders = strahler::strahler_orders(&drainage.receivers, &drained, 5);
             let before = ground.clone();
             carve(&mut ground, &drainage.receivers, &drained, &orders, &CHANNEL);
             for c in (0..ground.data().len()).filter(|c| !outlets.at(*c)) {

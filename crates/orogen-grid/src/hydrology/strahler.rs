@@ -13,16 +13,16 @@ use crate::progress::Progress;
 ///
 /// Costs O(cells).
 #[must_use]
-pub fn orders(receivers: &Receivers, accumulation: &Accumulation, threshold: u32) -> Grid<u8> {
+pub fn strahler_orders(receivers: &Receivers, accumulation: &Accumulation, threshold: u32) -> Grid<u8> {
     let Ok(orders) = ordered(receivers, accumulation, threshold, &never);
     orders
 }
 
-/// [`orders`] with progress and cancellation.
+/// [`strahler_orders`] with progress and cancellation.
 ///
 /// # Errors
 /// If the work is cancelled.
-pub fn orders_with(
+pub fn strahler_orders_with(
     receivers: &Receivers,
     accumulation: &Accumulation,
     threshold: u32,
@@ -78,7 +78,7 @@ mod tests {
                 drainage::route_carving(&heights, &Outlets::new(&heights, None), Descent::Steepest).receivers;
             let accumulation = accumulate(&receivers);
             for threshold in [1, 4, 20] {
-                let orders = orders(&receivers, &accumulation, threshold);
+                let orders = strahler_orders(&receivers, &accumulation, threshold);
                 for c in 0..orders.data().len() {
                     let mut inflows: Vec<u8> = (0..orders.data().len())
                         .filter(|d| *d != c && receivers.of(*d) == c && orders.data()[*d] > 0)

@@ -17,7 +17,16 @@
 //! # Ok::<(), &str>(())
 //! ```
 
+#[doc(hidden)]
 pub mod buffers;
+#[doc(hidden)]
 pub mod cubic;
+#[doc(hidden)]
 pub mod outline;
+#[doc(hidden)]
 pub mod segments;
+
+pub use buffers::Buffers;
+pub use cubic::Cubic;
+pub use outline::Outline;
+pub use segments::{Nearest, Segments};

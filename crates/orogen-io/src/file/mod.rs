@@ -19,9 +19,11 @@
 //! - *a pipe or a device* (`/dev/null`): written directly, because it cannot be replaced.
 
 mod atomic;
+#[doc(hidden)]
 pub mod cancellable;
 mod identity;
 mod kind;
+#[doc(hidden)]
 pub mod mark;
 mod output_folder;
 mod policy;

@@ -1,43 +1,71 @@
 //! File formats, one per file. Writers stream to any [`Write`](std::io::Write) and hold a few rows at a time. Readers
 //! of heights ([`import`]) check sizes stated in a file against its length before they allocate memory.
 
+#[doc(hidden)]
 pub mod affine;
 pub mod asc;
+#[doc(hidden)]
 pub mod aux_xml;
+#[doc(hidden)]
 pub mod band;
+#[doc(hidden)]
 pub mod content;
+#[doc(hidden)]
 pub mod contour_svg;
 pub mod crs;
 pub mod csv;
+#[doc(hidden)]
 pub mod dem;
+#[doc(hidden)]
 pub mod drawing;
 pub(crate) mod dted;
 pub(crate) mod ehdr;
 pub(crate) mod exr_reader;
+#[doc(hidden)]
 pub mod features;
 pub mod fgb;
+#[doc(hidden)]
 pub mod foreign;
 pub mod geojson;
 pub mod geotiff;
 pub mod gpkg;
 pub(crate) mod grey;
 pub mod hgt;
+#[doc(hidden)]
 pub mod import;
 pub(crate) mod netcdf;
 mod noted;
+#[doc(hidden)]
 pub mod notes;
+#[doc(hidden)]
 pub mod pgm;
+#[doc(hidden)]
 pub mod points;
 pub mod raw;
+#[doc(hidden)]
 pub mod sidecar;
+#[doc(hidden)]
 pub mod svg;
 mod svg_shapes;
+#[doc(hidden)]
 pub mod tres;
+#[doc(hidden)]
 pub mod vrt;
+#[doc(hidden)]
 pub mod world_file;
+#[doc(hidden)]
 pub mod xml;
 pub(crate) mod xyz;
+#[doc(hidden)]
 pub mod zarr;
+
+pub use affine::{Affine, Lattice};
+pub use band::BandMetadata;
+pub use crs::Crs;
+pub use dem::{Dem, Georeference, Placement, Request};
+pub use import::{is_dem, read};
+pub use points::{NamedPoint, NamedPoints};
+pub use sidecar::Sidecar;
 
 #[doc(hidden)]
 pub use orogen_codec::format::weights;
@@ -45,6 +73,7 @@ pub(crate) use orogen_codec::format::{
     conversion, coordinates, exr_block, feature_text, flatbuffer, geojson_reader, gpkg_rows, grey_rows, input,
     metres16, number, sorted_features, sqlite, stored, svg_path, words, xyz_rows, zip,
 };
+#[doc(hidden)]
 pub use orogen_codec::format::{
     encoding, exr, gif, half, lerc, levels, luanti, npy, outlines, png, schem, vox, zip_writer,
 };

@@ -23,13 +23,19 @@ mod job;
 #[doc(hidden)]
 pub mod journal;
 mod output_store;
+#[doc(hidden)]
 pub mod run;
 mod samples;
+#[doc(hidden)]
 pub mod spec;
 mod target;
 mod work_dir;
+#[doc(hidden)]
 pub mod xyz;
 mod zarr;
+
+pub use run::{Build, Report};
+pub use spec::{BuildSpec, Form, Samples};
 
 #[cfg(test)]
 mod tests;

@@ -3,8 +3,8 @@
 use super::contour_options::{INTERVAL, LEVELS, SMOOTH, parse};
 use super::memory::whole;
 use crate::options::Options;
-use orogen_grid::contour::chaikin::smooth;
-use orogen_grid::contour::levels::{every, round_interval};
+use orogen_grid::contour::chaikin::chaikin;
+use orogen_grid::contour::levels::{levels_every, round_interval};
 use orogen_grid::contour::line::Line;
 use orogen_grid::contour::trace;
 use orogen_grid::error::Result;
@@ -42,12 +42,12 @@ pub fn on(grid: &Grid, options: &Options) -> Result<Contours> {
     };
     let levels = match (named, interval) {
         (Some(levels), _) => levels,
-        (None, Some(interval)) => every(interval, low, high)?,
+        (None, Some(interval)) => levels_every(interval, low, high)?,
         (None, None) => Vec::new(),
     };
     let lines = trace::contours(grid, &levels)?;
     let rounds = options.whole(SMOOTH.name).unwrap_or(0) as usize;
-    let lines = if rounds > 0 { lines.iter().map(|line| smooth(line, rounds)).collect() } else { lines };
+    let lines = if rounds > 0 { lines.iter().map(|line| chaikin(line, rounds)).collect() } else { lines };
     Ok(Contours { lines, interval })
 }
 

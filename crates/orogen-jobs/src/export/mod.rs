@@ -18,31 +18,54 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#[doc(hidden)]
 pub mod biome_cover;
+#[doc(hidden)]
 pub mod channels;
+#[doc(hidden)]
 pub mod contour_options;
 pub(crate) mod contours;
+#[doc(hidden)]
 pub mod derived;
+#[doc(hidden)]
 pub mod features;
 pub(crate) mod files;
+#[doc(hidden)]
 pub mod format;
 pub(crate) mod formats;
+#[doc(hidden)]
 pub mod job;
+#[doc(hidden)]
 pub mod layer_source;
 pub(crate) mod memory;
+#[doc(hidden)]
 pub mod mesh;
+#[doc(hidden)]
 pub mod mesh_cover;
 pub(crate) mod mesh_objects;
+#[doc(hidden)]
 pub mod mesh_tint;
 pub(crate) mod mesh_water;
+#[doc(hidden)]
 pub mod place;
 pub(crate) mod print_bed;
+#[doc(hidden)]
 pub mod quantizer;
+#[doc(hidden)]
 pub mod registry;
 pub(crate) mod run;
+#[doc(hidden)]
 pub mod sheet_cover;
 pub(crate) mod sidecar;
 pub(crate) mod solid;
+#[doc(hidden)]
 pub mod targets;
 pub(crate) mod vectors;
 pub(crate) mod weights_preview;
+mod world_export;
+
+pub use format::Format;
+pub use job::ExportJob;
+pub use layer_source::LayerSource;
+pub use registry::{all, named, of_path};
+pub use world_export::Export;

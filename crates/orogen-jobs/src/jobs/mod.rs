@@ -3,14 +3,23 @@
 //! Prepare a recipe with a job, open its world, then write to a file. Layers and packages for game engines have jobs of
 //! their own in [`export`](crate::export), and maps of tiles in [`tilemap`](crate::tilemap).
 
+#[doc(hidden)]
 pub mod blocks;
 mod color_bar;
 mod drawn_map;
 mod finite;
+#[doc(hidden)]
 pub mod map;
 mod map_names;
 mod map_options;
 mod map_water;
+#[doc(hidden)]
 pub mod render;
 mod render_options;
+#[doc(hidden)]
 pub mod sheet_format;
+
+pub use blocks::{BlockFormat, BlocksJob};
+pub use map::{MapColors, MapJob};
+pub use render::RenderJob;
+pub use sheet_format::SheetFormat;

@@ -18,7 +18,7 @@ pub fn find_palette(palette: &Path) -> Result<Palette> {
         return Ok(named.palette());
     }
     if palette.extension().is_some() || fs::is_present(palette) {
-        return read::read(palette);
+        return read(palette);
     }
     let hint = match nearest(&name, named::all().iter().map(|named| named.name)) {
         Some(near) => format!("did you mean `{near}`?"),

@@ -6,20 +6,35 @@
 
 mod class_rows;
 mod drawing;
+#[doc(hidden)]
 pub mod files;
+#[doc(hidden)]
 pub mod godot;
+#[doc(hidden)]
 pub mod job;
+#[doc(hidden)]
 pub mod ldtk;
+#[doc(hidden)]
 pub mod load;
+#[doc(hidden)]
 pub mod map;
 mod map_objects;
+#[doc(hidden)]
 pub mod preview;
+#[doc(hidden)]
 pub mod table;
+#[doc(hidden)]
 pub mod tiled;
 mod tilemap_options;
+#[doc(hidden)]
 pub mod tileset_source;
 
-#[doc(inline)]
+pub use files::WrittenMap;
+pub use job::TilemapJob;
+pub use map::{TileLayer, Tilemap};
+pub use tileset_source::TilesetSource;
+
+#[doc(hidden)]
 pub use orogen_output::tilemap::{art, tileset};
 
 #[cfg(test)]

@@ -14,14 +14,21 @@
 #[macro_use]
 mod macros;
 
+#[doc(hidden)]
 pub mod declared;
+#[doc(hidden)]
 pub mod input;
+#[doc(hidden)]
 pub mod memo;
+#[doc(hidden)]
 pub mod param;
 #[doc(hidden)]
 pub mod point_lists;
+#[doc(hidden)]
 pub mod points;
+#[doc(hidden)]
 pub mod spec;
+#[doc(hidden)]
 pub mod strokes;
 
 pub use declared::Declared;

@@ -8,16 +8,24 @@
 //! - `formula`: an expression of parameters, evaluated once in f64
 
 #[doc(hidden)]
+#[doc(hidden)]
 pub mod error;
 #[doc(hidden)]
+#[doc(hidden)]
 pub mod formula;
+#[doc(hidden)]
 #[doc(hidden)]
 pub mod function;
 mod parse;
 #[doc(hidden)]
+#[doc(hidden)]
 pub mod term;
+#[doc(hidden)]
 pub mod text;
 mod token;
+
+pub use error::ExpressionError;
+pub use text::Expression;
 
 #[cfg(test)]
 mod tests;

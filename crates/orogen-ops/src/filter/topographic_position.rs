@@ -4,7 +4,7 @@ use crate::budget::memory;
 use crate::lower::{Lowering, Passes};
 use crate::op::{Context, Filter, WorldParams};
 use orogen_grid::analysis::position::{class, half_widths, positions_with};
-use orogen_grid::analysis::slope::degrees;
+use orogen_grid::analysis::slope::slope_degrees;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::parallel;
@@ -86,7 +86,7 @@ impl Filter for TopographicPosition {
                 |(b, (out, found))| {
                     context.progress.check()?;
                     let band = Window { y: window.y + (b * BAND) as i64, height: out.len() / width, ..*window };
-                    let slopes = source.crop(&band.grown(1)).map(|around| degrees(&around));
+                    let slopes = source.crop(&band.grown(1)).map(|around| slope_degrees(&around));
                     let slopes = slopes.as_ref().map_or(&[][..], Grid::data);
                     for ((out, found), slope) in out.iter_mut().zip(found).zip(slopes) {
                         *out = f32::from(class(found.deviation, *slope));

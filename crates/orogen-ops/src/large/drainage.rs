@@ -133,7 +133,7 @@ mod tests {
         let rain = surface.then(|| rain(&window));
         let drained = accumulate_rain_with(&receivers, rain.as_ref(), &progress).unwrap();
         let (labels, orders) =
-            (watersheds::watersheds(&receivers, &outlets, &drained), strahler::orders(&receivers, &drained, 5));
+            (watersheds(&receivers, &outlets, &drained), strahler::strahler_orders(&receivers, &drained, 5));
         let [mut flow, mut watershed, mut strahler] = [0; 3].map(|_| raster(&window));
         let layers = Layers { flow: &mut flow, watershed: &mut watershed, strahler: &mut strahler, threshold: 5 };
         let water = Water { heights: &source, sea, tiling: Tiling::new(window, side), progress: &progress };

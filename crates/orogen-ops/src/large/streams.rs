@@ -164,7 +164,8 @@ mod tests {
             let receivers =
                 drainage::route_carving(&heights, &Outlets::new(&heights, None), Descent::Steepest).receivers;
             let drained = accumulate(&receivers);
-            let (orders, ways) = (strahler::orders(&receivers, &drained, 5), longest_ways(&receivers, &drained));
+            let (orders, ways) =
+                (strahler::strahler_orders(&receivers, &drained, 5), longest_ways(&receivers, &drained));
             let codes = receivers.codes().iter().map(|code| f32::from(*code)).collect();
             let raster = Raster::in_memory(Grid::from_data(window, codes).unwrap());
             for side in [1, 3, 8, 17, 64] {

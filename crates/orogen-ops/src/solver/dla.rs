@@ -53,7 +53,7 @@ impl Solver for Dla {
             .with_density(self.density)
             .with_gain(self.gain)
             .with_taper(self.taper);
-        let (across, down, map) = relief::heights(domain.width, domain.height, &ridges, context.progress)?;
+        let (across, down, map) = relief::ridge_heights(domain.width, domain.height, &ridges, context.progress)?;
         context.progress.check()?;
         let summit = map.iter().copied().fold(f32::MIN_POSITIVE, f32::max);
         let factor = self.height as f32 / summit;

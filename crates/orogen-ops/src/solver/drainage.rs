@@ -114,7 +114,7 @@ impl Solver for Drainage {
         let [labelling, ordering] = naming.parts([1.0, 1.0]);
         let watersheds = watersheds::watersheds_with(&receivers, &outlets, &accumulation, &labelling)?;
         labelling.finish();
-        let orders = strahler::orders_with(&receivers, &accumulation, threshold, &ordering)?;
+        let orders = strahler::strahler_orders_with(&receivers, &accumulation, threshold, &ordering)?;
         ordering.finish();
         drop(accumulation);
         context.progress.check()?;

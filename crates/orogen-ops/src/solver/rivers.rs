@@ -79,7 +79,7 @@ impl Solver for Rivers {
         let cell_area = window.cell * window.cell;
         let threshold = cells_of(self.stream, &window, 1);
         let [ordering, carving] = carving.parts([1.0, 1.0]);
-        let orders = strahler::orders_with(&drainage.receivers, &drained, threshold, &ordering)?;
+        let orders = strahler::strahler_orders_with(&drainage.receivers, &drained, threshold, &ordering)?;
         ordering.finish();
         let channel = Channel::default().with_runoff(self.runoff).with_width(self.width).with_depth(self.depth);
         context.progress.check()?;

@@ -4,7 +4,7 @@ use super::terrain;
 use crate::budget::memory;
 use crate::lower::{Lowering, Passes};
 use crate::op::{Context, Solution, Solver, Sources, WorldParams};
-use orogen_grid::analysis::viewshed::{BEYOND, Observer, hidden, sinking};
+use orogen_grid::analysis::viewshed::{BEYOND, Observer, sinking, viewshed};
 use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
 
@@ -58,7 +58,7 @@ impl Solver for Viewshed {
         )
         .with_radius(self.radius)
         .with_sinking(if self.curvature { sinking(self.refraction) } else { 0.0 });
-        let hidden = hidden(&heights, &observer, &|| context.progress.check())?;
+        let hidden = viewshed(&heights, &observer, &|| context.progress.check())?;
         let mut visible = heights;
         for (visible, hidden) in visible.data_mut().iter_mut().zip(hidden.data()) {
             *visible = f32::from(u8::from(*hidden != BEYOND && f64::from(*hidden) <= self.target_height));

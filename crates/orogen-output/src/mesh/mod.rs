@@ -14,35 +14,52 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#[doc(hidden)]
 pub mod adaptive;
+#[doc(hidden)]
 pub mod body;
 mod border;
 mod bounds;
 mod cavity;
 mod clip;
 mod engraving;
+#[doc(hidden)]
 pub mod glb;
 mod monotone;
 #[doc(hidden)]
 pub mod normal_map;
+#[doc(hidden)]
 pub mod obj;
 #[doc(hidden)]
 pub mod objects;
 mod outline;
 mod packed;
+#[doc(hidden)]
 pub mod ply;
 #[doc(hidden)]
 pub mod relief;
 mod sample_set;
 mod scale;
 mod scan;
+#[doc(hidden)]
 pub mod shape;
+#[doc(hidden)]
 pub mod solid;
+#[doc(hidden)]
 pub mod stl;
+#[doc(hidden)]
 pub mod surface;
+#[doc(hidden)]
 pub mod three_mf;
 mod tile;
 mod tin;
 mod wall_text;
 #[doc(hidden)]
 pub mod water;
+
+pub use adaptive::adaptive;
+pub use body::BodyMesh;
+pub use glb::Model;
+pub use shape::Shape;
+pub use solid::Solid;
+pub use surface::Surface;

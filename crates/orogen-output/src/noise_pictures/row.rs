@@ -80,7 +80,7 @@ impl Noise {
                     .with_taper(8.0);
                 // It takes a fraction of a second and is never cancelled.
                 if let Ok((across, _, heights)) =
-                    relief::heights(SIDE as usize, SIDE as usize, &ridges, &Progress::none())
+                    relief::ridge_heights(SIDE as usize, SIDE as usize, &ridges, &Progress::none())
                 {
                     sample(&heights, across, xs, ys, out);
                 }

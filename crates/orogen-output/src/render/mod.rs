@@ -1,11 +1,13 @@
 //! Rendered pictures of the land: perspective, sun and shadow, sky, haze and water, on the CPU.
 //!
-//! A [`Scene`](scene::Scene) is the land with its light, prepared once. Any number of [`Camera`](camera::Camera)s can
+//! A [`Scene`] is the land with its light, prepared once. Any number of [`Camera`]s can
 //! render it. Sampling is deterministic: a pixel depends only on its position in the picture, so a picture has the same
 //! bytes on any machine and any number of threads.
 
 mod albedo;
+#[doc(hidden)]
 pub mod camera;
+#[doc(hidden)]
 pub mod device;
 #[doc(hidden)]
 pub mod encode;
@@ -14,7 +16,9 @@ mod ground;
 #[doc(hidden)]
 pub mod lighting;
 pub(crate) mod march;
+#[doc(hidden)]
 pub mod relief;
+#[doc(hidden)]
 pub mod scene;
 mod shade;
 pub(crate) mod sky;
@@ -23,6 +27,10 @@ pub mod skylight;
 mod tone;
 pub(crate) mod vector;
 mod water;
+
+pub use camera::{Camera, CameraSpec, View};
+pub use relief::{Land, Relief};
+pub use scene::{Scene, Style};
 
 #[cfg(test)]
 mod tests;

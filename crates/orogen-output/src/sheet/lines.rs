@@ -1,7 +1,7 @@
 //! Contours of a sheet: their interval, and which are worth drawing.
 
-use orogen_grid::contour::chaikin::smooth;
-use orogen_grid::contour::levels::{every, is_index};
+use orogen_grid::contour::chaikin::chaikin;
+use orogen_grid::contour::levels::{is_index, levels_every};
 use orogen_grid::contour::line::Line;
 use orogen_grid::contour::trace::contours;
 use orogen_grid::error::Result;
@@ -58,7 +58,7 @@ pub fn interval(heights: &Grid, sea_level: Option<f64>, sample: f64) -> f64 {
 pub fn lines(heights: &Grid, interval: f64, sea_level: Option<f64>, sample: f64) -> Result<Vec<Line>> {
     let ends = heights.data().iter().copied().filter(|height| height.is_finite());
     let (low, high) = ends.fold((f32::MAX, f32::MIN), |(low, high), height| (low.min(height), high.max(height)));
-    let mut levels = every(interval, f64::from(low), f64::from(high))?;
+    let mut levels = levels_every(interval, f64::from(low), f64::from(high))?;
     levels.retain(|level| sea_level != Some(*level));
     lines_at(heights, &levels, sample)
 }
@@ -71,7 +71,7 @@ pub fn lines_at(heights: &Grid, levels: &[f64], sample: f64) -> Result<Vec<Line>
     let cell = heights.window().cell;
     let mut lines = contours(heights, levels)?;
     lines.retain(|line| !line.closed || line.length() / cell * sample >= SHORTEST);
-    Ok(lines.iter().map(|line| smooth(line, 1)).collect())
+    Ok(lines.iter().map(|line| chaikin(line, 1)).collect())
 }
 
 /// The interval of index contours: every fifth contour, or every fourth for 25 m and similar, which gives round

@@ -8,7 +8,7 @@ use super::lines::{self, Summit, interval, is_thick, lines, summits, thick_inter
 use super::options::{Page, PlaceKind, SheetOptions};
 use super::ticks::grouped;
 use super::water::{Least, Water, find};
-use orogen_grid::contour::chaikin::smooth;
+use orogen_grid::contour::chaikin::chaikin;
 use orogen_grid::contour::levels::given;
 use orogen_grid::contour::line::Line;
 use orogen_grid::contour::trace;
@@ -129,7 +129,7 @@ impl Linework {
             _ => Vec::new(),
         };
         let shore = match (options.sea_level, options.palette.has_sea()) {
-            (Some(sea), true) => trace::contours(&grid, &[sea])?.iter().map(|line| smooth(line, 1)).collect(),
+            (Some(sea), true) => trace::contours(&grid, &[sea])?.iter().map(|line| chaikin(line, 1)).collect(),
             _ => Vec::new(),
         };
         let summits = match options.parts.summits {

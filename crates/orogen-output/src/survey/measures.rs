@@ -69,7 +69,7 @@ pub struct Measures {
     pub ruggedness: f64,
     /// Preference of slopes for multiples of 45 degrees, 0 to 1.
     pub grid_bias: f64,
-    /// Exponent of the power spectrum; see [`spectrum::slope`].
+    /// Exponent of the power spectrum; see [`spectrum::spectral_slope`].
     pub spectrum: Option<f64>,
     /// Hurst exponent.
     pub hurst: Option<f64>,
@@ -161,7 +161,7 @@ impl Measures {
             curvature_skew: skew,
             ruggedness: rugged.mean(),
             grid_bias: slope.grid_bias,
-            spectrum: spectrum::slope(&bands, window.cell),
+            spectrum: spectrum::spectral_slope(&bands, window.cell),
             hurst,
             forms: shares(&counts),
             water,

@@ -78,7 +78,7 @@ pub fn measure(heights: &Grid, progress: &Progress) -> Result<Water> {
     let drained = accumulate(&receivers);
     counting.check()?;
     let spring = spring(window);
-    let orders = strahler::orders(&receivers, &drained, spring);
+    let orders = strahler::strahler_orders(&receivers, &drained, spring);
     let mut ground = WaterCounts::default();
     ground.add(heights, &filled);
     counting.check()?;

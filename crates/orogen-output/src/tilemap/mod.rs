@@ -1,7 +1,12 @@
 //! Tiles: a [`tileset`], those that the program draws ([`art`]), and their [`picture`].
 
+#[doc(hidden)]
 pub mod art;
+#[doc(hidden)]
 pub mod picture;
 #[doc(hidden)]
 pub mod rows;
+#[doc(hidden)]
 pub mod tileset;
+
+pub use tileset::{Tile, Tileset};

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use orogen::declare::{Input, Stroke, StrokeMode};
 use orogen::field::Paint;
 use orogen::node::Node;
-use orogen::recipe::document::Recipe;
+use orogen::recipe::Recipe;
 
 use super::edit::Edit;
 use super::names;

@@ -2,10 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use orogen::error::Diagnostic;
-use orogen::recipe::document::Recipe;
-use orogen::recipe::presets::{self, Preset};
-use orogen::recipe::source::RecipeSource;
+use orogen::grid::error::Diagnostic;
+use orogen::recipe::{Preset, Recipe, RecipeSource, presets};
 use orogen::{Error, ErrorKind, Registry, Result};
 
 use super::edit::{self, Edit};

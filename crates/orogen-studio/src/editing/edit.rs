@@ -3,9 +3,9 @@
 use std::collections::{HashMap, HashSet};
 
 use orogen::declare::{Input, Stroke};
+use orogen::io::palette::Rgb;
 use orogen::node::Node;
-use orogen::palette::color::Rgb;
-use orogen::recipe::document::Recipe;
+use orogen::recipe::Recipe;
 use orogen::value::Value;
 use toml_edit::{DocumentMut, Item, Table};
 

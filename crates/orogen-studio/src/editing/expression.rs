@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use orogen::expression::text::Expression;
-use orogen::recipe::document::Recipe;
+use orogen::expression::Expression;
+use orogen::recipe::Recipe;
 use orogen::value::Value;
 
 use super::document::Document;

@@ -1,8 +1,9 @@
 //! The colors of a recipe's surfaces and terrain classes.
 
-use orogen::palette::color::{Rgb, hex};
-use orogen::recipe::document::Recipe;
-use orogen::recipe::surface::document::Coloring;
+use orogen::io::palette::Rgb;
+use orogen::io::palette::color::hex;
+use orogen::recipe::Recipe;
+use orogen::recipe::surface::Coloring;
 use toml_edit::{Array, DocumentMut, Item, TableLike};
 
 use super::tables::set;

@@ -4,7 +4,7 @@
 
 use std::collections::HashSet;
 
-use orogen::recipe::document::Recipe;
+use orogen::recipe::Recipe;
 
 use super::names;
 

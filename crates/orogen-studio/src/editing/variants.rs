@@ -83,7 +83,7 @@ impl Varied {
 }
 
 fn text(value: f64) -> String {
-    orogen::words::number((value * 1e4).round() / 1e4)
+    orogen::grid::words::number((value * 1e4).round() / 1e4)
 }
 
 /// Values of a parameter of a node.

@@ -7,7 +7,7 @@ use orogen::export::targets::frame::FrameSpec;
 use orogen::export::targets::job::EngineJob;
 use orogen::export::targets::list;
 use orogen::export::targets::target::EngineTarget;
-use orogen::words::number;
+use orogen::grid::words::number;
 use orogen::world::HEIGHT;
 use orogen::{Result, Window, WorldSpec};
 
@@ -112,7 +112,7 @@ impl EngineExport {
 }
 
 /// The format of a file, which must be one of these.
-fn format_of(path: &Path, names: &[&str]) -> Result<&'static orogen::export::format::Format> {
+fn format_of(path: &Path, names: &[&str]) -> Result<&'static orogen::export::Format> {
     let format = registry::of_path(path)?;
     match names.contains(&format.name) {
         true => Ok(format),

@@ -5,11 +5,9 @@ use std::path::Path;
 use orogen::export::derived::layer::Nature;
 use orogen::export::derived::list as derived;
 use orogen::export::features::list as features;
-use orogen::export::format::Format;
-use orogen::export::job::ExportJob;
-use orogen::export::registry;
+use orogen::export::{ExportJob, Format, registry};
 use orogen::options::OptionSpec;
-use orogen::recipe::document::Recipe;
+use orogen::recipe::Recipe;
 use orogen::world::HEIGHT;
 use orogen::{Error, ErrorKind, Result, WorldSpec};
 

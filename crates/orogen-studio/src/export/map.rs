@@ -3,9 +3,8 @@
 use std::path::Path;
 
 use orogen::export::derived::list as derived;
-use orogen::jobs::map::MapJob;
-use orogen::jobs::sheet_format::SheetFormat;
-use orogen::recipe::document::Recipe;
+use orogen::jobs::{MapJob, SheetFormat};
+use orogen::recipe::Recipe;
 use orogen::{Result, WorldSpec};
 
 use super::command_line::CommandLine;

@@ -1,6 +1,6 @@
 //! A rendered picture.
 
-use orogen::jobs::render::RenderJob;
+use orogen::jobs::RenderJob;
 use orogen::{Result, WorldSpec};
 
 use super::command_line::CommandLine;

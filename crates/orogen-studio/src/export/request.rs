@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use orogen::export::registry;
-use orogen::jobs::sheet_format::SheetFormat;
-use orogen::recipe::document::Recipe;
+use orogen::jobs::SheetFormat;
+use orogen::recipe::Recipe;
 use orogen::{Progress, Result, Session, WorldSpec};
 
 use super::command_line::CommandLine;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, channel};
 
-use orogen::recipe::document::Recipe;
+use orogen::recipe::Recipe;
 use orogen::{Progress, Result, Session};
 
 use super::request::Export;

@@ -4,18 +4,16 @@ use std::path::Path;
 
 use orogen::export::registry;
 use orogen::export::targets::list;
-use orogen::file::OutputPolicy;
-use orogen::jobs::map::{MapColors, MapJob};
-use orogen::jobs::render::RenderJob;
-use orogen::jobs::sheet_format::SheetFormat;
-use orogen::palette::named;
-use orogen::recipe::document::Recipe;
-use orogen::render::camera::View;
-use orogen::render::scene::Colors;
-use orogen::sheet::options::{GridStep, Resolution, Shading};
-use orogen::test_folder::TestFolder;
+use orogen::io::file::OutputPolicy;
+use orogen::io::palette::named;
+use orogen::io::test_folder::TestFolder;
+use orogen::jobs::{MapColors, MapJob, RenderJob, SheetFormat};
+use orogen::output::render::View;
+use orogen::output::render::scene::Colors;
+use orogen::output::sheet::{GridStep, Resolution, Shading};
+use orogen::recipe::Recipe;
+use orogen::tilemap::TilemapJob;
 use orogen::tilemap::art::set::SETS;
-use orogen::tilemap::job::TilemapJob;
 use orogen::world::HEIGHT;
 use orogen::{ErrorKind, Progress, Session, presets};
 
@@ -198,7 +196,7 @@ fn a_tilemap_is_that_of_the_job() {
     export.tilemap.size = 24;
     let words = run(&export);
     assert!(words.starts_with("tiles.png ") && words.contains("24 x 24 tiles of fields-16 (blob)"), "{words}");
-    let job = TilemapJob::new(SETS[0].draw(orogen::autotile::mask::Layout::Blob));
+    let job = TilemapJob::new(SETS[0].draw(orogen::grid::autotile::Layout::Blob));
     let world = session().open(recipe()).unwrap();
     let window = world.window_fitting(24).unwrap();
     let mut recipe = recipe();

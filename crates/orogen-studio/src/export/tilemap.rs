@@ -1,8 +1,8 @@
 //! A map of tiles.
 
 use orogen::recipe::class::document::CLASS;
+use orogen::tilemap::TilemapJob;
 use orogen::tilemap::files::SIDE;
-use orogen::tilemap::job::TilemapJob;
 use orogen::world::HEIGHT;
 use orogen::{Result, WorldSpec};
 

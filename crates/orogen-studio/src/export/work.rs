@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use orogen::file::{Output, OutputPolicy};
-use orogen::recipe::document::Recipe;
+use orogen::io::file::{Output, OutputPolicy};
+use orogen::recipe::Recipe;
 use orogen::{Progress, Result, Session, World};
 
 /// What an export works with.

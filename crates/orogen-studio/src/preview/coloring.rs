@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use orogen::palette::palette::Palette;
-use orogen::recipe::document::Recipe;
+use orogen::io::palette::Palette;
+use orogen::recipe::Recipe;
 
 /// What the colors show.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -2,14 +2,12 @@
 
 use orogen::Grid;
 use orogen::export::derived::list;
+use orogen::io::palette::color::Encoder;
+use orogen::io::palette::{Palette, Rgb, Tint, named};
 use orogen::layer::LayerKind;
-use orogen::map::paint::Painter;
-use orogen::palette::color::{Encoder, Rgb};
-use orogen::palette::named;
-use orogen::palette::palette::Palette;
-use orogen::palette::tint::Tint;
+use orogen::output::map::Painter;
+use orogen::recipe::Recipe;
 use orogen::recipe::class::document::CLASS;
-use orogen::recipe::document::Recipe;
 use orogen::world::HEIGHT;
 
 use super::coloring::Coloring;
@@ -151,7 +149,7 @@ pub fn number(colors: &[Rgb], value: f32) -> Rgb {
 
 /// A color of a hue from 0 to 1.
 fn hue(at: f32) -> Rgb {
-    orogen::palette::fitted::of_hsv([at.fract(), 0.55, 0.85]).map(|c| (c * 255.0) as u8)
+    orogen::io::palette::fitted::of_hsv([at.fract(), 0.55, 0.85]).map(|c| (c * 255.0) as u8)
 }
 
 #[cfg(test)]

@@ -1,8 +1,7 @@
 //! Contour lines of a picture.
 
-use orogen::contour::levels::{every, is_index, round_interval};
-use orogen::contour::line::Line;
-use orogen::contour::{chaikin, trace};
+use orogen::grid::contour::levels::is_index;
+use orogen::grid::contour::{Line, chaikin, levels_every, round_interval, trace};
 use orogen::{Grid, Result, Window};
 
 use super::statistics::range;
@@ -31,7 +30,7 @@ impl Contours {
     pub fn of(heights: &Grid, interval: f64) -> Result<Contours> {
         let [low, high] = range(heights.data().iter().copied()).map(f64::from);
         let interval = suiting(interval, [low, high]);
-        let levels = every(interval, low, high)?;
+        let levels = levels_every(interval, low, high)?;
         let step = heights.width().max(heights.height()).div_ceil(FINEST);
         let lines = match thinned(heights, step) {
             Some(thin) => trace::contours(&thin, &levels)?,
@@ -39,7 +38,7 @@ impl Contours {
         };
         let cell = heights.window().cell * step as f64;
         // Rings around single samples are noise.
-        let lines = lines.into_iter().filter(|line| line.length() > 6.0 * cell).map(|line| chaikin::smooth(&line, 1));
+        let lines = lines.into_iter().filter(|line| line.length() > 6.0 * cell).map(|line| chaikin(&line, 1));
         Ok(Contours { interval, lines: lines.collect() })
     }
 

@@ -1,10 +1,10 @@
 //! Colors of what covers the ground: surfaces, biomes, terrain classes.
 
 use orogen::export::{biome_cover, sheet_cover};
-use orogen::palette::color::{Encoder, Rgb};
-use orogen::palette::tint::Tint;
+use orogen::io::palette::color::Encoder;
+use orogen::io::palette::{Rgb, Tint};
+use orogen::recipe::Recipe;
 use orogen::recipe::class::document::CLASS;
-use orogen::recipe::document::Recipe;
 use orogen::{Error, ErrorKind, Grid, Progress, Result, World};
 
 use super::coloring::Coloring;
@@ -79,8 +79,10 @@ fn surfaces(world: &World, heights: &Grid, progress: &Progress) -> Result<(Vec<u
         bytes.extend_from_slice(&[red, green, blue, 255]);
     }
     let entries = cover.entries.into_iter().filter_map(|entry| {
-        let color =
-            entry.colors.first()?.map(|byte| encoder.bytes([orogen::palette::color::decode(byte) * BRIGHTER; 3])[0]);
+        let color = entry
+            .colors
+            .first()?
+            .map(|byte| encoder.bytes([orogen::io::palette::color::decode(byte) * BRIGHTER; 3])[0]);
         Some(Entry { name: entry.name, color, share: entry.share })
     });
     let mut entries: Vec<Entry> = entries.collect();

@@ -1,6 +1,6 @@
 //! What the colors of a picture mean.
 
-use orogen::palette::color::Rgb;
+use orogen::io::palette::Rgb;
 
 /// What the colors of a picture mean.
 #[derive(Debug, Clone, PartialEq)]

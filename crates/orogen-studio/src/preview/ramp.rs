@@ -1,9 +1,9 @@
 //! Color ramps while they are edited.
 
-use orogen::palette::color::Encoder;
-use orogen::palette::color::Rgb;
-use orogen::palette::fitted::Fitted;
-use orogen::palette::palette::{Palette, Position, Stop};
+use orogen::io::palette::color::Encoder;
+use orogen::io::palette::fitted::Fitted;
+use orogen::io::palette::palette::Position;
+use orogen::io::palette::{Palette, Rgb, Stop};
 
 /// A color ramp whose positions are all of one kind.
 #[derive(Debug, Clone, PartialEq)]
@@ -147,8 +147,7 @@ fn with_number(at: Position, number: f64) -> Position {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use orogen::palette::named;
-    use orogen::palette::own;
+    use orogen::io::palette::{named, own};
 
     #[test]
     fn ramps_are_edited_and_written() {

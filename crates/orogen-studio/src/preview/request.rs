@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use orogen::recipe::document::Recipe;
+use orogen::recipe::Recipe;
 use orogen::world::HEIGHT;
 
 use super::coloring::Coloring;

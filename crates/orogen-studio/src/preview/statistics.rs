@@ -1,7 +1,7 @@
 //! Figures of a picture: range, histogram, hypsometric curve.
 
 use orogen::Grid;
-use orogen::analysis::hypsometry;
+use orogen::grid::analysis::hypsometry;
 
 /// Bars of the histogram, and steps of the curve.
 pub const BARS: usize = 64;
@@ -43,7 +43,7 @@ impl Statistics {
             mean: if finite == 0 { f64::NAN } else { sum / finite as f64 },
             land: share(land),
             histogram: counts.iter().map(|count| share(u64::from(*count)) as f32).collect(),
-            curve: hypsometry::curve(grid, BARS).unwrap_or_default(),
+            curve: hypsometry::hypsometric_curve(grid, BARS).unwrap_or_default(),
         }
     }
 }

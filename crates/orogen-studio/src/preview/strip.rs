@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-use orogen::recipe::document::Recipe;
+use orogen::recipe::Recipe;
 use orogen::{Progress, Result, Session};
 
 use super::picture::Picture;

@@ -1,7 +1,7 @@
 //! Which samples the sun shines on.
 
 use orogen::Grid;
-use orogen::analysis::shadow::Shadows;
+use orogen::grid::analysis::Shadows;
 
 use crate::view::sun;
 

@@ -3,9 +3,7 @@
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-use orogen::survey::job::SurveyJob;
-use orogen::survey::land::Land;
-use orogen::survey::measures::Measures;
+use orogen::output::survey::{Land, Measures, SurveyJob};
 use orogen::{Progress, Result, Session};
 
 use super::frame::{Frame, Key};

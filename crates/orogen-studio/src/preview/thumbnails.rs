@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-use orogen::recipe::document::{NamedNode, Recipe};
+use orogen::recipe::{NamedNode, Recipe};
 use orogen::{ErrorKind, Progress, Result, Session, Window, World};
 
 use super::picture::Picture;

@@ -6,11 +6,11 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::Instant;
 
 use orogen::budget::Reservation;
+use orogen::export::LayerSource;
 use orogen::export::derived::list;
-use orogen::export::layer_source::LayerSource;
 use orogen::layer::LayerKind;
-use orogen::map::paint::Painter;
 use orogen::options::Options as LayerOptions;
+use orogen::output::map::Painter;
 use orogen::{Error, ErrorKind, Grid, Progress, Result, Session, World};
 
 use super::colors::Colors;

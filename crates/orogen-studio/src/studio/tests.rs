@@ -131,7 +131,7 @@ fn edit_while(goes_on: impl Fn(usize) -> bool, seed: u64) -> usize {
 
 #[test]
 fn json_is_edited_as_toml() {
-    let folder = orogen::test_folder::TestFolder::new("studio-json").unwrap();
+    let folder = orogen::io::test_folder::TestFolder::new("studio-json").unwrap();
     let path = folder.join("land.json");
     let json = r#"{"orogen": 1, "world": {"cell": 5}, "nodes": {"land": {"op": "fbm", "octaves": 3}}, "outputs": {"height": "land"}}"#;
     std::fs::write(&path, json).unwrap();

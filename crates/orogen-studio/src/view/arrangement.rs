@@ -2,7 +2,7 @@
 
 use orogen::graph_layout::forward::Forward;
 use orogen::graph_layout::layout::{Layout, Link, Spacing};
-use orogen::sheet::geometry::Size;
+use orogen::output::sheet::Size;
 
 use super::scene::{End, Scene};
 

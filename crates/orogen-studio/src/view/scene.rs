@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 
 use orogen::declare::Input;
 use orogen::declare::spec::Locality;
-use orogen::recipe::document::{NamedNode, Recipe};
+use orogen::recipe::{NamedNode, Recipe};
 
 use crate::editing::groups;
 
@@ -192,7 +192,7 @@ impl GraphBox {
         inputs.pop();
         let ports = inputs.into_iter().map(|(key, input)| Port {
             label: match input {
-                Input::Value(value) => format!("{key} = {}", orogen::words::number(*value)),
+                Input::Value(value) => format!("{key} = {}", orogen::grid::words::number(*value)),
                 _ => key.to_owned(),
             },
             node: named.name.clone(),

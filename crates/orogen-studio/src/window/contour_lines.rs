@@ -90,7 +90,7 @@ fn shapes(painter: &Painter, rect: Rect, contours: &Arc<Contours>, view: &MapVie
 
 /// The height at a place, along a direction, with a light edge. It is never upside down.
 fn label(painter: &Painter, at: Pos2, along: Vec2, elevation: f64) -> Vec<Shape> {
-    let text = orogen::words::number(elevation);
+    let text = orogen::grid::words::number(elevation);
     let angle = libm::atan2f(along.y, along.x);
     let angle = match angle.abs() > std::f32::consts::FRAC_PI_2 {
         true => angle - std::f32::consts::PI * angle.signum(),

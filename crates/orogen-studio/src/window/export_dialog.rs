@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use eframe::egui::{self, Context, Label, ProgressBar, RichText, ScrollArea, TextEdit, Ui, vec2};
-use orogen::words::number;
+use orogen::grid::words::number;
 
 use super::action::Action;
 use super::dialogs::window;

@@ -3,7 +3,7 @@
 use eframe::egui::{self, CollapsingHeader, ComboBox, DragValue, RichText, TextEdit, Ui};
 use orogen::declare::{Input, Shape};
 use orogen::node::Node;
-use orogen::recipe::document::{NamedNode, Recipe};
+use orogen::recipe::{NamedNode, Recipe};
 use orogen::value::Value;
 
 use super::action::Action;
@@ -284,12 +284,12 @@ fn world(ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Act
             Some([width, height]) => format!("{} × {} km", kilometres(width), kilometres(height)),
             None => language.text("inspector.unbounded").to_owned(),
         };
-        ui.weak(format!("{extent}, {} {} m", language.text("inspector.cell"), orogen::words::number(world.cell)));
+        ui.weak(format!("{extent}, {} {} m", language.text("inspector.cell"), orogen::grid::words::number(world.cell)));
     });
 }
 
 fn kilometres(metres: f64) -> String {
-    orogen::words::number((metres / 10.0).round() / 100.0)
+    orogen::grid::words::number((metres / 10.0).round() / 100.0)
 }
 
 fn parameters(ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {

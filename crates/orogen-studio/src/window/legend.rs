@@ -2,7 +2,7 @@
 
 use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, pos2, vec2};
 
-use orogen::words::number;
+use orogen::grid::words::number;
 
 use crate::preview::frame::Frame;
 use crate::preview::legend::Legend;

@@ -5,7 +5,7 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use eframe::egui::Context;
 use orogen::gpu::render::LightShader;
-use orogen::render::lighting::Lighting;
+use orogen::output::render::lighting::Lighting;
 
 use crate::studio::Studio;
 

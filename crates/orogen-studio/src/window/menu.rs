@@ -1,7 +1,7 @@
 //! The bar at the top: menus, undo and redo, what is shown, language and colors.
 
 use eframe::egui::{self, ComboBox, Ui};
-use orogen::palette::named;
+use orogen::io::palette::named;
 
 use super::action::Action;
 use super::command::{self, Command, Menu};

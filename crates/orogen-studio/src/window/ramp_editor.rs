@@ -6,8 +6,7 @@ use std::sync::Arc;
 use eframe::egui::{
     self, Color32, ComboBox, Context, DragValue, Key, Rect, Sense, Stroke, TextEdit, Ui, Vec2, pos2, vec2,
 };
-use orogen::palette::palette::Palette;
-use orogen::palette::{named, own, read};
+use orogen::io::palette::{Palette, named, own, read};
 use orogen::{Error, ErrorKind, Result};
 
 use super::action::Action;

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use eframe::egui::{Color32, RichText, ScrollArea, Sense, Stroke, Ui, Vec2, pos2, vec2};
-use orogen::survey::measures::Measures;
-use orogen::survey::real::{FIGURES, Figure, SOURCE};
+use orogen::output::survey::Measures;
+use orogen::output::survey::real::{FIGURES, Figure, SOURCE};
 
 use crate::catalogue::Language;
 use crate::preview::frame::Quality;

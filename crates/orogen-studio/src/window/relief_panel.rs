@@ -329,7 +329,7 @@ pub fn contours(ui: &mut Ui, studio: &Studio, language: Language, actions: &mut 
     if let Some(own) = own {
         let mut interval = own;
         let suits = |number: f64, _: std::ops::RangeInclusive<usize>| match number > 0.0 {
-            true => format!("{} m", orogen::words::number(number)),
+            true => format!("{} m", orogen::grid::words::number(number)),
             false => language.text("relief.interval_suits").to_owned(),
         };
         let field = ui.add(egui::DragValue::new(&mut interval).range(0.0..=1e5).speed(1.0).custom_formatter(suits));

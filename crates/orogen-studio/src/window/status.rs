@@ -29,7 +29,7 @@ pub fn show(ui: &mut Ui, studio: &Studio, gpu: Option<&Gpu>, language: Language)
                 ui.weak(language.text("analysis.draft"));
             }
         }
-        ui.weak(orogen::words::bytes(studio.session().kept_memory()));
+        ui.weak(orogen::grid::words::bytes(studio.session().kept_memory()));
         if let Some(gpu) = gpu {
             match gpu.failure() {
                 None => ui.weak(language.fill("status.device", &[("name", &gpu.adapter().name)])),

@@ -2,7 +2,7 @@
 
 use eframe::egui::text::{LayoutJob, TextFormat};
 use eframe::egui::{self, Align2, Color32, FontId, Key, Modifiers, Sense, Stroke, TextEdit, Ui, vec2};
-use orogen::error::Diagnostic;
+use orogen::grid::error::Diagnostic;
 use orogen::node::Node;
 
 use super::action::Action;

@@ -8,7 +8,7 @@ use eframe::egui::{Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable as _;
 use orogen::export::registry;
 use orogen::export::targets::list;
-use orogen::test_folder::TestFolder;
+use orogen::io::test_folder::TestFolder;
 use orogen::{Progress, Session};
 use orogen_studio::catalogue::Language;
 use orogen_studio::export::given::Given;

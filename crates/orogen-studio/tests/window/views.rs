@@ -4,7 +4,7 @@
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 use egui_kittest::{Harness, SnapshotOptions};
-use orogen::test_folder::TestFolder;
+use orogen::io::test_folder::TestFolder;
 use orogen_studio::catalogue::Language;
 use orogen_studio::studio::Studio;
 use orogen_studio::window::app::App;

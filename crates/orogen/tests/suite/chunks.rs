@@ -1,7 +1,7 @@
 //! Chunks around a moving viewer cover the ground exactly once, at every step, and have the samples of the world.
 
 use crate::support::{Random, open, recipe_of, world_of};
-use orogen::chunks::seam::{Sides, stitch};
+use orogen::chunks::{Sides, stitch};
 use orogen::node::Node;
 use orogen::op::Op;
 use orogen::{

@@ -1,19 +1,17 @@
 //! Files of heights from other programs, intact and damaged. Source: `xtask/clients/dem_files.py`.
 
 use crate::support::Random;
-use orogen::dem::open;
-use orogen::dem::prepared::PreparedDem;
 use orogen::field::{Dem as Node, DemShows};
 use orogen::filter::Blur;
-use orogen::format::crs::keys::{self, GeoKeys};
-use orogen::format::crs::unit::Unit;
-use orogen::format::dem::{Dem, Part, Request};
-use orogen::format::geotiff::options::Options as Layout;
-use orogen::format::geotiff::{reader, writer};
-use orogen::format::import;
-use orogen::format::sidecar::Sidecar;
-use orogen::spool::Spool;
-use orogen::test_folder::TestFolder;
+use orogen::io::dem::{PreparedDem, open};
+use orogen::io::format::crs::keys::{self, GeoKeys};
+use orogen::io::format::crs::unit::Unit;
+use orogen::io::format::dem::Part;
+use orogen::io::format::geotiff::Options as Layout;
+use orogen::io::format::geotiff::{reader, writer};
+use orogen::io::format::{Dem, Request, Sidecar, import};
+use orogen::io::spool::Spool;
+use orogen::io::test_folder::TestFolder;
 use orogen::{Budget, Error, ErrorKind, Options, Recipe, Window, World, WorldSpec};
 use std::io::Cursor;
 use std::path::{Path, PathBuf};

@@ -1,8 +1,8 @@
 //! Recipes fitted to places with known figures.
 
-use orogen::fit::features::{FeatureVector, of_windows};
-use orogen::fit::search::{Effort, FitTarget, search};
-use orogen::fit::template::{FittedWorld, PARAMS, ParamValues, Stretch, recipe};
+use orogen::fit::features::of_windows;
+use orogen::fit::template::{PARAMS, ParamValues, Stretch, recipe};
+use orogen::fit::{Effort, FeatureVector, FitTarget, FittedWorld, search};
 use orogen::{Grid, Options, Progress, Window, World};
 
 fn options() -> Options {

@@ -1,6 +1,6 @@
 //! Flights over the preset `endless`: successive views show the same land, and views of the next level nearly the same.
 
-use orogen::resample::{self, LayerKind};
+use orogen::grid::resample::{self, LayerKind};
 use orogen::{Grid, Options, Points, Progress, Session, Window, World, presets};
 
 /// What a view shows.

@@ -3,7 +3,7 @@
 
 use crate::support;
 use crate::support::{open, recipe_of, world_of};
-use orogen::analysis::summary::summary;
+use orogen::grid::analysis::summary;
 use orogen::laws::at_level;
 use orogen::node::Node;
 use orogen::{Options, Progress, Window, World, presets};

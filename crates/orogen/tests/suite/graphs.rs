@@ -5,9 +5,9 @@ mod values;
 
 use crate::support::Random;
 use grown::{Grown, Tally, grown};
+use orogen::io::test_folder::TestFolder;
 use orogen::laws::at_level;
 use orogen::node::Node;
-use orogen::test_folder::TestFolder;
 use orogen::tiles::Tiling;
 use orogen::{
     Budget, Error, ErrorKind, FolderStore, Grid, Level, Options, Progress, Recipe, Result, Session, SolutionStore,

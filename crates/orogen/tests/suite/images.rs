@@ -1,8 +1,8 @@
 //! Pictures as masks.
 
-use orogen::format::levels::Levels;
-use orogen::format::png;
-use orogen::test_folder::TestFolder;
+use orogen::io::format::levels::Levels;
+use orogen::io::format::png;
+use orogen::io::test_folder::TestFolder;
 use orogen::{Grid, Recipe, Window, World};
 use std::path::Path;
 

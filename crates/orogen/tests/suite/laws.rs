@@ -7,7 +7,8 @@ use orogen::ids::Id;
 use orogen::laws::{CELLS, Violation};
 use orogen::node::Node;
 use orogen::op::Op;
-use orogen::plan::steps::{Plan, Step};
+use orogen::plan::Plan;
+use orogen::plan::steps::Step;
 use orogen::solver::Normalise;
 use orogen::value::Value;
 use orogen::{Grid, Progress, Recipe, Window, World, WorldSpec};
@@ -353,6 +354,6 @@ fn one_world_serves_many_threads_at_once() {
     let window = Window::new(40, 40, 10.0).at(7, 9);
     let expect = world.window("height", &window).unwrap();
     let fresh = open(&recipe_of(&Node::named("bake").unwrap(), world_of(10.0), false), 2);
-    let all: Vec<Grid> = orogen::parallel::map(0..32, |_| fresh.window("height", &window).unwrap());
+    let all: Vec<Grid> = orogen::grid::parallel::map(0..32, |_| fresh.window("height", &window).unwrap());
     assert!(all.iter().all(|grid| *grid == expect));
 }

@@ -1,10 +1,11 @@
 //! Tiles of levels: made once in a session, kept for later runs, and the same bits wherever they come from.
 
+use orogen::io::read_at::ReadAt;
+use orogen::io::test_folder::TestFolder;
 use orogen::op::{Context, Levelled, Levels};
-use orogen::read_at::ReadAt;
 use orogen::solver::Normalise;
-use orogen::store::solution_store::{Entry, EntryKey};
-use orogen::test_folder::TestFolder;
+use orogen::store::EntryKey;
+use orogen::store::solution_store::Entry;
 use orogen::{
     Budget, Error, ErrorKind, FolderStore, Grid, MemoryStore, Options, Progress, Recipe, Result, Session,
     SolutionStore, Window, WorldSpec,
@@ -196,7 +197,7 @@ fn requests_at_once_make_each_tile_once() {
         assert_eq!(session.level_tiles_made(), tiles, "{threads} threads");
         let session = Session::new(options).unwrap();
         pool.install(|| {
-            orogen::parallel::for_each(0..24, |k: usize| {
+            orogen::grid::parallel::for_each(0..24, |k: usize| {
                 let expect = &expect[k % 6];
                 assert!(same(&made(&session, HOOK, expect.window()), expect));
             });

@@ -6,6 +6,7 @@ mod chunks;
 mod dems;
 mod fit;
 mod flight;
+mod front_door;
 mod golden;
 mod graphs;
 mod images;

@@ -4,19 +4,14 @@ use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::sync::{Arc, LazyLock, Mutex};
 
-use orogen::analysis::halo::Halo;
-use orogen::export::job::ExportJob;
-use orogen::export::registry;
-use orogen::file::OutputPolicy;
-use orogen::map::paint::Painter;
-use orogen::mesh::adaptive::adaptive;
-use orogen::mesh::glb::{self, Model};
-use orogen::mesh::shape::Shape;
-use orogen::mesh::solid::{Print, Solid};
-use orogen::mesh::surface::Surface;
-use orogen::mesh::{obj, ply, stl, three_mf};
+use orogen::export::{ExportJob, registry};
+use orogen::grid::analysis::halo::Halo;
+use orogen::io::file::OutputPolicy;
+use orogen::io::test_folder::TestFolder;
 use orogen::options::Options;
-use orogen::test_folder::TestFolder;
+use orogen::output::map::Painter;
+use orogen::output::mesh::solid::Print;
+use orogen::output::mesh::{Model, Shape, Solid, Surface, adaptive, glb, obj, ply, stl, three_mf};
 use orogen::{Grid, Progress, Recipe, Window, World};
 use serde_json::Value;
 

@@ -3,16 +3,14 @@
 
 use std::path::Path;
 
-use orogen::export::job::ExportJob;
-use orogen::export::layer_source::LayerSource;
 use orogen::export::mesh_cover::{self, SURFACES};
 use orogen::export::mesh_tint::COLOR_RANGE;
 use orogen::export::targets::frame::FrameSpec;
 use orogen::export::targets::job::EngineJob;
-use orogen::export::{registry, targets};
-use orogen::file::OutputPolicy;
+use orogen::export::{ExportJob, LayerSource, registry, targets};
+use orogen::io::file::OutputPolicy;
+use orogen::io::test_folder::TestFolder;
 use orogen::options::Options;
-use orogen::test_folder::TestFolder;
 use orogen::{Progress, Recipe, Window, World};
 
 fn recipe(size: &str) -> Recipe {

@@ -1,11 +1,8 @@
 //! Solids for 3D printing: closed, facing outwards, and of the size they say.
 
 use crate::meshes::{V3, cross, dot, f32s, land, minus, shapes, surface, wide};
-use orogen::mesh::adaptive::adaptive;
-use orogen::mesh::shape::Shape;
-use orogen::mesh::solid::{Print, Solid};
-use orogen::mesh::stl;
-use orogen::mesh::surface::Surface;
+use orogen::output::mesh::solid::Print;
+use orogen::output::mesh::{Shape, Solid, Surface, adaptive, stl};
 use orogen::{Grid, Progress, Window};
 use std::collections::BTreeMap;
 

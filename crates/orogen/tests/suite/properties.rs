@@ -3,17 +3,15 @@
 
 #![allow(clippy::field_reassign_with_default, reason = "options may get more fields")]
 
-use orogen::expression::text::Expression;
-use orogen::format::crs::keys;
-use orogen::format::crs::registry::Crs;
-use orogen::format::geotiff::options::Options as Layout;
-use orogen::format::geotiff::writer as geotiff;
-use orogen::format::levels::Levels;
-use orogen::format::sidecar::Sidecar;
-use orogen::format::{asc, exr, import, npy, png, raw};
-use orogen::palette::fitted::Fitted;
-use orogen::palette::{color, read};
-use orogen::spool::Spool;
+use orogen::expression::Expression;
+use orogen::io::format::crs::{Crs, keys};
+use orogen::io::format::geotiff::Options as Layout;
+use orogen::io::format::geotiff::writer as geotiff;
+use orogen::io::format::levels::Levels;
+use orogen::io::format::{Sidecar, asc, exr, import, npy, png, raw};
+use orogen::io::palette::fitted::Fitted;
+use orogen::io::palette::{color, read};
+use orogen::io::spool::Spool;
 use orogen::{Grid, Recipe, Window};
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -180,7 +178,7 @@ fn recipes_are_written_as_they_were_read() {
 #[test]
 fn numbers_are_readable_and_near_what_they_say() {
     check(3000, number(), |value| {
-        let text = orogen::words::number(value);
+        let text = orogen::grid::words::number(value);
         let read: f64 = text.parse().map_err(|_| TestCaseError::fail(text.clone()))?;
         let error = (read - value).abs();
         prop_assert!(error <= value.abs() * 5.1e-6 || error <= 0.5 && value.abs() >= 1e5, "{} for {:e}", text, value);
@@ -188,7 +186,7 @@ fn numbers_are_readable_and_near_what_they_say() {
         Ok(())
     });
     check(1000, any::<u64>(), |n| {
-        let text = orogen::words::bytes(n);
+        let text = orogen::grid::words::bytes(n);
         let (digits, unit) = text.split_once(' ').ok_or_else(|| TestCaseError::fail(text.clone()))?;
         let units = ["bytes", "KiB", "MiB", "GiB", "TiB", "PiB", "EiB"];
         let power = units.iter().position(|known| *known == unit || n == 1 && unit == "byte");

@@ -5,11 +5,11 @@ mod ops;
 mod refused;
 
 use ops::{Above, Crests, Midpoints, Ripples, Wave, other, registry};
+use orogen::io::test_folder::TestFolder;
 use orogen::laws::Laws;
 use orogen::node::Node;
-use orogen::plan::steps::Plan;
+use orogen::plan::Plan;
 use orogen::recipe::{reference, schema};
-use orogen::test_folder::TestFolder;
 use orogen::{Error, ErrorKind, Options, Progress, Recipe, Registry, Session, Window, World, WorldSpec};
 use std::path::Path;
 

@@ -4,7 +4,7 @@ use crate::support::open;
 use orogen::declare::Input;
 use orogen::field::{Fbm, Resample, Warp};
 use orogen::filter::{Geomorphons, Thermal};
-use orogen::resample::{self, LayerKind};
+use orogen::grid::resample::{self, LayerKind};
 use orogen::tiles::Tiling;
 use orogen::{Budget, ErrorKind, Grid, Options, Points, Progress, Recipe, Sampler, Window, World, WorldSpec};
 

@@ -107,7 +107,7 @@ fn threads_of_other_pools_solve_once() {
     let session = session(None);
     let world = session.open(recipe()).unwrap();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(4).build().unwrap();
-    let grids = pool.install(|| orogen::parallel::map(0..12, |_| world.window("height", &window()).unwrap()));
+    let grids = pool.install(|| orogen::grid::parallel::map(0..12, |_| world.window("height", &window()).unwrap()));
     assert!(grids.iter().all(|grid| *grid == grids[0]));
     assert_eq!(session.solutions_made(), 2);
 }

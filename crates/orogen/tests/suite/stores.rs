@@ -3,10 +3,11 @@
 use crate::support::world_of;
 use orogen::field::{Fbm, Warp};
 use orogen::filter::{Blur, Slope};
-use orogen::read_at::ReadAt;
+use orogen::io::read_at::ReadAt;
+use orogen::io::test_folder::TestFolder;
 use orogen::solver::{Bake, Normalise};
-use orogen::store::solution_store::{Entry, EntryKey};
-use orogen::test_folder::TestFolder;
+use orogen::store::EntryKey;
+use orogen::store::solution_store::Entry;
 use orogen::{
     Budget, ErrorKind, FolderStore, Grid, MemoryStore, Options, Progress, Recipe, Session, SolutionStore, Window, World,
 };

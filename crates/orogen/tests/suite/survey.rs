@@ -1,9 +1,8 @@
 //! Measurements of terrain with known results.
 
-use orogen::survey::land::Land;
-use orogen::survey::measures::Measures;
-use orogen::survey::page::{Title, draw};
-use orogen::survey::real::{FIGURES, table};
+use orogen::output::survey::page::{Title, draw};
+use orogen::output::survey::real::{FIGURES, table};
+use orogen::output::survey::{Land, Measures};
 use orogen::{Grid, Window, World, presets};
 
 fn grid(side: usize, cell: f64, f: impl Fn(f64, f64) -> f64) -> Grid {

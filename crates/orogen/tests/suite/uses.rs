@@ -1,6 +1,6 @@
 //! Recipes that use other recipes.
 
-use orogen::test_folder::TestFolder;
+use orogen::io::test_folder::TestFolder;
 use orogen::{Recipe, Window, World};
 use std::fs;
 

@@ -1,15 +1,15 @@
 //! Water as vector features: rivers agree with the recipe's own drainage, for presets and seeds.
 
-use orogen::contour::line::twice_area;
 use orogen::export::contour_options::SMOOTH;
 use orogen::export::derived::list as derived;
 use orogen::export::features::list;
 use orogen::export::features::options::FeatureOptions;
 use orogen::export::features::outlets::{OUTLET, SNAP};
 use orogen::export::features::source::FeatureSource;
-use orogen::format::features::{Geometry, Value};
-use orogen::hydrography::rivers::Mouth;
-use orogen::hydrology::direction::STEPS;
+use orogen::grid::contour::line::twice_area;
+use orogen::grid::hydrography::Mouth;
+use orogen::grid::hydrology::direction::STEPS;
+use orogen::io::format::features::{Geometry, Value};
 use orogen::options::Options;
 use orogen::{Grid, Progress, Recipe, Window, World, presets};
 use std::cmp::Reverse;

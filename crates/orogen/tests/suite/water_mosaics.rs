@@ -7,11 +7,9 @@ use crate::support::water::layers::{Tiles, Water, cells_to_edge, neighbors, tile
 use crate::support::water::mosaic::Mosaic;
 use crate::support::water::network::Network;
 use crate::support::water::report::{Figure, measure, of_pairs, table};
-use orogen::hydrology::accumulation::accumulate;
-use orogen::hydrology::direction::NONE;
-use orogen::hydrology::drainage::route_carving;
-use orogen::hydrology::outlets::Outlets;
-use orogen::hydrology::steepest::Descent;
+use orogen::grid::hydrology::direction::NONE;
+use orogen::grid::hydrology::steepest::Descent;
+use orogen::grid::hydrology::{Outlets, accumulate, route_carving};
 use orogen::{Grid, Options, Recipe, Session, Window, World, presets};
 
 /// Rough land with lakes, `cells` cells along each side; `receiver` as an output if `directions`.

@@ -6,9 +6,10 @@ use orogen::export::derived::list::prepare;
 use orogen::export::features::list;
 use orogen::export::features::options::FeatureOptions;
 use orogen::export::features::source::FeatureSource;
-use orogen::format::features::{FeatureLayer, Geometry, Value};
-use orogen::hydrography::rivers::{Mouth, River, Source};
-use orogen::hydrology::direction::STEPS;
+use orogen::grid::hydrography::rivers::Source;
+use orogen::grid::hydrography::{Mouth, River};
+use orogen::grid::hydrology::direction::STEPS;
+use orogen::io::format::features::{FeatureLayer, Geometry, Value};
 use orogen::options::Options;
 use orogen::{Budget, ErrorKind, Progress, Recipe, Window, World, presets};
 

@@ -6,11 +6,17 @@
 //! - [`standard`]: those of a recipe that has none of its own; [`named`]: their numbers by their names
 //! - [`expand`]: expansion to nodes that compute the output
 
+#[doc(hidden)]
 pub mod document;
+#[doc(hidden)]
 pub mod expand;
 pub(crate) mod list;
+#[doc(hidden)]
 pub mod named;
+#[doc(hidden)]
 pub mod standard;
+
+pub use document::{MAX_CLASSES, TerrainClass};
 
 #[cfg(test)]
 mod tests;

@@ -6,8 +6,11 @@
 //! - `expand`: expansion of conditions to nodes that compute their share
 //! - `schema`: their part of the JSON Schema
 
+#[doc(hidden)]
 pub mod document;
 pub(crate) mod expand;
 pub(crate) mod part;
 pub(crate) mod read;
 pub(crate) mod schema;
+
+pub use document::{Condition, Noise, Quantity};

@@ -7,10 +7,15 @@
 //! - [`expand`]: expansion of surfaces to nodes that compute their shares
 
 pub(crate) mod coloring;
+#[doc(hidden)]
 pub mod document;
+#[doc(hidden)]
 pub mod expand;
 pub(crate) mod list;
+#[doc(hidden)]
 pub mod standard;
+
+pub use document::{Along, Coloring, Surface};
 
 #[cfg(test)]
 mod tests;

@@ -8,10 +8,17 @@
 
 pub(crate) mod arc_info;
 pub(crate) mod epsg;
+#[doc(hidden)]
 pub mod keys;
 pub(crate) mod rebuilt;
+#[doc(hidden)]
 pub mod registry;
 pub(crate) mod system;
+#[doc(hidden)]
 pub mod unit;
+#[doc(hidden)]
 pub mod vertical;
 pub(crate) mod wkt;
+
+pub use keys::GeoKeys;
+pub use registry::Crs;

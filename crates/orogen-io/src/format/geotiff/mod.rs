@@ -27,12 +27,18 @@ mod blocks;
 mod directory;
 mod entries;
 pub(crate) mod mask;
+#[doc(hidden)]
 pub mod options;
 mod place;
 #[doc(hidden)]
 pub mod pyramid;
+#[doc(hidden)]
 pub mod reader;
+#[doc(hidden)]
 pub mod writer;
+
+pub use options::Options;
+pub use writer::Writer;
 
 pub(crate) use orogen_codec::format::geotiff::unpack;
 #[doc(hidden)]

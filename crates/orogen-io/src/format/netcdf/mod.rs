@@ -2,6 +2,7 @@
 //! CDF-5.
 
 mod header;
+#[doc(hidden)]
 pub mod reader;
 
 #[cfg(test)]

@@ -9,6 +9,7 @@
 //! each array states its system (`_CRS`, `crs_wkt`). Rows are in the order of a picture, and a sample has the same
 //! position as in the GeoTIFF.
 
+#[doc(hidden)]
 pub mod metadata;
 pub(crate) mod reader;
 

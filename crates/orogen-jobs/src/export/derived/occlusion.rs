@@ -27,7 +27,7 @@ pub static LAYER: Derived = Derived {
         prepare: nothing,
         layers: none,
         reach,
-        make: |around, window| vec![sky::view(around.heights, window, reach(window.cell))],
+        make: |around, window| vec![sky::sky_view(around.heights, window, reach(window.cell))],
         lowered: Some(LoweredRows { passes, heights }),
     }),
 };

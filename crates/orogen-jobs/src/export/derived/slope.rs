@@ -1,7 +1,7 @@
 //! The layer `slope`.
 
 use super::layer::{Derived, Made, Nature, RowLayer, none, nothing};
-use orogen_grid::analysis::slope::degrees;
+use orogen_grid::analysis::slope::slope_degrees;
 
 /// The layer.
 pub static LAYER: Derived = Derived {
@@ -16,7 +16,7 @@ pub static LAYER: Derived = Derived {
         prepare: nothing,
         layers: none,
         reach: |_| 1,
-        make: |around, window| vec![degrees(&around.bordered(window))],
+        make: |around, window| vec![slope_degrees(&around.bordered(window))],
         lowered: None,
     }),
 };

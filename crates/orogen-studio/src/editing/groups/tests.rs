@@ -1,7 +1,7 @@
 //! Groups: the land stays, whatever is grouped.
 
 use orogen::declare::Input;
-use orogen::recipe::document::Recipe;
+use orogen::recipe::Recipe;
 use orogen::{Options, Session, Window, presets};
 
 use super::*;

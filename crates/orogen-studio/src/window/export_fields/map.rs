@@ -1,8 +1,7 @@
 //! The fields of a map sheet.
 
 use eframe::egui::Ui;
-use orogen::jobs::map::MapJob;
-use orogen::jobs::sheet_format::SheetFormat;
+use orogen::jobs::{MapJob, SheetFormat};
 
 use super::option_rows::{Fields, OptionRows};
 use super::rows;

@@ -3,11 +3,11 @@
 use std::ops::RangeInclusive;
 
 use eframe::egui::{Checkbox, DragValue, Grid, Response, Role, TextEdit, Ui, WidgetInfo};
+use orogen::io::palette::color::hex;
+use orogen::io::palette::names::hexadecimal;
+use orogen::io::palette::{Rgb, named};
 use orogen::options::{Component, OptionSpec, ValueKind};
-use orogen::palette::color::{Rgb, hex};
-use orogen::palette::named;
-use orogen::palette::names::hexadecimal;
-use orogen::sheet::paper;
+use orogen::output::sheet::paper;
 use orogen::tilemap::art::set::SETS;
 
 use super::rows::{self, WIDTH};

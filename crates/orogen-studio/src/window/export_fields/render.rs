@@ -1,7 +1,7 @@
 //! The fields of a rendered picture.
 
 use eframe::egui::Ui;
-use orogen::jobs::render::RenderJob;
+use orogen::jobs::RenderJob;
 
 use super::option_rows::{Fields, OptionRows};
 use super::rows;

@@ -1,7 +1,7 @@
 //! The fields of a map of tiles.
 
 use eframe::egui::{DragValue, Role, Ui, WidgetInfo};
-use orogen::tilemap::job::TilemapJob;
+use orogen::tilemap::TilemapJob;
 
 use super::option_rows::{Fields, OptionRows};
 use super::rows;

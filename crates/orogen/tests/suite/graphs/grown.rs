@@ -3,8 +3,8 @@
 use super::values::value;
 use crate::support::{DEM, DRAWINGS, PICTURE, Random};
 use orogen::declare::{Input, Locality};
-use orogen::dem::file_ref::FileKind;
-use orogen::format::outlines::DrawingKind;
+use orogen::io::dem::FileKind;
+use orogen::io::format::outlines::DrawingKind;
 use orogen::node::Node;
 use orogen::{Budget, ErrorKind, Options, Recipe, Session, Window, WorldSpec};
 

@@ -2,10 +2,8 @@
 
 use super::layers::{cells_to_edge, neighbors};
 use super::network::Network;
-use orogen::hydrology::accumulation::accumulate;
-use orogen::hydrology::drainage::route_carving;
-use orogen::hydrology::outlets::Outlets;
-use orogen::hydrology::steepest::Descent;
+use orogen::grid::hydrology::steepest::Descent;
+use orogen::grid::hydrology::{Outlets, accumulate, route_carving};
 
 /// Largest difference between the areas of a cell that agrees, relative to the area in `flow`.
 const TOLERANCE: f64 = 0.2;

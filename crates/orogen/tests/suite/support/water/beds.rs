@@ -2,7 +2,7 @@
 
 use super::layers::{cells_to_edge, neighbors};
 use super::network::Network;
-use orogen::hydrology::direction::DISTANCES;
+use orogen::grid::hydrology::direction::DISTANCES;
 
 /// Drainage area from which on a cell belongs to a river here, in m².
 const RIVER: f64 = 5e6;

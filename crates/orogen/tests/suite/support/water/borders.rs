@@ -3,7 +3,7 @@
 use super::layers::{Tiles, Water, cells_to_edge, neighbors};
 use super::mosaic::{Mosaic, TILES};
 use super::network::Network;
-use orogen::hydrology::direction::hashed;
+use orogen::grid::hydrology::direction::hashed;
 use orogen::{Error, ErrorKind, Result, Window};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;

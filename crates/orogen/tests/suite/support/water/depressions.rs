@@ -1,7 +1,7 @@
 //! Depressions outside lakes and the sea.
 
 use super::layers::Water;
-use orogen::hydrology::{fill, outlets::Outlets};
+use orogen::grid::hydrology::{Outlets, fill};
 
 /// Depressions of the bed.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -23,7 +23,7 @@ pub fn measure(water: &Water) -> Depressions {
             *height = f32::MIN;
         }
     }
-    let filled = fill::fill(&land, &Outlets::new(&land, Some(f32::MIN)));
+    let filled = fill(&land, &Outlets::new(&land, Some(f32::MIN)));
     let mut found = Depressions::default();
     for (height, level) in land.data().iter().zip(filled.data()).filter(|(height, _)| **height > f32::MIN) {
         found.land += 1;

@@ -1,6 +1,6 @@
 //! The layers of water over one window.
 
-use orogen::hydrology::direction::STEPS;
+use orogen::grid::hydrology::direction::STEPS;
 use orogen::layer::LayerKind;
 use orogen::{Error, ErrorKind, Grid, Options, Progress, Recipe, Result, Session, Window};
 use std::collections::HashMap;

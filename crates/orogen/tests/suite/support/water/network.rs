@@ -9,7 +9,7 @@
 //! Of two neighbors with the same area, the one with the lower surface is downstream.
 
 use super::layers::{Water, neighbors};
-use orogen::hydrology::direction::NONE;
+use orogen::grid::hydrology::direction::NONE;
 use std::cmp::Ordering;
 
 /// A cell without a receiver in the window.
