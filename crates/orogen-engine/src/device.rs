@@ -6,9 +6,10 @@ use orogen_grid::progress::Progress;
 use orogen_noise::shader::function::Shader;
 use orogen_ops::expression::function::Function;
 use orogen_ops::layer::LayerKind;
-use orogen_ops::lower::{LayerPasses, LevelPasses, Passes};
+use orogen_ops::lower::Passes;
 use orogen_ops::op::Affine;
 use std::any::Any;
+use std::borrow::Cow;
 use std::fmt;
 use std::sync::Arc;
 
@@ -16,8 +17,8 @@ use std::sync::Arc;
 /// same: a [session](crate::Session) keeps none of them for later requests, and gives nothing of them to solvers and
 /// levelled ops.
 ///
-/// A step that returns `None` is computed by the processor: because the device cannot do it, or has failed. An error
-/// ends the request. What a step makes may stay on the device until the processor [asks](Device::read) for it.
+/// What the device does not compute, the processor does. An error ends the request. What a step makes may stay on the
+/// device until the processor [asks](Device::read) for it.
 pub trait Device: Send + Sync {
     /// Whether it is the processor itself, by a software driver: then it is slower than without it.
     fn is_software(&self) -> bool {
@@ -34,81 +35,49 @@ pub trait Device: Send + Sync {
         window: &Window,
         grids: &[&PlanGrid],
         progress: &Progress,
-    ) -> Result<Option<Vec<PlanGrid>>>;
+    ) -> Result<Computed<Vec<PlanGrid>>> {
+        let _ = (program, window, grids, progress);
+        Ok(Computed::Declined)
+    }
 
-    /// Computes the wanted layers of a filter over a window; the inputs cover at least the window grown by the halo.
+    /// Computes the wanted layers of the last of some passes.
     ///
     /// # Errors
     /// If the work was cancelled.
-    fn apply(
-        &self,
-        passes: &Passes,
-        inputs: &[Option<&PlanGrid>],
-        extent: &FilterExtent,
-        progress: &Progress,
-    ) -> Result<Option<Vec<Option<PlanGrid>>>>;
+    fn run(&self, run: &PassRun, progress: &Progress) -> Result<Computed<Vec<PlanGrid>>> {
+        let _ = (run, progress);
+        Ok(Computed::Declined)
+    }
 
-    /// Copies grids that the device made to the processor's memory. `None` if the device has lost one of them: the
-    /// processor then makes all again.
+    /// Copies grids that the device made to the processor's memory.
     ///
     /// # Errors
     /// If the work was cancelled.
-    fn read(&self, grids: &[&DeviceGrid], progress: &Progress) -> Result<Option<Vec<Grid>>> {
+    fn read(&self, grids: &[&DeviceGrid], progress: &Progress) -> Result<Computed<Vec<Grid>>> {
         let _ = (grids, progress);
-        Ok(None)
+        Ok(Computed::Lost)
     }
+}
 
-    /// Grids that the device made, in the processor's memory; `None` if it has lost one of them.
-    ///
-    /// # Errors
-    /// If the work was cancelled.
-    fn fetch(&self, grids: Vec<PlanGrid>, progress: &Progress) -> Result<Option<Vec<Grid>>> {
-        let away: Vec<&DeviceGrid> =
-            grids.iter().filter(|grid| grid.memory.is_none()).filter_map(PlanGrid::on_device).collect();
-        let read = if away.is_empty() { Some(Vec::new()) } else { self.read(&away, progress)? };
-        let Some(mut read) = read.map(Vec::into_iter) else { return Ok(None) };
-        Ok(grids.into_iter().map(|grid| grid.memory.or_else(|| read.next())).collect())
-    }
+/// What comes of work.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Computed<T> {
+    /// This.
+    Done(T),
+    /// Nothing, because it cannot be done here, or has failed.
+    Declined,
+    /// Nothing, because the device has lost a grid that it had made: the processor makes all again.
+    Lost,
+}
 
-    /// Computes the planes of the last of some levels, each from those of the level above it. Those above the first are
-    /// given over exactly the samples that `Levelled::refine` gets, and each level covers those that the next one
-    /// reads.
-    ///
-    /// # Errors
-    /// If the work was cancelled.
-    fn refine(&self, levels: &[LevelStep], above: &[Grid], progress: &Progress) -> Result<Option<Vec<Grid>>> {
-        let _ = (levels, above, progress);
-        Ok(None)
-    }
-
-    /// Computes layers from the last of some levels, which are made as by [`Device::refine`].
-    ///
-    /// # Errors
-    /// If the work was cancelled.
-    fn layers(
-        &self,
-        levels: &[LevelStep],
-        layers: &LayerStep,
-        above: &[Grid],
-        progress: &Progress,
-    ) -> Result<Option<Vec<PlanGrid>>> {
-        let _ = (levels, layers, above, progress);
-        Ok(None)
-    }
-
-    /// Computes the layers of a solution over a window from the solver's inputs over the same window.
-    ///
-    /// # Errors
-    /// If the work was cancelled.
-    fn solve(
-        &self,
-        passes: &Passes,
-        inputs: &[Option<&Grid>],
-        window: &Window,
-        progress: &Progress,
-    ) -> Result<Option<Vec<Grid>>> {
-        let _ = (passes, inputs, window, progress);
-        Ok(None)
+impl<T> Computed<T> {
+    /// What was computed, if it was.
+    #[must_use]
+    pub fn done(self) -> Option<T> {
+        match self {
+            Computed::Done(made) => Some(made),
+            Computed::Declined | Computed::Lost => None,
+        }
     }
 }
 
@@ -197,37 +166,27 @@ impl fmt::Debug for DeviceGrid {
     }
 }
 
-/// A level that is made from the one above it.
+/// Passes one after the other.
+#[derive(Debug, Clone, Copy)]
+pub struct PassRun<'a> {
+    /// The passes: those of a filter or a solver, or of levels, each from the layers of the one before, and of layers
+    /// of the last level. Each level covers the samples that the next one reads.
+    pub steps: &'a [PassStep<'a>],
+    /// The planes of the level above the first, over exactly the samples that `Levelled::refine` gets.
+    pub above: &'a [Grid],
+    /// Whether the result may stay on the device. Otherwise it is in memory.
+    pub stays: bool,
+}
+
+/// Passes with what they are run on.
 #[derive(Debug, Clone)]
-pub struct LevelStep {
-    /// How.
-    pub passes: LevelPasses,
+pub struct PassStep<'a> {
+    /// The passes.
+    pub passes: Passes,
     /// The op's inputs, which cover at least what it reads of them.
-    pub inputs: Vec<Option<Grid>>,
-    /// The window of the level.
-    pub window: Window,
-}
-
-/// Layers that are made from a level.
-#[derive(Debug, Clone)]
-pub struct LayerStep {
-    /// How.
-    pub passes: LayerPasses,
-    /// The window of the layers.
-    pub window: Window,
-    /// Samples around it that the level covers.
-    pub halo: usize,
-}
-
-/// What of a filter is computed.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FilterExtent {
+    pub inputs: Vec<Option<Cow<'a, PlanGrid>>>,
     /// The window of the result.
     pub window: Window,
-    /// Samples beyond it on each side that the inputs have.
-    pub halo: usize,
-    /// Which layers are wanted.
-    pub wanted: Vec<bool>,
 }
 
 /// A program for a device: each instruction makes the value of its index, and each coordinate set is written once.

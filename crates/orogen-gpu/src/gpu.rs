@@ -3,6 +3,7 @@
 use crate::adapters::{Adapter, Choice, Kind, found};
 use crate::failure::Failure;
 use crate::pipelines::Pipelines;
+use orogen_engine::device::Computed;
 use orogen_engine::device_choice::DeviceChoice;
 use orogen_grid::error::Error;
 use orogen_grid::progress::Progress;
@@ -286,13 +287,19 @@ impl Gpu {
     }
 
     /// What the engine gets: work that failed is left to the processor, and cancelled work is an error.
-    pub(crate) fn outcome<T>(&self, made: Result<Option<T>, Failure>, progress: &Progress) -> Result<Option<T>, Error> {
+    pub(crate) fn outcome<T>(
+        &self,
+        made: Result<Option<T>, Failure>,
+        otherwise: Computed<T>,
+        progress: &Progress,
+    ) -> Result<Computed<T>, Error> {
         progress.check()?;
         match made {
-            Ok(made) => Ok(made),
+            Ok(Some(made)) => Ok(Computed::Done(made)),
+            Ok(None) => Ok(otherwise),
             Err(failure) => {
                 self.opened.failure.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(failure);
-                Ok(None)
+                Ok(otherwise)
             }
         }
     }

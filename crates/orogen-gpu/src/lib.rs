@@ -8,23 +8,17 @@
 pub mod adapters;
 mod device;
 pub mod failure;
-#[doc(hidden)]
-pub mod filters;
 pub mod gpu;
 #[doc(hidden)]
 pub mod job;
 mod layers;
 #[doc(hidden)]
-pub mod level_layers;
-#[doc(hidden)]
-pub mod levels;
+pub mod passes;
 mod pipelines;
 mod program;
 pub mod render;
 mod resident;
 mod session;
-#[doc(hidden)]
-pub mod solvers;
 mod source;
 mod tiles;
 

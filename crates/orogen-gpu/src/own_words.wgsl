@@ -4,11 +4,11 @@
 
 // A word of plane `k`.
 fn word(k: u32, cell: u32) -> u32 {
-    return words[k * cells() + cell];
+    return words[word_index(k, cell)];
 }
 
 fn set_word(k: u32, cell: u32, value: u32) {
-    words[k * cells() + cell] = value;
+    words[word_index(k, cell)] = value;
 }
 
 // Lowers a word to `value`, if that is less.

@@ -3,7 +3,7 @@
 use crate::declare::Declared;
 use crate::expression::term::{self, Term};
 use crate::layer::LayerKind;
-use crate::lower::{LayerPasses, LevelPasses, Lowering, Passes};
+use crate::lower::{Lowering, Passes};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
@@ -425,7 +425,7 @@ pub trait Levelled: Declared + Send + Sync {
     /// How a graphics card computes what [`Levelled::refine`] does, where `given` says of each input whether it is
     /// given.
     #[doc(hidden)]
-    fn lower(&self, level: usize, given: &[bool], world_params: &WorldParams) -> Lowering<LevelPasses> {
+    fn lower(&self, level: usize, given: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
         let _ = (level, given, world_params);
         Lowering::Missing
     }
@@ -433,7 +433,7 @@ pub trait Levelled: Declared + Send + Sync {
     /// How a graphics card computes what [`Levelled::layers_of`] does, for layers that are wanted, from a level that it
     /// has made.
     #[doc(hidden)]
-    fn lower_layers(&self, level: usize, wanted: &[bool], world_params: &WorldParams) -> Lowering<LayerPasses> {
+    fn lower_layers(&self, level: usize, wanted: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
         let _ = (level, wanted, world_params);
         Lowering::Missing
     }

@@ -1,6 +1,6 @@
 //! The grids of a plan while its steps run.
 
-use crate::device::{Device, DeviceGrid, PlanGrid};
+use crate::device::{Computed, Device, DeviceGrid, PlanGrid};
 use crate::plan::steps::Plan;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Grid;
@@ -65,7 +65,7 @@ impl Grids {
         }
         let Some(device) = device else { return Ok(false) };
         let grids: Vec<&DeviceGrid> = away.iter().filter_map(|slot| self.find(*slot)?.on_device()).collect();
-        let Some(read) = device.read(&grids, progress)? else { return Ok(false) };
+        let Computed::Done(read) = device.read(&grids, progress)? else { return Ok(false) };
         if read.len() != away.len() {
             return Err(missing("a grid of a device"));
         }

@@ -1,6 +1,7 @@
 //! The engine, which runs plans.
 
 mod exactness;
+mod executor;
 mod grids;
 pub(crate) mod inline;
 mod level_tiles;

@@ -1,31 +1,101 @@
-//! Steps of a plan on a device.
+//! Work of a plan on a device.
 
+use super::executor::{Executor, OnDevice};
 use super::grids::{Grids, missing};
+use super::refine::{Piece, Refining};
 use super::run::{Engine, Solutions};
-use crate::device::{Device, FilterExtent, PlanGrid};
+use super::tiles::Tiles;
+use crate::device::{Computed, Device, PassRun, PassStep, PlanGrid};
+use crate::plan::levels;
 use crate::plan::split::split;
 use crate::plan::steps::{Step, wanted};
 use orogen_grid::error::Result;
+use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 use orogen_ops::ids::GridId;
-use orogen_ops::lower::Lowering;
+use orogen_ops::lower::Extent;
+use orogen_ops::op::{Solution, Solver, Sources};
 use orogen_ops::program::Instruction;
+use std::borrow::Cow;
 
-impl Engine<'_> {
-    /// Computes a step on a device; `None` if the processor is to do it.
-    pub(super) fn on_device(
+impl Executor for OnDevice<'_> {
+    fn is_device(&self) -> bool {
+        true
+    }
+
+    fn step(
         &self,
-        device: &dyn Device,
         step: &Step,
         solutions: &Solutions,
         grids: &mut Grids,
         progress: &Progress,
-    ) -> Result<Option<Vec<PlanGrid>>> {
+    ) -> Result<Computed<Vec<PlanGrid>>> {
         match step {
-            Step::Fill { .. } => fill(self, device, step, solutions, grids, progress),
-            Step::Apply { .. } => apply(self, device, step, grids, progress),
-            Step::Refine { .. } => Ok(None),
+            Step::Fill { .. } => fill(self.engine, self.device, step, solutions, grids, progress),
+            Step::Apply { .. } => apply(self.engine, self.device, step, grids, progress),
+            // The levels and the layers are work of their own.
+            Step::Refine { .. } => Ok(Computed::Declined),
         }
+    }
+
+    fn levels(
+        &self,
+        refining: &Refining,
+        levels: &[(usize, &Window)],
+        above: &[Grid],
+    ) -> Result<Computed<(Vec<Grid>, usize)>> {
+        let mut steps = Vec::new();
+        for &(level, window) in levels {
+            let Some(step) = refining.level_step(level, window)? else { break };
+            steps.push(step);
+        }
+        let count = steps.len();
+        let Some((_, last)) = count.checked_sub(1).and_then(|last| levels.get(last)) else {
+            return Ok(Computed::Declined);
+        };
+        let work = levels.iter().take(count).map(|(level, window)| refining.work(*level, window)).sum();
+        let part = refining.progress.part(work);
+        let run = PassRun { steps: &steps, above, stays: false };
+        let Computed::Done(made) = self.device.run(&run, &part)? else { return Ok(Computed::Declined) };
+        part.finish();
+        let planes = made.into_iter().filter_map(PlanGrid::into_memory).collect();
+        Ok(Computed::Done((refining.checked(planes, last)?, count)))
+    }
+
+    fn layers(&self, refining: &Refining, piece: &Piece) -> Result<Computed<Vec<Option<PlanGrid>>>> {
+        let (first, level) = (*piece.levels.start(), *piece.levels.end());
+        let lowered = refining.op.lower_layers(level, refining.wanted, self.engine.world_params).shader();
+        let Some(passes) = lowered else { return Ok(Computed::Declined) };
+        let windows = levels::windows(refining.op, refining.wanted, first, level, piece.window);
+        let mut steps = Vec::new();
+        for (level, window) in piece.levels.clone().zip(&windows).skip(1) {
+            let Some(step) = refining.level_step(level, window)? else { return Ok(Computed::Declined) };
+            steps.push(step);
+        }
+        let (Some(begin), false) = (windows.first(), steps.is_empty()) else { return Ok(Computed::Declined) };
+        steps.push(PassStep { passes, inputs: Vec::new(), window: *piece.window });
+        let part = refining.progress.part(refining.work_of_piece(piece.levels.clone(), piece.window));
+        let above = refining.mosaic(first, begin, piece.tiles)?;
+        let run = PassRun { steps: &steps, above: &above, stays: true };
+        let Computed::Done(made) = self.device.run(&run, &part)? else { return Ok(Computed::Declined) };
+        part.finish();
+        let mut made = made.into_iter();
+        let layer = |wanted: &bool| if *wanted { made.next() } else { None };
+        Ok(Computed::Done(refining.wanted.iter().map(layer).collect()))
+    }
+
+    fn solve(&self, solver: &dyn Solver, tiles: &Tiles, progress: &Progress) -> Result<Computed<Solution>> {
+        let (nodes, window, node) = (self.engine.nodes(), tiles.order.padded, tiles.order.node);
+        let passes = self.engine.preview.and_then(|preview| preview.passes_of(&nodes, node, solver));
+        let Some(passes) = passes else { return Ok(Computed::Declined) };
+        let whole = |(input, given): (usize, bool)| {
+            given.then(|| tiles.whole(input, &window).map(|grid| Cow::Owned(grid.into()))).transpose()
+        };
+        let inputs = nodes.given(node).into_iter().enumerate().map(whole).collect::<Result<_>>()?;
+        let run = PassRun { steps: &[PassStep { passes, inputs, window }], above: &[], stays: false };
+        let Computed::Done(made) = self.device.run(&run, progress)? else { return Ok(Computed::Declined) };
+        let layers = made.into_iter().filter_map(PlanGrid::into_memory).map(|layer| tiles.keep(layer));
+        Ok(Computed::Done(Solution { layers: layers.collect::<Result<_>>()?, scalars: Vec::new() }))
     }
 }
 
@@ -36,10 +106,10 @@ fn fill(
     solutions: &Solutions,
     grids: &mut Grids,
     progress: &Progress,
-) -> Result<Option<Vec<PlanGrid>>> {
-    let Step::Fill { program, window, .. } = step else { return Ok(None) };
+) -> Result<Computed<Vec<PlanGrid>>> {
+    let Step::Fill { program, window, .. } = step else { return Ok(Computed::Declined) };
     if window.is_empty() {
-        return Ok(None);
+        return Ok(Computed::Declined);
     }
     let lower = |instruction: &Instruction| {
         let lowering = match instruction {
@@ -50,16 +120,13 @@ fn fill(
             }
             _ => return None,
         };
-        match lowering {
-            Lowering::Shader(shader) => Some(shader),
-            Lowering::Processor(_) | Lowering::Missing => None,
-        }
+        lowering.shader()
     };
-    let Some(split) = split(program, lower, |grid| grids.is_away(grid))? else { return Ok(None) };
+    let Some(split) = split(program, lower, |grid| grids.is_away(grid))? else { return Ok(Computed::Declined) };
     let handed = match &split.processor {
         Some(program) => {
             if !grids.fetch(&program.reads(), Some(device), progress)? {
-                return Ok(None);
+                return Ok(Computed::Lost);
             }
             engine.fill_part(program, window, solutions, grids, &Progress::none())?
         }
@@ -80,18 +147,13 @@ fn apply(
     step: &Step,
     grids: &Grids,
     progress: &Progress,
-) -> Result<Option<Vec<PlanGrid>>> {
-    let Step::Apply { node, inputs, window, halo, out } = step else { return Ok(None) };
-    if window.is_empty() {
-        return Ok(None);
-    }
-    let Lowering::Shader(passes) = engine.filter(*node)?.lower(window.cell, engine.world_params) else {
-        return Ok(None);
-    };
-    let extent = FilterExtent { window: *window, halo: *halo, wanted: wanted(out) };
-    let input = |slot: &GridId| grids.find(*slot).ok_or_else(|| missing("an input of a filter"));
-    let given: Vec<Option<&PlanGrid>> =
-        inputs.iter().map(|slot| slot.as_ref().map(input).transpose()).collect::<Result<_>>()?;
-    let made = device.apply(&passes, &given, &extent, progress)?;
-    Ok(made.map(|made| made.into_iter().flatten().collect()))
+) -> Result<Computed<Vec<PlanGrid>>> {
+    let Step::Apply { node, inputs, window, halo, out } = step else { return Ok(Computed::Declined) };
+    let passes = engine.filter(*node)?.lower(window.cell, engine.world_params).shader();
+    let Some(passes) = passes.filter(|_| !window.is_empty()) else { return Ok(Computed::Declined) };
+    let passes = passes.with_planes(Extent::Halo(*halo), inputs.len(), &wanted(out));
+    let input = |slot: &GridId| grids.find(*slot).map(Cow::Borrowed).ok_or_else(|| missing("an input of a filter"));
+    let inputs = inputs.iter().map(|slot| slot.as_ref().map(input).transpose()).collect::<Result<_>>()?;
+    let steps = [PassStep { passes, inputs, window: *window }];
+    device.run(&PassRun { steps: &steps, above: &[], stays: true }, progress)
 }

@@ -9,9 +9,10 @@ use crate::store::grids::GridStore;
 use crate::store::level_tiles::LevelTiles;
 use crate::store::solutions::Store;
 use orogen_ops::ids::{IndexVec, NodeId};
-use orogen_ops::lower::{Lowering, Passes};
+use orogen_ops::lower::Passes;
 use orogen_ops::op::{Op, Solver};
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What previews of a session keep in memory, for later ones. Nothing of it is stored for later runs, and nothing exact
 /// is made from it.
@@ -62,13 +63,16 @@ pub struct Preview<'a> {
     approximate: IndexVec<NodeId, bool>,
     /// Whether a node reads such a node.
     reads: IndexVec<NodeId, bool>,
+    /// Whether the device has lost grids.
+    has_lost: AtomicBool,
 }
 
 impl<'a> Preview<'a> {
     /// That of these nodes; a draft if the device may make other land.
     pub fn new(device: &'a dyn Device, kept: &'a Previews, nodes: &Nodes, is_draft: bool) -> Preview<'a> {
         let none = || -> IndexVec<NodeId, bool> { vec![false; nodes.recipe.nodes().len()].into() };
-        let mut preview = Preview { device, kept, is_draft, approximate: none(), reads: none() };
+        let (approximate, reads, has_lost) = (none(), none(), AtomicBool::new(false));
+        let mut preview = Preview { device, kept, is_draft, approximate, reads, has_lost };
         for &node in &nodes.graph.order {
             let is_approximate = |link: &Link| matches!(link, Link::Node(read) if preview.approximate[read.node]);
             let mut links = nodes.graph.links[node].iter().chain([&nodes.graph.masks[node]]);
@@ -85,7 +89,7 @@ impl<'a> Preview<'a> {
             Some(Op::Levelled(op)) => {
                 let given = nodes.given(node);
                 let mut levels = 1..op.levels().count;
-                levels.any(|level| matches!(op.lower(level, &given, nodes.world_params), Lowering::Shader(_)))
+                levels.any(|level| op.lower(level, &given, nodes.world_params).shader().is_some())
             }
             _ => false,
         }
@@ -95,6 +99,16 @@ impl<'a> Preview<'a> {
     pub fn passes_of(&self, nodes: &Nodes, node: NodeId, solver: &dyn Solver) -> Option<Passes> {
         let passes = lowered(nodes, node, solver)?;
         (self.is_draft || !passes.is_chaotic).then_some(passes)
+    }
+
+    /// Whether the device has lost grids that it had made.
+    pub fn has_lost(&self) -> bool {
+        self.has_lost.load(Ordering::Relaxed)
+    }
+
+    /// Notes that it has.
+    pub fn lose(&self) {
+        self.has_lost.store(true, Ordering::Relaxed);
     }
 
     /// Whether a node is made on the device, or from what is made there.
@@ -111,10 +125,7 @@ impl<'a> Preview<'a> {
 /// How a device solves a solver, also if that is chaotic.
 fn lowered(nodes: &Nodes, node: NodeId, solver: &dyn Solver) -> Option<Passes> {
     let padded = Domain::of(solver, nodes.world_params).padded;
-    match solver.lower(&padded, &nodes.given(node), nodes.world_params) {
-        Lowering::Shader(passes) => Some(passes),
-        Lowering::Processor(_) | Lowering::Missing => None,
-    }
+    solver.lower(&padded, &nodes.given(node), nodes.world_params).shader()
 }
 
 /// Whether a device would make other land than the processor of one of the solvers that a plan has to solve.

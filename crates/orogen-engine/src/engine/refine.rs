@@ -2,7 +2,7 @@
 
 use super::preview::{Preview, Previews};
 use super::run::Engine;
-use crate::device::{Device, LayerStep, LevelStep, PlanGrid};
+use crate::device::{PassStep, PlanGrid};
 use crate::plan::levels::{self, Serving};
 use crate::recipe::graph::LayerRef;
 use orogen_grid::error::{Error, ErrorKind, Result};
@@ -12,8 +12,8 @@ use orogen_grid::progress::Progress;
 use orogen_grid::resample::{self, LayerKind};
 use orogen_noise::Points;
 use orogen_ops::ids::{Id, NodeId};
-use orogen_ops::lower::Lowering;
 use orogen_ops::op::{Context, Levelled, Op, WorldParams};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
@@ -33,34 +33,42 @@ pub(super) struct Refining<'a> {
     pub wanted: &'a [bool],
     world_params: &'a WorldParams,
     pub progress: &'a Progress,
-    /// The device that makes levels over pieces, where it can, and whether each input is given.
-    device: Option<(&'a dyn Device, Vec<bool>)>,
+    /// Whether each input is given.
+    given: Vec<bool>,
+}
+
+/// A part of a window.
+pub(super) struct Piece<'a> {
+    /// The levels that it is made from: tiles of the first, one from the other, until its own.
+    pub levels: RangeInclusive<usize>,
+    pub window: &'a Window,
+    /// The tiles of the first of these levels.
+    pub tiles: &'a Planes,
 }
 
 impl Engine<'_> {
-    /// Computes the wanted layers of a levelled op over a window; they may be on a device if `keeps` allows it. Work is
-    /// done on the threads of the pool, and the calling thread waits for tiles that other requests make.
+    /// Computes the wanted layers of a levelled op over a window; they may be on a device. Work is done on the threads
+    /// of the pool, and the calling thread waits for tiles that other requests make.
     pub(super) fn refine(
         &self,
         node: NodeId,
         inputs: Vec<Vec<Option<&Grid>>>,
         wanted: &[bool],
-        (window, keeps): (&Window, bool),
+        window: &Window,
         progress: &Progress,
     ) -> Result<Vec<Option<PlanGrid>>> {
         let Op::Levelled(op) = self.recipe.nodes()[node.index()].node.op() else {
             return Err(internal("a node that is not levelled was to be refined"));
         };
-        let device = self.preview.map(|preview| (preview.device, self.nodes().given(node)));
-        let refining = Refining { op, node, inputs, wanted, world_params: self.world_params, progress, device };
+        let given = self.nodes().given(node);
+        let refining = Refining { op, node, inputs, wanted, world_params: self.world_params, progress, given };
         let serving = Serving::of(&op.levels(), window);
         let is_between = serving.samples.cell != window.cell;
-        let keeps = keeps && !is_between;
         let made = match self.preview.filter(|preview| preview.is_read_by(node)) {
             Some(Preview { kept: Previews { store, level_tiles, .. }, .. }) => {
-                Engine { store, level_tiles, ..*self }.samples(&refining, &serving, keeps)?
+                Engine { store, level_tiles, ..*self }.samples(&refining, &serving, !is_between)?
             }
-            None => self.samples(&refining, &serving, keeps)?,
+            None => self.samples(&refining, &serving, !is_between)?,
         };
         if !is_between {
             return Ok(made);
@@ -73,31 +81,33 @@ impl Engine<'_> {
         self.pool.install(|| made.into_iter().enumerate().map(between).collect())
     }
 
-    /// The layers over samples of a level, which may be on a device if `keeps` allows it.
-    fn samples(&self, refining: &Refining, serving: &Serving, keeps: bool) -> Result<Vec<Option<PlanGrid>>> {
+    /// The layers over samples of a level, which may stay on a device if `may_stay`.
+    fn samples(&self, refining: &Refining, serving: &Serving, may_stay: bool) -> Result<Vec<Option<PlanGrid>>> {
         let Serving { level, samples } = *serving;
         let in_memory = |layers: Vec<Option<Grid>>| layers.into_iter().map(|layer| layer.map(PlanGrid::from)).collect();
         if samples.is_empty() {
             return Ok(in_memory(refining.layers(&samples)));
         }
         // A device is best used by one piece at a time.
-        let threads = if refining.device.is_some() { 1 } else { self.pool.threads() };
+        let threads = if self.device().is_some() { 1 } else { self.pool.threads() };
         let pieces: Vec<Window> = serving.pieces(threads).collect();
-        let tiled = levels::tiled(refining.op, refining.wanted, serving);
-        let tiles = self.level_tiles(refining, tiled..=level, &pieces)?;
-        if let ([piece], true) = (pieces.as_slice(), keeps)
-            && *piece == samples
-            && let Some(made) = self.pool.install(|| refining.layers_on_device(tiled..=level, piece, &tiles))?
-        {
-            return Ok(made);
+        let levels = levels::tiled(refining.op, refining.wanted, serving)..=level;
+        let tiles = self.level_tiles(refining, levels.clone(), &pieces)?;
+        let is_whole = pieces == [samples];
+        let make = |window: &Window| {
+            let piece = Piece { levels: levels.clone(), window, tiles: &tiles };
+            let made = self.execute(may_stay && is_whole, |executor| executor.layers(refining, &piece))?;
+            made.done().ok_or_else(|| internal("a piece of a window was not made"))
+        };
+        let mut made: Vec<Vec<Option<PlanGrid>>> = self.pool.install(|| parallel::try_map(&pieces, make))?;
+        if is_whole && let Some(whole) = made.pop() {
+            return Ok(whole);
         }
-        let make = |piece: &Window| refining.piece(tiled..=level, piece, &tiles);
-        let made: Vec<Vec<Option<Grid>>> = self.pool.install(|| parallel::try_map(&pieces, make))?;
         let mut layers = refining.layers(&samples);
         for piece in made {
             for (layer, part) in layers.iter_mut().zip(piece) {
-                if let (Some(layer), Some(part)) = (layer, part) {
-                    layer.paste(&part);
+                if let (Some(layer), Some(part)) = (layer, part.as_ref().and_then(PlanGrid::memory)) {
+                    layer.paste(part);
                 }
             }
         }
@@ -139,7 +149,7 @@ impl Refining<'_> {
     }
 
     /// Approximate time for making a level over a window from the level above, in nanoseconds.
-    fn work(&self, level: usize, window: &Window) -> f64 {
+    pub fn work(&self, level: usize, window: &Window) -> f64 {
         self.op.cost(level) * window.len() as f64
     }
 
@@ -151,7 +161,7 @@ impl Refining<'_> {
     }
 
     /// The planes of a level over a window, from exactly the samples of the level above that it may read.
-    fn refined(&self, level: usize, parent: &[Grid], window: &Window) -> Result<Vec<Grid>> {
+    pub fn refined(&self, level: usize, parent: &[Grid], window: &Window) -> Result<Vec<Grid>> {
         let part = self.progress.part(self.work(level, window));
         let context = self.context(&part);
         let refine = |inputs: &[Option<&Grid>]| self.op.refine(level, parent, inputs, window, &context);
@@ -160,56 +170,13 @@ impl Refining<'_> {
         self.checked(planes, window)
     }
 
-    /// As many of these levels as the device makes one from the other, and their number; `None` if there is no device,
-    /// or the processor is to make the first.
-    fn on_device(&self, levels: &[(usize, &Window)], above: &[Grid]) -> Result<Option<(Vec<Grid>, usize)>> {
-        let Some((device, given)) = &self.device else { return Ok(None) };
-        let mut steps = Vec::new();
-        for &(level, window) in levels {
-            let Some(step) = self.level_step(level, window, given)? else { break };
-            steps.push(step);
-        }
-        let Some((_, last)) = steps.len().checked_sub(1).and_then(|last| levels.get(last)) else { return Ok(None) };
-        let work = levels.iter().take(steps.len()).map(|(level, window)| self.work(*level, window)).sum();
-        let part = self.progress.part(work);
-        let Some(made) = device.refine(&steps, above, &part)? else { return Ok(None) };
-        part.finish();
-        Ok(Some((self.checked(made, last)?, steps.len())))
-    }
-
     /// How a device makes a level from the one above it; `None` if the processor is to do it.
-    fn level_step(&self, level: usize, window: &Window, given: &[bool]) -> Result<Option<LevelStep>> {
-        let Lowering::Shader(passes) = self.op.lower(level, given, self.world_params) else { return Ok(None) };
-        Ok(Some(LevelStep { passes, inputs: self.inputs_over(level, window)?, window: *window }))
-    }
-
-    /// The layers of the last of the `direct` levels over a piece, which a device makes with all levels from tiles of
-    /// the first; `None` if it does not.
-    fn layers_on_device(
-        &self,
-        direct: RangeInclusive<usize>,
-        piece: &Window,
-        tiles: &Planes,
-    ) -> Result<Option<Vec<Option<PlanGrid>>>> {
-        let Some((device, given)) = &self.device else { return Ok(None) };
-        let level = *direct.end();
-        let Lowering::Shader(passes) = self.op.lower_layers(level, self.wanted, self.world_params) else {
-            return Ok(None);
-        };
-        let windows = levels::windows(self.op, self.wanted, *direct.start(), level, piece);
-        let mut steps = Vec::new();
-        for (level, window) in direct.clone().zip(&windows).skip(1) {
-            let Some(step) = self.level_step(level, window, given)? else { return Ok(None) };
-            steps.push(step);
-        }
-        let (Some(first), false) = (windows.first(), steps.is_empty()) else { return Ok(None) };
-        let layers = LayerStep { passes, window: *piece, halo: self.op.surface_halo(level, self.wanted) };
-        let part = self.progress.part(self.work_of_piece(direct.clone(), piece));
-        let above = self.mosaic(*direct.start(), first, tiles)?;
-        let Some(made) = device.layers(&steps, &layers, &above, &part)? else { return Ok(None) };
-        part.finish();
-        let mut made = made.into_iter();
-        Ok(Some(self.wanted.iter().map(|wanted| if *wanted { made.next() } else { None }).collect()))
+    pub fn level_step(&self, level: usize, window: &Window) -> Result<Option<PassStep<'static>>> {
+        let lowered = self.op.lower(level, &self.given, self.world_params).shader();
+        let Some(passes) = lowered else { return Ok(None) };
+        let inputs = self.inputs_over(level, window)?.into_iter();
+        let inputs = inputs.map(|input| input.map(|grid| Cow::Owned(grid.into()))).collect();
+        Ok(Some(PassStep { passes, inputs, window: *window }))
     }
 
     /// Passes the op's inputs over exactly the samples that it may read.
@@ -230,32 +197,30 @@ impl Refining<'_> {
         inputs.iter().map(|input| input.map(crop).transpose()).collect()
     }
 
-    /// The layers of the last of the `direct` levels over a piece, from tiles of the first.
-    fn piece(&self, direct: RangeInclusive<usize>, piece: &Window, tiles: &Planes) -> Result<Vec<Option<Grid>>> {
-        let level = *direct.end();
-        let windows = levels::windows(self.op, self.wanted, *direct.start(), level, piece);
+    /// The layers over a piece in memory, from levels that a device may make.
+    pub fn piece(&self, engine: &Engine, piece: &Piece) -> Result<Vec<Option<PlanGrid>>> {
+        let (first, level) = (*piece.levels.start(), *piece.levels.end());
+        let windows = levels::windows(self.op, self.wanted, first, level, piece.window);
         let mut planes = match windows.first() {
-            Some(first) => self.mosaic(*direct.start(), first, tiles)?,
+            Some(window) => self.mosaic(first, window, piece.tiles)?,
             None => Vec::new(),
         };
-        let mut levels: Vec<(usize, &Window)> = direct.zip(&windows).skip(1).collect();
-        while let Some((level, window)) = levels.first().copied() {
-            let (made, count) = match self.on_device(&levels, &planes)? {
-                Some(made) => made,
-                None => (self.refined(level, &planes, window)?, 1),
-            };
+        let mut levels: Vec<(usize, &Window)> = piece.levels.clone().zip(&windows).skip(1).collect();
+        while !levels.is_empty() {
+            let made = engine.execute(true, |executor| executor.levels(self, &levels, &planes))?;
+            let (made, count) = made.done().ok_or_else(|| internal("a level was not made"))?;
             planes = made;
             levels.drain(..count);
         }
-        let mut layers = self.layers(piece);
-        let part = self.progress.part(LAYER_COST * piece.len() as f64);
-        self.op.layers_of(level, &planes, piece, &mut layers, &self.context(&part))?;
+        let mut layers = self.layers(piece.window);
+        let part = self.progress.part(LAYER_COST * piece.window.len() as f64);
+        self.op.layers_of(level, &planes, piece.window, &mut layers, &self.context(&part))?;
         part.finish();
-        Ok(layers)
+        Ok(layers.into_iter().map(|layer| layer.map(PlanGrid::from)).collect())
     }
 
     /// The planes over a window that tiles cover.
-    fn mosaic(&self, level: usize, window: &Window, tiles: &Planes) -> Result<Vec<Grid>> {
+    pub fn mosaic(&self, level: usize, window: &Window, tiles: &Planes) -> Result<Vec<Grid>> {
         let mut planes: Vec<Grid> = (0..self.op.planes()).map(|_| Grid::filled(*window, 0.0)).collect();
         for at in levels::tiles(level, window) {
             let tile = tiles.get(&at).ok_or_else(|| internal("a tile of a level was not made"))?;
@@ -267,7 +232,7 @@ impl Refining<'_> {
     }
 
     /// An op of another crate may return other grids than it was asked for.
-    fn checked(&self, planes: Vec<Grid>, window: &Window) -> Result<Vec<Grid>> {
+    pub fn checked(&self, planes: Vec<Grid>, window: &Window) -> Result<Vec<Grid>> {
         let fits = planes.len() == self.op.planes() && planes.iter().all(|plane| plane.window() == window);
         if fits {
             return Ok(planes);

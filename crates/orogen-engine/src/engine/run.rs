@@ -4,7 +4,7 @@ use super::exactness::Exactness;
 use super::grids::{Grids, missing};
 use super::nodes::Nodes;
 use super::preview::Preview;
-use crate::device::{Device, PlanGrid};
+use crate::device::{Computed, PlanGrid};
 use crate::plan::cost;
 use crate::plan::key::Key;
 use crate::plan::steps::{Plan, Step, wanted};
@@ -86,25 +86,18 @@ impl<'a> Engine<'a> {
     /// Computes the output grids of a plan, with all its solvers solved.
     pub(super) fn steps(&self, plan: &Plan, solutions: &Solutions, progress: &Progress) -> Result<Vec<Grid>> {
         progress.expect(cost::steps(plan, self.recipe));
-        if let Some(device) = self.preview.map(|preview| preview.device)
-            && let Some(made) = self.steps_with(Some(device), plan, solutions, progress)?
-        {
+        if let Computed::Done(made) = self.steps_once(plan, solutions, progress)? {
             return Ok(made);
         }
-        self.steps_with(None, plan, solutions, progress)?.ok_or_else(|| missing("a grid of a step"))
+        // The device has lost grids that steps had made: all are made again without it.
+        self.lose_device();
+        self.steps_once(plan, solutions, progress)?.done().ok_or_else(|| missing("a grid of a step"))
     }
 
-    /// The same with a device, or without one. `None` if the device has lost grids that it had made.
-    fn steps_with(
-        &self,
-        device: Option<&dyn Device>,
-        plan: &Plan,
-        solutions: &Solutions,
-        progress: &Progress,
-    ) -> Result<Option<Vec<Grid>>> {
+    fn steps_once(&self, plan: &Plan, solutions: &Solutions, progress: &Progress) -> Result<Computed<Vec<Grid>>> {
         let mut grids = Grids::before(plan);
         let mut exactness = Exactness::of(&self.nodes(), self.preview, plan);
-        let needed = self.kept_grids(plan, device.is_some(), &mut grids, &mut exactness);
+        let needed = self.kept_grids(plan, &mut grids, &mut exactness);
         for (at, step) in plan.steps.entries() {
             progress.check()?;
             if !needed[at] {
@@ -112,40 +105,29 @@ impl<'a> Engine<'a> {
                 continue;
             }
             let part = progress.part(cost::step(step, plan, self.recipe));
-            let made = match device.filter(|_| !exactness.is_required(step)) {
-                Some(device) => self.on_device(device, step, solutions, &mut grids, &part)?,
-                None => None,
-            };
-            let on_device = made.is_some();
-            let made = match made {
-                Some(made) => made,
-                None if grids.fetch(&step.reads(), device, progress)? => {
-                    self.step(step, solutions, (&grids, device.is_some()), &part)?
-                }
-                None => return Ok(None),
-            };
+            let mut on_device = false;
+            let made = self.execute(!exactness.is_required(step), |executor| {
+                on_device = executor.is_device();
+                executor.step(step, solutions, &mut grids, &part)
+            })?;
+            let Computed::Done(made) = made else { return Ok(Computed::Lost) };
             let is_exact = exactness.ran(step, on_device);
             self.keep_grids(step, &made, is_exact);
             grids.put(&step.writes(), made);
             part.finish();
             grids.drop_after(at, plan);
         }
-        if !grids.fetch(&plan.outputs, device, progress)? {
-            return Ok(None);
+        if !grids.fetch(&plan.outputs, self.device(), progress)? {
+            return Ok(Computed::Lost);
         }
         // Each output has its own slot, so a grid is an output only once.
-        plan.outputs.iter().map(|&slot| grids.take(slot).ok_or_else(|| missing("an output")).map(Some)).collect()
+        let outputs = plan.outputs.iter().map(|&slot| grids.take(slot).ok_or_else(|| missing("an output")));
+        outputs.collect::<Result<_>>().map(Computed::Done)
     }
 
-    /// Takes kept grids of expensive filters from earlier requests, those on the device only if it `has_device`.
-    /// Returns which steps are still needed: those whose grids are results or are read by needed steps.
-    fn kept_grids(
-        &self,
-        plan: &Plan,
-        has_device: bool,
-        grids: &mut Grids,
-        exactness: &mut Exactness,
-    ) -> IndexVec<StepId, bool> {
+    /// Takes kept grids of expensive filters from earlier requests, those on the device only if there is one. Returns
+    /// which steps are still needed: those whose grids are results or are read by needed steps.
+    fn kept_grids(&self, plan: &Plan, grids: &mut Grids, exactness: &mut Exactness) -> IndexVec<StepId, bool> {
         let mut needed: IndexVec<StepId, bool> = vec![true; plan.steps.len()].into();
         let Some(store) = self.grids.filter(|store| store.is_used()) else { return needed };
         let mut read: IndexVec<GridId, bool> = plan.grids.iter().map(|slot| slot.last_use.is_none()).collect();
@@ -158,7 +140,7 @@ impl<'a> Engine<'a> {
                 let approximate = || {
                     let preview = self.preview.filter(|_| !exactness.is_required(step))?;
                     let found: Vec<PlanGrid> = preview.kept.grids.find(&keys)?;
-                    (has_device || found.iter().all(|grid| grid.memory().is_some())).then_some(found)
+                    (self.device().is_some() || found.iter().all(|grid| grid.memory().is_some())).then_some(found)
                 };
                 let found: Option<Vec<PlanGrid>> = match exact {
                     Some(exact) => Some(exact),
@@ -202,12 +184,12 @@ impl<'a> Engine<'a> {
         let solutions = self.solve(plan)?;
         let mut grids = Grids::before(plan);
         let mut exactness = Exactness::of(&self.nodes(), self.preview, plan);
-        let needed = self.kept_grids(plan, false, &mut grids, &mut exactness);
+        let needed = self.kept_grids(plan, &mut grids, &mut exactness);
         for (at, step) in plan.steps.entries() {
             if matches!(step, Step::Fill { out, .. } if out.is_empty()) || !needed[at] {
                 continue;
             }
-            let made = self.step(step, &solutions, (&grids, false), self.progress)?;
+            let made = self.step(step, &solutions, &grids, self.progress)?;
             let is_exact = exactness.ran(step, false);
             self.keep_grids(step, &made, is_exact);
             grids.put(&step.writes(), made);
@@ -216,12 +198,12 @@ impl<'a> Engine<'a> {
         Ok((solutions, grids))
     }
 
-    /// Runs a step on the threads of the pool. Layers of levels may stay on a device if `keeps` allows it.
-    fn step(
+    /// Runs a step on the threads of the pool. Levels and their layers may be made on a device.
+    pub(super) fn step(
         &self,
         step: &Step,
         solutions: &Solutions,
-        (grids, keeps): (&Grids, bool),
+        grids: &Grids,
         progress: &Progress,
     ) -> Result<Vec<PlanGrid>> {
         let made = match step {
@@ -236,7 +218,7 @@ impl<'a> Engine<'a> {
                     let grid = |slot: &GridId| grids.memory(*slot).ok_or_else(|| missing("an input of a level"));
                     given.push(level.iter().map(|slot| slot.as_ref().map(grid).transpose()).collect::<Result<_>>()?);
                 }
-                let made = self.refine(*node, given, &wanted(out), (window, keeps), progress)?;
+                let made = self.refine(*node, given, &wanted(out), window, progress)?;
                 return Ok(made.into_iter().flatten().collect());
             }
         };

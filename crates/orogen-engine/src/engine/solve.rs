@@ -1,5 +1,6 @@
 //! Solving the solvers of a plan.
 
+use super::grids::missing;
 use super::run::{Engine, Solutions};
 use super::tiles::Tiles;
 use crate::plan::cost;
@@ -8,10 +9,10 @@ use crate::plan::steps::{Plan, Solve};
 use crate::recipe::graph::Link;
 use crate::store::solutions::{Begun, Store};
 use orogen_grid::error::{Error, ErrorKind, Result};
-use orogen_grid::grid::{Grid, Window};
+use orogen_grid::grid::Window;
 use orogen_grid::progress::Progress;
 use orogen_ops::ids::{Id, NodeId};
-use orogen_ops::op::{Context, Op, Solution, Solver, Sources};
+use orogen_ops::op::{Op, Solution};
 use std::sync::Arc;
 
 impl Engine<'_> {
@@ -122,30 +123,8 @@ impl Engine<'_> {
             engine.steps(&plan, there, &sources.part(cost::steps(&plan, self.recipe)))
         };
         let tiles = Tiles { links: &self.graph.links[order.node], order, make: &make, scratch: self.store.scratch() };
-        if let Some(solution) = self.solved_on_device(order, solver, &tiles, &own)? {
-            return Ok(solution);
-        }
-        let observer = self.observer.and_then(|(node, observer)| (node == order.node).then_some(observer));
-        solver.solve(&tiles, &Context { world_params: self.world_params, progress: &own, observer })
-    }
-
-    /// Solves a solver on the device; `None` if there is none, or the processor is to do it.
-    fn solved_on_device(
-        &self,
-        order: &Solve,
-        solver: &dyn Solver,
-        tiles: &Tiles,
-        progress: &Progress,
-    ) -> Result<Option<Solution>> {
-        let is_there = !order.on_disk && !self.is_observed(order.node);
-        let Some(preview) = self.preview.filter(|_| is_there) else { return Ok(None) };
-        let Some(passes) = preview.passes_of(&self.nodes(), order.node, solver) else { return Ok(None) };
-        let given = self.nodes().given(order.node);
-        let whole = |(input, given): (usize, &bool)| given.then(|| tiles.whole(input, &order.padded)).transpose();
-        let inputs: Vec<Option<Grid>> = given.iter().enumerate().map(whole).collect::<Result<_>>()?;
-        let inputs: Vec<Option<&Grid>> = inputs.iter().map(Option::as_ref).collect();
-        let Some(made) = preview.device.solve(&passes, &inputs, &order.padded, progress)? else { return Ok(None) };
-        let layers = made.into_iter().map(|layer| tiles.keep(layer)).collect::<Result<_>>()?;
-        Ok(Some(Solution { layers, scalars: Vec::new() }))
+        let may = !order.on_disk && !self.is_observed(order.node);
+        let made = self.execute(may, |executor| executor.solve(solver, &tiles, &own))?;
+        made.done().ok_or_else(|| missing("a solution"))
     }
 }

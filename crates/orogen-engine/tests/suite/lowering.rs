@@ -2,12 +2,31 @@
 
 use orogen_engine::levelled::Amplify;
 use orogen_engine::levelled::Continents;
-use orogen_engine::lower::{LevelPasses, Lowering};
+use orogen_engine::lower::{Lowering, Over, Pass, Passes};
 use orogen_engine::node::Node;
 use orogen_engine::op::{Levelled, Op, WorldParams};
 use orogen_grid::grid::Window;
 
 const WORLD: WorldParams = WorldParams { seed: 1, size: None, cell: 10.0, sea_level: 0.0 };
+
+/// The text of passes, and their number of planes.
+fn text(passes: &Passes) -> (String, &str, usize) {
+    (passes.head.clone(), passes.passes[0].code, passes.planes)
+}
+
+/// Asserts that the text of each pass defines its function, and that it leaves out or adds at most some samples.
+fn check(name: &str, passes: &Passes, most: impl Fn(&Pass) -> usize) {
+    assert!(!passes.passes.is_empty(), "{name} has no pass");
+    for pass in &passes.passes {
+        let header = format!("fn {}(base: u32, at: vec2<i32>) {{", pass.function);
+        assert!(pass.code.contains(&header), "{name} has no function {}", pass.function);
+        let (Over::Planes([left, top]) | Over::Above([left, top])) = pass.over else {
+            assert!(matches!(pass.over, Over::Window(around) if around <= most(pass)), "{name}, {}", pass.function);
+            continue;
+        };
+        assert!(left.max(top) <= most(pass), "{name} leaves out samples of the window in {}", pass.function);
+    }
+}
 
 #[test]
 fn every_field_says_how_a_graphics_card_computes_it() {
@@ -34,13 +53,7 @@ fn every_filter_says_how_a_graphics_card_computes_it() {
             Lowering::Processor(_) => left.push(name),
             Lowering::Shader(passes) => {
                 lowered += 1;
-                let halo = filter.halo(10.0);
-                assert!(!passes.passes.is_empty(), "{name} has no pass");
-                for pass in &passes.passes {
-                    let header = format!("fn {}(base: u32, at: vec2<i32>) {{", pass.function);
-                    assert!(passes.code.contains(&header), "{name} has no function {}", pass.function);
-                    assert!(pass.inset.iter().all(|inset| *inset <= halo), "{name} leaves out samples of the window");
-                }
+                check(name, &passes, |_| filter.halo(10.0));
             }
         }
     }
@@ -54,13 +67,13 @@ fn the_text_of_a_filter_does_not_depend_on_the_cell() {
         if let (Lowering::Shader(fine), Lowering::Shader(coarse)) =
             (filter.lower(1.0, &WORLD), filter.lower(30.0, &WORLD))
         {
-            assert_eq!((fine.code, fine.scratch), (coarse.code, coarse.scratch), "{}", node.spec().op);
+            assert_eq!(text(&fine), text(&coarse), "{}", node.spec().op);
         }
     }
 }
 
 /// How a level is computed with all inputs.
-fn level(levelled: &dyn Levelled, level: usize) -> Lowering<LevelPasses> {
+fn level(levelled: &dyn Levelled, level: usize) -> Lowering<Passes> {
     levelled.lower(level, &[true; 8], &WORLD)
 }
 
@@ -74,14 +87,9 @@ fn every_level_says_how_a_graphics_card_computes_it() {
                 Lowering::Missing => panic!("{name} does not say how a graphics card computes level {depth}"),
                 Lowering::Processor(reason) => assert!(!reason.is_empty(), "{name}"),
                 Lowering::Shader(passes) => {
-                    assert_eq!(passes.planes, levelled.planes(), "{name}");
-                    let cells = 2 * levelled.halo(depth);
-                    for pass in &passes.passes {
-                        let header = format!("fn {}(base: u32, at: vec2<i32>) {{", pass.pass.function);
-                        assert!(pass.code.contains(&header), "{name} has no function {}", pass.pass.function);
-                        let inset = if pass.is_above { levelled.halo(depth) } else { cells };
-                        assert!(pass.pass.inset.iter().all(|left| *left <= inset), "{name}, {}", pass.pass.function);
-                    }
+                    assert_eq!(passes.layers.len(), levelled.planes(), "{name}");
+                    let factor = |pass: &Pass| if matches!(pass.over, Over::Above(_)) { 1 } else { 2 };
+                    check(name, &passes, |pass| factor(pass) * levelled.halo(depth));
                 }
             }
             let mut heights = vec![false; levelled.spec().layers.len()];
@@ -91,11 +99,7 @@ fn every_level_says_how_a_graphics_card_computes_it() {
                 Lowering::Processor(reason) => assert!(!reason.is_empty(), "{name}"),
                 Lowering::Shader(passes) => {
                     assert_eq!(passes.layers.len(), 1, "{name}");
-                    for pass in &passes.passes {
-                        let header = format!("fn {}(base: u32, at: vec2<i32>) {{", pass.function);
-                        assert!(pass.code.contains(&header), "{name} has no function {}", pass.function);
-                        assert!(pass.around <= levelled.surface_halo(depth, &heights), "{name}, {}", pass.function);
-                    }
+                    check(name, &passes, |_| levelled.surface_halo(depth, &heights));
                 }
             }
         }
@@ -134,13 +138,8 @@ fn every_solver_says_how_a_graphics_card_computes_it() {
             }
             Lowering::Shader(passes) => {
                 lowered.push(name);
-                assert_eq!(passes.layers, node.layers().len(), "{name}");
-                assert!(!passes.passes.is_empty(), "{name} has no pass");
-                for pass in &passes.passes {
-                    let header = format!("fn {}(base: u32, at: vec2<i32>) {{", pass.function);
-                    assert!(passes.code.contains(&header), "{name} has no function {}", pass.function);
-                    assert_eq!(pass.inset, [0; 2], "{name} leaves out samples");
-                }
+                assert_eq!(passes.layers.len(), node.layers().len(), "{name}");
+                check(name, &passes, |_| 0);
             }
         }
     }
@@ -158,7 +157,7 @@ fn the_text_of_a_solver_depends_neither_on_the_window_nor_on_the_cell() {
         if let (Lowering::Shader(small), Lowering::Shader(large)) =
             (passes(Window::new(20, 10, 1.0)), passes(Window::new(300, 400, 30.0).at(-9, 7)))
         {
-            assert_eq!((small.code, small.scratch), (large.code, large.scratch), "{}", node.spec().op);
+            assert_eq!(text(&small), text(&large), "{}", node.spec().op);
         }
     }
 }

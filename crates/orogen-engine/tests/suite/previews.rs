@@ -1,11 +1,11 @@
 //! Windows that a device computes, and what is kept of them.
 
-use orogen_engine::device::{Device, DeviceGrid, FilterExtent, LoweredProgram, PlanGrid};
+use orogen_engine::device::{Computed, Device, DeviceGrid, PassRun, PassStep, PlanGrid};
 use orogen_engine::field::{Fbm, Multiply};
 use orogen_engine::filter::Blur;
 use orogen_engine::filter::Pipes;
 use orogen_engine::levelled::Amplify;
-use orogen_engine::lower::{Lowering, Passes};
+use orogen_engine::lower::{Extent, Lowering, Passes};
 use orogen_engine::op::{Context, Solution, Solver, Sources, WorldParams};
 use orogen_engine::solver::Drainage;
 use orogen_engine::solver::Normalise;
@@ -40,7 +40,7 @@ impl Solver for Solved {
     }
 
     fn lower(&self, _: &Window, _: &[bool], _: &WorldParams) -> Lowering<Passes> {
-        let passes = Passes::new("", &[self.raise as f32]);
+        let passes = Passes::new("", &[self.raise as f32]).with_planes(Extent::Domain, 1, &[true]);
         Lowering::Shader(if self.chaotic { passes.chaotic() } else { passes })
     }
 }
@@ -57,39 +57,33 @@ struct Off {
 }
 
 impl Device for Off {
-    fn fill(&self, _: &LoweredProgram, _: &Window, _: &[&PlanGrid], _: &Progress) -> Result<Option<Vec<PlanGrid>>> {
-        Ok(None)
-    }
-
-    fn apply(
-        &self,
-        _: &Passes,
-        _: &[Option<&PlanGrid>],
-        extent: &FilterExtent,
-        _: &Progress,
-    ) -> Result<Option<Vec<Option<PlanGrid>>>> {
-        self.filtered.fetch_add(1, Ordering::Relaxed);
-        let layer = |wanted: &bool| wanted.then(|| Grid::filled(extent.window, OFF).into());
-        Ok((!self.refuses).then(|| extent.wanted.iter().map(layer).collect()))
-    }
-
-    fn solve(
-        &self,
-        passes: &Passes,
-        inputs: &[Option<&Grid>],
-        window: &Window,
-        _: &Progress,
-    ) -> Result<Option<Vec<Grid>>> {
-        if !passes.code.is_empty() {
+    fn run(&self, run: &PassRun, _: &Progress) -> Result<Computed<Vec<PlanGrid>>> {
+        let [PassStep { passes, inputs, window }] = run.steps else { return Ok(Computed::Declined) };
+        let raise = match passes.extent {
+            Extent::Halo(_) => {
+                self.filtered.fetch_add(1, Ordering::Relaxed);
+                None
+            }
             // Built-in solvers are left to the processor.
-            return Ok(None);
+            _ if !passes.passes.is_empty() => return Ok(Computed::Declined),
+            _ => {
+                self.solved.fetch_add(1, Ordering::Relaxed);
+                Some(f32::from_bits(passes.words[0]))
+            }
+        };
+        if self.refuses {
+            return Ok(Computed::Declined);
         }
-        self.solved.fetch_add(1, Ordering::Relaxed);
-        let mut heights = inputs[0].unwrap().clone();
-        assert_eq!(heights.window(), window);
-        let raise = f32::from_bits(passes.words[0]);
-        heights.data_mut().iter_mut().for_each(|height| *height += raise + OFF);
-        Ok((!self.refuses).then(|| vec![heights]))
+        let made = match raise {
+            None => passes.layers.iter().map(|_| Grid::filled(*window, OFF)).collect(),
+            Some(raise) => {
+                let mut heights = inputs[0].as_ref().unwrap().memory().unwrap().clone();
+                assert_eq!(heights.window(), window);
+                heights.data_mut().iter_mut().for_each(|height| *height += raise + OFF);
+                vec![heights]
+            }
+        };
+        Ok(Computed::Done(made.into_iter().map(PlanGrid::from).collect()))
     }
 }
 
@@ -205,33 +199,24 @@ impl Keeping {
 }
 
 impl Device for Keeping {
-    fn fill(&self, _: &LoweredProgram, _: &Window, _: &[&PlanGrid], _: &Progress) -> Result<Option<Vec<PlanGrid>>> {
-        Ok(None)
-    }
-
-    fn apply(
-        &self,
-        _: &Passes,
-        inputs: &[Option<&PlanGrid>],
-        extent: &FilterExtent,
-        _: &Progress,
-    ) -> Result<Option<Vec<Option<PlanGrid>>>> {
+    fn run(&self, run: &PassRun, _: &Progress) -> Result<Computed<Vec<PlanGrid>>> {
+        let [PassStep { passes, inputs, window }] = run.steps else { return Ok(Computed::Declined) };
         if self.is_lost.load(Ordering::Relaxed) {
-            return Ok(None);
+            return Ok(Computed::Declined);
         }
         self.filtered.fetch_add(1, Ordering::Relaxed);
-        let mut made = self.grid(inputs[0].unwrap()).crop(&extent.window).unwrap();
+        let mut made = self.grid(inputs[0].as_ref().unwrap()).crop(window).unwrap();
         made.data_mut().iter_mut().for_each(|height| *height += OFF);
-        let grid = DeviceGrid::new(extent.window, made);
-        Ok(Some(extent.wanted.iter().map(|wanted| wanted.then(|| grid.clone().into())).collect()))
+        let grid = DeviceGrid::new(*window, made);
+        Ok(Computed::Done(passes.layers.iter().map(|_| grid.clone().into()).collect()))
     }
 
-    fn read(&self, grids: &[&DeviceGrid], _: &Progress) -> Result<Option<Vec<Grid>>> {
+    fn read(&self, grids: &[&DeviceGrid], _: &Progress) -> Result<Computed<Vec<Grid>>> {
         if self.is_lost.load(Ordering::Relaxed) {
-            return Ok(None);
+            return Ok(Computed::Lost);
         }
         self.read.fetch_add(grids.len(), Ordering::Relaxed);
-        Ok(Some(grids.iter().map(|grid| grid.samples::<Grid>().unwrap().clone()).collect()))
+        Ok(Computed::Done(grids.iter().map(|grid| grid.samples::<Grid>().unwrap().clone()).collect()))
     }
 }
 

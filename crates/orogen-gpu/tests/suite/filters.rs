@@ -3,7 +3,6 @@
 use crate::common::filters::{
     apply, filter, gpu, gpu_with_buffers_of, inputs, lowered, on_card, on_processor, tried_on_card, variants,
 };
-use orogen_engine::device::FilterExtent;
 use orogen_engine::node::Node;
 use orogen_grid::grid::{Grid, Window};
 use std::collections::BTreeMap;
@@ -162,7 +161,7 @@ fn tiles_give_the_same() {
     for default in Node::all().into_iter().filter(|node| lowered(node, 10.0).is_some()) {
         let node = variants(&default).pop().unwrap_or(default);
         let halo = filter(&node).unwrap().halo(window.cell);
-        let planes = node.inputs().len() + node.layers().len() + lowered(&node, window.cell).unwrap().scratch;
+        let planes = node.inputs().len() + node.layers().len() + lowered(&node, window.cell).unwrap().planes;
         let grown = Window::new(17, 12, window.cell).grown(halo);
         let tiled = gpu_with_buffers_of(4 * (planes * grown.len()) as u64);
         let given = inputs(&node, &window, true);
@@ -183,10 +182,9 @@ fn a_sample_that_fits_into_no_buffer_is_an_error() {
     let window = Window::new(9, 9, 10.0);
     let given = inputs(&node, &window, true);
     let passes = lowered(&node, window.cell).unwrap();
-    let extent = |window| FilterExtent { window, halo: 50, wanted: vec![true] };
-    let made = apply(&gpu, &passes, &given[..1], &extent(window), false);
+    let made = apply(&gpu, passes.clone(), &given[..1], (window, 50), &[true], false);
     assert!(matches!(made, Err(orogen_gpu::Failure::Memory(_))), "{made:?}");
-    let made = apply(&gpu, &passes, &given[..1], &extent(window.grown(1)), false);
+    let made = apply(&gpu, passes, &given[..1], (window.grown(1), 50), &[true], false);
     assert!(made.is_err());
 }
 
@@ -198,19 +196,17 @@ fn layers_that_nobody_wants_are_left_out_and_cancelled_work_ends() {
     let given = inputs(&node, &window, true);
     let passes = lowered(&node, window.cell).unwrap();
     let apply = |wanted: [bool; 3], window: &Window, is_cancelled: bool| {
-        let extent = FilterExtent { window: *window, halo: 1, wanted: wanted.to_vec() };
-        apply(&gpu, &passes, &given[..1], &extent, is_cancelled).unwrap()
+        apply(&gpu, passes.clone(), &given[..1], (*window, 1), &wanted, is_cancelled).unwrap()
     };
     let made = apply([false, true, false], &window, false).unwrap();
-    assert!(made[0].is_none() && made[2].is_none());
-    assert_eq!(made[1].as_ref(), Some(&on_card(&gpu, &node, &window, &given)[1]));
+    assert_eq!(made, on_card(&gpu, &node, &window, &given)[1..2]);
     // A part of what the inputs cover.
     let part = Window::new(5, 3, 10.0).at(4, 2);
-    let crop = made[1].as_ref().unwrap().crop(&part);
-    assert_eq!(apply([false, true, false], &part, false).unwrap()[1], crop);
+    let crop = made[0].crop(&part).unwrap();
+    assert_eq!(apply([false, true, false], &part, false).unwrap(), [crop]);
     assert!(apply([true; 3], &window, true).is_none());
     let empty = Window::new(0, 4, 10.0);
-    assert_eq!(apply([true; 3], &empty, false).unwrap()[0].as_ref().unwrap().data().len(), 0);
+    assert_eq!(apply([true; 3], &empty, false).unwrap()[0].data().len(), 0);
 }
 
 #[test]

@@ -4,13 +4,13 @@ use crate::common;
 use crate::common::filters::{gpu, gpu_with_buffers_of};
 use crate::common::gpu as shared_gpu;
 use crate::common::levels::{ALPINE_INPUTS, Chain, NO_INPUTS, RECEIVER, WORLD, alpine, context, windows};
-use orogen_engine::device::{Device, LayerStep};
+use orogen_engine::device::PassStep;
 use orogen_engine::levelled::Amplify;
 use orogen_engine::levelled::Continents;
-use orogen_engine::lower::{LayerPasses, Lowering};
+use orogen_engine::lower::{Lowering, Passes};
 use orogen_engine::op::Levelled;
 use orogen_engine::{Recipe, Session};
-use orogen_gpu::{Failure, Gpu, level_layers};
+use orogen_gpu::{Failure, Gpu};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 
@@ -21,7 +21,7 @@ fn wanted(op: &dyn Levelled) -> Vec<bool> {
     (0..op.spec().layers.len()).map(|layer| layer < LAYERS.len()).collect()
 }
 
-fn passes(op: &dyn Levelled, level: usize, wanted: &[bool]) -> LayerPasses {
+fn passes(op: &dyn Levelled, level: usize, wanted: &[bool]) -> Passes {
     match op.lower_layers(level, wanted, &WORLD) {
         Lowering::Shader(passes) => passes,
         other => panic!("{other:?}"),
@@ -33,9 +33,8 @@ fn on_card(gpu: &Gpu, chain: &Chain, above: &[Grid], wanted: &[bool]) -> Result<
     let level = chain.windows.len() - 1;
     let halo = chain.op.surface_halo(level, wanted);
     let window = chain.windows[level].shrunk(halo);
-    let step = LayerStep { passes: passes(chain.op, level, wanted), window, halo };
-    let made = level_layers::layers(gpu, &[chain.step(level)], &step, above, || false)?;
-    Ok(gpu.fetch(made.unwrap(), &Progress::none()).unwrap().unwrap())
+    let layers = PassStep { passes: passes(chain.op, level, wanted), inputs: Vec::new(), window };
+    Ok(common::run(gpu, &[chain.step(level), layers], above, || false)?.unwrap())
 }
 
 /// The same by the processor, from the level as the card makes it.

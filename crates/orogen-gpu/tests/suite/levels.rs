@@ -5,12 +5,12 @@ use crate::common::gpu as shared_gpu;
 use crate::common::levels::{
     ALL_INPUTS, ALPINE_INPUTS, AREA, Chain, HEIGHT, NO_INPUTS, PLANES, RECEIVER, alpine, passes, windows,
 };
-use orogen_engine::device::{Device, LevelStep};
+use crate::common::run;
+use orogen_engine::device::{Device, PassRun, PassStep, PlanGrid};
 use orogen_engine::levelled::Amplify;
 use orogen_engine::levelled::Continents;
 use orogen_engine::op::Levelled;
 use orogen_gpu::Gpu;
-use orogen_gpu::levels::refine;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 use std::collections::BTreeMap;
@@ -210,7 +210,7 @@ fn tiles_give_the_same() {
     report("tiles", 3, &apart);
     assert!(apart.receivers == 0.0 && apart.worst < 1e-3 && apart.areas == 0.0);
     let tiny = gpu_with_buffers_of(10_000);
-    let made = refine(&tiny, &[chain.step(3)], &above, || false);
+    let made = run(&tiny, &[chain.step(3)], &above, || false);
     assert!(matches!(made, Err(orogen_gpu::Failure::Memory(_))), "{made:?}");
 }
 
@@ -221,11 +221,11 @@ fn levels_that_stay_on_the_card_are_those_that_are_copied() {
     let chain = Chain::new(&op, 3, &window, &ALPINE_INPUTS);
     let first = chain.first();
     let copied = (1..=3).fold(first.clone(), |above, level| chain.on_card(shared_gpu(), level, &above));
-    let steps: Vec<LevelStep> = (1..=3).map(|level| chain.step(level)).collect();
-    let kept = refine(shared_gpu(), &steps, &first, || false).unwrap().unwrap();
+    let steps: Vec<PassStep> = (1..=3).map(|level| chain.step(level)).collect();
+    let kept = run(shared_gpu(), &steps, &first, || false).unwrap().unwrap();
     // A buffer for two of them, and one for a part of the last.
     let smaller = gpu_with_buffers_of(24 << 20);
-    let parts = refine(&smaller, &steps, &first, || false).unwrap().unwrap();
+    let parts = run(&smaller, &steps, &first, || false).unwrap().unwrap();
     assert_eq!(smaller.failure(), None);
     for made in [&kept, &parts] {
         let apart = difference(&copied, made);
@@ -235,7 +235,7 @@ fn levels_that_stay_on_the_card_are_those_that_are_copied() {
     // A level that does not cover what the next one reads.
     let mut steps = steps;
     steps[1].window = Window { width: 9, ..steps[1].window };
-    assert!(refine(shared_gpu(), &steps, &first, || false).is_err());
+    assert!(run(shared_gpu(), &steps, &first, || false).is_err());
 }
 
 #[test]
@@ -245,15 +245,17 @@ fn what_is_missing_is_an_error_and_cancelled_work_ends() {
     let op = alpine();
     let chain = Chain::new(&op, 1, &window, &NO_INPUTS);
     let (above, step) = (chain.first(), chain.step(1));
-    assert!(refine(gpu, std::slice::from_ref(&step), &above, || true).unwrap().is_none());
-    let over = |window: Window| [LevelStep { window, ..step.clone() }];
-    assert!(refine(gpu, &over(window.grown(3)), &above, || false).is_err());
-    assert!(refine(gpu, std::slice::from_ref(&step), &[], || false).is_err());
-    assert_eq!(refine(gpu, &over(Window { width: 0, ..window }), &above, || false).unwrap().unwrap().len(), 8);
-    let given = LevelStep { passes: passes(&op, 1, &ALPINE_INPUTS), ..step.clone() };
-    assert!(refine(gpu, &[given], &above, || false).is_err());
+    assert!(run(gpu, std::slice::from_ref(&step), &above, || true).unwrap().is_none());
+    let over = |window: Window| [PassStep { window, ..step.clone() }];
+    assert!(run(gpu, &over(window.grown(3)), &above, || false).is_err());
+    assert!(run(gpu, std::slice::from_ref(&step), &[], || false).is_err());
+    assert_eq!(run(gpu, &over(Window { width: 0, ..window }), &above, || false).unwrap().unwrap().len(), 8);
+    let given = PassStep { passes: passes(&op, 1, &ALPINE_INPUTS), ..step.clone() };
+    assert!(run(gpu, &[given], &above, || false).is_err());
     // As a device, with the progress of a request.
-    let made = gpu.refine(&[step], &above, &Progress::none()).unwrap().unwrap();
+    let run = PassRun { steps: &[step], above: &above, stays: false };
+    let made = gpu.run(&run, &Progress::none()).unwrap().done().unwrap();
+    let made: Vec<Grid> = made.into_iter().filter_map(PlanGrid::into_memory).collect();
     assert!(difference(&chain.on_processor(1, &above), &made).receivers < 1e-2);
 }
 

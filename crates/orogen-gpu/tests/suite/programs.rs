@@ -2,8 +2,7 @@
 
 use crate::common;
 use crate::common::{compare, gpu, session};
-use orogen_engine::device::{Device, DeviceGrid, FilterExtent, LoweredProgram, PlanGrid};
-use orogen_engine::lower::Passes;
+use orogen_engine::device::{Computed, Device, DeviceGrid, LoweredProgram, PassRun, PlanGrid};
 use orogen_engine::{Grid, Progress, Recipe, Result, Window};
 use orogen_gpu::gpu::Options;
 use orogen_gpu::{Choice, Gpu};
@@ -140,21 +139,15 @@ impl Device for LostWhenRead {
         window: &Window,
         grids: &[&PlanGrid],
         progress: &Progress,
-    ) -> Result<Option<Vec<PlanGrid>>> {
+    ) -> Result<Computed<Vec<PlanGrid>>> {
         self.0.fill(program, window, grids, progress)
     }
 
-    fn apply(
-        &self,
-        passes: &Passes,
-        inputs: &[Option<&PlanGrid>],
-        extent: &FilterExtent,
-        progress: &Progress,
-    ) -> Result<Option<Vec<Option<PlanGrid>>>> {
-        self.0.apply(passes, inputs, extent, progress)
+    fn run(&self, run: &PassRun, progress: &Progress) -> Result<Computed<Vec<PlanGrid>>> {
+        self.0.run(run, progress)
     }
 
-    fn read(&self, grids: &[&DeviceGrid], progress: &Progress) -> Result<Option<Vec<Grid>>> {
+    fn read(&self, grids: &[&DeviceGrid], progress: &Progress) -> Result<Computed<Vec<Grid>>> {
         self.0.lose();
         self.0.read(grids, progress)
     }

@@ -2,9 +2,9 @@
 
 use crate::common;
 use crate::common::filters::{WORLD, gpu, gpu_with_buffers_of, heights, sampled};
-use crate::common::solvers::{solved_by_card, solved_by_processor, solver, solver_passes, try_card};
+use crate::common::solvers::{solved_by_card, solved_by_processor, solver, solver_passes, step, try_card};
 use orogen_engine::Recipe;
-use orogen_engine::device::Device;
+use orogen_engine::device::{Computed, Device, PassRun, PassStep, PlanGrid};
 use orogen_engine::lower::Lowering;
 use orogen_engine::node::Node;
 use orogen_engine::op::Op;
@@ -360,25 +360,24 @@ fn failures_are_errors_and_cancelled_work_ends() {
     for (node, inputs) in &solvers {
         assert!(matches!(try_card(&small, node, &window, inputs), Err(Failure::Memory(_))), "{}", node.spec().op);
         assert!(matches!(try_card(&gpu, node, &window.grown(1), inputs), Err(Failure::Input(_))));
-        let passes = solver_passes(node, &window, inputs).unwrap();
-        let given: Vec<Option<&Grid>> = inputs.iter().map(Option::as_ref).collect();
-        assert_eq!(orogen_gpu::solvers::solve(&gpu, &passes, &given, &window, || true), Ok(None));
-        let empty = Window::new(0, 4, 20.0);
-        let none = orogen_gpu::solvers::solve(&gpu, &passes, &given, &empty, || false).unwrap().unwrap();
+        let step = step(node, &window, inputs);
+        assert_eq!(common::run(&gpu, std::slice::from_ref(&step), &[], || true), Ok(None));
+        let empty = PassStep { window: Window::new(0, 4, 20.0), ..step };
+        let none = common::run(&gpu, &[empty], &[], || false).unwrap().unwrap();
         assert!(none.len() == node.layers().len() && none.iter().all(|layer| layer.data().is_empty()));
     }
     // As the engine asks: what a lost device fails at is left to the processor.
     let (node, inputs) = solvers.remove(0);
-    let passes = solver_passes(&node, &window, &inputs).unwrap();
-    let given: Vec<Option<&Grid>> = inputs.iter().map(Option::as_ref).collect();
-    let progress = Progress::none();
-    let solved = gpu.solve(&passes, &given, &window, &progress).unwrap();
-    assert_eq!(solved, Some(solved_by_card(&gpu, &node, &window, &inputs)));
+    let (steps, progress) = ([step(&node, &window, &inputs)], Progress::none());
+    let run = PassRun { steps: &steps, above: &[], stays: false };
+    let solved = gpu.run(&run, &progress).unwrap().done().unwrap();
+    let solved: Vec<Grid> = solved.into_iter().filter_map(PlanGrid::into_memory).collect();
+    assert_eq!(solved, solved_by_card(&gpu, &node, &window, &inputs));
     gpu.lose();
-    assert_eq!(gpu.solve(&passes, &given, &window, &progress).unwrap(), None);
+    assert!(matches!(gpu.run(&run, &progress).unwrap(), Computed::Declined));
     assert!(gpu.failure().is_some_and(|failure| failure.to_string().contains("lost")));
     progress.cancel();
-    assert!(gpu.solve(&passes, &given, &window, &progress).is_err());
+    assert!(gpu.run(&run, &progress).is_err());
 }
 
 #[test]

@@ -49,15 +49,26 @@ pub struct Schedule {
     pub limit_passes: usize,
 }
 
-/// Number of words of [`Refinement::words`].
-pub const WORDS: usize = 24;
+/// The bits of [`Words::flags`], by their names in shaders.
+pub const FLAGS: [(&str, u32); 5] =
+    [("FINEST", FINEST), ("DETAIL", DETAIL), ("FLOORS", FLOORS), ("LAKES", LAKES), ("SEA", SEA)];
 
-/// The bits of the first word.
 const FINEST: u32 = 1;
 const DETAIL: u32 = 2;
 const FLOORS: u32 = 4;
 const LAKES: u32 = 8;
 const SEA: u32 = 16;
+
+/// The numbers of a level, by their names in shaders.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Words {
+    /// Bits of what the level has.
+    pub flags: u32,
+    /// The starts of hashes.
+    pub hashes: [(&'static str, u64); 4],
+    /// Numbers.
+    pub numbers: [(&'static str, f32); 15],
+}
 
 impl Refinement {
     /// Whether rivers of the level above become lakes with an outlet, whose shapes level `depth` is made with.
@@ -109,11 +120,9 @@ impl Refinement {
         [self.inside(depth, share), self.mean_change(depth)]
     }
 
-    /// The numbers of level `depth`, at least 1: bits of what it has; the starts of the hashes of streams 0, 7 and 9,
-    /// and of stream 11 of the level above, each as a low and a high word; and then numbers of f32, in the order in
-    /// which shaders read them.
+    /// The numbers of level `depth`, at least 1.
     #[must_use]
-    pub fn words(&self, depth: usize) -> [u32; WORDS] {
+    pub fn words(&self, depth: usize) -> Words {
         let above = depth.saturating_sub(1);
         let (cell, kilometres) = (self.cell_of(depth), self.kilometres(depth));
         let has = |has: bool, bit: u32| if has { bit } else { 0 };
@@ -123,33 +132,34 @@ impl Refinement {
             | has(has_floors(self, depth), FLOORS)
             | has(self.lakes > 0.0, LAKES)
             | has(self.sea, SEA);
-        let starts = [(depth, 0), (depth, 7), (depth, 9), (above, 11)];
-        let starts = starts.map(|(depth, stream)| hash::start(self.seed, depth, stream));
+        let start = |depth: usize, stream| hash::start(self.seed, depth, stream);
+        let hashes = [
+            ("place_hash", start(depth, 0)),
+            ("wander_hash", start(depth, 7)),
+            ("diagonal_hash", start(depth, 9)),
+            ("detail_hash", start(above, 11)),
+        ];
         let kept = if is_detail { Kept::details(least_rise(self, depth)) } else { Kept::VALLEYS };
         let river = |kilometres: f64| river_slope(self, kilometres * kilometres) as f32;
         let numbers = [
-            links::wander(self, depth),
-            amplitude(self, depth),
-            indent(self, depth),
-            kilometres as f32,
-            cell as f32,
-            least_rise(self, depth),
-            (cell * cell * 1e-6 / FLOOR_AREA) as f32,
-            river(kilometres),
-            law::stable_slope(self),
-            if is_detail { detail::free_area(cell) } else { FREE_AREA },
-            lakes::beside(self, above),
-            kept.fall,
+            ("wander", links::wander(self, depth)),
+            ("amplitude", amplitude(self, depth)),
+            ("indent", indent(self, depth)),
+            ("kilometres", kilometres as f32),
+            ("cell", cell as f32),
+            ("least_rise", least_rise(self, depth)),
+            ("floor_area", (cell * cell * 1e-6 / FLOOR_AREA) as f32),
+            ("river_slope", river(kilometres)),
+            ("stable_slope", law::stable_slope(self)),
+            ("free_area", if is_detail { detail::free_area(cell) } else { FREE_AREA }),
+            ("beside_lakes", lakes::beside(self, above)),
+            ("kept_fall", kept.fall),
             // Shaders have no infinite numbers.
-            kept.cut_area.min(f32::MAX),
-            river(self.kilometres(above)),
-            self.cell_of(above) as f32,
+            ("cut_area", kept.cut_area.min(f32::MAX)),
+            ("river_slope_above", river(self.kilometres(above))),
+            ("cell_above", self.cell_of(above) as f32),
         ];
-        let mut words = [0; WORDS];
-        let halves = starts.into_iter().flat_map(|start| [start as u32, (start >> 32) as u32]);
-        let all = std::iter::once(flags).chain(halves).chain(numbers.map(f32::to_bits));
-        words.iter_mut().zip(all).for_each(|(word, value)| *word = value);
-        words
+        Words { flags, hashes, numbers }
     }
 }
 
@@ -162,10 +172,9 @@ mod tests {
         let land = Refinement::new(5).with_levels(3).with_details(2).with_lakes(0.5);
         for depth in 1..=5 {
             let words = land.words(depth);
-            assert_eq!(words[0] & DETAIL != 0, depth > 3);
-            let start = hash::start(5, depth, 0);
-            assert_eq!([words[1], words[2]], [start as u32, (start >> 32) as u32]);
-            assert_eq!(f32::from_bits(words[WORDS - 1]), land.cell_of(depth - 1) as f32);
+            assert_eq!(words.flags & DETAIL != 0, depth > 3);
+            assert_eq!(words.hashes[0], ("place_hash", hash::start(5, depth, 0)));
+            assert_eq!(words.numbers[14], ("cell_above", land.cell_of(depth - 1) as f32));
             let s = land.schedule(depth);
             let passes = s.first_passes + s.rounds * (s.area_passes + 1) + s.creep_passes;
             let passes = passes + s.bank_rounds * (s.bank_passes + 1);

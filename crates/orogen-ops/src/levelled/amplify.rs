@@ -4,7 +4,7 @@ use super::drained::{self, Lattices, Reading};
 use super::layer_passes::lower_layers;
 use super::passes::{self, GivenInputs};
 use crate::declare::Declared;
-use crate::lower::{LayerPasses, LevelPasses, Lowering};
+use crate::lower::{Lowering, Passes};
 use crate::op::{Context, Levelled, Levels, WorldParams};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
@@ -229,11 +229,11 @@ impl Levelled for Amplify {
         drained::layers_of(&self.seeded(context), &reading, level, planes, window, out, context)
     }
 
-    fn lower_layers(&self, level: usize, wanted: &[bool], world_params: &WorldParams) -> Lowering<LayerPasses> {
+    fn lower_layers(&self, level: usize, wanted: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
         lower_layers(&self.refinement(), &self.reading(level, world_params), level, wanted)
     }
 
-    fn lower(&self, level: usize, given: &[bool], world_params: &WorldParams) -> Lowering<LevelPasses> {
+    fn lower(&self, level: usize, given: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
         let refinement = self.refinement().with_seed(world_params.seed_of(self.seed));
         let input = |i: usize| given.get(i).copied().unwrap_or(false).then_some(i);
         let given = GivenInputs {

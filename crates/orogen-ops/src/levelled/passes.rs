@@ -1,9 +1,9 @@
 //! The levels of drained land as passes of a graphics card.
 
-use crate::lower::{LevelPass, LevelPasses, Lowering, Pass};
+use crate::lower::{Extent, Lowering, Over, Pass, Passes};
 use orogen_grid::grid::Window;
 use orogen_grid::multiscale::level::Level;
-use orogen_grid::multiscale::lowered::Schedule;
+use orogen_grid::multiscale::lowered::{FLAGS, Schedule, Words};
 use orogen_grid::multiscale::refinement::Refinement;
 
 /// What the passes of one file of shaders need before it.
@@ -48,8 +48,8 @@ pub(super) const FEW: usize = 10;
 pub(super) const AROUND: usize = 40;
 const LINKS_AROUND: usize = 200;
 
-/// Number of the inputs that levels read.
-pub(super) const GIVEN: usize = 6;
+/// The words of the planes of the inputs that levels read, 0 where nothing is given.
+const GIVEN: [&str; 6] = ["given_shore", "given_uplift", "given_stability", "given_creep", "given_floor", "given_rain"];
 
 /// The inputs of an op that levels read: their indices among its inputs, of those that are given.
 #[derive(Debug, Clone, Copy, Default)]
@@ -71,12 +71,7 @@ pub struct GivenInputs {
 /// How a graphics card computes a level of an op whose lattices are `ahead` of the samples of windows by this number of
 /// samples.
 #[must_use]
-pub fn lower(
-    refinement: &Refinement,
-    level: usize,
-    given: &GivenInputs,
-    ahead: fn(usize) -> i64,
-) -> Lowering<LevelPasses> {
+pub fn lower(refinement: &Refinement, level: usize, given: &GivenInputs, ahead: fn(usize) -> i64) -> Lowering<Passes> {
     if level == 0 {
         return Lowering::Processor("the coarsest level is made of the inputs alone");
     }
@@ -85,35 +80,41 @@ pub fn lower(
     }
     let schedule = refinement.schedule(level);
     let scratch = if schedule.rims.is_some() { LAKE_SCRATCH } else { SCRATCH };
-    let (mut inputs, mut words) = (Vec::new(), refinement.words(level).to_vec());
     // Detail levels take over what the finest level of valleys has.
     let given = if level > refinement.levels { &GivenInputs::default() } else { given };
     let GivenInputs { shore, uplift, stability_factor, creep_factor, floor_factor, rain } = *given;
-    let given: [Option<usize>; GIVEN] = [shore, uplift, stability_factor, creep_factor, floor_factor, rain];
-    for input in given {
-        // Number 0 is the first plane of the level, never an input.
-        words.push(input.map_or(0, |_| (Level::PLANES + scratch + inputs.len()) as u32));
-        inputs.extend(input);
-    }
+    let given = [shore, uplift, stability_factor, creep_factor, floor_factor, rain];
     let ahead = [level - 1, level].map(|level| {
         let sample = Window::new(1, 1, refinement.cell_of(level));
         ahead(level) + refinement.nodes_at(level, &sample).x
     });
-    Lowering::Shader(LevelPasses {
-        words,
-        planes: Level::PLANES,
-        scratch,
-        scratch_above: SCRATCH_ABOVE,
-        inputs,
-        ahead,
-        reach: refinement.reach(level),
-        passes: List::of(&schedule, shore.is_some()).passes,
-    })
+    let mut passes = passes(refinement, level).with_scratch(Level::PLANES + scratch);
+    for (name, input) in GIVEN.into_iter().zip(given) {
+        // Number 0 is the first plane of the level, never an input.
+        let plane = input.map_or(0, |_| passes.planes);
+        passes = passes.with_named_words([(name, plane as u32)]);
+        if let Some(input) = input {
+            passes.inputs.resize(passes.inputs.len().max(input + 1), None);
+            passes.inputs[input] = Some(plane);
+            passes.planes += 1;
+        }
+    }
+    passes.extent = Extent::Above { scratch: SCRATCH_ABOVE, ahead, reach: refinement.reach(level) };
+    passes.layers = (0..Level::PLANES).collect();
+    passes.passes = List::of(&schedule, shore.is_some()).passes;
+    Lowering::Shader(passes)
+}
+
+/// Passes that read the numbers of a level.
+pub(super) fn passes(refinement: &Refinement, level: usize) -> Passes {
+    let Words { flags, hashes, numbers } = refinement.words(level);
+    let passes = Passes::new("", &[]).with_constants(FLAGS).with_named_words([("flags", flags)]);
+    passes.with_pairs(hashes).with_numbers(numbers)
 }
 
 /// The passes so far.
 struct List {
-    passes: Vec<LevelPass>,
+    passes: Vec<Pass>,
     /// Cells at the edge of the children that passes leave out.
     inset: usize,
     heights: Turns,
@@ -173,14 +174,14 @@ impl List {
 
     /// A pass over the children.
     fn pass(&mut self, code: &'static str, function: &'static str, step: u32, reads: usize) {
-        let pass = Pass { function, step, inset: [self.inset; 2], reads, is_shared: false };
-        self.passes.push(LevelPass { code, is_above: false, pass });
+        let over = Over::Planes([self.inset; 2]);
+        self.passes.push(Pass { code, function, step, over, reads, is_shared: false });
     }
 
     /// A pass over the level above.
     fn pass_above(&mut self, code: &'static str, function: &'static str, inset: usize, reads: usize) {
-        let pass = Pass { function, step: 0, inset: [inset; 2], reads, is_shared: false };
-        self.passes.push(LevelPass { code, is_above: true, pass });
+        let over = Over::Above([inset; 2]);
+        self.passes.push(Pass { code, function, step: 0, over, reads, is_shared: false });
     }
 
     /// One pass further from the edge, over neighbors.

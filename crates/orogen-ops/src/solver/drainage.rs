@@ -134,12 +134,13 @@ impl Solver for Drainage {
         if !planes.can_rain(padded) {
             return Lowering::Processor(routing::RAIN);
         }
-        let cell_area = ((padded.cell * padded.cell) as f32).to_bits();
-        let own_words = [cell_area, cells_of(self.stream, padded, 0)];
         let sea_level = sea_level_of(self.sea, world_params);
         let over_bed = if self.over == DepressionRouting::Bed { Flats::Graded } else { Flats::Basins };
-        let passes = routing::routed(CODE, padded, sea_level, &own_words, planes, over_bed);
-        let (passes, turn) = routing::spill(passes, padded);
+        let passes = routing::passes(CODE, padded, sea_level, routing::Descent::Steepest, planes)
+            .with_constants([("FILLED", FILLED)])
+            .with_numbers([("cell_area", (padded.cell * padded.cell) as f32)])
+            .with_named_words([("stream", cells_of(self.stream, padded, 0))]);
+        let (passes, turn) = routing::spill(routing::routed(passes, padded, over_bed), padded);
         let mut passes = then(passes, "fill", step(0, 0, turn));
         if self.over == DepressionRouting::Surface {
             let rounds = routing::all_rounds(padded);

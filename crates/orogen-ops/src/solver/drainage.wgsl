@@ -1,15 +1,12 @@
-// Drainage, after `routing.wgsl` and `numbering.wgsl`. The words from `base` + 10 on are the area of a cell and the cells of a stream.
+// Drainage, after `routing.wgsl` and `numbering.wgsl`.
 const SOURCE = 0u;
 const FLOW = 2u;
 const DIRECTION = 3u;
 const WATERSHED = 4u;
 const STRAHLER = 5u;
-const FILLED = 6u;
-const ROUTING = 7u;
 const ORDER = 15u;
 const MARK = 16u;
 const NUMBER = 17u;
-const COUNTERS = 18u;
 // There are no points between cells.
 const POINT = SOURCE;
 
@@ -25,7 +22,7 @@ fn begin_watersheds(base: u32, at: vec2<i32>) {
     let area = drained_cells(cell);
     set_word(LABEL, cell, select(receiver, cell, receiver == NONE));
     set_word(MARK, cell, select(0u, 1u, receiver == NONE && area > 1u));
-    let is_stream = select(area >= data[base + 11u], discharge(base, cell) >= f32(data[base + 11u]), rain_sums(base) != 0u);
+    let is_stream = select(area >= stream(base), discharge(base, cell) >= f32(stream(base)), rain_sums(base) != 0u);
     set_word(ORDER, cell, select(0u, 1u, is_stream));
 }
 
@@ -72,7 +69,7 @@ fn finish(base: u32, at: vec2<i32>) {
         code = code_between(cell, receiver);
     }
     let outlet = word(LABEL, cell);
-    set_sample(FLOW, cell, discharge(base, cell) * number(base, 10u));
+    set_sample(FLOW, cell, discharge(base, cell) * cell_area(base));
     set_sample(DIRECTION, cell, f32(code));
     set_sample(WATERSHED, cell, select(0.0, f32(word(NUMBER, outlet)), word(MARK, outlet) == 1u));
     set_sample(STRAHLER, cell, f32(word(ORDER, cell)));

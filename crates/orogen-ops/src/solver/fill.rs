@@ -74,8 +74,8 @@ impl Solver for Fill {
     fn lower(&self, padded: &Window, _: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
         let sea_level = sea_level_of(self.sea, world_params);
         let planes = Planes { inputs: 1, layers: self.spec().layers.len(), scratch: 0, rain: None };
-        let passes = routing::routed(CODE, padded, sea_level, &[], planes, Flats::Basins);
-        let (passes, turn) = routing::spill(passes, padded);
+        let passes = routing::passes(CODE, padded, sea_level, routing::Descent::Steepest, planes);
+        let (passes, turn) = routing::spill(routing::routed(passes, padded, Flats::Basins), padded);
         Lowering::Shader(then(passes, "fill", step(0, 0, turn)))
     }
 

@@ -2,8 +2,6 @@
 const SOURCE = 0u;
 const FILLED = 1u;
 const DEPTH = 2u;
-const ROUTING = 3u;
-const COUNTERS = 11u;
 // There are no points between cells.
 const POINT = SOURCE;
 
@@ -14,5 +12,5 @@ fn fill(base: u32, at: vec2<i32>) {
     set_word(FILLED, cell, filled);
     // An infinite height minus itself is not a number.
     let depth = bitcast<u32>(bitcast<f32>(filled) - bitcast<f32>(height));
-    set_word(DEPTH, cell, select(depth, 0x7fc00000u, is_missing(height)));
+    set_word(DEPTH, cell, select(depth, 0x7fc00000u, is_missing_word(height)));
 }

@@ -85,11 +85,12 @@ impl Solver for HeightAboveDrainage {
     }
 
     fn lower(&self, padded: &Window, _: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
-        let own_words = [cells_of(self.stream, padded, 1), (padded.cell as f32).to_bits()];
         let planes = Planes { inputs: 1, layers: self.spec().layers.len(), scratch: SCRATCH, rain: None };
         let sea_level = sea_level_of(self.sea, world_params);
-        let passes = routing::routed(CODE, padded, sea_level, &own_words, planes, Flats::Graded);
-        let (passes, turn) = routing::spill(passes, padded);
+        let passes = routing::passes(CODE, padded, sea_level, routing::Descent::Steepest, planes)
+            .with_named_words([("stream", cells_of(self.stream, padded, 1))])
+            .with_numbers([("cell_length", padded.cell as f32)]);
+        let (passes, turn) = routing::spill(routing::routed(passes, padded, Flats::Graded), padded);
         let passes = routing::gather(then(passes, "fill", step(0, 0, turn)), padded);
         let turns = routing::following(padded) as u32;
         let follow = |passes, k| then(passes, "follow_paths", step(0, 0, k % 2));

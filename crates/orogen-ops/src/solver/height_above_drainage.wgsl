@@ -1,16 +1,14 @@
-// Height above nearest drainage, after `routing.wgsl`. The words from `base` + 10 on are the cells of a stream and the length of a cell in metres.
+// Height above nearest drainage, after `routing.wgsl`.
 const SOURCE = 0u;
 const HEIGHT = 1u;
 const FLOW_DISTANCE = 2u;
 const DISTANCE = 3u;
-const ROUTING = 4u;
 const FILLED = 12u;
 // The cell to which the path of each cell is known, and its length in metres, twice.
 const END = 13u;
 const LENGTH = 15u;
 // Cells to the nearest stream in the same column.
 const DOWN_COLUMN = 17u;
-const COUNTERS = 18u;
 // There are no points between cells.
 const POINT = SOURCE;
 
@@ -21,7 +19,7 @@ fn fill(base: u32, at: vec2<i32>) {
 }
 
 fn is_stream(base: u32, cell: u32) -> bool {
-    return drained_cells(cell) >= data[base + 10u];
+    return drained_cells(cell) >= stream(base);
 }
 
 // Paths end at streams and outlets.
@@ -35,7 +33,7 @@ fn begin_paths(base: u32, at: vec2<i32>) {
     }
     let is_diagonal = (code_between(cell, receiver) & 1u) == 1u;
     set_word(END, cell, receiver);
-    set_sample(LENGTH, cell, number(base, 11u) * select(1.0, 1.41421356, is_diagonal));
+    set_sample(LENGTH, cell, cell_length(base) * select(1.0, 1.41421356, is_diagonal));
 }
 
 // Follows the paths downstream. The number is 0 or 1, in turn.
@@ -85,7 +83,7 @@ fn finish(base: u32, at: vec2<i32>) {
     let end = word(END + step_number(), cell);
     let filled = word(FILLED, cell);
     let height = bitcast<u32>(bitcast<f32>(filled) - sample(FILLED, end));
-    set_word(HEIGHT, cell, select(height, 0x7fc00000u, is_missing(filled)));
+    set_word(HEIGHT, cell, select(height, 0x7fc00000u, is_missing_word(filled)));
     set_word(FLOW_DISTANCE, cell, word(LENGTH + step_number(), cell));
     var nearest = square_of(0u, word(DOWN_COLUMN, cell));
     for (var x = 1u; x < frame.columns && x * x < nearest; x += 1u) {
@@ -97,5 +95,5 @@ fn finish(base: u32, at: vec2<i32>) {
         }
     }
     let diagonal = length(vec2<f32>(size()));
-    set_sample(DISTANCE, cell, min(sqrt(f32(nearest)), diagonal) * number(base, 11u));
+    set_sample(DISTANCE, cell, min(sqrt(f32(nearest)), diagonal) * cell_length(base));
 }

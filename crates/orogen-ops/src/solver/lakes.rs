@@ -76,12 +76,14 @@ impl Solver for Lakes {
     }
 
     fn lower(&self, padded: &Window, _: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
-        let rise = ((padded.cell * lakes::MIN_SLOPE) as f32).to_bits();
-        let own_words = [cells_of(self.smallest, padded, MIN_CELLS), rise];
+        let rise = (padded.cell * lakes::MIN_SLOPE) as f32;
         let sea_level = sea_level_of(self.sea, world_params);
         let planes = Planes { inputs: 1, layers: self.spec().layers.len(), scratch: SCRATCH, rain: None };
-        let passes = routing::routed(CODE, padded, sea_level, &own_words, planes, Flats::Graded);
-        let (passes, turn) = routing::spill(passes, padded);
+        let passes = routing::passes(CODE, padded, sea_level, routing::Descent::Steepest, planes)
+            .with_constants([("SURFACES", SURFACES)])
+            .with_named_words([("smallest", cells_of(self.smallest, padded, MIN_CELLS))])
+            .with_numbers([("rise_of_cell", rise)]);
+        let (passes, turn) = routing::spill(routing::routed(passes, padded, Flats::Graded), padded);
         let passes = then(passes, "begin_lakes", step(0, 0, turn));
         let passes = routing::follow(passes, padded, "find_lake");
         let functions = ["count_cells", "find_deepest", "find_outflow", "begin_surface"];

@@ -1,11 +1,9 @@
-// Lakes, after `routing.wgsl` and `numbering.wgsl`. The words from `base` + 10 on are the minimum number of cells of a lake, and the rise of raised ground over a
-// cell.
+// Lakes, after `routing.wgsl` and `numbering.wgsl`.
 const SOURCE = 0u;
 const BED = 1u;
 const DEPTH = 2u;
 const SURFACE = 3u;
 const LAKE_NUMBER = 4u;
-const ROUTING = 5u;
 // By basin: the lake, which is the number of one of its basins.
 const LAKE = 13u;
 // By lake: its cells, the height of the deepest one as an ordered integer, the first cell in row order, the deepest one, and the dry cell over which it spills.
@@ -16,10 +14,8 @@ const DEEPEST = 17u;
 const OUTFLOW = 18u;
 const MARK = 19u;
 const NUMBER = 20u;
-// The downstream cell of each cell, and three numbers of a function of the surface there, twice.
+// The downstream cell of each cell; from the plane `SURFACES` on, three numbers of a function of the surface there, twice.
 const DOWNSTREAM = 21u;
-const SURFACES = 23u;
-const COUNTERS = 29u;
 // There are no points between cells.
 const POINT = SOURCE;
 // Higher than all ground.
@@ -72,7 +68,7 @@ fn lake_over(base: u32, cell: u32) -> u32 {
     if (lake == NONE) {
         return NONE;
     }
-    return select(NONE, lake, word(COUNT, lake) >= data[base + 10u]);
+    return select(NONE, lake, word(COUNT, lake) >= smallest(base));
 }
 
 fn count_cells(base: u32, at: vec2<i32>) {
@@ -125,7 +121,7 @@ fn begin_surface(base: u32, at: vec2<i32>) {
     var rise = 0.0;
     if (downstream == NONE) {
         below = ABOVE_ALL;
-        if (is_missing(bits)) {
+        if (is_missing_word(bits)) {
             least = -ABOVE_ALL;
         }
     } else if (lake != NONE) {
@@ -136,7 +132,7 @@ fn begin_surface(base: u32, at: vec2<i32>) {
         let code = code_between(cell, downstream);
         // The rise may be less than the last digit of the height, but the cell must drain.
         let up = abs(bitcast<f32>(height_bits(ordered(bits) + 1u)) - height);
-        rise = max(number(base, 11u) * select(1.0, 1.41421356, (code & 1u) == 1u), up);
+        rise = max(rise_of_cell(base) * select(1.0, 1.41421356, (code & 1u) == 1u), up);
     }
     set_word(DOWNSTREAM, cell, downstream);
     set_sample(SURFACES, cell, below);
@@ -185,6 +181,6 @@ fn finish(base: u32, at: vec2<i32>) {
     set_word(BED, cell, bed);
     set_word(SURFACE, cell, surface);
     let depth = bitcast<u32>(bitcast<f32>(surface) - bitcast<f32>(bed));
-    set_word(DEPTH, cell, select(depth, 0x7fc00000u, is_missing(height)));
+    set_word(DEPTH, cell, select(depth, 0x7fc00000u, is_missing_word(height)));
     set_sample(LAKE_NUMBER, cell, f32(lake_number));
 }

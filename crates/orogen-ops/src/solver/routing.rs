@@ -5,7 +5,7 @@
 //! "FastFlow: GPU acceleration of flow and depression routing for landscape simulation", 2024). Paths are followed by
 //! pointer doubling.
 
-use crate::lower::Passes;
+use crate::lower::{Extent, Passes};
 use orogen_grid::grid::Window;
 
 /// Number of planes with the sums of the rain.
@@ -17,17 +17,31 @@ const MAX_RAINY: usize = 1 << 22;
 /// Number of planes of the routing.
 const PLANES: usize = 8;
 
+/// The numbers that shaders know by these names.
+const CONSTANTS: [(&str, u32); 6] = [
+    ("HOPS", HOPS as u32),
+    ("GATHERED_HOPS", GATHERED_HOPS as u32),
+    ("ALL_COUNTERS", COUNTERS as u32),
+    ("LAST", LAST),
+    ("SCATTERED", SCATTERED),
+    ("BETWEEN_POINTS", BETWEEN_POINTS),
+];
+
 /// The step of the last pass of a run, on the lattice.
 pub(crate) const LAST: u32 = 1 << 31;
 
 /// Number of counters.
 const COUNTERS: usize = 8;
 
-/// Cells by which one pass follows receivers, and the same for the accumulation: the constants of the shaders.
+/// Cells by which one pass follows receivers, and the same for the accumulation.
 const HOPS: usize = 16;
 const GATHERED_HOPS: usize = 8;
 
-/// How cells choose their receivers: the words of the shaders.
+/// How cells choose their receivers, as a word; 0 is by steepest descent.
+const SCATTERED: u32 = 1;
+const BETWEEN_POINTS: u32 = 2;
+
+/// How cells choose their receivers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Descent {
     /// By steepest descent.
@@ -57,17 +71,14 @@ impl Planes {
         self.rain.is_none() || padded.len() <= MAX_RAINY
     }
 
-    /// `passes` with these planes.
-    fn of(self, passes: Passes, padded: &Window) -> Passes {
-        let rain = if self.rain.is_some() { RAIN_PLANES } else { 0 };
-        let scratch = PLANES + self.scratch + counter_planes(padded) + rain;
-        passes.with_layers(self.layers).with_scratch(scratch)
+    /// The first plane of the routing.
+    fn routing(self) -> usize {
+        self.inputs + self.layers
     }
 
-    /// The plane of the rain, and the first one with its sums.
-    fn words(self, padded: &Window) -> [u32; 2] {
-        let sums = self.inputs + self.layers + PLANES + self.scratch + counter_planes(padded);
-        self.rain.map_or([0; 2], |rain| [rain, sums].map(|plane| plane as u32))
+    /// The plane of the counters; the sums of the rain come after it.
+    fn counters(self) -> usize {
+        self.routing() + PLANES + self.scratch
     }
 }
 
@@ -82,22 +93,23 @@ pub(crate) fn passes(
     descent: Descent,
     planes: Planes,
 ) -> Passes {
-    planes
-        .of(Passes::new(code, &[]), padded)
-        .with_words(words(padded, sea_level, descent))
-        .with_words(planes.words(padded))
-}
-
-/// The words that `routing.wgsl` reads, before those of the rain.
-fn words(padded: &Window, sea_level: Option<f32>, descent: Descent) -> Vec<u32> {
     let (kind, salt, reach) = match descent {
         Descent::Steepest => (0, 0, 0.0),
-        Descent::Scattered(salt) => (1, salt, 0.0),
-        Descent::Points(salt, reach) => (2, salt, reach),
+        Descent::Scattered(salt) => (SCATTERED, salt, 0.0),
+        Descent::Points(salt, reach) => (BETWEEN_POINTS, salt, reach),
     };
-    let [x, y] = [padded.x, padded.y].map(|start| [start as u32, (start >> 32) as u32]);
-    let sea_level = sea_level.unwrap_or(f32::MIN);
-    vec![x[0], x[1], y[0], y[1], sea_level.to_bits(), kind, salt, reach.to_bits()]
+    let [routing, counters] = [planes.routing(), planes.counters()];
+    // The plane of the rain, and the first one with its sums.
+    let sums = counters + counter_planes(padded);
+    let [rain, sums] = planes.rain.map_or([0; 2], |rain| [rain, sums].map(|plane| plane as u32));
+    let rain_planes = if planes.rain.is_some() { RAIN_PLANES } else { 0 };
+    Passes::new(code, &[])
+        .with_planes(Extent::Domain, planes.inputs, &vec![true; planes.layers])
+        .with_scratch(PLANES + planes.scratch + counter_planes(padded) + rain_planes)
+        .with_constants(CONSTANTS)
+        .with_constants([("ROUTING", routing as u32), ("COUNTERS", counters as u32)])
+        .with_numbers([("sea_level", sea_level.unwrap_or(f32::MIN)), ("reach", reach)])
+        .with_named_words([("descent", kind), ("salt", salt), ("rain_plane", rain), ("rain_sums", sums)])
 }
 
 /// A step as the shaders read it: the planes that are read and written, and a number.
@@ -185,16 +197,8 @@ pub(crate) fn number(passes: Passes) -> Passes {
     ["count_marks", "sum_marks", "number_marks"].into_iter().fold(passes, |passes, name| then(passes, name, 0))
 }
 
-/// Passes that route the heights of plane 0 by steepest descent, with words of the solver after those of the routing.
-pub(crate) fn routed(
-    code: &'static str,
-    padded: &Window,
-    sea_level: Option<f32>,
-    own_words: &[u32],
-    planes: Planes,
-    flats: Flats,
-) -> Passes {
-    let passes = passes(code, padded, sea_level, Descent::Steepest, planes).with_words(own_words.iter().copied());
+/// `passes`, and those that route the heights of plane 0.
+pub(crate) fn routed(passes: Passes, padded: &Window, flats: Flats) -> Passes {
     route(then(passes, "outlets", 0), padded, all_rounds(padded), flats, 0)
 }
 

@@ -1,7 +1,7 @@
 // Drainage: receivers by steepest descent, the spills of basins, paths out of depressions, and drainage areas. After orogen-grid's `hydrology`.
 //
-// Cells are numbered in row order. A solver defines `ROUTING`, the first of the planes below, and `COUNTERS`, the plane of the counters. The words from `base`
-// on are those of `routing.rs`. In `frame.step` the lower eight bits are the plane of the heights, the next eight another plane, and the next 15 a number.
+// Cells are numbered in row order. What `routing.rs` declares stands before it: `ROUTING`, the first of the planes below, `COUNTERS`, the plane of the
+// counters, other constants, and what reads the words. In `frame.step` the lower eight bits are the plane of the heights, the next eight another plane, and the next 15 a number.
 const OUTLET = ROUTING;
 const RECEIVER = ROUTING + 1u;
 const LABEL = ROUTING + 2u;
@@ -25,26 +25,14 @@ const ROUNDS = 0u;
 const GATHERED = 1u;
 const CHANGED = 2u;
 const SPREAD = 3u;
-const ALL_COUNTERS = 8u;
-// Receivers are followed by this many cells in one pass.
-const HOPS = 16;
-const GATHERED_HOPS = 8;
-// A step of the last pass of a run, on the lattice.
-const LAST = 0x80000000u;
 
 fn heights_plane() -> u32 { return frame.step & 0xffu; }
 fn other_plane() -> u32 { return (frame.step >> 8u) & 0xffu; }
 fn step_number() -> u32 { return (frame.step >> 16u) & 0x7fffu; }
 fn is_last() -> bool { return (frame.step & LAST) != 0u; }
 
-fn sea_level(base: u32) -> f32 { return number(base, 4u); }
-fn is_scattered(base: u32) -> bool { return data[base + 5u] == 1u; }
-fn is_between_points(base: u32) -> bool { return data[base + 5u] == 2u; }
-fn salt(base: u32) -> u32 { return data[base + 6u]; }
-fn reach(base: u32) -> f32 { return number(base, 7u); }
-// The plane of the rain, and the first of six planes with its sums; 0 without rain.
-fn rain_plane(base: u32) -> u32 { return data[base + 8u]; }
-fn rain_sums(base: u32) -> u32 { return data[base + 9u]; }
+fn is_scattered(base: u32) -> bool { return descent(base) == SCATTERED; }
+fn is_between_points(base: u32) -> bool { return descent(base) == BETWEEN_POINTS; }
 
 fn counter(k: u32) -> u32 { return word(COUNTERS, k); }
 fn raise_counter(k: u32, value: u32) { raise_word(COUNTERS, k, value); }
@@ -106,9 +94,11 @@ fn shifted(a: vec2<u32>, by: u32) -> vec2<u32> {
 // A hash of a cell's position on the lattice of the world and a salt: that of `hydrology/direction.rs`.
 fn hashed(base: u32, cell: u32, with_salt: u32) -> u32 {
     let at = vec2<u32>(cell % frame.columns, cell / frame.columns);
-    let low = vec2<u32>(data[base], data[base + 2u]) + at;
+    let column = first_column();
+    let row = first_row();
+    let low = vec2<u32>(column.x, row.x) + at;
     let carry = select(vec2<u32>(0u), vec2<u32>(1u), low < at);
-    let high = vec2<u32>(data[base + 1u], data[base + 3u]) + carry;
+    let high = vec2<u32>(column.y, row.y) + carry;
     var z = product(vec2<u32>(low.x, high.x), vec2<u32>(0x7f4a7c15u, 0x9e3779b9u))
         ^ product(vec2<u32>(low.y, high.y ^ with_salt), vec2<u32>(0xd192ed03u, 0xd1b54a32u));
     z = product(z ^ shifted(z, 30u), vec2<u32>(0x1ce4e5b9u, 0xbf58476du));
@@ -135,7 +125,7 @@ fn outlets(base: u32, at: vec2<i32>) {
     for (var y = -1; y <= 1; y += 1) {
         for (var x = -1; x <= 1; x += 1) {
             let there = clamp(at + vec2<i32>(x, y), vec2<i32>(0), size() - vec2<i32>(1));
-            if (is_missing(word(heights_plane(), cell_at(there)))) {
+            if (is_missing_word(word(heights_plane(), cell_at(there)))) {
                 is_outlet = true;
             }
         }
@@ -512,7 +502,7 @@ fn raise_spill(base: u32, at: vec2<i32>) {
 fn rain_on(base: u32, cell: u32) -> vec2<u32> {
     let bits = word(rain_plane(base), cell);
     var factor = clamp(bitcast<f32>(bits), 0.01, 100.0);
-    if (is_missing(bits)) {
+    if (is_missing_word(bits)) {
         // Not a number counts as 1.
         factor = select(select(1.0, 0.01, bits == 0xff800000u), 100.0, bits == 0x7f800000u);
     }

@@ -165,7 +165,7 @@ impl Solver for StreamPower {
 const CODE: &str =
     concat!(include_str!("routing.wgsl"), include_str!("../lower/power.wgsl"), include_str!("stream_power.wgsl"));
 
-/// The planes of the source and of the heights, in the shaders.
+/// The planes of the source and of the heights.
 const SOURCE: u32 = 0;
 const HEIGHTS: [u32; 3] = [4, 16, 17];
 
@@ -224,21 +224,22 @@ impl StreamPower {
         // Slopes above the limit have already slid between the points.
         let last_max_slope = if is_between_points { f64::INFINITY } else { law.max_slope };
         let numbers = [
-            years * law.erodibility * libm::pow(cell, 2.0 * law.area_exponent - law.slope_exponent),
-            law.area_exponent,
-            law.min_slope * cell,
-            law.max_slope * cell,
-            last_max_slope * cell,
-            years * law.uplift,
+            ("cut_of_cell", years * law.erodibility * libm::pow(cell, 2.0 * law.area_exponent - law.slope_exponent)),
+            ("area_exponent", law.area_exponent),
+            ("min_drop", law.min_slope * cell),
+            ("max_drop", law.max_slope * cell),
+            ("last_max_drop", last_max_slope * cell),
+            ("raised", years * law.uplift),
+            ("creep_share", creep.map_or(0.0, |[_, _, share]| share / 6.0)),
+            ("cell_area", cell * cell),
+            ("slope_exponent", law.slope_exponent),
         ];
-        let share = creep.map_or(0.0, |[_, _, share]| share / 6.0);
-        let last = [share, cell * cell, law.slope_exponent].map(|number| (number as f32).to_bits());
         let sea_level = sea_level_of(self.sea, world_params);
         let mut passes = routing::passes(CODE, padded, sea_level, descent, planes)
+            .with_constants([("SOURCE", SOURCE), ("HEIGHT", HEIGHTS[0]), ("SPARE", HEIGHTS[1])])
             // Shaders know no infinite numbers.
-            .with_words(numbers.map(|number| (number.min(1e30) as f32).to_bits()))
-            .with_words(given.map(u32::from))
-            .with_words(last);
+            .with_numbers(numbers.map(|(name, number)| (name, number.min(1e30) as f32)))
+            .with_named_words(["has_erodibility", "has_uplift"].into_iter().zip(given.map(u32::from)));
         let step = |from, to, number| routing::step(from, to, number);
         passes = then(passes, "outlets", step(SOURCE, 0, 0));
         if is_between_points {

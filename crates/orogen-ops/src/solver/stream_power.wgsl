@@ -1,16 +1,11 @@
 // Stream power: steps of orogen-grid's `hydrology/stream_power.rs`, `erosion.rs`, `creep.rs` and `points.rs`, after `routing.wgsl`.
 //
 // The heights move between three planes. The layers hold other data until the last pass.
-const SOURCE = 0u;
 const ERODIBILITY = 1u;
 const UPLIFT = 2u;
-const HEIGHT = 4u;
 const FLOW = 5u;
 const CHANGE = 6u;
-const ROUTING = 7u;
 const POINT = 15u;
-const SPARE = 16u;
-const COUNTERS = 22u;
 // Which piece of the law applies to each cell.
 const PIECE = CHANGE;
 // The factor and the offset of a piece, twice.
@@ -31,8 +26,6 @@ struct Law {
     cut: f32,
 }
 
-fn slope_exponent(base: u32) -> f32 { return number(base, 20u); }
-
 // Draws the points of the cells.
 fn draw_points(base: u32, at: vec2<i32>) {
     set_word(POINT, cell_at(at), hashed(base, cell_at(at), salt(base)));
@@ -50,24 +43,24 @@ fn inverse_distance(base: u32, cell: u32, receiver: u32) -> f32 {
 
 fn law_of(base: u32, cell: u32, receiver: u32) -> Law {
     let near = inverse_distance(base, cell, receiver);
-    let most = select(number(base, 13u), number(base, 14u), is_last());
-    var law = Law(number(base, 12u) / near, most / near, 0.0, 0.0);
+    let most = select(max_drop(base), last_max_drop(base), is_last());
+    var law = Law(min_drop(base) / near, most / near, 0.0, 0.0);
     if (is_last()) {
         return law;
     }
-    law.risen = number(base, 15u);
-    if (data[base + 17u] == 1u) {
+    law.risen = raised(base);
+    if (has_uplift(base) == 1u) {
         law.risen *= sample(UPLIFT, cell);
-        if (is_missing(word(UPLIFT, cell))) {
+        if (is_missing_word(word(UPLIFT, cell))) {
             law.risen = 1e30;
         }
     }
     let n = slope_exponent(base);
     let per_distance = select(power(near, n), near, n == 1.0);
-    law.cut = number(base, 10u) * per_distance * power(discharge(base, cell), number(base, 11u));
-    if (data[base + 16u] == 1u) {
+    law.cut = cut_of_cell(base) * per_distance * power(discharge(base, cell), area_exponent(base));
+    if (has_erodibility(base) == 1u) {
         let factor = word(ERODIBILITY, cell);
-        law.cut *= max(select(bitcast<f32>(factor), 0.0, is_missing(factor)), 0.0);
+        law.cut *= max(select(bitcast<f32>(factor), 0.0, is_missing_word(factor)), 0.0);
     }
     law.cut = min(law.cut, 1e30);
     return law;
@@ -256,7 +249,7 @@ fn creep(base: u32, at: vec2<i32>) {
     if (step_number() > 1u) {
         again = (stage - 1.0) / stage * (h - sample(last, cell));
     }
-    let inflow = (2.0 * stage - 1.0) / stage * number(base, 18u) * (4.0 * sides + corners);
+    let inflow = (2.0 * stage - 1.0) / stage * creep_share(base) * (4.0 * sides + corners);
     set_sample(other_plane(), cell, h + again + inflow);
 }
 
@@ -287,6 +280,6 @@ fn finish(base: u32, at: vec2<i32>) {
     let cell = cell_at(at);
     let height = word(heights_plane(), cell);
     set_word(HEIGHT, cell, height);
-    set_sample(FLOW, cell, discharge(base, cell) * number(base, 19u));
+    set_sample(FLOW, cell, discharge(base, cell) * cell_area(base));
     set_sample(CHANGE, cell, bitcast<f32>(height) - sample(SOURCE, cell));
 }

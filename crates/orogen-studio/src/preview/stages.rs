@@ -68,9 +68,8 @@ pub fn of(world: &World, request: &Request) -> Result<Vec<Stage>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use orogen::device::{Device, FilterExtent, LoweredProgram, PlanGrid};
-    use orogen::lower::Passes;
-    use orogen::{Options, Progress, Session, Window, presets};
+    use orogen::device::Device;
+    use orogen::{Options, Session, presets};
     use std::sync::Arc;
 
     fn stages(preset: &str, finest: usize) -> Vec<Stage> {
@@ -101,20 +100,6 @@ mod tests {
     impl Device for Card {
         fn is_software(&self) -> bool {
             self.is_software
-        }
-
-        fn fill(&self, _: &LoweredProgram, _: &Window, _: &[&PlanGrid], _: &Progress) -> Result<Option<Vec<PlanGrid>>> {
-            Ok(None)
-        }
-
-        fn apply(
-            &self,
-            _: &Passes,
-            _: &[Option<&PlanGrid>],
-            _: &FilterExtent,
-            _: &Progress,
-        ) -> Result<Option<Vec<Option<PlanGrid>>>> {
-            Ok(None)
         }
     }
 

@@ -1,7 +1,6 @@
 //! What the tests of filters have in common: a device, inputs, and the filters with some parameters.
 #![allow(dead_code, clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
-use orogen_engine::device::{Device, FilterExtent, PlanGrid};
 use orogen_engine::filter::Blur;
 use orogen_engine::filter::Distance;
 use orogen_engine::filter::FlowIndices;
@@ -16,7 +15,7 @@ use orogen_engine::filter::{Comparison, Geomorphons};
 use orogen_engine::filter::{CurvatureKind, SelectCurvature};
 use orogen_engine::filter::{FlowCodes, FlowDirection};
 use orogen_engine::filter::{Slope, SlopeUnit};
-use orogen_engine::lower::{Lowering, Passes};
+use orogen_engine::lower::{Extent, Lowering, Passes};
 use orogen_engine::node::Node;
 use orogen_engine::op::{Context, Filter, Op, WorldParams};
 use orogen_gpu::gpu::Options;
@@ -141,26 +140,21 @@ pub fn on_card(gpu: &Gpu, node: &Node, window: &Window, inputs: &[Option<Grid>])
 pub fn tried_on_card(gpu: &Gpu, node: &Node, window: &Window, inputs: &[Option<Grid>]) -> Result<Vec<Grid>, Failure> {
     let wanted = vec![true; node.layers().len()];
     let passes = lowered(node, window.cell).unwrap();
-    let extent = FilterExtent { window: *window, halo: filter(node).unwrap().halo(window.cell), wanted };
-    let made = apply(gpu, &passes, inputs, &extent, false)?;
-    Ok(made.unwrap().into_iter().flatten().collect())
+    let extent = (*window, filter(node).unwrap().halo(window.cell));
+    Ok(apply(gpu, passes, inputs, extent, &wanted, false)?.unwrap())
 }
 
-/// Layers of a filter from grids in memory, and in memory again.
+/// The wanted layers of a filter over a window with a halo.
 pub fn apply(
     gpu: &Gpu,
-    passes: &Passes,
+    passes: Passes,
     inputs: &[Option<Grid>],
-    extent: &FilterExtent,
+    (window, halo): (Window, usize),
+    wanted: &[bool],
     is_cancelled: bool,
-) -> Result<Option<Vec<Option<Grid>>>, Failure> {
-    let inputs: Vec<Option<PlanGrid>> = inputs.iter().cloned().map(|input| input.map(PlanGrid::from)).collect();
-    let inputs: Vec<Option<&PlanGrid>> = inputs.iter().map(Option::as_ref).collect();
-    let Some(made) = orogen_gpu::filters::apply(gpu, passes, &inputs, extent, || is_cancelled)? else {
-        return Ok(None);
-    };
-    let fetched = |grid: PlanGrid| gpu.fetch(vec![grid], &Progress::none()).unwrap().unwrap().remove(0);
-    Ok(Some(made.into_iter().map(|grid| grid.map(fetched)).collect()))
+) -> Result<Option<Vec<Grid>>, Failure> {
+    let passes = passes.with_planes(Extent::Halo(halo), inputs.len(), wanted);
+    super::run(gpu, &[super::step(passes, inputs, &window)], &[], || is_cancelled)
 }
 
 /// A filter with other parameters than its defaults, several times.

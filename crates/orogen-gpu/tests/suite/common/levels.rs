@@ -2,13 +2,13 @@
 #![allow(dead_code, clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
 use super::filters::sampled;
-use orogen_engine::device::LevelStep;
+use super::run;
+use orogen_engine::device::PassStep;
 use orogen_engine::levelled::Amplify;
-use orogen_engine::lower::{LevelPasses, Lowering};
+use orogen_engine::lower::{Lowering, Passes};
 use orogen_engine::op::{Context, Levelled, WorldParams};
 use orogen_engine::{Options, Recipe, Session};
 use orogen_gpu::Gpu;
-use orogen_gpu::levels::refine;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 use std::sync::OnceLock;
@@ -137,17 +137,17 @@ impl Chain<'_> {
     }
 
     pub fn on_card(&self, gpu: &Gpu, level: usize, above: &[Grid]) -> Vec<Grid> {
-        refine(gpu, &[self.step(level)], above, || false).unwrap().unwrap()
+        run(gpu, &[self.step(level)], above, || false).unwrap().unwrap()
     }
 
-    pub fn step(&self, level: usize) -> LevelStep {
+    pub fn step(&self, level: usize) -> PassStep<'static> {
         let inputs = self.inputs(level);
         let given: Vec<bool> = inputs.iter().map(Option::is_some).collect();
-        LevelStep { passes: passes(self.op, level, &given), inputs, window: self.windows[level] }
+        super::step(passes(self.op, level, &given), &inputs, &self.windows[level])
     }
 }
 
-pub fn passes(op: &dyn Levelled, level: usize, given: &[bool]) -> LevelPasses {
+pub fn passes(op: &dyn Levelled, level: usize, given: &[bool]) -> Passes {
     match op.lower(level, given, &WORLD) {
         Lowering::Shader(passes) => passes,
         other => panic!("level {level}: {other:?}"),

@@ -13,8 +13,11 @@ pub mod filters;
 pub mod levels;
 pub mod solvers;
 
+use orogen_engine::device::{PassRun, PassStep, PlanGrid};
+use orogen_engine::lower::Passes;
 use orogen_engine::{Grid, Options, Recipe, Session, Window};
-use orogen_gpu::{Choice, Gpu, gpu};
+use orogen_gpu::{Choice, Failure, Gpu, gpu};
+use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
 /// The first adapter of this machine, software too.
@@ -27,6 +30,23 @@ pub fn gpu() -> &'static Gpu {
 pub fn processor() -> &'static Session {
     static SESSION: OnceLock<Session> = OnceLock::new();
     SESSION.get_or_init(|| Session::new(Options::default()).unwrap())
+}
+
+/// Passes with inputs from memory.
+pub fn step<'a>(passes: Passes, inputs: &[Option<Grid>], window: &Window) -> PassStep<'a> {
+    let inputs = inputs.iter().cloned().map(|input| input.map(|grid| Cow::Owned(grid.into()))).collect();
+    PassStep { passes, inputs, window: *window }
+}
+
+/// The layers of the last of some passes, in memory.
+pub fn run(
+    gpu: &Gpu,
+    steps: &[PassStep],
+    above: &[Grid],
+    is_cancelled: impl Fn() -> bool,
+) -> Result<Option<Vec<Grid>>, Failure> {
+    let made = orogen_gpu::passes::run(gpu, &PassRun { steps, above, stays: false }, is_cancelled)?;
+    Ok(made.map(|made| made.into_iter().filter_map(PlanGrid::into_memory).collect()))
 }
 
 pub fn session_of(gpu: &Gpu) -> Session {

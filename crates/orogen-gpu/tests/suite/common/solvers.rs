@@ -2,6 +2,8 @@
 #![allow(dead_code, clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
 use super::filters::WORLD;
+use super::run;
+use orogen_engine::device::PassStep;
 use orogen_engine::lower::{Lowering, Passes};
 use orogen_engine::node::Node;
 use orogen_engine::op::{Context, Op, Solution, Solver, Sources};
@@ -86,7 +88,10 @@ pub fn try_card(
     window: &Window,
     inputs: &[Option<Grid>],
 ) -> std::result::Result<Vec<Grid>, Failure> {
-    let passes = solver_passes(node, window, inputs).unwrap();
-    let inputs: Vec<Option<&Grid>> = inputs.iter().map(Option::as_ref).collect();
-    Ok(orogen_gpu::solvers::solve(gpu, &passes, &inputs, window, || false)?.unwrap())
+    Ok(run(gpu, &[step(node, window, inputs)], &[], || false)?.unwrap())
+}
+
+/// A solver with its inputs.
+pub fn step<'a>(node: &Node, window: &Window, inputs: &[Option<Grid>]) -> PassStep<'a> {
+    super::step(solver_passes(node, window, inputs).unwrap(), inputs, window)
 }

@@ -5,12 +5,14 @@ use orogen_grid::parallel;
 use super::layer::{Around, RowLayer};
 use crate::options::Options;
 use orogen_engine::bands::Bands;
-use orogen_engine::device::{FilterExtent, PlanGrid};
+use orogen_engine::device::{Computed, PassRun, PassStep, PlanGrid};
+use orogen_engine::lower::Extent;
 use orogen_engine::world::{HEIGHT, World};
 use orogen_grid::analysis::finite::FiniteCount;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
+use std::borrow::Cow;
 
 /// Rows that are computed at once, unless they are very wide.
 const ROWS: usize = 256;
@@ -120,13 +122,12 @@ impl<'w> Rows<'w> {
     /// it.
     fn on_device(&self, around: &Around, band: &Window) -> Result<Option<Vec<Grid>>> {
         let Some((device, lowered)) = self.world.device().zip(self.derived.lowered.as_ref()) else { return Ok(None) };
-        let (passes, heights) =
-            ((lowered.passes)(band.cell, around.options), PlanGrid::from((lowered.heights)(around, band)));
-        let halo = (self.derived.reach)(band.cell);
-        let extent = FilterExtent { window: *band, halo, wanted: vec![true; self.channels] };
-        let progress = Progress::none();
-        let Some(made) = device.apply(&passes, &[Some(&heights)], &extent, &progress)? else { return Ok(None) };
-        device.fetch(made.into_iter().flatten().collect(), &progress)
+        let extent = Extent::Halo((self.derived.reach)(band.cell));
+        let passes = (lowered.passes)(band.cell, around.options).with_planes(extent, 1, &vec![true; self.channels]);
+        let inputs = vec![Some(Cow::Owned(PlanGrid::from((lowered.heights)(around, band))))];
+        let run = PassRun { steps: &[PassStep { passes, inputs, window: *band }], above: &[], stays: false };
+        let Computed::Done(made) = device.run(&run, &Progress::none())? else { return Ok(None) };
+        Ok(Some(made.into_iter().filter_map(PlanGrid::into_memory).collect()))
     }
 }
 

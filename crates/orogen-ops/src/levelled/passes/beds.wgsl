@@ -1,13 +1,7 @@
-// Beds of rivers, which are cut by the links of their nodes: `channels.rs`. Links may cut the same sample, so planes are words. The binding is that of `samples`.
-@group(0) @binding(1) var<storage, read_write> words: array<atomic<u32>>;
+// Beds of rivers, which are cut by the links of their nodes: `channels.rs`. Links may cut the same sample, so planes are words.
 
 // Widths in cells from which beds are cut.
 const NARROW = 1.0;
-
-// A sample of a plane; there is no sample beyond the border.
-fn sample(k: u32, at: vec2<i32>) -> f32 {
-    return bitcast<f32>(atomicLoad(&words[index_of(k, at)]));
-}
 
 struct Node {
     place: vec2<f32>,
@@ -19,13 +13,13 @@ struct Node {
 // A node, whose cell is `by` from another.
 fn node(at: vec2<i32>, by: vec2<i32>) -> Node {
     let o = at + by;
-    let place = vec2<f32>(sample(NODE_EAST, o), sample(NODE_SOUTH, o)) + vec2<f32>(by);
-    return Node(place, sample(NODE_HEIGHT, o), sample(NODE_HALF, o), sample(NODE_DEPTH, o));
+    let place = vec2<f32>(sample(NODE_EAST, cell_at(o)), sample(NODE_SOUTH, cell_at(o))) + vec2<f32>(by);
+    return Node(place, sample(NODE_HEIGHT, cell_at(o)), sample(NODE_HALF, cell_at(o)), sample(NODE_DEPTH, cell_at(o)));
 }
 
 // Lowers the ground to a bed.
 fn lower_ground(at: vec2<i32>, bed: f32) {
-    let index = index_of(GROUND, at);
+    let index = word_index(GROUND, cell_at(at));
     var now = atomicLoad(&words[index]);
     while (bed < bitcast<f32>(now)) {
         let outcome = atomicCompareExchangeWeak(&words[index], now, bitcast<u32>(bed));
@@ -36,10 +30,10 @@ fn lower_ground(at: vec2<i32>, bed: f32) {
     }
 }
 
-// Cuts the bed of the link from a node. Before the words of the level are first column, first row, columns and rows of the samples that are cut.
+// Cuts the bed of the link from a node.
 fn cut_bed(base: u32, at: vec2<i32>) {
-    let area = sample(AREA, at) * square_metres(base);
-    let receiver = sample(RECEIVER, at);
+    let area = sample(AREA, cell_at(at)) * square_metres(base);
+    let receiver = sample(RECEIVER, cell_at(at));
     if (area < stream(base) || receiver >= NONE) {
         return;
     }
@@ -51,8 +45,8 @@ fn cut_bed(base: u32, at: vec2<i32>) {
     }
     let left_top = vec2<i32>(floor(min(origin.place, end.place) - half));
     let right_bottom = vec2<i32>(ceil(max(origin.place, end.place) + half));
-    let first = vec2<i32>(vec2<u32>(data[base + 37u], data[base + 38u]));
-    let last = first + vec2<i32>(vec2<u32>(data[base + 39u], data[base + 40u])) - vec2<i32>(1);
+    let first = window_first();
+    let last = first + window_size() - vec2<i32>(1);
     let along = end.place - origin.place;
     let square = max(dot(along, along), 1e-6);
     let from_cell = max(at + left_top, first);
@@ -65,7 +59,7 @@ fn cut_bed(base: u32, at: vec2<i32>) {
             let beside = there - share * along;
             let wide = mix(origin.half, end.half, share);
             let across = dot(beside, beside) / (wide * wide);
-            if (across < 1.0 && (atomicLoad(&words[index_of(WATER_LEVEL, o)]) & 0x7f800000u) == 0x7f800000u) {
+            if (across < 1.0 && is_missing_word(word(WATER_LEVEL, cell_at(o)))) {
                 let profile = 1.0 - across * across;
                 let bed = origin.height + share * (end.height - origin.height) - (origin.depth + share * (end.depth - origin.depth)) * profile;
                 lower_ground(o, bed);

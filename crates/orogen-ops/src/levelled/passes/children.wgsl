@@ -6,7 +6,7 @@ fn place(base: u32, at: vec2<i32>) {
     if (!has(base, FINEST)) {
         let parent = at / 2;
         let bit = vec2<u32>(at & vec2<i32>(1));
-        let bits = child_bits(base, 1u, at);
+        let bits = child_bits(place_hash(base), at);
         let draw = vec2<f32>(unit(bits), second_unit(bits));
         position = 0.5 + 0.8 * (draw - 0.5);
         if (heir(parent) == (bit.x | (bit.y << 1u))) {
@@ -20,7 +20,7 @@ fn place(base: u32, at: vec2<i32>) {
 
 // A number of nearly normal distribution, from hashed bits.
 fn normal(base: u32, at: vec2<i32>, change: u32) -> f32 {
-    let bits = mix64(child_bits(base, 1u, at) ^ vec2<u32>(change, 0u));
+    let bits = mix64(child_bits(place_hash(base), at) ^ vec2<u32>(change, 0u));
     let sum = (bits.x & 0xffffu) + (bits.x >> 16u) + (bits.y & 0xffffu) + (bits.y >> 16u);
     return (f32(sum) * 1.52587890625e-5 - 2.0) * 1.7320508;
 }
@@ -55,7 +55,7 @@ fn uplift_of(base: u32, at: vec2<i32>) -> f32 {
     if (has(base, DETAIL)) {
         return inherited + amplitude(base) * roughness(inherited) * normal(base, at, 0x3333u);
     }
-    let value = given(base, GIVEN_UPLIFT, at);
+    let value = given(given_uplift(base), at);
     if (is_missing(value)) {
         return inherited;
     }
@@ -74,7 +74,7 @@ fn shore_of(base: u32, at: vec2<i32>, uplift: f32) -> f32 {
     if (has(base, LAKES) && any(lakes)) {
         return blended(min(shores, vec4<f32>(beside_lakes(base)))) + 0.55 * irregular;
     }
-    let value = given(base, GIVEN_SHORE, at);
+    let value = given(given_shore(base), at);
     if (is_missing(value)) {
         return blended(shores) + irregular;
     }

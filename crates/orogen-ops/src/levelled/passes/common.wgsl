@@ -1,5 +1,5 @@
-// What the passes of drained land have in common: orogen-grid's `multiscale`. The numbers are those of `Refinement::words`, and then the planes of what is given,
-// 0 where nothing is.
+// What the passes of drained land have in common: orogen-grid's `multiscale`. What reads the numbers of `Refinement::words`, and the
+// planes of what is given, stands before it.
 //
 // Planes of the level, and of the level above.
 const EAST = 0u;
@@ -44,43 +44,12 @@ const WATER = 8.0;
 const UNKNOWN = 1e30;
 const KNOWN = 1e29;
 
-const FINEST = 1u;
-const DETAIL = 2u;
-const FLOORS = 4u;
-const LAKES = 8u;
-const SEA = 16u;
-
 fn has(base: u32, flag: u32) -> bool {
-    return (data[base] & flag) != 0u;
+    return (flags(base) & flag) != 0u;
 }
 
-fn wander(base: u32) -> f32 { return number(base, 9u); }
-fn amplitude(base: u32) -> f32 { return number(base, 10u); }
-fn indent(base: u32) -> f32 { return number(base, 11u); }
-fn kilometres(base: u32) -> f32 { return number(base, 12u); }
-fn cell(base: u32) -> f32 { return number(base, 13u); }
-fn least_rise(base: u32) -> f32 { return number(base, 14u); }
-fn floor_area(base: u32) -> f32 { return number(base, 15u); }
-fn river_slope(base: u32) -> f32 { return number(base, 16u); }
-fn stable_slope(base: u32) -> f32 { return number(base, 17u); }
-fn free_area(base: u32) -> f32 { return number(base, 18u); }
-fn beside_lakes(base: u32) -> f32 { return number(base, 19u); }
-fn kept_fall(base: u32) -> f32 { return number(base, 20u); }
-fn cut_area(base: u32) -> f32 { return number(base, 21u); }
-fn river_slope_above(base: u32) -> f32 { return number(base, 22u); }
-fn cell_above(base: u32) -> f32 { return number(base, 23u); }
-
-// Words of the planes of what is given.
-const GIVEN_SHORE = 24u;
-const GIVEN_UPLIFT = 25u;
-const GIVEN_STABILITY = 26u;
-const GIVEN_CREEP = 27u;
-const GIVEN_FLOOR = 28u;
-const GIVEN_RAIN = 29u;
-
-// What is given at a node; missing if nothing is.
-fn given(base: u32, word: u32, at: vec2<i32>) -> f32 {
-    let k = data[base + word];
+// What plane `k` gives for a node; missing if it is 0.
+fn given(k: u32, at: vec2<i32>) -> f32 {
     if (k == 0u) {
         return missing();
     }
@@ -88,8 +57,8 @@ fn given(base: u32, word: u32, at: vec2<i32>) -> f32 {
 }
 
 // A factor that is given, within a range; 1 if nothing is.
-fn factor(base: u32, word: u32, at: vec2<i32>, low: f32, high: f32) -> f32 {
-    let value = given(base, word, at);
+fn factor(k: u32, at: vec2<i32>, low: f32, high: f32) -> f32 {
+    let value = given(k, at);
     if (is_missing(value)) {
         return 1.0;
     }
@@ -118,26 +87,25 @@ fn mix64(a: vec2<u32>) -> vec2<u32> {
     return folded(times(folded(b, 27u), vec2<u32>(0x133111ebu, 0x94d049bbu)), 31u);
 }
 
-// The random bits of a node. `word` is that of the start of the hashes.
-fn node_bits(base: u32, word: u32, x: vec2<u32>, y: vec2<u32>) -> vec2<u32> {
-    let begin = vec2<u32>(data[base + word], data[base + word + 1u]);
+// The random bits of a node by the start of the hashes.
+fn node_bits(begin: vec2<u32>, x: vec2<u32>, y: vec2<u32>) -> vec2<u32> {
     let column = mix64(begin ^ times(x, vec2<u32>(0x6659fd93u, 0xd6e8feb8u)));
     return mix64(plus(column, times(y, vec2<u32>(0x78bd642fu, 0xa0761d64u))));
 }
 
 // The random bits of a child, and of a parent.
-fn child_bits(base: u32, word: u32, at: vec2<i32>) -> vec2<u32> {
+fn child_bits(begin: vec2<u32>, at: vec2<i32>) -> vec2<u32> {
     let x = plus(first_column(), vec2<u32>(u32(at.x), 0u));
-    return node_bits(base, word, x, plus(first_row(), vec2<u32>(u32(at.y), 0u)));
+    return node_bits(begin, x, plus(first_row(), vec2<u32>(u32(at.y), 0u)));
 }
 
 fn halved(a: vec2<u32>) -> vec2<u32> {
     return vec2<u32>((a.x >> 1u) | (a.y << 31u), bitcast<u32>(bitcast<i32>(a.y) >> 1u));
 }
 
-fn parent_bits(base: u32, word: u32, at: vec2<i32>) -> vec2<u32> {
+fn parent_bits(begin: vec2<u32>, at: vec2<i32>) -> vec2<u32> {
     let x = plus(halved(first_column()), vec2<u32>(u32(at.x), 0u));
-    return node_bits(base, word, x, plus(halved(first_row()), vec2<u32>(u32(at.y), 0u)));
+    return node_bits(begin, x, plus(halved(first_row()), vec2<u32>(u32(at.y), 0u)));
 }
 
 // Numbers from 0 to 1 by the upper 24 bits, by the next 24, and by a part of 16 bits.

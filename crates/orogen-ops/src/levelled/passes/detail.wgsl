@@ -61,7 +61,7 @@ fn prepare(base: u32, at: vec2<i32>) {
     let scree = face * (1.0 - share_between(position, 0.3, 0.5));
     let steeper = 1.0 + 0.6 * (face - scree) * (1.0 - 0.675 / max(stable, 0.675));
     let rock = min(stable * steeper, max(2.5, stable));
-    let bits = parent_bits(base, 7u, at);
+    let bits = parent_bits(detail_hash(base), at);
     set_above(EAST, at, 0.5 + 0.5 * (unit(bits) - 0.5));
     set_above(SOUTH, at, 0.5 + 0.5 * (second_unit(bits) - 0.5));
     set_above(VARIATION, at, above(VARIATION, at) + 2.0 * scree + above(UPLIFT, at));

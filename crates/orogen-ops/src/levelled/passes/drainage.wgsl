@@ -8,7 +8,7 @@ fn donates(at: vec2<i32>, code: u32) -> bool {
 // Each cell adds up what its donors had. In the first step what is not a river yet has drained nothing: the areas of rivers contain it.
 fn add_areas(base: u32, at: vec2<i32>) {
     let is_first = (frame.step >> 16u) != 0u;
-    var total = factor(base, GIVEN_RAIN, at, 0.01, 100.0);
+    var total = factor(given_rain(base), at, 0.01, 100.0);
     for (var code = 0u; code < 8u; code += 1u) {
         if (donates(at, code)) {
             let area = plane(frame.step & 0xffu, at + step_of(code));

@@ -39,14 +39,14 @@ fn set_law(base: u32, at: vec2<i32>) {
         let logarithm = variation + uplift;
         slopes = vec2<f32>(river_slope(base) * exponential(logarithm), stable_slope(base) * exponential(0.3 * logarithm));
     }
-    slopes.y *= factor(base, GIVEN_STABILITY, at, 0.01, 100.0);
+    slopes.y *= factor(given_stability(base), at, 0.01, 100.0);
     if (has(base, DETAIL)) {
         slopes = kept_slope(base, at, slopes);
     }
     set_plane(RIVER, at, slopes.x);
     set_plane(STABLE, at, slopes.y);
     let width = min(exponential(-(variation + uplift)), 4.0);
-    set_plane(WIDTH, at, width * factor(base, GIVEN_FLOOR, at, 0.01, 100.0));
+    set_plane(WIDTH, at, width * factor(given_floor(base), at, 0.01, 100.0));
     set_plane(FIRST_FLOOR, at, 0.0);
     // Rivers of a small area choose their receivers again.
     let fixed = plane(FIXED, at);

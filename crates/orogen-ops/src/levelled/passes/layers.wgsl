@@ -17,17 +17,6 @@ const SURFACE = 13u;
 const RIVER_WIDTH = 14u;
 const RIVER_DEPTH = 15u;
 
-// Where samples are in their cells, as a share of the sides.
-fn inside(base: u32) -> f32 { return number(base, 30u); }
-// The mean change of heights by finer levels, as a share of the rise to a node at the source of a river.
-fn mean_change(base: u32) -> f32 { return number(base, 31u); }
-fn sea_level(base: u32) -> f32 { return number(base, 32u); }
-// Least area of rivers in m^2, discharge in m^3/s from a m^2, and width and depth of a river of 1 m^3/s.
-fn stream(base: u32) -> f32 { return number(base, 33u); }
-fn runoff(base: u32) -> f32 { return number(base, 34u); }
-fn width_of_one(base: u32) -> f32 { return number(base, 35u); }
-fn depth_of_one(base: u32) -> f32 { return number(base, 36u); }
-
 fn square_metres(base: u32) -> f32 {
     return cell(base) * cell(base);
 }

@@ -8,7 +8,7 @@ fn across_side(base: u32, at: vec2<i32>, by: vec2<i32>, straight: vec2<u32>) -> 
     let to = at + by;
     let begin = child_of(at, heir(at));
     let end = child_of(to, heir(to));
-    let bits = parent_bits(base, 3u, at);
+    let bits = parent_bits(wander_hash(base), at);
     var shortest = UNKNOWN;
     var best = vec2<u32>(0u);
     for (var choice = 0u; choice < 4u; choice += 1u) {
@@ -76,7 +76,7 @@ fn go_around(base: u32, at: vec2<i32>) {
     if (!has(base, FINEST) && link.kept && drains(code) && (u32(code) & 1u) != 0u) {
         let exit = child_of(at, link.leaves);
         let entry = child_of(receiver_of(at), link.arrives);
-        let bits = parent_bits(base, 5u, at);
+        let bits = parent_bits(diagonal_hash(base), at);
         var shortest = distance_of(exit, entry) * (1.0 + wander(base) * unit16(bits, 0u));
         for (var around = 1u; around < 3u; around += 1u) {
             let child = passed(at, link, around);

@@ -21,7 +21,7 @@ fn below(base: u32, parent: vec2<i32>) -> Below {
     var found = Below(BELOW_LAND, 0u, 0.0);
     for (var flip = 0u; flip < 4u; flip += 1u) {
         let corner = own ^ flip;
-        let metres = given(base, GIVEN_SHORE, child_of(parent, corner));
+        let metres = given(given_shore(base), child_of(parent, corner));
         if (is_missing(metres)) {
             return Below(BELOW_UNKNOWN, 0u, 0.0);
         }
