@@ -25,8 +25,8 @@ const TAKE_OVER: Pass =
 /// [`stays`](PassRun::stays) they are in memory, otherwise on the card if they fit into its buffers. `Ok(None)` if the
 /// work was cancelled; `is_cancelled` is asked between parts of it. The result is the same in each run on a device.
 ///
-/// Passes whose planes fit into the [largest buffer](Gpu::buffer_limit) together stay on the card. Those that do not fit
-/// are computed in tiles, each from its own part of what it is made from.
+/// Passes whose planes fit into the [largest buffer](Gpu::buffer_limit) together stay on the card. Those that do not
+/// fit are computed in tiles, each from its own part of what it is made from.
 ///
 /// # Errors
 /// If the device was lost, has too little memory for a single sample and what it is made from, or refuses a shader; if

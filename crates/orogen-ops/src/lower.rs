@@ -173,6 +173,15 @@ impl Passes {
         })
     }
 
+    /// With these words after the others, and a function `NAME(base, k)` that reads one of them.
+    #[must_use]
+    pub fn with_table(mut self, name: &str, words: impl IntoIterator<Item = u32>) -> Passes {
+        let line =
+            format!("fn {name}(base: u32, k: u32) -> u32 {{ return data[base + {}u + k]; }}\n", self.words.len());
+        self.head += &line;
+        self.with_words(words)
+    }
+
     /// With words, and a function that reads them.
     fn with_reader(mut self, name: &str, kind: &str, reads: &str, words: impl IntoIterator<Item = u32>) -> Passes {
         self.head += &format!("fn {name}(base: u32) -> {kind} {{ return {reads}; }}\n");

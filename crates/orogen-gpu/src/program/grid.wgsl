@@ -1,9 +1,9 @@
 // Grids at any position. A grid's block: the index of its first sample, its width and height, and a lattice whose cells are its samples.
 
 fn grid_sample(base: u32, i: i32, j: i32) -> f32 {
-    let column = u32(clamp(i, 0, i32(data[base + 1u]) - 1));
-    let row = u32(clamp(j, 0, i32(data[base + 2u]) - 1));
-    return samples[data[base] + row * data[base + 1u] + column];
+    let column = u32(clamp(i, 0, i32(data[base + GRID_COLUMNS]) - 1));
+    let row = u32(clamp(j, 0, i32(data[base + GRID_ROWS]) - 1));
+    return samples[data[base] + row * data[base + GRID_COLUMNS] + column];
 }
 
 // Index of a sample along an axis. Windows are at most 2^31 samples wide, and beyond them the border continues.
@@ -30,8 +30,8 @@ fn grid_row(base: u32, i: i32, j: i32, u: f32) -> f32 {
 }
 
 fn grid_height(base: u32, place: Placement) -> f32 {
-    let x = cell_at(base + 3u, 0u, place);
-    let y = cell_at(base + 3u, 1u, place);
+    let x = cell_at(base + GRID_LATTICE, 0u, place);
+    let y = cell_at(base + GRID_LATTICE, 1u, place);
     let i = grid_index(x);
     let j = grid_index(y);
     let rows = vec4<f32>(grid_row(base, i, j - 1, x.t), grid_row(base, i, j, x.t), grid_row(base, i, j + 1, x.t), grid_row(base, i, j + 2, x.t));
@@ -39,15 +39,15 @@ fn grid_height(base: u32, place: Placement) -> f32 {
 }
 
 fn grid_label(base: u32, place: Placement) -> f32 {
-    let x = cell_at(base + 3u, 0u, place);
-    let y = cell_at(base + 3u, 1u, place);
+    let x = cell_at(base + GRID_LATTICE, 0u, place);
+    let y = cell_at(base + GRID_LATTICE, 1u, place);
     return grid_sample(base, grid_index(x) + select(0, 1, x.t >= 0.5), grid_index(y) + select(0, 1, y.t >= 0.5));
 }
 
 // Linear in the logarithms of the four surrounding samples; the nearest sample if one of them is not positive.
 fn grid_flow(base: u32, place: Placement) -> f32 {
-    let x = cell_at(base + 3u, 0u, place);
-    let y = cell_at(base + 3u, 1u, place);
+    let x = cell_at(base + GRID_LATTICE, 0u, place);
+    let y = cell_at(base + GRID_LATTICE, 1u, place);
     let i = grid_index(x);
     let j = grid_index(y);
     let north = vec2<f32>(grid_sample(base, i, j), grid_sample(base, i + 1, j));
@@ -63,5 +63,5 @@ fn grid_flow(base: u32, place: Placement) -> f32 {
 
 // A grid with the same samples as the block: its block has the index of the sample at the block's corner, and its width.
 fn grid_copy(base: u32, place: Placement) -> f32 {
-    return samples[data[base] + place.row * data[base + 1u] + place.column];
+    return samples[data[base] + place.row * data[base + GRID_COLUMNS] + place.column];
 }

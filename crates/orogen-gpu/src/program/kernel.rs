@@ -5,12 +5,15 @@ use super::functions;
 use crate::job::GROUP;
 use orogen_engine::device::{Lowered, LoweredCoords, LoweredOperand, LoweredProgram};
 use orogen_engine::layer::LayerKind;
-use orogen_noise::shader::function::PLACE;
+use orogen_noise::shader::lattice::PLACE;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::ops::Range;
 
-const GRID: &str = include_str!("grid.wgsl");
+orogen_noise::shader_constants! {
+    // Words of a grid, after the index of its first sample.
+    pub GRID = "grid.wgsl", GRID_COLUMNS = 1, GRID_ROWS = 2, GRID_LATTICE = 3
+}
 
 /// A word of a kernel's data, before it is known where things are.
 #[derive(Debug, Clone, Copy, PartialEq)]

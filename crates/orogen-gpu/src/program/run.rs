@@ -1,6 +1,6 @@
 //! Running a program on a device: tile by tile, kernel by kernel.
 
-use super::kernel::{Kernel, Word, kernel, parts};
+use super::kernel::{GRID_COLUMNS, GRID_LATTICE, GRID_ROWS, Kernel, Word, kernel, parts};
 use super::positions;
 use crate::failure::Failure;
 use crate::gpu::Gpu;
@@ -165,11 +165,14 @@ impl<'a> Run<'a> {
         let (window, start) = (self.part(grid, tile), starts[grid] as i64);
         if self.copies[i] {
             let first = start + (tile.y - window.y) * window.width as i64 + (tile.x - window.x);
-            data.extend([first as u32, window.width as u32]);
-            return data.len() as u32 - 2;
+            let base = data.len();
+            data.resize(base + GRID_ROWS, 0);
+            (data[base], data[base + GRID_COLUMNS]) = (first as u32, window.width as u32);
+            return base as u32;
         }
         let lattice = Lattice::square(1.0 / window.cell, [-(window.x as f64), -(window.y as f64)]);
-        let words = vec![start as u32, window.width as u32, window.height as u32];
+        let mut words = vec![start as u32; GRID_LATTICE];
+        (words[GRID_COLUMNS], words[GRID_ROWS]) = (window.width as u32, window.height as u32);
         Shader { words, ..Shader::new("", "", &[]) }.on(lattice).encode(&sets[coords], true, data)
     }
 }

@@ -1,9 +1,5 @@
 // What a ray meets: the land and its surroundings.
 
-const AROUND_TABLE = 0u;
-const AROUND_SEA = 1u;
-const AROUND_MIRRORS = 2u;
-
 // A ray in the land's own coordinates, mirrored or not.
 struct Ray {
     start: vec3<f32>,

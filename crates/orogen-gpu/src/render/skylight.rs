@@ -37,6 +37,36 @@ impl Sweep {
         let drift = self.slant() * self.length.saturating_sub(1) as f64;
         ((-drift.max(0.0)) as i32 - 1, self.lines + drift.abs() as usize + 3)
     }
+
+    /// The words of its dispatches, by their names in the shader. `starts` are the indices of the table of its light
+    /// and of the grids.
+    fn words(&self, columns: usize, starts: [u32; 5]) -> [(&'static str, u32); 16] {
+        let [dome, turned, horizons, hulls, shed] = starts;
+        let (first, lines) = self.starts();
+        let strides = if self.turned { [columns, 1] } else { [1, columns] };
+        let float = |value: f64| (value as f32).to_bits();
+        [
+            ("LENGTH", self.length as u32),
+            ("LINES", self.lines as u32),
+            ("FIRST_LINE", first.cast_unsigned()),
+            ("LINE_COUNT", lines as u32),
+            // Rows per column of a line, and the distance of a column along it.
+            ("SLANT", float(self.slant())),
+            ("STEP", float(1.0 / self.towards[0].abs())),
+            ("FORWARDS", u32::from(self.towards[0] > 0.0)),
+            // The ground with the samples of a column of the sweep next to each other.
+            ("BED", if self.turned { 0 } else { turned }),
+            ("ALONG", float(self.towards[0])),
+            ("ACROSS", float(self.towards[1])),
+            ("DOME", dome),
+            ("HORIZONS", horizons),
+            ("HULLS", hulls),
+            ("SHED", shed),
+            // Strides of the light.
+            ("STRIDE_ALONG", strides[0] as u32),
+            ("STRIDE_ACROSS", strides[1] as u32),
+        ]
+    }
 }
 
 /// Computes the light of the sky on every sample of the land. `is_cancelled` is asked between parts of the work;
@@ -49,7 +79,10 @@ pub fn skylight(
     input: &SkylightInput,
     is_cancelled: impl Fn() -> bool,
 ) -> Result<Option<Vec<Shed>>, Failure> {
-    let text = format!("const ENTRIES = {ENTRIES}u;\n{}", include_str!("skylight.wgsl"));
+    let mut text = format!("const ENTRIES = {ENTRIES}u;\n{}", include_str!("skylight.wgsl"));
+    for (k, (name, _)) in Sweep::new(input.size, [1.0, 0.0]).words(0, [0; 5]).into_iter().enumerate() {
+        text += &format!("const {name} = {k}u;\n");
+    }
     let [columns, rows] = input.size;
     let count = columns * rows;
     let sweeps: Vec<Sweep> = input.directions.iter().map(|(towards, _)| Sweep::new(input.size, *towards)).collect();
@@ -66,28 +99,9 @@ pub fn skylight(
         let table = data.len() as u32;
         data.extend(dome.sums.as_flattened().as_flattened().iter().map(|light| light.to_bits()));
         let base = data.len() as u32;
-        let (first, lines) = sweep.starts();
-        let strides = if sweep.turned { [columns, 1] } else { [1, columns] };
-        let float = |value: f64| (value as f32).to_bits();
-        data.extend([
-            sweep.length as u32,
-            sweep.lines as u32,
-            first.cast_unsigned(),
-            lines as u32,
-            float(sweep.slant()),
-            float(1.0 / sweep.towards[0].abs()),
-            u32::from(sweep.towards[0] > 0.0),
-            // Column by column of the sweep.
-            if sweep.turned { 0 } else { turned as u32 },
-            float(sweep.towards[0]),
-            float(sweep.towards[1]),
-            table,
-            horizons as u32,
-            hulls as u32,
-            shed as u32,
-            strides[0] as u32,
-            strides[1] as u32,
-        ]);
+        let (_, lines) = sweep.starts();
+        let starts = [table, turned as u32, horizons as u32, hulls as u32, shed as u32];
+        data.extend(sweep.words(columns, starts).map(|(_, word)| word));
         let groups = (lines as u32).div_ceil(INVOCATIONS);
         dispatches.push(Dispatch { text: &text, base, size: [groups * GROUP, GROUP], ..Dispatch::default() });
         dispatches.push(Dispatch {

@@ -2,27 +2,7 @@
 //
 // For each direction, two shaders run: with `frame.step` 0 each invocation follows a line across the land and keeps the convex hull of the ground passed; with 1 each
 // invocation adds the light above the horizon of a sample. Lines of one direction are next to each other in memory, so that neighboring invocations read neighboring
-// words. The CPU twin is `orogen-output/src/render/skylight.rs`.
-
-// Words of a dispatch.
-const LENGTH = 0u;
-const LINES = 1u;
-const FIRST_LINE = 2u;
-const LINE_COUNT = 3u;
-// Rows per column of a line, and the distance of a column along it.
-const SLANT = 4u;
-const STEP = 5u;
-const FORWARDS = 6u;
-// The ground with the samples of a column of the sweep next to each other.
-const BED = 7u;
-// The horizontal direction: along the columns of the sweep, and across them.
-const TOWARDS = 8u;
-const DOME = 10u;
-const HORIZONS = 11u;
-const HULLS = 12u;
-const SHED = 13u;
-// Strides of the light, along the columns of the sweep and across them.
-const STRIDES = 14u;
+// words. The names of the words stand before this text. The CPU twin is `orogen-output/src/render/skylight.rs`.
 
 fn word(index: u32) -> u32 {
     return data[frame.base + index];
@@ -127,9 +107,9 @@ fn add_light(i: i32, j: i32) {
     let gx = (bed_at(east, j) - bed_at(west, j)) / f32(max(east - west, 1));
     let gy = (bed_at(i, below) - bed_at(i, above)) / f32(max(below - above, 1));
     let up = 1.0 / sqrt(1.0 + gx * gx + gy * gy);
-    let lean = -(gx * float_word(TOWARDS) + gy * float_word(TOWARDS + 1u)) * up;
+    let lean = -(gx * float_word(ALONG) + gy * float_word(ACROSS)) * up;
     let light = dome_light(slope, lean, up);
-    let to = word(SHED) + 4u * (u32(i) * word(STRIDES) + u32(j) * word(STRIDES + 1u));
+    let to = word(SHED) + 4u * (u32(i) * word(STRIDE_ALONG) + u32(j) * word(STRIDE_ACROSS));
     samples[to] += light.x;
     samples[to + 1u] += light.y;
     samples[to + 2u] += light.z;
@@ -150,7 +130,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_
         return;
     }
     // Neighboring invocations take neighboring samples of the land.
-    if (word(STRIDES) == 1u) {
+    if (word(STRIDE_ALONG) == 1u) {
         add_light(i32(id.x), i32(id.y));
     } else {
         add_light(i32(id.y), i32(id.x));

@@ -103,21 +103,21 @@ impl LocalStreamPower {
     /// The constants of an iteration, in the order of `Constants`.
     #[doc(hidden)]
     #[must_use]
-    pub fn numbers(&self) -> [f32; 11] {
+    pub fn numbers(&self) -> [(&'static str, f32); 11] {
         let c = self.constants();
         [
-            c.per_side,
-            c.per_corner,
-            c.cell_area,
-            c.cut,
-            c.area_exponent,
-            c.slope_exponent,
-            c.risen,
-            c.laid,
-            c.years,
-            c.spread,
+            ("per_side", c.per_side),
+            ("per_corner", c.per_corner),
+            ("cell_area", c.cell_area),
+            ("cut_rate", c.cut),
+            ("area_exponent", c.area_exponent),
+            ("slope_exponent", c.slope_exponent),
+            ("risen", c.risen),
+            ("laid_rate", c.laid),
+            ("step_years", c.years),
+            ("spread", c.spread),
             // No reader needs to expect an infinite number.
-            c.sea_level.max(f32::MIN),
+            ("sea_level", c.sea_level.max(f32::MIN)),
         ]
     }
 

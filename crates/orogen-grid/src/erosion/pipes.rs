@@ -210,9 +210,19 @@ impl Pipes {
     /// depth of 1 m.
     #[doc(hidden)]
     #[must_use]
-    pub fn numbers(&self, cell: f64) -> [f32; 9] {
+    pub fn numbers(&self, cell: f64) -> [(&'static str, f32); 9] {
         let Constants { pull, kept, rain, capacity, level, erosion, deposition, left } = self.constants(cell);
-        [pull, kept, rain, capacity, level, erosion, deposition, left, self.speed_scale(cell)]
+        [
+            ("pull", pull),
+            ("kept", kept),
+            ("rained", rain),
+            ("capacity", capacity),
+            ("level_slope", level),
+            ("erosion", erosion),
+            ("deposition", deposition),
+            ("kept_water", left),
+            ("speed_scale", self.speed_scale(cell)),
+        ]
     }
 
     /// The speed in m/s of a flow over two sides in a depth of 1 m.

@@ -48,7 +48,10 @@ pub struct Level {
 
 impl Level {
     /// Number of planes.
-    pub const PLANES: usize = 8;
+    pub const PLANES: usize = Level::PLANE_NAMES.len();
+
+    /// Their names in shaders, in the order of the fields.
+    pub const PLANE_NAMES: [&str; 8] = ["EAST", "SOUTH", "HEIGHT", "AREA", "RECEIVER", "VARIATION", "UPLIFT", "SHORE"];
 
     /// Each plane as a grid over the window, in the order of the fields.
     #[must_use]

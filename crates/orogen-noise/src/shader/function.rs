@@ -2,9 +2,6 @@
 
 use super::lattice::{AxisWords, LATTICE_WORDS, Lattice, Positions};
 
-/// The functions that find the cell of a sample: needed by every [`Shader`] with lattices.
-pub const PLACE: &str = include_str!("place.wgsl");
-
 /// A function of WGSL that computes one number per sample.
 ///
 /// Its signature is `fn NAME(base: u32, place: Placement, a: f32, b: f32, ..) -> f32` with one number for each input of
@@ -15,7 +12,7 @@ pub struct Shader {
     /// The name of the function.
     pub name: &'static str,
     /// The parts of the text that defines it, each of which other functions may have, too: the text of a kernel
-    /// contains each once, in this order. [`PLACE`] is always there.
+    /// contains each once, in this order. [`PLACE`](super::lattice::PLACE) is always there.
     pub code: Vec<&'static str>,
     /// Its numbers.
     pub words: Vec<u32>,

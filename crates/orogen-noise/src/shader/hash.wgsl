@@ -26,9 +26,9 @@ fn keyed(words: u32, cell: Cell) -> Keyed {
 
 // The cell of a sample that is not displaced, from a table of keys of columns or rows.
 fn keyed_at(lattice: u32, axis: u32, place: Placement) -> Keyed {
-    let columns = data[lattice + 8u + 2u * axis];
-    let rows = data[lattice + 9u + 2u * axis];
-    let at = select(rows + 3u * place.row, columns + 3u * place.column, columns != 0u);
+    let columns = data[lattice + LATTICE_TABLES + 2u * axis];
+    let rows = data[lattice + LATTICE_TABLES + 2u * axis + 1u];
+    let at = select(rows + TABLED_WORDS * place.row, columns + TABLED_WORDS * place.column, columns != 0u);
     return Keyed(vec2<u32>(data[at], data[at + 1u]), bitcast<f32>(data[at + 2u]));
 }
 

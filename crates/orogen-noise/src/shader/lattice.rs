@@ -22,9 +22,11 @@ pub struct Lattice {
     pub limit: f64,
 }
 
-/// Number of words of a lattice's block: its matrix as pairs of f32, and the tables of columns and rows along each
-/// axis.
-pub const LATTICE_WORDS: usize = 12;
+shader_constants! {
+    /// The functions that find the cell of a sample: needed by every shader with lattices. A lattice's block is its
+    /// matrix as pairs of f32, and the tables of columns and rows along each axis.
+    pub PLACE = "place.wgsl", LATTICE_TABLES = 8, LATTICE_WORDS = 12, TABLED_WORDS = 3
+}
 
 impl Lattice {
     /// Square cells along the axes, `1 / frequency` metres large.
@@ -63,8 +65,8 @@ impl Lattice {
             // The offset belongs to one of them.
             let (to_columns, to_rows) = if columns.is_empty() { (0.0, offset) } else { (offset, 0.0) };
             let hash = hash.map(|words| words[axis]);
-            block[8 + 2 * axis] = table(&columns, to_columns, hash, data);
-            block[9 + 2 * axis] = table(&rows, to_rows, hash, data);
+            block[LATTICE_TABLES + 2 * axis] = table(&columns, to_columns, hash, data);
+            block[LATTICE_TABLES + 2 * axis + 1] = table(&rows, to_rows, hash, data);
         }
         block
     }
@@ -113,7 +115,8 @@ fn table(coordinates: &[f64], offset: f64, hash: Option<[u32; 2]>, data: &mut Ve
             Some(words) => [key(words, cell), key(words, cell.wrapping_add(1))],
             None => [cell as u32, (cell >> 32) as u32],
         };
-        data.extend([first, second, fraction.to_bits()]);
+        let words: [u32; TABLED_WORDS] = [first, second, fraction.to_bits()];
+        data.extend(words);
     }
     at
 }

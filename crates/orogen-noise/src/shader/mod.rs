@@ -1,5 +1,18 @@
 //! Noise for graphics cards: functions of WGSL, and the numbers that they read.
 
+/// Declares numbers that shaders share with this side: as constants here, and in a text of WGSL, which ends with that
+/// of a file.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! shader_constants {
+    ($(#[$about:meta])* $seen:vis $text:ident = $file:literal, $($name:ident = $value:literal),+) => {
+        $($seen const $name: usize = $value;)+
+        $(#[$about])*
+        $seen const $text: &str =
+            concat!($("const ", stringify!($name), " = ", $value, "u;\n",)+ include_str!($file));
+    };
+}
+
 pub mod function;
 pub mod lattice;
 mod noise;

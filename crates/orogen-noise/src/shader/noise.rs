@@ -1,8 +1,8 @@
 //! Noises as functions of WGSL. The text depends only on the kind of lattice and on the kind of sum; all parameters are
 //! words.
 
-use super::function::{PLACE, Shader, Undisplaced};
-use super::lattice::Lattice;
+use super::function::{Shader, Undisplaced};
+use super::lattice::{Lattice, PLACE};
 use crate::choices::{ClassicVariant, Distance, Fade, Falloff, Feature, Smoothness};
 use crate::kernel::open_simplex::{Open, WIDE_REACH, WIDE_SCALE};
 use crate::kernel::simplex::{Corners, Plain, REACH, SKEW};
@@ -12,8 +12,23 @@ use std::sync::OnceLock;
 
 /// The hash of lattice points.
 pub(super) const HASH: &str = include_str!("hash.wgsl");
-/// How octaves are stored, and displaced.
-const OCTAVES: &str = include_str!("octaves.wgsl");
+
+shader_constants! {
+    /// How octaves are stored, and displaced.
+    OCTAVES = "octaves.wgsl",
+    // Words before the octaves, after their number.
+    NOISE_SOURCE_WORDS = 1, NOISE_SKEW = 2, NOISE_PARAMETERS = 3, NOISE_OCTAVES = 6,
+    // Words of an octave, after those of the hash.
+    NOISE_AMPLITUDE = 4, NOISE_SLOPE = 5, NOISE_GAIN = 6, NOISE_SHIFT = 7, NOISE_PER_RATIO = 8, NOISE_OCTAVE = 9
+}
+
+// Words of sources.
+shader_constants! { CLASSIC = "source/classic.wgsl", CLASSIC_TABLE = 1, CLASSIC_GRADIENTS = 65 }
+shader_constants! { SIMPLEX = "source/simplex.wgsl", SIMPLEX_REACH = 1, SIMPLEX_SCALE = 2, SIMPLEX_DIRECTIONS = 3 }
+shader_constants! {
+    WORLEY = "source/worley.wgsl",
+    WORLEY_JITTER = 0, WORLEY_REST = 1, WORLEY_DISTANCE = 2, WORLEY_FEATURE = 3, WORLEY_SCALE = 4
+}
 
 /// What the functions of a source start with, and their text.
 struct Family {
@@ -27,9 +42,9 @@ const GRADIENTS: &str = include_str!("source/gradients.wgsl");
 const FAMILIES: [Family; 5] = [
     Family { name: "value", code: &[include_str!("source/value.wgsl")], is_keyed: true },
     Family { name: "perlin", code: &[GRADIENTS, include_str!("source/perlin.wgsl")], is_keyed: true },
-    Family { name: "classic", code: &[GRADIENTS, include_str!("source/classic.wgsl")], is_keyed: false },
-    Family { name: "simplex", code: &[include_str!("source/simplex.wgsl")], is_keyed: false },
-    Family { name: "worley", code: &[include_str!("source/worley.wgsl")], is_keyed: false },
+    Family { name: "classic", code: &[GRADIENTS, CLASSIC], is_keyed: false },
+    Family { name: "simplex", code: &[SIMPLEX], is_keyed: false },
+    Family { name: "worley", code: &[WORLEY], is_keyed: false },
 ];
 
 /// The names of the sums, and their texts. `SOURCE` in them stands for the name of the source's family.
@@ -75,8 +90,11 @@ impl Program {
         let (sum, parameters) = self.combine.encoded();
         let skew_factor = skew as f32;
         let octaves = self.octaves();
-        let mut words = vec![octaves.len() as u32, of_source.len() as u32, skew_factor.to_bits()];
+        let [count, source_words] = [octaves.len(), of_source.len()].map(|count| count as u32);
+        let head = [(0, count), (NOISE_SOURCE_WORDS, source_words), (NOISE_SKEW, skew_factor.to_bits())];
+        let mut words = placed(&head, NOISE_PARAMETERS);
         words.extend(parameters);
+        words.resize(NOISE_OCTAVES, 0);
         for octave in octaves {
             words.extend(octave.words[..2].iter().flatten());
             let shift = match self.combine {
@@ -84,8 +102,15 @@ impl Program {
                 Combine::Shaped { shape: Shape::Jordan { warp, .. }, .. } => warp,
                 _ => 0.0,
             };
-            let numbers = [octave.amplitude, octave.slope, octave.gain, shift, (1.0 / octave.ratio) as f32];
-            words.extend(numbers.map(f32::to_bits));
+            let numbers = [
+                (NOISE_AMPLITUDE, octave.amplitude),
+                (NOISE_SLOPE, octave.slope),
+                (NOISE_GAIN, octave.gain),
+                (NOISE_SHIFT, shift),
+                (NOISE_PER_RATIO, (1.0 / octave.ratio) as f32),
+            ];
+            let numbers = numbers.map(|(at, number)| (at - NOISE_AMPLITUDE, number.to_bits()));
+            words.extend(placed(&numbers, NOISE_OCTAVE - NOISE_AMPLITUDE));
         }
         words.extend(of_source);
         let lattices = octaves.iter().map(|octave| {
@@ -112,7 +137,10 @@ impl Source {
     /// Index of its family, its words, and the skew of its lattice.
     fn encoded(self) -> (usize, Vec<u32>, f64) {
         let slanted = |corners: u32, reach: f32, scale: f32, directions: u32| {
-            (3, vec![corners, reach.to_bits(), scale.to_bits(), directions], SKEW[0])
+            let [reach, scale] = [reach, scale].map(f32::to_bits);
+            let words =
+                [(0, corners), (SIMPLEX_REACH, reach), (SIMPLEX_SCALE, scale), (SIMPLEX_DIRECTIONS, directions)];
+            (3, placed(&words, words.len()), SKEW[0])
         };
         match self {
             Source::Value(fade) => {
@@ -144,10 +172,24 @@ impl Source {
                     Feature::Edge => 5,
                 };
                 let [jitter, rest] = [cellular.jitter, 0.5 - 0.5 * cellular.jitter].map(f32::to_bits);
-                (4, vec![jitter, rest, distance, feature, (2.0 / cellular.bound(2)).to_bits()], 0.0)
+                let words = [
+                    (WORLEY_JITTER, jitter),
+                    (WORLEY_REST, rest),
+                    (WORLEY_DISTANCE, distance),
+                    (WORLEY_FEATURE, feature),
+                    (WORLEY_SCALE, (2.0 / cellular.bound(2)).to_bits()),
+                ];
+                (4, placed(&words, words.len()), 0.0)
             }
         }
     }
+}
+
+/// Words at their indices, of this number.
+fn placed(words: &[(usize, u32)], count: usize) -> Vec<u32> {
+    let mut placed = vec![0; count];
+    words.iter().for_each(|(at, word)| placed[*at] = *word);
+    placed
 }
 
 /// The mask of hashes, the permutation, and the gradients of the masked hashes.
@@ -157,9 +199,10 @@ fn classic(variant: ClassicVariant) -> Vec<u32> {
         ClassicVariant::Eight => (7, |hash| [reference::EIGHT_X[hash], reference::EIGHT_Y[hash]]),
         ClassicVariant::Angle => (255, |hash| [reference::SINE[(hash + 64) & 255], reference::SINE[hash]]),
     };
-    let mut words = vec![mask as u32];
+    let mut words = placed(&[(0, mask as u32)], CLASSIC_TABLE);
     let packed = |bytes: &[u32]| bytes.iter().rev().fold(0, |word, byte| word << 8 | byte);
     words.extend(reference::TABLE.chunks(4).map(packed));
+    words.resize(CLASSIC_GRADIENTS, 0);
     words.extend((0..=mask).flat_map(gradient).map(f32::to_bits));
     words
 }

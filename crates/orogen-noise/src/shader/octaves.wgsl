@@ -3,10 +3,6 @@
 // Head: number of octaves, number of words of the source, skew of the lattice, and three parameters of the combination.
 // Octave: two words of the hash for each axis, amplitude, slope, gain, and the factors of displacements and of slopes in swiss and jordan noise.
 
-const NOISE_OCTAVES: u32 = 6u;
-const NOISE_OCTAVE: u32 = 9u;
-const NOISE_LATTICE: u32 = 12u;
-
 // A value and its slopes along x and y.
 struct NoiseSloped {
     value: f32,
@@ -20,12 +16,12 @@ fn noise_source(base: u32) -> u32 {
 
 // Index of the lattice of the first octave.
 fn noise_lattice(base: u32) -> u32 {
-    return noise_source(base) + data[base + 1u];
+    return noise_source(base) + data[base + NOISE_SOURCE_WORDS];
 }
 
 // A sample of an octave with its factors.
 fn noise_scaled(octave: u32, raw: vec3<f32>) -> NoiseSloped {
-    return NoiseSloped(number(octave, 4u) * raw.x, number(octave, 5u) * raw.yz);
+    return NoiseSloped(number(octave, NOISE_AMPLITUDE) * raw.x, number(octave, NOISE_SLOPE) * raw.yz);
 }
 
 fn noise_moved_along(cell: Cell, by: f32) -> Cell {
@@ -36,7 +32,7 @@ fn noise_moved_along(cell: Cell, by: f32) -> Cell {
 // The cell of a sample that earlier octaves have displaced by this number of cells.
 fn noise_moved(base: u32, cell: Cell, axis: u32, shift: vec2<f32>) -> Cell {
     let moved = noise_moved_along(cell, shift[axis]);
-    let skew = number(base, 2u);
+    let skew = number(base, NOISE_SKEW);
     if (skew == 0.0) {
         return moved;
     }

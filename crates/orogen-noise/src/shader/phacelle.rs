@@ -1,7 +1,6 @@
 //! Phacelle noise as functions of WGSL.
 
-use super::function::PLACE;
-use super::lattice::Lattice;
+use super::lattice::{Lattice, PLACE};
 use super::noise::HASH;
 use crate::phacelle::Phacelle;
 

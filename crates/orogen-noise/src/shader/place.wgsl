@@ -61,14 +61,14 @@ fn displaced(cell: Cell, metres: f32, factor: vec2<f32>) -> Cell {
 }
 
 fn tabled(table: u32, index: u32) -> Cell {
-    let at = table + 3u * index;
+    let at = table + TABLED_WORDS * index;
     return Cell(data[at], data[at + 1u], bitcast<f32>(data[at + 2u]));
 }
 
 // The cell of a sample along an axis of the lattice whose block starts at `lattice`.
 fn cell_at(lattice: u32, axis: u32, place: Placement) -> Cell {
-    let columns = data[lattice + 8u + 2u * axis];
-    let rows = data[lattice + 9u + 2u * axis];
+    let columns = data[lattice + LATTICE_TABLES + 2u * axis];
+    let rows = data[lattice + LATTICE_TABLES + 2u * axis + 1u];
     var cell = Cell(0u, 0u, 0.0);
     if (columns != 0u) {
         cell = tabled(columns, place.column);

@@ -6,7 +6,7 @@ use crate::lower::Lowering;
 use crate::op::{Field, Inputs, Stencil, WorldParams};
 use orogen_noise::shader::function::Shader;
 use orogen_noise::shader::phacelle::PHACELLE;
-use orogen_noise::{Phacelle, Points};
+use orogen_noise::{Phacelle, Points, shader_constants};
 
 op! {
     /// The source with gullies running down its slopes, made by a field without simulation (erosion filter).
@@ -116,6 +116,15 @@ impl Field for Gullies {
 /// Samples processed together: few enough to stay on the stack.
 const CHUNK: usize = 256;
 
+shader_constants! {
+    CODE = "gullies.wgsl",
+    // Words before the octaves, after their number.
+    GULLIES_PER_DIFFERENCE = 1, GULLIES_ONSET = 2, GULLIES_ASSUMED = 3, GULLIES_WEIGHT = 4, GULLIES_DETAIL = 5,
+    GULLIES_SHARPNESS = 6, GULLIES_OCTAVES = 7,
+    // Words of an octave, after those of its noise.
+    GULLIES_DEPTH = 6, GULLIES_TURN = 7, GULLIES_OCTAVE = 8
+}
+
 impl Gullies {
     /// The octaves: their noise, their depth, and how far they turn the next one.
     fn octaves(&self, world_params: &WorldParams) -> impl Iterator<Item = (Phacelle, f32, f32)> {
@@ -137,23 +146,26 @@ impl Gullies {
     fn shader(&self, world_params: &WorldParams) -> Shader {
         let per_metre = 0.5 / self.step;
         let [weight, detail, sharpness] = [self.weight, self.detail, self.sharpness];
-        let numbers = [per_metre, self.onset, self.assumed_slope, weight, detail, sharpness];
-        let mut words = vec![self.octaves];
-        words.extend(numbers.map(|number| (number as f32).to_bits()));
+        let numbers = [
+            (GULLIES_PER_DIFFERENCE, per_metre),
+            (GULLIES_ONSET, self.onset),
+            (GULLIES_ASSUMED, self.assumed_slope),
+            (GULLIES_WEIGHT, weight),
+            (GULLIES_DETAIL, detail),
+            (GULLIES_SHARPNESS, sharpness),
+        ];
+        let mut words = vec![self.octaves; GULLIES_OCTAVES];
+        numbers.into_iter().for_each(|(at, number)| words[at] = (number as f32).to_bits());
         let mut lattices = Vec::new();
         for (noise, depth, turn) in self.octaves(world_params) {
-            words.extend(noise.shader_words());
-            words.extend([depth.to_bits(), turn.to_bits()]);
+            let mut octave = noise.shader_words();
+            octave.resize(GULLIES_OCTAVE, 0);
+            (octave[GULLIES_DEPTH], octave[GULLIES_TURN]) = (depth.to_bits(), turn.to_bits());
+            words.extend(octave);
             lattices.push(noise.shader_lattice());
         }
         let [place, hash, phacelle] = PHACELLE;
-        Shader {
-            name: "gullies",
-            code: vec![place, hash, phacelle, include_str!("gullies.wgsl")],
-            words,
-            lattices,
-            undisplaced: None,
-        }
+        Shader { name: "gullies", code: vec![place, hash, phacelle, CODE], words, lattices, undisplaced: None }
     }
 
     /// Adds the gullies at up to [`CHUNK`] points to `heights`.

@@ -3,9 +3,6 @@
 // Words: number of octaves, slope per difference, onset, assumed slope, weight, detail, and sharpness. For each octave: six words of
 // its noise, its depth, and how far it turns the next one. The lattices of the octaves follow.
 
-const GULLIES_OCTAVES: u32 = 7u;
-const GULLIES_OCTAVE: u32 = 8u;
-
 fn gullies_soft(t: f32) -> f32 {
     let started = select(t - 0.5, 0.5 * t * t, t < 1.0);
     let left = max(1.0 - started, 0.0);
@@ -23,11 +20,11 @@ fn gullies(
     north: f32,
 ) -> f32 {
     let octaves = data[base];
-    let weight = number(base, 4u);
-    var slope = vec2<f32>(east - west, south - north) * number(base, 1u);
+    let weight = number(base, GULLIES_WEIGHT);
+    var slope = vec2<f32>(east - west, south - north) * number(base, GULLIES_PER_DIFFERENCE);
     let steepness = sqrt(slope.x * slope.x + slope.y * slope.y);
-    var mask = gullies_soft(steepness * number(base, 2u));
-    let assumed = number(base, 3u);
+    var mask = gullies_soft(steepness * number(base, GULLIES_ONSET));
+    let assumed = number(base, GULLIES_ASSUMED);
     if (assumed > 0.0 && steepness > 0.0) {
         slope = slope * (assumed / steepness);
     }
@@ -38,19 +35,19 @@ fn gullies(
     for (var i = 0u; i < octaves; i = i + 1u) {
         let wave = phacelle(octave, cell_at(lattice, 0u, place), cell_at(lattice, 1u, place), slope);
         to = to + (wave.x * weight - to) * mask;
-        height = height + to * number(octave, 6u);
+        height = height + to * number(octave, GULLIES_DEPTH);
         let length = sqrt(slope.x * slope.x + slope.y * slope.y);
         if (length > 0.0 && wave.y != 0.0) {
             // The gradient of a stripe's cosine is minus its sine, across the stripe.
-            let turn = number(octave, 7u) / length;
+            let turn = number(octave, GULLIES_TURN) / length;
             let across = select(-turn, turn, wave.y < 0.0);
             slope = vec2<f32>(slope.x - slope.y * across, slope.y + slope.x * across);
         }
         let left = max(1.0 - mask, 0.0);
-        let kept = select(0.0, pow(max(left, 1e-30), number(base, 5u)), left > 0.0);
-        mask = (1.0 - kept) * gullies_soft(abs(wave.y) * number(base, 6u));
+        let kept = select(0.0, pow(max(left, 1e-30), number(base, GULLIES_DETAIL)), left > 0.0);
+        mask = (1.0 - kept) * gullies_soft(abs(wave.y) * number(base, GULLIES_SHARPNESS));
         octave = octave + GULLIES_OCTAVE;
-        lattice = lattice + 12u;
+        lattice = lattice + LATTICE_WORDS;
     }
     return height;
 }

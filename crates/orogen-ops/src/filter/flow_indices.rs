@@ -71,8 +71,12 @@ impl Filter for FlowIndices {
     }
 
     fn lower(&self, cell: f64, _: &WorldParams) -> Lowering<Passes> {
-        let numbers = [(1.0 / (8.0 * cell)) as f32, cell as f32, self.least_slope as f32];
-        Lowering::Shader(Passes::new(CODE, &numbers).then("indices", 0, [1; 2]))
+        let numbers = [("gradient_scale", 1.0 / (8.0 * cell)), ("cell", cell), ("least_slope", self.least_slope)];
+        Lowering::Shader(
+            Passes::new(CODE, &[])
+                .with_numbers(numbers.map(|(name, number)| (name, number as f32)))
+                .then("indices", 0, [1; 2]),
+        )
     }
 
     fn cost(&self, _: f64) -> f64 {

@@ -1,14 +1,14 @@
 // Indices of wetness and erosion: 1 / (8 cell), the cell, the least slope.
 fn indices(base: u32, at: vec2<i32>) {
-    let cell = number(base, 1u);
-    let rise = gradient(0u, at, number(base, 0u));
+    let cell = cell(base);
+    let rise = gradient(0u, at, gradient_scale(base));
     if (is_missing(rise.x)) {
         set_plane(2u, at, rise.x);
         set_plane(3u, at, rise.x);
         set_plane(4u, at, rise.x);
         return;
     }
-    let slope = max(steepness(rise), number(base, 2u));
+    let slope = max(steepness(rise), least_slope(base));
     let area = max(plane(1u, at) / cell, cell);
     let sine = slope / sqrt(1.0 + slope * slope);
     set_plane(2u, at, log(area / slope));

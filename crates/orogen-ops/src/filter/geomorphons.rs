@@ -74,10 +74,17 @@ impl Filter for Geomorphons {
         let look = self.look(cell);
         let by_difference = f32::from(u8::from(look.level == Level::ByDifference));
         let limit = libm::tan(look.flat.to_radians()) as f32;
-        let mut numbers = vec![look.straight as f32, look.diagonal as f32, limit, by_difference, cell as f32];
-        numbers.extend(CODES.iter().flatten().map(|code| f32::from(*code)));
+        let passes = Passes::new(CODE, &[])
+            .with_numbers([
+                ("straight", look.straight as f32),
+                ("diagonal", look.diagonal as f32),
+                ("limit", limit),
+                ("is_by_difference", by_difference),
+                ("cell", cell as f32),
+            ])
+            .with_table("form", CODES.iter().flatten().map(|code| u32::from(*code)));
         let reach = self.halo(cell);
-        Lowering::Shader(Passes::new(CODE, &numbers).then("forms", 0, [reach; 2]).reading(8 * reach))
+        Lowering::Shader(passes.then("forms", 0, [reach; 2]).reading(8 * reach))
     }
 
     fn cost(&self, cell: f64) -> f64 {

@@ -1,10 +1,10 @@
-// Landforms by lines of sight: samples along the axes and along the diagonals, the tangent of the limit, the rule (1 for the difference of the angles), the
-// cell, then the forms by the numbers of lower and higher directions.
+// Landforms by lines of sight: samples along the axes and along the diagonals, the tangent of the limit, and the forms by the numbers of lower and higher
+// directions.
 // Whether a direction leads up (1), down (-1) or is level (0); 2 if a sample is missing.
 fn look(base: u32, at: vec2<i32>, along: vec2<i32>) -> i32 {
     let center = plane(0u, at);
     let is_diagonal = along.x * along.y != 0;
-    let farthest = i32(select(number(base, 0u), number(base, 1u), is_diagonal));
+    let farthest = i32(select(straight(base), diagonal(base), is_diagonal));
     // The rise and the number of steps of the highest and the lowest line. Products are compared, not quotients: they are exact for heights in whole metres,
     // so that equal slopes up and down cancel.
     var up = vec2<f32>(0.0, 1.0);
@@ -22,13 +22,13 @@ fn look(base: u32, at: vec2<i32>, along: vec2<i32>) -> i32 {
             down = line;
         }
     }
-    let limit = number(base, 2u);
-    let length = number(base, 4u) * select(1.0, 1.4142135, is_diagonal);
+    let limit = limit(base);
+    let length = cell(base) * select(1.0, 1.4142135, is_diagonal);
     let rise = up.x / (up.y * length);
     let fall = down.x / (down.y * length);
     let sum = up.x * down.y + down.x * up.y;
     var tells = max(abs(rise), abs(fall)) > limit;
-    if (number(base, 3u) > 0.0) {
+    if (is_by_difference(base) > 0.0) {
         let rest = 1.0 - rise * fall;
         tells = rest <= 0.0 || abs(sum) / (up.y * down.y * length) > limit * rest;
     }
@@ -51,5 +51,5 @@ fn forms(base: u32, at: vec2<i32>) {
         higher += select(0u, 1u, leads == 1);
         lower += select(0u, 1u, leads == -1);
     }
-    set_plane(1u, at, number(base, 5u + 9u * lower + higher));
+    set_plane(1u, at, f32(form(base, 9u * lower + higher)));
 }

@@ -112,7 +112,7 @@ impl Filter for LocalStreamPower {
         // The layer of the heights, and the other plane that has them after every second iteration.
         const TURNS: [u32; 2] = [2, 7];
         let first = TURNS[(self.iterations % 2) as usize];
-        let passes = Passes::new(CODE, &self.law(cell, world_params).numbers()).with_scratch(3);
+        let passes = Passes::new(CODE, &[]).with_numbers(self.law(cell, world_params).numbers()).with_scratch(3);
         let steps = alternating(self.iterations, first, TURNS);
         let iterate = |passes: Passes, (k, step)| {
             passes.then("give", step, [RADIUS * k + 1; 2]).then("take", step, [RADIUS * (k + 1); 2])

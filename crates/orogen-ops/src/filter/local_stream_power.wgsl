@@ -8,10 +8,6 @@ const SEDIMENT = 4u;
 const GIVEN_AREA = 5u;
 const GIVEN_SEDIMENT = 6u;
 
-fn per_side(base: u32) -> f32 { return number(base, 0u); }
-fn per_corner(base: u32) -> f32 { return number(base, 1u); }
-fn cell_area(base: u32) -> f32 { return number(base, 2u); }
-
 fn positive(x: f32) -> f32 {
     return max(x, 0.0);
 }
@@ -79,19 +75,19 @@ fn take(base: u32, at: vec2<i32>) {
     let across = positive(h - min(w, e)) * side;
     let down = positive(h - min(n, s)) * side;
     let steep = sqrt(across * across + down * down);
-    var rate = number(base, 3u) * power(drained, number(base, 4u));
-    if (number(base, 5u) != 0.0) {
-        rate *= power(max(steep, 1e-12), number(base, 5u));
+    var rate = cut_rate(base) * power(drained, area_exponent(base));
+    if (slope_exponent(base) != 0.0) {
+        rate *= power(max(steep, 1e-12), slope_exponent(base));
     }
     let cut = min(rate * steep / (1.0 + rate * side), h - lowest);
     // At most the inflow, and nothing on cells above their surroundings.
-    let years = number(base, 8u);
+    let years = step_years(base);
     let all = came * years / cell_area(base);
     let hollow = positive(0.25 * sides + cut);
-    let laid = min(min(number(base, 7u) * came / drained, all), hollow + cut);
-    let crept = number(base, 9u) * (4.0 * sides + corners);
-    let settled = (h - cut) + ((laid + crept) + number(base, 6u));
-    set_plane((frame.step >> 8u) & 0xffu, at, select(h, settled, h > number(base, 10u)));
+    let laid = min(min(laid_rate(base) * came / drained, all), hollow + cut);
+    let crept = spread(base) * (4.0 * sides + corners);
+    let settled = (h - cut) + ((laid + crept) + risen(base));
+    set_plane((frame.step >> 8u) & 0xffu, at, select(h, settled, h > sea_level(base)));
     set_plane(AREA, at, drained);
     set_plane(SEDIMENT, at, positive(came + (cut - laid) * cell_area(base) / years));
 }

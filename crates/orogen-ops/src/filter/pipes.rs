@@ -100,7 +100,8 @@ impl Filter for Pipes {
     }
 
     fn lower(&self, cell: f64, _: &WorldParams) -> Lowering<Passes> {
-        let passes = Passes::new(CODE, &self.law().numbers(cell)).with_scratch(6).then("start", 0, [0; 2]);
+        let passes =
+            Passes::new(CODE, &[]).with_numbers(self.law().numbers(cell)).with_scratch(6).then("start", 0, [0; 2]);
         let passes = (0..self.iterations as usize).map(|k| RADIUS * k).fold(passes, |passes, inset| {
             let passes = passes.then("flow", 0, [inset + 1; 2]).then("pass_on", 0, [inset + 2; 2]);
             passes.then("lay", 0, [inset + 3; 2])

@@ -28,7 +28,7 @@ fn start(base: u32, at: vec2<i32>) {
 
 // A flow after an iteration's pull from one cell to the other.
 fn pulled(base: u32, flow: f32, bed: vec2<f32>, depth: vec2<f32>) -> f32 {
-    return number(base, 1u) * flow + number(base, 0u) * ((bed.x - bed.y) + (depth.x - depth.y));
+    return kept(base) * flow + pull(base) * ((bed.x - bed.y) + (depth.x - depth.y));
 }
 
 // Flows over the eastern and southern side; the share of the outflow that the water suffices for, and its sediment.
@@ -84,16 +84,16 @@ fn pass_on(base: u32, at: vec2<i32>) {
     let rise_x = bed_e - bed_w;
     let rise_y = bed_s - bed_n;
     let steep = rise_x * rise_x + rise_y * rise_y;
-    let could = number(base, 3u) * sqrt((across * across + down * down) * (steep / (number(base, 4u) + steep)));
+    let could = capacity(base) * sqrt((across * across + down * down) * (steep / (level_slope(base) + steep)));
     let more = could - carried;
     let lowest = min(min(bed_n, bed_s), min(bed_w, bed_e));
     let mean = 0.25 * ((bed_n + bed_s) + (bed_w + bed_e));
-    let cut = min(number(base, 5u) * more, 0.5 * positive(bed - lowest));
-    let laid = min(-number(base, 6u) * more, positive(mean - bed) + 0.25 * left);
+    let cut = min(erosion(base) * more, 0.5 * positive(bed - lowest));
+    let laid = min(-deposition(base) * more, positive(mean - bed) + 0.25 * left);
     let change = select(laid, -cut, more > 0.0);
     set_plane(CHANGE, at, change);
     set_plane(SEDIMENT, at, carried - change);
-    set_plane(DEPTH, at, left * number(base, 7u) + number(base, 2u));
+    set_plane(DEPTH, at, left * kept_water(base) + rained(base));
 }
 
 // The changes of a row of three cells, with weights (1, 2, 1).
@@ -118,7 +118,7 @@ fn finish(base: u32, at: vec2<i32>) {
     let depth = plane(DEPTH, at);
     var velocity = 0.0;
     if (depth >= 1e-4) {
-        velocity = number(base, 8u) * sqrt(east * east + south * south) / depth;
+        velocity = speed_scale(base) * sqrt(east * east + south * south) / depth;
     }
     set_plane(VELOCITY, at, velocity);
     set_plane(SEDIMENT, at, max(plane(SEDIMENT, at), 0.0));

@@ -77,7 +77,7 @@ impl Filter for Slope {
 
     fn lower(&self, cell: f64, _: &WorldParams) -> Lowering<Passes> {
         let is_angle = self.unit == SlopeUnit::Degrees;
-        let numbers = [(1.0 / (8.0 * cell)) as f32, f32::from(u8::from(is_angle))];
-        Lowering::Shader(Passes::new(CODE, &numbers).then("slopes", 0, [1; 2]))
+        let numbers = [("gradient_scale", (1.0 / (8.0 * cell)) as f32), ("is_angle", f32::from(u8::from(is_angle)))];
+        Lowering::Shader(Passes::new(CODE, &[]).with_numbers(numbers).then("slopes", 0, [1; 2]))
     }
 }

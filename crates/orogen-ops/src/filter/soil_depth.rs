@@ -68,9 +68,16 @@ impl Filter for SoilDepth {
 
     fn lower(&self, cell: f64, _: &WorldParams) -> Lowering<Passes> {
         let made = self.density_ratio * self.production;
-        let numbers =
-            [cell, self.critical_slope, self.creep, self.decay, made, self.deepest].map(|number| number as f32);
-        Lowering::Shader(Passes::new(CODE, &numbers).then("depths", 0, [1; 2]))
+        let numbers = [
+            ("cell", cell),
+            ("critical_slope", self.critical_slope),
+            ("creep", self.creep),
+            ("decay", self.decay),
+            ("made", made),
+            ("deepest", self.deepest),
+        ];
+        let numbers = numbers.map(|(name, number)| (name, number as f32));
+        Lowering::Shader(Passes::new(CODE, &[]).with_numbers(numbers).then("depths", 0, [1; 2]))
     }
 
     fn cost(&self, _: f64) -> f64 {

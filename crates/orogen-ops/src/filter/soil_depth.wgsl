@@ -21,8 +21,8 @@ fn flux_difference(across: vec2<f32>, along: vec2<f32>, difference: vec2<f32>, c
 }
 
 fn depths(base: u32, at: vec2<i32>) {
-    let c = number(base, 0u);
-    let critical = number(base, 1u);
+    let c = cell(base);
+    let critical = critical_slope(base);
     let nw = plane(0u, at + vec2<i32>(-1, -1));
     let n = plane(0u, at + vec2<i32>(0, -1));
     let ne = plane(0u, at + vec2<i32>(1, -1));
@@ -51,13 +51,13 @@ fn depths(base: u32, at: vec2<i32>) {
         vec2<f32>(sum_of_differences(z, s, z, n) / c, corners),
         critical,
     );
-    let carried = number(base, 2u) * (columns.x + rows.x) / c;
-    let deepest = number(base, 5u);
+    let carried = creep(base) * (columns.x + rows.x) / c;
+    let deepest = deepest(base);
     var depth = deepest;
     if (columns.y + rows.y > 0.0) {
         depth = 0.0;
     } else if (carried > 0.0) {
-        depth = clamp(number(base, 3u) * log(number(base, 4u) / carried), 0.0, deepest);
+        depth = clamp(decay(base) * log(made(base) / carried), 0.0, deepest);
     }
     set_plane(1u, at, depth);
 }

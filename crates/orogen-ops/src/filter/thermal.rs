@@ -62,10 +62,10 @@ impl Filter for Thermal {
         let [stands, share] = self.law().numbers(cell);
         if self.iterations == 0 {
             // A pass that moves nothing.
-            let passes = Passes::new(CODE, &[stands, 0.0]).with_scratch(1);
+            let passes = Passes::new(CODE, &[]).with_numbers([("stands", stands), ("share", 0.0)]).with_scratch(1);
             return Lowering::Shader(passes.then("slide", 1 << 8, [0; 2]));
         }
-        let passes = Passes::new(CODE, &[stands, share]).with_scratch(1);
+        let passes = Passes::new(CODE, &[]).with_numbers([("stands", stands), ("share", share)]).with_scratch(1);
         let steps = alternating(self.iterations, 0, [1, 2]);
         let slide = |passes: Passes, (k, step)| passes.then("slide", step, [k + 1; 2]);
         Lowering::Shader(steps.into_iter().enumerate().fold(passes, slide))

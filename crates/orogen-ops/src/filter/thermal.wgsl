@@ -2,10 +2,10 @@
 // `frame.step` holds the plane that is read in its lower eight bits, and the one that is written in the next eight.
 // What crosses a side, by the height differences across and along it.
 fn moved(base: u32, across: f32, along: f32) -> f32 {
-    let stands = number(base, 0u);
+    let stands = stands(base);
     let steep = sqrt(across * across + along * along);
     if (steep > stands) {
-        return number(base, 1u) * (1.0 - stands / steep) * across;
+        return share(base) * (1.0 - stands / steep) * across;
     }
     return 0.0;
 }

@@ -103,8 +103,11 @@ impl Filter for TopographicPosition {
         // A disc is the same turned by a right angle.
         let halves = half_widths(radius);
         let count: usize = halves.iter().map(|half| 2 * half + 1).sum();
-        let words = [radius, count].into_iter().chain(halves).map(|number| number as u32);
-        let passes = Passes::new(CODE, &[(1.0 / (8.0 * cell)) as f32]).with_words(words).with_scratch(5);
+        let passes = Passes::new(CODE, &[])
+            .with_numbers([("gradient_scale", (1.0 / (8.0 * cell)) as f32)])
+            .with_named_words([("radius", radius as u32), ("disc_samples", count as u32)])
+            .with_table("half_width", halves.into_iter().map(|half| half as u32))
+            .with_scratch(5);
         let passes = passes.then("add_up", 0, [0; 2]).then("compare", 0, [radius; 2]).reading(20 * radius);
         Lowering::Shader(passes)
     }

@@ -98,12 +98,12 @@ fn slope_position(deviation: f32, degrees: f32) -> f32 {
 }
 
 fn compare(base: u32, at: vec2<i32>) {
-    let radius = i32(data[base + 1u]);
-    let count = data[base + 2u];
+    let radius = i32(radius(base));
+    let count = disc_samples(base);
     var sum = vec2<u32>(0u);
     var squares = vec2<u32>(0u);
     for (var x = -radius; x <= radius; x += 1) {
-        let tall = i32(data[base + 3u + u32(x + radius)]);
+        let tall = i32(half_width(base, u32(x + radius)));
         let below = at + vec2<i32>(x, tall);
         sum = plus(sum, sum_at(below));
         squares = plus(squares, squares_at(below));
@@ -137,5 +137,5 @@ fn compare(base: u32, at: vec2<i32>) {
     }
     set_plane(1u, at, position);
     set_plane(2u, at, deviation);
-    set_plane(3u, at, slope_position(deviation, slope_degrees(gradient(0u, at, number(base, 0u)))));
+    set_plane(3u, at, slope_position(deviation, slope_degrees(gradient(0u, at, gradient_scale(base)))));
 }

@@ -11,8 +11,16 @@ const SURFACE: &str = code!("layers.wgsl", "surface.wgsl");
 const RIVERS: &str = code!("layers.wgsl", "rivers.wgsl");
 const BEDS: &str = code!("layers.wgsl", "beds.wgsl");
 
-/// The planes of the layers that a card makes, in the order of the layers.
-const PLANES: [usize; 7] = [8, 9, 10, 13, 11, 14, 15];
+/// The planes of the layers that a card makes, in the order of the layers, with their names in shaders.
+const PLANES: [(&str, u32); 7] = [
+    ("GROUND", 8),
+    ("FLOW", 9),
+    ("LAKE_DEPTH", 10),
+    ("SURFACE", 13),
+    ("LED_TO", 11),
+    ("RIVER_WIDTH", 14),
+    ("RIVER_DEPTH", 15),
+];
 
 /// Number of planes beside those of a level.
 const SCRATCH: usize = 10;
@@ -29,7 +37,8 @@ pub fn lower_layers(refinement: &Refinement, reading: &Reading, level: usize, wa
     }
     let channel = Channel::default().with_runoff(reading.runoff);
     let [inside, change] = refinement.surface_numbers(level, reading.share);
-    let mut passes = passes(refinement, level).with_scratch(Level::PLANES + SCRATCH).with_numbers([
+    let passes = passes(refinement, level).with_scratch(Level::PLANES + SCRATCH).with_constants(PLANES);
+    let mut passes = passes.with_numbers([
         // Where samples are in their cells, as a share of the sides.
         ("inside", inside),
         // The mean change of heights by finer levels, as a share of the rise to a node at the source of a river.
@@ -56,6 +65,7 @@ pub fn lower_layers(refinement: &Refinement, reading: &Reading, level: usize, wa
     }
     passes.passes.push(pass(SURFACE, "finish_layers", 0, FEW));
     passes.extent = Extent::Before(surface_halo(refinement, level, wanted));
-    passes.layers = PLANES.iter().zip(wanted).filter(|(_, wanted)| **wanted).map(|(plane, _)| *plane).collect();
+    passes.layers =
+        PLANES.iter().zip(wanted).filter(|(_, wanted)| **wanted).map(|((_, plane), _)| *plane as usize).collect();
     Lowering::Shader(passes)
 }

@@ -108,8 +108,12 @@ pub fn lower(refinement: &Refinement, level: usize, given: &GivenInputs, ahead: 
 /// Passes that read the numbers of a level.
 pub(super) fn passes(refinement: &Refinement, level: usize) -> Passes {
     let Words { flags, hashes, numbers } = refinement.words(level);
-    let passes = Passes::new("", &[]).with_constants(FLAGS).with_named_words([("flags", flags)]);
-    passes.with_pairs(hashes).with_numbers(numbers)
+    let planes = Level::PLANE_NAMES.into_iter().zip(0..);
+    Passes::new("", &[])
+        .with_constants(planes.chain([("LEAST", RIMS[1])]).chain(FLAGS))
+        .with_named_words([("flags", flags)])
+        .with_pairs(hashes)
+        .with_numbers(numbers)
 }
 
 /// The passes so far.

@@ -114,11 +114,11 @@ impl Scene {
         data.number("HIGHEST", &[origin.level(relief.highest())]);
         data.number("FLOOR", &[origin.level(self.floor), self.floor as f32]);
         let (kind, level) = match self.around {
-            Around::Table(z) => (0, origin.level(z)),
-            Around::Sea(z) => (1, origin.level(z)),
-            Around::Mirrors => (2, 0.0),
+            Around::Table(z) => (AROUND_TABLE, origin.level(z)),
+            Around::Sea(z) => (AROUND_SEA, origin.level(z)),
+            Around::Mirrors => (AROUND_MIRRORS, 0.0),
         };
-        data.integer("AROUND", &[kind]);
+        data.integer("AROUND", &[kind as i32]);
         data.number("AROUND_Z", &[level]);
         data.integer("HAS_SEA", &[i32::from(relief.sea().is_some())]);
         data.number("SEA", &[relief.sea().map_or(0.0, |sea| origin.level(sea))]);
@@ -232,8 +232,16 @@ impl Lighting {
     }
 }
 
+/// What is around the land, for shaders.
+const AROUND_TABLE: u32 = 0;
+const AROUND_SEA: u32 = 1;
+const AROUND_MIRRORS: u32 = 2;
+
+/// Number of words of a noise.
+const NOISE_WORDS: usize = 10;
+
 /// A noise: its wavelength in metres, matrix, offset, angle, and the steepness of its waves.
-fn grain_numbers(map: &GrainMap, [wavelength, steep]: [f32; 2]) -> [f32; 10] {
+fn grain_numbers(map: &GrainMap, [wavelength, steep]: [f32; 2]) -> [f32; NOISE_WORDS] {
     let [[a, b], [c, d]] = map.matrix.map(|row| row.map(|part| part as f32));
     let ([u, v], [cos, sin]) = (map.offset.map(|part| part as f32), map.turn.map(|part| part as f32));
     [wavelength, a, b, c, d, u, v, cos, sin, steep]
@@ -314,6 +322,10 @@ impl<'a> SceneData<'a> {
         );
         self.counts = vec![
             ("MIRRORS", MIRRORS as u32),
+            ("AROUND_TABLE", AROUND_TABLE),
+            ("AROUND_SEA", AROUND_SEA),
+            ("AROUND_MIRRORS", AROUND_MIRRORS),
+            ("NOISE", NOISE_WORDS as u32),
             ("SKY_COLUMNS", sky::AROUND as u32),
             ("SKY_ROWS", sky::UP as u32),
             ("GRAIN_SIDE", grain::SIDE as u32),

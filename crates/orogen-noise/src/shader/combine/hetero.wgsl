@@ -8,11 +8,11 @@ fn hetero_SOURCE(base: u32, place: Placement) -> f32 {
     for (var i = 0u; i < data[base]; i = i + 1u) {
         let x = cell_at(lattice, 0u, place);
         let y = cell_at(lattice, 1u, place);
-        let noise = number(octave, 4u) * SOURCE_value(source, octave, x, y);
-        sum = sum + weight * ((noise + number(base, 3u)) * number(octave, 6u));
+        let noise = number(octave, NOISE_AMPLITUDE) * SOURCE_value(source, octave, x, y);
+        sum = sum + weight * ((noise + number(base, NOISE_PARAMETERS)) * number(octave, NOISE_GAIN));
         weight = sum;
         octave = octave + NOISE_OCTAVE;
-        lattice = lattice + NOISE_LATTICE;
+        lattice = lattice + LATTICE_WORDS;
     }
-    return clamp(sum * number(base, 4u), -1.0, 1.0);
+    return clamp(sum * number(base, NOISE_PARAMETERS + 1u), -1.0, 1.0);
 }

@@ -7,12 +7,12 @@ fn ping_pong_SOURCE(base: u32, place: Placement) -> f32 {
     for (var i = 0u; i < data[base]; i = i + 1u) {
         let x = cell_at(lattice, 0u, place);
         let y = cell_at(lattice, 1u, place);
-        let noise = number(octave, 4u) * SOURCE_value(source, octave, x, y);
-        let wave = (noise + 1.0) * number(base, 3u);
+        let noise = number(octave, NOISE_AMPLITUDE) * SOURCE_value(source, octave, x, y);
+        let wave = (noise + 1.0) * number(base, NOISE_PARAMETERS);
         let t = wave - 2.0 * floor(wave * 0.5);
-        sum = sum + (select(2.0 - t, t, t < 1.0) * 2.0 - 1.0) * number(octave, 6u);
+        sum = sum + (select(2.0 - t, t, t < 1.0) * 2.0 - 1.0) * number(octave, NOISE_GAIN);
         octave = octave + NOISE_OCTAVE;
-        lattice = lattice + NOISE_LATTICE;
+        lattice = lattice + LATTICE_WORDS;
     }
-    return clamp(sum * number(base, 4u), -1.0, 1.0);
+    return clamp(sum * number(base, NOISE_PARAMETERS + 1u), -1.0, 1.0);
 }

@@ -7,9 +7,9 @@ fn sum_SOURCE(base: u32, place: Placement) -> f32 {
     for (var i = 0u; i < data[base]; i = i + 1u) {
         let x = cell_at(lattice, 0u, place);
         let y = cell_at(lattice, 1u, place);
-        sum = sum + number(octave, 4u) * SOURCE_value(source, octave, x, y);
+        sum = sum + number(octave, NOISE_AMPLITUDE) * SOURCE_value(source, octave, x, y);
         octave = octave + NOISE_OCTAVE;
-        lattice = lattice + NOISE_LATTICE;
+        lattice = lattice + LATTICE_WORDS;
     }
     return sum;
 }

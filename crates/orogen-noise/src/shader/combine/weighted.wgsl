@@ -2,8 +2,8 @@
 // 2: 1 / (1 + k sqrt m), 3: 1 - smoothstep(k m), of the squared slope m).
 fn weighted_SOURCE(base: u32, place: Placement) -> f32 {
     let source = noise_source(base);
-    let k = number(base, 3u);
-    let falloff = data[base + 4u];
+    let k = number(base, NOISE_PARAMETERS);
+    let falloff = data[base + NOISE_PARAMETERS + 1u];
     var lattice = noise_lattice(base);
     var octave = base + NOISE_OCTAVES;
     var sum = 0.0;
@@ -32,7 +32,7 @@ fn weighted_SOURCE(base: u32, place: Placement) -> f32 {
         }
         sum = sum + one.value * weight;
         octave = octave + NOISE_OCTAVE;
-        lattice = lattice + NOISE_LATTICE;
+        lattice = lattice + LATTICE_WORDS;
     }
     return sum;
 }

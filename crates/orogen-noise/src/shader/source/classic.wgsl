@@ -3,12 +3,12 @@
 
 fn classic_permuted(source: u32, index: u32) -> u32 {
     let at = index & 255u;
-    return (data[source + 1u + (at >> 2u)] >> (8u * (at & 3u))) & 255u;
+    return (data[source + CLASSIC_TABLE + (at >> 2u)] >> (8u * (at & 3u))) & 255u;
 }
 
 fn classic_gradient(source: u32, x: u32, y: u32) -> vec2<f32> {
     let hash = classic_permuted(source, x + y) & data[source];
-    return vec2<f32>(number(source, 65u + 2u * hash), number(source, 66u + 2u * hash));
+    return vec2<f32>(number(source, CLASSIC_GRADIENTS + 2u * hash), number(source, CLASSIC_GRADIENTS + 2u * hash + 1u));
 }
 
 fn classic_gradients(source: u32, octave: u32, x: Cell, y: Cell) -> NoiseGradients {

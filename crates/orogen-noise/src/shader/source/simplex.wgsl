@@ -30,8 +30,8 @@ fn simplex_twelfth(hash: u32) -> vec2<f32> {
 // Value and slopes by unskewed coordinates.
 fn simplex_slopes(source: u32, octave: u32, x: Cell, y: Cell) -> vec3<f32> {
     let corners = data[source];
-    let reach = number(source, 1u);
-    let directions = data[source + 3u];
+    let reach = number(source, SIMPLEX_REACH);
+    let directions = data[source + SIMPLEX_DIRECTIONS];
     let t = vec2<f32>(x.t, y.t);
     let wide = y.t < x.t;
     // The fifth corner is the nearer one of the two beside the triangle: (2, 1) or (0, -1) if x is the larger fraction, (1, 2) or (-1, 0) if y is.
@@ -76,7 +76,7 @@ fn simplex_slopes(source: u32, octave: u32, x: Cell, y: Cell) -> vec3<f32> {
         let steep = squared * left * ramp * 8.0;
         raw = raw + vec3<f32>(weight * ramp, weight * gradient - steep * way);
     }
-    return raw * number(source, 2u);
+    return raw * number(source, SIMPLEX_SCALE);
 }
 
 fn simplex_value(source: u32, octave: u32, x: Cell, y: Cell) -> f32 {

@@ -16,7 +16,7 @@ struct WorleySite {
 fn worley_site(source: u32, octave: u32, x: Cell, y: Cell, offset: vec2<i32>) -> WorleySite {
     let hash = noise_hash(noise_key(octave, stepped(x, offset.x)), noise_key(octave + 2u, stepped(y, offset.y)));
     let second = (hash ^ (hash >> 16u)) * 0x93d765ddu;
-    let place = vec2<f32>(noise_unit(hash), noise_unit(second)) * number(source, 0u) + number(source, 1u);
+    let place = vec2<f32>(noise_unit(hash), noise_unit(second)) * number(source, WORLEY_JITTER) + number(source, WORLEY_REST);
     return WorleySite((place + vec2<f32>(offset)) - vec2<f32>(x.t, y.t), hash);
 }
 
@@ -41,8 +41,8 @@ fn worley_midway(near: vec2<f32>, other: vec2<f32>) -> f32 {
 }
 
 fn worley_value(source: u32, octave: u32, x: Cell, y: Cell) -> f32 {
-    let distance = data[source + 2u];
-    let feature = data[source + 3u];
+    let distance = data[source + WORLEY_DISTANCE];
+    let feature = data[source + WORLEY_FEATURE];
     let euclidean = distance == 0u;
     let one = feature == 0u || feature == 4u || (feature == 5u && euclidean);
     let side = min(min(x.t, 1.0 - x.t), min(y.t, 1.0 - y.t));
@@ -99,7 +99,7 @@ fn worley_value(source: u32, octave: u32, x: Cell, y: Cell) -> f32 {
             }
         }
     }
-    return min(raw * number(source, 4u) - 1.0, 1.0);
+    return min(raw * number(source, WORLEY_SCALE) - 1.0, 1.0);
 }
 
 // Distance to the nearest edge: to the nearest line midway between the nearest point and another one.

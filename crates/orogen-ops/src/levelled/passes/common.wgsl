@@ -1,23 +1,12 @@
-// What the passes of drained land have in common: orogen-grid's `multiscale`. What reads the numbers of `Refinement::words`, and the
-// planes of what is given, stands before it.
+// What the passes of drained land have in common: orogen-grid's `multiscale`. The planes of the level and of the level above,
+// and what reads the numbers of `Refinement::words` and the planes of what is given, stand before it.
 //
-// Planes of the level, and of the level above.
-const EAST = 0u;
-const SOUTH = 1u;
-const HEIGHT = 2u;
-const AREA = 3u;
-const RECEIVER = 4u;
-const VARIATION = 5u;
-const UPLIFT = 6u;
-const SHORE = 7u;
 // Receivers that stay, FREE or WATER.
 const FIXED = 10u;
 // The law of slopes.
 const RIVER = 11u;
 const STABLE = 12u;
 const WIDTH = 13u;
-// The smallest heights around lakes.
-const LEAST = 21u;
 // What links say about each child, with a height, until the law takes their place.
 const HELD = 11u;
 const HELD_HEIGHT = 12u;

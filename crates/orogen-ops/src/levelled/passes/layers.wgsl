@@ -1,10 +1,6 @@
 // What the passes that read layers from a level have in common.
 //
-// Planes beside those of the level: heights of the ground, drainage areas in m^2, depths of lakes, receivers, and water levels.
-const GROUND = 8u;
-const FLOW = 9u;
-const LAKE_DEPTH = 10u;
-const LED_TO = 11u;
+// Planes beside those of the level are those of the layers: heights of the ground, drainage areas in m^2, depths of lakes, receivers; and water levels.
 const WATER_LEVEL = 12u;
 // Of nodes of rivers, until the layers take their place: position, height, half of the width in cells, and depth.
 const NODE_EAST = 13u;
@@ -12,10 +8,6 @@ const NODE_SOUTH = 14u;
 const NODE_HEIGHT = 15u;
 const NODE_HALF = 16u;
 const NODE_DEPTH = 17u;
-// Surface, width and depth.
-const SURFACE = 13u;
-const RIVER_WIDTH = 14u;
-const RIVER_DEPTH = 15u;
 
 fn square_metres(base: u32) -> f32 {
     return cell(base) * cell(base);
