@@ -25,6 +25,8 @@ pub struct Bands<'w> {
     rows: usize,
     /// The first row of the next band.
     next: usize,
+    /// The grids over whole rows that were made last, of which bands are still to be cut.
+    made: Vec<Grid>,
 }
 
 impl World {
@@ -62,7 +64,9 @@ impl World {
             let held = reserved.saturating_add(band);
             let memory = self.memory_limit().map(|limit| limit.saturating_sub(held));
             match self.tiles(layers, window, Tiling { memory, ..Tiling::of(rows) }, progress) {
-                Ok(tiles) => return Ok(Bands { tiles, layers: layers.len(), window: *window, rows, next: 0 }),
+                Ok(tiles) => {
+                    return Ok(Bands { tiles, layers: layers.len(), window: *window, rows, next: 0, made: Vec::new() });
+                }
                 // Fewer rows need less memory.
                 Err(error) if error.kind() == ErrorKind::Memory && rows > FEWEST => rows = rows.div_ceil(2),
                 Err(error) if error.kind() == ErrorKind::Memory => {
@@ -107,8 +111,12 @@ impl Iterator for Bands<'_> {
         let height = self.rows.min(self.window.height - self.next);
         let band = Window { y: self.window.y + self.next as i64, height, ..self.window };
         self.next += height;
+        let columns = self.tiles.layout()[0];
+        if self.tiles.at_once()[0] == columns {
+            return self.cut(&band);
+        }
         let mut grids = vec![Grid::filled(band, 0.0); self.layers];
-        for _ in 0..self.tiles.layout()[0] {
+        for _ in 0..columns {
             match self.tiles.next()? {
                 Ok(tile) => grids.iter_mut().zip(&tile.grids).for_each(|(grid, tile)| grid.paste(tile)),
                 Err(error) => {
@@ -116,6 +124,31 @@ impl Iterator for Bands<'_> {
                     return Some(Err(error));
                 }
             }
+        }
+        Some(Ok(grids))
+    }
+}
+
+impl Bands<'_> {
+    /// A band of rows that are made whole, which need not be cut into tiles.
+    fn cut(&mut self, band: &Window) -> Option<Result<Vec<Grid>>> {
+        if self.made.is_empty() {
+            match self.tiles.next_grids()? {
+                Ok(grids) => self.made = grids,
+                Err(error) => {
+                    self.next = self.window.height;
+                    return Some(Err(error));
+                }
+            }
+        }
+        let bottom = self.made.first()?.window().bottom();
+        let cut = |grid: &Grid| grid.crop(band);
+        let grids = match self.made.first()?.window() == band {
+            true => std::mem::take(&mut self.made),
+            false => self.made.iter().filter_map(cut).collect(),
+        };
+        if band.bottom() == bottom {
+            self.made.clear();
         }
         Some(Ok(grids))
     }

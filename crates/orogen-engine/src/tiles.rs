@@ -66,6 +66,11 @@ pub struct Tile {
 /// Maximum number of samples that are made at once: enough to make halos and plans cheap.
 const AT_ONCE: usize = 1 << 24;
 
+/// Number of samples that suffice if more do not make a sample cheaper, and by how much they have to: memory of smaller
+/// grids is used again by the next ones.
+const ENOUGH: usize = 1 << 22;
+const CHEAPER: f64 = 1.01;
+
 /// The share of a memory limit that one grid of what is made at once takes at most. The allocator keeps what a thread
 /// has freed for this thread, outside of the budget, so many small grids take less memory than a few large ones.
 const PART_OF_LIMIT: u64 = 16;
@@ -226,17 +231,41 @@ impl<'w> Tiles<'w> {
     /// Makes the wanted tiles among `count` starting with `first`.
     fn make(&mut self, first: [usize; 2], count: [usize; 2]) -> Result<Vec<Tile>> {
         let Some((wanted, window)) = self.wanted(first, count) else { return Ok(Vec::new()) };
+        let grids = self.grids(&window)?;
+        let mut tiles: Vec<Tile> =
+            wanted.into_iter().map(|[column, row]| Tile { column, row, grids: Vec::new() }).collect();
+        // Each grid is freed before the next one is cut.
+        for grid in grids {
+            for tile in &mut tiles {
+                tile.grids.extend(grid.crop(&self.tiling.tile(&self.window, tile.column, tile.row)));
+            }
+        }
+        Ok(tiles)
+    }
+
+    /// Makes the layers over a window of wanted tiles.
+    fn grids(&mut self, window: &Window) -> Result<Vec<Grid>> {
         let [solving, each] = self.work.unwrap_or_default();
         // Solving is complete at the end of the first strip.
         self.work = Some([0.0, each]);
         let part = self.progress.part(solving + each * window.len() as f64);
         let layers: Vec<&str> = self.layers.iter().map(String::as_str).collect();
-        let grids = self.world.run(&self.plan(&layers, &window)?, &part)?;
-        let cut = |[column, row]: [usize; 2]| {
-            let tile = self.tiling.tile(&self.window, column, row);
-            Tile { column, row, grids: grids.iter().filter_map(|grid| grid.crop(&tile)).collect() }
-        };
-        Ok(wanted.into_iter().map(cut).collect())
+        self.world.run(&self.plan(&layers, window)?, &part)
+    }
+
+    /// The layers over all tiles that are made together next, not cut into tiles; for streams of all tiles.
+    pub(crate) fn next_grids(&mut self) -> Option<Result<Vec<Grid>>> {
+        if let Err(error) = self.weigh() {
+            self.strips.clear();
+            return Some(Err(error));
+        }
+        let (first, count) = self.strips.pop_front()?;
+        let window = self.tiling.run(&self.window, first, count);
+        let made = self.grids(&window);
+        if made.is_err() {
+            self.strips.clear();
+        }
+        Some(made)
     }
 
     /// The largest number of tiles to make at once: rows of them across the whole window, otherwise a part of a row,
@@ -249,6 +278,10 @@ impl<'w> Tiles<'w> {
         };
         let allowed = self.allowed();
         let most = allowed.map_or(AT_ONCE, |allowed| AT_ONCE.min((allowed / PART_OF_LIMIT / 4) as usize));
+        let fewer = |at_once: [usize; 2]| match at_once {
+            [wide, 1] => [wide.div_ceil(2), 1],
+            [wide, tall] => [wide, tall.div_ceil(2)],
+        };
         let mut at_once = [columns, rows];
         loop {
             if at_once == [1, 1] || samples(at_once) <= most {
@@ -263,14 +296,25 @@ impl<'w> Tiles<'w> {
                             return Err(budget.refusal(&what, needed, "use smaller tiles, or raise the memory limit"));
                         }
                     }
-                    _ => return Ok(at_once),
+                    _ => break,
                 }
             }
-            at_once = match at_once {
-                [wide, 1] => [wide.div_ceil(2), 1],
-                [wide, tall] => [wide, tall.div_ceil(2)],
-            };
+            at_once = fewer(at_once);
         }
+        // Rows of tiles are not divided.
+        let cheapest = CHEAPER * self.work_per_sample(at_once)?;
+        while at_once[1] > 1 && samples(at_once) > ENOUGH && self.work_per_sample(fewer(at_once))? <= cheapest {
+            at_once = fewer(at_once);
+        }
+        Ok(at_once)
+    }
+
+    /// Approximate time for a sample if this many tiles are made at once.
+    fn work_per_sample(&self, at_once: [usize; 2]) -> Result<f64> {
+        let layers: Vec<&str> = self.layers.iter().map(String::as_str).collect();
+        let window = self.tiling.run(&self.window, [0, 0], at_once);
+        let [_, making] = self.world.work_of(&self.plan(&layers, &window)?)?;
+        Ok(making / window.len().max(1) as f64)
     }
 
     /// Memory for making this many tiles at once, in bytes: that of the plan, and of the tiles cut from its result.

@@ -390,7 +390,7 @@ impl World {
     pub fn unit(&self, layer: &str) -> Result<&'static str> {
         Ok(match self.target(layer)? {
             _ if layer == HEIGHT => "m",
-            Link::Node(target) => self.recipe.nodes()[target.node.index()].node.layers()[target.layer].unit,
+            Link::Node(target) => self.recipe.nodes()[target.node.index()].node.unit(target.layer),
             _ => "",
         })
     }

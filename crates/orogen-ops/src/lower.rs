@@ -4,9 +4,6 @@
 /// The function `selected` of WGSL, which several ops have: a range with smooth ends.
 pub const SELECTION: &str = include_str!("lower/selection.wgsl");
 
-/// The function `gradient` of WGSL, and what is made of it: slopes by Horn's method.
-pub const HORN: &str = include_str!("lower/horn.wgsl");
-
 /// How a graphics card computes a node.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Lowering<T> {

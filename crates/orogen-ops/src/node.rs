@@ -175,4 +175,10 @@ impl Node {
     pub fn layers(&self) -> &'static [Layer] {
         self.spec().layers
     }
+
+    /// The unit of a layer, or empty.
+    #[must_use]
+    pub fn unit(&self, layer: usize) -> &'static str {
+        self.declared().unit(layer)
+    }
 }

@@ -36,6 +36,31 @@ impl WorldParams {
         let world = mix64(self.seed.wrapping_add(STEP));
         mix64(world ^ node_seed.wrapping_mul(0xD1B5_4A32_D192_ED03))
     }
+
+    /// The samples of the world on the lattice with a cell in metres; `None` if it is unbounded.
+    #[must_use]
+    pub fn window(&self, cell: f64) -> Option<Window> {
+        self.size.map(|size| world_window(size, cell))
+    }
+}
+
+/// The samples of a world of this size on the lattice with a cell in metres.
+#[doc(hidden)]
+#[must_use]
+pub fn world_window(size: [f64; 2], cell: f64) -> Window {
+    let [width, height] = size.map(|length| whole_cells(length, cell, f64::floor) + 1);
+    Window::new(width, height, cell)
+}
+
+/// A length in whole cells. One that is a whole number of cells up to rounding is that number: 1000 / 0.1 is 10 000
+/// cells.
+#[doc(hidden)]
+#[must_use]
+pub fn whole_cells(length: f64, cell: f64, round: impl Fn(f64) -> f64) -> usize {
+    let cells = length / cell;
+    let near = cells.round();
+    let whole = if (cells - near).abs() < 1e-6 { near } else { round(cells) };
+    whole.max(0.0) as usize
 }
 
 /// A node's inputs evaluated at the requested points: one block of samples each. All points have the same altitude.
@@ -323,6 +348,11 @@ pub trait Filter: Declared + Send + Sync {
     /// Whether the result depends on the world's sea level. A filter that returns false must not read it, because the
     /// content key would be wrong.
     fn reads_sea_level(&self) -> bool {
+        false
+    }
+
+    /// The same for the extent of the world.
+    fn reads_size(&self) -> bool {
         false
     }
 }

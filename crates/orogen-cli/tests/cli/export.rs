@@ -1,7 +1,7 @@
 //! `orogen export`.
 
 use crate::harness::{Folder, Outcome, SMALL, npy, png};
-use orogen::export::derived::layer::{Made, Nature};
+use orogen::export::derived::layer::Nature;
 use orogen::export::derived::list as derived;
 use std::io::Read;
 use std::process::Stdio;
@@ -529,10 +529,7 @@ fn layers_that_follow_from_the_heights_have_options_of_their_own() {
         npy(&folder.read("layer.npy"))
     };
     // Every layer is made, with its required options.
-    let numbers = derived::all().iter().filter(|layer| match &layer.made {
-        Made::Rows(rows) => rows.nature == Nature::Numbers,
-        Made::Nodes(_) => true,
-    });
+    let numbers = derived::all().iter().filter(|layer| layer.nature() == Nature::Numbers);
     for name in numbers.map(|layer| layer.name) {
         let needed: &[&str] = if name == "viewshed" { &["--observer", "300,200"] } else { &[] };
         let made = export(name, needed);

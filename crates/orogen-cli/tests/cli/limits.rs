@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use orogen::export::derived::layer::{Made, Nature};
+use orogen::export::derived::layer::Nature;
 use orogen::export::derived::list as derived;
 use orogen::export::registry;
 use orogen::jobs::{BlocksJob, MapJob, RenderJob};
@@ -327,7 +327,7 @@ fn declared() -> Vec<(&'static OptionSpec, Vec<String>)> {
         (spec, arguments.collect())
     });
     let of_layer = |name: &&str| {
-        let is_picture = matches!(derived::named(name).map(|layer| &layer.made), Some(Made::Rows(rows)) if rows.nature != Nature::Numbers);
+        let is_picture = derived::named(name).is_some_and(|layer| layer.nature() != Nature::Numbers);
         let needed = match *name {
             "viewshed" => "--observer 320,240",
             "watershed" => "--outlet 320,240",

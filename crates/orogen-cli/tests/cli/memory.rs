@@ -10,7 +10,7 @@ use std::io::Read;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use orogen::export::derived::layer::{Made, Nature};
+use orogen::export::derived::layer::Nature;
 use orogen::export::derived::list as derived;
 use orogen::export::registry;
 use orogen::export::targets::list as targets;
@@ -93,10 +93,7 @@ fn rows(side: usize) -> Vec<Vec<String>> {
     rows.push("export trees.toml -o trees.glb --objects -q".into());
     rows.push("export land.toml -o weights.png --layer splat --preview -q".into());
     for layer in derived::all() {
-        let kind = match &layer.made {
-            Made::Rows(rows) if rows.nature != Nature::Numbers => "png",
-            _ => "tif",
-        };
+        let kind = if layer.nature() == Nature::Numbers { "tif" } else { "png" };
         let needed = if layer.name == "viewshed" { "--observer 3000,2000" } else { "" };
         rows.push(format!("export land.toml -o layer.{kind} --layer {} {needed} -q", layer.name));
     }

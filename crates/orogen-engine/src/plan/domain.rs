@@ -1,7 +1,7 @@
 //! The samples that solvers cover: the world, or a wider domain, on a lattice.
 
 use orogen_grid::grid::Window;
-use orogen_ops::op::{Solver, WorldParams};
+use orogen_ops::op::{Solver, WorldParams, whole_cells, world_window};
 
 /// Samples beyond a world's or a domain's edge that readers may need.
 pub const WORLD_MARGIN: usize = 2;
@@ -31,18 +31,8 @@ impl Domain {
 /// The samples of a world on a lattice, without and with the margin for readers.
 #[must_use]
 pub fn world_windows(size: [f64; 2], cell: f64) -> (Window, Window) {
-    let [width, height] = size.map(|length| whole_cells(length, cell, f64::floor) + 1);
-    let world = Window::new(width, height, cell);
+    let world = world_window(size, cell);
     (world, world.grown(WORLD_MARGIN))
-}
-
-/// A length in whole cells. One that is a whole number of cells up to rounding is that number: 1000 / 0.1 is 10 000
-/// cells.
-fn whole_cells(length: f64, cell: f64, round: impl Fn(f64) -> f64) -> usize {
-    let cells = length / cell;
-    let near = cells.round();
-    let whole = if (cells - near).abs() < 1e-6 { near } else { round(cells) };
-    whole.max(0.0) as usize
 }
 
 #[cfg(test)]

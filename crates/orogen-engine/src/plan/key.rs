@@ -66,8 +66,8 @@ fn put_link(hash: &mut Sha256, link: &Link, keys: &IndexVec<NodeId, Key>) {
 }
 
 /// Adds what a node reads of the world: the seed, if the node has a seed; the extent and the solvers' lattice, if the
-/// node depends on the whole world; the cell at which a field's source is computed; the sea level, if the op declares
-/// it.
+/// node depends on the whole world or on its edges; the cell at which a field's source is computed; the sea level, if
+/// the op declares it.
 fn put_world(hash: &mut Sha256, node: &Node, world: &WorldParams) {
     let mut put = |number: Option<u64>| {
         hash.update([u8::from(number.is_some())]);
@@ -76,7 +76,7 @@ fn put_world(hash: &mut Sha256, node: &Node, world: &WorldParams) {
     let is_seeded = node.spec().params.iter().any(|param| matches!(param.shape, Shape::Seed));
     let (size, cell, sea) = match node.op() {
         Op::Field(field) => (field.needs_bounds(), field.source_cell(world.cell, world.cell), field.reads_sea_level()),
-        Op::Filter(filter) => (false, None, filter.reads_sea_level()),
+        Op::Filter(filter) => (filter.reads_size(), None, filter.reads_sea_level()),
         Op::Levelled(levelled) => (false, None, levelled.reads_sea_level()),
         Op::Solver(solver) => (true, Some(solver.cell(world.cell)), solver.reads_sea_level()),
     };

@@ -3,7 +3,8 @@
 use crate::common::{difference, processor, session};
 use orogen_engine::{Grid, Progress, Recipe, Session, Window};
 use orogen_jobs::export::derived::list;
-use orogen_jobs::export::derived::rows::Rows;
+use orogen_jobs::export::layer_source::LayerSource;
+use orogen_jobs::options::Options;
 
 /// Steep land with ledges that end in nothing.
 fn recipe(size: &str) -> Recipe {
@@ -14,10 +15,12 @@ fn recipe(size: &str) -> Recipe {
     Recipe::parse(&text, "test").unwrap()
 }
 
-fn rows(session: &Session, recipe: &Recipe, layer: &str, window: &Window) -> Vec<Grid> {
-    let world = session.open(recipe.clone()).unwrap();
-    let layer = list::named(layer).unwrap().rows().unwrap();
-    Rows::new(layer, &world, window, 0, &Progress::none()).unwrap().whole().unwrap()
+/// The layers of a derived layer over a window.
+fn made(session: &Session, recipe: &Recipe, layer: &str, window: &Window) -> Vec<Grid> {
+    let mut recipe = recipe.clone();
+    list::prepare(&mut recipe, layer, &Options::default()).unwrap();
+    let world = session.open(recipe).unwrap();
+    LayerSource::new(&world, layer, *window, &Progress::none()).unwrap().whole().unwrap()
 }
 
 #[test]
@@ -35,9 +38,9 @@ fn derived_layers_are_those_of_the_processor() {
             windows.push(Window::new(64, 41, 20.0).at(50_000, -50_000));
         }
         for window in &windows {
-            for layer in ["hillshade", "normal", "occlusion"] {
+            for layer in ["slope", "hillshade", "normal", "occlusion"] {
                 let (exact, made) =
-                    (rows(processor(), &recipe, layer, window), rows(&session(), &recipe, layer, window));
+                    (made(processor(), &recipe, layer, window), made(&session(), &recipe, layer, window));
                 assert_eq!(made.len(), exact.len());
                 for (exact, made) in exact.iter().zip(&made) {
                     let pairs = || exact.data().iter().zip(made.data());

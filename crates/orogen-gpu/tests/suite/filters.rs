@@ -229,9 +229,9 @@ fn other_parameters_and_sizes_compile_nothing() {
 fn missing_samples_are_those_of_the_processor() {
     let gpu = gpu();
     let window = Window::new(24, 18, 10.0);
-    let with_infinite = ["slope", "select-slope", "select-aspect", "flow-indices"];
-    let others = ["select-curvature", "ruggedness", "soil-depth", "geomorphons", "topographic-position", "distance"];
-    for op in with_infinite.into_iter().chain(others) {
+    let with_infinite = ["slope", "hillshade", "normal", "aspect", "select-slope", "select-aspect", "flow-indices"];
+    let others = ["curvature", "select-curvature", "ruggedness", "soil-depth", "geomorphons", "occlusion"];
+    for op in with_infinite.into_iter().chain(others).chain(["topographic-position", "distance", "extrapolate"]) {
         let node = Node::named(op).unwrap();
         let mut given = inputs(&node, &window, true);
         let (source, halo) = (given[0].as_mut().unwrap(), filter(&node).unwrap().halo(window.cell));

@@ -81,12 +81,16 @@ pub fn hillshade(grid: &Grid, light: &Light) -> Grid {
     let window = inner(grid.window());
     let mut out = Grid::filled(window, 0.0);
     for j in 0..window.height {
-        let (rows, out) = ([grid.row(j), grid.row(j + 1), grid.row(j + 2)], out.row_mut(j));
-        if !dispatch(Sound { rows, cell: window.cell, light, out: &mut *out }) {
-            gradients_between(rows, window.cell, |i, gradient| out[i] = light.on(gradient));
-        }
+        hillshade_between([grid.row(j), grid.row(j + 1), grid.row(j + 2)], window.cell, light, out.row_mut(j));
     }
     out
+}
+
+/// The hillshade of the inner samples of three adjacent rows, from the north: `out` is shorter than they are by two.
+pub fn hillshade_between(rows: [&[f32]; 3], cell: f64, light: &Light, out: &mut [f32]) {
+    if !dispatch(Sound { rows, cell, light, out: &mut *out }) {
+        gradients_between(rows, cell, |i, gradient| out[i] = light.on(gradient));
+    }
 }
 
 /// The hillshade of a row without missing samples; returns whether none is missing.

@@ -8,7 +8,11 @@
 //! them, each weighted by its share of the circle. The steps are at 1, 2, 3, 4, 6, 8, 12, 16, 24 ... samples; a far
 //! ridge narrower than the gap between two steps may be missed.
 
+use crate::checks::{never, steps as steps_of};
+use crate::error;
 use crate::grid::{Grid, Window};
+use crate::parallel;
+use crate::progress::Progress;
 
 /// The directions of one quadrant and the degrees that each represents; rotations give the others.
 const QUARTER: [([i64; 2], f64); 4] =
@@ -75,38 +79,61 @@ fn steps() -> impl Iterator<Item = i64> {
 /// the window and its surroundings; beyond it the sky is open. NaN at samples that are not finite; they hide nothing.
 #[must_use]
 pub fn sky_view(heights: &Grid, window: &Window, reach: usize) -> Grid {
+    let Ok(out) = by_rows(heights, window, reach, &never);
+    out
+}
+
+/// [`sky_view`] with progress and cancellation.
+///
+/// # Errors
+/// If the work is cancelled.
+pub fn sky_view_with(heights: &Grid, window: &Window, reach: usize, progress: &Progress) -> error::Result<Grid> {
+    by_rows(heights, window, reach, &steps_of(progress, window.height))
+}
+
+fn by_rows<E: Send>(
+    heights: &Grid,
+    window: &Window,
+    reach: usize,
+    step: &(impl Fn() -> Result<(), E> + Sync),
+) -> Result<Grid, E> {
     let (looks, shares) = looks(reach, window.cell);
     let all = heights.window();
     let mut out = Grid::filled(*window, f32::NAN);
-    let mut steepest = vec![0.0f32; shares.len()];
-    for j in 0..window.height {
-        for i in 0..window.width {
-            let (x, y) = (window.x + i as i64 - all.x, window.y + j as i64 - all.y);
-            let here = heights[(x as usize, y as usize)];
-            if !here.is_finite() {
-                continue;
-            }
-            steepest.fill(0.0);
-            for look in &looks {
-                let (x, y) = (x + look.offset[0], y + look.offset[1]);
-                if (0..all.width as i64).contains(&x) && (0..all.height as i64).contains(&y) {
-                    let rise = (heights[(x as usize, y as usize)] - here) * look.per_metre;
-                    // False for NaN as well.
-                    if rise > steepest[look.direction] {
-                        steepest[look.direction] = rise;
+    parallel::try_for_each_init(
+        out.data_mut().chunks_mut(window.width.max(1)).enumerate(),
+        || vec![0.0f32; shares.len()],
+        |steepest, (j, row)| {
+            step()?;
+            for (i, out) in row.iter_mut().enumerate() {
+                let (x, y) = (window.x + i as i64 - all.x, window.y + j as i64 - all.y);
+                let here = heights[(x as usize, y as usize)];
+                if !here.is_finite() {
+                    continue;
+                }
+                steepest.fill(0.0);
+                for look in &looks {
+                    let (x, y) = (x + look.offset[0], y + look.offset[1]);
+                    if (0..all.width as i64).contains(&x) && (0..all.height as i64).contains(&y) {
+                        let rise = (heights[(x as usize, y as usize)] - here) * look.per_metre;
+                        // False for NaN as well.
+                        if rise > steepest[look.direction] {
+                            steepest[look.direction] = rise;
+                        }
                     }
                 }
+                let hidden: f64 = (steepest.iter().zip(&shares))
+                    .map(|(rise, share)| {
+                        let rise = f64::from(*rise);
+                        share * (if rise.is_finite() { rise / (1.0 + rise * rise).sqrt() } else { 1.0 })
+                    })
+                    .sum();
+                *out = (1.0 - hidden) as f32;
             }
-            let hidden: f64 = (steepest.iter().zip(&shares))
-                .map(|(rise, share)| {
-                    let rise = f64::from(*rise);
-                    share * (if rise.is_finite() { rise / (1.0 + rise * rise).sqrt() } else { 1.0 })
-                })
-                .sum();
-            out.row_mut(j)[i] = (1.0 - hidden) as f32;
-        }
-    }
-    out
+            Ok(())
+        },
+    )?;
+    Ok(out)
 }
 
 #[cfg(test)]

@@ -129,6 +129,6 @@ impl ExportJob {
             Some(window) => window,
             None => world.full_window(world.recipe().world.cell)?,
         };
-        Ok(run::source(self.format, world, &self.layer, window, progress)?.with_options(self.layer_options.clone()))
+        run::source(self.format, world, &self.layer, window, progress)
     }
 }

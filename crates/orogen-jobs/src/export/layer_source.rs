@@ -2,12 +2,11 @@
 
 use std::io;
 
-use super::derived::layer::{Made, Nature, RowLayer};
+use super::derived::layer::{Channels, Made, Nature};
 use super::derived::list;
 use super::derived::rows::Rows;
 use super::features::layer::VectorLayer;
 use super::features::list as vector_list;
-use crate::options::Options;
 use orogen_engine::layer::LayerKind;
 use orogen_engine::world::{HEIGHT, World};
 use orogen_grid::analysis::finite::FiniteCount;
@@ -19,20 +18,18 @@ use orogen_grid::words::nearest;
 use orogen_io::format::dem::Georeference;
 use orogen_io::format::levels::{Levels, NO_SAMPLES, extremes};
 
-/// Bands of rows from the north, each with a grid per channel and a count of finite samples (for a derived layer, of
-/// the heights under it).
+/// Bands of rows from the north, each with a grid per channel and a count of finite samples (for some derived layers, of
+/// the heights under them).
 type Source<'w> = Box<dyn Iterator<Item = Result<(Vec<Grid>, FiniteCount)>> + 'w>;
 
 /// A layer of a world over a window.
 pub struct LayerSource<'w> {
     world: &'w World,
     layer: String,
-    /// The derived layer, if the recipe has no layer with this name.
-    derived: Option<&'static RowLayer>,
+    /// The channels of a derived layer, if the recipe has no layer with this name.
+    derived: Option<&'static Channels>,
     /// Layers of vector features in place of samples.
     vectors: Vec<&'static VectorLayer>,
-    /// The options of the derived layer.
-    options: Options,
     window: Window,
     progress: Progress,
     /// Memory held beside the current rows, in bytes.
@@ -46,7 +43,7 @@ pub struct LayerSource<'w> {
 }
 
 impl<'w> LayerSource<'w> {
-    /// A layer over a window: one of the recipe's, or one [derived](super::derived) from its heights (some need a
+    /// A layer over a window: one of the recipe's, or one [derived](super::derived) from its heights (they need a
     /// [prepared](super::derived::list::prepare) recipe). `progress` counts samples, and can cancel the work.
     ///
     /// # Errors
@@ -57,7 +54,7 @@ impl<'w> LayerSource<'w> {
             Ok(_) => None,
             Err(error) => match list::named(layer) {
                 Some(derived) => match &derived.made {
-                    Made::Rows(rows) => Some(rows),
+                    Made::Channels(channels) => Some(channels),
                     // Its nodes must be appended before a world is opened.
                     Made::Nodes(_) => return Err(error),
                 },
@@ -84,7 +81,6 @@ impl<'w> LayerSource<'w> {
             layer,
             derived,
             vectors: Vec::new(),
-            options: Options::default(),
             window,
             progress: progress.clone(),
             reserved: 0,
@@ -92,18 +88,6 @@ impl<'w> LayerSource<'w> {
             range: NO_SAMPLES,
             count: FiniteCount::default(),
         })
-    }
-
-    /// The same with these options of a derived layer that is made of rows.
-    #[must_use]
-    pub fn with_options(self, options: Options) -> LayerSource<'w> {
-        LayerSource { options, ..self }
-    }
-
-    /// The options of the derived layer.
-    #[must_use]
-    pub fn options(&self) -> &Options {
-        &self.options
     }
 
     /// Layers of vector features over a window, in place of samples.
@@ -148,16 +132,18 @@ impl<'w> LayerSource<'w> {
 
     fn source(&self, window: &Window) -> Result<Source<'w>> {
         if let Some(derived) = self.derived {
-            let rows = Rows::new(derived, self.world, window, self.reserved, &self.progress)?;
-            return Ok(Box::new(rows.with_options(self.options.clone())));
+            return Ok(Box::new(Rows::new(derived, self.world, window, self.reserved, &self.progress)?));
         }
-        let bands = self.world.bands(&[&self.layer], window, self.reserved, &self.progress)?;
-        let counted = |grids: Vec<Grid>| {
-            let count =
-                grids.iter().fold(FiniteCount::default(), |count, grid| count.and(FiniteCount::of(grid.data())));
+        let counted = list::counted(self.world.recipe(), &self.layer);
+        let layers = [self.layer.as_str(), counted];
+        let layers = if counted == self.layer { &layers[..1] } else { &layers };
+        let bands = self.world.bands(layers, window, self.reserved, &self.progress)?;
+        let split = |mut grids: Vec<Grid>| {
+            let count = grids.last().map_or_else(FiniteCount::default, |grid| FiniteCount::of(grid.data()));
+            grids.truncate(1);
             (grids, count)
         };
-        Ok(Box::new(bands.map(move |band| band.map(counted))))
+        Ok(Box::new(bands.map(move |band| band.map(split))))
     }
 
     /// The rows of another derived layer over the same window, with the same memory reserved. Its inputs must be
@@ -165,7 +151,7 @@ impl<'w> LayerSource<'w> {
     ///
     /// # Errors
     /// The errors of [`World::bands`].
-    pub(super) fn rows_of(&self, derived: &'static RowLayer) -> Result<Rows<'w>> {
+    pub(super) fn rows_of(&self, derived: &'static Channels) -> Result<Rows<'w>> {
         Rows::new(derived, self.world, &self.window, self.reserved, &self.progress.part(0.0))
     }
 
@@ -184,10 +170,7 @@ impl<'w> LayerSource<'w> {
     /// The unit of a sample: "m" for heights, otherwise the unit of the layer, which may be empty.
     #[must_use]
     pub fn unit(&self) -> &'static str {
-        match self.derived {
-            Some(derived) => derived.unit,
-            None => self.world.unit(&self.layer).unwrap_or_default(),
-        }
+        self.world.unit(&self.layer).unwrap_or_default()
     }
 
     /// The kind of the layer: heights, labels or amounts.
@@ -196,7 +179,7 @@ impl<'w> LayerSource<'w> {
         self.world.kind(&self.layer).unwrap_or(LayerKind::Height)
     }
 
-    /// A hash of everything that the layer depends on; for a derived layer, of its heights.
+    /// A hash of everything that the layer depends on; for a derived layer with channels, of its heights.
     #[must_use]
     pub fn key(&self) -> [u8; 32] {
         let layer = if self.derived.is_some() { HEIGHT } else { &self.layer };
@@ -224,14 +207,14 @@ impl<'w> LayerSource<'w> {
     /// Number of grids per band: 1 for plain numbers.
     #[must_use]
     pub fn channels(&self) -> usize {
-        self.derived.map_or(1, |derived| (derived.channels)(self.world.recipe()).len())
+        self.derived.map_or(1, |derived| (derived.names)(self.world.recipe()).len())
     }
 
     /// The names of the channels, for formats that store them.
     #[must_use]
     pub fn channel_names(&self) -> Vec<String> {
         match self.derived {
-            Some(derived) => (derived.channels)(self.world.recipe()),
+            Some(derived) => (derived.names)(self.world.recipe()),
             None => vec![self.layer.clone()],
         }
     }
@@ -299,8 +282,9 @@ impl<'w> LayerSource<'w> {
             grid.paste(&band);
             halo.take(&window, &band);
         }
-        // For a derived layer, the count is that of the heights, here including those around the window.
-        self.count = if self.derived.is_some() { count } else { FiniteCount::of(grid.data()) };
+        // A count of heights here includes those around the window.
+        let counts_own = self.derived.is_none() && list::counted(self.world.recipe(), &self.layer) == self.layer;
+        self.count = if counts_own { FiniteCount::of(grid.data()) } else { count };
         self.range = extremes(NO_SAMPLES, grid.data());
         Ok(grid)
     }

@@ -2,15 +2,15 @@
 
 use std::io::{self, Write};
 
+use super::derived::appended::{Appended, AppendedNode};
 use super::derived::layer::Derived;
 use super::derived::rows::Rows;
-use super::derived::{albedo, occlusion, roughness};
+use super::derived::{albedo, cover, occlusion, roughness};
 use super::format::refuse;
 use super::layer_source::LayerSource;
 use super::mesh::COLOR;
 use crate::options::{OptionSpec, Options};
 use orogen_engine::recipe::document::Recipe;
-use orogen_engine::recipe::surface::expand::expand;
 use orogen_grid::grid::{Grid, Window};
 use orogen_io::format::png::{self, Picture, Pixel};
 use orogen_io::palette::color::Encoder;
@@ -23,11 +23,13 @@ pub const SURFACES: OptionSpec = OptionSpec::switch(
     "Use the colors of the recipe's surfaces (or of the standard ones) instead of map colors; in glb with roughness, occlusion, and normal maps for meshes with few triangles",
 );
 
-/// Adds the nodes to a recipe that compute its surfaces, if the options request them; call it before the world is
-/// opened.
+/// Adds the nodes to a recipe that compute its surfaces and occlusion, if the options request them; call it before the
+/// world is opened.
 pub fn prepare(recipe: &mut Recipe, options: &Options) {
-    if options.has(SURFACES.name) {
-        expand(recipe);
+    let none = Options::default();
+    if let Some(mut to) = options.has(SURFACES.name).then(|| Appended::new(recipe, &none)).flatten() {
+        cover::prepare(&mut to);
+        occlusion::append(&mut to);
     }
 }
 
@@ -75,10 +77,10 @@ pub fn of(source: &LayerSource, options: &Options, packed: bool) -> io::Result<O
     drop(color);
     let mut material = Vec::new();
     if packed {
-        let (rough, open) = (made(source, &roughness::LAYER)?, made(source, &occlusion::LAYER)?);
+        let (rough, open) = (made(source, &roughness::LAYER)?, open(source)?);
         let byte = |share: f32| (share.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
         material = packed_rows(&picture(Pixel::Data8), |row, bytes| {
-            let pairs = open[0].row(row).iter().zip(rough[0].row(row));
+            let pairs = open.row(row).iter().zip(rough[0].row(row));
             for (pixel, (open, rough)) in bytes.chunks_exact_mut(3).zip(pairs) {
                 pixel.copy_from_slice(&[byte(*open), byte(*rough), 0]);
             }
@@ -101,9 +103,19 @@ pub fn normal_map(level: &Surface) -> io::Result<Vec<u8>> {
 
 /// A derived layer over the source's window.
 fn made(source: &LayerSource, layer: &'static Derived) -> io::Result<Vec<Grid>> {
-    let Some(rows) = layer.rows() else { return refuse(format!("`{}` is not made of rows", layer.name)) };
+    let Some(channels) = layer.channels() else { return refuse(format!("`{}` has no channels", layer.name)) };
     let progress = source.progress().part(0.0);
-    Ok(Rows::new(rows, source.world(), source.window(), 0, &progress)?.whole()?)
+    Ok(Rows::new(channels, source.world(), source.window(), 0, &progress)?.whole()?)
+}
+
+/// The occlusion over the source's window.
+fn open(source: &LayerSource) -> io::Result<Grid> {
+    let layer = AppendedNode::of("occlusion").name_of("occlusion");
+    let mut all = Grid::filled(*source.window(), 0.0);
+    for band in source.world().bands(&[&layer], source.window(), 0, &source.progress().part(0.0))? {
+        band?.iter().for_each(|band| all.paste(band));
+    }
+    Ok(all)
 }
 
 /// A picture whose rows `fill` computes.

@@ -40,8 +40,7 @@ fn overview(source: &LayerSource) -> io::Result<Grid> {
     let window = window(source.world())?;
     let progress = source.progress().part(0.0);
     let mut overview = Grid::filled(window, f32::NAN);
-    let layer = LayerSource::new(source.world(), source.layer(), window, &progress)?;
-    layer.with_options(source.options().clone()).rows(|band| {
+    LayerSource::new(source.world(), source.layer(), window, &progress)?.rows(|band| {
         overview.paste(&band[0]);
         Ok(())
     })?;

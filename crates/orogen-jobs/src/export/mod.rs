@@ -10,9 +10,11 @@
 //! use orogen_jobs::export::{job::ExportJob, registry};
 //! use orogen_engine::{Progress, Window, World};
 //!
-//! let world = World::open(orogen_engine::presets::find("hills").ok_or("no such preset")?.recipe()?)?;
+//! let mut recipe = orogen_engine::presets::find("hills").ok_or("no such preset")?.recipe()?;
 //! let path = std::env::temp_dir().join(format!("orogen-doc-{}.npy", std::process::id()));
 //! let job = ExportJob::new(registry::of_path(&path)?).with_layer("slope").with_window(Window::new(100, 80, 20.0));
+//! job.prepare(&mut recipe)?;
+//! let world = World::open(recipe)?;
 //! job.to_file(&world, &OutputPolicy::default().output(&path)?, &Progress::none())?;
 //! # std::fs::remove_file(&path).ok();
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -9,7 +9,6 @@ use super::format::refuse;
 use orogen_engine::recipe::document::Recipe;
 use orogen_engine::recipe::surface::expand::expand;
 use orogen_engine::world::World;
-use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 use orogen_io::palette::color::{Encoder, Rgb};
@@ -75,9 +74,6 @@ fn entries(recipe: &Recipe, names: &[String], sums: &[f64]) -> Vec<SurfaceEntry>
 }
 
 fn rows<'w>(layer: &'static Derived, world: &'w World, window: &Window, progress: &Progress) -> io::Result<Rows<'w>> {
-    let made: Option<Result<Rows>> = layer.rows().map(|rows| Rows::new(rows, world, window, 0, progress));
-    match made {
-        Some(rows) => Ok(rows?),
-        None => refuse(format!("`{}` is not made of rows", layer.name)),
-    }
+    let Some(channels) = layer.channels() else { return refuse(format!("`{}` has no channels", layer.name)) };
+    Ok(Rows::new(channels, world, window, 0, progress)?)
 }

@@ -3,13 +3,12 @@
 use std::io::{self, Write};
 
 use super::derived::cover;
-use super::derived::layer::{Nature, RowLayer, nothing};
+use super::derived::layer::{Channels, Nature};
 use super::files::{Files, suffixed};
 use super::format::refuse;
 use super::layer_source::LayerSource;
 use super::place;
 use crate::options::Options;
-use orogen_grid::analysis::slope::gradients;
 use orogen_io::format::notes::SOFTWARE;
 use orogen_io::format::png::{self, Picture, Pixel};
 use orogen_io::spool::Spool;
@@ -19,21 +18,19 @@ use orogen_output::map::surface_picture::{SAMPLE, SurfacePacker, SurfacePainter}
 pub const SUFFIX: &str = "preview";
 
 /// The albedo, the gradient and the height of each sample, in one pass over the world.
-static ROWS: RowLayer = RowLayer {
-    unit: "",
+static ROWS: Channels = Channels {
     nature: Nature::Color,
-    channels: |_| ["R", "G", "B", "east", "north", "height"].map(String::from).to_vec(),
-    prepare: nothing,
-    layers: cover::shares_and_positions,
-    reach: |_| 1,
-    make: |around, window| {
-        let mut out = cover::of(around).albedo(window);
-        let heights = around.bordered(window);
-        out.extend(gradients(&heights));
-        out.extend(heights.crop(window));
+    names: |_| ["R", "G", "B", "east", "north", "height"].map(String::from).to_vec(),
+    prepare: cover::prepare_with_slopes,
+    layers: |recipe| cover::shares_and_positions(recipe).into_iter().chain(cover::slopes()).collect(),
+    make: Some(|recipe, layers, window| {
+        let mut out = cover::of(recipe, layers).albedo(window);
+        if let [heights, .., east, south] = layers {
+            out.extend([east, south, heights].into_iter().filter_map(|layer| layer.crop(window)));
+            out[4].data_mut().iter_mut().for_each(|rise| *rise = -*rise);
+        }
         out
-    },
-    lowered: None,
+    }),
 };
 
 /// Writes the picture: the surfaces in their colors, mixed by their weights, with the relief shading of maps. The first

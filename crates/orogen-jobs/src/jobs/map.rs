@@ -422,8 +422,7 @@ impl MapJob {
 
     /// The layer that colors the map.
     fn layer(&self, world: &World, window: &Window, warnings: &mut Vec<String>, progress: &Progress) -> Result<Layer> {
-        let source = LayerSource::new(world, &self.layer, *window, progress)?;
-        let mut source = source.with_options(self.layer_options.clone());
+        let mut source = LayerSource::new(world, &self.layer, *window, progress)?;
         if source.channels() != 1 {
             let message = format!(
                 "`{}` has {} channels, but a map shows a layer with one channel",

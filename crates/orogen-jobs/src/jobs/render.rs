@@ -335,8 +335,8 @@ impl RenderJob {
         }
         let layers = COVER
             .iter()
-            .filter_map(|layer| layer.rows())
-            .map(|rows| Rows::new(rows, world, window, 0, &progress.part(0.0))?.whole());
+            .filter_map(|layer| layer.channels())
+            .map(|channels| Rows::new(channels, world, window, 0, &progress.part(0.0))?.whole());
         Ok(layers.collect::<Result<Vec<Vec<Grid>>>>()?.concat())
     }
 }

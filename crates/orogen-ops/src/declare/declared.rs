@@ -32,6 +32,10 @@ pub trait Declared {
     fn vertical(&self) -> f64 {
         0.0
     }
+    /// The unit of a layer, or empty: that of the declaration, unless it depends on parameters.
+    fn unit(&self, layer: usize) -> &'static str {
+        self.spec().layers.get(layer).map_or("", |layer| layer.unit)
+    }
     /// The files that parameters name.
     fn files(&mut self) -> Vec<&mut FileRef>;
     /// Checks that parameters do not contradict each other; the error has a key and a message.

@@ -66,6 +66,7 @@ macro_rules! choice {
 ///   `LinePoints` or `AreaPoints`, `Strokes`, `FileRef`, `Expression`, or a [`choice!`](crate::choice).
 /// - `layers { /// .. name: height, unit "m"; }`: what a filter or solver makes besides one layer of heights, and how
 ///   each is read between samples (`height`, `label`, `flow`, or as its `source`).
+/// - `units |op, layer| "m";`: the unit of a layer by its index, if it depends on parameters.
 /// - `check |op| Ok(());`: what a single parameter cannot see, a key and a message if parameters contradict each other.
 ///
 /// After an input's need, or at the end of a parameter, `alias "other"` names another key that recipes may use: a
@@ -213,6 +214,7 @@ macro_rules! op {
             $param:ident: $pty:ty = $default:expr $(, unit $unit:literal)? $(, range $low:literal to $high:expr)? $(, alias $palias:literal)?;
         )* })?
         $(layers { $( $(#[doc = $ldoc:literal])+ $layer:ident: $interpolation:ident $(, unit $lunit:literal)?; )+ })?
+        $(units $units:expr;)?
         $(check $check:expr;)?
     ) => {
         $(#[doc = $doc])+
@@ -351,6 +353,13 @@ macro_rules! op {
             $(
                 fn vertical(&self) -> f64 {
                     self.$vertical
+                }
+            )?
+
+            $(
+                fn unit(&self, layer: usize) -> &'static str {
+                    let units: fn(&$name, usize) -> &'static str = $units;
+                    units(self, layer)
                 }
             )?
 

@@ -33,6 +33,7 @@ op! {
 
 const CODE: &str = concat!(
     include_str!("../lower/horn.wgsl"),
+    include_str!("../lower/aspect.wgsl"),
     include_str!("../lower/selection.wgsl"),
     include_str!("select_aspect.wgsl")
 );

@@ -47,19 +47,53 @@ op! {
     };
 }
 
+impl CurvatureKind {
+    /// The kind, for the processor and as the number that shaders read.
+    pub(super) fn kind(self) -> (Curvature, f32) {
+        match self {
+            CurvatureKind::Total => (Curvature::Total, 0.0),
+            CurvatureKind::Profile => (Curvature::Profile, 1.0),
+            CurvatureKind::Plan => (Curvature::Plan, 2.0),
+        }
+    }
+}
+
 /// Maximum distance between the heights, in samples.
 const FARTHEST: f64 = 16_384.0;
+
+/// The distance between the heights in samples, for a distance and a cell in metres.
+pub(super) fn samples_apart(scale: f64, cell: f64) -> usize {
+    (scale / cell).round().clamp(1.0, FARTHEST) as usize
+}
+
+/// The curvatures of row `j` of a window, from heights that cover it and `apart` samples around it: calls `each` with
+/// the index of each sample.
+pub(super) fn curvatures(
+    source: &Grid,
+    j: usize,
+    (apart, cell): (usize, f64),
+    kind: Curvature,
+    mut each: impl FnMut(usize, f32),
+) {
+    let distance = apart as f64 * cell;
+    let rows = [0, 1, 2].map(|k| source.row(j + k * apart));
+    for i in 0..source.width().saturating_sub(2 * apart) {
+        let heights = rows.map(|row| [0, 1, 2].map(|k| f64::from(row[i + k * apart])));
+        each(i, bend(heights, distance, kind));
+    }
+}
 
 const CODE: &str = concat!(
     include_str!("../lower/horn.wgsl"),
     include_str!("second_difference.wgsl"),
+    include_str!("../lower/curvature.wgsl"),
     include_str!("../lower/selection.wgsl"),
     include_str!("select_curvature.wgsl")
 );
 
 impl Filter for SelectCurvature {
     fn halo(&self, cell: f64) -> usize {
-        (self.scale / cell).round().clamp(1.0, FARTHEST) as usize
+        samples_apart(self.scale, cell)
     }
 
     fn apply(
@@ -72,31 +106,18 @@ impl Filter for SelectCurvature {
         let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
         let selection = Selection::new(self.range, self.falloff);
         let apart = self.halo(window.cell);
-        let distance = apart as f64 * window.cell;
-        let kind = match self.kind {
-            CurvatureKind::Total => Curvature::Total,
-            CurvatureKind::Profile => Curvature::Profile,
-            CurvatureKind::Plan => Curvature::Plan,
-        };
+        let (kind, _) = self.kind.kind();
         context.progress.expect(window.height as f64);
         parallel::try_for_each(out.data_mut().chunks_mut(window.width.max(1)).enumerate(), |(j, row)| {
             context.progress.step(1.0)?;
-            let rows = [0, 1, 2].map(|k| source.row(j + k * apart));
-            for (i, out) in row.iter_mut().enumerate() {
-                let heights = rows.map(|row| [0, 1, 2].map(|k| f64::from(row[i + k * apart])));
-                *out = selection.of(bend(heights, distance, kind));
-            }
+            curvatures(source, j, (apart, window.cell), kind, |i, bend| row[i] = selection.of(bend));
             Ok(())
         })
     }
 
     fn lower(&self, cell: f64, _: &WorldParams) -> Lowering<Passes> {
         let apart = self.halo(cell);
-        let kind = match self.kind {
-            CurvatureKind::Total => 0.0,
-            CurvatureKind::Profile => 1.0,
-            CurvatureKind::Plan => 2.0,
-        };
+        let (_, kind) = self.kind.kind();
         let mut numbers = vec![apart as f32, (apart as f64 * cell) as f32, kind];
         numbers.extend(Selection::new(self.range, self.falloff).numbers());
         Lowering::Shader(Passes::new(CODE, &numbers).then("select_curvatures", 0, [apart; 2]))

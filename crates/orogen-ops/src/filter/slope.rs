@@ -39,6 +39,10 @@ op! {
         /// Rise per metre to the south; negative where the ground falls to the south.
         south: height;
     }
+    units |op, layer| match (layer, op.unit) {
+        (0, SlopeUnit::Degrees) => "deg",
+        _ => "",
+    };
 }
 
 const CODE: &str = concat!(include_str!("../lower/horn.wgsl"), include_str!("slope.wgsl"));

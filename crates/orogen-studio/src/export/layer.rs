@@ -117,13 +117,13 @@ pub fn layers(format: &Format, recipe: &Recipe) -> Vec<String> {
 /// The options of a derived layer.
 #[must_use]
 pub fn layer_options(layer: &str) -> &'static [OptionSpec] {
-    derived::named(layer).map_or(&[], |derived| derived.options)
+    derived::named(layer).map_or(&[], |derived| (derived.options)())
 }
 
 /// Whether a format holds a layer by its kind.
 fn holds(format: &Format, layer: &str) -> bool {
     match (derived::named(layer), features::named(layer)) {
-        (Some(derived), _) => derived.rows().is_none_or(|rows| rows.nature == Nature::Numbers || format.channels > 1),
+        (Some(derived), _) => derived.nature() == Nature::Numbers || format.channels > 1,
         (None, Some(_)) => format.features,
         (None, None) => true,
     }

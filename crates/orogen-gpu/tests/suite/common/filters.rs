@@ -1,10 +1,15 @@
 //! What the tests of filters have in common: a device, inputs, and the filters with some parameters.
 #![allow(dead_code, clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
+use orogen_engine::device::{Device, FilterExtent, PlanGrid};
 use orogen_engine::filter::Blur;
+use orogen_engine::filter::Curvature;
 use orogen_engine::filter::Distance;
+use orogen_engine::filter::Extrapolate;
 use orogen_engine::filter::FlowIndices;
+use orogen_engine::filter::Hillshade;
 use orogen_engine::filter::LocalStreamPower;
+use orogen_engine::filter::Occlusion;
 use orogen_engine::filter::Pipes;
 use orogen_engine::filter::SelectAspect;
 use orogen_engine::filter::SelectSlope;
@@ -15,7 +20,7 @@ use orogen_engine::filter::{Comparison, Geomorphons};
 use orogen_engine::filter::{CurvatureKind, SelectCurvature};
 use orogen_engine::filter::{FlowCodes, FlowDirection};
 use orogen_engine::filter::{Slope, SlopeUnit};
-use orogen_engine::lower::{Extent, Lowering, Passes};
+use orogen_engine::lower::{Lowering, Passes};
 use orogen_engine::node::Node;
 use orogen_engine::op::{Context, Filter, Op, WorldParams};
 use orogen_gpu::gpu::Options;
@@ -164,6 +169,15 @@ pub fn variants(node: &Node) -> Vec<Node> {
             vec![Blur { radius: 0.0, ..Default::default() }.into(), Blur { radius: 3.7, ..Default::default() }.into()]
         }
         "slope" => vec![Slope { unit: SlopeUnit::Ratio, ..Default::default() }.into()],
+        "hillshade" => vec![
+            Hillshade { azimuth: 100.0, altitude: 20.0, z_factor: 3.0, ..Default::default() }.into(),
+            Hillshade { azimuth: -30.0, altitude: 90.0, ..Default::default() }.into(),
+        ],
+        "curvature" => [CurvatureKind::Profile, CurvatureKind::Plan]
+            .map(|kind| Curvature { kind, scale: 45.0, ..Default::default() }.into())
+            .to_vec(),
+        "occlusion" => vec![Occlusion { reach: 30.0, ..Default::default() }.into()],
+        "extrapolate" => vec![Extrapolate { samples: 0, ..Default::default() }.into()],
         "thermal" => vec![
             Thermal { iterations: 0, ..Default::default() }.into(),
             Thermal { iterations: 7, talus_angle: 10.0, rate: 0.4, ..Default::default() }.into(),

@@ -3,10 +3,12 @@
 use crate::options::{OptionSpec, Options, ValueKind};
 use orogen_engine::declare::Input;
 use orogen_engine::field::Expr;
+use orogen_engine::filter::Extrapolate;
 use orogen_engine::node::Node;
 use orogen_engine::recipe::document::Recipe;
 use orogen_engine::recipe::network::OwnNetwork;
 use orogen_engine::solver::Drainage;
+use orogen_engine::world::HEIGHT;
 
 /// The option for the drainage area at which streams start.
 pub const STREAM: OptionSpec = OptionSpec::new(
@@ -24,9 +26,11 @@ pub struct Appended<'a> {
 }
 
 impl<'a> Appended<'a> {
-    /// For a recipe whose heights are the input `heights`.
-    pub fn new(recipe: &'a mut Recipe, heights: Input, options: &'a Options) -> Appended<'a> {
-        Appended { recipe, heights, options }
+    /// For a recipe; `None` if it has no heights.
+    pub fn new(recipe: &'a mut Recipe, options: &'a Options) -> Option<Appended<'a>> {
+        let heights =
+            recipe.output_inputs().iter().find(|(name, _)| name == HEIGHT).map(|(_, heights)| heights.clone());
+        heights.map(|heights| Appended { recipe, heights, options })
     }
 
     /// The recipe.
@@ -34,9 +38,24 @@ impl<'a> Appended<'a> {
         self.recipe
     }
 
+    /// The recipe, to change it.
+    pub fn recipe_mut(&mut self) -> &mut Recipe {
+        self.recipe
+    }
+
     /// The input for a node that reads the heights.
     pub fn heights(&self) -> Input {
         self.heights.clone()
+    }
+
+    /// The heights inside the world for a node that reads around its samples: they are extrapolated by a number of
+    /// samples beyond the edges of a bounded world, and missing beyond these.
+    pub fn extrapolated(&mut self, samples: u32) -> Input {
+        let source = self.heights();
+        match self.recipe.world.size {
+            Some(_) => self.add_as(&format!("extrapolate-{samples}"), Extrapolate { source, samples }).layer("value"),
+            None => source,
+        }
     }
 
     /// The options of the layer.
@@ -47,11 +66,16 @@ impl<'a> Appended<'a> {
     /// Appends a node named after its op, unless a node with that name exists already.
     pub fn add(&mut self, node: impl Into<Node>) -> AppendedNode {
         let node = node.into();
-        let name = format!("{}-below-height", node.spec().op);
-        if !self.recipe.nodes().iter().any(|named| named.name == name) {
-            self.recipe.add(&name, node);
+        self.add_as(node.spec().op, node)
+    }
+
+    /// Appends a node with this name in place of its op's.
+    fn add_as(&mut self, name: &str, node: impl Into<Node>) -> AppendedNode {
+        let node_name = AppendedNode::of(name);
+        if !self.recipe.nodes().iter().any(|named| named.name == node_name.0) {
+            self.recipe.add(&node_name.0, node.into());
         }
-        AppendedNode(name)
+        node_name
     }
 
     /// Appends the drainage of the heights.
@@ -87,8 +111,18 @@ impl<'a> Appended<'a> {
 pub struct AppendedNode(String);
 
 impl AppendedNode {
+    /// The node that is named after an op.
+    pub fn of(op: &str) -> AppendedNode {
+        AppendedNode(format!("{op}-below-height"))
+    }
+
     /// A layer of the node, as an input.
     pub fn layer(&self, layer: &str) -> Input {
-        Input::Node(format!("{}.{layer}", self.0))
+        Input::Node(self.name_of(layer))
+    }
+
+    /// The name of a layer of the node.
+    pub fn name_of(&self, layer: &str) -> String {
+        format!("{}.{layer}", self.0)
     }
 }

@@ -1,22 +1,19 @@
 //! The layer `aspect`.
 
-use super::layer::{Derived, Made, Nature, RowLayer, none, nothing};
-use orogen_grid::analysis::aspect::aspect;
+use super::layer::{Derived, Made, NodeLayer};
+use orogen_engine::filter::Aspect;
 
 /// The layer.
 pub static LAYER: Derived = Derived {
     name: "aspect",
     about: "aspect: downhill direction in degrees clockwise from north; NaN on level ground",
     palette: "aspect",
-    options: &[],
-    made: Made::Rows(RowLayer {
-        unit: "deg",
-        nature: Nature::Numbers,
-        channels: |_| vec!["aspect".into()],
-        prepare: nothing,
-        layers: none,
-        reach: |_| 1,
-        make: |around, window| vec![aspect(&around.bordered(window))],
-        lowered: None,
-    }),
+    options: || &[],
+    made: Made::Nodes(
+        NodeLayer::new(|to| {
+            let source = to.extrapolated(1);
+            Ok(to.add(Aspect { source }).layer("aspect"))
+        })
+        .counting_heights(),
+    ),
 };

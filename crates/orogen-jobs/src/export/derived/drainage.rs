@@ -19,8 +19,8 @@ pub static AREA: Derived = Derived {
     name: "drainage-area",
     about: "flow accumulation: drainage area of each cell including itself, in m^2 (D8; that of the levels where the recipe has its own network)",
     palette: "viridis",
-    options: &[],
-    made: Made::Nodes(NodeLayer { bounded: true, network: true, append: |to| Ok(to.flow()) }),
+    options: || &[],
+    made: Made::Nodes(NodeLayer::new(|to| Ok(to.flow())).bounded_or_network()),
 };
 
 /// The layer `flow-direction`.
@@ -28,11 +28,9 @@ pub static DIRECTION: Derived = Derived {
     name: "flow-direction",
     about: "flow direction (D8), in the encoding of another program (--codes)",
     palette: "",
-    options: &[CODES],
-    made: Made::Nodes(NodeLayer {
-        bounded: true,
-        network: true,
-        append: |to| {
+    options: || &[CODES],
+    made: Made::Nodes(
+        NodeLayer::new(|to| {
             let codes = match to.options().word(CODES.name) {
                 Some("grass") => FlowCodes::Grass,
                 Some("taudem") => FlowCodes::Taudem,
@@ -42,8 +40,9 @@ pub static DIRECTION: Derived = Derived {
             };
             let source = to.receiver();
             Ok(to.add(FlowDirection { source, codes }).layer("direction"))
-        },
-    }),
+        })
+        .bounded_or_network(),
+    ),
 };
 
 /// The layer `strahler`.
@@ -51,8 +50,8 @@ pub static STRAHLER: Derived = Derived {
     name: "strahler",
     about: "Strahler order of streams; 0 elsewhere",
     palette: "viridis",
-    options: &[STREAM],
-    made: Made::Nodes(NodeLayer { bounded: true, network: false, append: |to| Ok(to.drainage().layer("strahler")) }),
+    options: || &[STREAM],
+    made: Made::Nodes(NodeLayer::new(|to| Ok(to.drainage().layer("strahler"))).bounded()),
 };
 
 /// The layer `watershed`.
@@ -60,8 +59,8 @@ pub static WATERSHED: Derived = Derived {
     name: "watershed",
     about: "watersheds: the ground that drains to each outlet, numbered from 1; 0 in the sea",
     palette: "",
-    options: &[],
-    made: Made::Nodes(NodeLayer { bounded: true, network: false, append: |to| Ok(to.drainage().layer("watershed")) }),
+    options: || &[],
+    made: Made::Nodes(NodeLayer::new(|to| Ok(to.drainage().layer("watershed"))).bounded()),
 };
 
 /// The layer `filled`.
@@ -69,13 +68,12 @@ pub static FILLED: Derived = Derived {
     name: "filled",
     about: "depression-free heights: every depression filled to its spill level; filled ground is level",
     palette: "batlow",
-    options: &[],
-    made: Made::Nodes(NodeLayer {
-        bounded: true,
-        network: false,
-        append: |to| {
+    options: || &[],
+    made: Made::Nodes(
+        NodeLayer::new(|to| {
             let source = to.heights();
             Ok(to.add(Fill { source, ..Fill::default() }).layer("filled"))
-        },
-    }),
+        })
+        .bounded(),
+    ),
 };

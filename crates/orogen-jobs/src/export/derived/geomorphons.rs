@@ -25,16 +25,12 @@ pub static LAYER: Derived = Derived {
     name: "landforms",
     about: "landforms (geomorphons): 1 flat, 2 peak, 3 ridge, 4 shoulder, 5 spur, 6 slope, 7 hollow, 8 footslope, 9 valley, 10 pit",
     palette: "turbo",
-    options: &[REACH, FLAT],
-    made: Made::Nodes(NodeLayer {
-        bounded: false,
-        network: false,
-        append: |to| {
-            let (options, defaults) = (to.options(), Geomorphons::default());
-            let reach = options.number(REACH.name).unwrap_or(defaults.reach);
-            let flat = options.number(FLAT.name).unwrap_or(defaults.flat);
-            let source = to.heights();
-            Ok(to.add(Geomorphons { source, reach, flat, ..defaults }).layer("form"))
-        },
-    }),
+    options: || &[REACH, FLAT],
+    made: Made::Nodes(NodeLayer::new(|to| {
+        let (options, defaults) = (to.options(), Geomorphons::default());
+        let reach = options.number(REACH.name).unwrap_or(defaults.reach);
+        let flat = options.number(FLAT.name).unwrap_or(defaults.flat);
+        let source = to.heights();
+        Ok(to.add(Geomorphons { source, reach, flat, ..defaults }).layer("form"))
+    })),
 };

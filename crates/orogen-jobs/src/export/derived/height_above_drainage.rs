@@ -15,8 +15,8 @@ pub static HEIGHT_ABOVE: Derived = Derived {
     name: "height-above-drainage",
     about: "height above nearest drainage (HAND) in m: above the stream that the ground drains to",
     palette: "batlow",
-    options: &[STREAM],
-    made: Made::Nodes(NodeLayer { bounded: true, network: false, append: |to| Ok(append(to).layer("height")) }),
+    options: || &[STREAM],
+    made: Made::Nodes(NodeLayer::new(|to| Ok(append(to).layer("height"))).bounded()),
 };
 
 /// The layer `flow-distance`.
@@ -24,8 +24,8 @@ pub static FLOW_DISTANCE: Derived = Derived {
     name: "flow-distance",
     about: "length of the flow path to the stream that the ground drains to, in m",
     palette: "viridis",
-    options: &[STREAM],
-    made: Made::Nodes(NodeLayer { bounded: true, network: false, append: |to| Ok(append(to).layer("flow_distance")) }),
+    options: || &[STREAM],
+    made: Made::Nodes(NodeLayer::new(|to| Ok(append(to).layer("flow_distance"))).bounded()),
 };
 
 /// The layer `stream-distance`.
@@ -33,6 +33,6 @@ pub static STREAM_DISTANCE: Derived = Derived {
     name: "stream-distance",
     about: "straight-line distance to the nearest stream, in m",
     palette: "viridis",
-    options: &[STREAM],
-    made: Made::Nodes(NodeLayer { bounded: true, network: false, append: |to| Ok(append(to).layer("distance")) }),
+    options: || &[STREAM],
+    made: Made::Nodes(NodeLayer::new(|to| Ok(append(to).layer("distance"))).bounded()),
 };

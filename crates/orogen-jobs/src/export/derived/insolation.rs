@@ -52,11 +52,9 @@ pub static LAYER: Derived = Derived {
     name: "insolation",
     about: "insolation: solar energy on an average day under a clear sky, in kWh/m^2: direct, diffuse and reflected, with cast shadows",
     palette: "inferno",
-    options: &[DAY, SEASON, LATITUDE, TURBIDITY],
-    made: Made::Nodes(NodeLayer {
-        bounded: true,
-        network: false,
-        append: |to| {
+    options: || &[DAY, SEASON, LATITUDE, TURBIDITY],
+    made: Made::Nodes(
+        NodeLayer::new(|to| {
             let (options, defaults) = (to.options(), Insolation::default());
             let latitude =
                 options.number(LATITUDE.name).unwrap_or_else(|| latitude_of(to).unwrap_or(defaults.latitude));
@@ -70,8 +68,9 @@ pub static LAYER: Derived = Derived {
                 ..defaults
             };
             Ok(to.add(node).layer("energy"))
-        },
-    }),
+        })
+        .bounded(),
+    ),
 };
 
 /// The requested days.

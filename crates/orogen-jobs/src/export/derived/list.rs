@@ -1,6 +1,6 @@
 //! The list of derived layers.
 
-use super::appended::Appended;
+use super::appended::{Appended, AppendedNode};
 use super::layer::{Derived, Made};
 use super::{
     albedo, aspect, curvature, drainage, geomorphons, height_above_drainage, hillshade, insolation, normal, occlusion,
@@ -57,7 +57,20 @@ pub fn named(name: &str) -> Option<&'static Derived> {
 /// All options of all layers, by name, each with the layers that have it.
 #[must_use]
 pub fn options() -> Vec<(&'static OptionSpec, Vec<&'static str>)> {
-    by_name(ALL.iter().map(|derived| (derived.name, derived.options)))
+    by_name(ALL.iter().map(|derived| (derived.name, (derived.options)())))
+}
+
+/// The layer of a prepared recipe whose finite samples are those of a layer: the layer itself, except for some derived
+/// ones.
+pub(crate) fn counted<'l>(recipe: &Recipe, layer: &'l str) -> &'l str {
+    let counts_heights = named(layer).is_some_and(|derived| match &derived.made {
+        Made::Nodes(nodes) => nodes.counts_heights,
+        Made::Channels(_) => false,
+    });
+    // A layer of the recipe with the same name is not the derived one.
+    let appended = AppendedNode::of(layer).layer(layer);
+    let is_derived = recipe.output_inputs().iter().any(|(name, input)| name == layer && *input == appended);
+    if counts_heights && is_derived { HEIGHT } else { layer }
 }
 
 /// Appends to a recipe the nodes that a derived layer needs; call it before the world is opened. A layer made by nodes
@@ -70,13 +83,13 @@ pub fn options() -> Vec<(&'static OptionSpec, Vec<&'static str>)> {
 pub fn prepare(recipe: &mut Recipe, layer: &str, options: &Options) -> Result<()> {
     let has = recipe.outputs().any(|name| name == layer) || recipe.nodes().iter().any(|named| named.name == layer);
     let derived = if has { None } else { named(layer) };
-    check(layer, derived.map_or(&[], |derived| derived.options), options)?;
-    let heights = recipe.output_inputs().iter().find(|(name, _)| name == HEIGHT).map(|(_, heights)| heights.clone());
-    let (Some(derived), Some(heights)) = (derived, heights) else { return Ok(()) };
-    let bounded = recipe.world.size.is_some();
+    check(layer, derived.map_or(&[], |derived| (derived.options)()), options)?;
+    let (Some(derived), bounded) = (derived, recipe.world.size.is_some()) else { return Ok(()) };
+    let has_network = OwnNetwork::of(recipe).is_some();
+    let Some(mut to) = Appended::new(recipe, options) else { return Ok(()) };
     match &derived.made {
-        Made::Rows(rows) => (rows.prepare)(recipe),
-        Made::Nodes(nodes) if nodes.bounded && !bounded && !(nodes.network && OwnNetwork::of(recipe).is_some()) => {
+        Made::Channels(channels) => (channels.prepare)(&mut to),
+        Made::Nodes(nodes) if nodes.bounded && !bounded && !(nodes.network && has_network) => {
             let own = match nodes.network {
                 true => ", or the outputs `flow` and `receiver` of a node like `continents`",
                 false => "",
@@ -85,7 +98,7 @@ pub fn prepare(recipe: &mut Recipe, layer: &str, options: &Options) -> Result<()
             return Err(Error::new(ErrorKind::Request, message));
         }
         Made::Nodes(nodes) => {
-            let shown = (nodes.append)(&mut Appended::new(recipe, heights, options))?;
+            let shown = (nodes.append)(&mut to)?;
             recipe.output(layer, shown);
         }
     }
@@ -100,7 +113,7 @@ pub(crate) fn check(layer: &str, known: &[OptionSpec], options: &Options) -> Res
     match options.names().find(|name| !known.iter().any(|spec| spec.name == *name)) {
         None => Ok(()),
         Some(name) => {
-            let has = |other: &&&Derived| other.options.iter().any(|spec| spec.name == name);
+            let has = |other: &&&Derived| (other.options)().iter().any(|spec| spec.name == name);
             let layers: Vec<&str> = ALL.iter().filter(has).map(|other| other.name).collect();
             let message = format!("--{name} does not apply to the layer {layer}; it applies to: {}", layers.join(", "));
             Err(Error::new(ErrorKind::Request, message))
@@ -116,7 +129,7 @@ mod tests {
     fn names_are_unique_and_an_option_is_the_same_wherever_it_is_known() {
         for (n, derived) in ALL.iter().enumerate() {
             assert!(ALL[..n].iter().all(|other| other.name != derived.name), "{}", derived.name);
-            for spec in derived.options {
+            for spec in (derived.options)() {
                 assert!(options().iter().any(|(known, _)| *known == spec), "{} of {}", spec.name, derived.name);
             }
         }

@@ -14,6 +14,7 @@ pub mod layer;
 pub mod list;
 pub(crate) mod normal;
 pub(crate) mod occlusion;
+pub(crate) mod params;
 pub(crate) mod position;
 pub mod roughness;
 pub mod rows;

@@ -21,8 +21,8 @@ pub static POSITION: Derived = Derived {
     name: "tpi",
     about: "topographic position index: height above the mean of a disc, in m (Weiss 2001)",
     palette: "oleron",
-    options: &[RADIUS],
-    made: Made::Nodes(NodeLayer { bounded: false, network: false, append: |to| Ok(append(to).layer("position")) }),
+    options: || &[RADIUS],
+    made: Made::Nodes(NodeLayer::new(|to| Ok(append(to).layer("position")))),
 };
 
 /// The layer `slope-position`.
@@ -30,6 +30,6 @@ pub static CLASS: Derived = Derived {
     name: "slope-position",
     about: "slope position (Weiss 2001): 1 ridge, 2 upper slope, 3 middle slope, 4 flat, 5 lower slope, 6 valley",
     palette: "turbo",
-    options: &[RADIUS],
-    made: Made::Nodes(NodeLayer { bounded: false, network: false, append: |to| Ok(append(to).layer("class")) }),
+    options: || &[RADIUS],
+    made: Made::Nodes(NodeLayer::new(|to| Ok(append(to).layer("class")))),
 };

@@ -1,23 +1,19 @@
 //! The layer `roughness`.
 
 use super::cover;
-use super::layer::{Derived, Made, Nature, RowLayer};
-use orogen_engine::recipe::surface::expand::expand;
+use super::layer::{Channels, Derived, Made, Nature};
 
 /// The layer.
 pub static LAYER: Derived = Derived {
     name: "roughness",
     about: "roughness map: roughness of the ground by the recipe's surfaces, from 0 (mirror) to 1 (matt)",
     palette: "grey",
-    options: &[],
-    made: Made::Rows(RowLayer {
-        unit: "",
+    options: || &[],
+    made: Made::Channels(Channels {
         nature: Nature::Numbers,
-        channels: |_| vec!["roughness".into()],
-        prepare: expand,
+        names: |_| vec!["roughness".into()],
+        prepare: cover::prepare,
         layers: cover::shares,
-        reach: |_| 0,
-        make: |around, window| vec![cover::of(around).roughness(window)],
-        lowered: None,
+        make: Some(|recipe, layers, window| vec![cover::of(recipe, layers).roughness(window)]),
     }),
 };

@@ -1,18 +1,14 @@
-//! Computation of a derived layer in bands of rows; only the rows of the current halo are held.
+//! The channels of a derived layer, in bands of rows.
 
 use orogen_grid::parallel;
 
-use super::layer::{Around, RowLayer};
-use crate::options::Options;
+use super::layer::Channels;
 use orogen_engine::bands::Bands;
-use orogen_engine::device::{Computed, PassRun, PassStep, PlanGrid};
-use orogen_engine::lower::Extent;
-use orogen_engine::world::{HEIGHT, World};
+use orogen_engine::world::World;
 use orogen_grid::analysis::finite::FiniteCount;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
-use std::borrow::Cow;
 
 /// Rows that are computed at once, unless they are very wide.
 const ROWS: usize = 256;
@@ -21,60 +17,36 @@ const SAMPLES: usize = 1 << 21;
 /// Rows per thread.
 const STRIP: usize = 16;
 
-/// Maximum number of rows of an input band.
-const BAND: usize = 512;
-
 /// The rows of a derived layer from the north, in bands: one grid per channel.
 pub struct Rows<'w> {
-    derived: &'static RowLayer,
+    derived: &'static Channels,
     channels: usize,
     window: Window,
     world: &'w World,
-    source: Source<'w>,
-    options: Options,
-    /// The next row.
+    bands: Bands<'w>,
+    /// The layers that it reads, over the current band, and the band's next row.
+    layers: Vec<Grid>,
     next: usize,
 }
 
-/// The input layers.
-struct Source<'w> {
-    bands: Bands<'w>,
-    /// Their window.
-    wide: Window,
-    /// For each layer, the rows that are held; and the first of them.
-    rows: Vec<Vec<f32>>,
-    first: usize,
-}
-
 impl<'w> Rows<'w> {
-    /// The rows over a window, within the world's memory minus `beside` bytes.
+    /// The rows over a window, within the world's memory minus `reserved` bytes.
     ///
     /// # Errors
     /// The errors of [`World::bands`].
     pub fn new(
-        derived: &'static RowLayer,
+        derived: &'static Channels,
         world: &'w World,
         window: &Window,
         reserved: u64,
         progress: &Progress,
     ) -> Result<Rows<'w>> {
-        let reach = (derived.reach)(window.cell);
-        let wide = world.surroundings(window, reach);
-        let others = (derived.layers)(world.recipe());
-        let layers: Vec<&str> = [HEIGHT].into_iter().chain(others.iter().map(String::as_str)).collect();
-        let channels = (derived.channels)(world.recipe()).len();
-        let held = (layers.len() * (at_once(window) + 2 * reach + BAND) * wide.width) as u64;
+        let layers = (derived.layers)(world.recipe());
+        let layers: Vec<&str> = layers.iter().map(String::as_str).collect();
+        let channels = (derived.names)(world.recipe()).len();
         let made = (channels * at_once(window) * window.width) as u64;
-        let reserved = reserved.saturating_add(4 * (held + 2 * made));
-        let bands = world.bands(&layers, &wide, reserved, progress)?;
-        let source = Source { bands, wide, rows: vec![Vec::new(); layers.len()], first: 0 };
-        Ok(Rows { derived, channels, window: *window, world, source, options: Options::default(), next: 0 })
-    }
-
-    /// The same with these options of the layer.
-    #[must_use]
-    pub fn with_options(self, options: Options) -> Rows<'w> {
-        Rows { options, ..self }
+        let bands = world.bands(&layers, window, reserved.saturating_add(8 * made), progress)?;
+        Ok(Rows { derived, channels, window: *window, world, bands, layers: Vec::new(), next: 0 })
     }
 
     /// All rows at once: one grid per channel.
@@ -89,45 +61,29 @@ impl<'w> Rows<'w> {
         Ok(all)
     }
 
-    /// The next rows, and the number of finite heights under them.
-    fn make(&mut self) -> Result<(Vec<Grid>, FiniteCount)> {
-        let height = at_once(&self.window).min(self.window.height - self.next);
-        let band = Window { y: self.window.y + self.next as i64, height, ..self.window };
+    /// The next rows of the current band, and the number of finite samples among those of the first layer: weights and
+    /// colors are finite even if the heights are not.
+    fn make(&mut self, band: &Window) -> (Vec<Grid>, FiniteCount) {
+        let Some(make) = self.derived.make else {
+            let layers = std::mem::take(&mut self.layers);
+            let count = layers.first().map_or_else(FiniteCount::default, |layer| FiniteCount::of(layer.data()));
+            return (layers, count);
+        };
+        let height = at_once(band).min(band.height - self.next);
+        let rows = Window { y: band.y + self.next as i64, height, ..*band };
+        let samples = self.next * band.width..(self.next + height) * band.width;
         self.next += height;
-        let reach = (self.derived.reach)(band.cell);
-        let grids = self.source.around(&band.grown(reach))?;
-        let Some((heights, layers)) = grids.split_first() else { return Ok((Vec::new(), FiniteCount::default())) };
-        let around = Around { heights, layers, recipe: self.world.recipe(), options: &self.options };
-        let beneath = heights.crop(&band.intersection(heights.window()));
-        // Shades and weights are finite even if the heights are not.
-        let finite = beneath.map_or_else(FiniteCount::default, |beneath| FiniteCount::of(beneath.data()));
-        if let Some(made) = self.on_device(&around, &band)? {
-            return Ok((made, finite));
-        }
         let strips: Vec<Window> = (0..height)
             .step_by(STRIP)
-            .map(|first| Window { y: band.y + first as i64, height: STRIP.min(height - first), ..band })
+            .map(|first| Window { y: rows.y + first as i64, height: STRIP.min(height - first), ..rows })
             .collect();
-        let derived = self.derived;
-        let made: Vec<Vec<Grid>> =
-            self.world.install(|| parallel::map(&strips, |strip| (derived.make)(&around, strip)));
-        let mut out = vec![Grid::filled(band, 0.0); self.channels];
+        let (layers, recipe) = (&self.layers, self.world.recipe());
+        let made: Vec<Vec<Grid>> = self.world.install(|| parallel::map(&strips, |strip| make(recipe, layers, strip)));
+        let mut out = vec![Grid::filled(rows, 0.0); self.channels];
         for strip in made {
             out.iter_mut().zip(&strip).for_each(|(out, strip)| out.paste(strip));
         }
-        Ok((out, finite))
-    }
-
-    /// The channels over a band, made by the device of the world; `None` if there is none, or the processor is to do
-    /// it.
-    fn on_device(&self, around: &Around, band: &Window) -> Result<Option<Vec<Grid>>> {
-        let Some((device, lowered)) = self.world.device().zip(self.derived.lowered.as_ref()) else { return Ok(None) };
-        let extent = Extent::Halo((self.derived.reach)(band.cell));
-        let passes = (lowered.passes)(band.cell, around.options).with_planes(extent, 1, &vec![true; self.channels]);
-        let inputs = vec![Some(Cow::Owned(PlanGrid::from((lowered.heights)(around, band))))];
-        let run = PassRun { steps: &[PassStep { passes, inputs, window: *band }], above: &[], stays: false };
-        let Computed::Done(made) = device.run(&run, &Progress::none())? else { return Ok(None) };
-        Ok(Some(made.into_iter().filter_map(PlanGrid::into_memory).collect()))
+        (out, FiniteCount::of(&self.layers[0].data()[samples]))
     }
 }
 
@@ -136,46 +92,20 @@ fn at_once(window: &Window) -> usize {
     (SAMPLES / window.width.max(1)).clamp(STRIP, ROWS).min(window.height.max(1))
 }
 
-impl Source<'_> {
-    /// The inputs over a window, one grid per layer; drops all rows above it.
-    fn around(&mut self, window: &Window) -> Result<Vec<Grid>> {
-        let window = window.intersection(&self.wide);
-        let (top, bottom) = ((window.y - self.wide.y) as usize, (window.bottom() - self.wide.y) as usize);
-        let width = self.wide.width;
-        for rows in &mut self.rows {
-            rows.drain(..(top - self.first) * width);
-        }
-        self.first = top;
-        while self.first + self.rows[0].len() / width < bottom {
-            match self.bands.next() {
-                Some(band) => {
-                    self.rows.iter_mut().zip(band?).for_each(|(rows, band)| rows.extend_from_slice(band.data()));
-                }
-                None => break,
-            }
-        }
-        let grids = self.rows.iter().map(|rows| {
-            let mut grid = Grid::filled(Window { x: self.wide.x, width, ..window }, 0.0);
-            let samples = grid.data().len();
-            grid.data_mut().copy_from_slice(&rows[..samples]);
-            grid
-        });
-        Ok(grids.collect())
-    }
-}
-
 impl Iterator for Rows<'_> {
     type Item = Result<(Vec<Grid>, FiniteCount)>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        if self.next >= self.window.height {
-            return None;
+        if self.layers.first().is_none_or(|layer| self.next >= layer.height()) {
+            // The last band is dropped before the next one is made.
+            (self.layers, self.next) = (Vec::new(), 0);
+            match self.bands.next()? {
+                Ok(layers) => self.layers = layers,
+                Err(error) => return Some(Err(error)),
+            }
         }
-        let made = self.make();
-        if made.is_err() {
-            self.next = self.window.height;
-        }
-        Some(made)
+        let band = *self.layers.first()?.window();
+        Some(Ok(self.make(&band)))
     }
 }
 
@@ -183,6 +113,8 @@ impl Iterator for Rows<'_> {
 mod tests {
     use super::*;
     use crate::export::derived::list;
+    use crate::export::layer_source::LayerSource;
+    use crate::options::Options;
     use orogen_engine::recipe::document::Recipe;
 
     /// A world with a sea, steep ground and rivers, bounded or unbounded.
@@ -196,17 +128,8 @@ mod tests {
         World::open(recipe).unwrap()
     }
 
-    fn rows_of(name: &str) -> &'static RowLayer {
-        list::named(name).unwrap().rows().unwrap()
-    }
-
-    fn made(derived: &'static RowLayer, world: &World, window: &Window) -> Vec<Grid> {
-        let mut all = vec![Grid::filled(*window, 0.0); (derived.channels)(world.recipe()).len()];
-        let progress = Progress::none();
-        for band in Rows::new(derived, world, window, 0, &progress).unwrap() {
-            all.iter_mut().zip(band.unwrap().0).for_each(|(all, band)| all.paste(&band));
-        }
-        all
+    fn made(layer: &str, world: &World, window: &Window) -> Vec<Grid> {
+        LayerSource::new(world, layer, *window, &Progress::none()).unwrap().whole().unwrap()
     }
 
     fn bits(grids: &[Grid]) -> Vec<Vec<u32>> {
@@ -215,13 +138,14 @@ mod tests {
 
     #[test]
     fn a_window_is_the_crop_of_the_whole() {
-        for layer in list::all() {
-            let Some(derived) = layer.rows() else { continue };
+        for layer in
+            ["slope", "aspect", "curvature", "hillshade", "occlusion", "normal", "splat", "albedo", "roughness"]
+        {
             for size in ["size = [6000, 8000]", ""] {
-                let world = world(size, layer.name);
+                let world = world(size, layer);
                 // More rows than are computed at once, up to the far edge that belongs to the neighbor.
                 let window = Window::new(301, 401, 20.0);
-                let whole = made(derived, &world, &window);
+                let whole = made(layer, &world, &window);
                 for part in [
                     Window { x: 0, y: 0, width: 7, height: 5, ..window },
                     Window { x: 100, y: 250, width: 33, height: 40, ..window },
@@ -229,30 +153,39 @@ mod tests {
                     Window { x: 0, y: 200, width: 301, height: 1, ..window },
                 ] {
                     let cut: Vec<Grid> = whole.iter().map(|grid| grid.crop(&part).unwrap()).collect();
-                    assert_eq!(bits(&made(derived, &world, &part)), bits(&cut), "{} {part:?} {size}", layer.name);
+                    assert_eq!(bits(&made(layer, &world, &part)), bits(&cut), "{layer} {part:?} {size}");
                 }
             }
+        }
+    }
+
+    /// The heights of a bounded world are extrapolated, whatever its fields are beyond its edges.
+    #[test]
+    fn at_the_edges_of_a_world_only_its_ground_counts() {
+        use orogen_grid::analysis::slope::{extended, normals, slope_degrees};
+        use orogen_grid::analysis::{hillshade, sky};
+        let (window, size) = (Window::new(301, 401, 20.0), "size = [6000, 8000]");
+        let heights = world(size, "height").window("height", &window).unwrap();
+        let wide = extended(&heights);
+        let light = hillshade::Light::default();
+        for (layer, expected) in [
+            ("slope", vec![slope_degrees(&wide)]),
+            ("hillshade", vec![hillshade(&wide, &light)]),
+            ("normal", normals(&wide).into()),
+            ("occlusion", vec![sky::sky_view(&heights, &window, 50)]),
+        ] {
+            assert_eq!(bits(&made(layer, &world(size, layer), &window)), bits(&expected), "{layer}");
         }
     }
 
     #[test]
     fn weights_add_up_and_rivers_have_beds() {
         let world = world("size = [6000, 8000]", "splat");
-        let weights = made(rows_of("splat"), &world, &Window::new(300, 400, 20.0));
+        let weights = made("splat", &world, &Window::new(300, 400, 20.0));
         for k in 0..weights[0].data().len() {
             assert!((weights.iter().map(|grid| grid.data()[k]).sum::<f32>() - 1.0).abs() < 1e-5);
         }
         let share = |k: usize| weights[k].data().iter().filter(|weight| **weight > 0.5).count();
         assert!(share(0) > 10_000 && share(1) > 1000 && share(5) > 100, "{:?}", [0, 1, 2, 3, 4, 5].map(share));
-    }
-
-    #[test]
-    fn normals_have_length_one() {
-        let world = world("", "normal");
-        let parts = made(rows_of("normal"), &world, &Window::new(50, 40, 20.0));
-        for k in 0..2000 {
-            let length: f32 = parts.iter().map(|part| part.data()[k] * part.data()[k]).sum();
-            assert!((length - 1.0).abs() < 1e-5 && parts[2].data()[k] > 0.0);
-        }
     }
 }

@@ -8,10 +8,6 @@ pub static LAYER: Derived = Derived {
     name: "tri",
     about: "terrain ruggedness index in m (Riley, DeGloria and Elliot 1999)",
     palette: "magma",
-    options: &[],
-    made: Made::Nodes(NodeLayer {
-        bounded: false,
-        network: false,
-        append: |to| Ok(to.add(Ruggedness { source: to.heights() }).layer("ruggedness")),
-    }),
+    options: || &[],
+    made: Made::Nodes(NodeLayer::new(|to| Ok(to.add(Ruggedness { source: to.heights() }).layer("ruggedness")))),
 };

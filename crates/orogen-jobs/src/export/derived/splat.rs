@@ -1,23 +1,20 @@
 //! The layer `splat`: weights of the surfaces.
 
 use super::cover;
-use super::layer::{Derived, Made, Nature, RowLayer};
-use orogen_engine::recipe::surface::expand::expand;
+use super::layer::{Channels, Derived, Made, Nature};
 
 /// The layer.
 pub static LAYER: Derived = Derived {
     name: "splat",
     about: "splat map: weights of the recipe's surfaces, or of grass, sand, scree, rock, snow and river bed",
     palette: "",
-    options: &[],
-    made: Made::Rows(RowLayer {
-        unit: "",
+    options: || &[],
+    made: Made::Channels(Channels {
         nature: Nature::Weights,
-        channels: cover::names,
-        prepare: expand,
+        names: cover::names,
+        // The picture of the surfaces (`--preview`) has the relief.
+        prepare: cover::prepare_with_slopes,
         layers: cover::shares,
-        reach: |_| 0,
-        make: |around, window| cover::of(around).weights(window, cover::names(around.recipe).len()),
-        lowered: None,
+        make: Some(|recipe, layers, window| cover::of(recipe, layers).weights(window, cover::names(recipe).len())),
     }),
 };

@@ -50,11 +50,8 @@ pub static LAYER: Derived = Derived {
     name: "viewshed",
     about: "viewshed: 1 where the observer (--observer) sees the ground, else 0",
     palette: "grey",
-    options: &[OBSERVER, OBSERVER_HEIGHT, TARGET_HEIGHT, RADIUS, REFRACTION],
-    made: Made::Nodes(NodeLayer {
-        bounded: true,
-        network: false,
-        append: |to| {
+    options: || &[OBSERVER, OBSERVER_HEIGHT, TARGET_HEIGHT, RADIUS, REFRACTION],
+    made: Made::Nodes(NodeLayer::new(|to| {
             let (options, defaults) = (to.options(), Viewshed::default());
             let number = |option: &OptionSpec, default: f64| options.number(option.name).unwrap_or(default);
             let size = to.recipe().world.size.unwrap_or_default();
@@ -84,6 +81,5 @@ pub static LAYER: Derived = Derived {
                 ..defaults
             };
             Ok(to.add(node).layer("visible"))
-        },
-    }),
+        }).bounded()),
 };

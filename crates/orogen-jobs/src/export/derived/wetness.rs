@@ -15,8 +15,8 @@ pub static WETNESS: Derived = Derived {
     name: "wetness",
     about: "topographic wetness index ln(a / tan b) (Beven and Kirkby 1979)",
     palette: "viridis",
-    options: &[],
-    made: Made::Nodes(NodeLayer { bounded: true, network: false, append: |to| Ok(append(to).layer("wetness")) }),
+    options: || &[],
+    made: Made::Nodes(NodeLayer::new(|to| Ok(append(to).layer("wetness"))).bounded()),
 };
 
 /// The layer `stream-power-index`.
@@ -24,8 +24,8 @@ pub static STREAM_POWER: Derived = Derived {
     name: "stream-power-index",
     about: "stream power index a tan b, in m (Moore, Grayson and Ladson 1991)",
     palette: "magma",
-    options: &[],
-    made: Made::Nodes(NodeLayer { bounded: true, network: false, append: |to| Ok(append(to).layer("stream_power")) }),
+    options: || &[],
+    made: Made::Nodes(NodeLayer::new(|to| Ok(append(to).layer("stream_power"))).bounded()),
 };
 
 /// The layer `ls-factor`.
@@ -33,6 +33,6 @@ pub static LS_FACTOR: Derived = Derived {
     name: "ls-factor",
     about: "LS factor of soil erosion (Moore and Burch 1986)",
     palette: "magma",
-    options: &[],
-    made: Made::Nodes(NodeLayer { bounded: true, network: false, append: |to| Ok(append(to).layer("ls_factor")) }),
+    options: || &[],
+    made: Made::Nodes(NodeLayer::new(|to| Ok(append(to).layer("ls_factor"))).bounded()),
 };

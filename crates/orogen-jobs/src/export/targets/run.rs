@@ -39,16 +39,14 @@ impl EngineJob {
 /// # Errors
 /// If the target does not support the format, or the errors of [`run::to_file`].
 fn export(job: &EngineJob, frame: Frame, world: &World, output: &Output, progress: &Progress) -> Result<Exported> {
-    let EngineJob { target, format, ref layer, ref layer_options, .. } = *job;
+    let EngineJob { target, format, ref layer, .. } = *job;
     let path = output.path();
     let mut options = job.options.clone();
     // Plain numbers are computed twice: for their range, and tile by tile.
     let nature = LayerSource::new(world, layer, frame.window, progress)?.nature();
     let [ranging, writing] = progress.parts([if nature == Nature::Numbers { 1.0 } else { 0.0 }, 1.0]);
     writing.expect((frame.tiles[0] * frame.tiles[1]) as f64);
-    let source = |window: Window, progress: &Progress| -> Result<LayerSource> {
-        Ok(LayerSource::new(world, layer, window, progress)?.with_options(layer_options.clone()))
-    };
+    let source = |window: Window, progress: &Progress| LayerSource::new(world, layer, window, progress);
     let mut all = source(frame.window, &ranging)?;
     let known = if layer == HEIGHT { target.formats } else { &["png"] };
     if !known.contains(&format.name) {
