@@ -46,7 +46,9 @@ fn derived_layers_are_those_of_the_processor() {
                     let pairs = || exact.data().iter().zip(made.data());
                     assert!(pairs().all(|(exact, made)| exact.is_finite() == made.is_finite()), "{layer} {window:?}");
                     let found = difference(exact, made);
-                    assert!(found.worst < 1e-4, "{layer} {window:?}: {found:?}");
+                    // Slopes are in degrees; the others have a range of about 1.
+                    let range = if layer == "slope" { 90.0 } else { 1.0 };
+                    assert!(found.worst < 1e-4 * range, "{layer} {window:?}: {found:?}");
                 }
             }
         }

@@ -235,7 +235,7 @@ pub fn variants(node: &Node) -> Vec<Node> {
             .map(|codes| FlowDirection { codes, ..Default::default() }.into())
             .to_vec(),
         "flow-indices" => vec![FlowIndices { least_slope: 0.1, ..Default::default() }.into()],
-        "ruggedness" => Vec::new(),
+        "ruggedness" | "aspect" | "normal" => Vec::new(),
         op => panic!("write other parameters for {op}"),
     }
 }
