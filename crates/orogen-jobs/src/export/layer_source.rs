@@ -18,8 +18,8 @@ use orogen_grid::words::nearest;
 use orogen_io::format::dem::Georeference;
 use orogen_io::format::levels::{Levels, NO_SAMPLES, extremes};
 
-/// Bands of rows from the north, each with a grid per channel and a count of finite samples (for some derived layers, of
-/// the heights under them).
+/// Bands of rows from the north, each with a grid per channel and a count of finite samples (for some derived layers,
+/// of the heights under them).
 type Source<'w> = Box<dyn Iterator<Item = Result<(Vec<Grid>, FiniteCount)>> + 'w>;
 
 /// A layer of a world over a window.

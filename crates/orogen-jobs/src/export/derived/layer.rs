@@ -110,7 +110,9 @@ pub struct Channels {
     pub prepare: fn(&mut Appended),
     /// The layers of a prepared recipe that it reads, at least one. It has no samples where the first one has none.
     pub layers: fn(&Recipe) -> Vec<String>,
-    /// Computes a window from these layers over rows that contain it: one grid per channel. `None` if the layers are the
-    /// channels.
-    pub make: Option<fn(&Recipe, &[Grid], &Window) -> Vec<Grid>>,
+    /// Computes them; `None` if the layers are the channels.
+    pub make: Option<MakeChannels>,
 }
+
+/// Computes the channels over a window from layers over rows that contain it: one grid per channel.
+pub type MakeChannels = fn(&Recipe, &[Grid], &Window) -> Vec<Grid>;
