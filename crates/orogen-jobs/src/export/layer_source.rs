@@ -135,7 +135,7 @@ impl<'w> LayerSource<'w> {
             return Ok(Box::new(Rows::new(derived, self.world, window, self.reserved, &self.progress)?));
         }
         let counted = list::counted(self.world.recipe(), &self.layer);
-        let layers = [self.layer.as_str(), counted];
+        let layers = [self.layer.as_str(), counted.as_str()];
         let layers = if counted == self.layer { &layers[..1] } else { &layers };
         let bands = self.world.bands(layers, window, self.reserved, &self.progress)?;
         let split = |mut grids: Vec<Grid>| {

@@ -62,7 +62,7 @@ pub fn options() -> Vec<(&'static OptionSpec, Vec<&'static str>)> {
 
 /// The layer of a prepared recipe whose finite samples are those of a layer: the layer itself, except for some derived
 /// ones.
-pub(crate) fn counted<'l>(recipe: &Recipe, layer: &'l str) -> &'l str {
+pub(crate) fn counted(recipe: &Recipe, layer: &str) -> String {
     let counts_heights = named(layer).is_some_and(|derived| match &derived.made {
         Made::Nodes(nodes) => nodes.counts_heights,
         Made::Channels(_) => false,
@@ -70,7 +70,12 @@ pub(crate) fn counted<'l>(recipe: &Recipe, layer: &'l str) -> &'l str {
     // A layer of the recipe with the same name is not the derived one.
     let appended = AppendedNode::of(layer).layer(layer);
     let is_derived = recipe.output_inputs().iter().any(|(name, input)| name == layer && *input == appended);
-    if counts_heights && is_derived { HEIGHT } else { layer }
+    // Inside the world extrapolated heights are the heights, and they are made anyway.
+    match (counts_heights && is_derived, recipe.world.size) {
+        (true, Some(_)) => AppendedNode::of("extrapolate-1").name_of("value"),
+        (true, None) => HEIGHT.into(),
+        (false, _) => layer.into(),
+    }
 }
 
 /// Appends to a recipe the nodes that a derived layer needs; call it before the world is opened. A layer made by nodes
