@@ -52,7 +52,7 @@ impl RampEditor {
     /// # Errors
     /// If the file cannot be read, or holds no ramp.
     pub fn open(path: &Path) -> Result<RampEditor> {
-        RampEditor::new(&read::read(path)?, true)
+        RampEditor::new(&read(path)?, true)
     }
 
     /// The palette as colors of the view.

@@ -46,7 +46,7 @@ fn an_export_in_one_call_is_that_of_a_job_whose_recipe_was_prepared_first() {
         let job = ExportJob::new(of_path(file.as_ref()).unwrap()).with_layer(layer).with_window(window);
         let mut recipe = presets::find("island").unwrap().recipe().unwrap();
         job.prepare(&mut recipe).unwrap();
-        let expect = folder.join(&format!("expect-{file}"));
+        let expect = folder.join(format!("expect-{file}"));
         let output = OutputPolicy::default().output(&expect).unwrap();
         job.to_file(&World::open(recipe).unwrap(), &output, &Progress::none()).unwrap();
         assert_eq!(fs::read(folder.join(file)).unwrap(), fs::read(&expect).unwrap(), "{layer}");

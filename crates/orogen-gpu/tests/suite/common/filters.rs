@@ -1,7 +1,6 @@
 //! What the tests of filters have in common: a device, inputs, and the filters with some parameters.
 #![allow(dead_code, clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
-use orogen_engine::device::{Device, FilterExtent, PlanGrid};
 use orogen_engine::filter::Blur;
 use orogen_engine::filter::Curvature;
 use orogen_engine::filter::Distance;
@@ -20,7 +19,7 @@ use orogen_engine::filter::{Comparison, Geomorphons};
 use orogen_engine::filter::{CurvatureKind, SelectCurvature};
 use orogen_engine::filter::{FlowCodes, FlowDirection};
 use orogen_engine::filter::{Slope, SlopeUnit};
-use orogen_engine::lower::{Lowering, Passes};
+use orogen_engine::lower::{Extent, Lowering, Passes};
 use orogen_engine::node::Node;
 use orogen_engine::op::{Context, Filter, Op, WorldParams};
 use orogen_gpu::gpu::Options;
