@@ -7,8 +7,7 @@ mod report;
 use std::path::PathBuf;
 
 use crate::failure::{Failure, Result, on_file};
-use crate::shell;
-use crate::table;
+use crate::{shell, table};
 
 pub const ABOUT: &str = "compare with other libraries and the machine's limits; print a table, write JSON";
 

@@ -1,9 +1,8 @@
 //! A grid in a file, in square pages with checksums; the pages read last are kept in memory.
 
-use crate::fs;
 use crate::read_at::{PositionedFile, ReadAt};
-use crate::samples;
 use crate::temporary::Temporary;
+use crate::{fs, samples};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use std::collections::HashMap;

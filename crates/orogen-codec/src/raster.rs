@@ -3,8 +3,7 @@
 use crate::pages::{self, Pages, SIDE};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
-use orogen_grid::resample::LayerKind;
-use orogen_grid::resample::{self, NOWHERE};
+use orogen_grid::resample::{self, LayerKind, NOWHERE};
 use orogen_noise::Points;
 use std::path::Path;
 

@@ -2,9 +2,8 @@
 
 use crate::adapters::Kind;
 use crate::gpu::Gpu;
-use crate::passes;
 use crate::program::run;
-use crate::resident;
+use crate::{passes, resident};
 use orogen_engine::device::{Computed, Device, DeviceGrid, LoweredProgram, PassRun, PlanGrid};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};

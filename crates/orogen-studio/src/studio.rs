@@ -12,8 +12,7 @@ use orogen::{Error, ErrorKind, Result, Session};
 
 use crate::editing::document::Document;
 use crate::editing::edit::{Edit, renames};
-use crate::editing::groups;
-use crate::editing::strokes;
+use crate::editing::{groups, strokes};
 use crate::files;
 use crate::preview::coloring::Coloring;
 use crate::preview::frame::{Frame, Quality};

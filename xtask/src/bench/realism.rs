@@ -4,9 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::failure::{Failure, Result, on_file};
-use crate::host;
-use crate::shell;
-use crate::table;
+use crate::{host, shell, table};
 
 /// A case: the window and its targets.
 struct Case {

@@ -11,14 +11,12 @@ use orogen::world::HEIGHT;
 use crate::bar::Bar;
 use crate::declared::OptionsOf;
 use crate::failure::Failure;
-use crate::finite;
-use crate::interrupt;
 use crate::options::RunOptions;
-use crate::say;
 use crate::sink::{Sink, is_stdout};
 use crate::source::Source;
 use crate::values::size::Size;
 use crate::view::SizedView;
+use crate::{finite, interrupt, say};
 
 /// Arguments of the command.
 #[derive(Debug, Clone, clap::Args)]

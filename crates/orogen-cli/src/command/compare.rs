@@ -7,11 +7,10 @@ use orogen::output::noise_pictures::{page, row};
 use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::format::Format;
-use crate::interrupt;
 use crate::options::DrawOptions;
-use crate::say;
 use crate::sink::{Sink, is_stdout};
 use crate::values::number::seed;
+use crate::{interrupt, say};
 
 /// Arguments of the command.
 #[derive(Debug, clap::Args)]

@@ -5,12 +5,9 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::words::number;
 use orogen_ops::declare::Input;
 use orogen_ops::field::Expr;
-use orogen_ops::filter::Blur;
-use orogen_ops::filter::{Slope, SlopeUnit};
+use orogen_ops::filter::{Blur, Slope, SlopeUnit};
 use orogen_ops::levelled::Amplify;
-use orogen_ops::solver::Bake;
-use orogen_ops::solver::Breach;
-use orogen_ops::solver::Drainage;
+use orogen_ops::solver::{Bake, Breach, Drainage};
 
 /// Cells of the place beyond its edge that its rivers are solved for, so that they leave outside what is seen.
 const MARGIN: f64 = 16.0;

@@ -1,7 +1,6 @@
 //! How a graphics card computes the built-in fields, filters, levels and solvers.
 
-use orogen_engine::levelled::Amplify;
-use orogen_engine::levelled::Continents;
+use orogen_engine::levelled::{Amplify, Continents};
 use orogen_engine::lower::{Lowering, Over, Pass, Passes};
 use orogen_engine::node::Node;
 use orogen_engine::op::{Levelled, Op, WorldParams};

@@ -1,9 +1,8 @@
 //! Lists of points in recipes.
 
 use orogen_engine::Recipe;
-use orogen_engine::declare::Param;
 use orogen_engine::declare::point_lists::MAX_POINTS;
-use orogen_engine::declare::{AreaPoints, LinePoints, OutlineOptions};
+use orogen_engine::declare::{AreaPoints, LinePoints, OutlineOptions, Param};
 use orogen_engine::node::Node;
 use orogen_engine::value::Value;
 use orogen_io::dem::file_ref::FileRef;

@@ -2,13 +2,11 @@
 
 use orogen_engine::device::{Computed, Device, DeviceGrid, PassRun, PassStep, PlanGrid};
 use orogen_engine::field::{Fbm, Multiply};
-use orogen_engine::filter::Blur;
-use orogen_engine::filter::Pipes;
+use orogen_engine::filter::{Blur, Pipes};
 use orogen_engine::levelled::Amplify;
 use orogen_engine::lower::{Extent, Lowering, Passes};
 use orogen_engine::op::{Context, Solution, Solver, Sources, WorldParams};
-use orogen_engine::solver::Drainage;
-use orogen_engine::solver::Normalise;
+use orogen_engine::solver::{Drainage, Normalise};
 use orogen_engine::{Grid, Options, Progress, Recipe, Result, Session, Window, WorldSpec};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};

@@ -4,8 +4,7 @@ use orogen_engine::declare::Input;
 use orogen_engine::field::{Fbm, Multiply, Ramp};
 use orogen_engine::node::Node;
 use orogen_engine::session::Options;
-use orogen_engine::solver::StreamPower;
-use orogen_engine::solver::{DepressionRouting, Drainage};
+use orogen_engine::solver::{DepressionRouting, Drainage, StreamPower};
 use orogen_engine::{Grid, Progress, Recipe, Window, World, WorldSpec};
 
 const CELL: f64 = 10.0;

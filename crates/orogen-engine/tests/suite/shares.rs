@@ -1,7 +1,6 @@
 //! Exact shares: in memory, on disk, with ties and without values.
 
-use orogen_engine::field::Expr;
-use orogen_engine::field::{Fbm, Multiply};
+use orogen_engine::field::{Expr, Fbm, Multiply};
 use orogen_engine::solver::SelectShare;
 use orogen_engine::{Budget, Options, Progress, Recipe, Window, World, WorldSpec};
 

@@ -7,8 +7,7 @@ use crate::common::levels::{
 };
 use crate::common::run;
 use orogen_engine::device::{Device, PassRun, PassStep, PlanGrid};
-use orogen_engine::levelled::Amplify;
-use orogen_engine::levelled::Continents;
+use orogen_engine::levelled::{Amplify, Continents};
 use orogen_engine::op::Levelled;
 use orogen_gpu::Gpu;
 use orogen_grid::grid::{Grid, Window};

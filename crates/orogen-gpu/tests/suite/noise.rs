@@ -334,22 +334,10 @@ const WORLD: WorldParams = WorldParams { seed: 5, size: None, cell: 1.0, sea_lev
 
 #[test]
 fn ops_of_noise_are_lowered() {
-    use orogen_engine::field::Billow;
-    use orogen_engine::field::Classic;
-    use orogen_engine::field::Fbm;
-    use orogen_engine::field::Hetero;
-    use orogen_engine::field::Hybrid;
-    use orogen_engine::field::Jordan;
-    use orogen_engine::field::OpenSimplex2;
-    use orogen_engine::field::Perlin;
-    use orogen_engine::field::PingPong;
-    use orogen_engine::field::Ridged;
-    use orogen_engine::field::Simplex;
-    use orogen_engine::field::Swiss;
-    use orogen_engine::field::Value;
-    use orogen_engine::field::WeightedFbm;
-    use orogen_engine::field::White;
-    use orogen_engine::field::Worley;
+    use orogen_engine::field::{
+        Billow, Classic, Fbm, Hetero, Hybrid, Jordan, OpenSimplex2, Perlin, PingPong, Ridged, Simplex, Swiss, Value,
+        WeightedFbm, White, Worley,
+    };
     let gpu = Gpu::open(&Options::new(Choice::Any)).unwrap();
     let ops: Vec<Noise> = op![
         Billow,

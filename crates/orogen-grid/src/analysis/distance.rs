@@ -1,10 +1,9 @@
 //! Distance to the nearest marked sample.
 
 use crate::checks::{never, steps};
-use crate::error;
 use crate::grid::Grid;
-use crate::parallel;
 use crate::progress::Progress;
+use crate::{error, parallel};
 
 /// The exact Euclidean distance, in samples, to the nearest sample whose value is at least `threshold`; infinite if
 /// there is none within `reach`. The result is smaller than `grid` by a border of `reach` samples.

@@ -5,10 +5,9 @@
 //! nadir angles of its horizon. The numbers of higher and of lower directions determine the form.
 
 use crate::checks::{never, steps};
-use crate::error;
 use crate::grid::{Grid, Window};
-use crate::parallel;
 use crate::progress::Progress;
+use crate::{error, parallel};
 
 /// The ten landforms, in the order of their codes from 1.
 pub const FORMS: [&str; 10] =

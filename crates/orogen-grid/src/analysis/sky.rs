@@ -9,10 +9,9 @@
 //! ridge narrower than the gap between two steps may be missed.
 
 use crate::checks::{never, steps as steps_of};
-use crate::error;
 use crate::grid::{Grid, Window};
-use crate::parallel;
 use crate::progress::Progress;
+use crate::{error, parallel};
 
 /// The directions of one quadrant and the degrees that each represents; rotations give the others.
 const QUARTER: [([i64; 2], f64); 4] =

@@ -6,13 +6,12 @@ use super::network::{AT_SEA, Network};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::hydrology::accumulation::accumulate;
-use crate::hydrology::drainage;
 use crate::hydrology::lakes::{Lake, lakes_with};
 use crate::hydrology::outlets::Outlets;
 use crate::hydrology::receivers::Receivers;
 use crate::hydrology::rivers::{Reach, network};
 use crate::hydrology::steepest::Descent;
-use crate::hydrology::strahler;
+use crate::hydrology::{drainage, strahler};
 use crate::progress::Progress;
 
 /// Thresholds of rivers and lakes.

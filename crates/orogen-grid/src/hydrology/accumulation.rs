@@ -3,10 +3,9 @@
 use super::direction::{neighbor, strides};
 use super::receivers::Receivers;
 use crate::checks::{checks, never, now_and_then, steps};
-use crate::error;
 use crate::grid::Grid;
-use crate::parallel;
 use crate::progress::Progress;
+use crate::{error, parallel};
 
 /// The weight of a cell where the factor of the rain is 1. Weights are integers, so that their sums do not depend on
 /// the order of addition.

@@ -1,11 +1,9 @@
 //! Least-cost breaching: depressions drained by the channels with the least excavation.
 
 use super::direction::{DISTANCES, NONE, neighbor, opposite, strides};
-use super::drainage;
-use super::fill;
 use super::outlets::Outlets;
 use super::steepest::{self, Descent};
-use super::{flats, receivers::Receivers};
+use super::{drainage, fill, flats, receivers::Receivers};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::progress::Progress;

@@ -22,10 +22,9 @@ use super::direction::{DISTANCES, strides};
 use super::points::Points;
 use super::receivers::Receivers;
 use crate::checks::{checks, never, now_and_then, steps};
-use crate::error;
 use crate::grid::Grid;
-use crate::parallel;
 use crate::progress::Progress;
+use crate::{error, parallel};
 use std::ops::Range;
 
 /// Parameters of the stream power law.
@@ -337,10 +336,9 @@ mod tests {
     use super::*;
     use crate::grid::Window;
     use crate::hydrology::accumulation::accumulate;
-    use crate::hydrology::drainage;
     use crate::hydrology::outlets::Outlets;
-    use crate::hydrology::samples;
     use crate::hydrology::steepest::Descent;
+    use crate::hydrology::{drainage, samples};
 
     #[test]
     fn settling_solves_the_equation() {

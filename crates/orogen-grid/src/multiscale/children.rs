@@ -4,11 +4,10 @@
 use super::geography::Geography;
 use super::given::Given;
 use super::hash::{self, jittered};
-use super::lakes;
 use super::level::Level;
 use super::refinement::Refinement;
-use super::rock;
 use super::stencil::Extent;
+use super::{lakes, rock};
 use crate::error::Result;
 use crate::grid::Window;
 use crate::progress::Progress;

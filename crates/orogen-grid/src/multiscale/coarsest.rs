@@ -1,14 +1,13 @@
 //! The coarsest level: geography at hashed nodes, and rivers by the cheapest way to the sea.
 
 use super::continents::Continents;
-use super::drainage;
 use super::geography::Geography;
 use super::given::Given;
 use super::hash::{self, jittered};
-use super::law;
 use super::level::{Level, cropped};
 use super::routes::{self, UNREACHED};
 use super::stencil::Extent;
+use super::{drainage, law};
 use crate::erosion::power::power;
 use crate::error::Result;
 use crate::grid::Window;

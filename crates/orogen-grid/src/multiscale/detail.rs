@@ -3,14 +3,11 @@
 //! would make all land as steep as rock can stand.
 
 use super::carve::Carved;
-use super::creep;
-use super::hash;
 use super::law::{CONCAVITY, Law, STABLE, STABLE_EXPONENT, river_slope, stable_slope};
 use super::level::Level;
 use super::refinement::Refinement;
-use super::rock;
-use super::scree;
 use super::stencil::Extent;
+use super::{creep, hash, rock, scree};
 use crate::erosion::power::power;
 use crate::hydrology::direction::{NONE, STEPS};
 use std::f32::consts::{E, SQRT_2};

@@ -2,19 +2,15 @@
 
 use super::children::{FINEST_GEOGRAPHY, amplitude, indent};
 use super::creep::{self, Kept};
-use super::detail;
 use super::growth::{FLOOR_AREA, least_rise};
-use super::hash;
-use super::lake_shores;
-use super::lakes;
 use super::law::{self, has_floors, river_slope};
-use super::links;
 use super::refine::{
     AREA_PASSES, BANK_PASSES, BANK_ROUNDS, CARVED, FIRST_PASSES, FREE_AREA, LIMIT_PASSES, RAISE_PASSES, ROUNDS,
     last_area_passes,
 };
 use super::refinement::Refinement;
 use super::straighten;
+use super::{detail, hash, lake_shores, lakes, links};
 
 /// How often the passes of a level run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

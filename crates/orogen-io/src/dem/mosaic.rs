@@ -9,8 +9,7 @@ use crate::format::crs::{keys, vertical};
 use crate::format::dem::{Dem, Placement, Request, afford, refused};
 use crate::format::import;
 use crate::format::vrt::{self, Band, Virtual};
-use crate::fs;
-use crate::samples;
+use crate::{fs, samples};
 use orogen_grid::error::{Error, Result};
 
 /// Maximum number of files.

@@ -4,15 +4,13 @@ use std::io::Cursor;
 use std::path::Path;
 
 use super::band::BandMetadata;
-use super::content;
 use super::dem::{Dem, Input, Part, Placement, Request, refused};
 use super::foreign::foreign;
 use super::noted::noted;
 use super::raw::Sample;
 use super::sidecar::Sidecar;
-use super::{asc, dted, ehdr, exr_reader, geotiff, grey, hgt, netcdf, npy, raw, xyz, zip};
-use crate::open;
-use crate::samples;
+use super::{asc, content, dted, ehdr, exr_reader, geotiff, grey, hgt, netcdf, npy, raw, xyz, zip};
+use crate::{open, samples};
 use orogen_grid::error::{Error, Result};
 
 /// Extensions of readable files.

@@ -16,16 +16,14 @@ use serde::Deserialize;
 
 use super::affine::Affine;
 use super::band::BandMetadata;
-use super::crs::arc_info;
 use super::crs::keys::{self, GeoKeys};
 use super::crs::unit::Unit;
-use super::crs::vertical;
 use super::crs::wkt::MAX_LENGTH;
+use super::crs::{arc_info, vertical};
 use super::dem::{Placement, refused, turn_rows};
 use super::encoding::Encoding;
 use super::{aux_xml, ehdr, world_file};
-use crate::fs;
-use crate::open;
+use crate::{fs, open};
 use orogen_grid::error::Result;
 
 /// Maximum length of a text, in bytes.

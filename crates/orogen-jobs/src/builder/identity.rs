@@ -6,8 +6,7 @@ use super::spec::BuildSpec;
 use orogen_engine::world::World;
 use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
-use orogen_grid::hex;
-use orogen_grid::words;
+use orogen_grid::{hex, words};
 use orogen_io::format::dem::Georeference;
 use sha2::{Digest, Sha256};
 

@@ -4,13 +4,10 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use super::derived::list;
-use super::features;
 use super::format::Format;
 use super::layer_source::LayerSource;
-use super::mesh_cover;
-use super::registry;
-use super::run;
 pub use super::run::Written;
+use super::{features, mesh_cover, registry, run};
 use crate::options::Options;
 use orogen_engine::recipe::document::Recipe;
 use orogen_engine::world::{HEIGHT, World};

@@ -13,8 +13,7 @@ use orogen_io::file::{self, Existing, Output, Staged};
 use orogen_io::format::affine::Affine;
 use orogen_io::format::dem::Georeference;
 use orogen_io::format::{aux_xml, world_file};
-use orogen_io::fs;
-use orogen_io::open;
+use orogen_io::{fs, open};
 
 /// Larger than any georeferencing file, in bytes.
 const LONGEST: u64 = 1 << 20;

@@ -2,11 +2,10 @@
 
 use std::io::{self, Write};
 
-use super::features;
 use super::files::Files;
 use super::format::Format;
 use super::layer_source::LayerSource;
-use super::registry;
+use super::{features, registry};
 use crate::options::Options;
 use orogen_engine::world::World;
 use orogen_grid::analysis::finite::FiniteCount;

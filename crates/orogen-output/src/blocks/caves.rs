@@ -4,10 +4,7 @@
 
 use super::density::DENSITY;
 use orogen_engine::Recipe;
-use orogen_engine::field::Altitude;
-use orogen_engine::field::Expr;
-use orogen_engine::field::Fbm;
-use orogen_engine::field::Resample;
+use orogen_engine::field::{Altitude, Expr, Fbm, Resample};
 use orogen_engine::filter::Distance;
 use orogen_engine::recipe::class::document::CLASS;
 use orogen_engine::world::{HEIGHT, LAKES};

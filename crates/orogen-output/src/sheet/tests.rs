@@ -3,8 +3,7 @@
 
 use super::draw::{self, Sheet};
 use super::geometry::{Point, Rect, Size};
-use super::options::Shading;
-use super::options::{Coloring, Labels, Page, Parts, Resolution, SheetOptions, SurfaceCover, SurfaceEntry};
+use super::options::{Coloring, Labels, Page, Parts, Resolution, Shading, SheetOptions, SurfaceCover, SurfaceEntry};
 use super::scene::{Item, Scene, Step};
 use super::{pdf, raster, vector};
 use orogen_grid::error::Result;

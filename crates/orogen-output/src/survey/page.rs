@@ -13,8 +13,7 @@ use orogen_grid::analysis::hillshade::{Light, hillshade};
 use orogen_grid::analysis::slope::extended;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
-use orogen_grid::resample;
-use orogen_grid::words;
+use orogen_grid::{resample, words};
 use orogen_io::palette::palette::NO_DATA;
 use orogen_noise::Points;
 

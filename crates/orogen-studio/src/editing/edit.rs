@@ -10,11 +10,10 @@ use orogen::value::Value;
 use toml_edit::{DocumentMut, Item, Table};
 
 use super::ground::{Ground, set_colors};
-use super::groups;
-use super::names;
 use super::references::{Change, Site, change};
 use super::strokes::{self, Placement};
 use super::tables::{add_node, node, set, top, value_of};
+use super::{groups, names};
 
 /// An edit.
 #[derive(Debug, Clone, PartialEq)]

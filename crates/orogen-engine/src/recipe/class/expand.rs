@@ -5,8 +5,7 @@ use crate::recipe::condition::expand::ShareNodes;
 use crate::recipe::document::Recipe;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_ops::declare::Input;
-use orogen_ops::field::Expr;
-use orogen_ops::field::Label;
+use orogen_ops::field::{Expr, Label};
 use orogen_ops::solver::SelectShare;
 
 /// Adds the nodes to a recipe that compute its classes, and the output with their numbers, unless they exist. Opening a

@@ -15,10 +15,8 @@ use crate::recipe::document::Recipe;
 use crate::world::{HEIGHT, LAKES};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::words::number;
-use orogen_ops::field::Expr;
-use orogen_ops::field::Fbm;
-use orogen_ops::filter::Distance;
-use orogen_ops::filter::Slope;
+use orogen_ops::field::{Expr, Fbm};
+use orogen_ops::filter::{Distance, Slope};
 
 /// The names of the classes, by their numbers.
 pub const NAMES: [&str; 6] = ["water", "sand", "grass", "forest", "rock", "snow"];

@@ -6,14 +6,8 @@ use std::collections::HashSet;
 use super::document::{Condition, Noise, Quantity};
 use crate::recipe::document::Recipe;
 use orogen_ops::declare::Input;
-use orogen_ops::field::Constant;
-use orogen_ops::field::Fbm;
-use orogen_ops::field::Max;
-use orogen_ops::field::Multiply;
-use orogen_ops::field::SelectFlow;
-use orogen_ops::field::SelectHeight;
-use orogen_ops::filter::SelectCurvature;
-use orogen_ops::filter::SelectSlope;
+use orogen_ops::field::{Constant, Fbm, Max, Multiply, SelectFlow, SelectHeight};
+use orogen_ops::filter::{SelectCurvature, SelectSlope};
 use orogen_ops::node::Node;
 use orogen_ops::solver::Drainage;
 

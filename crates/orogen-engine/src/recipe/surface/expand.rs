@@ -6,9 +6,7 @@ use super::standard;
 use crate::recipe::condition::expand::ShareNodes;
 use crate::recipe::document::Recipe;
 use orogen_ops::declare::Input;
-use orogen_ops::field::Curve;
-use orogen_ops::field::Fbm;
-use orogen_ops::field::Remap;
+use orogen_ops::field::{Curve, Fbm, Remap};
 use orogen_ops::filter::Slope;
 
 /// The output with the heights.

@@ -1,24 +1,11 @@
 //! What the tests of filters have in common: a device, inputs, and the filters with some parameters.
 #![allow(dead_code, clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
-use orogen_engine::filter::Blur;
-use orogen_engine::filter::Curvature;
-use orogen_engine::filter::Distance;
-use orogen_engine::filter::Extrapolate;
-use orogen_engine::filter::FlowIndices;
-use orogen_engine::filter::Hillshade;
-use orogen_engine::filter::LocalStreamPower;
-use orogen_engine::filter::Occlusion;
-use orogen_engine::filter::Pipes;
-use orogen_engine::filter::SelectAspect;
-use orogen_engine::filter::SelectSlope;
-use orogen_engine::filter::SoilDepth;
-use orogen_engine::filter::Thermal;
-use orogen_engine::filter::TopographicPosition;
-use orogen_engine::filter::{Comparison, Geomorphons};
-use orogen_engine::filter::{CurvatureKind, SelectCurvature};
-use orogen_engine::filter::{FlowCodes, FlowDirection};
-use orogen_engine::filter::{Slope, SlopeUnit};
+use orogen_engine::filter::{
+    Blur, Comparison, Curvature, CurvatureKind, Distance, Extrapolate, FlowCodes, FlowDirection, FlowIndices,
+    Geomorphons, Hillshade, LocalStreamPower, Occlusion, Pipes, SelectAspect, SelectCurvature, SelectSlope, Slope,
+    SlopeUnit, SoilDepth, Thermal, TopographicPosition,
+};
 use orogen_engine::lower::{Extent, Lowering, Passes};
 use orogen_engine::node::Node;
 use orogen_engine::op::{Context, Filter, Op, WorldParams};

@@ -2,8 +2,7 @@
 //! small breaks the laws is tested with an op that reads exactly as far as it says (`registered_ops` in the crate
 //! `orogen`).
 
-use super::{Continents, Given, Level, NONE, Progress, STEPS, Window};
-use super::{bits, coast, level, window};
+use super::{Continents, Given, Level, NONE, Progress, STEPS, Window, bits, coast, level, window};
 
 /// The samples of a window outside the same window without `border` samples on each side.
 fn outside(window: &Window, border: usize) -> impl Iterator<Item = usize> + use<> {

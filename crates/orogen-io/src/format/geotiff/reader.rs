@@ -14,8 +14,7 @@ use crate::format::band::BandMetadata;
 use crate::format::dem::{Dem, Input, Part, Placement, Request, afford, beyond, refused, turn_rows};
 use crate::format::sidecar::Sidecar;
 use crate::format::stored::{Kind, Stored};
-use crate::open;
-use crate::samples;
+use crate::{open, samples};
 use orogen_grid::error::Result;
 
 /// Reads a band of a GeoTIFF. `name` is the file's name in errors.

@@ -15,9 +15,7 @@ use crate::format::crs::keys::{self, GeoKeys};
 use crate::format::crs::unit::Unit;
 use crate::format::dem::{Dem, Placement, Request, afford, afford_beside, refused, turn_rows};
 use crate::format::stored::{Kind, Stored};
-use crate::fs;
-use crate::open;
-use crate::samples;
+use crate::{fs, open, samples};
 use orogen_grid::error::{Error, Result};
 
 /// Maximum length of metadata, in bytes.

@@ -10,8 +10,7 @@ use crate::export::place;
 use crate::export::quantizer::{self, BITS, FIRST_ROW, Quantizer, RANGE};
 use crate::export::sidecar::{NO_SIDECAR, SampleEncoding};
 use crate::options::Options;
-use orogen_io::format::notes;
-use orogen_io::format::pgm;
+use orogen_io::format::{notes, pgm};
 
 /// The format.
 pub static FORMAT: Format = Format {
