@@ -18,6 +18,7 @@ pub mod budget;
 pub mod expression;
 pub mod field;
 pub mod filter;
+mod grid_inputs;
 #[doc(hidden)]
 pub mod ids;
 #[doc(hidden)]

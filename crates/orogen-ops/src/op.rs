@@ -2,6 +2,7 @@
 
 use crate::declare::Declared;
 use crate::expression::term::{self, Term};
+pub use crate::grid_inputs::GridInputs;
 use crate::layer::LayerKind;
 use crate::lower::{Lowering, Passes};
 use orogen_grid::error::{Error, ErrorKind, Result};
@@ -324,13 +325,7 @@ pub trait Filter: Declared + Send + Sync {
 
     /// Computes layers over `window`; each given input covers `window.grown(halo)`. `out` has an element per declared
     /// layer: a grid of zeros over `window` if the layer is requested, otherwise `None`.
-    fn apply(
-        &self,
-        inputs: &[Option<&Grid>],
-        window: &Window,
-        out: &mut [Option<Grid>],
-        context: &Context,
-    ) -> Result<()>;
+    fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()>;
 
     /// How a graphics card computes the filter at this cell, in metres.
     #[doc(hidden)]
@@ -418,7 +413,7 @@ pub trait Levelled: Declared + Send + Sync {
     ///
     /// # Errors
     /// If the work was cancelled.
-    fn coarsest(&self, inputs: &[Option<&Grid>], window: &Window, context: &Context) -> Result<Vec<Grid>>;
+    fn coarsest(&self, inputs: &GridInputs, window: &Window, context: &Context) -> Result<Vec<Grid>>;
 
     /// The planes of `level`, at least 1, over `window`, from those of the level above over [the window's
     /// parent](Levelled::parent). Each given input covers `window.grown(source_halo(level))` at the cell of the level.
@@ -429,7 +424,7 @@ pub trait Levelled: Declared + Send + Sync {
         &self,
         level: usize,
         parent: &[Grid],
-        inputs: &[Option<&Grid>],
+        inputs: &GridInputs,
         window: &Window,
         context: &Context,
     ) -> Result<Vec<Grid>>;

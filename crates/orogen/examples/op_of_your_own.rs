@@ -3,7 +3,7 @@
 //! `cargo run --release --example op_of_your_own` writes terraces.png.
 
 use orogen::io::file::{OutputPolicy, write_whole};
-use orogen::op::{Context, Filter};
+use orogen::op::{Context, Filter, GridInputs};
 use orogen::output::map::Painter;
 use orogen::{Grid, Registry, Result, Window, World};
 use std::path::Path;
@@ -32,14 +32,9 @@ impl Filter for Terraces {
         1
     }
 
-    fn apply(
-        &self,
-        inputs: &[Option<&Grid>],
-        window: &Window,
-        out: &mut [Option<Grid>],
-        context: &Context,
-    ) -> Result<()> {
-        let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
+    fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
+        let source = inputs.required("source")?;
+        let [Some(out)] = out else { return Ok(()) };
         let (height, steep, run) = (self.height as f32, self.steep as f32, 2.0 * window.cell as f32);
         for j in 0..window.height {
             context.progress.check()?;

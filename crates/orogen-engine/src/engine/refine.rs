@@ -12,7 +12,7 @@ use orogen_grid::progress::Progress;
 use orogen_grid::resample::{self, LayerKind};
 use orogen_noise::Points;
 use orogen_ops::ids::{Id, NodeId};
-use orogen_ops::op::{Context, Levelled, Op, WorldParams};
+use orogen_ops::op::{Context, GridInputs, Levelled, Op, WorldParams};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
@@ -164,7 +164,7 @@ impl Refining<'_> {
     pub fn refined(&self, level: usize, parent: &[Grid], window: &Window) -> Result<Vec<Grid>> {
         let part = self.progress.part(self.work(level, window));
         let context = self.context(&part);
-        let refine = |inputs: &[Option<&Grid>]| self.op.refine(level, parent, inputs, window, &context);
+        let refine = |inputs: &GridInputs| self.op.refine(level, parent, inputs, window, &context);
         let planes = self.with_inputs(level, window, refine)?;
         part.finish();
         self.checked(planes, window)
@@ -180,13 +180,10 @@ impl Refining<'_> {
     }
 
     /// Passes the op's inputs over exactly the samples that it may read.
-    fn with_inputs<T>(
-        &self,
-        level: usize,
-        window: &Window,
-        work: impl FnOnce(&[Option<&Grid>]) -> Result<T>,
-    ) -> Result<T> {
-        work(&self.inputs_over(level, window)?.iter().map(Option::as_ref).collect::<Vec<_>>())
+    fn with_inputs<T>(&self, level: usize, window: &Window, work: impl FnOnce(&GridInputs) -> Result<T>) -> Result<T> {
+        let inputs = self.inputs_over(level, window)?;
+        let inputs: Vec<Option<&Grid>> = inputs.iter().map(Option::as_ref).collect();
+        work(&GridInputs::new(self.op.spec(), &inputs))
     }
 
     /// The op's inputs over exactly the samples that it may read.

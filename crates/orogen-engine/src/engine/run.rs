@@ -20,7 +20,7 @@ use orogen_grid::progress::Progress;
 use orogen_ops::budget::Budget;
 use orogen_ops::ids::{GridId, Id, IndexVec, NodeId, StepId};
 use orogen_ops::interpreter::{Bindings, Interpreter};
-use orogen_ops::op::{Context, Field, Filter, Op, Solution, Solver, StepObserver, WorldParams};
+use orogen_ops::op::{Context, Field, Filter, GridInputs, Op, Solution, Solver, StepObserver, WorldParams};
 use orogen_ops::pool::Pool;
 use orogen_ops::program::{BLOCK_HEIGHT, BLOCK_WIDTH, Program};
 use std::collections::HashMap;
@@ -360,7 +360,7 @@ impl<'a> Engine<'a> {
             let context = Context { world_params: self.world_params, progress, observer: None };
             let mut made: Vec<Option<Grid>> =
                 out.iter().map(|wanted| wanted.map(|_| Grid::filled(*window, 0.0f32))).collect();
-            filter.apply(given, window, &mut made, &context)?;
+            filter.apply(&GridInputs::new(filter.spec(), given), window, &mut made, &context)?;
             Ok(made.into_iter().flatten().collect())
         })
     }

@@ -78,7 +78,7 @@ macro_rules! choice {
 /// if it is one of the plane.
 ///
 /// ```
-/// use orogen_ops::op::{Context, Filter};
+/// use orogen_ops::op::{Context, Filter, GridInputs};
 /// use orogen_grid::{Grid, Result, Window};
 ///
 /// orogen_ops::op! {
@@ -99,8 +99,9 @@ macro_rules! choice {
 ///         0
 ///     }
 ///
-///     fn apply(&self, inputs: &[Option<&Grid>], _: &Window, out: &mut [Option<Grid>], _: &Context) -> Result<()> {
-///         let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
+///     fn apply(&self, inputs: &GridInputs, _: &Window, out: &mut [Option<Grid>], _: &Context) -> Result<()> {
+///         let source = inputs.required("source")?;
+///         let [Some(out)] = out else { return Ok(()) };
 ///         for (out, source) in out.data_mut().iter_mut().zip(source.data()) {
 ///             *out = source + self.by as f32;
 ///         }

@@ -65,6 +65,12 @@ impl Spec {
         self.inputs.iter().map(|input| InputName { name: input.name, required: input.required }).collect()
     }
 
+    /// The index of the input with this name, if `given` says that it is given.
+    pub(crate) fn given_input(&self, name: &str, given: &[bool]) -> Option<usize> {
+        let i = self.inputs.iter().position(|input| input.name == name)?;
+        given.get(i).copied().unwrap_or(false).then_some(i)
+    }
+
     /// The input with this key, also its other one.
     #[must_use]
     pub fn input_named(&self, key: &str) -> Option<usize> {

@@ -2,7 +2,7 @@
 
 use crate::budget::memory;
 use crate::lower::{Lowering, Passes, alternating};
-use crate::op::{Context, Filter, WorldParams};
+use crate::op::{Context, Filter, GridInputs, WorldParams};
 use orogen_grid::analysis::distance::nearest_with;
 use orogen_grid::analysis::selection::Selection;
 use orogen_grid::error::Result;
@@ -49,14 +49,9 @@ impl Filter for Distance {
         memory(&Window { height: window.height, ..grown }, 4).saturating_add(memory(window, 4))
     }
 
-    fn apply(
-        &self,
-        inputs: &[Option<&Grid>],
-        window: &Window,
-        out: &mut [Option<Grid>],
-        context: &Context,
-    ) -> Result<()> {
-        let ([Some(source)], [distance, near]) = (inputs, out) else { return Ok(()) };
+    fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
+        let source = inputs.required("source")?;
+        let [distance, near] = out else { return Ok(()) };
         let samples = nearest_with(source, self.threshold as f32, self.halo(window.cell), context.progress)?;
         let fade = self.fade();
         let metres = |steps: f32| (f64::from(steps) * window.cell).min(self.reach) as f32;

@@ -2,7 +2,7 @@
 
 use crate::budget::memory;
 use crate::lower::{Lowering, Passes};
-use crate::op::{Context, Filter, WorldParams};
+use crate::op::{Context, Filter, GridInputs, WorldParams};
 use orogen_grid::erosion::droplets::Droplets as Law;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -66,14 +66,9 @@ impl Filter for Droplets {
         memory(&window.grown(self.halo(window.cell)), 40)
     }
 
-    fn apply(
-        &self,
-        inputs: &[Option<&Grid>],
-        window: &Window,
-        out: &mut [Option<Grid>],
-        context: &Context,
-    ) -> Result<()> {
-        let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
+    fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
+        let source = inputs.required("source")?;
+        let [Some(out)] = out else { return Ok(()) };
         if window.is_empty() {
             return Ok(());
         }

@@ -1,7 +1,7 @@
 //! Values beyond the edges of the world.
 
 use crate::lower::{Lowering, Passes};
-use crate::op::{Context, Filter, WorldParams};
+use crate::op::{Context, Filter, GridInputs, WorldParams};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::parallel;
@@ -34,14 +34,9 @@ impl Filter for Extrapolate {
         if self.samples == 0 { 0 } else { self.samples as usize + 1 }
     }
 
-    fn apply(
-        &self,
-        inputs: &[Option<&Grid>],
-        window: &Window,
-        out: &mut [Option<Grid>],
-        context: &Context,
-    ) -> Result<()> {
-        let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
+    fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
+        let source = inputs.required("source")?;
+        let [Some(out)] = out else { return Ok(()) };
         let Some(world) = context.world_params.window(window.cell).filter(|world| !world.contains(window)) else {
             out.paste(source);
             return Ok(());
@@ -129,6 +124,7 @@ impl Beyond {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::declare::Declared;
     use orogen_grid::analysis::slope::extended;
     use orogen_grid::progress::Progress;
 
@@ -141,7 +137,7 @@ mod tests {
         given.paste(source);
         let mut out = [Some(Grid::filled(*window, 0.0))];
         let context = Context { world_params: &world_params, progress: &Progress::none(), observer: None };
-        op.apply(&[Some(&given)], window, &mut out, &context).unwrap();
+        op.apply(&GridInputs::new(op.spec(), &[Some(&given)]), window, &mut out, &context).unwrap();
         let [Some(out)] = out else { panic!("no layer") };
         out
     }

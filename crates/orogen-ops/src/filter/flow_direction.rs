@@ -1,7 +1,7 @@
 //! Flow directions in the encodings of other programs.
 
 use crate::lower::{Lowering, Passes};
-use crate::op::{Context, Filter, WorldParams};
+use crate::op::{Context, Filter, GridInputs, WorldParams};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::hydrology::direction::{Convention, NONE};
@@ -49,8 +49,9 @@ impl Filter for FlowDirection {
         0
     }
 
-    fn apply(&self, inputs: &[Option<&Grid>], _: &Window, out: &mut [Option<Grid>], _: &Context) -> Result<()> {
-        let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
+    fn apply(&self, inputs: &GridInputs, _: &Window, out: &mut [Option<Grid>], _: &Context) -> Result<()> {
+        let source = inputs.required("source")?;
+        let [Some(out)] = out else { return Ok(()) };
         let convention = self.convention();
         for (out, code) in out.data_mut().iter_mut().zip(source.data()) {
             *out = f32::from(convention.of(*code as u8));

@@ -3,7 +3,7 @@
 use orogen_grid::parallel;
 
 use crate::lower::{Lowering, Passes};
-use crate::op::{Context, Filter, WorldParams};
+use crate::op::{Context, Filter, GridInputs, WorldParams};
 use orogen_grid::analysis::slope::gradients_between;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -43,14 +43,8 @@ impl Filter for FlowIndices {
         1
     }
 
-    fn apply(
-        &self,
-        inputs: &[Option<&Grid>],
-        window: &Window,
-        out: &mut [Option<Grid>],
-        context: &Context,
-    ) -> Result<()> {
-        let [Some(source), Some(flow)] = inputs else { return Ok(()) };
+    fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
+        let (source, flow) = (inputs.required("source")?, inputs.required("flow")?);
         let indices: [fn(f64, f64) -> f64; 3] = [wetness_index, stream_power, ls_factor];
         let level = LevelGround::default().with_least_slope(self.least_slope);
         for (layer, index) in out.iter_mut().zip(indices) {

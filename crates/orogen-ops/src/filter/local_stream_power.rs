@@ -2,7 +2,7 @@
 
 use crate::budget::memory;
 use crate::lower::{Lowering, Passes, alternating};
-use crate::op::{Context, Filter, WorldParams};
+use crate::op::{Context, Filter, GridInputs, WorldParams};
 use orogen_grid::erosion::local_stream_power::{AREA, HEIGHT, LocalStreamPower as Law, RADIUS, SEDIMENT};
 use orogen_grid::erosion::planes::Planes;
 use orogen_grid::error::Result;
@@ -77,14 +77,8 @@ impl Filter for LocalStreamPower {
         self.sea
     }
 
-    fn apply(
-        &self,
-        inputs: &[Option<&Grid>],
-        window: &Window,
-        out: &mut [Option<Grid>],
-        context: &Context,
-    ) -> Result<()> {
-        let [Some(source), flow] = inputs else { return Ok(()) };
+    fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
+        let (source, flow) = (inputs.required("source")?, inputs.get("flow"));
         if window.is_empty() {
             return Ok(());
         }

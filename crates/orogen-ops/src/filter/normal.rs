@@ -1,7 +1,7 @@
 //! Surface normals.
 
 use crate::lower::{Lowering, Passes};
-use crate::op::{Context, Filter, WorldParams};
+use crate::op::{Context, Filter, GridInputs, WorldParams};
 use orogen_grid::analysis::slope::gradients_between;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -33,14 +33,8 @@ impl Filter for Normal {
         1
     }
 
-    fn apply(
-        &self,
-        inputs: &[Option<&Grid>],
-        window: &Window,
-        out: &mut [Option<Grid>],
-        context: &Context,
-    ) -> Result<()> {
-        let [Some(source)] = inputs else { return Ok(()) };
+    fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
+        let source = inputs.required("source")?;
         // One pass over the heights serves all components.
         let mut rows: Vec<Vec<(usize, &mut [f32])>> = (0..window.height).map(|_| Vec::new()).collect();
         for (part, grid) in out.iter_mut().enumerate() {

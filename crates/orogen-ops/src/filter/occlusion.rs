@@ -1,7 +1,7 @@
 //! Ambient occlusion of terrain.
 
 use crate::lower::{Lowering, Passes};
-use crate::op::{Context, Filter, WorldParams};
+use crate::op::{Context, Filter, GridInputs, WorldParams};
 use orogen_grid::analysis::sky::{sky_view_with, steps_of_view};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -35,14 +35,9 @@ impl Filter for Occlusion {
         (self.reach / cell).ceil().clamp(1.0, FARTHEST) as usize
     }
 
-    fn apply(
-        &self,
-        inputs: &[Option<&Grid>],
-        window: &Window,
-        out: &mut [Option<Grid>],
-        context: &Context,
-    ) -> Result<()> {
-        let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
+    fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
+        let source = inputs.required("source")?;
+        let [Some(out)] = out else { return Ok(()) };
         *out = sky_view_with(source, window, self.halo(window.cell), context.progress)?;
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 use crate::budget::memory;
 use crate::lower::{Lowering, Passes};
-use crate::op::{Context, Filter, WorldParams};
+use crate::op::{Context, Filter, GridInputs, WorldParams};
 use orogen_grid::erosion::pipe_rows::{BED, DEPTH, SEDIMENT};
 use orogen_grid::erosion::pipes::{Pipes as Law, RADIUS, Wet};
 use orogen_grid::error::Result;
@@ -75,14 +75,8 @@ impl Filter for Pipes {
         memory(&window.grown(self.halo(window.cell) + 1), 60)
     }
 
-    fn apply(
-        &self,
-        inputs: &[Option<&Grid>],
-        window: &Window,
-        out: &mut [Option<Grid>],
-        context: &Context,
-    ) -> Result<()> {
-        let [Some(source)] = inputs else { return Ok(()) };
+    fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
+        let source = inputs.required("source")?;
         if window.is_empty() {
             return Ok(());
         }

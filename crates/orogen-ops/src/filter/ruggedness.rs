@@ -1,7 +1,7 @@
 //! Terrain ruggedness index.
 
 use crate::lower::{Lowering, Passes};
-use crate::op::{Context, Filter, WorldParams};
+use crate::op::{Context, Filter, GridInputs, WorldParams};
 use orogen_grid::analysis::roughness::riley_with;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -29,8 +29,9 @@ impl Filter for Ruggedness {
         1
     }
 
-    fn apply(&self, inputs: &[Option<&Grid>], _: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
-        let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
+    fn apply(&self, inputs: &GridInputs, _: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
+        let source = inputs.required("source")?;
+        let [Some(out)] = out else { return Ok(()) };
         *out = riley_with(source, context.progress)?;
         Ok(())
     }

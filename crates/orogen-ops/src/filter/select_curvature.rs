@@ -1,7 +1,7 @@
 //! A mask by curvature.
 
 use crate::lower::{Lowering, Passes};
-use crate::op::{Context, Filter, WorldParams};
+use crate::op::{Context, Filter, GridInputs, WorldParams};
 use orogen_grid::analysis::curvature::{Curvature, bend};
 use orogen_grid::analysis::selection::Selection;
 use orogen_grid::error::Result;
@@ -96,14 +96,9 @@ impl Filter for SelectCurvature {
         samples_apart(self.scale, cell)
     }
 
-    fn apply(
-        &self,
-        inputs: &[Option<&Grid>],
-        window: &Window,
-        out: &mut [Option<Grid>],
-        context: &Context,
-    ) -> Result<()> {
-        let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
+    fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
+        let source = inputs.required("source")?;
+        let [Some(out)] = out else { return Ok(()) };
         let selection = Selection::new(self.range, self.falloff);
         let apart = self.halo(window.cell);
         let (kind, _) = self.kind.kind();

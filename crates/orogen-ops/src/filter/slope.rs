@@ -1,7 +1,7 @@
 //! Slope and its components.
 
 use crate::lower::{Lowering, Passes};
-use crate::op::{Context, Filter, WorldParams};
+use crate::op::{Context, Filter, GridInputs, WorldParams};
 use orogen_grid::analysis::slope::{Gradient, gradients_between};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -52,14 +52,8 @@ impl Filter for Slope {
         1
     }
 
-    fn apply(
-        &self,
-        inputs: &[Option<&Grid>],
-        window: &Window,
-        out: &mut [Option<Grid>],
-        context: &Context,
-    ) -> Result<()> {
-        let [Some(source)] = inputs else { return Ok(()) };
+    fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
+        let source = inputs.required("source")?;
         let angle = |gradient: Gradient| match self.unit {
             SlopeUnit::Degrees => libm::atanf(gradient.steepness()).to_degrees(),
             SlopeUnit::Ratio => gradient.steepness(),

@@ -1,7 +1,7 @@
 //! Steady-state soil depth.
 
 use crate::lower::{Lowering, Passes};
-use crate::op::{Context, Filter, WorldParams};
+use crate::op::{Context, Filter, GridInputs, WorldParams};
 use orogen_grid::analysis::soil::Soil;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -53,8 +53,9 @@ impl Filter for SoilDepth {
         1
     }
 
-    fn apply(&self, inputs: &[Option<&Grid>], _: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
-        let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
+    fn apply(&self, inputs: &GridInputs, _: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
+        let source = inputs.required("source")?;
+        let [Some(out)] = out else { return Ok(()) };
         let soil = Soil::default()
             .with_production(self.production)
             .with_decay(self.decay)

@@ -2,7 +2,7 @@
 
 use crate::budget::memory;
 use crate::lower::{Lowering, Passes, alternating};
-use crate::op::{Context, Filter, WorldParams};
+use crate::op::{Context, Filter, GridInputs, WorldParams};
 use orogen_grid::erosion::thermal::Thermal as Law;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -43,14 +43,9 @@ impl Filter for Thermal {
         memory(&window.grown(self.iterations as usize), 12)
     }
 
-    fn apply(
-        &self,
-        inputs: &[Option<&Grid>],
-        window: &Window,
-        out: &mut [Option<Grid>],
-        context: &Context,
-    ) -> Result<()> {
-        let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
+    fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
+        let source = inputs.required("source")?;
+        let [Some(out)] = out else { return Ok(()) };
         if window.is_empty() {
             return Ok(());
         }

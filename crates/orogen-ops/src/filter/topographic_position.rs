@@ -2,7 +2,7 @@
 
 use crate::budget::memory;
 use crate::lower::{Lowering, Passes};
-use crate::op::{Context, Filter, WorldParams};
+use crate::op::{Context, Filter, GridInputs, WorldParams};
 use orogen_grid::analysis::position::{class, half_widths, positions_with};
 use orogen_grid::analysis::slope::slope_degrees;
 use orogen_grid::error::Result;
@@ -59,14 +59,9 @@ impl Filter for TopographicPosition {
         memory(&Window { width: grown.width + 1, ..grown }, 16).saturating_add(memory(window, 16))
     }
 
-    fn apply(
-        &self,
-        inputs: &[Option<&Grid>],
-        window: &Window,
-        out: &mut [Option<Grid>],
-        context: &Context,
-    ) -> Result<()> {
-        let ([Some(source)], [position, deviation, classes]) = (inputs, out) else { return Ok(()) };
+    fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
+        let source = inputs.required("source")?;
+        let [position, deviation, classes] = out else { return Ok(()) };
         let found = positions_with(source, self.halo(window.cell), context.progress)?;
         let width = window.width.max(1);
         for (layer, value) in [(position, 0), (deviation, 1)] {

@@ -5,8 +5,8 @@ use super::layer_passes::lower_layers;
 use super::passes::{self, GivenInputs};
 use crate::declare::Declared;
 use crate::lower::{Lowering, Passes};
-use crate::op::{Context, Levelled, Levels, WorldParams};
-use orogen_grid::error::{Error, ErrorKind, Result};
+use crate::op::{Context, GridInputs, Levelled, Levels, WorldParams};
+use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::multiscale::coarse::{Coarse, REACH};
 use orogen_grid::multiscale::given::Given;
@@ -147,15 +147,14 @@ fn ahead(level: usize) -> i64 {
     if level == 0 { 0 } else { 1i64 << (level - 1).min(MAX_LEVELS) }
 }
 
-fn given<'a>(inputs: &[Option<&'a Grid>]) -> Given<'a> {
-    let input = |i: usize| inputs.get(i).copied().flatten();
+fn given<'a>(inputs: &GridInputs<'a>) -> Given<'a> {
     Given {
         shore: None,
-        uplift: input(3),
-        stability_factor: input(4),
-        creep_factor: input(5),
-        floor_factor: input(6),
-        rain: input(7),
+        uplift: inputs.get("uplift"),
+        stability_factor: inputs.get("stability_factor"),
+        creep_factor: inputs.get("creep_factor"),
+        floor_factor: inputs.get("floor_factor"),
+        rain: inputs.get("rain"),
         continents: None,
     }
 }
@@ -185,11 +184,9 @@ impl Levelled for Amplify {
         drained::levels_with_inputs(&self.refinement())
     }
 
-    fn coarsest(&self, inputs: &[Option<&Grid>], window: &Window, context: &Context) -> Result<Vec<Grid>> {
-        let &[Some(height), Some(flow), receiver, ..] = inputs else {
-            return Err(Error::new(ErrorKind::Internal, "an input of `amplify` is missing"));
-        };
-        let coarse = Coarse { height, flow, receiver };
+    fn coarsest(&self, inputs: &GridInputs, window: &Window, context: &Context) -> Result<Vec<Grid>> {
+        let height = inputs.required("source")?;
+        let coarse = Coarse { height, flow: inputs.required("flow")?, receiver: inputs.get("receiver") };
         let mut level = self.seeded(context).coarsest_of(&coarse, &given(inputs), window, context.progress)?;
         if self.sea {
             level.drown(height, context.world_params.sea_level as f32);
@@ -201,7 +198,7 @@ impl Levelled for Amplify {
         &self,
         level: usize,
         parent: &[Grid],
-        inputs: &[Option<&Grid>],
+        inputs: &GridInputs,
         window: &Window,
         context: &Context,
     ) -> Result<Vec<Grid>> {
@@ -235,14 +232,14 @@ impl Levelled for Amplify {
 
     fn lower(&self, level: usize, given: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
         let refinement = self.refinement().with_seed(world_params.seed_of(self.seed));
-        let input = |i: usize| given.get(i).copied().unwrap_or(false).then_some(i);
+        let input = |name: &str| self.spec().given_input(name, given);
         let given = GivenInputs {
             shore: None,
-            uplift: input(3),
-            stability_factor: input(4),
-            creep_factor: input(5),
-            floor_factor: input(6),
-            rain: input(7),
+            uplift: input("uplift"),
+            stability_factor: input("stability_factor"),
+            creep_factor: input("creep_factor"),
+            floor_factor: input("floor_factor"),
+            rain: input("rain"),
         };
         passes::lower(&refinement, level, &given, ahead)
     }

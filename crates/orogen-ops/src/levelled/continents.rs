@@ -5,7 +5,7 @@ use super::layer_passes::lower_layers;
 use super::passes::{self, GivenInputs};
 use crate::declare::Declared;
 use crate::lower::{Lowering, Passes};
-use crate::op::{Context, Levelled, Levels, WorldParams};
+use crate::op::{Context, GridInputs, Levelled, Levels, WorldParams};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::multiscale::continents::Continents as Land;
@@ -149,15 +149,14 @@ impl Continents {
     }
 }
 
-fn given<'a>(inputs: &[Option<&'a Grid>]) -> Given<'a> {
-    let input = |i: usize| inputs.get(i).copied().flatten();
+fn given<'a>(inputs: &GridInputs<'a>) -> Given<'a> {
     Given {
-        shore: input(0),
-        uplift: input(1),
-        stability_factor: input(2),
-        creep_factor: input(3),
-        floor_factor: input(4),
-        rain: input(5),
+        shore: inputs.get("shore"),
+        uplift: inputs.get("uplift"),
+        stability_factor: inputs.get("stability_factor"),
+        creep_factor: inputs.get("creep_factor"),
+        floor_factor: inputs.get("floor_factor"),
+        rain: inputs.get("rain"),
         continents: None,
     }
 }
@@ -187,7 +186,7 @@ impl Levelled for Continents {
         drained::levels_with_inputs(&self.refinement())
     }
 
-    fn coarsest(&self, inputs: &[Option<&Grid>], window: &Window, context: &Context) -> Result<Vec<Grid>> {
+    fn coarsest(&self, inputs: &GridInputs, window: &Window, context: &Context) -> Result<Vec<Grid>> {
         Ok(self.land(context).coarsest(&given(inputs), window, context.progress)?.into_planes())
     }
 
@@ -195,7 +194,7 @@ impl Levelled for Continents {
         &self,
         level: usize,
         parent: &[Grid],
-        inputs: &[Option<&Grid>],
+        inputs: &GridInputs,
         window: &Window,
         context: &Context,
     ) -> Result<Vec<Grid>> {
@@ -231,14 +230,14 @@ impl Levelled for Continents {
         if refinement.has_geography(level) {
             return Lowering::Processor("continents and ranges are placed in f64");
         }
-        let input = |i: usize| given.get(i).copied().unwrap_or(false).then_some(i);
+        let input = |name: &str| self.spec().given_input(name, given);
         let given = GivenInputs {
-            shore: input(0),
-            uplift: input(1),
-            stability_factor: input(2),
-            creep_factor: input(3),
-            floor_factor: input(4),
-            rain: input(5),
+            shore: input("shore"),
+            uplift: input("uplift"),
+            stability_factor: input("stability_factor"),
+            creep_factor: input("creep_factor"),
+            floor_factor: input("floor_factor"),
+            rain: input("rain"),
         };
         passes::lower(&refinement, level, &given, |_| 0)
     }

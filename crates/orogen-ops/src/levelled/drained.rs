@@ -1,6 +1,6 @@
 //! What the levelled ops that make drained land have in common.
 
-use crate::op::{Context, Levels, halved};
+use crate::op::{Context, GridInputs, Levels, halved};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::hydrology::rivers::Channel;
@@ -67,17 +67,17 @@ impl Lattices<'_> {
         &self,
         level: usize,
         parent: &[Grid],
-        inputs: &[Option<&Grid>],
-        given: impl for<'a> Fn(&[Option<&'a Grid>]) -> Given<'a>,
+        inputs: &GridInputs,
+        given: impl for<'a> Fn(&GridInputs<'a>) -> Given<'a>,
         window: &Window,
         context: &Context,
     ) -> Result<Vec<Grid>> {
         let mut above = level_of(level - 1, parent)?;
         above.window = self.nodes_at(level - 1, &above.window);
         let nodes = self.nodes_at(level, window);
-        let inputs: Vec<Option<Grid>> = inputs.iter().map(|input| self.input_at_nodes(level, (*input)?)).collect();
-        let inputs: Vec<Option<&Grid>> = inputs.iter().map(Option::as_ref).collect();
-        let given = Given { continents: self.continents, ..given(&inputs) };
+        let moved: Vec<Option<Grid>> = inputs.all().iter().map(|input| self.input_at_nodes(level, (*input)?)).collect();
+        let moved: Vec<Option<&Grid>> = moved.iter().map(Option::as_ref).collect();
+        let given = Given { continents: self.continents, ..given(&inputs.with(&moved)) };
         let mut made = self.refinement.refine(&above, &given, &nodes, context.progress)?;
         made.window = *window;
         Ok(made.into_planes())

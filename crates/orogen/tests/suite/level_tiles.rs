@@ -2,7 +2,7 @@
 
 use orogen::io::read_at::ReadAt;
 use orogen::io::test_folder::TestFolder;
-use orogen::op::{Context, Levelled, Levels};
+use orogen::op::{Context, GridInputs, Levelled, Levels};
 use orogen::solver::Normalise;
 use orogen::store::EntryKey;
 use orogen::store::solution_store::Entry;
@@ -79,13 +79,13 @@ impl Levelled for Sums {
         2
     }
 
-    fn coarsest(&self, inputs: &[Option<&Grid>], window: &Window, context: &Context) -> Result<Vec<Grid>> {
+    fn coarsest(&self, inputs: &GridInputs, window: &Window, context: &Context) -> Result<Vec<Grid>> {
         let hook = HOOKS.lock().unwrap_or_else(PoisonError::into_inner).as_ref().and_then(|hooks| {
             let hook = hooks.get(&self.hook)?;
             Some(Arc::clone(hook))
         });
         hook.map_or(Ok(()), |hook| hook(context))?;
-        let source = inputs.first().copied().flatten().map_or(0.0, |source| source.data()[0]);
+        let source = inputs.get("source").map_or(0.0, |source| source.data()[0]);
         Ok(Sums::planes_of(window, |x, y| hash(0, x, y) + source))
     }
 
@@ -93,7 +93,7 @@ impl Levelled for Sums {
         &self,
         level: usize,
         parent: &[Grid],
-        _: &[Option<&Grid>],
+        _: &GridInputs,
         window: &Window,
         context: &Context,
     ) -> Result<Vec<Grid>> {

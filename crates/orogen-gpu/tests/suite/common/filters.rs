@@ -8,7 +8,7 @@ use orogen_engine::filter::{
 };
 use orogen_engine::lower::{Extent, Lowering, Passes};
 use orogen_engine::node::Node;
-use orogen_engine::op::{Context, Filter, Op, WorldParams};
+use orogen_engine::op::{Context, Filter, GridInputs, Op, WorldParams};
 use orogen_gpu::gpu::Options;
 use orogen_gpu::{Choice, Failure, Gpu};
 use orogen_grid::grid::{Grid, Window};
@@ -118,7 +118,7 @@ pub fn on_processor(node: &Node, window: &Window, inputs: &[Option<Grid>]) -> Ve
     let inputs: Vec<Option<&Grid>> = inputs.iter().map(Option::as_ref).collect();
     let mut out: Vec<Option<Grid>> = node.layers().iter().map(|_| Some(Grid::filled(*window, 0.0))).collect();
     let context = Context { world_params: &WORLD, progress: &Progress::none(), observer: None };
-    filter(node).unwrap().apply(&inputs, window, &mut out, &context).unwrap();
+    filter(node).unwrap().apply(&GridInputs::new(node.spec(), &inputs), window, &mut out, &context).unwrap();
     out.into_iter().flatten().collect()
 }
 

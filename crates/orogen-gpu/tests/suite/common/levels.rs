@@ -6,7 +6,7 @@ use super::run;
 use orogen_engine::device::PassStep;
 use orogen_engine::levelled::Amplify;
 use orogen_engine::lower::{Lowering, Passes};
-use orogen_engine::op::{Context, Levelled, WorldParams};
+use orogen_engine::op::{Context, GridInputs, Levelled, WorldParams};
 use orogen_engine::{Options, Recipe, Session};
 use orogen_gpu::Gpu;
 use orogen_grid::grid::{Grid, Window};
@@ -127,13 +127,23 @@ impl Chain<'_> {
 
     pub fn first(&self) -> Vec<Grid> {
         let inputs: Vec<Option<&Grid>> = self.coarsest.iter().map(Option::as_ref).collect();
-        self.op.coarsest(&inputs, &self.windows[0], &context(&Progress::none())).unwrap()
+        self.op
+            .coarsest(&GridInputs::new(self.op.spec(), &inputs), &self.windows[0], &context(&Progress::none()))
+            .unwrap()
     }
 
     pub fn on_processor(&self, level: usize, above: &[Grid]) -> Vec<Grid> {
         let inputs = self.inputs(level);
         let inputs: Vec<Option<&Grid>> = inputs.iter().map(Option::as_ref).collect();
-        self.op.refine(level, above, &inputs, &self.windows[level], &context(&Progress::none())).unwrap()
+        self.op
+            .refine(
+                level,
+                above,
+                &GridInputs::new(self.op.spec(), &inputs),
+                &self.windows[level],
+                &context(&Progress::none()),
+            )
+            .unwrap()
     }
 
     pub fn on_card(&self, gpu: &Gpu, level: usize, above: &[Grid]) -> Vec<Grid> {

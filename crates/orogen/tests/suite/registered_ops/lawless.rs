@@ -1,7 +1,9 @@
 //! Ops that break laws.
 
 use orogen::laws::{Law, Laws};
-use orogen::op::{Context, Field, Filter, Inputs, Levelled, Levels, Reading, Solution, Solver, Sources, WorldParams};
+use orogen::op::{
+    Context, Field, Filter, GridInputs, Inputs, Levelled, Levels, Reading, Solution, Solver, Sources, WorldParams,
+};
 use orogen::{Grid, Level, Points, Result, Window};
 use std::time::Duration;
 
@@ -20,8 +22,9 @@ macro_rules! filter {
                 0
             }
 
-            fn apply(&self, inputs: &[Option<&Grid>], window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
-                let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
+            fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
+                let source = inputs.required("source")?;
+                let [Some(out)] = out else { return Ok(()) };
                 let add: fn(&Window, &Context) -> f32 = $apply;
                 let add = add(window, context);
                 out.data_mut().iter_mut().zip(source.data()).for_each(|(out, source)| *out = source + add);
@@ -56,8 +59,9 @@ impl Filter for Deaf {
         0
     }
 
-    fn apply(&self, inputs: &[Option<&Grid>], _: &Window, out: &mut [Option<Grid>], _: &Context) -> Result<()> {
-        let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
+    fn apply(&self, inputs: &GridInputs, _: &Window, out: &mut [Option<Grid>], _: &Context) -> Result<()> {
+        let source = inputs.required("source")?;
+        let [Some(out)] = out else { return Ok(()) };
         out.data_mut().copy_from_slice(source.data());
         Ok(())
     }
@@ -85,8 +89,9 @@ impl Filter for Wide {
         self.halo as usize
     }
 
-    fn apply(&self, inputs: &[Option<&Grid>], window: &Window, out: &mut [Option<Grid>], _: &Context) -> Result<()> {
-        let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
+    fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], _: &Context) -> Result<()> {
+        let source = inputs.required("source")?;
+        let [Some(out)] = out else { return Ok(()) };
         let halo = self.halo as usize;
         for (i, j) in (0..window.height).flat_map(|j| (0..window.width).map(move |i| (i, j))) {
             let at = |row: usize| source[(i + halo, row.min(source.height() - 1))];
@@ -158,21 +163,14 @@ impl Levelled for Narrow {
         self.halo as usize
     }
 
-    fn coarsest(&self, _: &[Option<&Grid>], window: &Window, _: &Context) -> Result<Vec<Grid>> {
+    fn coarsest(&self, _: &GridInputs, window: &Window, _: &Context) -> Result<Vec<Grid>> {
         let mut grid = Grid::filled(*window, 0.0f32);
         let columns = (0..window.len()).map(|k| ((window.x + (k % window.width) as i64) % 7) as f32);
         grid.data_mut().iter_mut().zip(columns).for_each(|(sample, column)| *sample = column);
         Ok(vec![grid])
     }
 
-    fn refine(
-        &self,
-        _: usize,
-        parent: &[Grid],
-        _: &[Option<&Grid>],
-        window: &Window,
-        _: &Context,
-    ) -> Result<Vec<Grid>> {
+    fn refine(&self, _: usize, parent: &[Grid], _: &GridInputs, window: &Window, _: &Context) -> Result<Vec<Grid>> {
         let mut grid = Grid::filled(*window, 0.0f32);
         for (i, j) in (0..window.height).flat_map(|j| (0..window.width).map(move |i| (i, j))) {
             let at = |x: i64, y: i64| {

@@ -1,6 +1,8 @@
 //! The ops of a program: a field, a filter, a levelled op and a solver.
 
-use orogen::op::{Context, Field, Filter, Inputs, Levelled, Levels, Solution, Solver, Sources, WorldParams};
+use orogen::op::{
+    Context, Field, Filter, GridInputs, Inputs, Levelled, Levels, Solution, Solver, Sources, WorldParams,
+};
 use orogen::{Grid, Points, Registry, Result, Window};
 
 orogen::choice! {
@@ -77,14 +79,9 @@ impl Filter for Crests {
         (self.reach / cell).floor() as usize
     }
 
-    fn apply(
-        &self,
-        inputs: &[Option<&Grid>],
-        window: &Window,
-        out: &mut [Option<Grid>],
-        context: &Context,
-    ) -> Result<()> {
-        let ([Some(source)], [heights, crests]) = (inputs, out) else { return Ok(()) };
+    fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
+        let source = inputs.required("source")?;
+        let [heights, crests] = out else { return Ok(()) };
         let reach = self.halo(window.cell);
         for j in 0..window.height {
             context.progress.check()?;
@@ -153,7 +150,7 @@ impl Midpoints {
     fn displaced(
         &self,
         level: usize,
-        inputs: &[Option<&Grid>],
+        inputs: &GridInputs,
         window: &Window,
         context: &Context,
         smooth: impl Fn(i64, i64) -> f32,
@@ -162,7 +159,7 @@ impl Midpoints {
         let mut grid = Grid::filled(*window, 0.0f32);
         for (i, j) in (0..window.height).flat_map(|j| (0..window.width).map(move |i| (i, j))) {
             let (x, y) = (window.x + i as i64, window.y + j as i64);
-            let roughness = inputs.first().copied().flatten().map_or(1.0, |input| input[(i, j)].abs());
+            let roughness = inputs.get("roughness").map_or(1.0, |input| input[(i, j)].abs());
             grid[(i, j)] = smooth(x, y) + roughness * self.chance(level, x, y, seed) / (1 << level) as f32;
         }
         grid
@@ -182,7 +179,7 @@ impl Levelled for Midpoints {
         1
     }
 
-    fn coarsest(&self, inputs: &[Option<&Grid>], window: &Window, context: &Context) -> Result<Vec<Grid>> {
+    fn coarsest(&self, inputs: &GridInputs, window: &Window, context: &Context) -> Result<Vec<Grid>> {
         Ok(vec![self.displaced(0, inputs, window, context, |_, _| 0.0)])
     }
 
@@ -190,7 +187,7 @@ impl Levelled for Midpoints {
         &self,
         level: usize,
         parent: &[Grid],
-        inputs: &[Option<&Grid>],
+        inputs: &GridInputs,
         window: &Window,
         context: &Context,
     ) -> Result<Vec<Grid>> {
