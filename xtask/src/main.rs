@@ -7,6 +7,7 @@ mod clients;
 mod codegen;
 mod compiled;
 mod failure;
+mod front_door;
 mod fuzz;
 mod gallery;
 mod host;

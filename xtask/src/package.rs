@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::compiled::{LIBRARIES, WINDOW};
 use crate::failure::{Failure, Result, on_file};
+use crate::front_door;
 use crate::shell::{self, cargo, program, run as sh};
 
 /// Packs every crate as it would be published, unpacks the archives and compiles what is in them alone: paths that lead
@@ -28,7 +29,11 @@ pub fn check() -> Result {
     // Without the binary `orogen`, whose pages would overwrite those of the library of the same name, and without the
     // studio.
     let undocumented = "--exclude orogen-cli --exclude orogen-studio --exclude orogen-features";
-    in_archives(&format!("doc --quiet {LIBRARIES} --no-deps {undocumented}"), "-D warnings")
+    // Pages of items that are no more would stay.
+    let pages = shell::target_dir().join("doc");
+    shell::empty_dir(&pages)?;
+    in_archives(&format!("doc --quiet {LIBRARIES} --no-deps {undocumented}"), "-D warnings")?;
+    front_door::check(&pages)
 }
 
 /// Compiles the archives of the crates for windows and graphics cards. [`check`] must have unpacked them.

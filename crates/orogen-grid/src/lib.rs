@@ -83,6 +83,7 @@ pub mod progress;
 #[doc(hidden)]
 pub mod random;
 pub mod resample;
+#[doc(hidden)]
 pub mod surface_nets;
 pub mod triangles;
 pub mod words;

@@ -79,8 +79,10 @@ pub use avx512::Avx512;
 #[doc(hidden)]
 #[cfg(target_arch = "aarch64")]
 pub use neon::Neon;
+#[doc(hidden)]
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
 pub use simd128::Simd128;
+#[doc(hidden)]
 #[cfg(target_arch = "x86_64")]
 pub use sse2::Sse2;
 

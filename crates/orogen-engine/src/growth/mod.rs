@@ -6,5 +6,6 @@ pub mod frame_spool;
 #[doc(hidden)]
 pub mod run;
 
+#[doc(hidden)]
 pub use frame_spool::FrameSpool;
 pub use run::{Growth, Visit};

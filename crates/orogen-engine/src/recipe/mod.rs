@@ -37,6 +37,7 @@ mod world_spec;
 pub use class::TerrainClass;
 pub use condition::{Condition, Quantity};
 pub use document::{NamedNode, Recipe, WorldSpec};
+#[doc(hidden)]
 pub use graph::{Graph, GraphDiagnostic};
 pub use parameters::{Parameter, Parameters};
 pub use presets::Preset;

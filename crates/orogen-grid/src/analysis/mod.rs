@@ -49,6 +49,7 @@ pub mod viewshed;
 
 pub use aspect::aspect;
 pub use curvature::{Curvature, curvature};
+#[doc(hidden)]
 pub use finite::FiniteCount;
 pub use geomorphons::{FORMS, Look, geomorphons};
 pub use hillshade::{Light, hillshade};
@@ -56,6 +57,7 @@ pub use hypsometry::{hypsometric_curve, hypsometric_integral};
 pub use insolation::{Period, insolation};
 pub use position::{Position, positions};
 pub use roughness::{riley, ruggedness};
+#[doc(hidden)]
 pub use shadow::Shadows;
 pub use sky::sky_view;
 pub use slope::{Gradient, gradients, normals, slope_degrees, steepness};

@@ -37,10 +37,14 @@ mod variants;
 pub use choose::{ClassTiles, Tiles, WangTiles};
 pub use classes::Classes;
 pub use clean::clean;
-pub use drawable::{Drawable, Gap, MissingTile};
+pub use drawable::Drawable;
+#[doc(hidden)]
+pub use drawable::{Gap, MissingTile};
 pub use flip::{Flip, Flips};
 pub use mask::Layout;
+#[doc(hidden)]
 pub use rule::Pattern;
+#[doc(hidden)]
 pub use variants::Variant;
 
 #[cfg(test)]

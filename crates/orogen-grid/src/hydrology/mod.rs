@@ -50,6 +50,7 @@ pub mod wetness;
 
 pub use above_drainage::{AboveDrainage, above_drainage};
 pub use accumulation::{Accumulation, accumulate};
+#[doc(hidden)]
 pub use basins::{Basins, Spill};
 pub use breach::breach;
 pub use creep::creep;
@@ -60,6 +61,7 @@ pub use fill::fill;
 pub use lakes::{Lake, Lakes, lakes};
 pub use outlets::Outlets;
 pub use receivers::Receivers;
+#[doc(hidden)]
 pub use rivers::{Reach, Streams};
 pub use steepest::receivers;
 pub use strahler::strahler_orders;

@@ -26,7 +26,9 @@ pub mod outline;
 #[doc(hidden)]
 pub mod segments;
 
+#[doc(hidden)]
 pub use buffers::Buffers;
+#[doc(hidden)]
 pub use cubic::Cubic;
 pub use outline::Outline;
 pub use segments::{Nearest, Segments};

@@ -60,11 +60,13 @@ pub(crate) mod xyz;
 pub mod zarr;
 
 pub use affine::{Affine, Lattice};
+#[doc(hidden)]
 pub use band::BandMetadata;
 pub use crs::Crs;
 pub use dem::{Dem, Georeference, Placement, Request};
 pub use import::{is_dem, read};
 pub use points::{NamedPoint, NamedPoints};
+#[doc(hidden)]
 pub use sidecar::Sidecar;
 
 #[doc(hidden)]

@@ -43,6 +43,7 @@ pub mod vector;
 pub mod water;
 
 pub use draw::{Sheet, draw};
+#[doc(hidden)]
 pub use geometry::{Affine, Point, Rect, Size};
 pub use options::{
     Coloring, GridStep, Labels, Layer, LineName, Page, PageColors, Parts, PlaceKind, PlaceName, Resolution, Scale,

@@ -13,4 +13,6 @@ pub(crate) mod part;
 pub(crate) mod read;
 pub(crate) mod schema;
 
-pub use document::{Condition, Noise, Quantity};
+#[doc(hidden)]
+pub use document::Noise;
+pub use document::{Condition, Quantity};

@@ -20,5 +20,6 @@ pub mod unit;
 pub mod vertical;
 pub(crate) mod wkt;
 
+#[doc(hidden)]
 pub use keys::GeoKeys;
 pub use registry::Crs;
