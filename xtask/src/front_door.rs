@@ -99,14 +99,16 @@ fn is_item(name: &str) -> bool {
     name.ends_with(".html") && name.matches('.').count() == 2
 }
 
-/// Names, paths, and whether each is a folder.
+/// Names, paths, and whether each is a folder, sorted: what counts for which crate must not depend on their order.
 fn entries(folder: &Path) -> Result<Vec<(String, std::path::PathBuf, bool)>> {
     let listed = std::fs::read_dir(folder).map_err(|cause| on_file("read", folder, &cause))?;
     let entry = |entry: std::fs::DirEntry| {
         let path = entry.path();
         (entry.file_name().to_string_lossy().into_owned(), path.clone(), path.is_dir())
     };
-    Ok(listed.flatten().map(entry).collect())
+    let mut entries: Vec<_> = listed.flatten().map(entry).collect();
+    entries.sort();
+    Ok(entries)
 }
 
 #[cfg(test)]
