@@ -29,7 +29,7 @@ Reads the op! block of every file in crates/orogen-ops/src/{field,filter,levelle
   --check  write nothing; fail if one of the files is not up to date
 ";
 
-/// The three localities: the folder and the word in an op! block.
+/// The four localities: the folder and the word in an op! block.
 const LOCALITIES: [&str; 4] = ["field", "filter", "levelled", "solver"];
 
 const SCHEMA: &str = "crates/orogen-engine/recipes/orogen.schema.json";
