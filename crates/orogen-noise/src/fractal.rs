@@ -2,12 +2,11 @@
 
 use crate::basis::Basis;
 use crate::builder::noise_builder;
-use crate::choices::{ClassicVariant, Fade, Feature, Kind, Smoothness};
+use crate::choices::Kind;
 use crate::methods::noise_methods;
 use crate::prepared::preparable;
-use crate::program::{Octaves, Program, Source};
+use crate::program::{Octaves, Program};
 use crate::tiled::tileable;
-use crate::worley::Worley;
 
 /// A sum of octaves of one basis.
 ///
@@ -65,24 +64,9 @@ noise_builder!(
 );
 
 impl Fractal {
-    fn source(&self) -> Source {
-        match self.basis {
-            Basis::White => Source::Value(Fade::Step),
-            Basis::Value => Source::Value(Fade::Quintic),
-            Basis::Perlin => Source::Perlin,
-            Basis::ClassicDiagonal => Source::Classic(ClassicVariant::Diagonal),
-            Basis::ClassicEight => Source::Classic(ClassicVariant::Eight),
-            Basis::ClassicAngle => Source::Classic(ClassicVariant::Angle),
-            Basis::Simplex => Source::Simplex,
-            Basis::OpenSimplex2 => Source::OpenSimplex2(Smoothness::Fast),
-            Basis::OpenSimplex2Smooth => Source::OpenSimplex2(Smoothness::Smooth),
-            Basis::Worley => Source::Worley(Worley::default().cellular()),
-            Basis::WorleyEdge => Source::Worley(Worley { feature: Feature::Edge, ..Worley::default() }.cellular()),
-        }
-    }
     pub(crate) fn program(&self, dims: usize) -> Program {
         Program::octaves_of(&Octaves {
-            source: self.source(),
+            source: self.basis.source(),
             bound: self.basis.bound(dims),
             kind: self.kind,
             seed: self.seed,

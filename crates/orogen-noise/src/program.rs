@@ -53,12 +53,12 @@ impl Source {
     }
 
     /// Whether it has slopes; else they are zero.
-    pub(crate) fn sloped(self) -> bool {
+    pub(crate) const fn sloped(self) -> bool {
         !matches!(self, Source::Value(Fade::Step) | Source::Worley(_))
     }
 
     /// Whether its lattice can repeat along the axes.
-    fn repeats(self) -> bool {
+    pub(crate) const fn repeats(self) -> bool {
         !matches!(self, Source::Simplex | Source::OpenSimplex2(_))
     }
 }

@@ -10,7 +10,7 @@ use orogen_noise::{
 };
 
 impl Param for Basis {
-    const SHAPE: Shape = Shape::Choice(|| Basis::all().iter().map(|basis| (basis.name(), about(*basis))).collect());
+    const SHAPE: Shape = Shape::Choice(|| Basis::all().iter().map(|basis| (basis.name(), basis.about())).collect());
 
     fn read(value: &Value) -> Option<Basis> {
         match value {
@@ -21,26 +21,6 @@ impl Param for Basis {
 
     fn write(&self) -> Value {
         Value::Text(self.name().to_string())
-    }
-}
-
-/// Description of a basis that this file does not know yet.
-const UNKNOWN: &str = "Coherent noise.";
-
-fn about(basis: Basis) -> &'static str {
-    match basis {
-        Basis::White => "White noise: an independent value for each square.",
-        Basis::Value => "Value noise: random values on a lattice, interpolated.",
-        Basis::Perlin => "Perlin's gradient noise on a hashed lattice; it has no period.",
-        Basis::ClassicDiagonal => "Perlin's 2002 table, four diagonal gradients, as in most textbooks.",
-        Basis::ClassicEight => "Perlin's 2002 table, eight gradients.",
-        Basis::ClassicAngle => "Perlin's 2002 table, unit gradients at 256 angles.",
-        Basis::Simplex => "Perlin's Simplex noise: gradients at the corners of a triangular lattice.",
-        Basis::OpenSimplex2 => "OpenSimplex2, fast variant: Simplex noise with more gradient directions.",
-        Basis::OpenSimplex2Smooth => "OpenSimplex2, smooth variant: wider and rounder kernels.",
-        Basis::Worley => "Worley's cellular noise: distance to the nearest feature point.",
-        Basis::WorleyEdge => "Worley's cellular noise: distance to the nearest cell edge.",
-        _ => UNKNOWN,
     }
 }
 
@@ -121,32 +101,8 @@ impl Cost {
     }
 }
 
-/// Cost of one octave of a basis, measured like the figures of `plan/cost.rs`: 512 x 512 samples, wavelength 100
-/// samples, 6 octaves.
+/// Cost of one octave of a basis.
 pub(super) fn cost(basis: Basis) -> Cost {
-    let (anywhere, in_rows) = match basis {
-        Basis::White => (0.4, 0.06),
-        Basis::Value => (0.8, 0.1),
-        Basis::Perlin => (1.0, 0.15),
-        Basis::ClassicDiagonal | Basis::ClassicEight => (2.2, 0.15),
-        Basis::ClassicAngle => (5.0, 0.15),
-        Basis::Simplex => (1.8, 0.9),
-        Basis::OpenSimplex2 => (2.0, 1.0),
-        Basis::OpenSimplex2Smooth => (2.5, 2.5),
-        Basis::Worley => (2.7, 2.7),
-        Basis::WorleyEdge => (7.2, 7.2),
-        // Not measured yet: the most expensive one.
-        _ => (7.2, 7.2),
-    };
+    let [anywhere, in_rows] = basis.cost();
     Cost { anywhere, in_rows }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_basis_has_a_description() {
-        assert!(Basis::all().iter().all(|basis| about(*basis) != UNKNOWN));
-    }
 }
