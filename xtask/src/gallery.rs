@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 
 use crate::failure::{Failure, Result, on_file};
-use crate::shell;
+use crate::{codegen, shell};
 
 mod base64;
 mod blocks;
-mod hillshades;
 mod levels;
 mod noises;
+mod presets;
 mod tilemap;
 mod views;
 mod water;
@@ -17,30 +17,35 @@ mod water;
 pub const ABOUT: &str = "make the pictures in docs/images and in the noises' docs";
 
 pub const HELP: &str = "
-Usage: cargo xtask gallery
+Usage: cargo xtask gallery [PRESET]
 
 Rewrites docs/images/: one relief map of each preset, the views of docs/render.md and the README's first picture, a
 map sheet, the zoom of docs/levels.md, water as vectors, a tilemap, blocks, all palettes, the page of noises side by side, and the chunks around a viewer. Pictures of the studio's window stay. Then the pictures
 of its start page, and docs/gallery.md: a map of each preset, and the shaded relief of a part of it at one pixel per sample, which shows artifacts that colors hide. Then
 crates/orogen-noise/docs/gallery.md: the pictures at the top of the documentation of orogen-noise. They are embedded in the
 file, so that every renderer shows them.
-";
 
-/// Samples along a side of a preset's picture.
-const SIZE: &str = "400";
+  PRESET  make the pictures of this preset alone, and docs/gallery.md
+";
 
 /// Pictures of windows, which `cargo xtask clients studio` leaves in its folder.
 const WINDOWS: [&str; 2] = ["studio.png", "studio-zh.png"];
 
-/// The same on the start page of the studio.
-const START_PAGE: &str = "150";
-
 /// Makes the pictures.
 pub fn run(args: &[String]) -> Result {
-    if !args.is_empty() {
-        return Err(Failure::usage("expected nothing"));
-    }
     let images = shell::root().join("docs/images");
+    let listed = shell::capture(&mut shell::cargo("run --quiet --release --package orogen-cli -- presets"))?;
+    let presets: Vec<(&str, &str)> = listed.lines().filter_map(|line| line.split_once(char::is_whitespace)).collect();
+    match args {
+        [] => {}
+        [named] if presets.iter().any(|(preset, _)| preset == named) => {
+            presets::write(named, &images)?;
+            presets::page(&presets)?;
+            return codegen::lists(shell::root(), false);
+        }
+        [named] => return Err(Failure::usage(format!("there is no preset '{named}'; `orogen presets` lists them"))),
+        _ => return Err(Failure::usage("expected nothing or a preset")),
+    }
     let windows: Vec<(PathBuf, Vec<u8>)> = WINDOWS
         .iter()
         .map(|name| images.join(name))
@@ -51,19 +56,10 @@ pub fn run(args: &[String]) -> Result {
         std::fs::write(&path, bytes).map_err(|e| on_file("write", &path, &e))?;
     }
     let work = shell::target_dir().join("gallery");
-    let listed = shell::capture(&mut shell::cargo("run --quiet --release --package orogen-cli -- presets"))?;
-    let presets: Vec<(&str, &str)> = listed.lines().filter_map(|line| line.split_once(char::is_whitespace)).collect();
     for (preset, _) in &presets {
-        let mut orogen = shell::cargo("run --quiet --release --package orogen-cli -- generate --quiet");
-        shell::run(orogen.args([preset, "--size", SIZE, "-o"]).arg(&work))?;
-        let to = images.join(format!("{preset}.png"));
-        std::fs::copy(work.join("map.png"), &to).map_err(|e| on_file("write", &to, &e))?;
-        println!("{}", shell::relative(&to));
-        let mut orogen = shell::cargo("run --quiet --release --package orogen-cli -- generate --quiet");
-        shell::run(orogen.args([preset, "--size", START_PAGE, "-o"]).arg(&work))?;
-        let to = shell::root().join(format!("crates/orogen-studio/assets/presets/{preset}.png"));
-        std::fs::copy(work.join("map.png"), &to).map_err(|e| on_file("write", &to, &e))?;
+        presets::write(preset, &images)?;
     }
+    presets::page(&presets)?;
     for (arguments, name) in [
         (&["map", "alpine", "--size", "1400"][..], "map.png"),
         (&["map", "tile-continent", "--color", "classes", "--size", "900"], "classes.png"),
@@ -80,7 +76,6 @@ pub fn run(args: &[String]) -> Result {
     water::write(&images, &work)?;
     tilemap::write(&images, &work)?;
     blocks::write(&images)?;
-    hillshades::write(&presets, &images)?;
     let page = images.join("compare.png");
     let mut orogen = shell::cargo("run --quiet --release --package orogen-cli -- compare --quiet -o");
     shell::run(orogen.arg(&page))?;

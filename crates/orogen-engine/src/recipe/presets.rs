@@ -31,33 +31,7 @@ impl Preset {
     }
 }
 
-macro_rules! presets {
-    ($($name:literal,)*) => {
-        &[$( Preset { name: $name, text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/recipes/", $name, ".toml")) }, )*]
-    };
-}
-
-static PRESETS: &[Preset] = presets![
-    "alpine",
-    "archipelago",
-    "badlands",
-    "biomes",
-    "canyon",
-    "caves",
-    "classic",
-    "continent",
-    "dla-peaks",
-    "endless",
-    "fjords",
-    "hills",
-    "himalaya",
-    "island",
-    "mesa",
-    "rolling",
-    "tile-continent",
-    "tile-island",
-    "volcano",
-];
+static PRESETS: &[Preset] = include!("preset_list.rs");
 
 /// The default preset.
 pub const DEFAULT: &str = "alpine";
