@@ -1,6 +1,7 @@
 //! The project's tasks, run as `cargo xtask COMMAND`.
 #![forbid(unsafe_code)]
 
+mod adding;
 mod bench;
 mod bless;
 mod clients;

@@ -5,7 +5,7 @@ use crate::failure::{Failure, Result};
 use crate::scratch::Scratch;
 use crate::shell::{self, cargo, run as sh};
 use crate::steps::{self, Step};
-use crate::{codegen, licences, links, package, translations, words};
+use crate::{adding, codegen, licences, links, package, translations, words};
 
 pub const ABOUT: &str = "run all tests that need only Rust";
 
@@ -23,6 +23,7 @@ Runs the steps in this order, or only those named, and stops at the first failur
   clippy        no warning in any target
   tests         unit tests, integration tests, doctests, examples build; of the studio what needs no window
   features      the libraries without files and threads: no warning, and no use of the standard library's file system
+  adding        a noise, a filter, a format and a preset are added to a copy, which compiles; what is missing is named
   licences      every dependency has a licence we accept
   package       every crate compiles from its own published archive, and documentation builds from there without a warning
 
@@ -64,6 +65,12 @@ const STEPS: &[&Step] = &[
     },
     &Step { name: "tests", about: "cargo test, the studio without its window", group: None, run: tests },
     &Step { name: "features", about: "the libraries without files and threads", group: None, run: features },
+    &Step {
+        name: "adding",
+        about: "a noise, a filter, a format and a preset, added to a copy",
+        group: None,
+        run: adding::check,
+    },
     &Step { name: "licences", about: "every dependency has a licence we accept", group: None, run: licences::check },
     &Step {
         name: "package",
