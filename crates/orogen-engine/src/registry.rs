@@ -17,7 +17,7 @@ use orogen_ops::registered::{check_name, namespace};
 /// ```
 /// use orogen_engine::op::{Field, Inputs, WorldParams};
 /// use orogen_engine::registry::Registry;
-/// use orogen_engine::{Points, World};
+/// use orogen_engine::{Points, Result, World};
 ///
 /// orogen_engine::op! {
 ///     /// The source in steps.
@@ -33,11 +33,12 @@ use orogen_ops::registered::{check_name, namespace};
 /// }
 ///
 /// impl Field for Steps {
-///     fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
+///     fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) -> Result<()> {
 ///         let height = self.height as f32;
-///         for (out, source) in out.iter_mut().zip(inputs.required(0)) {
+///         for (out, source) in out.iter_mut().zip(inputs.required("source")?) {
 ///             *out = (source / height).floor() * height;
 ///         }
+///         Ok(())
 ///     }
 /// }
 ///

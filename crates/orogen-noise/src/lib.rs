@@ -77,6 +77,8 @@ pub use perlin::Perlin;
 pub use phacelle::{Phacelle, PreparedPhacelle};
 pub use points::{Depth, LengthMismatch, Points};
 pub use prepared::Prepared;
+#[doc(hidden)]
+pub use prepared::PreparedIn;
 pub use program::{MAX_OCTAVES, TileError};
 pub use simplex::Simplex;
 pub use tiled::{Period, Tiled};

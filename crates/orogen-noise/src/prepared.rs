@@ -1,7 +1,9 @@
 //! Noises with their tables computed once.
 
-use crate::methods::noise_methods;
+use crate::methods::{self, noise_methods};
+use crate::points::{Depth, LengthMismatch, Points};
 use crate::program::Program;
+use crate::shader::function::Shader;
 
 /// A noise whose tables of octaves are computed once, for many calls.
 ///
@@ -45,15 +47,36 @@ impl Prepared {
 
 noise_methods!(Prepared);
 
-/// Writes `prepare`, and `shader` of a noise that does not repeat.
+/// A noise of a number of dimensions with its tables computed once.
+#[doc(hidden)]
+#[derive(Clone, Debug)]
+pub struct PreparedIn(pub(crate) Program);
+
+impl PreparedIn {
+    /// The values at the points, with a depth for each dimension beyond the second.
+    ///
+    /// # Errors
+    /// A slice does not have the points' length; nothing is written.
+    pub fn fill(&self, points: &Points, depths: &[Depth], value: &mut [f32]) -> Result<(), LengthMismatch> {
+        methods::fill(&self.0, points, depths, value, None)
+    }
+
+    /// A noise of the plane as a function of WGSL, for graphics cards.
+    #[must_use]
+    pub fn shader(&self) -> Shader {
+        self.0.shader()
+    }
+}
+
+/// Writes `prepare` and `prepare_in` of a noise that does not repeat.
 macro_rules! preparable {
     ($noise:ident) => {
         impl $noise {
-            /// The noise in the plane as a function of WGSL, for graphics cards.
+            /// The noise in a number of dimensions with its tables computed once.
             #[doc(hidden)]
             #[must_use]
-            pub fn shader(&self) -> $crate::shader::function::Shader {
-                self.program(2).shader()
+            pub fn prepare_in(&self, dimensions: usize) -> $crate::PreparedIn {
+                $crate::PreparedIn(self.program(dimensions))
             }
 
             /// The noise with its tables computed once: the same methods, the same bits, and less work per call.

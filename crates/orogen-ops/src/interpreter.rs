@@ -3,20 +3,42 @@
 use crate::expression::function::{Argument, MAX_ARGUMENTS};
 use crate::ids::{CoordSetId, GridId, IndexVec, NodeId, RegisterId};
 use crate::layer::LayerKind;
-use crate::op::{Field, Inputs, Reading, Solution, Solver, WorldParams};
+use crate::op::{Evaluator, Field, Inputs, Reading, Solution, Solver, WorldParams};
 use crate::program::{Instruction, Operand, Program};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::resample::{self, NOWHERE};
 use orogen_noise::Points;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// The data that a program's instructions refer to.
 pub struct Bindings<'a> {
     pub world_params: &'a WorldParams,
+    pub evaluators: &'a Evaluators,
     pub fields: &'a (dyn Fn(NodeId) -> Option<&'a dyn Field> + Sync),
     pub solvers: &'a (dyn Fn(NodeId) -> Option<(&'a dyn Solver, Arc<Solution>)> + Sync),
     pub grids: &'a (dyn Fn(GridId) -> Option<&'a Grid> + Sync),
+}
+
+/// The fields of a program that are prepared for many blocks.
+#[derive(Default)]
+pub struct Evaluators(BTreeMap<NodeId, Evaluator>);
+
+impl Evaluators {
+    /// Prepares the fields of a program.
+    pub fn new<'a>(
+        program: &Program,
+        world_params: &WorldParams,
+        field: impl Fn(NodeId) -> Option<&'a dyn Field>,
+    ) -> Evaluators {
+        let nodes = program.instructions.iter().filter_map(|instruction| match instruction {
+            Instruction::Field { node, .. } => Some(*node),
+            _ => None,
+        });
+        let nodes: BTreeSet<NodeId> = nodes.collect();
+        Evaluators(nodes.into_iter().filter_map(|node| Some((node, field(node)?.prepare(world_params)?))).collect())
+    }
 }
 
 /// The representation of a coordinate set.
@@ -178,8 +200,12 @@ impl<'p> Interpreter<'p> {
                 let field = (bindings.fields)(*node).ok_or_else(|| internal("a node to evaluate is not a field"))?;
                 let altitude = self.coord_sets[*coords].altitude.unwrap_or(self.altitude);
                 self.with_inputs(*coords, inputs, *out, |points, slots, out| {
-                    field.eval_layer(*layer, points, &slots.with_altitude(altitude), bindings.world_params, out);
-                });
+                    let inputs = Inputs::new(field.spec(), slots).with_altitude(altitude);
+                    match bindings.evaluators.0.get(node) {
+                        Some(evaluate) => evaluate(points, &inputs, out),
+                        None => field.eval_layer(*layer, points, &inputs, bindings.world_params, out),
+                    }
+                })?;
             }
             Instruction::Apply { function, arguments, out } => {
                 let mut samples = std::mem::take(&mut self.registers[*out]);
@@ -196,7 +222,8 @@ impl<'p> Interpreter<'p> {
             Instruction::Solved { node, layer, kind, coords, inputs, out } => {
                 let solved = (bindings.solvers)(*node);
                 let (solver, solution) = solved.ok_or_else(|| internal("a solver was read before it was solved"))?;
-                self.with_inputs(*coords, inputs, *out, |at, inputs, out| {
+                self.with_inputs(*coords, inputs, *out, |at, slots, out| {
+                    let inputs = Inputs::new(solver.spec(), slots);
                     solver.read(&solution, &Reading { layer: *layer, kind: *kind, at, inputs: &inputs }, out)
                 })?;
             }
@@ -270,7 +297,7 @@ impl<'p> Interpreter<'p> {
         coords: CoordSetId,
         inputs: &[Option<RegisterId>],
         out: RegisterId,
-        work: impl FnOnce(&Points, Inputs, &mut [f32]) -> T,
+        work: impl FnOnce(&Points, &[Option<&[f32]>], &mut [f32]) -> T,
     ) -> T {
         let mut samples = std::mem::take(&mut self.registers[out]);
         const FEW: usize = 8;
@@ -285,7 +312,7 @@ impl<'p> Interpreter<'p> {
             many = inputs.iter().map(|input| input.map(|register| self.registers[register].as_slice())).collect();
             &many
         };
-        let done = work(&self.coord_sets[coords].points(), Inputs::new(slots), &mut samples);
+        let done = work(&self.coord_sets[coords].points(), slots, &mut samples);
         self.registers[out] = samples;
         done
     }

@@ -15,12 +15,13 @@
 pub mod declare;
 
 pub mod budget;
+mod coord_map;
 pub mod expression;
 pub mod field;
 pub mod filter;
-mod grid_inputs;
 #[doc(hidden)]
 pub mod ids;
+mod inputs;
 #[doc(hidden)]
 pub mod interpreter;
 #[doc(hidden)]
@@ -30,6 +31,8 @@ pub mod levelled;
 #[doc(hidden)]
 pub mod lower;
 pub mod node;
+#[doc(hidden)]
+pub mod noise_field;
 mod number;
 pub mod op;
 #[doc(hidden)]

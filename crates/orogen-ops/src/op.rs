@@ -1,8 +1,9 @@
 //! Traits of ops: fields, filters, levelled ops and solvers, and their inputs.
 
+pub use crate::coord_map::{Affine, CoordMap, Stencil};
 use crate::declare::Declared;
 use crate::expression::term::{self, Term};
-pub use crate::grid_inputs::GridInputs;
+pub use crate::inputs::{GridInputs, Inputs};
 use crate::layer::LayerKind;
 use crate::lower::{Lowering, Passes};
 use orogen_grid::error::{Error, ErrorKind, Result};
@@ -64,59 +65,51 @@ pub fn whole_cells(length: f64, cell: f64, round: impl Fn(f64) -> f64) -> usize 
     whole.max(0.0) as usize
 }
 
-/// A node's inputs evaluated at the requested points: one block of samples each. All points have the same altitude.
-pub struct Inputs<'a> {
-    slots: &'a [Option<&'a [f32]>],
-    altitude: f64,
-}
-
-impl<'a> Inputs<'a> {
-    /// Inputs in the order of their declaration, in the plane: at altitude 0.
-    #[must_use]
-    pub fn new(slots: &'a [Option<&'a [f32]>]) -> Inputs<'a> {
-        Inputs { slots, altitude: 0.0 }
-    }
-
-    /// The same inputs at an altitude in metres.
-    #[must_use]
-    pub fn with_altitude(self, altitude: f64) -> Inputs<'a> {
-        Inputs { altitude, ..self }
-    }
-
-    /// The altitude of the points in metres: 0 in the plane. Only a field that [reads the
-    /// altitude](Field::reads_altitude) may use it.
-    #[must_use]
-    pub fn altitude(&self) -> f64 {
-        self.altitude
-    }
-
-    /// Input `i`, if it is given.
-    #[must_use]
-    pub fn get(&self, i: usize) -> Option<&'a [f32]> {
-        self.slots.get(i).copied().flatten()
-    }
-
-    /// Input `i`, which must be declared as required: plans always provide it.
-    #[must_use]
-    pub fn required(&self, i: usize) -> &'a [f32] {
-        self.get(i).unwrap_or(&[])
-    }
-}
+/// A field prepared for many blocks of points: what depends on neither points nor inputs is computed once.
+#[doc(hidden)]
+pub type Evaluator = Box<dyn Fn(&Points, &Inputs, &mut [f32]) -> Result<()> + Send + Sync>;
 
 /// A field depends on one position, the seed, and its inputs there. It is a pure function: points can be evaluated in
 /// any order and any number of times.
-pub trait Field: Send + Sync {
+pub trait Field: Declared + Send + Sync {
     /// Computes one value per point. A field with [`Field::terms`] need not implement it.
-    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
-        let _ = (at, world_params);
-        term::evaluate(&self.terms().unwrap_or_default(), |input| inputs.get(input), out);
+    ///
+    /// # Errors
+    /// If a required input is missing: an internal error.
+    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) -> Result<()> {
+        match (self.prepare(world_params), self.terms()) {
+            (Some(evaluate), _) => evaluate(at, inputs, out)?,
+            (None, Some(terms)) => term::evaluate(&terms, |input| inputs.slots.get(input).copied().flatten(), out),
+            (None, None) => {
+                let message = format!("`{}` has no values of its own", self.spec().op);
+                return Err(Error::new(ErrorKind::Internal, message));
+            }
+        }
+        Ok(())
     }
 
     /// Computes one value of a layer per point. A field that declares several layers implements it; others have
     /// [`Field::eval`] alone.
-    fn eval_layer(&self, layer: usize, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+    ///
+    /// # Errors
+    /// Those of [`Field::eval`].
+    fn eval_layer(
+        &self,
+        layer: usize,
+        at: &Points,
+        inputs: &Inputs,
+        world_params: &WorldParams,
+        out: &mut [f32],
+    ) -> Result<()> {
         let _ = layer;
-        self.eval(at, inputs, world_params, out);
+        self.eval(at, inputs, world_params, out)
+    }
+
+    /// The field prepared for many blocks, if that saves work. The engine then never calls [`Field::eval`].
+    #[doc(hidden)]
+    fn prepare(&self, world_params: &WorldParams) -> Option<Evaluator> {
+        let _ = world_params;
+        None
     }
 
     /// The field as a function of its inputs, if it is only that: each input is named by its index. The engine then
@@ -125,8 +118,8 @@ pub trait Field: Send + Sync {
         None
     }
 
-    /// The coordinate map of a field that reads its source at other positions. [`Field::eval`] of such a field is never
-    /// called: the engine moves the points and evaluates the source there.
+    /// The coordinate map of a field that reads its source at other positions. Such a field need not implement
+    /// [`Field::eval`]: the engine moves the points and evaluates the source there.
     fn coord_map(&self) -> Option<CoordMap> {
         None
     }
@@ -137,7 +130,7 @@ pub trait Field: Send + Sync {
     }
 
     /// The cell at which the first input of a field is computed that interpolates between samples of a cell of its own,
-    /// for a requested cell and that of the world, all in metres. [`Field::eval`] of such a field is never called: the
+    /// for a requested cell and that of the world, all in metres. Such a field need not implement [`Field::eval`]: the
     /// engine makes those samples and interpolates them.
     fn source_cell(&self, requested: f64, world_cell: f64) -> Option<f64> {
         let _ = (requested, world_cell);
@@ -193,98 +186,6 @@ pub trait Field: Send + Sync {
 
 /// The share of its cost that a field without inputs has on a lattice, where rows share work.
 const IN_ROWS: f64 = 0.15;
-
-/// A source that a field also reads around its position. After its inputs, the field receives that source at `step`
-/// metres to the east, west, south and north. The engine makes the four positions and evaluates the source there, so
-/// the slope is known at any point, without neighboring samples.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stencil {
-    /// Index of the input.
-    pub source: usize,
-    /// Distance from the position to each of the four, in metres.
-    pub step: f64,
-}
-
-impl Stencil {
-    /// The maps to the four positions: east, west, south, north.
-    #[must_use]
-    pub fn maps(&self) -> [Affine; 4] {
-        let offsets = [[self.step, 0.0], [-self.step, 0.0], [0.0, self.step], [0.0, -self.step]];
-        offsets.map(|offset| Affine { offset, ..Affine::IDENTITY })
-    }
-}
-
-/// The positions at which a field reads its source.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum CoordMap {
-    /// Displaced by two inputs times `strength` metres; each displacement is clamped to -reach ..= reach.
-    Displaced {
-        /// Index of the input that is read at the displaced position.
-        source: usize,
-        /// Index of the input for the displacement east.
-        east: usize,
-        /// Index of the input for the displacement south.
-        south: usize,
-        /// Displacement in metres for an input of 1.
-        strength: f64,
-        /// Maximum displacement along each axis, in metres.
-        reach: f64,
-    },
-    /// Mapped by an affine transform.
-    Mapped {
-        /// Index of the input that is read at the mapped position.
-        source: usize,
-        /// The map from the requested position to the one that is read.
-        map: Affine,
-    },
-}
-
-impl CoordMap {
-    /// The altitude at which the source is read, in metres; `None` for that of the field.
-    #[must_use]
-    pub fn altitude(&self) -> Option<f64> {
-        match self {
-            CoordMap::Displaced { .. } => None,
-            CoordMap::Mapped { map, .. } => map.altitude,
-        }
-    }
-}
-
-/// A similarity of the plane, p -> rotate(p) * scale + offset, to the same altitude or a given one.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Affine {
-    /// Cosine and sine of the rotation; [1, 0] is none.
-    pub turn: [f64; 2],
-    /// Scale factor.
-    pub scale: f64,
-    /// Offset east and south, in metres.
-    pub offset: [f64; 2],
-    /// The altitude to which it leads, in metres; `None` for that of the position.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub altitude: Option<f64>,
-}
-
-impl Affine {
-    /// The map of each position to itself.
-    pub const IDENTITY: Affine = Affine { turn: [1.0, 0.0], scale: 1.0, offset: [0.0; 2], altitude: None };
-
-    /// Whether columns stay columns and rows stay rows.
-    #[must_use]
-    pub fn is_separable(&self) -> bool {
-        self.turn == [1.0, 0.0]
-    }
-
-    /// Maps a position. Without a rotation the result is x * scale + offset bit for bit, so lattices stay lattices.
-    #[must_use]
-    pub fn apply(&self, x: f64, y: f64) -> (f64, f64) {
-        let (tx, ty) = if self.is_separable() {
-            (x, y)
-        } else {
-            (self.turn[0] * x - self.turn[1] * y, self.turn[1] * x + self.turn[0] * y)
-        };
-        (tx * self.scale + self.offset[0], ty * self.scale + self.offset[1])
-    }
-}
 
 /// The context of a filter or solver.
 pub struct Context<'a> {
@@ -350,6 +251,22 @@ pub trait Filter: Declared + Send + Sync {
     fn reads_size(&self) -> bool {
         false
     }
+}
+
+/// The grid of a filter with one layer, of those that [`Filter::apply`] is given.
+///
+/// # Errors
+/// If it is not the only one: an internal error, because plans always provide it.
+pub fn only_layer(out: &mut [Option<Grid>]) -> Result<&mut Grid> {
+    match out {
+        [Some(out)] => Ok(out),
+        _ => Err(wrong_layers()),
+    }
+}
+
+/// The error of a filter that is not given its layers.
+pub(crate) fn wrong_layers() -> Error {
+    Error::new(ErrorKind::Internal, "a filter was given grids for other layers than its own")
 }
 
 /// The lattices of a levelled op: each has half the cell of the one above it, and all have a sample at the origin.
@@ -523,18 +440,24 @@ pub trait Sources {
     /// The domain with the two samples beyond its edge that readers may need, which a solution's layers must cover.
     fn padded(&self) -> &Window;
 
-    /// Whether input `i` is given.
-    fn given(&self, i: usize) -> bool;
+    /// Whether the input with this name is given.
+    fn given(&self, name: &str) -> bool;
 
-    /// Computes input `i` over each tile of `window` in a fixed order, and passes it to `visit`. The tiles cover the
-    /// window once; there are none if the input is not given.
-    fn each_tile(&self, i: usize, window: &Window, visit: &mut dyn FnMut(&Grid) -> Result<()>) -> Result<()>;
+    /// Computes the input with this name over each tile of `window` in a fixed order, and passes it to `visit`. The
+    /// tiles cover the window once.
+    ///
+    /// # Errors
+    /// If the input is not given, or not declared: an internal error. Those of `visit`, or if the work was cancelled.
+    fn each_tile(&self, name: &str, window: &Window, visit: &mut dyn FnMut(&Grid) -> Result<()>) -> Result<()>;
 
-    /// Input `i` over all of `window` at once, zeros if it is not given: for solvers that cannot work tile by tile.
-    /// Include it in [`Solver::scratch`].
-    fn whole(&self, i: usize, window: &Window) -> Result<Grid> {
+    /// The input with this name over all of `window` at once, for solvers that cannot work tile by tile. Include it in
+    /// [`Solver::scratch`].
+    ///
+    /// # Errors
+    /// Those of [`Sources::each_tile`].
+    fn whole(&self, name: &str, window: &Window) -> Result<Grid> {
         let mut grid = Grid::filled(*window, 0.0f32);
-        self.each_tile(i, window, &mut |tile| {
+        self.each_tile(name, window, &mut |tile| {
             grid.paste(tile);
             Ok(())
         })?;

@@ -3,7 +3,7 @@
 //! `cargo run --release --example op_of_your_own` writes terraces.png.
 
 use orogen::io::file::{OutputPolicy, write_whole};
-use orogen::op::{Context, Filter, GridInputs};
+use orogen::op::{Context, Filter, GridInputs, only_layer};
 use orogen::output::map::Painter;
 use orogen::{Grid, Registry, Result, Window, World};
 use std::path::Path;
@@ -34,7 +34,7 @@ impl Filter for Terraces {
 
     fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
         let source = inputs.required("source")?;
-        let [Some(out)] = out else { return Ok(()) };
+        let out = only_layer(out)?;
         let (height, steep, run) = (self.height as f32, self.steep as f32, 2.0 * window.cell as f32);
         for j in 0..window.height {
             context.progress.check()?;

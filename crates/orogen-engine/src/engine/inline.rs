@@ -6,12 +6,13 @@ use super::run::{Engine, Solutions};
 use crate::plan::steps::Plan;
 use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
-use orogen_ops::interpreter::{Bindings, Buffers, Interpreter};
+use orogen_ops::interpreter::{Bindings, Buffers, Evaluators, Interpreter};
 use orogen_ops::program::{BLOCK_HEIGHT, BLOCK_WIDTH, Program};
 
-/// A program for points, with all its inputs computed.
+/// A program for points, with its fields prepared and all its inputs computed.
 pub struct PreparedProgram {
     program: Program,
+    evaluators: Evaluators,
     solutions: Solutions,
     grids: Grids,
     anywhere: bool,
@@ -29,7 +30,8 @@ impl Engine<'_> {
     pub fn ready(&self, plan: &Plan) -> Result<Option<PreparedProgram>> {
         let Some(program) = plan.asked() else { return Ok(None) };
         let (solutions, grids) = self.before_points(plan)?;
-        Ok(Some(PreparedProgram { program: program.clone(), solutions, grids, anywhere: plan.is_pointwise() }))
+        let (evaluators, anywhere) = (self.evaluators(program), plan.is_pointwise());
+        Ok(Some(PreparedProgram { program: program.clone(), evaluators, solutions, grids, anywhere }))
     }
 
     /// Computes the samples of a window, row-major, into `out`, which must have its length; returns the buffers. Only
@@ -93,12 +95,9 @@ impl Engine<'_> {
         buffers: Buffers,
         work: impl FnOnce(&mut Interpreter, &Bindings) -> Result<()>,
     ) -> Result<Buffers> {
-        let fields = |node| self.field(node);
-        let solvers = |node| self.solver(node, &ready.solutions);
-        let grids = |slot| ready.grids.memory(slot);
-        let bindings = Bindings { world_params: self.world_params, fields: &fields, solvers: &solvers, grids: &grids };
         let mut interpreter = Interpreter::with(&ready.program, buffers);
-        work(&mut interpreter, &bindings)?;
+        let PreparedProgram { evaluators, solutions, grids, .. } = ready;
+        self.bound(evaluators, solutions, grids, |bindings| work(&mut interpreter, bindings))?;
         Ok(interpreter.into_buffers())
     }
 }

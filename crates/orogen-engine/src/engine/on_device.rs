@@ -12,6 +12,7 @@ use crate::plan::steps::{Step, wanted};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
+use orogen_ops::declare::InputSpec;
 use orogen_ops::ids::GridId;
 use orogen_ops::lower::Extent;
 use orogen_ops::op::{Solution, Solver, Sources};
@@ -88,10 +89,11 @@ impl Executor for OnDevice<'_> {
         let (nodes, window, node) = (self.engine.nodes(), tiles.order.padded, tiles.order.node);
         let passes = self.engine.preview.and_then(|preview| preview.passes_of(&nodes, node, solver));
         let Some(passes) = passes else { return Ok(Computed::Declined) };
-        let whole = |(input, given): (usize, bool)| {
-            given.then(|| tiles.whole(input, &window).map(|grid| Cow::Owned(grid.into()))).transpose()
+        let whole = |input: &InputSpec| {
+            let name = input.name;
+            tiles.given(name).then(|| tiles.whole(name, &window).map(|grid| Cow::Owned(grid.into()))).transpose()
         };
-        let inputs = nodes.given(node).into_iter().enumerate().map(whole).collect::<Result<_>>()?;
+        let inputs = tiles.spec.inputs.iter().map(whole).collect::<Result<_>>()?;
         let run = PassRun { steps: &[PassStep { passes, inputs, window }], above: &[], stays: false };
         let Computed::Done(made) = self.device.run(&run, progress)? else { return Ok(Computed::Declined) };
         let layers = made.into_iter().filter_map(PlanGrid::into_memory).map(|layer| tiles.keep(layer));

@@ -19,7 +19,7 @@ use orogen_grid::parallel;
 use orogen_grid::progress::Progress;
 use orogen_ops::budget::Budget;
 use orogen_ops::ids::{GridId, Id, IndexVec, NodeId, StepId};
-use orogen_ops::interpreter::{Bindings, Interpreter};
+use orogen_ops::interpreter::{Bindings, Evaluators, Interpreter};
 use orogen_ops::op::{Context, Field, Filter, GridInputs, Op, Solution, Solver, StepObserver, WorldParams};
 use orogen_ops::pool::Pool;
 use orogen_ops::program::{BLOCK_HEIGHT, BLOCK_WIDTH, Program};
@@ -257,6 +257,26 @@ impl<'a> Engine<'a> {
         }
     }
 
+    /// The fields of a program, prepared for many blocks.
+    pub(super) fn evaluators(&self, program: &Program) -> Evaluators {
+        Evaluators::new(program, self.world_params, |node| self.field(node))
+    }
+
+    /// Runs `work` with what the instructions of a program refer to.
+    pub(super) fn bound<T>(
+        &self,
+        evaluators: &Evaluators,
+        solutions: &Solutions,
+        grids: &Grids,
+        work: impl FnOnce(&Bindings) -> T,
+    ) -> T {
+        let fields = |node| self.field(node);
+        let solvers = |node| self.solver(node, solutions);
+        let grids = |slot| grids.memory(slot);
+        let world_params = self.world_params;
+        work(&Bindings { world_params, evaluators, fields: &fields, solvers: &solvers, grids: &grids })
+    }
+
     fn at_points(
         &self,
         program: &Program,
@@ -265,20 +285,18 @@ impl<'a> Engine<'a> {
         solutions: &Solutions,
         grids: &Grids,
     ) -> Result<Vec<Vec<f32>>> {
-        let fields = |node| self.field(node);
-        let solvers = |node| self.solver(node, solutions);
-        let grids = |slot| grids.memory(slot);
-        let bindings = Bindings { world_params: self.world_params, fields: &fields, solvers: &solvers, grids: &grids };
         const POINTS: usize = BLOCK_WIDTH * BLOCK_HEIGHT;
         let mut values = vec![Vec::with_capacity(x.len()); program.outputs.len()];
         let mut interpreter = Interpreter::new(program);
-        for (x, y) in x.chunks(POINTS).zip(y.chunks(POINTS)) {
-            interpreter.run_points(x, y, &bindings)?;
-            for (i, values) in values.iter_mut().enumerate() {
-                values.extend_from_slice(interpreter.output(i));
+        self.bound(&self.evaluators(program), solutions, grids, |bindings| {
+            for (x, y) in x.chunks(POINTS).zip(y.chunks(POINTS)) {
+                interpreter.run_points(x, y, bindings)?;
+                for (i, values) in values.iter_mut().enumerate() {
+                    values.extend_from_slice(interpreter.output(i));
+                }
             }
-        }
-        Ok(values)
+            Ok(values)
+        })
     }
 
     /// Runs a program over a window: bands of rows in parallel, each band block by block.
@@ -288,10 +306,6 @@ impl<'a> Engine<'a> {
         if window.is_empty() {
             return Ok(out);
         }
-        let fields = |node| self.field(node);
-        let solvers = |node| self.solver(node, solutions);
-        let grids = |slot| grids.memory(slot);
-        let bindings = Bindings { world_params: self.world_params, fields: &fields, solvers: &solvers, grids: &grids };
         // Enough bands for all threads, but not so thin that rows of noise lattices are computed repeatedly.
         let rows = window.height.div_ceil(2 * parallel::threads()).clamp(8, BLOCK_HEIGHT);
         let (columns, rows) = block_of(cost::program(program, self.recipe), rows);
@@ -302,33 +316,35 @@ impl<'a> Engine<'a> {
                 band.push(samples);
             }
         }
-        parallel::try_for_each_init(
-            bands.into_iter().enumerate(),
-            || Interpreter::new(program),
-            |interpreter, (band, mut out)| {
-                let top = band * rows;
-                let height = rows.min(window.height - top);
-                for left in (0..window.width).step_by(columns) {
-                    progress.check()?;
-                    let block = Window {
-                        x: window.x + left as i64,
-                        y: window.y + top as i64,
-                        width: columns.min(window.width - left),
-                        height,
-                        cell: window.cell,
-                    };
-                    interpreter.run_block(&block, &bindings)?;
-                    for (i, out) in out.iter_mut().enumerate() {
-                        let made = interpreter.output(i).chunks(block.width);
-                        for (row, made) in out.chunks_mut(window.width).zip(made) {
-                            row[left..left + block.width].copy_from_slice(made);
+        self.bound(&self.evaluators(program), solutions, grids, |bindings| {
+            parallel::try_for_each_init(
+                bands.into_iter().enumerate(),
+                || Interpreter::new(program),
+                |interpreter, (band, mut out)| {
+                    let top = band * rows;
+                    let height = rows.min(window.height - top);
+                    for left in (0..window.width).step_by(columns) {
+                        progress.check()?;
+                        let block = Window {
+                            x: window.x + left as i64,
+                            y: window.y + top as i64,
+                            width: columns.min(window.width - left),
+                            height,
+                            cell: window.cell,
+                        };
+                        interpreter.run_block(&block, bindings)?;
+                        for (i, out) in out.iter_mut().enumerate() {
+                            let made = interpreter.output(i).chunks(block.width);
+                            for (row, made) in out.chunks_mut(window.width).zip(made) {
+                                row[left..left + block.width].copy_from_slice(made);
+                            }
                         }
                     }
-                }
-                progress.advance(height as f64);
-                Ok::<(), Error>(())
-            },
-        )?;
+                    progress.advance(height as f64);
+                    Ok::<(), Error>(())
+                },
+            )
+        })?;
         Ok(out)
     }
 

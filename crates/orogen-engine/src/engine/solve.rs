@@ -122,7 +122,8 @@ impl Engine<'_> {
             let engine = Engine { grids: None, preview, ..*self };
             engine.steps(&plan, there, &sources.part(cost::steps(&plan, self.recipe)))
         };
-        let tiles = Tiles { links: &self.graph.links[order.node], order, make: &make, scratch: self.store.scratch() };
+        let links = &self.graph.links[order.node];
+        let tiles = Tiles { spec: solver.spec(), links, order, make: &make, scratch: self.store.scratch() };
         let may = !order.on_disk && !self.is_observed(order.node);
         let made = self.execute(may, |executor| executor.solve(solver, &tiles, &own))?;
         made.done().ok_or_else(|| missing("a solution"))

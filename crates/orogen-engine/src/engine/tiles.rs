@@ -6,16 +6,25 @@ use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_io::pages::Pages;
 use orogen_io::raster::Raster;
+use orogen_ops::declare::Spec;
 use orogen_ops::op::Sources;
 use std::path::Path;
 
 /// The inputs of a solver; `make` computes an input over a tile.
 pub struct Tiles<'a> {
+    pub spec: &'static Spec,
     pub links: &'a [Link],
     pub order: &'a Solve,
     pub make: &'a dyn Fn(Link, Window) -> Result<Vec<Grid>>,
     /// The folder for rasters on disk.
     pub scratch: &'a Path,
+}
+
+impl Tiles<'_> {
+    /// What an input reads, if it is given.
+    fn link(&self, name: &str) -> Option<Link> {
+        self.links.get(self.spec.input_named(name)?).copied().filter(|link| *link != Link::None)
+    }
 }
 
 impl Sources for Tiles<'_> {
@@ -27,14 +36,14 @@ impl Sources for Tiles<'_> {
         &self.order.padded
     }
 
-    fn given(&self, i: usize) -> bool {
-        self.links.get(i).is_some_and(|link| *link != Link::None)
+    fn given(&self, name: &str) -> bool {
+        self.link(name).is_some()
     }
 
-    fn each_tile(&self, i: usize, window: &Window, visit: &mut dyn FnMut(&Grid) -> Result<()>) -> Result<()> {
-        let Some(link) = self.links.get(i).filter(|link| **link != Link::None) else { return Ok(()) };
+    fn each_tile(&self, name: &str, window: &Window, visit: &mut dyn FnMut(&Grid) -> Result<()>) -> Result<()> {
+        let link = self.link(name).ok_or_else(|| self.spec.missing(name))?;
         for tile in window.tiles(self.order.side) {
-            for grid in (self.make)(*link, tile)? {
+            for grid in (self.make)(link, tile)? {
                 visit(&grid)?;
             }
         }

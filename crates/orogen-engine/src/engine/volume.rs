@@ -6,7 +6,7 @@ use crate::plan::steps::Plan;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
 use orogen_grid::parallel;
-use orogen_ops::interpreter::{Bindings, Interpreter};
+use orogen_ops::interpreter::Interpreter;
 use orogen_ops::program::{BLOCK_HEIGHT, BLOCK_WIDTH};
 
 impl Engine<'_> {
@@ -17,10 +17,6 @@ impl Engine<'_> {
             plan.asked().ok_or_else(|| Error::new(ErrorKind::Internal, "a plan for points has no program"))?;
         let window = plan.window;
         let (solutions, grids) = self.before_points(plan)?;
-        let fields = |node| self.field(node);
-        let solvers = |node| self.solver(node, &solutions);
-        let grids = |slot| grids.memory(slot);
-        let bindings = Bindings { world_params: self.world_params, fields: &fields, solvers: &solvers, grids: &grids };
         let mut out = vec![0.0; window.len().saturating_mul(altitudes.len())];
         self.pool.install(|| {
             let rows = window.height.div_ceil(2 * parallel::threads()).clamp(8, BLOCK_HEIGHT);
@@ -31,27 +27,29 @@ impl Engine<'_> {
                     band.push(samples);
                 }
             }
-            parallel::try_for_each_init(
-                bands.into_iter().enumerate(),
-                || Interpreter::new(program),
-                |interpreter, (band, mut slices)| {
-                    self.progress.check()?;
-                    let top = band * rows;
-                    for left in (0..window.width).step_by(BLOCK_WIDTH) {
-                        let block = Window {
-                            x: window.x + left as i64,
-                            y: window.y + top as i64,
-                            width: BLOCK_WIDTH.min(window.width - left),
-                            height: rows.min(window.height - top),
-                            cell: window.cell,
-                        };
-                        interpreter.run_block_at(&block, altitudes, &bindings, |k, made| {
-                            put(made, &block, slices[k], window.width, (left, 0));
-                        })?;
-                    }
-                    Ok::<(), Error>(())
-                },
-            )
+            self.bound(&self.evaluators(program), &solutions, &grids, |bindings| {
+                parallel::try_for_each_init(
+                    bands.into_iter().enumerate(),
+                    || Interpreter::new(program),
+                    |interpreter, (band, mut slices)| {
+                        self.progress.check()?;
+                        let top = band * rows;
+                        for left in (0..window.width).step_by(BLOCK_WIDTH) {
+                            let block = Window {
+                                x: window.x + left as i64,
+                                y: window.y + top as i64,
+                                width: BLOCK_WIDTH.min(window.width - left),
+                                height: rows.min(window.height - top),
+                                cell: window.cell,
+                            };
+                            interpreter.run_block_at(&block, altitudes, bindings, |k, made| {
+                                put(made, &block, slices[k], window.width, (left, 0));
+                            })?;
+                        }
+                        Ok::<(), Error>(())
+                    },
+                )
+            })
         })?;
         Ok(out)
     }

@@ -177,7 +177,7 @@ impl Solver for Lowest {
 
     fn solve(&self, sources: &dyn Sources, _: &Context) -> Result<Solution> {
         let mut lowest = f32::INFINITY;
-        sources.each_tile(0, sources.domain(), &mut |tile| {
+        sources.each_tile("source", sources.domain(), &mut |tile| {
             lowest = tile.data().iter().copied().fold(lowest, f32::min);
             Ok(())
         })?;

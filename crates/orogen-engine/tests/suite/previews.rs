@@ -32,7 +32,7 @@ impl Solver for Solved {
     }
 
     fn solve(&self, sources: &dyn Sources, _: &Context) -> Result<Solution> {
-        let mut heights = sources.whole(0, sources.padded())?;
+        let mut heights = sources.whole("source", sources.padded())?;
         heights.data_mut().iter_mut().for_each(|height| *height += self.raise as f32);
         Ok(Solution { layers: vec![sources.keep(heights)?], scalars: Vec::new() })
     }

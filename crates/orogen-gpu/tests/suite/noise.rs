@@ -43,7 +43,7 @@ const STEEP: Outliers = Outliers { share: 5e-2, most: 5e-3 };
 macro_rules! noise {
     ($name:expr, $outliers:expr, $noise:expr) => {{
         let noise = $noise;
-        let shader = noise.shader();
+        let shader = noise.prepare_in(2).shader();
         let fill = move |points: &Points, out: &mut [f32]| noise.fill(points, out).unwrap();
         Noise { name: $name.to_string(), shader, fill: Box::new(fill), outliers: $outliers }
     }};
@@ -324,7 +324,7 @@ macro_rules! op {
             let op = $op::default();
             let Lowering::Shader(shader) = op.lower(0, &WORLD) else { panic!("{} is not lowered", stringify!($op)) };
             assert!(matches!($op { vertical: 1.0, ..op.clone() }.lower(0, &WORLD), Lowering::Processor(_)));
-            let fill = move |points: &Points, out: &mut [f32]| op.eval(points, &Inputs::new(&[]), &WORLD, out);
+            let fill = move |points: &Points, out: &mut [f32]| op.eval(points, &Inputs::new(op.spec(), &[]), &WORLD, out).unwrap();
             Noise { name: stringify!($op).to_string(), shader, fill: Box::new(fill), outliers: JUMPS }
         }),*]
     };
@@ -391,7 +391,7 @@ fn gullies_are_those_of_the_processor() {
             let (op, slots) = (gullies.clone(), inputs.clone());
             let fill = move |points: &Points, out: &mut [f32]| {
                 let slots: Vec<Option<&[f32]>> = slots.iter().map(|slot| Some(&slot[..])).collect();
-                op.eval(points, &Inputs::new(&slots), &WORLD, out);
+                op.eval(points, &Inputs::new(op.spec(), &slots), &WORLD, out).unwrap();
             };
             let noise = Noise { name: format!("gullies {number}"), shader, fill: Box::new(fill), outliers: SMOOTH };
             let (worst, _) = compare(&gpu, &[noise], &window, &inputs);

@@ -2,7 +2,6 @@
 
 use super::features::{FeatureVector, of_windows};
 use super::template::{FittedWorld, MARGIN, PARAMS, ParamValues, Stretch, recipe, trial};
-use orogen_engine::op::{self, Field, Inputs};
 use orogen_engine::recipe::document::Recipe;
 use orogen_engine::session::Options;
 use orogen_engine::world::World;
@@ -11,7 +10,6 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 use orogen_grid::random::Random;
-use orogen_noise::Points;
 use orogen_output::survey::measures::Measures;
 use orogen_output::survey::stretch::{integral, mean_slope, quantile};
 
@@ -265,7 +263,7 @@ impl Trial<'_> {
         across: usize,
         progress: &Progress,
     ) -> Result<(Stretch, Vec<Grid>)> {
-        let FitTarget { side, cell, lowest, .. } = *self.target;
+        let FitTarget { side, lowest, .. } = *self.target;
         let plain = Stretch { from: [0.0, 1.0], to: [0.0, 1.0], bend: 0.0 };
         let (world, inside) = trial_world(self.target, values, seed, across, self.options)?;
         let mut grids = world.grids(&["soft"], &inside, progress)?;
@@ -286,11 +284,10 @@ impl Trial<'_> {
         }
         let made = |to: [f64; 2], bend: f64| {
             let stretch = Stretch { from, to, bend };
-            let nowhere = Points::Scattered { x: &[], y: &[] };
-            let world_params = op::WorldParams { seed: 0, size: None, cell, sea_level: 0.0 };
+            let function = stretch.curve().function();
             let bent = |soft: &Grid| {
-                let mut out = Grid::filled(*soft.window(), 0.0f32);
-                stretch.curve().eval(&nowhere, &Inputs::new(&[Some(soft.data())]), &world_params, out.data_mut());
+                let mut out = soft.clone();
+                out.data_mut().iter_mut().for_each(|height| *height = function(*height));
                 out
             };
             (stretch, windows.iter().map(bent).collect::<Vec<Grid>>())

@@ -41,9 +41,15 @@ impl From<f64> for Input {
     }
 }
 
-/// Sets the value of a name in an expression, and keeps the order of names in the expression.
-pub fn set_named(inputs: &mut Vec<(String, Input)>, names: &[String], name: String, input: Input) {
-    inputs.retain(|(other, _)| *other != name);
-    inputs.push((name, input));
+/// The input for name `i` of an expression.
+pub fn named<'a>(inputs: &'a [(String, Input)], names: &[String], i: usize) -> &'a Input {
+    let input = names.get(i).and_then(|name| inputs.iter().find(|(other, _)| other == name));
+    input.map_or(&Input::None, |(_, input)| input)
+}
+
+/// Sets the input for a name in an expression, and keeps the order of names in the expression.
+pub fn set_named(inputs: &mut Vec<(String, Input)>, names: &[String], name: &str, input: Input) {
+    inputs.retain(|(other, _)| other != name);
+    inputs.push((name.to_string(), input));
     inputs.sort_by_key(|(name, _)| names.iter().position(|other| other == name));
 }

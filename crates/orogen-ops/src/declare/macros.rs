@@ -1,6 +1,7 @@
 //! `op!` and `choice!`, for ops of this crate and of any other: every path begins with `$crate`.
 
-/// A parameter that is one of several names. The first variant is the default.
+/// A parameter that is one of several names. The first variant is the default. With `as TYPE` after its name it
+/// converts into that enum, which has variants of the same names.
 ///
 /// ```
 /// orogen_ops::choice! {
@@ -17,6 +18,24 @@
 /// ```
 #[macro_export]
 macro_rules! choice {
+    (
+        $(#[doc = $doc:literal])+
+        $visibility:vis enum $name:ident as $twin:ty { $( $(#[doc = $vdoc:literal])+ $variant:ident = $text:literal, )+ }
+    ) => {
+        $crate::choice! {
+            $(#[doc = $doc])+
+            $visibility enum $name { $( $(#[doc = $vdoc])+ $variant = $text, )+ }
+        }
+
+        impl From<$name> for $twin {
+            fn from(choice: $name) -> $twin {
+                type Twin = $twin;
+                match choice {
+                    $( $name::$variant => Twin::$variant, )+
+                }
+            }
+        }
+    };
     (
         $(#[doc = $doc:literal])+
         $visibility:vis enum $name:ident { $(#[doc = $first_doc:literal])+ $first:ident = $first_text:literal, $( $(#[doc = $vdoc:literal])+ $variant:ident = $text:literal, )* }
@@ -59,8 +78,8 @@ macro_rules! choice {
 ///
 /// The blocks, in this order, all of them optional:
 ///
-/// - `inputs { /// .. source: required, /// .. other: optional, }`: the nodes it reads, by their index in the `inputs`
-///   that it is given. `inputs of NAME;` instead reads whatever the expression in its parameter NAME names.
+/// - `inputs { /// .. source: required, /// .. other: optional, }`: the nodes it reads, by their names in the
+///   `inputs` that it is given. `inputs of NAME;` instead reads whatever the expression in its parameter NAME names.
 /// - `params { /// .. name: TYPE = DEFAULT, unit "m", range 0.0 to 1e5; }`: unit and range are optional. A type is any
 ///   [`Param`](crate::declare::Param): `f64`, `u32`, `u64` (a seed), `bool`, `[f64; 2]`, `Vec<[f64; 2]>` (a curve),
 ///   `LinePoints` or `AreaPoints`, `Strokes`, `FileRef`, `Expression`, or a [`choice!`](crate::choice).
@@ -68,17 +87,17 @@ macro_rules! choice {
 ///   each is read between samples (`height`, `label`, `flow`, or as its `source`).
 /// - `units |op, layer| "m";`: the unit of a layer by its index, if it depends on parameters.
 /// - `check |op| Ok(());`: what a single parameter cannot see, a key and a message if parameters contradict each other.
+/// - `noise |op, world_params| NOISE; cost |op| [f64; 2];`: a field that is a noise of [`orogen_noise`], with its
+///   nanoseconds per sample at any positions and on a lattice. It gets the parameter `vertical`, and implements `Field`.
 ///
 /// After an input's need, or at the end of a parameter, `alias "other"` names another key that recipes may use: a
-/// former one, or the word of textbooks. With `octaves;` after its name the op is a fractal: it gets the parameters all
-/// fractals share, beside its own. With `margin;` after its name the op is a solver with the parameter `margin`: its
-/// domain extends beyond the world by that length on each side, and it need not know it
-/// ([`Sources::domain`](crate::op::Sources::domain) is the domain). With `space;` (`octaves in space;` for a fractal)
-/// the op is a noise with the parameter `vertical` and a method `depth`: the third coordinate of the noise, or `None`
-/// if it is one of the plane.
+/// former one, or the word of textbooks. With `octaves |op| KIND;` after its name the op is a fractal: a noise with the
+/// parameters that all fractals share, beside its own. With `margin;` after its name the op is a solver with the
+/// parameter `margin`: its domain extends beyond the world by that length on each side, and it need not know it
+/// ([`Sources::domain`](crate::op::Sources::domain) is the domain).
 ///
 /// ```
-/// use orogen_ops::op::{Context, Filter, GridInputs};
+/// use orogen_ops::op::{Context, Filter, GridInputs, only_layer};
 /// use orogen_grid::{Grid, Result, Window};
 ///
 /// orogen_ops::op! {
@@ -101,7 +120,7 @@ macro_rules! choice {
 ///
 ///     fn apply(&self, inputs: &GridInputs, _: &Window, out: &mut [Option<Grid>], _: &Context) -> Result<()> {
 ///         let source = inputs.required("source")?;
-///         let [Some(out)] = out else { return Ok(()) };
+///         let out = only_layer(out)?;
 ///         for (out, source) in out.data_mut().iter_mut().zip(source.data()) {
 ///             *out = source + self.by as f32;
 ///         }
@@ -115,14 +134,13 @@ macro_rules! choice {
 macro_rules! op {
     (
         $(#[doc = $doc:literal])+
-        $visibility:vis struct $name:ident = $op:literal, $locality:ident, revision $revision:literal;
-        octaves $(in $space:ident)?;
+        $visibility:vis struct $name:ident = $op:literal, field, revision $revision:literal;
+        octaves $kind:expr;
         $(params { $($params:tt)* })?
     ) => {
         $crate::op! {
             $(#[doc = $doc])+
-            $visibility struct $name = $op, $locality, revision $revision;
-            $($space;)?
+            $visibility struct $name = $op, field, revision $revision;
             params {
                 /// Noise basis of the octaves.
                 basis: $crate::declare::noise::Basis = $crate::declare::noise::Basis::Perlin;
@@ -138,29 +156,31 @@ macro_rules! op {
                 gain: f64 = 0.5, range 0.0 to 1.0, alias "persistence";
                 $($($params)*)?
             }
-        }
-
-        impl $name {
-            /// The octaves as the noise library sums them.
-            fn fractal(&self, world_params: &$crate::op::WorldParams, kind: $crate::declare::noise::Kind) -> $crate::declare::noise::Fractal {
-                $crate::declare::noise::Fractal::new(world_params.seed_of(self.seed), self.wavelength)
-                    .with_basis(self.basis)
-                    .with_kind(kind)
-                    .with_octaves(self.octaves)
-                    .with_lacunarity(self.lacunarity)
-                    .with_gain(self.gain)
-            }
+            noise |op, world_params| {
+                let kind: fn(&$name) -> $crate::declare::noise::Kind = $kind;
+                $crate::declare::noise::Fractal::new(world_params.seed_of(op.seed), op.wavelength)
+                    .with_basis(op.basis)
+                    .with_kind(kind(op))
+                    .with_octaves(op.octaves)
+                    .with_lacunarity(op.lacunarity)
+                    .with_gain(op.gain)
+            };
+            cost |op| {
+                let kind: fn(&$name) -> $crate::declare::noise::Kind = $kind;
+                $crate::noise_field::fractal_cost(op.basis, kind(op), op.octaves)
+            };
         }
     };
     (
         $(#[doc = $doc:literal])+
-        $visibility:vis struct $name:ident = $op:literal, $locality:ident, revision $revision:literal;
-        space;
+        $visibility:vis struct $name:ident = $op:literal, field, revision $revision:literal;
         params { $($params:tt)* }
+        noise $noise:expr;
+        cost $cost:expr;
     ) => {
         $crate::op! {
             $(#[doc = $doc])+
-            $visibility struct $name = $op, $locality, revision $revision;
+            $visibility struct $name = $op, field, revision $revision;
             space in vertical;
             params {
                 $($params)*
@@ -172,9 +192,30 @@ macro_rules! op {
         }
 
         impl $name {
-            /// The third coordinate of a noise of space, in metres; `None` for a noise of the plane.
-            fn depth(&self, inputs: &$crate::op::Inputs) -> Option<f64> {
-                (self.vertical > 0.0).then(|| inputs.altitude() / self.vertical)
+            fn noise(&self, world_params: &$crate::op::WorldParams) -> $crate::noise_field::NoiseField {
+                let noise: fn(&$name, &$crate::op::WorldParams) -> _ = $noise;
+                let dimensions = $crate::noise_field::dimensions(self.vertical);
+                $crate::noise_field::NoiseField::new(noise(self, world_params).prepare_in(dimensions), self.vertical)
+            }
+
+            const COST: fn(&$name) -> [f64; 2] = $cost;
+        }
+
+        impl $crate::op::Field for $name {
+            fn prepare(&self, world_params: &$crate::op::WorldParams) -> Option<$crate::op::Evaluator> {
+                Some(self.noise(world_params).evaluator())
+            }
+
+            fn lower(&self, _: usize, world_params: &$crate::op::WorldParams) -> $crate::noise_field::Lowered {
+                self.noise(world_params).lower()
+            }
+
+            fn cost(&self) -> f64 {
+                $name::COST(self)[0]
+            }
+
+            fn cost_in_rows(&self) -> f64 {
+                $name::COST(self)[1]
             }
         }
     };
@@ -289,60 +330,31 @@ macro_rules! op {
                 }
             )?
 
-            #[allow(unused_variables, unused_mut, unused_assignments, reason = "not every op has inputs")]
+            #[allow(unreachable_code, reason = "an op with an expression has no other inputs")]
             fn input(&self, i: usize) -> &$crate::declare::Input {
-                $(
-                    let given = self.$expression.names().get(i);
-                    let given = self.inputs.iter().find(|(name, _)| Some(name) == given);
-                    if let Some((_, input)) = given { return input; }
-                )?
-                let mut at = 0;
-                $( $( if i == at { return &self.$input; } at += 1; )* )?
-                &$crate::declare::Input::None
+                $( return $crate::declare::named(&self.inputs, self.$expression.names(), i); )?
+                let inputs: &[&$crate::declare::Input] = &[$( $( &self.$input, )* )?];
+                inputs.get(i).copied().unwrap_or(&$crate::declare::Input::None)
             }
 
-            #[allow(unused_variables, unused_mut, unused_assignments, reason = "not every op has inputs")]
+            #[allow(unreachable_code, reason = "an op with an expression has no other inputs")]
             fn set_input(&mut self, i: usize, input: $crate::declare::Input) {
                 $(
-                    if let Some(name) = self.$expression.names().get(i).cloned() {
-                        $crate::declare::set_named(&mut self.inputs, self.$expression.names(), name, input);
-                        return;
-                    }
+                    let names = self.$expression.names();
+                    return names.get(i).map_or((), |name| $crate::declare::set_named(&mut self.inputs, names, name, input));
                 )?
-                let mut at = 0;
-                $( $( if i == at { self.$input = input; return; } at += 1; )* )?
+                let inputs: &mut [&mut $crate::declare::Input] = &mut [$( $( &mut self.$input, )* )?];
+                if let Some(old) = inputs.get_mut(i) {
+                    **old = input;
+                }
             }
 
-            #[allow(unused_variables, unused_mut, unused_assignments, reason = "not every op has parameters")]
-            fn param(&self, i: usize) -> $crate::value::Value {
-                let mut at = 0;
-                $( $( if i == at { return $crate::declare::Param::write(&self.$param); } at += 1; )* )?
-                $crate::value::Value::Other("nothing")
+            fn params(&self) -> Vec<&dyn $crate::declare::AnyParam> {
+                vec![$( $( &self.$param, )* )?]
             }
 
-            #[allow(unused_variables, unused_mut, unused_assignments, reason = "not every op has parameters")]
-            fn set_param(&mut self, i: usize, value: &$crate::value::Value) -> std::result::Result<(), String> {
-                let spec = self.spec();
-                let mut at = 0;
-                $( $(
-                    if i == at {
-                        self.$param = $crate::declare::read_param(&spec.params[i], value)?;
-                        return Ok(());
-                    }
-                    at += 1;
-                )* )?
-                Ok(())
-            }
-
-            #[allow(unused_variables, unused_mut, unused_assignments, reason = "not every op has parameters")]
-            fn param_key(&self, i: usize) -> $crate::value::Value {
-                let mut at = 0;
-                $( $( if i == at { return $crate::declare::Param::key(&self.$param); } at += 1; )* )?
-                $crate::value::Value::Other("nothing")
-            }
-
-            fn files(&mut self) -> Vec<&mut $crate::declare::FileRef> {
-                $crate::declare::present(vec![$( $( $crate::declare::Param::file(&mut self.$param), )* )?])
+            fn params_mut(&mut self) -> Vec<&mut dyn $crate::declare::AnyParam> {
+                vec![$( $( &mut self.$param, )* )?]
             }
 
             $(

@@ -32,13 +32,15 @@ pub mod spec;
 pub mod strokes;
 
 pub use declared::Declared;
-pub use input::{Input, InputName, set_named};
+pub use input::{Input, InputName};
+#[doc(hidden)]
+pub use input::{named, set_named};
 pub use orogen_io::dem::file_ref::{AreaFile, FileRef, LineFile};
 /// What the octaves of a fractal are made of.
 #[doc(hidden)]
 pub use orogen_noise as noise;
 #[doc(hidden)]
-pub use param::present;
+pub use param::AnyParam;
 pub use param::{Param, read_param};
 pub use points::{AreaPoints, LinePoints, OutlineOptions, PointLists};
 pub use spec::{InputSpec, Locality, MARGIN, ParamSpec, Shape, Spec, TableSpec, VERTICAL, short};

@@ -29,6 +29,35 @@ pub trait Param: Sized {
     }
 }
 
+/// A parameter of any type.
+#[doc(hidden)]
+pub trait AnyParam {
+    /// [`Param::write`].
+    fn value(&self) -> Value;
+    /// [`Param::key`].
+    fn key_value(&self) -> Value;
+    /// [`Param::file`].
+    fn file_ref(&mut self) -> Option<&mut FileRef>;
+    /// Reads it; the error describes the valid kind and range.
+    fn set(&mut self, spec: &ParamSpec, value: &Value) -> Result<(), String>;
+}
+
+impl<T: Param> AnyParam for T {
+    fn value(&self) -> Value {
+        self.write()
+    }
+    fn key_value(&self) -> Value {
+        self.key()
+    }
+    fn file_ref(&mut self) -> Option<&mut FileRef> {
+        self.file()
+    }
+    fn set(&mut self, spec: &ParamSpec, value: &Value) -> Result<(), String> {
+        *self = read_param(spec, value)?;
+        Ok(())
+    }
+}
+
 impl Param for Expression {
     const SHAPE: Shape = Shape::Expression;
     fn read(value: &Value) -> Option<Expression> {
@@ -209,10 +238,4 @@ fn refusal(spec: &ParamSpec, value: &Value) -> String {
         }
     }
     message
-}
-
-/// The files among what parameters name. Apart from the ops' own code, which is compiled for each op.
-#[must_use]
-pub fn present(files: Vec<Option<&mut FileRef>>) -> Vec<&mut FileRef> {
-    files.into_iter().flatten().collect()
 }

@@ -4,6 +4,7 @@ use super::input::InputName;
 use super::point_lists::{Drawn, Reader};
 use crate::layer::Layer;
 use crate::value::{Span, Value};
+use orogen_grid::error::{Error, ErrorKind};
 use orogen_grid::words::list;
 
 /// The locality of an op: what its result may depend on.
@@ -67,8 +68,21 @@ impl Spec {
 
     /// The index of the input with this name, if `given` says that it is given.
     pub(crate) fn given_input(&self, name: &str, given: &[bool]) -> Option<usize> {
-        let i = self.inputs.iter().position(|input| input.name == name)?;
-        given.get(i).copied().unwrap_or(false).then_some(i)
+        self.input_named(name).filter(|i| given.get(*i) == Some(&true))
+    }
+
+    /// What is given for the input with this name, of a list in the order of the inputs.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn given<T: Copy>(&self, name: &str, given: &[Option<T>]) -> Option<T> {
+        given.get(self.input_named(name)?).copied().flatten()
+    }
+
+    /// The error of an input that the op needs and is not given: plans always provide it.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn missing(&self, name: &str) -> Error {
+        Error::new(ErrorKind::Internal, format!("the input `{name}` of `{}` is missing", self.op))
     }
 
     /// The input with this key, also its other one.

@@ -3,6 +3,7 @@
 use super::constant::CONSTANT;
 use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
+use orogen_grid::error::Result;
 use orogen_noise::Points;
 use orogen_noise::shader::function::Shader;
 
@@ -16,8 +17,9 @@ op! {
 }
 
 impl Field for Altitude {
-    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
+    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) -> Result<()> {
         out.fill(inputs.altitude() as f32);
+        Ok(())
     }
 
     fn reads_altitude(&self) -> bool {

@@ -7,12 +7,13 @@ use crate::op::{Field, Inputs, WorldParams};
 use orogen_grid::climate::biomes::class::{Climate, WATER};
 use orogen_grid::climate::biomes::scheme;
 use orogen_grid::climate::year::Year;
+use orogen_grid::error::Result;
 use orogen_noise::Points;
 use orogen_noise::shader::function::Shader;
 
 choice! {
     /// The classes of climates or biomes.
-    pub enum BiomeScheme {
+    pub enum BiomeScheme as scheme::Scheme {
         /// Ten biomes by mean temperature and rain (Whittaker 1975, as in Ricklefs 2008), with ice where no month is
         /// above 0 degrees C.
         Whittaker = "whittaker",
@@ -21,16 +22,6 @@ choice! {
         /// 30 climates by the temperatures and the rain of months (Köppen and Geiger; Peel, Finlayson and McMahon
         /// 2007).
         KoppenGeiger = "koppen-geiger",
-    }
-}
-
-impl From<BiomeScheme> for scheme::Scheme {
-    fn from(scheme: BiomeScheme) -> scheme::Scheme {
-        match scheme {
-            BiomeScheme::Whittaker => scheme::Scheme::Whittaker,
-            BiomeScheme::Holdridge => scheme::Scheme::Holdridge,
-            BiomeScheme::KoppenGeiger => scheme::Scheme::KoppenGeiger,
-        }
     }
 }
 
@@ -64,17 +55,17 @@ op! {
 }
 
 impl Field for Biome {
-    fn eval(&self, _: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+    fn eval(&self, _: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) -> Result<()> {
         let scheme = scheme::Scheme::from(self.scheme);
-        let (temperatures, rains) = (inputs.required(0), inputs.required(1));
+        let (temperatures, rains) = (inputs.required("temperature")?, inputs.required("rain")?);
+        let (ranges, heights) = (inputs.get("range"), inputs.get("height"));
         let sea_level = world_params.sea_level as f32;
         for (k, ((sample, mean), rain)) in out.iter_mut().zip(temperatures).zip(rains).enumerate() {
-            let is_water =
-                inputs.get(3).is_some_and(|heights| heights.get(k).is_some_and(|height| *height <= sea_level));
+            let is_water = heights.is_some_and(|heights| heights.get(k).is_some_and(|height| *height <= sea_level));
             let code = if is_water {
                 WATER
             } else {
-                let range = sample_or(inputs.get(2), k, DEFAULT_RANGE).max(0.0);
+                let range = sample_or(ranges, k, DEFAULT_RANGE).max(0.0);
                 scheme.code(&Climate {
                     year: Year { mean: f64::from(*mean), range },
                     rain: f64::from(*rain).max(0.0),
@@ -83,6 +74,7 @@ impl Field for Biome {
             };
             *sample = f32::from(code);
         }
+        Ok(())
     }
 
     fn reads_sea_level(&self) -> bool {

@@ -2,6 +2,7 @@
 
 use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
+use orogen_grid::error::Result;
 use orogen_noise::Points;
 use orogen_noise::shader::function::Shader;
 
@@ -18,8 +19,9 @@ op! {
 pub(super) const CONSTANT: &str = "fn constant(base: u32, place: Placement) -> f32 { return number(base, 0u); }";
 
 impl Field for Constant {
-    fn eval(&self, _: &Points, _: &Inputs, _: &WorldParams, out: &mut [f32]) {
+    fn eval(&self, _: &Points, _: &Inputs, _: &WorldParams, out: &mut [f32]) -> Result<()> {
         out.fill(self.value as f32);
+        Ok(())
     }
 
     fn lower(&self, _: usize, _: &WorldParams) -> Lowering<Shader> {

@@ -1,8 +1,7 @@
 //! A monotone curve through control points.
 
 use crate::lower::Lowering;
-use crate::op::{Field, Inputs, WorldParams};
-use orogen_noise::Points;
+use crate::op::{Evaluator, Field, WorldParams};
 use orogen_noise::shader::function::Shader;
 
 op! {
@@ -24,7 +23,7 @@ op! {
 }
 
 /// One segment between two control points: to(x) = a + t (b + t (c + t d)) with t = x - start.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 struct Segment {
     start: f32,
     a: f32,
@@ -33,31 +32,27 @@ struct Segment {
     d: f32,
 }
 
-/// A control point's tangent and the segment that follows it.
+/// A control point's tangents.
 #[derive(Clone, Copy, Default)]
 struct Knot {
     /// Slope of the straight line to the next point.
     secant: f64,
     tangent: f64,
-    /// The segment to the next point.
-    piece: Segment,
 }
 
-/// Curves with at most this number of points are evaluated without heap memory.
-const FEW: usize = 32;
-
 impl Curve {
-    /// Computes `knots`, one for each point. The last one has no segment.
-    fn tie(&self, knots: &mut [Knot]) {
+    /// The segments, and the first and the last point.
+    fn segments(&self) -> (Vec<Segment>, [f32; 2], [f32; 2]) {
         let points = &self.points;
         let count = points.len();
+        let mut knots = vec![Knot::default(); count];
         for (knot, pair) in knots.iter_mut().zip(points.windows(2)) {
             knot.secant = (pair[1][1] - pair[0][1]) / (pair[1][0] - pair[0][0]);
         }
         let secant = |knots: &[Knot], i: usize| (i + 1 < count).then(|| knots[i].secant);
         for i in 0..count {
-            let before = i.checked_sub(1).and_then(|before| secant(knots, before));
-            knots[i].tangent = match (before, secant(knots, i)) {
+            let before = i.checked_sub(1).and_then(|before| secant(&knots, before));
+            knots[i].tangent = match (before, secant(&knots, i)) {
                 (Some(before), Some(after)) if before * after > 0.0 => 0.5 * (before + after),
                 (Some(_), Some(_)) => 0.0,
                 (Some(only), None) | (None, Some(only)) => only,
@@ -81,50 +76,49 @@ impl Curve {
                 knots[i].tangent = tau * beta * secant;
             }
         }
-        for (i, pair) in points.windows(2).enumerate() {
-            let (width, secant) = (pair[1][0] - pair[0][0], knots[i].secant);
-            let (m0, m1) = (knots[i].tangent, knots[i + 1].tangent);
-            knots[i].piece = Segment {
+        let segment = |(pair, knots): (&[[f64; 2]], &[Knot])| {
+            let (width, secant) = (pair[1][0] - pair[0][0], knots[0].secant);
+            let (m0, m1) = (knots[0].tangent, knots[1].tangent);
+            Segment {
                 start: pair[0][0] as f32,
                 a: pair[0][1] as f32,
                 b: m0 as f32,
                 c: ((3.0 * secant - 2.0 * m0 - m1) / width) as f32,
                 d: ((m0 + m1 - 2.0 * secant) / (width * width)) as f32,
-            };
-        }
-    }
-}
-
-impl Field for Curve {
-    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
-        let count = self.points.len();
-        let mut few = [Knot::default(); FEW];
-        let mut many = Vec::new();
-        let knots = match few.get_mut(..count) {
-            Some(knots) => knots,
-            None => {
-                many.resize(count, Knot::default());
-                many.as_mut_slice()
             }
         };
-        self.tie(knots);
-        let knots = &knots[..count.saturating_sub(1)];
-        let ends = |point: Option<&[f64; 2]>| point.map_or([0.0f32; 2], |[x, y]| [*x as f32, *y as f32]);
-        let (first, last) = (ends(self.points.first()), ends(self.points.last()));
-        for (sample, &x) in out.iter_mut().zip(inputs.required(0)) {
-            *sample = if x <= first[0] {
+        let end = |point: Option<&[f64; 2]>| point.map_or([0.0f32; 2], |[x, y]| [*x as f32, *y as f32]);
+        (points.windows(2).zip(knots.windows(2)).map(segment).collect(), end(points.first()), end(points.last()))
+    }
+
+    /// The curve as a function.
+    #[doc(hidden)]
+    pub fn function(&self) -> impl Fn(f32) -> f32 + Send + Sync + use<> {
+        let (segments, first, last) = self.segments();
+        move |x| {
+            if x <= first[0] {
                 first[1]
             } else if x >= last[0] {
                 last[1]
             } else if x.is_nan() {
                 x
             } else {
-                let at = knots.partition_point(|knot| knot.piece.start <= x).saturating_sub(1);
-                let piece = &knots[at].piece;
-                let t = x - piece.start;
-                piece.a + t * (piece.b + t * (piece.c + t * piece.d))
-            };
+                let at = segments.partition_point(|segment| segment.start <= x).saturating_sub(1);
+                let Segment { start, a, b, c, d } = segments[at];
+                let t = x - start;
+                a + t * (b + t * (c + t * d))
+            }
         }
+    }
+}
+
+impl Field for Curve {
+    fn prepare(&self, _: &WorldParams) -> Option<Evaluator> {
+        let function = self.function();
+        Some(Box::new(move |_, inputs, out| {
+            out.iter_mut().zip(inputs.required("source")?).for_each(|(sample, x)| *sample = function(*x));
+            Ok(())
+        }))
     }
 
     fn cost(&self) -> f64 {
@@ -132,18 +126,11 @@ impl Field for Curve {
     }
 
     fn lower(&self, _: usize, _: &WorldParams) -> Lowering<Shader> {
-        let count = self.points.len();
-        let mut knots = vec![Knot::default(); count];
-        self.tie(&mut knots);
-        let end = |point: Option<&[f64; 2]>| point.map_or([0.0f32; 2], |[x, y]| [*x as f32, *y as f32]);
-        let (first, last) = (end(self.points.first()), end(self.points.last()));
-        let mut numbers = vec![first[0], first[1], last[0], last[1]];
-        for knot in &knots[..count.saturating_sub(1)] {
-            let Segment { start, a, b, c, d } = knot.piece;
-            numbers.extend([start, a, b, c, d]);
-        }
+        let (segments, first, last) = self.segments();
+        let mut numbers = [first, last].concat();
+        numbers.extend(segments.iter().flat_map(|&Segment { start, a, b, c, d }| [start, a, b, c, d]));
         let mut shader = Shader::new("curve", include_str!("curve.wgsl"), &numbers);
-        shader.words.insert(0, count.saturating_sub(1) as u32);
+        shader.words.insert(0, segments.len() as u32);
         Lowering::Shader(shader)
     }
 }
@@ -155,12 +142,7 @@ mod tests {
 
     fn run(points: &[[f64; 2]], xs: &[f32]) -> Vec<f32> {
         let curve = Curve { source: Input::None, points: points.to_vec() };
-        let mut out = vec![0.0; xs.len()];
-        let world_params = WorldParams { seed: 0, size: None, cell: 1.0, sea_level: 0.0 };
-        let here = vec![0.0; xs.len()];
-        let slots = [Some(xs)];
-        curve.eval(&Points::Scattered { x: &here, y: &here }, &Inputs::new(&slots), &world_params, &mut out);
-        out
+        xs.iter().copied().map(curve.function()).collect()
     }
 
     #[test]

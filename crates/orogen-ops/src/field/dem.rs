@@ -3,6 +3,7 @@
 use crate::layer::LayerKind;
 use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
+use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
 use orogen_grid::resample::{self, NOWHERE};
 use orogen_io::dem::file_ref::FileRef;
@@ -98,9 +99,12 @@ impl Dem {
 }
 
 impl Field for Dem {
-    fn eval(&self, at: &Points, _: &Inputs, _: &WorldParams, out: &mut [f32]) {
+    fn eval(&self, at: &Points, _: &Inputs, _: &WorldParams, out: &mut [f32]) -> Result<()> {
         // A world is not opened without its files; a plan that runs without a world has nothing to show.
-        let Some(ground) = self.path.ground() else { return out.fill(f32::NAN) };
+        let Some(ground) = self.path.ground() else {
+            out.fill(f32::NAN);
+            return Ok(());
+        };
         let [left, top] = self.at;
         let cell = ground.grid.window().cell;
         let size = ground.size.map(|samples| (samples as f64 - 1.0) * cell);
@@ -138,6 +142,7 @@ impl Field for Dem {
                 finish(&x, &y, &Points::Scattered { x: &x, y: &y }, out);
             }
         }
+        Ok(())
     }
 
     fn cost(&self) -> f64 {

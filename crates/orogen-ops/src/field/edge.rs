@@ -4,6 +4,7 @@ use super::constant::CONSTANT;
 use super::positions::{each, smoothstep};
 use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
+use orogen_grid::error::Result;
 use orogen_noise::Points;
 use orogen_noise::shader::function::Shader;
 use orogen_noise::shader::lattice::Lattice;
@@ -32,10 +33,10 @@ op! {
 }
 
 impl Field for Edge {
-    fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+    fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) -> Result<()> {
         let Some([w, h]) = world_params.size else {
             out.fill(1.0);
-            return;
+            return Ok(());
         };
         // Distance into the border strip, as a share of its width: 0 inside, 1 at the edge.
         let strip = |v: f64, extent: f64| (1.0 - v.min(extent - v) / self.width).max(0.0);
@@ -47,6 +48,7 @@ impl Field for Edge {
             };
             smoothstep(1.0 - depth) as f32
         });
+        Ok(())
     }
 
     fn needs_bounds(&self) -> bool {

@@ -4,6 +4,7 @@ use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_grid::climate::evapotranspiration::{humidity, potential};
 use orogen_grid::climate::year::Year;
+use orogen_grid::error::Result;
 use orogen_noise::Points;
 use orogen_noise::shader::function::Shader;
 
@@ -41,19 +42,17 @@ pub(super) fn sample_or(input: Option<&[f32]>, k: usize, default: f32) -> f64 {
 }
 
 impl Field for Evapotranspiration {
-    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
-        self.eval_layer(0, at, inputs, world_params, out);
-    }
-
-    fn eval_layer(&self, layer: usize, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
-        for (k, (sample, mean)) in out.iter_mut().zip(inputs.required(0)).enumerate() {
-            let range = sample_or(inputs.get(1), k, DEFAULT_RANGE).max(0.0);
+    fn eval_layer(&self, layer: usize, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) -> Result<()> {
+        let (ranges, rains) = (inputs.get("range"), inputs.get("rain"));
+        for (k, (sample, mean)) in out.iter_mut().zip(inputs.required("temperature")?).enumerate() {
+            let range = sample_or(ranges, k, DEFAULT_RANGE).max(0.0);
             let potential = potential(&Year { mean: f64::from(*mean), range });
             *sample = match layer {
                 0 => potential as f32,
-                _ => humidity(sample_or(inputs.get(2), k, DEFAULT_RAIN), potential) as f32,
+                _ => humidity(sample_or(rains, k, DEFAULT_RAIN), potential) as f32,
             };
         }
+        Ok(())
     }
 
     fn cost(&self) -> f64 {

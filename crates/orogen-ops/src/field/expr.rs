@@ -42,7 +42,7 @@ impl Expr {
 
     /// The same with something else for a name.
     pub fn with(mut self, name: &str, input: impl Into<Input>) -> Expr {
-        set_named(&mut self.inputs, self.expr.names(), name.to_string(), input.into());
+        set_named(&mut self.inputs, self.expr.names(), name, input.into());
         self
     }
 }

@@ -1,12 +1,13 @@
 //! Gullies on the slopes of any source.
 
-use super::basis::fill;
 use super::powers::raise;
 use crate::lower::Lowering;
-use crate::op::{Field, Inputs, Stencil, WorldParams};
+use crate::noise_field::checked;
+use crate::op::{Evaluator, Field, Inputs, Stencil, WorldParams};
+use orogen_grid::error::Result;
 use orogen_noise::shader::function::Shader;
 use orogen_noise::shader::phacelle::PHACELLE;
-use orogen_noise::{Phacelle, Points, shader_constants};
+use orogen_noise::{Phacelle, Points, PreparedPhacelle, shader_constants};
 
 op! {
     /// The source with gullies running down its slopes, made by a field without simulation (erosion filter).
@@ -65,39 +66,11 @@ op! {
 }
 
 impl Field for Gullies {
-    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
-        out.copy_from_slice(inputs.required(0));
-        let around = [2, 3, 4, 5].map(|i| inputs.required(i));
-        let mut start = 0;
-        let mut part = |points: &Points| {
-            let range = start..start + points.len();
-            start = range.end;
-            let [east, west, south, north] = around.map(|source| &source[range.clone()]);
-            let fade = inputs.get(1).map(|fade| &fade[range.clone()]);
-            self.cut(points, [east, west, south, north], fade, world_params, &mut out[range]);
-        };
-        match *at {
-            Points::Lattice { xs, ys } => {
-                for y in ys {
-                    for xs in xs.chunks(CHUNK) {
-                        part(&Points::Lattice { xs, ys: std::slice::from_ref(y) });
-                    }
-                }
-            }
-            Points::Displaced { xs, ys, dx, dy } if !xs.is_empty() => {
-                for ((y, dx), dy) in ys.iter().zip(dx.chunks(xs.len())).zip(dy.chunks(xs.len())) {
-                    for ((xs, dx), dy) in xs.chunks(CHUNK).zip(dx.chunks(CHUNK)).zip(dy.chunks(CHUNK)) {
-                        part(&Points::Displaced { xs, ys: std::slice::from_ref(y), dx, dy });
-                    }
-                }
-            }
-            Points::Displaced { .. } => {}
-            Points::Scattered { x, y } => {
-                for (x, y) in x.chunks(CHUNK).zip(y.chunks(CHUNK)) {
-                    part(&Points::Scattered { x, y });
-                }
-            }
-        }
+    fn prepare(&self, world_params: &WorldParams) -> Option<Evaluator> {
+        let gullies = self.clone();
+        let octaves = self.octaves(world_params).map(|(noise, depth, turn)| (noise.prepare(), depth, turn));
+        let octaves: Vec<_> = octaves.collect();
+        Some(Box::new(move |at, inputs, out| gullies.carve(&octaves, at, inputs, out)))
     }
 
     fn lower(&self, _: usize, world_params: &WorldParams) -> Lowering<Shader> {
@@ -124,6 +97,9 @@ shader_constants! {
     // Words of an octave, after those of its noise.
     GULLIES_DEPTH = 6, GULLIES_TURN = 7, GULLIES_OCTAVE = 8
 }
+
+/// An octave: its noise, its depth, and how far it turns the next one.
+type Octave = (PreparedPhacelle, f32, f32);
 
 impl Gullies {
     /// The octaves: their noise, their depth, and how far they turn the next one.
@@ -168,15 +144,52 @@ impl Gullies {
         Shader { name: "gullies", code: vec![place, hash, phacelle, CODE], words, lattices, undisplaced: None }
     }
 
+    /// Writes the source with gullies.
+    fn carve(&self, octaves: &[Octave], at: &Points, inputs: &Inputs, out: &mut [f32]) -> Result<()> {
+        out.copy_from_slice(inputs.required("source")?);
+        let (around, fade) = (inputs.around()?, inputs.get("fade"));
+        let mut start = 0;
+        let mut part = |points: &Points| {
+            let range = start..start + points.len();
+            start = range.end;
+            let around = around.map(|source| &source[range.clone()]);
+            let fade = fade.map(|fade| &fade[range.clone()]);
+            self.cut(octaves, points, around, fade, &mut out[range])
+        };
+        match *at {
+            Points::Lattice { xs, ys } => {
+                for y in ys {
+                    for xs in xs.chunks(CHUNK) {
+                        part(&Points::Lattice { xs, ys: std::slice::from_ref(y) })?;
+                    }
+                }
+            }
+            Points::Displaced { xs, ys, dx, dy } if !xs.is_empty() => {
+                for ((y, dx), dy) in ys.iter().zip(dx.chunks(xs.len())).zip(dy.chunks(xs.len())) {
+                    for ((xs, dx), dy) in xs.chunks(CHUNK).zip(dx.chunks(CHUNK)).zip(dy.chunks(CHUNK)) {
+                        part(&Points::Displaced { xs, ys: std::slice::from_ref(y), dx, dy })?;
+                    }
+                }
+            }
+            Points::Displaced { .. } => {}
+            Points::Scattered { x, y } => {
+                for (x, y) in x.chunks(CHUNK).zip(y.chunks(CHUNK)) {
+                    part(&Points::Scattered { x, y })?;
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// Adds the gullies at up to [`CHUNK`] points to `heights`.
     fn cut(
         &self,
+        octaves: &[Octave],
         points: &Points,
         [east, west, south, north]: [&[f32]; 4],
         fade: Option<&[f32]>,
-        world_params: &WorldParams,
         heights: &mut [f32],
-    ) {
+    ) -> Result<()> {
         let count = heights.len();
         let mut slope = [[0.0f32; CHUNK]; 2];
         let (mut mask, mut target) = ([0.0f32; CHUNK], [0.0f32; CHUNK]);
@@ -192,16 +205,14 @@ impl Gullies {
         }
         let (weight, detail, sharpness) = (self.weight as f32, self.detail as f32, self.sharpness as f32);
         let (mut cosine, mut sine) = ([0.0f32; CHUNK], [0.0f32; CHUNK]);
-        for (octave, (noise, amplitude, turn)) in (1..).zip(self.octaves(world_params)) {
+        for (octave, (noise, amplitude, turn)) in (1..).zip(octaves) {
             let [x, y] = &slope;
-            fill(&mut cosine[..count], |cosine| {
-                noise.fill_along(points, &x[..count], &y[..count], cosine, &mut sine[..count])
-            });
+            checked(noise.fill_along(points, &x[..count], &y[..count], &mut cosine[..count], &mut sine[..count]))?;
             for k in 0..count {
                 target[k] += (cosine[k] * weight - target[k]) * mask[k];
                 heights[k] += target[k] * amplitude;
             }
-            if octave == self.octaves {
+            if octave == octaves.len() {
                 break;
             }
             for k in 0..count {
@@ -219,6 +230,7 @@ impl Gullies {
                 mask[k] = (1.0 - mask[k]) * soft(sine[k].abs() * sharpness);
             }
         }
+        Ok(())
     }
 }
 
@@ -232,6 +244,7 @@ fn soft(t: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::declare::Declared;
 
     const SETTING: WorldParams = WorldParams { seed: 1, size: None, cell: 1.0, sea_level: 0.0 };
 
@@ -247,7 +260,9 @@ mod tests {
         let slots =
             [Some(&here[..]), fade.as_deref(), Some(&east[..]), Some(&west[..]), Some(&here[..]), Some(&here[..])];
         let mut out = vec![0.0; side * side];
-        gullies.eval(&Points::Lattice { xs: &axis, ys: &axis }, &Inputs::new(&slots), &SETTING, &mut out);
+        gullies
+            .eval(&Points::Lattice { xs: &axis, ys: &axis }, &Inputs::new(gullies.spec(), &slots), &SETTING, &mut out)
+            .unwrap();
         out.iter().zip(&here).map(|(made, plane)| made - plane).collect()
     }
 
@@ -298,7 +313,7 @@ mod tests {
         let slots = [slots[0], None, slots[1], slots[2], slots[3], slots[4]];
         let made = |points: &Points| {
             let mut out = [0.0; 6];
-            gullies.eval(points, &Inputs::new(&slots), &SETTING, &mut out);
+            gullies.eval(points, &Inputs::new(gullies.spec(), &slots), &SETTING, &mut out).unwrap();
             out
         };
         let lattice = made(&Points::Lattice { xs: &xs, ys: &ys });

@@ -1,10 +1,6 @@
 //! Musgrave's heterogeneous terrain.
 
-use super::basis::{cost, lower, sample};
-use crate::lower::Lowering;
-use crate::op::{Field, Inputs, WorldParams};
-use orogen_noise::shader::function::Shader;
-use orogen_noise::{Fractal, Kind, Points};
+use orogen_noise::Kind;
 
 op! {
     /// Heterogeneous terrain: each octave is scaled by the height so far, so low ground is smooth and high ground is
@@ -14,33 +10,9 @@ op! {
     /// rarely approached: use `normalise` or `remap` after it. Musgrave in Ebert et al., "Texturing and Modeling"
     /// (1994).
     pub struct Hetero = "hetero", field, revision 1;
-    octaves in space;
+    octaves |op| Kind::Hetero { offset: op.offset };
     params {
         /// Value added to the noise. Ground is smooth where the sum of both is small.
         offset: f64 = 0.7, range -4.0 to 4.0;
-    }
-}
-
-impl Hetero {
-    fn noise(&self, world_params: &WorldParams) -> Fractal {
-        self.fractal(world_params, Kind::Hetero { offset: self.offset })
-    }
-}
-
-impl Field for Hetero {
-    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
-        sample(&self.noise(world_params), at, self.depth(inputs), out);
-    }
-
-    fn lower(&self, _: usize, world_params: &WorldParams) -> Lowering<Shader> {
-        lower(&self.noise(world_params), self.vertical)
-    }
-
-    fn cost(&self) -> f64 {
-        cost(self.basis).octaves(self.octaves).anywhere
-    }
-
-    fn cost_in_rows(&self) -> f64 {
-        cost(self.basis).octaves(self.octaves).in_rows
     }
 }

@@ -4,6 +4,7 @@ use super::positions::each;
 use crate::layer::LayerKind;
 use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
+use orogen_grid::error::Result;
 use orogen_grid::resample;
 use orogen_io::dem::file_ref::Picture;
 use orogen_noise::Points;
@@ -36,9 +37,12 @@ op! {
 }
 
 impl Field for Image {
-    fn eval(&self, at: &Points, _: &Inputs, _: &WorldParams, out: &mut [f32]) {
+    fn eval(&self, at: &Points, _: &Inputs, _: &WorldParams, out: &mut [f32]) -> Result<()> {
         // A world is not opened without its files. A plan that runs without a world has no values here.
-        let Some(picture) = self.path.0.ground() else { return out.fill(self.outside as f32) };
+        let Some(picture) = self.path.0.ground() else {
+            out.fill(self.outside as f32);
+            return Ok(());
+        };
         let columns = (picture.grid.width() as f64 - 1.0).max(1.0);
         let last = [picture.grid.width(), picture.grid.height()].map(|pixels| pixels as f64 - 1.0);
         let [left, top] = self.at;
@@ -63,6 +67,7 @@ impl Field for Image {
         for (sample, inside) in out.iter_mut().zip(&inside) {
             *sample = if *inside > 0.0 { sample.clamp(0.0, 1.0) } else { self.outside as f32 };
         }
+        Ok(())
     }
 
     fn cost(&self) -> f64 {

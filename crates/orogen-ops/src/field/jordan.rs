@@ -1,10 +1,6 @@
 //! Jordan turbulence.
 
-use super::basis::{cost, lower, sample};
-use crate::lower::Lowering;
-use crate::op::{Field, Inputs, WorldParams};
-use orogen_noise::shader::function::Shader;
-use orogen_noise::{Fractal, Kind, Points};
+use orogen_noise::Kind;
 
 op! {
     /// Jordan turbulence: squared noise, displaced and damped by the slopes of earlier octaves. It gives rounded
@@ -14,35 +10,11 @@ op! {
     /// (1 + |damp d|^2)). Over `white` and the `worley` bases, which have no slope, only the first octave remains. De
     /// Carpentier, "Scape: procedural basics" (2011).
     pub struct Jordan = "jordan", field, revision 1;
-    octaves in space;
+    octaves |op| Kind::Jordan { warp: op.warp, damp: op.damp };
     params {
         /// How far slopes displace the later octaves, in cells of those octaves: 0 is none, 0.35 is typical.
         warp: f64 = 0.35, range -4.0 to 4.0;
         /// How far slopes let later octaves through: with 0 only the first octave remains, 0.8 is typical.
         damp: f64 = 0.8, range 0.0 to 100.0;
-    }
-}
-
-impl Jordan {
-    fn noise(&self, world_params: &WorldParams) -> Fractal {
-        self.fractal(world_params, Kind::Jordan { warp: self.warp, damp: self.damp })
-    }
-}
-
-impl Field for Jordan {
-    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
-        sample(&self.noise(world_params), at, self.depth(inputs), out);
-    }
-
-    fn lower(&self, _: usize, world_params: &WorldParams) -> Lowering<Shader> {
-        lower(&self.noise(world_params), self.vertical)
-    }
-
-    fn cost(&self) -> f64 {
-        cost(self.basis).moved().octaves(self.octaves).anywhere
-    }
-
-    fn cost_in_rows(&self) -> f64 {
-        cost(self.basis).moved().octaves(self.octaves).in_rows
     }
 }

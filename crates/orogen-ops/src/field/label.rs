@@ -2,6 +2,7 @@
 
 use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
+use orogen_grid::error::Result;
 use orogen_noise::Points;
 use orogen_noise::shader::function::Shader;
 
@@ -22,10 +23,11 @@ op! {
 }
 
 impl Field for Label {
-    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
-        for (sample, source) in out.iter_mut().zip(inputs.required(0)) {
+    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) -> Result<()> {
+        for (sample, source) in out.iter_mut().zip(inputs.required("source")?) {
             *sample = source.round();
         }
+        Ok(())
     }
 
     fn cost(&self) -> f64 {

@@ -4,6 +4,7 @@ use super::positions::{SEGMENT_COST, change};
 use crate::declare::{Stroke, StrokeMode, Strokes};
 use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
+use orogen_grid::error::Result;
 use orogen_grid::polylines::buffers::Buffers;
 use orogen_noise::Points;
 use orogen_noise::shader::function::Shader;
@@ -48,8 +49,8 @@ fn applied(stroke: &Stroke, distance: f64, value: f64, background: f64) -> f64 {
 }
 
 impl Field for Paint {
-    fn eval(&self, at: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
-        match inputs.get(0) {
+    fn eval(&self, at: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) -> Result<()> {
+        match inputs.get("background") {
             Some(background) => out.copy_from_slice(background),
             None => out.fill(0.0),
         }
@@ -62,6 +63,7 @@ impl Field for Paint {
                 value as f32
             });
         });
+        Ok(())
     }
 
     fn cost(&self) -> f64 {

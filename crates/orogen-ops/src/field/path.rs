@@ -4,6 +4,7 @@ use super::positions::{SEGMENT_COST, each, smoothstep};
 use crate::declare::{LineFile, LinePoints, OutlineOptions};
 use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
+use orogen_grid::error::Result;
 use orogen_grid::polylines::segments::Segments;
 use orogen_noise::Points;
 use orogen_noise::shader::function::Shader;
@@ -95,11 +96,7 @@ impl Path {
 }
 
 impl Field for Path {
-    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
-        self.eval_layer(DISTANCE, at, inputs, world_params, out);
-    }
-
-    fn eval_layer(&self, layer: usize, at: &Points, _: &Inputs, _: &WorldParams, out: &mut [f32]) {
+    fn eval_layer(&self, layer: usize, at: &Points, _: &Inputs, _: &WorldParams, out: &mut [f32]) -> Result<()> {
         self.with_segments(|segments| {
             each(at, out, |x, y| {
                 let nearest = || segments.nearest([x, y], f64::INFINITY);
@@ -114,6 +111,7 @@ impl Field for Path {
                 value as f32
             });
         });
+        Ok(())
     }
 
     fn cost(&self) -> f64 {

@@ -4,6 +4,7 @@ use super::positions::{SEGMENT_COST, each, smoothstep};
 use crate::declare::{AreaFile, AreaPoints, OutlineOptions};
 use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
+use orogen_grid::error::Result;
 use orogen_grid::polylines::segments::Segments;
 use orogen_noise::Points;
 use orogen_noise::shader::function::Shader;
@@ -89,11 +90,7 @@ fn signed(distance: f64, is_inside: bool) -> f64 {
 }
 
 impl Field for Polygon {
-    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
-        self.eval_layer(INSIDE, at, inputs, world_params, out);
-    }
-
-    fn eval_layer(&self, layer: usize, at: &Points, _: &Inputs, _: &WorldParams, out: &mut [f32]) {
+    fn eval_layer(&self, layer: usize, at: &Points, _: &Inputs, _: &WorldParams, out: &mut [f32]) -> Result<()> {
         self.with_segments(|segments| {
             each(at, out, |x, y| {
                 let at = [x, y];
@@ -109,6 +106,7 @@ impl Field for Polygon {
                 value as f32
             });
         });
+        Ok(())
     }
 
     fn cost(&self) -> f64 {

@@ -3,6 +3,7 @@
 use super::positions::{each, smoothstep};
 use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
+use orogen_grid::error::Result;
 use orogen_noise::Points;
 use orogen_noise::shader::function::Shader;
 use orogen_noise::shader::lattice::Lattice;
@@ -34,13 +35,14 @@ const RADIAL: &str = "fn radial(base: u32, place: Placement) -> f32 {
 }";
 
 impl Field for Radial {
-    fn eval(&self, at: &Points, _: &Inputs, _: &WorldParams, out: &mut [f32]) {
+    fn eval(&self, at: &Points, _: &Inputs, _: &WorldParams, out: &mut [f32]) -> Result<()> {
         let [x0, y0] = self.center;
         let span = self.radius - self.inner;
         each(at, out, |x, y| {
             let (dx, dy) = (x - x0, y - y0);
             smoothstep((self.radius - (dx * dx + dy * dy).sqrt()) / span) as f32
         });
+        Ok(())
     }
 
     fn cost(&self) -> f64 {

@@ -3,6 +3,7 @@
 use super::positions::each;
 use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
+use orogen_grid::error::Result;
 use orogen_noise::Points;
 use orogen_noise::shader::function::Shader;
 use orogen_noise::shader::lattice::Lattice;
@@ -40,11 +41,12 @@ pub(super) fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
 }
 
 impl Field for Ramp {
-    fn eval(&self, at: &Points, _: &Inputs, _: &WorldParams, out: &mut [f32]) {
+    fn eval(&self, at: &Points, _: &Inputs, _: &WorldParams, out: &mut [f32]) -> Result<()> {
         // North is up and y grows south: azimuth 0 rises towards -y.
         let (sin, cos) = sin_cos_degrees(self.azimuth);
         let [x0, y0] = self.origin;
         each(at, out, |x, y| (((x - x0) * sin - (y - y0) * cos) / self.length) as f32);
+        Ok(())
     }
 
     fn lower(&self, _: usize, _: &WorldParams) -> Lowering<Shader> {

@@ -2,6 +2,7 @@
 
 use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
+use orogen_grid::error::Result;
 use orogen_noise::Points;
 use orogen_noise::shader::function::Shader;
 
@@ -28,16 +29,17 @@ op! {
 }
 
 impl Field for Remap {
-    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
+    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) -> Result<()> {
         let scale = ((self.to[1] - self.to[0]) / (self.from[1] - self.from[0])) as f32;
         let (from, to) = (self.from[0] as f32, self.to[0] as f32);
         let (low, high) = match self.clamp {
             true => (self.to[0].min(self.to[1]) as f32, self.to[0].max(self.to[1]) as f32),
             false => (f32::NEG_INFINITY, f32::INFINITY),
         };
-        for (sample, source) in out.iter_mut().zip(inputs.required(0)) {
+        for (sample, source) in out.iter_mut().zip(inputs.required("source")?) {
             *sample = ((source - from) * scale + to).clamp(low, high);
         }
+        Ok(())
     }
 
     fn lower(&self, _: usize, _: &WorldParams) -> Lowering<Shader> {

@@ -3,6 +3,7 @@
 use crate::lower::{Lowering, SELECTION};
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_grid::analysis::selection::Selection;
+use orogen_grid::error::Result;
 use orogen_noise::Points;
 use orogen_noise::shader::function::Shader;
 
@@ -29,12 +30,13 @@ op! {
 }
 
 impl Field for SelectFlow {
-    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
+    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) -> Result<()> {
         let selection = Selection::new(self.range.map(libm::log10), self.falloff);
-        for (sample, source) in out.iter_mut().zip(inputs.required(0)) {
+        for (sample, source) in out.iter_mut().zip(inputs.required("source")?) {
             // An area of 0 is below all others.
             *sample = selection.of(if *source > 0.0 { libm::log10f(*source) } else { f32::NEG_INFINITY });
         }
+        Ok(())
     }
 
     fn cost(&self) -> f64 {

@@ -3,6 +3,7 @@
 use crate::lower::{Lowering, SELECTION};
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_grid::analysis::selection::Selection;
+use orogen_grid::error::Result;
 use orogen_noise::Points;
 use orogen_noise::shader::function::Shader;
 
@@ -28,11 +29,12 @@ op! {
 }
 
 impl Field for SelectHeight {
-    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
+    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) -> Result<()> {
         let selection = Selection::new(self.range, self.falloff);
-        for (sample, source) in out.iter_mut().zip(inputs.required(0)) {
+        for (sample, source) in out.iter_mut().zip(inputs.required("source")?) {
             *sample = selection.of(*source);
         }
+        Ok(())
     }
 
     fn cost(&self) -> f64 {

@@ -1,7 +1,6 @@
 //! A field at one altitude.
 
-use crate::op::{Affine, CoordMap, Field, Inputs, WorldParams};
-use orogen_noise::Points;
+use crate::op::{Affine, CoordMap, Field};
 
 op! {
     /// The source at one altitude: a horizontal section of what depends on the altitude, the same at all altitudes.
@@ -21,10 +20,6 @@ op! {
 }
 
 impl Field for Slice {
-    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
-        out.copy_from_slice(inputs.required(0));
-    }
-
     fn coord_map(&self) -> Option<CoordMap> {
         Some(CoordMap::Mapped { source: 0, map: Affine { altitude: Some(self.altitude), ..Affine::IDENTITY } })
     }

@@ -5,6 +5,7 @@ use crate::declare::Input;
 use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_grid::climate::temperature::{Temperature as Law, seasons};
+use orogen_grid::error::Result;
 use orogen_noise::Points;
 use orogen_noise::shader::function::Shader;
 use orogen_noise::shader::lattice::Lattice;
@@ -63,21 +64,22 @@ impl Temperature {
             .with_continental_distance(self.continental_distance)
     }
 
-    fn mean(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+    fn mean(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) -> Result<()> {
         let law = self.law();
         by_row(at, out, |south| law.at_sea_level(south));
-        for (sample, height) in out.iter_mut().zip(inputs.required(0)) {
+        for (sample, height) in out.iter_mut().zip(inputs.required("source")?) {
             *sample = (f64::from(*sample) - law.decrease(f64::from(*height) - world_params.sea_level)) as f32;
         }
-        if let Some(anomaly) = inputs.get(2) {
+        if let Some(anomaly) = inputs.get("anomaly") {
             out.iter_mut().zip(anomaly).for_each(|(sample, anomaly)| *sample += anomaly);
         }
+        Ok(())
     }
 
     fn range(&self, at: &Points, inputs: &Inputs, out: &mut [f32]) {
         let law = self.law();
         by_row(at, out, |south| law.seasonality(south));
-        match inputs.get(1) {
+        match inputs.get("sea_distance") {
             Some(distances) => {
                 for (sample, distance) in out.iter_mut().zip(distances) {
                     *sample *= seasons(law.continentality(f64::from(*distance))) as f32;
@@ -103,14 +105,20 @@ fn by_row(at: &Points, out: &mut [f32], value: impl Fn(f64) -> f64) {
 }
 
 impl Field for Temperature {
-    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
-        self.mean(at, inputs, world_params, out);
-    }
-
-    fn eval_layer(&self, layer: usize, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+    fn eval_layer(
+        &self,
+        layer: usize,
+        at: &Points,
+        inputs: &Inputs,
+        world_params: &WorldParams,
+        out: &mut [f32],
+    ) -> Result<()> {
         match layer {
             0 => self.mean(at, inputs, world_params, out),
-            _ => self.range(at, inputs, out),
+            _ => {
+                self.range(at, inputs, out);
+                Ok(())
+            }
         }
     }
 

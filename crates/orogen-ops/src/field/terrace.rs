@@ -2,6 +2,7 @@
 
 use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
+use orogen_grid::error::Result;
 use orogen_noise::Points;
 use orogen_noise::shader::function::Shader;
 
@@ -26,10 +27,10 @@ op! {
 }
 
 impl Field for Terrace {
-    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
+    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) -> Result<()> {
         let (step, offset) = (self.step as f32, self.offset as f32);
         let riser = ((1.0 - self.sharpness) as f32).max(1e-3);
-        for (sample, source) in out.iter_mut().zip(inputs.required(0)) {
+        for (sample, source) in out.iter_mut().zip(inputs.required("source")?) {
             let steps = (source - offset) / step;
             let tread = (steps + 0.5).floor();
             // -0.5 ..= 0.5 around the tread; the riser is centered between two treads.
@@ -41,6 +42,7 @@ impl Field for Terrace {
             let share = if t < 0.5 { rise(t + 0.5) - 1.0 } else { rise(t - 0.5) };
             *sample = (tread + share) * step + offset;
         }
+        Ok(())
     }
 
     fn cost(&self) -> f64 {

@@ -1,8 +1,7 @@
 //! Translation, scaling and rotation of a field.
 
 use super::ramp::sin_cos_degrees;
-use crate::op::{Affine, CoordMap, Field, Inputs, WorldParams};
-use orogen_noise::Points;
+use crate::op::{Affine, CoordMap, Field};
 
 op! {
     /// The source translated, scaled and rotated: the value at p is the source's value at rotate(p) / scale + offset.
@@ -24,10 +23,6 @@ op! {
 }
 
 impl Field for Transform {
-    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
-        out.copy_from_slice(inputs.required(0));
-    }
-
     fn coord_map(&self) -> Option<CoordMap> {
         let (sin, cos) = sin_cos_degrees(self.angle);
         Some(CoordMap::Mapped {

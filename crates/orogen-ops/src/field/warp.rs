@@ -1,7 +1,6 @@
 //! Domain warp: reads the source at displaced positions.
 
-use crate::op::{CoordMap, Field, Inputs, WorldParams};
-use orogen_noise::Points;
+use crate::op::{CoordMap, Field};
 
 op! {
     /// Domain warp: the value at p is the source's value at p + strength * (x, y).
@@ -25,10 +24,6 @@ op! {
 }
 
 impl Field for Warp {
-    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
-        out.copy_from_slice(inputs.required(0));
-    }
-
     fn coord_map(&self) -> Option<CoordMap> {
         Some(CoordMap::Displaced { source: 0, east: 1, south: 2, strength: self.strength, reach: self.strength })
     }

@@ -1,14 +1,8 @@
 //! Worley's cellular noise.
 
-use super::basis::{lower, sample};
-use crate::lower::Lowering;
-use crate::op::{Field, Inputs, WorldParams};
-use orogen_noise::Points;
-use orogen_noise::shader::function::Shader;
-
 choice! {
     /// The feature of cellular noise: what is computed from the points near a sample.
-    pub enum Feature {
+    pub enum Feature as orogen_noise::Feature {
         /// Distance to the nearest point (F1): dimples.
         F1 = "f1",
         /// Distance to the second nearest point (F2).
@@ -26,36 +20,13 @@ choice! {
 
 choice! {
     /// Distance metric of cellular noise.
-    pub enum Distance {
+    pub enum Distance as orogen_noise::Distance {
         /// Straight-line distance: round cells.
         Euclidean = "euclidean",
         /// Sum of the distances along the axes: cells with slanted sides.
         Manhattan = "manhattan",
         /// Maximum of the distances along the axes: square cells.
         Chebyshev = "chebyshev",
-    }
-}
-
-impl Feature {
-    fn noise(self) -> orogen_noise::Feature {
-        match self {
-            Feature::F1 => orogen_noise::Feature::F1,
-            Feature::F2 => orogen_noise::Feature::F2,
-            Feature::Difference => orogen_noise::Feature::Difference,
-            Feature::Product => orogen_noise::Feature::Product,
-            Feature::Value => orogen_noise::Feature::Value,
-            Feature::Edge => orogen_noise::Feature::Edge,
-        }
-    }
-}
-
-impl Distance {
-    fn noise(self) -> orogen_noise::Distance {
-        match self {
-            Distance::Euclidean => orogen_noise::Distance::Euclidean,
-            Distance::Manhattan => orogen_noise::Distance::Manhattan,
-            Distance::Chebyshev => orogen_noise::Distance::Chebyshev,
-        }
     }
 }
 
@@ -68,7 +39,6 @@ op! {
     /// point, so the noise has no discontinuities from missed points. Worley, "A cellular texture basis function"
     /// (1996).
     pub struct Worley = "worley", field, revision 1;
-    space;
     params {
         /// Seed of the node, hashed with the world's seed. Two nodes with equal seeds make the same noise.
         seed: u64 = 0;
@@ -82,32 +52,12 @@ op! {
         /// lattice), 1 anywhere in the cell.
         jitter: f64 = 1.0, range 0.0 to 1.0;
     }
-}
-
-impl Worley {
-    fn noise(&self, world_params: &WorldParams) -> orogen_noise::Worley {
-        orogen_noise::Worley::new(world_params.seed_of(self.seed), self.wavelength)
-            .with_distance(self.distance.noise())
-            .with_feature(self.feature.noise())
-            .with_jitter(self.jitter)
-    }
-}
-
-impl Field for Worley {
-    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
-        sample(&self.noise(world_params), at, self.depth(inputs), out);
-    }
-
-    fn lower(&self, _: usize, world_params: &WorldParams) -> Lowering<Shader> {
-        lower(&self.noise(world_params), self.vertical)
-    }
-
+    noise |op, world_params| {
+        orogen_noise::Worley::new(world_params.seed_of(op.seed), op.wavelength)
+            .with_distance(op.distance.into())
+            .with_feature(op.feature.into())
+            .with_jitter(op.jitter)
+    };
     // One octave of a wavelength looks at fewer cells than the finer ones of a fractal.
-    fn cost(&self) -> f64 {
-        if self.feature == Feature::Edge { 5.8 } else { 3.0 }
-    }
-
-    fn cost_in_rows(&self) -> f64 {
-        if self.feature == Feature::Edge { 2.6 } else { 1.1 }
-    }
+    cost |op| if op.feature == Feature::Edge { [5.8, 2.6] } else { [3.0, 1.1] };
 }

@@ -1,7 +1,7 @@
 //! Aspect: the downhill direction.
 
 use crate::lower::{Lowering, Passes};
-use crate::op::{Context, Filter, GridInputs, WorldParams};
+use crate::op::{Context, Filter, GridInputs, WorldParams, only_layer};
 use orogen_grid::analysis::aspect::aspect_of;
 use orogen_grid::analysis::slope::gradients_between;
 use orogen_grid::error::Result;
@@ -34,7 +34,7 @@ impl Filter for Aspect {
 
     fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
         let source = inputs.required("source")?;
-        let [Some(out)] = out else { return Ok(()) };
+        let out = only_layer(out)?;
         context.progress.expect(window.height as f64);
         parallel::try_for_each(out.data_mut().chunks_mut(window.width.max(1)).enumerate(), |(j, row)| {
             context.progress.step(1.0)?;

@@ -2,7 +2,7 @@
 
 use super::select_curvature::{CurvatureKind, curvatures, samples_apart};
 use crate::lower::{Lowering, Passes};
-use crate::op::{Context, Filter, GridInputs, WorldParams};
+use crate::op::{Context, Filter, GridInputs, WorldParams, only_layer};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::parallel;
@@ -42,7 +42,7 @@ impl Filter for Curvature {
 
     fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
         let source = inputs.required("source")?;
-        let [Some(out)] = out else { return Ok(()) };
+        let out = only_layer(out)?;
         let (apart, (kind, _)) = (self.halo(window.cell), self.kind.kind());
         context.progress.expect(window.height as f64);
         parallel::try_for_each(out.data_mut().chunks_mut(window.width.max(1)).enumerate(), |(j, row)| {

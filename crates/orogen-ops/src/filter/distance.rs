@@ -2,7 +2,7 @@
 
 use crate::budget::memory;
 use crate::lower::{Lowering, Passes, alternating};
-use crate::op::{Context, Filter, GridInputs, WorldParams};
+use crate::op::{Context, Filter, GridInputs, WorldParams, wrong_layers};
 use orogen_grid::analysis::distance::nearest_with;
 use orogen_grid::analysis::selection::Selection;
 use orogen_grid::error::Result;
@@ -51,7 +51,7 @@ impl Filter for Distance {
 
     fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
         let source = inputs.required("source")?;
-        let [distance, near] = out else { return Ok(()) };
+        let [distance, near] = out else { return Err(wrong_layers()) };
         let samples = nearest_with(source, self.threshold as f32, self.halo(window.cell), context.progress)?;
         let fade = self.fade();
         let metres = |steps: f32| (f64::from(steps) * window.cell).min(self.reach) as f32;

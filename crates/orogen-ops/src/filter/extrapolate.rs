@@ -1,7 +1,7 @@
 //! Values beyond the edges of the world.
 
 use crate::lower::{Lowering, Passes};
-use crate::op::{Context, Filter, GridInputs, WorldParams};
+use crate::op::{Context, Filter, GridInputs, WorldParams, only_layer};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::parallel;
@@ -36,7 +36,7 @@ impl Filter for Extrapolate {
 
     fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
         let source = inputs.required("source")?;
-        let [Some(out)] = out else { return Ok(()) };
+        let out = only_layer(out)?;
         let Some(world) = context.world_params.window(window.cell).filter(|world| !world.contains(window)) else {
             out.paste(source);
             return Ok(());

@@ -1,7 +1,7 @@
 //! Flow directions in the encodings of other programs.
 
 use crate::lower::{Lowering, Passes};
-use crate::op::{Context, Filter, GridInputs, WorldParams};
+use crate::op::{Context, Filter, GridInputs, WorldParams, only_layer};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::hydrology::direction::{Convention, NONE};
@@ -51,7 +51,7 @@ impl Filter for FlowDirection {
 
     fn apply(&self, inputs: &GridInputs, _: &Window, out: &mut [Option<Grid>], _: &Context) -> Result<()> {
         let source = inputs.required("source")?;
-        let [Some(out)] = out else { return Ok(()) };
+        let out = only_layer(out)?;
         let convention = self.convention();
         for (out, code) in out.data_mut().iter_mut().zip(source.data()) {
             *out = f32::from(convention.of(*code as u8));

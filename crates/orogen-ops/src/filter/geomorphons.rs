@@ -2,7 +2,7 @@
 
 use crate::budget::memory;
 use crate::lower::{Lowering, Passes};
-use crate::op::{Context, Filter, GridInputs, WorldParams};
+use crate::op::{Context, Filter, GridInputs, WorldParams, only_layer};
 use orogen_grid::analysis::geomorphons::{CODES, Level, Look, geomorphons_with};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -59,7 +59,7 @@ impl Filter for Geomorphons {
 
     fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
         let source = inputs.required("source")?;
-        let [Some(out)] = out else { return Ok(()) };
+        let out = only_layer(out)?;
         let forms = geomorphons_with(source, &self.look(window.cell), context.progress)?;
         out.data_mut().iter_mut().zip(forms.data()).for_each(|(out, form)| *out = f32::from(*form));
         Ok(())

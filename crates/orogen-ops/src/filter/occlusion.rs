@@ -1,7 +1,7 @@
 //! Ambient occlusion of terrain.
 
 use crate::lower::{Lowering, Passes};
-use crate::op::{Context, Filter, GridInputs, WorldParams};
+use crate::op::{Context, Filter, GridInputs, WorldParams, only_layer};
 use orogen_grid::analysis::sky::{sky_view_with, steps_of_view};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -37,7 +37,7 @@ impl Filter for Occlusion {
 
     fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
         let source = inputs.required("source")?;
-        let [Some(out)] = out else { return Ok(()) };
+        let out = only_layer(out)?;
         *out = sky_view_with(source, window, self.halo(window.cell), context.progress)?;
         Ok(())
     }

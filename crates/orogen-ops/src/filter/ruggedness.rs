@@ -1,7 +1,7 @@
 //! Terrain ruggedness index.
 
 use crate::lower::{Lowering, Passes};
-use crate::op::{Context, Filter, GridInputs, WorldParams};
+use crate::op::{Context, Filter, GridInputs, WorldParams, only_layer};
 use orogen_grid::analysis::roughness::riley_with;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -31,7 +31,7 @@ impl Filter for Ruggedness {
 
     fn apply(&self, inputs: &GridInputs, _: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
         let source = inputs.required("source")?;
-        let [Some(out)] = out else { return Ok(()) };
+        let out = only_layer(out)?;
         *out = riley_with(source, context.progress)?;
         Ok(())
     }

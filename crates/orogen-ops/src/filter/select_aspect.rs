@@ -1,7 +1,7 @@
 //! A mask by aspect.
 
 use crate::lower::{Lowering, Passes};
-use crate::op::{Context, Filter, GridInputs, WorldParams};
+use crate::op::{Context, Filter, GridInputs, WorldParams, only_layer};
 use orogen_grid::analysis::aspect::aspect_of;
 use orogen_grid::analysis::selection::Selection;
 use orogen_grid::analysis::slope::gradients_between;
@@ -45,7 +45,7 @@ impl Filter for SelectAspect {
 
     fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
         let source = inputs.required("source")?;
-        let [Some(out)] = out else { return Ok(()) };
+        let out = only_layer(out)?;
         let directions = Selection::new([-1.0, self.width], [0.0, self.falloff]);
         let slopes = Selection::new([self.least_slope, 90.0], [self.least_slope, 0.0]);
         let direction = self.direction as f32;

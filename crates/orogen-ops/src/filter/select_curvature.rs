@@ -1,7 +1,7 @@
 //! A mask by curvature.
 
 use crate::lower::{Lowering, Passes};
-use crate::op::{Context, Filter, GridInputs, WorldParams};
+use crate::op::{Context, Filter, GridInputs, WorldParams, only_layer};
 use orogen_grid::analysis::curvature::{Curvature, bend};
 use orogen_grid::analysis::selection::Selection;
 use orogen_grid::error::Result;
@@ -98,7 +98,7 @@ impl Filter for SelectCurvature {
 
     fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
         let source = inputs.required("source")?;
-        let [Some(out)] = out else { return Ok(()) };
+        let out = only_layer(out)?;
         let selection = Selection::new(self.range, self.falloff);
         let apart = self.halo(window.cell);
         let (kind, _) = self.kind.kind();

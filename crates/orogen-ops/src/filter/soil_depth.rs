@@ -1,7 +1,7 @@
 //! Steady-state soil depth.
 
 use crate::lower::{Lowering, Passes};
-use crate::op::{Context, Filter, GridInputs, WorldParams};
+use crate::op::{Context, Filter, GridInputs, WorldParams, only_layer};
 use orogen_grid::analysis::soil::Soil;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -55,7 +55,7 @@ impl Filter for SoilDepth {
 
     fn apply(&self, inputs: &GridInputs, _: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
         let source = inputs.required("source")?;
-        let [Some(out)] = out else { return Ok(()) };
+        let out = only_layer(out)?;
         let soil = Soil::default()
             .with_production(self.production)
             .with_decay(self.decay)

@@ -2,7 +2,7 @@
 
 use crate::budget::memory;
 use crate::lower::{Lowering, Passes, alternating};
-use crate::op::{Context, Filter, GridInputs, WorldParams};
+use crate::op::{Context, Filter, GridInputs, WorldParams, only_layer};
 use orogen_grid::erosion::thermal::Thermal as Law;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -45,7 +45,7 @@ impl Filter for Thermal {
 
     fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
         let source = inputs.required("source")?;
-        let [Some(out)] = out else { return Ok(()) };
+        let out = only_layer(out)?;
         if window.is_empty() {
             return Ok(());
         }

@@ -2,7 +2,7 @@
 
 use crate::budget::memory;
 use crate::lower::{Lowering, Passes};
-use crate::op::{Context, Filter, GridInputs, WorldParams};
+use crate::op::{Context, Filter, GridInputs, WorldParams, wrong_layers};
 use orogen_grid::analysis::position::{class, half_widths, positions_with};
 use orogen_grid::analysis::slope::slope_degrees;
 use orogen_grid::error::Result;
@@ -61,7 +61,7 @@ impl Filter for TopographicPosition {
 
     fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
         let source = inputs.required("source")?;
-        let [position, deviation, classes] = out else { return Ok(()) };
+        let [position, deviation, classes] = out else { return Err(wrong_layers()) };
         let found = positions_with(source, self.halo(window.cell), context.progress)?;
         let width = window.width.max(1);
         for (layer, value) in [(position, 0), (deviation, 1)] {

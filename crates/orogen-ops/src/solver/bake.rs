@@ -36,7 +36,7 @@ impl Solver for Bake {
 
     fn solve(&self, sources: &dyn Sources, _: &Context) -> Result<Solution> {
         let mut baked = sources.raster()?;
-        sources.each_tile(0, sources.padded(), &mut |tile| baked.put(tile))?;
+        sources.each_tile("source", sources.padded(), &mut |tile| baked.put(tile))?;
         Ok(Solution { layers: vec![baked], scalars: Vec::new() })
     }
 

@@ -104,7 +104,7 @@ impl Solver for Drainage {
         };
         let filled = sources.keep(filled)?;
         surface.finish();
-        let rain = sources.given(1).then(|| sources.whole(1, sources.padded())).transpose()?;
+        let rain = sources.given("rain").then(|| sources.whole("rain", sources.padded())).transpose()?;
         let accumulation = accumulate_rain_with(&receivers, rain.as_ref(), &counting)?;
         drop(rain);
         counting.finish();
@@ -129,7 +129,7 @@ impl Solver for Drainage {
     }
 
     fn lower(&self, padded: &Window, given: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
-        let rain = (given.get(1) == Some(&true)).then_some(1);
+        let rain = self.spec().given_input("rain", given);
         let planes = Planes { inputs: 2, layers: self.spec().layers.len(), scratch: SCRATCH, rain };
         if !planes.can_rain(padded) {
             return Lowering::Processor(routing::RAIN);
@@ -182,9 +182,9 @@ impl Drainage {
         let threshold = u64::from(cells_of(self.stream, sources.padded(), 0));
         let [mut flow, mut watershed, mut strahler] = [sources.raster()?, sources.raster()?, sources.raster()?];
         let layers = Layers { flow: &mut flow, watershed: &mut watershed, strahler: &mut strahler, threshold };
-        let rain = if sources.given(1) {
+        let rain = if sources.given("rain") {
             let mut rain = sources.raster()?;
-            sources.each_tile(1, sources.padded(), &mut |tile| rain.put(tile))?;
+            sources.each_tile("rain", sources.padded(), &mut |tile| rain.put(tile))?;
             Some(rain)
         } else {
             None

@@ -38,7 +38,7 @@ impl Solver for Normalise {
 
     fn solve(&self, sources: &dyn Sources, _: &Context) -> Result<Solution> {
         let mut range = NOTHING;
-        sources.each_tile(0, sources.domain(), &mut |tile| {
+        sources.each_tile("source", sources.domain(), &mut |tile| {
             range = join(range, range_of(tile));
             Ok(())
         })?;
@@ -48,7 +48,7 @@ impl Solver for Normalise {
 
     fn read(&self, solution: &Solution, asked: &Reading, out: &mut [f32]) -> Result<()> {
         let [from, scale, to] = self.map(solution);
-        for (sample, source) in out.iter_mut().zip(asked.inputs.required(0)) {
+        for (sample, source) in out.iter_mut().zip(asked.inputs.required("source")?) {
             *sample = (source - from) * scale + to;
         }
         Ok(())

@@ -73,16 +73,22 @@ impl Solver for SelectShare {
         let drawn = drawn(sources.domain(), context.world_params);
         let mut values = sources.raster()?;
         let mut count = 0u64;
-        sources.each_tile(0, &drawn, &mut |tile| {
+        sources.each_tile("source", &drawn, &mut |tile| {
             count += tile.data().iter().filter(|value| !value.is_nan()).count() as u64;
             values.put(tile)
         })?;
-        sources.each_tile(1, &drawn, &mut |among| {
-            let mut tile = values.get(among.window())?;
-            let candidates = among.data().iter().map(|among| *among >= CANDIDATE);
-            tile.data_mut().iter_mut().zip(candidates).filter(|(_, is)| !is).for_each(|(value, _)| *value = f32::NAN);
-            values.put(&tile)
-        })?;
+        if sources.given("among") {
+            sources.each_tile("among", &drawn, &mut |among| {
+                let mut tile = values.get(among.window())?;
+                let candidates = among.data().iter().map(|among| *among >= CANDIDATE);
+                tile.data_mut()
+                    .iter_mut()
+                    .zip(candidates)
+                    .filter(|(_, is)| !is)
+                    .for_each(|(value, _)| *value = f32::NAN);
+                values.put(&tile)
+            })?;
+        }
         let wanted = (self.share * count as f64).round() as u64;
         let ranked = Ranked { values: &values, drawn, highest: self.highest, progress: context.progress };
         let Last { rank, row, column } = ranked.last(wanted)?;
@@ -93,8 +99,8 @@ impl Solver for SelectShare {
         let [last, row, column, cell] = solution.scalars[..] else {
             return Err(Error::new(ErrorKind::Internal, "a solution has no threshold"));
         };
-        let among = asked.inputs.get(1);
-        for (k, (sample, value)) in out.iter_mut().zip(asked.inputs.required(0)).enumerate() {
+        let among = asked.inputs.get("among");
+        for (k, (sample, value)) in out.iter_mut().zip(asked.inputs.required("source")?).enumerate() {
             let is_candidate = among.is_none_or(|among| among.get(k).is_some_and(|among| *among >= CANDIDATE));
             let is_selected = is_candidate
                 && rank(*value, self.highest).is_some_and(|rank| {

@@ -100,9 +100,10 @@ impl Solver for StreamPower {
 
     fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
         let window = *sources.padded();
-        let source = sources.whole(0, &window)?;
-        let given = |i: usize| sources.given(i).then(|| sources.whole(i, &window)).transpose();
-        let (erodibility_factor, uplift_factor, rain) = (given(1)?, given(2)?, given(3)?);
+        let source = sources.whole("source", &window)?;
+        let given = |name: &str| sources.given(name).then(|| sources.whole(name, &window)).transpose();
+        let (erodibility_factor, uplift_factor) = (given("erodibility_factor")?, given("uplift_factor")?);
+        let rain = given("rain")?;
         let erosion = self.erosion(context.world_params);
         let substrate = Substrate::default()
             .with_erodibility_factor(erodibility_factor.as_ref())
@@ -144,8 +145,8 @@ impl Solver for StreamPower {
     }
 
     fn lower(&self, padded: &Window, given: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
-        let given = |i: usize| given.get(i) == Some(&true);
-        let rain = given(3).then_some(3);
+        let given = |name: &str| self.spec().given_input(name, given);
+        let rain = given("rain");
         let planes = Planes { inputs: 4, layers: self.spec().layers.len(), scratch: SCRATCH, rain };
         if !planes.can_rain(padded) {
             return Lowering::Processor(routing::RAIN);
@@ -153,8 +154,9 @@ impl Solver for StreamPower {
         if self.passes_of_steps(padded) > MAX_PASSES {
             return Lowering::Processor("so many passes are submitted no faster than the processor computes");
         }
+        let factors = ["erodibility_factor", "uplift_factor"].map(|name| given(name).is_some());
         // Where rivers go in the first steps depends on the last digits of nearly level ground.
-        Lowering::Shader(self.passes(padded, planes, [given(1), given(2)], world_params).chaotic())
+        Lowering::Shader(self.passes(padded, planes, factors, world_params).chaotic())
     }
 
     fn cost(&self) -> f64 {

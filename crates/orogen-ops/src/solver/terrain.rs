@@ -13,9 +13,9 @@ use orogen_grid::hydrology::steepest::Descent;
 use orogen_grid::progress::Progress;
 use orogen_io::raster::Raster;
 
-/// Input 0 of a solver over its domain: its heights, in memory.
+/// The input `source` of a solver over its domain, in memory.
 pub(crate) fn heights(sources: &dyn Sources, context: &Context) -> Result<Grid> {
-    let heights = sources.whole(0, sources.padded())?;
+    let heights = sources.whole("source", sources.padded())?;
     context.progress.check()?;
     Ok(heights)
 }
@@ -70,7 +70,7 @@ pub(crate) struct Terrain {
 }
 
 impl Terrain {
-    /// Reads input 0.
+    /// Reads the input `source`.
     pub(crate) fn read(sources: &dyn Sources, sea: bool, context: &Context) -> Result<Terrain> {
         let heights = heights(sources, context)?;
         let outlets = Outlets::new(&heights, sea_level(sea, context));
@@ -98,11 +98,11 @@ impl TiledTerrain {
         large::memory(memory(padded, 1))
     }
 
-    /// Reads input 0.
+    /// Reads the input `source`.
     pub(crate) fn read(sources: &dyn Sources, sea: bool, context: &Context) -> Result<TiledTerrain> {
         let mut heights = sources.raster()?;
         let padded = sources.padded();
-        sources.each_tile(0, padded, &mut |tile| heights.put(tile))?;
+        sources.each_tile("source", padded, &mut |tile| heights.put(tile))?;
         let tiling = Tiling::new(*padded, large::side(memory(padded, 1)));
         Ok(TiledTerrain { heights, tiling, sea: sea_level(sea, context) })
     }

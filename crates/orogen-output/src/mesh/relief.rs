@@ -2,13 +2,10 @@
 
 use orogen_engine::declare::Input;
 use orogen_engine::field::Curve;
-use orogen_engine::op::{Field, Inputs, WorldParams};
-use orogen_engine::recipe::document::WorldSpec;
 use orogen_grid::analysis::halo::Halo;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Grid;
 use orogen_io::format::levels::{NO_SAMPLES, extremes};
-use orogen_noise::Points;
 
 /// A curve over the relief of a grid, from 0 at its lowest to 1 at its highest sample: control points (from, to) with
 /// ascending first numbers, interpolated with the monotone cubic of the op `curve`.
@@ -65,18 +62,10 @@ impl HeightCurve {
         if !(relief > 0.0 && relief.is_finite()) {
             return;
         }
-        let curve = Curve { source: Input::None, points: self.points.clone() };
-        let world_params: WorldParams = WorldSpec::default().world_params();
-        let shares: Vec<f32> = heights.iter().map(|height| ((f64::from(*height) - low) / relief) as f32).collect();
-        let places = [];
-        curve.eval(
-            &Points::Scattered { x: &places, y: &places },
-            &Inputs::new(&[Some(&shares)]),
-            &world_params,
-            heights,
-        );
-        for share in heights {
-            *share = (low + f64::from(*share) * relief) as f32;
+        let function = Curve { source: Input::None, points: self.points.clone() }.function();
+        for height in heights {
+            let share = function(((f64::from(*height) - low) / relief) as f32);
+            *height = (low + f64::from(share) * relief) as f32;
         }
     }
 }

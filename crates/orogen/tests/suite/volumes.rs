@@ -3,7 +3,7 @@
 use crate::support::open;
 use orogen::declare::VERTICAL;
 use orogen::node::Node;
-use orogen::op::{Field, Inputs, WorldParams};
+use orogen::op::WorldParams;
 use orogen::value::Value;
 use orogen::{Budget, ErrorKind, Options, Recipe, Sampler, Window, World};
 use orogen_noise::{Basis, Depth, Fractal, Kind, Perlin, Points};
@@ -244,32 +244,20 @@ fn every_noise_can_be_one_of_space() {
 }
 
 orogen::op! {
-    /// A fractal of a program, in the plane only.
-    pub struct Flat = "test.flat", field, revision 1;
-    octaves;
-}
-
-impl Field for Flat {
-    fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
-        self.fractal(world_params, Kind::Fbm).fill(at, out).unwrap();
-    }
+    /// A fractal of a program.
+    pub struct Rough = "test.rough", field, revision 1;
+    octaves |_| Kind::Ridged;
 }
 
 orogen::op! {
-    /// A noise of a program, in the plane or in space.
+    /// A noise of a program.
     pub struct Deep = "test.deep", field, revision 1;
-    space;
     params {
         /// Wavelength.
         wavelength: f64 = 100.0, unit "m", range 1.0 to 1e6;
     }
-}
-
-impl Field for Deep {
-    fn eval(&self, at: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
-        let depth = self.depth(inputs).unwrap_or(0.0);
-        Perlin::new(3, self.wavelength).fill3(at, &Depth::Slice(depth), out).unwrap();
-    }
+    noise |op, _| Perlin::new(3, op.wavelength);
+    cost |_| [1.0, 0.15];
 }
 
 #[test]
@@ -283,7 +271,8 @@ fn ops_of_a_program_may_be_noises_of_space() {
         assert_eq!(volume.slice(0), world.window("height", &window).unwrap().data());
         (world.reads_altitude("height").unwrap(), volume.slice(0) != volume.slice(1))
     };
-    assert_eq!(varies(Flat::default().into()), (false, false));
+    assert_eq!(varies(Rough::default().into()), (false, false));
+    assert_eq!(varies(Rough { vertical: 2.0, ..Rough::default() }.into()), (true, true));
     assert_eq!(varies(Deep::default().into()), (false, false));
     assert_eq!(varies(Deep { vertical: 2.0, ..Deep::default() }.into()), (true, true));
     let laws = orogen::laws::Laws::of(|cell| Deep { vertical: 0.5, wavelength: 9.0 * cell.max(1.0) });

@@ -3,6 +3,7 @@
 
 use super::filters::WORLD;
 use super::run;
+use orogen_engine::declare::Spec;
 use orogen_engine::device::PassStep;
 use orogen_engine::lower::{Lowering, Passes};
 use orogen_engine::node::Node;
@@ -15,6 +16,7 @@ use orogen_io::raster::Raster;
 
 /// Grids over the whole domain as the inputs of a solver.
 struct InMemory<'a> {
+    spec: &'static Spec,
     window: Window,
     inputs: &'a [Option<Grid>],
 }
@@ -28,15 +30,13 @@ impl Sources for InMemory<'_> {
         &self.window
     }
 
-    fn given(&self, i: usize) -> bool {
-        self.inputs[i].is_some()
+    fn given(&self, name: &str) -> bool {
+        self.inputs[self.spec.input_named(name).unwrap()].is_some()
     }
 
-    fn each_tile(&self, i: usize, window: &Window, visit: &mut dyn FnMut(&Grid) -> Result<()>) -> Result<()> {
-        match &self.inputs[i] {
-            Some(grid) => visit(&grid.crop(window).unwrap()),
-            None => Ok(()),
-        }
+    fn each_tile(&self, name: &str, window: &Window, visit: &mut dyn FnMut(&Grid) -> Result<()>) -> Result<()> {
+        let grid = self.inputs[self.spec.input_named(name).unwrap()].as_ref().unwrap();
+        visit(&grid.crop(window).unwrap())
     }
 
     fn raster(&self) -> Result<Raster> {
@@ -72,7 +72,8 @@ pub fn solver_passes(node: &Node, window: &Window, inputs: &[Option<Grid>]) -> O
 /// All layers of a solution by the processor.
 pub fn solved_by_processor(node: &Node, window: &Window, inputs: &[Option<Grid>]) -> Vec<Grid> {
     let context = Context { world_params: &WORLD, progress: &Progress::none(), observer: None };
-    let Solution { layers, .. } = solver(node).unwrap().solve(&InMemory { window: *window, inputs }, &context).unwrap();
+    let sources = InMemory { spec: node.spec(), window: *window, inputs };
+    let Solution { layers, .. } = solver(node).unwrap().solve(&sources, &context).unwrap();
     layers.iter().map(|layer| layer.get(window).unwrap()).collect()
 }
 

@@ -3,6 +3,7 @@
 use orogen::laws::{Law, Laws};
 use orogen::op::{
     Context, Field, Filter, GridInputs, Inputs, Levelled, Levels, Reading, Solution, Solver, Sources, WorldParams,
+    only_layer,
 };
 use orogen::{Grid, Level, Points, Result, Window};
 use std::time::Duration;
@@ -24,7 +25,7 @@ macro_rules! filter {
 
             fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
                 let source = inputs.required("source")?;
-                let [Some(out)] = out else { return Ok(()) };
+                let out = only_layer(out)?;
                 let add: fn(&Window, &Context) -> f32 = $apply;
                 let add = add(window, context);
                 out.data_mut().iter_mut().zip(source.data()).for_each(|(out, source)| *out = source + add);
@@ -61,7 +62,7 @@ impl Filter for Deaf {
 
     fn apply(&self, inputs: &GridInputs, _: &Window, out: &mut [Option<Grid>], _: &Context) -> Result<()> {
         let source = inputs.required("source")?;
-        let [Some(out)] = out else { return Ok(()) };
+        let out = only_layer(out)?;
         out.data_mut().copy_from_slice(source.data());
         Ok(())
     }
@@ -91,7 +92,7 @@ impl Filter for Wide {
 
     fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], _: &Context) -> Result<()> {
         let source = inputs.required("source")?;
-        let [Some(out)] = out else { return Ok(()) };
+        let out = only_layer(out)?;
         let halo = self.halo as usize;
         for (i, j) in (0..window.height).flat_map(|j| (0..window.width).map(move |i| (i, j))) {
             let at = |row: usize| source[(i + halo, row.min(source.height() - 1))];
@@ -117,7 +118,7 @@ impl Solver for Counted {
 
     fn solve(&self, sources: &dyn Sources, _: &Context) -> Result<Solution> {
         let mut tiles = 0.0;
-        sources.each_tile(0, sources.domain(), &mut |_| {
+        sources.each_tile("source", sources.domain(), &mut |_| {
             tiles += 1.0;
             Ok(())
         })?;
@@ -136,8 +137,9 @@ orogen::op! {
 }
 
 impl Field for Celled {
-    fn eval(&self, at: &Points, _: &Inputs, _: &WorldParams, out: &mut [f32]) {
+    fn eval(&self, at: &Points, _: &Inputs, _: &WorldParams, out: &mut [f32]) -> Result<()> {
         out.iter_mut().enumerate().for_each(|(k, out)| *out = at.position(k + 1).map_or(0.0, |(x, _)| x as f32));
+        Ok(())
     }
 }
 

@@ -33,7 +33,7 @@ orogen::op! {
 }
 
 impl Field for Ripples {
-    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) -> Result<()> {
         let phase = (world_params.seed_of(self.seed) % 1000) as f64 / 1000.0;
         for (k, sample) in out.iter_mut().enumerate() {
             let (x, _) = at.position(k).unwrap_or((f64::NAN, f64::NAN));
@@ -44,8 +44,9 @@ impl Field for Ripples {
                 Wave::Square if share < 0.5 => 0.0,
                 Wave::Square => 1.0,
             };
-            *sample = ripple + inputs.get(0).map_or(0.0, |source| source[k]);
+            *sample = ripple + inputs.get("source").map_or(0.0, |source| source[k]);
         }
+        Ok(())
     }
 }
 
@@ -230,7 +231,7 @@ impl Levelled for Midpoints {
 
 /// The solution of [`Above`] and of its other revision.
 fn above(sources: &dyn Sources, context: &Context, times: f32) -> Result<Solution> {
-    let source = sources.whole(0, sources.padded())?;
+    let source = sources.whole("source", sources.padded())?;
     context.progress.check()?;
     let mean = source.data().iter().map(|sample| f64::from(*sample)).sum::<f64>() / source.data().len() as f64;
     let grid = |of: &dyn Fn(f32) -> f32| {

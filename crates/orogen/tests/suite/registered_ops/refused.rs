@@ -1,7 +1,7 @@
 //! Ops whose names or keys are refused.
 
-use orogen::Points;
 use orogen::op::{Field, Inputs, WorldParams};
+use orogen::{Points, Result};
 
 macro_rules! raise {
     ($($name:ident = $op:literal, $key:ident, $default:literal;)*) => { $(
@@ -14,8 +14,9 @@ macro_rules! raise {
             }
         }
         impl Field for $name {
-            fn eval(&self, _: &Points, _: &Inputs, _: &WorldParams, out: &mut [f32]) {
+            fn eval(&self, _: &Points, _: &Inputs, _: &WorldParams, out: &mut [f32]) -> Result<()> {
                 out.fill(self.$key as f32);
+                Ok(())
             }
         }
     )* };
