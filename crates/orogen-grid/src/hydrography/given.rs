@@ -4,7 +4,7 @@
 use crate::checks::now_and_then;
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::{Grid, Window};
-use crate::hydrology::accumulation::accumulate_with;
+use crate::hydrology::accumulation::{Accumulation, accumulate_with};
 use crate::hydrology::direction::{NONE, STEPS};
 use crate::hydrology::lakes::Lake;
 use crate::hydrology::receivers::Receivers;
@@ -101,31 +101,8 @@ impl Water {
         drop(visited);
         let cell_area = window.cell * window.cell;
         let spring = (f64::from(least.spring.max(1)) * cell_area) as f32;
-        let mut river = vec![Stream::default(); window.len()];
-        for (k, node) in drained.upstream_first().enumerate() {
-            now_and_then(k, &|| progress.check())?;
-            let is_border = is_border(&window, node);
-            let order = &mut river[node];
-            // An area may fall a little downstream where areas are carried down from level to level: a river goes on.
-            order.is_river |= flow.data()[node] >= spring && !drowned[node];
-            if !order.is_river {
-                continue;
-            }
-            order.is_unknown |= is_border;
-            order.order = (order.order + u8::from(order.met)).max(1);
-            let (from, to) = (*order, receivers.of(node));
-            if to != node {
-                let next = &mut river[to];
-                next.is_river = true;
-                next.is_unknown |= from.is_unknown;
-                next.met = (next.met && next.order >= from.order) || next.order == from.order;
-                next.order = next.order.max(from.order);
-                // Where heights are interpolated or changed by the recipe, a bed may rise.
-                let height = bed.data()[node];
-                let below = &mut bed.data_mut()[to];
-                *below = if receivers.code(to) == NONE { *below } else { below.min(height) };
-            }
-        }
+        let is_large = |node: usize| flow.data()[node] >= spring && !drowned[node];
+        let river = orders(&receivers, &drained, is_large, &mut bed, progress)?;
         drop((drained, drowned));
         let mut streams = Streams::default();
         for (node, order) in river.iter().enumerate().filter(|(_, order)| order.is_river) {
@@ -182,6 +159,43 @@ struct Stream {
     met: bool,
     is_river: bool,
     is_unknown: bool,
+}
+
+/// The rivers that begin at nodes with a large drainage area, with their orders. Beds do not rise along them.
+fn orders(
+    receivers: &Receivers,
+    drained: &Accumulation,
+    is_large: impl Fn(usize) -> bool,
+    bed: &mut Grid,
+    progress: &Progress,
+) -> Result<Vec<Stream>> {
+    let window = *bed.window();
+    let mut river = vec![Stream::default(); window.len()];
+    for (k, node) in drained.upstream_first().enumerate() {
+        now_and_then(k, &|| progress.check())?;
+        let is_border = is_border(&window, node);
+        let order = &mut river[node];
+        // An area may fall a little downstream where areas are carried down from level to level: a river goes on.
+        order.is_river |= is_large(node);
+        if !order.is_river {
+            continue;
+        }
+        order.is_unknown |= is_border;
+        order.order = (order.order + u8::from(order.met)).max(1);
+        let (from, to) = (*order, receivers.of(node));
+        if to != node {
+            let next = &mut river[to];
+            next.is_river = true;
+            next.is_unknown |= from.is_unknown;
+            next.met = (next.met && next.order >= from.order) || next.order == from.order;
+            next.order = next.order.max(from.order);
+            // Where heights are interpolated or changed by the recipe, a bed may rise.
+            let height = bed.data()[node];
+            let below = &mut bed.data_mut()[to];
+            *below = if receivers.code(to) == NONE { *below } else { below.min(height) };
+        }
+    }
+    Ok(river)
 }
 
 fn is_border(window: &Window, sample: usize) -> bool {

@@ -1,6 +1,7 @@
 //! Watersheds of chosen outlets (pour points), which are moved to the nearest stream first.
 
 use super::water::{Cover, Water};
+use super::watersheds::label_way;
 use super::zones::ZoneStats;
 use crate::error::Result;
 use crate::progress::Progress;
@@ -93,23 +94,12 @@ impl PourPoints {
             }
             labels[*node] = k as u32;
         }
-        let mut way: Vec<usize> = Vec::new();
+        let mut way = Vec::new();
         for start in 0..labels.len() {
             if start.is_multiple_of(1 << 20) {
                 progress.check()?;
             }
-            let mut at = start;
-            while labels[at] == UNKNOWN {
-                way.push(at);
-                let next = water.receivers.of(at);
-                if next == at {
-                    labels[at] = NONE;
-                    break;
-                }
-                at = next;
-            }
-            let label = labels[at];
-            way.drain(..).for_each(|node| labels[node] = label);
+            label_way(&water.receivers, start, &mut labels, [UNKNOWN, NONE], &mut way);
         }
         let next = |node: usize| match water.receivers.of(node) {
             next if next == node => None,

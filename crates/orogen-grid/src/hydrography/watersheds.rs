@@ -3,6 +3,7 @@
 use super::rivers::{Mouth, River};
 use super::water::{Cover, Frame, Water};
 use super::zones::ZoneStats;
+use crate::hydrology::receivers::Receivers;
 use std::ops::Range;
 
 /// The watershed of each sample of a frame.
@@ -22,7 +23,30 @@ const UNKNOWN: u32 = u32::MAX;
 /// O(samples).
 #[must_use]
 pub fn watersheds(water: &Water, frame: &Frame, reaches: &[River]) -> Watersheds {
-    let width = water.heights.width();
+    let mut found = mouths(water, reaches);
+    let mut way = Vec::new();
+    for start in 0..found.labels.len() {
+        // What drains to no mouth has label 0.
+        label_way(&water.receivers, start, &mut found.labels, [UNKNOWN, 0], &mut way);
+    }
+    let is_land = |cell: usize| matches!(water.cover(cell), Cover::Land | Cover::Lake(_));
+    let mut out = Vec::with_capacity(frame.columns.len() * frame.rows.len());
+    for j in frame.rows.clone() {
+        out.extend(frame.columns.clone().map(|i| j * water.heights.width() + i).map(|cell| {
+            match found.labels[water.nearest_node(cell)] {
+                _ if !is_land(cell) => 0,
+                0 => UNKNOWN,
+                label => label,
+            }
+        }));
+    }
+    found.labels = out;
+    found.label_rest(frame.columns.len());
+    found
+}
+
+/// Labels of the nodes of mouths and of given lakes; other nodes are [`UNKNOWN`].
+fn mouths(water: &Water, reaches: &[River]) -> Watersheds {
     let mut labels = vec![UNKNOWN; water.heights.data().len()];
     let mut rivers = Vec::new();
     // The watershed of each lake of a given network: water that runs into it stays.
@@ -44,13 +68,11 @@ pub fn watersheds(water: &Water, frame: &Frame, reaches: &[River]) -> Watersheds
             }
             Mouth::Lake(_) | Mouth::Reach(_) => continue,
         }
-        rivers.push(Some(k as u32));
         // Another reach that joins at that sample shares its watershed.
         let label = &mut labels[reach.end as usize];
         if *label == UNKNOWN {
+            rivers.push(Some(k as u32));
             *label = rivers.len() as u32;
-        } else {
-            rivers.pop();
         }
     }
     if of_lake.iter().any(Option::is_some) {
@@ -62,61 +84,63 @@ pub fn watersheds(water: &Water, frame: &Frame, reaches: &[River]) -> Watersheds
             }
         }
     }
-    // Follow the receivers to a known label, and assign it to the path.
-    let mut way: Vec<u32> = Vec::new();
-    for start in 0..labels.len() {
-        let mut at = start;
-        while labels[at] == UNKNOWN {
-            way.push(at as u32);
-            let next = water.receivers.of(at);
-            if next == at {
-                // It drains to no mouth.
-                labels[at] = 0;
-                break;
+    Watersheds { labels, rivers }
+}
+
+/// Gives the nodes on the way down from a node the label of the first one that has one, or `none` if none has. `way` is
+/// scratch memory.
+pub(super) fn label_way(
+    receivers: &Receivers,
+    start: usize,
+    labels: &mut [u32],
+    [unknown, none]: [u32; 2],
+    way: &mut Vec<u32>,
+) {
+    let mut at = start;
+    while labels[at] == unknown {
+        way.push(at as u32);
+        let next = receivers.of(at);
+        if next == at {
+            labels[at] = none;
+            break;
+        }
+        at = next;
+    }
+    let label = labels[at];
+    way.drain(..).for_each(|node| labels[node as usize] = label);
+}
+
+impl Watersheds {
+    /// Labels the parts of unknown land, of this number of columns.
+    fn label_rest(&mut self, across: usize) {
+        let count = self.labels.len();
+        let mut waiting = Vec::new();
+        for start in 0..count {
+            if self.labels[start] != UNKNOWN {
+                continue;
             }
-            at = next;
-        }
-        let label = labels[at];
-        way.drain(..).for_each(|cell| labels[cell as usize] = label);
-    }
-    let cell = |i: usize, j: usize| (frame.rows.start + j) * width + frame.columns.start + i;
-    let (across, down) = (frame.columns.len(), frame.rows.len());
-    let mut out = vec![0u32; across * down];
-    let is_land = |cell: usize| matches!(water.cover(cell), Cover::Land | Cover::Lake(_));
-    for j in 0..down {
-        for i in 0..across {
-            let cell = cell(i, j);
-            out[j * across + i] = match labels[water.nearest_node(cell)] {
-                _ if !is_land(cell) => 0,
-                0 => UNKNOWN,
-                label => label,
-            };
-        }
-    }
-    let mut waiting = Vec::new();
-    for start in 0..out.len() {
-        if out[start] != UNKNOWN {
-            continue;
-        }
-        rivers.push(None);
-        let label = rivers.len() as u32;
-        out[start] = label;
-        waiting.push(start);
-        while let Some(at) = waiting.pop() {
-            let (i, j) = (at % across, at / across);
-            let beside = [(i > 0, 1, 0), (i + 1 < across, 0, 1), (j > 0, across, 0), (j + 1 < down, 0, across)];
-            for other in beside.into_iter().filter(|(there, ..)| *there).map(|(_, back, on)| at + on - back) {
-                if out[other] == UNKNOWN {
-                    out[other] = label;
-                    waiting.push(other);
+            self.rivers.push(None);
+            let label = self.rivers.len() as u32;
+            self.labels[start] = label;
+            waiting.push(start);
+            while let Some(at) = waiting.pop() {
+                let i = at % across;
+                let beside = [
+                    (i > 0, 1, 0),
+                    (i + 1 < across, 0, 1),
+                    (at >= across, across, 0),
+                    (at + across < count, 0, across),
+                ];
+                for other in beside.into_iter().filter(|(there, ..)| *there).map(|(_, back, on)| at + on - back) {
+                    if self.labels[other] == UNKNOWN {
+                        self.labels[other] = label;
+                        waiting.push(other);
+                    }
                 }
             }
         }
     }
-    Watersheds { labels: out, rivers }
-}
 
-impl Watersheds {
     /// The labels of some columns and rows of the water's grid, and the ground of each label; those outside the frame
     /// are at its edge.
     #[must_use]
