@@ -1,5 +1,6 @@
 //! Noise on graphics cards against the processor's.
 
+use orogen_engine::declare::Declared;
 use orogen_engine::field::Gullies;
 use orogen_engine::lower::Lowering;
 use orogen_engine::op::{Field, Inputs, WorldParams};
@@ -324,7 +325,9 @@ macro_rules! op {
             let op = $op::default();
             let Lowering::Shader(shader) = op.lower(0, &WORLD) else { panic!("{} is not lowered", stringify!($op)) };
             assert!(matches!($op { vertical: 1.0, ..op.clone() }.lower(0, &WORLD), Lowering::Processor(_)));
-            let fill = move |points: &Points, out: &mut [f32]| op.eval(points, &Inputs::new(op.spec(), &[]), &WORLD, out).unwrap();
+            let fill = move |points: &Points, out: &mut [f32]| {
+                op.eval(points, &Inputs::new(op.spec(), &[]), &WORLD, out).unwrap();
+            };
             Noise { name: stringify!($op).to_string(), shader, fill: Box::new(fill), outliers: JUMPS }
         }),*]
     };
