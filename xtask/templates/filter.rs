@@ -1,7 +1,7 @@
 //! A filter for the test of adding things.
 
 use crate::lower::{Lowering, Passes};
-use crate::op::{Context, Filter, GridInputs, WorldParams};
+use crate::op::{Context, Filter, GridInputs, WorldParams, only_layer};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 
@@ -25,7 +25,7 @@ impl Filter for Added {
 
     fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
         let source = inputs.required("source")?;
-        let [Some(out)] = out else { return Ok(()) };
+        let out = only_layer(out)?;
         context.progress.expect(window.height as f64);
         for (j, row) in out.data_mut().chunks_mut(window.width.max(1)).enumerate() {
             context.progress.step(1.0)?;
