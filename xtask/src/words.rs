@@ -98,6 +98,9 @@ const SPELLINGS: &[(&str, &str)] = &[
     ("centred", "centered"),
 ];
 
+/// Words that end with a dot within a sentence.
+const ABBREVIATIONS: &[&str] = &["al", "cf", "vs", "Fig", "No", "St"];
+
 /// Maximum number of characters of a line of comments; longer tables are allowed.
 const WIDTH: usize = 120;
 
@@ -109,8 +112,13 @@ pub fn check() -> Result {
     let mut found = Vec::new();
     for file in String::from_utf8_lossy(&listed.stdout).lines().filter(|file| *file != "xtask/src/words.rs") {
         let Ok(text) = std::fs::read_to_string(root.join(file)) else { continue };
+        let is_prose = file.ends_with(".md") && !file.ends_with(".zh-CN.md");
+        let mut is_code = false;
         for (number, line) in text.lines().enumerate() {
-            found.extend(faults(line).into_iter().map(|fault| format!("  {file}:{}: {fault}", number + 1)));
+            is_code ^= line.trim_start().starts_with("```");
+            let sentences = (is_prose && !is_code && has_sentences(line)).then(|| "a line has one sentence".to_string());
+            let faults = faults(line).into_iter().chain(sentences);
+            found.extend(faults.map(|fault| format!("  {file}:{}: {fault}", number + 1)));
         }
     }
     match found.is_empty() {
@@ -151,9 +159,40 @@ fn faults(line: &str) -> Vec<String> {
     faults
 }
 
+/// Whether a line of Markdown has more than one sentence; headings, tables and indented code may.
+fn has_sentences(line: &str) -> bool {
+    let text = line.trim_start();
+    if text.starts_with(['#', '|', '<', '!']) || line.starts_with("    ") && !text.starts_with("- ") {
+        return false;
+    }
+    // What stands between backticks or in brackets ends no sentence.
+    let (mut is_code, mut depth) = (false, 0);
+    let mut outside = String::new();
+    for c in text.chars() {
+        is_code ^= c == '`';
+        depth += i32::from(!is_code && matches!(c, '(' | '[')) - i32::from(!is_code && matches!(c, ')' | ']'));
+        outside.push(if is_code || depth > 0 { 'x' } else { c });
+    }
+    let starts = |rest: &str| rest.starts_with(|c: char| c.is_ascii_uppercase());
+    outside.match_indices(". ").any(|(at, end)| {
+        let word = outside[..at].rsplit(' ').next().unwrap_or_default();
+        let is_end = word.len() > 1 && !word.contains('.') && !word.ends_with(|c: char| c.is_ascii_digit());
+        is_end && !ABBREVIATIONS.contains(&word) && starts(&outside[at + end.len()..])
+    })
+}
+
 #[cfg(test)]
 mod tests {
-    use super::faults;
+    use super::{faults, has_sentences};
+
+    #[test]
+    fn a_line_of_markdown_has_one_sentence() {
+        assert!(has_sentences("Rivers run. Lakes do not."));
+        assert!(has_sentences("- **Rivers** run to `sea`. Lakes do not."));
+        assert!(!has_sentences("Rivers (long. And wide) run, see Smith et al. 2022 and `a. B`."));
+        assert!(!has_sentences("1. Rivers run."));
+        assert!(!has_sentences("| Rivers run. Lakes do not. |"));
+    }
 
     #[test]
     fn definitions_and_phrases_are_found_and_uses_are_not() {
