@@ -42,6 +42,7 @@ impl From<f64> for Input {
 }
 
 /// The input for name `i` of an expression.
+#[must_use]
 pub fn named<'a>(inputs: &'a [(String, Input)], names: &[String], i: usize) -> &'a Input {
     let input = names.get(i).and_then(|name| inputs.iter().find(|(other, _)| other == name));
     input.map_or(&Input::None, |(_, input)| input)
