@@ -11,6 +11,7 @@
 //! compressor handles those.
 
 mod matches;
+pub mod packer;
 pub mod stream;
 
 use matches::Matches;

@@ -8,7 +8,7 @@ use std::io::{self, Write};
 
 use orogen_grid::error::{Error, ErrorKind, Result};
 
-use super::gzip::Gzip;
+use super::gzip;
 use super::nbt::Tags;
 
 /// Maximum number of blocks along a side: sizes are unsigned numbers of 16 bits.
@@ -62,8 +62,8 @@ pub fn write(out: &mut dyn Write, schematic: &Schematic) -> io::Result<()> {
     if blocks.len() != size.iter().product::<usize>() || palette.len() > MAX_PALETTE {
         return Err(io::Error::other("the blocks or the palette do not fit the schematic"));
     }
-    let mut gzip = Gzip::new(out)?;
-    let mut tags = Tags::new(&mut gzip);
+    let mut packer = gzip::start(out)?;
+    let mut tags = Tags::new(&mut packer);
     tags.compound("")?;
     tags.compound("Schematic")?;
     tags.int("Version", 3)?;
@@ -86,7 +86,7 @@ pub fn write(out: &mut dyn Write, schematic: &Schematic) -> io::Result<()> {
     tags.end()?;
     tags.end()?;
     tags.end()?;
-    gzip.finish()
+    gzip::finish(packer)
 }
 
 #[cfg(test)]

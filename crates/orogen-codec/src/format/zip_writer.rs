@@ -2,13 +2,8 @@
 
 use std::io::{self, Write};
 
-use crc32fast::Hasher;
-
-use super::deflate::stream::{Deflate, Wrap};
+use super::deflate::packer::Packer;
 use orogen_grid::error::{Error, ErrorKind};
-
-/// Level of compression.
-const LEVEL: u8 = 6;
 
 /// Version of the format that readers need.
 const VERSION: u16 = 20;
@@ -51,12 +46,10 @@ impl<'a> ZipWriter<'a> {
         self.out.write_all(&numbers(&[length, 0]))?;
         self.out.write_all(name.as_bytes())?;
         let before = self.out.count;
-        let mut packer =
-            Packer { out: &mut self.out, stream: Deflate::new(Wrap::None, LEVEL), checksum: Hasher::new(), length: 0 };
+        let mut packer = Packer::new(&mut self.out);
         body(&mut packer)?;
-        let Packer { stream, checksum, length: full, .. } = packer;
-        stream.finish(&mut self.out)?;
-        let sizes = [checksum.finalize(), small(self.out.count - before)?, small(full)?].map(u32::to_le_bytes).concat();
+        let (_, checksum, full) = packer.finish()?;
+        let sizes = [checksum, small(self.out.count - before)?, small(full)?].map(u32::to_le_bytes).concat();
         self.out.write_all(b"PK\x07\x08")?;
         self.out.write_all(&sizes)?;
         self.directory.extend_from_slice(b"PK\x01\x02");
@@ -108,27 +101,6 @@ impl Write for Counted<'_> {
         let written = self.out.write(bytes)?;
         self.count += written as u64;
         Ok(written)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.out.flush()
-    }
-}
-
-/// A writer that compresses what is written to it.
-struct Packer<'a, 'b> {
-    out: &'a mut Counted<'b>,
-    stream: Deflate,
-    checksum: Hasher,
-    length: u64,
-}
-
-impl Write for Packer<'_, '_> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.stream.write(self.out, bytes)?;
-        self.checksum.update(bytes);
-        self.length += bytes.len() as u64;
-        Ok(bytes.len())
     }
 
     fn flush(&mut self) -> io::Result<()> {

@@ -12,6 +12,7 @@ use std::io::{self, Write};
 use serde_json::{Map, Value, json};
 
 use super::body::BodyMesh;
+use super::bounds::bounds;
 use super::normal_map::tangent;
 use super::objects::{CORNERS, ObjectMesh};
 use super::surface::{Corner, Surface, Wanted, push};
@@ -185,6 +186,79 @@ fn pad(out: &mut dyn Write, written: u64) -> io::Result<()> {
     out.write_all(&[0; 3][..(written.next_multiple_of(4) - written) as usize])
 }
 
+/// The arrays of the JSON part, and the length of the binary part.
+#[derive(Default)]
+struct Arrays {
+    views: Vec<Value>,
+    accessors: Vec<Value>,
+    meshes: Vec<Value>,
+    length: u64,
+}
+
+/// The triangles of a mesh: size in bytes and type of the indices, and their number.
+type Indices = (u64, u32, usize);
+
+impl Arrays {
+    fn view(&mut self, bytes: u64, mut view: Value) -> usize {
+        view["buffer"] = json!(0);
+        view["byteOffset"] = json!(self.length);
+        view["byteLength"] = json!(bytes);
+        self.length += bytes.next_multiple_of(4);
+        self.views.push(view);
+        self.views.len() - 1
+    }
+
+    fn accessor(&mut self, accessor: Value) -> usize {
+        self.accessors.push(accessor);
+        self.accessors.len() - 1
+    }
+
+    /// Interleaved vertices with these attributes: name, bytes from the start of a vertex, and type. The first one is
+    /// the position, whose least and greatest values are `bounds`; a color has four u16. Returns the primitive.
+    fn primitive(
+        &mut self,
+        (corners, stride): (usize, u32),
+        bounds: [[f32; 3]; 2],
+        attributes: &[(&str, u32, &str)],
+        indices: Option<Indices>,
+        material: usize,
+    ) -> Value {
+        let vertices =
+            self.view(corners as u64 * u64::from(stride), json!({"byteStride": stride, "target": ARRAY_BUFFER}));
+        let indices = indices.map(|(bytes, kind, count)| {
+            let view = self.view(bytes, json!({"target": ELEMENT_ARRAY_BUFFER}));
+            json!({"bufferView": view, "componentType": kind, "count": count, "type": "SCALAR"})
+        });
+        // As f64: the shortest decimal digits of an f32 are not its exact value.
+        let [least, greatest] = bounds.map(|corner| corner.map(f64::from));
+        let mut names = json!({});
+        for (nth, (name, offset, kind)) in attributes.iter().enumerate() {
+            let mut accessor = json!({
+                "bufferView": vertices, "byteOffset": offset, "componentType": F32, "count": corners, "type": kind
+            });
+            if nth == 0 {
+                accessor["min"] = json!(least);
+                accessor["max"] = json!(greatest);
+            }
+            if *name == COLOR {
+                accessor["componentType"] = json!(U16);
+                accessor["normalized"] = json!(true);
+            }
+            names[name] = json!(self.accessor(accessor));
+        }
+        let mut primitive = json!({"attributes": names});
+        if let Some(indices) = indices {
+            primitive["indices"] = json!(self.accessor(indices));
+        }
+        primitive["material"] = json!(material);
+        primitive
+    }
+}
+
+const POSITION: (&str, u32, &str) = ("POSITION", 0, "VEC3");
+const NORMAL: (&str, u32, &str) = ("NORMAL", 12, "VEC3");
+const COLOR: &str = "COLOR_0";
+
 /// The JSON part, and the length of the binary part.
 struct Document {
     json: Value,
@@ -193,65 +267,30 @@ struct Document {
 
 impl Document {
     fn new(model: &Model, colors: bool) -> Document {
-        let (mut views, mut accessors, mut meshes) = (Vec::new(), Vec::new(), Vec::new());
-        let mut length: u64 = 0;
+        let mut arrays = Arrays::default();
         // Levels without a normal map share a material; the others have one each.
-        let shared = usize::from((0..model.levels.len()).any(|level| normal_map(model, level).is_none()));
-        let mut more = shared;
-        let worn: Vec<usize> = (0..model.levels.len())
-            .map(|level| match normal_map(model, level) {
-                None => 0,
-                Some(_) => {
-                    more += 1;
-                    more - 1
-                }
-            })
-            .collect();
-        let mut view = |bytes: u64, mut view: Value| {
-            view["buffer"] = json!(0);
-            view["byteOffset"] = json!(length);
-            view["byteLength"] = json!(bytes);
-            length += bytes.next_multiple_of(4);
-            views.push(view);
-            views.len() - 1
-        };
+        let has_map = |level: usize| normal_map(model, level).is_some();
+        let shared = usize::from((0..model.levels.len()).any(|level| !has_map(level)));
         for (nth, level) in model.levels.iter().enumerate() {
-            let corners = level.shape.corners();
-            let tangents = normal_map(model, nth).is_some();
-            let stride = u64::from(stride(colors, tangents));
-            let corner_view = view(corners as u64 * stride, json!({"byteStride": stride, "target": ARRAY_BUFFER}));
-            let index_view = view(indices(level), json!({"target": ELEMENT_ARRAY_BUFFER}));
-            // As f64: the shortest decimal digits of an f32 are not its exact value.
-            let [least, greatest] = level.bounds().map(|corner| corner.map(f64::from));
-            let first = accessors.len();
-            let attribute = |offset: u32, kind: &str| json!({"bufferView": corner_view, "byteOffset": offset, "componentType": F32, "count": corners, "type": kind});
-            let mut place = attribute(0, "VEC3");
-            place["min"] = json!(least);
-            place["max"] = json!(greatest);
-            accessors.extend([place, attribute(12, "VEC3"), attribute(24, "VEC2")]);
-            let mut attributes = json!({"POSITION": first, "NORMAL": first + 1, "TEXCOORD_0": first + 2});
+            let mut attributes = vec![POSITION, NORMAL, ("TEXCOORD_0", 24, "VEC2")];
             if colors {
-                let mut color = attribute(32, "VEC4");
-                color["componentType"] = json!(U16);
-                color["normalized"] = json!(true);
-                attributes["COLOR_0"] = json!(accessors.len());
-                accessors.push(color);
+                attributes.push((COLOR, 32, "VEC4"));
             }
-            if tangents {
-                attributes["TANGENT"] = json!(accessors.len());
-                accessors.push(attribute(self::stride(colors, false), "VEC4"));
+            if has_map(nth) {
+                attributes.push(("TANGENT", stride(colors, false), "VEC4"));
             }
+            let material = if has_map(nth) { shared + (0..nth).filter(|level| has_map(*level)).count() } else { 0 };
             let kind = if narrow(level) { U16 } else { U32 };
-            let count = 3 * level.shape.triangles();
-            let primitive = json!({"attributes": attributes, "indices": accessors.len(), "material": worn[nth]});
-            accessors.push(json!({"bufferView": index_view, "componentType": kind, "count": count, "type": "SCALAR"}));
-            meshes.push(json!({"primitives": [primitive]}));
+            let vertices = (level.shape.corners(), stride(colors, has_map(nth)));
+            let triangles = (indices(level), kind, 3 * level.shape.triangles());
+            let primitive = arrays.primitive(vertices, level.bounds(), &attributes, Some(triangles), material);
+            arrays.meshes.push(json!({"primitives": [primitive]}));
         }
         let mut material =
             json!({"name": "terrain", "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 1.0}});
         let mut json = json!({"asset": {"version": "2.0", "generator": concat!("Orogen ", env!("CARGO_PKG_VERSION"))}});
         let images: Vec<Value> = pictures(model)
-            .map(|picture| json!({"bufferView": view(picture.len() as u64, json!({})), "mimeType": "image/png"}))
+            .map(|picture| json!({"bufferView": arrays.view(picture.len() as u64, json!({})), "mimeType": "image/png"}))
             .collect();
         if !images.is_empty() {
             if model.texture.is_some() {
@@ -270,7 +309,7 @@ impl Document {
         }
         let mut materials = vec![material.clone(); shared];
         let base = usize::from(model.texture.is_some()) + usize::from(model.texture.and(model.material).is_some());
-        for (nth, level) in (0..model.levels.len()).filter(|level| normal_map(model, *level).is_some()).enumerate() {
+        for (nth, level) in (0..model.levels.len()).filter(|level| has_map(*level)).enumerate() {
             let mut material = material.clone();
             if level > 0 {
                 material["name"] = json!(format!("terrain LOD{level}"));
@@ -282,47 +321,22 @@ impl Document {
             material["name"] = json!("blocks");
             materials.push(material);
         }
+        // Bodies and water have indices of four bytes.
+        let triangles = |triangles: &[[u32; 3]]| Some((12 * triangles.len() as u64, U32, 3 * triangles.len()));
         for body in model.bodies {
-            let corners = body.corners.len();
-            let corner_view = view(corners as u64 * 32, json!({"byteStride": 32, "target": ARRAY_BUFFER}));
-            let index_view = view(12 * body.triangles.len() as u64, json!({"target": ELEMENT_ARRAY_BUFFER}));
-            let [least, greatest] = body.bounds().map(|ends| ends.map(f64::from));
-            let attribute = |offset: u32, kind: &str| json!({"bufferView": corner_view, "byteOffset": offset, "componentType": F32, "count": corners, "type": kind});
-            let mut place = attribute(0, "VEC3");
-            place["min"] = json!(least);
-            place["max"] = json!(greatest);
-            let mut color = attribute(24, "VEC4");
-            color["componentType"] = json!(U16);
-            color["normalized"] = json!(true);
-            let first = accessors.len();
-            let count = 3 * body.triangles.len();
-            let indices = json!({"bufferView": index_view, "componentType": U32, "count": count, "type": "SCALAR"});
-            accessors.extend([place, attribute(12, "VEC3"), color, indices]);
-            let attributes = json!({"POSITION": first, "NORMAL": first + 1, "COLOR_0": first + 2});
-            let primitive = json!({"attributes": attributes, "indices": first + 3, "material": materials.len() - 1});
-            meshes.push(json!({"name": body.name, "primitives": [primitive]}));
+            let attributes = [POSITION, NORMAL, (COLOR, 24, "VEC4")];
+            let vertices = (body.corners.len(), 32);
+            let material = materials.len() - 1;
+            let primitive =
+                arrays.primitive(vertices, body.bounds(), &attributes, triangles(&body.triangles), material);
+            arrays.meshes.push(json!({"name": body.name, "primitives": [primitive]}));
         }
         for water in model.water {
-            let corners = water.corners.len();
-            let stride = 24;
-            let corner_view = view(corners as u64 * stride, json!({"byteStride": stride, "target": ARRAY_BUFFER}));
-            let index_view = view(12 * water.triangles.len() as u64, json!({"target": ELEMENT_ARRAY_BUFFER}));
-            let bound = |pick: fn(f32, f32) -> f32, start: f32| {
-                water.corners.iter().fold([start; 3], |all, corner| std::array::from_fn(|i| pick(all[i], corner[i])))
-            };
-            let [least, greatest] =
-                [bound(f32::min, f32::INFINITY), bound(f32::max, f32::NEG_INFINITY)].map(|ends| ends.map(f64::from));
-            let attribute = |offset: u32| json!({"bufferView": corner_view, "byteOffset": offset, "componentType": F32, "count": corners, "type": "VEC3"});
-            let mut place = attribute(0);
-            place["min"] = json!(least);
-            place["max"] = json!(greatest);
-            let first = accessors.len();
-            let count = 3 * water.triangles.len();
-            let indices = json!({"bufferView": index_view, "componentType": U32, "count": count, "type": "SCALAR"});
-            accessors.extend([place, attribute(12), indices]);
-            let attributes = json!({"POSITION": first, "NORMAL": first + 1});
-            let primitive = json!({"attributes": attributes, "indices": first + 2, "material": materials.len()});
-            meshes.push(json!({"name": water.name, "primitives": [primitive]}));
+            let vertices = (water.corners.len(), 24);
+            let (bounds, material) = (bounds(&water.corners), materials.len());
+            let primitive =
+                arrays.primitive(vertices, bounds, &[POSITION, NORMAL], triangles(&water.triangles), material);
+            arrays.meshes.push(json!({"name": water.name, "primitives": [primitive]}));
             let color = water.color.map(f64::from);
             materials.push(json!({
                 "name": water.name,
@@ -332,25 +346,9 @@ impl Document {
         }
         let mut instanced = Vec::new();
         for kind in model.objects {
-            let corners = view(CORNERS as u64 * 24, json!({"byteStride": 24, "target": ARRAY_BUFFER}));
-            let attribute = |offset: u32| json!({"bufferView": corners, "byteOffset": offset, "componentType": F32, "count": CORNERS, "type": "VEC3"});
-            let placeholder = kind.placeholder();
-            let bound = |pick: fn(f32, f32) -> f32| {
-                placeholder
-                    .iter()
-                    .map(|[position, _]| *position)
-                    .reduce(|a, b| std::array::from_fn(|i| pick(a[i], b[i])))
-            };
-            let [least, greatest] = [bound(f32::min), bound(f32::max)].map(|ends| ends.map(|ends| ends.map(f64::from)));
-            let mut place = attribute(0);
-            place["min"] = json!(least);
-            place["max"] = json!(greatest);
-            let first = accessors.len();
-            accessors.extend([place, attribute(12)]);
-            let attributes = json!({"POSITION": first, "NORMAL": first + 1});
-            meshes.push(
-                json!({"name": kind.name, "primitives": [{"attributes": attributes, "material": materials.len()}]}),
-            );
+            let bounds = bounds(&kind.placeholder().map(|[position, _]| position));
+            let primitive = arrays.primitive((CORNERS, 24), bounds, &[POSITION, NORMAL], None, materials.len());
+            arrays.meshes.push(json!({"name": kind.name, "primitives": [primitive]}));
             let [red, green, blue] = kind.color.map(f64::from);
             materials.push(json!({
                 "name": kind.name,
@@ -358,15 +356,14 @@ impl Document {
             }));
             let count = kind.instances.len() as u64;
             let mut each = |parts: u64, kind: &str| {
-                let view = view(count * parts * 4, json!({}));
-                accessors.push(json!({"bufferView": view, "componentType": F32, "count": count, "type": kind}));
-                accessors.len() - 1
+                let view = arrays.view(count * parts * 4, json!({}));
+                arrays.accessor(json!({"bufferView": view, "componentType": F32, "count": count, "type": kind}))
             };
             let attributes =
                 json!({"TRANSLATION": each(3, "VEC3"), "ROTATION": each(4, "VEC4"), "SCALE": each(3, "VEC3")});
             instanced.push(json!({
                 "name": kind.name,
-                "mesh": meshes.len() - 1,
+                "mesh": arrays.meshes.len() - 1,
                 "extensions": {"EXT_mesh_gpu_instancing": {"attributes": attributes}}
             }));
         }
@@ -392,12 +389,12 @@ impl Document {
         json["scene"] = json!(0);
         json["scenes"] = json!([{"nodes": shown}]);
         json["nodes"] = json!(nodes);
-        json["meshes"] = json!(meshes);
+        json["meshes"] = json!(arrays.meshes);
         json["materials"] = json!(materials);
-        json["accessors"] = json!(accessors);
-        json["bufferViews"] = json!(views);
-        json["buffers"] = json!([{"byteLength": length}]);
-        Document { json, length }
+        json["accessors"] = json!(arrays.accessors);
+        json["bufferViews"] = json!(arrays.views);
+        json["buffers"] = json!([{"byteLength": arrays.length}]);
+        Document { json, length: arrays.length }
     }
 }
 

@@ -1,0 +1,46 @@
+//! Deflate with the checksum that containers store behind the data.
+
+use std::io::{self, Write};
+
+use crc32fast::Hasher;
+
+use super::stream::{Deflate, Wrap};
+
+/// Level of compression.
+const LEVEL: u8 = 6;
+
+/// A writer that compresses what is written to it.
+pub struct Packer<'a> {
+    out: &'a mut dyn Write,
+    stream: Deflate,
+    checksum: Hasher,
+    length: u64,
+}
+
+impl<'a> Packer<'a> {
+    /// A writer of raw deflate data to `out`.
+    pub fn new(out: &'a mut dyn Write) -> Packer<'a> {
+        Packer { out, stream: Deflate::new(Wrap::None, LEVEL), checksum: Hasher::new(), length: 0 }
+    }
+
+    /// Writes the rest. Returns the writer below, and the CRC-32 and the length of the data.
+    ///
+    /// Fails if the writer below fails.
+    pub fn finish(self) -> io::Result<(&'a mut dyn Write, u32, u64)> {
+        self.stream.finish(self.out)?;
+        Ok((self.out, self.checksum.finalize(), self.length))
+    }
+}
+
+impl Write for Packer<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.stream.write(self.out, bytes)?;
+        self.checksum.update(bytes);
+        self.length += bytes.len() as u64;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
