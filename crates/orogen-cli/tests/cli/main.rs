@@ -23,6 +23,7 @@ mod export;
 mod generate;
 mod harness;
 mod jobs;
+mod layers;
 mod leftovers;
 #[cfg(unix)]
 mod limits;

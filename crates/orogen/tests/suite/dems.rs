@@ -1,6 +1,5 @@
 //! Files of heights from other programs, intact and damaged. Source: `xtask/clients/dem_files.py`.
 
-use crate::support::Random;
 use orogen::field::{Dem as Node, DemShows};
 use orogen::filter::Blur;
 use orogen::io::dem::{PreparedDem, open};
@@ -9,14 +8,14 @@ use orogen::io::format::crs::unit::Unit;
 use orogen::io::format::dem::Part;
 use orogen::io::format::geotiff::Options as Layout;
 use orogen::io::format::geotiff::{reader, writer};
-use orogen::io::format::{Dem, Request, Sidecar, import};
+use orogen::io::format::{Dem, Request, import};
 use orogen::io::spool::Spool;
 use orogen::io::test_folder::TestFolder;
 use orogen::{Budget, Error, ErrorKind, Options, Recipe, Window, World, WorldSpec};
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-fn corpus() -> PathBuf {
+pub fn corpus() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus/dem")
 }
 
@@ -529,87 +528,4 @@ fn what_a_file_says_of_its_map_is_kept_on_the_way_out() {
             assert!(code(&keys).is_some() && usize::from(kept.directory[3]) * 4 + 4 == kept.directory.len());
         }
     }
-}
-
-/// Changes bytes of a file at random, as damage or an attack may do.
-fn damage(bytes: &mut Vec<u8>, random: &mut Random) {
-    for _ in 0..=random.below(3) {
-        let length = bytes.len() as u64;
-        if length == 0 {
-            return;
-        }
-        // Headers and directories are at either end and affect most of the parser.
-        let at = match random.below(4) {
-            0 => random.below(length),
-            1 => length - 1 - random.below(length.min(600)),
-            _ => random.below(length.min(600)),
-        } as usize;
-        match random.below(6) {
-            0 => bytes.truncate(at),
-            1 => bytes[at] ^= 1 << random.below(8),
-            2 => bytes[at] = random.below(256) as u8,
-            3 => {
-                let odd = [0u64, 1, 0x7fff_ffff, 0xffff_ffff, u64::MAX, 1 << 40][random.below(6) as usize];
-                let size = [2, 4, 8][random.below(3) as usize].min(bytes.len() - at);
-                bytes[at..at + size].copy_from_slice(&odd.to_le_bytes()[..size]);
-            }
-            4 => {
-                let from = random.below(length) as usize;
-                let size = (random.below(40) as usize).min(bytes.len() - at.max(from));
-                bytes.copy_within(from..from + size, at);
-            }
-            _ => bytes.insert(at, random.below(256) as u8),
-        }
-    }
-}
-
-#[test]
-fn damaged_files_are_heights_or_sentences() {
-    read_damaged(300);
-}
-
-#[test]
-#[ignore = "long: 30 000 damaged files of each kind"]
-fn many_damaged_files_are_heights_or_sentences() {
-    read_damaged(30_000);
-}
-
-/// Arbitrary bytes yield heights or an error, without a panic and within the memory limit.
-fn read_damaged(rounds: usize) {
-    let mut files: Vec<PathBuf> = std::fs::read_dir(corpus()).unwrap().map(|entry| entry.unwrap().path()).collect();
-    files.sort();
-    let (mut read, mut refused) = (0, 0);
-    let request = Request::new(1 << 20).with_band(Some(1));
-    for (k, path) in files.iter().filter(|path| import::is_dem(path)).enumerate() {
-        let whole = std::fs::read(path).unwrap();
-        let extension = path.extension().unwrap().to_str().unwrap();
-        let sidecar = Sidecar::beside(path).unwrap();
-        let mut random = Random(k as u64);
-        for round in 0..rounds {
-            let mut bytes = whole.clone();
-            damage(&mut bytes, &mut random);
-            let mut result = None;
-            let taken = allocation_counter::measure(|| {
-                result = Some(import::parse(&mut Cursor::new(&bytes), "it", extension, sidecar.clone(), request));
-            });
-            assert!(taken.bytes_max < 12 << 20, "{} round {round} takes {} bytes", path.display(), taken.bytes_max);
-            match result.unwrap() {
-                Ok(dem) => {
-                    assert!(dem.heights.len() == dem.width * dem.height && dem.missing() < dem.heights.len());
-                    read += 1;
-                }
-                Err(error) => {
-                    assert!(error.to_string().starts_with("cannot read it: "), "{error}");
-                    refused += 1;
-                }
-            }
-        }
-        // A truncated file never yields heights, unless only unused bytes are missing.
-        for n in (0..whole.len()).step_by(7) {
-            if let Ok(dem) = import::parse(&mut Cursor::new(&whole[..n]), "it", extension, sidecar.clone(), request) {
-                assert_eq!(dem.heights.len(), dem.width * dem.height, "{} cut at {n}", path.display());
-            }
-        }
-    }
-    assert!(read > 100 && refused > 1000, "{read} read, {refused} refused");
 }

@@ -3,6 +3,7 @@
 
 mod allocations;
 mod chunks;
+mod damaged_dems;
 mod dems;
 mod fit;
 mod flight;
