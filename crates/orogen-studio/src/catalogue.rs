@@ -108,6 +108,7 @@ mod tests {
     use orogen::jobs::{MapJob, RenderJob};
     use orogen::options::ValueKind;
     use orogen::tilemap::TilemapJob;
+    use orogen::tilemap::art::set::SETS;
     use std::collections::BTreeSet;
 
     /// The names in braces in a text.
@@ -122,10 +123,8 @@ mod tests {
         for spec in specs.filter(|spec| !WITHOUT_FIELD.contains(&spec.name)) {
             keys.insert(format!("option.{}", spec.name));
             let names: Vec<&str> = match spec.kind {
-                // Layouts of tiles are called by their names.
-                ValueKind::Choice(choices) if spec.name != "layout" => {
-                    choices.iter().map(|choice| choice.name).collect()
-                }
+                ValueKind::Choice(choices) => choices.iter().map(|choice| choice.name).collect(),
+                ValueKind::Tileset => SETS.iter().map(|set| set.name).collect(),
                 ValueKind::Tuple(components, _) => components.iter().map(|component| component.name).collect(),
                 _ => continue,
             };

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use eframe::egui::{self, CentralPanel, Context, Panel, Ui};
+use eframe::egui::{self, Context, Panel, Ui};
 use orogen::gpu::Gpu;
 use orogen::{Budget, Options, Result, Session};
 
@@ -12,18 +12,12 @@ use super::command::{self, Command};
 use super::device::DeviceWatch;
 use super::dialogs::{self, CommandPalette, FileDialog, Unsaved};
 use super::export_dialog::ExportDialog;
-use super::graph_panel::Graph;
-use super::inspector::Inspector;
-use super::map_panel::MapPanel;
+use super::open_dialogs::OpenDialogs;
+use super::panels::{Below, Panels, Shown, View};
 use super::purpose::Purpose;
 use super::ramp_editor::RampEditor;
-use super::realism_panel::RealismPanel;
 use super::relief::Ability;
-use super::relief_panel::ReliefPanel;
-use super::start_page::StartPage;
-use super::text_panel::TextPanel;
-use super::variants_panel::VariantsPanel;
-use super::{analysis_panel, fonts, menu, status, theme};
+use super::{fonts, menu, theme};
 use crate::catalogue::Language;
 use crate::editing::document::Document;
 use crate::editing::edit::Edit;
@@ -34,23 +28,6 @@ use crate::preview::worker::Wake;
 use crate::recovery::Recovery;
 use crate::settings::Settings;
 use crate::studio::{self, Studio};
-
-/// What the middle shows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum View {
-    Relief,
-    Map,
-}
-
-/// What is below the view.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Below {
-    Graph,
-    Text,
-    Analysis,
-    Real,
-    Variants,
-}
 
 /// What waits for the answer about changes that are not saved.
 #[derive(Debug, Clone)]
@@ -76,22 +53,8 @@ pub struct App {
     /// When the device is to be lost, for tests.
     lose_device: Option<f64>,
     studio: Option<Studio>,
-    view: View,
-    below: Below,
-    relief: ReliefPanel,
-    map: MapPanel,
-    graph: Graph,
-    text: TextPanel,
-    inspector: Inspector,
-    real: RealismPanel,
-    ramp: Option<RampEditor>,
-    variants: VariantsPanel,
-    start: StartPage,
-    files: Option<FileDialog>,
-    export: Option<ExportDialog>,
-    palette: Option<CommandPalette>,
-    has_shortcuts: bool,
-    message: Option<(String, String)>,
+    panels: Panels,
+    dialogs: OpenDialogs,
     pending: Option<Pending>,
     recovery: Recovery,
     /// The text that a crash left behind.
@@ -147,8 +110,7 @@ impl App {
             watch.start(state);
         }
         let (recovery, recovered) = Recovery::new(folder.as_deref());
-        let real = RealismPanel::new(Arc::clone(&wake));
-        let variants = VariantsPanel::new(Arc::clone(&wake));
+        let panels = Panels::new(&wake);
         let mut app = App {
             session,
             gpu,
@@ -160,22 +122,8 @@ impl App {
             watch,
             lose_device,
             studio: None,
-            view: View::Relief,
-            below: Below::Graph,
-            relief: ReliefPanel::default(),
-            map: MapPanel::default(),
-            graph: Graph::default(),
-            text: TextPanel::default(),
-            inspector: Inspector::default(),
-            real,
-            ramp: None,
-            variants,
-            start: StartPage::default(),
-            files: None,
-            export: None,
-            palette: None,
-            has_shortcuts: false,
-            message: None,
+            panels,
+            dialogs: OpenDialogs::default(),
             pending: None,
             recovery,
             recovered,
@@ -188,7 +136,7 @@ impl App {
             app.open(document);
         }
         if is_after_loss {
-            app.message = Some((app.text("device.title").into(), app.text("device.lost").into()));
+            app.dialogs.message = Some((app.text("device.title").into(), app.text("device.lost").into()));
             app.open_recovered();
         }
         Ok(app)
@@ -203,15 +151,19 @@ impl App {
     /// The dialog of exports, while it is open.
     #[must_use]
     pub fn export_dialog(&self) -> Option<&ExportDialog> {
-        self.export.as_ref()
+        self.dialogs.export.as_ref()
     }
 
     fn use_language(&mut self, context: &Context) {
         if self.language == Language::Chinese && fonts::add_chinese(context).is_none() {
             // Without the font all letters would be shown as boxes.
             self.language = Language::English;
-            self.message = Some((self.text("font.title").into(), self.text("font.missing").into()));
+            self.dialogs.message = Some((self.text("font.title").into(), self.text("font.missing").into()));
         }
+    }
+
+    fn remember(&self) {
+        self.settings.write(self.folder.as_deref());
     }
 
     fn text(&self, key: &'static str) -> &'static str {
@@ -221,11 +173,11 @@ impl App {
     fn open(&mut self, document: Document) {
         if let Some(path) = document.path() {
             self.settings.opened(path);
-            self.settings.write(self.folder.as_deref());
+            self.remember();
         }
         if !document.is_valid() {
             // Its errors are shown there.
-            self.below = Below::Text;
+            self.panels.below = Below::Text;
         }
         match &mut self.studio {
             Some(studio) => studio.open(document),
@@ -234,10 +186,8 @@ impl App {
         if let Some(studio) = &mut self.studio {
             studio.has_thumbnails = self.settings.thumbnails;
         }
-        self.inspector = Inspector::default();
-        (self.graph, self.text, self.map) = (Graph::default(), TextPanel::default(), MapPanel::default());
-        self.relief.show_whole();
-        self.export = None;
+        self.panels.reset();
+        self.dialogs.export = None;
         self.note_document();
     }
 
@@ -250,15 +200,21 @@ impl App {
         }));
     }
 
-    fn open_path(&mut self, path: &Path) {
-        match studio::open(path) {
+    fn open_made(&mut self, made: Result<Document>) {
+        match made {
             Ok(document) => self.open(document),
             Err(error) => self.say(&error.to_string()),
         }
     }
 
     fn say(&mut self, text: &str) {
-        self.message = Some((self.text("message.title").into(), text.into()));
+        self.dialogs.message = Some((self.text("message.title").into(), text.into()));
+    }
+
+    fn say_failure(&mut self, result: Result<()>) {
+        if let Err(error) = result {
+            self.say(&error.to_string());
+        }
     }
 
     /// Does what waits for an answer, or asks first if changes are not saved.
@@ -272,12 +228,12 @@ impl App {
     fn go(&mut self, pending: Pending, context: &Context) {
         self.recovery.forget();
         match pending {
-            Pending::Open(path) => self.open_path(&path),
-            Pending::Preset(name) => match orogen::presets::find(name).map(Document::of_preset) {
-                Some(Ok(document)) => self.open(document),
-                Some(Err(error)) => self.say(&error.to_string()),
-                None => {}
-            },
+            Pending::Open(path) => self.open_made(studio::open(&path)),
+            Pending::Preset(name) => {
+                if let Some(preset) = orogen::presets::find(name) {
+                    self.open_made(Document::of_preset(preset));
+                }
+            }
             Pending::StartPage => {
                 self.studio = None;
                 self.note_document();
@@ -300,48 +256,46 @@ impl App {
                 self.language = language;
                 self.settings.language = Some(language);
                 self.use_language(context);
-                self.settings.write(self.folder.as_deref());
+                self.remember();
             }
             Action::Theme(theme) => {
                 self.settings.theme = theme;
                 theme::set(context, theme);
-                self.settings.write(self.folder.as_deref());
+                self.remember();
             }
             Action::Draw(op) => {
-                self.view = View::Map;
-                self.map.draw(op);
+                self.panels.view = View::Map;
+                self.panels.map.draw(op);
             }
             Action::Brush(effect) => {
-                self.view = View::Map;
-                self.map.take_brush(effect);
+                self.panels.view = View::Map;
+                self.panels.map.take_brush(effect);
             }
             Action::Enter(group) => {
-                self.below = Below::Graph;
-                self.graph.enter(&group);
+                self.panels.below = Below::Graph;
+                self.panels.graph.enter(&group);
             }
             Action::Copy(text) => context.copy_text(text),
             Action::EditColors => self.edit_colors(),
             Action::OpenPalette(path) => self.use_palette(RampEditor::open(&path)),
             Action::SavePalette(path) => {
-                if let Some(Err(error)) = self.ramp.as_ref().map(|ramp| ramp.save(&path)) {
-                    self.say(&error.to_string());
-                }
+                let saved = self.dialogs.ramp.as_ref().map_or(Ok(()), |ramp| ramp.save(&path));
+                self.say_failure(saved);
             }
             Action::Choose(purpose) => {
-                let name = self.ramp.as_ref().map(|ramp| PathBuf::from(ramp.file_name()));
-                self.files = Some(FileDialog::new(purpose, name.as_deref()));
+                let name = self.dialogs.ramp.as_ref().map(|ramp| PathBuf::from(ramp.file_name()));
+                self.dialogs.files = Some(FileDialog::new(purpose, name.as_deref()));
             }
             Action::GoToLine(line) => {
-                self.below = Below::Text;
-                self.text.go_to(line);
+                self.panels.below = Below::Text;
+                self.panels.text.go_to(line);
             }
             other => {
                 let Some(studio) = &mut self.studio else { return };
                 match other {
                     Action::Edit(edit) => {
-                        if let Err(error) = studio.edit(&edit) {
-                            self.say(&error.to_string());
-                        }
+                        let edited = studio.edit(&edit);
+                        self.say_failure(edited);
                     }
                     Action::Type(text) => studio.document.type_text(text),
                     Action::EndGesture => studio.document.end_gesture(),
@@ -371,7 +325,7 @@ impl App {
         match (made, &mut self.studio) {
             (Ok(ramp), Some(studio)) => {
                 studio.look.coloring = ramp.coloring();
-                self.ramp = Some(ramp);
+                self.dialogs.ramp = Some(ramp);
             }
             (Err(error), _) => self.say(&error.to_string()),
             _ => {}
@@ -384,7 +338,7 @@ impl App {
             Ok(()) => {
                 self.recovery.forget();
                 self.settings.opened(path);
-                self.settings.write(self.folder.as_deref());
+                self.remember();
                 self.note_document();
             }
             Err(error) => self.say(&error.to_string()),
@@ -399,30 +353,28 @@ impl App {
             Command::New => self.leave(Pending::StartPage, context),
             Command::Open => {
                 let at = self.studio.as_ref().and_then(|studio| studio.document.path());
-                self.files = Some(FileDialog::new(Purpose::Open, at));
+                self.dialogs.files = Some(FileDialog::new(Purpose::Open, at));
             }
             Command::Quit => self.leave(Pending::Quit, context),
-            Command::CommandPalette => self.palette = Some(CommandPalette::default()),
-            Command::Shortcuts => self.has_shortcuts = true,
+            Command::CommandPalette => self.dialogs.palette = Some(CommandPalette::default()),
+            Command::Shortcuts => self.dialogs.has_shortcuts = true,
             Command::About => {
                 let text = self.language.fill("about.text", &[("version", env!("CARGO_PKG_VERSION"))]);
-                self.message = Some((self.text("command.about").into(), text));
+                self.dialogs.message = Some((self.text("command.about").into(), text));
             }
-            Command::ShowRelief => self.view = View::Relief,
-            Command::ShowMap => self.view = View::Map,
-            Command::ShowGraph => self.below = Below::Graph,
-            Command::ShowText => self.below = Below::Text,
-            Command::ShowAnalysis => self.below = Below::Analysis,
-            Command::ShowReal => self.below = Below::Real,
-            Command::ShowVariants => self.below = Below::Variants,
+            Command::ShowRelief => self.panels.view = View::Relief,
+            Command::ShowMap => self.panels.view = View::Map,
+            Command::ShowGraph => self.panels.below = Below::Graph,
+            Command::ShowText => self.panels.below = Below::Text,
+            Command::ShowAnalysis => self.panels.below = Below::Analysis,
+            Command::ShowReal => self.panels.below = Below::Real,
+            Command::ShowVariants => self.panels.below = Below::Variants,
             Command::WholeView => {
-                self.relief.show_whole();
-                self.map.show_whole();
-                self.graph.show_whole();
+                self.panels.show_whole();
             }
             Command::Thumbnails => {
                 self.settings.thumbnails = !self.settings.thumbnails;
-                self.settings.write(self.folder.as_deref());
+                self.remember();
                 if let Some(studio) = &mut self.studio {
                     studio.has_thumbnails = self.settings.thumbnails;
                 }
@@ -440,7 +392,7 @@ impl App {
                 None => self.save_as(),
             },
             Command::SaveAs => self.save_as(),
-            Command::Export => self.export = ExportDialog::new(studio, &self.relief.shown(studio)),
+            Command::Export => self.dialogs.export = ExportDialog::new(studio, &self.panels.relief.shown(studio)),
             Command::Undo => drop(studio.document.undo()),
             Command::Redo => drop(studio.document.redo()),
             Command::NextSeed => {
@@ -449,18 +401,16 @@ impl App {
                 let edited = studio.edit(&next);
                 // Each seed is a step of its own.
                 studio.document.end_gesture();
-                if let Err(error) = edited {
-                    self.say(&error.to_string());
-                }
+                self.say_failure(edited);
             }
             Command::AddNode => {
-                self.below = Below::Graph;
-                self.graph.open_search();
+                self.panels.below = Below::Graph;
+                self.panels.graph.open_search();
             }
             Command::Rename => {
                 let group = groups::of_selection(studio.document.recipe(), &selected);
                 if let Some(name) = group.as_ref().or(selected.first()) {
-                    self.inspector.rename(name);
+                    self.panels.inspector.rename(name);
                 }
             }
             Command::Delete | Command::Duplicate | Command::Group | Command::Ungroup => {
@@ -474,9 +424,8 @@ impl App {
                         Edit::Group { nodes: selected, name }
                     }
                 };
-                if let Err(error) = studio.edit(&edit) {
-                    self.say(&error.to_string());
-                }
+                let edited = studio.edit(&edit);
+                self.say_failure(edited);
             }
             _ => {}
         }
@@ -485,7 +434,7 @@ impl App {
     fn save_as(&mut self) {
         let Some(studio) = &self.studio else { return };
         let name = PathBuf::from(format!("{}.toml", studio.document.title()));
-        self.files = Some(FileDialog::new(Purpose::Save, studio.document.path().or(Some(&name))));
+        self.dialogs.files = Some(FileDialog::new(Purpose::Save, studio.document.path().or(Some(&name))));
     }
 
     /// What the keyboard asks for.
@@ -507,100 +456,6 @@ impl App {
         let paths: Vec<PathBuf> =
             context.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_path_buf()).collect());
         actions.extend(paths.into_iter().take(1).map(Action::Open));
-    }
-
-    fn panels(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
-        let Some(studio) = &self.studio else {
-            CentralPanel::default().show(ui, |ui| self.start.show(ui, &self.settings, self.language, actions));
-            return;
-        };
-        let language = self.language;
-        Panel::bottom("status").show(ui, |ui| status::show(ui, studio, self.gpu.as_ref(), language));
-        Panel::right("inspector").default_size(300.0).size_range(220.0..=520.0).show(ui, |ui| {
-            egui::ScrollArea::vertical()
-                .auto_shrink(false)
-                .show(ui, |ui| self.inspector.show(ui, studio, language, actions));
-        });
-        let available = ui.available_height();
-        Panel::bottom("below").resizable(true).default_size(available * 0.36).size_range(60.0..=available * 0.8).show(
-            ui,
-            |ui| {
-                ui.horizontal(|ui| {
-                    for (below, name) in [
-                        (Below::Graph, "below.graph"),
-                        (Below::Text, "below.text"),
-                        (Below::Analysis, "below.analysis"),
-                        (Below::Real, "below.real"),
-                        (Below::Variants, "below.variants"),
-                    ] {
-                        let label = if below == Below::Text && !studio.document.is_valid() {
-                            egui::RichText::new(format!("! {}", language.text(name))).color(ui.visuals().error_fg_color)
-                        } else {
-                            egui::RichText::new(language.text(name))
-                        };
-                        if ui.selectable_label(self.below == below, label).clicked() {
-                            self.below = below;
-                        }
-                    }
-                });
-                // What has little to show does not make the panel smaller.
-                ui.set_min_size(ui.available_size());
-                match self.below {
-                    Below::Graph => self.graph.show(ui, studio, language, actions),
-                    Below::Text => self.text.show(ui, studio, language, actions),
-                    Below::Analysis => analysis_panel::show(ui, studio, language),
-                    Below::Real => self.real.show(ui, studio, language),
-                    Below::Variants => self.variants.show(ui, studio, language, actions),
-                }
-            },
-        );
-        CentralPanel::default().show(ui, |ui| {
-            ui.horizontal(|ui| {
-                for (view, name) in [(View::Relief, "view.relief"), (View::Map, "view.map")] {
-                    if ui.selectable_label(self.view == view, language.text(name)).clicked() {
-                        self.view = view;
-                    }
-                }
-            });
-            match self.view {
-                View::Relief => self.relief.show(ui, studio, self.ability, language, actions),
-                View::Map => self.map.show(ui, studio, language, actions),
-            }
-        });
-    }
-
-    fn dialogs(&mut self, context: &Context, actions: &mut Vec<Action>) {
-        let language = self.language;
-        if let Some(files) = &mut self.files
-            && !files.show(context, language, actions)
-        {
-            self.files = None;
-        }
-        if let Some(ramp) = &mut self.ramp
-            && (self.studio.is_none() || !ramp.show(context, language, actions))
-        {
-            self.ramp = None;
-        }
-        if let (Some(export), Some(studio)) = (&mut self.export, &self.studio)
-            && !export.show(context, (studio, &self.relief.shown(studio)), &self.wake, language, actions)
-        {
-            self.export = None;
-        }
-        if let Some(palette) = &mut self.palette
-            && !palette.show(context, self.studio.as_ref(), language, actions)
-        {
-            self.palette = None;
-        }
-        if self.has_shortcuts {
-            self.has_shortcuts = dialogs::shortcuts(context, language);
-        }
-        if let Some((title, text)) = &self.message
-            && !dialogs::message(context, title, text)
-        {
-            self.message = None;
-        }
-        self.recover(context);
-        self.ask(context);
     }
 
     /// Offers the text that a crash left behind.
@@ -650,7 +505,7 @@ impl App {
             self.keeps_recovered = true;
             context.send_viewport_cmd(egui::ViewportCommand::Close);
         } else if let Some(error) = self.watch.error() {
-            self.message = Some((self.text("device.title").into(), error));
+            self.dialogs.message = Some((self.text("device.title").into(), error));
         }
     }
 
@@ -697,8 +552,18 @@ impl eframe::App for App {
         Self::dropped(&context, &mut actions);
         Panel::top("menu")
             .show(ui, |ui| menu::show(ui, self.studio.as_ref(), &self.settings, self.language, &mut actions));
-        self.panels(ui, &mut actions);
-        self.dialogs(&context, &mut actions);
+        let shown = Shown {
+            studio: self.studio.as_ref(),
+            settings: &self.settings,
+            gpu: self.gpu.as_ref(),
+            ability: self.ability,
+            language: self.language,
+        };
+        self.panels.show(ui, &shown, &mut actions);
+        let view = self.studio.as_ref().map(|studio| self.panels.relief.shown(studio));
+        self.dialogs.show(&context, self.studio.as_ref().zip(view.as_ref()), &self.wake, self.language, &mut actions);
+        self.recover(&context);
+        self.ask(&context);
         for action in actions {
             self.act(action, &context);
         }
@@ -723,7 +588,7 @@ impl eframe::App for App {
                 }
                 self.settings.window =
                     context.input(|input| input.viewport().inner_rect).map(|rect| [rect.width(), rect.height()]);
-                self.settings.write(self.folder.as_deref());
+                self.remember();
             }
         }
     }

@@ -27,6 +27,8 @@ pub mod map_brush;
 pub mod map_panel;
 pub mod menu;
 pub mod mesh;
+pub mod open_dialogs;
+pub mod panels;
 pub mod purpose;
 pub mod ramp_editor;
 pub mod realism_panel;

@@ -79,6 +79,12 @@ impl OptionRows<'_> {
         self.fields.language.find(&format!("choice.{}-{word}", spec.name))
     }
 
+    /// An item of a list: a name and its text.
+    fn item(&self, spec: &OptionSpec, name: &str, about: &str) -> (String, String) {
+        let text = self.choice(spec, name).map_or_else(|| format!("{name}  {about}"), str::to_owned);
+        (name.to_owned(), text)
+    }
+
     /// The given value, otherwise the default.
     fn value(&self, spec: &OptionSpec) -> String {
         self.given.get(spec.name).cloned().unwrap_or_else(|| spec.default.to_owned())
@@ -96,11 +102,7 @@ impl OptionRows<'_> {
         match spec.kind {
             ValueKind::Nothing => self.switch(ui, spec, ""),
             ValueKind::Choice(choices) => {
-                let text = |name: &str, about: &str| match self.choice(spec, name) {
-                    Some(text) => text.to_owned(),
-                    None => format!("{name}  {about}"),
-                };
-                let items = choices.iter().map(|choice| (choice.name.to_owned(), text(choice.name, choice.about)));
+                let items = choices.iter().map(|choice| self.item(spec, choice.name, choice.about));
                 self.list(ui, spec, items.collect());
             }
             ValueKind::Word(words) => {
@@ -168,8 +170,7 @@ impl OptionRows<'_> {
         let mut value = self.value(spec);
         let is_file = !SETS.iter().any(|set| set.name == value);
         let mut name = if is_file { String::new() } else { value.clone() };
-        let mut items: Vec<(String, String)> =
-            SETS.iter().map(|set| (set.name.to_owned(), format!("{}  {}", set.name, set.about))).collect();
+        let mut items: Vec<(String, String)> = SETS.iter().map(|set| self.item(spec, set.name, set.about)).collect();
         items.push((String::new(), self.fields.language.text("export.tileset_file").to_owned()));
         if rows::list(ui, self.label(spec), &mut name, &items) {
             self.given.insert(spec.name, name);

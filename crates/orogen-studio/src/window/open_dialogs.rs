@@ -1,0 +1,53 @@
+//! The dialogs that are open.
+
+use eframe::egui::Context;
+
+use super::action::Action;
+use super::dialogs::{self, CommandPalette, FileDialog};
+use super::export_dialog::ExportDialog;
+use super::ramp_editor::RampEditor;
+use super::relief_panel::ShownView;
+use crate::catalogue::Language;
+use crate::preview::worker::Wake;
+use crate::studio::Studio;
+
+/// The dialogs that are open.
+#[derive(Default)]
+pub struct OpenDialogs {
+    /// The choice of a file.
+    pub files: Option<FileDialog>,
+    /// The colors of the view.
+    pub ramp: Option<RampEditor>,
+    /// An export.
+    pub export: Option<ExportDialog>,
+    /// The commands by name.
+    pub palette: Option<CommandPalette>,
+    /// The list of shortcuts.
+    pub has_shortcuts: bool,
+    /// A message: title and text.
+    pub message: Option<(String, String)>,
+}
+
+impl OpenDialogs {
+    /// Shows the dialogs that are open. `shown` is the document with what the view in space shows, if there is one.
+    pub fn show(
+        &mut self,
+        context: &Context,
+        shown: Option<(&Studio, &ShownView)>,
+        wake: &Wake,
+        language: Language,
+        actions: &mut Vec<Action>,
+    ) {
+        let studio = shown.map(|(studio, _)| studio);
+        self.files.take_if(|files| !files.show(context, language, actions));
+        self.ramp.take_if(|ramp| studio.is_none() || !ramp.show(context, language, actions));
+        if let Some(shown) = shown {
+            self.export.take_if(|export| !export.show(context, shown, wake, language, actions));
+        }
+        self.palette.take_if(|palette| !palette.show(context, studio, language, actions));
+        if self.has_shortcuts {
+            self.has_shortcuts = dialogs::shortcuts(context, language);
+        }
+        self.message.take_if(|(title, text)| !dialogs::message(context, title, text));
+    }
+}
