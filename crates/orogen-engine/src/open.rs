@@ -1,12 +1,10 @@
 //! Opening worlds by name.
 
-use crate::recipe::document::Recipe;
 use crate::recipe::source::RecipeSource;
 use crate::world::World;
 use orogen_grid::error::Result;
-use orogen_io::dem::prepared::{DEFAULT_MEMORY, PreparedDem};
+use orogen_io::dem::prepared::DEFAULT_MEMORY;
 use std::path::Path;
-use std::sync::Arc;
 
 /// Opens a world: a preset by name (`"alpine"`), a recipe file (`"land.toml"`, `"land.json"`), or a file of heights
 /// (`"alps.tif"`), of which at most 4 GiB are kept in memory. A file takes precedence over a preset of the same name.
@@ -24,9 +22,5 @@ use std::sync::Arc;
 /// If there is no such preset or file (the message suggests the closest name), the file cannot be read, or the recipe
 /// is not valid.
 pub fn open(source: impl AsRef<Path>) -> Result<World> {
-    World::open(match RecipeSource::find(source.as_ref())? {
-        RecipeSource::File(path) => Recipe::read(&path)?,
-        RecipeSource::Preset(preset) => preset.recipe()?,
-        RecipeSource::Dem(path) => Recipe::from_dem(&path, &Arc::new(PreparedDem::read(&path, None, DEFAULT_MEMORY)?)),
-    })
+    World::open(RecipeSource::find(source.as_ref())?.read(&[], DEFAULT_MEMORY, |_| {})?)
 }

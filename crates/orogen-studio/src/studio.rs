@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use orogen::declare::Input;
-use orogen::io::dem::PreparedDem;
 use orogen::io::dem::prepared::DEFAULT_MEMORY;
 use orogen::recipe::{NamedNode, Recipe, RecipeSource};
 use orogen::world::HEIGHT;
@@ -355,8 +354,8 @@ pub fn open(argument: &Path) -> Result<Document> {
         RecipeSource::Preset(preset) => return Document::of_preset(preset),
         RecipeSource::Dem(path) => {
             let path = absolute(&path);
-            let ground = PreparedDem::read(&path, None, DEFAULT_MEMORY)?;
-            return Document::of_dem(&path, &Recipe::from_dem(&path, &Arc::new(ground)));
+            let source = RecipeSource::Dem(path.clone());
+            return Document::of_dem(&path, &source.read(&[], DEFAULT_MEMORY, |_| {})?);
         }
         RecipeSource::File(path) => absolute(&path),
     };

@@ -1,11 +1,13 @@
 //! What an argument names: a recipe file, a preset, or a file of heights.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
+use super::document::Recipe;
 use super::presets::{self, Preset};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::words::nearest;
-use orogen_io::dem::open;
+use orogen_io::dem::{PreparedDem, open};
 use orogen_io::format::content;
 use orogen_io::format::foreign::foreign;
 use orogen_io::fs;
@@ -38,6 +40,30 @@ impl RecipeSource {
                 Err(Error::new(ErrorKind::Request, unknown(argument)))
             }
             _ => Ok(RecipeSource::File(argument.to_path_buf())),
+        }
+    }
+
+    /// Reads the recipe with these values of its parameters. A file of heights takes at most `memory` bytes; `note`
+    /// gets remarks about it.
+    ///
+    /// # Errors
+    /// If it cannot be read, is not valid, or lacks a parameter.
+    pub fn read(&self, set: &[(String, f64)], memory: u64, note: impl FnMut(&String)) -> Result<Recipe> {
+        match self {
+            RecipeSource::File(path) => Recipe::read_with(path, set),
+            RecipeSource::Preset(preset) => preset.recipe_with(set),
+            RecipeSource::Dem(path) if set.is_empty() => {
+                let ground = PreparedDem::read(path, None, memory)?;
+                ground.notes.iter().for_each(note);
+                Ok(Recipe::from_dem(path, &Arc::new(ground)))
+            }
+            RecipeSource::Dem(path) => Err(Error::new(
+                ErrorKind::Request,
+                format!(
+                    "--set gives values to a recipe's parameters, and {} is a file of heights, which has none",
+                    path.display()
+                ),
+            )),
         }
     }
 }
