@@ -5,8 +5,11 @@ use std::marker::PhantomData;
 use clap::builder::{PossibleValuesParser, ValueParser};
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Command};
+use orogen::builder::BuildSpec;
 use orogen::export::derived::list;
 use orogen::export::registry;
+use orogen::jobs::noise::NoiseJob;
+use orogen::jobs::variants::VariantsJob;
 use orogen::jobs::{BlocksJob, MapJob, RenderJob};
 use orogen::options::{Choice, Condition, OptionSpec, Options, ValueKind};
 use orogen::tilemap::TilemapJob;
@@ -58,7 +61,7 @@ macro_rules! jobs {
     )* };
 }
 
-jobs!(MapJob, RenderJob, BlocksJob, TilemapJob);
+jobs!(MapJob, RenderJob, BlocksJob, TilemapJob, NoiseJob, VariantsJob, BuildSpec);
 
 /// Those that were given.
 #[derive(Debug, Clone, Default)]
@@ -75,6 +78,12 @@ pub type FormatOptions = OptionsOf<Formats>;
 pub type LayerOptions = OptionsOf<Layers>;
 
 impl<D: Declares> OptionsOf<D> {
+    /// The words of a command line that gives the same options, each after a space.
+    pub fn words(&self) -> String {
+        let word = |(name, text): &(&str, String)| format!(" --{name} {text}").trim_end().to_owned();
+        self.given.iter().map(word).collect()
+    }
+
     /// The options, as the library takes them.
     ///
     /// # Errors
@@ -127,7 +136,9 @@ fn arg(spec: &'static OptionSpec, known: &[&str], heading: Option<&'static str>)
         ValueKind::Whole(..) | ValueKind::Number(..) | ValueKind::Positive | ValueKind::Size(..) => {
             arg.allow_negative_numbers(true).value_parser(checked)
         }
-        ValueKind::Numbers | ValueKind::Range | ValueKind::Point => arg.allow_hyphen_values(true).value_parser(checked),
+        ValueKind::Numbers | ValueKind::Range | ValueKind::Point | ValueKind::Tuple(..) => {
+            arg.allow_hyphen_values(true).value_parser(checked)
+        }
         // Lists of heights and letters may begin with a minus.
         ValueKind::Text if !known.is_empty() => arg.allow_hyphen_values(true).value_parser(checked),
         _ => arg.value_parser(checked),

@@ -14,8 +14,6 @@ mod device;
 mod disk;
 mod failure;
 mod finite;
-mod format;
-mod fractal_options;
 mod graph;
 mod interrupt;
 mod layer_file;

@@ -1,15 +1,18 @@
 //! Options shared by several commands.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::Args;
+use orogen::io::file::OutputPolicy;
 use orogen::{Budget, FolderStore, Options, Recipe, SolutionStore, World};
 
 use crate::failure::Failure;
 use crate::memory;
 use crate::replace::Replace;
+use crate::source::Source;
 use crate::values::bytes::Bytes;
+use crate::view::View;
 
 /// Limits of threads and memory, and the cache.
 #[derive(Debug, Clone, Args)]
@@ -43,6 +46,25 @@ pub struct RunOptions {
     /// Print no progress and no summary
     #[arg(short, long, help_heading = "Output")]
     pub quiet: bool,
+}
+
+/// What a command has read before it opens a world.
+pub struct Opened {
+    pub source: Source,
+    pub recipe: Recipe,
+    pub budget: Budget,
+    pub policy: OutputPolicy,
+}
+
+impl RunOptions {
+    /// Reads the recipe that `argument` names, with the options of its world.
+    pub fn read(&self, argument: &Path, view: &View) -> Result<Opened, Failure> {
+        let source = Source::find(argument)?;
+        let budget = self.limits.budget();
+        let recipe = view.recipe(&source, &budget)?;
+        let policy = self.replace.policy(source.inputs(&recipe));
+        Ok(Opened { source, recipe, budget, policy })
+    }
 }
 
 /// What a command without a world of its own may replace and use.

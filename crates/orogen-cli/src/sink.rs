@@ -4,6 +4,7 @@ use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::Path;
 
 use orogen::io::file::{self, Output, OutputPolicy};
+use orogen::output::map::canvas::Canvas;
 
 use crate::failure::Failure;
 use crate::interrupt::Stoppable;
@@ -108,6 +109,11 @@ impl Sink {
         }
     }
 
+    /// Writes a picture, with the program's name in it.
+    pub fn picture(&self, picture: &Canvas) -> Result<(), Failure> {
+        self.write(|out| picture.write_png(out, &[("Software", say::SOFTWARE)]))
+    }
+
     /// Prints a message about the output, on standard output unless that contains the file.
     pub fn tell(&self, quiet: bool, words: &str) -> Result<(), Failure> {
         match self {
@@ -133,37 +139,37 @@ impl Write for Piped {
     }
 }
 
+/// Checks that a file is a PNG, or standard output; `what` names it in the message.
+pub fn check_png(out: &Path, what: &str) -> Result<(), Failure> {
+    match is_stdout(out) || out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+        true => Ok(()),
+        false => Err(Failure::Usage(format!("{what} is written as PNG; use the extension .png"))),
+    }
+}
+
 /// The kind of file for `--format`, otherwise for the extension of `out`, otherwise (on standard output) the first of
-/// `kinds`.
+/// `kinds`, which are pairs of a kind and its extension.
 ///
 /// # Errors
 /// If neither matches one of `kinds`, or they contradict each other; `what` names the output in messages, such as "a
-/// map".
-pub fn kind<K: Copy + PartialEq>(
-    out: &Path,
-    asked: Option<K>,
-    kinds: &[(K, &[&str])],
-    what: &str,
-) -> Result<K, Failure> {
+/// map is a".
+pub fn kind<K: Copy + PartialEq>(out: &Path, asked: Option<K>, kinds: &[(K, &str)], what: &str) -> Result<K, Failure> {
     if is_stdout(out) {
         let first = kinds.first().map(|(kind, _)| *kind);
         return asked.or(first).ok_or_else(|| Failure::Usage("standard output needs --format".into()));
     }
-    let extension = out.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-    let told = kinds.iter().find(|(_, names)| names.contains(&extension.as_str())).map(|(kind, _)| *kind);
+    let extension = out.extension().unwrap_or_default();
+    let told = kinds.iter().find(|(_, name)| extension.eq_ignore_ascii_case(name)).map(|(kind, _)| *kind);
     match (asked, told) {
         (Some(asked), Some(told)) if asked != told => {
             Err(Failure::Usage(format!("--format does not match the extension of {}", out.display())))
         }
         (Some(kind), _) | (None, Some(kind)) => Ok(kind),
         (None, None) => {
-            let names: Vec<String> = kinds.iter().map(|(_, names)| format!(".{}", names[0])).collect();
-            let names = match names.as_slice() {
-                [one] => one.clone(),
-                [init @ .., last] => format!("{} or {last}", init.join(", ")),
-                [] => String::new(),
-            };
-            Err(Failure::Usage(format!("{}: {what} is a {names}; name a file that ends so", out.display())))
+            let names: Vec<&str> = kinds.iter().map(|(_, name)| *name).collect();
+            let names = names.join(", .");
+            let names = names.rsplit_once(", ").map_or(names.clone(), |(init, last)| format!("{init} or {last}"));
+            Err(Failure::Usage(format!("{}: {what} .{names}; name a file that ends so", out.display())))
         }
     }
 }

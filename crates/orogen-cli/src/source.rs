@@ -18,12 +18,8 @@ use crate::values::arguments::Arguments;
 /// The source of a recipe.
 #[derive(Debug, Clone)]
 pub enum Source {
-    /// A file.
-    File(PathBuf),
-    /// A preset.
-    Preset(&'static Preset),
-    /// A file of heights, as a recipe that consists only of it.
-    Dem(PathBuf),
+    /// A file or a preset.
+    Named(RecipeSource),
     /// Standard input.
     Stdin,
 }
@@ -40,26 +36,29 @@ impl Source {
         if argument == Path::new(DASH) {
             return Ok(Source::Stdin);
         }
-        Ok(match RecipeSource::find(argument)? {
-            RecipeSource::File(path) => {
-                if let Some(preset) = argument.to_str().and_then(presets::find) {
-                    say::error(&format!(
-                        "note: reading the file {name}, not the preset of that name; give another folder's path or rename \
-                         the file to get the preset",
-                        name = preset.name
-                    ));
-                }
-                Source::File(path)
-            }
-            RecipeSource::Preset(preset) => Source::Preset(preset),
-            RecipeSource::Dem(path) => Source::Dem(path),
-        })
+        let source = RecipeSource::find(argument)?;
+        if let (RecipeSource::File(_), Some(preset)) = (&source, argument.to_str().and_then(presets::find)) {
+            say::once(&format!(
+                "note: reading the file {name}, not the preset of that name; give another folder's path or rename \
+                 the file to get the preset",
+                name = preset.name
+            ));
+        }
+        Ok(Source::Named(source))
+    }
+
+    /// The file of heights, if it is one.
+    pub fn dem(&self) -> Option<&Path> {
+        match self {
+            Source::Named(RecipeSource::Dem(path)) => Some(path),
+            _ => None,
+        }
     }
 
     /// All files that a recipe from this source reads.
     pub fn inputs(&self, recipe: &Recipe) -> Vec<PathBuf> {
         let mut files = recipe.files();
-        if let Source::File(path) | Source::Dem(path) = self {
+        if let Source::Named(RecipeSource::File(path) | RecipeSource::Dem(path)) = self {
             files.push(path.clone());
         }
         files
@@ -68,34 +67,25 @@ impl Source {
     /// Reads the recipe with values for its parameters; the heights of a real place take at most the rest of `budget`.
     pub fn read(&self, budget: &Budget, arguments: &Arguments) -> Result<Recipe, Failure> {
         let set = arguments.values();
-        Ok(match self {
-            Source::File(path) => Recipe::read_with(path, &set)?,
-            Source::Preset(preset) => preset.recipe_with(&set)?,
-            Source::Stdin => piped(&set)?,
-            Source::Dem(path) => {
-                no_values(path, arguments)?;
-                let ground = PreparedDem::read(path, None, budget.left().unwrap_or(DEFAULT_MEMORY))?;
-                of_dem(path, ground)
+        match self {
+            Source::Named(source) => {
+                let note = |note: &String| tell(self.dem().unwrap_or(Path::new(STDIN)), note);
+                Ok(source.read(&set, budget.left().unwrap_or(DEFAULT_MEMORY), note)?)
             }
-        })
+            Source::Stdin => piped(&set),
+        }
     }
+}
+
+/// Prints a note about a file of heights.
+fn tell(path: &Path, note: &str) {
+    say::once(&format!("note: {}: {note}", path.display()));
 }
 
 /// The recipe of heights that were read from a file. Prints their notes.
 pub fn of_dem(path: &Path, ground: PreparedDem) -> Recipe {
-    ground.notes.iter().for_each(|note| say::once(&format!("note: {}: {note}", path.display())));
+    ground.notes.iter().for_each(|note| tell(path, note));
     Recipe::from_dem(path, &Arc::new(ground))
-}
-
-/// Checks that a file of heights is given no values for parameters.
-pub fn no_values(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
-    match arguments.values().is_empty() {
-        true => Ok(()),
-        false => Err(Failure::Usage(format!(
-            "--set gives values to a recipe's parameters, and {} is a file of heights, which has none",
-            path.display()
-        ))),
-    }
 }
 
 /// The recipe on standard input. Relative paths in it are relative to the working folder.

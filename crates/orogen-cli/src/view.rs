@@ -15,7 +15,7 @@ use orogen::{Budget, ErrorKind, Recipe, Window, World};
 use crate::failure::Failure;
 use crate::say;
 use crate::sink::{DASH, is_stdout};
-use crate::source::{Source, no_values, of_dem};
+use crate::source::{Source, of_dem};
 use crate::values::arguments::Arguments;
 use crate::values::number::cell;
 use crate::values::region::{Bounds, Rectangle, place};
@@ -111,11 +111,6 @@ impl SizedView {
     ) -> Result<(), Failure> {
         self.view.each_output(out, |view, out| work(SizedView { view, size: self.size }, out))
     }
-
-    /// See [`View::recipe`].
-    pub fn recipe(&self, source: &Source, budget: &Budget) -> Result<Recipe, Failure> {
-        self.view.recipe(source, budget)
-    }
 }
 
 impl View {
@@ -152,12 +147,12 @@ impl View {
 
     /// Reads a recipe with these options for its parameters and its world. Its memory counts in `budget`.
     pub fn recipe(&self, source: &Source, budget: &Budget) -> Result<Recipe, Failure> {
-        if let Source::Dem(path) = source
+        if let Some(path) = source.dem()
             && self.reads_part
+            && self.arguments.values().is_empty()
             && (self.window.is_some() || self.bounds.is_some() || self.projwin.is_some())
             && let Some(outline) = PreparedDem::outline(path)?
         {
-            no_values(path, &self.arguments)?;
             let outline = self.placed(of_dem(path, outline));
             let part = match self.around(&outline) {
                 Some(window) => PreparedDem::part(path, &window, budget.left().unwrap_or(DEFAULT_MEMORY))?,

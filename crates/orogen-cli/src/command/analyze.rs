@@ -15,11 +15,9 @@ use serde_json::{Map, Value, json};
 
 use crate::bar::Bar;
 use crate::failure::Failure;
-use crate::format::Format;
-use crate::options::Limits;
-use crate::replace::Replace;
-use crate::sink::{Sink, is_stdout};
-use crate::source::{Source, title};
+use crate::options::{Opened, RunOptions};
+use crate::sink::{Sink, check_png, is_stdout};
+use crate::source::title;
 use crate::view::SizedView;
 use crate::{finite, interrupt, say};
 
@@ -37,15 +35,10 @@ pub struct Args {
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     #[command(flatten)]
-    replace: Replace,
-    #[command(flatten)]
-    limits: Limits,
+    run: RunOptions,
     /// Print all numbers as JSON instead of a table
     #[arg(long)]
     json: bool,
-    /// Print no progress and no table
-    #[arg(short, long, help_heading = "Output")]
-    quiet: bool,
 }
 
 /// Measures the terrain and prints the result.
@@ -54,25 +47,14 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 }
 
 fn measure(args: &Args) -> Result<(), Failure> {
-    if let Some(out) = &args.out
-        && !is_stdout(out)
-        && Format::of(out, Format::ALL) != Ok(Format::Png)
-    {
-        return Err(Failure::Usage("the page is written as PNG; use the extension .png".into()));
-    }
-    let source = Source::find(&args.recipe)?;
-    let budget = args.limits.budget();
-    let recipe = args.samples.recipe(&source, &budget)?;
-    let policy = args.replace.policy(source.inputs(&recipe));
+    args.out.as_ref().map_or(Ok(()), |out| check_png(out, "the page"))?;
+    let Opened { source, recipe, budget, policy } = args.run.read(&args.recipe, &args.samples.view)?;
     let sink = args.out.as_ref().map(|out| Sink::new(out, &policy)).transpose()?;
-    let world = args.limits.open(recipe, &budget)?;
+    let world = args.run.limits.open(recipe, &budget)?;
     let window = args.samples.window(&world)?;
     // A file of heights has no sea level: all of it is land.
-    let sea_level = match source {
-        Source::Dem(_) => None,
-        _ => Some(world.recipe().world.sea_level as f32),
-    };
-    let (bar, progress) = Bar::new(args.quiet);
+    let sea_level = source.dem().is_none().then(|| world.recipe().world.sea_level as f32);
+    let (bar, progress) = Bar::new(args.run.quiet);
     let stopped = |error: Error| interrupt::explain(error.into(), "nothing was measured");
     let (measures, page) = match Held::of(args, &world, &window)? {
         Held::InMemory(plan, _reserved) => {
@@ -102,12 +84,11 @@ fn measure(args: &Args) -> Result<(), Failure> {
         }
     };
     if let Some((sink, page)) = sink.as_ref().zip(page) {
-        let software = say::SOFTWARE;
-        sink.write(|out| page.write_png(out, &[("Software", software)]))?;
+        sink.picture(&page)?;
     }
     progress.finish();
     drop(bar);
-    let text = match (args.json, args.quiet) {
+    let text = match (args.json, args.run.quiet) {
         (true, _) => json(args, &window, &measures),
         (false, true) => return Ok(()),
         (false, false) => words(args, &window, &measures),

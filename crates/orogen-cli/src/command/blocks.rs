@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 
-use clap::ValueEnum;
 use orogen::Progress;
 use orogen::jobs::blocks::LuantiFolder;
 use orogen::jobs::{BlockFormat, BlocksJob};
@@ -11,9 +10,9 @@ use orogen::world::HEIGHT;
 use crate::bar::Bar;
 use crate::declared::OptionsOf;
 use crate::failure::Failure;
-use crate::options::RunOptions;
-use crate::sink::{Sink, is_stdout};
-use crate::source::Source;
+use crate::options::{Opened, RunOptions};
+use crate::sink::{Sink, is_stdout, kind};
+use crate::values::name_of;
 use crate::values::size::Size;
 use crate::view::SizedView;
 use crate::{finite, interrupt, say};
@@ -29,40 +28,13 @@ pub struct Args {
     #[command(flatten)]
     options: OptionsOf<BlocksJob>,
     /// Format [default: by the extension of the output; a Luanti world if it has none]
-    #[arg(long, value_enum)]
-    format: Option<Kind>,
+    #[arg(long, value_parser = name_of::blocks())]
+    format: Option<BlockFormat>,
     /// Output: .vox, .schem, .glb, .png, or a folder for a Luanti world; - for standard output
     #[arg(short, long, value_name = "FILE|DIR", default_value = "blocks.vox")]
     out: PathBuf,
     #[command(flatten)]
     run: RunOptions,
-}
-
-/// `--format`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Kind {
-    /// MagicaVoxel models (.vox)
-    Vox,
-    /// A Sponge schematic, version 3, for Minecraft: Java Edition (.schem)
-    Schem,
-    /// The smooth surface of the ground as a mesh (.glb)
-    Glb,
-    /// A picture from the south-east (.png)
-    Png,
-    /// A folder with a Luanti (Minetest) world
-    Luanti,
-}
-
-impl From<Kind> for BlockFormat {
-    fn from(kind: Kind) -> BlockFormat {
-        match kind {
-            Kind::Vox => BlockFormat::Vox,
-            Kind::Schem => BlockFormat::Schem,
-            Kind::Glb => BlockFormat::Glb,
-            Kind::Png => BlockFormat::Png,
-            Kind::Luanti => BlockFormat::Luanti,
-        }
-    }
 }
 
 /// Columns along the longer side of a map without --size and --cell.
@@ -78,7 +50,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 
 fn blocks(args: &Args) -> Result<(), Failure> {
     let format = format(args)?;
-    if format == Kind::Luanti && is_stdout(&args.out) {
+    if format == BlockFormat::Luanti && is_stdout(&args.out) {
         return Err(Failure::Usage("a Luanti world has several files: name a folder with -o".into()));
     }
     let (bar, progress) = Bar::new(args.run.quiet);
@@ -88,36 +60,19 @@ fn blocks(args: &Args) -> Result<(), Failure> {
 }
 
 /// The format: as named, otherwise by the extension.
-fn format(args: &Args) -> Result<Kind, Failure> {
-    let extension = args.out.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase());
-    let implied = match extension.as_deref() {
-        _ if is_stdout(&args.out) => args.format.or(Some(Kind::Vox)),
-        Some("vox") => Some(Kind::Vox),
-        Some("schem") => Some(Kind::Schem),
-        Some("glb") => Some(Kind::Glb),
-        Some("png") => Some(Kind::Png),
-        Some(_) => None,
-        None => Some(Kind::Luanti),
-    };
-    match (args.format, implied) {
-        (Some(asked), None | Some(Kind::Luanti)) => Ok(asked),
-        (Some(asked), Some(implied)) if asked != implied => {
-            Err(Failure::Usage(format!("--format does not match the extension of {}", args.out.display())))
+fn format(args: &Args) -> Result<BlockFormat, Failure> {
+    match args.out.extension() {
+        None if !is_stdout(&args.out) => Ok(args.format.unwrap_or(BlockFormat::Luanti)),
+        _ => {
+            let [files @ .., _] = BlockFormat::ALL.map(|format| (format, format.name()));
+            kind(&args.out, args.format, &files, "blocks are a folder for a Luanti world, or a")
         }
-        (_, Some(implied)) => Ok(implied),
-        (None, None) => Err(Failure::Usage(format!(
-            "{}: blocks are a .vox, .schem, .glb or .png, or a folder for a Luanti world; name a file that ends so, or use --format",
-            args.out.display()
-        ))),
     }
 }
 
-fn make(args: &Args, format: Kind, progress: &Progress) -> Result<(), Failure> {
-    let job = BlocksJob::new(format.into()).with_options(&args.options.read()?)?;
-    let source = Source::find(&args.recipe)?;
-    let budget = args.run.limits.budget();
-    let mut recipe = args.samples.recipe(&source, &budget)?;
-    let policy = args.run.replace.policy(source.inputs(&recipe));
+fn make(args: &Args, format: BlockFormat, progress: &Progress) -> Result<(), Failure> {
+    let job = BlocksJob::new(format).with_options(&args.options.read()?)?;
+    let Opened { mut recipe, budget, policy, .. } = args.run.read(&args.recipe, &args.samples.view)?;
     let spec = &recipe.world;
     // A small world has a block for each of its cells.
     let is_small = spec.size.is_some_and(|size| size[0].max(size[1]) <= MAX_OWN_SIDE * spec.cell);
@@ -134,7 +89,7 @@ fn make(args: &Args, format: Kind, progress: &Progress) -> Result<(), Failure> {
         Ok(made)
     };
     // Whether the output may be written is known before the blocks are made.
-    let made = if format == Kind::Luanti {
+    let made = if format == BlockFormat::Luanti {
         let folder = LuantiFolder::new(&args.out, &policy)?;
         let made = make()?;
         made.to_luanti(folder)?;

@@ -3,19 +3,17 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use clap::ValueEnum;
 use orogen::builder::run::Start;
-use orogen::builder::{Build, BuildSpec, Form, Report, Samples, xyz};
+use orogen::builder::{Build, BuildSpec, Form, Report, xyz};
 use orogen::grid::words::{self, bytes, count, number};
-use orogen::io::format::encoding::Encoding;
+use orogen::options::Options;
 use orogen::{Window, World};
 
 use crate::bar::Bar;
+use crate::declared::OptionsOf;
 use crate::failure::Failure;
-use crate::options::Limits;
-use crate::replace::Replace;
+use crate::options::{Opened, RunOptions};
 use crate::sink::is_stdout;
-use crate::source::Source;
 use crate::view::SizedView;
 use crate::{disk, finite, interrupt, say};
 
@@ -27,43 +25,16 @@ pub struct Args {
     /// Output: NAME.tif is a Cloud-Optimised GeoTIFF, NAME.zarr a Zarr v3 group, NAME a folder of --tiles
     #[arg(short, long, value_name = "OUT")]
     out: PathBuf,
-    /// Kind of the tiles in a folder
-    #[arg(long)]
-    tiles: Option<Tiles>,
-    /// Layers to build, separated by commas
-    #[arg(long, value_name = "A,B", value_delimiter = ',', default_value = orogen::world::HEIGHT)]
-    layers: Vec<String>,
+    #[command(flatten)]
+    options: OptionsOf<BuildSpec>,
     #[command(flatten)]
     samples: SizedView,
-    /// Samples along each side of a tile [default: 512; 513 for tiles that share their edges; 256 for an XYZ tree]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65536), allow_negative_numbers = true)]
-    tile: Option<u32>,
     /// Resume an interrupted build, and repair damaged parts of a finished one; with --force, also over an existing
     /// file of another kind
     #[arg(long, conflicts_with = "no_clobber")]
     resume: bool,
     #[command(flatten)]
-    replace: Replace,
-    #[command(flatten)]
-    limits: Limits,
-    /// Print no requirements, no progress and no summary
-    #[arg(short, long, help_heading = "Output")]
-    quiet: bool,
-}
-
-/// Kinds of tiles in a folder.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Tiles {
-    /// 16-bit grey PNG over the value range of all tiles; adjacent tiles share their edge samples
-    Png,
-    /// Headerless u16, little-endian, over the value range of all tiles; adjacent tiles share their edge samples
-    R16,
-    /// Headerless f32, little-endian; adjacent tiles share their edge samples
-    R32,
-    /// XYZ tree of Terrarium PNG tiles with TileJSON, for web maps; in EPSG:3857 those of OpenStreetMap
-    Terrarium,
-    /// XYZ tree of Terrain-RGB PNG tiles with TileJSON, for web maps; in EPSG:3857 those of OpenStreetMap
-    TerrainRgb,
+    run: RunOptions,
 }
 
 /// Runs the build.
@@ -81,27 +52,25 @@ fn build(args: &Args) -> Result<(), Failure> {
         return Err(Failure::Usage(message.into()));
     }
     let begun = Instant::now();
-    let form = form(args)?;
-    let source = Source::find(&args.recipe)?;
-    let budget = args.limits.budget();
-    let recipe = args.samples.recipe(&source, &budget)?;
-    let output = args.replace.policy(source.inputs(&recipe)).output(&args.out)?;
-    let world = args.limits.open(recipe, &budget)?;
-    let mut spec = BuildSpec::new(form, window(args, &world, form)?).with_layers(&args.layers);
-    spec.tile = args.tile.map(|tile| tile as usize);
+    let options = args.options.read()?;
+    let form = Form::chosen(&args.out, &options)?;
+    let Opened { recipe, budget, policy, .. } = args.run.read(&args.recipe, &args.samples.view)?;
+    let output = policy.output(&args.out)?;
+    let world = args.run.limits.open(recipe, &budget)?;
+    let spec = BuildSpec::new(form, window(args, &world, form, &options)?).with_options(&options);
     let build = Build::new(&world, &spec, &output)?;
-    let start = match (args.resume, args.replace.force) {
+    let start = match (args.resume, args.run.replace.force) {
         (true, _) => Start::Resume,
         (_, true) => Start::Force,
         _ => Start::Fresh,
     };
     needs(args, &build, start)?;
-    let (bar, progress) = Bar::new(args.quiet);
+    let (bar, progress) = Bar::new(args.run.quiet);
     let report = build.run(start, &progress);
     drop(bar);
     let report =
         report.map_err(|error| interrupt::explain(error.into(), "run the same command with --resume to continue"))?;
-    finite::tell(&args.layers.join("`, `"), report.samples)?;
+    finite::tell(&spec.layers.join("`, `"), report.samples)?;
     if !report.foreign.is_empty() {
         let names: Vec<String> = report.foreign.iter().map(|path| path.display().to_string()).collect();
         let list = words::list(names.iter().map(String::as_str));
@@ -110,37 +79,15 @@ fn build(args: &Args) -> Result<(), Failure> {
             args.out.display()
         ));
     }
-    if args.quiet { Ok(()) } else { say::out(&closing(args, &spec, &report, begun.elapsed().as_secs_f64())) }
-}
-
-/// The form of the result, from OUT and --tiles.
-fn form(args: &Args) -> Result<Form, Failure> {
-    let tiles = args.tiles.map(|tiles| match tiles {
-        Tiles::Png => Form::Tiles(Samples::Png),
-        Tiles::R16 => Form::Tiles(Samples::R16),
-        Tiles::R32 => Form::Tiles(Samples::R32),
-        Tiles::Terrarium => Form::Xyz(Encoding::Terrarium),
-        Tiles::TerrainRgb => Form::Xyz(Encoding::TerrainRgb),
-    });
-    let out = args.out.display();
-    match (Form::of(&args.out), tiles) {
-        (Some(form), None) => Ok(form),
-        (None, Some(tiles)) => Ok(tiles),
-        (Some(_), Some(_)) => Err(Failure::Usage(format!(
-            "--tiles writes a folder, but {out} has the extension of a file; leave out one of them"
-        ))),
-        (None, None) => Err(Failure::Usage(format!(
-            "{out} does not determine what to build: use the extension .tif or .zarr, or --tiles png, r16, r32, terrarium or terrain-rgb"
-        ))),
-    }
+    if args.run.quiet { Ok(()) } else { say::out(&closing(args, &spec, &report, begun.elapsed().as_secs_f64())) }
 }
 
 /// The requested window.
-fn window(args: &Args, world: &World, form: Form) -> Result<Window, Failure> {
+fn window(args: &Args, world: &World, form: Form, options: &Options) -> Result<Window, Failure> {
     let SizedView { view, size } = &args.samples;
     let cell = view.cell.unwrap_or(match form {
         Form::Xyz(_) => {
-            let tile = args.tile.map(|tile| tile as usize).or(form.usual_tile()).unwrap_or(1);
+            let tile = options.whole("tile").map(|side| side as usize).or(form.usual_tile()).unwrap_or(1);
             xyz::cell_near(world.recipe().world.cell, tile, world.recipe().georeference().as_ref())
         }
         _ => world.recipe().world.cell,
@@ -167,7 +114,7 @@ fn needs(args: &Args, build: &Build, start: Start) -> Result<(), Failure> {
     let (disk, there) = build.disk();
     let free = disk::free_at(&args.out);
     let there = if start == Start::Resume { there } else { 0 };
-    if !args.quiet {
+    if !args.run.quiet {
         let (tiles, samples) = build.tiles();
         let way = match disk.scratch {
             0 => String::new(),

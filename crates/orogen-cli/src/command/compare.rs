@@ -6,11 +6,10 @@ use orogen::output::noise_pictures::{page, row};
 
 use crate::bar::Bar;
 use crate::failure::Failure;
-use crate::format::Format;
+use crate::interrupt;
 use crate::options::DrawOptions;
-use crate::sink::{Sink, is_stdout};
+use crate::sink::{Sink, check_png};
 use crate::values::number::seed;
-use crate::{interrupt, say};
 
 /// Arguments of the command.
 #[derive(Debug, clap::Args)]
@@ -34,9 +33,7 @@ pub struct Args {
 
 /// Draws the page.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    if !is_stdout(&args.out) && Format::of(&args.out, Format::ALL).map_err(Failure::Usage)? != Format::Png {
-        return Err(Failure::Usage("the page is written as PNG; use the extension .png".into()));
-    }
+    check_png(&args.out, "the page")?;
     let sink = Sink::new(&args.out, &args.options.replace.anywhere())?;
     let (rows, side) = (row::rows(args.seed), usize::from(args.size));
     let [width, height] = page::size(rows.len(), side);
@@ -47,8 +44,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let stopped = |error: orogen::Error| interrupt::explain(error.into(), "nothing was written");
     let [drawing, writing] = progress.parts([4.0, 1.0]);
     let page = page::draw(&rows, side, args.seed, &drawing).map_err(stopped)?;
-    let software = say::SOFTWARE;
-    sink.write(|out| page.write_png(out, &[("Software", software)]))?;
+    sink.picture(&page)?;
     writing.finish();
     drop(bar);
     let words = format!(

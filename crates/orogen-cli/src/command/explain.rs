@@ -56,7 +56,7 @@ fn parameters(recipe: &Recipe) -> String {
 
 fn tell(args: &Args) -> Result<(), Failure> {
     let budget = args.limits.budget();
-    let recipe = args.samples.recipe(&Source::find(&args.recipe)?, &budget)?;
+    let recipe = args.samples.view.recipe(&Source::find(&args.recipe)?, &budget)?;
     let layers: Vec<String> = match &args.layer {
         Some(layer) => vec![layer.clone()],
         None => recipe.outputs().map(String::from).collect(),

@@ -7,17 +7,16 @@ use orogen::export::derived::list;
 use orogen::export::targets::frame::FrameSpec;
 use orogen::export::targets::job::EngineJob;
 use orogen::export::targets::target::EngineTarget;
-use orogen::export::{ExportJob, Format, registry, targets};
+use orogen::export::{ExportJob, Format, registry};
 use orogen::grid::words::{count, number};
 use orogen::io::file::OutputPolicy;
 
 use crate::bar::Bar;
 use crate::declared::{FormatOptions, LayerOptions};
 use crate::failure::Failure;
-use crate::options::RunOptions;
+use crate::options::{Opened, RunOptions};
 use crate::sink::{Sink, is_stdout};
-use crate::source::Source;
-use crate::values::name_of::NameOf;
+use crate::values::name_of;
 use crate::values::size::Size;
 use crate::view::SizedView;
 use crate::{finite, interrupt, layer_file, say};
@@ -32,8 +31,8 @@ pub struct Args {
     #[arg(short, long, value_name = "FILE")]
     out: PathBuf,
     /// Format, if the file extension does not determine it [default: npy]
-    #[arg(long, value_parser = NameOf::format())]
-    format: Option<&'static str>,
+    #[arg(long, value_parser = name_of::format())]
+    format: Option<&'static Format>,
     /// Layer to write: an output, `node.layer`, or a layer derived from the heights, listed below
     #[arg(long, value_name = "L", default_value = orogen::world::HEIGHT)]
     layer: String,
@@ -42,8 +41,8 @@ pub struct Args {
     /// Game engine to write for: sets format, scale, row order and sizes, and prints the settings for its import
     /// dialog. --size is the number of samples along each side, of each tile if there are several [default: as many as
     /// the world has]
-    #[arg(long, help_heading = "Engines", value_name = "ENGINE", value_parser = NameOf::engine(), conflicts_with = "format")]
-    target: Option<&'static str>,
+    #[arg(long, help_heading = "Engines", value_name = "ENGINE", value_parser = name_of::engine(), conflicts_with = "format")]
+    target: Option<&'static EngineTarget>,
     /// Number of tiles for the engine, east and south; adjacent tiles share the samples along their common edge
     #[arg(long, help_heading = "Engines", value_name = "NxM", requires = "target")]
     tiles: Option<Size>,
@@ -95,13 +94,11 @@ fn export(args: &Args) -> Result<(), Failure> {
         .with_options(args.options.read()?)
         .with_layer_options(args.layer_options.read()?);
     job.check()?;
-    let source = Source::find(&args.recipe)?;
-    let budget = args.run.limits.budget();
-    let mut recipe = args.samples.recipe(&source, &budget)?;
-    let policy = args.run.replace.policy(source.inputs(&recipe)).protecting(job.files());
+    let Opened { mut recipe, budget, policy, .. } = args.run.read(&args.recipe, &args.samples.view)?;
+    let policy = policy.protecting(job.files());
     job.prepare(&mut recipe)?;
     let world = args.run.limits.open(recipe, &budget)?;
-    if let Some(target) = args.target.and_then(targets::list::named) {
+    if let Some(target) = args.target {
         return for_engine(args, &engine_job(args, target, &job, &world)?, &world, &policy);
     }
     let window = args.samples.window(&world)?;
@@ -184,7 +181,7 @@ fn for_engine(args: &Args, job: &EngineJob, world: &World, policy: &OutputPolicy
 
 /// The requested format: by name, otherwise by extension, otherwise an array.
 fn format(args: &Args) -> Result<&'static Format, Failure> {
-    let named = args.format.and_then(registry::named);
+    let named = args.format;
     if is_stdout(&args.out) {
         return named.or(registry::named("npy")).ok_or_else(|| Failure::Usage("say --format".into()));
     }

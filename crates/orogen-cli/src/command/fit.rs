@@ -17,8 +17,7 @@ use serde_json::json;
 
 use crate::bar::Bar;
 use crate::failure::Failure;
-use crate::options::Limits;
-use crate::replace::Replace;
+use crate::options::RunOptions;
 use crate::sink::{Sink, is_stdout};
 use crate::source::preset;
 use crate::values::number::seed;
@@ -44,15 +43,10 @@ pub struct Args {
           allow_negative_numbers = true)]
     judges: u32,
     #[command(flatten)]
-    replace: Replace,
-    #[command(flatten)]
-    limits: Limits,
+    run: RunOptions,
     /// Print the report as JSON
     #[arg(long)]
     json: bool,
-    /// Print no progress and no report
-    #[arg(short, long, help_heading = "Output")]
-    quiet: bool,
 }
 
 /// Memory for measuring a sample, in bytes.
@@ -66,12 +60,12 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             args.out.display()
         )));
     }
-    let sink = Sink::new(&args.out, &args.replace.policy([&args.place]))?;
-    let budget = args.limits.budget();
+    let sink = Sink::new(&args.out, &args.run.replace.policy([&args.place]))?;
+    let budget = args.run.limits.budget();
     let place = PreparedDem::read(&args.place, None, budget.left().unwrap_or(DEFAULT_MEMORY))?;
     // The place, and the memory for measuring a window.
     budget.reserve(place.memory() + MEASURED * (SIDE * SIDE) as u64)?.keep();
-    if !args.quiet {
+    if !args.run.quiet {
         place.notes.iter().for_each(|note| say::error(&format!("note: {}: {note}", args.place.display())));
     }
     let place = Arc::new(place);
@@ -80,8 +74,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let random = args.tries as usize / 2;
     let effort = Effort::new(random, args.tries as usize - random).with_seed(args.seed);
     let stopped = |error: Error| interrupt::explain(error.into(), "no recipe was written");
-    let options = args.limits.options(&budget);
-    let (bar, progress) = Bar::new(args.quiet);
+    let options = args.run.limits.options(&budget);
+    let (bar, progress) = Bar::new(args.run.quiet);
     let default = preset(presets::DEFAULT)?.recipe()?;
     // Each comparison makes a world of the fitted recipe, about as much work as the default preset, and one of that
     // preset.
@@ -104,7 +98,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     drop(bar);
     sink.write(|out| out.write_all(mark::marked(&recipe.to_toml()).as_bytes()))?;
     let report = Report::of(&target, &lands);
-    let text = match (args.json, args.quiet) {
+    let text = match (args.json, args.run.quiet) {
         (true, _) => report.json(&target, found.tried),
         (false, true) => return Ok(()),
         (false, false) => report.words(args, &name, &target, found.tried),
@@ -126,7 +120,7 @@ fn land_window(world: &World, target: &FitTarget) -> Result<Window, Failure> {
 
 /// The work of [`land`].
 fn land_work(args: &Args, budget: &Budget, recipe: Recipe, target: &FitTarget) -> Result<f64, Failure> {
-    let world = args.limits.open(recipe, budget)?;
+    let world = args.run.limits.open(recipe, budget)?;
     let plan = world.plan(&[HEIGHT], &land_window(&world, target)?)?;
     Ok(world.work(&plan)?)
 }
@@ -141,7 +135,7 @@ fn land(
     progress: &Progress,
 ) -> Result<Grid, Failure> {
     recipe.world.seed = seed;
-    let world = args.limits.open(recipe, budget)?;
+    let world = args.run.limits.open(recipe, budget)?;
     let grids = world.grids(&[HEIGHT], &land_window(&world, target)?, progress);
     let mut grids = grids.map_err(|error| interrupt::explain(error.into(), "no recipe was written"))?;
     grids.pop().ok_or_else(|| Error::new(ErrorKind::Request, "the world made no layer").into())

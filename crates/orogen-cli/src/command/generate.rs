@@ -6,12 +6,13 @@ use std::time::Instant;
 use orogen::Progress;
 use orogen::grid::words::number;
 use orogen::io::file::OutputFolder;
+use orogen::recipe::RecipeSource;
 use orogen::world::{HEIGHT, LAKES};
 
 use crate::bar::Bar;
 use crate::device::DeviceOption;
 use crate::failure::Failure;
-use crate::options::RunOptions;
+use crate::options::{Opened, RunOptions};
 use crate::pictures::{self, FILES, Report};
 use crate::sink::is_stdout;
 use crate::source::Source;
@@ -56,23 +57,23 @@ fn generate(args: &Args) -> Result<(), Failure> {
         ));
     }
     let source = Source::find(&args.recipe)?;
-    let again = |progress: &Progress| make(&source, args, progress);
+    let again = |progress: &Progress| make(args, progress);
     match (&source, args.watch) {
-        (Source::File(path), true) => watch::watch(path, args.run.quiet, again),
-        (Source::Dem(path), true) => Err(Failure::Usage(format!(
+        (Source::Named(RecipeSource::File(path)), true) => watch::watch(path, args.run.quiet, again),
+        (Source::Named(RecipeSource::Dem(path)), true) => Err(Failure::Usage(format!(
             "--watch needs a recipe, and {} is a file of heights; use it in a recipe, in a node with op = \"dem\"",
             path.display()
         ))),
         (Source::Stdin, true) => {
             Err(Failure::Usage("--watch needs a recipe file, not standard input; name the file".into()))
         }
-        (Source::Preset(preset), true) => Err(Failure::Usage(format!(
+        (Source::Named(RecipeSource::Preset(preset)), true) => Err(Failure::Usage(format!(
             "--watch needs a recipe file, and `{0}` is a preset; `orogen new NAME --preset {0}` writes it to a file",
             preset.name
         ))),
         (_, false) => {
             let (bar, progress) = Bar::new(args.run.quiet);
-            let made = make(&source, args, &progress);
+            let made = make(args, &progress);
             drop(bar);
             made.and_then(|text| say::out(&text)).map_err(|failure| interrupt::explain(failure, "nothing was written"))
         }
@@ -83,11 +84,9 @@ fn generate(args: &Args) -> Result<(), Failure> {
 const WRITING: f64 = 150.0;
 
 /// Makes the terrain once, and returns the text for standard output.
-fn make(source: &Source, args: &Args, progress: &Progress) -> Result<String, Failure> {
+fn make(args: &Args, progress: &Progress) -> Result<String, Failure> {
     let begun = Instant::now();
-    let budget = args.run.limits.budget();
-    let recipe = args.samples.recipe(source, &budget)?;
-    let policy = args.run.replace.policy(source.inputs(&recipe));
+    let Opened { recipe, budget, policy, .. } = args.run.read(&args.recipe, &args.samples.view)?;
     let (world, card) = args.device.open(&args.run.limits, recipe, &budget)?;
     let window = args.samples.window(&world)?;
     let outputs = pictures::outputs(&args.out, &policy)?;

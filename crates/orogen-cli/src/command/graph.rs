@@ -11,7 +11,6 @@ use crate::failure::Failure;
 use crate::graph::diagram::Diagram;
 use crate::graph::{dot, draw};
 use crate::options::DrawOptions;
-use crate::say;
 use crate::sink::{Sink, kind};
 use crate::source::{Source, title};
 use crate::values::arguments::Arguments;
@@ -54,8 +53,8 @@ enum Kind {
     Dot,
 }
 
-const KINDS: [(Kind, &[&str]); 4] =
-    [(Kind::Svg, &["svg"]), (Kind::Pdf, &["pdf"]), (Kind::Png, &["png"]), (Kind::Dot, &["dot", "gv"])];
+const KINDS: [(Kind, &str); 5] =
+    [(Kind::Svg, "svg"), (Kind::Pdf, "pdf"), (Kind::Png, "png"), (Kind::Dot, "dot"), (Kind::Dot, "gv")];
 
 /// Maximum number of boxes of a drawing; Graphviz may handle more.
 const MAX_BLOCKS: usize = 2000;
@@ -65,7 +64,7 @@ const MAX_PIXELS: f32 = 4e8;
 
 /// Draws the graph.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    let kind = kind(&args.out, args.format, &KINDS, "a graph")?;
+    let kind = kind(&args.out, args.format, &KINDS, "a graph is a")?;
     let source = Source::find(&args.recipe)?;
     let recipe = source.read(&args.options.budget(), &args.arguments)?;
     let sink = Sink::new(&args.out, &args.options.replace.policy(source.inputs(&recipe)))?;
@@ -91,9 +90,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
                         "the picture would be too large; use a lower --dpi, or write a .svg".into(),
                     ));
                 }
-                let page = raster::draw(&scene, f64::from(args.dpi));
-                let software = say::SOFTWARE;
-                sink.write(|out| page.write_png(out, &[("Software", software)]))?;
+                sink.picture(&raster::draw(&scene, f64::from(args.dpi)))?;
             }
         }
     }

@@ -19,9 +19,8 @@ use crate::bar::Bar;
 use crate::device::DeviceOption;
 use crate::failure::Failure;
 use crate::moving::{AnimationTarget, Moving};
-use crate::options::RunOptions;
+use crate::options::{Opened, RunOptions};
 use crate::sink::Sink;
-use crate::source::Source;
 use crate::view::SizedView;
 use crate::{finite, interrupt, say};
 
@@ -67,9 +66,7 @@ fn grow(args: &Args) -> Result<(), Failure> {
     if let Some(years) = args.years.filter(|years| !(0.0..=1e9).contains(years)) {
         return Err(Failure::Usage(format!("--years must be from 0 to 1e9, not {years}")));
     }
-    let source = Source::find(&args.recipe)?;
-    let budget = args.run.limits.budget();
-    let mut recipe = args.samples.recipe(&source, &budget)?;
+    let Opened { mut recipe, budget, policy, .. } = args.run.read(&args.recipe, &args.samples.view)?;
     if let Some(years) = args.years {
         recipe.change(|node| {
             if let Node::StreamPower(rivers) = node {
@@ -83,7 +80,6 @@ fn grow(args: &Args) -> Result<(), Failure> {
             args.recipe.display()
         )));
     }
-    let policy = args.run.replace.policy(source.inputs(&recipe));
     let outputs = target.outputs(&args.out, u32::from(args.frames), &policy)?;
     let (bar, progress) = Bar::new(args.run.quiet);
     let made = write(recipe, args, &target, &outputs, &budget, &progress);

@@ -2,17 +2,16 @@
 
 use std::path::PathBuf;
 
-use clap::ValueEnum;
 use orogen::io::file;
 use orogen::jobs::{MapJob, SheetFormat};
 
 use crate::bar::Bar;
 use crate::declared::{LayerOptions, OptionsOf};
 use crate::failure::Failure;
-use crate::options::Limits;
-use crate::replace::Replace;
+use crate::options::{Opened, RunOptions};
 use crate::sink::{Sink, kind};
-use crate::source::{Source, title};
+use crate::source::title;
+use crate::values::name_of;
 use crate::view::View;
 use crate::{interrupt, say};
 
@@ -25,45 +24,17 @@ pub struct Args {
     #[arg(short, long, value_name = "FILE")]
     out: PathBuf,
     /// Format, if the file extension does not determine it [default: png]
-    #[arg(long)]
-    format: Option<Kind>,
+    #[arg(long, value_parser = name_of::sheet())]
+    format: Option<SheetFormat>,
     #[command(flatten)]
     options: OptionsOf<MapJob>,
     #[command(flatten)]
     view: View,
     #[command(flatten)]
-    replace: Replace,
-    #[command(flatten)]
     layer_options: LayerOptions,
     #[command(flatten)]
-    limits: Limits,
-    /// Print no progress and no summary
-    #[arg(short, long, help_heading = "Output")]
-    quiet: bool,
+    run: RunOptions,
 }
-
-/// The kinds of files.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Kind {
-    /// Picture
-    Png,
-    /// Vector drawing
-    Svg,
-    /// PDF page
-    Pdf,
-}
-
-impl From<Kind> for SheetFormat {
-    fn from(kind: Kind) -> SheetFormat {
-        match kind {
-            Kind::Png => SheetFormat::Png,
-            Kind::Svg => SheetFormat::Svg,
-            Kind::Pdf => SheetFormat::Pdf,
-        }
-    }
-}
-
-const KINDS: [(Kind, &[&str]); 3] = [(Kind::Png, &["png"]), (Kind::Svg, &["svg"]), (Kind::Pdf, &["pdf"])];
 
 /// Draws the sheet.
 pub fn run(args: &Args) -> Result<(), Failure> {
@@ -71,22 +42,20 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 }
 
 fn map(args: &Args) -> Result<(), Failure> {
-    let format = kind(&args.out, args.format, &KINDS, "a map")?;
-    let mut job = MapJob::new(format.into()).with_title(title(&args.recipe)).with_options(&args.options.read()?)?;
+    let kinds = SheetFormat::ALL.map(|format| (format, format.name()));
+    let format = kind(&args.out, args.format, &kinds, "a map is a")?;
+    let mut job = MapJob::new(format).with_title(title(&args.recipe)).with_options(&args.options.read()?)?;
     job.layer_options = args.layer_options.read()?;
-    let source = Source::find(&args.recipe)?;
-    job.is_place = matches!(source, Source::Dem(_));
-    let budget = args.limits.budget();
-    let mut recipe = args.view.recipe(&source, &budget)?;
-    let policy = args.replace.policy(source.inputs(&recipe)).protecting(args.options.read()?.files());
-    let sink = Sink::new(&args.out, &policy)?;
+    let Opened { source, mut recipe, budget, policy } = args.run.read(&args.recipe, &args.view)?;
+    job.is_place = source.dem().is_some();
+    let sink = Sink::new(&args.out, &policy.protecting(args.options.read()?.files()))?;
     job.prepare(&mut recipe)?;
-    let world = args.limits.open(recipe, &budget)?;
+    let world = args.run.limits.open(recipe, &budget)?;
     job.window = Some(args.view.window(&world)?);
     if let Sink::File(output) = &sink {
         file::check_folder(file::folder(output.path()))?;
     }
-    let (bar, progress) = Bar::new(args.quiet);
+    let (bar, progress) = Bar::new(args.run.quiet);
     let stopped = |error: orogen::Error| interrupt::explain(error.into(), "nothing was written");
     let drawn = job.draw(&world, &progress).map_err(stopped)?;
     for warning in drawn.warnings() {
@@ -103,5 +72,5 @@ fn map(args: &Args) -> Result<(), Failure> {
         Sink::Stdout => sink.write(|out| drawn.to_stream(out))?,
     }
     drop(bar);
-    sink.tell(args.quiet, &format!("{}: {}\n", args.out.display(), drawn.words()))
+    sink.tell(args.run.quiet, &format!("{}: {}\n", args.out.display(), drawn.words()))
 }

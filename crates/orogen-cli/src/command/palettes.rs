@@ -8,7 +8,7 @@ use orogen::output::map::swatches::{self, Swatch};
 use crate::failure::Failure;
 use crate::replace::Replace;
 use crate::say;
-use crate::sink::{Sink, is_stdout};
+use crate::sink::{Sink, check_png};
 
 /// Arguments of the command.
 #[derive(Debug, clap::Args)]
@@ -27,12 +27,7 @@ pub struct Args {
 
 /// Lists the palettes, and draws them.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    if let Some(out) = &args.out
-        && !is_stdout(out)
-        && !out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
-    {
-        return Err(Failure::Usage("the page is written as PNG; use the extension .png".into()));
-    }
+    args.out.as_ref().map_or(Ok(()), |out| check_png(out, "the page"))?;
     let policy = args.replace.policy(&args.files);
     let sink = args.out.as_ref().map(|out| Sink::new(out, &policy)).transpose()?;
     let mut shown: Vec<Swatch> = named::all()
@@ -44,9 +39,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         shown.push(Swatch { about: path.display().to_string(), palette, safe: false });
     }
     if let Some(sink) = &sink {
-        let page = swatches::draw(&shown)?;
-        let software = say::SOFTWARE;
-        sink.write(|out| page.write_png(out, &[("Software", software)]))?;
+        sink.picture(&swatches::draw(&shown)?)?;
     }
     if args.quiet || matches!(sink, Some(Sink::Stdout)) {
         return Ok(());

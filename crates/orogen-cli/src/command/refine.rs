@@ -10,7 +10,7 @@ use orogen::io::file::mark;
 use crate::declared::FormatOptions;
 use crate::failure::Failure;
 use crate::layer_file;
-use crate::options::RunOptions;
+use crate::options::{Opened, RunOptions};
 use crate::sink::{Sink, is_stdout};
 use crate::source::Source;
 use crate::view::View;
@@ -51,16 +51,13 @@ fn refine(args: &Args) -> Result<(), Failure> {
         false if is_recipe => None,
         false => Some(registry::of_path(&args.out).map_err(|why| Failure::Usage(why.to_string()))?),
     };
-    let source = Source::find(&args.place)?;
-    if !matches!(source, Source::Dem(_)) {
+    if Source::find(&args.place)?.dem().is_none() {
         return Err(Failure::Usage(format!(
             "`refine` needs a file of heights, and {} is none; recipes are made at any cell by `orogen export RECIPE --cell`",
             args.place.display()
         )));
     }
-    let budget = args.run.limits.budget();
-    let mut recipe = args.samples.recipe(&source, &budget)?;
-    let policy = args.run.replace.policy(source.inputs(&recipe));
+    let Opened { mut recipe, budget, policy, .. } = args.run.read(&args.place, &args.samples)?;
     let coarse = recipe.world.cell;
     recipe.refine_place(args.samples.cell.unwrap_or(coarse / FINER))?;
     let sink = Sink::new(&args.out, &policy)?;

@@ -14,9 +14,8 @@ use crate::declared::OptionsOf;
 use crate::device::DeviceOption;
 use crate::failure::Failure;
 use crate::moving::{AnimationTarget, Moving};
-use crate::options::RunOptions;
+use crate::options::{Opened, RunOptions};
 use crate::sink::{Sink, is_stdout};
-use crate::source::Source;
 use crate::view::View;
 use crate::{interrupt, say};
 
@@ -68,10 +67,8 @@ fn render(args: &Args) -> Result<(), Failure> {
     };
     let options = args.options.read()?;
     let mut job = RenderJob::default().with_options(&options)?;
-    let source = Source::find(&args.recipe)?;
-    let budget = args.run.limits.budget();
-    let mut recipe = args.view.recipe(&source, &budget)?;
-    let policy = args.run.replace.policy(source.inputs(&recipe)).protecting(options.files());
+    let Opened { mut recipe, budget, policy, .. } = args.run.read(&args.recipe, &args.view)?;
+    let policy = policy.protecting(options.files());
     let outputs = target.outputs(&args.out, args.turntable.unwrap_or(1), &policy)?;
     job.prepare(&mut recipe)?;
     let (world, card) = args.device.open(&args.run.limits, recipe, &budget)?;

@@ -11,9 +11,8 @@ use orogen::world::HEIGHT;
 use crate::bar::Bar;
 use crate::declared::OptionsOf;
 use crate::failure::Failure;
-use crate::options::RunOptions;
+use crate::options::{Opened, RunOptions};
 use crate::sink::is_stdout;
-use crate::source::Source;
 use crate::values::size::Size;
 use crate::view::SizedView;
 use crate::{interrupt, say};
@@ -51,12 +50,9 @@ fn tilemap(args: &Args) -> Result<(), Failure> {
 }
 
 fn make(args: &Args, progress: &Progress) -> Result<String, Failure> {
-    let source = Source::find(&args.recipe)?;
-    let budget = args.run.limits.budget();
-    let mut recipe = args.samples.recipe(&source, &budget)?;
+    let Opened { mut recipe, budget, policy, .. } = args.run.read(&args.recipe, &args.samples.view)?;
     let job = TilemapJob::with_options(&args.options.read()?)?;
-    let inputs = source.inputs(&recipe).into_iter().chain(job.files.iter().cloned());
-    let policy = args.run.replace.policy(inputs);
+    let policy = policy.protecting(&job.files);
     let samples = SizedView {
         size: args
             .samples

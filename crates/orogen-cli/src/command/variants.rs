@@ -4,10 +4,9 @@ use std::path::PathBuf;
 
 use orogen::budget::Reservation;
 use orogen::io::format::png::{Animation, Picture, Pixel};
-use orogen::io::palette::Palette;
 use orogen::jobs::RenderJob;
-use orogen::jobs::render::around;
-use orogen::options::find_palette;
+use orogen::jobs::variants::VariantsJob;
+use orogen::options::Options;
 use orogen::output::map::contact::Drawn;
 use orogen::output::map::{Sheet, Variant, contact};
 use orogen::output::render::scene::Colors;
@@ -15,14 +14,13 @@ use orogen::world::HEIGHT;
 use orogen::{Budget, Grid, Progress, Recipe, Window, World};
 
 use crate::bar::Bar;
+use crate::declared::OptionsOf;
 use crate::failure::Failure;
-use crate::format::Format;
 use crate::moving::{AnimationTarget, Moving};
 use crate::options::RunOptions;
-use crate::sink::{Sink, is_stdout};
+use crate::sink::{Sink, check_png};
 use crate::source::{Source, title};
 use crate::values::arguments::Arguments;
-use crate::values::number::{Numbers, seed};
 use crate::values::sweep::Sweep;
 use crate::{finite, interrupt, say};
 
@@ -32,32 +30,14 @@ pub struct Args {
     /// A recipe file, or the name of a preset
     #[arg(default_value = orogen::recipe::presets::DEFAULT)]
     recipe: PathBuf,
-    /// Number of seeds to show, starting with the recipe's seed or --seed [default: 9]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=64), conflicts_with = "sweep")]
-    seeds: Option<u8>,
     /// Show values of a parameter: N, evenly spaced from A to B, such as relief=200..2000:9, or a list, such as
     /// relief=200,500,2000
     #[arg(long, value_name = "NAME=A..B:N|A,B,...", allow_hyphen_values = true)]
     sweep: Option<Sweep>,
-    /// The first seed, or with --sweep the seed of all pictures [default: the recipe's]
-    #[arg(long, value_name = "N", value_parser = seed, allow_negative_numbers = true)]
-    seed: Option<u64>,
     #[command(flatten)]
     arguments: Arguments,
-    /// Palette: a name (`orogen palettes` lists them) or a file (.cpt, .gpl, .toml, or gdaldem) [default: hypsometric]
-    #[arg(long, value_name = "NAME|FILE")]
-    palette: Option<PathBuf>,
-    /// Give each value the color of the nearest stop of the palette, without mixing (as gdaldem's -nearest_color_entry)
-    #[arg(long, requires = "palette")]
-    nearest_color: bool,
-    /// Show the land in perspective, as `orogen render` does, instead of a map; with --palette in the colors of the
-    /// map, over the heights of all pictures
-    #[arg(long)]
-    render: bool,
-    /// Camera position around the center of the land, as in `orogen render`: AZIMUTH,ELEVATION[,DISTANCE] [default:
-    /// 200,24]
-    #[arg(long, value_name = "A,E[,D]", requires = "render", allow_hyphen_values = true)]
-    camera: Option<Numbers>,
+    #[command(flatten)]
+    options: OptionsOf<VariantsJob>,
     /// Show the pictures of --sweep one after the other, forward and back, so that they loop: an animated .png, a .gif,
     /// or a file for each frame such as land-%03d.png
     #[arg(long, requires = "sweep", conflicts_with = "columns")]
@@ -68,18 +48,9 @@ pub struct Args {
     /// Picture to write (.png); with --animate also a .gif, or a file for each frame such as land-%03d.png
     #[arg(short, long, value_name = "FILE", default_value = "variants.png")]
     out: PathBuf,
-    /// Samples along the longer side of each picture
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(64..=2048), default_value = "320", allow_negative_numbers = true)]
-    size: u16,
-    /// Pictures per row [default: about the number of rows]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=64))]
-    columns: Option<u8>,
     #[command(flatten)]
     run: RunOptions,
 }
-
-/// Default number of pictures.
-const DEFAULT_SEEDS: u8 = 9;
 
 /// Samples shown along a side of an unbounded world, at its own cell.
 const UNBOUNDED: f64 = 1024.0;
@@ -96,15 +67,10 @@ struct Asked {
 pub fn run(args: &Args) -> Result<(), Failure> {
     let target = match args.animate {
         true => AnimationTarget::of(&args.out).map_err(Failure::Usage)?,
-        false => {
-            if !is_stdout(&args.out) && Format::of(&args.out, Format::ALL).map_err(Failure::Usage)? != Format::Png {
-                return Err(Failure::Usage("the sheet is written as PNG; use the extension .png".into()));
-            }
-            AnimationTarget::Apng
-        }
+        false => check_png(&args.out, "the sheet").map(|()| AnimationTarget::Apng)?,
     };
     let source = Source::find(&args.recipe)?;
-    if let Source::Dem(path) = &source {
+    if let Some(path) = source.dem() {
         return Err(Failure::Usage(format!(
             "{} is a file of heights, which has no variants; name a recipe",
             path.display()
@@ -112,48 +78,45 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     let budget = args.run.limits.budget();
     let recipe = source.read(&budget, &args.arguments)?;
-    let palette = args.palette.as_deref().map(find_palette).transpose()?;
-    let palette = if args.nearest_color { palette.map(Palette::nearest) } else { palette };
-    let policy = args.run.replace.policy(source.inputs(&recipe)).protecting(&args.palette);
-    let asked = asked(args, &recipe)?;
+    let options = args.options.read()?;
+    let job = VariantsJob::new(&options)?;
+    let policy = args.run.replace.policy(source.inputs(&recipe)).protecting(options.files());
+    let asked = asked(args, &job, &recipe);
     let outputs = target.outputs(&args.out, if args.animate { frames(asked.len()) } else { 1 }, &policy)?;
     let (bar, progress) = Bar::new(args.run.quiet);
     let stopped = |failure: Failure| interrupt::explain(failure, "nothing was written");
-    let job = if args.render { Some(job(args, palette.as_ref())?) } else { None };
-    let shares = [19.0, if args.render { 60.0 } else { 0.0 }, if args.animate { 10.0 } else { 1.0 }];
+    let shares = [19.0, if job.render.is_some() { 60.0 } else { 0.0 }, if args.animate { 10.0 } else { 1.0 }];
     let [making, rendering, writing] = progress.parts(shares);
     making.expect(asked.len() as f64);
     rendering.expect(asked.len() as f64);
     let (mut variants, mut held) = (Vec::with_capacity(asked.len()), Vec::with_capacity(asked.len()));
     for one in &asked {
-        let (variant, memory) = make(args, &source, one, &budget, &making.part(1.0)).map_err(stopped)?;
+        let (variant, memory) = make(args, &source, one, job.size, &budget, &making.part(1.0)).map_err(stopped)?;
         variants.push(variant);
         held.push(memory);
     }
-    if let Some(mut job) = job {
+    if let Some(mut render) = job.render.clone() {
         // One palette over the heights of all pictures.
-        job.range = contact::range(&variants).filter(|_| job.colors == Colors::Map);
+        render.range = contact::range(&variants).filter(|_| render.colors == Colors::Map);
         for (variant, one) in variants.iter_mut().zip(&asked) {
-            let made = picture(args, &job, &source, one, &budget, &rendering.part(1.0));
+            let made = picture(args, &render, job.size, &source, one, &budget, &rendering.part(1.0));
             variant.picture = Some(made.map_err(stopped)?);
-            held.push(budget.charge(3 * (job.size[0] * job.size[1]) as u64));
+            held.push(budget.charge(3 * (render.size[0] * render.size[1]) as u64));
         }
     }
     let sheet = Sheet {
         title: title(&args.recipe),
         about: recipe.about.clone(),
-        footer: words(args, &recipe),
+        footer: words(args, &options, &recipe),
         sea_level: recipe.world.sea_level,
-        palette,
+        palette: job.palette,
     };
     let words = match args.animate {
         true => animate(args, &sheet, &variants, &target, &outputs, &budget, &writing).map_err(stopped)?,
         false => {
-            let columns = args.columns.map(usize::from);
-            let [width, height] = contact::size(&variants, columns);
+            let [width, height] = contact::size(&variants, job.columns);
             let _page = budget.reserve((3 * width * height) as u64 + contact::fitting(&variants))?;
-            let canvas = contact::draw(&sheet, &variants, columns)?;
-            outputs[0].write(|out| canvas.write_png(out, &[NOTE]))?;
+            outputs[0].picture(&contact::draw(&sheet, &variants, job.columns)?)?;
             format!("{} pictures, {width} x {height} pixels", variants.len())
         }
     };
@@ -161,9 +124,6 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     drop((bar, held));
     outputs[0].tell(args.run.quiet, &format!("{}: {words}\n", args.out.display()))
 }
-
-/// The note in every picture.
-const NOTE: (&str, &str) = ("Software", say::SOFTWARE);
 
 /// Number of frames that show this many pictures forward and back.
 fn frames(pictures: usize) -> u32 {
@@ -203,7 +163,7 @@ fn animate(
     };
     // Colors of a GIF: from both ends.
     let sample = || Ok([frame(0), frame(frames / 2)].concat());
-    let notes = [NOTE];
+    let notes = [("Software", say::SOFTWARE)];
     let picture = Picture::new(width, height, Pixel::Rgb8).with_notes(&notes);
     let animation = Animation::new(frames, args.delay);
     let moving = Moving { outputs, target, picture, animation, sample: &sample };
@@ -218,12 +178,11 @@ fn animate(
 }
 
 /// The pictures to make.
-fn asked(args: &Args, recipe: &Recipe) -> Result<Vec<Asked>, Failure> {
+fn asked(args: &Args, job: &VariantsJob, recipe: &Recipe) -> Vec<Asked> {
     let Some(sweep) = &args.sweep else {
-        let first = args.seed.unwrap_or(recipe.world.seed);
-        let count = u64::from(args.seeds.unwrap_or(DEFAULT_SEEDS));
-        let seeds = (0..count).map(|k| first.wrapping_add(k) & i64::MAX as u64);
-        return Ok(seeds.map(|seed| Asked { label: format!("seed {seed}"), seed: Some(seed), set: None }).collect());
+        let first = job.seed.unwrap_or(recipe.world.seed);
+        let seeds = (0..job.seeds).map(|k| first.wrapping_add(k) & i64::MAX as u64);
+        return seeds.map(|seed| Asked { label: format!("seed {seed}"), seed: Some(seed), set: None }).collect();
     };
     let unit = recipe
         .parameters()
@@ -233,10 +192,10 @@ fn asked(args: &Args, recipe: &Recipe) -> Result<Vec<Asked>, Failure> {
     let unit = unit.unwrap_or_default();
     let asked = sweep.values.iter().map(|&value| Asked {
         label: format!("{} {} {unit}", sweep.name, orogen::grid::words::number(value)).trim_end().to_string(),
-        seed: args.seed,
+        seed: job.seed,
         set: Some((sweep.name.clone(), value)),
     });
-    Ok(asked.collect())
+    asked.collect()
 }
 
 /// The recipe of one picture.
@@ -246,25 +205,11 @@ fn recipe(args: &Args, source: &Source, asked: &Asked, budget: &Budget) -> Resul
     Ok(recipe)
 }
 
-/// What the rendered pictures have in common.
-fn job(args: &Args, palette: Option<&Palette>) -> Result<RenderJob, Failure> {
-    let mut job = RenderJob::default();
-    let width = usize::from(args.size);
-    job.size = [width, width * 3 / 4];
-    if let Some(Numbers(camera)) = &args.camera {
-        job.view = around(camera)?;
-    }
-    if palette.is_some() {
-        (job.colors, job.palette) = (Colors::Map, palette.cloned());
-    }
-    job.check()?;
-    Ok(job)
-}
-
 /// Renders one picture.
 fn picture(
     args: &Args,
     job: &RenderJob,
+    samples: usize,
     source: &Source,
     asked: &Asked,
     budget: &Budget,
@@ -273,7 +218,7 @@ fn picture(
     let mut recipe = recipe(args, source, asked, budget)?;
     job.prepare(&mut recipe)?;
     let world = args.run.limits.open(recipe, budget)?;
-    let job = job.clone().with_window(window(&world, usize::from(args.size))?);
+    let job = job.clone().with_window(window(&world, samples)?);
     Ok(Drawn { size: job.size, bytes: job.scene(&world, 1.0, 0, progress)?.to_bytes()? })
 }
 
@@ -282,11 +227,12 @@ fn make(
     args: &Args,
     source: &Source,
     asked: &Asked,
+    samples: usize,
     budget: &Budget,
     progress: &Progress,
 ) -> Result<(Variant, Reservation), Failure> {
     let world = args.run.limits.open(recipe(args, source, asked, budget)?, budget)?;
-    let window = window(&world, usize::from(args.size))?;
+    let window = window(&world, samples)?;
     let plan = world.plan(&[HEIGHT], &window)?;
     let grid = world.run(&plan, progress)?.pop().unwrap_or_else(|| Grid::filled(window, 0.0));
     finite::check(HEIGHT, &grid)?;
@@ -303,25 +249,14 @@ fn window(world: &World, samples: usize) -> Result<Window, Failure> {
 }
 
 /// The command line that reproduces the sheet.
-fn words(args: &Args, recipe: &Recipe) -> String {
-    let name = &args.recipe;
+fn words(args: &Args, options: &Options, recipe: &Recipe) -> String {
     let what = match &args.sweep {
-        Some(Sweep { name, text, .. }) => {
-            let seed = args.seed.map_or_else(String::new, |seed| format!("--seed {seed} "));
-            format!("{seed}--sweep {name}={text}")
-        }
-        None => {
-            format!("--seed {} --seeds {}", args.seed.unwrap_or(recipe.world.seed), args.seeds.unwrap_or(DEFAULT_SEEDS))
-        }
+        Some(Sweep { name, text, .. }) => format!(" --sweep {name}={text}"),
+        // Other recipes of this name may have another seed.
+        None if options.has("seed") => String::new(),
+        None => format!(" --seed {}", recipe.world.seed),
     };
     let set: String = args.arguments.values().iter().map(|(name, value)| format!(" --set {name}={value}")).collect();
-    let palette = args.palette.as_ref().map_or_else(String::new, |palette| format!(" --palette {}", palette.display()));
-    let nearest = if args.nearest_color { " --nearest-color" } else { "" };
-    let render = if args.render { " --render" } else { "" };
-    let camera = args.camera.as_ref().map_or_else(String::new, |Numbers(camera)| {
-        let numbers: Vec<String> = camera.iter().map(f64::to_string).collect();
-        format!(" --camera {}", numbers.join(","))
-    });
-    let (version, name, size) = (env!("CARGO_PKG_VERSION"), name.display(), args.size);
-    format!("Orogen {version}: orogen variants {name} {what}{set} --size {size}{palette}{nearest}{render}{camera}")
+    let (version, name, given) = (env!("CARGO_PKG_VERSION"), args.recipe.display(), args.options.words());
+    format!("Orogen {version}: orogen variants {name}{what}{set}{given}")
 }

@@ -1,52 +1,48 @@
-//! Values that are names of formats or engines.
+//! Values that are names of declared things: formats, engines, noises.
 
-use clap::builder::PossibleValue;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use orogen::export::targets::target::EngineTarget;
 use orogen::export::{Format, registry, targets};
+use orogen::jobs::{BlockFormat, SheetFormat};
+use orogen_noise::Basis;
 
 /// The parser of a value that is one of several names, with a line of help for each.
-#[derive(Clone)]
-pub struct NameOf {
-    all: Vec<PossibleValue>,
-    /// The declared name, for a name or an alternative spelling.
-    declared: fn(&str) -> Option<&'static str>,
+fn one_of<T: Copy + Send + Sync + 'static>(
+    all: impl IntoIterator<Item = (PossibleValue, T)>,
+) -> impl TypedValueParser<Value = T> {
+    let all: Vec<(PossibleValue, T)> = all.into_iter().collect();
+    let names: Vec<PossibleValue> = all.iter().map(|(name, _)| name.clone()).collect();
+    PossibleValuesParser::new(names).try_map(move |text| {
+        let found = all.iter().find(|(name, _)| name.matches(&text, false));
+        found.map(|(_, value)| *value).ok_or("it is not known")
+    })
 }
 
-impl NameOf {
-    /// The formats.
-    pub fn format() -> NameOf {
-        let value = |format: &&Format| PossibleValue::new(format.name).help(format.about).aliases(format.aliases);
-        NameOf {
-            all: registry::all().iter().map(value).collect(),
-            declared: |name| registry::named(name).map(|format| format.name),
-        }
-    }
-
-    /// The engines.
-    pub fn engine() -> NameOf {
-        let value = |target: &&EngineTarget| PossibleValue::new(target.name).help(target.about);
-        NameOf {
-            all: targets::list::all().iter().map(value).collect(),
-            declared: |name| targets::list::named(name).map(|target| target.name),
-        }
-    }
+fn named(name: &'static str, about: &'static str) -> PossibleValue {
+    PossibleValue::new(name).help(about)
 }
 
-impl clap::builder::TypedValueParser for NameOf {
-    type Value = &'static str;
+/// The noise bases.
+pub fn basis() -> impl TypedValueParser<Value = Basis> {
+    one_of(Basis::all().iter().map(|basis| (PossibleValue::new(basis.name()), *basis)))
+}
 
-    fn parse_ref(
-        &self,
-        command: &clap::Command,
-        arg: Option<&clap::Arg>,
-        value: &std::ffi::OsStr,
-    ) -> Result<&'static str, clap::Error> {
-        let known = clap::builder::PossibleValuesParser::new(self.all.clone());
-        let name = known.parse_ref(command, arg, value)?;
-        (self.declared)(&name).ok_or_else(|| clap::Error::new(clap::error::ErrorKind::InvalidValue).with_cmd(command))
-    }
+/// The formats of layers.
+pub fn format() -> impl TypedValueParser<Value = &'static Format> {
+    one_of(registry::all().iter().map(|format| (named(format.name, format.about).aliases(format.aliases), *format)))
+}
 
-    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
-        Some(Box::new(self.all.iter().cloned()))
-    }
+/// The engines.
+pub fn engine() -> impl TypedValueParser<Value = &'static EngineTarget> {
+    one_of(targets::list::all().iter().map(|target| (named(target.name, target.about), *target)))
+}
+
+/// The formats of map sheets.
+pub fn sheet() -> impl TypedValueParser<Value = SheetFormat> {
+    one_of(SheetFormat::ALL.map(|format| (named(format.name(), format.about()), format)))
+}
+
+/// The formats of blocks.
+pub fn blocks() -> impl TypedValueParser<Value = BlockFormat> {
+    one_of(BlockFormat::ALL.map(|format| (named(format.name(), format.about()), format)))
 }

@@ -97,7 +97,7 @@ fn a_world_that_was_opened_is_kept() {
 fn what_cannot_be_made_is_explained() {
     let folder = Folder::new();
     folder.write("hills.toml", HILLS);
-    folder.bad(&["blocks", "hills.toml", "-o", "b.obj"], 2, "blocks are a .vox, .schem, .glb or .png, or a folder");
+    folder.bad(&["blocks", "hills.toml", "-o", "b.obj"], 2, "or a .vox, .schem, .glb or .png");
     folder.bad(&["blocks", "hills.toml", "--format", "vox", "-o", "b.schem"], 2, "--format does not match");
     folder.bad(&["blocks", "hills.toml", "--format", "luanti", "-o", "-"], 2, "name a folder");
     folder.bad(&["blocks", "hills.toml", "--below", "9999", "-o", "b.vox"], 2, "--below");

@@ -117,7 +117,7 @@ fn single_files_go_to_standard_output() {
         (&["build", "small.toml", "-o", "-"], "use `orogen export`"),
         (&["map", "small.toml", "-o", "a.svg", "--format", "png"], "does not match the extension"),
         (&["map", "small.toml", "-o", "a"], "a map is a .png, .svg or .pdf"),
-        (&["graph", "small.toml", "-o", "a.jpg"], "a graph is a .svg, .pdf, .png or .dot"),
+        (&["graph", "small.toml", "-o", "a.jpg"], "a graph is a .svg, .pdf, .png, .dot or .gv"),
     ] {
         folder.bad(arguments, 2, expect);
     }

@@ -87,7 +87,7 @@ fn variants_on_one_sheet() {
     folder.bad(&["variants", "a.toml", "--sweep", "relief=100..9000:6"], 1, "from 1 to 1000");
     folder.bad(&["variants", "a.toml", "--sweep", "relief=100"], 2, "relief=200..2000:9");
     folder.bad(&["variants", "a.toml", "--seeds", "4", "--sweep", "relief=1..9:3"], 2, "cannot be used with");
-    folder.bad(&["variants", "a.toml", "-o", "a.tif"], 2, "known extensions");
+    folder.bad(&["variants", "a.toml", "-o", "a.tif"], 2, "the sheet is written as PNG");
 }
 
 #[test]

@@ -2,10 +2,11 @@
 //! text is refused. The cases are the same in every run.
 
 use crate::values::bytes::Bytes;
-use crate::values::number::{self, MOST, Numbers};
+use crate::values::number::{self, MOST};
 use crate::values::region::{self, Bounds, Rectangle};
 use crate::values::seeds;
 use crate::values::size::Size;
+use orogen::jobs::noise::NoiseJob;
 use orogen::jobs::{MapJob, RenderJob};
 use orogen::options::{OptionSpec, Options};
 use orogen::output::sheet::paper::Paper;
@@ -24,7 +25,7 @@ where
 
 /// The declared options of jobs.
 fn declared() -> impl Iterator<Item = &'static OptionSpec> {
-    MapJob::OPTIONS.iter().chain(RenderJob::OPTIONS)
+    MapJob::OPTIONS.iter().chain(RenderJob::OPTIONS).chain(NoiseJob::OPTIONS)
 }
 
 /// An option with this value, if it can have it.
@@ -47,17 +48,19 @@ fn number() -> impl Strategy<Value = (f64, String)> {
 fn numbers_are_read_as_they_are_written() {
     check(2000, number(), |(value, text)| {
         prop_assert_eq!(number::finite(&text), Ok(value));
-        prop_assert_eq!(number::positive(&text).ok(), Some(value).filter(|value| *value > 0.0));
-        prop_assert_eq!(number::not_negative(&text).ok(), Some(value).filter(|value| *value >= 0.0));
+        let number = |name: &str| given(name, &text).and_then(|options| options.number(name));
+        prop_assert_eq!(number("gain"), Some(value));
+        prop_assert_eq!(number("wavelength"), Some(value).filter(|value| *value > 0.0));
+        prop_assert_eq!(number("strength"), Some(value).filter(|value| *value >= 0.0));
         prop_assert_eq!(number::cell(&text).ok(), Some(value).filter(|value| (1e-6..=1e12).contains(value)));
         Ok(())
     });
     check(500, proptest::collection::vec(number(), 1..5), |numbers| {
         let text: Vec<&str> = numbers.iter().map(|(_, text)| text.as_str()).collect();
         let values: Vec<f64> = numbers.iter().map(|(value, _)| *value).collect();
-        prop_assert_eq!(text.join(",").parse(), Ok(Numbers(values)));
-        let unfinished = text.join(",") + ",";
-        prop_assert!(unfinished.parse::<Numbers>().is_err());
+        let read = given("levels", &text.join(",")).and_then(|options| options.numbers("levels").map(<[f64]>::to_vec));
+        prop_assert_eq!(read, Some(values));
+        prop_assert!(given("levels", &(text.join(",") + ",")).is_none());
         Ok(())
     });
 }
@@ -161,7 +164,6 @@ fn other_texts_are_refused_with_a_message() {
             text.parse::<Size>().err(),
             number::seed(&text).err(),
             text.parse::<Bytes>().err(),
-            text.parse::<Numbers>().err(),
             text.parse::<Rectangle>().err(),
             text.parse::<Bounds>().err(),
             text.parse::<seeds::Seeds>().err(),

@@ -10,6 +10,7 @@ use super::xml;
 /// What a file, a virtual raster or a sidecar states about a band.
 #[derive(Debug, Clone, Default, PartialEq)]
 #[non_exhaustive]
+#[must_use]
 pub struct BandMetadata {
     /// Stored values of missing samples.
     pub nodata: Vec<f64>,
@@ -27,7 +28,6 @@ pub struct BandMetadata {
 
 impl BandMetadata {
     /// The children `NoDataValue`, `Scale`, `Offset` and `UnitType` of a band in GDAL's XML.
-    #[must_use]
     pub fn of_xml(band: Node) -> BandMetadata {
         let text = |name: &str| {
             let text = band.children().find(|node| node.has_tag_name(name)).and_then(|node| node.text());
@@ -47,7 +47,6 @@ impl BandMetadata {
 
     /// The metadata of the band with index `band`, from 0, in the text of GDAL's TIFF tag 42112. A text that is not XML
     /// states nothing.
-    #[must_use]
     pub fn of_tiff(metadata: &str, band: usize) -> BandMetadata {
         let Ok(document) = xml::parse(metadata, false) else { return BandMetadata::default() };
         let text = |role: &str| {
@@ -75,7 +74,6 @@ impl BandMetadata {
     }
 
     /// What `other` states in place of what this states. All nodata values apply.
-    #[must_use]
     pub fn replaced_by(mut self, other: &BandMetadata) -> BandMetadata {
         self.nodata.extend(&other.nodata);
         // A scale without an offset has an offset of 0, not that of the other source.
@@ -90,7 +88,6 @@ impl BandMetadata {
     }
 
     /// The metadata with another nodata value.
-    #[must_use]
     pub fn with_nodata(mut self, nodata: Option<f64>) -> BandMetadata {
         self.nodata.extend(nodata);
         self

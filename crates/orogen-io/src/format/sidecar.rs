@@ -200,7 +200,6 @@ impl Sidecar {
     }
 
     /// What GDAL's sidecar states about a band, from 1, or what replaces it.
-    #[must_use]
     pub fn band(&self, band: Option<u32>) -> BandMetadata {
         let index = band.unwrap_or(1).saturating_sub(1) as usize;
         self.bands.get(index).cloned().unwrap_or_default().replaced_by(&self.replaced)

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::options::{Choice, OptionSpec, Options, ValueKind};
 use orogen_engine::world::HEIGHT;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
@@ -73,6 +74,26 @@ impl Form {
         }
     }
 
+    /// The form for the name of the result and the option `tiles` of [`BuildSpec::OPTIONS`].
+    ///
+    /// # Errors
+    /// If they do not determine it, or contradict each other.
+    pub fn chosen(out: &Path, options: &Options) -> Result<Form> {
+        let refuse = |message: String| Err(Error::new(ErrorKind::Request, message));
+        match (Form::of(out), options.word("tiles").and_then(Form::named)) {
+            (Some(form), None) | (None, Some(form)) => Ok(form),
+            (Some(_), Some(_)) => refuse(format!(
+                "--tiles writes a folder, but {} has the extension of a file; leave out one of them",
+                out.display()
+            )),
+            (None, None) => refuse(format!(
+                "{} does not determine what to build: use the extension .tif or .zarr, or --tiles png, r16, r32, \
+                 terrarium or terrain-rgb",
+                out.display()
+            )),
+        }
+    }
+
     /// The default side of a tile in samples; `None` if it depends on the window. For tiles that share their edges it
     /// is a power of two plus one, as engines require.
     #[must_use]
@@ -101,6 +122,7 @@ impl Form {
 /// The specification of a build: samples of layers, in a form.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
+#[must_use]
 pub struct BuildSpec {
     /// The form of the result.
     pub form: Form,
@@ -112,24 +134,58 @@ pub struct BuildSpec {
     pub layers: Vec<String>,
 }
 
+const TILES: &[Choice] = &[
+    Choice::new("png", "16-bit grey PNG over the value range of all tiles; adjacent tiles share their edge samples"),
+    Choice::new(
+        "r16",
+        "Headerless u16, little-endian, over the value range of all tiles; adjacent tiles share their edge samples",
+    ),
+    Choice::new("r32", "Headerless f32, little-endian; adjacent tiles share their edge samples"),
+    Choice::new(
+        "terrarium",
+        "XYZ tree of Terrarium PNG tiles with TileJSON, for web maps; in EPSG:3857 those of OpenStreetMap",
+    ),
+    Choice::new(
+        "terrain-rgb",
+        "XYZ tree of Terrain-RGB PNG tiles with TileJSON, for web maps; in EPSG:3857 those of OpenStreetMap",
+    ),
+];
+
+const OPTIONS: &[OptionSpec] = &[
+    OptionSpec::new("tiles", "TILES", ValueKind::Choice(TILES)).with_about("Kind of the tiles in a folder"),
+    OptionSpec::new("layers", "A,B", ValueKind::Text)
+        .with_about("Layers to build, separated by commas")
+        .with_default(HEIGHT),
+    OptionSpec::new("tile", "N", ValueKind::Whole(1, 65_536)).with_about(
+        "Samples along each side of a tile [default: 512; 513 for tiles that share their edges; 256 for an XYZ \
+             tree]",
+    ),
+];
+
 /// Maximum length of a layer's name that becomes part of a file name.
 const LONGEST_NAME: usize = 100;
 
 impl BuildSpec {
+    /// The options, for front ends.
+    pub const OPTIONS: &[OptionSpec] = OPTIONS;
+
+    /// The same with the tiles and layers that are chosen by [`OPTIONS`](BuildSpec::OPTIONS).
+    pub fn with_options(self, options: &Options) -> BuildSpec {
+        let tile = options.whole("tile").map(|side| side as usize);
+        BuildSpec { tile, ..self }.with_layers(options.text("layers").unwrap_or(HEIGHT).split(','))
+    }
+
     /// The heights of a window.
-    #[must_use]
     pub fn new(form: Form, window: Window) -> BuildSpec {
         BuildSpec { form, window, tile: None, layers: vec![HEIGHT.into()] }
     }
 
     /// The same in tiles of this many samples per side.
-    #[must_use]
     pub fn with_tile(self, tile: usize) -> BuildSpec {
         BuildSpec { tile: Some(tile), ..self }
     }
 
     /// The same of these layers.
-    #[must_use]
     pub fn with_layers(self, layers: impl IntoIterator<Item = impl Into<String>>) -> BuildSpec {
         BuildSpec { layers: layers.into_iter().map(Into::into).collect(), ..self }
     }

@@ -18,26 +18,19 @@ use orogen_io::palette::color::Encoder;
 use orogen_io::samples::interleaved;
 
 /// The option for the direction of green in normal maps.
-pub const NORMAL: OptionSpec = OptionSpec::new(
-    "normal",
-    "WAY",
-    ValueKind::Word(&["opengl", "directx"]),
-    "Direction of green in a normal map: opengl (up) or directx (down) [default: opengl]",
-);
+pub const NORMAL: OptionSpec = OptionSpec::new("normal", "WAY", ValueKind::Word(&["opengl", "directx"]))
+    .with_about("Direction of green in a normal map: opengl (up) or directx (down) [default: opengl]");
 
 /// The option for the layout of weights.
-pub const WEIGHTS: OptionSpec = OptionSpec::new(
-    "weights",
-    "HOW",
-    ValueKind::Word(&["rgba", "layers"]),
-    "Weights of a splat map: rgba, four per picture (NAME.png, NAME_2.png, ...), or layers, one grey picture each (NAME_grass.png, ...) \
-            [default: rgba]",
+pub const WEIGHTS: OptionSpec = OptionSpec::new("weights", "HOW", ValueKind::Word(&["rgba", "layers"])).with_about(
+    "Weights of a splat map: rgba, four per picture (NAME.png, NAME_2.png, ...), or layers, one grey picture \
+             each (NAME_grass.png, ...) [default: rgba]",
 );
 
 /// The option for a picture beside weights.
-pub const PREVIEW: OptionSpec = OptionSpec::switch(
-    "preview",
-    "Write a picture of a splat map beside it: the surfaces in their colors with relief shading (NAME_preview.png)",
+pub const PREVIEW: OptionSpec = OptionSpec::switch("preview").with_about(
+    "Write a picture of a splat map beside it: the surfaces in their colors with relief shading \
+             (NAME_preview.png)",
 );
 
 /// Writes normals as red (east), green (north, or south for DirectX) and blue (up); -1 to 1 becomes 0 to 255 or 65535.

@@ -5,24 +5,17 @@ use orogen_grid::contour::levels::given;
 use orogen_grid::error::{Error, ErrorKind, Result};
 
 /// `--interval`.
-pub const INTERVAL: OptionSpec = OptionSpec::new(
-    "interval",
-    "M",
-    ValueKind::Number(1e-6, 1e6),
-    "Contour interval in metres [default: a round number that gives 10 to 25 contours]",
-);
+pub const INTERVAL: OptionSpec = OptionSpec::new("interval", "M", ValueKind::Number(1e-6, 1e6))
+    .with_about("Contour interval in metres [default: a round number that gives 10 to 25 contours]");
 
 /// `--levels`.
 pub const LEVELS: OptionSpec =
-    OptionSpec::new("levels", "A,B,...", ValueKind::Text, "Contour heights, instead of an interval");
+    OptionSpec::new("levels", "A,B,...", ValueKind::Text).with_about("Contour heights, instead of an interval");
 
 /// `--smooth`.
-pub const SMOOTH: OptionSpec = OptionSpec::new(
-    "smooth",
-    "N",
-    ValueKind::Whole(0, 6),
-    "Passes of corner cutting for lines, each doubling their points, and of smoothing for rivers \
-            [default: 0 for contours, 1 for shores and watersheds, 3 for rivers]",
+pub const SMOOTH: OptionSpec = OptionSpec::new("smooth", "N", ValueKind::Whole(0, 6)).with_about(
+    "Passes of corner cutting for lines, each doubling their points, and of smoothing for rivers [default: 0 \
+             for contours, 1 for shores and watersheds, 3 for rivers]",
 );
 
 /// Checks that the options of contours are consistent and valid.

@@ -22,6 +22,7 @@ use orogen_io::file::Output;
 /// stream](ExportJob::to_stream).
 #[derive(Debug, Clone)]
 #[non_exhaustive]
+#[must_use]
 pub struct ExportJob {
     /// The file format.
     pub format: &'static Format,
@@ -38,7 +39,6 @@ pub struct ExportJob {
 
 impl ExportJob {
     /// The heights of the whole world, without options.
-    #[must_use]
     pub fn new(format: &'static Format) -> ExportJob {
         ExportJob {
             format,
@@ -50,25 +50,21 @@ impl ExportJob {
     }
 
     /// The same for this layer.
-    #[must_use]
     pub fn with_layer(self, layer: impl Into<String>) -> ExportJob {
         ExportJob { layer: layer.into(), ..self }
     }
 
     /// The same over this window.
-    #[must_use]
     pub fn with_window(self, window: Window) -> ExportJob {
         ExportJob { window: Some(window), ..self }
     }
 
     /// The same with these options of the format.
-    #[must_use]
     pub fn with_options(self, options: Options) -> ExportJob {
         ExportJob { options, ..self }
     }
 
     /// The same with these options of the derived layer.
-    #[must_use]
     pub fn with_layer_options(self, layer_options: Options) -> ExportJob {
         ExportJob { layer_options, ..self }
     }

@@ -26,32 +26,25 @@ use orogen_output::mesh::shape::Shape;
 use orogen_output::mesh::surface::Surface;
 
 /// `--max-error`.
-pub const MAX_ERROR: OptionSpec = OptionSpec::new(
-    "max-error",
-    "M",
-    ValueKind::Number(0.0, 1e9),
-    "Adaptive mesh with a vertical error of at most M metres at every sample [default: a full grid, two triangles per cell]",
+pub const MAX_ERROR: OptionSpec = OptionSpec::new("max-error", "M", ValueKind::Number(0.0, 1e9)).with_about(
+    "Adaptive mesh with a vertical error of at most M metres at every sample [default: a full grid, two \
+             triangles per cell]",
 );
 
 /// `--exaggeration`.
-pub const EXAGGERATION: OptionSpec =
-    OptionSpec::new("exaggeration", "F", ValueKind::Number(0.001, 1000.0), "Vertical exaggeration factor [default: 1]");
+pub const EXAGGERATION: OptionSpec = OptionSpec::new("exaggeration", "F", ValueKind::Number(0.001, 1000.0))
+    .with_about("Vertical exaggeration factor [default: 1]");
 
 /// `--height-curve`.
-pub const HEIGHT_CURVE: OptionSpec = OptionSpec::new(
-    "height-curve",
-    "A:B,...",
-    ValueKind::Text,
+pub const HEIGHT_CURVE: OptionSpec = OptionSpec::new("height-curve", "A:B,...", ValueKind::Text).with_about(
     "Curve applied to the heights, from 0:0 (lowest of the window) to 1:1 (highest), such as 0:0,0.5:0.2,1:1",
 );
 
 /// `--color`.
-pub const COLOR: OptionSpec = OptionSpec::new(
-    "color",
-    "HOW",
-    ValueKind::Word(&["texture", "vertex", "none"]),
-    "Map colors without shading, stored as texture (a picture), vertex or none [default: texture; ply: vertex]",
-);
+pub const COLOR: OptionSpec = OptionSpec::new("color", "HOW", ValueKind::Word(&["texture", "vertex", "none"]))
+    .with_about(
+        "Map colors without shading, stored as texture (a picture), vertex or none [default: texture; ply: vertex]",
+    );
 
 /// Approximate time per sample on one core, in nanoseconds: for choosing the vertices of an adaptive mesh or of a full
 /// grid, for painting, and for writing triangles.

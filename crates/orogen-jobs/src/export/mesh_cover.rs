@@ -18,9 +18,9 @@ use orogen_output::mesh::normal_map;
 use orogen_output::mesh::surface::Surface;
 
 /// `--surfaces`.
-pub const SURFACES: OptionSpec = OptionSpec::switch(
-    "surfaces",
-    "Use the colors of the recipe's surfaces (or of the standard ones) instead of map colors; in glb with roughness, occlusion, and normal maps for meshes with few triangles",
+pub const SURFACES: OptionSpec = OptionSpec::switch("surfaces").with_about(
+    "Use the colors of the recipe's surfaces (or of the standard ones) instead of map colors; in glb with \
+             roughness, occlusion, and normal maps for meshes with few triangles",
 );
 
 /// Adds the nodes to a recipe that compute its surfaces and occlusion, if the options request them; call it before the

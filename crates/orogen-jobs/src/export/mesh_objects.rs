@@ -14,9 +14,9 @@ use orogen_grid::words::count;
 use orogen_output::mesh::objects::{Instance, ObjectMesh};
 
 /// `--objects`.
-pub const OBJECTS: OptionSpec = OptionSpec::switch(
-    "objects",
-    "Add the objects of the recipe's scatter: a node for each kind with a placeholder mesh and an instance for each object",
+pub const OBJECTS: OptionSpec = OptionSpec::switch("objects").with_about(
+    "Add the objects of the recipe's scatter: a node for each kind with a placeholder mesh and an instance for \
+             each object",
 );
 
 /// Memory of an object and its instance, in bytes.

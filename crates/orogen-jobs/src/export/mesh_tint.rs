@@ -10,11 +10,9 @@ use orogen_grid::grid::{Grid, Window};
 use orogen_io::palette::tint::Tint;
 
 /// `--color-range`.
-pub const COLOR_RANGE: OptionSpec = OptionSpec::new(
-    "color-range",
-    "LOW,HIGH",
-    ValueKind::Range,
-    "Heights at the ends of the color scale [default: approximate minimum and maximum of the world, the same for all its windows]",
+pub const COLOR_RANGE: OptionSpec = OptionSpec::new("color-range", "LOW,HIGH", ValueKind::Range).with_about(
+    "Heights at the ends of the color scale [default: approximate minimum and maximum of the world, the same \
+             for all its windows]",
 );
 
 /// Samples along the longer side of the overview of a world.

@@ -14,8 +14,7 @@ use orogen_grid::hydrography::water::{Cover, MEMORY};
 use orogen_output::mesh::water::{Ribbon, WaterMesh};
 
 /// `--water`.
-pub const WATER: OptionSpec = OptionSpec::switch(
-    "water",
+pub const WATER: OptionSpec = OptionSpec::switch("water").with_about(
     "Add water: rivers as ribbons, lakes and the sea as level surfaces, as translucent meshes in separate nodes",
 );
 

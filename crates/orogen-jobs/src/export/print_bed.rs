@@ -7,11 +7,9 @@ use super::mesh::EXAGGERATION;
 use crate::options::{OptionSpec, ValueKind};
 
 /// `--bed`.
-pub const BED: OptionSpec = OptionSpec::new(
-    "bed",
-    "WxDxH",
-    ValueKind::Text,
-    "Width and depth of the printer's bed and height above it in millimetres, such as 220x220x250: a model that does not fit is refused [default: no check]",
+pub const BED: OptionSpec = OptionSpec::new("bed", "WxDxH", ValueKind::Text).with_about(
+    "Width and depth of the printer's bed and height above it in millimetres, such as 220x220x250: a model \
+             that does not fit is refused [default: no check]",
 );
 
 /// Usual thickness of a layer in millimetres, and how many of them the advised relief has.

@@ -13,28 +13,18 @@ use orogen_io::samples;
 use orogen_io::spool::Spool;
 
 /// The option for the range.
-pub const RANGE: OptionSpec = OptionSpec::new(
-    "range",
-    "LOW,HIGH",
-    ValueKind::Range,
-    "Values of the lowest and the highest level, to use the same scale for several windows [default: minimum and maximum of this window]",
+pub const RANGE: OptionSpec = OptionSpec::new("range", "LOW,HIGH", ValueKind::Range).with_about(
+    "Values of the lowest and the highest level, to use the same scale for several windows [default: minimum \
+             and maximum of this window]",
 );
 
 /// The option for the order of rows.
-pub const FIRST_ROW: OptionSpec = OptionSpec::new(
-    "first-row",
-    "SIDE",
-    ValueKind::Word(&["north", "south"]),
-    "Side of the first row, north or south [default: north]",
-);
+pub const FIRST_ROW: OptionSpec = OptionSpec::new("first-row", "SIDE", ValueKind::Word(&["north", "south"]))
+    .with_about("Side of the first row, north or south [default: north]");
 
 /// The option for 8 or 16 bits.
-pub const BITS: OptionSpec = OptionSpec::new(
-    "bits",
-    "N",
-    ValueKind::Word(&["8", "16"]),
-    "Bits per sample, 8 or 16 [default: 16, for normals 8]",
-);
+pub const BITS: OptionSpec = OptionSpec::new("bits", "N", ValueKind::Word(&["8", "16"]))
+    .with_about("Bits per sample, 8 or 16 [default: 16, for normals 8]");
 
 /// The largest level for the given options.
 #[must_use]

@@ -17,9 +17,9 @@ use orogen_io::format::sidecar::own;
 use orogen_io::fs::{self, File};
 
 /// The option that omits it.
-pub const NO_SIDECAR: OptionSpec = OptionSpec::switch(
-    "no-sidecar",
-    "Do not write files beside the output: no NAME.json (size, cell size, range, seed and other metadata), no .prj, no world file and no .aux.xml",
+pub const NO_SIDECAR: OptionSpec = OptionSpec::switch("no-sidecar").with_about(
+    "Do not write files beside the output: no NAME.json (size, cell size, range, seed and other metadata), no \
+             .prj, no world file and no .aux.xml",
 );
 
 /// The encoding of samples in a file.

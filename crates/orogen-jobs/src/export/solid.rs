@@ -16,52 +16,31 @@ use orogen_output::mesh::solid::{LEGIBLE, Print, RAISED, Solid};
 use orogen_output::proportions;
 
 /// `--print-size`.
-pub const PRINT_SIZE: OptionSpec = OptionSpec::new(
-    "print-size",
-    "MM",
-    ValueKind::Number(1.0, 1e5),
-    "Length of the longer side in millimetres [default: 150]",
-);
+pub const PRINT_SIZE: OptionSpec = OptionSpec::new("print-size", "MM", ValueKind::Number(1.0, 1e5))
+    .with_about("Length of the longer side in millimetres [default: 150]");
 
 /// `--base`.
-pub const BASE: OptionSpec = OptionSpec::new(
-    "base",
-    "MM",
-    ValueKind::Number(0.1, 1e4),
-    "Thickness of the base below the lowest sample, in millimetres [default: 3]",
-);
+pub const BASE: OptionSpec = OptionSpec::new("base", "MM", ValueKind::Number(0.1, 1e4))
+    .with_about("Thickness of the base below the lowest sample, in millimetres [default: 3]");
 
 /// `--cut`.
-pub const CUT: OptionSpec = OptionSpec::new(
-    "cut",
-    "M",
-    ValueKind::Number(-1e6, 1e6),
+pub const CUT: OptionSpec = OptionSpec::new("cut", "M", ValueKind::Number(-1e6, 1e6)).with_about(
     "Print only the land above M metres, with its outline; its base begins there [default: all of the window]",
 );
 
 /// `--hollow`.
-pub const HOLLOW: OptionSpec = OptionSpec::new(
-    "hollow",
-    "MM",
-    ValueKind::Number(0.8, 1e3),
-    "Hollow model, open below, with walls and a ceiling of at least MM millimetres, less than the base [default: full]",
+pub const HOLLOW: OptionSpec = OptionSpec::new("hollow", "MM", ValueKind::Number(0.8, 1e3)).with_about(
+    "Hollow model, open below, with walls and a ceiling of at least MM millimetres, less than the base \
+             [default: full]",
 );
 
 /// `--text`.
-pub const TEXT: OptionSpec = OptionSpec::new(
-    "text",
-    "TEXT",
-    ValueKind::Text,
-    "Letters on the southern side of the base, as large as it has room for [default: none]",
-);
+pub const TEXT: OptionSpec = OptionSpec::new("text", "TEXT", ValueKind::Text)
+    .with_about("Letters on the southern side of the base, as large as it has room for [default: none]");
 
 /// `--text-style`.
-pub const TEXT_STYLE: OptionSpec = OptionSpec::new(
-    "text-style",
-    "HOW",
-    ValueKind::Word(&["raised", "engraved"]),
-    "Letters of --text: raised, which stand out of the side, or engraved [default: raised]",
-);
+pub const TEXT_STYLE: OptionSpec = OptionSpec::new("text-style", "HOW", ValueKind::Word(&["raised", "engraved"]))
+    .with_about("Letters of --text: raised, which stand out of the side, or engraved [default: raised]");
 
 /// The options of solids.
 pub const OPTIONS: &[OptionSpec] =

@@ -46,6 +46,36 @@ pub enum BlockFormat {
     Luanti,
 }
 
+impl BlockFormat {
+    /// All kinds.
+    pub const ALL: [BlockFormat; 5] =
+        [BlockFormat::Vox, BlockFormat::Schem, BlockFormat::Glb, BlockFormat::Png, BlockFormat::Luanti];
+
+    /// Its name, which is also the extension of a single file.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            BlockFormat::Vox => "vox",
+            BlockFormat::Schem => "schem",
+            BlockFormat::Glb => "glb",
+            BlockFormat::Png => "png",
+            BlockFormat::Luanti => "luanti",
+        }
+    }
+
+    /// What it is, in a line.
+    #[must_use]
+    pub fn about(self) -> &'static str {
+        match self {
+            BlockFormat::Vox => "MagicaVoxel models (.vox)",
+            BlockFormat::Schem => "A Sponge schematic, version 3, for Minecraft: Java Edition (.schem)",
+            BlockFormat::Glb => "The smooth surface of the ground as a mesh (.glb)",
+            BlockFormat::Png => "A picture from the south-east (.png)",
+            BlockFormat::Luanti => "A folder with a Luanti (Minetest) world",
+        }
+    }
+}
+
 /// Blocks of a world.
 ///
 /// [`prepare`](BlocksJob::prepare) a recipe, open its world, then [`make`](BlocksJob::make) the blocks, and write them.
@@ -68,30 +98,17 @@ pub struct BlocksJob {
 const ENCODERS: u64 = 4 << 20;
 
 const OPTIONS: &[OptionSpec] = &[
-    OptionSpec::new(
-        "below",
-        "N",
-        ValueKind::Whole(0, MAX_BELOW as u64),
-        "Levels of blocks below the lowest ground [default: 16; with --caves 48]",
-    )
-    .with_example("16", ["", ""]),
-    OptionSpec::new(
-        "exaggeration",
-        "N",
-        ValueKind::Number(*EXAGGERATION.start(), *EXAGGERATION.end()),
-        "Vertical exaggeration of the ground and the water",
-    )
-    .with_default("1"),
-    OptionSpec::switch(
-        "caves",
-        "Carve caves into the ground, away from water; not for recipes with an output `density`",
-    ),
-    OptionSpec::new(
-        "section",
-        "row=N|column=N",
-        ValueKind::Text,
-        "Draw a vertical cut along a row or a column of the window, counted from 0 in the north and in the west, as a \
-         .png",
+    OptionSpec::new("below", "N", ValueKind::Whole(0, MAX_BELOW as u64))
+        .with_about("Levels of blocks below the lowest ground [default: 16; with --caves 48]")
+        .with_example("16", ["", ""]),
+    OptionSpec::new("exaggeration", "N", ValueKind::Number(*EXAGGERATION.start(), *EXAGGERATION.end()))
+        .with_about("Vertical exaggeration of the ground and the water")
+        .with_default("1"),
+    OptionSpec::switch("caves")
+        .with_about("Carve caves into the ground, away from water; not for recipes with an output `density`"),
+    OptionSpec::new("section", "row=N|column=N", ValueKind::Text).with_about(
+        "Draw a vertical cut along a row or a column of the window, counted from 0 in the north and in the west, \
+             as a .png",
     ),
 ];
 

@@ -78,6 +78,7 @@ impl MapColors {
 /// ```
 #[derive(Debug, Clone)]
 #[non_exhaustive]
+#[must_use]
 pub struct MapJob {
     /// The kind of file.
     pub format: SheetFormat,
@@ -162,7 +163,6 @@ const WRITING: f64 = 60.0;
 
 impl MapJob {
     /// The heights of the whole world with all parts, without a heading.
-    #[must_use]
     pub fn new(format: SheetFormat) -> MapJob {
         MapJob {
             format,
@@ -194,25 +194,21 @@ impl MapJob {
     }
 
     /// The same with these colors.
-    #[must_use]
     pub fn with_colors(self, colors: MapColors) -> MapJob {
         MapJob { colors, ..self }
     }
 
     /// The same for this layer.
-    #[must_use]
     pub fn with_layer(self, layer: impl Into<String>) -> MapJob {
         MapJob { layer: layer.into(), ..self }
     }
 
     /// The same with this heading.
-    #[must_use]
     pub fn with_title(self, title: impl Into<String>) -> MapJob {
         MapJob { title: title.into(), ..self }
     }
 
     /// The same over this window.
-    #[must_use]
     pub fn with_window(self, window: Window) -> MapJob {
         MapJob { window: Some(window), ..self }
     }

@@ -34,155 +34,118 @@ const PAGE_COLORS: &str = "Colors of the page, as #rrggbb or a name";
 const PARTS: &str = "Parts to leave out";
 
 const fn color(name: &'static str, example: &'static str, about: &'static str) -> OptionSpec {
-    OptionSpec::new(name, "COLOR", ValueKind::Color, about).with_example(example, ["", ""]).under(PAGE_COLORS)
+    OptionSpec::new(name, "COLOR", ValueKind::Color)
+        .with_about(about)
+        .with_example(example, ["", ""])
+        .under(PAGE_COLORS)
 }
 
 const fn part(name: &'static str, about: &'static str) -> OptionSpec {
-    OptionSpec::switch(name, about).under(PARTS)
+    OptionSpec::switch(name).with_about(about).under(PARTS)
 }
 
 /// The options, in the order of a help.
 const OPTIONS: &[OptionSpec] = &[
-    OptionSpec::new(
-        "color",
-        "WHAT",
-        ValueKind::Choice(COLORS),
-        "What the colors show: a layer with a palette, the surfaces of the ground, the biomes, or the terrain classes",
-    )
-    .with_default("palette")
-    .with_aliases(&["colors", "colour", "colours"]),
-    OptionSpec::new(
-        "layer",
-        "L",
-        ValueKind::Layer,
-        "Layer to color: an output, `node.layer`, or a layer derived from the heights (`orogen export --help` lists \
-         them)",
-    )
-    .with_default(HEIGHT)
-    .when(Is("color", "palette")),
-    OptionSpec::new(
-        "palette",
-        "NAME|FILE",
-        ValueKind::Palette,
-        "Palette: a name (`orogen palettes` lists them) or a file (.cpt, .gpl, .toml, or gdaldem) [default: \
-         hypsometric for heights; for other layers the palette with the layer's name, else viridis]",
-    )
-    .when(Is("color", "palette")),
-    OptionSpec::switch(
-        "nearest-color",
-        "Give each value the color of the nearest stop of the palette, without mixing (as gdaldem's \
-         -nearest_color_entry); with --shade none pixels have exactly these colors",
-    )
-    .when(Given("palette")),
-    OptionSpec::new(
-        "ramp",
-        "HOW",
-        ValueKind::Choice(RAMPS),
-        "How values are mapped to colors [default: log for drainage areas and similar, labels for numbered areas, else \
-         linear]",
-    )
-    .when(IsNot("layer", HEIGHT)),
-    OptionSpec::new(
-        "range",
-        "LOW,HIGH",
-        ValueKind::Range,
-        "Values at the ends of the palette, for example to use the same range for several maps [default: the minimum \
-         and maximum of this map]",
-    )
-    .with_example("0,1000", ["", ""])
-    .when(Is("color", "palette")),
-    OptionSpec::new("shade", "HOW", ValueKind::Choice(SHADINGS), "Relief shading").with_default("multi"),
-    OptionSpec::new(
-        "contours",
-        "M",
-        ValueKind::Positive,
-        "Contour interval in metres [default: a round number that suits relief and scale]",
-    )
-    .with_example("100", ["", " m"])
-    .without(&["levels"]),
-    OptionSpec::new(
-        "levels",
-        "A,B,...",
-        ValueKind::Numbers,
-        "Contour heights in metres, instead of an interval, such as 100,250,500; all of them are labelled",
-    )
-    .with_example("100,250,500", ["", " m"])
-    .without(&["contours"]),
-    OptionSpec::new(
-        "labels",
-        "WHICH",
-        ValueKind::Choice(LABELS),
-        "Contours that have labels, as far as there is room for them [default: index; all with --levels]",
-    )
-    .without(&["no-labels"]),
-    OptionSpec::new(
-        "grid",
-        "STEP",
-        ValueKind::Automatic,
-        "Coordinate grid, with its numbers along all four sides: STEP metres apart, or degrees on a map in degrees \
-         [default STEP: a round distance of at least 20 mm on the page]",
-    )
-    .with_example("1000", ["", ""]),
-    OptionSpec::new(
-        "river-area",
-        "M2",
-        ValueKind::Positive,
-        "Minimum drainage area of rivers in m^2 [default: depends on the scale, at least 100000; none on bare noise, \
-         which has no rivers]",
-    )
-    .with_example("1000000", ["", " m²"]),
-    OptionSpec::new(
-        "lake-area",
-        "M2",
-        ValueKind::Positive,
-        "Minimum area of lakes in m^2 [default: depends on the scale; none on bare noise, which has no lakes]",
-    )
-    .with_example("100000", ["", " m²"]),
-    OptionSpec::new(
-        "names",
-        "FILE",
-        ValueKind::File,
-        "Names on the map: a .csv file with columns x, y and name, and optionally kind (place, summit, river or lake) \
-         and height, or a .geojson file of points with these properties, and of lines that names follow; in the CRS of \
-         the heights; without a CRS, in metres east and north of the world's north-west corner (points south of it are \
-         negative). Names without room are left out, the last of the file first",
+    OptionSpec::new("color", "WHAT", ValueKind::Choice(COLORS))
+        .with_about(
+            "What the colors show: a layer with a palette, the surfaces of the ground, the biomes, or the terrain \
+             classes",
+        )
+        .with_default("palette")
+        .with_aliases(&["colors", "colour", "colours"]),
+    OptionSpec::new("layer", "L", ValueKind::Layer)
+        .with_about(
+            "Layer to color: an output, `node.layer`, or a layer derived from the heights (`orogen export --help` \
+             lists them)",
+        )
+        .with_default(HEIGHT)
+        .when(Is("color", &["palette"])),
+    OptionSpec::new("palette", "NAME|FILE", ValueKind::Palette)
+        .with_about(
+            "Palette: a name (`orogen palettes` lists them) or a file (.cpt, .gpl, .toml, or gdaldem) [default: \
+             hypsometric for heights; for other layers the palette with the layer's name, else viridis]",
+        )
+        .when(Is("color", &["palette"])),
+    OptionSpec::switch("nearest-color")
+        .with_about(
+            "Give each value the color of the nearest stop of the palette, without mixing (as gdaldem's \
+             -nearest_color_entry); with --shade none pixels have exactly these colors",
+        )
+        .when(Given("palette")),
+    OptionSpec::new("ramp", "HOW", ValueKind::Choice(RAMPS))
+        .with_about(
+            "How values are mapped to colors [default: log for drainage areas and similar, labels for numbered areas, \
+             else linear]",
+        )
+        .when(IsNot("layer", HEIGHT)),
+    OptionSpec::new("range", "LOW,HIGH", ValueKind::Range)
+        .with_about(
+            "Values at the ends of the palette, for example to use the same range for several maps [default: the \
+             minimum and maximum of this map]",
+        )
+        .with_example("0,1000", ["", ""])
+        .when(Is("color", &["palette"])),
+    OptionSpec::new("shade", "HOW", ValueKind::Choice(SHADINGS)).with_about("Relief shading").with_default("multi"),
+    OptionSpec::new("contours", "M", ValueKind::Positive)
+        .with_about("Contour interval in metres [default: a round number that suits relief and scale]")
+        .with_example("100", ["", " m"])
+        .without(&["levels"]),
+    OptionSpec::new("levels", "A,B,...", ValueKind::Numbers)
+        .with_about("Contour heights in metres, instead of an interval, such as 100,250,500; all of them are labelled")
+        .with_example("100,250,500", ["", " m"])
+        .without(&["contours"]),
+    OptionSpec::new("labels", "WHICH", ValueKind::Choice(LABELS))
+        .with_about("Contours that have labels, as far as there is room for them [default: index; all with --levels]")
+        .without(&["no-labels"]),
+    OptionSpec::new("grid", "STEP", ValueKind::Automatic)
+        .with_about(
+            "Coordinate grid, with its numbers along all four sides: STEP metres apart, or degrees on a map in degrees \
+             [default STEP: a round distance of at least 20 mm on the page]",
+        )
+        .with_example("1000", ["", ""]),
+    OptionSpec::new("river-area", "M2", ValueKind::Positive)
+        .with_about(
+            "Minimum drainage area of rivers in m^2 [default: depends on the scale, at least 100000; none on bare \
+             noise, which has no rivers]",
+        )
+        .with_example("1000000", ["", " m²"]),
+    OptionSpec::new("lake-area", "M2", ValueKind::Positive)
+        .with_about(
+            "Minimum area of lakes in m^2 [default: depends on the scale; none on bare noise, which has no lakes]",
+        )
+        .with_example("100000", ["", " m²"]),
+    OptionSpec::new("names", "FILE", ValueKind::File).with_about(
+        "Names on the map: a .csv file with columns x, y and name, and optionally kind (place, summit, river or \
+             lake) and height, or a .geojson file of points with these properties, and of lines that names follow; in \
+             the CRS of the heights; without a CRS, in metres east and north of the world's north-west corner (points \
+             south of it are negative). Names without room are left out, the last of the file first",
     ),
-    OptionSpec::new(
-        "scale",
-        "N",
-        ValueKind::Positive,
-        "Scale of the map, 1 : N, which sets the size of the page [default: the map is 240 mm long, or as large as \
-         --paper allows]",
-    )
-    .with_example("100000", ["1 : ", ""])
-    .without(&["paper"]),
-    OptionSpec::new("title", "TEXT", ValueKind::Text, "Title [default: the recipe's name]"),
-    OptionSpec::new(
-        "paper",
-        "PAPER",
-        ValueKind::Paper,
-        "Paper size: a0 to a5, letter, legal or WxHmm [default: the size of the map]",
-    )
-    .with_example("a4", ["", ""])
-    .without(&["scale"]),
-    OptionSpec::switch("landscape", "Landscape orientation").when(Given("paper")),
-    OptionSpec::new(
-        "dpi",
-        "N",
-        ValueKind::Whole(20, 1200),
-        "Pixels per inch of a .png, and of the relief in a .svg or .pdf [default: 220; 150 for a .png without --paper]",
-    )
-    .with_example("150", ["", " dpi"])
-    .without(&["size"]),
-    OptionSpec::new(
-        "size",
-        "N",
-        ValueKind::Whole(100, 30_000),
-        "Pixels along the longer side of the page, instead of --dpi",
-    )
-    .with_example("2000", ["", ""])
-    .without(&["dpi"]),
-    OptionSpec::switch("no-sidecar", "Do not write georeferencing files beside a .png (world file, .prj, .aux.xml)"),
+    OptionSpec::new("scale", "N", ValueKind::Positive)
+        .with_about(
+            "Scale of the map, 1 : N, which sets the size of the page [default: the map is 240 mm long, or as large as \
+             --paper allows]",
+        )
+        .with_example("100000", ["1 : ", ""])
+        .without(&["paper"]),
+    OptionSpec::new("title", "TEXT", ValueKind::Text).with_about("Title [default: the recipe's name]"),
+    OptionSpec::new("paper", "PAPER", ValueKind::Paper)
+        .with_about("Paper size: a0 to a5, letter, legal or WxHmm [default: the size of the map]")
+        .with_example("a4", ["", ""])
+        .without(&["scale"]),
+    OptionSpec::switch("landscape").with_about("Landscape orientation").when(Given("paper")),
+    OptionSpec::new("dpi", "N", ValueKind::Whole(20, 1200))
+        .with_about(
+            "Pixels per inch of a .png, and of the relief in a .svg or .pdf [default: 220; 150 for a .png without \
+             --paper]",
+        )
+        .with_example("150", ["", " dpi"])
+        .without(&["size"]),
+    OptionSpec::new("size", "N", ValueKind::Whole(100, 30_000))
+        .with_about("Pixels along the longer side of the page, instead of --dpi")
+        .with_example("2000", ["", ""])
+        .without(&["dpi"]),
+    OptionSpec::switch("no-sidecar")
+        .with_about("Do not write georeferencing files beside a .png (world file, .prj, .aux.xml)"),
     color("page-color", "#ffffff", "The page [default: white]"),
     color("ink-color", "#262422", "Texts, frames and symbols [default: almost black]"),
     color(

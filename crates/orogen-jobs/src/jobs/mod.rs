@@ -1,4 +1,4 @@
-//! What is drawn of a world, as one job each: a map sheet, a rendered picture, blocks.
+//! What is drawn of a world, as one job each: a map sheet, a rendered picture, blocks; and noises.
 //!
 //! Prepare a recipe with a job, open its world, then write to a file. Layers and packages for game engines have jobs of
 //! their own in [`export`](crate::export), and maps of tiles in [`tilemap`](crate::tilemap).
@@ -14,10 +14,14 @@ mod map_names;
 mod map_options;
 mod map_water;
 #[doc(hidden)]
+pub mod noise;
+#[doc(hidden)]
 pub mod render;
 mod render_options;
 #[doc(hidden)]
 pub mod sheet_format;
+#[doc(hidden)]
+pub mod variants;
 
 pub use blocks::{BlockFormat, BlocksJob};
 pub use map::{MapColors, MapJob};

@@ -21,7 +21,7 @@ const EDGES: &[Choice] = &[
     Choice::new("haze", "Open sea, or the land mirrored repeatedly until haze hides it"),
 ];
 
-const CAMERA: &[Component] = &[
+pub(super) const CAMERA: &[Component] = &[
     Component::new("azimuth", "°", [0.0, 360.0]),
     Component::new("elevation", "°", [0.0, 90.0]),
     Component::new("distance", " m", [0.1, 1e7]),
@@ -32,130 +32,86 @@ const LIGHT: &[Component] =
 
 /// The options, in the order of a help.
 const OPTIONS: &[OptionSpec] = &[
-    OptionSpec::new("size", "WxH", ValueKind::Size(MAX_SIDE), "Size of the picture in pixels")
+    OptionSpec::new("size", "WxH", ValueKind::Size(MAX_SIDE))
+        .with_about("Size of the picture in pixels")
         .with_default("1920x1080"),
-    OptionSpec::new(
-        "camera",
-        "A,E[,D]|X,Y,H",
-        ValueKind::Tuple(CAMERA, 2),
-        "Camera position: AZIMUTH,ELEVATION[,DISTANCE] around the center of the land (degrees clockwise from north, \
-         degrees above the horizon, metres), or with --look X,Y,HEIGHT in the world's metres [default: 200,24 at the \
-         distance that shows everything]",
-    )
-    .with_example("200,24", ["", ""]),
-    OptionSpec::new(
-        "look",
-        "X,Y",
-        ValueKind::Point,
-        "Point that the camera looks at, in metres east and south; --camera is then a position, too",
-    )
-    .when(Given("camera")),
-    OptionSpec::new(
-        "fov",
-        "DEG",
-        ValueKind::Number(*FOV.start(), *FOV.end()),
-        "Field of view along the longer side of the picture, in degrees",
-    )
-    .with_default("40")
-    .with_example("40", ["", "°"]),
-    OptionSpec::new(
-        "sun",
-        "A,E",
-        ValueKind::Tuple(LIGHT, 2),
-        "Position of the sun: AZIMUTH,ELEVATION, in degrees clockwise from north and above the horizon [default: \
-         265,27]",
-    )
-    .with_example("265,27", ["", ""])
-    .without(&["time"]),
-    OptionSpec::new(
-        "time",
-        "HH:MM",
-        ValueKind::Clock,
-        "Solar time (12:00 is noon) that determines the position of the sun, instead of --sun",
-    )
-    .with_example("17:30", ["", ""])
-    .without(&["sun"]),
-    OptionSpec::new(
-        "latitude",
-        "DEG",
-        ValueKind::Number(-90.0, 90.0),
-        "Latitude for --time, in degrees; negative in the south [default: 45]",
-    )
-    .with_example("45", ["", "°"])
-    .when(Given("time")),
-    OptionSpec::new(
-        "day",
-        "N",
-        ValueKind::Whole(1, 366),
-        "Day of the year for --time [default: 172, the June solstice]",
-    )
-    .with_example("172", ["", ""])
-    .when(Given("time")),
-    OptionSpec::new(
-        "haze",
-        "N",
-        ValueKind::Number(*HAZE.start(), *HAZE.end()),
-        "Density of the haze: 0 is none, 1 is a clear day, higher values are denser",
-    )
-    .with_default("1")
-    .with_example("1", ["", ""]),
-    OptionSpec::new(
-        "exaggeration",
-        "N",
-        ValueKind::Number(*EXAGGERATION.start(), *EXAGGERATION.end()),
-        "Vertical exaggeration",
-    )
-    .with_default("1")
-    .with_example("1", ["", "×"]),
-    OptionSpec::new(
-        "edge",
-        "EDGE",
-        ValueKind::Choice(EDGES),
-        "What is shown beyond the edge of the land [default: haze if most of the edge is sea, else cut]",
-    ),
-    OptionSpec::new("color", "COLOR", ValueKind::Choice(COLORS), "Colors of the ground")
+    OptionSpec::new("camera", "A,E[,D]|X,Y,H", ValueKind::Tuple(CAMERA, 2))
+        .with_about(
+            "Camera position: AZIMUTH,ELEVATION[,DISTANCE] around the center of the land (degrees clockwise from \
+             north, degrees above the horizon, metres), or with --look X,Y,HEIGHT in the world's metres [default: \
+             200,24 at the distance that shows everything]",
+        )
+        .with_example("200,24", ["", ""]),
+    OptionSpec::new("look", "X,Y", ValueKind::Point)
+        .with_about("Point that the camera looks at, in metres east and south; --camera is then a position, too")
+        .when(Given("camera")),
+    OptionSpec::new("fov", "DEG", ValueKind::Number(*FOV.start(), *FOV.end()))
+        .with_about("Field of view along the longer side of the picture, in degrees")
+        .with_default("40")
+        .with_example("40", ["", "°"]),
+    OptionSpec::new("sun", "A,E", ValueKind::Tuple(LIGHT, 2))
+        .with_about(
+            "Position of the sun: AZIMUTH,ELEVATION, in degrees clockwise from north and above the horizon [default: \
+             265,27]",
+        )
+        .with_example("265,27", ["", ""])
+        .without(&["time"]),
+    OptionSpec::new("time", "HH:MM", ValueKind::Clock)
+        .with_about("Solar time (12:00 is noon) that determines the position of the sun, instead of --sun")
+        .with_example("17:30", ["", ""])
+        .without(&["sun"]),
+    OptionSpec::new("latitude", "DEG", ValueKind::Number(-90.0, 90.0))
+        .with_about("Latitude for --time, in degrees; negative in the south [default: 45]")
+        .with_example("45", ["", "°"])
+        .when(Given("time")),
+    OptionSpec::new("day", "N", ValueKind::Whole(1, 366))
+        .with_about("Day of the year for --time [default: 172, the June solstice]")
+        .with_example("172", ["", ""])
+        .when(Given("time")),
+    OptionSpec::new("haze", "N", ValueKind::Number(*HAZE.start(), *HAZE.end()))
+        .with_about("Density of the haze: 0 is none, 1 is a clear day, higher values are denser")
+        .with_default("1")
+        .with_example("1", ["", ""]),
+    OptionSpec::new("exaggeration", "N", ValueKind::Number(*EXAGGERATION.start(), *EXAGGERATION.end()))
+        .with_about("Vertical exaggeration")
+        .with_default("1")
+        .with_example("1", ["", "×"]),
+    OptionSpec::new("edge", "EDGE", ValueKind::Choice(EDGES))
+        .with_about("What is shown beyond the edge of the land [default: haze if most of the edge is sea, else cut]"),
+    OptionSpec::new("color", "COLOR", ValueKind::Choice(COLORS))
+        .with_about("Colors of the ground")
         .with_default("natural")
         .with_aliases(&["colors", "colour", "colours"]),
-    OptionSpec::new(
-        "snow-line",
-        "M",
-        ValueKind::Number(-1e5, 1e5),
-        "Height of the snow line in metres [default: three fifths of the relief, no snow on low land]",
-    )
-    .with_example("2000", ["", " m"]),
-    OptionSpec::new(
-        "samples",
-        "N",
-        ValueKind::Whole(*SAMPLES.start() as u64, *SAMPLES.end() as u64),
-        "Samples per pixel (antialiasing)",
-    )
-    .with_default("5")
-    .with_example("5", ["", ""]),
-    OptionSpec::new(
-        "palette",
-        "NAME|FILE",
-        ValueKind::Palette,
-        "Palette of --color map: a name or a file (.cpt, .gpl, .toml, gdaldem .txt) [default: that of the relief map]",
-    )
-    .when(Is("color", "map")),
-    OptionSpec::switch(
-        "nearest-color",
-        "Give each value the color of the nearest stop of the palette, without mixing (as gdaldem's \
-         -nearest_color_entry)",
-    )
-    .when(Given("palette")),
-    OptionSpec::new(
-        "range",
-        "LOW,HIGH",
-        ValueKind::Range,
-        "Heights at the ends of the palette of --color map, for example to use the same range for several pictures \
-         [default: the lowest and the highest]",
-    )
-    .with_example("0,1000", ["", " m"])
-    .when(Is("color", "map")),
-    OptionSpec::switch("color-bar", "Draw a color bar with the heights of --color map in the lower left corner")
+    OptionSpec::new("snow-line", "M", ValueKind::Number(-1e5, 1e5))
+        .with_about("Height of the snow line in metres [default: three fifths of the relief, no snow on low land]")
+        .with_example("2000", ["", " m"]),
+    OptionSpec::new("samples", "N", ValueKind::Whole(*SAMPLES.start() as u64, *SAMPLES.end() as u64))
+        .with_about("Samples per pixel (antialiasing)")
+        .with_default("5")
+        .with_example("5", ["", ""]),
+    OptionSpec::new("palette", "NAME|FILE", ValueKind::Palette)
+        .with_about(
+            "Palette of --color map: a name or a file (.cpt, .gpl, .toml, gdaldem .txt) [default: that of the relief \
+             map]",
+        )
+        .when(Is("color", &["map"])),
+    OptionSpec::switch("nearest-color")
+        .with_about(
+            "Give each value the color of the nearest stop of the palette, without mixing (as gdaldem's \
+             -nearest_color_entry)",
+        )
+        .when(Given("palette")),
+    OptionSpec::new("range", "LOW,HIGH", ValueKind::Range)
+        .with_about(
+            "Heights at the ends of the palette of --color map, for example to use the same range for several pictures \
+             [default: the lowest and the highest]",
+        )
+        .with_example("0,1000", ["", " m"])
+        .when(Is("color", &["map"])),
+    OptionSpec::switch("color-bar")
+        .with_about("Draw a color bar with the heights of --color map in the lower left corner")
         .with_aliases(&["colour-bar"])
-        .when(Is("color", "map")),
+        .when(Is("color", &["map"])),
 ];
 
 impl RenderJob {

@@ -28,6 +28,16 @@ impl SheetFormat {
         }
     }
 
+    /// What it is, in a word or two.
+    #[must_use]
+    pub fn about(self) -> &'static str {
+        match self {
+            SheetFormat::Png => "Picture",
+            SheetFormat::Svg => "Vector drawing",
+            SheetFormat::Pdf => "PDF page",
+        }
+    }
+
     /// The kind for a path's extension.
     #[must_use]
     pub fn of_path(path: &Path) -> Option<SheetFormat> {

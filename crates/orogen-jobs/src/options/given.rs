@@ -68,7 +68,7 @@ impl Options {
                 return Err(request(match spec.condition {
                     Condition::Always => continue,
                     Condition::Given(other) => format!("--{name} needs --{other}"),
-                    Condition::Is(other, word) => format!("--{name} applies to --{other} {word}"),
+                    Condition::Is(other, words) => format!("--{name} applies to --{other} {}", words.join(" or ")),
                     Condition::IsFile(other) => format!("--{name} needs a file as --{other}"),
                     Condition::IsNot(other, word) => format!("--{name} needs a --{other} other than {word}"),
                 }));
@@ -200,7 +200,7 @@ mod tests {
 
     fn given(kind: ValueKind, text: &str) -> std::result::Result<Options, String> {
         let mut options = Options::default();
-        options.give(&OptionSpec::new("x", "X", kind, "a test"), text).map_err(|error| error.to_string())?;
+        options.give(&OptionSpec::new("x", "X", kind).with_about("a test"), text).map_err(|error| error.to_string())?;
         Ok(options)
     }
 
@@ -275,7 +275,7 @@ mod tests {
 
     #[test]
     fn options_without_a_declaration_are_refused() {
-        const SPECS: &[OptionSpec] = &[OptionSpec::switch("landscape", "")];
+        const SPECS: &[OptionSpec] = &[OptionSpec::switch("landscape")];
         let why = Options::of(SPECS, [("landscap", "")]).unwrap_err().to_string();
         assert_eq!(why, "there is no option `landscap`; did you mean `landscape`?");
     }
@@ -283,11 +283,11 @@ mod tests {
     /// What is said of these options.
     fn checked(given: &[(&str, &str)]) -> std::result::Result<(), String> {
         const SPECS: &[OptionSpec] = &[
-            OptionSpec::new("color", "WHAT", ValueKind::Word(&["map", "clay"]), "").with_default("map"),
-            OptionSpec::new("palette", "NAME", ValueKind::Palette, "").when(Condition::Is("color", "map")),
-            OptionSpec::switch("nearest", "").when(Condition::Given("palette")),
-            OptionSpec::switch("gloss", "").when(Condition::IsNot("color", "map")),
-            OptionSpec::switch("matt", "").without(&["gloss"]),
+            OptionSpec::new("color", "WHAT", ValueKind::Word(&["map", "clay"])).with_default("map"),
+            OptionSpec::new("palette", "NAME", ValueKind::Palette).when(Condition::Is("color", &["map"])),
+            OptionSpec::switch("nearest").when(Condition::Given("palette")),
+            OptionSpec::switch("gloss").when(Condition::IsNot("color", "map")),
+            OptionSpec::switch("matt").without(&["gloss"]),
         ];
         let options = Options::of(SPECS, given.iter().copied()).unwrap();
         options.check(SPECS).map_err(|error| error.to_string())

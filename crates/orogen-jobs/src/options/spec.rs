@@ -8,6 +8,7 @@ use orogen_output::sheet::paper::Paper;
 
 /// The declaration of an option, from which front ends derive flags, checks, help and fields.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[must_use]
 pub struct OptionSpec {
     /// The name, in lower case with hyphens: `bits` for `--bits`.
     pub name: &'static str,
@@ -40,8 +41,8 @@ pub enum Condition {
     Always,
     /// If this option is given.
     Given(&'static str),
-    /// If an option has this value.
-    Is(&'static str, &'static str),
+    /// If an option has one of these values.
+    Is(&'static str, &'static [&'static str]),
     /// If an option has another value than this one.
     IsNot(&'static str, &'static str),
     /// If the value of an option is a file: it has an extension.
@@ -91,7 +92,7 @@ pub enum ValueKind {
     Nothing,
     /// An integer in this inclusive range.
     Whole(u64, u64),
-    /// A number in this inclusive range.
+    /// A number in this inclusive range, which may be infinite upwards or on both sides.
     Number(f64, f64),
     /// A number above 0.
     Positive,
@@ -131,12 +132,11 @@ pub enum ValueKind {
 
 impl OptionSpec {
     /// An option with a value.
-    #[must_use]
-    pub const fn new(name: &'static str, value: &'static str, kind: ValueKind, about: &'static str) -> OptionSpec {
+    pub const fn new(name: &'static str, value: &'static str, kind: ValueKind) -> OptionSpec {
         OptionSpec {
             name,
             value,
-            about,
+            about: "",
             kind,
             default: "",
             example: "",
@@ -149,13 +149,16 @@ impl OptionSpec {
     }
 
     /// An option without a value.
-    #[must_use]
-    pub const fn switch(name: &'static str, about: &'static str) -> OptionSpec {
-        OptionSpec::new(name, "", ValueKind::Nothing, about)
+    pub const fn switch(name: &'static str) -> OptionSpec {
+        OptionSpec::new(name, "", ValueKind::Nothing)
+    }
+
+    /// The same with this line for the help.
+    pub const fn with_about(self, about: &'static str) -> OptionSpec {
+        OptionSpec { about, ..self }
     }
 
     /// The same with this default.
-    #[must_use]
     pub const fn with_default(self, default: &'static str) -> OptionSpec {
         OptionSpec { default, ..self }
     }
@@ -167,25 +170,21 @@ impl OptionSpec {
     }
 
     /// The same with these other spellings of its name.
-    #[must_use]
     pub const fn with_aliases(self, aliases: &'static [&'static str]) -> OptionSpec {
         OptionSpec { aliases, ..self }
     }
 
     /// The same, without any of these options.
-    #[must_use]
     pub const fn without(self, excludes: &'static [&'static str]) -> OptionSpec {
         OptionSpec { excludes, ..self }
     }
 
     /// The same, if a condition holds.
-    #[must_use]
     pub const fn when(self, condition: Condition) -> OptionSpec {
         OptionSpec { condition, ..self }
     }
 
     /// The same under a heading.
-    #[must_use]
     pub const fn under(self, heading: &'static str) -> OptionSpec {
         OptionSpec { heading, ..self }
     }
@@ -201,7 +200,7 @@ impl OptionSpec {
         let holds = match self.condition {
             Condition::Always => true,
             Condition::Given(name) => is_given(name),
-            Condition::Is(name, word) => of(name).is_some_and(|value| value == word),
+            Condition::Is(name, words) => of(name).is_some_and(|value| words.contains(&value.as_str())),
             Condition::IsFile(name) => of(name).is_some_and(|value| Path::new(&value).extension().is_some()),
             Condition::IsNot(name, word) => of(name).is_none_or(|value| value != word),
         };
@@ -222,7 +221,9 @@ impl OptionSpec {
             },
             ValueKind::Number(from, to) => match number(text) {
                 Some(n) if (from..=to).contains(&n) => Ok(Value::Number(n)),
-                _ => Err(format!("it must be a number from {from} to {to}")),
+                _ if to < f64::INFINITY => Err(format!("it must be a number from {from} to {to}")),
+                _ if from > f64::NEG_INFINITY => Err(format!("it must be a number, at least {from}")),
+                _ => Err("it must be a number, such as 2 or 0.5".into()),
             },
             ValueKind::Positive => {
                 positive(text).map(Value::Number).ok_or_else(|| "it must be a number greater than 0".into())

@@ -35,6 +35,7 @@ const AT_ONCE: AtOnce = AtOnce { cleaned: 1 << 22, cleaned_rows: 256, drawn: 1 <
 /// What a map is made with.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
+#[must_use]
 pub struct TilemapJob {
     /// The tiles.
     pub tileset: Tileset,
@@ -49,19 +50,16 @@ pub struct TilemapJob {
 
 impl TilemapJob {
     /// A map with these tiles, cleaned.
-    #[must_use]
     pub fn new(tileset: Tileset) -> TilemapJob {
         TilemapJob { tileset, cleans: true, is_infinite: false, files: Vec::new(), at_once: AT_ONCE }
     }
 
     /// Sets whether classes are changed where the tileset has no tile.
-    #[must_use]
     pub fn with_cleans(self, cleans: bool) -> TilemapJob {
         TilemapJob { cleans, ..self }
     }
 
     /// Sets whether maps of Tiled are infinite.
-    #[must_use]
     pub fn with_infinite(self, is_infinite: bool) -> TilemapJob {
         TilemapJob { is_infinite, ..self }
     }

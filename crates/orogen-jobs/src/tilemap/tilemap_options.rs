@@ -16,26 +16,20 @@ const LAYOUTS: &[Choice] = &[layout(Layout::Blob), layout(Layout::Edge), layout(
 
 /// The options, in the order of a help.
 const OPTIONS: &[OptionSpec] = &[
-    OptionSpec::new(
-        "tileset",
-        "T",
-        ValueKind::Tileset,
-        "Tileset to draw with: `fields-16` or `fields-32`, or a file: a tileset of Tiled (.tsx) with a wang set, or a \
-         description (.toml)",
-    )
-    .with_default(SETS[0].name),
-    OptionSpec::new("wang-set", "NAME", ValueKind::Text, "Wang set to use of a .tsx that has several")
+    OptionSpec::new("tileset", "T", ValueKind::Tileset)
+        .with_about(
+            "Tileset to draw with: `fields-16` or `fields-32`, or a file: a tileset of Tiled (.tsx) with a wang set, \
+             or a description (.toml)",
+        )
+        .with_default(SETS[0].name),
+    OptionSpec::new("wang-set", "NAME", ValueKind::Text)
+        .with_about("Wang set to use of a .tsx that has several")
         .when(IsFile("tileset")),
-    OptionSpec::new(
-        "layout",
-        "L",
-        ValueKind::Choice(LAYOUTS),
-        "How the tiles follow their surroundings [default: that of the tileset, `blob`]",
-    ),
-    OptionSpec::switch(
-        "infinite",
-        "Make the maps for Tiled infinite: chunks of 16 x 16 tiles at the positions of the world's cells, so that maps \
-         of parts join",
+    OptionSpec::new("layout", "L", ValueKind::Choice(LAYOUTS))
+        .with_about("How the tiles follow their surroundings [default: that of the tileset, `blob`]"),
+    OptionSpec::switch("infinite").with_about(
+        "Make the maps for Tiled infinite: chunks of 16 x 16 tiles at the positions of the world's cells, so that \
+             maps of parts join",
     ),
 ];
 

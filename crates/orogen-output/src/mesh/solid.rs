@@ -24,6 +24,7 @@ pub const LEGIBLE: f64 = 4.0;
 /// Dimensions of a solid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
+#[must_use]
 pub struct Print {
     /// Length of the longer side in millimetres, between the centers of its first and last sample.
     pub size: f64,
@@ -38,25 +39,21 @@ pub struct Print {
 
 impl Print {
     /// A solid with a longer side of this many millimetres.
-    #[must_use]
     pub fn new(size: f64) -> Print {
         Print { size, base: 3.0, cut: None, hollow: None }
     }
 
     /// The same with a base of this thickness, in millimetres.
-    #[must_use]
     pub fn with_base(self, base: f64) -> Print {
         Print { base, ..self }
     }
 
     /// The same of the land above a level in metres alone: its outline is that of the land, and its base begins there.
-    #[must_use]
     pub fn with_cut(self, level: f64) -> Print {
         Print { cut: Some(level), ..self }
     }
 
     /// The same with a cavity, and walls of at least this thickness in millimetres.
-    #[must_use]
     pub fn with_hollow(self, wall: f64) -> Print {
         Print { hollow: Some(wall), ..self }
     }

@@ -30,7 +30,7 @@ impl Texture {
 
     /// The name, as on the command line.
     #[must_use]
-    pub fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         match self {
             Texture::Clouds => "clouds",
             Texture::Marble => "marble",
@@ -40,7 +40,7 @@ impl Texture {
 
     /// How it is made, in a phrase.
     #[must_use]
-    pub fn about(self) -> &'static str {
+    pub const fn about(self) -> &'static str {
         match self {
             Texture::Clouds => {
                 "Clouds: fBm mapped to blue sky below a threshold and to increasingly dense white above it"

@@ -263,6 +263,7 @@ pub enum Coloring {
 /// ```
 #[derive(Debug, Clone)]
 #[non_exhaustive]
+#[must_use]
 pub struct SheetOptions {
     /// The heading; empty by default.
     pub title: String,
@@ -314,7 +315,6 @@ pub struct SheetOptions {
 
 impl SheetOptions {
     /// A sheet of all parts in this palette, without a title.
-    #[must_use]
     pub fn new(palette: Palette) -> SheetOptions {
         SheetOptions {
             title: String::new(),
@@ -343,25 +343,21 @@ impl SheetOptions {
     }
 
     /// The same with this heading.
-    #[must_use]
     pub fn with_title(self, title: impl Into<String>) -> SheetOptions {
         SheetOptions { title: title.into(), ..self }
     }
 
     /// The same on this page.
-    #[must_use]
     pub fn with_page(self, page: Page) -> SheetOptions {
         SheetOptions { page, ..self }
     }
 
     /// The same in this resolution.
-    #[must_use]
     pub fn with_resolution(self, resolution: Resolution) -> SheetOptions {
         SheetOptions { resolution, ..self }
     }
 
     /// The same with a sea up to this height in metres.
-    #[must_use]
     pub fn with_sea_level(self, sea_level: f64) -> SheetOptions {
         SheetOptions { sea_level: Some(sea_level), ..self }
     }

@@ -14,6 +14,7 @@ use orogen_grid::progress::Progress;
 /// memory.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
+#[must_use]
 pub struct SurveyJob<'a> {
     /// The land.
     pub land: Land<'a>,
@@ -25,19 +26,16 @@ pub struct SurveyJob<'a> {
 
 impl<'a> SurveyJob<'a> {
     /// The measuring of this land.
-    #[must_use]
     pub fn new(land: Land<'a>) -> SurveyJob<'a> {
         SurveyJob { land, scratch: std::env::temp_dir(), budget: Budget::of(None) }
     }
 
     /// The same with temporary rasters in this folder.
-    #[must_use]
     pub fn with_scratch(self, scratch: impl Into<PathBuf>) -> SurveyJob<'a> {
         SurveyJob { scratch: scratch.into(), ..self }
     }
 
     /// The same within this budget.
-    #[must_use]
     pub fn with_budget(self, budget: Budget) -> SurveyJob<'a> {
         SurveyJob { budget, ..self }
     }

@@ -11,12 +11,8 @@ use orogen_engine::solver::Drainage;
 use orogen_engine::world::HEIGHT;
 
 /// The option for the drainage area at which streams start.
-pub const STREAM: OptionSpec = OptionSpec::new(
-    "stream",
-    "AREA",
-    ValueKind::Number(0.0, 1e15),
-    "Minimum drainage area of streams, in m^2 [default: 1e6]",
-);
+pub const STREAM: OptionSpec = OptionSpec::new("stream", "AREA", ValueKind::Number(0.0, 1e15))
+    .with_about("Minimum drainage area of streams, in m^2 [default: 1e6]");
 
 /// A recipe with known heights, and the given options.
 pub struct Appended<'a> {

@@ -7,12 +7,12 @@ use orogen_engine::filter::{FlowCodes, FlowDirection};
 use orogen_engine::solver::Fill;
 
 /// Option for the codes of directions: esri (1 east, 2 south-east, 4 south ...), grass, taudem, whitebox or pcraster.
-const CODES: OptionSpec = OptionSpec::new(
-    "codes",
-    "WHOSE",
-    ValueKind::Word(&["esri", "grass", "taudem", "whitebox", "pcraster"]),
-    "Encoding of flow directions: esri (1 east, 2 south-east, 4 south ...), grass, taudem, whitebox or pcraster [default: esri]",
-);
+const CODES: OptionSpec =
+    OptionSpec::new("codes", "WHOSE", ValueKind::Word(&["esri", "grass", "taudem", "whitebox", "pcraster"]))
+        .with_about(
+            "Encoding of flow directions: esri (1 east, 2 south-east, 4 south ...), grass, taudem, whitebox or \
+             pcraster [default: esri]",
+        );
 
 /// The layer `drainage-area`.
 pub static AREA: Derived = Derived {

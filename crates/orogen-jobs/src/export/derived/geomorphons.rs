@@ -5,20 +5,12 @@ use crate::options::{OptionSpec, ValueKind};
 use orogen_engine::filter::Geomorphons;
 
 /// Option for the search radius, in metres.
-const REACH: OptionSpec = OptionSpec::new(
-    "reach",
-    "M",
-    ValueKind::Number(0.0, 1e6),
-    "Search radius of geomorphons, in metres [default: 500]",
-);
+const REACH: OptionSpec = OptionSpec::new("reach", "M", ValueKind::Number(0.0, 1e6))
+    .with_about("Search radius of geomorphons, in metres [default: 500]");
 
 /// Option for the angle up to which ground is level, in degrees.
-const FLAT: OptionSpec = OptionSpec::new(
-    "flat",
-    "DEG",
-    ValueKind::Number(0.0, 45.0),
-    "Flatness threshold of geomorphons, in degrees [default: 1]",
-);
+const FLAT: OptionSpec = OptionSpec::new("flat", "DEG", ValueKind::Number(0.0, 45.0))
+    .with_about("Flatness threshold of geomorphons, in degrees [default: 1]");
 
 /// The layer.
 pub static LAYER: Derived = Derived {

@@ -8,40 +8,27 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_io::dem::latitude;
 
 /// Option for a single day.
-const DAY: OptionSpec = OptionSpec::new(
-    "day",
-    "N",
-    ValueKind::Whole(1, 365),
-    "Day of the year for insolation, 1 to 365 [default: the whole year]",
-);
+const DAY: OptionSpec = OptionSpec::new("day", "N", ValueKind::Whole(1, 365))
+    .with_about("Day of the year for insolation, 1 to 365 [default: the whole year]");
 
 /// Option for a season.
-const SEASON: OptionSpec = OptionSpec::new(
-    "season",
-    "WHEN",
-    ValueKind::Word(&["spring", "summer", "autumn", "winter"]),
-    "Season for insolation, from equinox to solstice or solstice to equinox at the latitude: spring, summer, autumn or winter",
-);
+const SEASON: OptionSpec =
+    OptionSpec::new("season", "WHEN", ValueKind::Word(&["spring", "summer", "autumn", "winter"])).with_about(
+        "Season for insolation, from equinox to solstice or solstice to equinox at the latitude: spring, summer, \
+             autumn or winter",
+    );
 
 /// The time step of a single day, in hours. The days of a longer period have different sunrises, which evens out
 /// shadows between time steps.
 const STEP_OF_A_DAY: f64 = 0.1;
 
 /// Option for the latitude.
-const LATITUDE: OptionSpec = OptionSpec::new(
-    "latitude",
-    "DEG",
-    ValueKind::Number(-90.0, 90.0),
-    "Latitude in degrees, positive in the north [default: that of a file of heights, else 45]",
-);
+const LATITUDE: OptionSpec = OptionSpec::new("latitude", "DEG", ValueKind::Number(-90.0, 90.0))
+    .with_about("Latitude in degrees, positive in the north [default: that of a file of heights, else 45]");
 
 /// Option for the turbidity of the air.
-const TURBIDITY: OptionSpec = OptionSpec::new(
-    "turbidity",
-    "T",
-    ValueKind::Number(1.0, 10.0),
-    "Linke turbidity of the air: 1 clean and dry, 6 hazy [default: 3]",
-);
+const TURBIDITY: OptionSpec = OptionSpec::new("turbidity", "T", ValueKind::Number(1.0, 10.0))
+    .with_about("Linke turbidity of the air: 1 clean and dry, 6 hazy [default: 3]");
 
 /// The first and the last day of each season of the northern hemisphere.
 const SEASONS: [(&str, [f64; 2]); 4] =

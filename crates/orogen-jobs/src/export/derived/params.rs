@@ -24,12 +24,8 @@ fn option(param: &'static ParamSpec, default: &Value) -> OptionSpec {
         "degrees" => "DEG".into(),
         unit => unit.to_uppercase(),
     };
-    OptionSpec::new(
-        name(param).leak(),
-        placeholder.leak(),
-        ValueKind::Number(param.range[0], param.range[1]),
-        format!("{text}{unit} [default: {default}]").leak(),
-    )
+    OptionSpec::new(name(param).leak(), placeholder.leak(), ValueKind::Number(param.range[0], param.range[1]))
+        .with_about(format!("{text}{unit} [default: {default}]").leak())
 }
 
 /// The name of a parameter's option.

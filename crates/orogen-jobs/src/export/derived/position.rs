@@ -6,8 +6,8 @@ use crate::options::{OptionSpec, ValueKind};
 use orogen_engine::filter::TopographicPosition;
 
 /// Option for the radius of the disc, in metres.
-const RADIUS: OptionSpec =
-    OptionSpec::new("disc", "M", ValueKind::Number(0.0, 1e6), "Radius of the disc, in metres [default: 300]");
+const RADIUS: OptionSpec = OptionSpec::new("disc", "M", ValueKind::Number(0.0, 1e6))
+    .with_about("Radius of the disc, in metres [default: 300]");
 
 /// Appends the node.
 fn append(to: &mut Appended) -> AppendedNode {

@@ -6,43 +6,25 @@ use orogen_engine::solver::Viewshed;
 use orogen_grid::error::{Error, ErrorKind};
 
 /// Option for the position of the observer.
-const OBSERVER: OptionSpec = OptionSpec::new(
-    "observer",
-    "X,Y",
-    ValueKind::Point,
-    "Position of the observer of a viewshed: metres east and south of the world's north-west corner",
-);
+const OBSERVER: OptionSpec = OptionSpec::new("observer", "X,Y", ValueKind::Point)
+    .with_about("Position of the observer of a viewshed: metres east and south of the world's north-west corner");
 
 /// Option for the height of the eye.
-const OBSERVER_HEIGHT: OptionSpec = OptionSpec::new(
-    "observer-height",
-    "M",
-    ValueKind::Number(0.0, 1e6),
-    "Height of the observer's eye above the ground, in metres [default: 1.75]",
-);
+const OBSERVER_HEIGHT: OptionSpec = OptionSpec::new("observer-height", "M", ValueKind::Number(0.0, 1e6))
+    .with_about("Height of the observer's eye above the ground, in metres [default: 1.75]");
 
 /// Option for the height of the target.
-const TARGET_HEIGHT: OptionSpec = OptionSpec::new(
-    "target-height",
-    "M",
-    ValueKind::Number(0.0, 1e6),
-    "Height of the target above the ground, in metres [default: 0]",
-);
+const TARGET_HEIGHT: OptionSpec = OptionSpec::new("target-height", "M", ValueKind::Number(0.0, 1e6))
+    .with_about("Height of the target above the ground, in metres [default: 0]");
 
 /// Option for the range of sight.
-const RADIUS: OptionSpec = OptionSpec::new(
-    "radius",
-    "M",
-    ValueKind::Number(0.0, 1e9),
-    "Maximum distance of a viewshed, in metres [default: the whole world]",
-);
+const RADIUS: OptionSpec = OptionSpec::new("radius", "M", ValueKind::Number(0.0, 1e9))
+    .with_about("Maximum distance of a viewshed, in metres [default: the whole world]");
 
 /// Option for the curvature of the earth and refraction.
-const REFRACTION: OptionSpec = OptionSpec::new(
-    "refraction",
-    "K",
-    ValueKind::Number(0.0, 1.0),
-    "Take the earth's curvature into account, with this refraction coefficient, such as 0.13 [default: a flat earth]",
+const REFRACTION: OptionSpec = OptionSpec::new("refraction", "K", ValueKind::Number(0.0, 1.0)).with_about(
+    "Take the earth's curvature into account, with this refraction coefficient, such as 0.13 [default: a flat \
+             earth]",
 );
 
 /// The layer.

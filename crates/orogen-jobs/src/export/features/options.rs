@@ -9,36 +9,20 @@ use orogen_grid::error::Result;
 use orogen_grid::hydrology::rivers::Channel;
 
 /// `--river-area`.
-pub const RIVER_AREA: OptionSpec = OptionSpec::new(
-    "river-area",
-    "M2",
-    ValueKind::Number(0.0, 1e15),
-    "Minimum drainage area of rivers in m^2 [default: the recipe's, else 1000000, at least 32 samples]",
-);
+pub const RIVER_AREA: OptionSpec = OptionSpec::new("river-area", "M2", ValueKind::Number(0.0, 1e15))
+    .with_about("Minimum drainage area of rivers in m^2 [default: the recipe's, else 1000000, at least 32 samples]");
 
 /// `--lake-area`.
-pub const LAKE_AREA: OptionSpec = OptionSpec::new(
-    "lake-area",
-    "M2",
-    ValueKind::Number(0.0, 1e15),
-    "Minimum area of lakes in m^2 [default: the recipe's, else 20000, at least 4 samples]",
-);
+pub const LAKE_AREA: OptionSpec = OptionSpec::new("lake-area", "M2", ValueKind::Number(0.0, 1e15))
+    .with_about("Minimum area of lakes in m^2 [default: the recipe's, else 20000, at least 4 samples]");
 
 /// `--runoff`.
-pub const RUNOFF: OptionSpec = OptionSpec::new(
-    "runoff",
-    "M",
-    ValueKind::Number(0.0, 1000.0),
-    "Runoff in metres per year, for discharges and widths [default: the recipe's, else 0.5]",
-);
+pub const RUNOFF: OptionSpec = OptionSpec::new("runoff", "M", ValueKind::Number(0.0, 1000.0))
+    .with_about("Runoff in metres per year, for discharges and widths [default: the recipe's, else 0.5]");
 
 /// `--prominence`.
-pub const PROMINENCE: OptionSpec = OptionSpec::new(
-    "prominence",
-    "M",
-    ValueKind::Number(0.0, 1e6),
-    "Minimum prominence of summits in metres [default: 1/25 of the relief]",
-);
+pub const PROMINENCE: OptionSpec = OptionSpec::new("prominence", "M", ValueKind::Number(0.0, 1e6))
+    .with_about("Minimum prominence of summits in metres [default: 1/25 of the relief]");
 
 /// The options of formats that hold vector features.
 pub const OPTIONS: &[OptionSpec] = &[

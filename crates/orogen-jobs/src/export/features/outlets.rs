@@ -9,29 +9,21 @@ use orogen_io::format::dem::Georeference;
 use orogen_io::format::points::NamedPoints;
 
 /// `--outlet`.
-pub const OUTLET: OptionSpec = OptionSpec::new(
-    "outlet",
-    "E,N",
-    ValueKind::Point,
-    "Outlet of a watershed: easting and northing in the CRS of the heights; without a CRS, metres east and north of the world's \
-            north-west corner (points south of it are negative)",
+pub const OUTLET: OptionSpec = OptionSpec::new("outlet", "E,N", ValueKind::Point).with_about(
+    "Outlet of a watershed: easting and northing in the CRS of the heights; without a CRS, metres east and \
+             north of the world's north-west corner (points south of it are negative)",
 );
 
 /// `--outlets`.
-pub const OUTLETS: OptionSpec = OptionSpec::new(
-    "outlets",
-    "FILE",
-    ValueKind::File,
-    "Outlets of watersheds, in the same coordinates: points of a .csv file (columns x, y and name) or a .geojson file",
+pub const OUTLETS: OptionSpec = OptionSpec::new("outlets", "FILE", ValueKind::File).with_about(
+    "Outlets of watersheds, in the same coordinates: points of a .csv file (columns x, y and name) or a \
+             .geojson file",
 );
 
 /// `--snap`.
-pub const SNAP: OptionSpec = OptionSpec::new(
-    "snap",
-    "M",
-    ValueKind::Number(0.0, 1e6),
-    "Maximum distance that an outlet is moved to the nearest stream, in metres; streams are those of --river-area; 0 moves none \
-            [default: 5 samples]",
+pub const SNAP: OptionSpec = OptionSpec::new("snap", "M", ValueKind::Number(0.0, 1e6)).with_about(
+    "Maximum distance that an outlet is moved to the nearest stream, in metres; streams are those of \
+             --river-area; 0 moves none [default: 5 samples]",
 );
 
 /// Maximum number of outlets.

@@ -28,10 +28,11 @@ pub static FORMAT: Format = Format {
 
 /// The option for half floats.
 pub const HALF: OptionSpec =
-    OptionSpec::switch("half", "16-bit floats instead of 32-bit; above 2048 m the resolution is 2 m");
+    OptionSpec::switch("half").with_about("16-bit floats instead of 32-bit; above 2048 m the resolution is 2 m");
 
 /// The option for three channels.
-pub const RGB: OptionSpec = OptionSpec::switch("rgb", "Write the samples to the channels R, G and B instead of Y");
+pub const RGB: OptionSpec =
+    OptionSpec::switch("rgb").with_about("Write the samples to the channels R, G and B instead of Y");
 
 /// Compressed rows that wait, and rows on their way into blocks.
 fn memory(window: &Window, _: &Options) -> u64 {

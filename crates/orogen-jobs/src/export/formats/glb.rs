@@ -18,10 +18,7 @@ use orogen_grid::grid::Window;
 use orogen_output::mesh::glb::{Model, write as write_model};
 use orogen_output::mesh::surface::Surface;
 
-const LODS: OptionSpec = OptionSpec::new(
-    "lods",
-    "N",
-    ValueKind::Whole(1, 12),
+const LODS: OptionSpec = OptionSpec::new("lods", "N", ValueKind::Whole(1, 12)).with_about(
     "Number of levels of detail: each halves the samples, or doubles the error of --max-error [default: 1]",
 );
 

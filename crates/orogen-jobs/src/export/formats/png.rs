@@ -31,12 +31,10 @@ pub static FORMAT: Format = Format {
 };
 
 /// The option for heights encoded in colors.
-const ENCODING: OptionSpec = OptionSpec::new(
-    "encoding",
-    "NAME",
-    ValueKind::Word(&["terrarium", "terrain-rgb"]),
-    "Heights encoded in red, green and blue: terrarium, in steps of 1/256 m, or terrain-rgb, in steps of 1/10 m",
-);
+const ENCODING: OptionSpec = OptionSpec::new("encoding", "NAME", ValueKind::Word(&["terrarium", "terrain-rgb"]))
+    .with_about(
+        "Heights encoded in red, green and blue: terrarium, in steps of 1/256 m, or terrain-rgb, in steps of 1/10 m",
+    );
 
 fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
     let fits = |nature: Nature| source.nature() == nature;

@@ -15,6 +15,7 @@ const NEAR: f64 = 1e-6;
 /// The requested samples; missing values are chosen by the target.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[non_exhaustive]
+#[must_use]
 pub struct FrameSpec {
     /// Samples along a side; of a tile, if there are several.
     pub side: Option<usize>,
@@ -31,19 +32,16 @@ pub struct FrameSpec {
 
 impl FrameSpec {
     /// The same with this many samples along a side.
-    #[must_use]
     pub fn with_side(self, side: usize) -> FrameSpec {
         FrameSpec { side: Some(side), ..self }
     }
 
     /// The same with this distance between samples, in metres.
-    #[must_use]
     pub fn with_cell(self, cell: f64) -> FrameSpec {
         FrameSpec { cell: Some(cell), ..self }
     }
 
     /// The same over this window.
-    #[must_use]
     pub fn with_window(self, window: Window) -> FrameSpec {
         FrameSpec { window: Some(window), ..self }
     }

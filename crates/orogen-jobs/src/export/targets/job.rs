@@ -19,6 +19,7 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 /// [`prepare`](EngineJob::prepare) a recipe, open its world, then [`run`](EngineJob::run).
 #[derive(Debug, Clone)]
 #[non_exhaustive]
+#[must_use]
 pub struct EngineJob {
     /// The engine.
     pub target: &'static EngineTarget,
@@ -37,7 +38,6 @@ pub struct EngineJob {
 
 impl EngineJob {
     /// The heights of the whole world.
-    #[must_use]
     pub fn new(target: &'static EngineTarget, format: &'static Format) -> EngineJob {
         EngineJob {
             target,
@@ -50,25 +50,21 @@ impl EngineJob {
     }
 
     /// The same for this layer.
-    #[must_use]
     pub fn with_layer(self, layer: impl Into<String>) -> EngineJob {
         EngineJob { layer: layer.into(), ..self }
     }
 
     /// The same with these options of the derived layer.
-    #[must_use]
     pub fn with_layer_options(self, layer_options: Options) -> EngineJob {
         EngineJob { layer_options, ..self }
     }
 
     /// The same with these options of the format.
-    #[must_use]
     pub fn with_options(self, options: Options) -> EngineJob {
         EngineJob { options, ..self }
     }
 
     /// The same with these samples.
-    #[must_use]
     pub fn with_samples(self, samples: FrameSpec) -> EngineJob {
         EngineJob { samples, ..self }
     }
