@@ -164,7 +164,6 @@ impl OptionSpec {
     }
 
     /// The same with this usual value, and what stands before and after it.
-    #[must_use]
     pub const fn with_example(self, example: &'static str, affixes: [&'static str; 2]) -> OptionSpec {
         OptionSpec { example, affixes, ..self }
     }

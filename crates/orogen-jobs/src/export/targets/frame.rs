@@ -47,13 +47,11 @@ impl FrameSpec {
     }
 
     /// The same over this area: west, north, east and south in metres from the world's north-west corner.
-    #[must_use]
     pub fn with_area(self, area: [f64; 4]) -> FrameSpec {
         FrameSpec { area: Some(area), ..self }
     }
 
     /// The same in this many tiles, east and south.
-    #[must_use]
     pub fn with_tiles(self, tiles: [usize; 2]) -> FrameSpec {
         FrameSpec { tiles: Some(tiles), ..self }
     }
