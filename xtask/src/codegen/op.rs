@@ -45,9 +45,10 @@ pub fn public_types(text: &str) -> Vec<String> {
     names
 }
 
-/// Whether a line is `op! {`, also with a path; not in a comment or a doc example.
+/// Whether a line is `op! {`, also with a path, or `drained_op! {`; not in a comment or a doc example.
 fn opens(line: &str) -> bool {
-    let call = line.strip_prefix("crate::op::").or(line.strip_prefix("crate::")).unwrap_or(line);
+    let call =
+        ["crate::op::", "crate::", "drained_"].iter().find_map(|before| line.strip_prefix(before)).unwrap_or(line);
     call.strip_prefix("op!").is_some_and(|rest| rest.trim_start().starts_with('{'))
 }
 

@@ -3,7 +3,7 @@
 use super::growth::FLOOR_AREA;
 use super::growth_row::FLOOR_WIDTH;
 use super::law::MAX_FLOOR_FACTOR;
-use super::level::{Level, invalid};
+use super::level::Level;
 use super::refinement::Refinement;
 use super::surface::Surface;
 use crate::erosion::power::power;
@@ -57,21 +57,17 @@ impl Refinement {
     pub fn sediment(&self, share: f32, level: &Level, surface: &Surface, progress: &Progress) -> Result<Grid> {
         let window = surface.height.window();
         let nodes = self.nodes_at(level.depth, window);
-        let needed = nodes.grown(self.sediment_reach(level.depth));
-        if !level.window.contains(&needed) {
-            return Err(invalid(format!("sediment over {nodes:?} needs its level over {needed:?}")));
-        }
+        level.check_covers("sediment", &nodes, self.sediment_reach(level.depth))?;
         let cell = self.cell_of(level.depth) as f32;
         let fill = spread(level, cell, self.fills(level), progress)?;
         let hillside = hillside_distances(level, cell, self.floor_cells(level.depth) as u32);
         progress.check()?;
         let mut thickness = Grid::filled(*window, 0.0f32);
-        let (left, top) = ((nodes.x - level.window.x) as usize, (nodes.y - level.window.y) as usize);
         for j in 0..window.height {
             progress.check()?;
             for i in 0..window.width {
                 if surface.water_level[(i, j)].is_nan() {
-                    let q = self.nearest_node(share, level, (top + j) * level.window.width + left + i);
+                    let q = self.nearest_node(share, level, level.row(&nodes, j) + i);
                     // The foot of a hillside is in the middle between a node of the floor and one of the hillside.
                     let metres = (hillside[q] as f32 / UNITS[0] as f32 - 0.5).max(0.0) * cell;
                     let depth = fill[q].min(ROCK_SLOPE * metres);
@@ -116,10 +112,10 @@ fn flatness(level: &Level, cell: f32, q: usize) -> f32 {
 /// Distance from each node to the nearest hillside in units of a cell, at most `most` cells: by steps to the eight
 /// neighbors.
 fn hillside_distances(level: &Level, cell: f32, most: u32) -> Vec<u32> {
-    let (width, height) = (level.window.width, level.window.height);
+    let width = level.window.width;
     let most = most * UNITS[0];
     let mut distance = vec![most; level.window.len()];
-    for q in (1..height.max(2) - 1).flat_map(|j| j * width + 1..(j + 1) * width - 1) {
+    for q in level.inner(1) {
         let at = |q: usize| level.height[q];
         let across = |a: usize, b: usize, by: usize| {
             at(b - by) + 2.0 * at(b) + at(b + by) - at(a - by) - 2.0 * at(a) - at(a + by)
@@ -130,12 +126,12 @@ fn hillside_distances(level: &Level, cell: f32, most: u32) -> Vec<u32> {
         distance[q] = most.min((foot / cell * UNITS[0] as f32) as u32);
     }
     let mut lower = |q: usize, from: usize, by: u32| distance[q] = distance[q].min(distance[from] + by);
-    for q in (1..height.max(2) - 1).flat_map(|j| j * width + 1..(j + 1) * width - 1) {
+    for q in level.inner(1) {
         for (from, by) in [(q - width - 1, 1), (q - width, 0), (q - width + 1, 1), (q - 1, 0)] {
             lower(q, from, UNITS[by]);
         }
     }
-    for q in (1..height.max(2) - 1).flat_map(|j| j * width + 1..(j + 1) * width - 1).rev() {
+    for q in level.inner(1).rev() {
         for (from, by) in [(q + width + 1, 1), (q + width, 0), (q + width - 1, 1), (q + 1, 0)] {
             lower(q, from, UNITS[by]);
         }

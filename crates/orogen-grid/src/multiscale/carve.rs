@@ -43,7 +43,7 @@ pub fn carve(parent: &Level, links: &Links, children: &Children, water: Water) -
     };
     carved.lead_lakes(parent, links, children);
     let mut arrivals = Vec::new();
-    for q in links.inner().filter(|&q| links.list[q].kept && drains(parent.receiver[q])) {
+    for q in links.kept(parent).filter(|&q| drains(parent.receiver[q])) {
         arrivals.push(carved.leave(parent, links, children, q));
     }
     for arrival in &arrivals {
@@ -75,8 +75,8 @@ struct Arrival {
 impl Carved {
     /// Water of lakes with an outlet flows to the child that the lake's node becomes, if no link passes.
     fn lead_lakes(&mut self, parent: &Level, links: &Links, children: &Children) {
-        for q in links.inner().filter(|&q| is_lake(parent.receiver[q])) {
-            let own = |corner| Child { parent: q, corner }.index(links.size.0);
+        for q in parent.inner(1).filter(|&q| is_lake(parent.receiver[q])) {
+            let own = |corner| Child { parent: q, corner }.index(links.width);
             let end = heir(parent, q);
             for corner in (0..4).filter(|corner| *corner != end && self.fixed[own(*corner)] == WATER) {
                 self.receiver[own(corner)] = f32::from(code_between(children, own(corner), own(end)));
@@ -86,7 +86,7 @@ impl Carved {
 
     /// Carves a link from its parent up to the entry.
     fn leave(&mut self, parent: &Level, links: &Links, children: &Children, q: usize) -> Arrival {
-        let parents = links.size.0;
+        let parents = links.width;
         let (link, target) = (links.list[q], links.target(parent, q));
         let start = Child { parent: q, corner: heir(parent, q) };
         let exit = Child { parent: q, corner: link.exit };
@@ -134,7 +134,7 @@ impl Carved {
     /// Carves the end of a link, from the entry to the receiver's heir.
     fn arrive(&mut self, parent: &Level, links: &Links, children: &Children, arrival: &Arrival) {
         let (target, entry) = (arrival.target, arrival.entry);
-        let own = |corner| Child { parent: target, corner }.index(links.size.0);
+        let own = |corner| Child { parent: target, corner }.index(links.width);
         let end = own(heir(parent, target));
         let drains = drains(parent.receiver[target]);
         if entry == end || (self.fixed[entry] == WATER && !drains) {
@@ -157,7 +157,7 @@ impl Carved {
         if !drains(parent.receiver[target]) {
             return;
         }
-        let own = |corner| Child { parent: target, corner }.index(links.size.0);
+        let own = |corner| Child { parent: target, corner }.index(links.width);
         let end = own(heir(parent, target));
         if entry != end && own(links.list[target].exit) == entry {
             return;

@@ -1,6 +1,6 @@
 //! Beds and banks of rivers on detail levels, whose cells are smaller than rivers are wide.
 
-use super::level::{Level, invalid};
+use super::level::Level;
 use super::refinement::Refinement;
 use super::surface::Surface;
 use crate::error::Result;
@@ -72,10 +72,7 @@ impl Refinement {
         }
         let nodes = self.nodes_at(level.depth, surface.height.window());
         let read = nodes.grown(Refinement::BEDS_REACH);
-        let needed = nodes.grown(self.rivers_reach(level.depth));
-        if !level.window.contains(&needed) {
-            return Err(invalid(format!("rivers over {nodes:?} need their level over {needed:?}")));
-        }
+        level.check_covers("a river bed", &nodes, self.rivers_reach(level.depth))?;
         let rivers = Rivers { level, cell: self.cell_of(level.depth), least_area, channel };
         for y in read.y..read.bottom() {
             progress.check()?;

@@ -238,7 +238,7 @@ impl<'a> Coarsest<'a> {
                 *height = 0.0;
             }
         }
-        let part = |plane: &[f32]| cropped(plane, width, (REACH, REACH), (window.width, window.height));
+        let part = |plane: &[f32]| cropped(plane, &self.window, window);
         Level {
             depth: 0,
             window: *window,

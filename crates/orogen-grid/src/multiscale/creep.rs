@@ -1,6 +1,8 @@
 //! Creep of soil on the finest level: slopes become smooth, and every node stays above its receiver.
 
 use super::drainage::{FREE, WATER};
+use super::growth::least_rise;
+use super::refinement::Refinement;
 use super::stencil::Extent;
 use orogen_simd::{Body, Simd, dispatch};
 use std::f32::consts::FRAC_1_SQRT_2;
@@ -30,12 +32,13 @@ pub struct Kept {
 }
 
 impl Kept {
-    /// On the finest level of valleys.
-    pub const VALLEYS: Kept = Kept { fall: 0.02, cut_area: 1400.0 };
-
-    /// On a detail level with this smallest rise over one cell: rivers are there already.
-    pub fn details(least_rise: f32) -> Kept {
-        Kept { fall: least_rise, cut_area: f32::INFINITY }
+    /// On the finest level of valleys, or on a detail level, where rivers are there already.
+    pub fn on(land: &Refinement, depth: usize) -> Kept {
+        if land.is_detail(depth) {
+            Kept { fall: least_rise(land, depth), cut_area: f32::INFINITY }
+        } else {
+            Kept { fall: 0.02, cut_area: 1400.0 }
+        }
     }
 }
 

@@ -38,13 +38,12 @@ const CREEP_PASSES: usize = 2;
 /// over erodibility in `variation` and the logarithm of the stable slope in `uplift`. Values [`scree::REACH`] nodes
 /// away from the edge are exact.
 pub fn begin(land: &Refinement, level: &mut Level) {
-    let width = level.window.width;
     let mut stable = stable_slopes(land, level);
     let mut variation = std::mem::take(&mut level.variation);
     scree::lay(level, &mut stable, &mut variation);
     level.variation = variation;
     for (q, stable) in stable.into_iter().enumerate() {
-        let (x, y) = (level.window.x + (q % width) as i64, level.window.y + (q / width) as i64);
+        let (x, y) = level.place(q);
         let bits = hash::node(land.seed, level.depth, x, y, 11);
         level.east[q] = 0.5 + DISPLACED * (hash::unit(bits) - 0.5);
         level.south[q] = 0.5 + DISPLACED * (hash::unit(bits << 24) - 0.5);
@@ -55,14 +54,14 @@ pub fn begin(land: &Refinement, level: &mut Level) {
 
 /// The stable slope t with which the law gives the slope from each node to its receiver, averaged over 3 x 3 nodes.
 fn stable_slopes(land: &Refinement, level: &Level) -> Vec<f32> {
-    let (width, height) = (level.window.width, level.window.height);
+    let width = level.window.width;
     let kilometres = land.kilometres(level.depth);
     let river_factor = river_slope(land, kilometres * kilometres) as f32;
     let cell = land.cell_of(level.depth) as f32;
     let by_law = stable_slope(land);
     // Each value with its weight.
     let mut own = vec![(0.0, 0.0); level.window.len()];
-    for q in (1..height - 1).flat_map(|j| j * width + 1..(j + 1) * width - 1) {
+    for q in level.inner(1) {
         let logarithm = level.variation[q] + level.uplift[q];
         let law = by_law * power(E, STABLE_EXPONENT * logarithm);
         let (area, receiver) = (level.area[q].max(1.0), level.receiver[q]);
@@ -81,7 +80,7 @@ fn stable_slopes(land: &Refinement, level: &Level) -> Vec<f32> {
         }
     }
     let mut stable = vec![STABLE; level.window.len()];
-    for q in (2..height - 2).flat_map(|j| j * width + 2..(j + 1) * width - 2) {
+    for q in level.inner(2) {
         let (mut sum, mut weights) = (0.0, 0.0);
         for (row, south) in [(q - width, 1.0), (q, 2.0), (q + width, 1.0)] {
             for (o, east) in [(row - 1, 1.0), (row, 2.0), (row + 1, 1.0)] {

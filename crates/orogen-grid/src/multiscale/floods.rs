@@ -1,7 +1,7 @@
 //! Flood plains: land that lies less above the river that it drains to than a flood rises there (the height above the
 //! nearest drainage; Rennó and others 2008, Nobre and others 2011).
 
-use super::level::{Level, invalid};
+use super::level::Level;
 use super::refinement::Refinement;
 use super::surface::Surface;
 use crate::error::Result;
@@ -74,10 +74,7 @@ impl Refinement {
     ) -> Result<Grid> {
         let window = surface.height.window();
         let nodes = self.nodes_at(level.depth, window);
-        let needed = nodes.grown(self.floods_reach(level.depth));
-        if !level.window.contains(&needed) {
-            return Err(invalid(format!("floods over {nodes:?} need their level over {needed:?}")));
-        }
+        level.check_covers("a flood plain", &nodes, self.floods_reach(level.depth))?;
         let cell = self.cell_of(level.depth);
         let links = self.flood_links(level.depth);
         let mut floods = Floods {
@@ -93,14 +90,13 @@ impl Refinement {
             path: Vec::new(),
         };
         let mut depth = Grid::filled(*window, 0.0f32);
-        let (left, top) = ((nodes.x - level.window.x) as usize, (nodes.y - level.window.y) as usize);
         for j in 0..window.height {
             progress.check()?;
             for i in 0..window.width {
                 if !surface.water_level[(i, j)].is_nan() {
                     continue;
                 }
-                let q = self.nearest_node(share, level, (top + j) * level.window.width + left + i);
+                let q = self.nearest_node(share, level, level.row(&nodes, j) + i);
                 // On detail levels points lie on the smooth ground between nodes; on coarse ones that is smoother than
                 // the valleys.
                 let ground = if self.is_detail(level.depth) { surface.height[(i, j)] } else { level.height[q] };

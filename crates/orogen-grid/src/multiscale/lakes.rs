@@ -154,7 +154,7 @@ impl Outlets {
     }
 
     fn bits(&self, land: &Refinement, level: &Level, q: usize) -> u64 {
-        let (x, y) = place(level, q);
+        let (x, y) = level.place(q);
         hash::node(land.seed, level.depth, x, y, 13)
     }
 
@@ -173,17 +173,12 @@ impl Outlets {
 
 /// How frequent lakes are around a node, 0 to 1.
 fn frequency(land: &Refinement, level: &Level, q: usize) -> f64 {
-    let (x, y) = place(level, q);
+    let (x, y) = level.place(q);
     let kilometres = |index: i64, share: f32| land.metres(level.depth, index, share) * 1e-3;
     let (east, south) = (kilometres(x, level.east[q]), kilometres(y, level.south[q]));
     let district = smooth_step(SPARSE, FREQUENT, noise(land.seed, 8, east / DISTRICTS, south / DISTRICTS));
     let relief = smooth_step(PLAINS, HILLS, f64::from(level.uplift[q]));
     district * (CHANCE_IN_PLAINS + (1.0 - CHANCE_IN_PLAINS) * relief)
-}
-
-/// Column and row of the cell of a node.
-fn place(level: &Level, q: usize) -> (i64, i64) {
-    (level.window.x + (q % level.window.width) as i64, level.window.y + (q / level.window.width) as i64)
 }
 
 /// The nodes on land whose receiver is a node.

@@ -84,6 +84,32 @@ impl Level {
         Ok(Level { depth, window, east, south, height, area, receiver, variation, uplift, shore })
     }
 
+    /// Column and row of the cell of a node.
+    pub(super) fn place(&self, q: usize) -> (i64, i64) {
+        (self.window.x + (q % self.window.width) as i64, self.window.y + (q / self.window.width) as i64)
+    }
+
+    /// Index of the first node of row `j` of a window within the level's.
+    pub(super) fn row(&self, window: &Window, j: usize) -> usize {
+        ((window.y - self.window.y) as usize + j) * self.window.width + (window.x - self.window.x) as usize
+    }
+
+    /// Indices of the nodes that are not among the `edge` outermost ones, row by row.
+    pub(super) fn inner(&self, edge: usize) -> impl DoubleEndedIterator<Item = usize> + use<> {
+        let Window { width, height, .. } = self.window;
+        let rows = edge..height.saturating_sub(edge);
+        rows.flat_map(move |j| j * width + edge..((j + 1) * width).saturating_sub(edge))
+    }
+
+    /// Checks that the level covers nodes and those around them that are read.
+    pub(super) fn check_covers(&self, what: &str, nodes: &Window, reach: usize) -> Result<()> {
+        let needed = nodes.grown(reach);
+        if self.window.contains(&needed) {
+            return Ok(());
+        }
+        Err(invalid(format!("{what} over {nodes:?} needs its level over {needed:?}")))
+    }
+
     /// Whether a node is in an inland lake: water without an outlet above the sea.
     #[inline(always)]
     pub(super) fn is_inland(&self, q: usize) -> bool {
@@ -98,9 +124,7 @@ impl Level {
         if !self.window.contains(window) {
             return Err(invalid(format!("a level over {:?} does not contain {window:?}", self.window)));
         }
-        let offset = ((window.x - self.window.x) as usize, (window.y - self.window.y) as usize);
-        let (from, size) = (self.window.width, (window.width, window.height));
-        let part = |plane: &[f32]| cropped(plane, from, offset, size);
+        let part = |plane: &[f32]| cropped(plane, &self.window, window);
         Ok(Level {
             depth: self.depth,
             window: *window,
@@ -108,7 +132,7 @@ impl Level {
             south: part(&self.south),
             height: part(&self.height),
             area: part(&self.area),
-            receiver: cropped(&self.receiver, from, offset, size),
+            receiver: cropped(&self.receiver, &self.window, window),
             variation: part(&self.variation),
             uplift: part(&self.uplift),
             shore: part(&self.shore),
@@ -122,11 +146,12 @@ fn is_code(value: f32) -> bool {
     (0.0..=f32::from(NONE)).contains(&value) || (lake..lake + f32::from(NONE)).contains(&value)
 }
 
-/// A rectangle of a row-major plane of `width`: its first column and row, and its size.
-pub(super) fn cropped<T: Copy>(plane: &[T], width: usize, (left, top): (usize, usize), size: (usize, usize)) -> Vec<T> {
-    let mut part = Vec::with_capacity(size.0 * size.1);
-    for row in plane.chunks(width.max(1)).skip(top).take(size.1) {
-        part.extend_from_slice(&row[left..left + size.0]);
+/// The part of a plane over `from` that is over `window`, which must lie within it.
+pub(super) fn cropped<T: Copy>(plane: &[T], from: &Window, window: &Window) -> Vec<T> {
+    let (left, top) = ((window.x - from.x) as usize, (window.y - from.y) as usize);
+    let mut part = Vec::with_capacity(window.len());
+    for row in plane.chunks(from.width.max(1)).skip(top).take(window.height) {
+        part.extend_from_slice(&row[left..left + window.width]);
     }
     part
 }

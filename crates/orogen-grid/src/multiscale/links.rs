@@ -69,19 +69,18 @@ pub struct Link {
 /// exact.
 pub struct Links {
     pub list: Vec<Link>,
-    /// Parents per row, and rows.
-    pub size: (usize, usize),
+    /// Parents per row.
+    pub width: usize,
 }
 
 impl Links {
     pub fn new(land: &Refinement, parent: &Level, children: &Children, progress: &Progress) -> Result<Links> {
-        let size = (parent.window.width, parent.window.height);
         let nothing = Link { kept: false, fed: false, exit: 0, entry: 0, around: Around::Nothing };
-        let mut links = Links { list: vec![nothing; parent.window.len()], size };
+        let mut links = Links { list: vec![nothing; parent.window.len()], width: parent.window.width };
         links.keep(parent);
         progress.check()?;
         let wander = wander(land, children.depth);
-        for q in links.inner().filter(|&q| links.list[q].kept && drains(parent.receiver[q])).collect::<Vec<_>>() {
+        for q in links.kept(parent).filter(|&q| drains(parent.receiver[q])).collect::<Vec<_>>() {
             links.cross(land, parent, children, q, wander);
         }
         progress.check()?;
@@ -91,17 +90,16 @@ impl Links {
         Ok(links)
     }
 
-    /// The parents that are not at the edge, row by row.
-    pub fn inner(&self) -> impl Iterator<Item = usize> + use<> {
-        let (width, height) = self.size;
-        (1..height.saturating_sub(1)).flat_map(move |j| j * width + 1..(j + 1) * width - 1)
+    /// The parents that are not at the edge and are kept, row by row.
+    pub fn kept(&self, parent: &Level) -> impl Iterator<Item = usize> {
+        parent.inner(1).filter(|&q| self.list[q].kept)
     }
 
     /// The receiver of an inner parent.
     #[inline(always)]
     pub fn target(&self, parent: &Level, q: usize) -> usize {
         let (east, south) = step(parent.receiver[q]);
-        q.wrapping_add_signed(south * self.size.0 as isize + east)
+        q.wrapping_add_signed(south * self.width as isize + east)
     }
 
     /// The child of a third cell that the link of `q` passes.
@@ -118,7 +116,7 @@ impl Links {
             Around::Nothing => None,
             Around::Side => Some(Child { parent: q.wrapping_add_signed(east), corner: link.entry & 1 | link.exit & 2 }),
             Around::End => {
-                let parent = q.wrapping_add_signed(south * self.size.0 as isize);
+                let parent = q.wrapping_add_signed(south * self.width as isize);
                 Some(Child { parent, corner: link.exit & 1 | link.entry & 2 })
             }
         }
@@ -126,7 +124,7 @@ impl Links {
 
     /// Marks the parents that are kept.
     fn keep(&mut self, parent: &Level) {
-        for q in self.inner() {
+        for q in parent.inner(1) {
             if drains(parent.receiver[q]) {
                 let target = self.target(parent, q);
                 (self.list[target].kept, self.list[target].fed) = (true, true);
@@ -150,8 +148,7 @@ impl Links {
             (link.exit, link.entry) = (exit_east | exit_south << 1, entry_east | entry_south << 1);
             return;
         }
-        let (width, window) = (self.size.0, parent.window);
-        let (x, y) = (window.x + (q % width) as i64, window.y + (q / width) as i64);
+        let (width, (x, y)) = (self.width, parent.place(q));
         let bits = hash::node(land.seed, children.depth, x, y, 7);
         let mut shortest = f32::INFINITY;
         for choice in 0..4u8 {
@@ -175,9 +172,9 @@ impl Links {
 
     /// Leads some links across corners around them, through a child of one of the two other cells that no link uses.
     fn go_around(&mut self, land: &Refinement, parent: &Level, children: &Children, wander: f32) {
-        let width = self.size.0;
+        let width = self.width;
         let mut used = vec![0u8; self.list.len()];
-        for q in self.inner() {
+        for q in parent.inner(1) {
             used[q] |= 1 << heir(parent, q);
             let link = self.list[q];
             if link.kept && drains(parent.receiver[q]) && parent.receiver[q] & 1 == 0 {
@@ -185,15 +182,14 @@ impl Links {
                 used[self.target(parent, q)] |= 1 << link.entry;
             }
         }
-        for q in self.inner() {
+        for q in parent.inner(1) {
             let link = self.list[q];
             if !link.kept || !drains(parent.receiver[q]) || parent.receiver[q] & 1 == 0 {
                 continue;
             }
             let target = self.target(parent, q);
             let (exit, entry) = (Child { parent: q, corner: link.exit }, Child { parent: target, corner: link.entry });
-            let window = parent.window;
-            let (x, y) = (window.x + (q % width) as i64, window.y + (q / width) as i64);
+            let (x, y) = parent.place(q);
             let bits = hash::node(land.seed, children.depth, x, y, 9);
             let mut shortest = children.distance(exit, entry, width) * (1.0 + wander * hash::unit16(bits, 0));
             for (choice, around) in [(1, Around::Side), (2, Around::End)] {

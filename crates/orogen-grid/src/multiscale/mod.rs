@@ -43,6 +43,8 @@ mod refine;
 pub mod refinement;
 mod rock;
 mod routes;
+#[doc(hidden)]
+pub mod schedule;
 mod scree;
 mod shores;
 mod stencil;

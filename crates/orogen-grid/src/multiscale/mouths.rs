@@ -33,13 +33,12 @@ pub fn lead(level: &mut Level, given: &Given) {
     if given.shore.is_none() {
         return;
     }
-    let (width, height) = (level.window.width, level.window.height);
     let sea = |level: &Level, q: usize| match is_sea(level, q).then(|| below(level, given, q)) {
         Some(Below::Sea(_, shore)) => Some(shore),
         _ => None,
     };
     let mut changes = Vec::new();
-    for q in (1..height.saturating_sub(1)).flat_map(|j| j * width + 1..(j + 1) * width - 1) {
+    for q in level.inner(1) {
         if is_sea(level, q) {
             let Some(lowest) = lowest_donor(level, q) else { continue };
             match below(level, given, q) {

@@ -12,7 +12,7 @@ impl Refinement {
             return q;
         }
         let width = level.window.width;
-        let inside = share + self.half_finest(level.depth) - self.ahead(level.depth) as f32;
+        let inside = self.inside(level.depth, share);
         let mut nearest = (f32::INFINITY, q);
         for (row, south) in (0..4).map(|row| (q + row * width - 2 * width - 2, row as f32 - 2.0)) {
             for (o, east) in (0..4).map(|column| (row + column, column as f32 - 2.0)) {

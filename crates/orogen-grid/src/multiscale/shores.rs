@@ -34,7 +34,7 @@ pub const LAND: f32 = f32::INFINITY;
 /// The standing water of the children. Updates their distances to the shore.
 pub fn standing_water(parent: &Level, links: &Links, children: &mut Children) -> Water {
     let held = held(parent, links);
-    let (width, parents) = (children.extent.width, links.size.0);
+    let (width, parents) = (children.extent.width, links.width);
     let mut levels = vec![LAND; held.len()];
     for (j, row) in levels.chunks_mut(width.max(1)).enumerate() {
         for (i, level) in row.iter_mut().enumerate() {
@@ -114,15 +114,14 @@ fn is_beside_lower(held: &[Held], width: usize, q: usize, level: f32) -> bool {
 
 /// What the kept links say about each child.
 fn held(parent: &Level, links: &Links) -> Vec<Held> {
-    let parents = links.size.0;
-    let inner = || links.inner().filter(|q| links.list[*q].kept);
+    let parents = links.width;
     // Nodes of lakes with water from the same lake.
     let mut fed = vec![false; links.list.len()];
-    for q in inner().filter(|q| is_lake(parent.receiver[*q])) {
+    for q in links.kept(parent).filter(|q| is_lake(parent.receiver[*q])) {
         fed[links.target(parent, q)] = true;
     }
     let mut held = vec![Held::Free; 4 * links.list.len()];
-    for q in inner() {
+    for q in links.kept(parent) {
         let link = links.list[q];
         let own = |corner| Child { parent: q, corner }.index(parents);
         let start = own(heir(parent, q));

@@ -2,7 +2,7 @@
 
 use super::lakes::is_lake;
 use super::law::slope_of_one_cell;
-use super::level::{Level, invalid};
+use super::level::Level;
 use super::refinement::Refinement;
 use crate::error::Result;
 use crate::grid::{Grid, Window};
@@ -68,12 +68,7 @@ impl Refinement {
     pub fn surface_at(&self, share: f32, level: &Level, window: &Window, progress: &Progress) -> Result<Surface> {
         self.check(level.depth, window)?;
         let nodes = self.nodes_at(level.depth, window);
-        if !level.window.contains(&nodes.grown(Refinement::SURFACE_REACH)) {
-            return Err(invalid(format!(
-                "a surface over {window:?} needs its level over {} more samples",
-                Refinement::SURFACE_REACH
-            )));
-        }
+        level.check_covers("a surface", &nodes, Refinement::SURFACE_REACH)?;
         let square_metres = (self.cell_of(level.depth) * self.cell_of(level.depth)) as f32;
         let mut surface = Surface {
             height: Grid::filled(*window, 0.0),
@@ -82,12 +77,11 @@ impl Refinement {
             water_level: Grid::filled(*window, f32::NAN),
             receiver: Grid::filled(*window, NONE),
         };
-        let (left, top) = ((nodes.x - level.window.x) as usize, (nodes.y - level.window.y) as usize);
         progress.expect(window.height as f64);
         for j in 0..window.height {
             progress.step(1.0)?;
             for i in 0..window.width {
-                let q = (top + j) * level.window.width + left + i;
+                let q = level.row(&nodes, j) + i;
                 let point = if self.is_finest(level.depth) { node(level, q) } else { self.between(share, level, q) };
                 surface.height[(i, j)] = point.height;
                 surface.flow[(i, j)] = point.area * square_metres;

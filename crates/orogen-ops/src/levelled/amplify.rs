@@ -1,19 +1,9 @@
 //! Coarse land with ever smaller valleys.
 
-use super::drained::{self, Lattices, Reading};
-use super::layer_passes::lower_layers;
-use super::passes::{self, GivenInputs};
-use crate::declare::Declared;
-use crate::lower::{Lowering, Passes};
-use crate::op::{Context, GridInputs, Levelled, Levels, WorldParams};
-use orogen_grid::error::Result;
-use orogen_grid::grid::{Grid, Window};
-use orogen_grid::multiscale::coarse::{Coarse, REACH};
-use orogen_grid::multiscale::given::Given;
-use orogen_grid::multiscale::level::Level;
-use orogen_grid::multiscale::refinement::{MAX_LEVELS, Refinement};
+use super::drained::Drained;
+use super::drained_op::drained_op;
 
-op! {
+drained_op! {
     /// Coarse land refined level by level: its rivers keep their course, area and fall, and ever smaller valleys and
     /// slopes grow between them.
     ///
@@ -84,176 +74,11 @@ op! {
         /// up to 4944 m, and rivers end at its shore.
         sea: bool = false;
     }
-    layers {
-        /// Height of the ground, and of the beds of lakes and the sea.
-        height: height, unit "m";
-        /// Drainage area, including the cell itself; weighted by `rain` if it is given.
-        flow: flow, unit "m^2";
-        /// Depth of standing water in lakes, 0 elsewhere.
-        lake: height, unit "m";
-        /// Height of the ground or of the water above it.
-        surface: height, unit "m";
-        /// Flow direction, clockwise from east (0) to north-east (7), also in lakes with an outlet; 8 in other water.
-        receiver: label;
-        /// Width of the river; 0 outside rivers.
-        width: label, unit "m";
-        /// Depth of the river from bank to bed; 0 outside rivers.
-        depth: label, unit "m";
-        /// Depth of the water over the ground in a flood; 0 where there is none. It is max(0, b + 3 d - z) over ground
-        /// of height z, with the height b of the banks and the `depth` d of the first river downstream (height above
-        /// the nearest drainage; Rennó and others 2008, Nobre and others 2011), and 4 d in rivers: about twice as deep
-        /// as between full banks (Rosgen 1994). It reaches at most 4000 m or 96 samples from a river.
-        floodplain: height, unit "m";
-        /// Thickness of the sediment of rivers on valley floors; 0 on hillsides and in standing water. It is 100 f /
-        /// (100 + f) m for f = 0.25 min(e, w - r): below the floor the sides of the valley go on with a slope of 0.25
-        /// (Jaboyedoff and Derron 2005). e is the distance to the foot of the hillside, r that from the river, and w
-        /// half the width of the river's floor, at most 4000 m or 128 samples.
-        sediment: height, unit "m";
-    }
 }
 
 impl Amplify {
-    /// The levels without the seed, on which neither cells nor reaches depend.
-    fn refinement(&self) -> Refinement {
-        Refinement::default()
-            .with_cell(self.cell)
-            .with_levels((self.halvings as usize).min(MAX_LEVELS))
-            .with_relief(self.relief)
-            .with_creep(self.creep)
-            .with_variation(self.variation)
-            .with_jitter(self.jitter)
-            .with_details(self.details as usize)
-            .with_lakes(self.lakes)
-            .with_sea(self.sea)
-    }
-
-    fn reading(&self, level: usize, world_params: &WorldParams) -> Reading {
-        // The samples of level 0 are those of the source, in the middles of its cells; those of finer levels are at the
-        // corners of theirs.
-        let share = if level == 0 { 0.5 } else { 0.0 };
-        // Levels with a sea have it at 0.
-        let sea_level = if self.sea { world_params.sea_level as f32 } else { 0.0 };
-        Reading { share, stream: self.stream, runoff: self.runoff, sea_level }
-    }
-
-    fn seeded(&self, context: &Context) -> Refinement {
-        self.refinement().with_seed(context.world_params.seed_of(self.seed))
-    }
-}
-
-/// Number of samples that the lattice of a level is ahead of the samples of windows. A sample of the source is in the
-/// middle of its coarsest cell, and the finer lattices begin at the corner of cell 0, half a coarsest cell before.
-fn ahead(level: usize) -> i64 {
-    if level == 0 { 0 } else { 1i64 << (level - 1).min(MAX_LEVELS) }
-}
-
-fn given<'a>(inputs: &GridInputs<'a>) -> Given<'a> {
-    Given {
-        shore: None,
-        uplift: inputs.get("uplift"),
-        stability_factor: inputs.get("stability_factor"),
-        creep_factor: inputs.get("creep_factor"),
-        floor_factor: inputs.get("floor_factor"),
-        rain: inputs.get("rain"),
-        continents: None,
-    }
-}
-
-impl Levelled for Amplify {
-    fn levels(&self) -> Levels {
-        drained::levels(&self.refinement())
-    }
-
-    fn planes(&self) -> usize {
-        Level::PLANES
-    }
-
-    fn halo(&self, level: usize) -> usize {
-        self.refinement().reach(level)
-    }
-
-    fn source_halo(&self, level: usize) -> usize {
-        if level == 0 { REACH } else { self.refinement().given_reach(level) }
-    }
-
-    fn level_at_samples(&self) -> usize {
-        self.refinement().levels
-    }
-
-    fn levels_with_inputs(&self) -> usize {
-        drained::levels_with_inputs(&self.refinement())
-    }
-
-    fn coarsest(&self, inputs: &GridInputs, window: &Window, context: &Context) -> Result<Vec<Grid>> {
-        let height = inputs.required("source")?;
-        let coarse = Coarse { height, flow: inputs.required("flow")?, receiver: inputs.get("receiver") };
-        let mut level = self.seeded(context).coarsest_of(&coarse, &given(inputs), window, context.progress)?;
-        if self.sea {
-            level.drown(height, context.world_params.sea_level as f32);
-        }
-        Ok(level.into_planes())
-    }
-
-    fn refine(
-        &self,
-        level: usize,
-        parent: &[Grid],
-        inputs: &GridInputs,
-        window: &Window,
-        context: &Context,
-    ) -> Result<Vec<Grid>> {
-        let lattices = Lattices { refinement: self.seeded(context), ahead, continents: None };
-        lattices.refine(level, parent, inputs, given, window, context)
-    }
-
-    fn parent(&self, level: usize, window: &Window) -> Window {
-        Lattices { refinement: self.refinement(), ahead, continents: None }.parent(level, window)
-    }
-
-    fn surface_halo(&self, level: usize, wanted: &[bool]) -> usize {
-        drained::surface_halo(&self.refinement(), level, wanted)
-    }
-
-    fn layers_of(
-        &self,
-        level: usize,
-        planes: &[Grid],
-        window: &Window,
-        out: &mut [Option<Grid>],
-        context: &Context,
-    ) -> Result<()> {
-        let reading = self.reading(level, context.world_params);
-        drained::layers_of(&self.seeded(context), &reading, level, planes, window, out, context)
-    }
-
-    fn lower_layers(&self, level: usize, wanted: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
-        lower_layers(&self.refinement(), &self.reading(level, world_params), level, wanted)
-    }
-
-    fn lower(&self, level: usize, given: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
-        let refinement = self.refinement().with_seed(world_params.seed_of(self.seed));
-        let input = |name: &str| self.spec().given_input(name, given);
-        let given = GivenInputs {
-            shore: None,
-            uplift: input("uplift"),
-            stability_factor: input("stability_factor"),
-            creep_factor: input("creep_factor"),
-            floor_factor: input("floor_factor"),
-            rain: input("rain"),
-        };
-        passes::lower(&refinement, level, &given, ahead)
-    }
-
-    fn reads_sea_level(&self) -> bool {
-        self.sea
-    }
-
-    fn cost(&self, level: usize) -> f64 {
-        if level == 0 { 50.0 } else { drained::COST }
-    }
-
-    fn scratch(&self, level: usize, window: &Window) -> u64 {
-        let halo = if level == 0 { REACH } else { 2 * self.halo(level) };
-        drained::scratch(window, halo, self.spec().inputs.len())
+    /// The land with what only this op has.
+    fn completed(&self, land: Drained) -> Drained {
+        Drained { refinement: land.refinement.with_jitter(self.jitter).with_sea(self.sea), ..land }
     }
 }

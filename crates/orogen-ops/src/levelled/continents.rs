@@ -1,19 +1,10 @@
 //! Continents with rivers, without bounds.
 
-use super::drained::{self, Lattices, Reading};
-use super::layer_passes::lower_layers;
-use super::passes::{self, GivenInputs};
-use crate::declare::Declared;
-use crate::lower::{Lowering, Passes};
-use crate::op::{Context, GridInputs, Levelled, Levels, WorldParams};
-use orogen_grid::error::Result;
-use orogen_grid::grid::{Grid, Window};
+use super::drained::Drained;
+use super::drained_op::drained_op;
 use orogen_grid::multiscale::continents::Continents as Land;
-use orogen_grid::multiscale::given::Given;
-use orogen_grid::multiscale::level::Level;
-use orogen_grid::multiscale::refinement::{MAX_LEVELS, Refinement};
 
-op! {
+drained_op! {
     /// Eroded land without bounds: continents with ranges, plains and plateaus, coasts, inland basins with lakes, and
     /// rivers from their sources to the sea.
     ///
@@ -82,30 +73,6 @@ op! {
         lakes: f64 = 0.0, range 0.0 to 1.0;
     }
     layers {
-        /// Height of the ground, and of the beds of lakes and the sea.
-        height: height, unit "m";
-        /// Drainage area, including the cell itself; weighted by `rain` if it is given.
-        flow: flow, unit "m^2";
-        /// Depth of standing water in lakes, 0 elsewhere.
-        lake: height, unit "m";
-        /// Height of the ground or of the water above it.
-        surface: height, unit "m";
-        /// Flow direction, clockwise from east (0) to north-east (7), also in lakes with an outlet; 8 in other water.
-        receiver: label;
-        /// Width of the river; 0 outside rivers.
-        width: label, unit "m";
-        /// Depth of the river from bank to bed; 0 outside rivers.
-        depth: label, unit "m";
-        /// Depth of the water over the ground in a flood; 0 where there is none. It is max(0, b + 3 d - z) over ground
-        /// of height z, with the height b of the banks and the `depth` d of the first river downstream (height above
-        /// the nearest drainage; Rennó and others 2008, Nobre and others 2011), and 4 d in rivers: about twice as deep
-        /// as between full banks (Rosgen 1994). It reaches at most 4000 m or 96 samples from a river.
-        floodplain: height, unit "m";
-        /// Thickness of the sediment of rivers on valley floors; 0 on hillsides and in standing water. It is 100 f /
-        /// (100 + f) m for f = 0.25 min(e, w - r): below the floor the sides of the valley go on with a slope of 0.25
-        /// (Jaboyedoff and Derron 2005). e is the distance to the foot of the hillside, r that from the river, and w
-        /// half the width of the river's floor, at most 4000 m or 128 samples.
-        sediment: height, unit "m";
         /// Height of the node in the cell south-east of the sample; the water level of water. It falls from each node
         /// to its receiver. At `cell` nodes are at the samples; on other levels the other layers are interpolated
         /// between them, or are those of the nearest one.
@@ -123,132 +90,9 @@ op! {
 }
 
 impl Continents {
-    fn reading(&self) -> Reading {
-        Reading { share: 0.0, stream: self.stream, runoff: self.runoff, sea_level: 0.0 }
-    }
-
-    fn land(&self, context: &Context) -> Land {
-        let refinement = self.refinement().with_seed(context.world_params.seed_of(self.seed));
-        Land::default().with_refinement(refinement).with_land(self.land).with_size(self.size).with_basins(self.basins)
-    }
-
-    fn lattices(refinement: Refinement, continents: Option<&Land>) -> Lattices<'_> {
-        Lattices { refinement, ahead: |_| 0, continents }
-    }
-
-    /// The levels without the seed, on which neither cells nor reaches depend.
-    fn refinement(&self) -> Refinement {
-        Refinement::default()
-            .with_cell(self.cell)
-            .with_levels((self.halvings as usize).min(MAX_LEVELS))
-            .with_relief(self.relief)
-            .with_creep(self.creep)
-            .with_variation(self.variation)
-            .with_details(self.details as usize)
-            .with_lakes(self.lakes)
-    }
-}
-
-fn given<'a>(inputs: &GridInputs<'a>) -> Given<'a> {
-    Given {
-        shore: inputs.get("shore"),
-        uplift: inputs.get("uplift"),
-        stability_factor: inputs.get("stability_factor"),
-        creep_factor: inputs.get("creep_factor"),
-        floor_factor: inputs.get("floor_factor"),
-        rain: inputs.get("rain"),
-        continents: None,
-    }
-}
-
-impl Levelled for Continents {
-    fn levels(&self) -> Levels {
-        drained::levels(&self.refinement())
-    }
-
-    fn planes(&self) -> usize {
-        Level::PLANES
-    }
-
-    fn halo(&self, level: usize) -> usize {
-        self.refinement().reach(level)
-    }
-
-    fn source_halo(&self, level: usize) -> usize {
-        if level == 0 { Land::COARSEST_REACH } else { self.refinement().given_reach(level) }
-    }
-
-    fn level_at_samples(&self) -> usize {
-        self.refinement().levels
-    }
-
-    fn levels_with_inputs(&self) -> usize {
-        drained::levels_with_inputs(&self.refinement())
-    }
-
-    fn coarsest(&self, inputs: &GridInputs, window: &Window, context: &Context) -> Result<Vec<Grid>> {
-        Ok(self.land(context).coarsest(&given(inputs), window, context.progress)?.into_planes())
-    }
-
-    fn refine(
-        &self,
-        level: usize,
-        parent: &[Grid],
-        inputs: &GridInputs,
-        window: &Window,
-        context: &Context,
-    ) -> Result<Vec<Grid>> {
-        let land = self.land(context);
-        Self::lattices(land.refinement, Some(&land)).refine(level, parent, inputs, given, window, context)
-    }
-
-    fn parent(&self, level: usize, window: &Window) -> Window {
-        Self::lattices(self.refinement(), None).parent(level, window)
-    }
-
-    fn surface_halo(&self, level: usize, wanted: &[bool]) -> usize {
-        drained::surface_halo(&self.refinement(), level, wanted)
-    }
-
-    fn layers_of(
-        &self,
-        level: usize,
-        planes: &[Grid],
-        window: &Window,
-        out: &mut [Option<Grid>],
-        context: &Context,
-    ) -> Result<()> {
-        drained::layers_of(&self.refinement(), &self.reading(), level, planes, window, out, context)
-    }
-
-    fn lower_layers(&self, level: usize, wanted: &[bool], _: &WorldParams) -> Lowering<Passes> {
-        lower_layers(&self.refinement(), &self.reading(), level, wanted)
-    }
-
-    fn lower(&self, level: usize, given: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
-        let refinement = self.refinement().with_seed(world_params.seed_of(self.seed));
-        if refinement.has_geography(level) {
-            return Lowering::Processor("continents and ranges are placed in f64");
-        }
-        let input = |name: &str| self.spec().given_input(name, given);
-        let given = GivenInputs {
-            shore: input("shore"),
-            uplift: input("uplift"),
-            stability_factor: input("stability_factor"),
-            creep_factor: input("creep_factor"),
-            floor_factor: input("floor_factor"),
-            rain: input("rain"),
-        };
-        passes::lower(&refinement, level, &given, |_| 0)
-    }
-
-    fn cost(&self, level: usize) -> f64 {
-        // Tiles of the coarsest level work on a wide halo.
-        if level == 0 { 2e4 } else { drained::COST }
-    }
-
-    fn scratch(&self, level: usize, window: &Window) -> u64 {
-        let halo = if level == 0 { Land::COARSEST_REACH } else { 2 * self.halo(level) };
-        drained::scratch(window, halo, self.spec().inputs.len())
+    /// The land with what only this op has.
+    fn completed(&self, land: Drained) -> Drained {
+        let continents = Land::default().with_land(self.land).with_size(self.size).with_basins(self.basins);
+        Drained { continents: Some(continents), ..land }
     }
 }

@@ -1,9 +1,11 @@
 //! The layers of drained land as passes of a graphics card.
 
-use super::drained::{Reading, surface_halo};
-use super::passes::{AROUND, FEW, code, passes};
+use super::drained::Drained;
+use super::layers::surface_halo;
+use super::passes::{AROUND, FEW, code, numbered, passes};
+use crate::declare::Spec;
 use crate::lower::{Extent, Lowering, Over, Pass, Passes};
-use orogen_grid::hydrology::rivers::Channel;
+use crate::op::WorldParams;
 use orogen_grid::multiscale::level::Level;
 use orogen_grid::multiscale::refinement::Refinement;
 
@@ -11,19 +13,21 @@ const SURFACE: &str = code!("layers.wgsl", "surface.wgsl");
 const RIVERS: &str = code!("layers.wgsl", "rivers.wgsl");
 const BEDS: &str = code!("layers.wgsl", "beds.wgsl");
 
-/// The planes of the layers that a card makes, in the order of the layers, with their names in shaders.
-const PLANES: [(&str, u32); 7] = [
-    ("GROUND", 8),
-    ("FLOW", 9),
-    ("LAKE_DEPTH", 10),
-    ("SURFACE", 13),
-    ("LED_TO", 11),
-    ("RIVER_WIDTH", 14),
-    ("RIVER_DEPTH", 15),
+/// The planes after those of a level, by their names in shaders: LAYER_ and the name of the layer for those of layers.
+/// Those in one line are one plane, used in this order.
+const SCRATCH: [&[&str]; 10] = [
+    &["LAYER_HEIGHT"],
+    &["LAYER_FLOW"],
+    &["LAYER_LAKE"],
+    &["LAYER_RECEIVER"],
+    &["WATER_LEVEL"],
+    // Nodes of rivers: position, height, half of the width in cells, and depth.
+    &["NODE_EAST", "LAYER_SURFACE"],
+    &["NODE_SOUTH", "LAYER_WIDTH"],
+    &["NODE_HEIGHT", "LAYER_DEPTH"],
+    &["NODE_HALF"],
+    &["NODE_DEPTH"],
 ];
-
-/// Number of planes beside those of a level.
-const SCRATCH: usize = 10;
 
 /// Samples that a call reads, about, along a river and in the bed of a link.
 const ALONG: usize = 1000;
@@ -31,21 +35,32 @@ const BED: usize = 2000;
 
 /// How a graphics card reads layers from a level, which it has made.
 #[must_use]
-pub fn lower_layers(refinement: &Refinement, reading: &Reading, level: usize, wanted: &[bool]) -> Lowering<Passes> {
-    if wanted.iter().skip(PLANES.len()).any(|wanted| *wanted) {
+pub fn lower_layers(
+    land: &Drained,
+    level: usize,
+    spec: &Spec,
+    wanted: &[bool],
+    world_params: &WorldParams,
+) -> Lowering<Passes> {
+    let plane_of = |layer: &str| {
+        let plane = format!("LAYER_{}", layer.to_uppercase());
+        numbered(&SCRATCH).find(|(name, _)| *name == plane).map(|(_, plane)| plane as usize)
+    };
+    let layers = spec.layers.iter().zip(wanted).filter(|(_, wanted)| **wanted);
+    let Some(layers) = layers.map(|(layer, _)| plane_of(layer.name)).collect::<Option<Vec<_>>>() else {
         return Lowering::Processor("floodplains, sediment and the nodes themselves are read from levels in memory");
-    }
-    let channel = Channel::default().with_runoff(reading.runoff);
-    let [inside, change] = refinement.surface_numbers(level, reading.share);
-    let passes = passes(refinement, level).with_scratch(Level::PLANES + SCRATCH).with_constants(PLANES);
+    };
+    let (refinement, channel) = (&land.refinement, land.channel());
+    let [inside, change] = refinement.surface_numbers(level, land.share(level));
+    let passes = passes(refinement, level, &SCRATCH).with_scratch(Level::PLANES + SCRATCH.len());
     let mut passes = passes.with_numbers([
         // Where samples are in their cells, as a share of the sides.
         ("inside", inside),
         // The mean change of heights by finer levels, as a share of the rise to a node at the source of a river.
         ("mean_change", change),
-        ("sea_level", reading.sea_level),
+        ("sea_level", land.sea_level(world_params)),
         // Least area of rivers in m^2, discharge in m^3/s from a m^2, and width and depth of a river of 1 m^3/s.
-        ("stream", reading.stream as f32),
+        ("stream", land.stream as f32),
         ("runoff", channel.discharge(1.0) as f32),
         ("width_of_one", channel.width as f32),
         ("depth_of_one", channel.depth as f32),
@@ -64,8 +79,7 @@ pub fn lower_layers(refinement: &Refinement, reading: &Reading, level: usize, wa
         passes.passes.push(Pass { is_shared: true, ..pass(BEDS, "cut_bed", Refinement::BEDS_REACH, BED) });
     }
     passes.passes.push(pass(SURFACE, "finish_layers", 0, FEW));
-    passes.extent = Extent::Before(surface_halo(refinement, level, wanted));
-    passes.layers =
-        PLANES.iter().zip(wanted).filter(|(_, wanted)| **wanted).map(|((_, plane), _)| *plane as usize).collect();
+    passes.extent = Extent::Before(surface_halo(refinement, level, spec, wanted));
+    passes.layers = layers;
     Lowering::Shader(passes)
 }

@@ -1,10 +1,13 @@
 //! The levels of drained land as passes of a graphics card.
 
+use super::drained::Drained;
+use crate::declare::Spec;
 use crate::lower::{Extent, Lowering, Over, Pass, Passes};
 use orogen_grid::grid::Window;
 use orogen_grid::multiscale::level::Level;
-use orogen_grid::multiscale::lowered::{FLAGS, Schedule, Words};
+use orogen_grid::multiscale::lowered::{FLAGS, Words};
 use orogen_grid::multiscale::refinement::Refinement;
+use orogen_grid::multiscale::schedule::{LevelPass, Schedule};
 
 /// What the passes of one file of shaders need before it.
 macro_rules! code {
@@ -21,99 +24,119 @@ const SHORES: &str = code!("link.wgsl", "shores.wgsl");
 const CARVE: &str = code!("link.wgsl", "carve.wgsl");
 const STRAIGHTEN: &str = code!("link.wgsl", "straighten.wgsl");
 const LAKE_SHORES: &str = code!("lake_shores.wgsl");
-const LAW: &str = code!("law.wgsl");
-const GROWTH: &str = code!("growth.wgsl");
+const LAW: &str = code!("distances.wgsl", "law.wgsl");
+const GROWTH: &str = code!("distances.wgsl", "growth.wgsl");
 const DRAINAGE: &str = code!("drainage.wgsl");
 const CREEP: &str = code!("creep.wgsl");
 const DETAIL: &str = code!("detail.wgsl");
 
-/// The planes of the level between which heights and areas alternate; the first of each is one of the level's own.
-const HEIGHTS: [u32; 2] = [2, 8];
-const AREAS: [u32; 2] = [3, 9];
+/// The planes after those of a level, by their names in shaders. Those in one line are one plane, used in this order.
+const SCRATCH: [&[&str]; 14] = [
+    // What heights and areas alternate with.
+    &["OTHER_HEIGHT"],
+    &["OTHER_AREA"],
+    // Receivers that stay, FREE or WATER.
+    &["FIXED"],
+    // What links say about each child, with a height, and its water level; then the law of slopes and widths of floors.
+    &["HELD", "RIVER"],
+    &["HELD_HEIGHT", "STABLE"],
+    &["LEVEL", "WIDTH"],
+    // The direction to the water that has spread to a child, and 1 more, 0 elsewhere; then floors.
+    &["GAINED", "FIRST_FLOOR"],
+    // The direction in which a link leads, NONE elsewhere; then floors.
+    &["LED", "SECOND_FLOOR"],
+    // Water levels while water spreads; then distances to the nodes in the east, south-east, south and south-west. On
+    // the finest level rivers are straightened instead: shortcuts, and the ways of rivers.
+    &["FIRST_LEVEL", "DISTANCE", "FOUND"],
+    &["DRIED_LEVEL", "TAKEN"],
+    &["WAY"],
+    &["OTHER_WAY"],
+    // The smallest heights around lakes alternate between these, if there are lakes.
+    &["RIM"],
+    &["LEAST"],
+];
+const LAKE_SCRATCH: usize = 2;
 
-/// The planes of the ways of rivers while they are straightened, and the passes in which skipped cells dry up.
-const WAYS: [u32; 2] = [18, 19];
+/// The planes after those of the level above.
+const SCRATCH_ABOVE: [&[&str]; 5] = [
+    // Nodes that are led to mouths; slopes, their weights and their means; what links are chosen by; then links, with
+    // the shares of their ways up to the exit and the entry.
+    &["NEW_EAST", "SLOPE", "DIRECT"],
+    &["NEW_SOUTH", "WEIGHT", "USED"],
+    &["NEW_HEIGHT", "MEAN", "LINK"],
+    &["NEW_RECEIVER", "TO_EXIT"],
+    &["NEW_SHORE", "TO_ENTRY"],
+];
+
+/// The passes in which skipped cells dry up.
 const DRY_PASSES: usize = 6;
-
-/// The planes between which the smallest heights around lakes alternate.
-const RIMS: [u32; 2] = [20, 21];
-
-/// Number of planes beside those of a level, without and with lakes, and of those of the level above.
-const SCRATCH: usize = 12;
-const LAKE_SCRATCH: usize = 14;
-const SCRATCH_ABOVE: usize = 5;
 
 /// Samples that a call reads, about: of few planes, of the neighbors, and of the links around a cell.
 pub(super) const FEW: usize = 10;
 pub(super) const AROUND: usize = 40;
 const LINKS_AROUND: usize = 200;
 
-/// The words of the planes of the inputs that levels read, 0 where nothing is given.
-const GIVEN: [&str; 6] = ["given_shore", "given_uplift", "given_stability", "given_creep", "given_floor", "given_rain"];
+/// The inputs that levels read. The words of their planes are `given_` and the name, 0 where nothing is given.
+const GIVEN: [&str; 6] = ["shore", "uplift", "stability_factor", "creep_factor", "floor_factor", "rain"];
 
-/// The inputs of an op that levels read: their indices among its inputs, of those that are given.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct GivenInputs {
-    /// The distance to the shore.
-    pub shore: Option<usize>,
-    /// Uplift over erodibility.
-    pub uplift: Option<usize>,
-    /// Factor of the stable slope.
-    pub stability_factor: Option<usize>,
-    /// Factor of creep.
-    pub creep_factor: Option<usize>,
-    /// Factor of the width of floors.
-    pub floor_factor: Option<usize>,
-    /// Factor of the rain.
-    pub rain: Option<usize>,
-}
-
-/// How a graphics card computes a level of an op whose lattices are `ahead` of the samples of windows by this number of
-/// samples.
+/// How a graphics card computes a level of an op, of whose inputs those that `given` says are given.
 #[must_use]
-pub fn lower(refinement: &Refinement, level: usize, given: &GivenInputs, ahead: fn(usize) -> i64) -> Lowering<Passes> {
+pub fn lower(land: &Drained, level: usize, spec: &Spec, given: &[bool]) -> Lowering<Passes> {
     if level == 0 {
         return Lowering::Processor("the coarsest level is made of the inputs alone");
     }
-    if refinement.begins_lakes(level) {
+    let refinement = &land.refinement;
+    let schedule = refinement.schedule(level);
+    if schedule.lakes > 0 {
         return Lowering::Processor("lakes are searched along rivers, one after the other");
     }
-    let schedule = refinement.schedule(level);
-    let scratch = if schedule.rims.is_some() { LAKE_SCRATCH } else { SCRATCH };
     // Detail levels take over what the finest level of valleys has.
-    let given = if level > refinement.levels { &GivenInputs::default() } else { given };
-    let GivenInputs { shore, uplift, stability_factor, creep_factor, floor_factor, rain } = *given;
-    let given = [shore, uplift, stability_factor, creep_factor, floor_factor, rain];
+    let given = if level > refinement.levels { &[] } else { given };
     let ahead = [level - 1, level].map(|level| {
         let sample = Window::new(1, 1, refinement.cell_of(level));
-        ahead(level) + refinement.nodes_at(level, &sample).x
+        land.nodes_at(level, &sample).x
     });
-    let mut passes = passes(refinement, level).with_scratch(Level::PLANES + scratch);
-    for (name, input) in GIVEN.into_iter().zip(given) {
+    let unused = if schedule.rims.is_some() { 0 } else { LAKE_SCRATCH };
+    let mut passes = passes(refinement, level, &SCRATCH)
+        .with_scratch(Level::PLANES + SCRATCH.len() - unused)
+        .with_constants(numbered(&SCRATCH_ABOVE));
+    for name in GIVEN {
+        let input = spec.given_input(name, given);
         // Number 0 is the first plane of the level, never an input.
         let plane = input.map_or(0, |_| passes.planes);
-        passes = passes.with_named_words([(name, plane as u32)]);
+        passes = passes.with_named_words([(format!("given_{name}").as_str(), plane as u32)]);
         if let Some(input) = input {
             passes.inputs.resize(passes.inputs.len().max(input + 1), None);
             passes.inputs[input] = Some(plane);
             passes.planes += 1;
         }
     }
-    passes.extent = Extent::Above { scratch: SCRATCH_ABOVE, ahead, reach: refinement.reach(level) };
+    passes.extent = Extent::Above { scratch: SCRATCH_ABOVE.len(), ahead, reach: refinement.reach(level) };
     passes.layers = (0..Level::PLANES).collect();
-    passes.passes = List::of(&schedule, shore.is_some()).passes;
+    passes.passes = List::of(&schedule, spec.given_input("shore", given).is_some()).passes;
     Lowering::Shader(passes)
 }
 
-/// Passes that read the numbers of a level.
-pub(super) fn passes(refinement: &Refinement, level: usize) -> Passes {
+/// Passes that read the numbers of a level, with names for these planes after those of the level.
+pub(super) fn passes(refinement: &Refinement, level: usize, scratch: &[&[&'static str]]) -> Passes {
     let Words { flags, hashes, numbers } = refinement.words(level);
-    let planes = Level::PLANE_NAMES.into_iter().zip(0..);
     Passes::new("", &[])
-        .with_constants(planes.chain([("LEAST", RIMS[1])]).chain(FLAGS))
+        .with_constants(Level::PLANE_NAMES.into_iter().zip(0..).chain(numbered(scratch)).chain(FLAGS))
         .with_named_words([("flags", flags)])
         .with_pairs(hashes)
         .with_numbers(numbers)
+}
+
+/// The names of planes after those of a level, each with its number.
+pub(super) fn numbered(scratch: &[&[&'static str]]) -> impl Iterator<Item = (&'static str, u32)> {
+    let planes = (Level::PLANES as u32..).zip(scratch);
+    planes.flat_map(|(plane, names)| names.iter().map(move |name| (*name, plane)))
+}
+
+/// The number of a plane.
+fn plane(name: &str) -> u32 {
+    let mut planes = Level::PLANE_NAMES.into_iter().zip(0..).chain(numbered(&SCRATCH));
+    planes.find(|(known, _)| *known == name).map_or(0, |(_, plane)| plane)
 }
 
 /// The passes so far.
@@ -123,6 +146,8 @@ struct List {
     inset: usize,
     heights: Turns,
     areas: Turns,
+    /// Number of passes of growth.
+    grown: u32,
 }
 
 /// Two planes that are read and written in turn.
@@ -148,31 +173,24 @@ impl Turns {
 
 impl List {
     fn of(schedule: &Schedule, has_shore: bool) -> List {
-        let growth = schedule.first_passes + schedule.rounds;
-        let heights = growth + schedule.creep_passes + schedule.bank_rounds * schedule.bank_passes;
-        let areas = schedule.rounds * schedule.area_passes
-            + schedule.last_area_passes
-            + schedule.raise_passes
-            + schedule.limit_passes;
+        let count = |writes: fn(LevelPass) -> bool| schedule.passes.iter().filter(|pass| writes(**pass)).count();
+        let turns = |planes: [&str; 2], left| Turns { planes: planes.map(plane), left };
         let mut list = List {
             passes: Vec::new(),
             inset: 0,
-            heights: Turns { planes: HEIGHTS, left: heights },
+            heights: turns(["HEIGHT", "OTHER_HEIGHT"], count(LevelPass::writes_heights)),
             // And the pass that bounds them.
-            areas: Turns { planes: AREAS, left: areas + 1 },
+            areas: turns(["AREA", "OTHER_AREA"], count(LevelPass::writes_areas) + 1),
+            grown: 0,
         };
         if has_shore {
             list.pass_above(MOUTHS, "decide_mouths", 1, LINKS_AROUND);
             list.pass_above(MOUTHS, "move_mouths", 1, FEW);
         }
         list.carve(schedule);
-        list.inset = schedule.carved + schedule.straightened;
-        if let Some(rim) = schedule.rims {
-            list.inset += rim + 1;
-        }
-        list.grow(schedule);
-        list.creep(schedule);
-        list.settle_areas(schedule);
+        list.inset = schedule.edge();
+        schedule.passes.iter().for_each(|pass| list.settle(*pass));
+        list.pass(DRAINAGE, "finish", 0, FEW);
         list
     }
 
@@ -188,10 +206,28 @@ impl List {
         self.passes.push(Pass { code, function, step: 0, over, reads, is_shared: false });
     }
 
-    /// One pass further from the edge, over neighbors.
-    fn further(&mut self, code: &'static str, function: &'static str, step: u32) {
+    /// A pass over neighbors, one cell further from the edge.
+    fn settle(&mut self, pass: LevelPass) {
         self.inset += 1;
-        self.pass(code, function, step, AROUND);
+        let (code, function) = match pass {
+            LevelPass::FirstAreas | LevelPass::AddAreas => (DRAINAGE, "add_areas"),
+            LevelPass::Grow => (GROWTH, "grow"),
+            LevelPass::Creep => (CREEP, "creep"),
+            LevelPass::RaiseBanks => (CREEP, "raise_banks"),
+            LevelPass::Descend => (CREEP, "descend"),
+            LevelPass::RaiseAreas => (DRAINAGE, "raise_areas"),
+            LevelPass::LimitAreas => (DRAINAGE, "limit_areas"),
+        };
+        let step = if pass.writes_areas() {
+            self.areas.next() | u32::from(pass == LevelPass::FirstAreas) << 16
+        } else if pass.writes_heights() {
+            self.heights.next() | self.areas.now() << 16
+        } else {
+            self.heights.now()
+        };
+        let floors = if pass == LevelPass::Grow { self.grown & 1 } else { 0 };
+        self.grown += u32::from(pass == LevelPass::Grow);
+        self.pass(code, function, step | floors << 24, AROUND);
     }
 
     /// The planes of heights and areas that are read now, as the lower bits of a step.
@@ -224,9 +260,10 @@ impl List {
             self.pass(CARVE, "measure_cells", 0, AROUND);
         }
         if let Some(rim) = schedule.rims {
-            self.pass(LAKE_SHORES, "begin_rims", self.heights.now() | RIMS[0] << 8, FEW);
+            let rims = ["RIM", "LEAST"].map(plane);
+            self.pass(LAKE_SHORES, "begin_rims", self.heights.now() | rims[0] << 8, FEW);
             for k in 0..rim {
-                let step = RIMS[k % 2] | RIMS[(k + 1) % 2] << 8 | (k as u32) << 16;
+                let step = rims[k % 2] | rims[(k + 1) % 2] << 8 | (k as u32) << 16;
                 self.pass(LAKE_SHORES, "widen_rims", step, AROUND);
             }
         }
@@ -234,58 +271,25 @@ impl List {
     }
 
     fn straighten(&mut self, schedule: &Schedule) {
-        let edge = std::mem::replace(&mut self.inset, schedule.carved);
+        let (edge, ways) = (std::mem::replace(&mut self.inset, schedule.carved), ["WAY", "OTHER_WAY"].map(plane));
         self.pass(STRAIGHTEN, "find_shortcuts", 0, FEW);
         self.pass(STRAIGHTEN, "take_shortcuts", 0, AROUND);
-        self.pass(STRAIGHTEN, "bypass", self.areas.now() | WAYS[0] << 8, LINKS_AROUND);
+        self.pass(STRAIGHTEN, "bypass", self.areas.now() | ways[0] << 8, LINKS_AROUND);
         for k in 0..DRY_PASSES {
-            self.pass(STRAIGHTEN, "dry", WAYS[k % 2] | WAYS[(k + 1) % 2] << 8, FEW);
+            self.pass(STRAIGHTEN, "dry", ways[k % 2] | ways[(k + 1) % 2] << 8, FEW);
         }
-        self.pass(STRAIGHTEN, "straighten", self.planes() | WAYS[DRY_PASSES % 2] << 16, FEW);
+        self.pass(STRAIGHTEN, "straighten", self.planes() | ways[DRY_PASSES % 2] << 16, FEW);
         self.inset = edge;
     }
+}
 
-    fn grow(&mut self, schedule: &Schedule) {
-        for k in 0..schedule.first_passes + schedule.rounds {
-            let round = k.checked_sub(schedule.first_passes);
-            for pass in 0..round.map_or(0, |_| schedule.area_passes) {
-                // What is not a river yet has drained nothing before the first of these passes.
-                let is_first = u32::from(round == Some(0) && pass == 0);
-                let step = self.areas.next() | is_first << 16;
-                self.further(DRAINAGE, "add_areas", step);
-            }
-            let step = self.heights.next() | self.areas.now() << 16 | (k as u32 & 1) << 24;
-            self.further(GROWTH, "grow", step);
-        }
-    }
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-    fn creep(&mut self, schedule: &Schedule) {
-        for _ in 0..schedule.creep_passes {
-            let step = self.heights.next() | self.areas.now() << 16;
-            self.further(CREEP, "creep", step);
-        }
-        for _ in 0..schedule.bank_rounds {
-            for _ in 0..schedule.bank_passes {
-                let step = self.heights.next() | self.areas.now() << 16;
-                self.further(CREEP, "raise_banks", step);
-            }
-            self.further(CREEP, "descend", self.heights.now());
-        }
-    }
-
-    /// The last passes of areas, and receivers as a level has them.
-    fn settle_areas(&mut self, schedule: &Schedule) {
-        let passes = [
-            ("add_areas", schedule.last_area_passes),
-            ("raise_areas", schedule.raise_passes),
-            ("limit_areas", schedule.limit_passes),
-        ];
-        for (function, count) in passes {
-            for _ in 0..count {
-                let step = self.areas.next();
-                self.further(DRAINAGE, function, step);
-            }
-        }
-        self.pass(DRAINAGE, "finish", 0, FEW);
+    #[test]
+    fn planes_have_numbers_by_their_names() {
+        let names = ["HEIGHT", "AREA", "OTHER_HEIGHT", "OTHER_AREA", "WAY", "OTHER_WAY", "RIM", "LEAST"];
+        assert_eq!(names.map(plane), [2, 3, 8, 9, 18, 19, 20, 21]);
     }
 }

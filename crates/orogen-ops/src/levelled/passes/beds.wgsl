@@ -19,7 +19,7 @@ fn node(at: vec2<i32>, by: vec2<i32>) -> Node {
 
 // Lowers the ground to a bed.
 fn lower_ground(at: vec2<i32>, bed: f32) {
-    let index = word_index(GROUND, cell_at(at));
+    let index = word_index(LAYER_HEIGHT, cell_at(at));
     var now = atomicLoad(&words[index]);
     while (bed < bitcast<f32>(now)) {
         let outcome = atomicCompareExchangeWeak(&words[index], now, bitcast<u32>(bed));

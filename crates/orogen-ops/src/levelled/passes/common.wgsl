@@ -1,27 +1,5 @@
-// What the passes of drained land have in common: orogen-grid's `multiscale`. The planes of the level and of the level above,
-// and what reads the numbers of `Refinement::words` and the planes of what is given, stand before it.
-//
-// Receivers that stay, FREE or WATER.
-const FIXED = 10u;
-// The law of slopes.
-const RIVER = 11u;
-const STABLE = 12u;
-const WIDTH = 13u;
-// What links say about each child, with a height, until the law takes their place.
-const HELD = 11u;
-const HELD_HEIGHT = 12u;
-// Water levels.
-const LEVEL = 13u;
-// The direction to the water that has spread to a child, and 1 more; 0 elsewhere.
-const GAINED = 14u;
-// The direction in which a link leads; NONE elsewhere.
-const LED = 15u;
-// Distances to the nodes in the east, south-east, south and south-west.
-const DISTANCE = 16u;
-// Planes of the level above: links, and the shares of a link's way up to the exit and the entry.
-const LINK = 10u;
-const TO_EXIT = 11u;
-const TO_ENTRY = 12u;
+// What the passes of drained land have in common: orogen-grid's `multiscale`. The names of all planes, and what reads the numbers of `Refinement::words` and
+// the planes of what is given, stand before it.
 
 // Codes of receivers: none, and what is added in lakes with an outlet.
 const NONE = 8.0;

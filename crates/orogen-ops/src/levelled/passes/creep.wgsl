@@ -14,7 +14,7 @@ fn creep_factor(base: u32, at: vec2<i32>) -> f32 {
     if (has(base, DETAIL)) {
         return 1.0 - 0.9 * share_between(plane(STABLE, at), 0.5, 1.0);
     }
-    return factor(given_creep(base), at, 0.0, 1.25);
+    return factor(given_creep_factor(base), at, 0.0, 1.25);
 }
 
 fn is_land(at: vec2<i32>) -> bool {

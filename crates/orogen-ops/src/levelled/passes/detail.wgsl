@@ -1,8 +1,5 @@
 // Turns nodes of the finest level of valleys into those that detail levels begin with: `detail.rs` and `scree.rs`. Planes of the level above: slopes, their
 // weights, and their means.
-const SLOPE = 8u;
-const WEIGHT = 9u;
-const MEAN = 10u;
 
 // The stable slope with which the law gives the slope from a node to its receiver, and its weight.
 fn weigh(base: u32, at: vec2<i32>) {

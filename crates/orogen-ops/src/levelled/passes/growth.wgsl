@@ -1,17 +1,5 @@
 // A pass of growth: `growth_row.rs`. Of `frame.step` the lowest eight bits are the plane of the heights that are read, and then come that of the heights that
 // are written, that of the areas, and one bit: 0 if the first plane of floors is read and the second one written.
-const FIRST_FLOOR = 14u;
-const SECOND_FLOOR = 15u;
-
-fn distance_in(code: u32, at: vec2<i32>, base: u32) -> f32 {
-    if (has(base, FINEST)) {
-        return select(1.0, 1.4142135, (code & 1u) != 0u);
-    }
-    if (code < 4u) {
-        return plane(DISTANCE + code, at);
-    }
-    return plane(DISTANCE + code - 4u, at + step_of(code));
-}
 
 // What all neighbors of a node are measured by, and the best so far.
 struct Growing {

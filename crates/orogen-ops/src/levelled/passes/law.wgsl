@@ -1,13 +1,4 @@
 // The law of slopes, and the last that is done to rivers before growth: `law.rs`, and `free_rivers` of `detail.rs`.
-const FIRST_FLOOR = 14u;
-
-// Distances from a node to its neighbors.
-fn distance_in(code: u32, at: vec2<i32>) -> f32 {
-    if (code < 4u) {
-        return plane(DISTANCE + code, at);
-    }
-    return plane(DISTANCE + code - 4u, at + step_of(code));
-}
 
 // Rivers of detail levels keep their slopes where those are steeper than the law.
 fn kept_slope(base: u32, at: vec2<i32>, slopes: vec2<f32>) -> vec2<f32> {
@@ -19,7 +10,7 @@ fn kept_slope(base: u32, at: vec2<i32>, slopes: vec2<f32>) -> vec2<f32> {
     }
     let direction = u32(code);
     let fall = plane(heights, at) - plane(heights, at + step_of(direction));
-    let slope = fall / (distance_in(direction, at) * cell(base));
+    let slope = fall / (distance_in(direction, at, base) * cell(base));
     let river = slopes.x * power(area, -0.45);
     if (slope > river * slopes.y / (river + slopes.y)) {
         // A river this steep is limited by the stable slope alone.
@@ -39,14 +30,14 @@ fn set_law(base: u32, at: vec2<i32>) {
         let logarithm = variation + uplift;
         slopes = vec2<f32>(river_slope(base) * exponential(logarithm), stable_slope(base) * exponential(0.3 * logarithm));
     }
-    slopes.y *= factor(given_stability(base), at, 0.01, 100.0);
+    slopes.y *= factor(given_stability_factor(base), at, 0.01, 100.0);
     if (has(base, DETAIL)) {
         slopes = kept_slope(base, at, slopes);
     }
     set_plane(RIVER, at, slopes.x);
     set_plane(STABLE, at, slopes.y);
     let width = min(exponential(-(variation + uplift)), 4.0);
-    set_plane(WIDTH, at, width * factor(given_floor(base), at, 0.01, 100.0));
+    set_plane(WIDTH, at, width * factor(given_floor_factor(base), at, 0.01, 100.0));
     set_plane(FIRST_FLOOR, at, 0.0);
     // Rivers of a small area choose their receivers again.
     let fixed = plane(FIXED, at);

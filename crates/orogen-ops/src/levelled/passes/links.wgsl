@@ -1,7 +1,5 @@
 // Which links of the parents are kept, and the children that they pass: `links.rs`. Planes of the level above: links without detours, the children that links
 // use, and links.
-const DIRECT = 8u;
-const USED = 9u;
 
 // The exit and the entry of a link across a side, by length and chance.
 fn across_side(base: u32, at: vec2<i32>, by: vec2<i32>, straight: vec2<u32>) -> vec2<u32> {

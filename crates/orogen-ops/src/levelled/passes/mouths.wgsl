@@ -1,10 +1,4 @@
-// Mouths of rivers where shores are given: `mouths.rs`. Planes of the level above: what nodes become.
-const NEW_EAST = 8u;
-const NEW_SOUTH = 9u;
-const NEW_HEIGHT = 10u;
-const NEW_RECEIVER = 11u;
-const NEW_SHORE = 12u;
-
+// Mouths of rivers where shores are given: `mouths.rs`.
 const BELOW_UNKNOWN = 0u;
 const BELOW_LAND = 1u;
 const BELOW_SEA = 2u;

@@ -4,10 +4,6 @@ const HELD_RIVER = 1u;
 const HELD_MOUTH = 2u;
 const HELD_LAKE = 3u;
 
-// Water levels of the first steps.
-const FIRST_LEVEL = 16u;
-const DRIED_LEVEL = 17u;
-
 struct Held {
     kind: u32,
     height: f32,

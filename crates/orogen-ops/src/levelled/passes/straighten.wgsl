@@ -1,6 +1,4 @@
 // Shorter rivers on the finest level: `straighten.rs`. A shortcut is encoded as its direction and 16 times the number of cells that it skips, 0 without one.
-const FOUND = 16u;
-const TAKEN = 17u;
 
 // Where the river of a cell leads to, 9 where there is none, and 16 more in cells that are skipped.
 const DRY = 9u;

@@ -64,10 +64,10 @@ fn at_origin(sums: Sums) -> f32 {
 }
 
 fn set_point(base: u32, at: vec2<i32>, height: f32, area: f32, lake: f32, water: f32, receiver: f32) {
-    set_plane(GROUND, at, height);
-    set_plane(FLOW, at, area * square_metres(base));
-    set_plane(LAKE_DEPTH, at, lake);
-    set_plane(LED_TO, at, receiver);
+    set_plane(LAYER_HEIGHT, at, height);
+    set_plane(LAYER_FLOW, at, area * square_metres(base));
+    set_plane(LAYER_LAKE, at, lake);
+    set_plane(LAYER_RECEIVER, at, receiver);
     set_plane(WATER_LEVEL, at, water);
 }
 
@@ -160,18 +160,18 @@ fn surface(base: u32, at: vec2<i32>) {
 fn finish_layers(base: u32, at: vec2<i32>) {
     let water = plane(WATER_LEVEL, at);
     let is_land = is_missing(water);
-    let ground = plane(GROUND, at);
-    set_plane(GROUND, at, ground + sea_level(base));
-    set_plane(SURFACE, at, select(water, ground, is_land) + sea_level(base));
-    let receiver = plane(LED_TO, at);
+    let ground = plane(LAYER_HEIGHT, at);
+    set_plane(LAYER_HEIGHT, at, ground + sea_level(base));
+    set_plane(LAYER_SURFACE, at, select(water, ground, is_land) + sea_level(base));
+    let receiver = plane(LAYER_RECEIVER, at);
     if (is_lake(receiver)) {
-        set_plane(LED_TO, at, min(receiver - LAKE, NONE));
+        set_plane(LAYER_RECEIVER, at, min(receiver - LAKE, NONE));
     }
-    let area = plane(FLOW, at);
+    let area = plane(LAYER_FLOW, at);
     var size = vec2<f32>(0.0);
     if (is_land && area >= stream(base)) {
         size = vec2<f32>(width_of(base, area), depth_of(base, area));
     }
-    set_plane(RIVER_WIDTH, at, size.x);
-    set_plane(RIVER_DEPTH, at, size.y);
+    set_plane(LAYER_WIDTH, at, size.x);
+    set_plane(LAYER_DEPTH, at, size.y);
 }
