@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A source that a field also reads around its position. [`Inputs::around`](crate::op::Inputs::around) is that source at `step` metres to the
-/// east, west, south and north. The engine makes the four positions and evaluates the source there, so
-/// the slope is known at any point, without neighboring samples.
+/// A source that a field also reads around its position: [`Inputs::around`](crate::op::Inputs::around) is that source
+/// at `step` metres to the east, west, south and north. The engine makes the four positions and evaluates the source
+/// there, so the slope is known at any point, without neighboring samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stencil {
     /// Index of the input.

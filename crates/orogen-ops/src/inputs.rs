@@ -46,7 +46,7 @@ impl<'a> Inputs<'a> {
         self.get(name).ok_or_else(|| self.spec.missing(name))
     }
 
-    /// The source of a field with a [stencil](crate::op::Field::stencil) to the east, west, south and north of the points.
+    /// The source of a field with a [stencil](crate::op::Field::stencil), east, west, south and north of the points.
     ///
     /// # Errors
     /// If the field has no stencil: an internal error.

@@ -88,7 +88,8 @@ macro_rules! choice {
 /// - `units |op, layer| "m";`: the unit of a layer by its index, if it depends on parameters.
 /// - `check |op| Ok(());`: what a single parameter cannot see, a key and a message if parameters contradict each other.
 /// - `noise |op, world_params| NOISE; cost |op| [f64; 2];`: a field that is a noise of [`orogen_noise`], with its
-///   nanoseconds per sample at any positions and on a lattice. It gets the parameter `vertical`, and implements `Field`.
+///   nanoseconds per sample at any positions and on a lattice. It gets the parameter `vertical`, and implements
+///   `Field`.
 ///
 /// After an input's need, or at the end of a parameter, `alias "other"` names another key that recipes may use: a
 /// former one, or the word of textbooks. With `octaves |op| KIND;` after its name the op is a fractal: a noise with the
