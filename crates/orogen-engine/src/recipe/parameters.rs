@@ -353,7 +353,6 @@ fn one(name: &Spanned<String>, value: &Spanned<Value>, diagnostics: &mut Diagnos
                 if !seen.insert(key.value.as_str()) {
                     diagnostics
                         .push((key.span.clone(), format!("the key `{}` appears twice in this table", key.value)));
-                    continue;
                 }
                 match (key.value.as_str(), &value.value) {
                     ("default", _) => default = Some(value),

@@ -50,13 +50,13 @@ fn unknown_key(key: &str, node: &Node) -> String {
 
 /// Reads a list of tables, and returns their positions.
 fn tables<T: Clone>(top: &Table, list: &List<T>, values: &mut ValueReader, mut add: impl FnMut(T)) -> Vec<Span> {
-    let Some((_, value)) = top.iter().find(|(key, _)| key.value == list.key) else { return Vec::new() };
-    let entries = list.read(value, values).into_iter();
+    let lists = top.iter().filter(|(key, _)| key.value == list.key);
+    let entries: Vec<(T, Span)> = lists.flat_map(|(_, value)| list.read(value, values)).collect();
     let place = |(entry, place)| {
         add(entry);
         place
     };
-    entries.map(place).collect()
+    entries.into_iter().map(place).collect()
 }
 
 type Table = [(Spanned<String>, Spanned<Value>)];
@@ -241,9 +241,7 @@ impl Walk<'_> {
         let mut recipe = Recipe::new(WorldSpec::default());
         let mut seen = HashSet::new();
         for (key, value) in top {
-            if self.repeated(&mut seen, key) {
-                continue;
-            }
+            self.repeated(&mut seen, key);
             match key.value.as_str() {
                 "orogen" | "$schema" | "parameters" => {}
                 "about" => match &value.value {
@@ -432,13 +430,12 @@ impl Walk<'_> {
         }
     }
 
-    /// Reports a duplicate key in a table (the TOML parser rejects it itself, the JSON parser does not).
-    fn repeated<'k>(&mut self, seen: &mut HashSet<&'k str>, key: &'k Spanned<String>) -> bool {
+    /// Reports a duplicate key in a table (the TOML parser rejects it itself, the JSON parser does not). Its values are
+    /// checked all the same.
+    fn repeated<'k>(&mut self, seen: &mut HashSet<&'k str>, key: &'k Spanned<String>) {
         if !seen.insert(key.value.as_str()) {
             self.complain(&key.span, format!("the key `{}` appears twice in this table", key.value));
-            return true;
         }
-        false
     }
 
     fn world(&mut self, value: &Spanned<Value>) -> WorldSpec {
@@ -449,9 +446,7 @@ impl Walk<'_> {
         };
         let (mut seen, mut cell) = (HashSet::new(), None);
         for (key, value) in entries {
-            if self.repeated(&mut seen, key) {
-                continue;
-            }
+            self.repeated(&mut seen, key);
             match super::world_spec::world_param(&key.value) {
                 Some(spec) => match super::world_spec::read_world(spec, &value.value, &mut world) {
                     Ok(()) if spec.name == "cell" => cell = Some(value.span.clone()),
@@ -490,7 +485,6 @@ impl Walk<'_> {
         for (name, value) in entries {
             if !names.insert(&name.value) {
                 self.complain(&name.span, format!("two nodes are named `{}`; rename one", name.value));
-                continue;
             }
             let index = recipe.nodes().len();
             self.places.insert((index, String::new()), name.span.clone());
@@ -542,7 +536,8 @@ impl Walk<'_> {
         }
         let mut sound = true;
         for (key, value) in &entries {
-            if self.repeated(&mut seen, key) || key.value == "op" {
+            self.repeated(&mut seen, key);
+            if key.value == "op" {
                 continue;
             }
             if key.value == "mask" {
@@ -646,9 +641,7 @@ impl Walk<'_> {
         };
         let mut seen = HashSet::new();
         for (key, value) in entries {
-            if self.repeated(&mut seen, key) {
-                continue;
-            }
+            self.repeated(&mut seen, key);
             if let Value::Table(_) = value.value {
                 self.complain(&value.span, format!("the output `{}` must name a node, not be a table", key.value));
                 continue;

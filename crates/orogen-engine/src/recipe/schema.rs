@@ -219,7 +219,7 @@ fn mask_schema() -> Json {
 fn op_schema(node: &Node) -> Json {
     let spec = node.spec();
     let mut properties = Map::new();
-    let mut about = spec.doc.trim().to_string();
+    let mut about = spec.doc.split("\n\n").map(short).collect::<Vec<_>>().join("\n\n");
     if spec.layers.len() > 1 {
         about.push_str("\n\nLayers:");
         for layer in spec.layers {
@@ -383,5 +383,15 @@ mod tests {
             }
         }
         assert!(respellings > 0, "an op with two spellings was tried");
+    }
+
+    #[test]
+    fn paragraphs_of_descriptions_are_lines() {
+        for node in Node::all() {
+            let schema = op_schema(&node);
+            let about = schema["properties"]["op"]["description"].as_str().unwrap();
+            let doc = about.split("\n\nLayers:").next().unwrap();
+            assert!(!doc.replace("\n\n", "").contains('\n'), "{about}");
+        }
     }
 }

@@ -88,3 +88,15 @@ fn faults_stand_at_their_keys() {
     let error = Recipe::parse(&recipe("").replacen('\n', "\nscatter = 3\n", 1), "test").unwrap_err();
     assert!(error.to_string().contains("`scatter` must be a list of tables"), "{error}");
 }
+
+#[test]
+fn all_values_of_repeated_keys_are_checked() {
+    let text = r#"{ "orogen": 1, "parameters": { "p": { "default": 1, "unit": "m", "unit": 5 } }, "world": { "cell": 1, "cell": -1 },
+        "nodes": { "a": { "op": "fbm", "gain": 0.5, "gain": 7 } }, "outputs": { "height": "a", "height": true },
+        "scatter": [{ "name": "tree", "spacing": 2, "spacing": 0 }], "scatter": 3 }"#;
+    let error = Recipe::parse(text, "test").unwrap_err().to_string();
+    for key in ["unit", "cell", "gain", "height", "spacing", "scatter"] {
+        assert!(error.contains(&format!("the key `{key}` appears twice")), "{key}: {error}");
+        assert!(error.contains(&format!("`{key}` must")), "{key}: {error}");
+    }
+}

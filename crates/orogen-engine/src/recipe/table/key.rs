@@ -63,10 +63,11 @@ impl<T, V: OfKey> Part<T> for Field<T, V> {
     }
 
     fn read(&self, table: &Table, values: &mut ValueReader, out: &mut T) {
-        if let Some((_, value)) = table.find(self.key.name)
-            && let Some(value) = V::read(&self.key, value, values)
-        {
-            *(self.of)(out) = value;
+        // A key that is repeated is reported; all of its values are checked.
+        for (_, value) in table.entries.iter().filter(|(key, _)| key.value == self.key.name) {
+            if let Some(value) = V::read(&self.key, value, values) {
+                *(self.of)(out) = value;
+            }
         }
     }
 
