@@ -1,16 +1,19 @@
 //! Texts of the command line: any text is a value or refused with a message, and values are within their bounds.
 
 use crate::values::bytes::Bytes;
-use crate::values::number::{self, MOST, Numbers};
+use crate::values::number::{self, MOST};
 use crate::values::region::{self, Bounds, Rectangle};
 use crate::values::size::Size;
 use crate::values::{arguments, seeds};
 use clap::{Args, Command, FromArgMatches};
+use orogen::builder::BuildSpec;
 use orogen::export::derived::list;
 use orogen::export::registry;
 use orogen::expression::Expression;
 use orogen::io::format::crs::Crs;
 use orogen::io::palette::names;
+use orogen::jobs::noise::NoiseJob;
+use orogen::jobs::variants::VariantsJob;
 use orogen::jobs::{BlocksJob, MapJob, RenderJob};
 use orogen::options::Options;
 use orogen::output::sheet::paper;
@@ -27,14 +30,9 @@ pub fn run(input: &[u8]) {
         assert!(sides.iter().all(|side| (1..=MOST as usize).contains(side)), "{text}");
     }
     assert!(!number::seed(text).is_ok_and(|seed| seed > i64::MAX as u64), "{text}");
-    for number in [number::cell(text), number::wavelength(text), number::positive(text)].into_iter().flatten() {
-        assert!(number.is_finite() && number > 0.0, "{text}");
-    }
-    assert!(!number::not_negative(text).is_ok_and(|number| number.is_nan() || number < 0.0), "{text}");
+    assert!(!number::cell(text).is_ok_and(|number| !number.is_finite() || number <= 0.0), "{text}");
+    assert!(!number::finite(text).is_ok_and(|number| !number.is_finite()), "{text}");
     assert!(!text.parse::<Bytes>().is_ok_and(|bytes| bytes.0 == 0), "{text}");
-    if let Ok(Numbers(numbers)) = text.parse() {
-        assert!(!numbers.is_empty() && numbers.iter().all(|number| number.is_finite()), "{text}");
-    }
     if let Ok(paper) = text.parse::<paper::Paper>() {
         let [width, height] = paper.sides(true);
         assert!(width >= height && height >= 50.0 && width <= 2000.0, "{text}");
@@ -69,6 +67,7 @@ pub fn run(input: &[u8]) {
     let of_files = registry::options().into_iter().map(|(spec, _)| spec);
     let of_layers = list::options().into_iter().map(|(spec, _)| spec);
     let of_jobs = [MapJob::OPTIONS, RenderJob::OPTIONS, TilemapJob::OPTIONS, BlocksJob::OPTIONS].into_iter().flatten();
+    let of_pictures = [NoiseJob::OPTIONS, VariantsJob::OPTIONS, BuildSpec::OPTIONS].into_iter().flatten();
     let mut options = Options::default();
     for spec in of_files.chain(of_layers) {
         let _ = options.give(spec, text);
@@ -76,6 +75,10 @@ pub fn run(input: &[u8]) {
     let mut options = Options::default();
     for spec in of_jobs {
         let _ = options.give(spec, text);
+    }
+    let mut of_own = Options::default();
+    for spec in of_pictures {
+        let _ = of_own.give(spec, text);
     }
     assert!(options.number("time").is_none_or(|hours| (0.0..24.0).contains(&hours)), "{text}");
     assert!(options.numbers("levels").is_none_or(|numbers| numbers.iter().all(|number| number.is_finite())), "{text}");

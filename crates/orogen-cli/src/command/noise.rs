@@ -8,9 +8,9 @@ use orogen::grid::words;
 use orogen::io::format::png::{Animation, Picture};
 use orogen::io::format::{npy, png};
 use orogen::jobs::noise::NoiseJob;
+use orogen::noise::Basis;
 use orogen::output::noise_pictures::look::{Drawing, Look};
 use orogen::output::noise_pictures::slice::Slice;
-use orogen_noise::Basis;
 
 use crate::bar::Bar;
 use crate::declared::OptionsOf;

@@ -4,7 +4,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use orogen::export::targets::target::EngineTarget;
 use orogen::export::{Format, registry, targets};
 use orogen::jobs::{BlockFormat, SheetFormat};
-use orogen_noise::Basis;
+use orogen::noise::Basis;
 
 /// The parser of a value that is one of several names, with a line of help for each.
 fn one_of<T: Copy + Send + Sync + 'static>(

@@ -115,7 +115,6 @@ pub fn layers(format: &Format, recipe: &Recipe) -> Vec<String> {
 }
 
 /// The options of a derived layer.
-#[must_use]
 pub fn layer_options(layer: &str) -> &'static [OptionSpec] {
     derived::named(layer).map_or(&[], |derived| (derived.options)())
 }
