@@ -1,10 +1,8 @@
 //! Sessions: threads, solutions and memory that worlds share.
 
 use crate::device::Device;
-use crate::engine::preview::Previews;
 use crate::plan::key::Key;
-use crate::store::grids::GridStore;
-use crate::store::level_tiles::LevelTiles;
+use crate::store::kept::Kept;
 use crate::store::solution_store::SolutionStore;
 use crate::store::solutions::Store;
 use orogen_grid::error::{Error, Result};
@@ -59,15 +57,13 @@ pub struct Options {
 #[derive(Clone)]
 pub struct Session {
     pub(crate) pool: Arc<Pool>,
-    pub(crate) store: Arc<Store>,
-    pub(crate) grids: Arc<GridStore>,
-    pub(crate) level_tiles: Arc<LevelTiles>,
+    pub(crate) kept: Arc<Kept>,
     pub(crate) budget: Budget,
     pub(crate) device: Option<Arc<dyn Device>>,
     /// What previews with the device keep.
-    pub(crate) previews: Arc<Previews>,
+    pub(crate) previews: Arc<Kept>,
     /// What its drafts keep, and whether windows are drafts.
-    pub(crate) drafts: Arc<Previews>,
+    pub(crate) drafts: Arc<Kept>,
     pub(crate) is_draft: bool,
 }
 
@@ -87,17 +83,14 @@ impl Session {
         let limit = options.memory.limit();
         let grids = options.kept_grids.unwrap_or(limit.map_or(KEPT_GRIDS, |limit| KEPT_GRIDS.min(limit / 4)));
         let level_tiles = limit.map_or(LEVEL_TILES, |limit| LEVEL_TILES.min(limit / 8));
-        let store = Store::new(options.store, options.scratch);
-        let previews = Previews::new(store.scratch(), grids, level_tiles);
+        let kept = Kept::new(Store::new(options.store, options.scratch), grids, level_tiles);
         Ok(Session {
             pool: Arc::new(pool),
-            store: Arc::new(store),
-            grids: Arc::new(GridStore::new(grids)),
-            level_tiles: Arc::new(LevelTiles::new(level_tiles)),
             budget: options.memory.clone(),
             device: None,
-            drafts: Arc::new(previews.emptied()),
-            previews: Arc::new(previews),
+            previews: Arc::new(kept.emptied()),
+            drafts: Arc::new(kept.emptied()),
+            kept: Arc::new(kept),
             is_draft: false,
         })
     }
@@ -176,33 +169,32 @@ impl Session {
     /// Number of solutions computed so far, without reused ones.
     #[must_use]
     pub fn solutions_made(&self) -> u64 {
-        self.store.made()
+        self.kept.store.made()
     }
 
     /// The latest failure of the [store](Options::store), or a damaged entry that it had. It stops no work: what cannot
     /// be read is solved again, and what cannot be stored stays in memory.
     #[must_use]
     pub fn store_failure(&self) -> Option<Error> {
-        self.store.failure()
+        self.kept.store.failure()
     }
 
     /// Number of tiles of the levels of [levelled ops](orogen_ops::op::Levelled) made so far, without reused ones.
     #[must_use]
     pub fn level_tiles_made(&self) -> u64 {
-        self.level_tiles.made()
+        self.kept.level_tiles.made()
     }
 
     /// Number of filters that were not applied because their grids were kept from an earlier request.
     #[must_use]
     pub fn filters_found(&self) -> u64 {
-        self.grids.found()
+        self.kept.grids.found()
     }
 
     /// Memory of kept solutions, grids and tiles, in bytes, without that of running requests.
     #[must_use]
     pub fn kept_memory(&self) -> u64 {
-        let exact = self.store.memory().saturating_add(self.grids.memory()).saturating_add(self.level_tiles.memory());
-        exact.saturating_add(self.previews.memory()).saturating_add(self.drafts.memory())
+        [&self.kept, &self.previews, &self.drafts].iter().fold(0, |sum, kept| kept.memory().saturating_add(sum))
     }
 
     /// The same threads and memory without any solutions and without a store for later runs.
@@ -213,27 +205,18 @@ impl Session {
 
     /// The same threads and memory with the given solutions and without a store for later runs.
     pub(crate) fn with_solutions(&self, solved: Vec<(Key, Arc<Solution>)>) -> Session {
-        Session {
-            store: Arc::new(Store::holding(solved, self.store.scratch().clone())),
-            grids: Arc::new(GridStore::new(0)),
-            previews: Arc::new(Previews::new(self.store.scratch(), 0, 0)),
-            drafts: Arc::new(Previews::new(self.store.scratch(), 0, 0)),
-            ..self.clone()
-        }
+        let nothing = || Arc::new(Kept::new(self.kept.store.holding(Vec::new()), 0, 0));
+        let kept = Arc::new(self.kept.with_solutions(solved));
+        Session { kept, previews: nothing(), drafts: nothing(), ..self.clone() }
     }
 
     /// Drops kept grids and solutions, the least recently used first, until those not in `needed` fit beside the memory
     /// in use.
     pub(crate) fn make_room(&self, needed: &[Key]) {
         if let Some(unused) = self.budget.unused() {
-            self.store.make_room(unused, needed);
-            let left = unused.saturating_sub(self.store.memory());
-            self.grids.make_room(left);
-            let left = left.saturating_sub(self.grids.memory());
-            self.level_tiles.make_room(left);
-            let left = left.saturating_sub(self.level_tiles.memory());
-            self.previews.make_room(left);
-            self.drafts.make_room(left.saturating_sub(self.previews.memory()));
+            let left = self.kept.make_room(unused, needed);
+            let left = self.previews.make_room(left, &[]);
+            self.drafts.make_room(left, &[]);
         }
     }
 }

@@ -143,7 +143,7 @@ impl World {
 
     /// The solution stored under a key, if there is one.
     pub(crate) fn solution(&self, key: &Key, on_disk: bool) -> Result<Option<Arc<Solution>>> {
-        self.session.store.find(key, on_disk)
+        self.session.kept.store.find(key, on_disk)
     }
 
     /// Number of solutions that this world computed (not found in the store).
@@ -282,7 +282,7 @@ impl World {
 
     /// The folder for data that does not fit in memory.
     pub fn scratch(&self) -> &Path {
-        self.session.store.scratch()
+        self.session.kept.store.scratch()
     }
 
     /// Memory limit of a request, in bytes; `None` for no limit.
@@ -364,7 +364,7 @@ impl World {
     pub fn may_draft(&self, plan: &Plan) -> Result<bool> {
         self.check_plan(plan)?;
         Ok(self.session.device.is_some()
-            && may_draft(&self.engine(&Progress::none()).nodes(), &self.session.store, plan))
+            && may_draft(&self.engine(&Progress::none()).nodes(), &self.session.kept.store, plan))
     }
 
     /// Number of threads.
@@ -581,9 +581,8 @@ impl World {
             graph: &self.graph,
             world_params: &self.world_params,
             keys: &self.keys,
-            store: &self.session.store,
-            grids: Some(&self.session.grids),
-            level_tiles: &self.session.level_tiles,
+            kept: &self.session.kept,
+            keeps_grids: true,
             budget: &self.session.budget,
             pool: &self.session.pool,
             progress,

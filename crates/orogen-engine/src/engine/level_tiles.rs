@@ -49,7 +49,7 @@ impl Engine<'_> {
                 tiles.missing.iter().map(|at| self.level_tile(refining, level, *at)).collect::<Vec<_>>()
             };
             let missing: Vec<LevelTile> = tiles.iter().flat_map(of_level).collect();
-            if let Some(claims) = self.level_tiles.claim(&missing, self.may_wait(), refining.progress)? {
+            if let Some(claims) = self.kept.level_tiles.claim(&missing, self.may_wait(), refining.progress)? {
                 break claims;
             }
         };
@@ -57,7 +57,7 @@ impl Engine<'_> {
         let work: f64 = tiles.iter().map(of_tiles).sum();
         let of_piece = |piece: &Window| refining.work_of_piece(direct.clone(), piece);
         refining.progress.expect(work + pieces.iter().map(of_piece).sum::<f64>());
-        let is_stored = self.store.keeps_tiles(work);
+        let is_stored = self.kept.store.keeps_tiles(work);
         // The claims end on a thread of the pool: the calling thread may run work of another request that waits for
         // them.
         self.pool.install(|| self.make_level_tiles(refining, tiles, claims, is_stored))
@@ -95,9 +95,9 @@ impl Engine<'_> {
     /// The planes of a tile from memory, otherwise from the store.
     fn find_level_tile(&self, refining: &Refining, level: usize, at: At) -> Option<Vec<Grid>> {
         let tile = self.level_tile(refining, level, at);
-        self.level_tiles.find(&tile).or_else(|| {
-            let is_stored = self.store.has_tiles() && is_expensive(refining.op, level);
-            let planes = is_stored.then(|| self.store.find_tile(&tile)).flatten()?;
+        self.kept.level_tiles.find(&tile).or_else(|| {
+            let is_stored = self.kept.store.has_tiles() && is_expensive(refining.op, level);
+            let planes = is_stored.then(|| self.kept.store.find_tile(&tile)).flatten()?;
             self.keep_level_tile(&tile, &planes);
             Some(planes)
         })
@@ -125,11 +125,11 @@ impl Engine<'_> {
             let make = |(at, claim): (At, Claim)| {
                 let tile = self.level_tile(refining, level, at);
                 let planes = refining.planes(level, &tile.window, &above)?;
-                self.level_tiles.count_made();
+                self.kept.level_tiles.count_made();
                 self.keep_level_tile(&tile, &planes);
                 drop(claim);
                 if is_stored {
-                    self.store.store_tile(&tile, &planes);
+                    self.kept.store.store_tile(&tile, &planes);
                 }
                 Ok((at, planes))
             };
@@ -142,8 +142,7 @@ impl Engine<'_> {
     }
 
     fn keep_level_tile(&self, tile: &LevelTile, planes: &[Grid]) {
-        let allowed = self.budget.unused().map(|unused| unused.saturating_sub(self.store.memory()));
-        self.level_tiles.keep(tile, planes, allowed);
+        self.kept.level_tiles.keep(tile, planes, self.room());
     }
 
     fn level_tile(&self, refining: &Refining, level: usize, at: At) -> LevelTile {

@@ -1,61 +1,21 @@
 //! Previews: what a device computes, kept apart from what the processor computes.
 
 use super::nodes::Nodes;
-use crate::device::{Device, PlanGrid};
+use crate::device::Device;
 use crate::plan::domain::Domain;
 use crate::plan::steps::{Plan, Solve};
 use crate::recipe::graph::Link;
-use crate::store::grids::GridStore;
-use crate::store::level_tiles::LevelTiles;
+use crate::store::kept::Kept;
 use crate::store::solutions::Store;
 use orogen_ops::ids::{IndexVec, NodeId};
 use orogen_ops::lower::Passes;
 use orogen_ops::op::{Op, Solver};
-use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
-
-/// What previews of a session keep in memory, for later ones. Nothing of it is stored for later runs, and nothing exact
-/// is made from it.
-pub struct Previews {
-    pub store: Store,
-    pub grids: GridStore<PlanGrid>,
-    pub level_tiles: LevelTiles,
-}
-
-impl Previews {
-    /// Room for at most these bytes of grids and of tiles; `scratch` is the folder for solutions that do not fit in
-    /// memory.
-    pub fn new(scratch: &Path, grids: u64, level_tiles: u64) -> Previews {
-        Previews {
-            store: Store::holding(Vec::new(), scratch.to_path_buf()),
-            grids: GridStore::new(grids),
-            level_tiles: LevelTiles::new(level_tiles),
-        }
-    }
-
-    /// Room for as much.
-    pub fn emptied(&self) -> Previews {
-        Previews::new(self.store.scratch(), self.grids.limit(), self.level_tiles.limit())
-    }
-
-    /// Bytes of all that is kept.
-    pub fn memory(&self) -> u64 {
-        self.store.memory().saturating_add(self.grids.memory()).saturating_add(self.level_tiles.memory())
-    }
-
-    /// Drops what was not used for longest, until all takes at most `allowed` bytes.
-    pub fn make_room(&self, allowed: u64) {
-        self.store.make_room(allowed, &[]);
-        let left = allowed.saturating_sub(self.store.memory());
-        self.grids.make_room(left);
-        self.level_tiles.make_room(left.saturating_sub(self.grids.memory()));
-    }
-}
 
 /// A device, and which nodes of a recipe are approximate with it.
 pub struct Preview<'a> {
     pub device: &'a dyn Device,
-    pub kept: &'a Previews,
+    pub kept: &'a Kept,
     /// Whether the device also solves what is chaotic.
     is_draft: bool,
     /// Solvers and levelled ops that the device computes, and all that reads them. Fields and filters that it computes
@@ -69,7 +29,7 @@ pub struct Preview<'a> {
 
 impl<'a> Preview<'a> {
     /// That of these nodes; a draft if the device may make other land.
-    pub fn new(device: &'a dyn Device, kept: &'a Previews, nodes: &Nodes, is_draft: bool) -> Preview<'a> {
+    pub fn new(device: &'a dyn Device, kept: &'a Kept, nodes: &Nodes, is_draft: bool) -> Preview<'a> {
         let none = || -> IndexVec<NodeId, bool> { vec![false; nodes.recipe.nodes().len()].into() };
         let (approximate, reads, has_lost) = (none(), none(), AtomicBool::new(false));
         let mut preview = Preview { device, kept, is_draft, approximate, reads, has_lost };

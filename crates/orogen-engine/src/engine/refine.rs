@@ -1,6 +1,5 @@
 //! Making windows of levelled ops: tiles of the coarse levels, coarsest first, then each piece of the window from them.
 
-use super::preview::{Preview, Previews};
 use super::run::Engine;
 use crate::device::{PassStep, PlanGrid};
 use crate::plan::levels::{self, Serving};
@@ -65,9 +64,7 @@ impl Engine<'_> {
         let serving = Serving::of(&op.levels(), window);
         let is_between = serving.samples.cell != window.cell;
         let made = match self.preview.filter(|preview| preview.is_read_by(node)) {
-            Some(Preview { kept: Previews { store, level_tiles, .. }, .. }) => {
-                Engine { store, level_tiles, ..*self }.samples(&refining, &serving, !is_between)?
-            }
+            Some(preview) => Engine { kept: preview.kept, ..*self }.samples(&refining, &serving, !is_between)?,
             None => self.samples(&refining, &serving, !is_between)?,
         };
         if !is_between {

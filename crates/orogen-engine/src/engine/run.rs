@@ -11,8 +11,7 @@ use crate::plan::steps::{Plan, Step, wanted};
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::Graph;
 use crate::store::grids::{EXPENSIVE, GridKey, GridStore};
-use crate::store::level_tiles::LevelTiles;
-use crate::store::solutions::Store;
+use crate::store::kept::Kept;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::parallel;
@@ -34,11 +33,10 @@ pub struct Engine<'a> {
     pub world_params: &'a WorldParams,
     /// The content keys of the nodes.
     pub keys: &'a IndexVec<NodeId, Key>,
-    pub store: &'a Store,
-    /// The store of expensive filters' grids, if there is one.
-    pub grids: Option<&'a GridStore>,
-    /// The store of tiles of levels.
-    pub level_tiles: &'a LevelTiles,
+    /// What is kept for later requests.
+    pub kept: &'a Kept,
+    /// Whether grids of expensive filters are kept, and taken from what is kept.
+    pub keeps_grids: bool,
     pub budget: &'a Budget,
     /// The thread pool. Waiting happens only on the calling thread.
     pub pool: &'a Pool,
@@ -129,14 +127,14 @@ impl<'a> Engine<'a> {
     /// which steps are still needed: those whose grids are results or are read by needed steps.
     fn kept_grids(&self, plan: &Plan, grids: &mut Grids, exactness: &mut Exactness) -> IndexVec<StepId, bool> {
         let mut needed: IndexVec<StepId, bool> = vec![true; plan.steps.len()].into();
-        let Some(store) = self.grids.filter(|store| store.is_used()) else { return needed };
+        let Some(store) = self.grid_store() else { return needed };
         let mut read: IndexVec<GridId, bool> = plan.grids.iter().map(|slot| slot.last_use.is_none()).collect();
         for (at, step) in plan.steps.entries().rev() {
             let writes = step.writes();
             // A program for points writes no grid.
             needed[at] = writes.is_empty() || writes.iter().any(|&slot| read[slot]);
             if let Some(keys) = needed[at].then(|| self.grid_keys(step)).flatten() {
-                let exact = store.find(&keys).map(|found| found.into_iter().map(PlanGrid::from).collect());
+                let exact = store.find(&keys);
                 let approximate = || {
                     let preview = self.preview.filter(|_| !exactness.is_required(step))?;
                     let found: Vec<PlanGrid> = preview.kept.grids.find(&keys)?;
@@ -227,15 +225,24 @@ impl<'a> Engine<'a> {
 
     /// Keeps the grids of an expensive filter for later requests; those that are not exact for previews alone.
     fn keep_grids(&self, step: &Step, made: &[PlanGrid], is_exact: bool) {
-        let Some(exact) = self.grids.filter(|store| store.is_used()) else { return };
+        let Some(exact) = self.grid_store() else { return };
         for (key, grid) in self.grid_keys(step).into_iter().flatten().zip(made) {
-            let allowed = self.budget.unused().map(|unused| unused.saturating_sub(self.store.memory()));
-            match (self.preview, grid.memory()) {
-                (Some(preview), _) if !is_exact => preview.kept.grids.keep(key, grid, allowed),
-                (_, Some(grid)) => exact.keep(key, grid, allowed),
-                (_, None) => {}
+            match self.preview {
+                Some(preview) if !is_exact => preview.kept.grids.keep(key, grid, self.room()),
+                _ if grid.memory().is_some() => exact.keep(key, grid, self.room()),
+                _ => {}
             }
         }
+    }
+
+    /// The store of grids of expensive filters, if it is used.
+    fn grid_store(&self) -> Option<&'a GridStore<PlanGrid>> {
+        Some(&self.kept.grids).filter(|store| self.keeps_grids && store.is_used())
+    }
+
+    /// The bytes that kept grids or tiles may take now; `None` for no limit.
+    pub(super) fn room(&self) -> Option<u64> {
+        self.budget.unused().map(|unused| unused.saturating_sub(self.kept.store.memory()))
     }
 
     /// The nodes of the recipe.

@@ -40,7 +40,7 @@ impl Engine<'_> {
         for order in missing.into_iter().rev() {
             let part = self.progress.part(order.work());
             let begun = match self.is_observed(order.node) {
-                true => self.store.begin_again(&order.key),
+                true => self.kept.store.begin_again(&order.key),
                 false => self.store_of(order.node).begin(&order.key, self.may_wait(), &part)?,
             };
             let solution = match begun {
@@ -60,7 +60,7 @@ impl Engine<'_> {
 
     /// The solution of an order that is there: an exact one, or in a preview one that an earlier preview made.
     fn found(&self, order: &Solve) -> Result<Option<Arc<Solution>>> {
-        let exact = self.store.find(&order.key, order.on_disk)?;
+        let exact = self.kept.store.find(&order.key, order.on_disk)?;
         match self.preview {
             Some(preview) if exact.is_none() => preview.kept.store.find(&order.key, order.on_disk),
             _ => Ok(exact),
@@ -71,7 +71,7 @@ impl Engine<'_> {
     fn store_of(&self, node: NodeId) -> &Store {
         match self.preview {
             Some(preview) if preview.is_approximate(node) => &preview.kept.store,
-            _ => self.store,
+            _ => &self.kept.store,
         }
     }
 
@@ -91,7 +91,7 @@ impl Engine<'_> {
         let mut wanted = plan.solvers_read();
         let mut work = 0.0;
         for order in plan.solves.iter().rev() {
-            if wanted.contains(&order.node) && !self.store.has(&order.key) {
+            if wanted.contains(&order.node) && !self.kept.store.has(&order.key) {
                 wanted.extend(&order.reads);
                 work += order.work();
             }
@@ -119,11 +119,11 @@ impl Engine<'_> {
             let plan = planner.source(link, tile)?;
             // The solution is kept, its sources are not. If it is exact, so are they.
             let preview = self.preview.filter(|preview| preview.is_approximate(order.node));
-            let engine = Engine { grids: None, preview, ..*self };
+            let engine = Engine { keeps_grids: false, preview, ..*self };
             engine.steps(&plan, there, &sources.part(cost::steps(&plan, self.recipe)))
         };
         let links = &self.graph.links[order.node];
-        let tiles = Tiles { spec: solver.spec(), links, order, make: &make, scratch: self.store.scratch() };
+        let tiles = Tiles { spec: solver.spec(), links, order, make: &make, scratch: self.kept.store.scratch() };
         let may = !order.on_disk && !self.is_observed(order.node);
         let made = self.execute(may, |executor| executor.solve(solver, &tiles, &own))?;
         made.done().ok_or_else(|| missing("a solution"))

@@ -5,6 +5,7 @@ mod entry_key;
 #[doc(hidden)]
 pub mod folder;
 pub(crate) mod grids;
+pub(crate) mod kept;
 pub(crate) mod level_tile;
 pub(crate) mod level_tiles;
 #[doc(hidden)]

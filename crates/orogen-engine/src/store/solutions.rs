@@ -90,11 +90,11 @@ impl Store {
         Store { held: Mutex::default(), ended: Condvar::new(), backing, scratch }
     }
 
-    /// A store with these solutions and no other behind it.
-    pub fn holding(solutions: Vec<(Key, Arc<Solution>)>, scratch: PathBuf) -> Store {
+    /// A store with these solutions, the same folder and no other behind it.
+    pub fn holding(&self, solutions: Vec<(Key, Arc<Solution>)>) -> Store {
         let solutions = solutions.into_iter().map(|(key, solution)| (key, (0, solution))).collect();
         let held = Mutex::new(Entries { solutions, ..Entries::default() });
-        Store { held, ended: Condvar::new(), backing: None, scratch }
+        Store { held, ended: Condvar::new(), backing: None, scratch: self.scratch.clone() }
     }
 
     /// The folder for data that does not fit in memory.
