@@ -6,8 +6,9 @@ use crate::engine::preview::{Preview, may_draft};
 use crate::engine::run::Engine;
 use crate::plan::domain::world_windows;
 use crate::plan::explain::explain;
-use crate::plan::key::{Key, identity, keys, link_key};
+use crate::plan::key::{Key, link_key};
 use crate::plan::planner::Planner;
+use crate::plan::resolved::ResolvedRecipe;
 use crate::plan::steps::Plan;
 use crate::plan::{cost, memory, parts};
 use crate::recipe::document::Recipe;
@@ -22,7 +23,7 @@ use orogen_io::dem::prepared::DEFAULT_MEMORY;
 use orogen_ops::budget::{Budget, Reservation};
 use orogen_ops::ids::{Id, IndexVec, NodeId};
 use orogen_ops::layer::LayerKind;
-use orogen_ops::op::{Solution, StepObserver, WorldParams};
+use orogen_ops::op::{Solution, StepObserver};
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -51,13 +52,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// # Ok::<(), orogen_engine::Error>(())
 /// ```
 pub struct World {
-    recipe: Recipe,
-    graph: Graph,
-    world_params: WorldParams,
-    /// The content keys of the nodes.
-    keys: IndexVec<NodeId, Key>,
-    /// The identity of the recipe, which plans contain.
-    identity: Key,
+    resolved: ResolvedRecipe,
     session: Session,
     /// Plans for points of layers that need no grids: the same for every point.
     pointwise: Mutex<HashMap<String, Arc<Plan>>>,
@@ -126,9 +121,7 @@ impl World {
     }
 
     fn new(recipe: Recipe, graph: Graph, session: Session) -> World {
-        let (world_params, keys) = (recipe.world.world_params(), keys(&recipe, &graph));
-        let identity = identity(&keys);
-        World { recipe, graph, world_params, keys, identity, session, pointwise: Mutex::default() }
+        World { resolved: ResolvedRecipe::new(recipe, graph), session, pointwise: Mutex::default() }
     }
 
     /// A world of the same recipe with other parameters, with the same threads and memory limit. Its solutions are not
@@ -154,7 +147,7 @@ impl World {
     /// A plan that only solves nodes and their sources.
     pub(crate) fn plan_to_solve(&self, nodes: &[NodeId]) -> Result<Plan> {
         let links: Vec<Link> = nodes.iter().map(|&node| Link::Node(LayerRef { node, layer: 0 })).collect();
-        self.planned(&links, Window::new(1, 1, self.world_params.cell), false, self.memory_limit())
+        self.planned(&links, Window::new(1, 1, self.resolved.world_params.cell), false, self.memory_limit())
     }
 
     /// Runs a plan with an observer of the steps of a node's solver.
@@ -184,7 +177,7 @@ impl World {
 
     /// The nodes in an order where each comes after those that it reads.
     pub(crate) fn order(&self) -> &[NodeId] {
-        &self.graph.order
+        &self.resolved.graph.order
     }
 
     /// The layers of nodes that a layer depends on, including masks.
@@ -194,7 +187,9 @@ impl World {
         while let Some(link) = waiting.pop() {
             let Link::Node(target) = link else { continue };
             if read.insert(target) {
-                waiting.extend(self.graph.links[target.node].iter().chain([&self.graph.masks[target.node]]));
+                waiting.extend(
+                    self.resolved.graph.links[target.node].iter().chain([&self.resolved.graph.masks[target.node]]),
+                );
             }
         }
         Ok(read)
@@ -202,7 +197,7 @@ impl World {
 
     /// The recipe.
     pub fn recipe(&self) -> &Recipe {
-        &self.recipe
+        &self.resolved.recipe
     }
 
     /// The window of the whole world with a cell of `cell` metres: a world of length L has round(L / cell) samples
@@ -248,7 +243,7 @@ impl World {
 
     fn bounds(&self) -> Result<[f64; 2]> {
         let message = "this world is unbounded; specify a window";
-        self.world_params.size.ok_or_else(|| Error::new(ErrorKind::Request, message))
+        self.resolved.world_params.size.ok_or_else(|| Error::new(ErrorKind::Request, message))
     }
 
     /// A plan for layers over a window.
@@ -291,9 +286,9 @@ impl World {
     }
 
     fn planned(&self, targets: &[Link], window: Window, scattered: bool, allowed: Option<u64>) -> Result<Plan> {
-        let planner = Planner::new(&self.recipe, &self.graph, &self.keys);
+        let planner = Planner::new(&self.resolved);
         let plan = planner.fitting(targets, window, scattered, self.threads(), allowed)?;
-        parts::check(&plan, &self.recipe)?;
+        parts::check(&plan, &self.resolved.recipe)?;
         Ok(plan)
     }
 
@@ -313,7 +308,7 @@ impl World {
     /// The plan was made for another recipe.
     pub fn memory_of(&self, plan: &Plan) -> Result<u64> {
         self.check_plan(plan)?;
-        Ok(memory::needed(plan, &self.recipe, self.threads()))
+        Ok(memory::needed(plan, &self.resolved.recipe, self.threads()))
     }
 
     /// Approximate time of a plan on one core, in nanoseconds: for solving what is not solved yet, and for the steps.
@@ -323,7 +318,7 @@ impl World {
     #[doc(hidden)]
     pub fn work_of(&self, plan: &Plan) -> Result<[f64; 2]> {
         self.check_plan(plan)?;
-        Ok([self.engine(&Progress::none()).solving_work(plan), cost::steps(plan, &self.recipe)])
+        Ok([self.engine(&Progress::none()).solving_work(plan), cost::steps(plan, &self.resolved.recipe)])
     }
 
     /// Approximate time of a plan on one core, in nanoseconds, without existing solutions: the weight of a
@@ -337,7 +332,7 @@ impl World {
 
     /// Approximate time of a plan's steps on one core, in nanoseconds, without solving.
     pub(crate) fn steps_work(&self, plan: &Plan) -> f64 {
-        cost::steps(plan, &self.recipe)
+        cost::steps(plan, &self.resolved.recipe)
     }
 
     /// A description of the plan for users.
@@ -346,7 +341,7 @@ impl World {
     /// The plan was made for another recipe.
     pub fn explain(&self, plan: &Plan) -> Result<String> {
         self.check_plan(plan)?;
-        Ok(explain(plan, &self.recipe, &self.graph, self.threads()))
+        Ok(explain(plan, &self.resolved.recipe, &self.resolved.graph, self.threads()))
     }
 
     /// The device that computes in place of the processor where exact bits are not needed, if the session has one.
@@ -363,8 +358,7 @@ impl World {
     #[doc(hidden)]
     pub fn may_draft(&self, plan: &Plan) -> Result<bool> {
         self.check_plan(plan)?;
-        Ok(self.session.device.is_some()
-            && may_draft(&self.engine(&Progress::none()).nodes(), &self.session.kept.store, plan))
+        Ok(self.session.device.is_some() && may_draft(&self.resolved, &self.session.kept.store, plan))
     }
 
     /// Number of threads.
@@ -378,7 +372,7 @@ impl World {
     /// # Errors
     /// If there is no such layer.
     pub fn key(&self, layer: &str) -> Result<[u8; 32]> {
-        Ok(link_key(&self.target(layer)?, &self.keys))
+        Ok(link_key(&self.target(layer)?, &self.resolved.keys))
     }
 
     /// The unit of a layer: metres for [`HEIGHT`], otherwise the unit that its node declares, which may be empty.
@@ -388,7 +382,7 @@ impl World {
     pub fn unit(&self, layer: &str) -> Result<&'static str> {
         Ok(match self.target(layer)? {
             _ if layer == HEIGHT => "m",
-            Link::Node(target) => self.recipe.nodes()[target.node.index()].node.unit(target.layer),
+            Link::Node(target) => self.resolved.recipe.nodes()[target.node.index()].node.unit(target.layer),
             _ => "",
         })
     }
@@ -399,7 +393,7 @@ impl World {
     /// If there is no such layer.
     pub fn kind(&self, layer: &str) -> Result<LayerKind> {
         Ok(match self.target(layer)? {
-            Link::Node(target) => self.graph.layer_kind(&self.recipe, target),
+            Link::Node(target) => self.resolved.graph.layer_kind(&self.resolved.recipe, target),
             _ => LayerKind::Height,
         })
     }
@@ -420,7 +414,7 @@ impl World {
         let session = &self.session;
         let kept = if session.is_draft { &session.drafts } else { &session.previews };
         let preview =
-            session.device.as_deref().map(|device| Preview::new(device, kept, &engine.nodes(), session.is_draft));
+            session.device.as_deref().map(|device| Preview::new(device, kept, &self.resolved, session.is_draft));
         Engine { preview: preview.as_ref(), ..engine }.run(plan)
     }
 
@@ -530,7 +524,7 @@ impl World {
         if !(x.is_finite() && y.is_finite()) {
             return fault(format!("({x}, {y}) is not a position: coordinates must be finite"));
         }
-        match self.world_params.size {
+        match self.resolved.world_params.size {
             Some([w, h]) if !((0.0..=w).contains(&x) && (0.0..=h).contains(&y)) => {
                 fault(format!("({x}, {y}) is outside the world, which extends from (0, 0) to ({w}, {h}) metres"))
             }
@@ -549,7 +543,7 @@ impl World {
 
     /// The samples at the world's cell around points that the interpolating cubic reads.
     pub(crate) fn around(&self, x: &[f64], y: &[f64]) -> Window {
-        let cell = self.world_params.cell;
+        let cell = self.resolved.world_params.cell;
         let span = |values: &[f64]| {
             let low = values.iter().copied().fold(f64::INFINITY, f64::min);
             let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -563,7 +557,7 @@ impl World {
 
     /// Whether the target of a layer depends on the altitude.
     pub(crate) fn depends_on_altitude(&self, target: &Link) -> bool {
-        matches!(target, Link::Node(target) if self.graph.in_space[target.node])
+        matches!(target, Link::Node(target) if self.resolved.graph.in_space[target.node])
     }
 
     /// The samples of a target over a window at each altitude, slice by slice, which take `bytes` of memory.
@@ -577,10 +571,7 @@ impl World {
 
     pub(crate) fn engine<'a>(&'a self, progress: &'a Progress) -> Engine<'a> {
         Engine {
-            recipe: &self.recipe,
-            graph: &self.graph,
-            world_params: &self.world_params,
-            keys: &self.keys,
+            resolved: &self.resolved,
             kept: &self.session.kept,
             keeps_grids: true,
             budget: &self.session.budget,
@@ -593,13 +584,15 @@ impl World {
 
     /// The target of a layer's name: an output, otherwise a node or `node.layer`.
     pub(crate) fn target(&self, layer: &str) -> Result<Link> {
-        if let Some(index) = self.recipe.outputs().position(|name| name == layer) {
-            return Ok(self.graph.outputs[index]);
+        if let Some(index) = self.resolved.recipe.outputs().position(|name| name == layer) {
+            return Ok(self.resolved.graph.outputs[index]);
         }
-        Graph::find(&self.recipe, layer).map(Link::Node).map_err(|why| {
+        Graph::find(&self.resolved.recipe, layer).map(Link::Node).map_err(|why| {
             let message = match layer.contains('.') {
                 true => format!("unknown layer `{layer}`: {why}"),
-                false => format!("the recipe has no layer `{layer}`; {}", suggestion(layer, self.recipe.outputs())),
+                false => {
+                    format!("the recipe has no layer `{layer}`; {}", suggestion(layer, self.resolved.recipe.outputs()))
+                }
             };
             Error::new(ErrorKind::Request, message)
         })
@@ -631,7 +624,7 @@ impl World {
                 number(FAR as f64 * window.cell)
             ));
         }
-        if let Some(size) = self.world_params.size {
+        if let Some(size) = self.resolved.world_params.size {
             let (world, _) = world_windows(size, window.cell);
             if !world.contains(window) {
                 return fault(format!(
@@ -654,7 +647,7 @@ impl World {
     #[doc(hidden)]
     pub fn surroundings(&self, window: &Window, reach: usize) -> Window {
         let wide = window.grown(reach);
-        let wide = match self.world_params.size {
+        let wide = match self.resolved.world_params.size {
             Some(size) => wide.intersection(&world_windows(size, window.cell).0),
             None => wide,
         };
@@ -669,7 +662,7 @@ impl World {
 
     /// Rejects a plan of another recipe, whose nodes are not these.
     fn check_plan(&self, plan: &Plan) -> Result<()> {
-        if plan.recipe == self.identity {
+        if plan.recipe == self.resolved.identity {
             return Ok(());
         }
         let message =

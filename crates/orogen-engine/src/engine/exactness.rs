@@ -1,8 +1,8 @@
 //! Which grids of a plan have the bits of the processor, and which must have them.
 
-use super::nodes::Nodes;
 use super::preview::Preview;
 use crate::plan::levels::{self, Serving};
+use crate::plan::resolved::ResolvedRecipe;
 use crate::plan::steps::{Plan, Step, wanted};
 use orogen_ops::ids::{GridId, IndexVec};
 use orogen_ops::op::Op;
@@ -18,14 +18,14 @@ pub struct Exactness<'a> {
 
 impl<'a> Exactness<'a> {
     /// That of a plan before its first step.
-    pub fn of(nodes: &Nodes, preview: Option<&'a Preview<'a>>, plan: &Plan) -> Exactness<'a> {
+    pub fn of(resolved: &ResolvedRecipe, preview: Option<&'a Preview<'a>>, plan: &Plan) -> Exactness<'a> {
         let none = || -> IndexVec<GridId, bool> { vec![false; plan.grids.len()].into() };
         let mut required = none();
         for (_, step) in plan.steps.entries().rev() {
             if step.writes().iter().any(|grid| required[*grid]) {
                 step.reads().into_iter().for_each(|grid| required[grid] = true);
             }
-            exact_inputs(nodes, preview, step).into_iter().for_each(|grid| required[grid] = true);
+            exact_inputs(resolved, preview, step).into_iter().for_each(|grid| required[grid] = true);
         }
         Exactness { preview, required, approximate: none() }
     }
@@ -61,9 +61,9 @@ impl<'a> Exactness<'a> {
 
 /// The grids that must be exact for a levelled op: none if it reads what the device makes anyway. Otherwise its tiles
 /// are exact; if it is made on the device, that begins below the tiled levels.
-fn exact_inputs(nodes: &Nodes, preview: Option<&Preview>, step: &Step) -> Vec<GridId> {
+fn exact_inputs(resolved: &ResolvedRecipe, preview: Option<&Preview>, step: &Step) -> Vec<GridId> {
     let Step::Refine { node, inputs, window, out } = step else { return Vec::new() };
-    let exact = match (preview, nodes.op(*node)) {
+    let exact = match (preview, resolved.op(*node)) {
         (Some(preview), _) if preview.is_read_by(*node) => 0,
         (Some(preview), Some(Op::Levelled(op))) if preview.is_approximate(*node) => {
             1 + levels::tiled(op, &wanted(out), &Serving::of(&op.levels(), window))

@@ -115,7 +115,7 @@ impl Executor for Processor<'_> {
     fn solve(&self, solver: &dyn Solver, tiles: &Tiles, progress: &Progress) -> Result<Computed<Solution>> {
         let engine = self.engine;
         let observer = engine.observer.and_then(|(node, observer)| (node == tiles.order.node).then_some(observer));
-        let context = Context { world_params: engine.world_params, progress, observer };
+        let context = Context { world_params: &engine.resolved.world_params, progress, observer };
         solver.solve(tiles, &context).map(Computed::Done)
     }
 }

@@ -146,7 +146,7 @@ impl Engine<'_> {
     }
 
     fn level_tile(&self, refining: &Refining, level: usize, at: At) -> LevelTile {
-        let (node, planes) = (self.keys[refining.node], refining.op.planes());
+        let (node, planes) = (self.resolved.keys[refining.node], refining.op.planes());
         LevelTile { node, level, planes, window: refining.tile(level, at) }
     }
 }

@@ -5,7 +5,6 @@ mod executor;
 mod grids;
 pub(crate) mod inline;
 mod level_tiles;
-pub(crate) mod nodes;
 mod on_device;
 pub(crate) mod preview;
 mod refine;

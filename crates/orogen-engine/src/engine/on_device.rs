@@ -65,7 +65,7 @@ impl Executor for OnDevice<'_> {
 
     fn layers(&self, refining: &Refining, piece: &Piece) -> Result<Computed<Vec<Option<PlanGrid>>>> {
         let (first, level) = (*piece.levels.start(), *piece.levels.end());
-        let lowered = refining.op.lower_layers(level, refining.wanted, self.engine.world_params).shader();
+        let lowered = refining.op.lower_layers(level, refining.wanted, &self.engine.resolved.world_params).shader();
         let Some(passes) = lowered else { return Ok(Computed::Declined) };
         let windows = levels::windows(refining.op, refining.wanted, first, level, piece.window);
         let mut steps = Vec::new();
@@ -86,8 +86,8 @@ impl Executor for OnDevice<'_> {
     }
 
     fn solve(&self, solver: &dyn Solver, tiles: &Tiles, progress: &Progress) -> Result<Computed<Solution>> {
-        let (nodes, window, node) = (self.engine.nodes(), tiles.order.padded, tiles.order.node);
-        let passes = self.engine.preview.and_then(|preview| preview.passes_of(&nodes, node, solver));
+        let (nodes, window, node) = (self.engine.resolved, tiles.order.padded, tiles.order.node);
+        let passes = self.engine.preview.and_then(|preview| preview.passes_of(nodes, node, solver));
         let Some(passes) = passes else { return Ok(Computed::Declined) };
         let whole = |input: &InputSpec| {
             let name = input.name;
@@ -115,7 +115,7 @@ fn fill(
     }
     let lower = |instruction: &Instruction| {
         let lowering = match instruction {
-            Instruction::Field { node, layer, .. } => engine.field(*node)?.lower(*layer, engine.world_params),
+            Instruction::Field { node, layer, .. } => engine.field(*node)?.lower(*layer, &engine.resolved.world_params),
             Instruction::Solved { node, layer, .. } => {
                 let (solver, solution) = engine.solver(*node, solutions)?;
                 solver.lower_read(*layer, &solution)
@@ -151,7 +151,7 @@ fn apply(
     progress: &Progress,
 ) -> Result<Computed<Vec<PlanGrid>>> {
     let Step::Apply { node, inputs, window, halo, out } = step else { return Ok(Computed::Declined) };
-    let passes = engine.filter(*node)?.lower(window.cell, engine.world_params).shader();
+    let passes = engine.filter(*node)?.lower(window.cell, &engine.resolved.world_params).shader();
     let Some(passes) = passes.filter(|_| !window.is_empty()) else { return Ok(Computed::Declined) };
     let passes = passes.with_planes(Extent::Halo(*halo), inputs.len(), &wanted(out));
     let input = |slot: &GridId| grids.find(*slot).map(Cow::Borrowed).ok_or_else(|| missing("an input of a filter"));

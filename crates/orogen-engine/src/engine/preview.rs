@@ -1,8 +1,8 @@
 //! Previews: what a device computes, kept apart from what the processor computes.
 
-use super::nodes::Nodes;
 use crate::device::Device;
 use crate::plan::domain::Domain;
+use crate::plan::resolved::ResolvedRecipe;
 use crate::plan::steps::{Plan, Solve};
 use crate::recipe::graph::Link;
 use crate::store::kept::Kept;
@@ -29,35 +29,35 @@ pub struct Preview<'a> {
 
 impl<'a> Preview<'a> {
     /// That of these nodes; a draft if the device may make other land.
-    pub fn new(device: &'a dyn Device, kept: &'a Kept, nodes: &Nodes, is_draft: bool) -> Preview<'a> {
-        let none = || -> IndexVec<NodeId, bool> { vec![false; nodes.recipe.nodes().len()].into() };
+    pub fn new(device: &'a dyn Device, kept: &'a Kept, resolved: &ResolvedRecipe, is_draft: bool) -> Preview<'a> {
+        let none = || -> IndexVec<NodeId, bool> { vec![false; resolved.recipe.nodes().len()].into() };
         let (approximate, reads, has_lost) = (none(), none(), AtomicBool::new(false));
         let mut preview = Preview { device, kept, is_draft, approximate, reads, has_lost };
-        for &node in &nodes.graph.order {
+        for &node in &resolved.graph.order {
             let is_approximate = |link: &Link| matches!(link, Link::Node(read) if preview.approximate[read.node]);
-            let mut links = nodes.graph.links[node].iter().chain([&nodes.graph.masks[node]]);
+            let mut links = resolved.graph.links[node].iter().chain([&resolved.graph.masks[node]]);
             preview.reads[node] = links.any(is_approximate);
-            preview.approximate[node] = preview.reads[node] || preview.makes(nodes, node);
+            preview.approximate[node] = preview.reads[node] || preview.makes(resolved, node);
         }
         preview
     }
 
     /// Whether the device computes a solver, or a level of a levelled op.
-    fn makes(&self, nodes: &Nodes, node: NodeId) -> bool {
-        match nodes.op(node) {
-            Some(Op::Solver(solver)) => self.passes_of(nodes, node, solver).is_some(),
+    fn makes(&self, resolved: &ResolvedRecipe, node: NodeId) -> bool {
+        match resolved.op(node) {
+            Some(Op::Solver(solver)) => self.passes_of(resolved, node, solver).is_some(),
             Some(Op::Levelled(op)) => {
-                let given = nodes.given(node);
+                let given = resolved.given(node);
                 let mut levels = 1..op.levels().count;
-                levels.any(|level| op.lower(level, &given, nodes.world_params).shader().is_some())
+                levels.any(|level| op.lower(level, &given, &resolved.world_params).shader().is_some())
             }
             _ => false,
         }
     }
 
     /// How the device solves a solver; `None` if the processor does.
-    pub fn passes_of(&self, nodes: &Nodes, node: NodeId, solver: &dyn Solver) -> Option<Passes> {
-        let passes = lowered(nodes, node, solver)?;
+    pub fn passes_of(&self, resolved: &ResolvedRecipe, node: NodeId, solver: &dyn Solver) -> Option<Passes> {
+        let passes = lowered(resolved, node, solver)?;
         (self.is_draft || !passes.is_chaotic).then_some(passes)
     }
 
@@ -83,16 +83,16 @@ impl<'a> Preview<'a> {
 }
 
 /// How a device solves a solver, also if that is chaotic.
-fn lowered(nodes: &Nodes, node: NodeId, solver: &dyn Solver) -> Option<Passes> {
-    let padded = Domain::of(solver, nodes.world_params).padded;
-    solver.lower(&padded, &nodes.given(node), nodes.world_params).shader()
+fn lowered(resolved: &ResolvedRecipe, node: NodeId, solver: &dyn Solver) -> Option<Passes> {
+    let padded = Domain::of(solver, &resolved.world_params).padded;
+    solver.lower(&padded, &resolved.given(node), &resolved.world_params).shader()
 }
 
 /// Whether a device would make other land than the processor of one of the solvers that a plan has to solve.
-pub fn may_draft(nodes: &Nodes, store: &Store, plan: &Plan) -> bool {
+pub fn may_draft(resolved: &ResolvedRecipe, store: &Store, plan: &Plan) -> bool {
     let is_missing = |order: &&Solve| !store.has(&order.key);
-    plan.solves.iter().filter(is_missing).any(|order| match nodes.op(order.node) {
-        Some(Op::Solver(solver)) => lowered(nodes, order.node, solver).is_some_and(|passes| passes.is_chaotic),
+    plan.solves.iter().filter(is_missing).any(|order| match resolved.op(order.node) {
+        Some(Op::Solver(solver)) => lowered(resolved, order.node, solver).is_some_and(|passes| passes.is_chaotic),
         _ => false,
     })
 }

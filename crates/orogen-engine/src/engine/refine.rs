@@ -56,11 +56,12 @@ impl Engine<'_> {
         window: &Window,
         progress: &Progress,
     ) -> Result<Vec<Option<PlanGrid>>> {
-        let Op::Levelled(op) = self.recipe.nodes()[node.index()].node.op() else {
+        let Op::Levelled(op) = self.resolved.recipe.nodes()[node.index()].node.op() else {
             return Err(internal("a node that is not levelled was to be refined"));
         };
-        let given = self.nodes().given(node);
-        let refining = Refining { op, node, inputs, wanted, world_params: self.world_params, progress, given };
+        let given = self.resolved.given(node);
+        let refining =
+            Refining { op, node, inputs, wanted, world_params: &self.resolved.world_params, progress, given };
         let serving = Serving::of(&op.levels(), window);
         let is_between = serving.samples.cell != window.cell;
         let made = match self.preview.filter(|preview| preview.is_read_by(node)) {
@@ -71,7 +72,7 @@ impl Engine<'_> {
             return Ok(made);
         }
         let between = |(layer, grid): (usize, Option<PlanGrid>)| {
-            let kind = self.graph.layer_kind(self.recipe, LayerRef { node, layer });
+            let kind = self.resolved.graph.layer_kind(&self.resolved.recipe, LayerRef { node, layer });
             let made = |grid: Grid| interpolated(&grid, kind, window, progress).map(PlanGrid::from);
             grid.and_then(PlanGrid::into_memory).map(made).transpose()
         };

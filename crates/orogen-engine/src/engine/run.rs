@@ -2,14 +2,11 @@
 
 use super::exactness::Exactness;
 use super::grids::{Grids, missing};
-use super::nodes::Nodes;
 use super::preview::Preview;
 use crate::device::{Computed, PlanGrid};
 use crate::plan::cost;
-use crate::plan::key::Key;
+use crate::plan::resolved::ResolvedRecipe;
 use crate::plan::steps::{Plan, Step, wanted};
-use crate::recipe::document::Recipe;
-use crate::recipe::graph::Graph;
 use crate::store::grids::{EXPENSIVE, GridKey, GridStore};
 use crate::store::kept::Kept;
 use orogen_grid::error::{Error, ErrorKind, Result};
@@ -19,7 +16,7 @@ use orogen_grid::progress::Progress;
 use orogen_ops::budget::Budget;
 use orogen_ops::ids::{GridId, Id, IndexVec, NodeId, StepId};
 use orogen_ops::interpreter::{Bindings, Evaluators, Interpreter};
-use orogen_ops::op::{Context, Field, Filter, GridInputs, Op, Solution, Solver, StepObserver, WorldParams};
+use orogen_ops::op::{Context, Field, Filter, GridInputs, Op, Solution, Solver, StepObserver};
 use orogen_ops::pool::Pool;
 use orogen_ops::program::{BLOCK_HEIGHT, BLOCK_WIDTH, Program};
 use std::collections::HashMap;
@@ -28,11 +25,7 @@ use std::sync::Arc;
 /// Runs plans of one recipe.
 #[derive(Clone, Copy)]
 pub struct Engine<'a> {
-    pub recipe: &'a Recipe,
-    pub graph: &'a Graph,
-    pub world_params: &'a WorldParams,
-    /// The content keys of the nodes.
-    pub keys: &'a IndexVec<NodeId, Key>,
+    pub resolved: &'a ResolvedRecipe,
     /// What is kept for later requests.
     pub kept: &'a Kept,
     /// Whether grids of expensive filters are kept, and taken from what is kept.
@@ -69,7 +62,7 @@ pub type Solutions = HashMap<NodeId, Arc<Solution>>;
 impl<'a> Engine<'a> {
     /// Computes the output grids of a plan.
     pub fn run(&self, plan: &Plan) -> Result<Vec<Grid>> {
-        let work = cost::steps(plan, self.recipe);
+        let work = cost::steps(plan, &self.resolved.recipe);
         self.progress.expect(work);
         let solutions = self.solve(plan)?;
         let part = self.progress.part(work);
@@ -83,7 +76,7 @@ impl<'a> Engine<'a> {
 
     /// Computes the output grids of a plan, with all its solvers solved.
     pub(super) fn steps(&self, plan: &Plan, solutions: &Solutions, progress: &Progress) -> Result<Vec<Grid>> {
-        progress.expect(cost::steps(plan, self.recipe));
+        progress.expect(cost::steps(plan, &self.resolved.recipe));
         if let Computed::Done(made) = self.steps_once(plan, solutions, progress)? {
             return Ok(made);
         }
@@ -94,15 +87,15 @@ impl<'a> Engine<'a> {
 
     fn steps_once(&self, plan: &Plan, solutions: &Solutions, progress: &Progress) -> Result<Computed<Vec<Grid>>> {
         let mut grids = Grids::before(plan);
-        let mut exactness = Exactness::of(&self.nodes(), self.preview, plan);
+        let mut exactness = Exactness::of(self.resolved, self.preview, plan);
         let needed = self.kept_grids(plan, &mut grids, &mut exactness);
         for (at, step) in plan.steps.entries() {
             progress.check()?;
             if !needed[at] {
-                progress.advance(cost::step(step, plan, self.recipe));
+                progress.advance(cost::step(step, plan, &self.resolved.recipe));
                 continue;
             }
-            let part = progress.part(cost::step(step, plan, self.recipe));
+            let part = progress.part(cost::step(step, plan, &self.resolved.recipe));
             let mut on_device = false;
             let made = self.execute(!exactness.is_required(step), |executor| {
                 on_device = executor.is_device();
@@ -161,13 +154,13 @@ impl<'a> Engine<'a> {
         let (Step::Apply { node, window, out, .. } | Step::Refine { node, window, out, .. }) = step else {
             return None;
         };
-        let is_expensive = match self.recipe.nodes().get(node.index())?.node.op() {
+        let is_expensive = match self.resolved.recipe.nodes().get(node.index())?.node.op() {
             Op::Filter(filter) => filter.cost(window.cell) >= EXPENSIVE,
             Op::Levelled(_) => true,
             _ => false,
         };
         let layers = out.iter().enumerate().filter_map(|(layer, slot)| slot.map(|_| layer));
-        is_expensive.then(|| layers.map(|layer| GridKey::new(self.keys[*node], layer, window)).collect())
+        is_expensive.then(|| layers.map(|layer| GridKey::new(self.resolved.keys[*node], layer, window)).collect())
     }
 
     /// Computes the values of a scattered plan at points, one output after the other.
@@ -181,7 +174,7 @@ impl<'a> Engine<'a> {
     pub fn before_points(&self, plan: &Plan) -> Result<(Solutions, Grids)> {
         let solutions = self.solve(plan)?;
         let mut grids = Grids::before(plan);
-        let mut exactness = Exactness::of(&self.nodes(), self.preview, plan);
+        let mut exactness = Exactness::of(self.resolved, self.preview, plan);
         let needed = self.kept_grids(plan, &mut grids, &mut exactness);
         for (at, step) in plan.steps.entries() {
             if matches!(step, Step::Fill { out, .. } if out.is_empty()) || !needed[at] {
@@ -245,20 +238,15 @@ impl<'a> Engine<'a> {
         self.budget.unused().map(|unused| unused.saturating_sub(self.kept.store.memory()))
     }
 
-    /// The nodes of the recipe.
-    pub fn nodes(&self) -> Nodes<'a> {
-        Nodes { recipe: self.recipe, graph: self.graph, world_params: self.world_params }
-    }
-
     pub(super) fn field(&self, node: NodeId) -> Option<&'a dyn Field> {
-        match self.nodes().op(node)? {
+        match self.resolved.op(node)? {
             Op::Field(field) => Some(field),
             _ => None,
         }
     }
 
     pub(super) fn solver(&self, node: NodeId, solutions: &Solutions) -> Option<(&'a dyn Solver, Arc<Solution>)> {
-        match self.nodes().op(node)? {
+        match self.resolved.op(node)? {
             Op::Solver(solver) => Some((solver, Arc::clone(solutions.get(&node)?))),
             _ => None,
         }
@@ -266,7 +254,7 @@ impl<'a> Engine<'a> {
 
     /// The fields of a program, prepared for many blocks.
     pub(super) fn evaluators(&self, program: &Program) -> Evaluators {
-        Evaluators::new(program, self.world_params, |node| self.field(node))
+        Evaluators::new(program, &self.resolved.world_params, |node| self.field(node))
     }
 
     /// Runs `work` with what the instructions of a program refer to.
@@ -280,7 +268,7 @@ impl<'a> Engine<'a> {
         let fields = |node| self.field(node);
         let solvers = |node| self.solver(node, solutions);
         let grids = |slot| grids.memory(slot);
-        let world_params = self.world_params;
+        let world_params = &self.resolved.world_params;
         work(&Bindings { world_params, evaluators, fields: &fields, solvers: &solvers, grids: &grids })
     }
 
@@ -315,7 +303,7 @@ impl<'a> Engine<'a> {
         }
         // Enough bands for all threads, but not so thin that rows of noise lattices are computed repeatedly.
         let rows = window.height.div_ceil(2 * parallel::threads()).clamp(8, BLOCK_HEIGHT);
-        let (columns, rows) = block_of(cost::program(program, self.recipe), rows);
+        let (columns, rows) = block_of(cost::program(program, &self.resolved.recipe), rows);
         progress.expect(window.height as f64);
         let mut bands: Vec<Vec<&mut [f32]>> = (0..window.height.div_ceil(rows)).map(|_| Vec::new()).collect();
         for grid in &mut out {
@@ -370,7 +358,7 @@ impl<'a> Engine<'a> {
 
     /// The filter of a step.
     pub(super) fn filter(&self, node: NodeId) -> Result<&'a dyn Filter> {
-        match self.recipe.nodes()[node.index()].node.op() {
+        match self.resolved.recipe.nodes()[node.index()].node.op() {
             Op::Filter(filter) => Ok(filter),
             _ => Err(Error::new(ErrorKind::Internal, "a node that is not a filter was to be applied")),
         }
@@ -380,7 +368,7 @@ impl<'a> Engine<'a> {
         let Step::Apply { node, window, out, .. } = step else { return Ok(Vec::new()) };
         let filter = self.filter(*node)?;
         with_inputs(step, grids, |given| {
-            let context = Context { world_params: self.world_params, progress, observer: None };
+            let context = Context { world_params: &self.resolved.world_params, progress, observer: None };
             let mut made: Vec<Option<Grid>> =
                 out.iter().map(|wanted| wanted.map(|_| Grid::filled(*window, 0.0f32))).collect();
             filter.apply(&GridInputs::new(filter.spec(), given), window, &mut made, &context)?;

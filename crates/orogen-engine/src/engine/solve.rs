@@ -109,10 +109,10 @@ impl Engine<'_> {
 
     /// Solves one solver; all solutions that its sources read are in `there`.
     fn solved(&self, order: &Solve, there: &Solutions, progress: &Progress) -> Result<Solution> {
-        let Op::Solver(solver) = self.recipe.nodes()[order.node.index()].node.op() else {
+        let Op::Solver(solver) = self.resolved.recipe.nodes()[order.node.index()].node.op() else {
             return Err(Error::new(ErrorKind::Internal, "a node that is not a solver was to be solved"));
         };
-        let planner = Planner::new(self.recipe, self.graph, self.keys);
+        let planner = Planner::new(self.resolved);
         let [sources, own] = progress.parts([order.source_work, order.own_work]);
         sources.expect(order.source_work);
         let make = |link: Link, tile: Window| {
@@ -120,9 +120,9 @@ impl Engine<'_> {
             // The solution is kept, its sources are not. If it is exact, so are they.
             let preview = self.preview.filter(|preview| preview.is_approximate(order.node));
             let engine = Engine { keeps_grids: false, preview, ..*self };
-            engine.steps(&plan, there, &sources.part(cost::steps(&plan, self.recipe)))
+            engine.steps(&plan, there, &sources.part(cost::steps(&plan, &self.resolved.recipe)))
         };
-        let links = &self.graph.links[order.node];
+        let links = &self.resolved.graph.links[order.node];
         let tiles = Tiles { spec: solver.spec(), links, order, make: &make, scratch: self.kept.store.scratch() };
         let may = !order.on_disk && !self.is_observed(order.node);
         let made = self.execute(may, |executor| executor.solve(solver, &tiles, &own))?;

@@ -8,9 +8,9 @@ use super::allocate::allocate;
 use super::around::samples_around;
 use super::coord_sets::CoordSets;
 use super::request::{GridRequest, Requests};
+use super::resolved::ResolvedRecipe;
 use super::space::in_two_parts;
-use crate::recipe::document::Recipe;
-use crate::recipe::graph::{Graph, LayerRef, Link};
+use crate::recipe::graph::{LayerRef, Link};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
 use orogen_ops::ids::{CoordSetId, Id, NodeId, RegisterId, RequestId};
@@ -25,10 +25,7 @@ const MAX_INSTRUCTIONS: usize = 1 << 20;
 /// What a program is compiled from.
 #[derive(Clone, Copy)]
 pub struct Scope<'a> {
-    /// The recipe.
-    pub recipe: &'a Recipe,
-    /// Its graph.
-    pub graph: &'a Graph,
+    pub resolved: &'a ResolvedRecipe,
     /// Nodes whose result is read from a grid at the block itself.
     pub kept: &'a HashSet<NodeId>,
     /// The node that this program computes, which must not be read from the grid that it fills.
@@ -65,7 +62,7 @@ pub fn compile(scope: Scope, targets: &[Link], window: Window, requests: &mut Re
         outputs.push(compiler.value(link, CoordSetId::BLOCK)?);
     }
     let Compiler { instructions, values, coord_sets, evaluated, .. } = compiler;
-    let reads_altitude = |node: NodeId| scope.recipe.nodes()[node.index()].node.reads_altitude();
+    let reads_altitude = |node: NodeId| scope.resolved.recipe.nodes()[node.index()].node.reads_altitude();
     let (instructions, once) = in_two_parts(instructions, values, coord_sets.count(), reads_altitude);
     let program = allocate(instructions, once, values, coord_sets.count(), outputs)?;
     Ok(Draft { program, evaluated })
@@ -110,7 +107,7 @@ impl<'a> Compiler<'a> {
     }
 
     fn op(&self, node: NodeId) -> Result<Op<'a>> {
-        let named = self.scope.recipe.nodes().get(node.index());
+        let named = self.scope.resolved.recipe.nodes().get(node.index());
         named.map(|named| named.node.op()).ok_or_else(|| internal("a link leads to no node"))
     }
 
@@ -135,7 +132,7 @@ impl<'a> Compiler<'a> {
             return Ok(());
         }
         let node = target.node;
-        let graph = self.scope.graph;
+        let graph = &self.scope.resolved.graph;
         let links = &graph.links[node];
         let mut here: Vec<Link> = Vec::new();
         match self.op(node)? {
@@ -172,14 +169,14 @@ impl<'a> Compiler<'a> {
     /// The layer that replaces a node's result where its mask is 0: its first input. Layers other than the first have
     /// none.
     fn masked_source(&self, target: LayerRef) -> Option<Link> {
-        let first = self.scope.graph.links[target.node].first().copied();
+        let first = self.scope.resolved.graph.links[target.node].first().copied();
         first.filter(|link| target.layer == 0 && *link != Link::None)
     }
 
     /// Makes the coordinate set at which a field with a coordinate map reads its source.
     fn enter(&mut self, target: LayerRef, coords: CoordSetId, stack: &mut Vec<Work>) -> Result<()> {
         let map = self.field(target.node)?.coord_map().ok_or_else(|| internal("a field has no coordinate map"))?;
-        let links = &self.scope.graph.links[target.node];
+        let links = &self.scope.resolved.graph.links[target.node];
         let source = match map {
             CoordMap::Displaced { source, .. } | CoordMap::Mapped { source, .. } => input(links, source)?,
         };
@@ -210,7 +207,7 @@ impl<'a> Compiler<'a> {
     fn surround(&mut self, target: LayerRef, coords: CoordSetId, stack: &mut Vec<Work>) -> Result<()> {
         let stencil = self.field(target.node)?.stencil().ok_or_else(|| internal("a field has no stencil"))?;
         let around = self.around(&stencil, coords);
-        if let Link::Node(source) = input(&self.scope.graph.links[target.node], stencil.source)? {
+        if let Link::Node(source) = input(&self.scope.resolved.graph.links[target.node], stencil.source)? {
             stack.extend(around.map(|to| Work::Visit(source, to)));
         }
         Ok(())
@@ -224,7 +221,7 @@ impl<'a> Compiler<'a> {
         if self.made.contains_key(&(target, coords)) {
             return Ok(());
         }
-        let Scope { recipe, graph, .. } = self.scope;
+        let ResolvedRecipe { recipe, graph, .. } = self.scope.resolved;
         let node = target.node;
         let kind = graph.layer_kind(recipe, target);
         if self.is_kept(node, coords) {
@@ -294,14 +291,14 @@ impl<'a> Compiler<'a> {
 
     /// The cell at which the source of a field is computed that interpolates it, for the coordinates.
     fn source_cell(&self, field: &dyn Field, coords: CoordSetId) -> Option<f64> {
-        field.source_cell(self.coord_sets.window(coords).cell, self.scope.recipe.world.cell)
+        field.source_cell(self.coord_sets.window(coords).cell, self.scope.resolved.recipe.world.cell)
     }
 
     /// Interpolates a source between its samples with this cell.
     fn interpolate(&mut self, source: &Link, cell: f64, coords: CoordSetId, kind: LayerKind) -> Result<RegisterId> {
         let Link::Node(target) = source else { return self.value(source, coords) };
         let window = samples_around(&self.coord_sets.window(coords), cell);
-        Ok(self.request(GridRequest::of(self.scope.recipe, self.scope.graph, *target, window), coords, kind))
+        Ok(self.request(GridRequest::of(self.scope.resolved, *target, window), coords, kind))
     }
 
     fn request(&mut self, request: GridRequest, coords: CoordSetId, kind: LayerKind) -> RegisterId {

@@ -19,6 +19,7 @@ pub(crate) mod parts;
 #[doc(hidden)]
 pub mod planner;
 mod request;
+pub(crate) mod resolved;
 mod schedule;
 mod solves;
 mod space;

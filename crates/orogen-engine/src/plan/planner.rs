@@ -11,16 +11,13 @@
 //! | `memory` | a plan, the memory allowed | the same plan with solvers on disk |
 
 use super::assemble::assemble;
-use super::key::{Key, identity};
 use super::memory;
+use super::resolved::ResolvedRecipe;
 use super::schedule::{Asked, schedule};
 use super::steps::Plan;
-use crate::recipe::document::Recipe;
-use crate::recipe::graph::{Graph, Link};
+use crate::recipe::graph::Link;
 use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
-use orogen_ops::ids::{IndexVec, NodeId};
-use orogen_ops::op::WorldParams;
 use std::collections::HashSet;
 
 /// Sides of solvers' tiles, in order of preference: large enough to keep the cost of halos small, small enough for any
@@ -29,10 +26,7 @@ pub const TILES: [usize; 3] = [1024, 512, 256];
 
 /// A planner for one recipe.
 pub struct Planner<'a> {
-    pub(super) recipe: &'a Recipe,
-    pub(super) graph: &'a Graph,
-    pub(super) world_params: WorldParams,
-    pub(super) keys: &'a IndexVec<NodeId, Key>,
+    pub(super) resolved: &'a ResolvedRecipe,
     /// Side of the tiles in which solvers' sources are made, in samples.
     pub(super) side: usize,
     /// Number of threads that the plan will run on.
@@ -40,10 +34,10 @@ pub struct Planner<'a> {
 }
 
 impl<'a> Planner<'a> {
-    /// A planner for a resolved recipe and the content keys of its nodes.
+    /// A planner for a recipe.
     #[must_use]
-    pub fn new(recipe: &'a Recipe, graph: &'a Graph, keys: &'a IndexVec<NodeId, Key>) -> Planner<'a> {
-        Planner { recipe, graph, world_params: recipe.world.world_params(), keys, side: TILES[0], threads: 1 }
+    pub fn new(resolved: &'a ResolvedRecipe) -> Planner<'a> {
+        Planner { resolved, side: TILES[0], threads: 1 }
     }
 
     /// A plan for layers over a window that needs at most `allowed` bytes on `threads` threads, if possible: large
@@ -63,16 +57,16 @@ impl<'a> Planner<'a> {
         let mut planner = Planner { threads, ..self };
         let mut smallest = planner.plan(targets, window, scattered)?;
         let Some(allowed) = allowed else { return Ok(smallest) };
-        if memory::fit(&mut smallest, planner.recipe, threads, allowed) || smallest.solves.is_empty() {
+        if memory::fit(&mut smallest, &planner.resolved.recipe, threads, allowed) || smallest.solves.is_empty() {
             return Ok(smallest);
         }
         for side in TILES.into_iter().skip(1) {
             planner.side = side;
             let mut plan = planner.plan(targets, window, scattered)?;
-            if memory::fit(&mut plan, planner.recipe, threads, allowed) {
+            if memory::fit(&mut plan, &planner.resolved.recipe, threads, allowed) {
                 return Ok(plan);
             }
-            let needed = |plan: &Plan| memory::needed(plan, planner.recipe, threads);
+            let needed = |plan: &Plan| memory::needed(plan, &planner.resolved.recipe, threads);
             if needed(&plan) < needed(&smallest) {
                 smallest = plan;
             }
@@ -86,7 +80,7 @@ impl<'a> Planner<'a> {
     /// If nested warps lead to more evaluations than can be planned.
     pub fn plan(&self, targets: &[Link], window: Window, scattered: bool) -> Result<Plan> {
         let mut plan = self.steps(&Asked { targets, window, scattered })?;
-        plan.recipe = identity(self.keys);
+        plan.recipe = self.resolved.identity;
         plan.solves = self.solves(plan.solvers_read())?;
         Ok(plan)
     }
@@ -101,16 +95,16 @@ impl<'a> Planner<'a> {
     /// then expensive nodes that several programs compute are kept.
     fn steps(&self, asked: &Asked) -> Result<Plan> {
         let mut kept = HashSet::new();
-        let mut steps = schedule(self.recipe, self.graph, &kept, asked)?;
+        let mut steps = schedule(self.resolved, &kept, asked)?;
         let more = steps.evaluations.of_grids();
         if !more.is_empty() {
             kept.extend(more);
-            steps = schedule(self.recipe, self.graph, &kept, asked)?;
+            steps = schedule(self.resolved, &kept, asked)?;
         }
-        let more = steps.evaluations.of_expensive_fields(self.recipe);
+        let more = steps.evaluations.of_expensive_fields(&self.resolved.recipe);
         if !more.is_empty() {
             kept.extend(more);
-            steps = schedule(self.recipe, self.graph, &kept, asked)?;
+            steps = schedule(self.resolved, &kept, asked)?;
         }
         assemble(steps, asked)
     }
@@ -119,13 +113,12 @@ impl<'a> Planner<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::key::keys;
-    use crate::recipe::document::WorldSpec;
-    use crate::recipe::graph::LayerRef;
+    use crate::recipe::document::{Recipe, WorldSpec};
+    use crate::recipe::graph::{Graph, LayerRef};
     use orogen_grid::error::ErrorKind;
     use orogen_ops::field::Fbm;
     use orogen_ops::filter::Blur;
-    use orogen_ops::ids::Id;
+    use orogen_ops::ids::{Id, NodeId};
 
     #[test]
     fn broken_invariants_are_internal_errors() {
@@ -135,8 +128,8 @@ mod tests {
         let graph = Graph::resolve(&recipe).unwrap();
         let window = Window::new(16, 16, 10.0);
         let planned = |graph: &Graph, target: Link| {
-            let keys = keys(&recipe, graph);
-            Planner::new(&recipe, graph, &keys).plan(&[target], window, false)
+            let resolved = ResolvedRecipe::new(recipe.clone(), graph.clone());
+            Planner::new(&resolved).plan(&[target], window, false)
         };
         let soft = NodeId::new(1);
         assert!(planned(&graph, Link::Node(LayerRef { node: soft, layer: 0 })).is_ok());

@@ -1,7 +1,7 @@
 //! What programs and filters ask for: grids that earlier steps must make.
 
-use crate::recipe::document::Recipe;
-use crate::recipe::graph::{Graph, LayerRef, Link};
+use super::resolved::ResolvedRecipe;
+use crate::recipe::graph::{LayerRef, Link};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
 use orogen_ops::ids::{GridId, Id, IndexVec, NodeId, RequestId};
@@ -21,9 +21,9 @@ pub struct GridRequest {
 
 impl GridRequest {
     /// A request for a layer as others read it: a filter or a levelled op without a mask makes that itself.
-    pub fn of(recipe: &Recipe, graph: &Graph, target: LayerRef, window: Window) -> GridRequest {
-        let op = recipe.nodes()[target.node.index()].node.op();
-        let raw = matches!(op, Op::Filter(_) | Op::Levelled(_)) && graph.masks[target.node] == Link::None;
+    pub fn of(resolved: &ResolvedRecipe, target: LayerRef, window: Window) -> GridRequest {
+        let op = resolved.recipe.nodes()[target.node.index()].node.op();
+        let raw = matches!(op, Op::Filter(_) | Op::Levelled(_)) && resolved.graph.masks[target.node] == Link::None;
         GridRequest { target, raw, window }
     }
 }

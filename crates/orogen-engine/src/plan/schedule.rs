@@ -7,8 +7,8 @@ use super::keep::Evaluations;
 use super::levels::{self, Serving};
 use super::request::{GridRequest, Requests};
 use super::steps::{Step, wanted};
-use crate::recipe::document::Recipe;
-use crate::recipe::graph::{Graph, LayerRef, Link};
+use crate::plan::resolved::ResolvedRecipe;
+use crate::recipe::graph::{LayerRef, Link};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
 use orogen_ops::ids::{GridId, Id, IndexVec, NodeId, RequestId};
@@ -49,14 +49,14 @@ pub struct Schedule {
 ///
 /// # Errors
 /// If nested warps lead to more evaluations than can be planned.
-pub fn schedule(recipe: &Recipe, graph: &Graph, kept: &HashSet<NodeId>, asked: &Asked) -> Result<Schedule> {
+pub fn schedule(resolved: &ResolvedRecipe, kept: &HashSet<NodeId>, asked: &Asked) -> Result<Schedule> {
     let nothing_kept = HashSet::new();
     // Scattered points are not on a lattice: nothing is kept for them, and filters are interpolated.
-    let first = Scope { recipe, graph, kept: if asked.scattered { &nothing_kept } else { kept }, own: None };
-    let mut scheduler = Scheduler { recipe, graph, kept, schedule: Schedule::default() };
+    let first = Scope { resolved, kept: if asked.scattered { &nothing_kept } else { kept }, own: None };
+    let mut scheduler = Scheduler { resolved, kept, schedule: Schedule::default() };
     scheduler.answer(first, asked)?;
     // In reverse order: all readers of a node have been planned before the node.
-    for &node in graph.order.iter().rev() {
+    for &node in resolved.graph.order.iter().rev() {
         scheduler.make_results(node)?;
         scheduler.make_raw(node)?;
     }
@@ -71,8 +71,7 @@ struct Constant {
 }
 
 struct Scheduler<'a> {
-    recipe: &'a Recipe,
-    graph: &'a Graph,
+    resolved: &'a ResolvedRecipe,
     kept: &'a HashSet<NodeId>,
     schedule: Schedule,
 }
@@ -119,7 +118,7 @@ impl Scheduler<'_> {
                 let grid = self.grid(cluster.window, node);
                 cluster.serves.iter().for_each(|id| self.schedule.requests.serve(*id, grid));
                 self.schedule.evaluations.fill(node);
-                let scope = Scope { recipe: self.recipe, graph: self.graph, kept: self.kept, own: Some(node) };
+                let scope = Scope { resolved: self.resolved, kept: self.kept, own: Some(node) };
                 self.fill(scope, &[Link::Node(LayerRef { node, layer })], cluster.window, vec![grid])?;
             }
         }
@@ -128,7 +127,7 @@ impl Scheduler<'_> {
 
     /// Serves the requests for the own layers of a filter or a levelled op: one step for all of them.
     fn make_raw(&mut self, node: NodeId) -> Result<()> {
-        let op = self.recipe.nodes()[node.index()].node.op();
+        let op = self.resolved.recipe.nodes()[node.index()].node.op();
         let requests = &self.schedule.requests;
         for cluster in clusters(requests, requests.of(node, true)) {
             let window = cluster.window;
@@ -145,11 +144,11 @@ impl Scheduler<'_> {
     /// The grids of the layers that requests read, which serve them.
     fn layers(&mut self, node: NodeId, cluster: &Cluster) -> Result<Vec<Option<GridId>>> {
         let window = cluster.window;
-        let mut out: Vec<Option<GridId>> = vec![None; self.recipe.nodes()[node.index()].node.layers().len()];
+        let mut out: Vec<Option<GridId>> = vec![None; self.resolved.recipe.nodes()[node.index()].node.layers().len()];
         for &id in &cluster.serves {
             let layer = self.schedule.requests.get(id).target.layer;
             let Some(slot) = out.get_mut(layer) else {
-                let op = self.recipe.nodes()[node.index()].node.spec().locality.name();
+                let op = self.resolved.recipe.nodes()[node.index()].node.spec().locality.name();
                 return Err(Error::new(ErrorKind::Internal, format!("a {op} has no layer {layer}")));
             };
             let grid = match *slot {
@@ -170,9 +169,13 @@ impl Scheduler<'_> {
 
     /// A step that makes layers of a levelled op, with its inputs at each level.
     fn refine(&mut self, node: NodeId, op: &dyn Levelled, window: Window, out: Vec<Option<GridId>>) -> Result<()> {
-        Serving::of(&op.levels(), &window).check(&op.levels(), &window, &self.recipe.nodes()[node.index()].name)?;
+        Serving::of(&op.levels(), &window).check(
+            &op.levels(),
+            &window,
+            &self.resolved.recipe.nodes()[node.index()].name,
+        )?;
         let (mut inputs, mut constants) = (Vec::new(), Vec::new());
-        if self.graph.links[node].iter().any(|link| *link != Link::None) {
+        if self.resolved.graph.links[node].iter().any(|link| *link != Link::None) {
             let windows = levels::covering(op, &wanted(&out), &window);
             for (level, window) in windows.into_iter().enumerate().take(op.levels_with_inputs()) {
                 let (given, more) = self.inputs(node, window.grown(op.source_halo(level)));
@@ -187,7 +190,7 @@ impl Scheduler<'_> {
     /// The requests for a node's inputs over a window. A constant input becomes a grid with that value, filled by a
     /// step right before.
     fn inputs(&mut self, node: NodeId, window: Window) -> (Vec<Option<RequestId>>, Vec<Constant>) {
-        let graph = self.graph;
+        let graph = &self.resolved.graph;
         let mut inputs: Vec<Option<RequestId>> = Vec::new();
         let mut constants = Vec::new();
         for link in &graph.links[node] {
@@ -199,9 +202,7 @@ impl Scheduler<'_> {
                     constants.push(Constant { link: *link, window, grid });
                     Some(self.schedule.requests.add_served(request, grid))
                 }
-                Link::Node(target) => {
-                    Some(self.schedule.requests.add(GridRequest::of(self.recipe, graph, *target, window)))
-                }
+                Link::Node(target) => Some(self.schedule.requests.add(GridRequest::of(self.resolved, *target, window))),
             });
         }
         (inputs, constants)
@@ -209,7 +210,7 @@ impl Scheduler<'_> {
 
     fn fill_constant(&mut self, Constant { link, window, grid }: Constant) -> Result<()> {
         let none = HashSet::new();
-        let scope = Scope { recipe: self.recipe, graph: self.graph, kept: &none, own: None };
+        let scope = Scope { resolved: self.resolved, kept: &none, own: None };
         self.fill(scope, &[link], window, vec![grid])
     }
 }

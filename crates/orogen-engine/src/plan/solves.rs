@@ -14,8 +14,8 @@ use std::collections::{BTreeMap, BTreeSet};
 impl Planner<'_> {
     /// The solvers that are read and those that their sources read, sources first.
     pub(super) fn solves(&self, read: BTreeSet<NodeId>) -> Result<Vec<Solve>> {
-        let mut rank: IndexVec<NodeId, usize> = vec![0; self.recipe.nodes().len()].into();
-        self.graph.order.iter().enumerate().for_each(|(position, &node)| rank[node] = position);
+        let mut rank: IndexVec<NodeId, usize> = vec![0; self.resolved.recipe.nodes().len()].into();
+        self.resolved.graph.order.iter().enumerate().for_each(|(position, &node)| rank[node] = position);
         let mut solves: BTreeMap<usize, Solve> = BTreeMap::new();
         let mut waiting: Vec<NodeId> = read.into_iter().collect();
         while let Some(node) = waiting.pop() {
@@ -30,25 +30,25 @@ impl Planner<'_> {
     }
 
     fn solve(&self, node: NodeId) -> Result<Solve> {
-        let Op::Solver(solver) = self.recipe.nodes()[node.index()].node.op() else {
+        let Op::Solver(solver) = self.resolved.recipe.nodes()[node.index()].node.op() else {
             return Err(Error::new(ErrorKind::Internal, "a node that is not a solver was to be solved"));
         };
-        let Domain { window: domain, padded } = Domain::of(solver, &self.world_params);
+        let Domain { window: domain, padded } = Domain::of(solver, &self.resolved.world_params);
         let window = Window { width: padded.width.min(self.side), height: padded.height.min(self.side), ..padded };
         let share = padded.width as f64 * padded.height as f64 / window.len().max(1) as f64;
         let (mut tile, mut reads, mut samples) = (0, BTreeSet::new(), 0);
         let own_work = solver.cost() * padded.width as f64 * padded.height as f64;
         let mut source_work = 0.0;
-        for link in self.graph.links[node].iter().filter(|link| **link != Link::None) {
+        for link in self.resolved.graph.links[node].iter().filter(|link| **link != Link::None) {
             let plan = self.source(*link, window)?;
-            tile = tile.max(memory::steps(&plan, self.recipe, self.threads));
+            tile = tile.max(memory::steps(&plan, &self.resolved.recipe, self.threads));
             samples += (plan.samples() as f64 * share) as u64;
-            source_work += cost::steps(&plan, self.recipe) * share;
+            source_work += cost::steps(&plan, &self.resolved.recipe) * share;
             reads.append(&mut plan.solvers_read());
         }
         Ok(Solve {
             node,
-            key: self.keys[node],
+            key: self.resolved.keys[node],
             domain,
             padded,
             rasters: solver.rasters(),
