@@ -143,7 +143,10 @@ impl Write for Piped {
 pub fn check_png(out: &Path, what: &str) -> Result<(), Failure> {
     match is_stdout(out) || out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
         true => Ok(()),
-        false => Err(Failure::Usage(format!("{what} is written as PNG; use the extension .png"))),
+        false => {
+            let message = format!("{what} is written as PNG; use the extension .png instead of {}", out.display());
+            Err(Failure::Usage(message))
+        }
     }
 }
 

@@ -14,7 +14,6 @@
 //! ```
 #![forbid(unsafe_code)]
 
-pub mod bands;
 pub mod chunks;
 #[doc(hidden)]
 pub mod device;
@@ -23,16 +22,10 @@ pub mod device_choice;
 mod engine;
 pub mod growth;
 pub mod laws;
-pub mod objects;
-mod open;
 pub mod plan;
 pub mod recipe;
 pub mod registry;
-pub mod sampler;
-pub mod session;
 pub mod store;
-pub mod tiles;
-pub mod volume;
 pub mod world;
 
 #[doc(inline)]
@@ -41,23 +34,20 @@ pub use orogen_ops::{
 };
 #[doc(hidden)]
 pub use orogen_ops::{ids, large, lower};
+#[doc(hidden)]
+pub use world::{bands, objects, sampler, session, tiles, volume};
 
 pub use budget::Budget;
 pub use chunks::id::ChunkId;
 pub use chunks::lod::LodConfig;
 pub use chunks::stream::{ChunkStep, Chunks};
-pub use objects::Object;
-pub use open::open;
 pub use orogen_grid::{Error, ErrorKind, Grid, Progress, Result, Window};
 pub use orogen_io::raster::Raster;
 pub use orogen_noise::Points;
 pub use recipe::document::{Recipe, WorldSpec};
 pub use recipe::presets;
 pub use registry::Registry;
-pub use sampler::Sampler;
-pub use session::{Options, Session};
 pub use store::folder::FolderStore;
 pub use store::memory::MemoryStore;
 pub use store::solution_store::SolutionStore;
-pub use volume::Volume;
-pub use world::World;
+pub use world::{Object, Options, Sampler, Session, Volume, World, open};

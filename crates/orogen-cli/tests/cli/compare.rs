@@ -28,7 +28,7 @@ fn what_cannot_be_drawn_is_a_sentence_and_leaves_nothing() {
         (&["--size", "5000"], 2, "120..=4000"),
         (&["--seed", "-1"], 2, "a seed must be a whole number"),
         (&["-o", "a.npy"], 2, "the extension .png"),
-        (&["-o", "a.pgn"], 2, "did you mean .png?"),
+        (&["-o", "a.pgn"], 2, "the extension .png instead of a.pgn"),
         (&["-o", "none/a.png"], 1, "the folder does not exist"),
         (&["--memory", "1MB"], 1, "of memory, and 977 KiB is allowed"),
         (&["perlin"], 2, "unexpected argument"),

@@ -3,8 +3,8 @@
 use super::law::{Law, Verdict, Violation};
 use super::recipes::{SIDES, full};
 use crate::recipe::document::Recipe;
-use crate::session::Options;
 use crate::world::World;
+use crate::world::session::Options;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;

@@ -1,7 +1,7 @@
 //! Bands of whole rows of a large window, for writing files.
 
-use crate::tiles::{Tiles, Tiling};
 use crate::world::World;
+use crate::world::tiles::{Tiles, Tiling};
 use orogen_grid::analysis::finite::FiniteCount;
 use orogen_grid::error::{ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
