@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use orogen::Progress;
-use orogen::recipe::class::document::CLASS;
+use orogen::recipe::outputs::CLASS;
 use orogen::tilemap::TilemapJob;
 use orogen::tilemap::files::SIDE;
 use orogen::world::HEIGHT;

@@ -2,8 +2,9 @@
 
 pub use super::text::LONGEST_TEXT;
 
-use crate::recipe::class::document::{CLASS, ExpandedClass, TerrainClass};
+use crate::recipe::class::document::{ExpandedClass, TerrainClass};
 use crate::recipe::class::list::CLASSES;
+use crate::recipe::outputs::CLASS;
 use crate::recipe::parameters::{Formula, Parameter, Parameters, Step};
 use crate::recipe::scatter::document::{ExpandedScatter, Scatter};
 use crate::recipe::scatter::list::SCATTERS;

@@ -16,6 +16,8 @@ mod json;
 #[doc(hidden)]
 pub mod network;
 #[doc(hidden)]
+pub mod outputs;
+#[doc(hidden)]
 pub mod parameters;
 mod parse;
 pub mod presets;

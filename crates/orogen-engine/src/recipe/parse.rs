@@ -10,7 +10,7 @@ use super::surface::list::SURFACES;
 use super::table::list::List;
 use super::table::reader::ValueReader;
 use super::text::{LONGEST_TEXT, Text, text_of, too_long};
-use super::{class, json, scatter, surface, toml};
+use super::{class, json, outputs, scatter, surface, toml};
 use crate::registry::Registry;
 use orogen_grid::error::{Diagnostic, Error, ErrorKind, Result};
 use orogen_grid::words::{list, respelled, suggestion};
@@ -282,9 +282,9 @@ impl Walk<'_> {
         diagnostics.into_iter().for_each(|(span, message)| self.complain(&span, message));
         if let Some((key, _)) = top.iter().find(|(key, _)| key.value == CLASSES.key) {
             let has = |name: &str| recipe.outputs().any(|output| output == name);
-            if has(class::document::CLASS) {
+            if has(outputs::CLASS) {
                 self.complain(&key.span, class::expand::BOTH);
-            } else if !has(class::document::HEIGHT) {
+            } else if !has(outputs::HEIGHT) {
                 self.complain(&key.span, class::expand::NO_HEIGHT);
             }
         }

@@ -1,7 +1,7 @@
 //! Bands of whole rows of a large window, for writing files.
 
-use crate::world::World;
-use crate::world::tiles::{Tiles, Tiling};
+use super::tiles::{Tiles, Tiling};
+use super::world::World;
 use orogen_grid::analysis::finite::FiniteCount;
 use orogen_grid::error::{ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};

@@ -18,6 +18,7 @@ mod windows;
 #[allow(clippy::module_inception, reason = "the room is about worlds, the file about the one")]
 mod world;
 
+pub use crate::recipe::outputs::{HEIGHT, LAKES};
 pub use bands::Bands;
 pub use objects::Object;
 pub use open::open;
@@ -26,4 +27,4 @@ pub use session::{Options, Session};
 pub use tiles::{Tile, Tiles, Tiling};
 pub use volume::Volume;
 pub use windows::{CELLS, check_cell};
-pub use world::{HEIGHT, LAKES, World};
+pub use world::World;

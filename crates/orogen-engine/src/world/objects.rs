@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
+use super::world::World;
+use crate::recipe::outputs::{HEIGHT, LAKES};
 use crate::recipe::scatter::document::{ExpandedScatter, InWater, Scatter, Turn};
-use crate::world::{HEIGHT, LAKES, World};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
 use orogen_grid::placement::{NearPoints, Placement, PlacementWater, height, mean};

@@ -1,7 +1,7 @@
 //! Opening worlds by name.
 
+use super::world::World;
 use crate::recipe::source::RecipeSource;
-use crate::world::World;
 use orogen_grid::error::Result;
 use orogen_io::dem::prepared::DEFAULT_MEMORY;
 use std::path::Path;

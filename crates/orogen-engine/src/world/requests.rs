@@ -1,12 +1,13 @@
 //! Requests of a world: plans are admitted and run.
 
-use super::world::{HEIGHT, World};
+use super::world::World;
 use crate::engine::inline::PreparedProgram;
 use crate::engine::preview::Preview;
 use crate::engine::run::Engine;
 use crate::plan::key::Key;
 use crate::plan::steps::Plan;
 use crate::recipe::graph::Link;
+use crate::recipe::outputs::HEIGHT;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;

@@ -1,8 +1,8 @@
 //! A layer of a world prepared for many requests.
 
+use super::volume::{self, Volume};
+use super::world::World;
 use crate::engine::inline::PreparedProgram;
-use crate::world::World;
-use crate::world::volume::{self, Volume};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;

@@ -1,7 +1,7 @@
 //! Streams of tiles of a large window.
 
+use super::world::World;
 use crate::plan::steps::Plan;
-use crate::world::World;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;

@@ -1,6 +1,6 @@
 //! Blocks of samples in space.
 
-use crate::world::World;
+use super::world::World;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
 use std::ops::Index;

@@ -12,6 +12,7 @@ use crate::plan::steps::Plan;
 use crate::plan::{cost, memory, parts};
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::{Graph, LayerRef, Link};
+use crate::recipe::outputs::HEIGHT;
 use crate::recipe::{class, scatter};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
@@ -65,12 +66,6 @@ impl Session {
         World::in_session(recipe, self.clone())
     }
 }
-
-/// The output from which maps and meshes are made.
-pub const HEIGHT: &str = "height";
-
-/// The output with the depth of lakes, in metres, where a recipe has one.
-pub const LAKES: &str = "lakes";
 
 impl World {
     /// Opens a recipe.

@@ -4,8 +4,8 @@ use std::io;
 
 use super::format::refuse;
 use orogen_engine::recipe::biomes::biomes;
-use orogen_engine::recipe::class::document::CLASS;
 use orogen_engine::recipe::document::Recipe;
+use orogen_engine::recipe::outputs::CLASS;
 use orogen_engine::world::World;
 use orogen_grid::climate::biomes::class::WATER;
 use orogen_grid::grid::{Grid, Window};

@@ -2,7 +2,7 @@
 
 use orogen_engine::World;
 use orogen_engine::bands::Bands;
-use orogen_engine::recipe::class::document::CLASS;
+use orogen_engine::recipe::outputs::CLASS;
 use orogen_grid::analysis::finite::FiniteCount;
 use orogen_grid::autotile::classes::Classes;
 use orogen_grid::error::{Error, ErrorKind, Result};

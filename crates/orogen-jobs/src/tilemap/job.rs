@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use orogen_engine::recipe::class::document::CLASS;
 use orogen_engine::recipe::class::named::number;
 use orogen_engine::recipe::class::standard::classify;
+use orogen_engine::recipe::outputs::CLASS;
 use orogen_engine::{Recipe, World};
 use orogen_grid::autotile::clean::HALO;
 use orogen_grid::autotile::drawable::Drawable;

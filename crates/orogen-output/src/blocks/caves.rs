@@ -6,7 +6,7 @@ use super::density::DENSITY;
 use orogen_engine::Recipe;
 use orogen_engine::field::{Altitude, Expr, Fbm, Resample};
 use orogen_engine::filter::Distance;
-use orogen_engine::recipe::class::document::CLASS;
+use orogen_engine::recipe::outputs::CLASS;
 use orogen_engine::world::{HEIGHT, LAKES};
 use orogen_grid::error::{Error, ErrorKind, Result};
 

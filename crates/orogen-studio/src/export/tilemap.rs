@@ -1,6 +1,6 @@
 //! A map of tiles.
 
-use orogen::recipe::class::document::CLASS;
+use orogen::recipe::outputs::CLASS;
 use orogen::tilemap::TilemapJob;
 use orogen::tilemap::files::SIDE;
 use orogen::world::HEIGHT;

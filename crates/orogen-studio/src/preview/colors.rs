@@ -7,7 +7,7 @@ use orogen::io::palette::{Palette, Rgb, Tint, named};
 use orogen::layer::LayerKind;
 use orogen::output::map::Painter;
 use orogen::recipe::Recipe;
-use orogen::recipe::class::document::CLASS;
+use orogen::recipe::outputs::CLASS;
 use orogen::world::HEIGHT;
 
 use super::coloring::Coloring;

@@ -4,7 +4,7 @@ use orogen::export::{biome_cover, sheet_cover};
 use orogen::io::palette::color::Encoder;
 use orogen::io::palette::{Rgb, Tint};
 use orogen::recipe::Recipe;
-use orogen::recipe::class::document::CLASS;
+use orogen::recipe::outputs::CLASS;
 use orogen::{Error, ErrorKind, Grid, Progress, Result, World};
 
 use super::coloring::Coloring;

@@ -1,15 +1,10 @@
 //! A terrain class in memory.
 
 use crate::recipe::condition::part::rename_layer;
+use crate::recipe::outputs::HEIGHT;
 use orogen_io::palette::color::{Rgb, rgb};
 use orogen_ops::declare::Input;
 use std::ops::Range;
-
-/// The output with the number of each sample's class, from 0.
-pub const CLASS: &str = "class";
-
-/// The name of the heights in a [`Share`]: that of the output.
-pub const HEIGHT: &str = "height";
 
 /// Maximum number of classes of a recipe.
 pub const MAX_CLASSES: usize = 255;

@@ -1,8 +1,9 @@
 //! Expansion of terrain classes to nodes: the output [`CLASS`] is computed by ordinary ops.
 
-use super::document::{CLASS, End, ExpandedClass, HEIGHT, Share, TerrainClass};
+use super::document::{End, ExpandedClass, Share, TerrainClass};
 use crate::recipe::condition::expand::ShareNodes;
 use crate::recipe::document::Recipe;
+use crate::recipe::outputs::{CLASS, HEIGHT};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_ops::declare::Input;
 use orogen_ops::field::{Expr, Label};

@@ -1,7 +1,8 @@
 //! The list of `[[class]]` tables.
 
-use super::document::{End, HEIGHT, MAX_CLASSES, Share, TerrainClass};
+use super::document::{End, MAX_CLASSES, Share, TerrainClass};
 use crate::recipe::condition::part::{is_limit, refuse_limit};
+use crate::recipe::outputs::HEIGHT;
 use crate::recipe::table::key::{Key, OfKey};
 use crate::recipe::table::list::List;
 use crate::recipe::table::reader::{Entry, Table, ValueReader};

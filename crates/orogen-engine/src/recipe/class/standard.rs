@@ -10,9 +10,8 @@
 //! | 3 forest | in patches of about eight cells below 1900 m above the sea |
 //! | 2 grass | elsewhere |
 
-use crate::recipe::class::document::CLASS;
 use crate::recipe::document::Recipe;
-use crate::world::{HEIGHT, LAKES};
+use crate::recipe::outputs::{CLASS, HEIGHT, LAKES};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::words::number;
 use orogen_ops::field::{Expr, Fbm};

@@ -3,10 +3,8 @@
 use super::document::ExpandedScatter;
 use crate::recipe::condition::expand::ShareNodes;
 use crate::recipe::document::Recipe;
+use crate::recipe::outputs::HEIGHT;
 use orogen_ops::declare::Input;
-
-/// The output with the heights.
-const HEIGHT: &str = "height";
 
 /// Adds the nodes to a recipe that compute the densities of its scatter, unless they exist. A recipe without a layer
 /// `height` has no objects. Opening a world does this.

@@ -5,12 +5,10 @@ use super::document::{Along, Coloring, Expanded, Surface};
 use super::standard;
 use crate::recipe::condition::expand::ShareNodes;
 use crate::recipe::document::Recipe;
+use crate::recipe::outputs::HEIGHT;
 use orogen_ops::declare::Input;
 use orogen_ops::field::{Curve, Fbm, Remap};
 use orogen_ops::filter::Slope;
-
-/// The output with the heights.
-const HEIGHT: &str = "height";
 
 /// Quantiles of fBm of Perlin noise with four octaves and a gain of 0.5 (from 2^24 samples), with which every color of
 /// a gradient covers the same area.
