@@ -111,7 +111,7 @@ fn add(root: &Path) -> Result {
 fn in_copy(copy: &Path, args: &str) -> std::process::Command {
     let (args, others) = args.split_once(" -- ").unwrap_or((args, ""));
     let mut command = cargo(args);
-    command.args(["--offline", "--manifest-path"]).arg(copy.join("Cargo.toml"));
+    command.arg("--manifest-path").arg(copy.join("Cargo.toml"));
     command.arg("--target-dir").arg(shell::target_dir());
     if !others.is_empty() {
         command.arg("--").args(others.split_whitespace());
