@@ -62,7 +62,7 @@ fn added() -> Result<PathBuf> {
 /// Copies what git does not ignore of the folders that codegen and the libraries need. They are one folder deeper than
 /// in the original: cargo would take packages of the same path for the same.
 fn copy_tree(to: &Path) -> Result {
-    let folders = ["crates", "docs", "golden", "xtask/features", "clippy.toml", "rustfmt.toml"];
+    let folders = ["crates", "docs", "golden", "fuzz/corpus/dem", "xtask/features", "clippy.toml", "rustfmt.toml"];
     let mut git = program("git");
     let listed = git.args(["ls-files", "--cached", "--others", "--exclude-standard"]).args(folders);
     for file in shell::capture(listed)?.lines().filter(|file| shell::root().join(file).is_file()) {
