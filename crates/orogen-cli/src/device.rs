@@ -84,7 +84,7 @@ mod with_gpu {
             self.gpu.as_ref().map(|gpu| Arc::new(gpu.clone()) as Arc<dyn RenderDevice>)
         }
 
-        /// The card's name, if it computed; a failure is told, once the work is done.
+        /// The card's name, if it computed; a failure is reported after the work.
         pub fn used(&self) -> Option<String> {
             self.used_with(None)
         }

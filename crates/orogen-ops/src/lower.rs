@@ -51,8 +51,7 @@ pub struct Passes {
     pub layers: Vec<usize>,
     /// Number of planes.
     pub planes: usize,
-    /// Whether differences of the last digits grow, so that the result is other land, as real as that of the processor:
-    /// for drafts.
+    /// Whether rounding errors can change where rivers run: for drafts only.
     pub is_chaotic: bool,
     /// The passes, in order.
     pub passes: Vec<Pass>,

@@ -92,7 +92,7 @@ pub trait Field: Declared + Send + Sync {
     /// [`Field::eval`] alone.
     ///
     /// # Errors
-    /// Those of [`Field::eval`].
+    /// As for [`Field::eval`].
     fn eval_layer(
         &self,
         layer: usize,
@@ -218,7 +218,7 @@ pub trait Filter: Declared + Send + Sync {
     /// Halo on each side of the window, in samples, for a cell in metres.
     fn halo(&self, cell: f64) -> usize;
 
-    /// Memory beside inputs and layers for `window`, in bytes.
+    /// Scratch memory for `window` in bytes, excluding inputs and layers.
     fn scratch(&self, window: &Window) -> u64 {
         let _ = window;
         0

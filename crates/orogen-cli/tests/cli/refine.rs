@@ -118,7 +118,7 @@ fn what_cannot_be_refined_is_refused() {
         (&["-", "-o", "a.tif"], 2, "`refine` needs a file of heights"),
         (&["place.tif", "-o", "a.tif", "--cell", "60"], 2, "can be refined to cells of"),
         (&["place.tif", "-o", "a.tif", "--cell", "0.01"], 2, "can be refined to cells of"),
-        (&["place.tif", "-o", "a.tif", "--set", "relief=2"], 2, "which has none"),
+        (&["place.tif", "-o", "a.tif", "--set", "relief=2"], 2, "which has no parameters to set"),
         (&["place.tif", "-o", "a.tif", "--layer", "nonsense"], 2, "nonsense"),
         (&["place.tif", "-o", "place.tif"], 1, "this command reads that file"),
     ] {

@@ -13,7 +13,7 @@ pub struct Grids {
 }
 
 impl Grids {
-    /// Those of a plan before its first step: none.
+    /// An empty slot for each grid of the plan.
     pub fn before(plan: &Plan) -> Grids {
         Grids { slots: plan.grids.iter().map(|_| None).collect() }
     }

@@ -28,7 +28,7 @@ pub struct Preview<'a> {
 }
 
 impl<'a> Preview<'a> {
-    /// That of these nodes; a draft if the device may make other land.
+    /// A preview of a recipe. With `is_draft` the device also runs chaotic solvers, whose terrain differs.
     pub fn new(device: &'a dyn Device, kept: &'a Kept, resolved: &ResolvedRecipe, is_draft: bool) -> Preview<'a> {
         let none = || -> IndexVec<NodeId, bool> { vec![false; resolved.recipe.nodes().len()].into() };
         let (approximate, reads, has_lost) = (none(), none(), AtomicBool::new(false));

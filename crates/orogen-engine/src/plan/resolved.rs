@@ -1,4 +1,4 @@
-//! A recipe with all that follows from it before anything is requested.
+//! Resolved recipes: what is known of a recipe before any request.
 
 use super::key::{Key, identity, keys};
 use crate::recipe::document::Recipe;
@@ -25,7 +25,7 @@ impl ResolvedRecipe {
         ResolvedRecipe { recipe, graph, world_params, keys, identity }
     }
 
-    /// A node as what it is.
+    /// The op of a node.
     pub fn op(&self, node: NodeId) -> Option<Op<'_>> {
         Some(self.recipe.nodes().get(node.index())?.node.op())
     }

@@ -144,7 +144,7 @@ impl<G> Step<G> {
     }
 }
 
-/// Inputs with other grids in place of those that they are.
+/// Maps each input to its grid.
 fn resolved<G, H>(inputs: Vec<Option<G>>, grid: &impl Fn(G) -> Result<H>) -> Result<Vec<Option<H>>> {
     inputs.into_iter().map(|input| input.map(grid).transpose()).collect()
 }

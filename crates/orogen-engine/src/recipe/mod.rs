@@ -21,6 +21,7 @@ pub mod outputs;
 pub mod parameters;
 mod parse;
 pub mod presets;
+mod read;
 #[doc(hidden)]
 pub mod reference;
 mod refined;

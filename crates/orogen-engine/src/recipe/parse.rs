@@ -5,16 +5,15 @@ use super::document::{MAX_NODES, Recipe, VERSION, WorldSpec};
 use super::graph::{At, Graph, MAX_FAULTS};
 use super::parameters::{Formula, Parameters, Step, resolve};
 use super::scatter::list::SCATTERS;
-use super::subgraph::{Origin, Shared, UseDiagnostic, Uses, take_in};
+use super::subgraph::{Origin, UseDiagnostic, Uses, take_in};
 use super::surface::list::SURFACES;
 use super::table::list::List;
 use super::table::reader::ValueReader;
-use super::text::{LONGEST_TEXT, Text, text_of, too_long};
+use super::text::{LONGEST_TEXT, Text, too_long};
 use super::{class, json, outputs, scatter, surface, toml};
 use crate::registry::Registry;
 use orogen_grid::error::{Diagnostic, Error, ErrorKind, Result};
 use orogen_grid::words::{list, respelled, suggestion};
-use orogen_io::open;
 use orogen_ops::declare::{Input, Shape};
 use orogen_ops::expression::formula::place_of;
 use orogen_ops::expression::text::Expression;
@@ -22,7 +21,6 @@ use orogen_ops::node::Node;
 use orogen_ops::value::{Span, Spanned, Value};
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
-use std::path::Path;
 
 /// Terms of other programs for keys that have another name here.
 const ALIASES: [(&str, &str); 8] = [
@@ -61,101 +59,8 @@ fn tables<T: Clone>(top: &Table, list: &List<T>, values: &mut ValueReader, mut a
 
 type Table = [(Spanned<String>, Spanned<Value>)];
 
-impl Registry {
-    /// Reads a recipe of these ops from a file, TOML or JSON.
-    ///
-    /// # Errors
-    /// If the file cannot be read, is no text, or is no valid recipe: then every diagnostic has its line and column.
-    pub fn read(&self, path: &Path) -> Result<Recipe> {
-        self.read_with(path, &[])
-    }
-
-    /// The same with other values for some of its parameters.
-    ///
-    /// # Errors
-    /// As [`Registry::read`], and if a parameter is not there or may not have that value.
-    pub fn read_with(&self, path: &Path, set: &[(String, f64)]) -> Result<Recipe> {
-        let doing = "read the recipe";
-        let Some(bytes) = open::bytes(path, doing, LONGEST_TEXT)? else {
-            return Err(too_long(&path.display().to_string()));
-        };
-        let shared = Shared::new(self, parse);
-        parse(&text_of(bytes, path)?, &path.display().to_string(), set, &Origin::file(path, &shared))
-    }
-
-    /// Reads a recipe of these ops from a text in place of the content of a file, such as one that is being edited:
-    /// relative paths in it start at the file's folder, and diagnostics name the file, which need not exist.
-    ///
-    /// # Errors
-    /// As [`Registry::parse`].
-    pub fn parse_as(&self, text: &str, path: &Path) -> Result<Recipe> {
-        let shared = Shared::new(self, parse);
-        parse(text, &path.display().to_string(), &[], &Origin::file(path, &shared))
-    }
-
-    /// Reads a recipe of these ops from a text, TOML or (if it begins with a brace) JSON; `name` is what diagnostics
-    /// call it.
-    ///
-    /// # Errors
-    /// If it is no valid recipe. All diagnostics are told at once, in the order of the text.
-    pub fn parse(&self, text: &str, name: &str) -> Result<Recipe> {
-        self.parse_with(text, name, &[])
-    }
-
-    /// The same with other values for some of its parameters.
-    ///
-    /// # Errors
-    /// As [`Registry::parse`], and if a parameter is not there or may not have that value.
-    pub fn parse_with(&self, text: &str, name: &str, set: &[(String, f64)]) -> Result<Recipe> {
-        let shared = Shared::new(self, parse);
-        parse(text, name, set, &Origin::text(&shared))
-    }
-}
-
-impl Recipe {
-    /// Reads a recipe of built-in ops from a file, TOML or JSON.
-    ///
-    /// # Errors
-    /// As [`Registry::read`].
-    pub fn read(path: &Path) -> Result<Recipe> {
-        Recipe::read_with(path, &[])
-    }
-
-    /// [`Recipe::read`] with other values for some of its parameters.
-    ///
-    /// # Errors
-    /// As [`Registry::read_with`].
-    pub fn read_with(path: &Path, set: &[(String, f64)]) -> Result<Recipe> {
-        Registry::new().read_with(path, set)
-    }
-
-    /// Reads a preset.
-    pub(super) fn parse_preset(name: &str, text: &str, set: &[(String, f64)]) -> Result<Recipe> {
-        let registry = Registry::new();
-        let shared = Shared::new(&registry, parse);
-        parse(text, &format!("recipes/{name}.toml"), set, &Origin::preset(name, &shared))
-    }
-
-    /// Reads a recipe of built-in ops from a text, TOML or (if it begins with a brace) JSON; `name` is what diagnostics
-    /// call it.
-    ///
-    /// # Errors
-    /// As [`Registry::parse`].
-    pub fn parse(text: &str, name: &str) -> Result<Recipe> {
-        Recipe::parse_with(text, name, &[])
-    }
-
-    /// [`Recipe::parse`] with other values for some of its parameters.
-    ///
-    /// # Errors
-    /// As [`Registry::parse_with`].
-    pub fn parse_with(text: &str, name: &str, set: &[(String, f64)]) -> Result<Recipe> {
-        Registry::new().parse_with(text, name, set)
-    }
-}
-
 /// Reads a recipe and those that it uses.
-fn parse(text: &str, name: &str, set: &[(String, f64)], origin: &Origin) -> Result<Recipe> {
+pub(super) fn parse(text: &str, name: &str, set: &[(String, f64)], origin: &Origin) -> Result<Recipe> {
     if text.len() as u64 > LONGEST_TEXT {
         return Err(too_long(name));
     }

@@ -59,10 +59,7 @@ impl RecipeSource {
             }
             RecipeSource::Dem(path) => Err(Error::new(
                 ErrorKind::Request,
-                format!(
-                    "--set gives values to a recipe's parameters, and {} is a file of heights, which has none",
-                    path.display()
-                ),
+                format!("{} is a file of heights, which has no parameters to set", path.display()),
             )),
         }
     }

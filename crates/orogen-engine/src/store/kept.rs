@@ -8,8 +8,8 @@ use crate::plan::key::Key;
 use orogen_ops::op::Solution;
 use std::sync::Arc;
 
-/// What requests keep for later ones: those of a session, its previews or its drafts. Nothing of a preview is stored
-/// for later runs, and nothing exact is made from it.
+/// Results that a session keeps for later requests. Its previews and its drafts have their own, which are never stored
+/// for later runs or used for exact results.
 pub struct Kept {
     /// Solutions.
     pub store: Store,
@@ -20,28 +20,28 @@ pub struct Kept {
 }
 
 impl Kept {
-    /// Nothing but what a store has, with room for at most these bytes of grids and of tiles.
+    /// Creates an empty cache over a store, with limits in bytes for grids and for tiles.
     pub fn new(store: Store, grids: u64, level_tiles: u64) -> Kept {
         Kept { store, grids: GridStore::new(grids), level_tiles: Arc::new(LevelTiles::new(level_tiles)) }
     }
 
-    /// Nothing, with room for as much, and no store behind it.
+    /// Creates an empty cache with the same limits and no store behind it.
     pub fn emptied(&self) -> Kept {
         Kept::new(self.store.holding(Vec::new()), self.grids.limit(), self.level_tiles.limit())
     }
 
-    /// These solutions and the same tiles, with room for no grids and no store behind it.
+    /// Creates a cache of these solutions and the same tiles, without grids and without a store behind it.
     pub fn with_solutions(&self, solved: Vec<(Key, Arc<Solution>)>) -> Kept {
         Kept { store: self.store.holding(solved), grids: GridStore::new(0), level_tiles: Arc::clone(&self.level_tiles) }
     }
 
-    /// Bytes of all that is kept.
+    /// The memory of everything that is kept, in bytes.
     pub fn memory(&self) -> u64 {
         self.store.memory().saturating_add(self.grids.memory()).saturating_add(self.level_tiles.memory())
     }
 
-    /// Drops what was not used for longest, until all but the solutions in `needed` takes at most `allowed` bytes.
-    /// Returns what is left of them.
+    /// Drops the least recently used results until at most `allowed` bytes are left, except the solutions in `needed`.
+    /// Returns how much of `allowed` is unused.
     pub fn make_room(&self, allowed: u64, needed: &[Key]) -> u64 {
         self.store.make_room(allowed, needed);
         let left = allowed.saturating_sub(self.store.memory());

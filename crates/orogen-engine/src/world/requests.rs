@@ -1,4 +1,4 @@
-//! Requests of a world: plans are admitted and run.
+//! Requests: plans of a world are admitted and run.
 
 use super::world::World;
 use crate::engine::inline::PreparedProgram;

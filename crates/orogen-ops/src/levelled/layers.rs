@@ -3,7 +3,7 @@
 use super::drained::Drained;
 use crate::declare::Spec;
 use crate::op::Context;
-use orogen_grid::error::Result;
+use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::hydrology::rivers::Channel;
 use orogen_grid::multiscale::level::{Level, direction};
@@ -27,7 +27,7 @@ pub fn layers_of(
     let wanted = spec.layers.iter().zip(out).filter_map(|(layer, out)| Some((layer.name, out.as_mut()?)));
     let (of_nodes, of_samples): (Vec<_>, Vec<_>) = wanted.partition(|(name, _)| name.starts_with("node_"));
     for (name, out) in of_nodes {
-        nodes_of(refinement, &level, window, name, out);
+        nodes_of(refinement, &level, window, name, out)?;
     }
     if of_samples.is_empty() {
         return Ok(());
@@ -53,10 +53,15 @@ pub fn layers_of(
             "depth" => fill(out, |q| size(q, Channel::depth_of)),
             "floodplain" => *out = refinement.floodplain(share, &level, &made, *stream, &channel, progress)?,
             "sediment" => *out = refinement.sediment(share, &level, &made, progress)?,
-            _ => {}
+            _ => return Err(unknown(name)),
         }
     }
     Ok(())
+}
+
+/// The error of a layer that is declared, but not made here.
+fn unknown(layer: &str) -> Error {
+    Error::new(ErrorKind::Internal, format!("drained land has no layer `{layer}`"))
 }
 
 /// Each sample of a layer by its index.
@@ -65,7 +70,7 @@ fn fill(out: &mut Grid, value: impl Fn(usize) -> f32) {
 }
 
 /// A layer of the nodes of a level's cells.
-fn nodes_of(refinement: &Refinement, level: &Level, window: &Window, name: &str, out: &mut Grid) {
+fn nodes_of(refinement: &Refinement, level: &Level, window: &Window, name: &str, out: &mut Grid) -> Result<()> {
     let cell = refinement.cell_of(level.depth);
     // The nodes of the finest level of valleys are at the samples; cells of detail levels begin at theirs.
     let first = if level.depth > refinement.levels { 0.0 } else { -0.5 * refinement.cell };
@@ -76,7 +81,7 @@ fn nodes_of(refinement: &Refinement, level: &Level, window: &Window, name: &str,
         "node_receiver" => &|node| f32::from(level.receiver[node]),
         "node_east" => &|node| metres(level.east[node]),
         "node_south" => &|node| metres(level.south[node]),
-        _ => return,
+        _ => return Err(unknown(name)),
     };
     let nodes = refinement.nodes_at(level.depth, window);
     let (left, top) = ((nodes.x - level.window.x) as usize, (nodes.y - level.window.y) as usize);
@@ -84,6 +89,7 @@ fn nodes_of(refinement: &Refinement, level: &Level, window: &Window, name: &str,
         let first = (top + j) * level.window.width + left;
         out.row_mut(j).iter_mut().enumerate().for_each(|(i, sample)| *sample = value(first + i));
     }
+    Ok(())
 }
 
 /// Samples of a level beyond a window that the wanted layers read.

@@ -239,7 +239,7 @@ impl StreamPower {
         let sea_level = sea_level_of(self.sea, world_params);
         let mut passes = routing::passes(CODE, padded, sea_level, descent, planes)
             .with_constants([("SOURCE", SOURCE), ("HEIGHT", HEIGHTS[0]), ("SPARE", HEIGHTS[1])])
-            // Shaders know no infinite numbers.
+            // WGSL has no infinities.
             .with_numbers(numbers.map(|(name, number)| (name, number.min(1e30) as f32)))
             .with_named_words(["has_erodibility", "has_uplift"].into_iter().zip(given.map(u32::from)));
         let step = |from, to, number| routing::step(from, to, number);

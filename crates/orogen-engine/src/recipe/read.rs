@@ -1,0 +1,103 @@
+//! Reading recipes from files and texts.
+
+use super::document::Recipe;
+use super::parse::parse;
+use super::subgraph::{Origin, Shared};
+use super::text::{LONGEST_TEXT, text_of, too_long};
+use crate::registry::Registry;
+use orogen_grid::error::Result;
+use orogen_io::open;
+use std::path::Path;
+
+impl Registry {
+    /// Reads a recipe of these ops from a file, TOML or JSON.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is no text, or is no valid recipe: then every diagnostic has its line and column.
+    pub fn read(&self, path: &Path) -> Result<Recipe> {
+        self.read_with(path, &[])
+    }
+
+    /// The same with other values for some of its parameters.
+    ///
+    /// # Errors
+    /// As [`Registry::read`], and if a parameter is not there or may not have that value.
+    pub fn read_with(&self, path: &Path, set: &[(String, f64)]) -> Result<Recipe> {
+        let doing = "read the recipe";
+        let Some(bytes) = open::bytes(path, doing, LONGEST_TEXT)? else {
+            return Err(too_long(&path.display().to_string()));
+        };
+        let shared = Shared::new(self, parse);
+        parse(&text_of(bytes, path)?, &path.display().to_string(), set, &Origin::file(path, &shared))
+    }
+
+    /// Reads a recipe of these ops from a text in place of the content of a file, such as one that is being edited:
+    /// relative paths in it start at the file's folder, and diagnostics name the file, which need not exist.
+    ///
+    /// # Errors
+    /// As [`Registry::parse`].
+    pub fn parse_as(&self, text: &str, path: &Path) -> Result<Recipe> {
+        let shared = Shared::new(self, parse);
+        parse(text, &path.display().to_string(), &[], &Origin::file(path, &shared))
+    }
+
+    /// Reads a recipe of these ops from a text, TOML or (if it begins with a brace) JSON; `name` is what diagnostics
+    /// call it.
+    ///
+    /// # Errors
+    /// If it is no valid recipe. All diagnostics are reported at once, in the order of the text.
+    pub fn parse(&self, text: &str, name: &str) -> Result<Recipe> {
+        self.parse_with(text, name, &[])
+    }
+
+    /// The same with other values for some of its parameters.
+    ///
+    /// # Errors
+    /// As [`Registry::parse`], and if a parameter is not there or may not have that value.
+    pub fn parse_with(&self, text: &str, name: &str, set: &[(String, f64)]) -> Result<Recipe> {
+        let shared = Shared::new(self, parse);
+        parse(text, name, set, &Origin::text(&shared))
+    }
+}
+
+impl Recipe {
+    /// Reads a recipe of built-in ops from a file, TOML or JSON.
+    ///
+    /// # Errors
+    /// As [`Registry::read`].
+    pub fn read(path: &Path) -> Result<Recipe> {
+        Recipe::read_with(path, &[])
+    }
+
+    /// [`Recipe::read`] with other values for some of its parameters.
+    ///
+    /// # Errors
+    /// As [`Registry::read_with`].
+    pub fn read_with(path: &Path, set: &[(String, f64)]) -> Result<Recipe> {
+        Registry::new().read_with(path, set)
+    }
+
+    /// Reads a preset.
+    pub(super) fn parse_preset(name: &str, text: &str, set: &[(String, f64)]) -> Result<Recipe> {
+        let registry = Registry::new();
+        let shared = Shared::new(&registry, parse);
+        parse(text, &format!("recipes/{name}.toml"), set, &Origin::preset(name, &shared))
+    }
+
+    /// Reads a recipe of built-in ops from a text, TOML or (if it begins with a brace) JSON; `name` is what diagnostics
+    /// call it.
+    ///
+    /// # Errors
+    /// As [`Registry::parse`].
+    pub fn parse(text: &str, name: &str) -> Result<Recipe> {
+        Recipe::parse_with(text, name, &[])
+    }
+
+    /// [`Recipe::parse`] with other values for some of its parameters.
+    ///
+    /// # Errors
+    /// As [`Registry::parse_with`].
+    pub fn parse_with(text: &str, name: &str, set: &[(String, f64)]) -> Result<Recipe> {
+        Registry::new().parse_with(text, name, set)
+    }
+}
