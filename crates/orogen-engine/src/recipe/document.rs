@@ -10,8 +10,8 @@ use crate::recipe::scatter::document::{ExpandedScatter, Scatter};
 use crate::recipe::scatter::list::SCATTERS;
 use crate::recipe::surface::document::{Expanded, RAMP, Surface};
 use crate::recipe::surface::list::SURFACES;
+use crate::recipe::world_spec;
 pub use crate::recipe::world_spec::WorldSpec;
-use crate::recipe::world_spec::world_values;
 use orogen_grid::error::{Diagnostic, Error, ErrorKind, Result};
 use orogen_io::dem::file_ref::{FileKind, FileRef};
 use orogen_io::dem::open;
@@ -467,10 +467,7 @@ impl Recipe {
             let _ = writeln!(text, "about = {}", toml_string(&self.about));
         }
         self.parameters.write_toml(&mut text);
-        let _ = writeln!(text, "\n[world]\nseed = {}", self.world.seed);
-        for (key, value) in world_values(&self.world).filter(|(key, _)| *key != "seed") {
-            let _ = writeln!(text, "{key} = {}", value.to_toml());
-        }
+        world_spec::KEYS.write("[world]", &self.world, &mut text);
         let bound = self.parameters.bound();
         let surfaces = self.expanded.iter().map(|surface| &surface.nodes);
         let scatter = self.expanded_scatter.iter().map(|scatter| &scatter.nodes);

@@ -309,11 +309,8 @@ impl<'a> Resolver<'a> {
 
     fn check_world(&mut self) {
         let world = self.recipe.world;
-        for (name, value) in super::world_spec::world_values(&world) {
-            let Some(spec) = super::world_spec::world_param(name) else { continue };
-            if let Err(message) = super::world_spec::read_world(spec, &value, &mut world.clone()) {
-                self.diagnostic(At::World, message);
-            }
+        for message in super::world_spec::KEYS.problems("`world`", &world) {
+            self.diagnostic(At::World, message);
         }
         let Some([width, height]) = world.size else { return };
         let most = width.max(height) / world.cell;

@@ -3,6 +3,9 @@
 //! A string that begins with `=` is a formula. Formulas are evaluated before anything else is read, so all later code
 //! sees plain numbers. Their positions are recorded, so that a recipe keeps them when it is written.
 
+use super::table::key::Key;
+use super::table::keys::Keys;
+use super::table::reader::{Table, ValueReader};
 use super::text::Text;
 use orogen_grid::words::{number, respelled, suggestion};
 use orogen_ops::declare::Spec;
@@ -10,16 +13,12 @@ use orogen_ops::expression::error::ExpressionError;
 use orogen_ops::expression::formula::{self, formula, is_parameter_name};
 use orogen_ops::value::{Span, Spanned, Value, toml_key, toml_string};
 use std::collections::HashSet;
-use std::fmt::Write as _;
 
 /// Maximum number of parameters of a recipe.
 pub const MAX_PARAMETERS: usize = 256;
 
 /// Maximum number of formulas of a recipe.
 const MAX_FORMULAS: usize = 65_536;
-
-/// The keys of a parameter, for diagnostics.
-const KEYS: [&str; 4] = ["default", "unit", "range", "help"];
 
 /// A parameter of a recipe.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,21 +56,22 @@ impl Parameter {
         let unit = if self.unit.is_empty() { String::new() } else { format!(" ({})", self.unit) };
         format!("a finite number{range}{unit}")
     }
-
-    fn write_toml(&self, text: &mut String) {
-        let _ = writeln!(text, "\n[parameters.{}]\ndefault = {:?}", toml_key(&self.name), self.value);
-        if !self.unit.is_empty() {
-            let _ = writeln!(text, "unit = {}", toml_string(&self.unit));
-        }
-        if self.range != [f64::NEG_INFINITY, f64::INFINITY] {
-            let bound = |bound: f64| Value::Number(bound).to_toml();
-            let _ = writeln!(text, "range = [{}, {}]", bound(self.range[0]), bound(self.range[1]));
-        }
-        if !self.help.is_empty() {
-            let _ = writeln!(text, "help = {}", toml_string(&self.help));
-        }
-    }
 }
+
+/// The keys of a parameter.
+pub static KEYS: Keys<Parameter> = Keys {
+    needs: &[("default", "`default`")],
+    parts: &[
+        key!(Parameter, "default", "The default value.", |parameter| Some(&mut parameter.value)),
+        key!(Parameter.unit, "Its unit.", text true),
+        key!(
+            Parameter.range,
+            "The lowest and the highest value it may have.",
+            range [f64::NEG_INFINITY, f64::INFINITY], pair "[LOWEST, HIGHEST]", ascending true
+        ),
+        key!(Parameter.help, "What it does.", text true),
+    ],
+};
 
 /// A step of a path in a tree of values.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -153,7 +153,9 @@ impl Parameters {
 
     /// Writes the parameters as TOML tables.
     pub fn write_toml(&self, text: &mut String) {
-        self.list.iter().for_each(|parameter| parameter.write_toml(text));
+        for parameter in &self.list {
+            KEYS.write(&format!("[parameters.{}]", toml_key(&parameter.name)), parameter, text);
+        }
     }
 
     /// Puts formulas back into the text of a recipe, where the number there is still the one that the formula makes.
@@ -210,16 +212,13 @@ fn follow<'t>(
     }
 }
 
-/// Problems with their positions in the text.
-type Diagnostics = Vec<(Span, String)>;
-
 /// The result of resolving the formulas of a recipe.
 #[derive(Default)]
 pub struct Resolved {
     /// Parameters and formulas.
     pub parameters: Parameters,
     /// The problems.
-    pub diagnostics: Diagnostics,
+    pub diagnostics: Vec<(Span, String)>,
     /// Formulas without a value, which need no further diagnostics.
     pub failed: Vec<Span>,
 }
@@ -232,7 +231,9 @@ pub fn resolve(tree: &mut Spanned<Value>, text: &Text, set: &[(String, f64)]) ->
     let mut resolved = Resolved::default();
     let Value::Table(top) = &mut tree.value else { return Ok(resolved) };
     if let Some((_, value)) = top.iter().find(|(key, _)| key.value == "parameters") {
-        read(value, &mut resolved.parameters.list, &mut resolved.diagnostics);
+        let mut values = ValueReader::new(true);
+        resolved.parameters.list = read(value, &mut values);
+        resolved.diagnostics = values.diagnostics;
     }
     // If parameters could not be read, errors in formulas would only repeat that.
     let silent = !resolved.diagnostics.is_empty();
@@ -310,110 +311,56 @@ fn plain(number: f64) -> Value {
 }
 
 /// Reads `[parameters]`.
-fn read(value: &Spanned<Value>, parameters: &mut Vec<Parameter>, diagnostics: &mut Diagnostics) {
+fn read(value: &Spanned<Value>, values: &mut ValueReader) -> Vec<Parameter> {
     let Value::Table(entries) = &value.value else {
-        diagnostics.push((
-            value.span.clone(),
-            format!("`parameters` must be a table of parameters, not {}", value.value.describe()),
-        ));
-        return;
+        let found = value.value.describe();
+        values.diagnostic(&value.span, format!("`parameters` must be a table of parameters, not {found}"));
+        return Vec::new();
     };
     if let Some((key, _)) = entries.get(MAX_PARAMETERS) {
-        diagnostics.push((key.span.clone(), format!("the recipe has more than {MAX_PARAMETERS} parameters")));
-        return;
+        values.diagnostic(&key.span, format!("the recipe has more than {MAX_PARAMETERS} parameters"));
+        return Vec::new();
     }
-    let mut seen = HashSet::new();
+    let mut parameters: Vec<Parameter> = Vec::new();
     for (name, value) in entries {
-        if !seen.insert(name.value.as_str()) {
-            diagnostics
-                .push((name.span.clone(), format!("there are two parameters named `{}`: rename one", name.value)));
+        let problem = if parameters.iter().any(|other| other.name == name.value) {
+            format!("there are two parameters named `{}`: rename one", name.value)
         } else if !is_parameter_name(&name.value) {
-            let message = format!(
+            format!(
                 "`{}` cannot be a parameter's name: names are 1 to 64 letters, digits and `_`, do not begin with a digit, and are not the name of a function or constant",
                 name.value
-            );
-            diagnostics.push((name.span.clone(), message));
-        } else if let Some(parameter) = one(name, value, diagnostics) {
-            parameters.push(parameter);
-        }
+            )
+        } else {
+            parameters.push(one(name, value, values));
+            continue;
+        };
+        values.diagnostic(&name.span, problem);
     }
+    parameters
 }
 
-/// Reads one parameter: a number, or a table with its default and other keys.
-fn one(name: &Spanned<String>, value: &Spanned<Value>, diagnostics: &mut Diagnostics) -> Option<Parameter> {
+/// Reads one parameter: a number, or a table of its keys.
+fn one(name: &Spanned<String>, value: &Spanned<Value>, values: &mut ValueReader) -> Parameter {
     let range = [f64::NEG_INFINITY, f64::INFINITY];
     let mut parameter =
         Parameter { name: name.value.clone(), help: String::new(), unit: String::new(), range, value: 0.0 };
-    let before = diagnostics.len();
-    let mut default = None;
+    let before = values.diagnostics.len();
+    let mut place = value.span.clone();
     match &value.value {
-        Value::Table(entries) => {
-            let mut seen = HashSet::new();
-            for (key, value) in entries {
-                if !seen.insert(key.value.as_str()) {
-                    diagnostics
-                        .push((key.span.clone(), format!("the key `{}` appears twice in this table", key.value)));
-                }
-                match (key.value.as_str(), &value.value) {
-                    ("default", _) => default = Some(value),
-                    ("unit", Value::Text(unit)) => parameter.unit = unit.clone(),
-                    ("help", Value::Text(help)) => parameter.help = help.clone(),
-                    ("range", Value::List(ends)) if bounds(ends).is_some() => {
-                        parameter.range = bounds(ends).unwrap_or(range)
-                    }
-                    ("unit" | "help", other) => {
-                        let message = format!("`{}` must be a string, not {}", key.value, other.describe());
-                        diagnostics.push((value.span.clone(), message));
-                    }
-                    ("range", other) => {
-                        let message = format!(
-                            "`range` must be two numbers, the lower one first, such as [0, 100], not {}",
-                            other.describe()
-                        );
-                        diagnostics.push((value.span.clone(), message));
-                    }
-                    (unknown, _) => {
-                        let hint = suggestion(unknown, KEYS);
-                        diagnostics.push((
-                            key.span.clone(),
-                            format!("unknown key `{unknown}` in the parameter `{}`; {hint}", name.value),
-                        ));
-                    }
-                }
-            }
-            if default.is_none() {
-                diagnostics.push((name.span.clone(), format!("the parameter `{}` has no `default`", name.value)));
-            }
+        Value::Table(_) => {
+            let what = format!("the parameter `{}`", name.value);
+            let Some(entries) = values.table(&what, value) else { return parameter };
+            let table = Table { name: &what, span: &name.span, entries };
+            parameter = KEYS.read(&table, values, parameter);
+            place = table.find("default").map_or(place, |(_, default)| default.span.clone());
         }
-        _ => default = Some(value),
+        _ => parameter.value = values.number(&Key::new(&name.value, ""), value).unwrap_or(0.0),
     }
-    let default = default?;
-    let fault = match default.value.number() {
-        Some(number) => {
-            parameter.value = number;
-            parameter.check(number).err()
-        }
-        None => Some(format!(
-            "the default of `{}` must be {}, not {}",
-            name.value,
-            parameter.expected(),
-            default.value.describe()
-        )),
-    };
     // If the range could not be read, the default is not checked.
-    if diagnostics.len() == before {
-        diagnostics.extend(fault.map(|message| (default.span.clone(), message)));
+    if values.diagnostics.len() == before
+        && let Err(message) = parameter.check(parameter.value)
+    {
+        values.diagnostic(&place, message);
     }
-    (diagnostics.len() == before).then_some(parameter)
-}
-
-/// Two numbers, the lower one first; both may be infinite.
-fn bounds(ends: &[Spanned<Value>]) -> Option<[f64; 2]> {
-    match ends {
-        [low, high] => {
-            let (low, high) = (low.value.number()?, high.value.number()?);
-            (low <= high).then_some([low, high])
-        }
-        _ => None,
-    }
+    parameter
 }

@@ -344,31 +344,9 @@ impl Walk<'_> {
     }
 
     fn world(&mut self, value: &Spanned<Value>) -> WorldSpec {
-        let mut world = WorldSpec::default();
-        let Value::Table(entries) = &value.value else {
-            self.complain(&value.span, format!("`world` must be a table, not {}", value.value.describe()));
-            return world;
-        };
-        let (mut seen, mut cell) = (HashSet::new(), None);
-        for (key, value) in entries {
-            self.repeated(&mut seen, key);
-            match super::world_spec::world_param(&key.value) {
-                Some(spec) => match super::world_spec::read_world(spec, &value.value, &mut world) {
-                    Ok(()) if spec.name == "cell" => cell = Some(value.span.clone()),
-                    Ok(()) => {}
-                    Err(message) => self.complain(&value.span, message),
-                },
-                None => {
-                    let hint = suggestion(&key.value, super::world_spec::WORLD.iter().map(|spec| spec.name));
-                    self.complain(&key.span, format!("unknown key `{}` in `world`; {hint}", key.value));
-                }
-            }
-        }
-        if cell.is_none()
-            && let Some([width, height]) = world.size
-        {
-            world.cell = width.max(height) / 1024.0;
-        }
+        let mut values = ValueReader::new(true);
+        let world = WorldSpec::read(value, &mut values);
+        values.diagnostics.into_iter().for_each(|(span, message)| self.complain(&span, message));
         world
     }
 
@@ -408,22 +386,17 @@ impl Walk<'_> {
             self.complain(&value.span, format!("the node `{}` must be a table with an `op`, not {found}", name.value));
             return None;
         };
-        let Some((_, op)) = entries.iter().find(|(key, _)| key.value == "op") else {
+        // A key that is repeated is reported; all of its values are checked.
+        let ops = entries.iter().filter(|(key, _)| key.value == "op").map(|(_, op)| op);
+        let nodes: Vec<Option<Node>> = ops.map(|op| self.op(op)).collect();
+        let Some(node) = nodes.into_iter().next() else {
             self.complain(
                 &name.span,
                 format!("the node `{}` has no `op`; add a line such as `op = \"fbm\"`", name.value),
             );
             return None;
         };
-        let Value::Text(op_name) = &op.value else {
-            self.complain(&op.span, format!("`op` must be the name of an op, not {}", op.value.describe()));
-            return None;
-        };
-        let other = || respelled(op_name).and_then(|other| self.registry.named(&other));
-        let Some(mut node) = self.registry.named(op_name).or_else(other) else {
-            self.complain(&op.span, self.registry.unknown(op_name));
-            return None;
-        };
+        let mut node = node?;
         let spec = node.spec();
         let (mut seen, mut mask) = (HashSet::new(), Input::None);
         let is_known = |name: &str| spec.input_named(name).is_some() || spec.param_named(name).is_some();
@@ -479,6 +452,19 @@ impl Walk<'_> {
             self.name_inputs(&name.value, &mut node);
         }
         Some((node, mask))
+    }
+
+    /// The node of an op, with its defaults.
+    fn op(&mut self, op: &Spanned<Value>) -> Option<Node> {
+        let Value::Text(name) = &op.value else {
+            self.complain(&op.span, format!("`op` must be the name of an op, not {}", op.value.describe()));
+            return None;
+        };
+        let node = self.registry.named(name).or_else(|| self.registry.named(&respelled(name)?));
+        if node.is_none() {
+            self.complain(&op.span, self.registry.unknown(name));
+        }
+        node
     }
 
     /// Complains of what is wrong within an expression, where it is wrong.

@@ -1,8 +1,7 @@
 //! The JSON Schema of recipes, made from the declarations.
 
 use super::document::VERSION;
-use super::world_spec::WORLD;
-use super::{class, scatter, surface};
+use super::{class, parameters, scatter, subgraph, surface, world_spec};
 use crate::registry::Registry;
 use orogen_grid::words::respelled;
 use orogen_ops::declare::point_lists::MAX_POINTS;
@@ -22,12 +21,8 @@ pub fn json_schema() -> Json {
 #[must_use]
 pub fn json_schema_of(registry: &Registry) -> Json {
     let name = json!({ "type": "string", "pattern": "^[A-Za-z_][A-Za-z0-9_-]{0,63}$" });
-    let mut world: Map<String, Json> =
-        WORLD.iter().map(|spec| (spec.name.to_string(), param_schema(spec, None))).collect();
-    if let Some(pair) = world.remove("size") {
-        let side = json!({ "type": "number", "minimum": 1e-3, "maximum": 1e9 });
-        world.insert("size".into(), json!({ "description": pair["description"], "anyOf": [side, pair] }));
-    }
+    let mut world = world_spec::KEYS.schema();
+    world["description"] = json!("Seed, size and cell size of the world.");
     let mut schema = json!({
         "$schema": "http://json-schema.org/draft-07/schema#",
         "title": "Orogen recipe",
@@ -40,12 +35,7 @@ pub fn json_schema_of(registry: &Registry) -> Json {
             "orogen": { "const": VERSION, "description": "The version of recipes this one is written in." },
             "about": { "type": "string", "description": "One message about the world." },
             "parameters": parameters_schema(&name),
-            "world": {
-                "type": "object",
-                "description": "Seed, size and cell size of the world.",
-                "additionalProperties": false,
-                "properties": world,
-            },
+            "world": world,
             "nodes": {
                 "type": "object",
                 "description": "The nodes by name.",
@@ -61,7 +51,7 @@ pub fn json_schema_of(registry: &Registry) -> Json {
                 "propertyNames": name,
                 "additionalProperties": { "$ref": "#/definitions/input" },
             },
-            "surface": surface::list::schema(),
+            "surface": surface::list::SURFACES.schema(),
             "scatter": scatter::list::SCATTERS.schema(),
             "class": class::list::CLASSES.schema(),
         },
@@ -107,7 +97,6 @@ fn take_formulas(schema: &mut Json) {
 
 /// The schema of `[parameters]`.
 fn parameters_schema(name: &Json) -> Json {
-    let number = json!({ "type": "number" });
     let mut name = name.clone();
     name["pattern"] = json!("^[A-Za-z_][A-Za-z0-9_]{0,63}$");
     json!({
@@ -115,25 +104,7 @@ fn parameters_schema(name: &Json) -> Json {
         "description": "Numbers that the recipe offers, by name. A string that begins with `=` is a formula of them, wherever a number can stand; \
                         `--set NAME=VALUE` gives them other values.",
         "propertyNames": name,
-        "additionalProperties": {
-            "anyOf": [
-                number,
-                {
-                    "type": "object",
-                    "required": ["default"],
-                    "additionalProperties": false,
-                    "properties": {
-                        "default": { "type": "number", "description": "The default value." },
-                        "unit": { "type": "string", "description": "Its unit." },
-                        "range": {
-                            "type": "array", "minItems": 2, "maxItems": 2, "items": number,
-                            "description": "The lowest and the highest value it may have.",
-                        },
-                        "help": { "type": "string", "description": "What it does." },
-                    },
-                },
-            ],
-        },
+        "additionalProperties": { "anyOf": [{ "type": "number" }, parameters::KEYS.schema()] },
     })
 }
 
@@ -143,25 +114,7 @@ fn uses_schema(name: &Json) -> Json {
         "type": "object",
         "description": "Other recipes that this one includes, by name. `NAME.layer` is one of their outputs, `NAME` is their `height`.",
         "propertyNames": name,
-        "additionalProperties": {
-            "type": "object",
-            "required": ["recipe"],
-            "additionalProperties": false,
-            "properties": {
-                "recipe": { "type": "string", "description": "Name of a preset, or path of a recipe." },
-                "inputs": {
-                    "type": "object",
-                    "description": "What its nodes of the op `input` read, by their names.",
-                    "additionalProperties": { "$ref": "#/definitions/input" },
-                },
-                "parameters": {
-                    "type": "object",
-                    "description": "Values of its parameters, by their names.",
-                    "additionalProperties": { "type": "number" },
-                },
-                "seed": { "type": "integer", "minimum": 0, "description": "Hashed with the seeds of its nodes; 0 leaves them as they are." },
-            },
-        },
+        "additionalProperties": subgraph::KEYS.schema(),
     })
 }
 

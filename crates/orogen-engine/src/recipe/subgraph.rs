@@ -4,6 +4,8 @@ use super::document::{MAX_NODES, Recipe};
 use super::graph::{MAX_USE_DEPTH, is_name};
 use super::parameters::{Formula, Parameters, Step};
 use super::presets;
+use super::table::keys::Keys;
+use super::table::reader::{Table, ValueReader};
 use super::text::{LONGEST_TEXT, text_of};
 use crate::registry::Registry;
 use orogen_grid::error::{Error, ErrorKind, Result};
@@ -20,9 +22,6 @@ use std::path::{Path, PathBuf};
 
 /// Maximum number of recipes that a recipe uses, directly and indirectly.
 pub const MAX_USES: usize = 256;
-
-/// The keys of a used recipe, for diagnostics.
-const KEYS: [&str; 4] = ["recipe", "inputs", "parameters", "seed"];
 
 /// The origin of a recipe during reading.
 pub struct Origin<'a> {
@@ -176,105 +175,43 @@ pub fn take_in(value: &Spanned<Value>, recipe: &mut Recipe, parameters: &mut Par
     };
     let mut names: HashSet<String> = recipe.nodes().iter().map(|named| named.name.clone()).collect();
     for (name, value) in entries {
-        let here = |message: String| UseDiagnostic::Here(name.span.clone(), message);
-        if !is_name(&name.value) || name.value.contains('/') {
-            uses.diagnostics.push(here(format!("`{}` cannot be the name of a used recipe: names are 1 to 64 letters, digits, `_` and `-` and do not begin with a digit", name.value)));
+        let problem = if !is_name(&name.value) || name.value.contains('/') {
+            format!(
+                "`{}` cannot be the name of a used recipe: names are 1 to 64 letters, digits, `_` and `-` and do not begin with a digit",
+                name.value
+            )
         } else if !names.insert(name.value.clone()) {
-            uses.diagnostics
-                .push(here(format!("there is already a node or a used recipe named `{}`: rename one", name.value)));
-        } else if let Err(diagnostic) = one(name, value, recipe, parameters, origin, &mut uses) {
-            uses.diagnostics.push(diagnostic);
-        }
+            format!("there is already a node or a used recipe named `{}`: rename one", name.value)
+        } else {
+            one(name, value, recipe, parameters, origin, &mut uses);
+            continue;
+        };
+        uses.diagnostics.push(UseDiagnostic::Here(name.span.clone(), problem));
     }
     uses
 }
 
-/// The content of a table in `use`.
-struct Asked<'v> {
-    recipe: &'v Spanned<Value>,
-    file: &'v str,
-    set: Vec<(String, f64)>,
-    inputs: Vec<(&'v Spanned<String>, Input)>,
+/// A table in `use`.
+#[derive(Clone, Default)]
+pub struct Use {
+    recipe: String,
+    inputs: Vec<(Spanned<String>, Input)>,
+    parameters: Vec<(Spanned<String>, f64)>,
     seed: u64,
 }
 
-fn asked<'v>(name: &Spanned<String>, value: &'v Spanned<Value>) -> std::result::Result<Asked<'v>, UseDiagnostic> {
-    let here = |span: &Span, message: String| UseDiagnostic::Here(span.clone(), message);
-    let Value::Table(entries) = &value.value else {
-        let message =
-            format!("the used recipe `{}` must be a table with a `recipe`, not {}", name.value, value.value.describe());
-        return Err(here(&value.span, message));
-    };
-    let (mut recipe, mut set, mut inputs, mut seed) = (None, Vec::new(), Vec::new(), 0);
-    let mut seen = HashSet::new();
-    for (key, value) in entries {
-        if !seen.insert(key.value.as_str()) {
-            return Err(here(&key.span, format!("the key `{}` appears twice in this table", key.value)));
-        }
-        match (key.value.as_str(), &value.value) {
-            ("recipe", Value::Text(file)) => recipe = Some((value, file.as_str())),
-            ("recipe", other) => {
-                let message =
-                    format!("`recipe` must be the name of a preset or the path of a recipe, not {}", other.describe());
-                return Err(here(&value.span, message));
-            }
-            ("parameters", Value::Table(entries)) => {
-                for (key, value) in entries {
-                    match value.value.number() {
-                        Some(number) if number.is_finite() => set.push((key.value.clone(), number)),
-                        _ => {
-                            let message =
-                                format!("`{}` must be a finite number, not {}", key.value, value.value.describe());
-                            return Err(here(&value.span, message));
-                        }
-                    }
-                }
-            }
-            ("inputs", Value::Table(entries)) => {
-                for (key, value) in entries {
-                    inputs.push(match (&value.value, value.value.number()) {
-                        (Value::Text(node), _) => (key, Input::Node(node.clone())),
-                        (_, Some(number)) if number.is_finite() => (key, Input::Value(number)),
-                        (other, _) => {
-                            let message = format!(
-                                "`{}` must name a node or be a finite number, not {}",
-                                key.value,
-                                other.describe()
-                            );
-                            return Err(here(&value.span, message));
-                        }
-                    });
-                }
-            }
-            ("seed", Value::Integer(number)) if *number >= 0 => seed = *number as u64,
-            ("seed", other) => {
-                return Err(here(
-                    &value.span,
-                    format!("`seed` must be a whole number of at least 0, not {}", other.describe_as_integer()),
-                ));
-            }
-            ("parameters" | "inputs", other) => {
-                return Err(here(&value.span, format!("`{}` must be a table, not {}", key.value, other.describe())));
-            }
-            (unknown, _) => {
-                let hint = suggestion(unknown, KEYS);
-                return Err(here(
-                    &key.span,
-                    format!("unknown key `{unknown}` in the used recipe `{}`; {hint}", name.value),
-                ));
-            }
-        }
-    }
-    match recipe {
-        Some((recipe, file)) => Ok(Asked { recipe, file, set, inputs, seed }),
-        None => Err(here(
-            &name.span,
-            format!("`{}` names no `recipe`: add a line such as `recipe = \"hills\"`", name.value),
-        )),
-    }
-}
+/// Its keys.
+pub static KEYS: Keys<Use> = Keys {
+    needs: &[("recipe", "`recipe`: add a line such as `recipe = \"hills\"`")],
+    parts: &[
+        key!(Use.recipe, "Name of a preset, or path of a recipe.", text true),
+        key!(Use.inputs, "What its nodes of the op `input` read, by their names."),
+        key!(Use.parameters, "Values of its parameters, by their names."),
+        key!(Use.seed, "Hashed with the seeds of its nodes; 0 leaves them as they are."),
+    ],
+};
 
-/// Includes one recipe.
+/// Reads a table of `use` and includes its recipe.
 fn one(
     name: &Spanned<String>,
     value: &Spanned<Value>,
@@ -282,31 +219,55 @@ fn one(
     parameters: &mut Parameters,
     origin: &Origin,
     uses: &mut Uses,
+) {
+    let what = format!("the used recipe `{}`", name.value);
+    let mut values = ValueReader::new(true);
+    if let Some(entries) = values.table(&what, value) {
+        let table = Table { name: &what, span: &name.span, entries };
+        let asked = KEYS.read(&table, &mut values, Use::default());
+        if let (true, Some((_, file))) = (values.diagnostics.is_empty(), table.find("recipe"))
+            && let Err(problem) = include(name, &asked, &file.span, recipe, parameters, origin, uses)
+        {
+            uses.diagnostics.push(problem);
+        }
+    }
+    let problems = values.diagnostics.into_iter().map(|(span, message)| UseDiagnostic::Here(span, message));
+    uses.diagnostics.extend(problems);
+}
+
+/// Includes a recipe; problems of its file are reported at this place.
+fn include(
+    name: &Spanned<String>,
+    asked: &Use,
+    place: &Span,
+    recipe: &mut Recipe,
+    parameters: &mut Parameters,
+    origin: &Origin,
+    uses: &mut Uses,
 ) -> std::result::Result<(), UseDiagnostic> {
-    let asked = asked(name, value)?;
-    let (used, file) = origin.read(asked.file, &asked.set).map_err(|error| {
+    let here = |span: &Span, message: String| UseDiagnostic::Here(span.clone(), message);
+    let set: Vec<(String, f64)> = asked.parameters.iter().map(|(name, value)| (name.value.clone(), *value)).collect();
+    let (used, file) = origin.read(&asked.recipe, &set).map_err(|error| {
         // A diagnostic without a location refers to the values given here.
         match error.diagnostics() {
-            [one] if one.place.is_none() => UseDiagnostic::Here(asked.recipe.span.clone(), one.message.clone()),
+            [one] if one.place.is_none() => here(place, one.message.clone()),
             _ => UseDiagnostic::There(error),
         }
     })?;
     if recipe.nodes().len() + used.nodes().len() > MAX_NODES {
         let message = format!("with this recipe there would be more than {MAX_NODES} nodes");
-        return Err(UseDiagnostic::Here(name.span.clone(), message));
+        return Err(here(&name.span, message));
     }
     for (key, _) in &asked.inputs {
-        let inputs = used
-            .nodes()
-            .iter()
+        let inputs = (used.nodes().iter())
             .filter(|named| matches!(named.node, Node::GraphInput(_)))
             .map(|named| named.name.as_str());
         if !inputs.clone().any(|input| input == key.value) {
             let message = match inputs.clone().next() {
-                None => format!("{} has no inputs, which are nodes of the op `input`", asked.file),
-                Some(_) => format!("{} has no input `{}`; {}", asked.file, key.value, suggestion(&key.value, inputs)),
+                None => format!("{} has no inputs, which are nodes of the op `input`", asked.recipe),
+                Some(_) => format!("{} has no input `{}`; {}", asked.recipe, key.value, suggestion(&key.value, inputs)),
             };
-            return Err(UseDiagnostic::Here(key.span.clone(), message));
+            return Err(here(&key.span, message));
         }
     }
     let prefixed = |input: &Input| match input {

@@ -1,12 +1,17 @@
-//! The `[world]` of a recipe: its parameters, as they are declared, read and written.
+//! The `[world]` of a recipe and its keys.
 
+use super::table::key::Key;
+use super::table::keys::Keys;
+use super::table::part::OfKey;
+use super::table::reader::{Table, ValueReader};
 use orogen_io::dem::square::metres_of_degrees;
 use orogen_io::format::crs::registry::Crs;
 use orogen_io::format::crs::unit::Unit;
 use orogen_io::format::dem::Georeference;
-use orogen_ops::declare::{Param, ParamSpec, Shape, read_param};
 use orogen_ops::op::WorldParams;
-use orogen_ops::value::Value;
+use orogen_ops::value::{Spanned, Value};
+use serde_json::{Value as Json, json};
+
 /// The `[world]` of a recipe. Lengths are in metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -64,85 +69,75 @@ impl WorldSpec {
     }
 }
 
-/// Parameters of `world`.
-pub static WORLD: &[ParamSpec] = &[
-    ParamSpec {
-        name: "seed",
-        alias: "",
-        doc: "The seed of the world. Every node's own seed is hashed with it.",
-        unit: "",
-        shape: Shape::Seed,
-        range: [0.0, f64::INFINITY],
-    },
-    ParamSpec {
-        name: "size",
-        alias: "",
-        doc: "Extent of the world to the east and south, [width, height], or one number for a square. Without it the world is \
-              unbounded, and solvers cannot be used.",
-        unit: "m",
-        shape: Shape::Pair,
-        range: [1e-3, 1e9],
-    },
-    ParamSpec {
-        name: "cell",
-        alias: "",
-        doc: "Cell size of the world's own lattice, on which solvers work. Default: 1/1024 of the longer side, or 10 m in an \
-              unbounded world.",
-        unit: "m",
-        shape: Shape::Number,
-        range: [1e-4, 1e7],
-    },
-    ParamSpec { name: "sea_level", alias: "", doc: "Sea level.", unit: "m", shape: Shape::Number, range: [-1e6, 1e6] },
-    ParamSpec {
-        name: "crs",
-        alias: "",
-        doc: "Coordinate reference system of the world, as an EPSG code; it needs `origin`. It is written to GeoTIFF, GeoJSON and other \
-              georeferenced files. Default: the system of the file that a node `dem` reads, else local metres.",
-        unit: "",
-        shape: Shape::Crs,
-        range: [f64::NEG_INFINITY, f64::INFINITY],
-    },
-    ParamSpec {
-        name: "origin",
-        alias: "",
-        doc: "Easting and northing of the world's north-west corner in the units of `crs`; longitude and latitude if these are degrees.",
-        unit: "",
-        shape: Shape::Pair,
-        range: [-1e9, 1e9],
-    },
-];
+/// The keys of `[world]`.
+pub static KEYS: Keys<WorldSpec> = Keys {
+    needs: &[],
+    parts: &[
+        key!(WorldSpec.seed, "The seed of the world. Every node's own seed is hashed with it."),
+        key!(
+            WorldSpec.size,
+            "Extent of the world to the east and south, [width, height], or one number for a square. Without it the \
+             world is unbounded, and solvers cannot be used. Unit: m.",
+            range [1e-3, 1e9], pair "[WIDTH, HEIGHT]", single true
+        ),
+        key!(
+            WorldSpec.cell,
+            "Cell size of the world's own lattice, on which solvers work. Default: 1/1024 of the longer side, or 10 m \
+             in an unbounded world. Unit: m.",
+            range [1e-4, 1e7]
+        ),
+        key!(WorldSpec.sea_level, "Sea level. Unit: m.", range [-1e6, 1e6]),
+        key!(
+            WorldSpec.crs,
+            "Coordinate reference system of the world, as an EPSG code; it needs `origin`. It is written to GeoTIFF, \
+             GeoJSON and other georeferenced files. Default: the system of the file that a node `dem` reads, else \
+             local metres."
+        ),
+        key!(
+            WorldSpec.origin,
+            "Easting and northing of the world's north-west corner in the units of `crs`; longitude and latitude if \
+             these are degrees.",
+            range [-1e9, 1e9], pair "[EASTING, NORTHING]"
+        ),
+    ],
+};
 
-/// The world's parameter with this name.
-#[must_use]
-pub fn world_param(name: &str) -> Option<&'static ParamSpec> {
-    WORLD.iter().find(|spec| spec.name == name)
-}
-
-/// Reads one of the world's parameters.
-pub fn read_world(spec: &ParamSpec, value: &Value, world: &mut WorldSpec) -> Result<(), String> {
-    match spec.name {
-        "seed" => world.seed = read_param(spec, value)?,
-        "size" => {
-            world.size = Some(match value.number() {
-                Some(side) => read_param(spec, &[side, side].write())?,
-                None => read_param(spec, value)?,
-            });
+impl WorldSpec {
+    /// Reads `[world]`.
+    pub(super) fn read(value: &Spanned<Value>, values: &mut ValueReader) -> WorldSpec {
+        let Some(entries) = values.table("`world`", value) else { return WorldSpec::default() };
+        let table = Table { name: "`world`", span: &value.span, entries };
+        let mut world = KEYS.read(&table, values, WorldSpec::default());
+        if let Some([width, height]) = world.size.filter(|_| !table.has("cell")) {
+            world.cell = width.max(height) / 1024.0;
         }
-        "cell" => world.cell = read_param(spec, value)?,
-        "crs" => match value {
-            Value::Text(text) => world.crs = Some(text.parse().map_err(|why| format!("`crs`: {why}"))?),
-            other => return Err(format!("`crs` must be {}, not {}", spec.expected(), other.describe())),
-        },
-        "origin" => world.origin = Some(read_param(spec, value)?),
-        _ => world.sea_level = read_param(spec, value)?,
+        world
     }
-    Ok(())
 }
 
-/// The world's parameters as values, in the order of [`WORLD`].
-pub fn world_values(world: &WorldSpec) -> impl Iterator<Item = (&'static str, Value)> {
-    let crs = world.crs.map(|crs| Value::Text(format!("EPSG:{}", crs.code())));
-    let [size, origin] = [world.size, world.origin].map(|pair| pair.map(|pair| pair.write()));
-    let values = [Some(world.seed.write()), size, Some(world.cell.write()), Some(world.sea_level.write()), crs, origin];
-    WORLD.iter().zip(values).filter_map(|(spec, value)| Some((spec.name, value?)))
+/// A coordinate reference system, by its EPSG code.
+impl OfKey for Crs {
+    fn schema(_: &Key) -> Json {
+        json!({ "type": "string", "pattern": "^EPSG:[0-9]+$" })
+    }
+
+    fn read(key: &Key, value: &Spanned<Value>, values: &mut ValueReader) -> Option<Crs> {
+        let name = key.name;
+        let problem = match &value.value {
+            Value::Text(text) => match text.parse() {
+                Ok(crs) => return Some(crs),
+                Err(why) => format!("`{name}`: {why}"),
+            },
+            other => {
+                let found = other.describe();
+                format!("`{name}` must be an EPSG code in quotes, such as \"EPSG:32632\", not {found}")
+            }
+        };
+        values.diagnostic(&value.span, problem);
+        None
+    }
+
+    fn write(&self, _: &Key) -> Option<Value> {
+        Some(Value::Text(format!("EPSG:{}", self.code())))
+    }
 }

@@ -25,18 +25,11 @@ pub fn nearest_with(grid: &Grid, threshold: f32, reach: usize, progress: &Progre
     nearest_within(grid, threshold, reach, reach, &steps(progress, 3 * grid.height()))
 }
 
-/// [`nearest`] for every sample of `grid` and without a limit of distance.
-#[must_use]
-pub fn nearest_in_whole(grid: &Grid, threshold: f32) -> Grid {
-    let Ok(out) = nearest_within(grid, threshold, 0, grid.width() + grid.height(), &never);
-    out
-}
-
-/// [`nearest_in_whole`] with progress and cancellation.
+/// [`nearest`] for every sample of `grid` and without a limit of distance, with progress and cancellation.
 ///
 /// # Errors
 /// If the work is cancelled.
-pub fn nearest_in_whole_with(grid: &Grid, threshold: f32, progress: &Progress) -> error::Result<Grid> {
+pub fn nearest_in_whole(grid: &Grid, threshold: f32, progress: &Progress) -> error::Result<Grid> {
     nearest_within(grid, threshold, 0, grid.width() + grid.height(), &steps(progress, 3 * grid.height()))
 }
 

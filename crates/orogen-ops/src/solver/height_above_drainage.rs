@@ -6,7 +6,7 @@ use crate::budget::memory;
 use crate::declare::Declared;
 use crate::lower::{Lowering, Passes};
 use crate::op::{Context, Solution, Solver, Sources, WorldParams};
-use orogen_grid::analysis::distance::nearest_in_whole_with;
+use orogen_grid::analysis::distance::nearest_in_whole;
 use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
 use orogen_grid::hydrology::above_drainage::above_drainage_with;
@@ -73,7 +73,7 @@ impl Solver for HeightAboveDrainage {
         context.progress.check()?;
         let streams = layer_of(&areas.area, |area| f32::from(u8::from(area >= threshold)));
         drop((areas, receivers));
-        let mut distance = nearest_in_whole_with(&streams, 1.0, &nearing)?;
+        let mut distance = nearest_in_whole(&streams, 1.0, &nearing)?;
         context.progress.check()?;
         let (across, down) = (window.width as f64, window.height as f64);
         let diagonal = (across * across + down * down).sqrt();

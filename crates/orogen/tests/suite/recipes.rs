@@ -45,9 +45,9 @@ fn wrong_recipes_are_told_where_and_what() {
     complains(&format!("orogen = 1\n[world]\nsede = 4\n{OUT}"), "3:1", &["`sede`", "did you mean `seed`?"]);
     complains(&format!("orogen = 1\n[world]\nseed = -4\n{OUT}"), "3:8", &["`seed`", "0 to", "-4"]);
     complains(&format!("orogen = 1\n[world]\nsize = 0\n{OUT}"), "3:8", &["`size`", "0.001"]);
-    complains(&format!("orogen = 1\n[world]\nsize = [5, -1]\n{OUT}"), "3:8", &["`size`"]);
-    complains(&format!("orogen = 1\n[world]\ncell = nan\n{OUT}"), "3:8", &["`cell`", "finite", "nan"]);
-    complains(&format!("orogen = 1\n[world]\ncell = inf\n{OUT}"), "3:8", &["`cell`", "finite", "inf"]);
+    complains(&format!("orogen = 1\n[world]\nsize = [5, -1]\n{OUT}"), "3:12", &["`size`", "-1"]);
+    complains(&format!("orogen = 1\n[world]\ncell = nan\n{OUT}"), "3:8", &["`cell`", "a number from 0.0001", "nan"]);
+    complains(&format!("orogen = 1\n[world]\ncell = inf\n{OUT}"), "3:8", &["`cell`", "a number from 0.0001", "inf"]);
     complains(
         &format!("orogen = 1\n[world]\nsize = 1e9\ncell = 0.001\n[nodes.a]\nop = \"fbm\"\n{OUT}"),
         "2:2",

@@ -3,8 +3,10 @@
 use super::document::{End, MAX_CLASSES, Share, TerrainClass};
 use crate::recipe::condition::part::{is_limit, refuse_limit};
 use crate::recipe::outputs::HEIGHT;
-use crate::recipe::table::key::{Key, OfKey};
+use crate::recipe::table::key::Key;
+use crate::recipe::table::keys::Keys;
 use crate::recipe::table::list::List;
+use crate::recipe::table::part::OfKey;
 use crate::recipe::table::reader::{Entry, Table, ValueReader};
 use orogen_grid::words::suggestion;
 use orogen_ops::value::{Span, Spanned, Value};
@@ -16,8 +18,7 @@ pub static CLASSES: List<TerrainClass> = List {
     doc: "Terrain classes. The first one is everywhere; each takes the cells where its conditions hold, and covers those before it.",
     names: ["a class", "tables `[[class]]`"],
     count: [1, MAX_CLASSES],
-    needs: &[("name", "`name`, such as \"water\"")],
-    parts: TerrainClass::PARTS,
+    keys: Keys { needs: &[("name", "`name`, such as \"water\"")], parts: TerrainClass::PARTS },
     entry: class,
 };
 
@@ -25,7 +26,7 @@ fn class(table: &Table, values: &mut ValueReader, before: &[(TerrainClass, Span)
     let limits = |(key, _): &Entry| before.is_empty() && (is_limit(&key.value) || key.value == "share");
     let (limits, entries): (Vec<Entry>, Vec<Entry>) = table.entries.iter().cloned().partition(limits);
     limits.iter().for_each(|(key, _)| refuse_limit(values, "class", key));
-    let class = CLASSES.table(&Table { entries: &entries, ..*table }, values, TerrainClass::default());
+    let class = CLASSES.keys.read(&Table { entries: &entries, ..*table }, values, TerrainClass::default());
     if !class.name.is_empty() && before.iter().any(|(other, _)| other.name == class.name) {
         let message = format!(
             "there are two classes `{}`; give one another name, or join them by `any`, a list of alternatives",
@@ -79,7 +80,10 @@ impl OfKey for Share {
                     values.diagnostic(&value.span, message);
                     of = Some(HEIGHT.to_string());
                 }
-                (_, Some((name, end)), _) => ends.push((*end, values.number(name, value, [0.0, 1.0]).unwrap_or(1.0))),
+                (_, Some((name, end)), _) => ends.push((
+                    *end,
+                    values.number(&Key { range: Some([0.0, 1.0]), ..Key::new(name, "") }, value).unwrap_or(1.0),
+                )),
                 (unknown, None, _) => {
                     let hint = suggestion(unknown, ["of"].into_iter().chain(End::ALL.map(|(name, _)| name)));
                     values.diagnostic(&key.span, format!("unknown key `{unknown}` in `share`; {hint}"));

@@ -100,7 +100,7 @@ fn faults_stand_at_their_keys() {
         ("name = \"wood\"\n", "", "[[class]]", "a class needs a `name`, such as \"water\""),
         ("fade = 40", "max = 200", "{ min = 300", "the lower bound of `height` must not be greater"),
         ("height = {", "hight = {", "hight", "did you mean `height`?"),
-        ("highest = 0.125", "highest = 1.125", "1.125", "`highest` must be a number from 0.0 to 1.0"),
+        ("highest = 0.125", "highest = 1.125", "1.125", "`highest` must be a number from 0 to 1"),
         ("highest = 0.125", "highst = 0.125", "highst", "unknown key `highst` in `share`; did you mean `highest`?"),
         ("highest = 0.125", "highest = 0.125, lowest = 0.5", "{ of", "needs either `lowest` or `highest`"),
         (", highest = 0.125", "", "{ of", "needs either `lowest` or `highest`"),

@@ -1,7 +1,5 @@
 //! Conditions in memory.
 
-use orogen_ops::value::toml_key;
-
 /// Maximum number of alternatives in an `any`.
 pub const MAX_ALTERNATIVES: usize = 16;
 
@@ -55,43 +53,4 @@ pub struct Noise {
     pub octaves: u32,
     /// Seed, hashed with the world's.
     pub seed: u64,
-}
-
-/// Conditions as TOML entries on one line each.
-pub(super) fn entries(conditions: &[Condition]) -> Vec<String> {
-    let (layers, others): (Vec<&Condition>, Vec<&Condition>) =
-        conditions.iter().partition(|condition| matches!(condition.of, Quantity::Layer(_)));
-    let mut out: Vec<String> = (others.iter())
-        .map(|condition| {
-            let (key, more) = match &condition.of {
-                Quantity::Height => ("height", String::new()),
-                Quantity::Slope => ("slope", String::new()),
-                Quantity::Curvature { scale } => ("curvature", format!(", scale = {scale:?}")),
-                Quantity::Flow => ("flow", String::new()),
-                Quantity::Noise(Noise { wavelength, octaves, seed }) => {
-                    ("noise", format!(", wavelength = {wavelength:?}, octaves = {octaves}, seed = {seed}"))
-                }
-                Quantity::Layer(_) => ("layers", String::new()),
-            };
-            format!("{key} = {{ {}{more} }}", range(condition))
-        })
-        .collect();
-    if !layers.is_empty() {
-        let layers: Vec<String> = (layers.iter())
-            .filter_map(|condition| match &condition.of {
-                Quantity::Layer(name) => Some(format!("{} = {{ {} }}", toml_key(name), range(condition))),
-                _ => None,
-            })
-            .collect();
-        out.push(format!("layers = {{ {} }}", layers.join(", ")));
-    }
-    out
-}
-
-fn range(condition: &Condition) -> String {
-    let bounds = [("min", condition.min), ("max", condition.max)];
-    let mut parts: Vec<String> =
-        bounds.iter().filter_map(|(key, bound)| bound.map(|bound| format!("{key} = {bound:?}"))).collect();
-    parts.push(format!("fade = {:?}", condition.fade));
-    parts.join(", ")
 }

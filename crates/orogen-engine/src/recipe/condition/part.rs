@@ -1,14 +1,13 @@
 //! The keys of conditions, `any` and `mask`, which tables of several lists have.
 
-use super::document::{Condition, Quantity, entries};
-use super::read::CONDITIONS;
-use super::schema::{any, conditions};
-use crate::recipe::table::key::{Key, OfKey, Part, described, write};
-use crate::recipe::table::reader::{Table, ValueReader};
+use super::document::{Condition, Quantity};
+use super::kinds::{KINDS, Kind, entries, is_condition};
+use crate::recipe::table::key::Key;
+use crate::recipe::table::part::{OfKey, Part, described, entry};
+use crate::recipe::table::reader::{Entry, Table, ValueReader};
 use orogen_ops::declare::Input;
 use orogen_ops::value::Spanned;
 use serde_json::Value as Json;
-use std::fmt::Write as _;
 
 /// The conditions of an entry.
 pub struct Conditions<'t> {
@@ -48,50 +47,46 @@ pub fn rename_layer(layer: &mut String, of: &impl Fn(&str) -> Option<Input>) {
 /// The part of a table that has the conditions of a `T`.
 pub struct Where<T> {
     /// The key `mask`.
-    pub mask: Key,
+    pub mask: Key<'static>,
     pub of: fn(&mut T) -> Conditions<'_>,
 }
 
+const ANY: Key = Key::new("any", "Alternatives: the largest share of them is used.");
+
 impl<T> Part<T> for Where<T> {
     fn keys(&self) -> Vec<&'static str> {
-        ["any", "mask"].into_iter().chain(CONDITIONS).collect()
+        [ANY.name, self.mask.name].into_iter().chain(KINDS.iter().map(|kind| kind.name)).collect()
     }
 
     fn schemas(&self) -> Vec<Json> {
-        [any(), described::<Input>(&self.mask)].into_iter().chain(conditions()).collect()
+        let conditions = KINDS.iter().map(Kind::schema);
+        [described::<Vec<Vec<Condition>>>(&ANY), described::<Input>(&self.mask)].into_iter().chain(conditions).collect()
     }
 
     fn read(&self, table: &Table, values: &mut ValueReader, out: &mut T) {
         let conditions = (self.of)(out);
         for (key, value) in table.entries {
-            match key.value.as_str() {
-                "mask" => *conditions.mask = Input::read(&self.mask, value, values).unwrap_or(Input::None),
-                "any" => *conditions.any = values.alternatives(value),
-                key if CONDITIONS.contains(&key) => conditions.all.extend(values.condition(key, value)),
-                _ => {}
+            if key.value == self.mask.name {
+                *conditions.mask = Input::read(&self.mask, value, values).unwrap_or(Input::None);
+            } else if key.value == ANY.name {
+                *conditions.any = OfKey::read(&ANY, value, values).unwrap_or_default();
+            } else if let Some(kind) = Kind::named(&key.value) {
+                conditions.all.extend(kind.read(value, values));
             }
         }
     }
 
-    fn write(&self, entry: &mut T, text: &mut String) {
-        let Conditions { all, any, mask } = (self.of)(entry);
-        for entry in entries(all) {
-            let _ = writeln!(text, "{entry}");
-        }
-        if !any.is_empty() {
-            text.push_str("any = [\n");
-            for alternative in any {
-                let _ = writeln!(text, "  {{ {} }},", entries(alternative).join(", "));
-            }
-            text.push_str("]\n");
-        }
-        write(mask, &self.mask, text);
+    fn write(&self, of: &mut T, out: &mut Vec<Entry>) {
+        let Conditions { all, any, mask } = (self.of)(of);
+        out.extend(entries(all));
+        out.extend(any.write(&ANY).map(|value| entry(ANY.name, value)));
+        out.extend(mask.write(&self.mask).map(|value| entry(self.mask.name, value)));
     }
 }
 
 /// Whether a key limits where an entry is.
 pub fn is_limit(key: &str) -> bool {
-    matches!(key, "any" | "mask") || CONDITIONS.contains(&key)
+    matches!(key, "any" | "mask") || is_condition(key)
 }
 
 /// Reports a key of the first table that limits where it is.

@@ -26,7 +26,7 @@ table! {
     /// Number of objects as a share of the greatest possible one, 0 to 1: a node, a layer or a number. Default: 1.
     density: Input = Input::Value(1.0), range [0.0, 1.0];
     /// Scale factor: one number, or [smallest, largest]. Default: 1.
-    size: [f64; 2] = [1.0; 2], range SIZES;
+    size: [f64; 2] = [1.0; 2], range SIZES, pair "[SMALLEST, LARGEST]", single true, ascending true;
     /// Turn about the vertical axis: `random`, or degrees clockwise seen from above.
     turn: Turn = Turn::Random;
     /// Whether objects stand in the sea and in the lakes of the output `lakes`.

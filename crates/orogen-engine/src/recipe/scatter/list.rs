@@ -1,8 +1,10 @@
 //! The list of `[[scatter]]` tables.
 
 use super::document::{InWater, MAX_SCATTERS, Scatter, Turn};
-use crate::recipe::table::key::{Key, OfKey};
+use crate::recipe::table::key::Key;
+use crate::recipe::table::keys::Keys;
 use crate::recipe::table::list::List;
+use crate::recipe::table::part::OfKey;
 use crate::recipe::table::reader::ValueReader;
 use orogen_ops::value::{Spanned, Value};
 use serde_json::{Value as Json, json};
@@ -13,44 +15,20 @@ pub static SCATTERS: List<Scatter> = List {
     doc: "Objects that stand on the ground where their conditions hold, such as trees. Each entry keeps a distance to the objects of those before it.",
     names: ["an entry of `scatter`", "tables `[[scatter]]`"],
     count: [0, MAX_SCATTERS],
-    needs: &[
-        ("name", "`name`, such as \"tree\""),
-        ("spacing", "`spacing`: the smallest distance of two objects, in metres"),
-    ],
-    parts: Scatter::PARTS,
+    keys: Keys {
+        needs: &[
+            ("name", "`name`, such as \"tree\""),
+            ("spacing", "`spacing`: the smallest distance of two objects, in metres"),
+        ],
+        parts: Scatter::PARTS,
+    },
     entry: |table, values, before| {
         let seed = before.len() as u64;
-        let entry = SCATTERS.table(table, values, Scatter { seed, ..Scatter::default() });
+        let entry = SCATTERS.keys.read(table, values, Scatter { seed, ..Scatter::default() });
         let clearance = if table.has("clearance") { entry.clearance } else { entry.spacing };
         Scatter { clearance, ..entry }
     },
 };
-
-/// One scale factor, or the range [SMALLEST, LARGEST].
-impl OfKey for [f64; 2] {
-    fn schema(key: &Key) -> Json {
-        let size = f64::schema(key);
-        json!({ "anyOf": [size, { "type": "array", "minItems": 2, "maxItems": 2, "items": size }] })
-    }
-
-    fn read(key: &Key, value: &Spanned<Value>, values: &mut ValueReader) -> Option<[f64; 2]> {
-        let Value::List(items) = &value.value else { return f64::read(key, value, values).map(|size| [size; 2]) };
-        let [low, high] = items.as_slice() else {
-            values.diagnostic(&value.span, "`size` must be one scale factor or [SMALLEST, LARGEST]");
-            return None;
-        };
-        let [low, high] = [low, high].map(|value| f64::read(key, value, values));
-        let size = [low?, high?];
-        if size[0] > size[1] {
-            values.diagnostic(&value.span, "the smallest `size` must not be greater than the largest");
-        }
-        Some(size)
-    }
-
-    fn write(&self, _: &Key) -> Option<Value> {
-        Some(orogen_ops::declare::Param::write(self))
-    }
-}
 
 impl OfKey for Turn {
     fn schema(_: &Key) -> Json {

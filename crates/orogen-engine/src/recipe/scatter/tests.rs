@@ -60,7 +60,7 @@ fn faults_stand_at_their_keys() {
         ("spacing = 5.5", "spacing = 0", "0", "`spacing` must be a number from 0.01"),
         ("name = \"tree\"", "name = \"t r\"", "\"t r\"", "`name` must be 1 to 64 letters"),
         ("name = \"tree\"\n", "", "[[scatter]]", "needs a `name`, such as \"tree\""),
-        ("density = \"hills\"", "density = 1.5", "1.5", "`density` must be a number from 0.0 to 1.0"),
+        ("density = \"hills\"", "density = 1.5", "1.5", "`density` must be a number from 0 to 1"),
         (
             "density = \"hills\"",
             "density = \"hils\"",
@@ -68,7 +68,7 @@ fn faults_stand_at_their_keys() {
             "scatter `tree`: unknown node `hils`; did you mean `hills`?",
         ),
         ("density = \"hills\"", "densty = 1", "densty", "did you mean `density`?"),
-        ("[0.8, 1.3]", "[1.8, 1.3]", "[1.8", "the smallest `size`"),
+        ("[0.8, 1.3]", "[1.8, 1.3]", "[1.8", "the first number of `size` must not be greater"),
         ("[0.8, 1.3]", "[1.3]", "[1.3]", "[SMALLEST, LARGEST]"),
         ("turn = 90", "turn = 360", "360", "`turn` must be \"random\" or"),
         ("turn = 90", "turn = \"north\"", "\"north\"", "`turn` must be \"random\" or"),
@@ -92,10 +92,11 @@ fn faults_stand_at_their_keys() {
 #[test]
 fn all_values_of_repeated_keys_are_checked() {
     let text = r#"{ "orogen": 1, "parameters": { "p": { "default": 1, "unit": "m", "unit": 5 } }, "world": { "cell": 1, "cell": -1 },
-        "nodes": { "a": { "op": "fbm", "gain": 0.5, "gain": 7 } }, "outputs": { "height": "a", "height": true },
-        "scatter": [{ "name": "tree", "spacing": 2, "spacing": 0 }], "scatter": 3 }"#;
+        "nodes": { "a": { "op": "fbm", "gain": 0.5, "gain": 7, "op": 5 } }, "outputs": { "height": "a", "height": true },
+        "scatter": [{ "name": "tree", "spacing": 2, "spacing": 0 }], "scatter": 3,
+        "use": { "b": { "recipe": "hills", "seed": 1, "seed": -1, "recipe": 4 } } }"#;
     let error = Recipe::parse(text, "test").unwrap_err().to_string();
-    for key in ["unit", "cell", "gain", "height", "spacing", "scatter"] {
+    for key in ["unit", "cell", "gain", "op", "height", "spacing", "scatter", "seed", "recipe"] {
         assert!(error.contains(&format!("the key `{key}` appears twice")), "{key}: {error}");
         assert!(error.contains(&format!("`{key}` must")), "{key}: {error}");
     }

@@ -1,13 +1,13 @@
 //! The coloring of a surface: a color, a gradient or a picture.
 
-use crate::recipe::table::key::{Key, OfKey, Part, described};
+use crate::recipe::table::key::Key;
+use crate::recipe::table::part::{OfKey, Part, described, entry};
 use crate::recipe::table::reader::{Entry, Table, ValueReader};
 use orogen_io::dem::file_ref::FileRef;
 use orogen_io::palette::color::{Light, Rgb, decode, hex, linear, mix, oklab};
 use orogen_ops::declare::Param;
-use orogen_ops::value::{Span, Spanned, Value, toml_string};
+use orogen_ops::value::{Span, Spanned, Value};
 use serde_json::{Value as Json, json};
-use std::fmt::Write as _;
 /// Number of colors of a gradient or a picture, including the first and the last.
 pub const RAMP: usize = 128;
 
@@ -67,9 +67,9 @@ impl Coloring {
     }
 }
 
-pub const COLOR: Key = Key::new("color", "A color: #rrggbb, #rgb or a name.");
+pub const COLOR: Key<'static> = Key::new("color", "A color: #rrggbb, #rgb or a name.");
 
-const GRAIN: Key = Key {
+const GRAIN: Key<'static> = Key {
     range: Some([1e-3, 1e9]),
     stated: Some(DEFAULT_GRAIN),
     ..Key::new("grain", "Wavelength of the gradient's noise. Unit: m.")
@@ -137,22 +137,23 @@ impl<T: Colored> Part<T> for Colors {
         }
     }
 
-    fn write(&self, entry: &mut T, text: &mut String) {
-        let quoted = |color: &Rgb| format!("\"{}\"", hex(*color));
-        let _ = match entry.coloring() {
-            Coloring::Plain(color) => writeln!(text, "color = {}", quoted(color)),
-            Coloring::Gradient(colors, _) => {
-                writeln!(text, "gradient = [{}]", colors.iter().map(quoted).collect::<Vec<_>>().join(", "))
-            }
-            Coloring::Picture(file, _) => writeln!(text, "picture = {}", toml_string(&file.text())),
+    fn write(&self, of: &mut T, entries: &mut Vec<Entry>) {
+        let text = |color: &Rgb| Value::Text(hex(*color).to_string());
+        let list = |colors: &Vec<Rgb>| colors.iter().map(|color| Spanned::unplaced(text(color))).collect();
+        let coloring = of.coloring();
+        entries.push(match coloring {
+            Coloring::Plain(color) => entry("color", text(color)),
+            Coloring::Gradient(colors, _) => entry("gradient", Value::List(list(colors))),
+            Coloring::Picture(file, _) => entry("picture", file.write()),
+        });
+        let (Coloring::Gradient(_, along) | Coloring::Picture(_, along)) = coloring else { return };
+        let (along, span) = match along {
+            Along::Noise(grain) => return entries.push(entry("grain", Value::Number(*grain))),
+            Along::Height(span) => ("height", span),
+            Along::Slope(span) => ("slope", span),
+            Along::Layer(name, span) => (name.as_str(), span),
         };
-        let (Coloring::Gradient(_, along) | Coloring::Picture(_, along)) = entry.coloring() else { return };
-        let _ = match along {
-            Along::Noise(grain) => writeln!(text, "grain = {grain:?}"),
-            Along::Height(span) => writeln!(text, "along = \"height\"\nspan = {span:?}"),
-            Along::Slope(span) => writeln!(text, "along = \"slope\"\nspan = {span:?}"),
-            Along::Layer(name, span) => writeln!(text, "along = {}\nspan = {span:?}", toml_string(name)),
-        };
+        entries.extend([entry("along", Value::Text(along.to_string())), entry("span", Param::write(span))]);
     }
 }
 

@@ -1,11 +1,9 @@
 //! The list of `[[surface]]` tables.
 
-use super::coloring::COLOR;
 use super::document::{MAX_SURFACES, Surface};
 use crate::recipe::condition::part::{is_limit, refuse_limit};
-use crate::recipe::table::key::OfKey;
+use crate::recipe::table::keys::Keys;
 use crate::recipe::table::list::List;
-use serde_json::{Value as Json, json};
 
 /// The list.
 pub static SURFACES: List<Surface> = List {
@@ -13,22 +11,12 @@ pub static SURFACES: List<Surface> = List {
     doc: "Surfaces that cover the ground, from bottom to top. Each covers those before it where its conditions hold; the first one is everywhere.",
     names: ["a surface", "surfaces"],
     count: [0, MAX_SURFACES],
-    needs: &[("name", "`name`, such as \"rock\"")],
-    parts: Surface::PARTS,
+    keys: Keys { needs: &[("name", "`name`, such as \"rock\"")], parts: Surface::PARTS },
     entry: |table, values, before| {
         let limit = table.entries.iter().find(|(key, _)| is_limit(&key.value) || key.value == "opacity");
         if let Some((key, _)) = limit.filter(|_| before.is_empty()) {
             refuse_limit(values, "surface", key);
         }
-        SURFACES.table(table, values, Surface::default())
+        SURFACES.keys.read(table, values, Surface::default())
     },
 };
-
-/// The schema of the list.
-pub fn schema() -> Json {
-    let mut schema = SURFACES.schema();
-    // The pattern of a name stands apart from its description in published schemas.
-    let name = &mut schema["items"]["properties"]["name"];
-    *name = json!({ "allOf": [String::schema(&COLOR)], "description": name["description"] });
-    schema
-}

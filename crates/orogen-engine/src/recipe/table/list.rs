@@ -1,12 +1,9 @@
 //! Lists of tables.
 
-use super::key::Part;
+use super::keys::Keys;
 use super::reader::{Table, ValueReader};
-use crate::recipe::condition::read::CONDITIONS;
-use orogen_grid::words::suggestion;
 use orogen_ops::value::{Span, Spanned, Value};
-use serde_json::{Map, Value as Json, json};
-use std::fmt::Write as _;
+use serde_json::{Value as Json, json};
 
 /// The declaration of a list of tables.
 pub struct List<T: 'static> {
@@ -17,10 +14,9 @@ pub struct List<T: 'static> {
     pub names: [&'static str; 2],
     /// Minimum and maximum number of tables.
     pub count: [usize; 2],
-    /// The keys that every table has, each with what the message says of it where it is missing.
-    pub needs: &'static [(&'static str, &'static str)],
-    pub parts: &'static [&'static dyn Part<T>],
-    /// Reads a table, with [`List::table`], after the entries before it.
+    /// The keys of a table.
+    pub keys: Keys<'static, T>,
+    /// Reads a table, with [`List::keys`], after the entries before it.
     pub entry: fn(&Table, &mut ValueReader, &[(T, Span)]) -> T,
 }
 
@@ -39,7 +35,8 @@ impl<T: Clone> List<T> {
                 let mut out: Vec<(T, Span)> = Vec::new();
                 for item in items {
                     let Some(entries) = values.table(self.names[0], item) else { continue };
-                    let entry = (self.entry)(&Table { span: &item.span, entries }, values, &out);
+                    let table = Table { name: self.names[0], span: &item.span, entries };
+                    let entry = (self.entry)(&table, values, &out);
                     out.push((entry, item.span.clone()));
                 }
                 return out;
@@ -50,44 +47,16 @@ impl<T: Clone> List<T> {
         Vec::new()
     }
 
-    /// Reads a table into an entry.
-    pub fn table(&self, table: &Table, values: &mut ValueReader, mut entry: T) -> T {
-        for (_, what) in self.needs.iter().filter(|(key, _)| !table.has(key)) {
-            values.diagnostic(table.span, format!("{} needs a {what}", self.names[0]));
-        }
-        self.parts.iter().for_each(|part| part.read(table, values, &mut entry));
-        let mut known: Vec<&str> = self.parts.iter().flat_map(|part| part.keys()).collect();
-        known.sort_by_key(|key| CONDITIONS.contains(key));
-        for (key, _) in table.entries.iter().filter(|(key, _)| !known.contains(&key.value.as_str())) {
-            let hint = suggestion(&key.value, known.iter().copied());
-            values.diagnostic(&key.span, format!("unknown key `{}` in {}; {hint}", key.value, self.names[0]));
-        }
-        entry
-    }
-
     /// Appends an entry to a recipe's text.
     pub fn write(&self, entry: &T, text: &mut String) {
-        let _ = writeln!(text, "\n[[{}]]", self.key);
-        let mut entry = entry.clone();
-        self.parts.iter().for_each(|part| part.write(&mut entry, text));
+        self.keys.write(&format!("[[{}]]", self.key), entry, text);
     }
 
     /// The schema of the list.
     pub fn schema(&self) -> Json {
-        let keys = self.parts.iter().flat_map(|part| part.keys().into_iter().zip(part.schemas()));
-        let properties: Map<String, Json> = keys.map(|(key, schema)| (key.to_string(), schema)).collect();
         let [least, most] = self.count;
-        let mut schema = json!({
-            "type": "array",
-            "maxItems": most,
-            "description": self.doc,
-            "items": {
-                "type": "object",
-                "required": self.needs.iter().map(|(key, _)| key).collect::<Vec<_>>(),
-                "additionalProperties": false,
-                "properties": properties,
-            },
-        });
+        let mut schema =
+            json!({ "type": "array", "maxItems": most, "description": self.doc, "items": self.keys.schema() });
         if least > 0 {
             schema["minItems"] = json!(least);
         }

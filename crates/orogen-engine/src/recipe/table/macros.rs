@@ -1,21 +1,28 @@
-//! `table!`.
+//! `table!` and `key!`.
+
+/// A key of a table whose value is a field: `key!(TYPE.FIELD, DOC)`, followed by facts of a
+/// [`Key`](super::key::Key), such as `range [0.0, 1.0]`, or by `part PART` for a field that several keys make.
+macro_rules! key {
+    ($type:ident . $field:ident, $doc:expr, part $part:expr) => { &$part };
+    ($type:ident . $field:ident, $doc:expr $(, $fact:ident $value:expr)*) => {
+        key!($type, stringify!($field), $doc $(, $fact $value)*, |entry| Some(&mut entry.$field))
+    };
+    ($type:ident, $name:expr, $doc:expr $(, $fact:ident $value:expr)*, |$entry:ident| $field:expr) => {
+        &$crate::recipe::table::part::Field {
+            key: $crate::recipe::table::key::Key {
+                $($fact: Some($value),)*
+                ..$crate::recipe::table::key::Key::new($name, $doc)
+            },
+            of: |$entry: &mut $type| $field,
+        }
+    };
+}
 
 /// Declares an entry of a list of tables: its struct, its defaults, and its keys as `PARTS`.
 ///
-/// A key is a field, `name: TYPE = DEFAULT`, with the doc of both; the facts of a [`Key`](super::key::Key) may follow,
-/// such as `range [0.0, 1.0]`, or `part PART` for a field that several keys make. At `conditions and mask DOC;` the
-/// entry has conditions, alternatives and a mask with this doc.
+/// A key is a field, `name: TYPE = DEFAULT`, with the doc of both, and the facts of `key!`. At `conditions and mask
+/// DOC;` the entry has conditions, alternatives and a mask with this doc.
 macro_rules! table {
-    (@part $name:ident $key:ident $doc:expr, part $part:expr) => { &$part };
-    (@part $name:ident $key:ident $doc:expr $(, $fact:ident $value:expr)*) => {
-        &$crate::recipe::table::key::Field {
-            key: $crate::recipe::table::key::Key {
-                $($fact: Some($value),)*
-                ..$crate::recipe::table::key::Key::new(stringify!($key), $doc)
-            },
-            of: |entry: &mut $name| &mut entry.$key,
-        }
-    };
     (
         $(#[doc = $doc:literal])+
         pub struct $name:ident;
@@ -45,13 +52,13 @@ macro_rules! table {
 
         impl $name {
             /// Its keys.
-            pub(crate) const PARTS: &'static [&'static dyn $crate::recipe::table::key::Part<$name>] = &[
-                $( table!(@part $name $key concat!($($key_doc, "\n"),+) $(, $fact $value)*), )+
+            pub(crate) const PARTS: &'static [&'static dyn $crate::recipe::table::part::Part<$name>] = &[
+                $( key!($name.$key, concat!($($key_doc, "\n"),+) $(, $fact $value)*), )+
                 &$crate::recipe::condition::part::Where {
                     mask: $crate::recipe::table::key::Key::new("mask", $mask),
                     of: $name::conditions,
                 },
-                $( table!(@part $name $last concat!($($last_doc, "\n"),+)), )?
+                $( key!($name.$last, concat!($($last_doc, "\n"),+)), )?
             ];
 
             /// Its conditions.

@@ -2,13 +2,18 @@
 
 use std::collections::HashSet;
 
+use super::key::Key;
+use orogen_grid::words::number;
 use orogen_ops::value::{Span, Spanned, Value};
 
 /// A key with its value.
 pub type Entry = (Spanned<String>, Spanned<Value>);
 
-/// A table of a list.
+/// A table to read.
 pub struct Table<'a> {
+    /// What messages call it, such as "a surface".
+    pub name: &'a str,
+    /// Where problems of the whole table are reported.
     pub span: &'a Span,
     pub entries: &'a [Entry],
 }
@@ -66,27 +71,29 @@ impl ValueReader {
         }
     }
 
-    /// A number within these bounds.
-    pub fn number(&mut self, key: &str, value: &Spanned<Value>, [low, high]: [f64; 2]) -> Option<f64> {
-        let number = value.value.number().filter(|number| (low..=high).contains(number));
-        if number.is_none() {
-            let message = format!("`{key}` must be a number from {low:?} to {high:?}, not {}", value.value.describe());
+    /// A finite number within the bounds of a key.
+    pub fn number(&mut self, key: &Key, value: &Spanned<Value>) -> Option<f64> {
+        let bounds =
+            key.range.map_or(String::new(), |[low, high]| format!(" from {} to {}", number(low), number(high)));
+        let [low, high] = key.range.unwrap_or([f64::MIN, f64::MAX]);
+        let found = value.value.number().filter(|number| (low..=high).contains(number));
+        if found.is_none() {
+            let what = if key.range.is_some() { "a number" } else { "a finite number" };
+            let message = format!("`{}` must be {what}{bounds}, not {}", key.name, value.value.describe());
             self.diagnostic(&value.span, message);
         }
-        number
+        found
     }
 
-    /// A whole number from 0 to `most`.
-    pub fn whole(&mut self, key: &str, value: &Spanned<Value>, most: i64) -> i64 {
+    /// A whole number from `least` to `most`.
+    pub fn whole(&mut self, key: &Key, value: &Spanned<Value>, [least, most]: [i64; 2]) -> Option<i64> {
         match value.value {
-            Value::Integer(number) if (0..=most).contains(&number) => number,
+            Value::Integer(number) if (least..=most).contains(&number) => Some(number),
             _ => {
-                let message = format!(
-                    "`{key}` must be a whole number from 0 to {most}, not {}",
-                    value.value.describe_as_integer()
-                );
+                let found = value.value.describe_as_integer();
+                let message = format!("`{}` must be a whole number from {least} to {most}, not {found}", key.name);
                 self.diagnostic(&value.span, message);
-                1
+                None
             }
         }
     }
