@@ -27,7 +27,7 @@ def ours(recipe, layer, *options):
 
 for recipe in ["alpine", "canyon", "classic"]:
     heights = export(recipe, f"{recipe}.tif", *WINDOW)
-    # Greys of gdaldem: 1 without light, 255 in full light.
+    # Grays of gdaldem: 1 without light, 255 in full light.
     greys = 1 + 254 * ours(recipe, "hillshade")
     off = numpy.abs(greys - gdaldem("hillshade", heights))
     checks.that(f"{recipe}: hillshade within a grey level", off.max() <= 1, off.max())

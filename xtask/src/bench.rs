@@ -16,7 +16,7 @@ Usage: cargo xtask bench [AREA] [--json FILE] [--case TEXT] [--quick]
        cargo xtask bench realism --score SCRIPT --dems DIR [--first SEED] [--case TEXT]
        cargo xtask bench water RECIPE [--seed N] [--cell M] [--origin X,Y] [--side N] [--pairs N] [--pair-side N] [--near N] [--fresh]
 
-Builds the benches at full optimisation, measures one area (or all in turn) and prints a table.
+Builds the benches at full optimization, measures one area (or all in turn) and prints a table.
 
   AREA         noise     noise kernels compared with other crates, one thread, CPU time; AVX2, memory and two threads
                erosion   depressions, drainage, a stream power step and hillshade compared with richdem, fastscapelib and matplotlib
@@ -24,7 +24,7 @@ Builds the benches at full optimisation, measures one area (or all in turn) and 
                          threads; worlds of 512 x 512 to 4096 x 4096 cells; OROGEN_RICHDEM, OROGEN_FASTSCAPELIB and OROGEN_MATPLOTLIB name a Python that has them
                generate  `orogen generate` for every preset, all cores, wall time
                outputs   contours compared with contourpy, meshes with pydelatin and OpenEXR files with its library (installed with pip; OROGEN_CONTOURPY,
-                         OROGEN_PYDELATIN and OROGEN_OPENEXR name a Python that has them) and a Cloud-Optimised GeoTIFF with
+                         OROGEN_PYDELATIN and OROGEN_OPENEXR name a Python that has them) and a Cloud-Optimized GeoTIFF with
                          gdal_translate, CPU time; maps of 4096 x 4096 and a rendered view, wall time
                world     chunks, tiles with halos, threads and whole builds of hills of noise, animations of growing presets; the builds (--case build) take
                          minutes and a dozen GiB of disk

@@ -96,6 +96,13 @@ const SPELLINGS: &[(&str, &str)] = &[
     ("colours", "colors"),
     ("coloured", "colored"),
     ("centred", "centered"),
+    ("optimis", "optimiz"),
+    ("serialis", "serializ"),
+    ("quantis", "quantiz"),
+    ("rasteris", "rasteriz"),
+    ("labelled", "labeled"),
+    ("dialogue", "dialog"),
+    ("favour", "favor"),
 ];
 
 /// Ends of the names of Markdown files that are generated, have an entry a line, or are not in English.

@@ -1,4 +1,4 @@
-//! A Cloud-Optimised GeoTIFF of 8192 x 8192 heights compared with GDAL: the same encoding (deflate, predictor 3, tiles
+//! A Cloud-Optimized GeoTIFF of 8192 x 8192 heights compared with GDAL: the same encoding (deflate, predictor 3, tiles
 //! of 512, averaged overviews), one thread each, CPU time; and the sizes of the files.
 
 use std::fs::File;

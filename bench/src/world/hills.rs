@@ -9,10 +9,10 @@ pub fn fields() -> Result<Recipe, String> {
     Recipe::parse(include_str!("hills.toml"), "hills.toml").map_err(|e| e.to_string())
 }
 
-/// The normalised layer of the recipes below.
+/// The normalized layer of the recipes below.
 pub const STRETCHED: &str = "stretched";
 
-/// The hills with normalised heights.
+/// The hills with normalized heights.
 pub fn stretched() -> Result<Recipe, String> {
     let mut recipe = fields()?;
     recipe.add("stretched", Normalise { source: "terrain".into(), low: 40.0, high: 340.0, ..Normalise::default() });
@@ -20,7 +20,7 @@ pub fn stretched() -> Result<Recipe, String> {
     Ok(recipe)
 }
 
-/// The hills with heights blurred with a halo of 32 samples at `cell` and then normalised.
+/// The hills with heights blurred with a halo of 32 samples at `cell` and then normalized.
 pub fn with_halo(cell: f64) -> Result<Recipe, String> {
     let mut recipe = fields()?;
     // The kernel ends at three radii: 31.5 samples.

@@ -56,7 +56,7 @@ pub struct Report {
 impl Report {
     /// The text of `summary.json`.
     pub fn json(&self) -> String {
-        // A struct of numbers and strings can always be serialised.
+        // A struct of numbers and strings can always be serialized.
         serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
     }
 }

@@ -1,5 +1,5 @@
 //! Samples as bytes and back: little-endian f32. Functions of whole slices: crates that are compiled without
-//! optimisation call them instead of a loop of their own.
+//! optimization call them instead of a loop of their own.
 
 use orogen_grid::grid::Grid;
 

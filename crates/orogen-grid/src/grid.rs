@@ -167,7 +167,7 @@ impl Window {
 
 /// Samples over a window, row-major from the north, each row from west to east, like a picture.
 ///
-/// Serialised it is a table of `window` and `data`. Data whose length differs from the window's is rejected. JSON has
+/// Serialized it is a table of `window` and `data`. Data whose length differs from the window's is rejected. JSON has
 /// no NaN and therefore cannot carry samples without a value.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "GridData<T>", bound(serialize = "T: Serialize", deserialize = "T: Copy + Deserialize<'de>"))]

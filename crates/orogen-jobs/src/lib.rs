@@ -9,7 +9,7 @@
 //! - [`graph_layout`]: boxes and wires in columns.
 //!
 //! A job reads options, requests layers, and puts files in place. The crates below it process the samples. This crate
-//! is therefore compiled without optimisation, which takes an eighth of the time.
+//! is therefore compiled without optimization, which takes an eighth of the time.
 #![forbid(unsafe_code)]
 
 pub mod builder;

@@ -30,7 +30,7 @@ pub enum ClassicVariant {
     Angle,
 }
 
-/// How a fractal combines its octaves. All kinds are normalised by the sum of the octaves' amplitudes and stay in -1
+/// How a fractal combines its octaves. All kinds are normalized by the sum of the octaves' amplitudes and stay in -1
 /// ..= 1.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 #[non_exhaustive]

@@ -157,7 +157,7 @@ pub(crate) enum Combine {
         k: f32,
         /// Its shape.
         falloff: Falloff,
-        /// Factor from the kernels' gradient unit to 1 / metre of the normalised sum.
+        /// Factor from the kernels' gradient unit to 1 / metre of the normalized sum.
         gradient: f32,
     },
     /// Other combinations: octaves are numbers in -1 ..= 1, with slopes per first wavelength.
@@ -290,7 +290,7 @@ impl Program {
             let [value, slope] = match fractal.kind {
                 Kind::Fbm => [share, share * frequency],
                 Kind::Ridged | Kind::Billow => [2.0 * share, 2.0 * share * frequency],
-                // The slope of the sum before it is normalised, per first wavelength.
+                // The slope of the sum before it is normalized, per first wavelength.
                 Kind::Weighted { .. } => [share, amplitude * turns],
                 _ => [1.0 / bound, turns / bound],
             };

@@ -78,7 +78,7 @@ fn cross(command: &mut Command) -> Result {
         .env("CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_RUNNER", "qemu-aarch64")
         // Statically linked: otherwise the emulator would mix the C libraries of several packages.
         .env("CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_RUSTFLAGS", "-C target-feature=+crt-static")
-        // Under emulation the default optimisation level takes longer to run than this one takes to build.
+        // Under emulation the default optimization level takes longer to run than this one takes to build.
         .env("CARGO_PROFILE_DEV_OPT_LEVEL", "2")
         .env("CARGO_PROFILE_DEV_DEBUG", "false")
         .env("CARGO_INCREMENTAL", "0");

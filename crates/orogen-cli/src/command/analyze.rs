@@ -230,6 +230,6 @@ fn json(args: &Args, window: &Window, measures: &Measures) -> String {
         "spectrum": bands,
         "strahler_order": measures.water.order,
     });
-    // A tree of numbers and strings can always be serialised.
+    // A tree of numbers and strings can always be serialized.
     serde_json::to_string_pretty(&whole).unwrap_or_default() + "\n"
 }

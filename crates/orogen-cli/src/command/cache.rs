@@ -99,7 +99,7 @@ fn list(args: &List) -> Result<(), Failure> {
             "solutions": entries,
             "tiles": { "count": tiles.len(), "bytes": size(&tiles) },
         });
-        // A tree of numbers and strings can always be serialised.
+        // A tree of numbers and strings can always be serialized.
         return say::out(&(serde_json::to_string_pretty(&whole).unwrap_or_default() + "\n"));
     }
     let mut text = String::new();

@@ -41,7 +41,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let faulty = found.iter().filter(|(_, found)| found.is_err()).count();
     if args.json {
         let all: Vec<Value> = found.iter().map(|(recipe, found)| described(recipe, found)).collect();
-        // A tree of numbers and strings can always be serialised.
+        // A tree of numbers and strings can always be serialized.
         say::out(&(serde_json::to_string_pretty(&all).unwrap_or_default() + "\n"))?;
     } else {
         for (recipe, found) in &found {

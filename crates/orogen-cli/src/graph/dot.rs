@@ -6,7 +6,7 @@ use super::diagram::{Block, Diagram};
 use super::draw::color;
 use orogen::io::palette::color::hex;
 
-/// The source: boxes with their lines, colored by kind, and wires labelled with layers.
+/// The source: boxes with their lines, colored by kind, and wires labeled with layers.
 pub fn text(diagram: &Diagram, title: &str) -> String {
     let mut text = format!(
         "digraph {} {{\n  rankdir = LR;\n  node [shape = box, style = \"filled,rounded\", fontname = \"sans-serif\", fontcolor = white];\n  \

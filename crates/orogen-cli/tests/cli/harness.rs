@@ -270,7 +270,7 @@ pub fn png(bytes: &[u8]) -> Picture {
 }
 
 impl Picture {
-    /// The levels of a 16-bit grey picture.
+    /// The levels of a 16-bit gray picture.
     pub fn grey16(&self) -> Vec<u16> {
         assert_eq!((self.bits, self.channels), (16, 1));
         self.data.chunks_exact(2).map(|b| u16::from_be_bytes([b[0], b[1]])).collect()

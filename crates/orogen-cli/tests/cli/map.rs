@@ -34,7 +34,7 @@ fn colors_by_name_and_from_files() {
             ["--no-contours", "--no-rivers", "--no-lakes", "--no-summits", "--shade", "none", "--size", "300", "-q"];
         folder.good(&[&["map", "small.toml", "-o", "a.png", "--palette", palette][..], &plain].concat());
         let picture = png(&folder.read("a.png"));
-        // A grey map has colors only in the small print.
+        // A gray map has colors only in the small print.
         let colored =
             picture.data.chunks(3).filter(|pixel| pixel.iter().max().unwrap() - pixel.iter().min().unwrap() > 20);
         assert_eq!(colored.count() > 1000, palette == "viridis", "{palette}");

@@ -2,7 +2,7 @@
 //!
 //! "OpenEXR File Layout" (openexr.com), version 2 without tiles or parts: scan lines from the top, in blocks of 16 rows
 //! compressed with ZIP (bytes split in two halves, differences, zlib), in increasing order. Readers in engines support
-//! this kind. Channels are sorted by name, as the format requires; a single channel is called `Y`, which is grey.
+//! this kind. Channels are sorted by name, as the format requires; a single channel is called `Y`, which is gray.
 //!
 //! Compressed blocks are kept in a spool until the table of their offsets can be written before them.
 

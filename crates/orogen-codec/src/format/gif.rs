@@ -216,7 +216,7 @@ fn write_frames(
     out.write_all(b"\x3b")
 }
 
-/// Grey values as pixels of three bytes.
+/// Gray values as pixels of three bytes.
 pub fn rgb_of_grey(greys: &[u8], rgb: &mut [u8]) {
     rgb.chunks_exact_mut(3).zip(greys).for_each(|(rgb, grey)| rgb.fill(*grey));
 }

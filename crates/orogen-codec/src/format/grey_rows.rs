@@ -76,7 +76,7 @@ impl<'a> Pixels<'a> {
         }
     }
 
-    /// The heights of greys of `size` bytes from 0, which is `range[0]`, to `most`, which is `range[1]`.
+    /// The heights of grays of `size` bytes from 0, which is `range[0]`, to `most`, which is `range[1]`.
     ///
     /// # Errors
     /// A message if the picture is damaged.

@@ -1,7 +1,7 @@
-//! PNG pictures: greyscale of 8 and 16 bits, color, normals, and animations (APNG).
+//! PNG pictures: grayscale of 8 and 16 bits, color, normals, and animations (APNG).
 //!
-//! The PNG specification (third edition, W3C 2025). 16-bit samples are big-endian. Greys and normals are data, so they
-//! have no gamma or color chunk that a reader could apply; colors are marked as sRGB. Compression favours speed.
+//! The PNG specification (third edition, W3C 2025). 16-bit samples are big-endian. Grays and normals are data, so they
+//! have no gamma or color chunk that a reader could apply; colors are marked as sRGB. Compression favors speed.
 
 use std::io::{self, Write};
 use std::ops::Range;
@@ -18,9 +18,9 @@ const BAND: usize = 1 << 20;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Pixel {
-    /// One byte of grey.
+    /// One byte of gray.
     Grey8,
-    /// Two bytes of grey, big-endian.
+    /// Two bytes of gray, big-endian.
     Grey16,
     /// Three bytes: red, green, blue, as sRGB.
     Rgb8,
@@ -202,7 +202,7 @@ fn encoder<'a>(out: &'a mut dyn Write, picture: &Picture) -> io::Result<Encoder<
     Ok(encoder)
 }
 
-/// Writes a grid as 16-bit grey over the range of `levels`.
+/// Writes a grid as 16-bit gray over the range of `levels`.
 pub fn write_grey16(out: &mut dyn Write, grid: &Grid, levels: &Levels, notes: &[(&str, &str)]) -> io::Result<()> {
     let picture = Picture { width: grid.width(), height: grid.height(), pixel: Pixel::Grey16, notes };
     write(out, &picture, |rows, bytes| {
@@ -214,7 +214,7 @@ pub fn write_grey16(out: &mut dyn Write, grid: &Grid, levels: &Levels, notes: &[
     })
 }
 
-/// Writes a grid as 8-bit grey over the range of `levels`, low black.
+/// Writes a grid as 8-bit gray over the range of `levels`, low black.
 pub fn write_grey8(out: &mut dyn Write, grid: &Grid, levels: &Levels, notes: &[(&str, &str)]) -> io::Result<()> {
     let picture = Picture { width: grid.width(), height: grid.height(), pixel: Pixel::Grey8, notes };
     write(out, &picture, |rows, bytes| {

@@ -6,7 +6,7 @@ use super::ramp::Ramp;
 use crate::format::levels::Levels;
 use orogen_grid::grid::Grid;
 
-/// The atlas tint: green lowlands, then straw, ochre, brown, grey and white heights; the sea darkens with depth. Land
+/// The atlas tint: green lowlands, then straw, ochre, brown, gray and white heights; the sea darkens with depth. Land
 /// and sea meet exactly at sea level.
 ///
 /// In a printed atlas every height has a fixed color, so hills of 300 m are all green; with all colors stretched over

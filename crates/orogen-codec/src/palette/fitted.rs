@@ -171,7 +171,7 @@ fn light(byte: f32) -> f32 {
     if c <= 0.04045 { c / 12.92 } else { libm::powf((c + 0.055) / 1.055, 2.4) }
 }
 
-/// Hue in degrees, saturation and value from 0 to 1. The hue of a grey is 0.
+/// Hue in degrees, saturation and value from 0 to 1. The hue of a gray is 0.
 #[must_use]
 pub fn hsv(color: Rgb) -> [f32; 3] {
     let [r, g, b] = color.map(|byte| f32::from(byte) / 255.0);

@@ -2,7 +2,7 @@
 
 use super::color::Rgb;
 
-/// The default color of a sample without a finite value: a light, neutral grey.
+/// The default color of a sample without a finite value: a light, neutral gray.
 pub const NO_DATA: Rgb = [222, 222, 222];
 
 /// The position of a color.

@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 /// A plan for layers over a window: an owned value, made without computing any sample.
 ///
 /// It can be stored and sent (serde). It contains the version of the library, the identity of its recipe and a
-/// checksum. Deserialisation fails for other versions and for damaged plans; a plan of another recipe cannot be run.
+/// checksum. Deserialization fails for other versions and for damaged plans; a plan of another recipe cannot be run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
     /// The identity of its recipe: a hash of the content keys of all nodes.

@@ -15,7 +15,7 @@ fn first_format() -> u32 {
     1
 }
 
-/// The serialised form of a plan.
+/// The serialized form of a plan.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 struct StoredPlan {
     orogen: String,

@@ -28,7 +28,7 @@ mod refined;
 #[doc(hidden)]
 pub mod scatter;
 pub mod schema;
-mod serialise;
+mod serialize;
 #[doc(hidden)]
 pub mod source;
 mod subgraph;

@@ -119,7 +119,7 @@ fn natural(site: Site, shape: vec4<f32>, noise: vec4<f32>) -> Coat {
     let fine = noise.w;
     let rough_edge = 0.6 * middle + 0.4 * small + 0.25 * fine;
 
-    // Rock: partly greyer and browner, with faint beds.
+    // Rock: partly grayer and browner, with faint beds.
     let bed = plain_grain((site.height + 25.0 * wide + 6.0 * middle) / 70.0, 0.53, 6u);
     let shade = 0.5 + 0.30 * wide + 0.25 * middle + 0.25 * small + 0.30 * fine + 0.22 * bed;
     let rock = blend(ROCK_DARK, ROCK_LIGHT, shade);

@@ -68,7 +68,7 @@ pub fn spectrum_of_rows(window: &Window, rows: impl Fn(Range<usize>) -> Result<G
             squares += 1.0;
         }
     }
-    // Normalised to a density: power per unit area of frequencies, divided by the energy of Hann's window.
+    // Normalized to a density: power per unit area of frequencies, divided by the energy of Hann's window.
     let scale = cell * cell / (energy * energy * squares);
     let classes = (f64::from(side.ilog2() - 2) * CLASSES_AN_OCTAVE) as usize;
     let mut bands = vec![(0.0, 0.0, 0.0); classes];

@@ -1,4 +1,4 @@
-//! Outlines of labelled samples: polygons that tile the plane, with bit-equal common borders.
+//! Outlines of labeled samples: polygons that tile the plane, with bit-equal common borders.
 //!
 //! Each sample is the center of a square; a polygon is the union of the squares of one label. Corners of borders are
 //! cut (Chaikin) between the nodes where three polygons meet, which stay fixed. Borders cannot cross, because each cut

@@ -12,7 +12,7 @@ use crate::progress::Progress;
 /// such as the sea. Costs O(cells).
 #[must_use]
 pub fn watersheds(receivers: &Receivers, outlets: &Outlets, accumulation: &Accumulation) -> Grid<u32> {
-    let Ok(labels) = labelled(receivers, outlets, accumulation, &never);
+    let Ok(labels) = labeled(receivers, outlets, accumulation, &never);
     labels
 }
 
@@ -26,10 +26,10 @@ pub fn watersheds_with(
     accumulation: &Accumulation,
     progress: &Progress,
 ) -> error::Result<Grid<u32>> {
-    labelled(receivers, outlets, accumulation, &steps(progress, 2 * checks(receivers.window().len())))
+    labeled(receivers, outlets, accumulation, &steps(progress, 2 * checks(receivers.window().len())))
 }
 
-fn labelled<E>(
+fn labeled<E>(
     receivers: &Receivers,
     outlets: &Outlets,
     accumulation: &Accumulation,

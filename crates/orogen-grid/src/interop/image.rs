@@ -4,7 +4,7 @@ use ::image::{ImageBuffer, Luma, Pixel, Primitive};
 
 use crate::{Grid, Window};
 
-/// A grey image of `T`.
+/// A gray image of `T`.
 type Gray<T> = ImageBuffer<Luma<T>, Vec<T>>;
 
 impl<T: Copy + Primitive> Grid<T>

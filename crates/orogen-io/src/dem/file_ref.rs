@@ -26,13 +26,13 @@ pub enum FileKind {
     /// Heights.
     #[default]
     Heights,
-    /// A greyscale picture.
+    /// A grayscale picture.
     Picture,
     /// Lines or areas.
     Drawing(DrawingKind),
 }
 
-/// A greyscale picture named by a recipe: its content is numbers from 0 for black to 1 for white, one metre apart.
+/// A grayscale picture named by a recipe: its content is numbers from 0 for black to 1 for white, one metre apart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Picture(pub FileRef);
 

@@ -52,10 +52,10 @@ impl PreparedDem {
         PreparedDem::of(dem, cell, request.allowed).map_err(|why| refused(&name, why))
     }
 
-    /// Reads a greyscale picture: 0 for black, 1 for white, pixels one metre apart, in at most `allowed` bytes.
+    /// Reads a grayscale picture: 0 for black, 1 for white, pixels one metre apart, in at most `allowed` bytes.
     ///
     /// # Errors
-    /// If the file cannot be read, is not a greyscale .png, or is too large.
+    /// If the file cannot be read, is not a grayscale .png, or is too large.
     pub fn picture(path: &Path, allowed: u64) -> Result<PreparedDem> {
         let name = path.display().to_string();
         if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {

@@ -1,4 +1,4 @@
-//! Reading heights from a greyscale PNG of 8 or 16 bits, with a [`Sidecar`] that states the heights of black and white,
+//! Reading heights from a grayscale PNG of 8 or 16 bits, with a [`Sidecar`] that states the heights of black and white,
 //! and from a color PNG of 8 bits whose sidecar states the [`Encoding`].
 
 use ::png::{BitDepth, ColorType};
@@ -8,10 +8,10 @@ use super::grey_rows::Pixels;
 use super::sidecar::{Sidecar, needs};
 use orogen_grid::error::Result;
 
-/// Reads a greyscale picture. `name` is the file's name in errors.
+/// Reads a grayscale picture. `name` is the file's name in errors.
 ///
 /// # Errors
-/// If it is not a PNG, not greyscale, damaged or too large, or the sidecar does not state the heights of black and
+/// If it is not a PNG, not grayscale, damaged or too large, or the sidecar does not state the heights of black and
 /// white.
 pub fn read(input: &mut dyn Input, name: &str, sidecar: &Sidecar, allowed: u64) -> Result<Dem> {
     open(input, sidecar, allowed).map_err(|why| refused(name, why))
@@ -26,7 +26,7 @@ fn open(input: &mut dyn Input, sidecar: &Sidecar, allowed: u64) -> std::result::
         (ColorType::Grayscale, BitDepth::Sixteen) => 2,
         (ColorType::Rgb, BitDepth::Eight) if encoding.is_some() => 3,
         (ColorType::Rgba, BitDepth::Eight) if encoding.is_some() => 4,
-        // With the heights of black and white, grey is expected.
+        // With the heights of black and white, gray is expected.
         (ColorType::Rgb | ColorType::Rgba, BitDepth::Eight) if sidecar.low.is_none() => {
             return Err(needs("the encoding of heights in its colors, `encoding` (\"terrarium\" or \"terrain-rgb\")"));
         }

@@ -1,4 +1,4 @@
-//! PGM (Netpbm, `P5`): an uncompressed greyscale picture of 8 or 16 bits.
+//! PGM (Netpbm, `P5`): an uncompressed grayscale picture of 8 or 16 bits.
 //!
 //! A text header (size and the largest level), then the levels, row by row; 16-bit levels are big-endian.
 

@@ -1,7 +1,7 @@
 //! Color palette tables (`.cpt`) of GMT, the Generic Mapping Tools.
 //!
 //! A line has a height, its color, a higher height, its color: `0 20/40/60 500 120/160/90`; components may be
-//! separated by blanks. Colors are red/green/blue, hue-saturation-value, cyan/magenta/yellow/black, #rrggbb, a grey
+//! separated by blanks. Colors are red/green/blue, hue-saturation-value, cyan/magenta/yellow/black, #rrggbb, a gray
 //! level or a name. `B`, `F` and `N` are the colors below, above, and for missing samples. `# COLOR_MODEL`, `# RANGE`
 //! and `# HINGE` are supported.
 //!
@@ -38,7 +38,7 @@ impl Color {
         parts.map(|part| (part * 255.0).round().clamp(0.0, 255.0) as u8)
     }
 
-    /// Hue in degrees, saturation and value from 0 to 1. The hue of a grey is 0.
+    /// Hue in degrees, saturation and value from 0 to 1. The hue of a gray is 0.
     fn hsv(self) -> [f64; 3] {
         match self {
             Color::Hsv(hsv) => hsv,
@@ -81,7 +81,7 @@ fn hsv_stops([start, end]: [(f64, Color); 2]) -> Vec<(f64, Rgb)> {
 
 /// Parses a table.
 ///
-/// Heights are metres, unless the table is normalised (from 0 to 1, or from -1 to 1): then it is stretched over its
+/// Heights are metres, unless the table is normalized (from 0 to 1, or from -1 to 1): then it is stretched over its
 /// `RANGE` or, if it has none, from the lowest height to the highest. With a `HINGE` both halves of a table from -1 to
 /// 1 are stretched on their own: 0 is at the hinge, a height of 0 m unless it states another, or without a range at sea
 /// level.

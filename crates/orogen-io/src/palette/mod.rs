@@ -1,7 +1,7 @@
 //! Colors for heights: ramps between stops, the atlas tint for land and sea, palettes by name and from files.
 //!
 //! Colors between stops are mixed in Oklab (B. Ottosson, 2020), which is perceptually uniform: a mix of green and
-//! brown does not turn grey. Results are in linear light, so that shading can multiply them; [`color::Encoder`]
+//! brown does not turn gray. Results are in linear light, so that shading can multiply them; [`color::Encoder`]
 //! converts them to bytes.
 
 pub(crate) mod cpt;

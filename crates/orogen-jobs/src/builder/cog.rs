@@ -1,4 +1,4 @@
-//! A Cloud-Optimised GeoTIFF: compressed tiles and coarser samples are kept beside it until all exist.
+//! A Cloud-Optimized GeoTIFF: compressed tiles and coarser samples are kept beside it until all exist.
 //!
 //! Its bytes equal those of [`orogen_io::format::geotiff::writer`] for the same samples.
 

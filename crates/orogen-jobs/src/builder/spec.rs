@@ -11,7 +11,7 @@ use orogen_io::format::encoding::Encoding;
 /// The form of a result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
-    /// One Cloud-Optimised GeoTIFF.
+    /// One Cloud-Optimized GeoTIFF.
     Cog,
     /// A Zarr v3 group, one array per layer.
     Zarr,
@@ -24,7 +24,7 @@ pub enum Form {
 /// The sample format of a folder's tiles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Samples {
-    /// 16-bit grey PNG, over the range of the whole window.
+    /// 16-bit gray PNG, over the range of the whole window.
     Png,
     /// Headerless u16, little-endian, over the range of the whole window.
     R16,

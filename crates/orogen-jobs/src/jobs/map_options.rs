@@ -91,7 +91,7 @@ const OPTIONS: &[OptionSpec] = &[
         .with_example("100", ["", " m"])
         .without(&["levels"]),
     OptionSpec::new("levels", "A,B,...", ValueKind::Numbers)
-        .with_about("Contour heights in metres, instead of an interval, such as 100,250,500; all of them are labelled")
+        .with_about("Contour heights in metres, instead of an interval, such as 100,250,500; all of them are labeled")
         .with_example("100,250,500", ["", " m"])
         .without(&["contours"]),
     OptionSpec::new("labels", "WHICH", ValueKind::Choice(LABELS))

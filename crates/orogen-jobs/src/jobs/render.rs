@@ -477,7 +477,7 @@ mod tests {
     use super::*;
     use orogen_output::render::skylight::{Shed, SkylightInput};
 
-    /// A device that paints all pixels in one grey, or refuses.
+    /// A device that paints all pixels in one gray, or refuses.
     struct Device(Option<u8>);
 
     impl SkylightDevice for Device {

@@ -1,6 +1,6 @@
 //! Declarations of ops: name, inputs, parameters and layers.
 //!
-//! One `op!` block gives the struct, its defaults, parsing and validation, serialisation, the JSON Schema, the help of
+//! One `op!` block gives the struct, its defaults, parsing and validation, serialization, the JSON Schema, the help of
 //! the command line and the sliders of a user interface.
 //!
 //! - [`spec`]: what is declared of an op, its inputs and its parameters

@@ -26,7 +26,7 @@ op! {
     /// Heights of a digital elevation model (DEM), read from a file.
     ///
     /// Supported formats: GeoTIFF (.tif), ESRI ASCII grid (.asc), SRTM tile (.hgt), virtual raster (.vrt), Zarr array,
-    /// folder of tiles (.tif, .hgt or .asc), OpenEXR (.exr), NumPy array (.npy), 16-bit grey PNG (.png) and headerless
+    /// folder of tiles (.tif, .hgt or .asc), OpenEXR (.exr), NumPy array (.npy), 16-bit gray PNG (.png) and headerless
     /// samples (.r16, .r32). Files of the last five kinds lack metadata: it is read from NAME.json or NAME.toml beside
     /// the file (`width`, `height`, `cell`, `low`, `high`, `byte_order`, `nodata`), from a world file and from a .prj.
     /// Stored solutions are reused as long as the content of the file is the same; its name does not matter. The

@@ -1,4 +1,4 @@
-//! A grey picture as a field.
+//! A gray picture as a field.
 
 use super::positions::each;
 use crate::layer::LayerKind;
@@ -11,10 +11,10 @@ use orogen_noise::Points;
 use orogen_noise::shader::function::Shader;
 
 op! {
-    /// A grey picture as a field: black is 0, white is 1. Use it as a mask, for example a painted coast, a forest or a
+    /// A gray picture as a field: black is 0, white is 1. Use it as a mask, for example a painted coast, a forest or a
     /// road.
     ///
-    /// Supported format: grey PNG (.png) of 8 or 16 bits. Pixels are square and represent points: the first one, in the
+    /// Supported format: gray PNG (.png) of 8 or 16 bits. Pixels are square and represent points: the first one, in the
     /// north-west corner, is placed at `at`, the last one of a row `width` metres east of it. Between pixels the values
     /// are interpolated by a cubic (Catmull and Rom 1974) and limited to 0 ..= 1. Stored solutions are reused as long
     /// as the content of the file is the same; its name does not matter. The picture is kept in memory. For heights use

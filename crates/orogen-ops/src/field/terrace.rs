@@ -7,7 +7,7 @@ use orogen_noise::Points;
 use orogen_noise::shader::function::Shader;
 
 op! {
-    /// The source quantised into terraces: level treads with smooth risers between them.
+    /// The source quantized into terraces: level treads with smooth risers between them.
     ///
     /// Within each step the riser takes the middle share (1 - `sharpness`) as a smoothstep: 0 gives gentle waves, 1
     /// gives vertical cliffs.

@@ -85,7 +85,7 @@ impl Canvas {
         }
     }
 
-    /// Writes the page as a PNG, in greyscale if it has no colors.
+    /// Writes the page as a PNG, in grayscale if it has no colors.
     pub fn write_png(&self, out: &mut dyn Write, notes: &[(&str, &str)]) -> io::Result<()> {
         let grey = self.pixels.iter().all(|[red, green, blue]| red == green && green == blue);
         let pixel = if grey { Pixel::Grey8 } else { Pixel::Rgb8 };

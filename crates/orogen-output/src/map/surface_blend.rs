@@ -63,7 +63,7 @@ impl SurfaceBlend<'_> {
         out
     }
 
-    /// The color in linear light: red, green and blue; the grey of missing samples where there is no height.
+    /// The color in linear light: red, green and blue; the gray of missing samples where there is no height.
     #[must_use]
     pub fn albedo(&self, window: &Window) -> Vec<Grid> {
         let mut out = vec![Grid::filled(*window, 0.0); 3];

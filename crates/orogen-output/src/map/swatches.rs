@@ -185,7 +185,7 @@ mod tests {
             .collect();
         let page = draw(&swatches).unwrap();
         assert_eq!(page.height(), HEADER + swatches.len().div_ceil(2) * ROW + MARGIN);
-        // The grey bar starts with black and ends with white.
+        // The gray bar starts with black and ends with white.
         let k = swatches.iter().position(|swatch| swatch.palette.name == "grey").unwrap();
         let rows = swatches.len().div_ceil(2);
         let (x, y) = (MARGIN + k / rows * (COLUMN + GUTTER), HEADER + k % rows * ROW + 60);

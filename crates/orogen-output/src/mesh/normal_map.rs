@@ -1,7 +1,7 @@
 //! Tangent-space normal maps, which add the detail of the ground to a mesh with few triangles.
 //!
 //! glTF 2.0.1, sections 3.7.2.1 and 3.9.3: a texel (x, y, z) stands for the normal x T + y B + z N, where N and T are
-//! the normal and the tangent of the vertices, interpolated over the triangle and normalised, and B is the interpolated
+//! the normal and the tangent of the vertices, interpolated over the triangle and normalized, and B is the interpolated
 //! cross product of the two. T points east, B north.
 
 use super::surface::Surface;

@@ -1,4 +1,4 @@
-//! The appearance of a noise's samples: grey values, directions or colors.
+//! The appearance of a noise's samples: gray values, directions or colors.
 
 use std::ops::Range;
 

@@ -9,7 +9,7 @@ use super::row::{COLUMNS, Row, SIDE};
 use crate::map::canvas::{Canvas, Ink};
 use crate::map::text::{BuiltinFont, Face, Style};
 
-/// All inks are grey, so that the page is written as greyscale, in half the bytes.
+/// All inks are gray, so that the page is written as grayscale, in half the bytes.
 const PAPER: Ink = [253; 3];
 const INK: Ink = [28; 3];
 const SOFT: Ink = [97; 3];

@@ -12,7 +12,7 @@ const RELIEF: f32 = 25.0;
 /// The share of samples clipped to black, and to white, so that single peaks do not darken the rest.
 const OUTSIDE: f64 = 0.005;
 
-/// Grey values, row-major, of `side` x `side` samples.
+/// Gray values, row-major, of `side` x `side` samples.
 #[derive(Debug)]
 pub struct Pictures {
     /// The heights: black is low, white is high.

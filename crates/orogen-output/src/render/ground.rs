@@ -90,7 +90,7 @@ const TREE_SHARE: f64 = 0.40;
 /// Factor of a map's colors: paper is brighter than any ground, and would be white in the sun.
 pub(super) const PAPER: f32 = 0.55;
 
-/// Albedo of ground without a height: a middle grey, darker than snow.
+/// Albedo of ground without a height: a middle gray, darker than snow.
 const MISSING: f32 = 0.3;
 
 impl GroundCover {
@@ -232,7 +232,7 @@ impl GroundCover {
         let [wide, middle, small, fine] = self.noises(site, NATURAL_WAVES);
         let rough_edge = 0.6 * middle + 0.4 * small + 0.25 * fine;
 
-        // Rock: partly greyer and browner, with faint beds.
+        // Rock: partly grayer and browner, with faint beds.
         let bed = self.strata(site.height + 25.0 * wide + 6.0 * middle, 70.0);
         let shade = 0.5 + 0.30 * wide + 0.25 * middle + 0.25 * small + 0.30 * fine + 0.22 * bed;
         let rock = tone(ROCK, shade.clamp(0.0, 1.0));

@@ -158,7 +158,7 @@ mod tests {
         let mut taken = Taken::none(Rect::new(0.0, 0.0, 50.0, 50.0));
         summit(&mut desk, &mut taken, Point::new(25.0, 25.0), "2345");
         assert_eq!(desk.scene.items.len(), 3);
-        // A second mark next to it has no room; a mark at the right edge is labelled on its left.
+        // A second mark next to it has no room; a mark at the right edge is labeled on its left.
         summit(&mut desk, &mut taken, Point::new(26.0, 25.5), "2344");
         assert_eq!(desk.scene.items.len(), 3);
         summit(&mut desk, &mut taken, Point::new(47.0, 10.0), "1999");

@@ -136,7 +136,7 @@ impl Profile {
         Some(Profile { direction, area, at, lowest, heights, length, span, exaggeration, sea_level })
     }
 
-    /// Draws the profile, and its line on the map. Without a tint, the land is grey.
+    /// Draws the profile, and its line on the map. Without a tint, the land is gray.
     pub fn draw(&self, desk: &mut Desk, map: Rect, tint: Option<&Tint>, dpi: f64) {
         let Rect { left, top, width, height } = self.area;
         let (right, bottom) = (self.area.right(), self.area.bottom());
@@ -145,7 +145,7 @@ impl Profile {
         let mut marks: Vec<Vec<Point>> = Vec::new();
         let mut lines: Vec<Vec<Point>> = Vec::new();
         let decimals = if self.span[1] - self.span[0] < 20.0 { 1 } else { 0 };
-        // Heights are labelled in metres, whatever their size.
+        // Heights are labeled in metres, whatever their size.
         for (value, _) in ticks(self.span, (height / 6.5).max(2.0) as usize, Count::Latitude) {
             let (y, name) = (up(value), format!("{} m", grouped(value, decimals)));
             marks.push(line([[left, y], [left - 1.3, y]]));
@@ -212,7 +212,7 @@ impl Profile {
         }
     }
 
-    /// The land under the line in the map's colors or in grey, and the sea above it.
+    /// The land under the line in the map's colors or in gray, and the sea above it.
     fn ground(&self, desk: &mut Desk, tint: Option<&Tint>, dpi: f64) {
         let Rect { width, height, .. } = self.area;
         let side = |millimetres: f32| ((f64::from(millimetres) * dpi / 25.4).round() as usize).clamp(2, 8000);

@@ -157,7 +157,7 @@ impl Ramp {
     }
 }
 
-/// A color for a number: consecutive numbers differ. 0, which means no area, is grey.
+/// A color for a number: consecutive numbers differ. 0, which means no area, is gray.
 fn label(value: f32) -> Light {
     if value == 0.0 {
         return [0.6; 3];

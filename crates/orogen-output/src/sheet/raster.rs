@@ -1,4 +1,4 @@
-//! Rasterisation of a sheet.
+//! Rasterization of a sheet.
 
 use orogen_grid::parallel;
 

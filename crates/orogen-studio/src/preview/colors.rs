@@ -138,7 +138,7 @@ fn logarithm(value: f32) -> f32 {
     if value > 0.0 { libm::log10f(value) } else { f32::NAN }
 }
 
-/// The color of a number; grey if it has none.
+/// The color of a number; gray if it has none.
 #[must_use]
 pub fn number(colors: &[Rgb], value: f32) -> Rgb {
     match value.is_finite() && value >= 0.0 && !colors.is_empty() {

@@ -42,7 +42,7 @@ impl Contours {
         Ok(Contours { interval, lines: lines.collect() })
     }
 
-    /// Whether a line is drawn thicker, and labelled.
+    /// Whether a line is drawn thicker, and labeled.
     #[must_use]
     pub fn is_index(&self, line: &Line) -> bool {
         is_index(line.elevation, self.interval)

@@ -161,7 +161,7 @@ fn late(node: &Node, side: usize, after: Duration) -> Option<Duration> {
 #[test]
 #[ignore = "long: every filter and solver, cancelled several times at 1024 x 1024 and 4096 x 4096"]
 fn large_work_that_is_cancelled_at_random_moments_ends_soon() {
-    // A build that is optimised little takes three times as long between two checks.
+    // A build that is optimized little takes three times as long between two checks.
     let slack = if cfg!(debug_assertions) { 3 } else { 1 };
     let only = std::env::var("OROGEN_OPS").unwrap_or_default();
     let chosen = |node: &Node| only.is_empty() || only.split(',').any(|name| name == node.spec().op);

@@ -1,4 +1,4 @@
-//! GeoTIFF in the layout of a Cloud-Optimised GeoTIFF (COG): f32 samples with overviews, readable in parts.
+//! GeoTIFF in the layout of a Cloud-Optimized GeoTIFF (COG): f32 samples with overviews, readable in parts.
 //!
 //! TIFF 6.0 with Adobe's Technical Note 3 (floating-point predictor), BigTIFF for files larger than 4 GiB, OGC GeoTIFF
 //! 1.1 (OGC 19-008r4), OGC COG 1.0 (OGC 21-026). Files have one band of f32, little-endian, in tiles compressed with

@@ -1,4 +1,4 @@
-//! Netpbm greyscale pictures.
+//! Netpbm grayscale pictures.
 
 use std::io;
 

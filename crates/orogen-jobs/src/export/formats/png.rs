@@ -1,4 +1,4 @@
-//! Greyscale pictures, heights encoded in colors, normal maps and splat maps.
+//! Grayscale pictures, heights encoded in colors, normal maps and splat maps.
 
 use std::io;
 

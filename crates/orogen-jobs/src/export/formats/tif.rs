@@ -1,4 +1,4 @@
-//! Cloud-Optimised GeoTIFF.
+//! Cloud-Optimized GeoTIFF.
 
 use std::io;
 
@@ -15,7 +15,7 @@ use orogen_io::format::geotiff::writer::Writer;
 pub static FORMAT: Format = Format {
     name: "tif",
     aliases: &["tiff"],
-    about: "Cloud-Optimised GeoTIFF of f32 with overviews, in local metres or georeferenced",
+    about: "Cloud-Optimized GeoTIFF of f32 with overviews, in local metres or georeferenced",
     options: &[],
     channels: 1,
     features: false,

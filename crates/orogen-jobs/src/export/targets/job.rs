@@ -110,6 +110,6 @@ pub struct Exported {
     pub words: String,
     /// The count of samples; shared edges count in each tile.
     pub count: FiniteCount,
-    /// Values for the engine's import dialogue, one line each; empty for layers other than the heights.
+    /// Values for the engine's import dialog, one line each; empty for layers other than the heights.
     pub import: Vec<String>,
 }

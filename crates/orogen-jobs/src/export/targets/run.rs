@@ -18,7 +18,7 @@ use orogen_io::file::{self, Output};
 
 impl EngineJob {
     /// Exports all tiles, or none. Heights use the engine's format and scale, weights and normals its conventions;
-    /// other layers are 8-bit greyscale pictures.
+    /// other layers are 8-bit grayscale pictures.
     ///
     /// # Errors
     /// The errors of [`Frame::new`]; if the engine does not support the format; or those of

@@ -29,7 +29,7 @@ pub struct EngineTarget {
     pub normal: &'static str,
     /// Sets the formats' options for heights of this range; every tile is written with them.
     pub heights: fn(&Levels, &mut Options) -> Result<()>,
-    /// Values for the import dialogue, one line each, for the number of samples along a side (of a tile), the cell in
+    /// Values for the import dialog, one line each, for the number of samples along a side (of a tile), the cell in
     /// metres, and the range of heights.
     pub import: fn(usize, f64, &Levels) -> Vec<String>,
     /// How it reads scattered objects; `None` if it has no form of its own for them.

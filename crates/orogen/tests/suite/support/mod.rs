@@ -45,7 +45,7 @@ impl Random {
 /// A file of heights for the `dem` node.
 pub const DEM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/dem/f32-tiles-deflate-p3.tif");
 
-/// A grey picture for the `image` node.
+/// A gray picture for the `image` node.
 pub const PICTURE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/dem/grey.png");
 
 /// Lines and areas for nodes that draw.
