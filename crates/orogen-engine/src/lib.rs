@@ -35,7 +35,7 @@ pub use orogen_ops::{
 #[doc(hidden)]
 pub use orogen_ops::{ids, large, lower};
 #[doc(hidden)]
-pub use world::{bands, objects, sampler, session, tiles, volume};
+pub use world::{bands, objects, sampler, session, tiles, view, volume};
 
 pub use budget::Budget;
 pub use chunks::id::ChunkId;

@@ -1,9 +1,8 @@
 //! Texts of the command line: any text is a value or refused with a message, and values are within their bounds.
 
 use crate::values::bytes::Bytes;
-use crate::values::number::{self, MOST};
-use crate::values::region::{self, Bounds, Rectangle};
-use crate::values::size::Size;
+use crate::values::number;
+use crate::values::region;
 use crate::values::{arguments, seeds};
 use clap::{Args, Command, FromArgMatches};
 use orogen::builder::BuildSpec;
@@ -18,6 +17,7 @@ use orogen::jobs::{BlocksJob, MapJob, RenderJob};
 use orogen::options::Options;
 use orogen::output::sheet::paper;
 use orogen::tilemap::TilemapJob;
+use orogen::view::{Bounds, MAX_SIDE, Rectangle, Size};
 
 /// Runs the target on an input; one that is no text is skipped.
 pub fn run(input: &[u8]) {
@@ -27,7 +27,7 @@ pub fn run(input: &[u8]) {
             Size::Longer(side) => [side, side],
             Size::Both(width, height) => [width, height],
         };
-        assert!(sides.iter().all(|side| (1..=MOST as usize).contains(side)), "{text}");
+        assert!(sides.iter().all(|side| (1..=MAX_SIDE as usize).contains(side)), "{text}");
     }
     assert!(!number::seed(text).is_ok_and(|seed| seed > i64::MAX as u64), "{text}");
     assert!(!number::cell(text).is_ok_and(|number| !number.is_finite() || number <= 0.0), "{text}");

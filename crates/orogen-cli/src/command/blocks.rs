@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use orogen::Progress;
 use orogen::jobs::blocks::LuantiFolder;
 use orogen::jobs::{BlockFormat, BlocksJob};
+use orogen::view::Size;
 use orogen::world::HEIGHT;
 
 use crate::bar::Bar;
@@ -13,7 +14,6 @@ use crate::failure::Failure;
 use crate::options::{Opened, RunOptions};
 use crate::sink::{Sink, is_stdout, kind};
 use crate::values::name_of;
-use crate::values::size::Size;
 use crate::view::SizedView;
 use crate::{finite, interrupt, say};
 

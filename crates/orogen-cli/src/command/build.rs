@@ -95,7 +95,7 @@ fn window(args: &Args, world: &World, form: Form, options: &Options) -> Result<W
     if let (Form::Xyz(_), Some(_)) = (form, size) {
         return Err(Failure::Usage("an XYZ tree has fixed cell sizes; leave out --size, or use --cell".into()));
     }
-    if let Some(part) = view.part(world.recipe(), *size, cell)? {
+    if let Some(part) = view.samples(*size)?.part(world.recipe(), cell)? {
         return Ok(part);
     }
     let whole = match size {

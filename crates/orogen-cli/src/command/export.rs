@@ -10,6 +10,7 @@ use orogen::export::targets::target::EngineTarget;
 use orogen::export::{ExportJob, Format, registry};
 use orogen::grid::words::{count, number};
 use orogen::io::file::OutputPolicy;
+use orogen::view::Size;
 
 use crate::bar::Bar;
 use crate::declared::{FormatOptions, LayerOptions};
@@ -17,7 +18,6 @@ use crate::failure::Failure;
 use crate::options::{Opened, RunOptions};
 use crate::sink::{Sink, is_stdout};
 use crate::values::name_of;
-use crate::values::size::Size;
 use crate::view::SizedView;
 use crate::{finite, interrupt, layer_file, say};
 
@@ -116,12 +116,12 @@ fn engine_job(
     if is_stdout(&args.out) {
         return Err(Failure::Usage("--target cannot write to standard output; name a file with -o".into()));
     }
-    let SizedView { view, size } = &args.samples;
+    let view = args.samples.view.samples(None)?;
     let mut samples = FrameSpec::default();
-    samples.side = match size {
+    samples.side = match args.samples.size {
         None => None,
-        Some(Size::Longer(side)) => Some(*side),
-        Some(Size::Both(width, height)) if width == height => Some(*width),
+        Some(Size::Longer(side)) => Some(side),
+        Some(Size::Both(width, height)) if width == height => Some(width),
         Some(Size::Both(width, height)) => {
             return Err(Failure::Usage(format!(
                 "{} only takes square terrains, not {width} x {height} samples",
@@ -136,7 +136,7 @@ fn engine_job(
         samples.area = view.ends(world.recipe(), lattice)?;
     }
     if samples.area.is_none() {
-        samples.window = view.part(world.recipe(), None, view.cell.unwrap_or(lattice))?;
+        samples.window = view.part(world.recipe(), view.cell.unwrap_or(lattice))?;
     }
     samples.tiles = args.tiles.map(|tiles| match tiles {
         Size::Longer(count) => [count, count],

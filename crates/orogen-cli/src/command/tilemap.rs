@@ -6,6 +6,7 @@ use orogen::Progress;
 use orogen::recipe::outputs::CLASS;
 use orogen::tilemap::TilemapJob;
 use orogen::tilemap::files::SIDE;
+use orogen::view::Size;
 use orogen::world::HEIGHT;
 
 use crate::bar::Bar;
@@ -13,7 +14,6 @@ use crate::declared::OptionsOf;
 use crate::failure::Failure;
 use crate::options::{Opened, RunOptions};
 use crate::sink::is_stdout;
-use crate::values::size::Size;
 use crate::view::SizedView;
 use crate::{interrupt, say};
 

@@ -6,6 +6,5 @@ pub mod name_of;
 pub mod number;
 pub mod region;
 pub mod seeds;
-pub mod size;
 pub mod sweep;
 pub mod time;

@@ -1,19 +1,8 @@
-//! Parsers of numbers: samples, seeds, metres and plain numbers.
+//! Parsers of numbers: seeds, metres and plain numbers.
 
 use clap::builder::TypedValueParser;
+pub use orogen::view::finite;
 use orogen::world::check_cell;
-
-/// Maximum number of samples per side: far beyond any memory, and small enough to avoid overflow.
-pub const MOST: u64 = 1_000_000_000;
-
-/// Number of samples of a side.
-pub fn samples(text: &str) -> Result<usize, String> {
-    match text.trim().parse::<u64>() {
-        Ok(n) if (1..=MOST).contains(&n) => Ok(n as usize),
-        Ok(n) => Err(format!("a side must have 1 to {MOST} samples, not {n}")),
-        Err(_) => Err("a size must be a number of samples, such as 1024 or 1024x768".into()),
-    }
-}
 
 /// `--seed`: in the range that recipes allow.
 pub fn seed(text: &str) -> Result<u64, String> {
@@ -33,12 +22,6 @@ pub fn cell(text: &str) -> Result<f64, String> {
 /// `--dpi`: pixels per inch of a page.
 pub fn dpi() -> impl TypedValueParser<Value = u16> {
     clap::value_parser!(u16).range(20..=1200)
-}
-
-/// A finite number.
-pub fn finite(text: &str) -> Result<f64, String> {
-    let number = text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
-    number.ok_or_else(|| "the value must be a number, such as 2 or 0.5".into())
 }
 
 #[cfg(test)]

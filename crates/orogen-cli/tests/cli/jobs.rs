@@ -23,7 +23,7 @@ macro_rules! jobs {
 jobs! {
     a_paper: "show noises and fractals in a paper",
     a_unity_island: "bring an island into Unity",
-    a_dem: "analyse a DEM",
+    a_dem: "analyze a DEM",
     a_campaign_map: "draw the map of a campaign",
     a_valley_of_blocks: "build a valley of blocks",
     a_print: "print a mountain",

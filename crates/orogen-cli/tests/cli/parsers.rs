@@ -2,14 +2,14 @@
 //! text is refused. The cases are the same in every run.
 
 use crate::values::bytes::Bytes;
-use crate::values::number::{self, MOST};
-use crate::values::region::{self, Bounds, Rectangle};
+use crate::values::number;
+use crate::values::region;
 use crate::values::seeds;
-use crate::values::size::Size;
 use orogen::jobs::noise::NoiseJob;
 use orogen::jobs::{MapJob, RenderJob};
 use orogen::options::{OptionSpec, Options};
 use orogen::output::sheet::paper::Paper;
+use orogen::view::{Bounds, MAX_SIDE, Rectangle, Size};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseResult, TestRng, TestRunner};
 use std::fmt::Debug;
@@ -67,9 +67,9 @@ fn numbers_are_read_as_they_are_written() {
 
 #[test]
 fn sizes_seeds_and_times_are_read_as_they_are_written() {
-    let side = || prop_oneof![1u64..5000, 1..=MOST, Just(0), MOST..=u64::MAX];
+    let side = || prop_oneof![1u64..5000, 1..=MAX_SIDE, Just(0), MAX_SIDE..=u64::MAX];
     check(1000, (side(), side(), prop_oneof![Just('x'), Just('X'), Just('×')]), |(width, height, sign)| {
-        let [valid_width, valid_height] = [width, height].map(|side| (1..=MOST).contains(&side));
+        let [valid_width, valid_height] = [width, height].map(|side| (1..=MAX_SIDE).contains(&side));
         let longer = Some(Size::Longer(width as usize)).filter(|_| valid_width);
         prop_assert_eq!(width.to_string().parse::<Size>().ok(), longer);
         let both = Some(Size::Both(width as usize, height as usize)).filter(|_| valid_width && valid_height);

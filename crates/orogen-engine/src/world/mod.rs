@@ -13,6 +13,8 @@ pub mod session;
 #[doc(hidden)]
 pub mod tiles;
 #[doc(hidden)]
+pub mod view;
+#[doc(hidden)]
 pub mod volume;
 mod windows;
 #[allow(clippy::module_inception, reason = "the room is about worlds, the file about the one")]

@@ -1,10 +1,10 @@
-//! `--size`: numbers of samples.
+//! Numbers of samples.
 
 use std::str::FromStr;
 
 use super::number::samples;
 
-/// `--size`: samples along the longer side, or both sides.
+/// Samples along the longer side, or both sides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Size {
     /// N: the longer side; the other follows from the aspect ratio of the world.
