@@ -1,11 +1,10 @@
-//! Work that is asked now and then whether to stop: loops take a function that they call between pieces of work, and
-//! whose error ends them.
+//! Checks for cancellation: loops call a function between pieces of work, and end with its error if it returns one.
 
 use crate::error;
 use crate::progress::Progress;
 use std::convert::Infallible;
 
-/// Samples between two checks of a loop on one thread: well below a millisecond.
+/// Samples between two checks of a loop on one thread. They take well below a millisecond.
 pub(crate) const UNCHECKED: usize = 1 << 14;
 
 /// Never stops.
@@ -19,7 +18,7 @@ pub(crate) fn steps(progress: &Progress, expected: usize) -> impl Fn() -> error:
     || progress.step(1.0)
 }
 
-/// Calls `check` once in [`UNCHECKED`] items, before the first of them.
+/// Calls `check` before the first item and then once every [`UNCHECKED`] items.
 #[inline(always)]
 pub(crate) fn now_and_then<E>(item: usize, check: &impl Fn() -> Result<(), E>) -> Result<(), E> {
     if item.is_multiple_of(UNCHECKED) { check() } else { Ok(()) }

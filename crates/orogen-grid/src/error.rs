@@ -12,7 +12,7 @@ pub type Result<T> = std::result::Result<T, Error>;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ErrorKind {
-    /// A recipe could not be read: its syntax, a key, a value, a name.
+    /// A recipe could not be read: a wrong syntax, key, value or name.
     Recipe,
     /// A request for a window, layer or size that the world does not have.
     Request,
@@ -20,15 +20,15 @@ pub enum ErrorKind {
     Memory,
     /// A file could not be read or written.
     File,
-    /// The heights of a file were read in part, and the work needs others.
+    /// Only a part of a file's heights was read, and the work needs heights outside of it.
     Part,
     /// The work was cancelled by its caller.
     Cancelled,
-    /// The library violated one of its own invariants: a bug, whatever the request.
+    /// The library violated one of its own invariants. This is a bug, whatever the request was.
     Internal,
 }
 
-/// One or more messages that say what is wrong, where, and what to do instead.
+/// One or more messages that say what is wrong, where, and how to correct it.
 ///
 /// The type is opaque so that new causes do not break callers; [`Error::kind`] distinguishes the cases that a program
 /// may want to handle.
@@ -43,7 +43,7 @@ pub struct Error {
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Diagnostic {
-    /// A complete message without the location: what is wrong and what to do instead.
+    /// A complete message without the location: what is wrong and how to correct it.
     pub message: String,
     /// The location in a recipe, if there is one.
     pub place: Option<Location>,
@@ -100,12 +100,12 @@ impl Location {
 }
 
 impl Error {
-    /// An error of one message without a location.
+    /// An error with one message and no location.
     pub fn new(kind: ErrorKind, message: impl Into<String>) -> Error {
         Error::from_diagnostics(kind, vec![Diagnostic { message: message.into(), place: None }])
     }
 
-    /// An error of several diagnostics, in the order of the text. Overlong names and numbers in them are
+    /// An error with several diagnostics, in the order of the text. Overlong names and numbers in them are
     /// [shortened](crate::words::readable).
     #[must_use]
     pub fn from_diagnostics(kind: ErrorKind, mut diagnostics: Vec<Diagnostic>) -> Error {
@@ -115,17 +115,19 @@ impl Error {
         Error { kind, diagnostics, source: None }
     }
 
-    /// A file that could not be read or written: the message contains the file, the action and the system's reason.
+    /// The error of a file that could not be read or written. The message contains the file, the action and the
+    /// system's reason.
     #[must_use]
     pub fn file(doing: &str, path: &std::path::Path, cause: &io::Error) -> Error {
         let message = format!("cannot {doing} {}: {}", path.display(), reason(cause));
         Error::new(ErrorKind::File, message).with_source(cause)
     }
 
-    /// Sets the I/O error behind this one, which [`source`](std::error::Error::source) returns.
+    /// Sets the I/O error that caused this one, which [`source`](std::error::Error::source) returns.
     #[must_use]
     pub fn with_source(self, cause: &io::Error) -> Error {
-        // An I/O error cannot be cloned. What it wraps is kept if it is an `Error`, else its message.
+        // An I/O error cannot be cloned. The error that it wraps is kept if it is an `Error`, otherwise only its
+        // message.
         let wrapped = cause.get_ref().and_then(|wrapped| wrapped.downcast_ref::<Error>());
         let source = match (cause.raw_os_error(), wrapped) {
             (Some(code), _) => io::Error::from_raw_os_error(code),
@@ -173,7 +175,7 @@ impl fmt::Display for Error {
 }
 
 impl std::error::Error for Error {
-    /// The I/O error behind it, if a file could not be read or written.
+    /// The I/O error that caused it, if a file could not be read or written.
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         self.source.as_deref().map(|source| source as _)
     }

@@ -5,8 +5,8 @@ use std::ops::{Index, IndexMut};
 use crate::parallel;
 use serde::{Deserialize, Serialize};
 
-/// Columns and rows of a lattice are counted up to this many samples from the origin. Sums of them do not overflow; no
-/// memory holds a window of so many samples.
+/// Maximum distance of columns and rows from the origin of a lattice, in samples. Sums of such numbers do not overflow,
+/// and no window of this size fits in memory.
 pub const FARTHEST: i64 = 1 << 60;
 
 /// A rectangle of samples of the infinite lattice with spacing `cell`.
@@ -28,37 +28,37 @@ pub struct Window {
 }
 
 impl Window {
-    /// The window of `width` x `height` samples that starts at the origin.
+    /// A window of `width` x `height` samples whose first sample is at the origin.
     #[must_use]
     pub fn new(width: usize, height: usize, cell: f64) -> Window {
         Window { x: 0, y: 0, width, height, cell }
     }
 
-    /// The same window, starting at column `x` and row `y`.
+    /// The same window with its first sample at column `x` and row `y`.
     #[must_use]
     pub fn at(self, x: i64, y: i64) -> Window {
         Window { x, y, ..self }
     }
 
-    /// The number of samples; `usize::MAX` if there are more.
+    /// The number of samples, or `usize::MAX` if it does not fit in a `usize`.
     #[must_use]
     pub fn len(&self) -> usize {
         self.width.saturating_mul(self.height)
     }
 
-    /// Whether it has no samples.
+    /// Whether the window has no samples.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.width == 0 || self.height == 0
     }
 
-    /// The column after the last.
+    /// The column after the last one.
     #[must_use]
     pub fn right(&self) -> i64 {
         self.x + self.width as i64
     }
 
-    /// The row after the last.
+    /// The row after the last one.
     #[must_use]
     pub fn bottom(&self) -> i64 {
         self.y + self.height as i64
@@ -78,7 +78,7 @@ impl Window {
         Window { x, y, width, height, cell: self.cell }
     }
 
-    /// The window without `border` samples on each side; possibly empty.
+    /// The window without a border of `border` samples on each side; possibly empty.
     #[must_use]
     pub fn shrunk(&self, border: usize) -> Window {
         Window {
@@ -90,7 +90,7 @@ impl Window {
         }
     }
 
-    /// The smallest window that contains both. Both must have the same cell.
+    /// The smallest window that contains both windows. Both must have the same cell.
     #[must_use]
     pub fn union(&self, other: &Window) -> Window {
         debug_assert_eq!(self.cell, other.cell);
@@ -104,7 +104,7 @@ impl Window {
         }
     }
 
-    /// The samples of both windows; empty if there are none. Both must have the same cell.
+    /// The samples that are in both windows; empty if there are none. Both must have the same cell.
     #[must_use]
     pub fn intersection(&self, other: &Window) -> Window {
         debug_assert_eq!(self.cell, other.cell);
@@ -113,7 +113,7 @@ impl Window {
         Window { x, y, width: (right - x).max(0) as usize, height: (bottom - y).max(0) as usize, cell: self.cell }
     }
 
-    /// Whether every sample of `other` belongs to this window.
+    /// Whether both windows have the same cell and every sample of `other` belongs to this window.
     #[must_use]
     pub fn contains(&self, other: &Window) -> bool {
         self.cell == other.cell
@@ -165,10 +165,10 @@ impl Window {
     }
 }
 
-/// Samples over a window, row-major from the north, each row from west to east, like a picture.
+/// Samples over a window in row-major order. The first row is the northernmost, and each row runs from west to east.
 ///
-/// Serialized it is a table of `window` and `data`. Data whose length differs from the window's is rejected. JSON has
-/// no NaN and therefore cannot carry samples without a value.
+/// It is serialized as a table of `window` and `data`. Data whose length differs from the window's is rejected. JSON
+/// has no NaN and therefore cannot represent samples without a value.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "GridData<T>", bound(serialize = "T: Serialize", deserialize = "T: Copy + Deserialize<'de>"))]
 pub struct Grid<T = f32> {
@@ -176,7 +176,7 @@ pub struct Grid<T = f32> {
     data: Vec<T>,
 }
 
-/// A grid as it was read, not checked.
+/// A grid as it was read, before its length is checked.
 #[derive(Deserialize)]
 #[serde(rename = "Grid")]
 struct GridData<T> {
@@ -188,7 +188,7 @@ impl<T: Copy> TryFrom<GridData<T>> for Grid<T> {
     type Error = String;
 
     fn try_from(GridData { window, data }: GridData<T>) -> Result<Grid<T>, String> {
-        // The product of two sides that anybody wrote may overflow.
+        // The sides come from a file, so their product may overflow.
         match window.width.checked_mul(window.height) {
             Some(samples) if samples == data.len() => Ok(Grid { window, data }),
             _ => Err(format!(
@@ -207,7 +207,7 @@ impl<T: Copy> Grid<T> {
         Grid { window, data: vec![value; window.len()] }
     }
 
-    /// A grid over `data`; `None` if the number of samples is not that of the window.
+    /// A grid over `data`; `None` if the length of `data` is not the number of samples of the window.
     #[must_use]
     pub fn from_data(window: Window, data: Vec<T>) -> Option<Grid<T>> {
         (data.len() == window.len()).then_some(Grid { window, data })
@@ -231,18 +231,18 @@ impl<T: Copy> Grid<T> {
         self.window.height
     }
 
-    /// All samples, row-major.
+    /// All samples in row-major order.
     #[must_use]
     pub fn data(&self) -> &[T] {
         &self.data
     }
 
-    /// All samples, row-major, mutable.
+    /// All samples in row-major order, mutable.
     pub fn data_mut(&mut self) -> &mut [T] {
         &mut self.data
     }
 
-    /// The samples without the window, row-major.
+    /// The samples in row-major order, without the window.
     #[must_use]
     pub fn into_data(self) -> Vec<T> {
         self.data
@@ -254,7 +254,7 @@ impl<T: Copy> Grid<T> {
         &self.data[j * self.window.width..(j + 1) * self.window.width]
     }
 
-    /// Row `j`, mutable.
+    /// Row `j` of the window, from 0, mutable.
     pub fn row_mut(&mut self, j: usize) -> &mut [T] {
         let width = self.window.width;
         &mut self.data[j * width..(j + 1) * width]
@@ -267,7 +267,7 @@ impl<T: Copy> Grid<T> {
         if inside { self.data.get(j * self.window.width + i).copied() } else { None }
     }
 
-    /// The part of the grid in `window`; `None` if the grid does not contain all of it.
+    /// The part of the grid in `window`; `None` if `window` is not completely inside the grid.
     #[must_use]
     pub fn crop(&self, window: &Window) -> Option<Grid<T>> {
         if !self.window.contains(window) {
@@ -281,8 +281,8 @@ impl<T: Copy> Grid<T> {
         Some(Grid { window: *window, data })
     }
 
-    /// The grid with a border of `samples` more on each side, which repeat the samples at the edges. Filters on grids
-    /// return a window that is smaller by their halo: of a padded grid, the window of the grid itself.
+    /// The grid with `samples` more samples on each side, which repeat those at the edges. Filters on grids return a
+    /// window that is smaller by their halo, so a filter on a padded grid returns the window of the original grid.
     ///
     /// ```
     /// use orogen_grid::{Grid, Progress, Window};
@@ -342,7 +342,7 @@ impl<T: Copy> IndexMut<(usize, usize)> for Grid<T> {
     }
 }
 
-/// Transposes rows of `columns` samples, in squares that stay in cache; squares are processed in parallel.
+/// Transposes rows of `columns` samples in squares that fit in the cache. Squares are processed in parallel.
 pub fn transposed<T: Copy + Default + Send + Sync>(samples: &[T], columns: usize) -> Vec<T> {
     const SIDE: usize = 32;
     let rows = samples.len() / columns.max(1);

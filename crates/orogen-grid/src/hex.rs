@@ -1,13 +1,14 @@
-//! Bytes as hexadecimal digits, two for each, in lower case.
+//! Bytes as hexadecimal digits: two lower-case digits for each byte.
 
-/// The digits of some bytes.
+/// The hexadecimal digits of `bytes`.
 #[must_use]
 pub fn encode(bytes: &[u8]) -> String {
     let digit = |value: u8| char::from_digit(u32::from(value), 16).unwrap_or_default();
     bytes.iter().flat_map(|byte| [digit(byte >> 4), digit(byte & 15)]).collect()
 }
 
-/// The bytes of digits in lower or upper case. `None` if there are not exactly `2 N` digits.
+/// The `N` bytes that hexadecimal digits in lower or upper case stand for. `None` if there are not exactly `2 N`
+/// digits.
 #[must_use]
 pub fn decode<const N: usize>(digits: &str) -> Option<[u8; N]> {
     if digits.len() != 2 * N || !digits.bytes().all(|digit| digit.is_ascii_hexdigit()) {

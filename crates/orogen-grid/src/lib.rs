@@ -20,7 +20,7 @@
 //! | [`aggregate`] | diffusion-limited aggregation, and mountains from it |
 //! | [`resample`] | interpolation between samples |
 //! | [`triangles`] | heights on the triangles of a full mesh |
-//! | [`poisson_discs`] | points that keep a distance, of which any window is made by itself |
+//!  [`poisson_discs`] | points with a minimum distance; each window is computed independently of the others |
 //! | [`polylines`] | lines and areas of straight segments and curves: smoothing, the nearest point, inside or outside |
 //!
 //! ```
@@ -52,9 +52,10 @@
 //! | `image` | grids to and from buffers of `image`: `Grid::into_image`, `from_image`, and in 16 bits `to_image16`, `from_image16` |
 //! | `mint` | positions of samples and sizes as types of `mint`: `Window::point`, `Window::corners`, `Window::size` |
 //!
-//! All are off by default. Grids and windows implement `Serialize` and `Deserialize` of `serde` in any case.
+//! All features are off by default. Grids and windows implement `Serialize` and `Deserialize` of `serde` without a
+//! feature.
 //!
-//! The crate `orogen` is the terrain engine around it: recipes, tiles of any size, files, maps and meshes.
+//! The crate `orogen` is the terrain engine that uses this crate: recipes, tiles of any size, files, maps and meshes.
 #![forbid(unsafe_code)]
 
 pub mod aggregate;

@@ -1,15 +1,15 @@
-//! Loops whose items are shared out to threads: those of the rayon pool that the caller runs in, otherwise of the
-//! global one.
+//! Loops whose items are distributed to threads: those of the rayon pool in which the caller runs, or of the global
+//! pool.
 //!
 //! Tasks take items from a sequential iterator, in batches that become smaller towards the end. The only call of rayon
-//! is in a function that is not generic, so a loop takes little time to compile. With one thread, all items are done in
-//! order on the calling thread.
+//! is in a function that is not generic, which keeps the compile time of each loop short. With one thread, all items
+//! are processed in order on the calling thread.
 
 use std::cmp::Ordering;
 use std::sync::atomic::{self, AtomicUsize};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Samples of a piece of work on single samples.
+/// Number of samples in one piece of work, for work on single samples.
 pub const SAMPLES: usize = 1 << 14;
 
 /// Number of threads that share the work of a loop.
@@ -18,7 +18,7 @@ pub fn threads() -> usize {
     rayon::current_num_threads()
 }
 
-/// Does the work of each item once.
+/// Calls `work` once for each item, in no particular order.
 pub fn for_each<I>(items: I, work: impl Fn(I::Item) + Sync)
 where
     I: IntoIterator<Item: Send, IntoIter: Send>,
@@ -26,7 +26,7 @@ where
     for_each_init(items, || (), |(), item| work(item));
 }
 
-/// [`for_each`] with a value of `init` for each task, which its items use one after the other.
+/// Like [`for_each`], with a state: each task creates one with `init` and passes it to all its items in turn.
 pub fn for_each_init<I, S>(items: I, init: impl Fn() -> S + Sync, work: impl Fn(&mut S, I::Item) + Sync)
 where
     I: IntoIterator<Item: Send, IntoIter: Send>,
@@ -40,11 +40,11 @@ where
     });
 }
 
-/// Does the work of each item once, as far as it succeeds: items before the first failure are done in any case, later
-/// ones are not begun once it is known.
+/// Calls `work` for each item until one fails. Items before the first failure are always processed; later items are not
+/// begun once the failure is known.
 ///
 /// # Errors
-/// The error of the first item that fails, whatever the threads do.
+/// The error of the first item that fails, independent of the number of threads.
 pub fn try_for_each<I, E: Send>(items: I, work: impl Fn(I::Item) -> Result<(), E> + Sync) -> Result<(), E>
 where
     I: IntoIterator<Item: Send, IntoIter: Send>,
@@ -52,10 +52,10 @@ where
     try_for_each_init(items, || (), |(), item| work(item))
 }
 
-/// [`try_for_each`] with a value of `init` for each task, which its items use one after the other.
+/// Like [`try_for_each`], with a state: each task creates one with `init` and passes it to all its items in turn.
 ///
 /// # Errors
-/// The error of the first item that fails, whatever the threads do.
+/// The error of the first item that fails, independent of the number of threads.
 pub fn try_for_each_init<I, S, E: Send>(
     items: I,
     init: impl Fn() -> S + Sync,
@@ -77,7 +77,7 @@ where
     first.result()
 }
 
-/// The results of all items, in their order.
+/// The results of all items, in the order of the items.
 pub fn map<I, R: Send>(items: I, work: impl Fn(I::Item) -> R + Sync) -> Vec<R>
 where
     I: IntoIterator<Item: Send, IntoIter: ExactSizeIterator + Send>,
@@ -88,10 +88,10 @@ where
     filled(results)
 }
 
-/// The results of all items, in their order, as far as the work succeeds (see [`try_for_each`]).
+/// The results of all items, in the order of the items, or the first error (see [`try_for_each`]).
 ///
 /// # Errors
-/// The error of the first item that fails, whatever the threads do.
+/// The error of the first item that fails, independent of the number of threads.
 pub fn try_map<I, R: Send, E: Send>(items: I, work: impl Fn(I::Item) -> Result<R, E> + Sync) -> Result<Vec<R>, E>
 where
     I: IntoIterator<Item: Send, IntoIter: ExactSizeIterator + Send>,
@@ -114,22 +114,22 @@ pub fn samples<R: Copy + Default + Send>(count: usize, of: impl Fn(usize) -> R +
     samples
 }
 
-/// Sorts `items`; equal ones keep their order.
+/// Sorts `items`; equal items keep their order.
 pub fn sort_by<T: Send>(items: &mut [T], compare: impl Fn(&T, &T) -> Ordering + Sync) {
     let part = items.len().div_ceil(threads()).max(SAMPLES);
     for_each(items.chunks_mut(part), |part| part.sort_by(&compare));
-    // The standard library's sort finds parts that are in order, so that it only merges them.
+    // The standard library's sort detects sorted parts, so that it only merges them.
     items.sort_by(compare);
 }
 
-/// Places for results.
+/// Empty places for `count` results.
 fn slots<R>(count: usize) -> Vec<Option<R>> {
     let mut slots = Vec::new();
     slots.resize_with(count, || None);
     slots
 }
 
-/// The results in their places.
+/// The results, taken out of their places.
 fn filled<R>(slots: Vec<Option<R>>) -> Vec<R> {
     let mut results = Vec::with_capacity(slots.len());
     for result in slots.into_iter().flatten() {
@@ -150,7 +150,7 @@ impl<E> FirstError<E> {
         FirstError { index: AtomicUsize::new(usize::MAX), error: Mutex::new(None) }
     }
 
-    /// Keeps the error of item `index` if it is the first.
+    /// Keeps the error of item `index` if no earlier item has failed.
     fn or(&self, index: usize, error: E) {
         let mut kept = lock(&self.error);
         if self.index.fetch_min(index, atomic::Ordering::Relaxed) > index {
@@ -163,15 +163,15 @@ impl<E> FirstError<E> {
     }
 }
 
-/// The index at which a loop without errors ends.
+/// The end of a loop without errors: no index reaches it.
 static NO_END: AtomicUsize = AtomicUsize::new(usize::MAX);
 
-/// A task of a loop: calls its argument for items, with their indices, until there are none. It is called only if there
-/// is an item.
+/// A task of a loop. It receives a function that returns the next item with its index, or `None` when no items are
+/// left. A task is started only if there is an item.
 type Task<'a, T> = &'a (dyn Fn(&mut dyn FnMut() -> Option<(usize, T)>) + Sync);
 
-/// Runs `task` on as many threads as have time for it, and hands out to them all items of `next` whose index is below
-/// `end`. There are `least` to `most` items.
+/// Runs `task` on all threads that are free, and hands out to them all items of `next` whose index is below `end`.
+/// `next` has `least` to `most` items.
 fn share<T: Send>(
     (least, most): (usize, Option<usize>),
     end: &AtomicUsize,
@@ -197,30 +197,30 @@ fn share<T: Send>(
     });
 }
 
-/// Maximum number of items of a batch: in larger ones a task could get most of the long items.
+/// Maximum number of items in a batch. In larger batches, one task could get most of the slow items.
 const LARGEST: usize = 16;
 
-/// Items that follow each other.
+/// Consecutive items.
 struct Batch<T> {
-    /// The index of the first of them.
+    /// The index of the first item.
     first: usize,
-    /// Those that are not done.
+    /// The items that are not processed yet.
     items: std::vec::IntoIter<T>,
 }
 
-/// Items that no task has taken.
+/// The items that no task has taken yet.
 struct Items<'a, T> {
-    /// The next of them, until there is none.
+    /// Returns the next item; `None` after the last one.
     next: Option<&'a mut (dyn FnMut() -> Option<T> + Send)>,
-    /// Number of items before it.
+    /// Number of items that were taken.
     taken: usize,
-    /// Number of items from it on, at least.
+    /// Lower bound of the number of items that are left.
     left: usize,
 }
 
 impl<T> Items<'_, T> {
-    /// Takes the next items: many while many are left, so that tasks rarely wait for each other, and in the end one by
-    /// one, so that all tasks end at about the same time.
+    /// Takes the next batch. Batches are large while many items are left, so that tasks rarely wait for each other, and
+    /// have a single item at the end, so that all tasks end at about the same time.
     fn batch(&mut self, tasks: usize) -> Batch<T> {
         let count = (self.left / (4 * tasks)).clamp(1, LARGEST);
         let mut batch = Vec::with_capacity(count);
@@ -239,7 +239,7 @@ impl<T> Items<'_, T> {
     }
 }
 
-/// Calls `work` on at most `tasks` threads, as many as have time for it before it is done; returns when all calls have
+/// Calls `work` on at most `tasks` threads, as many as become free before the work is done. Returns when all calls have
 /// returned.
 fn on_threads(tasks: usize, work: &(dyn Fn() + Sync)) {
     match tasks {
@@ -252,7 +252,7 @@ fn on_threads(tasks: usize, work: &(dyn Fn() + Sync)) {
     }
 }
 
-/// Locks a value that no panic leaves half changed.
+/// Locks a value that is never left half changed by a panic.
 fn lock<T>(value: &Mutex<T>) -> MutexGuard<'_, T> {
     value.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,4 +1,4 @@
-//! Where scattered points may lie: by their density, by water, and apart from others.
+//! Placement of scattered points by density, by water, and by distance to other points.
 
 use crate::error::Result;
 use crate::grid::Grid;
@@ -7,34 +7,34 @@ use crate::progress::Progress;
 use crate::triangles;
 use std::ops::Range;
 
-/// The places of points.
+/// Where points may be placed.
 #[derive(Debug)]
 pub struct Placement<'a> {
-    /// Nothing lies outside these eastings and southings, in metres.
+    /// All points are within these eastings and southings, in metres.
     pub bounds: [Range<f64>; 2],
-    /// Share of the greatest possible number of points, 0 to 1; where it is not a number there are none.
+    /// Number of points as a share of the greatest possible one, 0 to 1. There are no points where it is NaN.
     pub density: &'a Grid,
-    /// The water that points lie in or avoid.
+    /// The water that points need or avoid; `None` if it does not matter.
     pub water: Option<PlacementWater<'a>>,
-    /// Points placed before, from which these keep their distance.
+    /// Points that were placed before and their minimum distance to the new ones.
     pub near: Vec<NearPoints>,
 }
 
-/// Water, as far as points heed it.
+/// The water of a terrain, as a condition for points.
 #[derive(Debug)]
 pub struct PlacementWater<'a> {
     /// Heights in metres.
     pub heights: &'a Grid,
-    /// Depths of lakes.
+    /// Depths of lakes, in metres.
     pub lakes: Option<&'a Grid>,
     /// The height of the sea, in metres.
     pub sea_level: f64,
-    /// Whether points lie in water alone; otherwise on land alone.
+    /// Whether points are placed only in water; otherwise only on land.
     pub is_wanted: bool,
 }
 
 impl Placement<'_> {
-    /// The points within eastings and southings.
+    /// The points within the bounds.
     ///
     /// # Errors
     /// Those of [`PoissonDiscs::within`].
@@ -49,7 +49,7 @@ impl Placement<'_> {
 
     fn at(&self, position: [f64; 2]) -> f64 {
         let is_within = self.bounds.iter().zip(position).all(|(side, at)| (side.start..=side.end).contains(&at));
-        // Not a number is less than nothing, too.
+        // NaN is treated like a density of 0.
         let density = if is_within { interpolated(self.density, position) } else { 0.0 };
         let is_right = |water: &PlacementWater| water.is_wet(position) == water.is_wanted;
         let is_free = density > 0.0
@@ -65,10 +65,10 @@ impl PlacementWater<'_> {
     }
 }
 
-/// The corners of the cell around a position, and the position in it: 0 to 1 along each side.
+/// The corners of the cell around a position, and the position in the cell: 0 to 1 along each side.
 fn cell(grid: &Grid, position: [f64; 2]) -> Option<([f32; 4], [f64; 2])> {
     let window = grid.window();
-    // The same for any window.
+    // Independent of the window, so that all windows give the same bits.
     let [east, south] = position.map(|at| at / window.cell);
     let [column, row] = [east.floor(), south.floor()];
     let i = usize::try_from(column as i64 - window.x).ok()?;
@@ -86,26 +86,27 @@ fn interpolated(grid: &Grid, position: [f64; 2]) -> f64 {
     north + v * (south - north)
 }
 
-/// The height of the mesh of the samples at a position in metres; NaN outside the grid.
+/// The height of the triangle mesh of the samples at a position in metres; NaN outside the grid. See
+/// [`triangles::height`].
 #[must_use]
 pub fn height(heights: &Grid, position: [f64; 2]) -> f64 {
     cell(heights, position).map_or(f64::NAN, |(corners, at)| triangles::height(corners, at))
 }
 
-/// Whether a position is in the sea or in a lake. Beside the shore of a lake, the depth between samples counts.
+/// Whether a position is in the sea or in a lake. Near the shore of a lake, the interpolated depth decides.
 fn wet(heights: &Grid, lakes: Option<&Grid>, sea_level: f64, position: [f64; 2]) -> bool {
     let is_above = height(heights, position) > sea_level;
     !is_above || lakes.is_some_and(|lakes| interpolated(lakes, position) > 0.0)
 }
 
-/// The mean of all positive samples and zeros for the others.
+/// The mean of all samples, where samples that are not positive count as 0.
 #[must_use]
 pub fn mean(grid: &Grid) -> f64 {
     let sum: f64 = grid.data().iter().filter(|value| **value > 0.0).map(|value| f64::from(*value)).sum();
     sum / grid.data().len().max(1) as f64
 }
 
-/// Points in buckets, to find those near a position.
+/// Points in square buckets, to find those near a position.
 #[derive(Debug)]
 pub struct NearPoints {
     distance: f64,
@@ -113,7 +114,7 @@ pub struct NearPoints {
     first: [i64; 2],
     columns: i64,
     rows: i64,
-    /// The first point of each bucket, and the number of all.
+    /// The index of the first point of each bucket, then the number of points.
     starts: Vec<usize>,
     points: Vec<[f64; 2]>,
 }
@@ -122,14 +123,14 @@ pub struct NearPoints {
 const MAX_BUCKETS: f64 = 1024.0;
 
 impl NearPoints {
-    /// Memory in bytes for a number of points.
+    /// Memory in bytes for `points` points.
     #[must_use]
     pub fn memory(points: usize) -> u64 {
         let buckets = (MAX_BUCKETS + 2.0) * (MAX_BUCKETS + 2.0);
         (points * size_of::<[f64; 2]>()) as u64 + buckets as u64 * size_of::<usize>() as u64
     }
 
-    /// Of points, with their random bits, from which others keep a distance in metres.
+    /// Buckets of `points` (positions with their random bits), to which others keep at least `distance` metres.
     #[must_use]
     pub fn new(points: &[([f64; 2], u64)], distance: f64) -> NearPoints {
         let ends = |axis: usize| {
@@ -163,7 +164,7 @@ impl NearPoints {
         NearPoints { distance, bucket, first, columns, rows, starts, points }
     }
 
-    /// Whether one of the points is nearer than the distance.
+    /// Whether a point is nearer to `position` than the distance.
     fn is_within(&self, position: [f64; 2]) -> bool {
         let [column, row] = [0, 1].map(|axis| (position[axis] / self.bucket).floor() as i64 - self.first[axis]);
         let rows = (row - 1).max(0)..(row + 2).min(self.rows);

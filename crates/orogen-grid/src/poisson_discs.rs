@@ -1,17 +1,18 @@
-//! Points that keep a distance from each other (Poisson discs), of which any window is made by itself.
+//! Points with a minimum distance (Poisson discs). The points of any window are computed independently of other
+//! windows.
 //!
-//! A lattice with four cells per spacing has one candidate in each cell, with a hashed position and a hashed rank. The
-//! candidates whose rank is below a limit that follows from the density take part. They are decided in rounds: a
-//! candidate without an undecided one of lower rank within the spacing is a point, and the undecided ones within the
-//! spacing of it are not. These are the rounds of the parallel algorithm of Luby for maximal independent sets ("A
-//! simple parallel algorithm for the maximal independent set problem", 1986) with ranks drawn once. Without a limit of
-//! rounds the result would be that of random sequential adsorption, candidate by candidate in the order of ranks, but
-//! it would depend on points at any distance. After [`ROUNDS`] rounds less than one candidate in 10 000 is undecided;
-//! these are no points. So whether a candidate is one depends on [`PoissonDiscs::reach`] metres around it, and on
-//! nothing else.
+//! The plane is a lattice with four cells per spacing. Each cell has one candidate with a hashed position and a hashed
+//! rank. A candidate takes part if its rank is below a limit that follows from the density. The candidates are decided
+//! in rounds: a candidate becomes a point if no undecided candidate of lower rank is within the spacing, and the
+//! undecided candidates within the spacing of a point are removed. These are the rounds of Luby's parallel algorithm
+//! for maximal independent sets ("A simple parallel algorithm for the maximal independent set problem", 1986) with
+//! ranks that are drawn only once. Without a limit of rounds the result would be that of random sequential adsorption,
+//! candidate by candidate in the order of ranks, but it would depend on points at any distance. After [`ROUNDS`] rounds
+//! less than one candidate in 10 000 is undecided; these do not become points. So a point depends only on the
+//! surroundings within [`PoissonDiscs::reach`] metres.
 //!
-//! Ranks decide both what takes part and what is first, so the points of a lower density are among those of a higher
-//! one.
+//! Ranks decide both which candidates take part and which are decided first, so the points at a lower density are a
+//! subset of those at a higher density.
 
 use std::ops::Range;
 
@@ -21,44 +22,44 @@ use crate::progress::Progress;
 use crate::random::{Random, STEP, mix64};
 use crate::words::number;
 
-/// Cells of the lattice along a spacing. A power of two, so that a cell is exact.
+/// Number of cells of the lattice per spacing. A power of two, so that the cell size is exact.
 const CELLS: i64 = 4;
 
 /// Number of rounds.
 pub const ROUNDS: i64 = 5;
 
-/// Cells around a region on which its points depend: each round reads the candidates within the spacing, and those
-/// within the spacing of these, except for the last, which removes none.
+/// Number of cells around a region that its points depend on. Each round reads the candidates within the spacing, and
+/// those within the spacing of these. The last round removes none and therefore reads only the former.
 const HALO: i64 = (2 * ROUNDS - 1) * CELLS + 1;
 
-/// Cells of a block that is made at once, along each side: the halo of a block takes two fifths more.
+/// Side of a block that is computed at once, in cells, without its halo.
 const BLOCK: i64 = 384;
 
-/// Number of blocks that are listed at once.
+/// Number of blocks in one list of work.
 const BLOCKS: usize = 4096;
 
-/// Maximum number of cells of a window: some hours of work.
+/// Maximum number of cells of a window, which take some hours.
 const MAX_CELLS: f64 = (1u64 << 40) as f64;
 
-/// Maximum column and row of a cell: beyond it positions would no longer be exact enough to keep the spacing.
+/// Maximum column and row of a cell. Beyond it positions would not be exact enough to keep the spacing.
 const MAX_CELL: f64 = (1u64 << 31) as f64;
 
-/// The share of a cell along its sides without candidates, so that rounding moves none into the next cell.
+/// The share of a cell at each side that has no candidates, so that rounding moves none into the next cell.
 const MARGIN: f64 = 1.0 / (1 << 20) as f64;
 
-/// Number of points in the square of a spacing at a density of 1; measured. A maximal set of random points has 0.6966
-/// (discs that cover a share of 0.547, the jamming limit of random sequential adsorption: Feder, "Random sequential
-/// adsorption", 1980).
+/// Measured number of points in a square whose side is the spacing, at a density of 1. A maximal set of random points
+/// has 0.6966: its discs cover a share of 0.547, the jamming limit of random sequential adsorption (Feder, "Random
+/// sequential adsorption", 1980).
 pub const POINTS: f64 = 0.623;
 
-/// Ranks below which candidates take part, for densities in steps of 1/16: the number of points is proportional to the
-/// density. Measured on 10^7 candidates.
+/// Limits of ranks for densities in steps of 1/16, such that the number of points is proportional to the density.
+/// Measured on 10^7 candidates.
 const LIMITS: [f64; 17] = [
     0.0, 0.0026, 0.00553, 0.00893, 0.01286, 0.01754, 0.02315, 0.02996, 0.03851, 0.04954, 0.06442, 0.08529, 0.11614,
     0.16633, 0.25839, 0.45469, 1.0,
 ];
 
-/// A set of points.
+/// A set of points with a minimum distance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PoissonDiscs {
     spacing: f64,
@@ -75,20 +76,20 @@ pub struct DiscPoint {
 }
 
 impl PoissonDiscs {
-    /// Points at distances of at least `spacing` metres, more than 0.
+    /// The set of points that are at least `spacing` metres apart, which must be more than 0.
     #[must_use]
     pub fn new(spacing: f64, seed: u64) -> PoissonDiscs {
         PoissonDiscs { spacing, seed }
     }
 
-    /// Distance in metres from a region within which its points depend on the density.
+    /// Maximum distance in metres from a region at which the density still affects the points of the region.
     #[must_use]
     pub fn reach(&self) -> f64 {
-        // Beyond the halo one cell at the side, and two for rounding.
+        // One cell beyond the halo, and two for rounding.
         (HALO + 3) as f64 * self.cell()
     }
 
-    /// Memory in bytes for points on this number of threads, without the points.
+    /// Memory in bytes of the computation on `threads` threads, without the resulting points.
     #[must_use]
     pub fn memory(threads: usize) -> u64 {
         let cells = (BLOCK + 2 * (HALO + CELLS)) as usize;
@@ -100,13 +101,13 @@ impl PoissonDiscs {
         self.spacing / CELLS as f64
     }
 
-    /// The points whose easting and southing lie within `bounds`, row by row of their lattice. `density`, 0 to 1, is
-    /// the number of points as a share of the greatest possible one, at a position of at most
-    /// [`reach`](PoissonDiscs::reach) metres outside the bounds; where it is not a number there are no points. A point
-    /// keeps its place whatever the bounds are, as long as `density` is the same function.
+    /// The points whose easting and southing lie within `bounds`, in metres, row by row of their lattice. `density` is
+    /// the number of points at a position as a share of the greatest possible one, 0 to 1; NaN means no points. It is
+    /// evaluated up to [`reach`](PoissonDiscs::reach) metres outside the bounds. A point does not depend on the bounds
+    /// as long as `density` is the same function.
     ///
     /// # Errors
-    /// If the bounds are more than 2^29 spacings from the origin or have more than 2^40 cells, or the work was
+    /// If the bounds are more than 2^29 spacings from the origin or have more than 2^40 cells, or if the work was
     /// cancelled.
     pub fn within(
         &self,
@@ -156,7 +157,7 @@ impl PoissonDiscs {
         let mut blocks =
             pieces(&rows).flat_map(|rows| pieces(&columns).map(move |columns| [columns, rows.clone()])).peekable();
         let mut points: Vec<([i64; 2], DiscPoint)> = Vec::new();
-        // Piece by piece: a list of all blocks of a large window with few points would take more memory than they do.
+        // In pieces: a list of all blocks of a large window with few points would need more memory than the points.
         while blocks.peek().is_some() {
             let piece: Vec<[Range<i64>; 2]> = blocks.by_ref().take(BLOCKS).collect();
             let made = parallel::try_map(&piece, |[columns, rows]| -> Result<Vec<([i64; 2], DiscPoint)>> {
@@ -184,21 +185,21 @@ impl PoissonDiscs {
     }
 }
 
-/// The rank below which candidates take part at a density.
+/// The rank below which candidates take part at a density of 0 to 1.
 fn limit(density: f64) -> f64 {
     let steps = (LIMITS.len() - 1) as f64;
-    // Not a number is 0, too.
+    // NaN is treated like 0.
     let at = if density > 0.0 { density.min(1.0) * steps } else { 0.0 };
     let k = (at as usize).min(LIMITS.len() - 2);
     LIMITS[k] + (LIMITS[k + 1] - LIMITS[k]) * (at - k as f64)
 }
 
-/// A rank as a number from 0 to less than 1.
+/// A rank as a number from 0 (included) to 1 (excluded).
 fn share(rank: u64) -> f64 {
     (rank >> 11) as f64 / (1u64 << 53) as f64
 }
 
-/// What became of a candidate.
+/// The state of a candidate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum State {
     Undecided,
@@ -206,8 +207,8 @@ enum State {
     NoPoint,
 }
 
-/// The candidates of a rectangle of cells and of the halo around it. Around these is a border of [`CELLS`] cells
-/// without candidates, so that every candidate has neighbors on all sides.
+/// The candidates of a rectangle of cells and of its halo. A border of [`CELLS`] cells without candidates surrounds
+/// them, so that every candidate has neighbors on all sides.
 struct Block {
     /// Column and row of the first cell of the border.
     first: [i64; 2],
@@ -272,8 +273,8 @@ impl Block {
         }
     }
 
-    /// Whether no undecided candidate within the spacing comes before this one. Equal ranks are ordered by their cells,
-    /// row by row, as in every block.
+    /// Whether candidate `k` has the lowest rank of the undecided candidates within the spacing. Equal ranks are
+    /// ordered by their cells, row by row, which is the same order in every block.
     fn is_first(&self, k: usize, offsets: &[isize]) -> bool {
         let rank = self.ranks[k];
         !offsets.iter().any(|offset| {
@@ -282,12 +283,12 @@ impl Block {
         })
     }
 
-    /// Whether two candidates are nearer to each other than the spacing.
+    /// Whether two candidates are closer to each other than the spacing.
     fn is_near(&self, a: usize, b: usize) -> bool {
         square(self.positions[a], self.positions[b]) < self.spacing * self.spacing
     }
 
-    /// The points of these cells within the bounds, with their rows and columns.
+    /// The points in the block's cells that lie within the bounds, with their rows and columns.
     fn points(
         &self,
         discs: &PoissonDiscs,
@@ -309,14 +310,14 @@ impl Block {
     }
 }
 
-/// The square of the distance of two positions, in m^2.
+/// The square of the distance between two positions, in m^2.
 #[must_use]
 pub fn square(a: [f64; 2], b: [f64; 2]) -> f64 {
     let [east, south] = [a[0] - b[0], a[1] - b[1]];
     east * east + south * south
 }
 
-/// The cells whose candidates may lie within the spacing of one, by distance: near ones decide most often.
+/// Offsets to the cells whose candidates may be within the spacing, the nearest first because they decide most often.
 fn offsets() -> Vec<[i64; 2]> {
     let mut offsets: Vec<[i64; 2]> =
         (-CELLS..=CELLS).flat_map(|south| (-CELLS..=CELLS).map(move |east| [east, south])).collect();
@@ -336,7 +337,7 @@ mod tests {
         discs.within(&bounds, |_| density, &Progress::none()).unwrap()
     }
 
-    /// The smallest distance of two points.
+    /// The smallest distance between two points.
     fn smallest(points: &[DiscPoint]) -> f64 {
         let mut sorted: Vec<[f64; 2]> = points.iter().map(|point| point.position).collect();
         sorted.sort_by(|a, b| a[0].total_cmp(&b[0]));
@@ -380,7 +381,7 @@ mod tests {
     #[test]
     fn windows_are_crops_of_the_whole() {
         let discs = PoissonDiscs::new(2.5, 77);
-        // The density has steps, so that the rounds differ from place to place.
+        // The density has steps, so that the number of rounds differs from place to place.
         let density = |[x, y]: [f64; 2]| if libm::sin(x * 0.05) + libm::sin(y * 0.03) > 0.4 { 1.0 } else { 0.15 };
         let within = |bounds: &[Range<f64>; 2]| discs.within(bounds, density, &Progress::none()).unwrap();
         let whole = within(&[-700.0..500.0, -300.0..600.0]);

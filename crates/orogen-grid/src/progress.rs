@@ -1,9 +1,9 @@
 //! Progress of work, and cancellation.
 //!
-//! A [`Progress`] belongs to one piece of work. The code that does the work declares its amount ([`Progress::expect`]),
-//! in any unit, and counts what is done ([`Progress::advance`]). Work that consists of several pieces gives each a
-//! [part](Progress::part) with a weight and passes the part on. The caller receives one number: the share of all work
-//! that is done, which never decreases.
+//! A [`Progress`] belongs to one piece of work. The code that does the work declares its amount with
+//! [`Progress::expect`], in any unit, and counts completed work with [`Progress::advance`]. Work that consists of
+//! several pieces gives each of them a weighted [part](Progress::part). The caller receives one number: the share of
+//! all work that is done, which never decreases.
 //!
 //! ```
 //! use orogen_grid::Progress;
@@ -46,7 +46,7 @@ struct Run {
 #[derive(Default)]
 struct Node {
     run: Arc<Run>,
-    /// The progress that this piece is a part of, and its weight there.
+    /// The progress of which this piece is a part, and its weight there.
     whole: Option<(Progress, f64)>,
     count: Mutex<Count>,
 }
@@ -66,14 +66,14 @@ impl Progress {
         Progress::default()
     }
 
-    /// Calls `listener` with the share of the work that is done, from 0 to 1, each time it increases. The calls come
-    /// from any thread, one at a time, and never with a smaller share than before.
+    /// Calls `listener` with the share of the work that is done, from 0 to 1, each time it increases. Calls can come
+    /// from any thread, but only one at a time, and the share never decreases.
     pub fn new(listener: impl Fn(f64) + Send + Sync + 'static) -> Progress {
         let run = Run { listener: Some(Box::new(listener)), ..Run::default() };
         Progress { piece: Arc::new(Node { run: Arc::new(run), ..Node::default() }) }
     }
 
-    /// The same progress, also cancelled when `flag` is set, for example by a signal handler, which cannot call
+    /// The same progress, which is also cancelled when `flag` is set, for example by a signal handler that cannot call
     /// [`Progress::cancel`]. Only the first flag counts.
     pub fn stopped_by(self, flag: Arc<AtomicBool>) -> Progress {
         let _ = self.piece.run.stop.set(flag);
@@ -160,8 +160,8 @@ impl Progress {
         self.piece.count.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Reports a larger share, to the progress that this is a part of or to the listener. The lock is held meanwhile,
-    /// so that reports keep their order.
+    /// Reports a larger share to the parent progress or to the listener. The lock is held meanwhile, so that reports
+    /// keep their order.
     fn report(&self, mut count: MutexGuard<'_, Count>, share: f64) {
         let share = share.min(1.0);
         let more = share - count.share;

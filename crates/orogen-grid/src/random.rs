@@ -1,4 +1,4 @@
-//! Pseudo-random numbers, the same on every machine.
+//! Pseudo-random numbers that are the same on every machine.
 
 /// The finaliser of splitmix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014): every
 /// bit of the result depends on every bit of the argument.
@@ -18,7 +18,7 @@ pub const STEP: u64 = 0x9E37_79B9_7F4A_7C15;
 pub struct Random(u64);
 
 impl Random {
-    /// A separate sequence for each pair of `seed` and `stream`.
+    /// A generator with a separate sequence for each pair of `seed` and `stream`.
     #[must_use]
     pub fn new(seed: u64, stream: u64) -> Random {
         let mut random = Random(seed ^ stream.wrapping_mul(0xD1B5_4A32_D192_ED03));
@@ -26,7 +26,7 @@ impl Random {
         random
     }
 
-    /// The sequence of splitmix64 from this state.
+    /// A generator that continues the sequence of splitmix64 from `state`.
     #[must_use]
     pub const fn of_state(state: u64) -> Random {
         Random(state)
@@ -39,13 +39,13 @@ impl Random {
         mix64(self.0)
     }
 
-    /// A number in `0..n`.
+    /// A random number in `0..n`.
     #[inline]
     pub fn below(&mut self, n: usize) -> usize {
         ((u128::from(self.draw()) * n as u128) >> 64) as usize
     }
 
-    /// A number from 0 to 1, less than 1, in steps of 2^-53.
+    /// A random number from 0 (included) to 1 (excluded), in steps of 2^-53.
     #[inline]
     pub fn share(&mut self) -> f64 {
         (self.draw() >> 11) as f64 / (1u64 << 53) as f64

@@ -4,22 +4,21 @@ use crate::grid::Grid;
 use orogen_noise::Points;
 use serde::{Deserialize, Serialize};
 
-/// The interpolation of a layer between its samples. At a sample's own position the value is always the sample, bit for
-/// bit.
+/// How a layer is interpolated between its samples. At the position of a sample the value is that sample, bit for bit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum LayerKind {
-    /// Smooth values, such as heights: interpolating cubic.
+    /// Smooth values, such as heights: interpolating cubic (Catmull and Rom 1974).
     Height,
-    /// Numbers as names, such as watersheds: nearest sample.
+    /// Numbers that are names, such as those of watersheds: nearest sample.
     Label,
     /// Values over many orders of magnitude, such as drainage areas: linear in their logarithms, within the range of
-    /// the surrounding samples; nearest sample if one of those is not positive.
+    /// the surrounding samples. Nearest sample if one of these is not positive.
     Flow,
 }
 
 impl LayerKind {
-    /// The name in declarations.
+    /// The name in the declaration of a layer.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -29,7 +28,7 @@ impl LayerKind {
         }
     }
 
-    /// The description in the reference.
+    /// The description in the reference documentation.
     #[must_use]
     pub fn about(self) -> &'static str {
         match self {
@@ -45,12 +44,12 @@ pub const NOWHERE: (f64, f64) = (f64::NAN, f64::NAN);
 
 /// Index of the sample at or before a position, and the fraction to the next one.
 ///
-/// A position exactly at a lattice point (index * cell gives the same f64) has fraction 0 at that index, despite
-/// rounding in the division: also for cells such as 10.24, 0.1 and 1/3.
+/// A position exactly at a lattice point (index * cell gives the same f64) has fraction 0 at that index, even if the
+/// division is rounded, as with cells such as 10.24, 0.1 and 1/3.
 #[must_use]
 pub fn split(position: f64, cell: f64) -> (i64, f32) {
     let steps = position / cell;
-    // From here on every number is an integer; values beyond i64 saturate.
+    // Beyond this limit every f64 is an integer. Values beyond i64 saturate.
     const WHOLE: f64 = (1u64 << 52) as f64;
     if !(-WHOLE..=WHOLE).contains(&steps) {
         return (steps as i64, 0.0);
@@ -64,16 +63,16 @@ pub fn split(position: f64, cell: f64) -> (i64, f32) {
         return (nearest, 0.0);
     }
     let share = rest as f32;
-    // Rounding to f32 can give 1, which is the next sample.
+    // Rounding to f32 can give 1, which means the next sample.
     if share >= 1.0 { (index + 1, 0.0) } else { (index, share) }
 }
 
-/// Columns of a lattice that are processed together.
+/// Number of columns of a lattice that are processed together.
 const COLUMNS: usize = 256;
 
 /// Interpolates `grid` at all points into `out`, according to the [`LayerKind`].
 ///
-/// Beyond its border the border samples of the grid continue. A point that is not finite gives NaN.
+/// Outside the grid, the samples at its border are repeated. A point that is not finite gives NaN.
 pub fn read(grid: &Grid, kind: LayerKind, at: &Points, out: &mut [f32]) {
     let reader = Reader::new(grid);
     match (kind, at) {
@@ -110,7 +109,7 @@ pub fn read(grid: &Grid, kind: LayerKind, at: &Points, out: &mut [f32]) {
     }
 }
 
-/// Index of the nearest sample; halves are rounded up.
+/// Index of the nearest sample; halves are rounded up to the next sample.
 fn nearest(position: f64, cell: f64) -> i64 {
     let (index, share) = split(position, cell);
     if share >= 0.5 { index + 1 } else { index }
@@ -177,7 +176,8 @@ impl Reader<'_> {
         Some(libm::exp(north * (1.0 - v) + south * v) as f32)
     }
 
-    /// The surrounding 4 x 4 samples, if all are inside the grid: the common case, without border checks.
+    /// The surrounding 4 x 4 samples if all of them are inside the grid. This is the common case and needs no border
+    /// checks.
     fn inner(&self, i: i64, j: i64) -> Option<[[f32; 4]; 4]> {
         let (left, top) = (i.saturating_sub(self.x).saturating_sub(1), j.saturating_sub(self.y).saturating_sub(1));
         if left < 0 || top < 0 || left > self.width - 4 || top > self.height - 4 {
@@ -192,7 +192,7 @@ impl Reader<'_> {
         Some(rows)
     }
 
-    /// The cubic of Catmull and Rom (1974) along x in four rows, then along y. Fraction 0 gives the sample itself, bit
+    /// The cubic of Catmull and Rom (1974), along x in four rows, then along y. Fraction 0 gives the sample itself, bit
     /// for bit.
     fn cubic(&self, i: i64, j: i64, u: f32, v: f32) -> f32 {
         if u != 0.0
@@ -256,7 +256,7 @@ mod tests {
         let mut out = [0.0; 6];
         read(&grid, LayerKind::Height, &Points::Lattice { xs: &xs, ys: &ys }, &mut out);
         assert_eq!(out[0], 0.0, "a sample itself");
-        // A cubic reproduces straight lines inside; near the border the border sample is repeated.
+        // A cubic reproduces straight lines in the interior; near the border the border sample is repeated.
         assert!((out[1] - 34.0).abs() < 1e-4 && (out[4] - 41.0).abs() < 1e-4, "{out:?}");
         let x = [-20.0, -3.0, 11.5, -20.0, -3.0, 11.5];
         let y = [40.0, 40.0, 40.0, 47.0, 47.0, 47.0];

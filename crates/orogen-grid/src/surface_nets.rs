@@ -1,33 +1,34 @@
-//! Surfaces of densities in space as triangles: surface nets.
+//! Surfaces of three-dimensional densities as triangle meshes: surface nets.
 //!
-//! After Gibson (1998), "Constrained elastic surface nets", in the simple form without relaxation: each cube of eight
-//! samples whose signs differ has one vertex, the mean of the points where the surface crosses its edges, and each edge
-//! whose ends differ in sign has a quadrilateral between the vertices of its four cubes. A vertex depends on the eight
-//! samples of its cube only, so the vertices that two parts share have the same bits, and parts join without cracks.
+//! After Gibson (1998), "Constrained elastic surface nets", in the simple form without relaxation. Each cube of eight
+//! samples that do not all have the same sign has one vertex: the mean of the points where the surface crosses its
+//! edges. Each edge whose ends differ in sign has a quadrilateral between the vertices of its four cubes. A vertex
+//! depends only on the eight samples of its cube, so vertices that two parts share have the same bits, and parts join
+//! without cracks.
 
 use crate::error::{Error, ErrorKind, Result};
 
-/// Densities at the points of a cubic lattice: positive where it is solid.
+/// Densities at the points of a cubic lattice, positive inside the solid.
 #[derive(Debug, Clone, Copy)]
 pub struct Lattice<'a> {
     /// The column, row and level of the first sample in the lattice of the world.
     pub start: [i64; 3],
-    /// Samples in the three directions.
+    /// Number of columns, rows and levels.
     pub size: [usize; 3],
-    /// The densities: level by level, in each row by row. What is not a number counts as not solid.
+    /// The densities, level by level and within a level row by row. A density that is NaN counts as outside.
     pub densities: &'a [f32],
 }
 
-/// A surface.
+/// A triangle mesh of a surface.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Net {
     /// The cube of each vertex: column, row and level of its first sample in the lattice of the world.
     pub cubes: Vec<[i64; 3]>,
-    /// The position of each vertex in its cube, 0 to 1.
+    /// The position of each vertex in its cube, 0 to 1 along each axis.
     pub offsets: Vec<[f32; 3]>,
-    /// The unit normal of each vertex, away from what is solid: the gradient of the densities of its cube.
+    /// The unit normal of each vertex, which points away from the solid: the gradient of the densities of its cube.
     pub normals: Vec<[f32; 3]>,
-    /// Triangles, counter-clockwise seen from outside where the axes of the lattice are left-handed: east, south, up.
+    /// Triangles, counter-clockwise when seen from outside with the left-handed axes of the lattice: east, south, up.
     pub triangles: Vec<[u32; 3]>,
 }
 
@@ -35,15 +36,15 @@ pub struct Net {
 const EDGES: [[usize; 2]; 12] =
     [[0, 1], [2, 3], [4, 5], [6, 7], [0, 2], [1, 3], [4, 6], [5, 7], [0, 4], [1, 5], [2, 6], [3, 7]];
 
-/// No vertex.
+/// Index of a cube without a vertex.
 const NONE: u32 = u32::MAX;
 
 impl Lattice<'_> {
-    /// The surface between the cubes of the lattice, with the quadrilaterals of the edges that begin at its second
-    /// samples or later. So parts of N + 2 samples in steps of N cover each place once.
+    /// The surface between the cubes of the lattice. Only edges that begin at the second sample or later of each axis
+    /// get quadrilaterals, so parts of N + 2 samples that are placed N samples apart cover the space exactly once.
     ///
     /// # Errors
-    /// If the densities do not fit the size.
+    /// If the number of densities does not match the size.
     ///
     /// ```
     /// use orogen_grid::surface_nets::Lattice;
@@ -83,7 +84,7 @@ impl Lattice<'_> {
                 }
             }
         }
-        // Each edge along an axis has four cubes: those before and after it along the two other axes.
+        // Each edge along an axis belongs to four cubes: those before and after it along the two other axes.
         for level in 1..count - 1 {
             for row in 1..height - 1 {
                 for column in 1..width - 1 {
@@ -96,7 +97,7 @@ impl Lattice<'_> {
                         }
                         let quad = [at - steps[u] - steps[v], at - steps[v], at, at - steps[u]].map(|at| vertices[at]);
                         let [a, b, c, d] = if here { quad } else { [quad[0], quad[3], quad[2], quad[1]] };
-                        // A quadrilateral is cut along the same diagonal wherever it is made.
+                        // The quadrilateral is split along the same diagonal in every part.
                         net.triangles.extend([[a, c, b], [a, d, c]]);
                     }
                 }
@@ -106,7 +107,7 @@ impl Lattice<'_> {
     }
 }
 
-/// The vertex of a cube and its normal; `None` if all corners are solid, or none is.
+/// The vertex of a cube and its normal; `None` if all corners are solid or no corner is.
 fn vertex(corners: [f32; 8]) -> Option<([f32; 3], [f32; 3])> {
     let is_solid = corners.map(|density| density > 0.0);
     let solid = is_solid.iter().filter(|is_solid| **is_solid).count();
@@ -150,7 +151,7 @@ mod tests {
     use super::*;
     use std::collections::HashMap;
 
-    /// Bumpy ground with a tunnel, at any position of an endless lattice.
+    /// Bumpy ground with a tunnel, at any position of an infinite lattice.
     fn density([x, y, z]: [i64; 3]) -> f32 {
         let [x, y, z] = [x, y, z].map(|at| at as f32);
         let ground = 6.3 + 2.0 * libm::sinf(x * 0.4) + 1.5 * libm::cosf(y * 0.3) - z;
@@ -166,7 +167,7 @@ mod tests {
         Lattice { start, size, densities: &densities }.net().unwrap()
     }
 
-    /// The triangles by the positions of their vertices, as bits, from the smallest vertex on.
+    /// The triangles by the positions of their vertices, as bits, each rotated so that its smallest vertex comes first.
     fn triangles(net: &Net) -> Vec<[[u64; 6]; 3]> {
         let corner = |at: u32| {
             let (cube, offset) = (net.cubes[at as usize], net.offsets[at as usize]);
@@ -188,7 +189,7 @@ mod tests {
     fn parts_are_the_whole_and_have_no_cracks() {
         let whole = net([-1, -1, -3], [34, 26, 16]);
         let mut parts = Vec::new();
-        // Chunks of 8 cubes, and a cube before each.
+        // Chunks of 8 cubes, with one more cube before each.
         for y in 0..3 {
             for x in 0..4 {
                 parts.extend(triangles(&net([8 * x - 1, 8 * y - 1, -3], [10, 10, 16])));

@@ -1,9 +1,9 @@
-//! The triangles of a mesh that has every sample of a grid as a vertex: two for each cell.
+//! The triangles of a mesh that has every sample of a grid as a vertex, two for each cell.
 
-/// Whether a cell is split along the diagonal from its north-west to its south-east corner, and not along the other
-/// one: it is the diagonal with the smaller difference in height, or with one corner missing (not finite) the one that
-/// keeps the triangle of the other three. `corners` are the heights in the north-west, north-east, south-west and
-/// south-east.
+/// Whether a cell is split along the diagonal from its north-west to its south-east corner instead of the other one.
+/// The diagonal with the smaller difference in height is chosen. If one corner is missing (not finite), it is the
+/// diagonal that keeps the triangle of the other three. `corners` are the heights in the north-west, north-east,
+/// south-west and south-east.
 #[must_use]
 pub fn falls([nw, ne, sw, se]: [f32; 4]) -> bool {
     match [nw, ne, sw, se].map(|corner| !corner.is_finite()) {
@@ -13,7 +13,7 @@ pub fn falls([nw, ne, sw, se]: [f32; 4]) -> bool {
     }
 }
 
-/// The height of the mesh in a cell with these corners (as in [`falls`]), at a share `u` of the way from west to east
+/// The height of the mesh in a cell with these corners (as in [`falls`]). `u` is the share of the way from west to east
 /// and `v` from north to south, each 0 to 1. NaN where the mesh has no triangle.
 #[must_use]
 pub fn height(corners: [f32; 4], [u, v]: [f64; 2]) -> f64 {

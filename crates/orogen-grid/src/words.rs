@@ -1,7 +1,8 @@
 //! Text for messages: suggestions, lists, numbers.
 
-/// The candidate that a misspelt `word` most likely means: at most a third of its letters differ, or one of three
-/// (insertions, deletions, substitutions and transpositions count one each), ignoring case. `None` if there is none.
+/// The candidate that a misspelt `word` most likely means. At most a third of its letters may differ, or one of three;
+/// insertions, deletions, substitutions and transpositions count one each, and case is ignored. `None` if there is
+/// none.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let word: Vec<char> = word.chars().flat_map(char::to_lowercase).take(64).collect();
     candidates
@@ -51,7 +52,7 @@ pub fn suggestion<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str> 
     }
 }
 
-/// A list in a message: "`a`, `b` and `c`"; long lists are shortened and show their count.
+/// A list for a message: "`a`, `b` and `c`". Lists of more than 100 words are shortened and show their count.
 pub fn list<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
     const SHOWN: usize = 100;
     let words: Vec<String> = words.into_iter().map(|word| format!("`{word}`")).collect();
@@ -63,11 +64,11 @@ pub fn list<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
     }
 }
 
-/// Words with two spellings.
+/// Words with two spellings, British and American.
 const SPELLINGS: [(&str, &str); 4] =
     [("centre", "center"), ("colour", "color"), ("grey", "gray"), ("normalise", "normalize")];
 
-/// A name in its other spelling: "centre" for "center". `None` if it has only one.
+/// The name in its other spelling: "centre" for "center". `None` if it has only one.
 #[must_use]
 pub fn respelled(name: &str) -> Option<String> {
     let other = |(one, other): &(&str, &str)| match (name.contains(one), name.contains(other)) {
@@ -87,7 +88,7 @@ pub fn count(n: usize, thing: &str) -> String {
     }
 }
 
-/// A share in per cent, with two decimals: "12.50 %", "less than 0.01 %".
+/// A share in percent, with two decimals: "12.50 %", "less than 0.01 %".
 #[must_use]
 pub fn percent(part: u64, whole: u64) -> String {
     match 100.0 * part as f64 / whole as f64 {
@@ -96,10 +97,10 @@ pub fn percent(part: u64, whole: u64) -> String {
     }
 }
 
-/// A number with up to six digits or to the unit: "2666.67", "0.3125", "1e308".
+/// A number with up to six significant digits, or rounded to an integer: "2666.67", "0.3125", "1e308".
 #[must_use]
 pub fn number(value: f64) -> String {
-    // Formatting rounds to nearest, and parsing it is exact.
+    // Formatting rounds to the nearest number, and parsing is exact.
     let rounded = match value.abs() {
         large if large >= 1e5 => value.round(),
         _ => format!("{value:.5e}").parse().unwrap_or(value),
@@ -113,11 +114,11 @@ pub fn number(value: f64) -> String {
 /// Maximum length of a name in a message, in characters.
 const LONGEST_NAME: usize = 80;
 
-/// Maximum number of digits of a number in a message: more than any useful number has.
+/// Maximum number of digits of a number in a message, which is more than any useful number has.
 const LONGEST_NUMBER: usize = 24;
 
-/// Shortens a message: names between backticks are cut in the middle if they are longer than 80 characters, and numbers
-/// of more than 24 digits are written with an exponent.
+/// Shortens a message. Names between backticks that are longer than 80 characters are cut in the middle, and numbers of
+/// more than 24 digits are written with an exponent.
 #[must_use]
 pub fn readable(message: String) -> String {
     if message.len() <= LONGEST_NUMBER {
@@ -127,7 +128,7 @@ pub fn readable(message: String) -> String {
     let mut parts = message.split('`').peekable();
     let mut quoted = false;
     while let Some(part) = parts.next() {
-        // A backtick without its partner quotes nothing.
+        // A backtick without its counterpart quotes nothing.
         match quoted && parts.peek().is_some() && part.chars().nth(LONGEST_NAME).is_some() {
             true => {
                 let half = LONGEST_NAME / 2 - 2;
@@ -146,7 +147,7 @@ pub fn readable(message: String) -> String {
     out
 }
 
-/// Appends a text with its long numbers written with an exponent.
+/// Appends a text, with its long numbers written with an exponent.
 fn short_numbers(text: &str, out: &mut String) {
     let mut rest = text;
     while let Some(start) = rest.find(|c: char| c.is_ascii_digit()) {
@@ -168,14 +169,14 @@ fn short_numbers(text: &str, out: &mut String) {
     out.push_str(rest);
 }
 
-/// A number of bytes: "1.5 GiB".
+/// A number of bytes with its unit: "1.5 GiB".
 #[must_use]
 pub fn bytes(n: u64) -> String {
     bytes_with(n, 0, f64::round).0
 }
 
-/// A need of bytes and a limit that it exceeds, with enough digits that both texts differ: "1.1 GiB" and "1.0 GiB". The
-/// need is rounded up, so that a limit of what its text shows suffices.
+/// A required number of bytes and a limit that it exceeds, with enough digits that both texts differ: "1.1 GiB" and
+/// "1.0 GiB". The required number is rounded up, so that a limit of the displayed number is sufficient.
 #[must_use]
 pub fn bytes_apart(need: u64, limit: u64) -> [String; 2] {
     // More digits would be harder to read than the number itself.
@@ -190,7 +191,8 @@ pub fn bytes_apart(need: u64, limit: u64) -> [String; 2] {
     [need, limit].map(|n| format!("{n} bytes"))
 }
 
-/// A number of bytes with this many decimals beyond the usual ones, rounded so, and the number that the text shows.
+/// A number of bytes as text, with `more` decimals beyond the usual ones and rounded with `round`, and the value of the
+/// text.
 fn bytes_with(n: u64, more: usize, round: impl Fn(f64) -> f64) -> (String, f64) {
     const UNITS: [&str; 6] = ["bytes", "KiB", "MiB", "GiB", "TiB", "PiB"];
     let (mut value, mut unit, mut scale) = (n as f64, 0, 1.0);
@@ -209,17 +211,17 @@ fn bytes_with(n: u64, more: usize, round: impl Fn(f64) -> f64) -> (String, f64) 
     (format!("{text} {}", UNITS[unit]), shown)
 }
 
-/// Maximum number of characters of a text in one line.
+/// Maximum number of characters of a text on one line.
 const LONGEST_LINE: usize = 1000;
 
-/// The part of a text that fits in this width, with an ellipsis if it is cut; `measure` returns the width of a text.
+/// The part of a text that fits in `width`, with an ellipsis if it is cut; `measure` returns the width of a text.
 pub fn shortened(text: &str, width: f32, measure: impl Fn(&str) -> f32) -> String {
     let ends: Vec<usize> = text.char_indices().map(|(at, _)| at).take(LONGEST_LINE + 1).collect();
     if ends.len() <= LONGEST_LINE && measure(text) <= width {
         return text.to_string();
     }
     let cut = |letters: usize| format!("{}…", text[..ends.get(letters).copied().unwrap_or(text.len())].trim_end());
-    // Binary search for the number of characters that fit: 0 fits, all do not.
+    // Binary search for the number of characters that fit: 0 fit, all do not.
     let (mut fits, mut most) = (0, ends.len().saturating_sub(1));
     while fits < most {
         let middle = (fits + most).div_ceil(2);
@@ -335,7 +337,7 @@ mod tests {
             (GIB + (GIB >> 8), GIB + (GIB >> 9), ["1.1 GiB", "1.0 GiB"]),
             ((1 << 30) + (150 << 20), (1 << 30) + (100 << 20), ["1.2 GiB", "1.1 GiB"]),
             (GIB + (65 << 20), GIB + (60 << 20), ["1.07 GiB", "1.06 GiB"]),
-            // The same figure in two units.
+            // The same digits in two units.
             (GIB, GIB - (100 << 10), ["1.00 GiB", "1023.9 MiB"]),
             (1025, 1024, ["1.1 KiB", "1.0 KiB"]),
             (1001, 1000, ["1001 bytes", "1000 bytes"]),

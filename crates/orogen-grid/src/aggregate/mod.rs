@@ -1,4 +1,4 @@
-//! Diffusion-limited aggregation: branching clusters of random walkers that stick together, and mountains made of them.
+//! Diffusion-limited aggregation: branching clusters of random walkers that stick together, and mountains from them.
 
 #[doc(hidden)]
 pub mod relief;

@@ -1,4 +1,4 @@
-//! Mountains made of aggregates: coarse branches become ranges, finer ones become their spurs.
+//! Mountains from aggregates: coarse branches become ranges, finer ones become their spurs.
 
 use super::tree::Tree;
 use crate::error::Result;
@@ -6,7 +6,7 @@ use crate::parallel;
 use crate::progress::Progress;
 use crate::random::Random;
 
-/// Parameters of a relief.
+/// Parameters of [`ridge_heights`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Ridges {
@@ -14,9 +14,9 @@ pub struct Ridges {
     pub seed: u64,
     /// Maximum distance from the center, as a share of the distance to the edges.
     pub reach: f64,
-    /// The share of cells that ridges cover, at every scale.
+    /// Share of the cells that ridges cover, at every scale, 0 to 1.
     pub density: f64,
-    /// Height of the next finer scale relative to the previous one.
+    /// Height of each scale relative to the next coarser one.
     pub gain: f64,
     /// Distance from the tip, in cells, at which a ridge has half its height.
     pub taper: f64,
@@ -38,16 +38,16 @@ orogen_noise::builder!(
     with_taper(taper: f64)
 );
 
-/// Cells along the longer side of the coarsest grid.
+/// Number of cells along the longer side of the coarsest grid.
 const COARSEST: usize = 12;
 
-/// Heights from 0 to about 1 over a grid of at least `width` x `height` samples: the size of that grid, and the heights
-/// row by row.
+/// Heights from 0 to about 1 on a grid of at least `width` x `height` samples. Returns the size of that grid and the
+/// heights, row by row.
 ///
-/// On the coarsest grid an aggregate grows from the center. Each finer grid takes it over with small random bends (see
-/// [`Tree::refined`]) and continues its growth. At every scale the height of a ridge depends on the distance d to the
-/// farthest tip that grew on it: 1 - 1 / (1 + d / taper). The heights of all scales are added; those of coarser scales
-/// are smoothed at each refinement. Costs O(cells).
+/// On the coarsest grid an aggregate grows from the center. Each finer grid starts with the aggregate of the coarser
+/// one, with small random bends (see [`Tree::refined`]), and continues its growth. At every scale the height of a ridge
+/// depends on the distance d to the farthest tip that grew on it: 1 - 1 / (1 + d / taper). The heights of all scales
+/// are added; those of coarser scales are smoothed at each refinement. The time is O(cells).
 ///
 /// # Errors
 /// If the work is cancelled.
@@ -90,7 +90,7 @@ pub fn ridge_heights(
             progress.check()?;
             (across, down) = (finer_across, finer_down);
         }
-        // The coarsest aggregate, a few cells wide, has to extend in all directions.
+        // The coarsest aggregate has a width of only a few cells and must extend in all directions.
         let share = if scale == 0 { ridges.density.max(0.3) } else { ridges.density };
         refining.finish();
         tree.grow((tree.room() as f64 * share) as usize, &mut random, &growing)?;
@@ -109,7 +109,7 @@ pub fn ridge_heights(
     Ok((across, down, map))
 }
 
-/// A grid with twice as many cells along each side, by bilinear interpolation between cell centers.
+/// The map with twice as many cells along each side, by bilinear interpolation between cell centers.
 fn doubled(map: &[f32], across: usize, finer_across: usize, finer_down: usize) -> Vec<f32> {
     let down = map.len() / across;
     let mut finer = vec![0.0f32; finer_across * finer_down];
@@ -128,7 +128,7 @@ fn doubled(map: &[f32], across: usize, finer_across: usize, finer_down: usize) -
     finer
 }
 
-/// Mixes each cell with its neighbors: weights 1, 2, 1 along both axes.
+/// Smooths the map with weights 1, 2, 1 along both axes.
 fn blurred(map: &[f32], across: usize) -> Vec<f32> {
     let down = map.len() / across;
     let mut rows = vec![0.0f32; map.len()];

@@ -1,12 +1,13 @@
-//! A single aggregate, grown as by Witten and Sander.
+//! A single aggregate, grown with the method of Witten and Sander.
 
 use crate::random::Random;
 
 /// Grows an aggregate of `members` cells from the center of a square of `side` cells, with walkers that start far away.
 /// Returns whether each cell belongs to it. Growth ends early if it comes near the edge.
 ///
-/// Walkers step to one of the four neighbors and stick beside a cell (Witten and Sander 1981). A walker farther away
-/// than twice the aggregate's radius is dropped. The number of cells grows as the radius to the power of 1.71.
+/// Walkers step to one of the four neighbors and stick when they are next to a cell of the aggregate (Witten and Sander
+/// 1981). A walker farther away than twice the aggregate's radius is dropped. The number of cells grows as the radius
+/// to the power of 1.71.
 #[must_use]
 pub fn aggregate(side: usize, members: usize, seed: u64) -> Vec<bool> {
     let mut cells = vec![false; side * side];
@@ -19,7 +20,8 @@ pub fn aggregate(side: usize, members: usize, seed: u64) -> Vec<bool> {
     let mut random = Random::new(seed, 0);
     let (mut reach, mut count) = (1i64, 1);
     while count < members && reach + 3 < middle {
-        // From a square around it: a walker that arrives has no memory of its start.
+        // Walkers start on a square around the aggregate: a walker from far away reaches any point of it with about the
+        // same probability.
         let launch = reach + 2;
         let along = random.below(2 * launch as usize + 1) as i64 - launch;
         let (mut i, mut j) = [(along, launch), (along, -launch), (launch, along), (-launch, along)][random.below(4)];

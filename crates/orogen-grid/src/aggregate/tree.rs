@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::progress::Progress;
 use crate::random::Random;
 
-/// Columns east and rows south to the eight neighbors, axial ones first.
+/// Columns to the east and rows to the south of the eight neighbors, those that share a side first.
 const AROUND: [(i64, i64); 8] = [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1)];
 
 const FREE: u32 = u32::MAX;
@@ -16,23 +16,24 @@ const REPORTED: usize = 1 << 10;
 /// Steps of walkers between two checks for cancellation.
 const UNCHECKED: u32 = 1 << 16;
 
-/// An aggregate on its own grid of `width` x `height` cells.
+/// An aggregate on a grid of `width` x `height` cells.
 #[derive(Debug, Clone)]
 pub struct Tree {
     width: usize,
     height: usize,
-    /// The member in each cell.
+    /// The member in each cell, [`FREE`] if there is none.
     members: Vec<u32>,
     /// The cell of each member.
     cells: Vec<u32>,
-    /// The member that each is attached to, which is older; none for the first ones.
+    /// The older member to which each member is attached; `None` for the first ones.
     parents: Vec<Option<u32>>,
-    /// Limit of growth: an ellipse around the center, whose axes are this share of the grid's.
+    /// Limit of growth: an ellipse around the center whose axes are this share of the grid's sides.
     reach: f64,
 }
 
 impl Tree {
-    /// An empty tree that grows at most `reach` times half the grid from the center.
+    /// An empty tree that grows within an ellipse around the center, whose axes are `reach` times the sides of the
+    /// grid.
     #[must_use]
     pub fn new(width: usize, height: usize, reach: f64) -> Tree {
         Tree { width, height, members: vec![FREE; width * height], cells: Vec::new(), parents: Vec::new(), reach }
@@ -77,7 +78,7 @@ impl Tree {
         j as usize * self.width + i as usize
     }
 
-    /// Adds a member in a cell; if the cell has one already, returns that one.
+    /// Adds a member in a cell. If the cell already has one, returns that one.
     pub fn put(&mut self, i: i64, j: i64, parent: Option<u32>) -> u32 {
         let cell = self.index(i, j);
         if self.members[cell] == FREE {
@@ -88,7 +89,7 @@ impl Tree {
         self.members[cell]
     }
 
-    /// A member in a neighboring cell, including diagonal ones; random if there are several.
+    /// A member in one of the eight neighboring cells; a random one if there are several.
     fn beside(&self, i: i64, j: i64, random: &mut Random) -> Option<u32> {
         let mut found = [0; 8];
         let mut count = 0;
@@ -109,12 +110,12 @@ impl Tree {
         }
     }
 
-    /// Grows to `members` members: random walkers start at any free cell and stick where they touch the aggregate
-    /// (Witten and Sander, "Diffusion-limited aggregation, a kinetic critical phenomenon", 1981; there one walker at a
-    /// time starts far away).
+    /// Grows the aggregate to `members` members. Random walkers start at any free cell and stick where they touch the
+    /// aggregate (Witten and Sander, "Diffusion-limited aggregation, a kinetic critical phenomenon", 1981; in the paper
+    /// each walker starts far away).
     ///
-    /// Walkers that start everywhere find the gaps between branches, which are filled evenly. A walk takes about as
-    /// many steps as the square of the gap's width.
+    /// Since walkers start everywhere, the gaps between branches are filled evenly. The number of steps of a walk is
+    /// about the square of the gap's width.
     ///
     /// # Errors
     /// If the work is cancelled.
@@ -151,14 +152,14 @@ impl Tree {
     }
 
     /// The same aggregate on a grid of `width` x `height` cells, about twice as many along each side. Every cell moves
-    /// to a random one of its four subcells, and the branches between them bend. The first member, which must be the
-    /// central one, stays at the center.
+    /// to a random one of its four subcells, and the connections between cells bend. The first member must be the
+    /// central one and stays at the center.
     pub fn refined(&self, width: usize, height: usize, random: &mut Random) -> Tree {
         let Ok(fine) = self.refined_checked(width, height, random, &never);
         fine
     }
 
-    /// [`Tree::refined`]; `check` is called now and then, and its error ends the work.
+    /// Like [`Tree::refined`]; calls `check` regularly and ends with its error.
     pub(super) fn refined_checked<E>(
         &self,
         width: usize,
@@ -176,11 +177,11 @@ impl Tree {
             let end = (2 * i + (chance & 1) as i64, 2 * j + (chance >> 1 & 1) as i64);
             let end = (end.0.min(width as i64 - 1), end.1.min(height as i64 - 1));
             let member = match parent {
-                // At the center, which is within the limit of growth even if that is small: walkers have to find it.
+                // The center is within the limit of growth even if that is small, so walkers can find the aggregate.
                 None => fine.put(width as i64 / 2, height as i64 / 2, None),
                 Some(parent) => {
                     let start = places[*parent as usize];
-                    // At half way it bends by up to one cell to either side.
+                    // In the middle the connection bends by up to one cell to either side.
                     let bend = ((chance >> 2) % 3) as i64 - 1;
                     let across = if (end.0 - start.0).abs() > (end.1 - start.1).abs() { (0, bend) } else { (bend, 0) };
                     let middle = ((start.0 + end.0) / 2 + across.0, (start.1 + end.1) / 2 + across.1);
@@ -196,7 +197,7 @@ impl Tree {
         Ok(fine)
     }
 
-    /// Adds members along a line from a member to a cell; if it meets another member, the line continues from that one.
+    /// Adds members along a line from a member to a cell. If it meets another member, the line continues from there.
     fn line(&mut self, from: u32, (to_i, to_j): (i64, i64)) -> u32 {
         let cell = self.cells[from as usize] as usize;
         let (mut i, mut j) = ((cell % self.width) as i64, (cell / self.width) as i64);

@@ -1,4 +1,4 @@
-//! Grids as images of `image`, one channel each: a grid is a picture, its first row the uppermost.
+//! Grids as images of the crate `image` with one channel. The first row of a grid is the top row of the image.
 
 use ::image::{ImageBuffer, Luma, Pixel, Primitive};
 
@@ -11,15 +11,15 @@ impl<T: Copy + Primitive> Grid<T>
 where
     Luma<T>: Pixel<Subpixel = T>,
 {
-    /// The samples as an image, unchanged and not copied: heights in metres of a `Grid<f32>`, levels of a `Grid<u8>` or
-    /// `Grid<u16>`. `None` if a side has more than 2^32 - 1 samples, the maximum of an image.
+    /// The samples as an image, unchanged and without a copy: heights in metres of a `Grid<f32>`, levels of a
+    /// `Grid<u8>` or `Grid<u16>`. `None` if a side has more than 2^32 - 1 samples, the maximum of an image.
     #[must_use]
     pub fn into_image(self) -> Option<Gray<T>> {
         let (width, height) = sides(self.window())?;
         ImageBuffer::from_raw(width, height, self.into_data())
     }
 
-    /// A grid over the samples of an image, not copied, or `None` if it does not have the width and height of `window`.
+    /// A grid over the samples of an image, without a copy; `None` if the image does not have the size of `window`.
     #[must_use]
     pub fn from_image(window: Window, image: Gray<T>) -> Option<Grid<T>> {
         if sides(&window) != Some(image.dimensions()) {
@@ -50,7 +50,7 @@ impl Grid<f32> {
     #[must_use]
     pub fn to_image16(&self, low: f32, high: f32) -> Option<Gray<u16>> {
         let (low, span) = line(low, high)?;
-        // In f64, where neither the difference of two f32 nor its product with a level overflows.
+        // Computed in f64, where the difference of two f32 and its product with a level do not overflow.
         let level = |&height: &f32| match height.is_nan() {
             true => 0,
             false => (((f64::from(height) - low) / span).clamp(0.0, 1.0) * LEVELS + 0.5).floor() as u16,
@@ -62,8 +62,8 @@ impl Grid<f32> {
     /// Heights from 16 bits: level 0 is `low`, level 65535 is `high`. The inverse of [`Grid::to_image16`], up to the
     /// rounding to levels.
     ///
-    /// `None` if `low` and `high` are not two finite numbers in this order, or the image does not have the width and
-    /// height of `window`.
+    /// `None` if `low` and `high` are not two finite numbers in this order, or the image does not have the size of
+    /// `window`.
     #[must_use]
     pub fn from_image16(window: Window, image: &Gray<u16>, low: f32, high: f32) -> Option<Grid> {
         if sides(&window) != Some(image.dimensions()) {
@@ -75,7 +75,7 @@ impl Grid<f32> {
     }
 }
 
-/// Maximum level of 16 bits.
+/// Maximum level in 16 bits.
 const LEVELS: f64 = 65535.0;
 
 /// The lowest height, and the difference between the highest and the lowest.

@@ -1,4 +1,5 @@
-//! Windows and positions as points and vectors of `mint`, which glam, nalgebra, cgmath and others convert from.
+//! Windows and positions as points and vectors of the crate `mint`, which glam, nalgebra, cgmath and others can
+//! convert.
 
 use ::mint::{Point2, Vector2};
 

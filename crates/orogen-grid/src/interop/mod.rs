@@ -1,4 +1,4 @@
-//! Conversions to and from types of other crates. Each is behind a feature with the crate's name, off by default.
+//! Conversions to and from types of other crates. Each has a feature with the crate's name, which is off by default.
 //!
 //! Points in results are plain arrays (`[f64; 2]`, `[f32; 3]`); types of `mint` convert from them with `into()`,
 //! without a feature.

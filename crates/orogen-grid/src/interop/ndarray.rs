@@ -1,10 +1,10 @@
-//! Grids as arrays of `ndarray`: two axes, (row, column), in row-major order.
+//! Grids as arrays of the crate `ndarray` with two axes, (row, column), in row-major order.
 
 use ::ndarray::{Array2, ArrayView2, ArrayViewMut2};
 
 use crate::{Grid, Window};
 
-/// The samples as an array that is indexed by (row, column), without a copy.
+/// The samples as an array indexed by (row, column), without a copy.
 ///
 /// ```
 /// use ndarray::{ArrayView2, Axis};
@@ -19,12 +19,12 @@ use crate::{Grid, Window};
 impl<'a, T: Copy> From<&'a Grid<T>> for ArrayView2<'a, T> {
     fn from(grid: &'a Grid<T>) -> ArrayView2<'a, T> {
         let none: &'a [[T; 0]] = &[];
-        // Fails only if a grid without samples has more rows or columns than an array can count.
+        // This fails only if a grid without samples has more rows or columns than an array supports.
         ArrayView2::from_shape((grid.height(), grid.width()), grid.data()).unwrap_or_else(|_| none.into())
     }
 }
 
-/// The samples as a mutable array that is indexed by (row, column), without a copy.
+/// The samples as a mutable array indexed by (row, column), without a copy.
 impl<'a, T: Copy> From<&'a mut Grid<T>> for ArrayViewMut2<'a, T> {
     fn from(grid: &'a mut Grid<T>) -> ArrayViewMut2<'a, T> {
         let none: &'a mut [[T; 0]] = &mut [];
@@ -33,7 +33,7 @@ impl<'a, T: Copy> From<&'a mut Grid<T>> for ArrayViewMut2<'a, T> {
     }
 }
 
-/// The samples as an array that is indexed by (row, column). The window is dropped, the samples are not copied.
+/// The samples as an array indexed by (row, column), without a copy. The window is dropped.
 impl<T: Copy> From<Grid<T>> for Array2<T> {
     fn from(grid: Grid<T>) -> Array2<T> {
         let none: &[[T; 0]] = &[];
@@ -43,7 +43,7 @@ impl<T: Copy> From<Grid<T>> for Array2<T> {
 }
 
 impl<T: Copy> Grid<T> {
-    /// A grid over an array that is indexed by (row, column), or `None` if it does not have the rows and columns of
+    /// A grid over an array indexed by (row, column); `None` if the array does not have the rows and columns of
     /// `window`. An array in row-major order is not copied.
     ///
     /// ```
@@ -60,7 +60,7 @@ impl<T: Copy> Grid<T> {
             return None;
         }
         let data = match array.is_standard_layout() {
-            // The memory may contain samples before the first one or after the last one, if the array was sliced.
+            // If the array was sliced, its memory may contain samples before the first one or after the last one.
             true => match array.into_raw_vec_and_offset() {
                 (data, None | Some(0)) if data.len() == window.len() => data,
                 (data, offset) => data.into_iter().skip(offset.unwrap_or(0)).take(window.len()).collect(),
@@ -96,7 +96,7 @@ mod tests {
     #[test]
     fn there_and_back() {
         assert_eq!(Grid::from_array(WINDOW, Array2::from(grid())), Some(grid()));
-        // Columns beside each other in memory, and a part of a larger array.
+        // An array in column-major order, and a part of a larger array.
         let columns = array![[0, 10], [1, 11], [2, 12]].reversed_axes();
         assert!(!columns.is_standard_layout());
         assert_eq!(Grid::from_array(WINDOW, columns), Some(grid()));

@@ -5,7 +5,7 @@ use std::sync::Barrier;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
 
-/// Does work in a pool of this many threads.
+/// Runs `work` in a pool of `threads` threads.
 fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(work)
 }
@@ -30,7 +30,7 @@ fn every_item_is_done_once() {
         let count_one = |done: &AtomicU32| assert!(done.fetch_add(1, Ordering::Relaxed) < 2);
         with_threads(threads, || for_each(&done, count_one));
         assert!(done.iter().all(|done| done.load(Ordering::Relaxed) == 1), "{threads} threads");
-        // The iterator does not tell how many it has.
+        // The length of this iterator is unknown.
         let few = done.iter().enumerate().filter(|(k, _)| k % 3 == 0).map(|(_, done)| done);
         with_threads(threads, || for_each(few, count_one));
         let sum: u32 = done.iter().map(|done| done.load(Ordering::Relaxed)).sum();
@@ -110,7 +110,7 @@ fn each_task_has_a_value_of_its_own() {
             made.fetch_add(1, Ordering::Relaxed);
             0u32
         };
-        // Each item finds what items before it on the same task have left.
+        // Each item sees what earlier items of the same task have left.
         with_threads(threads, || {
             for_each_init(0..1000, init, |count, _| {
                 *count += 1;
@@ -152,7 +152,7 @@ fn a_panic_of_an_item_reaches_the_caller() {
 
 #[test]
 fn sorted_items_are_those_of_a_stable_sort() {
-    // Keys that repeat, in an order without runs.
+    // Repeated keys, in an order without sorted runs.
     let unsorted: Vec<(u32, u32)> =
         (0..3 * SAMPLES as u32 + 7).map(|k| (k.wrapping_mul(2_654_435_761) >> 20, k)).collect();
     let mut expected = unsorted.clone();

@@ -1,29 +1,29 @@
-//! Lines with a distance around each, as buffers of geographic information systems: which of them contain a position.
+//! Buffers in the sense of geographic information systems: all points within a distance of a line. Finds the buffers
+//! that contain a position.
 
 use super::outline::Outline;
 use super::segments::{Segments, TRIALS, trials};
 
-/// Number of lines that a search finds at once.
+/// Number of lines that a search collects at once.
 const BATCH: usize = 16;
 
-/// Number of batches after which lines are searched in their order.
+/// Number of batches after which the search visits lines in their order instead.
 const MAX_BATCHES: usize = 4;
 
-/// Number of boxes that one of the next level contains, among those in the order of lines.
+/// Number of boxes that a box of the next level contains, in the order of lines.
 const GROUP: usize = 16;
 
 /// The points within a distance of a line, for many lines, in a tree of boxes.
 ///
-/// A search visits the boxes around a position and few others, so it takes as long with many lines far away as without
-/// them. It finds lines in their order, whatever the tree is, and allocates nothing. Of a line it visits the segments
-/// near the position.
+/// A search visits only boxes and segments near the position, so its time hardly depends on the number of lines far
+/// away. It finds lines in their order, independent of the tree, and does not allocate memory.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Buffers {
     /// The distance around each line.
     radii: Vec<f64>,
     /// The segments of all lines, a tree for each.
     segments: Segments,
-    /// In their order.
+    /// The lines that have points, in their order.
     lines: Vec<Line>,
     nodes: Vec<Node>,
     /// The boxes of the lines in their order, then boxes around groups of these, and so on.
@@ -35,13 +35,13 @@ pub struct Buffers {
 /// A line that has points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Line {
-    /// Its number among those that were given.
+    /// Its index among all lines that were given.
     index: u32,
-    /// The node of its segments.
+    /// The root of the tree of its segments.
     root: u32,
 }
 
-/// A box: its lowest and its highest coordinates.
+/// A box: its minimum and maximum coordinates.
 type Bounds = [[f64; 2]; 2];
 
 fn contains([low, high]: &Bounds, at: [f64; 2]) -> bool {
@@ -52,17 +52,17 @@ fn union([low, high]: Bounds, [other_low, other_high]: Bounds) -> Bounds {
     [[0, 1].map(|k| low[k].min(other_low[k])), [0, 1].map(|k| high[k].max(other_high[k]))]
 }
 
-/// A box around lines, with the distances around them.
+/// A box around lines, including the distances around them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Node {
     bounds: Bounds,
-    /// The first and the last line in it.
+    /// The first and the last line in the box.
     lines: [u32; 2],
-    /// The second of two nodes, of which the first follows this one; `None` for a single line.
+    /// The index of the second child; the first child follows this node. `None` for a single line.
     second: Option<u32>,
 }
 
-/// The first lines of those that a search finds, from `from` on, in their order.
+/// The first lines that a search finds, beginning with line `from`, in their order.
 struct Batch {
     from: u32,
     lines: [u32; BATCH],
@@ -70,7 +70,7 @@ struct Batch {
 }
 
 impl Batch {
-    /// Whether a node may have lines that belong to it.
+    /// Whether a node may contain lines that belong to the batch.
     fn wants(&self, node: &Node) -> bool {
         let [first, last] = node.lines;
         last >= self.from && (self.count < BATCH || first < self.lines[BATCH - 1])
@@ -87,8 +87,8 @@ impl Batch {
 }
 
 impl Buffers {
-    /// The buffers of lines: the points of each, and the distance around it. A line of one point is a disc. Lines with
-    /// a coordinate or a distance that is not finite contain nothing.
+    /// The buffers of lines, given as the points of each line and the distance around it. A line of one point is a
+    /// disc. Lines with a coordinate or a distance that is not finite contain nothing.
     #[must_use]
     pub fn new<'a>(lines: impl IntoIterator<Item = (&'a [[f64; 2]], f64)>) -> Buffers {
         let mut made = Buffers::default();
@@ -121,13 +121,13 @@ impl Buffers {
         made
     }
 
-    /// The mean number of boxes and segments that a search looks at, at some positions: a measure of its time.
+    /// The mean number of boxes and segments that a search visits, at some trial positions: a measure of its time.
     #[must_use]
     pub fn visits(&self) -> f64 {
         self.visits
     }
 
-    /// The tree over lines: halves by the middles of their boxes along the longer side.
+    /// Builds the tree over lines: divides them in halves by the centers of their boxes along the longer side.
     fn group(&mut self, lines: &mut [u32], boxes: &[Bounds]) -> Node {
         let at = self.nodes.len();
         if let [line] = *lines {
@@ -146,7 +146,7 @@ impl Buffers {
         let axis = usize::from(side(1) > side(0));
         lines.sort_by(|a, b| middle(*a, axis).total_cmp(&middle(*b, axis)).then(a.cmp(b)));
         let (left, right) = lines.split_at_mut(lines.len() / 2);
-        // Its place is before those of its halves.
+        // A node comes before its children.
         self.nodes.push(Node { bounds: [[0.0; 2]; 2], lines: [0; 2], second: None });
         let left = self.group(left, boxes);
         let second = self.nodes.len() as u32;
@@ -160,13 +160,13 @@ impl Buffers {
         node
     }
 
-    /// Calls `visit` with the index of each line whose buffer contains a position, and the distance from the line, in
-    /// the order of lines.
+    /// Calls `visit` for each line whose buffer contains the position, in the order of lines, with the line's index and
+    /// the distance to the line.
     pub fn visit(&self, at: [f64; 2], visit: impl FnMut(usize, f64)) {
         self.visit_counted(at, visit, &mut 0);
     }
 
-    /// The same; adds the number of boxes and segments looked at to `visited`.
+    /// Like [`Buffers::visit`]; adds the number of visited boxes and segments to `visited`.
     fn visit_counted(&self, at: [f64; 2], mut visit: impl FnMut(usize, f64), visited: &mut usize) {
         if self.nodes.is_empty() {
             return;
@@ -174,7 +174,7 @@ impl Buffers {
         let mut found = |line: u32, visited: &mut usize| {
             let Line { index, root } = self.lines[line as usize];
             let radius = self.radii[index as usize];
-            // Rounding must not leave out what is exactly at the radius.
+            // Rounding must not exclude points exactly at the radius.
             let within = radius * radius * (1.0 + 4.0 * f64::EPSILON);
             let square = self.segments.square_to(root as usize, at, within, visited);
             if let Some(distance) = square.map(f64::sqrt).filter(|distance| *distance <= radius) {
@@ -190,13 +190,14 @@ impl Buffers {
             }
             batch = Batch { from: batch.lines[BATCH - 1] + 1, count: 0, ..batch };
         }
-        // So many lines that searching batch by batch would visit most boxes many times.
+        // With so many lines, a search batch by batch would visit most boxes many times.
         let top = self.ordered.len().saturating_sub(1);
         let boxes = self.ordered.get(top).map_or(0, Vec::len);
         (0..boxes).for_each(|k| self.in_order((top, k), at, batch.from, visited, &mut found));
     }
 
-    /// Calls `found` with the lines in a box of the `ordered` ones whose own boxes contain a position, from `from` on.
+    /// Calls `found` for the lines under a box of the level `level` of `ordered` whose own boxes contain a position,
+    /// beginning with line `from`.
     fn in_order(
         &self,
         (level, k): (usize, usize),
@@ -234,7 +235,7 @@ impl Buffers {
         }
     }
 
-    /// Memory that they take, in bytes.
+    /// Memory of the buffers, in bytes.
     #[must_use]
     pub fn memory(&self) -> u64 {
         let ordered: usize = self.ordered.iter().map(|level| size_of_val(level.as_slice())).sum();
@@ -336,7 +337,7 @@ mod tests {
 
     #[test]
     fn many_points_and_many_lines_at_a_position_are_looked_at_once() {
-        // A line to and fro, whose segments all lie within the distance, and as many discs.
+        // A zigzag line whose segments all lie within the distance, and as many discs.
         let fro: Vec<[f64; 2]> = (0..20_000).map(|k| [0.05 * f64::from(k), f64::from(k % 2) * 600.0]).collect();
         let line = Buffers::new([(fro.as_slice(), 2000.0)]);
         let (mut visited, mut distances) = (0, Vec::new());

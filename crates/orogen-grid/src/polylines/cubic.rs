@@ -8,10 +8,10 @@ const MAX_SEGMENTS: u32 = 1 << 16;
 pub struct Cubic(pub [[f64; 2]; 4]);
 
 impl Cubic {
-    /// The number of straight segments, of equal shares of the parameter, that keep within `tolerance` of the curve.
+    /// The number of straight segments, at equal steps of the parameter, that approximate the curve within `tolerance`.
     ///
-    /// The distance is at most an eighth of the second derivative, divided by the square of the number; the second
-    /// derivative is at most six times the larger second difference of the control points.
+    /// The distance is at most an eighth of the second derivative, divided by the square of the number of segments. The
+    /// second derivative is at most six times the larger second difference of the control points.
     #[must_use]
     pub fn segments(&self, tolerance: f64) -> u32 {
         let [a, b, c, d] = self.0;
@@ -25,7 +25,7 @@ impl Cubic {
 
     /// The point at a parameter, 0 at the start and 1 at the end.
     ///
-    /// It is computed relative to the start, so that it is as precise far from the origin as near it.
+    /// It is computed relative to the start, so the precision does not depend on the distance from the origin.
     #[must_use]
     pub fn at(&self, t: f64) -> [f64; 2] {
         let [a, b, c, d] = self.0;
@@ -34,7 +34,7 @@ impl Cubic {
         [0, 1].map(|k| a[k] + ((b[k] - a[k]) * weights[0] + (c[k] - a[k]) * weights[1] + (d[k] - a[k]) * weights[2]))
     }
 
-    /// The curve of a quadratic Bézier curve.
+    /// The cubic curve that equals a quadratic Bézier curve (start, control point, end).
     #[must_use]
     pub fn of_quadratic([a, b, c]: [[f64; 2]; 3]) -> Cubic {
         let towards = |end: [f64; 2]| [0, 1].map(|k| end[k] + (b[k] - end[k]) * (2.0 / 3.0));

@@ -1,10 +1,10 @@
 //! Lines and areas that consist of straight segments: smoothed, flattened, and searched by position.
 //!
-//! - [`outline`]: a line of points, straight pieces and cubic curves; smoothing
-//! - [`cubic`]: cubic Bézier curves, and how many straight segments replace one
-//! - [`segments`]: all segments of a drawing in a tree of boxes: the nearest one to a position, and whether a position
-//!   is inside
-//! - [`buffers`]: lines with a distance around each: which of them contain a position
+//! - [`outline`]: lines of straight pieces and cubic curves; smoothing
+//! - [`cubic`]: cubic Bézier curves and their approximation by straight segments
+//! - [`segments`]: all segments of a drawing in a tree of boxes: finds the segment nearest to a position, and whether a
+//!   position is inside
+//! - [`buffers`]: lines with a distance around each: finds those that contain a position
 //!
 //! ```
 //! use orogen_grid::polylines::{outline::Outline, segments::Segments};

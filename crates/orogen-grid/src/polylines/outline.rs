@@ -2,7 +2,7 @@
 
 use super::cubic::Cubic;
 
-/// A piece of an outline, from the end of the piece before.
+/// A piece of an outline. It starts at the end of the previous piece.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Piece {
     /// A straight line to a point: east, south, height.
@@ -12,7 +12,7 @@ pub enum Piece {
 }
 
 impl Piece {
-    /// The point at which it ends.
+    /// The end point of the piece.
     #[must_use]
     pub fn end(&self) -> [f64; 3] {
         match self {
@@ -21,7 +21,7 @@ impl Piece {
     }
 }
 
-/// A line of straight pieces and curves. Lengths are in metres: x to the east, y to the south, and a height.
+/// A line of straight pieces and curves. Coordinates are in metres: x to the east, y to the south, and a height.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outline {
     /// The first point.
@@ -33,20 +33,21 @@ pub struct Outline {
 }
 
 impl Outline {
-    /// The straight line through points; a single point at the origin if there are none.
+    /// The line of straight pieces through points; a single point at the origin if there are none.
     #[must_use]
     pub fn of_points(points: &[[f64; 3]]) -> Outline {
         let (start, rest) = points.split_first().unwrap_or((&[0.0; 3], &[]));
         Outline { start: *start, pieces: rest.iter().map(|point| Piece::Straight(*point)).collect(), closed: false }
     }
 
-    /// The same, closed.
+    /// The same outline, closed.
     #[must_use]
     pub fn closed(self) -> Outline {
         Outline { closed: true, ..self }
     }
 
-    /// The same in other coordinates: each is multiplied by a scale, then an offset is added. Heights stay.
+    /// The same outline in other coordinates: x and y are multiplied by a scale, then an offset is added. Heights are
+    /// unchanged.
     #[must_use]
     pub fn placed(&self, scale: [f64; 2], offset: [f64; 2]) -> Outline {
         let flat = |[x, y]: [f64; 2]| [x * scale[0] + offset[0], y * scale[1] + offset[1]];
@@ -62,8 +63,8 @@ impl Outline {
     }
 
     /// A smooth curve through the points: centripetal Catmull-Rom splines (Yuksel, Schaefer and Keyser 2011), which
-    /// have no loops and no cusps between points. An outline that has curves already is returned as it is, and so is
-    /// one of fewer than three different points.
+    /// have no loops and no cusps between points. An outline that already has curves or has fewer than three different
+    /// points is returned unchanged.
     #[must_use]
     pub fn smoothed(&self) -> Outline {
         if self.pieces.iter().any(|piece| matches!(piece, Piece::Curve(..))) {
@@ -88,18 +89,18 @@ impl Outline {
         let spans = if closed { count } else { count - 1 };
         let pieces = (0..spans).map(|k| {
             let (b, c) = (at(k), at(k + 1));
-            // Beyond the ends of an open line: the neighbor mirrored at the end.
+            // Beyond the ends of an open line, the neighbor is mirrored at the end.
             let mirrored = |end: [f64; 3], next: [f64; 3]| [0, 1, 2].map(|i| end[i] + (end[i] - next[i]));
             let a = if k > 0 || closed { at(k + count - 1) } else { mirrored(b, c) };
             let d = if k + 2 < count || closed { at(k + 2) } else { mirrored(c, b) };
             Piece::Curve([control(a, b, c), control(d, c, b)], c)
         });
-        // The last curve ends at the first point; no straight line is left to draw.
+        // The last curve ends at the first point, so no closing line is left to draw.
         Outline { start: self.start, pieces: pieces.collect(), closed }
     }
 
-    /// Calls `visit` with every point after the first: those of straight pieces, and points on curves at most
-    /// `tolerance` from them. A closed outline ends with its first point.
+    /// Calls `visit` with every point after the first: the ends of straight pieces, and points on curves such that the
+    /// segments between them are at most `tolerance` from the curve. A closed outline ends with its first point.
     pub fn flatten(&self, tolerance: f64, mut visit: impl FnMut([f64; 3])) {
         let mut from = self.start;
         for piece in &self.pieces {
@@ -115,7 +116,7 @@ impl Outline {
         }
     }
 
-    /// Number of points that [`Outline::flatten`] visits at most.
+    /// Upper bound of the number of points that [`Outline::flatten`] visits.
     #[must_use]
     pub fn flattened_len(&self, tolerance: f64) -> u64 {
         let mut from = self.start;
@@ -132,7 +133,7 @@ impl Outline {
     }
 }
 
-/// The heights of the points between are linear along the segments.
+/// The heights of intermediate points are linear along the segments.
 fn flatten_curve(
     from: [f64; 3],
     [b, c]: [[f64; 2]; 2],
@@ -171,13 +172,13 @@ fn apart(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     (x * x + y * y).sqrt()
 }
 
-/// The control point after `b` of the spline that runs from `b` to `c` and comes from `a`.
+/// The control point after `b` of the spline from `b` to `c`, where `a` is the point before `b`.
 fn control(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> [f64; 2] {
     let (before, after) = (apart(&a, &b), apart(&b, &c));
-    // Centripetal: knots are the square roots of the distances apart.
+    // Centripetal: the knot intervals are the square roots of the distances.
     let (p, q) = (before.sqrt(), after.sqrt());
     let scale = 3.0 * p * (p + q);
-    // Relative to `b`, so that positions far from the origin lose nothing.
+    // Relative to `b`, so that positions far from the origin do not lose precision.
     [0, 1].map(|k| match scale > 0.0 {
         true => b[k] + (before * (c[k] - b[k]) - after * (a[k] - b[k])) / scale,
         false => b[k],
@@ -231,7 +232,7 @@ mod tests {
 
     #[test]
     fn the_control_points_are_those_of_the_papers_knots() {
-        // Barry and Goldman's pyramid, with knots of the square roots of distances.
+        // Barry and Goldman's pyramid, with square roots of distances as knot intervals.
         let points = [[0.0, 0.0, 0.0], [1.0, 3.0, 0.0], [7.0, 4.0, 0.0], [8.0, 0.0, 0.0]];
         let mut knots = [0.0; 4];
         for k in 1..4 {

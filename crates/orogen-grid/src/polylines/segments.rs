@@ -1,4 +1,4 @@
-//! The straight segments of a drawing in a tree of boxes.
+//! The straight segments of a drawing, in a tree of boxes.
 
 use super::outline::Outline;
 
@@ -8,7 +8,7 @@ pub const MAX_SEGMENTS: usize = 1 << 20;
 /// Number of segments of a leaf of the tree.
 const LEAF: usize = 4;
 
-/// Number of segments from which a box may have a slanted one beside it.
+/// Minimum number of segments of a box that may have an additional slanted box.
 const SLANTED: usize = 4 * LEAF;
 
 /// A straight segment of a line.
@@ -23,49 +23,49 @@ struct Segment {
 }
 
 impl Segment {
-    /// Its ends without their heights.
+    /// The ends without their heights.
     fn flat(&self) -> [[f64; 2]; 2] {
         self.ends.map(|[x, y, _]| [x, y])
     }
 }
 
-/// A box around segments that follow each other, or around whole lines.
+/// A box around consecutive segments or around whole lines.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Node {
     low: [f64; 2],
     high: [f64; 2],
-    /// y of the first and of the last point of segments that follow each other; equal for whole rings.
+    /// y of the first and the last point of consecutive segments; equal for whole rings.
     ends: [f64; 2],
     content: Content,
-    /// The index of its slanted box; [`NONE`] if that would not be much smaller.
+    /// The index of the slanted box; [`NONE`] if it would not be much smaller.
     slanted: u32,
 }
 
-/// The index of no slanted box.
+/// The index that stands for no slanted box.
 const NONE: u32 = u32::MAX;
 
-/// A box that is turned to the direction of the segments in it. Long parallel segments, such as those of a zigzag line,
-/// have boxes along the axes that all overlap; a search would visit all of them.
+/// A box that is turned to the direction of its segments. Long parallel segments, such as those of a zigzag line, have
+/// axis-aligned boxes that all overlap, so that a search would visit all of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Slanted {
-    /// A unit vector along it.
+    /// A unit vector along the box.
     along: [f64; 2],
     low: [f64; 2],
     high: [f64; 2],
-    /// The largest coordinate, for rounding.
+    /// The largest coordinate, for the bound of rounding errors.
     largest: f64,
-    /// The first and the last point of segments that follow each other; equal for whole rings.
+    /// The first and the last point of consecutive segments; equal for whole rings.
     ends: [[f64; 2]; 2],
 }
 
 impl Slanted {
-    /// A position along the box and across it.
+    /// A position in the axes of the box: along it and across it.
     fn turned(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let [u, v] = self.along;
         [x * u + y * v, y * u - x * v]
     }
 
-    /// A number that is not larger than the square of the distance from a position to the box: 0 in it.
+    /// A lower bound of the square of the distance from a position to the box; 0 inside it.
     fn square_to(&self, at: [f64; 2]) -> f64 {
         let turned = self.turned(at);
         let rounding = 4.0 * f64::EPSILON * (self.largest + at[0].abs() + at[1].abs());
@@ -76,17 +76,17 @@ impl Slanted {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Content {
-    /// Segments: the first, and their number.
+    /// Segments: the index of the first one, and their number.
     Leaf(u32, u32),
-    /// Two nodes: the next one, and this one.
+    /// Two child nodes: the next node, and the one with this index.
     Pair(u32),
 }
 
-/// The segments of lines, in a tree of boxes. A search visits the boxes around a position and few others, so it takes
-/// as long for a drawing with many segments far away as for one without.
+/// The segments of lines, in a tree of boxes. A search visits only boxes near the position, so its time hardly depends
+/// on the number of segments far away.
 ///
-/// The answers depend on the position and the segments alone: of several segments at the same distance, the first is
-/// the nearest.
+/// The results depend only on the position and the segments. Of several segments at the same distance, the first counts
+/// as the nearest.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Segments {
     segments: Vec<Segment>,
@@ -115,7 +115,7 @@ impl Nearest {
         self.square.sqrt()
     }
 
-    /// The height there, which is linear along a segment.
+    /// The height at the point, which is linear along a segment.
     #[must_use]
     pub fn height(&self) -> f64 {
         let [from, to] = self.segment.ends.map(|end| end[2]);
@@ -136,8 +136,8 @@ impl Nearest {
 }
 
 impl Segments {
-    /// The segments of outlines. Curves are replaced by segments at most `tolerance` metres from them. If these were
-    /// more than [`MAX_SEGMENTS`], the tolerance is doubled until they are not; straight pieces beyond that number are
+    /// The segments of outlines. Curves are replaced by segments at most `tolerance` metres from them. If these are
+    /// more than [`MAX_SEGMENTS`], the tolerance is doubled until they are not. Straight pieces beyond that number are
     /// left out.
     #[must_use]
     pub fn new(outlines: &[Outline], tolerance: f64) -> Segments {
@@ -163,14 +163,14 @@ impl Segments {
         made
     }
 
-    /// The mean number of segments that a search looks at, at some positions: a measure of its time.
+    /// The mean number of segments that a search visits, at some trial positions: a measure of its time.
     #[must_use]
     pub fn visits(&self) -> f64 {
         self.visits
     }
 
-    /// Adds a line of straight pieces with a tree of its own. Returns the node of all of it, and its box; `None` if it
-    /// has no point with coordinates.
+    /// Adds a line of straight pieces with its own tree. Returns its root node and its box; `None` if no point has
+    /// finite coordinates.
     pub(super) fn add_line(&mut self, outline: &Outline) -> Option<(usize, [[f64; 2]; 2])> {
         let (first, end) = self.add(outline, 0.0)?;
         let root = self.nodes.len();
@@ -202,7 +202,8 @@ impl Segments {
         (self.segments.len() > first).then_some((first, self.segments.len()))
     }
 
-    /// The tree over lines, given as ranges of segments: halves by the middles of their boxes along the longer side.
+    /// Builds the tree over lines, given as ranges of segments: divides them in halves by the centers of their boxes
+    /// along the longer side.
     fn group(&mut self, lines: &mut [(usize, usize)]) -> Node {
         if let [(first, end)] = lines {
             return self.chain(*first, *end);
@@ -224,7 +225,7 @@ impl Segments {
         self.pair(at, |tree| tree.group(left), |tree| tree.group(right), Some([0.0; 2]))
     }
 
-    /// The tree over segments that follow each other.
+    /// Builds the tree over consecutive segments.
     fn chain(&mut self, first: usize, end: usize) -> Node {
         let segments = &self.segments[first..end];
         if segments.len() <= LEAF {
@@ -267,8 +268,8 @@ impl Segments {
         node
     }
 
-    /// The slanted box of the segments of the nodes after `at`, which are those of `node`, if it is less than half as
-    /// large. Segments of a chain follow each other.
+    /// The slanted box of `node`, whose segments are those of the nodes after `at`, if it is less than half as large.
+    /// The segments of a chain are consecutive.
     fn slanted(&self, at: usize, node: &Node, is_chain: bool) -> Option<Slanted> {
         let segments = || {
             self.nodes[at + 1..].iter().flat_map(|node| match node.content {
@@ -312,7 +313,7 @@ impl Segments {
         self.segments.is_empty()
     }
 
-    /// Memory that they take, in bytes.
+    /// Memory of the segments and their tree, in bytes.
     #[must_use]
     pub fn memory(&self) -> u64 {
         let bytes = self.segments.len() * size_of::<Segment>()
@@ -328,7 +329,7 @@ impl Segments {
         self.nearest_counted(at, within, &mut 0)
     }
 
-    /// The same; adds the number of segments looked at to `visited`.
+    /// Like [`Segments::nearest`]; adds the number of visited segments to `visited`.
     fn nearest_counted(&self, at: [f64; 2], within: f64, visited: &mut usize) -> Option<Nearest> {
         let best = self.nearest_of(0, at, within * within, visited)?;
         best.found.map(|(index, share)| {
@@ -338,8 +339,8 @@ impl Segments {
         })
     }
 
-    /// The square of the distance from the line of a node, if it is at most `square`; adds the number of segments
-    /// looked at to `visited`.
+    /// The square of the distance to the line under a node, if it is at most `square`. Adds the number of visited
+    /// segments to `visited`.
     pub(super) fn square_to(&self, node: usize, at: [f64; 2], square: f64, visited: &mut usize) -> Option<f64> {
         let best = self.nearest_of(node, at, square, visited)?;
         best.found.map(|_| best.square)
@@ -354,7 +355,7 @@ impl Segments {
         Some(best)
     }
 
-    /// A number that is not larger than the square of the distance from a position to the segments of a node.
+    /// A lower bound of the square of the distance from a position to the segments of a node.
     fn square_to_node(&self, node: usize, at: [f64; 2]) -> f64 {
         let node = &self.nodes[node];
         let square = node.square_to(at);
@@ -369,7 +370,7 @@ impl Segments {
                 for (k, segment) in self.segments[first..first + count as usize].iter().enumerate() {
                     let (square, share) = distance(segment.flat(), at);
                     let index = first + k;
-                    // Of equal distances the first segment counts, whatever the order of the tree.
+                    // Of equal distances the first segment counts, independent of the order of the tree.
                     let is_first = best.found.is_none_or(|(other, _)| index < other);
                     if square < best.square || square == best.square && is_first {
                         *best = Best { square, found: Some((index, share)) };
@@ -389,32 +390,32 @@ impl Segments {
         }
     }
 
-    /// Whether a position is inside by the even-odd rule: a line from it to infinity crosses the segments an odd number
-    /// of times. Lines that are not closed have no inside.
+    /// Whether a position is inside by the even-odd rule: a ray from it crosses the segments an odd number of times.
+    /// Lines that are not closed have no inside.
     #[must_use]
     pub fn is_inside(&self, at: [f64; 2]) -> bool {
         self.is_inside_counted(at, &mut 0)
     }
 
-    /// The same; adds the number of segments looked at to `visited`.
+    /// Like [`Segments::is_inside`]; adds the number of visited segments to `visited`.
     fn is_inside_counted(&self, at: [f64; 2], visited: &mut usize) -> bool {
         at[0].is_finite() && at[1].is_finite() && !self.nodes.is_empty() && self.crossings_odd(0, at, visited)
     }
 
-    /// Whether a line to the east crosses the segments of a node an odd number of times.
+    /// Whether a ray to the east crosses the segments of a node an odd number of times.
     fn crossings_odd(&self, node: usize, at: [f64; 2], visited: &mut usize) -> bool {
         let found = &self.nodes[node];
         let [x, y] = at;
         if y < found.low[1] || y > found.high[1] || x > found.high[0] {
             return false;
         }
-        // All of it is to the east: the number is odd if and only if the ends of the chain are on different sides of y,
-        // wherever the points between are.
+        // The whole node is to the east. The number is odd if and only if the ends of the chain are on different sides
+        // of y, wherever the points between are.
         if x < found.low[0] {
             return (found.ends[0] <= y) != (found.ends[1] <= y);
         }
-        // Outside a convex area around a chain, the number is odd for all chains in it with the same ends, or for none:
-        // also for a straight line.
+        // The position is outside a convex area around the chain. All chains in the area with the same ends then have
+        // the same parity, including the straight line between the ends.
         if let Some(slanted) = self.slanted.get(found.slanted as usize)
             && slanted.square_to(at) > 0.0
         {
@@ -433,13 +434,13 @@ impl Segments {
     }
 }
 
-/// Number of positions at which the work of a search is measured.
+/// Number of trial positions at which the work of a search is measured.
 pub(super) const TRIALS: usize = 16;
 
-/// These positions in a box.
+/// The trial positions in a box.
 pub(super) fn trials([low, high]: [[f64; 2]; 2]) -> impl Iterator<Item = [f64; 2]> {
     (0..TRIALS).map(move |k| {
-        // An irrational step: no pattern of the drawing repeats with it.
+        // An irrational step, so that it matches no pattern of the drawing.
         let shares = [(k as f64 + 0.5) / TRIALS as f64, (0.5 + 0.618_033_988_75 * k as f64).fract()];
         [0, 1].map(|axis| low[axis] + shares[axis] * (high[axis] - low[axis]))
     })
@@ -469,13 +470,13 @@ fn bounds(segments: &[Segment]) -> ([f64; 2], [f64; 2]) {
     (low, high)
 }
 
-/// The square of the distance to the straight line between two points, and the share of the line at which it is
-/// nearest.
+/// The square of the distance to the straight line between two points, and the nearest position on it as a share of its
+/// length.
 pub(super) fn distance([[ax, ay], [bx, by]]: [[f64; 2]; 2], [x, y]: [f64; 2]) -> (f64, f64) {
     let (rx, ry, ux, uy) = (x - ax, y - ay, bx - ax, by - ay);
     let along = rx * ux + ry * uy;
     let square = ux * ux + uy * uy;
-    // Distances to the ends are those of the points, so that two segments that meet have exactly the same.
+    // Distances to the ends are distances to points, so that two segments that meet have exactly the same distance.
     if along >= square && square > 0.0 {
         let (ex, ey) = (x - bx, y - by);
         return (ex * ex + ey * ey, 1.0);
@@ -488,7 +489,7 @@ pub(super) fn distance([[ax, ay], [bx, by]]: [[f64; 2]; 2], [x, y]: [f64; 2]) ->
     (ex * ex + ey * ey, share)
 }
 
-/// Whether a line from a position to the east crosses a segment. A point of the drawing at exactly this y counts as
+/// Whether a ray from a position to the east crosses a segment. A point of the drawing at exactly this y counts as
 /// above.
 fn crosses([[ax, ay], [bx, by]]: [[f64; 2]; 2], [x, y]: [f64; 2]) -> bool {
     if (ay <= y) == (by <= y) {

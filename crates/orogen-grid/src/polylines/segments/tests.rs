@@ -28,7 +28,7 @@ fn distances_are_those_to_segments_and_their_ends() {
         ([0.0, 0.0], 0.0, 0.0, 0.0),
         ([-3.0, -4.0], 5.0, 0.0, 0.0),
         ([30.0, 110.0], 10.0, 110.0, 1.0),
-        // Beside the middle of the first segment, of length 50.
+        // Next to the middle of the first segment, of length 50.
         ([15.0 + 8.0, 20.0 - 6.0], 10.0, 25.0, 25.0 / 110.0),
         ([40.0, 70.0], 10.0, 80.0, 80.0 / 110.0),
     ] {
@@ -58,7 +58,7 @@ fn of_equal_distances_the_first_segment_counts() {
     let drawing = Segments::new(&[ring.clone(), ring], 1.0);
     let nearest = drawing.nearest([4.0, 4.0], f64::INFINITY).unwrap();
     assert_eq!((nearest.distance(), nearest.chainage(), nearest.height()), (4.0, 4.0, 1.5));
-    // At the corner where the ring begins and ends it begins.
+    // The corner where the ring begins and ends counts as its beginning.
     assert_eq!(drawing.nearest([-1.0, -1.0], f64::INFINITY).unwrap().position(), 0.0);
 }
 
@@ -70,7 +70,7 @@ fn the_tree_finds_what_a_search_of_all_segments_finds() {
         let drawing = Segments::new(&outlines, 1.0);
         for k in 0..400 {
             let mut at = [0, 1].map(|_| (random.share() * 1.5 - 0.25) * extent);
-            // Also at points of the drawing, and level with them.
+            // Also at points of the drawing, and at their y.
             let vertex = drawing.segments[k % drawing.len()].ends[0];
             match k % 4 {
                 0 => at[1] = vertex[1],
@@ -90,7 +90,7 @@ fn the_tree_finds_what_a_search_of_all_segments_finds() {
 
 #[test]
 fn the_inside_of_a_star_with_a_hole() {
-    // A five-pointed star drawn in one stroke: by the even-odd rule its middle is outside.
+    // A five-pointed star drawn in one stroke. By the even-odd rule its middle is outside.
     let tips: Vec<[f64; 2]> = (0..5)
         .map(|k| {
             let angle = std::f64::consts::TAU * f64::from(2 * k) / 5.0;
@@ -129,7 +129,7 @@ fn the_inside_of_a_star_with_a_hole() {
 fn far_segments_are_not_visited() {
     let mut random = Random::new(3, 0);
     let near = line(&[[0.0, 0.0], [500.0, 200.0], [900.0, 100.0], [400.0, -600.0]]).closed();
-    // Far away, but level with the window on both sides, and one ring around all of it.
+    // Far away, but at the same y as the window on both sides, and one ring around everything.
     let mut outlines = vec![near.clone()];
     for k in 0..2500 {
         let [x, y] = [1e5 + 1e5 * random.share(), (random.share() - 0.5) * 3000.0];
@@ -153,7 +153,7 @@ fn far_segments_are_not_visited() {
     }
     assert!(visits_many <= visits_few, "{visits_many} segments were visited, {visits_few} without the far ones");
     assert!(visits_many <= 8 * samples, "{visits_many} for {samples} samples");
-    // Beyond the reach of a mask no segment is visited.
+    // Beyond the maximum distance of a mask no segment is visited.
     let mut visits = 0;
     assert!(many.nearest_counted([0.0, 20_000.0], 100.0, &mut visits).is_none());
     assert!(visits <= LEAF, "{visits}");
@@ -186,7 +186,7 @@ fn drawings_of_any_kind_do_no_harm() {
     assert!(!point.is_inside([3.0, 4.0]));
     let odd = Segments::new(&[line(&[[f64::NAN, 0.0], [1.0, 2.0], [f64::INFINITY, 3.0]])], 1.0);
     assert!(odd.nearest([0.0, 0.0], f64::INFINITY).is_none_or(|nearest| nearest.distance().is_finite()));
-    // A curve so large that its tolerance would need more segments than there may be.
+    // A curve so large that its tolerance would need more segments than the maximum.
     let curve = line(&[[0.0, 0.0], [1e9, 5e8], [2e9, -1e9], [-1e9, 7e8]]).closed().smoothed();
     let many: Vec<Outline> = (0..100).map(|_| curve.clone()).collect();
     let many = Segments::new(&many, 1e-3);
