@@ -16,7 +16,7 @@ pub fn aspect_of(gradient: Gradient) -> f32 {
     if gradient.east == 0.0 && gradient.north == 0.0 {
         return f32::NAN;
     }
-    // Downhill is against the gradient; atan2 of (east, north) is clockwise from north.
+    // The downhill direction is opposite to the gradient. atan2 of (east, north) is clockwise from north.
     let degrees = libm::atan2f(-gradient.east, -gradient.north).to_degrees();
     let turned = if degrees < 0.0 { degrees + 360.0 } else { degrees };
     if turned >= 360.0 { 0.0 } else { turned }
@@ -39,7 +39,7 @@ mod tests {
             (270.0, -1.0, 0.0),
             (315.0, -1.0, -1.0),
         ] {
-            // It falls towards (east, south).
+            // The plane falls towards (east, south).
             let mut plane = Grid::filled(Window::new(5, 5, 10.0), 0.0f32);
             for j in 0..5 {
                 for i in 0..5 {

@@ -1,8 +1,8 @@
 //! Solar irradiance under a clear sky: direct, diffuse and reflected by the surrounding ground.
 //!
-//! The model of the European Solar Radiation Atlas (Rigollier, Bauer and Wald, "On the clear sky model of the ESRA",
-//! Solar Energy 68, 2000), with Muneer's model (1990) of diffuse light on slopes, as combined for maps by Šúri and
-//! Hofierka ("A new GIS-based solar radiation model", Transactions in GIS 8, 2004).
+//! This is the model of the European Solar Radiation Atlas (Rigollier, Bauer and Wald, "On the clear sky model of the
+//! ESRA", Solar Energy 68, 2000) with Muneer's model (1990) of diffuse light on slopes. Šúri and Hofierka combined them
+//! for maps ("A new GIS-based solar radiation model", Transactions in GIS 8, 2004).
 
 /// Solar irradiance outside the atmosphere at the sun's mean distance, in W/m^2.
 const SOLAR_CONSTANT: f64 = 1367.0;
@@ -10,7 +10,7 @@ const SOLAR_CONSTANT: f64 = 1367.0;
 /// Height over which the air pressure falls by a factor of e, in metres.
 const PRESSURE_SCALE: f64 = 8434.5;
 
-/// Number of heights at which the beam is computed; linear between them.
+/// Number of heights at which the beam is computed; it is interpolated linearly between them.
 const LEVELS: usize = 64;
 
 /// Parameters of the atmosphere and the ground.
@@ -37,14 +37,14 @@ orogen_noise::builder!(ClearSky: with_turbidity(turbidity: f64), with_albedo(alb
 pub struct Facet {
     /// The upward normal: east, south and up, of length 1.
     normal: [f64; 3],
-    /// The share of an isotropic sky that it sees: (1 + cos slope) / 2.
+    /// The share of an isotropic sky that is visible from the slope: (1 + cos slope) / 2.
     sky: f64,
     /// sin - slope cos - pi sin^2 (slope / 2): the anisotropic term of Muneer's sky.
     uneven: f64,
 }
 
 impl Facet {
-    /// A facet from its gradient: rise per metre eastward and southward.
+    /// A facet from its gradient: the rise per metre to the east and to the south.
     #[must_use]
     pub fn new(east: f64, south: f64) -> Facet {
         let length = (1.0 + east * east + south * south).sqrt();
@@ -75,7 +75,7 @@ pub struct Sunlight {
 
 impl ClearSky {
     /// The irradiance of a sun at `azimuth` (degrees clockwise from north) and `elevation` (degrees, above 0) on day
-    /// `day` of the year (from 1), for ground between `lowest` and `highest` metres.
+    /// `day` of the year (from 1), for ground at heights from `lowest` to `highest` metres.
     #[must_use]
     pub fn sunlight(&self, day: f64, [azimuth, elevation]: [f64; 2], [lowest, highest]: [f64; 2]) -> Sunlight {
         let angle = elevation.to_radians();
@@ -113,8 +113,8 @@ impl ClearSky {
         libm::exp(-0.8662 * self.turbidity * mass * thickness)
     }
 
-    /// Diffuse irradiance on level ground as a share of the irradiance outside the atmosphere, by the sine of the sun's
-    /// elevation.
+    /// Diffuse irradiance on level ground as a share of the irradiance outside the atmosphere; `sine` is the sine of
+    /// the sun's elevation.
     fn diffuse(&self, sine: f64) -> f64 {
         let t = self.turbidity;
         let zenith = -0.015843 + 0.030543 * t + 0.0003797 * t * t;
@@ -127,7 +127,7 @@ impl ClearSky {
 }
 
 impl Sunlight {
-    /// The irradiance of a facet at `height` metres, in W/m^2. `lit` is false in the shadow of other ground.
+    /// The irradiance of a facet at `height` metres, in W/m^2. `lit` is false if other ground casts a shadow on it.
     #[must_use]
     pub fn on(&self, facet: &Facet, height: f64, lit: bool) -> f64 {
         let [east, south, up] = self.towards;
@@ -148,7 +148,7 @@ impl Sunlight {
                 let towards = facet.normal[0] * east + facet.normal[1] * south;
                 let flat = (east * east + south * south).sqrt();
                 let level = 1.0 - 2.0 * (1.0 - facet.sky);
-                // On level ground it is the share itself.
+                // Level ground receives exactly this share.
                 let leaning = towards / flat / (0.1 - 0.008 * self.elevation);
                 even + share * if level > 1.0 - 1e-9 { 1.0 } else { leaning.max(0.0) }
             }
@@ -180,7 +180,7 @@ mod tests {
         assert!(on(20.0, level, 0.0, true) < 0.4 * high);
         let shade = on(65.0, level, 0.0, false);
         assert!((70.0..140.0).contains(&shade), "{shade}");
-        // For a lower sun the result is continuous where the model switches its formula.
+        // For a lower sun, the result is continuous where the model switches between formulas.
         let (below, above) = (on(5.72, level, 0.0, true), on(5.74, level, 0.0, true));
         assert!((below - above).abs() < 0.5, "{below} {above}");
     }

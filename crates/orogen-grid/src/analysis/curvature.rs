@@ -1,6 +1,6 @@
 //! Curvature of the ground.
 //!
-//! Over the 3 x 3 neighborhood a b c / d e f / g h i of cells of c metres, a quadric is fitted (Zevenbergen and Thorne,
+//! A quadric is fitted to the 3 x 3 neighborhood a b c / d e f / g h i of cells of c metres (Zevenbergen and Thorne,
 //! "Quantitative analysis of land surface topography", 1987):
 //!
 //! ```text
@@ -43,7 +43,8 @@ pub fn curvature(grid: &Grid, kind: Curvature) -> Grid {
     out
 }
 
-/// The curvature at the center of nine heights `c` metres apart, rows from the north; NaN where one is not finite.
+/// The curvature, in 1/m, at the center of 3 x 3 heights that are `c` metres apart, rows from the north; NaN if a
+/// height is not finite.
 #[must_use]
 pub fn bend(z: [[f64; 3]; 3], c: f64, kind: Curvature) -> f32 {
     let r = (z[1][0] - 2.0 * z[1][1] + z[1][2]) / (c * c);
@@ -60,7 +61,7 @@ pub fn bend(z: [[f64; 3]; 3], c: f64, kind: Curvature) -> f32 {
         }
         Curvature::Plan => -(r * q * q - 2.0 * s * p * q + t * p * p) / (steep * steep.sqrt()),
     };
-    // The corners enter only through s; this check catches a corner that is not finite.
+    // The corners contribute only to s; this check detects a corner that is not finite.
     if s.is_finite() { bend as f32 } else { f32::NAN }
 }
 
@@ -82,7 +83,7 @@ mod tests {
 
     #[test]
     fn quadrics_have_their_own_curvatures() {
-        // The crest of a cylinder along y at x = 0 with z = -x^2 / 2: at (x, y) the slope is -x, and all curvature is
+        // The crest of a cylinder along y at x = 0 with z = -x^2 / 2. At (x, y) the slope is -x, and all curvature is
         // in the direction of the slope.
         let crest = made(|x, _| -x * x / 2.0);
         let profile = curvature(&crest, Curvature::Profile);

@@ -6,11 +6,11 @@ use crate::progress::Progress;
 use crate::{error, parallel};
 
 /// The exact Euclidean distance, in samples, to the nearest sample whose value is at least `threshold`; infinite if
-/// there is none within `reach`. The result is smaller than `grid` by a border of `reach` samples.
+/// there is none within `reach` samples. The result is smaller than `grid` by a border of `reach` samples.
 ///
-/// Scans the columns first, then the rows with the lower envelope of parabolas in integers (A. Meijster, J. Roerdink
-/// and W. Hesselink, "A general algorithm for computing distance transforms in linear time", 2000): O(samples) for any
-/// reach.
+/// The columns are scanned first, then the rows with the lower envelope of parabolas in integers (A. Meijster, J.
+/// Roerdink and W. Hesselink, "A general algorithm for computing distance transforms in linear time", 2000). The time
+/// is O(samples) for any reach.
 #[must_use]
 pub fn nearest(grid: &Grid, threshold: f32, reach: usize) -> Grid {
     let Ok(out) = nearest_within(grid, threshold, reach, reach, &never);
@@ -33,7 +33,7 @@ pub fn nearest_in_whole(grid: &Grid, threshold: f32, progress: &Progress) -> err
     nearest_within(grid, threshold, 0, grid.width() + grid.height(), &steps(progress, 3 * grid.height()))
 }
 
-/// The distance of each sample inside a border of `border`, up to `reach`. `row` is called for each of the rows of all
+/// The distance of each sample inside a border of `border` samples, up to `reach`. `row` is called for each row of all
 /// three scans.
 fn nearest_within<E: Send>(
     grid: &Grid,
@@ -57,10 +57,10 @@ fn nearest_within<E: Send>(
     Ok(out)
 }
 
-/// Larger than every distance that counts.
+/// Larger than every distance that is used.
 const NONE: u32 = u32::MAX / 2;
 
-/// Distance to the nearest marked sample of the same column, row by row of the inner ones.
+/// Distance to the nearest marked sample in the same column, for the inner samples, row by row.
 fn down_columns<E>(
     grid: &Grid,
     threshold: f32,
@@ -87,14 +87,14 @@ fn down_columns<E>(
     Ok(out)
 }
 
-/// A column whose parabola is the lowest from `from` on.
+/// A column whose parabola is the lowest one from column `from` on.
 struct Lowest {
     column: i64,
     square: i64,
     from: i64,
 }
 
-/// Distances of a row's inner samples, from the distances within their columns.
+/// Distances of the inner samples of a row, from the distances within their columns.
 fn along_row(down: &[u32], border: usize, reach: usize, hull: &mut Vec<Lowest>, out: &mut [f32]) {
     hull.clear();
     let columns = down.iter().enumerate().filter(|(_, steps)| (**steps as usize) <= reach);

@@ -13,7 +13,7 @@ pub struct FiniteCount {
 }
 
 impl FiniteCount {
-    /// Counts these samples.
+    /// Counts the finite ones among `samples`.
     #[must_use]
     pub fn of(samples: &[f32]) -> FiniteCount {
         let finite = samples.iter().filter(|sample| sample.is_finite()).count();
@@ -26,7 +26,7 @@ impl FiniteCount {
         FiniteCount { samples: self.samples + other.samples, finite: self.finite + other.finite }
     }
 
-    /// Rejects samples of which none is finite. Returns a warning if some are not. `what` names the samples in
+    /// Returns an error if none of the samples is finite, and a warning if some are not. `what` names the samples in
     /// messages: "the layer `height`".
     ///
     /// # Errors

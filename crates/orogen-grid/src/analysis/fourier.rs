@@ -1,6 +1,6 @@
 //! The discrete Fourier transform for lengths that are powers of two.
 
-/// The transform of a length that is a power of two, with its table of sines.
+/// The transform for one length that is a power of two, with its table of complex roots of unity.
 #[derive(Debug, Clone)]
 pub struct Fourier {
     /// exp(-2 pi i k / N) for k = 0 .. N / 2.
@@ -23,8 +23,8 @@ impl Fourier {
     }
 
     /// Transforms `values` (real and imaginary parts) in place with the algorithm of Cooley and Tukey (1965): X(k) =
-    /// sum over n of x(n) exp(-2 pi i k n / N). Does nothing if their number is not that of the transform. The order of
-    /// the sums is fixed, so the bits are the same on every machine.
+    /// sum over n of x(n) exp(-2 pi i k n / N). Does nothing if the number of values is not that of the transform. The
+    /// order of the sums is fixed, so the bits are the same on every machine.
     pub fn transform(&self, values: &mut [[f64; 2]]) {
         let count = values.len();
         if count != self.count || count == 1 {
@@ -52,14 +52,14 @@ impl Fourier {
     }
 }
 
-/// [`Fourier::transform`] of any number of values that is a power of two; does nothing for other numbers.
+/// [`Fourier::transform`] for any number of values that is a power of two. Does nothing for other numbers.
 pub fn transform(values: &mut [[f64; 2]]) {
     if let Some(fourier) = Fourier::new(values.len()) {
         fourier.transform(values);
     }
 }
 
-/// The power |X|^2 of a square of `side` x `side` real samples, row-major. The first value is that of frequency (0, 0).
+/// The power |X|^2 of a square of `side` x `side` real samples, row-major. The first value belongs to frequency (0, 0).
 #[must_use]
 pub fn power(samples: &[f64], side: usize) -> Vec<f64> {
     let mut values: Vec<[f64; 2]> = samples.iter().map(|sample| [*sample, 0.0]).collect();

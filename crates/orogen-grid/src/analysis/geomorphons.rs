@@ -1,8 +1,9 @@
-//! Geomorphons: landforms classified by lines of sight.
+//! Geomorphons: classification of landforms by lines of sight.
 //!
-//! Jasiewicz and Stepinski, "Geomorphons: a pattern recognition approach to classification and mapping of landforms"
-//! (2013). In each of eight directions the ground within a search radius is higher, lower or level, by the zenith and
-//! nadir angles of its horizon. The numbers of higher and of lower directions determine the form.
+//! After Jasiewicz and Stepinski, "Geomorphons: a pattern recognition approach to classification and mapping of
+//! landforms" (2013). In each of eight directions the ground within a search radius counts as higher, lower or level,
+//! depending on the zenith and nadir angles of its horizon. The numbers of higher and of lower directions determine the
+//! form.
 
 use crate::checks::{never, steps};
 use crate::grid::{Grid, Window};
@@ -13,7 +14,7 @@ use crate::{error, parallel};
 pub const FORMS: [&str; 10] =
     ["flat", "peak", "ridge", "shoulder", "spur", "slope", "hollow", "footslope", "valley", "pit"];
 
-/// The code of a form by the number of lower (row) and higher (column) directions: the paper's table.
+/// The code of a form by the number of lower (row) and higher (column) directions, from the table in the paper.
 #[doc(hidden)]
 pub const CODES: [[u8; 9]; 9] = [
     [1, 1, 1, 8, 8, 9, 9, 9, 10],
@@ -29,7 +30,7 @@ pub const CODES: [[u8; 9]; 9] = [
 
 const STEPS: [(isize, isize); 8] = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)];
 
-/// The rule for a level direction.
+/// The rule that decides whether a direction is level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Level {
@@ -63,13 +64,13 @@ orogen_noise::builder!(
 );
 
 impl Look {
-    /// The same number of steps in all directions, with the paper's rule.
+    /// A search with the same number of steps in all directions and the paper's rule. `flat` is in degrees.
     #[must_use]
     pub fn square(radius: usize, flat: f64) -> Look {
         Look { straight: radius, diagonal: radius, flat, level: Level::ByDifference }
     }
 
-    /// The same distance in all directions: `reach` cells.
+    /// A search with the same distance in all directions: `reach` cells. `flat` is in degrees.
     #[must_use]
     pub fn round(reach: f64, flat: f64, level: Level) -> Look {
         let straight = (reach as usize).max(1);
@@ -131,7 +132,7 @@ fn form_at(grid: &Grid, [i, j]: [usize; 2], look: &Look, limit: f64) -> Option<u
     let here = f64::from(grid[(i, j)]);
     let (mut lower, mut higher) = (0usize, 0usize);
     for (east, south) in STEPS {
-        // Rise per step: equal slopes give equal quotients, so that slopes up and down cancel if heights are whole
+        // Rise per step. Equal slopes give equal quotients, so that slopes up and down cancel if heights are whole
         // metres.
         let (mut up, mut down) = (f64::NEG_INFINITY, f64::INFINITY);
         let farthest = if east * south == 0 { look.straight } else { look.diagonal };
@@ -148,8 +149,8 @@ fn form_at(grid: &Grid, [i, j]: [usize; 2], look: &Look, limit: f64) -> Option<u
         (up, down) = (up / length, down / length);
         let sum = up + down;
         let tells = match look.level {
-            // With the highest line of sight at angle b and the lowest at d, nadir minus zenith angle is b + d; its
-            // tangent is sum / rest.
+            // If the highest line of sight is at angle b and the lowest at d, the nadir angle minus the zenith angle is
+            // b + d, and its tangent is sum / rest.
             Level::ByDifference => {
                 let rest = 1.0 - up * down;
                 rest <= 0.0 || sum.abs() > limit * rest
@@ -168,7 +169,7 @@ pub fn count(forms: &Grid<u8>, counts: &mut [u64; 11]) {
     forms.data().iter().for_each(|form| counts[usize::from(*form).min(10)] += 1);
 }
 
-/// The share of each form, in the order of [`FORMS`], among the counted samples that have a form; zeros if none has.
+/// The share of each form among the samples that have a form, in the order of [`FORMS`]; zeros if there are none.
 #[must_use]
 pub fn shares(counts: &[u64; 11]) -> [f64; 10] {
     let total: u64 = counts[1..].iter().sum();

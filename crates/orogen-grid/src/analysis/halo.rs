@@ -1,13 +1,13 @@
-//! The samples just outside a grid, which the normals at its border depend on.
+//! The samples just outside a grid, which affect the normals at its border.
 
 use super::slope::{beyond, extend_row};
 use crate::grid::{Grid, Window};
 
-/// One sample around a grid on each side, where the world has ground. Where it has none, heights are extrapolated
-/// linearly, as at the edges of a world.
+/// A border of one sample around a grid, where the world has ground. Elsewhere, at the edges of the world, heights are
+/// extrapolated linearly.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Halo {
-    /// The rows north and south of the grid, one sample longer at each end.
+    /// The rows north and south of the grid, extended by one sample at each end.
     north: Option<Vec<f32>>,
     south: Option<Vec<f32>>,
     /// The columns west and east of the grid.
@@ -16,7 +16,7 @@ pub struct Halo {
 }
 
 impl Halo {
-    /// An empty halo of `window`, for the parts of it that lie inside the window `there`.
+    /// An empty halo of `window`. Only the parts inside `there`, the window of the world, can hold samples.
     #[must_use]
     pub fn new(window: &Window, there: &Window) -> Halo {
         let row = |is_there: bool| is_there.then(|| vec![f32::NAN; window.width + 2]);
@@ -29,7 +29,7 @@ impl Halo {
         }
     }
 
-    /// Copies the halo's samples that lie in `band`, a band of rows of the ground around `window`.
+    /// Copies the halo's samples from `band`, a band of rows of the ground around `window`.
     pub fn take(&mut self, window: &Window, band: &Grid) {
         let there = band.window();
         let inside = usize::try_from(window.x - there.x).unwrap_or(0).min(1);
@@ -90,7 +90,7 @@ impl Halo {
             }
             (true, None) => false,
         };
-        // Beyond an edge of the world: linear extrapolation from the opposite row. A single row is level.
+        // Beyond an edge of the world, heights are extrapolated linearly from the opposite row. A single row is level.
         let run_on = |out: &mut [f32], other: &[f32]| {
             out.iter_mut().zip(&*here).zip(other).for_each(|((out, here), other)| *out = beyond(*here, *other));
         };
@@ -118,7 +118,7 @@ fn widen(row: &[f32], [west, east]: [Option<f32>; 2], out: &mut [f32]) {
     let last = out.len() - 1;
     out[0] = west.unwrap_or(out[0]);
     out[last] = east.unwrap_or(out[last]);
-    // With a single sample, extrapolate from the opposite side.
+    // A single sample is extrapolated from the opposite side.
     if row.len() == 1 {
         match (west, east) {
             (Some(west), None) => out[last] = beyond(row[0], west),

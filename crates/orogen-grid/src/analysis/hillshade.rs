@@ -1,15 +1,15 @@
 //! Hillshade: the illumination of slopes by a distant light.
 //!
-//! For the light's azimuth a (degrees clockwise from north) and altitude, z the zenith angle, s the slope and b its
-//! aspect (Horn 1981): `cos z cos s + sin z sin s cos(a - b)`, clamped to 0. With the gradient (p, q) and the z factor
-//! k this is the light's direction times the surface's normal:
+//! With the light's azimuth a (degrees clockwise from north), its zenith angle z, the slope s and the aspect b, the
+//! hillshade is `cos z cos s + sin z sin s cos(a - b)`, clamped to 0 (Horn 1981). With the gradient (p, q) and the z
+//! factor k this is the product of the light's direction and the surface's normal:
 //!
 //! ```text
 //! (L_up - k (p L_east + q L_north)) / sqrt(1 + k^2 (p^2 + q^2))
 //! ```
 //!
-//! This form needs no angle per sample. 1 is full illumination; level ground gets the sine of the altitude. A missing
-//! sample gives 0.
+//! This form computes no angle per sample. 1 is full illumination; level ground gets the sine of the altitude. A
+//! missing sample gives 0.
 
 use super::slope::{Gradient, gradients_between, inner};
 use crate::grid::Grid;
@@ -45,7 +45,7 @@ impl Light {
         }
     }
 
-    /// The illumination of ground with this gradient, 0 to 1; 0 if the gradient is not a number.
+    /// The illumination of ground with this gradient, 0 to 1; 0 if the gradient is NaN.
     #[inline(always)]
     #[must_use]
     pub fn on(&self, gradient: Gradient) -> f32 {
@@ -56,7 +56,7 @@ impl Light {
         if light < 1.0 { light } else { 1.0 }
     }
 
-    /// The direction to the light (east, north and up), and the z factor: for other renderers.
+    /// The direction to the light (east, north and up) and the z factor, for other renderers.
     #[doc(hidden)]
     #[must_use]
     pub fn numbers(&self) -> [f32; 4] {
@@ -75,7 +75,7 @@ impl Light {
     }
 }
 
-/// The hillshade, 0 to 1, of every sample of `grid` except its border.
+/// The hillshade, 0 to 1, of every sample of `grid` except its border of one sample.
 #[must_use]
 pub fn hillshade(grid: &Grid, light: &Light) -> Grid {
     let window = inner(grid.window());
@@ -86,14 +86,14 @@ pub fn hillshade(grid: &Grid, light: &Light) -> Grid {
     out
 }
 
-/// The hillshade of the inner samples of three adjacent rows, from the north: `out` is shorter than they are by two.
+/// The hillshade of the inner samples of three adjacent rows, from the north. `out` is shorter than the rows by two.
 pub fn hillshade_between(rows: [&[f32]; 3], cell: f64, light: &Light, out: &mut [f32]) {
     if !dispatch(Sound { rows, cell, light, out: &mut *out }) {
         gradients_between(rows, cell, |i, gradient| out[i] = light.on(gradient));
     }
 }
 
-/// The hillshade of a row without missing samples; returns whether none is missing.
+/// Computes the hillshade of a row under the assumption that no sample is missing; returns whether this is true.
 struct Sound<'a> {
     rows: [&'a [f32]; 3],
     cell: f64,
@@ -111,11 +111,11 @@ impl Body for Sound<'_> {
         let (scale, light) = ((1.0 / (8.0 * self.cell)) as f32, *self.light);
         let mut missing = 0u32;
         for (i, out) in self.out.iter_mut().enumerate() {
-            // The sums of `gradients_between` in the same order, for the same bits.
+            // The same sums as in `gradients_between`, in the same order, so that the bits are the same.
             let east = ((c[i] - a[i]) + 2.0 * (f[i] - d[i]) + (k[i] - g[i])) * scale;
             let north = ((a[i] - g[i]) + 2.0 * (b[i] - h[i]) + (c[i] - k[i])) * scale;
             *out = light.on(Gradient { east, north });
-            // A value that is not finite gives NaN, also when multiplied by 0.
+            // A value that is not finite gives NaN when multiplied by 0.
             let zero = ((east + north) + e[i]) * 0.0;
             missing |= u32::from(zero != 0.0);
         }
@@ -133,7 +133,7 @@ mod tests {
         let (p, q) = (east * z_factor, north * z_factor);
         let zenith = (90.0 - altitude).to_radians();
         let slope = libm::atan(libm::sqrt(p * p + q * q));
-        // Aspect is where the slope faces: downhill, clockwise from north.
+        // The aspect is the direction that the slope faces: downhill, clockwise from north.
         let aspect = libm::atan2(-p, -q);
         let light = libm::cos(zenith) * libm::cos(slope)
             + libm::sin(zenith) * libm::sin(slope) * libm::cos(azimuth.to_radians() - aspect);

@@ -3,7 +3,7 @@
 use crate::grid::Grid;
 
 /// The hypsometric curve (Strahler 1952): the share of the area, 0 to 1, at or above each of `steps` + 1 evenly spaced
-/// heights from the lowest to the highest. None if no sample is finite or `steps` is 0.
+/// heights from the lowest to the highest. `None` if no sample is finite or `steps` is 0.
 #[must_use]
 pub fn hypsometric_curve(grid: &Grid, steps: usize) -> Option<Vec<f64>> {
     let (low, high) = range(grid)?;
@@ -14,7 +14,7 @@ pub fn hypsometric_curve(grid: &Grid, steps: usize) -> Option<Vec<f64>> {
     let scale = steps as f64 / (high - low);
     let mut total = 0u64;
     for h in grid.data().iter().filter(|h| h.is_finite()) {
-        // The highest step that this height reaches.
+        // The highest step at or below this height.
         let step = if high > low { ((f64::from(*h) - low) * scale) as usize } else { steps };
         counts[step.min(steps)] += 1;
         total += 1;
@@ -32,7 +32,7 @@ pub fn hypsometric_curve(grid: &Grid, steps: usize) -> Option<Vec<f64>> {
     Some(curve)
 }
 
-/// The hypsometric integral, 0 to 1: (mean - lowest) / (highest - lowest). None if there is no relief.
+/// The hypsometric integral, 0 to 1: (mean - lowest) / (highest - lowest). `None` if there is no relief.
 #[must_use]
 pub fn hypsometric_integral(grid: &Grid) -> Option<f64> {
     let (low, high) = range(grid)?;

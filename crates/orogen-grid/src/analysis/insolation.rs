@@ -11,20 +11,20 @@ use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::progress::Progress;
 
-/// The time and the latitude.
+/// A period of days, and the latitude.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Period {
     /// Latitude in degrees north.
     pub latitude: f64,
-    /// The first and the last day, 1 to 365. If the first is after the last, the period spans the turn of the year.
+    /// The first and the last day, 1 to 365. If the first is after the last, the period includes the turn of the year.
     pub days: [u16; 2],
     /// The longest time step within a day, in hours.
     pub step: f64,
 }
 
 impl Period {
-    /// The days of a year at a latitude in degrees north, in time steps of half an hour.
+    /// The given days at a latitude in degrees north, with time steps of half an hour.
     #[must_use]
     pub const fn new(latitude: f64, days: [u16; 2]) -> Period {
         Period { latitude, days, step: 0.5 }
@@ -36,7 +36,7 @@ orogen_noise::builder!(Period: with_latitude(latitude: f64), with_days(days: [u1
 /// Maximum number of days that one sampled day represents.
 const DAYS: usize = 30;
 
-/// Number of suns whose shadows are held at a time.
+/// Number of suns whose shadows are in memory at a time.
 const AT_ONCE: usize = 8;
 
 impl Period {
@@ -68,11 +68,11 @@ impl Period {
     }
 }
 
-/// The insolation of each sample on an average day of the period, in kWh/m^2. Slopes use Horn's method. Beyond the grid
-/// heights are extrapolated linearly and cast no shadow.
+/// The insolation of each sample on an average day of the period, in kWh/m^2. Slopes use Horn's method. Outside the
+/// grid, heights are extrapolated linearly and cast no shadow.
 ///
-/// Samples the sun at the middle of each time step from sunrise to sunset, on one day in at most 30. Holds 16 bytes per
-/// sample beside the heights. Costs O(samples) per position of the sun.
+/// The sun is sampled at the middle of each time step from sunrise to sunset, on at least one day in 30. Needs 16 bytes
+/// per sample in addition to the heights. The time is O(samples) per position of the sun.
 ///
 /// # Errors
 /// If `progress` is cancelled.
@@ -153,7 +153,7 @@ mod tests {
 
     #[test]
     fn a_tenth_of_an_hour_is_enough_for_a_day_in_the_mountains() {
-        // Peaks 700 m high and 450 m apart: long shadows cross narrow valleys.
+        // Peaks 700 m high and 450 m apart, with long shadows that cross narrow valleys.
         let peaks = |x: usize, y: usize| {
             let [x, y] = [x as f64 * 0.42, y as f64 * 0.39];
             (350.0 * (libm::sin(x) * libm::cos(y) + 0.5 * libm::sin(1.7 * x + 2.3 * y))) as f32
@@ -184,7 +184,7 @@ mod tests {
         assert!(made(&night, |_, _| 0.0).data().iter().all(|light| *light == 0.0));
         let winter = Period { latitude: 46.0, days: [355, 355], step: 0.5 };
         let open = made(&winter, |_, _| 0.0)[(20, 20)];
-        // A wall in the south that is above the sun even at noon.
+        // A wall to the south that hides the sun even at noon.
         let behind = made(&winter, |_, y| if y > 24 { 300.0 } else { 0.0 })[(20, 20)];
         assert!(behind < 0.4 * open && behind > 0.05 * open, "{behind} {open}");
     }

@@ -8,8 +8,8 @@ use crate::error;
 use crate::grid::Grid;
 use crate::progress::Progress;
 
-/// Applies `value` to the 3 x 3 heights around every sample of `grid` except its border, rows from the north. Rows are
-/// computed in parallel.
+/// Applies `value` to the 3 x 3 heights around every sample of `grid` except its border of one sample. The heights are
+/// in rows from the north. Rows of the grid are computed in parallel.
 pub fn over_nine(grid: &Grid, value: impl Fn([[f64; 3]; 3]) -> f32 + Sync) -> Grid {
     let Ok(out) = by_rows(grid, value, &never);
     out

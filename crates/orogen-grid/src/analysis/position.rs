@@ -1,8 +1,9 @@
 //! Topographic position: the height of a sample relative to its surroundings.
 //!
-//! The difference from the mean height in a disc, and the same divided by the standard deviation of the heights in it
-//! (Weiss, "Topographic position and landforms analysis", 2001; Wilson and Gallant, "Terrain Analysis", 2000, ch. 3).
-//! Heights are rounded to 1/256 m, so that all sums are exact and a tile equals the crop of the whole.
+//! The position is the difference from the mean height in a disc, and this difference divided by the standard deviation
+//! of the heights in the disc (Weiss, "Topographic position and landforms analysis", 2001; Wilson and Gallant, "Terrain
+//! Analysis", 2000, ch. 3). Heights are rounded to 1/256 m, so that all sums are exact and a tile equals the
+//! corresponding part of a larger grid.
 
 use crate::parallel;
 
@@ -11,10 +12,10 @@ use crate::error;
 use crate::grid::Grid;
 use crate::progress::Progress;
 
-/// Units per metre.
+/// Units of rounded heights per metre.
 const COUNTS: f64 = 256.0;
 
-/// Heights are clamped to this many metres.
+/// Maximum absolute height, in metres; heights beyond it are clamped.
 const HIGHEST: f64 = 131_072.0;
 
 /// The topographic position of one sample.
@@ -23,7 +24,7 @@ const HIGHEST: f64 = 131_072.0;
 pub struct Position {
     /// Height above the mean of the disc, in metres.
     pub above_mean: f32,
-    /// The same divided by the standard deviation of the heights in the disc; 0 if they are all equal.
+    /// The height above the mean divided by the standard deviation of the heights in the disc; 0 if they are all equal.
     pub deviation: f32,
 }
 
@@ -35,10 +36,10 @@ pub fn half_widths(radius: usize) -> Vec<usize> {
     (0..=2 * radius).map(|row| (square - row.abs_diff(radius) * row.abs_diff(radius)).isqrt()).collect()
 }
 
-/// The position of every sample of `grid` that is at least `radius` samples from its border, within the disc of that
-/// radius, including the sample itself.
+/// The position of every sample of `grid` that is at least `radius` samples from its border. The disc around a sample
+/// has this radius and includes the sample itself.
 ///
-/// Holds 16 bytes per sample of `grid`. Costs O(samples times radius). Rows are computed in parallel.
+/// Needs 16 bytes per sample of `grid`. The time is O(samples times radius). Rows are computed in parallel.
 #[must_use]
 pub fn positions(grid: &Grid, radius: usize) -> Grid<Position> {
     let Ok(out) = positions_by_rows(grid, radius, &never);
@@ -76,13 +77,13 @@ fn positions_by_rows<E: Send>(
             for (row, half) in sums[j..].iter().zip(&disc) {
                 let ([s0, q0], [s1, q1]) = (row[middle - half], row[middle + half + 1]);
                 sum = sum.wrapping_add(s1.wrapping_sub(s0));
-                // Running sums may wrap around; differences within a disc are still right.
+                // Running sums may wrap around; differences within a disc are still correct.
                 squares += i128::from(q1.wrapping_sub(q0));
             }
             let mean = sum as f64 / count;
             let variance = (squares as f64 - sum as f64 * mean) / count;
             let above = f64::from(grid[(middle, j + radius)]) - mean / COUNTS;
-            // A variance below one unit is rounding.
+            // A variance below one unit is only rounding.
             let deviation = if variance < 1.0 { 0.0 } else { above * COUNTS / variance.sqrt() };
             *position = Position { above_mean: above as f32, deviation: deviation as f32 };
         }
@@ -91,7 +92,7 @@ fn positions_by_rows<E: Send>(
     Ok(out)
 }
 
-/// Sums of heights and of their squares before each sample of a row, and after the last.
+/// Sums of heights and of their squares before each sample of a row, and of the whole row at the end.
 fn prefix_sums(row: &[f32]) -> Vec<[i64; 2]> {
     let mut sums = Vec::with_capacity(row.len() + 1);
     let mut last = [0i64; 2];

@@ -63,7 +63,7 @@ mod tests {
             let data = (0..25).map(|k| f(k % 5, k / 5)).collect();
             riley(&Grid::from_data(Window::new(5, 5, 10.0), data).unwrap())
         };
-        // A plane that rises by 3 a sample: six of the eight neighbors differ by 3.
+        // A plane that rises by 3 per sample: six of the eight neighbors differ by 3.
         assert!(made(|x, _| 3.0 * x as f32).data().iter().all(|r| (r - 54.0f32.sqrt()).abs() < 1e-6));
         let peak = made(|x, y| if (x, y) == (2, 2) { 7.0 } else { 0.0 });
         assert!((peak[(1, 1)] - 392.0f32.sqrt()).abs() < 1e-5 && peak[(0, 0)] == 7.0, "{:?}", peak.data());

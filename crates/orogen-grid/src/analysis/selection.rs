@@ -1,6 +1,6 @@
 //! Masks that select a range of values with smooth ends.
 
-/// 1 within a range, decreasing smoothly to 0 on both sides of it.
+/// A weight that is 1 within a range and decreases smoothly to 0 on both sides of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Selection {
     low: f32,
@@ -10,8 +10,8 @@ pub struct Selection {
 }
 
 impl Selection {
-    /// 1 from `range[0]` to `range[1]`; 0 from `falloff[0]` below and from `falloff[1]` above the range. A fall-off of
-    /// 0 is a sharp end.
+    /// A weight of 1 from `range[0]` to `range[1]`. It reaches 0 at `falloff[0]` below and at `falloff[1]` above the
+    /// range. A fall-off of 0 is a sharp end.
     #[must_use]
     pub fn new(range: [f64; 2], falloff: [f64; 2]) -> Selection {
         let [low, high] = range.map(|bound| bound as f32);
@@ -39,7 +39,7 @@ impl Selection {
     }
 }
 
-/// From 1 at 0 to 0 at `width`, by Hermite's smoothstep; 0 for NaN.
+/// Hermite's smoothstep from 1 at 0 to 0 at `width`; 0 for NaN.
 fn fall(beyond: f32, width: f32) -> f32 {
     if beyond < width {
         let t = 1.0 - beyond / width;

@@ -3,7 +3,7 @@
 use crate::checks::never;
 use crate::grid::transposed;
 
-/// Heights that cast shadows, also with rows and columns exchanged.
+/// Heights that cast shadows, and their transpose.
 pub struct Shadows<'a> {
     heights: &'a [f32],
     turned: Vec<f32>,
@@ -12,11 +12,11 @@ pub struct Shadows<'a> {
     cell: f64,
 }
 
-/// Lower than any ground.
+/// A height below any ground.
 const NOTHING: f32 = -1e30;
 
 impl<'a> Shadows<'a> {
-    /// Prepares rows of `columns` heights, `cell` metres apart. Holds 4 bytes per sample.
+    /// Prepares rows of `columns` heights that are `cell` metres apart. Needs 4 bytes per sample.
     #[must_use]
     pub fn new(heights: &'a [f32], columns: usize, cell: f64) -> Shadows<'a> {
         let rows = heights.len() / columns.max(1);
@@ -25,10 +25,11 @@ impl<'a> Shadows<'a> {
 
     /// Whether each sample is lit. `towards` is the unit vector to the sun: east, south and up.
     ///
-    /// Along every line through the lattice that leads away from the sun, the height of the shadow is carried from row
-    /// to row (or from column to column, whichever is closer to the sun's direction). It is raised to the ground where
-    /// that is higher, and falls with the sun's elevation. Heights between samples are linear, and so is the shadow
-    /// between two lines. Shadows have unlimited length. Costs O(samples) and 1 byte per sample.
+    /// The height of the shadow is carried along lines that lead away from the sun, from row to row (or from column to
+    /// column, whichever is closer to the sun's direction). Where the ground is higher, it is raised to the ground;
+    /// otherwise it falls according to the sun's elevation. Heights are interpolated linearly between samples, and
+    /// shadows between lines. The length of shadows is not limited. The time is O(samples), the memory 1 byte per
+    /// sample.
     #[must_use]
     pub fn lit(&self, towards: [f64; 3]) -> Vec<bool> {
         let Ok(lit) = self.lit_by_rows(towards, &never);
@@ -48,8 +49,8 @@ impl<'a> Shadows<'a> {
         })
     }
 
-    /// [`Shadows::lit`] over rows of `width`. `along` is the sun's direction: its part across the rows, then its larger
-    /// part, from row to row.
+    /// [`Shadows::lit`] over rows of `width`. `along` is the sun's direction: its component along the rows, then its
+    /// larger component, from row to row.
     fn sweep<E>(
         &self,
         heights: &[f32],
@@ -64,11 +65,12 @@ impl<'a> Shadows<'a> {
             // The sun is at the zenith.
             return Ok(lit);
         }
-        // From one row to the next, away from the sun: the columns that a line moves, and the metres that the shadow
-        // falls.
+        // From one row to the next, away from the sun: the number of columns by which a line moves, and the metres by
+        // which the shadow falls.
         let shift = -along[0] / along[1].abs();
         let drop = (up / along[1].abs() * self.cell) as f32;
-        // Line l is at column l + k shift in the k-th row. These lines cross the ground, plus one on each side.
+        // Line l is at column l + k shift in the k-th row. These lines cross the ground; there is one more line on each
+        // side.
         let drift = shift * (count - 1) as f64;
         let first = (-drift.max(0.0)).floor() as i64 - 1;
         let last = (width - 1) as i64 + (-drift.min(0.0)).ceil() as i64 + 1;
@@ -79,7 +81,7 @@ impl<'a> Shadows<'a> {
             let j = if along[1] > 0.0 { count - 1 - k } else { k };
             let row = &heights[j * width..(j + 1) * width];
             let place = k as f64 * shift;
-            // The line at or before column 0: whole columns, and the fraction before column 0.
+            // The line at or before column 0, as a number of lines and the fraction before column 0.
             let whole = (-place).floor();
             let share = (-place - whole) as f32;
             let start = (whole as i64 - first) as usize;
@@ -88,7 +90,7 @@ impl<'a> Shadows<'a> {
             for ((out, height), ceiling) in out.iter_mut().zip(row).zip(lines.windows(2)) {
                 *out = *height >= ceiling[0] + (ceiling[1] - ceiling[0]) * share;
             }
-            // The ground under each line: line 0 is `share` before column 0.
+            // The ground under each line; line 0 is `share` before column 0.
             let (west, east) = (row[0], row[width - 1]);
             let at = |column: usize| row.get(column).copied().unwrap_or(east);
             lines[0] = lines[0].max(west);
@@ -129,7 +131,7 @@ mod tests {
             assert!(at(at_45 + 2) && at(-2), "{azimuth}");
             assert_eq!(lit.iter().filter(|lit| !**lit).count(), 3 * 9, "{azimuth}");
         }
-        // On the diagonal it is shorter in samples by the square root of 2.
+        // On the diagonal it is shorter in samples, by a factor of sqrt(2).
         let lit = shadows.lit(towards(315.0, 45.0));
         let at = |n: usize| lit[(30 + n) * columns + 30 + n];
         assert!(!at(2) && !at(7) && at(9));
@@ -160,7 +162,7 @@ mod tests {
                 });
                 wrong += usize::from(*lit != free);
             }
-            // Only along the edges of shadows, where heights between samples are linear.
+            // Differences are allowed only along the edges of shadows, where heights are interpolated.
             assert!(wrong * 25 < lit.len(), "{azimuth}, {elevation}: {wrong} of {}", lit.len());
         }
     }

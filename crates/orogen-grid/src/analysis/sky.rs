@@ -1,19 +1,19 @@
 //! Sky-view factor: the ambient occlusion of terrain.
 //!
 //! The sky-view factor (Zakšek, Oštir and Kokalj, "Sky-view factor as a relief visualization technique", Remote Sensing
-//! 3, 2011) is the visible share of the hemisphere above: 1 - mean(sin g) over the directions, g the elevation angle of
-//! the horizon, at least 0. It is 1 on level ground.
+//! 3, 2011) is the visible share of the hemisphere above a sample: 1 - mean(sin g) over all directions, where g is the
+//! elevation angle of the horizon, at least 0. It is 1 on level ground.
 //!
-//! Horizons are searched in 16 directions along the lattice: the axes, the diagonals and the knight's moves between
-//! them, each weighted by its share of the circle. The steps are at 1, 2, 3, 4, 6, 8, 12, 16, 24 ... samples; a far
-//! ridge narrower than the gap between two steps may be missed.
+//! Horizons are searched in 16 directions along the lattice: the axes, the diagonals, and the knight's moves between
+//! them. Each is weighted by its share of the circle. The steps are at 1, 2, 3, 4, 6, 8, 12, 16, 24 ... samples. A
+//! distant ridge that is narrower than the gap between two steps may be missed.
 
 use crate::checks::{never, steps as steps_of};
 use crate::grid::{Grid, Window};
 use crate::progress::Progress;
 use crate::{error, parallel};
 
-/// The directions of one quadrant and the degrees that each represents; rotations give the others.
+/// The directions of one quadrant and the degrees that each represents. The others follow by rotation.
 const QUARTER: [([i64; 2], f64); 4] =
     [([1, 0], 26.565_051_177_077_99), ([2, 1], 22.5), ([1, 1], 18.434_948_822_922_01), ([1, 2], 22.5)];
 
@@ -44,7 +44,7 @@ fn looks(reach: usize, cell: f64) -> (Vec<Look>, Vec<f64>) {
     (looks, shares)
 }
 
-/// A step of [`sky_view`], for other devices.
+/// A step of [`sky_view`], for computations on a GPU.
 #[doc(hidden)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ViewStep {
@@ -52,7 +52,7 @@ pub struct ViewStep {
     pub offset: [i64; 2],
     /// The inverse of the distance in metres.
     pub per_metre: f32,
-    /// At the last step of a direction its share of the circle, otherwise 0.
+    /// The direction's share of the circle at the last step of a direction, otherwise 0.
     pub share: f32,
 }
 
@@ -75,7 +75,8 @@ fn steps() -> impl Iterator<Item = i64> {
 }
 
 /// The sky-view factor, 0 to 1, at the samples of `window`, with horizons up to `reach` samples away. `heights` covers
-/// the window and its surroundings; beyond it the sky is open. NaN at samples that are not finite; they hide nothing.
+/// the window and its surroundings; outside it nothing hides the sky. The result is NaN at samples that are not finite;
+/// these hide nothing.
 #[must_use]
 pub fn sky_view(heights: &Grid, window: &Window, reach: usize) -> Grid {
     let Ok(out) = by_rows(heights, window, reach, &never);
@@ -158,7 +159,7 @@ mod tests {
     fn open_ground_sees_all_and_a_cone_what_is_left() {
         assert_eq!(middle(&made(65, |_, _| 7.0), 32), 1.0);
         assert_eq!(middle(&made(65, |x, y| -x.abs() - y.abs()), 32), 1.0, "a top");
-        // A pit whose sides rise by 1 in 1 hides sin 45 degrees in all directions.
+        // A pit whose sides have a slope of 1 hides sin 45 degrees in all directions.
         let pit = middle(&made(65, libm::hypot), 32);
         assert!((f64::from(pit) - (1.0 - libm::sqrt(0.5))).abs() < 1e-6, "{pit}");
         // An infinitely long and high wall to the east hides half of the sky.

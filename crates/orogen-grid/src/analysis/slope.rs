@@ -1,15 +1,15 @@
 //! Slopes by Horn's method.
 //!
-//! Over the 3 x 3 neighborhood a b c / d e f / g h i of cells of c metres (B. K. P. Horn, "Hill shading and the
-//! reflectance map", Proceedings of the IEEE 69(1), 1981):
+//! Horn's method uses the 3 x 3 neighborhood a b c / d e f / g h i of cells of c metres (B. K. P. Horn, "Hill shading
+//! and the reflectance map", Proceedings of the IEEE 69(1), 1981):
 //!
 //! ```text
 //! p = ((c - a) + 2 (f - d) + (i - g)) / 8c      towards the east
 //! q = ((a - g) + 2 (b - h) + (c - i)) / 8c      towards the north (up the page)
 //! ```
 //!
-//! Every function here takes a grid with one sample more on each side than it returns, so that a tile equals the crop
-//! of the whole. At the edge of a world, [`extended`] adds that border.
+//! Every function here takes a grid with one more sample on each side than its result, so that the result for a tile
+//! equals the same part of the result for the whole grid. At the edge of a world, [`extended`] adds that border.
 //!
 //! **Missing samples.** The slope of a sample that is not finite is NaN. A neighbor that is not finite counts as level
 //! with the center.
@@ -40,8 +40,8 @@ impl Gradient {
     }
 }
 
-/// Computes gradients at the inner samples of three adjacent rows, from the north. Calls `each` for the columns 1 to
-/// width - 2, with their index from 0.
+/// Computes the gradients at the inner samples of three adjacent rows, given from north to south. Calls `each` with an
+/// index from 0 and the gradient, for the columns 1 to width - 2.
 pub fn gradients_between(rows: [&[f32]; 3], cell: f64, mut each: impl FnMut(usize, Gradient)) {
     let scale = (1.0 / (8.0 * cell)) as f32;
     let [above, here, below] = rows;
@@ -51,12 +51,12 @@ pub fn gradients_between(rows: [&[f32]; 3], cell: f64, mut each: impl FnMut(usiz
         let east = ((n[2] - n[0]) + 2.0 * (m[2] - m[0]) + (s[2] - s[0])) * scale;
         let north = ((n[0] - s[0]) + 2.0 * (n[1] - s[1]) + (n[2] - s[2])) * scale;
         let gradient = Gradient { east, north };
-        // One test covers the usual case; missing samples and differences that overflow take the slow path.
+        // One test covers the common case. Missing samples and overflowing differences are handled separately.
         each(i, if (east + north).is_finite() && m[1].is_finite() { gradient } else { repaired([n, m, s], cell) });
     }
 }
 
-/// Gradients at every sample of `grid` except its border: to the east and to the north.
+/// The gradients at every sample of `grid` except its border: rise per metre to the east and to the north.
 #[must_use]
 pub fn gradients(grid: &Grid) -> [Grid; 2] {
     let window = inner(grid.window());
@@ -69,7 +69,7 @@ pub fn gradients(grid: &Grid) -> [Grid; 2] {
     [east, north]
 }
 
-/// Unit normals at every sample of `grid` except its border: their parts to the east, north and up.
+/// The unit normals at every sample of `grid` except its border: their components to the east, north and up.
 #[must_use]
 pub fn normals(grid: &Grid) -> [Grid; 3] {
     let window = inner(grid.window());
@@ -83,7 +83,7 @@ pub fn normals(grid: &Grid) -> [Grid; 3] {
     parts
 }
 
-/// The gradient if a sample is not finite or a difference overflows f32.
+/// The gradient where a sample is not finite or a difference overflows f32.
 #[cold]
 fn repaired(rows: [&[f32]; 3], cell: f64) -> Gradient {
     let middle = rows[1][1];
@@ -97,7 +97,7 @@ fn repaired(rows: [&[f32]; 3], cell: f64) -> Gradient {
     Gradient { east: fit(east), north: fit(north) }
 }
 
-/// Applies `value` to the gradient at every sample of `grid` except its border.
+/// Applies `value` to the gradient at every sample of `grid` except its border of one sample.
 pub fn from_gradients(grid: &Grid, value: impl Fn(Gradient) -> f32) -> Grid {
     let window = inner(grid.window());
     let mut out = Grid::filled(window, 0.0);
@@ -109,13 +109,13 @@ pub fn from_gradients(grid: &Grid, value: impl Fn(Gradient) -> f32) -> Grid {
     out
 }
 
-/// The slope, rise over run, at every sample except the border.
+/// The slope, rise over run, at every sample of `grid` except its border of one sample.
 #[must_use]
 pub fn steepness(grid: &Grid) -> Grid {
     from_gradients(grid, |gradient| gradient.steepness())
 }
 
-/// The slope angle in degrees, 0 to 90.
+/// The slope angle in degrees, 0 to 90, at every sample of `grid` except its border of one sample.
 #[must_use]
 pub fn slope_degrees(grid: &Grid) -> Grid {
     from_gradients(grid, |gradient| libm::atanf(gradient.steepness()).to_degrees())
@@ -131,8 +131,8 @@ pub fn inner(window: &Window) -> Window {
     }
 }
 
-/// The grid extended by one sample on each side with linear extrapolation, for the edges of a world. (With Horn's
-/// weights this gives one-sided slopes at the border.)
+/// The grid extended by one sample on each side with linear extrapolation, for the edges of a world. With Horn's
+/// weights this gives one-sided slopes at the border.
 #[must_use]
 pub fn extended(grid: &Grid) -> Grid {
     let mut out = Grid::filled(grid.window().grown(1), f32::NAN);
@@ -153,7 +153,7 @@ pub fn extended(grid: &Grid) -> Grid {
     out
 }
 
-/// Copies `row` to the middle of `out`, which is longer by one at each end, and extrapolates the ends.
+/// Copies `row` to the middle of `out`, which has one more sample at each end, and extrapolates these two.
 #[doc(hidden)]
 pub fn extend_row(row: &[f32], out: &mut [f32]) {
     let width = row.len();
@@ -162,7 +162,7 @@ pub fn extend_row(row: &[f32], out: &mut [f32]) {
     out[width + 1] = beyond(row[width - 1], row[width.saturating_sub(2)]);
 }
 
-/// Linear extrapolation: the value after `last` on the line from `before`.
+/// Linear extrapolation: the value after `last`, where `before` is the value before it.
 #[doc(hidden)]
 #[must_use]
 pub fn beyond(last: f32, before: f32) -> f32 {
@@ -174,7 +174,7 @@ pub fn beyond(last: f32, before: f32) -> f32 {
 mod tests {
     use super::*;
 
-    /// A grid of f(east, south) in metres.
+    /// A grid of f(east, south), with both coordinates in metres.
     fn grid(window: Window, f: impl Fn(f64, f64) -> f64) -> Grid {
         let mut grid = Grid::filled(window, 0.0);
         for j in 0..window.height {

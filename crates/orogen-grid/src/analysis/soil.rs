@@ -1,18 +1,18 @@
-//! Steady-state soil depth, where production balances erosion.
+//! Soil depth in a steady state, where production balances erosion.
 //!
-//! Bedrock turns into soil at the rate P0 exp(-h / h*) below soil of depth h (Heimsath, Dietrich, Nishiizumi and
+//! Below a soil of depth h, bedrock turns into soil at the rate P0 exp(-h / h*) (Heimsath, Dietrich, Nishiizumi and
 //! Finkel, "The soil production function and landscape equilibrium", Nature 388, 1997). Soil creeps downhill with the
 //! flux q = K S / (1 - (S / Sc)^2), where S is the slope and Sc the critical slope (Roering, Kirchner and Dietrich
-//! 1999). In steady state production equals the divergence of q (the balance that Pelletier and Rasmussen,
-//! "Geomorphically based predictive mapping of soil thickness in upland watersheds", 2009, solve with either law of
-//! transport):
+//! 1999). In a steady state, production equals the divergence of q (Pelletier and Rasmussen, "Geomorphically based
+//! predictive mapping of soil thickness in upland watersheds", 2009):
 //!
 //! ```text
 //! h = h* ln(ratio P0 / div q)
 //! ```
 //!
-//! where `ratio` is the density of rock divided by that of soil. There is no soil where more is removed than bare rock
-//! produces. Where soil accumulates (hollows, foot slopes) the balance has no solution, and the depth is `deepest`.
+//! where `ratio` is the density of rock divided by the density of soil. There is no soil where more is removed than
+//! bare rock produces. Where soil accumulates (hollows, foot slopes) the balance has no solution, and the depth is
+//! `deepest`.
 
 use super::nine::{over_nine, over_nine_with};
 use crate::error::Result;
@@ -56,7 +56,7 @@ orogen_noise::builder!(
 );
 
 impl Soil {
-    /// The depth, in metres, where `carried` metres per year are removed (negative where soil accumulates).
+    /// The soil depth, in metres, where `carried` metres per year are removed (negative where soil accumulates).
     #[must_use]
     pub fn depth(&self, carried: f64) -> f64 {
         if carried.is_nan() {
@@ -69,19 +69,19 @@ impl Soil {
         }
     }
 
-    /// K S / (1 - (S / Sc)^2) along one axis, for a slope with the parts `along` that axis and `across` it; infinite at
-    /// Sc.
+    /// The flux K S / (1 - (S / Sc)^2) along one axis, for a slope with the components `along` and `across` that axis;
+    /// infinite at Sc.
     fn flux(&self, along: f64, across: f64) -> f64 {
         let share = (along * along + across * across) / (self.critical_slope * self.critical_slope);
         if share >= 1.0 { f64::INFINITY.copysign(along) } else { self.creep * along / (1.0 - share) }
     }
 
-    /// The depth, in metres, at the center of 3 x 3 heights `c` metres apart, rows from the north: from the fluxes
-    /// through the four sides of its cell. 0 if a side is steeper than the critical slope. NaN if one of the nine
-    /// heights is not finite.
+    /// The soil depth, in metres, at the center of 3 x 3 heights that are `c` metres apart, rows from the north. It
+    /// follows from the fluxes through the four sides of the center's cell. 0 if a side is steeper than the critical
+    /// slope; NaN if one of the nine heights is not finite.
     #[must_use]
     pub fn depth_at(&self, z: [[f64; 3]; 3], c: f64) -> f64 {
-        // Downhill flux: by the drop across a side, and the mean drop along it.
+        // Downhill flux, from the drop across a side and the mean drop along it.
         let east = |x: usize| {
             let along_it = ((z[0][x] + z[0][x + 1]) - (z[2][x] + z[2][x + 1])) / (4.0 * c);
             self.flux((z[1][x] - z[1][x + 1]) / c, along_it)
@@ -98,7 +98,8 @@ impl Soil {
         }
     }
 
-    /// The depth, in metres, at every sample of `grid` except its border. Rows are computed in parallel.
+    /// The soil depth, in metres, at every sample of `grid` except its border of one sample. Rows are computed in
+    /// parallel.
     #[must_use]
     pub fn depths(&self, grid: &Grid) -> Grid {
         let cell = grid.window().cell;
@@ -130,8 +131,8 @@ mod tests {
 
     #[test]
     fn a_gentle_dome_has_the_depth_of_the_balance() {
-        // z = -C (x^2 + y^2) / 4: the Laplacian is -C, and K C is removed; the slopes are too gentle for the other
-        // terms.
+        // z = -C (x^2 + y^2) / 4: the Laplacian is -C, and K C is removed. The slopes are so gentle that the other
+        // terms are negligible.
         let bend = 1e-3;
         let depth = made(|x, y| -bend * (x * x + y * y) / 4.0)[(2, 2)];
         let expect = 0.43 * libm::log(2.0 * 7.7e-5 / (0.005 * bend));

@@ -1,14 +1,14 @@
-//! Roughness by wavelength: power spectrum and structure function.
+//! Roughness by wavelength: the power spectrum and the structure function.
 
 use super::fourier::power;
 use crate::error::Result;
 use crate::grid::{Grid, Window};
 use std::ops::Range;
 
-/// Side of the largest square that is transformed; larger grids use several squares.
+/// Side of the largest square that is transformed. Larger grids are covered by several squares.
 const LARGEST: usize = 512;
 
-/// Wavelength classes per octave.
+/// Number of wavelength classes per octave.
 const CLASSES_AN_OCTAVE: f64 = 3.0;
 
 /// The distances, in cells, at which [`hurst`] compares heights.
@@ -25,8 +25,9 @@ pub struct Band {
 }
 
 /// The power spectrum, averaged over all directions, for wavelengths from two cells to half a side. The grid is covered
-/// by squares of 2^n samples, at most 512. Their least-squares planes are subtracted, Hann's window is applied, and
-/// their powers are averaged. Empty if the grid has fewer than 16 samples along a side. NaN counts as the plane.
+/// by squares of 2^n samples, at most 512 along a side. Their least-squares planes are subtracted, Hann's window is
+/// applied, and their powers are averaged. Empty if the grid has fewer than 16 samples along a side. NaN is replaced
+/// with the plane.
 #[must_use]
 pub fn spectrum(grid: &Grid) -> Vec<Band> {
     let window = grid.window();
@@ -37,10 +38,10 @@ pub fn spectrum(grid: &Grid) -> Vec<Band> {
     spectrum_of_rows(window, rows).unwrap_or_default()
 }
 
-/// [`spectrum`] of a window that is read in bands of at most 512 rows.
+/// [`spectrum`] of a window whose rows are read in bands of at most 512.
 ///
 /// # Errors
-/// Those of `rows`.
+/// The errors of `rows`.
 pub fn spectrum_of_rows(window: &Window, rows: impl Fn(Range<usize>) -> Result<Grid>) -> Result<Vec<Band>> {
     let least = window.width.min(window.height);
     if least < 16 {
@@ -94,9 +95,9 @@ pub fn spectrum_of_rows(window: &Window, rows: impl Fn(Range<usize>) -> Result<G
     Ok(mean.collect())
 }
 
-/// The exponent beta of P ~ wavelength^beta (-beta as a power of the frequency), fitted between 4 and 64 cells. Real
-/// terrain has 3.2 to 4.4 at 30 to 90 m. A surface of Hurst exponent H has beta = 2 H + 2. None if there are too few
-/// classes.
+/// The exponent beta of P ~ wavelength^beta (-beta as a power of the frequency), fitted between wavelengths of 4 and 64
+/// cells. Real terrain has 3.2 to 4.4 at 30 to 90 m. A surface with Hurst exponent H has beta = 2 H + 2. `None` if
+/// there are too few classes.
 #[must_use]
 pub fn spectral_slope(bands: &[Band], cell: f64) -> Option<f64> {
     let points: Vec<(f64, f64)> = bands
@@ -107,8 +108,8 @@ pub fn spectral_slope(bands: &[Band], cell: f64) -> Option<f64> {
     line(&points)
 }
 
-/// Half the slope of the structure function in logarithms: mean squared height differences at 2 to 16 cells along both
-/// axes. For fractional Brownian surfaces this is the Hurst exponent H. None if there is no relief.
+/// Half the slope of the structure function in logarithms: mean squared differences of heights at 2 to 16 cells along
+/// both axes. For fractional Brownian surfaces this is the Hurst exponent H. `None` if there is no relief.
 #[must_use]
 pub fn hurst(grid: &Grid) -> Option<f64> {
     let mut rises = Rises::default();
@@ -124,10 +125,10 @@ pub struct Rises {
 }
 
 impl Rises {
-    /// Number of rows below the added ones that [`Rises::add`] reads, if they exist.
+    /// Number of rows below the added ones that [`Rises::add`] reads if they exist.
     pub const BELOW: usize = LAGS[LAGS.len() - 1];
 
-    /// Adds the differences that start in the first `rows` rows of `band`; it only reads the rows below them.
+    /// Adds the differences that start in the first `rows` rows of `band`. The rows below them are only read.
     pub fn add(&mut self, band: &Grid, rows: usize) {
         for ((lag, sum), count) in LAGS.into_iter().zip(&mut self.sums).zip(&mut self.counts) {
             for j in 0..rows {
@@ -146,7 +147,7 @@ impl Rises {
         }
     }
 
-    /// The exponent, after all rows of the window were added.
+    /// The exponent, after all rows of `window` were added.
     #[must_use]
     pub fn hurst(&self, window: &Window) -> Option<f64> {
         if window.width.min(window.height) <= Rises::BELOW {
@@ -205,7 +206,7 @@ mod tests {
     use super::*;
     use orogen_noise::{Basis, Fractal, Kind, Points};
 
-    /// fBm of Hurst exponent H has octaves of gain 2^-H, a power of wavelength^(2 H + 2) and rises of distance^(2 H).
+    /// fBm with Hurst exponent H has octaves of gain 2^-H, a power of wavelength^(2 H + 2) and rises of distance^(2 H).
     #[test]
     fn fractional_brownian_land_has_its_own_exponents() {
         for hurst_exponent in [0.4, 0.7] {

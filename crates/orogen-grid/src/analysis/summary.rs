@@ -3,7 +3,7 @@
 use crate::hex;
 use sha2::{Digest, Sha256};
 
-/// Accumulates a [`Summary`] from samples in row-major order, in chunks of any size. The mean is summed in that order
+/// Accumulates a [`Summary`] from samples in row-major order, in chunks of any size. The mean is summed in this order
 /// in f64, so it does not depend on the chunks.
 #[derive(Debug, Clone)]
 pub struct Gatherer {
@@ -72,7 +72,7 @@ impl Gatherer {
         self.samples += samples.len() as u64;
     }
 
-    /// The summary of all samples added.
+    /// The summary of all added samples.
     #[must_use]
     pub fn finish(self) -> Summary {
         let count = self.finite as f64;
@@ -89,7 +89,7 @@ impl Gatherer {
     }
 }
 
-/// The summary of one grid's samples.
+/// The summary of the samples of one grid. Samples above `sea_level` count as land.
 #[must_use]
 pub fn summary(samples: &[f32], sea_level: f64) -> Summary {
     let mut gatherer = Gatherer::new(sea_level);
@@ -119,7 +119,7 @@ mod tests {
 
     #[test]
     fn the_hash_is_of_the_little_endian_bytes() {
-        // The output of sha256sum for no bytes, and for the bytes 00 00 80 3f 00 00 00 c0.
+        // The output of sha256sum for zero bytes, and for the bytes 00 00 80 3f 00 00 00 c0.
         assert_eq!(summary(&[], 0.0).sha256, "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
         assert_eq!(
             summary(&[1.0, -2.0], 0.0).sha256,

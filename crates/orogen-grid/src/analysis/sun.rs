@@ -13,7 +13,7 @@ pub struct Moment {
 }
 
 impl Moment {
-    /// A latitude in degrees north, a day from 1, and an hour of true solar time.
+    /// A moment from a latitude in degrees north, a day from 1, and an hour of true solar time.
     #[must_use]
     pub const fn new(latitude: f64, day: u16, hour: f64) -> Moment {
         Moment { latitude, day, hour }
@@ -55,7 +55,7 @@ impl Moment {
             (true, _) => Some([0.0, 24.0]),
             (_, false) => None,
             _ => {
-                // Find the crossing of the horizon by bisection.
+                // The crossing of the horizon is found by bisection.
                 let cross = |mut down: f64, mut up: f64| {
                     for _ in 0..40 {
                         let middle = 0.5 * (down + up);

@@ -24,7 +24,7 @@ pub struct Observer {
 }
 
 impl Observer {
-    /// An observer with an eye at this height in metres above the ground, on a plane, without a limit of sight.
+    /// An observer with an eye `height` metres above the ground, on a plane, with unlimited range of sight.
     #[must_use]
     pub const fn new(at: [f64; 2], height: f64) -> Observer {
         Observer { at, height, radius: f64::INFINITY, sinking: 0.0 }
@@ -51,17 +51,17 @@ pub fn sinking(refraction: f64) -> f64 {
 /// The value of [`viewshed`] beyond the observer's radius.
 pub const BEYOND: f32 = -1.0;
 
-/// The height, in metres above the ground of each sample, from which the observer is visible; 0 where the ground itself
-/// is visible, [`BEYOND`] beyond the radius.
+/// The height, in metres above the ground of each sample, from which the observer is visible. It is 0 where the ground
+/// itself is visible, and [`BEYOND`] beyond the radius.
 ///
-/// Exact lines of sight (R3; Franklin and Ray, "Higher isn't necessarily better: visibility algorithms and
-/// experiments", 1994) from the eye to every sample. The ground is interpolated linearly between samples where a line
-/// crosses a column (or a row, whichever there are more of). Squares whose maximum cannot rise above the horizon so far
-/// are skipped, which does not change the result. There is no ground outside the grid: an observer there stands as high
-/// as its nearest sample. Holds 15 bytes per sample. Rows are computed in parallel.
+/// The lines of sight from the eye to every sample are exact (R3; Franklin and Ray, "Higher isn't necessarily better:
+/// visibility algorithms and experiments", 1994): the ground is interpolated linearly wherever a line crosses a column
+/// (or a row, if it crosses more rows than columns). Squares whose maximum cannot rise above the current horizon are
+/// skipped, which does not change the result. There is no ground outside the grid: an observer there stands as high as
+/// the nearest sample. Needs 15 bytes per sample. Rows are computed in parallel.
 ///
 /// # Errors
-/// The error of `check`, which is called repeatedly.
+/// The error of `check`, which is called regularly.
 pub fn viewshed(heights: &Grid, observer: &Observer, check: Check) -> Result<Grid> {
     let (window, [x, y]) = (*heights.window(), observer.at);
     let mut out = Grid::filled(window, BEYOND);
@@ -94,7 +94,7 @@ pub fn viewshed(heights: &Grid, observer: &Observer, check: Check) -> Result<Gri
     Ok(out)
 }
 
-/// Heights, and the maxima of squares with a side of 2, 4, 8 ... samples.
+/// Heights, and the maxima of squares with sides of 2, 4, 8 ... samples.
 struct MaxPyramid {
     levels: Vec<Level>,
 }
@@ -123,7 +123,7 @@ impl MaxPyramid {
         MaxPyramid { levels }
     }
 
-    /// The height at a point, linear between rows and columns; outside the grid, that of its edge.
+    /// The height at a point, linear between rows and columns. Outside the grid, the height at its edge.
     fn at(&self, x: f64, y: f64) -> f64 {
         let ground = &self.levels[0];
         let x = x.clamp(0.0, (ground.columns - 1) as f64);
@@ -142,8 +142,7 @@ impl MaxPyramid {
         north + (south - north) * (y - j as f64)
     }
 
-    /// The maximum of a column of squares with a side of 2^k samples, over all that the rows from `top` to `bottom`
-    /// touch.
+    /// The maximum of a column of squares with a side of 2^k samples, over all rows between `top` and `bottom`.
     fn highest(&self, k: usize, column: usize, top: f64, bottom: f64) -> f64 {
         let level = &self.levels[k];
         let row = |y: f64| ((y.max(0.0) as usize) >> k).min(level.rows - 1);
@@ -162,7 +161,7 @@ struct Sight {
 }
 
 impl Sight {
-    /// The steepest slope from the eye to the ground between; negative infinity if there is none.
+    /// The steepest slope from the eye to the ground before the target; negative infinity if there is none.
     fn steepest(&self, ground: &MaxPyramid) -> f64 {
         let [x, y] = self.from;
         let (across, down) = (self.to[0] as f64 - x, self.to[1] as f64 - y);
@@ -182,7 +181,7 @@ impl Sight {
         let left = |column: i64| if forwards { last - column + 1 } else { column - last + 1 };
         let (mut column, mut try_level) = (first, 0usize);
         while left(column) > 0 {
-            // The largest square that starts here and ends before the target.
+            // The largest square that starts at this column and ends before the target.
             let aligned = if forwards { column } else { column + 1 };
             let most = (aligned.trailing_zeros() as usize).min(left(column).ilog2() as usize);
             let k = try_level.min(most).min(ground.levels.len() - 1);
@@ -208,18 +207,18 @@ impl Sight {
         steepest
     }
 
-    /// The x at which a sight from outside the grid enters it; that of the eye from within. Nothing outside hides
-    /// anything.
+    /// The x at which a line of sight from outside the grid enters it; the eye's x if the eye is inside. Nothing
+    /// outside the grid hides anything.
     fn entry(&self, slant: f64, ground: &MaxPyramid) -> f64 {
         let [x, y] = self.from;
         let [right, bottom] = [ground.levels[0].columns, ground.levels[0].rows].map(|samples| (samples - 1) as f64);
         let nearest = y.clamp(0.0, bottom);
-        // A sight along the rows never enters from north or south.
+        // A line of sight along the rows never enters from the north or the south.
         let entered = if nearest == y { x } else { x + (nearest - y) / slant };
         if self.to[0] as f64 > x { entered.max(0.0) } else { entered.min(right) }
     }
 
-    /// The slope from the eye to ground of this height at the distance `away`.
+    /// The slope from the eye to ground at `height` at the distance `away`.
     fn rise(&self, height: f64, away: f64) -> f64 {
         (height - self.sinking * away * away - self.eye) / away
     }
@@ -278,10 +277,11 @@ mod tests {
         let mut heights = Grid::filled(Window::new(50, 21, 10.0), 0.0f32);
         (0..21).for_each(|j| heights.row_mut(j)[20] = 12.0);
         for (at, shown, behind, hidden_to) in [
-            // 300 m before the wall, 10 m below its top: at 500 m, 16.7 m below the sight.
+            // The eye is 300 m from the wall and 10 m below its top. At 500 m the ground is 16.7 m below the line of
+            // sight.
             ([-10.0, 10.0], (15, 10), (40, 10), 2.0 + 10.0 / 300.0 * 500.0),
             ([70.0, 10.0], (25, 10), (10, 10), 2.0 + 10.0 / 500.0 * 600.0),
-            // North of the grid: the line of the wall is crossed outside of it, or just at its side.
+            // North of the grid: the line of sight crosses the line of the wall outside the grid, or just at its end.
             ([20.0, -30.0], (22, 10), (40, 10), 0.0),
             ([0.0, -10.0], (19, 10), (40, 10), 2.0 + 10.0 / 20.0 * 40.0),
         ] {
@@ -289,7 +289,7 @@ mod tests {
             assert_eq!(found[shown], 0.0, "{at:?}");
             assert!((f64::from(found[behind]) - hidden_to).abs() < 1e-3, "{at:?}: {}, not {hidden_to}", found[behind]);
         }
-        // As far as recipes can say, in any direction.
+        // The farthest positions that recipes accept, in any direction.
         for at in [[-1e13, -1e13], [1e13, 4.0], [7.5, -1e13], [1e13, 0.0]] {
             assert!(
                 viewshed(&heights, &Observer::new(at, 2.0), &|| Ok(())).unwrap().data().iter().all(|h| h.is_finite())
@@ -303,7 +303,7 @@ mod tests {
         (0..21).for_each(|j| heights.row_mut(j)[20] = 12.0);
         let observer = Observer { at: [10.0, 10.0], height: 2.0, radius: 350.0, sinking: 0.0 };
         let found = viewshed(&heights, &observer, &|| Ok(())).unwrap();
-        // From 2 m over the top of the wall, 100 m away and 10 m higher: at 300 m, 32 m.
+        // From a height of 2 m, over the top of a wall 100 m away and 10 m higher: 32 m at a distance of 300 m.
         assert!((found[(40, 10)] - 32.0).abs() < 1e-3, "{}", found[(40, 10)]);
         assert_eq!([found[(15, 10)], found[(20, 10)], found[(10, 10)]], [0.0; 3]);
         assert_eq!(found[(49, 10)], BEYOND);

@@ -1,4 +1,4 @@
-//! Height and distance above the stream that a cell drains to.
+//! Height and distance of a cell above the stream that it drains to.
 
 use super::accumulation::Accumulation;
 use super::direction::DISTANCES;
@@ -14,14 +14,14 @@ use crate::progress::Progress;
 pub struct AboveDrainage {
     /// Height above nearest drainage, in the unit of the surface.
     pub height: Grid,
-    /// Length of the flow path to the stream, in the unit of the cell.
+    /// Length of the flow path to the stream, in the unit of the cell size.
     pub distance: Grid,
 }
 
 /// Height above nearest drainage (Rennó and others, "HAND, a new terrain descriptor using SRTM-DEM", 2008; Nobre and
 /// others 2011), and the length of the flow path. `surface` must fall along `receivers`. The path follows the receivers
-/// to the first cell that drains at least `threshold` cells, or, if there is none, to the outlet. Both layers are 0 in
-/// streams and at outlets.
+/// to the first cell that drains at least `threshold` cells, or to the outlet if there is no such cell. Both layers are
+/// 0 in streams and at outlets.
 ///
 /// Holds 12 bytes per cell. Costs O(cells).
 #[must_use]
@@ -53,7 +53,7 @@ fn walked<E>(
 ) -> Result<AboveDrainage, E> {
     let window = *surface.window();
     let mut distance = vec![0.0f64; window.len()];
-    // Heights of the streams first, then the difference.
+    // First the heights of the streams, then the differences.
     let mut base = surface.data().to_vec();
     for (k, cell) in drained.downstream_first().enumerate() {
         now_and_then(k, check)?;

@@ -7,11 +7,11 @@ use crate::grid::Grid;
 use crate::progress::Progress;
 use crate::{error, parallel};
 
-/// The weight of a cell where the factor of the rain is 1. Weights are integers, so that their sums do not depend on
-/// the order of addition.
+/// The weight of a cell where the rain factor is 1. Weights are integers, so that their sums do not depend on the order
+/// of addition.
 pub const UNIT_WEIGHT: u32 = 1 << 16;
 
-/// The weight of a cell by its factor of the rain, which is clamped to 0.01 ..= 100; NaN counts as 1.
+/// The weight of a cell for a rain factor, which is clamped to 0.01 ..= 100; NaN counts as 1.
 #[must_use]
 pub fn weight(rain: f32) -> u32 {
     let rain = if rain.is_nan() { 1.0 } else { rain.clamp(0.01, 100.0) };
@@ -21,31 +21,31 @@ pub fn weight(rain: f32) -> u32 {
 /// The drainage area of each cell, and orders for walking the cells.
 #[derive(Debug, Clone)]
 pub struct Accumulation {
-    /// Number of cells that drain through each cell, including itself. Integers, so the result does not depend on the
-    /// order of addition.
+    /// Number of cells that drain through each cell, including the cell itself. The numbers are integers, so the result
+    /// does not depend on the order of addition.
     pub area: Grid<u32>,
-    /// The same with every cell weighted by the rain, in units of 1 / [`UNIT_WEIGHT`] of a cell; `None` if the rain is
-    /// the same everywhere.
+    /// The area with every cell weighted by its rain factor, in units of 1 / [`UNIT_WEIGHT`] of a cell; `None` if the
+    /// rain is the same everywhere.
     pub discharge: Option<Grid<u64>>,
-    /// Cells that receive water from other bands, each after its receiver. Their receivers are included too.
+    /// The cells that receive water from other bands and everything downstream of them, each after its receiver.
     trunk: Vec<u32>,
     bands: Vec<Band>,
 }
 
-/// Rows whose cells, except those of the trunk, can be walked without reading other bands.
+/// A band of rows. Its cells, except those of the trunk, can be processed without reading other bands.
 #[derive(Debug, Clone)]
 pub(super) struct Band {
-    /// The first cell, and the one after the last.
+    /// The range of cells, row-major.
     pub cells: std::ops::Range<usize>,
     /// Cells outside the trunk, each after its receiver.
     pub order: Vec<u32>,
 }
 
 impl Band {
-    /// Orders and counts the cells of a band. `donors` are the band's own; `area` is all ones.
+    /// Orders and counts the cells of a band. `donors` has an entry for each cell of the band; `area` is all ones.
     ///
-    /// Each walk starts at a cell without inflow and continues downstream until it reaches a cell that waits for
-    /// another inflow. Every cell is visited once, and the order keeps nearby cells together.
+    /// Each walk starts at a cell without inflow and continues downstream until it reaches a cell that still waits for
+    /// another inflow. Every cell is visited once, and nearby cells are close to each other in the order.
     fn new<E>(
         receivers: &Receivers,
         trunk: &[u32],
@@ -56,7 +56,7 @@ impl Band {
     ) -> Result<Band, E> {
         let cells = start..start + area.len();
         let mut waiting: Vec<u8> = donors.iter().map(|set| set.count_ones() as u8).collect();
-        // A cell that is done never becomes ready again, and neither does the trunk: no walk starts or continues there.
+        // A finished cell never becomes ready again, and neither does the trunk, so no walk starts or continues there.
         const DONE: u8 = 255;
         for cell in trunk.iter().map(|cell| *cell as usize).filter(|cell| cells.contains(cell)) {
             waiting[cell - start] = DONE;
@@ -68,7 +68,7 @@ impl Band {
             while waiting[cell] == 0 {
                 waiting[cell] = DONE;
                 order.push((start + cell) as u32);
-                // A receiver above the band wraps around to beyond the band's end.
+                // A receiver above the band wraps around to an index beyond the band's end.
                 let receiver = receivers.of(start + cell).wrapping_sub(start);
                 if receiver == cell || waiting.get(receiver).is_none_or(|waits| *waits == DONE) {
                     break;
@@ -103,11 +103,11 @@ impl Accumulation {
     }
 }
 
-/// Counts the cells that drain through each cell: O(cells), on all threads of the pool.
+/// Counts the cells that drain through each cell. The time is O(cells); all threads of the pool are used.
 ///
-/// Each thread takes bands of rows. The trunk holds the cells that receive water from another band, a few per cent; all
-/// other cells are ordered and counted band by band. `receivers` must have no cycles, because cells on a cycle are
-/// never visited; the functions of this module make none.
+/// Each thread takes bands of rows. The trunk consists of the cells that receive water from another band, a few
+/// percent. All other cells are ordered and counted band by band. `receivers` must have no cycles, because cells on a
+/// cycle are never visited. The functions of this module create none.
 #[must_use]
 pub fn accumulate(receivers: &Receivers) -> Accumulation {
     let Ok(accumulation) = accumulate_in(receivers, band_rows(receivers), &never);
@@ -122,8 +122,8 @@ pub fn accumulate_with(receivers: &Receivers, progress: &Progress) -> error::Res
     accumulate_in(receivers, band_rows(receivers), &steps(progress, checks(receivers.window().len())))
 }
 
-/// [`accumulate_with`], and the sum of the weights of the cells that drain through each cell, if the factors of the
-/// rain are given, on the grid of the receivers: the [discharge](Accumulation::discharge), as a drainage area.
+/// [`accumulate_with`], and also the [discharge](Accumulation::discharge) if `rain` is given: the sum of the weights of
+/// the cells that drain through each cell. `rain` holds the rain factors on the grid of the receivers.
 ///
 /// # Errors
 /// If the work is cancelled.
@@ -154,7 +154,7 @@ fn discharge(receivers: &Receivers, accumulation: &Accumulation, rain: &Grid) ->
         let start = band.cells.start;
         own.iter_mut().enumerate().for_each(|(cell, sum)| *sum = weights(start + cell));
         for cell in band.order.iter().rev().map(|cell| *cell as usize - start) {
-            // A receiver above the band wraps around to beyond the band's end.
+            // A receiver above the band wraps around to an index beyond the band's end.
             let receiver = receivers.of(start + cell).wrapping_sub(start);
             if receiver != cell && receiver < own.len() {
                 own[receiver] += own[cell];
@@ -174,15 +174,15 @@ fn discharge(receivers: &Receivers, accumulation: &Accumulation, rain: &Grid) ->
     sums
 }
 
-/// Rows of a band.
+/// Number of rows of a band.
 fn band_rows(receivers: &Receivers) -> usize {
     let threads = parallel::threads();
-    // With one thread, one band; with more, three per thread to balance the load.
+    // One band with one thread; otherwise three bands per thread, to balance the load.
     let bands = if threads == 1 { 1 } else { 3 * threads };
     receivers.window().height.div_ceil(bands).max(FEWEST_ROWS)
 }
 
-/// Minimum number of rows of a band: the trunk grows with the number of bands.
+/// Minimum number of rows of a band, because the trunk grows with the number of bands.
 const FEWEST_ROWS: usize = 128;
 
 /// [`accumulate`] with bands of `rows` rows.
@@ -218,11 +218,11 @@ fn accumulate_in<E: Send>(
     Ok(Accumulation { area, discharge: None, trunk: trunk.order, bands })
 }
 
-/// Cells that receive water from other bands.
+/// The cells that receive water from other bands, and everything downstream of them.
 struct Trunk {
     /// The cells, each after its receiver.
     order: Vec<u32>,
-    /// Whether each cell belongs to the trunk; empty if there is one band.
+    /// Whether each cell belongs to the trunk; empty if there is only one band.
     marks: Vec<bool>,
 }
 
@@ -243,7 +243,7 @@ impl Trunk {
         trunk
     }
 
-    /// Adds the cells downstream of `from`, up to the first one that is already included.
+    /// Adds `from` and the cells downstream of it, up to the first one that is already included.
     fn follow(&mut self, receivers: &Receivers, from: usize) {
         let (start, mut cell) = (self.order.len(), from);
         while !self.marks[cell] {

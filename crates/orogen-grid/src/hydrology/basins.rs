@@ -1,12 +1,12 @@
-//! Basins: the cells that drain to one pit, and the passes between them.
+//! Basins: sets of cells that drain to one pit, and the passes between them.
 //!
 //! Filling, carving and lakes all need, for each pit, the level at which water spills and the pass over which it
-//! leaves. Instead of flooding cell by cell (Priority-Flood, Barnes, Lehman and Mulla 2014) this module floods the
+//! leaves. Instead of flooding cell by cell (Priority-Flood, Barnes, Lehman and Mulla 2014), this module floods the
 //! graph of basins, as in Barnes, "Parallel Priority-Flood depression filling for trillion cell digital elevation
 //! models" (2016), and Cordonnier, Bovy and Braun, "A versatile, linear complexity algorithm for flow routing in
-//! topographies with depressions" (2019). The graph has a few per cent as many nodes as the map has cells. The water
-//! levels have the same bits, because both algorithms take, over all paths to an outlet, the minimum of the highest
-//! cell on the path.
+//! topographies with depressions" (2019). The number of nodes of the graph is a few percent of the number of cells. The
+//! water levels have the same bits, because both algorithms compute the minimum, over all paths to an outlet, of the
+//! highest cell on the path.
 
 use super::direction::{NONE, neighbor, opposite, strides};
 use super::outlets::Outlets;
@@ -24,9 +24,9 @@ pub const OUTSIDE: u32 = 0;
 pub struct Basins {
     /// The basin of each cell, row-major; [`OUTSIDE`] for cells that drain to an outlet.
     pub labels: Vec<u32>,
-    /// The spill of each basin, indexed by label. The entry of the outside is empty.
+    /// The spill of each basin, indexed by label. The entry of [`OUTSIDE`] has no meaning.
     pub spills: Vec<Spill>,
-    /// The labels of all basins except the outside, each after the basin that it spills into.
+    /// The labels of all basins except [`OUTSIDE`], each after the basin that it spills into.
     pub order: Vec<u32>,
 }
 
@@ -47,10 +47,8 @@ pub struct Spill {
 
 /// Finds the basins of `receivers` and floods them. Every cell must lead to an outlet or to a single pit (see
 /// [`flats::resolve`](super::flats::resolve)).
-///
-/// Of equally low passes the first in row order is used. Costs O(cells + basins log basins).
-///
-/// `phase` is called after each of the three phases; its error ends the work.
+/// Of equally low passes the first in row order is used. `phase` is called after each of the three phases; its error
+/// ends the work. The time is O(cells + basins log basins).
 pub(super) fn find_basins<E>(
     heights: &Grid,
     outlets: &Outlets,
@@ -72,7 +70,7 @@ pub(super) fn find_basins<E>(
     Ok(basins)
 }
 
-/// The basin of each cell and the pit of each basin (no cell for the outside). Only cells that drain to a pit are
+/// The basin of each cell, and the pit of each basin ([`OUTSIDE`] has none). Only cells that drain to a pit are
 /// visited.
 fn label(outlets: &Outlets, receivers: &Receivers) -> (Vec<u32>, Vec<u32>) {
     let codes = receivers.codes();
@@ -94,7 +92,7 @@ fn label(outlets: &Outlets, receivers: &Receivers) -> (Vec<u32>, Vec<u32>) {
 /// For each set of directions: the number of directions and their strides.
 type Children = [(u32, [i32; 8]); 256];
 
-/// [`Children`] on a grid of this width.
+/// [`Children`] on a grid with `width` columns.
 fn children(width: usize) -> Box<Children> {
     let strides = strides(width);
     let mut table = Box::new([(0, [0; 8]); 256]);
@@ -109,9 +107,10 @@ fn children(width: usize) -> Box<Children> {
     table
 }
 
-/// Removes cells from the end of a list and appends their donors until the list is empty; visits all of them.
+/// Takes cells from the end of a list and appends their donors until the list is empty; calls `visit` for each cell.
 ///
-/// Takes sixteen cells at a time and always writes eight donors per cell, which avoids unpredictable branches.
+/// Sixteen cells are taken at a time, and eight donors are always written per cell, which avoids unpredictable
+/// branches.
 fn climb(waiting: &mut Vec<u32>, donors: &[u8], children: &Children, mut visit: impl FnMut(u32)) {
     const BATCH: usize = 16;
     let mut count = waiting.len();
@@ -139,21 +138,20 @@ fn climb(waiting: &mut Vec<u32>, donors: &[u8], children: &Children, mut visit: 
 #[derive(Debug, Clone, Copy)]
 #[doc(hidden)]
 pub struct Pass {
-    /// The higher of the two cells.
+    /// The height of the higher one of the two cells.
     pub height: f32,
-    /// The cell from which `code` leads to the other one.
+    /// The cell from which `code` leads to the other cell.
     pub from: u32,
     /// The direction: east, south-east, south or south-west.
     pub code: u8,
-    /// The two basins, that of `from` first.
+    /// The labels of the two basins; the basin of `from` is the first.
     pub basins: [u32; 2],
 }
 
-/// Cells of a row that are tested together.
+/// Number of cells of a row that are tested together.
 const RUN: usize = 16;
 
-/// A hash with one multiplication. The keys are pairs of labels, which are spread well enough and not chosen by an
-/// adversary.
+/// A hash with one multiplication. The keys are pairs of labels, which vary enough and are not chosen by an adversary.
 #[derive(Default)]
 struct PairHasher(u64);
 
@@ -170,14 +168,14 @@ impl Hasher for PairHasher {
     }
 }
 
-/// The lowest pass between each pair of adjacent basins, in the order in which the pairs are first met, row by row.
+/// The lowest pass between each pair of adjacent basins, in the order in which the pairs occur, row by row.
 #[doc(hidden)]
 #[must_use]
 pub fn passes(heights: &Grid, labels: &[u32]) -> Vec<Pass> {
     let width = heights.width();
     let mut found = Found { passes: Vec::new(), known: HashMap::default(), last_key: u64::MAX, last: 0 };
     for (j, here) in labels.chunks(width.max(1)).enumerate() {
-        // The last row is compared with itself, which finds its own passes a second time.
+        // The last row is compared with itself, which finds the passes within it a second time.
         let beneath = (j + 1).min(heights.height() - 1);
         let below = &labels[beneath * width..(beneath + 1) * width];
         let (h, h_below) = (heights.row(j), heights.row(beneath));
@@ -203,7 +201,7 @@ pub fn passes(heights: &Grid, labels: &[u32]) -> Vec<Pass> {
 struct Found {
     passes: Vec<Pass>,
     known: HashMap<u64, u32, BuildHasherDefault<PairHasher>>,
-    /// The last pair: adjacent passes in a row mostly separate the same two basins.
+    /// The last pair. Consecutive passes in a row mostly separate the same two basins.
     last_key: u64,
     last: u32,
 }
@@ -249,7 +247,7 @@ impl Found {
 
 /// Floods the graph from the outside, always over the lowest known pass (Prim's algorithm).
 fn flood(passes: &[Pass], basins: &mut Basins, strides: &[isize; 8]) {
-    // The passes grouped by basin: those of basin b are at starts[b] .. starts[b + 1].
+    // The passes grouped by basin: those of basin b are starts[b] .. starts[b + 1].
     let count = basins.spills.len();
     let mut starts = vec![0u32; count + 1];
     for b in passes.iter().flat_map(|pass| pass.basins) {

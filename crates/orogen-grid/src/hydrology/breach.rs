@@ -1,4 +1,4 @@
-//! Breaching: depressions drained by channels.
+//! Breaching: draining depressions with channels.
 
 use super::accumulation::{Accumulation, accumulate, accumulate_with};
 use super::drainage::Drainage;
@@ -9,10 +9,10 @@ use crate::error;
 use crate::grid::Grid;
 use crate::progress::Progress;
 
-/// The heights without depressions. A channel along the path of `drainage` drains each depression; it is at most
-/// `deepest` metres deep, and the part of the depression that lies deeper is filled first (after Lindsay 2016,
-/// "Efficient hybrid breaching-filling sink removal methods for flow path enforcement in digital elevation models").
-/// `deepest` = 0 only fills, infinity only cuts.
+/// The heights without depressions. A channel along the path of `drainage` drains each depression. The channel is at
+/// most `deepest` metres deep; the part of a depression below it is filled first (after Lindsay 2016, "Efficient hybrid
+/// breaching-filling sink removal methods for flow path enforcement in digital elevation models"). `deepest` = 0 only
+/// fills, infinity only cuts.
 ///
 /// In the result no receiver of `drainage` is higher than its donor. Outlets keep their heights. Costs O(cells).
 #[must_use]
@@ -44,18 +44,18 @@ pub fn breach_with(
     Ok(out)
 }
 
-/// Depressions filled as far as cuts do not drain them.
+/// The heights with depressions filled up to the level to which the cuts drain them.
 fn drained(heights: &Grid, drainage: &Drainage, deepest: f32) -> Grid {
     let mut out = filled(heights, &drainage.basins);
     for ((level, h), label) in out.data_mut().iter_mut().zip(heights.data()).zip(&drainage.basins.labels) {
-        // The level down to which a cut of that depth through the pass drains the basin.
+        // The level down to which a cut of the maximum depth through the pass drains the basin.
         let drained = drainage.basins.spills[*label as usize].level - deepest;
         *level = if drained > *h { drained.min(*level) } else { *h };
     }
     out
 }
 
-/// Lowers each receiver to its donors.
+/// Lowers each receiver to the height of its donors.
 fn cut<E>(
     heights: &mut Grid,
     outlets: &Outlets,
@@ -96,7 +96,7 @@ mod tests {
                     assert!(deepest > 0.0 || new == full);
                     assert!(deepest < f32::INFINITY || new <= old, "only cut");
                     let receiver = drainage.receivers.of(c);
-                    // An outlet is not lowered, so a channel that ends below it is a pond.
+                    // An outlet is not lowered, so a pond remains where a channel ends below it.
                     assert!(outlets.at(receiver) || out.data()[receiver] <= new);
                 }
             }

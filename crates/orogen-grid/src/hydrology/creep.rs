@@ -1,4 +1,4 @@
-//! Soil creep: linear diffusion, which rounds the terrain that rivers have cut.
+//! Soil creep: linear diffusion, which rounds the terrain that rivers have eroded.
 
 use super::outlets::Outlets;
 use crate::error::Result;
@@ -9,10 +9,10 @@ use crate::progress::Progress;
 /// Linear diffusion of the heights, dh/dt = D (d2h/dx2 + d2h/dy2) (Culling 1960). `amount` is D times the time, in m^2.
 /// Outlets keep their heights.
 ///
-/// Uses the nine-point Laplacian (4 for a side, 1 for a corner, over 6), whose error is isotropic, and the stages of
-/// Runge-Kutta-Legendre (Meyer, Balsara and Aslam 2014, first order): s stages are stable for s (s + 1) / 2 times the
-/// longest explicit step. The cost is O(cells) times 1 + 5.3 sqrt(amount) / cell; rows are computed in parallel. The
-/// diffusion length is limited to the width of the map.
+/// The nine-point Laplacian (4 for a side, 1 for a corner, over 6) has an isotropic error. Time is advanced with the
+/// stages of Runge-Kutta-Legendre (Meyer, Balsara and Aslam 2014, first order): s stages are stable for s (s + 1) / 2
+/// times the longest explicit step. The time is O(cells) times 1 + 5.3 sqrt(amount) / cell. Rows are computed in
+/// parallel. The diffusion length is limited to the width of the map.
 ///
 /// # Errors
 /// If the work is cancelled.
@@ -20,15 +20,15 @@ pub fn creep(heights: &mut Grid, outlets: &Outlets, amount: f64, progress: &Prog
     creep_again(heights, outlets, amount, &mut Vec::new(), progress)
 }
 
-/// How a map creeps by an amount: the amount in squared cells, the number of strides, and the stages of each. `None` if
-/// nothing moves.
+/// The amount in squared cells, the number of strides, and the number of stages in each stride. `None` if nothing
+/// changes.
 fn strides(window: &Window, amount: f64) -> Option<[f64; 3]> {
     let widest = (window.width * window.width + window.height * window.height) as f64;
     let whole = (amount / (window.cell * window.cell)).min(widest);
     if window.width < 3 || window.height < 3 || !(whole > 0.0 && whole.is_finite()) {
         return None;
     }
-    // A single stride of many stages oscillates; after four the remaining oscillation is invisible.
+    // A single stride of many stages oscillates. After four strides the remaining oscillation is invisible.
     let strides = if whole > LONGEST { 4.0 } else { 1.0 };
     let mut stages = 1.0;
     while LONGEST * stages * (stages + 1.0) / 2.0 < whole / strides {
@@ -42,8 +42,8 @@ pub(super) fn creep_stages(window: &Window, amount: f64) -> f64 {
     strides(window, amount).map_or(0.0, |[_, strides, stages]| strides * stages)
 }
 
-/// How a map creeps by an amount: the number of strides, the stages of each, and the amount of a stage in squared cells
-/// before its own factor. `None` if nothing moves.
+/// The number of strides, the number of stages in each stride, and the amount of a stage in squared cells, before the
+/// stage's own factor. `None` if nothing changes.
 #[doc(hidden)]
 #[must_use]
 pub fn creep_strides(window: &Window, amount: f64) -> Option<[f64; 3]> {
@@ -51,7 +51,7 @@ pub fn creep_strides(window: &Window, amount: f64) -> Option<[f64; 3]> {
     Some([strides, stages, whole / strides * 2.0 / (stages * (stages + 1.0))])
 }
 
-/// [`creep`] for repeated use on one map: `buffers`, empty at first, avoids new allocations.
+/// [`creep`] for repeated use on one map. `buffers` must be empty at first and avoids new allocations.
 pub(super) fn creep_again(
     heights: &mut Grid,
     outlets: &Outlets,
@@ -77,10 +77,10 @@ pub(super) fn creep_again(
     Ok(())
 }
 
-/// The longest explicit step, in squared cells: beyond 0.3 a cell would give away more than it has.
+/// The longest explicit step, in squared cells. Beyond 0.3 a cell would lose more than it has.
 const LONGEST: f64 = 0.29;
 
-/// One stage: extrapolates from `last` to `here` by the first factor, and adds the inflow times the second.
+/// One stage: extrapolates the change from `last` to `here` by the first factor, and adds the inflow times the second.
 fn advance(here: &Grid, last: &Grid, outlets: &Outlets, [again, share]: [f32; 2], next: &mut Grid) {
     let (width, height) = (here.width(), here.height());
     let rows = next.data_mut().chunks_mut(width).enumerate().take(height.max(1) - 1).skip(1);

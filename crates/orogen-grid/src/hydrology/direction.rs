@@ -6,17 +6,17 @@
 /// The code of a cell without a receiver.
 pub const NONE: u8 = 8;
 
-/// The offset of each direction: columns east and rows south.
+/// The offset of each direction: columns to the east and rows to the south.
 pub const STEPS: [(isize, isize); 8] = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)];
 
-/// The offset of each direction in a row-major grid of this width.
+/// The offset of each direction in a row-major grid with `width` columns.
 #[must_use]
 pub fn strides(width: usize) -> [isize; 8] {
     STEPS.map(|(east, south)| south * width as isize + east)
 }
 
-/// The sample at `stride` from sample `index`. Only for samples that are not on the grid's border and have all
-/// neighbors.
+/// The index of the sample at the offset `stride` from sample `index`. Only valid for samples that have all eight
+/// neighbors, which those on the border of the grid do not.
 #[inline(always)]
 #[must_use]
 pub fn neighbor(index: usize, stride: isize) -> usize {
@@ -29,7 +29,7 @@ pub fn opposite(code: u8) -> u8 {
     (code + 4) & 7
 }
 
-/// Whether a direction is diagonal, with a distance of sqrt(2) cells.
+/// Whether a direction is diagonal; its distance is then sqrt(2) cells.
 #[must_use]
 pub fn is_diagonal(code: u8) -> bool {
     code & 1 == 1
@@ -47,7 +47,7 @@ pub const DISTANCES: [f64; 8] = [
     std::f64::consts::SQRT_2,
 ];
 
-/// The numbers that a program uses for the eight directions and for "no direction", in the order of our codes.
+/// The numbers that another program uses for the eight directions and for "no direction", in the order of our codes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Convention([u8; 9]);
 
@@ -63,16 +63,16 @@ impl Convention {
     /// The keys of a numeric keypad.
     pub const PCRASTER: Convention = Convention([6, 3, 2, 1, 4, 7, 8, 9, 5]);
 
-    /// The number of one of our codes; for any other value, that of [`NONE`].
+    /// The number for one of our codes; any other value gives the number for [`NONE`].
     #[must_use]
     pub fn of(self, code: u8) -> u8 {
         self.0[usize::from(code.min(NONE))]
     }
 }
 
-/// A hash of a sample's position on the lattice, for choices between equals. Such choices have no directional bias and
-/// do not depend on the window. (Multiplication and xor-shifts as in splitmix64's finaliser, Steele, Lea and Flood
-/// 2014.)
+/// A hash of a sample's position on the lattice, to choose between equal candidates. Such choices have no directional
+/// bias and do not depend on the window. The multiplication and xor-shifts are those of splitmix64's finalizer (Steele,
+/// Lea and Flood 2014).
 #[inline]
 #[must_use]
 pub fn hashed(x: i64, y: i64) -> u32 {
@@ -82,12 +82,12 @@ pub fn hashed(x: i64, y: i64) -> u32 {
     (z >> 32) as u32
 }
 
-/// Chooses one direction of a set by a hash; bit k of `set` is direction k. [`NONE`] for an empty set.
+/// Chooses one direction of a set with a hash. Bit k of `set` stands for direction k. [`NONE`] for an empty set.
 #[inline]
 #[must_use]
 pub fn one_of(set: u8, hash: u32) -> u8 {
     if set & set.wrapping_sub(1) == 0 {
-        // No choice: at most one direction.
+        // At most one direction, so there is no choice.
         return set.trailing_zeros() as u8;
     }
     let mut rest = set;

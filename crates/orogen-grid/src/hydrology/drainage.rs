@@ -14,18 +14,18 @@ use std::convert::Infallible;
 /// Receivers that lead from every cell to an outlet.
 #[derive(Debug, Clone)]
 pub struct Drainage {
-    /// Free of cycles; [`NONE`](super::direction::NONE) at outlets only.
+    /// Free of cycles. Only outlets have [`NONE`](super::direction::NONE).
     pub receivers: Receivers,
-    /// The basins before their water was routed out.
+    /// The basins before the drainage was routed out of them.
     pub basins: Basins,
 }
 
-/// Drainage along the terrain, below the water of lakes. Each cell drains to its steepest lower neighbor. In a
-/// depression this leads to the pit. From the pit the path from the pass down to the pit is reversed, so that water
-/// flows to the pass and out (Cordonnier, Bovy and Braun 2019: carving).
+/// Drainage along the terrain, also below the water of lakes. Each cell drains to its steepest lower neighbor. In a
+/// depression this leads to the pit. The path from the pass down to the pit is then reversed, so that water flows from
+/// the pit to the pass and out (carving; Cordonnier, Bovy and Braun 2019).
 ///
-/// The drainage of a lake's bed therefore follows its valleys; on the *filled* surface it would have to be invented on
-/// level water.
+/// The drainage of a lake's bed therefore follows its valleys. On a filled surface the directions on level water would
+/// be arbitrary.
 #[must_use]
 pub fn route_carving(heights: &Grid, outlets: &Outlets, descent: Descent) -> Drainage {
     let Ok(drainage) = route_bed(heights, outlets, descent, || Ok::<(), Infallible>(()));
@@ -84,8 +84,8 @@ fn lead_out(way: &Spill, receivers: &mut Receivers) {
     }
 }
 
-/// Drainage of a surface without depressions, such as [`filled`](super::fill::filled) heights: steepest descent, and
-/// [`flats::resolve`] on level ground.
+/// Drainage of a surface without depressions, such as [`filled`](super::fill::filled) heights: steepest descent on
+/// slopes, and [`flats::resolve`] on level ground.
 #[must_use]
 pub fn over_surface(filled: &Grid, outlets: &Outlets, descent: Descent) -> Receivers {
     let mut receivers = steepest::receivers(filled, outlets, descent);

@@ -11,7 +11,7 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::progress::Progress;
 
-/// Parameters of a run of the stream power law.
+/// Parameters of an erosion run with the stream power law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Erosion {
@@ -21,9 +21,9 @@ pub struct Erosion {
     pub creep: f64,
     /// Duration, in years.
     pub years: f64,
-    /// Number of steps. Each step routes the water again.
+    /// Number of steps. Each step routes the water anew.
     pub steps: u32,
-    /// Salt of the random receivers in each step; none for steepest descent.
+    /// Salt of the random receivers in each step; `None` for steepest descent.
     pub scattered: Option<u32>,
     /// Jitter: displacement of the points from the lattice, as a share of half a cell, 0 to 1. Receivers are never
     /// random between jittered points.
@@ -31,7 +31,7 @@ pub struct Erosion {
 }
 
 impl Erosion {
-    /// A run of the law over this many years and steps, without creep, by steepest descent on the lattice.
+    /// A run with this law, duration and number of steps, without creep, with steepest descent on the lattice.
     #[must_use]
     pub const fn new(law: StreamPower, years: f64, steps: u32) -> Erosion {
         Erosion { law, creep: 0.0, years, steps, scattered: None, jitter: 0.0 }
@@ -73,7 +73,7 @@ impl Erosion {
         run.finish(heights, &progress.part(ErosionRun::FINISHING))
     }
 
-    /// The work of a whole run, in units of a step.
+    /// The work of a whole run; a step counts as 1.
     #[must_use]
     pub fn work(&self) -> f64 {
         f64::from(self.steps) + ErosionRun::FINISHING
@@ -101,12 +101,12 @@ impl Erosion {
     }
 }
 
-/// A run between two of its steps.
+/// The state of a run between two steps.
 pub struct ErosionRun<'a> {
     erosion: Erosion,
     ground: &'a Substrate<'a>,
     outlets: Outlets,
-    /// The positions of the heights during the run, if they are not on the lattice.
+    /// The irregular points of the heights during the run; `None` for the lattice.
     points: Option<Points>,
     buffers: Vec<Grid>,
     /// Number of completed steps.
@@ -114,7 +114,7 @@ pub struct ErosionRun<'a> {
 }
 
 impl<'a> ErosionRun<'a> {
-    /// The work after the last step, in units of a step.
+    /// The work after the last step; a step counts as 1.
     pub const FINISHING: f64 = 2.0;
 
     /// The state before the first step.
@@ -125,14 +125,14 @@ impl<'a> ErosionRun<'a> {
         ErosionRun { erosion, ground, outlets: Outlets::new(heights, sea_level), points, buffers: Vec::new(), done: 0 }
     }
 
-    /// Computes the next step. Between steps the heights are those of the run's points.
+    /// Computes the next step. Between steps the heights are those at the run's points.
     ///
     /// # Errors
     /// If the work is cancelled.
     pub fn step(&mut self, heights: &mut Grid, progress: &Progress) -> Result<()> {
         let Erosion { years, steps, creep, scattered, .. } = self.erosion;
         let years = years / f64::from(steps.max(1));
-        // Different random receivers in each step: on average, water spreads over a slope as it does in nature.
+        // Random receivers differ in each step, so that on average water spreads over a slope as it does in nature.
         let descent = match (&self.points, scattered) {
             (Some(points), _) => Descent::Interpolation(points),
             (None, Some(seed)) => Descent::Scattered(seed.wrapping_add(self.done)),
@@ -149,7 +149,7 @@ impl<'a> ErosionRun<'a> {
         Ok(())
     }
 
-    /// Computes the final heights of a run that ends here: on the lattice and drained.
+    /// Computes the final heights of a run that ends after this step: on the lattice and drained.
     ///
     /// # Errors
     /// If the work is cancelled.
@@ -158,14 +158,14 @@ impl<'a> ErosionRun<'a> {
         let mut last = self.erosion;
         if let Some(points) = &self.points {
             points.onto_lattice(heights, &self.outlets);
-            // Slopes above the limit have already slid between the points; applying the limit on the lattice would
-            // create facets.
+            // The limit on slopes was already applied between the points; applying it on the lattice would create
+            // facets.
             last.law.max_slope = f64::INFINITY;
         }
         last.cut(heights, &self.outlets, self.ground, Descent::Steepest, 0.0, progress)
     }
 
-    /// Does the same as [`ErosionRun::settle`], and returns the flow accumulation of the heights.
+    /// Like [`ErosionRun::settle`]; also returns the flow accumulation of the final heights.
     ///
     /// # Errors
     /// If the work is cancelled.
@@ -257,7 +257,7 @@ mod tests {
 
     #[test]
     fn slopes_between_irregular_points_do_not_face_the_grids_directions() {
-        // Uplift until the ground has the talus angle everywhere.
+        // Uplift until all ground has the maximum slope.
         let heights = samples::hills(160, 160, 3);
         let aligned = |jitter: f64| {
             let law = StreamPower { uplift: 1.0, erodibility: 1e-6, max_slope: 0.8, ..StreamPower::default() };
@@ -274,8 +274,8 @@ mod tests {
             }
             f64::from(bins[4]) / f64::from(bins.iter().sum::<u32>())
         };
-        // On the regular grid nearly all slopes are between two of its directions; otherwise each ninth contains a
-        // ninth of them.
+        // On the regular grid nearly all slopes are between two of its directions. On irregular points each ninth of
+        // the directions has a ninth of the slopes.
         let (regular, jitter) = (aligned(0.0), aligned(1.0));
         assert!(regular > 0.9 && (0.08..0.14).contains(&jitter), "{regular} {jitter}");
     }

@@ -7,17 +7,17 @@ use super::steepest::Descent;
 use crate::grid::Grid;
 use crate::parallel;
 
-/// The heights with every depression filled to its spill level: the lowest surface on which every cell has a path to an
-/// outlet that never rises. Equal to Priority-Flood without an epsilon (Barnes, Lehman and Mulla 2014), bit for bit;
-/// filled areas are level.
+/// The heights with every depression filled to its spill level. This is the lowest surface on which every cell has a
+/// path to an outlet that never rises. The result has the same bits as Priority-Flood without an epsilon (Barnes,
+/// Lehman and Mulla 2014), and filled areas are level.
 ///
-/// Heights that are not finite stay, and their neighbors are outlets. Costs O(cells).
+/// Heights that are not finite are unchanged, and their neighbors are outlets. The time is O(cells).
 #[must_use]
 pub fn fill(heights: &Grid, outlets: &Outlets) -> Grid {
     filled(heights, &drainage::route_carving(heights, outlets, Descent::Steepest).basins)
 }
 
-/// [`fill`] with known basins.
+/// [`fill`] with basins that are already known.
 #[must_use]
 pub fn filled(heights: &Grid, basins: &Basins) -> Grid {
     let mut out = heights.clone();
@@ -41,7 +41,7 @@ mod tests {
     use crate::hydrology::direction::{neighbor, strides};
     use crate::hydrology::samples;
 
-    /// Planchon and Darboux (2002): starts with infinitely high water, which sinks until the heights are stable.
+    /// The method of Planchon and Darboux (2002): infinitely high water sinks until the heights are stable.
     fn sunk(heights: &Grid, outlets: &Outlets) -> Vec<f32> {
         let h = heights.data();
         let strides = strides(heights.width());

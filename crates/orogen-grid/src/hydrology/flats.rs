@@ -1,14 +1,13 @@
 //! Drainage over flats, where no neighbor is lower.
 //!
 //! After Barnes, Lehman and Mulla, "An efficient assignment of drainage direction over flat surfaces in raster digital
-//! elevation models" (2014). Two integer gradients are added: twice the number of steps to the flat's lower rim, and
-//! the steps away from the higher ground around it. Each cell drains down their sum. A step towards the rim lowers the
-//! sum by two while the other part changes by at most one, so the sum has no pits. Barnes and others take the first of
-//! equally low neighbors, which gives straight parallel lines on the flat; here a hash of the cell's position chooses,
-//! and lines wander and join.
+//! elevation models" (2014). Two integer gradients are added: twice the number of steps to the flat's lower rim, and a
+//! gradient away from the higher ground around it. Each cell drains in the direction in which the sum falls. A step
+//! towards the rim lowers the sum by two while the other part changes by at most one, so the sum has no pits. Barnes
+//! and others take the first of equally low neighbors, which gives straight parallel lines on the flat. Here a hash of
+//! the cell's position chooses, so that lines wander and join.
 //!
-//! A flat without a lower rim is *closed*. All its cells drain to one of them, the first in row order, which remains a
-//! pit.
+//! A flat without a lower rim is *closed*. All its cells drain to its first cell in row order, which remains a pit.
 
 use super::direction::{NONE, hashed, neighbor, one_of, strides};
 use super::outlets::Outlets;
@@ -19,8 +18,8 @@ use std::hash::{BuildHasherDefault, Hasher};
 
 /// Gives a receiver to every cell that has none, except outlets and one cell of each closed flat.
 ///
-/// `receivers` must come from [`steepest`](super::steepest) on the same heights. Costs O(cells in flats) and one test
-/// per cell.
+/// `receivers` must come from [`steepest`](super::steepest) on the same heights. The time is O(cells in flats), plus
+/// one test per cell.
 pub fn resolve(heights: &Grid, outlets: &Outlets, receivers: &mut Receivers) {
     let codes = receivers.codes();
     let flat: Vec<u32> = (0..codes.len()).filter(|c| codes[*c] == NONE && !outlets.at(*c)).map(|c| c as u32).collect();
@@ -46,8 +45,8 @@ pub fn resolve(heights: &Grid, outlets: &Outlets, receivers: &mut Receivers) {
     }
 }
 
-/// The index of each flat cell in the list of flat cells. Most terrain has few, so a table of the whole map would be
-/// mostly empty.
+/// The index of each flat cell in the list of flat cells. Most terrain has few flat cells, so a table of the whole map
+/// would be mostly empty.
 enum Places {
     Few(HashMap<u32, u32, BuildHasherDefault<CellHasher>>),
     Many(Vec<u32>),
@@ -93,7 +92,7 @@ impl Hasher for CellHasher {
     }
 }
 
-/// A flat cell without a distance yet.
+/// The distance of a flat cell that is not known yet.
 const UNMEASURED: u32 = u32::MAX;
 
 struct Flats<'a> {
@@ -102,14 +101,14 @@ struct Flats<'a> {
     /// All cells of flats, in row order.
     cells: Vec<u32>,
     places: Places,
-    /// Steps from the higher ground, from 1, by index.
+    /// Steps from the higher ground, from 1, by index of the flat cell.
     away: Vec<u32>,
-    /// Steps from the rim, from 1, by index; 0 if not computed.
+    /// Steps from the rim, from 1, by index of the flat cell; 0 if not computed.
     toward: Vec<u32>,
 }
 
 impl Flats<'_> {
-    /// The neighbors of a cell with the same height that belong to a flat: their direction and index.
+    /// The flat cells next to a cell with the same height: their direction and index.
     fn beside(&self, cell: usize) -> impl Iterator<Item = (usize, usize)> {
         let h = self.heights[cell];
         let level = move |(k, stride): (usize, &isize)| {
@@ -181,7 +180,7 @@ impl Flats<'_> {
         }
     }
 
-    /// The set of directions with a neighbor as high as `cell` that has a receiver of its own.
+    /// The set of directions with a neighbor as high as `cell` that has a receiver.
     fn drained_beside(&self, cell: usize) -> u8 {
         let h = self.heights[cell];
         let mut set = 0;
@@ -202,7 +201,7 @@ impl Flats<'_> {
     fn receiver(&self, place: usize, hash: u32) -> u8 {
         let cell = self.cells[place] as usize;
         if self.toward[place] == 1 {
-            // At the rim; or the pit of a closed flat, where the set is empty.
+            // The cell is at the rim, or it is the pit of a closed flat, where the set is empty.
             return one_of(self.drained_beside(cell), hash);
         }
         let (mut least, mut set) = (self.sum(place), 0);
@@ -232,7 +231,7 @@ mod tests {
         (outlets, receivers)
     }
 
-    /// The cells of equal height connected to `start`, by a simple search.
+    /// The cells of equal height that are connected to `start`, by a simple search.
     fn level_ground(heights: &Grid, start: usize) -> Vec<usize> {
         let (h, strides) = (heights.data(), strides(heights.width()));
         let outlets = Outlets::new(heights, None);
@@ -267,7 +266,7 @@ mod tests {
                 if outlets.at(at) {
                     continue;
                 }
-                // A pit: its level ground has no outlet and no lower neighbor, and it is the only pit there.
+                // In a pit, the level ground has no outlet and no lower neighbor, and this is the only pit on it.
                 let ground = level_ground(&heights, at);
                 for g in &ground {
                     assert!(!outlets.at(*g) && (*g == at || receivers.code(*g) != NONE));
@@ -303,8 +302,8 @@ mod tests {
 
     #[test]
     fn lines_over_a_flat_do_not_run_parallel() {
-        // On a wide level plain that drains to one side, equal steps offer three ways each: most cells must not simply
-        // go straight.
+        // On a wide level plain that drains to one side, three directions are equally good at each cell, and most cells
+        // must not go straight.
         let mut heights = Grid::filled(Window::new(102, 102, 1.0), 1.0);
         heights.row_mut(101).fill(0.0);
         let (_, receivers) = resolved(&heights);

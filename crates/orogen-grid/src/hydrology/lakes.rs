@@ -13,7 +13,7 @@ use crate::progress::Progress;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Lake {
-    /// Height of the water surface.
+    /// Height of the water surface, in metres.
     pub level: f32,
     /// The deepest cell; the first in row order if there are several.
     pub deepest: u32,
@@ -24,7 +24,7 @@ pub struct Lake {
 }
 
 impl Lake {
-    /// A lake with this level, before its samples are counted.
+    /// A lake with this level, before its cells are counted.
     pub(crate) fn at(level: f32, deepest: u32) -> Lake {
         Lake { level, deepest, outlet: deepest, cells: 0 }
     }
@@ -44,11 +44,12 @@ pub struct Lakes {
     pub surface: Grid,
 }
 
-/// Slope of raised ground, rise over run: a typical slope of sediment.
+/// Minimum slope of raised ground, rise over run, which is typical of sediment.
 #[doc(hidden)]
 pub const MIN_SLOPE: f64 = 1e-4;
 
-/// Fills every depression of at least `fewest` cells with water up to its spill level, and smaller ones with sediment.
+/// Fills every depression of at least `fewest` cells with water up to its spill level, and fills smaller ones with
+/// sediment.
 ///
 /// `drainage` must come from [`route_carving`](super::drainage::route_carving) on the same heights. In the result every
 /// land cell is higher than its receiver up to a lake's shore, the sea or the border, and every lake's outlet drains.
@@ -84,8 +85,8 @@ pub fn lakes_with(
     Ok(found)
 }
 
-/// The connected cells under water. Adjacent cells under water have the same level, otherwise the higher water would
-/// drain.
+/// Finds the connected cells under water. Adjacent cells under water have the same level, because otherwise the higher
+/// water would drain.
 fn find<E>(heights: &Grid, drainage: &Drainage, fewest: u32, check: &impl Fn() -> Result<(), E>) -> Result<Lakes, E> {
     let (h, basins) = (heights.data(), &drainage.basins);
     let under = |c: usize| h[c] < basins.spills[basins.labels[c] as usize].level;
@@ -133,7 +134,7 @@ fn find<E>(heights: &Grid, drainage: &Drainage, fewest: u32, check: &impl Fn() -
     Ok(Lakes { labels, lakes, bed: heights.clone(), surface: heights.clone() })
 }
 
-/// From the outlets upstream, raises land above its receiver, and lakes to the level of their outlet.
+/// Raises land above its receiver and lakes to the level of their outlet, from the outlets upstream.
 fn raise<E>(
     found: &mut Lakes,
     outlets: &Outlets,
@@ -153,8 +154,8 @@ fn raise<E>(
             let below = surface[drainage.receivers.of(c)];
             let rise = DISTANCES[usize::from(drainage.receivers.code(c) & 7)] * cell * MIN_SLOPE;
             let least = (f64::from(below) + rise) as f32;
-            // In f32 the minimum rise may round to nothing, but the cell must drain. Dry ground that is higher than its
-            // receiver stays.
+            // In f32 the minimum rise may be rounded away, but the cell must drain. Dry ground that is higher than its
+            // receiver is unchanged.
             if bed[c] <= below {
                 bed[c] = if least > below { least } else { below.next_up() };
             }

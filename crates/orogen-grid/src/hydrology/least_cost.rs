@@ -1,4 +1,4 @@
-//! Least-cost breaching: depressions drained by the channels with the least excavation.
+//! Least-cost breaching: draining depressions with the channels that need the least excavation.
 
 use super::direction::{DISTANCES, NONE, neighbor, opposite, strides};
 use super::outlets::Outlets;
@@ -21,7 +21,7 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Cuts up to this depth in metres, along channels of up to this length in cells.
+    /// Limits for cuts, in metres, and for lengths of channels, in cells.
     #[must_use]
     pub const fn new(deepest: f32, longest: u32) -> Limits {
         Limits { deepest, longest }
@@ -31,15 +31,15 @@ impl Limits {
 orogen_noise::builder!(Limits: with_deepest(deepest: f32), with_longest(longest: u32));
 
 /// The heights without depressions. From the bottom of each depression a channel is cut to lower ground or an outlet:
-/// the one with the least sum of depth times length within the limits. A depression without such a channel is filled
-/// (Lindsay 2016, "Efficient hybrid breaching-filling sink removal methods for flow path enforcement in digital
+/// the one within the limits that has the least sum of depth times length. A depression without such a channel is
+/// filled (Lindsay 2016, "Efficient hybrid breaching-filling sink removal methods for flow path enforcement in digital
 /// elevation models"; Lindsay and Dhun 2015).
 ///
-/// Depressions are processed from the lowest bottom up, equal ones in row order, each on the ground that the previous
-/// ones left. Of paths with equal cost the first in row order is taken. Beds are level. Unlike
-/// [`breach`](super::breach::breach) a channel may cross a rim anywhere: it goes through a thin dam rather than around
-/// it. Costs O(n log n) for the n cells that the searches visit: those of the depression and around it, up to the
-/// square of the longest channel.
+/// Depressions are processed in the order of their bottoms from the lowest up, equal ones in row order, each on the
+/// ground that the previous ones left. Of paths with equal cost the first in row order is taken. The beds of channels
+/// are level. Unlike with [`breach`](super::breach::breach), a channel may cross a rim anywhere: it cuts through a thin
+/// dam instead of following a long way around it. The time is O(n log n) for the n cells that the searches visit: those
+/// in and around the depression, up to the square of the longest channel.
 ///
 /// # Errors
 /// If the work is cancelled.
@@ -63,10 +63,10 @@ pub fn breach(heights: &Grid, outlets: &Outlets, limits: &Limits, progress: &Pro
     Ok(fill::filled(&out, &drained.basins))
 }
 
-/// Searches between two reports of progress.
+/// Number of searches between two reports of progress.
 const REPORTED: usize = 64;
 
-/// Cells that a search visits between two checks for cancellation.
+/// Number of cells that a search visits between two checks for cancellation.
 const UNCHECKED: usize = 1 << 14;
 
 /// The lowest cell of each depression, the lowest depression first.
@@ -81,7 +81,7 @@ fn bottoms(heights: &Grid, outlets: &Outlets, receivers: &Receivers) -> Vec<usiz
 #[derive(Debug, Clone, Copy)]
 struct Found {
     search: u32,
-    /// Cells from the bottom of the depression.
+    /// Number of cells from the bottom of the depression.
     length: u32,
     cost: f64,
     /// The direction back to the bottom.
@@ -133,7 +133,7 @@ impl Search {
                 self.cut(h, cell, bed);
                 return Ok(());
             }
-            // An outlet is not cut, so no path crosses a higher one.
+            // An outlet is not cut, so no path continues beyond a higher one.
             if outlets.at(cell) || here.length >= limits.longest {
                 continue;
             }
@@ -188,7 +188,7 @@ mod tests {
 
     #[test]
     fn a_thin_dam_is_cut_where_the_valley_would_go_around() {
-        // A bowl with a rim of 3 at the end of a long way to the north, and a thin wall of 5 to the east.
+        // A bowl with a rim of 3 at the end of a long path to the north, and a thin wall of 5 to the east.
         let mut heights = Grid::filled(Window::new(12, 9, 1.0), 20.0);
         heights.row_mut(5)[2..6].copy_from_slice(&[4.0, 2.0, 1.0, 1.5]);
         heights.row_mut(5)[6..].copy_from_slice(&[5.0, 0.8, 0.6, 0.4, 0.2, 0.0]);

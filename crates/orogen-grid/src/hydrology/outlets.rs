@@ -3,7 +3,7 @@
 use super::direction::{neighbor, strides};
 use crate::grid::Grid;
 
-/// The outlets of a map: all cells of the grid's border; cells that are not finite, and their neighbors; cells of the
+/// The outlets of a map: all cells on the grid's border; cells that are not finite, and their neighbors; cells of the
 /// sea. All other cells drain to one of these.
 ///
 /// In a grid of fewer than 3 columns or rows every cell is on the border.
@@ -37,7 +37,8 @@ impl Outlets {
         }
         let strides = strides(width);
         for (i, j) in holes {
-            // Cells beside a hole at the border are border cells, except for inner neighbors: test them all.
+            // Neighbors of a hole at the border are border cells, except those inside the grid, so each neighbor is
+            // tested.
             if i > 0 && j > 0 && i + 1 < width && j + 1 < height {
                 for stride in strides {
                     mask.data_mut()[neighbor(j * width + i, stride)] = true;

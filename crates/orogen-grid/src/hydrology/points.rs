@@ -1,17 +1,17 @@
-//! Irregular points: a mesh without preferred directions.
+//! Irregular points: a mesh without preferred directions of flow.
 //!
-//! On a square lattice water has eight directions, and slopes at the limit form facets that face them: ridges and
-//! valleys align with the grid. A mesh of irregular points has no preferred directions (as in the triangulated models
-//! of Tucker et al., "An object-oriented framework for distributed hydrologic and geomorphic modeling using
-//! triangulated irregular networks", 2001). Here each cell keeps its eight neighbors, but its point is displaced
-//! within the cell. Distances then differ from pair to pair, and the directions of flow and of facets vary.
+//! On a square lattice water has eight directions, and slopes at the limit form facets in these directions, so that
+//! ridges and valleys align with the grid. A mesh of irregular points has no preferred directions (as in the
+//! triangulated models of Tucker et al., "An object-oriented framework for distributed hydrologic and geomorphic
+//! modeling using triangulated irregular networks", 2001). Here each cell keeps its eight neighbors, but its point is
+//! displaced within the cell. Distances then differ from pair to pair, and the directions of flow and of facets vary.
 
 use super::direction::{STEPS, hashed, neighbor, opposite};
 use super::outlets::Outlets;
 use crate::grid::{Grid, Window};
 use crate::parallel;
 
-/// A point for each cell of a map, and the distances between neighbors.
+/// One point for each cell of a map, and the distances between neighbors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Points {
     window: Window,
@@ -22,12 +22,12 @@ pub struct Points {
     inverse_distance: [Vec<f32>; 4],
 }
 
-/// Half a cell: with a larger displacement points could pass each other.
+/// Half a cell. With a larger displacement, points could swap places.
 const FURTHEST: f64 = 0.5;
 
 impl Points {
-    /// Points displaced by up to half of `share` (0 to 1) of a cell along each axis, by a hash of their position and
-    /// `salt`. Holds 16 bytes per cell.
+    /// Points displaced by up to `share` (0 to 1) of half a cell along each axis, by a hash of their position and
+    /// `salt`. Needs 16 bytes per cell.
     #[must_use]
     pub fn new(window: Window, share: f64, salt: u32) -> Points {
         let reach = Points::reach(share);
@@ -69,7 +69,8 @@ impl Points {
         [hash & 0xFFFF, hash >> 16].map(|bits| (bits as f32 * (2.0 / 65535.0) - 1.0) * self.reach)
     }
 
-    /// The inverse distances, in cells, from the inner cells of row `j` to their neighbors, in the order of [`STEPS`].
+    /// The inverse distances, in 1 / cells, from the inner cells of row `j` to their neighbors, in the order of
+    /// [`STEPS`].
     pub(super) fn around(&self, j: usize) -> [&[f32]; 8] {
         let width = self.window.width;
         std::array::from_fn(|code| {
@@ -80,7 +81,7 @@ impl Points {
         })
     }
 
-    /// The inverse distance, in cells, from cell `c` to the neighbor in direction `code`.
+    /// The inverse distance, in 1 / cells, from cell `c` to the neighbor in direction `code`.
     #[inline(always)]
     pub(super) fn inverse_distance(&self, c: usize, code: u8, strides: &[isize; 8]) -> f32 {
         match code {
@@ -89,7 +90,7 @@ impl Points {
         }
     }
 
-    /// Interpolates the heights at the points to the lattice along the local slope. Outlets keep their heights.
+    /// Interpolates the heights at the points to the lattice, along the local slope. Outlets keep their heights.
     pub fn onto_lattice(&self, heights: &mut Grid, outlets: &Outlets) {
         let (width, height) = (self.window.width, self.window.height);
         if self.reach == 0.0 || width < 3 || height < 3 {
@@ -97,7 +98,7 @@ impl Points {
         }
         let before = heights.clone();
         let h = before.data();
-        // Each thread takes several rows, so that an offset is hashed once for the three rows that read it.
+        // Each thread takes several rows, so that an offset is hashed only once for the three rows that use it.
         parallel::for_each(heights.data_mut().chunks_mut(width * ROWS).enumerate(), |(band, rows)| {
             let first = band * ROWS;
             let mut offsets = [Offsets::default(), Offsets::default(), Offsets::default()];
@@ -131,7 +132,7 @@ impl Points {
     }
 }
 
-/// Rows that are interpolated together.
+/// Number of rows that are interpolated together.
 const ROWS: usize = 16;
 
 /// The displacements of a row's points, in cells.
@@ -141,7 +142,7 @@ struct Offsets {
     south: Vec<f32>,
 }
 
-/// The heights at the lattice points of the middle of three rows, except its ends.
+/// The heights at the lattice points of the middle one of three rows, except at its ends.
 fn carry_over(h: [&[f32]; 3], offsets: [&Offsets; 3], row: &mut [f32]) {
     let width = row.len();
     let (here_x, here_y) = (&offsets[1].east[1..width - 1], &offsets[1].south[1..width - 1]);

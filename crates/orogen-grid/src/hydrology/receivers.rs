@@ -14,7 +14,7 @@ pub struct Receivers {
 }
 
 impl Receivers {
-    /// Receivers of which every cell is [`NONE`].
+    /// Receivers with [`NONE`] for every cell.
     #[must_use]
     pub fn none(window: Window) -> Receivers {
         let mut all = [0; 9];
@@ -49,7 +49,7 @@ impl Receivers {
     #[inline(always)]
     #[must_use]
     pub fn of(&self, index: usize) -> usize {
-        // The mask does not change a code; it removes the bounds check.
+        // Codes are at most [`NONE`]; `min` only removes the bounds check.
         let code = self.codes.data()[index];
         neighbor(index, self.strides[usize::from(code.min(NONE))])
     }
@@ -84,7 +84,7 @@ impl Receivers {
     }
 }
 
-/// Marks the cells whose neighbor in this direction drains into them.
+/// Marks the cells into which the neighbor in this direction drains.
 fn mark(sets: &mut [u8], neighbors: &[u8], direction: u8) {
     let here = opposite(direction);
     sets.iter_mut().zip(neighbors).for_each(|(set, code)| *set |= u8::from(*code == here) << direction);

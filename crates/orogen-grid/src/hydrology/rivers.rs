@@ -7,20 +7,20 @@ use crate::error;
 use crate::grid::Grid;
 use crate::progress::Progress;
 
-/// A stretch of river between confluences.
+/// A stretch of a river between confluences.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Reach {
-    /// Its cells, downstream. The last one is the first of the next reach, or the outlet.
+    /// The cells of the reach, downstream. The last one is the first cell of the next reach, or the outlet.
     pub cells: Vec<u32>,
     /// Strahler order.
     pub order: u8,
-    /// The reach that it flows into; none at an outlet.
+    /// The index of the reach that it flows into; `None` at an outlet.
     pub next: Option<u32>,
 }
 
-/// Discharge from a drainage area, and the width and depth of the channel (Leopold and Maddock 1953: w = a Q^0.5, d = c
-/// Q^0.4, with Q in m^3/s).
+/// Converts drainage area to discharge, and discharge to the width and depth of a channel (Leopold and Maddock 1953: w
+/// = a Q^0.5, d = c Q^0.4, with Q in m^3/s).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Channel {
@@ -51,21 +51,22 @@ impl Channel {
         area * self.runoff / YEAR
     }
 
-    /// Width between the banks, in metres.
+    /// Width between the banks in metres, for a discharge in m^3/s.
     #[must_use]
     pub fn width_of(&self, discharge: f64) -> f64 {
         self.width * discharge.max(0.0).sqrt()
     }
 
-    /// Depth from bank to bed, in metres.
+    /// Depth from bank to bed in metres, for a discharge in m^3/s.
     #[must_use]
     pub fn depth_of(&self, discharge: f64) -> f64 {
         self.depth * libm::pow(discharge.max(0.0), 0.4)
     }
 }
 
-/// The network of all cells with an order above 0 (see [`strahler_orders`](super::strahler::strahler_orders)): reaches
-/// from source or confluence to confluence or outlet, in row order of their first cells. Costs O(cells).
+/// The network of all cells with an order above 0 (see [`strahler_orders`](super::strahler::strahler_orders)). Reaches
+/// run from a source or confluence to the next confluence or outlet, in row order of their first cells. The time is
+/// O(cells).
 #[must_use]
 pub fn network(receivers: &Receivers, orders: &Grid<u8>) -> Vec<Reach> {
     let mut streams = Streams::default();
@@ -75,7 +76,7 @@ pub fn network(receivers: &Receivers, orders: &Grid<u8>) -> Vec<Reach> {
     streams.network()
 }
 
-/// The cells of rivers only, in row order.
+/// The river cells of a map, in row order.
 #[derive(Debug, Clone, Default)]
 pub struct Streams {
     cells: Vec<u32>,
@@ -83,11 +84,11 @@ pub struct Streams {
     orders: Vec<u8>,
 }
 
-/// Memory per river cell, in bytes, during construction of [`Streams`] and its reaches.
+/// Memory per river cell, in bytes, while [`Streams`] and its reaches are computed.
 pub const STREAM_CELL: u64 = 40;
 
 impl Streams {
-    /// Adds the next cell, its receiver (itself if there is none) and its order.
+    /// Adds the next cell in row order, its receiver (itself if there is none) and its order.
     pub fn push(&mut self, cell: u32, receiver: u32, order: u8) {
         self.cells.push(cell);
         self.receivers.push(receiver);
@@ -97,7 +98,7 @@ impl Streams {
     /// The reaches, in row order of their first cells.
     #[must_use]
     pub fn network(mut self) -> Vec<Reach> {
-        // Receivers as indices into the list; a cell whose receiver is not in the list ends there.
+        // Receivers as indices into the list. A cell whose receiver is not in the list is its own receiver.
         for k in 0..self.cells.len() {
             self.receivers[k] = self.cells.binary_search(&self.receivers[k]).unwrap_or(k) as u32;
         }
@@ -130,8 +131,8 @@ impl Streams {
     }
 }
 
-/// Cuts river beds by the depth that their discharge needs, into ground on which no receiver is higher than its donor.
-/// The drainage area never decreases downstream, so beds never rise downstream. Cells of order 0 and outlets keep their
+/// Cuts river beds to the depth of their discharge into ground on which no receiver is higher than its donor. The
+/// drainage area never decreases downstream, so beds never rise downstream. Cells of order 0 and outlets keep their
 /// heights.
 pub fn carve(heights: &mut Grid, receivers: &Receivers, drained: &Accumulation, orders: &Grid<u8>, channel: &Channel) {
     let Ok(()) = cut(heights, receivers, drained, orders, channel, &never);
@@ -234,7 +235,7 @@ mod tests {
 
     #[test]
     fn a_large_river_has_the_measures_of_one() {
-        // The Rhine at Basel: 36 000 km^2, about 1000 m^3/s, some 200 m wide.
+        // The Rhine at Basel: 36 000 km^2, about 1000 m^3/s, about 200 m wide.
         let discharge = Channel { runoff: 0.9, width: 5.0, depth: 0.3 }.discharge(36e9);
         assert!((discharge - 1000.0).abs() < 50.0, "{discharge}");
         assert!((CHANNEL.width_of(discharge) - 160.0).abs() < 10.0);

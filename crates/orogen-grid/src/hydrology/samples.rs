@@ -1,9 +1,9 @@
-//! Test grids of this module: rough, smooth, with steps, with holes.
+//! Grids for the tests of this module: rough, smooth, with steps, with holes.
 
 use super::direction::hashed;
 use crate::grid::{Grid, Window};
 
-/// Independent heights, 0 to 1000.
+/// Independent random heights, 0 to 1000.
 #[must_use]
 pub fn rough(width: usize, height: usize, seed: i64) -> Grid {
     made(width, height, |x, y| (hashed(x, y + 1000 * seed) >> 8) as f32 * (1000.0 / (1 << 24) as f32))
@@ -33,7 +33,7 @@ pub fn steps(width: usize, height: usize, seed: i64) -> Grid {
     grid
 }
 
-/// Hills with samples missing.
+/// Hills with missing samples.
 #[must_use]
 pub fn holed(width: usize, height: usize, seed: i64) -> Grid {
     let mut grid = hills(width, height, seed);
@@ -45,7 +45,7 @@ pub fn holed(width: usize, height: usize, seed: i64) -> Grid {
     grid
 }
 
-/// One of each, and degenerate ones.
+/// One grid of each kind, and degenerate ones.
 #[must_use]
 pub fn grids() -> Vec<Grid> {
     let mut grids = Vec::new();

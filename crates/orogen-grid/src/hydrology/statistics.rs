@@ -1,7 +1,7 @@
 //! Statistics of drainage networks.
 //!
-//! Each is the slope of a least-squares line through the logarithms of classes; `None` if fewer than four classes have
-//! members.
+//! Each statistic is the slope of a least-squares line through the logarithms of classes; `None` if fewer than four
+//! classes have members.
 
 use super::accumulation::Accumulation;
 use super::direction::DISTANCES;
@@ -29,14 +29,14 @@ pub struct AreaCounts {
 }
 
 impl AreaCounts {
-    /// Empty counts of a map with this many cells.
+    /// Empty counts for a map of `cells` cells.
     #[must_use]
     pub fn new(cells: usize) -> AreaCounts {
         let bounds = spaced(8.0, cells as f64 / 100.0, 14).unwrap_or_default();
         AreaCounts { cells, above: vec![0; bounds.len()], bounds }
     }
 
-    /// Counts cells by their drainage areas, in cells.
+    /// Counts cells with these drainage areas, in cells.
     pub fn add(&mut self, areas: &[u32]) {
         for (bound, above) in self.bounds.iter().zip(&mut self.above) {
             *above += areas.iter().filter(|area| f64::from(**area) > *bound).count();
@@ -64,7 +64,7 @@ pub fn hack_exponent(receivers: &Receivers, drained: &Accumulation, threshold: u
 }
 
 /// The concavity of rivers: theta of S ~ A^-theta (Flint 1974), where S is the slope along the flow path on `filled`.
-/// Rivers in equilibrium with uplift have m / n, 0.4 to 0.6.
+/// For rivers in equilibrium with uplift it is m / n, 0.4 to 0.6.
 #[must_use]
 pub fn concavity(filled: &Grid, receivers: &Receivers, drained: &Accumulation, threshold: u32) -> Option<f64> {
     let cell = filled.window().cell;
@@ -85,8 +85,8 @@ pub fn drop_per_metre(height: f32, receiver: f32, code: u8, cell: f64) -> f64 {
     f64::from(height - receiver) / (DISTANCES[usize::from(code & 7)] * cell)
 }
 
-/// The length of a flow path as the numbers of axial and diagonal steps. Integers, so that the sum does not depend on
-/// the starting point.
+/// The length of a flow path as the numbers of axial and diagonal steps. These are integers, so that the sum does not
+/// depend on the starting point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Way {
     straight: u32,
@@ -94,14 +94,14 @@ pub struct Way {
 }
 
 impl Way {
-    /// Extended by a step in direction `code`.
+    /// The path with one more step in direction `code`.
     #[must_use]
     pub fn step(self, code: u8) -> Way {
         let diagonal = u32::from(code & 1);
         Way { straight: self.straight + 1 - diagonal, diagonal: self.diagonal + diagonal }
     }
 
-    /// The sum of both.
+    /// The path followed by `next`.
     #[must_use]
     pub fn then(self, next: Way) -> Way {
         Way { straight: self.straight + next.straight, diagonal: self.diagonal + next.diagonal }
@@ -113,8 +113,8 @@ impl Way {
         f64::from(self.straight) + f64::from(self.diagonal) * std::f64::consts::SQRT_2
     }
 
-    /// The longer of the two. The lengths of two different paths of fewer than 2^20 steps differ by more than the
-    /// rounding.
+    /// The longer one of two paths. The lengths of two different paths of fewer than 2^20 steps differ by more than the
+    /// rounding error.
     #[must_use]
     pub fn longer(self, other: Way) -> Way {
         if other.length() > self.length() { other } else { self }
@@ -139,9 +139,9 @@ pub fn longest_ways(receivers: &Receivers, drained: &Accumulation) -> Vec<Way> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Average {
-    /// The median; for an even count, the upper of the middle two.
+    /// The median; for an even count, the upper one of the middle two values.
     Median,
-    /// Their mean.
+    /// The arithmetic mean.
     Mean,
 }
 
@@ -165,14 +165,15 @@ struct Class {
 }
 
 impl AreaClasses {
-    /// `None` if the range is empty.
+    /// Empty classes for areas from `threshold` to half of `largest`, in cells; `None` if the range is empty.
     #[must_use]
     pub fn new(threshold: u32, largest: u32, average: Average) -> Option<AreaClasses> {
         let bounds = spaced(f64::from(threshold.max(1)), f64::from(largest) / 2.0, CLASSES)?;
         Some(AreaClasses { average, bounds, classes: vec![Class::default(); CLASSES - 1] })
     }
 
-    /// Adds a cell's value; values that are not finite are ignored. Sums depend on the order of the cells: row by row.
+    /// Adds the value of a cell; values that are not finite are ignored. Add the cells row by row, because the sums
+    /// depend on their order.
     pub fn add(&mut self, area: u32, value: f64) {
         let class = self.bounds.partition_point(|bound| *bound <= f64::from(area));
         let Some(class) = class.checked_sub(1).and_then(|k| self.classes.get_mut(k)).filter(|_| value.is_finite())
@@ -201,7 +202,7 @@ impl AreaClasses {
     }
 }
 
-/// `count` numbers from `low` to `high` in equal ratios; `None` if the range is empty.
+/// `count` numbers from `low` to `high` with equal ratios; `None` if the range is empty.
 fn spaced(low: f64, high: f64, count: usize) -> Option<Vec<f64>> {
     let ratio = libm::log(high / low) / (count as f64 - 1.0);
     (high > low).then(|| (0..count).map(|k| low * libm::exp(ratio * k as f64)).collect())

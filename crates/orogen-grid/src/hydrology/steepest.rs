@@ -13,9 +13,9 @@ use crate::parallel;
 pub enum Descent<'a> {
     /// Steepest descent (O'Callaghan and Mark 1984); the drop is divided by sqrt(2) on a diagonal.
     Steepest,
-    /// The same, but a diagonal drop is divided by a random length from 1 to 2, hashed from the cell's position and
-    /// this number (Rho8, Fairfield and Leymarie 1991). On a slope between two directions the receivers alternate, and
-    /// on average the flow follows the slope. D8 always takes the same direction and gives straight parallel lines.
+    /// Like `Steepest`, but a diagonal drop is divided by a random length from 1 to 2, hashed from the cell's position
+    /// and this number (Rho8, Fairfield and Leymarie 1991). On a slope between two directions the receivers alternate,
+    /// and on average the flow follows the slope. D8 always takes the same direction and gives straight parallel lines.
     Scattered(u32),
     /// Steepest descent between irregular points.
     Interpolation(&'a Points),
@@ -91,7 +91,8 @@ fn steepest_sets(rows: [&[f32]; 3], diagonals: &[f32], sets: &mut [u8]) {
     }
 }
 
-/// The same with each neighbor's drop multiplied by the row of its direction in `inverse_distance`.
+/// Like [`steepest_sets`], but the drop to each neighbor is multiplied by the row of its direction in
+/// `inverse_distance`.
 fn steepest_between(rows: [&[f32]; 3], inverse_distance: [&[f32]; 8], sets: &mut [u8]) {
     let count = sets.len() - 2;
     let middle = &rows[1][1..=count];
@@ -102,7 +103,8 @@ fn steepest_between(rows: [&[f32]; 3], inverse_distance: [&[f32]; 8], sets: &mut
     }
 }
 
-/// The eight rows of neighbors of the inner cells, all of the same length: loops over equal slices are vectorised.
+/// The eight rows of neighbors of the inner cells, all of the same length, because loops over equal slices are
+/// vectorized.
 #[inline(always)]
 fn around(rows: [&[f32]; 3], count: usize) -> [&[f32]; 8] {
     STEPS.map(|(east, south)| {
@@ -167,8 +169,7 @@ mod tests {
 
     #[test]
     fn scattered_water_goes_where_the_slope_does() {
-        // A plane that falls 22.5 degrees south of east, between two directions. D8 goes straight east or straight
-        // south-east.
+        // A plane that falls in directions between two of the eight. D8 goes straight along one of them.
         for angle in [10.0f64, 22.5, 40.0, 70.0] {
             let (east, south) = (libm::cos(angle.to_radians()), libm::sin(angle.to_radians()));
             let mut plane = Grid::filled(Window::new(202, 202, 1.0), 0.0);

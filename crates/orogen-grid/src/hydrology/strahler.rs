@@ -7,9 +7,9 @@ use crate::error;
 use crate::grid::Grid;
 use crate::progress::Progress;
 
-/// The order of the stream through each cell (Strahler 1957). A source has order 1; the order increases by 1 where at
-/// least two inflows have the highest order. A cell that drains fewer than `threshold` cells, weighted by the rain if
-/// the accumulation has a discharge, is not a stream and has 0.
+/// The order of the stream through each cell (Strahler 1957). A source has order 1. The order increases by 1 where at
+/// least two inflows have the highest order. A cell that drains fewer than `threshold` cells is not a stream and has
+/// order 0; cells are weighted by the rain if the accumulation has a discharge.
 ///
 /// Costs O(cells).
 #[must_use]

@@ -41,7 +41,7 @@ pub struct StreamPower {
     pub uplift: f64,
     /// Maximum slope, rise over run; steeper ground slides.
     pub max_slope: f64,
-    /// Minimum slope, rise over run: that of ground filled with sediment.
+    /// Minimum slope, rise over run, of ground that is filled with sediment.
     pub min_slope: f64,
 }
 
@@ -69,7 +69,7 @@ impl Default for StreamPower {
     }
 }
 
-/// Spatial variation: factors of the law's parameters, on the grid of the heights.
+/// Spatial variation of the law's parameters, as factors on the grid of the heights.
 #[derive(Debug, Clone, Copy, Default)]
 #[non_exhaustive]
 pub struct Substrate<'a> {
@@ -77,8 +77,8 @@ pub struct Substrate<'a> {
     pub erodibility_factor: Option<&'a Grid>,
     /// Factor of the uplift; `None` means 1 everywhere.
     pub uplift_factor: Option<&'a Grid>,
-    /// Factor of the rain, 0.01 to 100: a run of the law weights drainage areas by it; `None` means 1 everywhere. A
-    /// single step takes the [discharge](Accumulation::discharge) that it is given instead.
+    /// Factor of the rain, 0.01 to 100; `None` means 1 everywhere. A run of the law weights drainage areas with it. A
+    /// single step uses the given [discharge](Accumulation::discharge) instead.
     pub rain: Option<&'a Grid>,
     /// Positions of the cells, which determine the distances to receivers; `None` means the lattice.
     pub points: Option<&'a Points>,
@@ -111,10 +111,11 @@ impl<'a> Substrate<'a> {
 }
 
 impl StreamPower {
-    /// Advances by `years`. Cells without a receiver (outlets) keep their heights.
+    /// Advances the heights by `years`. Cells without a receiver (outlets) keep their heights.
     ///
-    /// The drainage area is the discharge, if `drained` has one. Every other cell is then higher than its receiver, so
-    /// the result has no depressions and no flats. Costs O(cells), on as many threads as `drained` was computed with.
+    /// If `drained` has a discharge, it replaces the drainage area. Afterwards every cell with a receiver is higher
+    /// than its receiver, so the result has no depressions and no flats. The time is O(cells), on as many threads as
+    /// `drained` was computed with.
     pub fn step(
         &self,
         heights: &mut Grid,
@@ -168,7 +169,7 @@ impl StreamPower {
         for band in bands {
             let cells = band.cells.len().min(rest.len());
             let (own, after) = std::mem::take(&mut rest).split_at_mut(cells);
-            // Cells beyond the band's ends are read only if they belong to the trunk, which is already solved.
+            // Cells beyond the band's ends are read only if they belong to the trunk, whose heights are already known.
             let below = after[..window.width.min(after.len())].to_vec();
             let last = own[own.len().saturating_sub(window.width)..].to_vec();
             shares.push((band, own, std::mem::replace(&mut above, last), below));
@@ -193,7 +194,7 @@ impl StreamPower {
     }
 }
 
-/// The parts of a step that are the same for all cells.
+/// The parts of a step that are common to all cells.
 struct Step<'a> {
     codes: &'a [u8],
     area: &'a [u32],
@@ -202,8 +203,8 @@ struct Step<'a> {
     uplift_factor: Option<&'a [f32]>,
     powers: Powers,
     slope_exponent: f64,
-    /// By direction: the product of years, erodibility and distance to the power -n, and the minimum and maximum height
-    /// above the receiver.
+    /// For each direction: the product of years, erodibility and distance to the power -n, and the minimum and maximum
+    /// height above the receiver.
     factors: [[f64; 3]; 8],
     /// The irregular points, and the strides of the directions.
     points: Option<(&'a Points, [isize; 8])>,
@@ -224,7 +225,7 @@ impl<'a> Step<'a> {
             let factor = years * law.erodibility * libm::pow(d, -law.slope_exponent);
             [factor, d * law.min_slope, d * law.max_slope]
         };
-        // With irregular points, the factors of one cell, once its receiver is known.
+        // The factors depend on the distance. With irregular points they are computed once the receiver is known.
         let factors = match ground.points {
             None => DISTANCES.map(|distance| factors(distance * cell)),
             Some(_) => [factors(cell); 8],
@@ -243,7 +244,7 @@ impl<'a> Step<'a> {
         }
     }
 
-    /// The height of cell `c` after the step, from its height before and the receiver's height after it.
+    /// The height of cell `c` after the step, from its previous height and the receiver's new height.
     #[inline(always)]
     fn height(&self, c: usize, before: f32, receiver: f32) -> f32 {
         let code = self.codes[c] & 7;
@@ -272,15 +273,15 @@ impl<'a> Step<'a> {
         } else {
             solve_newton(above, cut, self.slope_exponent)
         };
-        // A landslide limit below the minimum slope is raised to it. (NaN counts as the limit, as with `min`.)
+        // A landslide limit below the minimum slope is raised to it. NaN counts as the limit, as with `min`.
         let left = if left < most { left } else { most };
         let new = (below + if left > least { left } else { least }) as f32;
-        // In f32 the minimum slope may round to nothing, but the cell must drain.
+        // In f32 the minimum slope may be rounded away, but the cell must drain.
         if new > receiver { new } else { receiver.next_up() }
     }
 }
 
-/// The x that solves x + cut x^n = above, for n other than 1: the drop that remains after the step.
+/// Solves x + cut x^n = above for x, the remaining drop after the step, where n is not 1.
 ///
 /// Newton's method on a convex form, starting above the root: it converges monotonically.
 #[inline(never)]
@@ -324,7 +325,7 @@ impl Powers {
         }
     }
 
-    /// The same for a sum of weights: that of whole cells where the factor of the rain is 1.
+    /// The power for a sum of weights. The same as for whole cells where the rain factor is 1.
     #[inline(never)]
     fn of_discharge(&self, weight: u64) -> f64 {
         libm::pow(weight as f64 * (self.cell_area / f64::from(UNIT_WEIGHT)), self.exponent)
@@ -364,8 +365,7 @@ mod tests {
 
     #[test]
     fn a_river_comes_to_its_steady_profile() {
-        // If uplift and incision are in equilibrium, S = (U / K)^(1/n) A^(-m/n) at every cell (Whipple and Tucker
-        // 1999).
+        // In equilibrium of uplift and incision, S = (U / K)^(1/n) A^(-m/n) at every cell (Whipple and Tucker 1999).
         for (m, n) in [(0.45, 1.0), (0.5, 1.0), (0.9, 2.0), (0.4, 0.8)] {
             let (mut heights, receivers) = valley(60, 100.0);
             let drained = accumulate(&receivers);

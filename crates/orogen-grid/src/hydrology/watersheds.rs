@@ -8,8 +8,8 @@ use crate::error;
 use crate::grid::Grid;
 use crate::progress::Progress;
 
-/// The watershed of every cell, numbered from 1 in row order of the outlets; 0 for outlets that only drain themselves,
-/// such as the sea. Costs O(cells).
+/// The watershed of every cell, numbered from 1 in row order of the outlets. Outlets that drain only themselves, such
+/// as the sea, have 0. The time is O(cells).
 #[must_use]
 pub fn watersheds(receivers: &Receivers, outlets: &Outlets, accumulation: &Accumulation) -> Grid<u32> {
     let Ok(labels) = labeled(receivers, outlets, accumulation, &never);

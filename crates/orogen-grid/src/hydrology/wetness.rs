@@ -1,10 +1,10 @@
-//! Indices of drainage area and slope.
+//! Indices from drainage area and slope.
 
 use super::accumulation::Accumulation;
 use crate::analysis::slope::{extended, steepness};
 use crate::grid::Grid;
 
-/// The slope of level ground, which would otherwise have an infinite wetness.
+/// The minimum slope, which avoids an infinite wetness on level ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct LevelGround {
@@ -21,7 +21,7 @@ impl Default for LevelGround {
 }
 
 impl LevelGround {
-    /// The slope, at least the minimum; NaN stays NaN.
+    /// The slope, raised to the minimum if it is less; NaN stays NaN.
     #[must_use]
     pub fn slope(&self, slope: f32) -> f64 {
         let slope = f64::from(slope);
@@ -36,14 +36,16 @@ pub fn wetness_index(area: f64, slope: f64) -> f64 {
     libm::log(area / slope)
 }
 
-/// The stream power index a tan b (Moore, Grayson and Ladson 1991), in metres.
+/// The stream power index a tan b (Moore, Grayson and Ladson 1991), in metres, of a specific catchment area in metres
+/// and a slope in rise over run.
 #[must_use]
 pub fn stream_power(area: f64, slope: f64) -> f64 {
     area * slope
 }
 
 /// The LS factor 1.4 (a / 22.13)^0.4 (sin b / 0.0896)^1.3 (Moore and Burch, "Physical basis of the length-slope factor
-/// in the universal soil loss equation", 1986): soil loss relative to a slope of 22.13 m and 9 %.
+/// in the universal soil loss equation", 1986): soil loss relative to a slope of 22.13 m and 9 %. `area` is in metres,
+/// `slope` is rise over run.
 #[must_use]
 pub fn ls_factor(area: f64, slope: f64) -> f64 {
     let sine = slope / (1.0 + slope * slope).sqrt();
@@ -57,8 +59,8 @@ pub fn wetness(heights: &Grid, drained: &Accumulation) -> Grid {
     wetness_of_rows(heights, &drained.area)
 }
 
-/// [`wetness`] for some rows of a map with known areas, in cells. `around` has one row more on each side where the map
-/// has it.
+/// [`wetness`] for some rows of a map with known areas, in cells. `around` has one more row on each side where the map
+/// has one.
 #[must_use]
 pub fn wetness_of_rows(around: &Grid, areas: &Grid<u32>) -> Grid {
     let steep = steepness(&extended(around));
