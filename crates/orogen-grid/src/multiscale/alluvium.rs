@@ -1,4 +1,4 @@
-//! Sediment of rivers on valley floors.
+//! River sediment on valley floors.
 
 use super::growth::FLOOR_AREA;
 use super::growth_row::FLOOR_WIDTH;
@@ -14,23 +14,23 @@ use crate::progress::Progress;
 use std::collections::BinaryHeap;
 use std::f32::consts::E;
 
-/// Slope of the rock below a floor, to which the sides of the valley continue.
+/// Slope of the rock below a floor: the continuation of the sides of the valley.
 const ROCK_SLOPE: f32 = 0.25;
 
-/// Greatest slope of a floor, and the slope from which on the ground is a hillside.
+/// Maximum slope of a floor, and minimum slope of a hillside.
 const FLOOR_SLOPE: f32 = 0.03;
 const STEEP: f32 = 0.1;
 
-/// Distance in metres to the hillside where the slope is in the middle between these two.
+/// Distance in metres to the hillside at which the slope is halfway between these two.
 const FOOT: f32 = 60.0;
 
-/// Units of distance to the hillside in a cell, and in its diagonal. Sums of integers do not depend on the way.
+/// Units of distance to the hillside per cell, and per diagonal of a cell. Sums of integers do not depend on the path.
 const UNITS: [u32; 2] = [64, 91];
 
-/// Ground of this slope counts twice, steeper ground more: 1 + (slope / `FRICTION_SLOPE`)^2.
+/// Ground of this slope counts twice, steeper ground more: the factor is 1 + (slope / `FRICTION_SLOPE`)^2.
 const FRICTION_SLOPE: f32 = 0.04;
 
-/// The thickness that the sediment of the widest floors approaches, in metres.
+/// Upper limit of the thickness of the sediment, which the widest floors approach, in metres.
 const THICKEST: f32 = 100.0;
 
 /// Half the width of the widest floor, in metres and in cells.
@@ -48,8 +48,9 @@ impl Refinement {
         self.cells_in(depth, WIDEST, MAX_CELLS)
     }
 
-    /// Thickness in metres of the sediment of rivers at the points of a surface of this level, made at `share`; 0 on
-    /// hillsides and in standing water.
+    /// Thickness in metres of the river sediment at the points of a surface of this level; 0 on hillsides and in
+    /// standing water. `share` is the position within cells at which the surface was made (see
+    /// [`Refinement::surface_at`]).
     ///
     /// # Errors
     /// If the level does not cover the surface's window grown by [`Refinement::sediment_reach`], or the work is
@@ -68,7 +69,7 @@ impl Refinement {
             for i in 0..window.width {
                 if surface.water_level[(i, j)].is_nan() {
                     let q = self.nearest_node(share, level, level.row(&nodes, j) + i);
-                    // The foot of a hillside is in the middle between a node of the floor and one of the hillside.
+                    // The foot of a hillside is halfway between a node of the floor and a node of the hillside.
                     let metres = (hillside[q] as f32 / UNITS[0] as f32 - 0.5).max(0.0) * cell;
                     let depth = fill[q].min(ROCK_SLOPE * metres);
                     thickness[(i, j)] = THICKEST * depth / (THICKEST + depth);
@@ -78,7 +79,7 @@ impl Refinement {
         Ok(thickness)
     }
 
-    /// The depth of the rock below the rivers, in metres; 0 elsewhere.
+    /// The depth of the rock below rivers, in metres; 0 elsewhere.
     fn fills(&self, level: &Level) -> Vec<f32> {
         let cell = self.cell_of(level.depth);
         let share_of_a_cell = (cell * cell * 1e-6 / FLOOR_AREA) as f32;
@@ -88,7 +89,7 @@ impl Refinement {
             if share <= 1.0 || level.is_water(q) {
                 return 0.0;
             }
-            // On detail levels all of the logarithm is in `variation`.
+            // On detail levels `variation` contains the whole logarithm.
             let logarithm = level.variation[q] + if self.is_detail(level.depth) { 0.0 } else { level.uplift[q] };
             let factor = power(E, -logarithm).min(MAX_FLOOR_FACTOR) * (share - 1.0).min(1.0);
             let half = (FLOOR_WIDTH * share.sqrt() * factor).min(widest);
@@ -109,7 +110,7 @@ fn flatness(level: &Level, cell: f32, q: usize) -> f32 {
     0.5 * (side(2) + side(6))
 }
 
-/// Distance from each node to the nearest hillside in units of a cell, at most `most` cells: by steps to the eight
+/// Distance from each node to the nearest hillside in units of [`UNITS`], at most `most` cells, by steps to the eight
 /// neighbors.
 fn hillside_distances(level: &Level, cell: f32, most: u32) -> Vec<u32> {
     let width = level.window.width;
@@ -139,10 +140,11 @@ fn hillside_distances(level: &Level, cell: f32, most: u32) -> Vec<u32> {
     distance
 }
 
-/// Spreads the fill from rivers over the floors: the largest value that a way from a river leaves, of which each link
-/// takes the slope of the rock times its length, and more where the ground is steeper than a floor.
+/// Spreads the fill from rivers over the floors. A node gets the largest value that is left along any path from a
+/// river. Each link of a path reduces the value by the slope of the rock times the length, and by more where the ground
+/// is steeper than a floor.
 fn spread(level: &Level, cell: f32, mut fill: Vec<f32>, progress: &Progress) -> Result<Vec<f32>> {
-    // Positive numbers are in the order of their bits.
+    // The bits of positive numbers sort like the numbers.
     let rivers = fill.iter().enumerate().filter(|(_, fill)| **fill > 0.0);
     let mut waiting: BinaryHeap<(u32, usize)> = rivers.map(|(q, fill)| (fill.to_bits(), q)).collect();
     let mut taken = 0usize;

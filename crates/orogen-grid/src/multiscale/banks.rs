@@ -1,5 +1,5 @@
-//! Banks of rivers on the finest level: the ground beside a river is higher than its bed, so that steepest descent
-//! stays in it.
+//! Banks of rivers on the finest level: the ground next to a river is higher than its bed, so that steepest descent
+//! stays in the river.
 
 use super::drainage::WATER;
 use super::stencil::Extent;
@@ -8,13 +8,14 @@ use orogen_simd::{Body, Simd, dispatch};
 /// Drainage area, in cells, from which a river has banks.
 const RIVER_AREA: f32 = 500.0;
 
-/// Height of a bank over the bed, in metres.
+/// Height of a bank above the bed, in metres.
 const BANK: f32 = 0.3;
 
-/// Fall from a donor, in metres, that raising leaves.
+/// Minimum fall from a donor, in metres, that remains after raising.
 const LEFT: f32 = 0.01;
 
-/// One pass over the cells of `extent`: nodes beside rivers rise to the banks, as far as their donors stay above them.
+/// One pass over the cells of `extent`: raises nodes next to rivers to the height of banks, but keeps them below their
+/// donors.
 pub fn raise_banks(
     extent: Extent,
     heights: &mut Vec<f32>,

@@ -1,4 +1,4 @@
-//! Rivers of the level above, carved into a level: heights fall along them from parent to parent.
+//! Carves the rivers of a level into the next finer one: heights fall along them from parent to parent.
 
 use super::children::{Children, heir};
 use super::distances::Distances;
@@ -10,22 +10,22 @@ use super::shores::{LAND, Water};
 use super::stencil::code;
 use crate::hydrology::direction::NONE;
 
-/// Height of nodes that have none yet.
+/// Height of nodes that have no height yet.
 pub const UNKNOWN: f32 = 1e30;
 
-/// Nodes with the rivers of the level above.
+/// Nodes with the rivers of the next coarser level.
 pub struct Carved {
     pub height: Vec<f32>,
     pub area: Vec<f32>,
     /// Code of the receiver's direction.
     pub receiver: Vec<f32>,
-    /// The same where it must not change; otherwise [`FREE`] or [`WATER`].
+    /// The receiver's code where it must not change; otherwise [`FREE`] or [`WATER`].
     pub fixed: Vec<f32>,
-    /// None on the finest level, where nodes are on the lattice.
+    /// `None` on the finest level, where nodes are on the lattice.
     pub distances: Option<Distances>,
 }
 
-/// The children with the kept links, some of them water at `levels`. Exact seven cells from the edge.
+/// The children with the kept links and the given water. Exact except for seven cells at the edge.
 pub fn carve(parent: &Level, links: &Links, children: &Children, water: Water) -> Carved {
     let Water { levels, gained } = water;
     let extent = children.extent;
@@ -63,7 +63,7 @@ pub fn carve(parent: &Level, links: &Links, children: &Children, water: Water) -
     carved
 }
 
-/// The end of a link that has left its parent's cell.
+/// The last part of a link, after it has left its parent's cell.
 struct Arrival {
     target: usize,
     entry: usize,
@@ -73,7 +73,7 @@ struct Arrival {
 }
 
 impl Carved {
-    /// Water of lakes with an outlet flows to the child that the lake's node becomes, if no link passes.
+    /// Directs the water of lakes with an outlet to the heir of the lake's node where no link passes.
     fn lead_lakes(&mut self, parent: &Level, links: &Links, children: &Children) {
         for q in parent.inner(1).filter(|&q| is_lake(parent.receiver[q])) {
             let own = |corner| Child { parent: q, corner }.index(links.width);
@@ -84,7 +84,7 @@ impl Carved {
         }
     }
 
-    /// Carves a link from its parent up to the entry.
+    /// Carves a link from its parent to the entry into the receiver's cell.
     fn leave(&mut self, parent: &Level, links: &Links, children: &Children, q: usize) -> Arrival {
         let parents = links.width;
         let (link, target) = (links.list[q], links.target(parent, q));
@@ -93,8 +93,8 @@ impl Carved {
         let entry = Child { parent: target, corner: link.entry };
         let end = Child { parent: target, corner: heir(parent, target) };
         let length = |from, to| if from == to { 0.0 } else { children.distance(from, to, parents) };
-        // Water of lakes with an outlet does not fall: from a lake only beyond the last child in it, to a lake only up
-        // to the entry.
+        // The water of lakes with an outlet is level. A link from a lake falls only beyond the last child in the lake,
+        // a link to a lake only up to the entry.
         let (from_lake, to_lake) = (is_lake(parent.receiver[q]), is_lake(parent.receiver[target]));
         let is_water = |child: Child| self.fixed[child.index(parents)] == WATER;
         let first = if from_lake && is_water(exit) { 0.0 } else { length(start, exit) };
@@ -109,7 +109,7 @@ impl Carved {
         let whole = (first + second + third).max(0.01);
         let (to_exit, to_entry) = (first / whole, (first + second) / whole);
         let (top, fall) = (parent.height[q], parent.height[target] - parent.height[q]);
-        // The area grows by one cell at each step, so that it is never less than what flows in.
+        // The area grows by one cell at each step, so that it is never less than the inflow.
         let mut area = 4.0 * parent.area[q];
         let [start, exit, entry] = [start, exit, entry].map(|child| child.index(parents));
         self.set(start, top, area);
@@ -151,7 +151,8 @@ impl Carved {
         self.connect(children, entry, end);
     }
 
-    /// Keeps the areas between the node of the target and its donors: those of the level above need not be their sums.
+    /// Adjusts the areas between the node of the target and its donors, because areas on the coarser level need not be
+    /// the sums of their donors' areas.
     fn bound_area(&mut self, parent: &Level, links: &Links, arrival: &Arrival) {
         let (target, entry) = (arrival.target, arrival.entry);
         if !drains(parent.receiver[target]) {
@@ -168,7 +169,7 @@ impl Carved {
         self.area[end] = self.area[end].max(if entry == end { arrival.area } else { self.area[entry] });
     }
 
-    /// Rivers of a smaller area than `least`, in cells, choose their receivers again.
+    /// Rivers with an area of less than `least` cells choose their receivers again.
     pub fn free(&mut self, least: f32) {
         for (fixed, &area) in self.fixed.iter_mut().zip(&self.area) {
             if area < least && *fixed < f32::from(NONE) {
@@ -177,7 +178,7 @@ impl Carved {
         }
     }
 
-    /// Standing water keeps its level.
+    /// Sets the height and adds to the area; standing water keeps its level.
     fn set(&mut self, q: usize, height: f32, area: f32) {
         if self.fixed[q] != WATER {
             self.height[q] = height;
@@ -185,7 +186,7 @@ impl Carved {
         self.area[q] += area;
     }
 
-    /// Makes an adjacent cell the receiver.
+    /// Makes the adjacent cell `to` the receiver of `from`.
     fn connect(&mut self, children: &Children, from: usize, to: usize) {
         let (width, code) = (children.extent.width, code_between(children, from, to));
         self.receiver[from] = f32::from(code);

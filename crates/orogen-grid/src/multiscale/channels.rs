@@ -1,4 +1,4 @@
-//! Beds and banks of rivers on detail levels, whose cells are smaller than rivers are wide.
+//! Beds and banks of rivers on detail levels, where cells are smaller than the width of rivers.
 
 use super::level::Level;
 use super::refinement::Refinement;
@@ -9,17 +9,16 @@ use crate::hydrology::direction::{NONE, STEPS};
 use crate::hydrology::rivers::Channel;
 use crate::progress::Progress;
 
-/// Half of the width of the widest river, in cells: wider ones are as narrow as this.
+/// Half the width of the widest river, in cells. Wider rivers are narrowed to this width.
 const WIDEST: f32 = 20.0;
 
-/// Links up and down a river over which its course is averaged, for one half of its width in cells, at least and at
-/// most. Without it banks would be as angular as the links of cells.
+/// Number of links up and down a river over which its course is averaged, per half width in cells, with a minimum and a
+/// maximum. Without averaging, banks would be as angular as the links between cells.
 const SMOOTHED: f32 = 3.0;
 const MIN_SMOOTHED: f32 = 8.0;
 const MAX_SMOOTHED: f32 = 24.0;
 
-/// Widths in cells at which beds begin to be cut, and have their whole depth: a river narrower than a cell has no bed
-/// of its own.
+/// Widths in cells at which beds begin to be cut and have their full depth. A river narrower than a cell has no bed.
 const NARROW: [f32; 2] = [1.0, 2.0];
 
 /// A river at a node.
@@ -28,13 +27,13 @@ struct Node {
     east: f32,
     south: f32,
     height: f32,
-    /// Half of the width, in cells.
+    /// Half the width, in cells.
     half: f32,
     /// Depth from bank to bed, in metres.
     depth: f32,
 }
 
-/// How rivers are cut.
+/// Parameters for cutting rivers.
 struct Rivers<'a> {
     level: &'a Level,
     cell: f64,
@@ -43,18 +42,18 @@ struct Rivers<'a> {
 }
 
 impl Refinement {
-    /// Samples beyond a window whose rivers [`Refinement::cut_rivers`] cuts into it.
+    /// Number of samples beyond a window from which the rivers affect the window in [`Refinement::cut_rivers`].
     pub const BEDS_REACH: usize = WIDEST as usize + 1;
 
-    /// Samples of a level beyond a window that [`Refinement::cut_rivers`] reads.
+    /// Number of samples of a level beyond a window that [`Refinement::cut_rivers`] reads.
     #[must_use]
     pub fn rivers_reach(&self, depth: usize) -> usize {
         if self.is_detail(depth) { (WIDEST + MAX_SMOOTHED) as usize + 2 } else { 0 }
     }
 
-    /// Lowers the ground to the beds of rivers with at least this drainage area in m^2, if the level is one of details:
-    /// between flat beds and the ground beside them there are banks. Heights fall along the beds as they fall along the
-    /// nodes.
+    /// On a detail level, lowers the ground to the beds of rivers with at least `least_area` of drainage area, in m^2.
+    /// There are banks between flat beds and the ground next to them. Heights fall along the beds as they fall along
+    /// the nodes. On other levels nothing is changed.
     ///
     /// # Errors
     /// If the level does not cover the surface's window grown by [`Refinement::rivers_reach`], or the work is
@@ -85,7 +84,7 @@ impl Refinement {
 }
 
 impl Rivers<'_> {
-    /// Cuts the bed of the link from the node of a cell.
+    /// Cuts the bed along the link from the node of a cell to its receiver.
     fn cut(&self, x: i64, y: i64, nodes: &Window, surface: &mut Surface) {
         let level = self.level;
         let q = (y - level.window.y) as usize * level.window.width + (x - level.window.x) as usize;
@@ -117,7 +116,8 @@ impl Rivers<'_> {
         }
     }
 
-    /// The river at a node whose cell is `east` and `south` of another: the average over links up and down the river.
+    /// The river at node `q`, whose cell is `east` and `south` of another cell, averaged over links up and down the
+    /// river.
     fn node(&self, q: usize, east: f32, south: f32) -> Node {
         let width = self.width(q);
         let reach = (SMOOTHED * 0.5 * width).clamp(MIN_SMOOTHED, MAX_SMOOTHED) as usize;
@@ -149,12 +149,12 @@ impl Rivers<'_> {
         (self.channel.width_of(self.discharge(q)) / self.cell) as f32
     }
 
-    /// The code of the direction downstream; none in water.
+    /// The code of the direction downstream; `None` in water.
     fn receiver(&self, q: usize) -> Option<u8> {
         Some(self.level.receiver[q]).filter(|code| *code < NONE)
     }
 
-    /// The code of the direction to the donor with the largest area, the first of equal ones; none at sources.
+    /// The code of the direction to the donor with the largest area, the first of equal ones; `None` at sources.
     fn main_donor(&self, q: usize) -> Option<u8> {
         let (mut best, mut most) = (None, 0.0);
         for (code, (east, south)) in (0u8..).zip(STEPS) {
@@ -182,7 +182,7 @@ impl Sums {
     }
 }
 
-/// The height of the bed between two nodes at a position, unless it is beyond the banks.
+/// The height of the bed between two nodes at a position; `None` beyond the banks.
 fn bed(from: &Node, to: &Node, east: f32, south: f32) -> Option<f32> {
     let (along_east, along_south) = (to.east - from.east, to.south - from.south);
     let (x, y) = (east - from.east, south - from.south);

@@ -1,5 +1,5 @@
-//! The nodes of a level before rivers: positions, rock and the shape of the shore, from the level above and from
-//! hashes.
+//! The nodes of a level before rivers are carved: positions, rock and the shape of the shore, from the next coarser
+//! level and from hashes.
 
 use super::geography::Geography;
 use super::given::Given;
@@ -13,13 +13,13 @@ use crate::grid::Window;
 use crate::progress::Progress;
 use crate::random::mix64;
 
-/// Variation of the rock that each level adds, the last for all further levels.
+/// Variation of the rock that each level adds; the last value is for all further levels.
 const VARIATION: [f32; 12] = [0.0, 0.3, 0.35, 0.45, 0.5, 0.5, 0.4, 0.4, 0.4, 0.3, 0.2, 0.2];
 
 /// The smallest cell, in km, at which geography is evaluated. Finer levels interpolate it.
 pub const FINEST_GEOGRAPHY: f64 = 3.0;
 
-/// Share of the way by which the node that a parent becomes moves to a random position in its cell.
+/// The node that a parent becomes moves this share of the distance to a random position in its cell.
 const WANDER: f32 = 0.5;
 
 /// The children of all nodes of a parent level: cell (i, j) of the parent has the children (2 i, 2 j) to
@@ -28,7 +28,7 @@ pub struct Children {
     pub depth: usize,
     pub window: Window,
     pub extent: Extent,
-    /// Positions in the cells; empty on the finest level, where all nodes are in the middle.
+    /// Positions in the cells; empty on the finest level, where all nodes are in the middle of their cells.
     pub east: Vec<f32>,
     pub south: Vec<f32>,
     pub variation: Vec<f32>,
@@ -38,13 +38,14 @@ pub struct Children {
     pub indent: f32,
 }
 
-/// Which of the four children of a cell its node becomes: bit 0 is set in the east, bit 1 in the south.
+/// The child that the node of a cell becomes (its heir), of the four children of the cell: bit 0 is set in the east,
+/// bit 1 in the south.
 #[inline(always)]
 pub fn heir(parent: &Level, q: usize) -> u8 {
     u8::from(parent.east[q] >= 0.5) | u8::from(parent.south[q] >= 0.5) << 1
 }
 
-/// Irregularity of the shore that a level adds, in km: a fractal line of this roughness.
+/// Irregularity of the shore that a level adds, in km, such that the shore becomes a fractal line.
 pub fn indent(land: &Refinement, depth: usize) -> f32 {
     (0.5 * 61.44 * libm::pow(land.kilometres(depth) / 61.44, 0.92)) as f32
 }
@@ -54,12 +55,12 @@ pub fn amplitude(land: &Refinement, depth: usize) -> f32 {
     land.variation as f32 * VARIATION[depth.min(VARIATION.len() - 1)]
 }
 
-/// Share of the change over a cell that is the slope of the shore: the irregularities of coarser levels are the rest.
+/// Share of the change over a cell that counts as the slope of the shore. The rest is due to irregularities of coarser
+/// levels.
 const SHORE_SLOPE: f32 = 0.5;
 
-/// By how much the distance to the shore changes along a kilometre near the shore, at least 1; `falls` are the changes
-/// over a cell to the east and to the south. Irregularities are multiplied by it, so that they move any shore equally
-/// far.
+/// Change of the distance to the shore per kilometre near the shore, at least 1. `falls` are the changes over a cell to
+/// the east and to the south. Irregularities are multiplied by it, so that they move every shore by the same distance.
 fn steepness(shore: f32, falls: [f32; 2], cell: f32) -> f32 {
     let steep = SHORE_SLOPE * (falls[0] * falls[0] + falls[1] * falls[1]).sqrt() / cell;
     let near = (2.0 - shore.abs() / (3.0 * cell * steep.max(1.0))).clamp(0.0, 1.0);
@@ -67,7 +68,7 @@ fn steepness(shore: f32, falls: [f32; 2], cell: f32) -> f32 {
 }
 
 impl Children {
-    /// The children of `parent`; rock and shores are exact one parent away from its edge.
+    /// The children of `parent`. Rock and shores are exact except for one parent at the edge.
     pub fn new(land: &Refinement, parent: &Level, given: &Given, progress: &Progress) -> Result<Children> {
         let (depth, from) = (parent.depth + 1, parent.window);
         let (width, height) = (2 * from.width, 2 * from.height);
@@ -101,18 +102,18 @@ impl Children {
         Ok(children)
     }
 
-    /// Whether the nodes are elsewhere than in the middle of their cells.
+    /// Whether the nodes can be outside the middle of their cells.
     pub fn is_irregular(&self) -> bool {
         !self.east.is_empty()
     }
 
-    /// The bits of all hashes of a node.
+    /// The random bits of a node, for all its hashes.
     #[inline(always)]
     fn bits(&self, land: &Refinement, i: usize, j: usize) -> u64 {
         hash::node(land.seed, self.depth, self.window.x + i as i64, self.window.y + j as i64, 0)
     }
 
-    /// Positions of the nodes of row `j`. The node that a parent becomes stays near the parent's position.
+    /// Positions of the nodes of row `j`. The heir of a parent stays near the parent's position.
     fn place_row(&mut self, land: &Refinement, parent: &Level, j: usize) {
         let width = self.extent.width;
         for i in 0..width {
@@ -182,7 +183,7 @@ impl Children {
             };
             let irregular = self.indent * rugged * if land.sea { steepness() } else { 1.0 };
             let irregular = irregular * hash::normal(mix64(bits ^ 0xAAAA));
-            // Land is near the shore of a lake, however far it is from the sea.
+            // Land is near the shore of a lake, even if it is far from the sea.
             let beside_water = || {
                 let shares = [0.5625, 0.1875, 0.1875, 0.0625].into_iter().zip(parents);
                 shares.map(|(share, p)| share * parent.shore[p].min(beside)).sum::<f32>()

@@ -1,4 +1,4 @@
-//! The coarsest level of land that is given: heights and their drainage, from a solver or a real place.
+//! The coarsest level of given land: heights and their drainage, from a solver or a digital elevation model.
 
 use super::given::Given;
 use super::hash::{self, JITTER};
@@ -10,23 +10,23 @@ use crate::grid::{Grid, Window};
 use crate::hydrology::direction::{NONE, STEPS};
 use crate::progress::Progress;
 
-/// Samples of what is given beyond a window of the coarsest level.
+/// Number of samples of given land beyond a window of the coarsest level.
 pub const REACH: usize = 2;
 
-/// Given land at the cell of the coarsest level. Each grid covers the window grown by [`REACH`].
+/// Given land at the cell size of the coarsest level. Each grid covers the window grown by [`REACH`].
 #[derive(Debug, Clone, Copy)]
 pub struct Coarse<'a> {
     /// Heights in metres.
     pub height: &'a Grid,
     /// Drainage area in m^2.
     pub flow: &'a Grid,
-    /// Codes of the directions of flow.
+    /// Codes of the directions of flow; steepest descent without it.
     pub receiver: Option<&'a Grid>,
 }
 
 impl Refinement {
-    /// The coarsest level over `window` of given land, whose samples are in the middles of the cells: the nodes lie
-    /// around them.
+    /// The coarsest level over `window` of given land. The samples of the land are in the middles of the cells, and the
+    /// nodes are near them.
     ///
     /// # Errors
     /// If a parameter is out of range, the window is not one of the level, a grid covers too little, or the work is
@@ -73,9 +73,9 @@ impl Refinement {
 }
 
 impl Refinement {
-    /// The share of a coarsest cell at which a node lies: between the place of its valley, from the middle of the cell,
-    /// and one by a random number from 0 to 1. It is at most as far from the middle as nodes of other levels, and
-    /// within the cell.
+    /// The position of a node in a coarsest cell, 0 to 1. It is between the position of the cell's valley, relative to
+    /// the middle, and a random position from `draw`, 0 to 1. Its distance from the middle is at most that on other
+    /// levels, and it is within the cell.
     fn around_middle(&self, valley: f32, draw: f32) -> f32 {
         let middle = 0.5 + self.half_finest(0);
         let width = JITTER.min(2.0 * (1.0 - middle));
@@ -107,7 +107,8 @@ fn receiver(land: &Coarse, x: i64, y: i64) -> u8 {
     steepest.1
 }
 
-/// The direction of flow of a sample, so that no two diagonals cross: the flow that ends higher goes to the lower end.
+/// The direction of flow of a sample, such that no two diagonals cross. The flow that would end higher is redirected to
+/// the lower end.
 fn uncrossed(land: &Coarse, x: i64, y: i64) -> u8 {
     let code = receiver(land, x, y);
     if code >= NONE || code & 1 == 0 {
@@ -115,7 +116,7 @@ fn uncrossed(land: &Coarse, x: i64, y: i64) -> u8 {
     }
     let (east, south) = STEPS[usize::from(code)];
     let (east, south) = (east as i64, south as i64);
-    // The other diagonal, from beside to below or the other way.
+    // The other diagonal, from the cell next to this one to the cell below it, or the opposite direction.
     let (beside, below) = ((x + east, y), (x, y + south));
     let code_of = |step: (i64, i64)| {
         STEPS.iter().position(|&(east, south)| (east as i64, south as i64) == step).unwrap_or(usize::from(NONE)) as u8
@@ -137,7 +138,7 @@ mod tests {
     use crate::error::ErrorKind;
     use crate::hydrology::direction::{DISTANCES, strides};
 
-    /// Hills that fall to a valley along the middle row, which falls to the east; drainage areas by the steepest
+    /// Hills that fall to a valley along the middle row, which falls to the east, and drainage areas by steepest
     /// descent.
     fn valley(window: Window) -> (Grid, Grid) {
         let mut height = Grid::filled(window, 0.0f32);
@@ -221,8 +222,8 @@ mod tests {
             }
             grid
         };
-        // Few heights, so that some are equal; no flow to the north, so that no two cells drain to each other across a
-        // corner.
+        // Few different heights, so that some are equal. No flow to the north, so that no two cells drain to each other
+        // across a corner.
         let (height, receivers) = (random(9.0, 3), random(5.0, 4));
         let land = Coarse { height: &height, flow: &height, receiver: Some(&receivers) };
         let crossings = |code: &dyn Fn(i64, i64) -> u8| {

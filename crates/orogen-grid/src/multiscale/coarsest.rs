@@ -1,4 +1,4 @@
-//! The coarsest level: geography at hashed nodes, and rivers by the cheapest way to the sea.
+//! The coarsest level: geography at hashed nodes, and rivers along the cheapest paths to the sea.
 
 use super::continents::Continents;
 use super::geography::Geography;
@@ -14,22 +14,23 @@ use crate::grid::Window;
 use crate::hydrology::direction::NONE;
 use crate::progress::Progress;
 
-/// Number of links over which heights and areas spread: a river of the coarsest level is at most this long.
+/// Number of links over which heights and areas spread, which is the maximum length of a river of the coarsest level.
 const LINKS: usize = 36;
 
-/// Cells beyond a window that its nodes depend on: two rounds of links, routing and areas, and the inner basins.
+/// Number of cells beyond a window that its nodes depend on: two rounds of links, routing and areas, and the inner
+/// basins.
 const REACH: usize = 4 * LINKS + 4;
 
-/// Drainage area of the first round, in km^2.
+/// Drainage area that the first round assumes, in km^2.
 const TYPICAL_AREA: f64 = 2e4;
 
-/// Approximate time for placing the nodes and for draining them once, in any unit.
+/// Approximate relative times for placing the nodes and for draining them in the two rounds.
 const TIMES: [f64; 3] = [3.0, 1.0, 1.0];
 
-/// Uplift where no land is near.
+/// Logarithm of uplift over erodibility where no land is near.
 const OFFSHORE: f32 = -2.25;
 
-/// What a node's height starts from.
+/// The kind of base at a node, from which heights rise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Base {
     None,
@@ -46,10 +47,10 @@ struct Coarsest<'a> {
     south: Vec<f32>,
     shore: Vec<f32>,
     uplift: Vec<f32>,
-    /// Factor of the cost of links to the node.
+    /// Factor of the cost of links to each node.
     detour: Vec<f32>,
     base: Vec<Base>,
-    /// Heights that bases start from; elsewhere [`UNREACHED`].
+    /// Heights of bases; elsewhere [`UNREACHED`].
     start: Vec<f32>,
     area: Vec<f32>,
     rain: Option<Vec<f32>>,
@@ -57,11 +58,11 @@ struct Coarsest<'a> {
 }
 
 impl Continents {
-    /// Samples of the coarsest level beyond a window that [`Continents::coarsest`] works on.
+    /// Number of samples of the coarsest level beyond a window that [`Continents::coarsest`] computes.
     pub const COARSEST_REACH: usize = REACH;
 
-    /// The coarsest level over `window`. It holds about 60 bytes per sample of the window grown by 148. What is given
-    /// covers the window grown by [`Continents::COARSEST_REACH`].
+    /// The coarsest level over `window`. Needs about 60 bytes per sample of the window grown by
+    /// [`Continents::COARSEST_REACH`], which `given` must cover.
     ///
     /// # Errors
     /// If a parameter is out of range, the window is not one of the level, or the work is cancelled.
@@ -78,11 +79,11 @@ impl Continents {
         Ok(coarsest.finish(heights, window))
     }
 
-    /// [`Refinement::refine`](super::refinement::Refinement::refine), where the geography of this land decides what is
+    /// Like [`Refinement::refine`](super::refinement::Refinement::refine). The geography of this land provides what is
     /// not given.
     ///
     /// # Errors
-    /// Those of [`Refinement::refine`](super::refinement::Refinement::refine).
+    /// The errors of [`Refinement::refine`](super::refinement::Refinement::refine).
     pub fn refine(&self, parent: &Level, given: &Given, window: &Window, progress: &Progress) -> Result<Level> {
         self.check()?;
         self.refinement.refine(parent, &Given { continents: Some(self), ..*given }, window, progress)
@@ -124,7 +125,7 @@ impl<'a> Coarsest<'a> {
                 made.detour.push(0.5 + draw(2));
             }
         }
-        // Only land and its neighbors read the uplift.
+        // The uplift is only read on land and next to it.
         for j in extent.shrunk(1).rows() {
             progress.step(1.0)?;
             for i in extent.shrunk(1).columns() {
@@ -147,13 +148,13 @@ impl<'a> Coarsest<'a> {
         Ok(made)
     }
 
-    /// Rise per cell of distance, with the same drainage area everywhere.
+    /// Rise per cell of distance if the drainage area is the same everywhere.
     fn first_costs(&self) -> Vec<f32> {
         let rise = (law::river_slope(&self.land.refinement, TYPICAL_AREA) * self.land.refinement.cell_of(0)) as f32;
         self.uplift.iter().map(|&uplift| rise * power(std::f32::consts::E, uplift)).collect()
     }
 
-    /// Rise per cell of distance with the drainage areas found.
+    /// Rise per cell of distance with the drainage areas of the first round.
     fn second_costs(&self) -> Vec<f32> {
         let kilometres = self.land.refinement.kilometres(0);
         let rise =
@@ -163,7 +164,7 @@ impl<'a> Coarsest<'a> {
         self.uplift.iter().zip(&self.area).map(cost).collect()
     }
 
-    /// Routes all land to the bases by the cheapest links, and adds up the areas. Returns the heights.
+    /// Routes all land to the bases along the cheapest links, and adds up the areas. Returns the heights.
     fn drain(&mut self, cost: &[f32], progress: &Progress) -> Result<Vec<f32>> {
         let nodes = routes::Nodes { east: &self.east, south: &self.south, cost, detour: &self.detour };
         let links = routes::links(self.extent, &nodes);
@@ -185,8 +186,8 @@ impl<'a> Coarsest<'a> {
         Ok(heights)
     }
 
-    /// Inner basins: high and gentle land behind steep land, where the way out to the sea is kept from being cut; and
-    /// places beyond the reach of the sea.
+    /// Chooses inner basins: high and gentle land behind steep land, where rivers could not cut a path to the sea, and
+    /// places that no path to the sea reaches.
     fn choose_basins(&mut self, heights: &[f32]) {
         let (relief, width) = (self.land.refinement.relief as f32, self.extent.width);
         let score = |q: usize| match heights[q] {

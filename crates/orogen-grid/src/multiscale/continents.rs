@@ -1,14 +1,14 @@
-//! The parameters of land without bounds.
+//! The parameters of unbounded land.
 
 use super::level::invalid;
 use super::refinement::Refinement;
 use crate::error::Result;
 
-/// Land without bounds: continents with ranges, plains, coasts, inland basins and rivers to the sea.
+/// Unbounded land: continents with ranges, plains, coasts, inland basins and rivers to the sea.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Continents {
-    /// The levels. Their seed is that of geography, too.
+    /// Parameters of the levels. Their seed is also the seed of the geography.
     pub refinement: Refinement,
     /// Share of land, 0.05 to 0.95.
     pub land: f64,
@@ -35,7 +35,7 @@ impl Continents {
         Continents::default().with_refinement(Refinement::new(seed))
     }
 
-    /// Checks the parameters beside those of the levels.
+    /// Checks the parameters other than those of the levels.
     pub(super) fn check(&self) -> Result<()> {
         if !(self.size.is_finite() && self.size > 0.0) {
             return Err(invalid("the size of continents must be above 0"));

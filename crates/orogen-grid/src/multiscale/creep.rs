@@ -1,4 +1,4 @@
-//! Creep of soil on the finest level: slopes become smooth, and every node stays above its receiver.
+//! Soil creep on the finest level: slopes become smooth, and every node stays above its receiver.
 
 use super::drainage::{FREE, WATER};
 use super::growth::least_rise;
@@ -7,32 +7,32 @@ use super::stencil::Extent;
 use orogen_simd::{Body, Simd, dispatch};
 use std::f32::consts::FRAC_1_SQRT_2;
 
-/// Share of the way to the mean of the neighbors.
+/// Share of the difference to the mean of the neighbors by which a pass moves a height.
 const RATE: f32 = 0.8;
 
 /// Variance of the average of the neighbors, in square cells.
 const SPREAD: f64 = 0.6;
 
-/// Number of passes that round land over a distance in cells.
+/// Number of passes that smooth land over a distance in cells.
 pub fn creep_passes(distance: f64) -> usize {
     let variance = distance * distance;
     (variance / (SPREAD * f64::from(RATE))).round() as usize
 }
 
-/// Drainage area in cells at which the rate is half.
+/// Drainage area in cells at which the rate is halved.
 const CHANNEL_AREA: f32 = 300.0;
 
-/// What creep leaves as it is.
+/// Limits of creep.
 #[derive(Debug, Clone, Copy)]
 pub struct Kept {
-    /// Fall to the receiver, in metres.
+    /// Minimum fall to the receiver that remains, in metres.
     pub fall: f32,
-    /// Drainage area in cells from which rivers cut down instead.
+    /// Drainage area in cells from which rivers cut down instead of creeping.
     pub cut_area: f32,
 }
 
 impl Kept {
-    /// On the finest level of valleys, or on a detail level, where rivers are there already.
+    /// The limits on the finest level of valleys, or on a detail level, where the rivers already exist.
     pub fn on(land: &Refinement, depth: usize) -> Kept {
         if land.is_detail(depth) {
             Kept { fall: least_rise(land, depth), cut_area: f32::INFINITY }
@@ -42,18 +42,18 @@ impl Kept {
     }
 }
 
-/// The depth in metres that rivers cut in a pass, as far as heights still fall along them.
+/// The depth in metres that rivers cut in a pass, as long as heights still fall along them.
 const CUT: f32 = 1.5;
 
-/// Share of the fall to the receiver by which a node may fall in a pass.
+/// Maximum share of the fall to its receiver by which a node is lowered in a pass.
 const LOWERED: f32 = 0.5;
 
-/// The planes of a level that creep reads beside the heights.
+/// The planes of a level that creep reads in addition to the heights.
 #[derive(Clone, Copy)]
 pub struct Hillsides<'a> {
     pub area: &'a [f32],
     pub receiver: &'a [f32],
-    /// Receivers that stay (see [`super::carve::Carved::fixed`]): water stays as it is.
+    /// Receivers that must not change (see [`super::carve::Carved::fixed`]); water keeps its height.
     pub fixed: &'a [f32],
     /// Factor of the rate.
     pub factor: &'a [f32],
@@ -88,8 +88,8 @@ impl Body for Creep<'_> {
     }
 }
 
-/// A node falls by at most a share of the fall to its receiver, and rises by at most the rest of that from its lowest
-/// donor, so that donors stay above.
+/// A node is lowered by at most a share of the fall to its receiver. It is raised by at most the rest of that share of
+/// the fall from its lowest donor, so that donors stay above it.
 #[inline(always)]
 fn smooth(
     [height, area, receiver, fixed, factor]: [&[f32]; 5],
@@ -131,7 +131,7 @@ fn smooth(
     }
 }
 
-/// Free nodes drain along the steepest descent.
+/// Directs free nodes along the steepest descent.
 pub fn steepest(extent: Extent, heights: &[f32], fixed: &[f32], receiver: &mut [f32]) {
     dispatch(Steepest { extent, heights, fixed, receiver });
 }

@@ -1,6 +1,6 @@
-//! Detail levels, below the finest level of valleys. Their hillsides are as steep as those of that level, soil smooths
-//! gentle ones, steep ones are rough rock, and only gullies are new: valleys that grew further by the law of slopes
-//! would make all land as steep as rock can stand.
+//! Detail levels, below the finest level of valleys. Their hillsides are as steep as on that level. Soil smooths gentle
+//! hillsides, and steep ones are rough rock. Only gullies are new: if valleys grew further by the law of slopes, all
+//! land would become as steep as rock can stand.
 
 use super::carve::Carved;
 use super::law::{CONCAVITY, Law, STABLE, STABLE_EXPONENT, river_slope, stable_slope};
@@ -12,31 +12,31 @@ use crate::erosion::power::power;
 use crate::hydrology::direction::{NONE, STEPS};
 use std::f32::consts::{E, SQRT_2};
 
-/// The part of its cell in which a node of the finest level of valleys is displaced from the lattice.
+/// The part of its cell within which a node of the finest level of valleys is displaced from the lattice.
 const DISPLACED: f32 = 0.5;
 
-/// Drainage area in cells up to which the slope to the receiver is that of a hillside. Beyond it a node counts the
-/// less, the larger its area.
+/// Drainage area in cells up to which the slope to the receiver counts as the slope of a hillside. The larger the area
+/// beyond it, the less a node counts.
 const HILLSIDE_AREA: f32 = 8.0;
 
-/// Weights of nodes in the middle of rivers and of water among those of hillsides.
+/// Weights of river nodes and of water nodes in averages with hillsides.
 const RIVER_WEIGHT: f32 = 0.01;
 const WATER_WEIGHT: f32 = 0.001;
 
-/// The smallest stable slope, and the largest relative to that of the law of slopes.
+/// The minimum stable slope, and the maximum relative to the law of slopes.
 const MIN_STABLE: f32 = 1e-3;
 const MAX_STABLE: f32 = 1.5;
 
-/// Drainage area in m^2 below which rivers of detail levels choose their receivers again: two that run side by side at
-/// different heights would have a wall between them.
+/// Drainage area in m^2 below which rivers of detail levels choose their receivers again. Otherwise two parallel rivers
+/// at different heights would have a wall between them.
 const FREE_AREA: f64 = 1e6;
 
-/// Passes of creep, at most.
+/// Maximum number of passes of creep.
 const CREEP_PASSES: usize = 2;
 
-/// Turns nodes of the finest level of valleys into those that detail levels begin with: off the lattice, with uplift
-/// over erodibility in `variation` and the logarithm of the stable slope in `uplift`. Values [`scree::REACH`] nodes
-/// away from the edge are exact.
+/// Turns nodes of the finest level of valleys into the nodes that detail levels begin with: off the lattice, with
+/// uplift over erodibility in `variation` and the logarithm of the stable slope in `uplift`. Values are exact except
+/// for [`scree::REACH`] nodes at the edge.
 pub fn begin(land: &Refinement, level: &mut Level) {
     let mut stable = stable_slopes(land, level);
     let mut variation = std::mem::take(&mut level.variation);
@@ -59,7 +59,7 @@ fn stable_slopes(land: &Refinement, level: &Level) -> Vec<f32> {
     let river_factor = river_slope(land, kilometres * kilometres) as f32;
     let cell = land.cell_of(level.depth) as f32;
     let by_law = stable_slope(land);
-    // Each value with its weight.
+    // The value at each node and its weight.
     let mut own = vec![(0.0, 0.0); level.window.len()];
     for q in level.inner(1) {
         let logarithm = level.variation[q] + level.uplift[q];
@@ -99,9 +99,9 @@ pub fn free_area(cell: f64) -> f32 {
     (FREE_AREA / (cell * cell)) as f32
 }
 
-/// Rivers of small area choose their receivers again. They keep their slopes where those are steeper than the law: they
-/// fell by less than the level above otherwise, and a fall that moves upstream by a few cells on each level would leave
-/// steps.
+/// Lets rivers with a small area choose their receivers again. Where their slopes are steeper than the law, they keep
+/// them. Otherwise they would fall by less than on the coarser level, and a fall that moves upstream by a few cells on
+/// each level would leave steps.
 pub fn free_rivers(land: &Refinement, depth: usize, carved: &mut Carved, extent: Extent, law: &mut Law) {
     let cell = land.cell_of(depth);
     let free_area = free_area(cell);
@@ -126,7 +126,7 @@ pub fn free_rivers(land: &Refinement, depth: usize, carved: &mut Carved, extent:
     carved.free(free_area);
 }
 
-/// The cell that the river of a cell leads to.
+/// The receiver of a river's cell; `None` if the cell has no river.
 fn downstream(carved: &Carved, extent: Extent, q: usize) -> Option<usize> {
     let code = carved.fixed[q];
     let (east, south) = *STEPS.get(if code >= 0.0 { code as usize } else { usize::MAX })?;
@@ -138,7 +138,7 @@ pub fn creep_passes(land: &Refinement) -> usize {
     creep::creep_passes(land.creep).min(CREEP_PASSES)
 }
 
-/// Factors of creep: 1 for soil, less where slopes are of rock.
+/// Factors of creep: 1 for soil, less on rock slopes.
 pub fn creep_factors(law: &Law) -> Vec<f32> {
     law.stable.iter().map(|stable| rock::creep_factor(*stable)).collect()
 }

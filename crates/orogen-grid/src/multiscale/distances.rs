@@ -1,22 +1,22 @@
-//! Distances between the nodes of neighboring cells, with one diagonal per four cells.
+//! Distances between the nodes of neighboring cells. Of the two diagonals of four cells, one is open.
 
 use super::stencil::Extent;
 use crate::hydrology::direction::STEPS;
 
-/// The distance across a closed diagonal: beyond everything.
+/// The distance across a closed diagonal, larger than any other.
 pub const CLOSED: f32 = 1e30;
 
-/// The smallest distance between two nodes, in cells: nodes of adjacent cells may nearly coincide.
+/// The minimum distance between two nodes, in cells, because nodes of adjacent cells may nearly coincide.
 const NEAREST: f32 = 0.35;
 
-/// Distances in cells from each node to those in the east, south-east, south and south-west. Of the two diagonals of
-/// four cells only the shorter is open, so that links never cross.
+/// Distances in cells from each node to its neighbors in the east, south-east, south and south-west. Of the two
+/// diagonals of four cells only the shorter one is open, so that links never cross.
 pub struct Distances {
     pub planes: [Vec<f32>; 4],
 }
 
 impl Distances {
-    /// The distances of nodes at `east` and `south` in their cells.
+    /// The distances between nodes at the positions `east` and `south` in their cells.
     pub fn new(extent: Extent, east: &[f32], south: &[f32]) -> Distances {
         let width = extent.width;
         let mut planes: [Vec<f32>; 4] = std::array::from_fn(|_| vec![CLOSED; extent.len()]);
@@ -37,7 +37,8 @@ impl Distances {
         Distances { planes }
     }
 
-    /// Opens the diagonal link from cell `q` in direction `code`, and closes the one that crosses it. Other links stay.
+    /// Opens the diagonal link from cell `q` in direction `code`, and closes the diagonal that crosses it. Links along
+    /// the axes do not change.
     pub fn open(&mut self, q: usize, code: u8, width: usize, east: &[f32], south: &[f32]) {
         // The north-western of the four cells around the corner.
         let corner = match code {

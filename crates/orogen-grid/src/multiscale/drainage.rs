@@ -1,18 +1,18 @@
-//! One step of drainage areas: each cell adds up what its donors had.
+//! One step of drainage areas: each cell adds up the previous areas of its donors.
 
 use super::stencil::Extent;
 use crate::hydrology::direction::NONE;
 use orogen_simd::{Body, Simd, dispatch};
 
-/// In planes of fixed receivers: a node that chooses its receiver.
+/// In planes of fixed receivers: a node that may choose its receiver.
 pub const FREE: f32 = -1.0;
 
 /// In planes of fixed receivers: water.
 pub const WATER: f32 = NONE as f32;
 
-/// Replaces `area` by 1, or the rain of the cell, plus the areas of the donors before, over `extent`; `spare` is
-/// scratch memory. Sums are in the order of directions, so they have the same bits in every window. Receivers are codes
-/// of directions.
+/// Replaces `area` over `extent` by 1, or the rain of the cell, plus the previous areas of the donors. `spare` is
+/// scratch memory. The terms are added in the order of directions, so sums have the same bits in every window.
+/// Receivers are codes of directions.
 pub fn step(extent: Extent, rain: Option<&[f32]>, receiver: &[f32], area: &mut Vec<f32>, spare: &mut Vec<f32>) {
     dispatch(Step { extent, rain, receiver, area, out: spare });
     std::mem::swap(area, spare);
@@ -58,7 +58,7 @@ fn sum(receivers: [&[f32]; 8], areas: [&[f32]; 8], out: &mut [f32]) {
     }
 }
 
-/// Areas become at most those of the receivers before.
+/// Limits areas to the previous area of the receiver.
 pub fn limit(extent: Extent, receiver: &[f32], area: &mut Vec<f32>, spare: &mut Vec<f32>) {
     dispatch(Limit { extent, receiver, area, out: spare });
     std::mem::swap(area, spare);
@@ -97,7 +97,7 @@ fn lower([receiver, area]: [&[f32]; 2], areas: [&[f32]; 8], out: &mut [f32]) {
     }
 }
 
-/// Areas become at least those of the donors before.
+/// Raises areas to the previous areas of their donors.
 pub fn raise(extent: Extent, receiver: &[f32], area: &mut Vec<f32>, spare: &mut Vec<f32>) {
     dispatch(Raise { extent, receiver, area, out: spare });
     std::mem::swap(area, spare);

@@ -1,4 +1,4 @@
-//! The sea of given land, whose heights are those of the bottom there.
+//! The sea of given land, whose heights include the sea floor.
 
 use super::level::Level;
 use super::surface::sea_bottom;
@@ -8,16 +8,17 @@ use crate::hydrology::direction::NONE;
 /// Depth of the shelf at a kilometre from the shore, in metres.
 const SHELF: f32 = 1.8;
 
-/// The largest distance from the shore at which the bottom falls further, in km.
+/// The maximum distance from the shore up to which the sea floor falls, in km.
 const FURTHEST: f32 = 1300.0;
 
-/// Number of halvings of the distance: all that numbers of 24 binary digits have.
+/// Number of bisection steps, enough for all 24 binary digits of an f32.
 const HALVINGS: usize = 40;
 
 impl Level {
-    /// Lets the sea stand at `sea_level` in a coarsest level of given land: heights become those above it, and nodes of
-    /// land at or below it become water. Their distance from the shore is the one at which the bottom is as deep as the
-    /// land there, and at least that of the coast. `land` covers the window grown by [`REACH`](super::coarse::REACH).
+    /// Sets the sea at `sea_level` metres in a coarsest level of given land: heights become relative to it, and nodes
+    /// of land at or below it become water. Their distance from the shore is chosen such that the sea floor there has
+    /// the depth of the given land, with a minimum near the coast. `land` covers the window grown by
+    /// [`REACH`](super::coarse::REACH).
     pub fn drown(&mut self, land: &Grid, sea_level: f32) {
         let cell = (self.window.cell * 1e-3) as f32;
         let window = self.window;
@@ -42,7 +43,7 @@ impl Level {
                 continue;
             }
             self.height[q] = height;
-            // Between a node of the coast and one of the sea, the shore is about where the ground is at sea level.
+            // Between a node of the coast and a node of the sea, the shore is about where the ground is at sea level.
             let sea = around(1).map(|(x, y)| -above(x, y)).fold(-1.0, f32::max);
             if sea >= 0.0 && self.receiver[q] < NONE {
                 self.shore[q] = (height / SHELF).min(distance_of(sea)).max(0.5 * cell);
@@ -51,7 +52,7 @@ impl Level {
     }
 }
 
-/// Distance from the shore, in km, at which the sea is this deep.
+/// Distance from the shore, in km, at which the sea has this depth in metres.
 fn distance_of(depth: f32) -> f32 {
     let (mut low, mut high) = (0.0, FURTHEST);
     for _ in 0..HALVINGS {
@@ -84,7 +85,7 @@ mod tests {
         let land = Refinement::new(9).with_levels(4);
         let window = Window::new(30, 20, land.cell_of(0)).at(-15, -10);
         let read = window.grown(REACH);
-        // A coast along x = 2: the land falls to the west, below a sea level of 300 m.
+        // A coast along x = 2. The land falls to the west, below a sea level of 300 m.
         let heights = (0..read.len()).map(|q| 40.0 * ((q % read.width) as i64 + read.x) as f32 + 220.0).collect();
         let height = Grid::from_data(read, heights).unwrap();
         let flow = Grid::filled(read, 1e6f32);

@@ -1,5 +1,5 @@
-//! Flood plains: land that lies less above the river that it drains to than a flood rises there (the height above the
-//! nearest drainage; Rennó and others 2008, Nobre and others 2011).
+//! Flood plains: land whose height above the river that it drains to (height above nearest drainage; Rennó and others
+//! 2008, Nobre and others 2011) is less than the rise of a flood in that river.
 
 use super::level::Level;
 use super::refinement::Refinement;
@@ -9,22 +9,23 @@ use crate::grid::Grid;
 use crate::hydrology::rivers::Channel;
 use crate::progress::Progress;
 
-/// Height of a flood over the bed, as a multiple of the depth of the river by its mean discharge. Banks are full at
-/// about five times that discharge, and then the river is 5^0.4 = 1.9 times as deep; land that is prone to floods lies
-/// up to twice as high (Rosgen 1994).
+/// Height of a flood above the bed, as a multiple of the river's depth at its mean discharge. A river fills its banks
+/// at about five times that discharge and is then 5^0.4 = 1.9 times as deep. Land up to twice as high is prone to
+/// floods (Rosgen 1994).
 const STAGE: f64 = 4.0;
 
-/// Longest way from the land to its river, in metres and in links between nodes.
+/// Longest path from land to its river, in metres and in links between nodes.
 const FURTHEST: f64 = 4000.0;
 const MAX_LINKS: usize = 96;
 
-/// The share of the longest way at the end of which floods thin out, so that a flood plain does not end in a step.
+/// The last part of the longest path, as a share, in which floods become shallower, so that a flood plain does not end
+/// in a step.
 const THINNING: f32 = 0.25;
 
-/// Without a river on the way.
+/// The path leads to no river.
 const NOWHERE: usize = usize::MAX;
 
-/// Not known yet.
+/// The river is not known yet.
 const UNKNOWN: usize = usize::MAX - 1;
 
 /// The rivers of a level and their floods.
@@ -35,16 +36,16 @@ struct Floods<'a> {
     channel: &'a Channel,
     links: usize,
     backwater: usize,
-    /// The first node of a river on the way down from each node, and the number of links to it.
+    /// The first river node on the path down from each node, and the number of links to it.
     river: Vec<usize>,
     way: Vec<u16>,
-    /// The height of the flood at nodes of rivers; NaN before it is asked for.
+    /// The height of the flood at river nodes; NaN until it is computed.
     height: Vec<f32>,
     path: Vec<usize>,
 }
 
 impl Refinement {
-    /// Samples of a level beyond a window that [`Refinement::floodplain`] reads.
+    /// Number of samples of a level beyond a window that [`Refinement::floodplain`] reads.
     #[must_use]
     pub fn floods_reach(&self, depth: usize) -> usize {
         let links = self.flood_links(depth);
@@ -55,10 +56,11 @@ impl Refinement {
         self.cells_in(depth, FURTHEST, MAX_LINKS)
     }
 
-    /// Depth in metres of the flood at the points of a surface of this level, made at `share`; 0 where there is none.
-    /// Rivers have at least this drainage area in m^2. In a river the flood is four times as deep as the river. It
-    /// reaches all land that drains to the river within 4000 m or 96 links, along the receivers, and lies below the
-    /// flood; in the last quarter of that way the flood thins out. Rivers that join another rise by its flood, too.
+    /// Depth in metres of the flood at the points of a surface of this level; 0 where there is none. `share` is the
+    /// position within cells at which the surface was made (see [`Refinement::surface_at`]), and `least_area` the
+    /// minimum drainage area of rivers in m^2. In a river the flood is four times as deep as the river. It reaches all
+    /// land below its height that drains to the river within 4000 m or 96 links along the receivers. In the last
+    /// quarter of that distance the flood becomes shallower. The flood of a river also backs up into its tributaries.
     ///
     /// # Errors
     /// If the level does not cover the surface's window grown by [`Refinement::floods_reach`], or the work is
@@ -97,8 +99,8 @@ impl Refinement {
                     continue;
                 }
                 let q = self.nearest_node(share, level, level.row(&nodes, j) + i);
-                // On detail levels points lie on the smooth ground between nodes; on coarse ones that is smoother than
-                // the valleys.
+                // On detail levels points lie on the smooth ground between nodes. On coarser levels that ground is
+                // smoother than the valleys, so the height of the node is used.
                 let ground = if self.is_detail(level.depth) { surface.height[(i, j)] } else { level.height[q] };
                 depth[(i, j)] = floods.depth(q, ground);
             }
@@ -107,16 +109,16 @@ impl Refinement {
     }
 }
 
-/// Number of links down a river from which a flood backs up.
+/// Number of links up a river over which a flood backs up.
 fn backwater_links(links: usize) -> usize {
     links.div_ceil(3)
 }
 
 impl Floods<'_> {
-    /// Depth of the flood at a node, over the ground there.
+    /// Depth of the flood at a node above ground of this height.
     fn depth(&mut self, q: usize, ground: f32) -> f32 {
         if self.is_large(q) {
-            // Points of land may be nearest to a node in the water that a river enters.
+            // A point on land may be nearest to a node in the water that a river enters.
             let own = (STAGE * self.depth_of(q)) as f32;
             return if self.level.is_water(q) { own } else { own.max(self.height_at(q) - ground) };
         }
@@ -144,7 +146,7 @@ impl Floods<'_> {
         self.channel.depth_of(self.channel.discharge(f64::from(self.level.area[q] * self.square_metres)))
     }
 
-    /// Finds the first river on the way down from a node and from all nodes on that way.
+    /// Finds the first river on the path down from a node, and from all nodes on that path.
     fn find_river(&mut self, start: usize) {
         self.path.clear();
         let mut at = start;
@@ -159,7 +161,7 @@ impl Floods<'_> {
                 break;
             }
             self.path.push(at);
-            // Given receivers may lead back to where they come from: there is no river on such a way.
+            // Given receivers may form a cycle. There is no river on such a path.
             self.river[at] = NOWHERE;
             match self.level.downstream(at) {
                 Some(to) => at = to,
@@ -178,8 +180,9 @@ impl Floods<'_> {
         }
     }
 
-    /// Height of the flood at a node of a river: that of its own, or of the river downstream, which backs up the less,
-    /// the further away it is. Nodes are as high as the banks, which are above the bed by the depth of the river.
+    /// Height of the flood at a river node: the flood of the river there, or the flood further downstream if it backs
+    /// up higher. Backing up decreases with the distance. Nodes are as high as the banks, which are above the bed by
+    /// the depth of the river.
     fn height_at(&mut self, river: usize) -> f32 {
         if self.height[river].is_nan() {
             let rise = |at: usize| ((STAGE - 1.0) * self.depth_of(at)) as f32;

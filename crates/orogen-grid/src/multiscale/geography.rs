@@ -1,4 +1,4 @@
-//! Where land and sea, ranges and plains are: noises of wavelengths of hundreds of kilometres.
+//! The locations of land and sea, ranges and plains: noises with wavelengths of hundreds of kilometres.
 
 use super::continents::Continents;
 use super::gradient_noise::{noise, smooth_step};
@@ -7,30 +7,30 @@ use super::hash;
 /// The noises at a position.
 pub struct Geography {
     seed: u64,
-    /// Shape of the coast below which there is sea.
+    /// Shape of the coast below which a position is in the sea.
     threshold: f64,
     /// Factor from metres to kilometres of the noises.
     scale: f64,
-    /// The place in the noises that lies at the origin, in kilometres.
+    /// The position in the noises that is at the origin of the world, in kilometres.
     home: (f64, f64),
 }
 
-/// Number of places that are tried as the home.
+/// Number of positions that are tried as the home.
 const PLACES: u64 = 64;
 
-/// Distance to the shore in kilometres, and logarithm of uplift over erodibility, of a home: mountains not far from the
-/// sea.
+/// Requirements for a home, which is in mountains near the sea: distance to the shore in kilometres, and logarithm of
+/// uplift over erodibility.
 const HOME_SHORE: std::ops::Range<f32> = 60.0..400.0;
 const HOME_UPLIFT: f32 = 0.3;
 
-/// The threshold of the coast by share of land, in steps of 0.1 from 0 to 1: measured quantiles of [`Site::coast`] with
-/// its detail.
+/// The threshold of the coast by share of land, in steps of 0.1 from 0 to 1: measured quantiles of [`Site::coast`]
+/// including its detail.
 const THRESHOLDS: [f64; 11] = [0.72, 0.46, 0.305, 0.19, 0.09, 0.0, -0.09, -0.19, -0.305, -0.46, -0.72];
 
-/// Kilometres of distance to the shore per unit of the coast's shape.
+/// Kilometres of distance to the shore per unit of the shape of the coast.
 const COAST: f64 = 1500.0;
 
-/// The warped coordinates of a position, in kilometres, three of them rotated so that the lattices of the noises
+/// The warped coordinates of a position, in kilometres. Three of them are rotated, so that the lattices of the noises
 /// differ.
 struct Site<'a> {
     geography: &'a Geography,
@@ -49,8 +49,8 @@ impl Geography {
         Geography { home: geography.found_home(), ..geography }
     }
 
-    /// A place in mountains near the sea, otherwise the place with the largest uplift of those on land, so that the
-    /// land around the origin is worth a look with every seed.
+    /// Returns a position in mountains near the sea, or else the position on land with the largest uplift, so that the
+    /// land around the origin is interesting with every seed.
     fn found_home(&self) -> (f64, f64) {
         let mut best = (f32::NEG_INFINITY, (0.0, 0.0));
         for place in 0..PLACES {
@@ -76,7 +76,7 @@ impl Geography {
         noise(self.seed, stream, x / wavelength + 0.37 * offset, y / wavelength - 0.61 * offset)
     }
 
-    /// The position (x, y) in metres, warped.
+    /// The position (x, y) in metres, with warped coordinates.
     fn site(&self, x: f64, y: f64) -> Site<'_> {
         let plain = (x * self.scale + self.home.0, y * self.scale + self.home.1);
         let shift = |first, second| 420.0 * self.noise(first, 1700.0, plain) + 130.0 * self.noise(second, 520.0, plain);

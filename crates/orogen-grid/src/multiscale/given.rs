@@ -1,17 +1,17 @@
-//! What the caller knows of the land.
+//! Properties of the land that the caller provides.
 
 use super::continents::Continents;
 use super::geography::Geography;
 use crate::grid::{Grid, Window};
 use std::ops::RangeInclusive;
 
-/// Shores, uplift and factors. Each grid is at the cell of the level and covers the samples that the level reads. A
-/// factor without a value (NaN, or beyond the grid's edge) is 1.
+/// Shores, uplift and factors. Each grid has the cell of the level and covers the samples that the level reads. A
+/// factor without a value (NaN, or outside the grid) is 1.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Given<'a> {
     /// Distance to the shore in metres, positive on land.
     pub shore: Option<&'a Grid>,
-    /// Uplift over erodibility: 1 in mountains, 0.1 in plains.
+    /// Uplift over erodibility, for example 1 in mountains and 0.1 in plains.
     pub uplift: Option<&'a Grid>,
     /// Factor of the stable slope of hillsides.
     pub stability_factor: Option<&'a Grid>,
@@ -19,11 +19,11 @@ pub struct Given<'a> {
     pub creep_factor: Option<&'a Grid>,
     /// Factor of the width of valley floors.
     pub floor_factor: Option<&'a Grid>,
-    /// Factor of the rain, and so of the discharge from each cell. Detail levels take the rain of their streams from
-    /// above.
+    /// Factor of the rain, and thus of the discharge from each cell. On detail levels the rain of streams comes from
+    /// the coarser levels.
     pub rain: Option<&'a Grid>,
-    /// The land whose geography decides about shores and uplift without a value. Without it they are those of the level
-    /// above.
+    /// The land whose geography provides shores and uplift where they have no value. Without it they are taken from the
+    /// next coarser level.
     pub continents: Option<&'a Continents>,
 }
 
@@ -47,21 +47,21 @@ impl Given<'_> {
         self.rain.map(|_| factor(self.rain, window, RAIN))
     }
 
-    /// The distance to the shore in kilometres at a sample, otherwise that of geography at a position in metres.
+    /// The given distance to the shore in kilometres at a sample, or that of the geography at a position in metres.
     pub(super) fn shore_or(&self, (x, y): (i64, i64), geography: &Geography, east: f64, south: f64) -> f32 {
         self.shore(x, y).unwrap_or_else(|| geography.shore(east, south))
     }
 
-    /// The logarithm of uplift over erodibility at a sample, otherwise that of geography at a position in metres.
+    /// The given logarithm of uplift over erodibility at a sample, or that of the geography at a position in metres.
     pub(super) fn uplift_or(&self, (x, y): (i64, i64), geography: &Geography, east: f64, south: f64) -> f32 {
         self.uplift(x, y).unwrap_or_else(|| geography.uplift(east, south))
     }
 }
 
-/// Factors of the rain.
+/// Range of factors of the rain.
 const RAIN: RangeInclusive<f32> = 0.01..=100.0;
 
-/// The values of a factor over a window, within `range`; 1 where it has none.
+/// The values of a factor over a window, clamped to `range`; 1 where it has no value.
 pub(super) fn factor(grid: Option<&Grid>, window: &Window, range: RangeInclusive<f32>) -> Vec<f32> {
     let mut factors = vec![1.0; window.len()];
     if let Some(grid) = grid {
@@ -74,7 +74,7 @@ pub(super) fn factor(grid: Option<&Grid>, window: &Window, range: RangeInclusive
     factors
 }
 
-/// The finite value of a sample of the lattice.
+/// The value at a sample of the lattice, if it is finite.
 fn at(grid: &Grid, x: i64, y: i64) -> Option<f32> {
     let window = grid.window();
     let (i, j) = (usize::try_from(x - window.x).ok()?, usize::try_from(y - window.y).ok()?);

@@ -1,14 +1,16 @@
-//! Gradient noise of geography, in double precision: positions may be millions of kilometres from the origin.
+//! Gradient noise for the geography, in double precision, because positions may be millions of kilometres from the
+//! origin.
 
 use super::hash;
 
-/// Stream of hashes of the lattice of gradients: no level has this depth.
+/// The depth in hashes of the gradient lattice. No level has this depth.
 const DEPTH: usize = 77;
 
 /// East components of the gradients of the first quarter turn, in steps of a 16th of a turn.
 const QUARTER: [f64; 4] = [1.0, 0.923_88, std::f64::consts::FRAC_1_SQRT_2, 0.382_68];
 
-/// East components of the 16 gradients; the south component is that of the gradient a quarter turn back.
+/// East components of the 16 gradients. The south component equals the east component of the gradient a quarter turn
+/// back.
 const GRADIENTS: [f64; 16] = {
     let [a, b, c, d] = QUARTER;
     [a, b, c, d, 0.0, -d, -c, -b, -a, -b, -c, -d, 0.0, d, c, b]
@@ -30,7 +32,7 @@ pub fn noise(seed: u64, stream: u64, x: f64, y: f64) -> f64 {
     (north + share_v * (south - north)) * 1.4
 }
 
-/// The largest whole number that is not larger; without a call, which `f64::floor` is on older processors.
+/// The largest integer that is not larger than `x`, without a function call as in `f64::floor` on older processors.
 fn floor(x: f64) -> i64 {
     let towards_zero = x as i64;
     if towards_zero as f64 > x { towards_zero.wrapping_sub(1) } else { towards_zero }
@@ -40,7 +42,7 @@ fn quintic(t: f64) -> f64 {
     t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
 }
 
-/// 0 below `from`, 1 above `to`, smooth between.
+/// 0 below `from`, 1 above `to`, and smooth between them.
 pub fn smooth_step(from: f64, to: f64, x: f64) -> f64 {
     let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)

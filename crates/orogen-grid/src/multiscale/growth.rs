@@ -1,4 +1,4 @@
-//! Growth of the land between rivers: passes in which heights fall to the steady state of the law over the lowest
+//! Growth of the land between rivers, in passes: heights fall to the steady state of the law relative to the lowest
 //! neighbor.
 
 use super::distances::Distances;
@@ -11,8 +11,8 @@ use orogen_simd::{Body, Simd, dispatch};
 /// Drainage area, in km^2, from which rivers have floors.
 pub const FLOOR_AREA: f64 = 5.0;
 
-/// Smallest rise over one cell, in metres: heights fall strictly. On detail levels it shrinks with the cell, so that
-/// floors stay flat, as far as heights of a few kilometres have the digits.
+/// Minimum rise over one cell, in metres, so that heights strictly fall. On detail levels it shrinks with the cell, so
+/// that floors stay flat, down to the precision of heights of a few kilometres.
 const LEAST_RISE: f32 = 0.012;
 const LEAST_DETAIL_RISE: f32 = 0.001;
 
@@ -21,7 +21,7 @@ pub struct Growth {
     pub height: Vec<f32>,
     pub area: Vec<f32>,
     pub receiver: Vec<f32>,
-    /// Receivers that stay (see [`super::carve::Carved::fixed`]).
+    /// Receivers that must not change (see [`super::carve::Carved::fixed`]).
     pub fixed: Vec<f32>,
     /// Distance in metres over which the floor of a river downstream continues; empty without floors.
     floor: Vec<f32>,
@@ -39,7 +39,7 @@ pub enum Spacing<'a> {
 }
 
 impl Growth {
-    /// The nodes before growth.
+    /// The nodes before growth, with floors if `floors` is set.
     pub fn new(height: Vec<f32>, area: Vec<f32>, receiver: Vec<f32>, fixed: Vec<f32>, floors: bool) -> Growth {
         let cells = height.len();
         let plane = |wanted: bool| if wanted { vec![0.0; cells] } else { Vec::new() };
@@ -55,7 +55,7 @@ impl Growth {
         }
     }
 
-    /// One pass over the cells of `extent`, of level `depth`. Heights stay at or above `least`, if it is not empty.
+    /// One pass over the cells of `extent`, on level `depth`. If `least` is not empty, heights stay at or above it.
     pub fn pass(
         &mut self,
         extent: Extent,
@@ -78,7 +78,7 @@ impl Growth {
     }
 }
 
-/// The smallest rise over one cell of a level, in metres.
+/// The minimum rise over one cell of a level, in metres.
 pub fn least_rise(land: &Refinement, depth: usize) -> f32 {
     if land.is_detail(depth) {
         (LEAST_RISE * (land.cell_of(depth) / land.cell) as f32).max(LEAST_DETAIL_RISE)

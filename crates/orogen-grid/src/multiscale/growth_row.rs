@@ -1,4 +1,4 @@
-//! The growth of one row of nodes. Each step is a loop over a row that reads one neighbor, so that it vectorises.
+//! The growth of one row of nodes. Each step is a loop over a row that reads one neighbor, so that it is vectorized.
 
 use super::carve::UNKNOWN;
 use super::drainage::{FREE, WATER};
@@ -6,40 +6,40 @@ use super::law::CONCAVITY;
 use crate::erosion::power::power;
 use std::f32::consts::{FRAC_1_SQRT_2, SQRT_2};
 
-/// Half-width of a floor, in metres, where rivers begin to have floors.
+/// Half-width, in metres, of the floors of the smallest rivers that have floors.
 pub const FLOOR_WIDTH: f32 = 100.0;
 
-/// Greatest slope of a floor.
+/// Maximum slope of a floor.
 const FLOOR_SLOPE: f32 = 0.02;
 
-/// Drainage area, in cells, below which slopes of the finest level rise in all directions alike.
+/// Drainage area, in cells, below which slopes of the finest level rise equally in all directions.
 const SLOPE_AREA: f32 = 30.0;
 
-/// Numbers of a level.
+/// Constants of a level.
 #[derive(Debug, Clone, Copy)]
 pub struct Scale {
-    /// The cell in metres.
+    /// The cell size in metres.
     pub cell: f32,
-    /// Smallest rise over one cell, in metres: heights fall strictly.
+    /// Minimum rise over one cell, in metres, so that heights strictly fall.
     pub least_rise: f32,
     /// Inverse of the area of rivers with floors, in cells.
     pub floor_area: f32,
 }
 
-/// What a row of cells reads of itself.
+/// The values of a row of cells.
 pub struct Own<'a> {
     pub height: &'a [f32],
     pub area: &'a [f32],
     pub fixed: &'a [f32],
     pub river: &'a [f32],
     pub stable: &'a [f32],
-    /// Factor of the floor's width; empty without floors.
+    /// Factor of the width of floors; empty without floors.
     pub width: &'a [f32],
-    /// The smallest height; empty without lakes.
+    /// The minimum heights; empty without lakes.
     pub least: &'a [f32],
 }
 
-/// What a row of cells reads of its neighbors.
+/// The values of the neighbors of a row of cells.
 pub struct Around<'a> {
     pub height: [&'a [f32]; 8],
     pub fixed: [&'a [f32]; 8],
@@ -48,13 +48,13 @@ pub struct Around<'a> {
     pub floor: [&'a [f32]; 8],
 }
 
-/// The results of a row so far.
+/// Intermediate results of a row.
 #[derive(Default)]
 pub struct Row {
     /// Rise over one cell by the law, and on a floor.
     rise: Vec<f32>,
     flat: Vec<f32>,
-    /// Free nodes drain to neighbors below this height.
+    /// Height below which a neighbor can become the receiver; for free nodes only.
     below: Vec<f32>,
     lowest: Vec<f32>,
     best: Vec<f32>,
@@ -119,7 +119,7 @@ pub fn grow<const FLOORS: bool, const REGULAR: bool>(
     }
 }
 
-/// What all neighbors of a row are measured by.
+/// The values of a row that apply to all its neighbors.
 struct Law<'a> {
     rise: &'a [f32],
     flat: &'a [f32],
@@ -134,7 +134,7 @@ struct Neighbor<'a> {
     floor: &'a [f32],
 }
 
-/// The neighbors in one direction.
+/// The neighbors of a row in one direction.
 struct Toward<'a> {
     there: Neighbor<'a>,
     code: usize,
@@ -157,8 +157,8 @@ fn rises(own: &Own<'_>, scale: Scale, rise: &mut [f32], flat: &mut [f32], below:
     }
 }
 
-/// Takes the height over the neighbors in one direction where it is the lowest so far. No link crosses a river that
-/// leads from one of the two cells `beside` a diagonal to the other: it would pass under that river.
+/// Takes the height above the neighbors in one direction where it is the lowest so far. `beside` are the two cells next
+/// to a diagonal. A link along the diagonal must not cross a river that leads from one of them to the other.
 #[inline(always)]
 fn offer<const FLOORS: bool, const REGULAR: bool, const DIAGONAL: bool>(
     law: &Law<'_>,
@@ -177,7 +177,7 @@ fn offer<const FLOORS: bool, const REGULAR: bool, const DIAGONAL: bool>(
     let regular = if DIAGONAL { SQRT_2 } else { 1.0 };
     let direct = toward.code as f32;
     let beside = beside.map(|row| &row[..if DIAGONAL { n } else { 0 }]);
-    // The directions from each of the cells beside to the other.
+    // The directions from each of the two cells next to the diagonal to the other.
     let across = [((toward.code + 2) & 7) as f32, ((toward.code + 6) & 7) as f32];
     for i in 0..n {
         let distance = if REGULAR { regular } else { distances[i] };
@@ -195,8 +195,8 @@ fn offer<const FLOORS: bool, const REGULAR: bool, const DIAGONAL: bool>(
     }
 }
 
-/// Takes the height of a front that passes between a neighbor and the lower one `beside` it where it is the lowest so
-/// far.
+/// Takes the height of a front that passes between a neighbor and the lower neighbor in direction `beside`, where it is
+/// the lowest so far.
 #[inline(always)]
 fn front(law: &Law<'_>, heights: [&[f32]; 4], beside: f32, lowest: &mut [f32], best: &mut [f32], floor: &mut [f32]) {
     let n = lowest.len();
@@ -226,7 +226,7 @@ fn finish(height: &[f32], lowest: &[f32], best: &[f32], out: &mut [f32], receive
     }
 }
 
-/// The distance over which a river's floor continues, from its size or from downstream.
+/// The distance over which a river's floor continues, from its own size or from downstream.
 #[inline(always)]
 fn floors([area, width, fixed]: [&[f32]; 3], floor: &[f32], floor_area: f32, out: &mut [f32]) {
     let n = out.len();
@@ -243,8 +243,8 @@ fn floors([area, width, fixed]: [&[f32]; 3], floor: &[f32], floor_area: f32, out
 mod tests {
     use super::*;
 
-    /// The direction that a free node takes whose lowest neighbor is in the south-east, beside a river at the east with
-    /// this fixed receiver.
+    /// The direction that a free node chooses if its lowest neighbor is in the south-east and a river with this fixed
+    /// receiver is in the east.
     fn receiver(river: f32) -> f32 {
         let heights = [[30.0], [5.0], [31.0], [40.0], [20.0], [40.0], [40.0], [40.0]];
         let fixed = [[river], [FREE], [FREE], [FREE], [FREE], [FREE], [FREE], [FREE]];
@@ -271,7 +271,7 @@ mod tests {
 
     #[test]
     fn streams_do_not_pass_under_rivers() {
-        // A river to the south stays away, one to the south-west crosses the way to the south-east.
+        // A river to the south does not cross the link to the south-east; a river to the south-west does.
         assert_eq!((receiver(2.0), receiver(FREE)), (1.0, 1.0));
         assert_eq!(receiver(3.0), 4.0);
     }

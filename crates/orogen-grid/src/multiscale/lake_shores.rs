@@ -1,4 +1,4 @@
-//! Shores of lakes with an outlet: the shapes of new lakes, and the land that holds lakes back.
+//! Shores of lakes with an outlet: the shapes of new lakes, and the height of the land around lakes.
 
 use super::carve::Carved;
 use super::children::Children;
@@ -10,21 +10,22 @@ use super::stencil::Extent;
 use crate::hydrology::direction::{NONE, STEPS};
 use std::f32::consts::SQRT_2;
 
-/// A lake is nearer to its own river than to a lower one by this factor of the distances, so that there is a ridge
-/// between them.
+/// A lake extends only to points whose distance to its own river is less than this factor times the distance to a lower
+/// river, so that there is a ridge between them.
 const NEARER: f32 = 0.6;
 
-/// Cells around a lake whose land is not much lower than the lake, so that it does not stand behind a wall.
+/// Number of cells around a lake within which the land is not much lower than the lake, so that the lake has no wall
+/// around it.
 pub const RIM: usize = 3;
 
-/// Slope of this land away from the lake, and its height over the lake at the shore, in metres.
+/// Slope of this land away from the lake, and its height above the lake at the shore, in metres.
 const RIM_SLOPE: f32 = 0.2;
 const RIM_HEIGHT: f32 = 0.1;
 
-/// No smallest height.
+/// The minimum height where there is no limit.
 pub const ANYTHING: f32 = -1e30;
 
-/// Places the shores of new lakes: at a distance from the links between their nodes.
+/// Places the shores of new lakes at a distance from the links between their nodes.
 pub fn shape(parts: &[Part], level: &Level, children: &mut Children) {
     if parts.is_empty() {
         return;
@@ -57,7 +58,8 @@ pub fn shape(parts: &[Part], level: &Level, children: &mut Children) {
     }
 }
 
-/// The position of the receiver of a lake's node in the same lake, from the corner of the node's cell, in cells.
+/// The position of the receiver of a lake's node, from the corner of the node's cell, in cells; `None` if it is not in
+/// the same lake.
 fn link(level: &Level, q: usize) -> Option<[f32; 2]> {
     let step = STEPS[usize::from(level.receiver[q] & 7)];
     let to = level.neighbor(q, step)?;
@@ -65,8 +67,8 @@ fn link(level: &Level, q: usize) -> Option<[f32; 2]> {
     is_same.then(|| [level.east[to] + step.0 as f32, level.south[to] + step.1 as f32])
 }
 
-/// The links of rivers near a lake's node that are lower than the lake: positions from the corner of the node's cell,
-/// in cells.
+/// The links of rivers that are near a lake's node and lower than the lake, as positions from the corner of the node's
+/// cell, in cells.
 fn lower_rivers(level: &Level, q: usize) -> Vec<[[f32; 2]; 2]> {
     let reach = WIDEST as isize;
     let around = (-reach..=reach).flat_map(|south| (-reach..=reach).map(move |east| (east, south)));
@@ -83,8 +85,8 @@ fn lower_rivers(level: &Level, q: usize) -> Vec<[[f32; 2]; 2]> {
     found
 }
 
-/// The smallest heights of land around lakes with an outlet, [`RIM`] cells away from the edge; elsewhere [`ANYTHING`].
-/// Nothing if there is no lake.
+/// The minimum heights of land around lakes with an outlet, exact except for [`RIM`] cells at the edge; [`ANYTHING`]
+/// elsewhere. Empty if there is no lake.
 pub fn rims(land: &Refinement, depth: usize, extent: Extent, carved: &Carved) -> Vec<f32> {
     let has_outlet = |q: usize| carved.fixed[q] == WATER && carved.receiver[q] < WATER;
     if land.lakes == 0.0 || !(0..extent.len()).any(has_outlet) {
@@ -102,7 +104,7 @@ pub fn rims(land: &Refinement, depth: usize, extent: Extent, carved: &Carved) ->
             let around = inner.around(&least, j);
             for (k, out) in inner.row_mut(&mut next, j).iter_mut().enumerate() {
                 for (code, there) in around.iter().enumerate() {
-                    // All cells at the shore are as high: none of them lets water out.
+                    // All cells at the shore have the same height, so that no water leaves through them.
                     let distance = if step > 0 && code & 1 == 1 { SQRT_2 } else { 1.0 };
                     *out = out.max(there[k] - fall * distance);
                 }
@@ -117,14 +119,14 @@ pub fn rims(land: &Refinement, depth: usize, extent: Extent, carved: &Carved) ->
     least
 }
 
-/// Land around lakes has not fallen below its smallest height since `before`.
+/// Raises land around lakes that has fallen below its minimum height since `before`.
 pub fn hold(rims: &[f32], before: &[f32], heights: &mut [f32]) {
     for ((height, &before), &least) in heights.iter_mut().zip(before).zip(rims) {
         *height = height.max(before.min(least));
     }
 }
 
-/// The distance of a point from a line between two others.
+/// The distance of the point `at` from the line between two others.
 fn distance(at: [f32; 2], from: [f32; 2], to: [f32; 2]) -> f32 {
     let (along, away) = ([to[0] - from[0], to[1] - from[1]], [at[0] - from[0], at[1] - from[1]]);
     let square = along[0] * along[0] + along[1] * along[1];

@@ -1,5 +1,5 @@
-//! Lakes with an outlet: on some levels parts of rivers become standing water. Water in such a lake has receivers
-//! that lead to the outlet, so that the river runs on below it, and finer levels keep the lake.
+//! Lakes with an outlet: on some levels, parts of rivers become standing water. The water of such a lake has receivers
+//! that lead to the outlet, so that the river continues below it, and finer levels keep the lake.
 
 use super::gradient_noise::{noise, smooth_step};
 use super::hash;
@@ -7,74 +7,75 @@ use super::level::{LAKE, Level};
 use super::refinement::Refinement;
 use crate::hydrology::direction::{NONE, STEPS};
 
-/// The cells in km of the levels whose rivers become lakes.
+/// Cell sizes, in km, of the levels on which rivers become lakes.
 const CELLS: std::ops::RangeInclusive<f64> = 0.4..=5.0;
 
-/// Drainage areas of these rivers, in cells.
+/// Drainage areas of rivers that can become lakes, in cells.
 const AREAS: std::ops::Range<f32> = 16.0..3000.0;
 
-/// Share of their nodes that hold back a lake, where lakes are most frequent.
+/// Share of the nodes of these rivers that become outlets of lakes, where lakes are most frequent.
 const MAX_CHANCE: f64 = 0.16;
 
-/// Wavelength, in km, and values of the noise between which lakes are absent and frequent.
+/// Wavelength, in km, of the noise of the frequency of lakes, and its values for no lakes and for frequent lakes.
 const DISTRICTS: f64 = 160.0;
 const SPARSE: f64 = -0.35;
 const FREQUENT: f64 = 0.45;
 
-/// Logarithms of uplift over erodibility between which lakes are rare, in plains, and frequent, in hills and mountains.
+/// Logarithms of uplift over erodibility for rare lakes, in plains, and for frequent lakes, in hills and mountains.
 const PLAINS: f64 = -2.5;
 const HILLS: f64 = -0.5;
 const CHANCE_IN_PLAINS: f64 = 0.1;
 
-/// Links from the outlet to the upper end of a lake, at most.
+/// Maximum number of links from the outlet to the upper end of a lake.
 const MAX_LINKS: usize = 3;
 
-/// Drainage area of a river in the lake, relative to that of the outlet, at least.
+/// Minimum drainage area of a river in the lake, relative to that of the outlet.
 const MAIN_SHARE: f32 = 0.35;
 
-/// Slope of the river before it became a lake, and below its outlet, at most.
+/// Maximum slope of the river before it becomes a lake, and of the river below its outlet.
 const MAX_SLOPE: f64 = 0.03;
 
-/// Fall from a lake to the river below, in metres, if the river fell by as much, and at least this share of the river's
-/// fall. What is left of the fall is above the lake: finer levels have water up to the end of the link, so that its
-/// fall becomes a step.
+/// Fall from a lake to the river below, in metres, if the river fell by as much, and its minimum as a share of the
+/// river's fall. The rest of the fall is above the lake: on finer levels the water extends to the end of the link, so
+/// that this fall becomes a step.
 const OUTLET_FALL: f32 = 1.0;
 const OUTLET_SHARE: f32 = 0.1;
 
-/// Half of the width of a new lake around its river, at least and at most, in cells.
+/// Minimum and maximum of half the width of a new lake around its river, in cells.
 const HALF_WIDTH: [f32; 2] = [0.3, 0.75];
 
-/// The largest distance to the shore that land beside lakes has, in cells.
+/// Maximum distance to the shore of land next to lakes, in cells.
 pub const BESIDE: f32 = 0.5;
 
 /// Irregularity of the shores of lakes, relative to that of coasts.
 pub const SHORE_IRREGULARITY: f32 = 0.55;
 
-/// Cells from a node of a lake to those whose distances to the shore it changes, and to the rivers that keep it away.
+/// Distance in cells from a node of a lake at which it changes distances to the shore, and at which lower rivers limit
+/// the lake.
 pub const WIDEST: usize = 2;
 
-/// Cells that the lakes of a cell depend on: to a node of a lake and on to a lower river or another lake, along that to
-/// its outlet, and down to the next one.
+/// Number of cells that the lakes of a cell depend on: to a node of a lake and on to a lower river or another lake,
+/// along that to its outlet, and down to the next one.
 pub const REACH: usize = 2 * WIDEST + 2 * MAX_LINKS + 1;
 
-/// Whether the code of a receiver is that of a lake with an outlet.
+/// Whether a receiver code is that of a lake with an outlet.
 #[inline(always)]
 pub fn is_lake(code: u8) -> bool {
     code >= LAKE
 }
 
-/// Whether a node has a receiver: land, and lakes with an outlet.
+/// Whether a node with this receiver code has a receiver, which is true for land and lakes with an outlet.
 #[inline(always)]
 pub fn drains(code: u8) -> bool {
     code < NONE || is_lake(code)
 }
 
-/// Whether rivers of a level become lakes on the level below.
+/// Whether rivers of a level become lakes on the next finer level.
 pub fn begin_at(land: &Refinement, depth: usize) -> bool {
     land.lakes > 0.0 && depth < land.levels && CELLS.contains(&land.kilometres(depth))
 }
 
-/// The largest distance to the shore that land beside a lake has, in km, so that lakes can be wider than their rivers.
+/// Maximum distance to the shore of land next to a lake, in km, so that lakes can be wider than their rivers.
 pub fn beside(land: &Refinement, depth: usize) -> f32 {
     BESIDE * land.kilometres(depth) as f32
 }
@@ -82,15 +83,15 @@ pub fn beside(land: &Refinement, depth: usize) -> f32 {
 /// A node of a new lake.
 pub struct Part {
     pub node: usize,
-    /// Half of the width of the lake around the river, in cells.
+    /// Half the width of the lake around the river, in cells.
     pub half_width: f32,
 }
 
-/// Turns nodes of rivers into lakes. Nodes [`REACH`] away from the edge are exact.
+/// Turns nodes of rivers into lakes, and returns these nodes. Nodes are exact except for [`REACH`] at the edge.
 pub fn begin(land: &Refinement, level: &mut Level) -> Vec<Part> {
     let found = Outlets::new(land, level);
     let steepest = (MAX_SLOPE * land.cell_of(level.depth)) as f32;
-    // No lake depends on what another one does.
+    // All lakes are found from the level as it was, so that they do not depend on each other.
     let (heights, receivers) = (level.height.clone(), level.receiver.clone());
     let suits = |q: usize| found.is_last(level, q) && is_dry(level, &receivers, q);
     let outlets: Vec<usize> = found.candidates.iter().copied().filter(|&q| suits(q)).collect();
@@ -126,7 +127,7 @@ pub fn begin(land: &Refinement, level: &mut Level) -> Vec<Part> {
     parts
 }
 
-/// Whether no node around a node is water.
+/// Whether no neighbor of a node is water.
 fn is_dry(level: &Level, receivers: &[u8], q: usize) -> bool {
     STEPS.into_iter().all(|step| level.neighbor(q, step).is_none_or(|near| receivers[near] < NONE))
 }
@@ -158,7 +159,8 @@ impl Outlets {
         hash::node(land.seed, level.depth, x, y, 13)
     }
 
-    /// Whether neither standing water nor another candidate, whose lake may reach this one, is near downstream.
+    /// Whether there is neither standing water nor another candidate within the length of a lake downstream. The lake
+    /// of such a candidate could reach this node.
     fn is_last(&self, level: &Level, q: usize) -> bool {
         let mut at = q;
         (0..=MAX_LINKS).all(|_| match level.downstream(at) {
@@ -171,7 +173,7 @@ impl Outlets {
     }
 }
 
-/// How frequent lakes are around a node, 0 to 1.
+/// The frequency of lakes around a node, 0 to 1.
 fn frequency(land: &Refinement, level: &Level, q: usize) -> f64 {
     let (x, y) = level.place(q);
     let kilometres = |index: i64, share: f32| land.metres(level.depth, index, share) * 1e-3;
@@ -181,7 +183,7 @@ fn frequency(land: &Refinement, level: &Level, q: usize) -> f64 {
     district * (CHANCE_IN_PLAINS + (1.0 - CHANCE_IN_PLAINS) * relief)
 }
 
-/// The nodes on land whose receiver is a node.
+/// The nodes on land whose receiver is `q`.
 fn donors(level: &Level, q: usize) -> impl Iterator<Item = usize> {
     STEPS.iter().enumerate().filter_map(move |(code, step)| {
         let donor = level.neighbor(q, *step)?;

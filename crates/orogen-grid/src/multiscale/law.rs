@@ -1,4 +1,4 @@
-//! The law of slopes: rivers are the gentler the more land drains through them, and hillsides approach a stable slope.
+//! The law of slopes: the more land a river drains, the gentler it is, and hillsides approach a stable slope.
 
 use super::children::Children;
 use super::given::{self, Given};
@@ -17,30 +17,31 @@ const STEEPNESS: f64 = 0.25;
 /// Stable slope of hillsides where uplift over erodibility is 1.
 pub const STABLE: f32 = 0.8;
 
-/// Factors that are given: the smallest and the largest.
+/// Minimum and maximum of given factors.
 const FACTORS: RangeInclusive<f32> = 0.01..=100.0;
 
-/// The largest factor of the width of floors where the rock is soft.
+/// Maximum factor of the width of floors in soft rock.
 pub const MAX_FLOOR_FACTOR: f32 = 4.0;
 
 /// Exponent of uplift over erodibility in the stable slope.
 pub const STABLE_EXPONENT: f32 = 0.3;
 
-/// Slope of a river of this drainage area, in km^2, where uplift over erodibility is 1.
+/// Slope of a river with a drainage area of `square_kilometres` where uplift over erodibility is 1.
 pub fn river_slope(land: &Refinement, square_kilometres: f64) -> f64 {
     land.relief * STEEPNESS * libm::pow(square_kilometres, -f64::from(CONCAVITY))
 }
 
-/// Stable slope of hillsides where uplift over erodibility is 1, with the factor of the uplift.
+/// Stable slope of hillsides where uplift over erodibility is 1, including the factor of the uplift.
 pub fn stable_slope(land: &Refinement) -> f32 {
     STABLE * power(land.relief as f32, STABLE_EXPONENT)
 }
 
-/// The law at the nodes of a level. The slope is s t / (s + t) with s = `river` A^-0.45, A in cells, and t = `stable`.
+/// The law at the nodes of a level. The slope is s t / (s + t) with s = `river` A^-0.45 and t = `stable`, where A is
+/// the drainage area in cells.
 pub struct Law {
     pub river: Vec<f32>,
     pub stable: Vec<f32>,
-    /// Factor of the width of valley floors, on levels that have them.
+    /// Factor of the width of valley floors; empty on levels without floors.
     pub floor: Vec<f32>,
 }
 
@@ -68,8 +69,8 @@ impl Law {
 }
 
 impl Law {
-    /// The law at the nodes of a detail level, from uplift over erodibility in `variation` and the logarithms of stable
-    /// slopes in `uplift`. There are no floors: stable slopes contain them.
+    /// The law at the nodes of a detail level, with uplift over erodibility in `variation` and the logarithms of stable
+    /// slopes in `uplift`. There are no separate floors, because the stable slopes include them.
     fn fill_detail(&mut self, variation: &[f32], uplift: &[f32], river_factor: f32) {
         for (river, variation) in self.river.iter_mut().zip(variation) {
             *river = river_factor * power(std::f32::consts::E, *variation);
@@ -86,7 +87,7 @@ fn multiply(plane: &mut [f32], factor: Option<&Grid>, window: &Window) {
     }
 }
 
-/// Whether valleys of a level have floors: the last three levels of valleys.
+/// Whether valleys of a level have floors, which is true for the last three levels of valleys.
 pub fn has_floors(land: &Refinement, depth: usize) -> bool {
     depth + 2 >= land.levels && !land.is_detail(depth)
 }
@@ -127,7 +128,7 @@ fn fill(
     }
 }
 
-/// Floors are the wider the softer the rock.
+/// Factors of the width of floors: the softer the rock, the wider the floor.
 #[inline(always)]
 fn floors(variation: &[f32], uplift: &[f32], floor: &mut [f32]) {
     let n = floor.len();
@@ -138,8 +139,8 @@ fn floors(variation: &[f32], uplift: &[f32], floor: &mut [f32]) {
     }
 }
 
-/// The rise in metres from a node to its neighbor at the source of a river, where the logarithm of uplift over
-/// erodibility is `logarithm`.
+/// The rise in metres from a node at the source of a river to its neighbor, where `logarithm` is the logarithm of
+/// uplift over erodibility.
 pub fn slope_of_one_cell(land: &Refinement, depth: usize, logarithm: f32) -> f32 {
     let kilometres = land.kilometres(depth);
     let river = river_slope(land, kilometres * kilometres) as f32 * power(std::f32::consts::E, logarithm);

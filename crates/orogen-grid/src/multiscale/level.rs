@@ -4,13 +4,13 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::grid::{Grid, Window};
 use crate::hydrology::direction::NONE;
 
-/// What is added to the code of the direction to the receiver of a node in a lake with an outlet.
+/// Added to the code of the receiver's direction for a node in a lake with an outlet.
 pub const LAKE: u8 = 16;
 
-/// The first code after those of lakes with an outlet.
+/// The first code after the codes of lakes with an outlet.
 const LAKES_END: u8 = LAKE + NONE;
 
-/// The code of the direction of a receiver, also in lakes with an outlet; [`NONE`] for other water.
+/// The code of the receiver's direction, also in lakes with an outlet; [`NONE`] for other water.
 #[must_use]
 pub fn direction(receiver: u8) -> u8 {
     match receiver {
@@ -20,25 +20,25 @@ pub fn direction(receiver: u8) -> u8 {
     }
 }
 
-/// Nodes of one level over a window: one node per sample of the lattice.
+/// The nodes of one level over a window, one node per sample of the lattice.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Level {
-    /// The number of halvings from the coarsest level, which is 0.
+    /// The number of halvings of the cell from the coarsest level, which has depth 0.
     pub depth: usize,
     /// The window, in samples of this level.
     pub window: Window,
-    /// Position of the node in its cell, 0 in the west to 1 in the east.
+    /// Position of the node in its cell, from 0 in the west to 1 in the east.
     pub east: Vec<f32>,
-    /// Position of the node in its cell, 0 in the north to 1 in the south.
+    /// Position of the node in its cell, from 0 in the north to 1 in the south.
     pub south: Vec<f32>,
-    /// Height in metres; the water level of water. The sea is at 0.
+    /// Height in metres; for water, the height of its surface. The sea is at 0.
     pub height: Vec<f32>,
-    /// Drainage area, in cells of this level, weighted by the rain if that is given.
+    /// Drainage area, in cells of this level, weighted by the rain if rain is given.
     pub area: Vec<f32>,
-    /// Code of the direction to the receiver (see [`crate::hydrology::direction`]); [`NONE`] for the sea and lakes
-    /// without an outlet. Nodes of lakes with one have [`LAKE`] added.
+    /// Code of the direction to the receiver (see [`crate::hydrology::direction`]); [`NONE`] for the sea and for lakes
+    /// without an outlet. Nodes of lakes with an outlet have [`LAKE`] added.
     pub receiver: Vec<u8>,
-    /// Local part of the logarithm of uplift over erodibility; on detail levels all of it.
+    /// Local part of the logarithm of uplift over erodibility; on detail levels the whole logarithm.
     pub variation: Vec<f32>,
     /// Regional part of the logarithm of uplift over erodibility; on detail levels the logarithm of the stable slope.
     pub uplift: Vec<f32>,
@@ -50,7 +50,7 @@ impl Level {
     /// Number of planes.
     pub const PLANES: usize = Level::PLANE_NAMES.len();
 
-    /// Their names in shaders, in the order of the fields.
+    /// Names of the planes in shaders, in the order of the fields.
     pub const PLANE_NAMES: [&str; 8] = ["EAST", "SOUTH", "HEIGHT", "AREA", "RECEIVER", "VARIATION", "UPLIFT", "SHORE"];
 
     /// Each plane as a grid over the window, in the order of the fields.
@@ -62,7 +62,7 @@ impl Level {
         planes.into_iter().map(|plane| Grid::from_data(self.window, plane).unwrap_or_else(no_data)).collect()
     }
 
-    /// The level of these planes, the inverse of [`Level::into_planes`].
+    /// The level with these planes. The inverse of [`Level::into_planes`].
     ///
     /// # Errors
     /// If the number of planes is wrong, their windows differ, or a receiver is not a code of a direction.
@@ -89,7 +89,7 @@ impl Level {
         (self.window.x + (q % self.window.width) as i64, self.window.y + (q / self.window.width) as i64)
     }
 
-    /// Index of the first node of row `j` of a window within the level's.
+    /// Index of the first node of row `j` of a window inside the level's window.
     pub(super) fn row(&self, window: &Window, j: usize) -> usize {
         ((window.y - self.window.y) as usize + j) * self.window.width + (window.x - self.window.x) as usize
     }
@@ -101,7 +101,7 @@ impl Level {
         rows.flat_map(move |j| j * width + edge..((j + 1) * width).saturating_sub(edge))
     }
 
-    /// Checks that the level covers nodes and those around them that are read.
+    /// Returns an error if the level does not cover the given nodes and `reach` nodes around them.
     pub(super) fn check_covers(&self, what: &str, nodes: &Window, reach: usize) -> Result<()> {
         let needed = nodes.grown(reach);
         if self.window.contains(&needed) {
@@ -116,7 +116,7 @@ impl Level {
         self.receiver[q] == NONE && self.height[q] > 0.0
     }
 
-    /// The nodes of `window`, which must lie within the level's.
+    /// The nodes of `window`, which must lie within the level's window.
     ///
     /// # Errors
     /// If the window is not a part of the level's.
@@ -140,13 +140,13 @@ impl Level {
     }
 }
 
-/// Whether a number is the code of a receiver.
+/// Whether a number is a valid receiver code.
 fn is_code(value: f32) -> bool {
     let lake = f32::from(LAKE);
     (0.0..=f32::from(NONE)).contains(&value) || (lake..lake + f32::from(NONE)).contains(&value)
 }
 
-/// The part of a plane over `from` that is over `window`, which must lie within it.
+/// The part over `window` of a plane over `from`, which must contain it.
 pub(super) fn cropped<T: Copy>(plane: &[T], from: &Window, window: &Window) -> Vec<T> {
     let (left, top) = ((window.x - from.x) as usize, (window.y - from.y) as usize);
     let mut part = Vec::with_capacity(window.len());

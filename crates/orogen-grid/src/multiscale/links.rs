@@ -1,4 +1,4 @@
-//! The ways of rivers through the children of a level: which links of the parents are kept, and the children that they
+//! The paths of rivers through the children of a level: which links of the parents are kept, and which children they
 //! pass.
 
 use super::children::{Children, heir};
@@ -10,19 +10,19 @@ use crate::error::Result;
 use crate::hydrology::direction::{NONE, STEPS};
 use crate::progress::Progress;
 
-/// Randomness of the choice between ways, relative to their lengths; that of the last three levels.
+/// Randomness of the choice between paths, relative to their lengths, and the same for the last three levels.
 const WANDER: f32 = 1.0;
 const FINE_WANDER: f32 = 0.3;
 
-/// Factor of the length of a detour around a corner: rivers that follow diagonals would be straight without detours.
+/// Factor of the length of a detour around a corner. Without detours, rivers that follow diagonals would be straight.
 const DETOUR: f32 = 0.9;
 
-/// Randomness of the choice between ways to the nodes of a level.
+/// Randomness of the choice between paths to the nodes of a level.
 pub fn wander(land: &Refinement, depth: usize) -> f32 {
     if depth + 2 >= land.levels { FINE_WANDER } else { WANDER }
 }
 
-/// A child of a cell: its parent and which of the four it is, bit 0 for the east, bit 1 for the south.
+/// A child of a cell: its parent, and which of the four children it is. Bit 0 is set in the east, bit 1 in the south.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Child {
     pub parent: usize,
@@ -30,7 +30,7 @@ pub struct Child {
 }
 
 impl Child {
-    /// The index of the child in planes of children, from the number of parents per row.
+    /// The index of the child in planes of children, where `parents` is the number of parents per row.
     #[inline(always)]
     pub fn index(self, parents: usize) -> usize {
         let (i, j) = (self.parent % parents, self.parent / parents);
@@ -38,22 +38,22 @@ impl Child {
     }
 }
 
-/// The third cell that a link across a corner passes.
+/// The third cell that a link across a corner passes through.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Around {
-    /// None.
+    /// No third cell.
     Nothing,
-    /// The cell in the east or west of the parent.
+    /// The cell to the east or west of the parent.
     Side,
-    /// The cell in the north or south of the parent.
+    /// The cell to the north or south of the parent.
     End,
 }
 
-/// The way of a parent's link: from the parent's heir to the exit, possibly around a corner, and from the entry to the
-/// receiver's heir.
+/// The path of a parent's link: from the parent's heir to the exit, then possibly around a corner, and from the entry
+/// to the receiver's heir.
 #[derive(Debug, Clone, Copy)]
 pub struct Link {
-    /// Whether the parent has a donor or is water: other parents are forgotten, and their nodes grow anew.
+    /// Whether the parent has a donor or is water. Other parents are dropped, and their nodes grow anew.
     pub kept: bool,
     /// Whether the parent has a donor.
     pub fed: bool,
@@ -61,15 +61,15 @@ pub struct Link {
     pub exit: u8,
     /// Child of the receiver through which the river arrives.
     pub entry: u8,
-    /// Whether the river passes a child of a third cell between exit and entry.
+    /// The third cell that the river passes through between exit and entry.
     pub around: Around,
 }
 
-/// The links of all parents. Those of parents at least three cells from the edge, and the children that they pass, are
-/// exact.
+/// The links of all parents. Links of parents at least three cells from the edge are exact, and so are the children
+/// that they pass.
 pub struct Links {
     pub list: Vec<Link>,
-    /// Parents per row.
+    /// Number of parents per row.
     pub width: usize,
 }
 
@@ -90,19 +90,19 @@ impl Links {
         Ok(links)
     }
 
-    /// The parents that are not at the edge and are kept, row by row.
+    /// The parents that are kept and not at the edge, row by row.
     pub fn kept(&self, parent: &Level) -> impl Iterator<Item = usize> {
         parent.inner(1).filter(|&q| self.list[q].kept)
     }
 
-    /// The receiver of an inner parent.
+    /// The receiver of a parent that is not at the edge.
     #[inline(always)]
     pub fn target(&self, parent: &Level, q: usize) -> usize {
         let (east, south) = step(parent.receiver[q]);
         q.wrapping_add_signed(south * self.width as isize + east)
     }
 
-    /// The child of a third cell that the link of `q` passes.
+    /// The child of a third cell that the link of `q` passes through.
     #[inline(always)]
     pub fn via(&self, parent: &Level, q: usize) -> Option<Child> {
         self.passed(parent, q, self.list[q].around)
@@ -133,14 +133,14 @@ impl Links {
         }
     }
 
-    /// Chooses the exit and the entry of a link: across a side one of four pairs, by length and chance; across a corner
-    /// there is only one.
+    /// Chooses the exit and the entry of a link. Across a side, one of four pairs is chosen by length and chance;
+    /// across a corner there is only one pair.
     fn cross(&mut self, land: &Refinement, parent: &Level, children: &Children, q: usize, wander: f32) {
         let (east, south) = step(parent.receiver[q]);
         let target = self.target(parent, q);
         let (start, end) =
             (Child { parent: q, corner: heir(parent, q) }, Child { parent: target, corner: heir(parent, target) });
-        // The bit of the exit's side of the cell in the link's direction, and of the entry's.
+        // The bits for the sides of the cells, in the link's direction, at which the exit and the entry are.
         let sides = |step: isize| (u8::from(step > 0), u8::from(step < 0));
         let ((exit_east, entry_east), (exit_south, entry_south)) = (sides(east), sides(south));
         if east != 0 && south != 0 {
@@ -170,7 +170,8 @@ impl Links {
         }
     }
 
-    /// Leads some links across corners around them, through a child of one of the two other cells that no link uses.
+    /// Leads some links around the corner that they cross, through a child of one of the two other cells that no link
+    /// uses.
     fn go_around(&mut self, land: &Refinement, parent: &Level, children: &Children, wander: f32) {
         let width = self.width;
         let mut used = vec![0u8; self.list.len()];
@@ -208,7 +209,7 @@ impl Links {
     }
 }
 
-/// The step of a receiver's direction, on land and in lakes.
+/// The offset to the receiver, on land and in lakes.
 #[inline(always)]
 fn step(receiver: u8) -> (isize, isize) {
     STEPS[usize::from(receiver & 7)]
@@ -220,7 +221,7 @@ impl Children {
     pub fn distance(&self, from: Child, to: Child, parents: usize) -> f32 {
         let (a, b) = (from.index(parents), to.index(parents));
         let width = 2 * parents;
-        // Differences of whole numbers are exact, wherever the window starts.
+        // Differences of integers are exact, wherever the window starts.
         let columns = (b % width) as isize - (a % width) as isize;
         let rows = (b / width) as isize - (a / width) as isize;
         let (mut x, mut y) = (columns as f32, rows as f32);

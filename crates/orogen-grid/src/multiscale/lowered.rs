@@ -1,4 +1,4 @@
-//! The numbers of a level that a graphics card has to know.
+//! The parameters of a level for shaders.
 
 use super::children::{FINEST_GEOGRAPHY, amplitude, indent};
 use super::creep::Kept;
@@ -18,38 +18,38 @@ const FLOORS: u32 = 4;
 const LAKES: u32 = 8;
 const SEA: u32 = 16;
 
-/// The numbers of a level, by their names in shaders.
+/// The parameters of a level, with their names in shaders.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Words {
-    /// Bits of what the level has.
+    /// Bits for the features of the level (see [`FLAGS`]).
     pub flags: u32,
-    /// The starts of hashes.
+    /// The start values of hashes.
     pub hashes: [(&'static str, u64); 4],
-    /// Numbers.
+    /// Numeric parameters.
     pub numbers: [(&'static str, f32); 15],
 }
 
 impl Refinement {
-    /// Whether a level of [continents](super::continents::Continents) evaluates their geography.
+    /// Whether a level of [continents](super::continents::Continents) evaluates the geography.
     #[must_use]
     pub fn has_geography(&self, depth: usize) -> bool {
         self.kilometres(depth) >= FINEST_GEOGRAPHY
     }
 
-    /// Whether rivers have beds in level `depth`: [`Refinement::cut_rivers`] does nothing in others.
+    /// Whether rivers have beds on level `depth`. On other levels [`Refinement::cut_rivers`] does nothing.
     #[must_use]
     pub fn has_beds(&self, depth: usize) -> bool {
         self.is_detail(depth)
     }
 
-    /// The numbers of [`Refinement::surface_at`]: where samples are in their cells, and the mean change of heights by
-    /// finer levels.
+    /// The parameters of [`Refinement::surface_at`]: the position of samples in their cells, and the mean change of
+    /// heights by finer levels.
     #[must_use]
     pub fn surface_numbers(&self, depth: usize, share: f32) -> [f32; 2] {
         [self.inside(depth, share), self.mean_change(depth)]
     }
 
-    /// The numbers of level `depth`, at least 1.
+    /// The parameters of level `depth`, at least 1.
     #[must_use]
     pub fn words(&self, depth: usize) -> Words {
         let above = depth.saturating_sub(1);

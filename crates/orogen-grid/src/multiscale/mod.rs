@@ -1,10 +1,10 @@
-//! Eroded terrain without bounds, level by level.
+//! Unbounded eroded terrain, level by level.
 //!
 //! The terrain is a pyramid of lattices. A node of a level has a position in its cell, a height, a drainage area and a
-//! receiver. The coarsest level is a function of hashes. Each finer level, at half the cell, is a function of the level
-//! above over the same area grown by a fixed [reach](refinement::Refinement::reach), and of hashes. Any window of any
-//! level therefore has the same bits, whichever windows were computed before, and rivers keep their course, area and
-//! fall through all levels.
+//! receiver. The coarsest level is a function of hashes. Each finer level has half the cell size and is a function of
+//! hashes and of the next coarser level over the same area, grown by a fixed [reach](refinement::Refinement::reach).
+//! Any window of any level therefore has the same bits, whichever windows were computed before, and rivers keep their
+//! course, area and fall through all levels.
 //!
 //! Related work: J.-D. Génevaux et al., "Terrain generation using procedural models based on hydrology" (2013); M.
 //! Gaillard et al., "Dendry: a procedural model for dendritic patterns" (2019); H. Schott et al., "Terrain

@@ -1,34 +1,34 @@
-//! Mouths of rivers where shores are given: the water that a coarse level sees in one sample of the shore leads on to
-//! the sea that finer samples have, or stays as an inland lake.
+//! Mouths of rivers where shores are given. A sample of the shore on a coarse level can be water while only some of its
+//! finer samples are, or none. The river is led to finer samples in the sea, or ends in an inland lake.
 
 use super::children::heir;
 use super::given::Given;
 use super::level::{Level, direction};
 use crate::hydrology::direction::{NONE, STEPS, is_diagonal, opposite};
 
-/// The least size of an inland lake where a mouth has no sea, as the distance from its node to its shore, in cells.
+/// Minimum size of an inland lake at a mouth without sea, as the distance from its node to its shore, in cells.
 const INLAND: f32 = 1.0;
 
-/// The height of the water of an inland lake, relative to that of the lowest river that ends there.
+/// Height of the water of an inland lake, relative to the height of the lowest river that ends there.
 const INLAND_HEIGHT: f32 = 0.5;
 
-/// The height of land between a river and the sea, relative to that of the lowest river that passes.
+/// Height of land between a river and the sea, relative to the height of the lowest river that passes.
 const PASSED_HEIGHT: f32 = 0.5;
 
-/// What the given shore says of the children of a node.
+/// The children of a node according to the given shore.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Below {
-    /// The shore is not given for all of them.
+    /// The shore is not given for all children.
     Unknown,
-    /// All are land.
+    /// All children are land.
     Land,
-    /// At least one is sea: the one nearest to the heir, and its distance from the shore, negative, in km.
+    /// At least one child is sea: the one nearest to the heir, and its distance from the shore, negative, in km.
     Sea(u8, f32),
 }
 
-/// Leads mouths to the sea of the next level. A node of the sea moves to a child that is sea; if it has none, its
-/// rivers go on to one beside it that does, and if there is none, they end in an inland lake. A node of land whose heir
-/// is sea becomes sea if its river ends there. Nodes at the edge are left as they are.
+/// Leads mouths to the sea of the next level. A node of the sea moves to a child that is sea. If it has none, its
+/// rivers continue to a neighboring node that has one; if there is none either, they end in an inland lake. A node of
+/// land whose heir is sea becomes sea if its river ends there. Nodes at the edge do not change.
 pub fn lead(level: &mut Level, given: &Given) {
     if given.shore.is_none() {
         return;
@@ -63,15 +63,15 @@ pub fn lead(level: &mut Level, given: &Given) {
     }
 }
 
-/// What becomes of a node at which rivers end, or nearly.
+/// A change to a node at which rivers end, or near which they end.
 enum Change {
-    /// It moves to a child.
+    /// The node moves to a child.
     Move(u8),
-    /// It becomes land with a receiver, lower than its lowest donor.
+    /// The node becomes land with this receiver, lower than its lowest donor.
     Lead(u8, f32),
-    /// It becomes an inland lake, lower than its lowest donor.
+    /// The node becomes an inland lake, lower than its lowest donor.
     Inland(f32),
-    /// It becomes sea.
+    /// The node becomes sea.
     Drown,
 }
 
@@ -92,7 +92,7 @@ impl Change {
     }
 }
 
-/// A share of a cell in its first or second half: mirrored if it is in the other one.
+/// A position in a cell, mirrored if necessary so that it is in the first or the second half.
 fn inside(share: f32, second: bool) -> f32 {
     if (share >= 0.5) == second { share } else { 1.0 - share }
 }
@@ -109,11 +109,11 @@ fn shore_of(level: &Level, given: &Given, q: usize, corner: u8) -> Option<f32> {
     given.shore(x + i64::from(corner & 1), y + i64::from(corner >> 1))
 }
 
-/// What the given shore says of the children of a node.
+/// The children of a node according to the given shore.
 fn below(level: &Level, given: &Given, q: usize) -> Below {
     let own = heir(level, q);
     let mut found = Below::Land;
-    // The heir, those beside it, and the one across.
+    // The heir, its two neighbors, and the opposite child.
     for flip in [0, 1, 2, 3] {
         let corner = own ^ flip;
         let Some(shore) = shore_of(level, given, q, corner) else { return Below::Unknown };
@@ -128,7 +128,7 @@ fn below(level: &Level, given: &Given, q: usize) -> Below {
     found
 }
 
-/// The height of the lowest river that ends at an inner node.
+/// The height of the lowest river that ends at a node, which must not be at the edge.
 fn lowest_donor(level: &Level, q: usize) -> Option<f32> {
     let donors = STEPS.iter().zip(0u8..).filter_map(|(step, code)| {
         let donor = level.neighbor(q, *step)?;
@@ -137,8 +137,8 @@ fn lowest_donor(level: &Level, q: usize) -> Option<f32> {
     donors.reduce(f32::min)
 }
 
-/// The direction from a node to the sea beside it that is furthest from its shore; across a side if possible, and
-/// across no river.
+/// The direction from a node to the neighboring sea that is furthest from its shore. Directions across a side are
+/// preferred, and no direction crosses a river.
 fn way(level: &Level, sea: impl Fn(usize) -> Option<f32>, q: usize) -> Option<u8> {
     let mut best: Option<(bool, f32, u8)> = None;
     for (code, &step) in (0u8..).zip(&STEPS) {
@@ -151,7 +151,7 @@ fn way(level: &Level, sea: impl Fn(usize) -> Option<f32>, q: usize) -> Option<u8
     best.map(|(_, _, code)| code)
 }
 
-/// Whether a river passes between the two cells beside a step across a corner.
+/// Whether a river passes between the two cells next to a step across a corner.
 fn is_crossed(level: &Level, q: usize, (east, south): (isize, isize)) -> bool {
     let leads = |from: (isize, isize), by: (isize, isize)| {
         let code = level.neighbor(q, from).map_or(NONE, |near| direction(level.receiver[near]));
@@ -165,7 +165,7 @@ mod tests {
     use super::*;
     use crate::grid::{Grid, Window};
 
-    /// The middle of five rows of five nodes, of which those from column `coast` on are sea. Land drains to the east.
+    /// The middle of five rows of five nodes. Nodes from column `coast` on are sea, and land drains to the east.
     const MIDDLE: usize = 12;
 
     fn level(coast: usize) -> Level {
@@ -185,7 +185,7 @@ mod tests {
         }
     }
 
-    /// The level after its mouths are led to the sea of children at which `is_sea` holds.
+    /// The level after [`lead`], where the given shore has sea at the children for which `is_sea` is true.
     fn led(mut level: Level, is_sea: impl Fn(usize, usize) -> bool) -> Level {
         let window = Window { x: -4, y: -4, width: 10, height: 10, cell: 500.0 };
         let metres = (0..100).map(|q| if is_sea(q % 10, q / 10) { -300.0 } else { 300.0 }).collect();
@@ -199,7 +199,7 @@ mod tests {
         let found = led(level(2), |i, _| i >= 5);
         assert_eq!((found.east[MIDDLE], found.south[MIDDLE]), (0.7, 0.3));
         assert_eq!((found.receiver[MIDDLE], heir(&found, MIDDLE)), (NONE, 1));
-        // One across is taken if there is no other, and none moves from the sea.
+        // The opposite child is taken if there is no other, and no node moves away from the sea.
         let found = led(level(2), |i, j| i == 5 && j == 5 || i > 5);
         assert_eq!(heir(&found, MIDDLE), 3);
         assert_eq!(led(level(2), |i, _| i >= 4), level(2));
@@ -209,13 +209,13 @@ mod tests {
     fn a_river_goes_on_to_the_sea_beside_or_ends_in_a_lake() {
         let found = led(level(2), |i, _| i >= 6);
         assert_eq!((found.receiver[MIDDLE], found.height[MIDDLE]), (0, 45.0));
-        // Sea across a corner only, with no river between.
+        // Sea only across a corner, with no river between.
         let found = led(level(2), |i, j| i >= 6 && j >= 6);
         assert_eq!(found.receiver[MIDDLE], 1);
         let found = led(level(2), |_, _| false);
         assert!(found.is_inland(MIDDLE) && found.receiver[MIDDLE] == NONE);
         assert_eq!((found.height[MIDDLE], found.shore[MIDDLE]), (45.0, -1.0));
-        // Sea without rivers, and what is at the edge, stay as they are.
+        // Sea without rivers and nodes at the edge do not change.
         assert_eq!((found.height[MIDDLE + 1], found.height[22]), (0.0, 0.0));
     }
 
@@ -223,7 +223,7 @@ mod tests {
     fn land_before_the_sea_drowns_where_the_shore_is_behind_it() {
         let found = led(level(3), |i, _| i >= 4);
         assert_eq!((found.receiver[MIDDLE], found.height[MIDDLE]), (NONE, 0.0));
-        // Not where its heir is land, nor two nodes before the sea.
+        // No change where the heir is land, nor at a node that is two nodes away from the sea.
         assert_eq!(led(level(3), |i, _| i >= 5), level(3));
         assert_eq!(led(level(4), |i, _| i >= 4).receiver[MIDDLE], 0);
     }
@@ -233,7 +233,7 @@ mod tests {
         let mut found = level(2);
         lead(&mut found, &Given::default());
         assert_eq!(found, level(2));
-        // Nor where it has no values.
+        // No change where the shore has no values.
         let shore = Grid::filled(Window { x: -4, y: -4, width: 10, height: 10, cell: 500.0 }, f32::NAN);
         lead(&mut found, &Given { shore: Some(&shore), ..Given::default() });
         assert_eq!(found, level(2));

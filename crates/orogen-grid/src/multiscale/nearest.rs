@@ -1,12 +1,12 @@
-//! The node whose values a lattice point has, and the way from node to node.
+//! The node nearest to a lattice point, and the path from node to node.
 
 use super::level::Level;
 use super::refinement::Refinement;
 use crate::hydrology::direction::{NONE, STEPS};
 
 impl Refinement {
-    /// The node nearest to the point at `share` of the sides of cell `q`, as [`Refinement::surface_at`] has it. On the
-    /// finest level of valleys it is that of the cell.
+    /// The node that is nearest to the point at `share` of the sides of cell `q`, where `share` is as in
+    /// [`Refinement::surface_at`]. On the finest level of valleys it is the node of the cell.
     pub(super) fn nearest_node(&self, share: f32, level: &Level, q: usize) -> usize {
         if self.is_finest(level.depth) {
             return q;
@@ -26,7 +26,7 @@ impl Refinement {
         nearest.1
     }
 
-    /// Number of cells of a level in a distance in metres, up to a limit.
+    /// Number of cells of a level in a distance in metres, from 2 to `most`.
     pub(super) fn cells_in(&self, depth: usize, metres: f64, most: usize) -> usize {
         ((metres / self.cell_of(depth)).ceil() as usize).clamp(2, most)
     }
@@ -38,12 +38,12 @@ impl Level {
         self.receiver[q] >= NONE
     }
 
-    /// The node that a node drains to; none in water and at the edge of the window.
+    /// The node that a node drains to; `None` in water and at the edge of the window.
     pub(super) fn downstream(&self, q: usize) -> Option<usize> {
         self.neighbor(q, *STEPS.get(usize::from(self.receiver[q]))?)
     }
 
-    /// The node in the cell that many columns east and rows south.
+    /// The node of the cell that is the given number of columns to the east and rows to the south.
     pub(super) fn neighbor(&self, q: usize, (east, south): (isize, isize)) -> Option<usize> {
         let (width, height) = (self.window.width, self.window.height);
         let (x, y) = ((q % width).checked_add_signed(east)?, (q / width).checked_add_signed(south)?);

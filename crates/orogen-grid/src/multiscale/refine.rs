@@ -1,4 +1,4 @@
-//! One level from the level above.
+//! Computation of one level from the next coarser one.
 
 use super::banks::raise_banks;
 use super::carve::{Carved, carve};
@@ -21,16 +21,16 @@ use crate::error::Result;
 use crate::grid::Window;
 use crate::progress::Progress;
 
-/// The work before the passes, in passes of growth.
+/// The work before the passes, relative to a pass of growth.
 const CARVING_WORK: [f64; 4] = [1.0, 1.0, 0.5, 0.5];
 
-/// The largest factor of creep: the average of the neighbors takes the place of a height.
+/// Maximum factor of creep, at which a height is replaced with the average of its neighbors.
 const MAX_CREEP_FACTOR: f32 = 1.25;
 
-/// Drainage area, in cells, below which nodes of rivers of the level above choose their receivers again.
+/// Drainage area, in cells, below which river nodes of the coarser level choose their receivers again.
 pub const FREE_AREA: f32 = 64.0;
 
-/// The work of a pass, in passes of growth with its areas.
+/// The work of a pass, relative to a pass of growth with its areas.
 fn work(pass: LevelPass) -> f64 {
     match pass {
         LevelPass::Grow => 1.0,
@@ -40,18 +40,18 @@ fn work(pass: LevelPass) -> f64 {
 }
 
 impl Refinement {
-    /// Bytes that [`Refinement::refine`] holds at its peak per sample of the window grown by twice the
-    /// [reach](Refinement::reach), including the result and without the parent.
+    /// Peak memory of [`Refinement::refine`], in bytes per sample of the window grown by twice the
+    /// [reach](Refinement::reach). It includes the result, but not the parent.
     #[must_use]
     pub fn bytes_per_sample() -> u64 {
-        // Planes of 4 bytes: children 5, rivers 4, distances 4, the law 3, growth 4; the result 29 bytes, a quarter of
-        // the parent 8.
+        // Planes of 4 bytes: children 5, rivers 4, distances 4, the law 3, growth 4. In bytes: the result 29, and a
+        // quarter of the parent 8.
         120
     }
 
-    /// Exactly `window` of the level below `parent`, which must cover [`Refinement::parent_window`]. Other nodes of the
-    /// parent are not read. What is given covers the window grown by [`Refinement::given_reach`]; detail levels read
-    /// nothing of it.
+    /// The nodes of `window` on the level below `parent`, which must cover [`Refinement::parent_window`]; its other
+    /// nodes are not read. `given` covers the window grown by [`Refinement::given_reach`]; it is not used on detail
+    /// levels.
     ///
     /// # Errors
     /// If the parent covers too little, a parameter is out of range, the window is not one of the level, or the work is
@@ -87,7 +87,7 @@ impl Refinement {
         Ok(growing.finish(&children, window))
     }
 
-    /// The rivers and the water of the level above in its children.
+    /// The children with the rivers and the water of the coarser level.
     fn carved(
         &self,
         parent: &Level,
@@ -111,14 +111,14 @@ impl Refinement {
     }
 }
 
-/// A level while its heights and areas settle.
+/// A level whose heights and areas are being computed.
 struct Growing<'a> {
     land: &'a Refinement,
     depth: usize,
     extent: Extent,
     growth: Growth,
     law: Law,
-    /// None on the finest level, where nodes are on the lattice.
+    /// `None` on the finest level, where nodes are on the lattice.
     distances: Option<Distances>,
     rims: Vec<f32>,
     rain: Option<Vec<f32>>,

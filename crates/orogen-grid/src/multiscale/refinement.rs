@@ -1,17 +1,17 @@
-//! The parameters of all levels, however the coarsest is made.
+//! The parameters of all levels, independent of how the coarsest one is made.
 
 use super::level::invalid;
 use crate::error::Result;
 use crate::grid::Window;
 use crate::words::number;
 
-/// Levels of land, each made from the one above it: rivers keep their course, and branches and slopes grow between
-/// them.
+/// Levels of land, each computed from the next coarser one: rivers keep their course, and branches and slopes grow
+/// between them.
 ///
 /// The node (i, j) of the finest level of valleys is exactly at (i cell, j cell). On a coarser level with cell c, the
-/// node of sample (i, j) is at ((i + east) c - cell / 2, (j + south) c - cell / 2), where `cell` is that of the finest
-/// level of valleys; on a detail level it is at ((i + east) c, (j + south) c). Given land has its samples (i, j) in the
-/// middles of the coarsest cells, at ((i + 0.5) c, (j + 0.5) c).
+/// node of sample (i, j) is at ((i + east) c - cell / 2, (j + south) c - cell / 2), where `cell` is the cell of the
+/// finest level of valleys. On a detail level it is at ((i + east) c, (j + south) c). The samples (i, j) of given land
+/// are in the middles of the coarsest cells, at ((i + 0.5) c, (j + 0.5) c).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Refinement {
@@ -19,25 +19,25 @@ pub struct Refinement {
     pub seed: u64,
     /// Cell of the finest level of valleys, in metres.
     pub cell: f64,
-    /// Number of halvings from the coarsest level to that.
+    /// Number of halvings from the coarsest level to the finest level of valleys.
     pub levels: usize,
     /// Factor of the uplift.
     pub relief: f64,
-    /// Distance over which creep rounds the finest level of valleys, in its cells: the standard deviation of the
+    /// Distance over which creep smooths the finest level of valleys, in its cells: the standard deviation of the
     /// average.
     pub creep: f64,
     /// Factor of the variation of the rock that each level adds.
     pub variation: f64,
-    /// How far the coarsest nodes of given land are from its valleys, 0 to 1: 0 is in the valley of the sample's cell,
-    /// 1 at a random place of the cell.
+    /// Distance of the coarsest nodes of given land from its valleys, 0 to 1: 0 is in the valley of the sample's cell,
+    /// 1 at a random position in the cell.
     pub jitter: f64,
-    /// Number of further halvings, below `cell`: detail levels, with the slopes of the finest level of valleys,
-    /// gullies, and beds and banks of rivers.
+    /// Number of further halvings, below `cell`. They give detail levels, which have the slopes of the finest level of
+    /// valleys, gullies, and beds and banks of rivers.
     pub details: usize,
-    /// How frequent lakes with an outlet are along rivers, 0 to 1.
+    /// Frequency of lakes with an outlet along rivers, 0 to 1.
     pub lakes: f64,
-    /// Whether given land has a [sea](super::level::Level::drown), whose depth tells how far the shore is: near steep
-    /// coasts that distance changes by more than a kilometre along a kilometre.
+    /// Whether given land has a [sea](super::level::Level::drown), whose depth determines the distance to the shore.
+    /// Near steep coasts that distance changes by more than a kilometre per kilometre.
     pub sea: bool,
 }
 
@@ -62,19 +62,19 @@ orogen_noise::builder!(Refinement: with_seed(seed: u64), with_cell(cell: f64), w
     with_creep(creep: f64), with_variation(variation: f64), with_jitter(jitter: f64), with_details(details: usize),
     with_lakes(lakes: f64), with_sea(sea: bool));
 
-/// The largest number of halvings.
+/// Maximum number of halvings to the finest level of valleys.
 pub const MAX_LEVELS: usize = 24;
 
-/// The largest number of halvings to detail levels.
+/// Maximum number of halvings from there to the finest detail level.
 pub const MAX_DETAILS: usize = 10;
 
-/// The largest distance of creep, in cells.
+/// Maximum distance of creep, in cells.
 pub const MAX_CREEP: f64 = 5.0;
 
-/// The largest coordinate of a sample, either way, so that no sum overflows.
+/// Maximum absolute coordinate of a sample, such that no sum overflows.
 const FURTHEST: i64 = 1 << 50;
 
-/// The largest number of samples of a side.
+/// Maximum number of samples along a side.
 const MAX_SIDE: usize = 1 << 24;
 
 impl Refinement {
@@ -97,34 +97,34 @@ impl Refinement {
         self.cell_of(depth) / 1000.0
     }
 
-    /// The coordinate, in metres, of a node of column or row `index` at `share` of its cell.
+    /// The coordinate, in metres, of a node in column or row `index` at the position `share` in its cell.
     pub(super) fn metres(&self, depth: usize, index: i64, share: f32) -> f64 {
         (index as f64 + f64::from(share)) * self.cell_of(depth) - 0.5 * self.cell
     }
 
-    /// Half a cell of the finest level of valleys, in cells of a level: nodes and points are that much further inside
-    /// their cells, because the nodes of the finest level are in the middles of its cells.
+    /// Half a cell of the finest level of valleys, in cells of a level. Nodes and points are offset by it within their
+    /// cells, because the nodes of the finest level are in the middles of its cells.
     pub(super) fn half_finest(&self, depth: usize) -> f32 {
         (0.5 * self.cell / self.cell_of(depth)) as f32
     }
 
-    /// Whether a level is the finest of valleys, whose nodes are on the lattice.
+    /// Whether a level is the finest level of valleys, whose nodes are on the lattice.
     pub(super) fn is_finest(&self, depth: usize) -> bool {
         depth == self.levels
     }
 
-    /// Whether a level is finer than that.
+    /// Whether a level is finer than the finest level of valleys.
     pub(super) fn is_detail(&self, depth: usize) -> bool {
         depth > self.levels
     }
 
-    /// Number of cells that the nodes of a level are ahead of its samples: the node of a cell south-east of sample (i,
-    /// j) is (i + ahead, j + ahead).
+    /// Number of cells by which the nodes of a level are ahead of its samples: the node of the cell to the south-east
+    /// of sample (i, j) is (i + ahead, j + ahead).
     pub(super) fn ahead(&self, depth: usize) -> i64 {
         if self.is_detail(depth) { 1i64 << (depth - self.levels - 1).min(MAX_DETAILS) } else { 0 }
     }
 
-    /// The cells of a level whose nodes are south-east of the samples of a window.
+    /// The cells of a level whose nodes are to the south-east of the samples of a window.
     #[must_use]
     pub fn nodes_at(&self, depth: usize, window: &Window) -> Window {
         let ahead = self.ahead(depth);
@@ -138,7 +138,7 @@ impl Refinement {
         nodes.at(nodes.x - ahead, nodes.y - ahead)
     }
 
-    /// Checks the parameters, and that `window` is one of level `depth`.
+    /// Checks the parameters, and that `window` belongs to level `depth`.
     pub(super) fn check(&self, depth: usize, window: &Window) -> Result<()> {
         let positive = |value: f64| value.is_finite() && value > 0.0;
         if !(positive(self.cell) && positive(self.relief)) {

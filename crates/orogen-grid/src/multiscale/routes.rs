@@ -1,4 +1,4 @@
-//! Cheapest ways from all nodes to bases: passes over links with costs.
+//! Cheapest paths from all nodes to bases, by passes over links with costs.
 
 use super::distances::{CLOSED, Distances};
 use super::stencil::Extent;
@@ -8,7 +8,7 @@ use orogen_simd::{Body, Simd, dispatch};
 /// Height of nodes that no link connects to a base.
 pub const UNREACHED: f32 = 1e29;
 
-/// What the costs of links depend on.
+/// The parameters of the costs of links.
 pub struct Nodes<'a> {
     pub east: &'a [f32],
     pub south: &'a [f32],
@@ -18,7 +18,7 @@ pub struct Nodes<'a> {
     pub detour: &'a [f32],
 }
 
-/// The rise along each link, with closed diagonals beyond everything.
+/// The rise along each link; closed diagonals have a rise beyond any other.
 pub fn links(extent: Extent, nodes: &Nodes<'_>) -> Distances {
     let mut links = Distances::new(extent, nodes.east, nodes.south);
     for (plane, (east, south)) in links.planes.iter_mut().zip(STEPS) {
@@ -32,7 +32,7 @@ pub fn links(extent: Extent, nodes: &Nodes<'_>) -> Distances {
     links
 }
 
-/// One pass: every height becomes at most that of each neighbor plus the rise of the link to it.
+/// One pass: limits every height to the height of each neighbor plus the rise of the link to it.
 pub fn relax(extent: Extent, links: &Distances, heights: &mut Vec<f32>, spare: &mut Vec<f32>) {
     dispatch(Relax { extent, links, heights, out: spare });
     std::mem::swap(heights, spare);
@@ -72,8 +72,8 @@ fn lowest(heights: &[f32], around: [&[f32]; 8], links: [&[f32]; 8], out: &mut [f
     }
 }
 
-/// The receivers of all nodes: the lower neighbor from which the way is cheapest. Nodes that are still at their `start`
-/// are bases.
+/// The receivers of all nodes: the lower neighbor with the cheapest path. Nodes that are still at their `start` are
+/// bases.
 pub fn route(extent: Extent, links: &Distances, heights: &[f32], start: &[f32], receiver: &mut [f32]) {
     for j in extent.rows() {
         let (around, links) = (extent.around(heights, j), links.around(extent, j));
@@ -86,7 +86,7 @@ pub fn route(extent: Extent, links: &Distances, heights: &[f32], start: &[f32], 
                     (best, lowest) = (code, there + link);
                 }
             }
-            // A base has a start below everything that links lead to.
+            // A base has a start below every height that links lead to.
             let is_base = start[i] < UNREACHED && heights[i] >= start[i];
             *receiver = f32::from(if is_base { NONE } else { best });
         }

@@ -1,38 +1,39 @@
-//! The passes that make a level from the level above, as the processor and graphics cards run them.
+//! The passes that compute a level from the next coarser one, on the CPU and on GPUs.
 
 use super::refinement::Refinement;
 use super::{creep, detail, lake_shores, lakes, straighten};
 use crate::grid::Window;
 use std::iter::repeat_n;
 
-/// Cells at the edge of the children whose rivers and shores are not exact.
+/// Number of cells at the edge of the children whose rivers and shores are not exact.
 const CARVED: usize = 7;
 
-/// Passes of heights before drainage areas change, and rounds of areas and heights after.
+/// Number of passes of heights before drainage areas change, and number of rounds of areas and heights afterwards.
 const FIRST_PASSES: usize = 3;
 const ROUNDS: usize = 5;
 
-/// Passes of areas at the end of each level, and on the finest level, where nodes have just chosen their receivers
-/// again.
+/// Number of passes of areas at the end of each level, and on the finest level, where nodes have just chosen their
+/// receivers again.
 const LAST_AREA_PASSES: usize = 3;
 const FINEST_AREA_PASSES: usize = 6;
 
-/// Passes that keep areas from falling downstream: they rise along the receivers, then fall against them.
+/// Number of passes that prevent areas from decreasing downstream: they are raised along the receivers, then limited
+/// against them.
 const RAISE_PASSES: usize = 6;
 const LIMIT_PASSES: usize = 3;
 
-/// Passes that raise banks on the finest level, and rounds of them: nodes that drained to a bank choose their receivers
-/// again after each.
+/// Number of passes that raise banks on the finest level, and number of their rounds. After each round, nodes that
+/// drained to a bank choose their receivers again.
 const BANK_PASSES: usize = 3;
 const BANK_ROUNDS: usize = 2;
 
-/// A pass over nodes and their neighbors, after the rivers of the level above are carved.
+/// A pass over nodes and their neighbors, after the rivers of the coarser level are carved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LevelPass {
-    /// [`LevelPass::AddAreas`] for the first time: what is not a river yet has drained nothing, because the areas of
-    /// rivers contain it.
+    /// [`LevelPass::AddAreas`] for the first time. Nodes that are not rivers yet have drained nothing, because the
+    /// areas of rivers already include them.
     FirstAreas,
-    /// Areas become the sums of those of their donors.
+    /// Areas become the sums of their donors' areas.
     AddAreas,
     /// Heights fall to the steady state of the law.
     Grow,
@@ -42,9 +43,9 @@ pub enum LevelPass {
     RaiseBanks,
     /// Free nodes choose their receivers by the steepest descent.
     Descend,
-    /// Areas rise along the receivers.
+    /// Areas are raised along the receivers.
     RaiseAreas,
-    /// Areas fall against the receivers.
+    /// Areas are limited against the receivers.
     LimitAreas,
 }
 
@@ -62,36 +63,36 @@ impl LevelPass {
     }
 }
 
-/// How a level is made from the level above.
+/// The computation of a level from the next coarser one.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Schedule {
-    /// Whether the nodes are on the lattice, and rivers are straightened.
+    /// Whether the nodes are on the lattice and rivers are straightened.
     pub is_finest: bool,
-    /// Whether the nodes of the level above are first turned into those that detail levels begin with.
+    /// Whether the nodes of the coarser level are first turned into the nodes that detail levels begin with.
     pub begins_details: bool,
-    /// Cells on which rivers of the level above that become lakes depend; 0 if none may.
+    /// Number of cells on which rivers that become lakes depend; 0 if there are no new lakes.
     pub lakes: usize,
-    /// Cells at the edge of the children whose rivers are not exact.
+    /// Number of cells at the edge of the children whose rivers are not exact.
     pub carved: usize,
-    /// Cells beyond that on which the straightened rivers of a cell depend.
+    /// Number of further cells on which the straightened rivers of a cell depend.
     pub straightened: usize,
-    /// The number of cells around a lake in which land has a smallest height; none without lakes.
+    /// Number of cells around a lake in which land has a minimum height; `None` without lakes.
     pub rims: Option<usize>,
-    /// The passes after. Each makes one more cell at the edge inexact.
+    /// The passes that follow. Each makes one more cell at the edge inexact.
     pub passes: Vec<LevelPass>,
 }
 
 impl Schedule {
-    /// Cells at the edge of the children that are not exact before the passes.
+    /// Number of cells at the edge of the children that are not exact before the passes.
     #[must_use]
     pub fn edge(&self) -> usize {
-        // Water that keeps apart depends on one more cell.
+        // The separation of waters depends on one more cell.
         self.lakes + self.carved + self.straightened + self.rims.map_or(0, |rim| rim + 1)
     }
 }
 
 impl Refinement {
-    /// How level `depth`, at least 1, is made.
+    /// The schedule of level `depth`, at least 1.
     #[must_use]
     pub fn schedule(&self, depth: usize) -> Schedule {
         use LevelPass::{AddAreas, Creep, Descend, FirstAreas, Grow, LimitAreas, RaiseAreas, RaiseBanks};
@@ -123,15 +124,16 @@ impl Refinement {
         }
     }
 
-    /// Samples of level `depth - 1` that [`Refinement::refine`] to `depth` reads beyond each side of the halved window,
-    /// which extends from half the first sample, rounded down, to half the last, rounded up.
+    /// Number of samples of level `depth - 1` that [`Refinement::refine`] to `depth` reads beyond each side of the
+    /// halved window. The halved window extends from half the first sample, rounded down, to half the last, rounded up.
     #[must_use]
     pub fn reach(&self, depth: usize) -> usize {
         let schedule = self.schedule(depth);
         (schedule.edge() + schedule.passes.len()).div_ceil(2)
     }
 
-    /// Samples of level `depth`, at least 1, beyond a window that [`Refinement::refine`] reads of what is given.
+    /// Number of samples of level `depth`, at least 1, beyond a window that [`Refinement::refine`] reads of the given
+    /// land.
     #[must_use]
     pub fn given_reach(&self, depth: usize) -> usize {
         2 * self.reach(depth) + 1

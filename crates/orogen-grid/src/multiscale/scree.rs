@@ -1,5 +1,5 @@
-//! Scree of detail levels: debris of rock faces lies at their foot, as steep as it can. Water seeps into it, so that it
-//! has no gullies.
+//! Scree on detail levels: debris of rock faces lies at their foot at its angle of repose. Water seeps into it, so that
+//! it has no gullies.
 
 use super::level::Level;
 use super::rock;
@@ -7,26 +7,26 @@ use super::rock;
 /// Slope of scree: the tangent of its angle of repose, 34 degrees.
 const REPOSE: f32 = 0.675;
 
-/// Stable slopes between which a hillside becomes a face that sheds debris.
+/// Stable slopes between which a hillside changes to a face that sheds debris.
 const FACES: [f32; 2] = [0.75, 1.0];
 
-/// Nodes around a node among which its height tells whether it is at the foot of a face or on it.
+/// Number of nodes around a node whose heights determine whether it is at the foot of a face or on the face.
 pub const REACH: usize = 3;
 
-/// Share of the height between the lowest and the highest of these nodes: up to the first there is scree alone, from
-/// the last there is rock alone.
+/// Positions between the lowest and the highest of these nodes: up to the first there is only scree, from the second on
+/// there is only rock.
 const FOOT: [f32; 2] = [0.3, 0.5];
 
-/// By how much rock above scree is steeper, relative to what scree is gentler, so that faces are as high as before; and
-/// its greatest slope.
+/// Steepening of the rock above scree relative to the flattening of the scree, so that faces keep their height, and the
+/// maximum slope of the rock.
 const STEEPER: f32 = 0.6;
 const MAX_ROCK: f32 = 2.5;
 
-/// What is added to the logarithm of uplift over erodibility where all is scree: no stream cuts down.
+/// Added to the logarithm of uplift over erodibility where everything is scree, so that no stream cuts down.
 const SEEPAGE: f32 = 2.0;
 
-/// Lays scree at the foot of faces: changes `stable`, the stable slopes of nodes, and `variation`. Nodes [`REACH`] away
-/// from the edge are exact.
+/// Adds scree at the foot of faces: changes `stable`, the stable slopes of nodes, and `variation`. Nodes are exact
+/// except for [`REACH`] at the edge.
 pub fn lay(level: &Level, stable: &mut [f32], variation: &mut [f32]) {
     let position = positions(level);
     for ((stable, variation), position) in stable.iter_mut().zip(variation).zip(position) {
@@ -39,7 +39,7 @@ pub fn lay(level: &Level, stable: &mut [f32], variation: &mut [f32]) {
     }
 }
 
-/// The height of each node between the lowest and the highest around it, 0 to 1.
+/// The position of each node's height between the lowest and the highest around it, 0 to 1.
 fn positions(level: &Level) -> Vec<f32> {
     let (width, height) = (level.window.width, level.window.height);
     let lowest = extreme(&level.height, (width, height), f32::min);
@@ -48,7 +48,7 @@ fn positions(level: &Level) -> Vec<f32> {
     heights.map(|((height, low), high)| (height - low) / (high - low).max(1e-3)).collect()
 }
 
-/// The extreme value of the nodes up to [`REACH`] columns and rows away.
+/// The extreme value among the nodes up to [`REACH`] columns and rows away.
 fn extreme(plane: &[f32], (width, height): (usize, usize), of: impl Fn(f32, f32) -> f32) -> Vec<f32> {
     let fold = |values: &mut dyn Iterator<Item = f32>, first: f32| values.fold(first, &of);
     let mut rows = plane.to_vec();

@@ -1,4 +1,4 @@
-//! Water of a level: seas and lakes inherit their place from the level above, and their shores gain detail.
+//! Water of a level: seas and lakes inherit their location from the coarser level, and their shores gain detail.
 
 use super::children::{Children, heir};
 use super::lakes::{drains, is_lake};
@@ -7,31 +7,31 @@ use super::links::{Child, Links};
 use super::stencil::Extent;
 use crate::hydrology::direction::{NONE, STEPS};
 
-/// What links say about a child.
+/// The constraint of links on a child.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Held {
-    /// Nothing.
+    /// No link passes.
     Free,
-    /// A river passes, on links whose lowest end is at this height: land.
+    /// A river passes, on links whose lowest end is at this height. The child is land.
     River(f32),
-    /// A river ends here: water.
+    /// A river ends here. The child is water.
     Mouth,
-    /// A river passes through a lake with this level.
+    /// A river passes through a lake with this water level.
     Lake(f32),
 }
 
-/// Standing water of children.
+/// Standing water of the children.
 pub struct Water {
     /// The water level of each child, in metres; [`LAND`] on land.
     pub levels: Vec<f32>,
-    /// Children that water has spread to, each with the one beside it that was water before.
+    /// Children to which water has spread, each with the neighbor that was water before.
     pub gained: Vec<(usize, usize)>,
 }
 
-/// The level of children without water.
+/// The water level of children on land.
 pub const LAND: f32 = f32::INFINITY;
 
-/// The standing water of the children. Updates their distances to the shore.
+/// Computes the standing water of the children. Updates their distances to the shore.
 pub fn standing_water(parent: &Level, links: &Links, children: &mut Children) -> Water {
     let held = held(parent, links);
     let (width, parents) = (children.extent.width, links.width);
@@ -80,7 +80,7 @@ pub fn standing_water(parent: &Level, links: &Links, children: &mut Children) ->
     Water { levels, gained }
 }
 
-/// Lakes with an outlet stay apart from other water and from lower rivers: where they meet, children that no link holds
+/// Keeps lakes with an outlet apart from other water and from lower rivers: where they meet, children without a link
 /// become land.
 fn dry_between(parent: &Level, held: &[Held], extent: Extent, levels: &mut [f32]) {
     if !parent.receiver.iter().any(|code| is_lake(*code)) {
@@ -104,7 +104,7 @@ fn dry_between(parent: &Level, held: &[Held], extent: Extent, levels: &mut [f32]
     dry.into_iter().for_each(|q| levels[q] = LAND);
 }
 
-/// Whether a river that is, or soon will be, lower than a water level passes beside a child.
+/// Whether a river that is, or will be further down, lower than a water level passes next to a child.
 fn is_beside_lower(held: &[Held], width: usize, q: usize, level: f32) -> bool {
     STEPS.into_iter().any(|(east, south)| {
         let near = q.wrapping_add_signed(south * width as isize + east);
@@ -112,10 +112,10 @@ fn is_beside_lower(held: &[Held], width: usize, q: usize, level: f32) -> bool {
     })
 }
 
-/// What the kept links say about each child.
+/// The constraint of the kept links on each child.
 fn held(parent: &Level, links: &Links) -> Vec<Held> {
     let parents = links.width;
-    // Nodes of lakes with water from the same lake.
+    // Nodes of lakes that receive water from the same lake.
     let mut fed = vec![false; links.list.len()];
     for q in links.kept(parent).filter(|q| is_lake(parent.receiver[*q])) {
         fed[links.target(parent, q)] = true;
@@ -137,8 +137,8 @@ fn held(parent: &Level, links: &Links) -> Vec<Held> {
         let (lake, river) = (Held::Lake(parent.height[q]), Held::River(parent.height[target]));
         let is_outlet = is_lake(code) && !is_lake(parent.receiver[target]);
         held[start].gain(if is_lake(code) { lake } else { river });
-        // A lake ends at the start of its outlet's link, so that the river falls along all of it, or behind it if there
-        // is nothing else of the lake.
+        // A lake ends at the start of its outlet's link, so that the river falls along the whole link. If the lake has
+        // no other part, it ends behind the link.
         let passed = if is_lake(code) && !(is_outlet && fed[q]) { lake } else { river };
         held[own(link.exit)].gain(passed);
         if let Some(via) = links.via(parent, q) {
@@ -154,7 +154,7 @@ fn held(parent: &Level, links: &Links) -> Vec<Held> {
 }
 
 impl Held {
-    /// What two links say: lakes rather than rivers, and of rivers the lowest.
+    /// Combines two constraints: lakes take precedence over rivers, and the lowest river counts.
     fn gain(&mut self, other: Held) {
         *self = match (*self, other) {
             (Held::Lake(level), Held::River(_)) => Held::Lake(level),

@@ -2,12 +2,12 @@
 
 use crate::hydrology::direction::STEPS;
 
-/// Size of the planes of a pass, and the cells at each edge that it leaves out.
+/// Size of the planes of a pass, and the number of cells at each edge that it omits.
 #[derive(Debug, Clone, Copy)]
 pub struct Extent {
     pub width: usize,
     pub height: usize,
-    /// Cells at each edge whose values are not exact; at least 1 where neighbors are read.
+    /// Number of cells at each edge whose values are not exact; at least 1 where neighbors are read.
     pub inset: usize,
 }
 
@@ -38,7 +38,7 @@ impl Extent {
         &plane[j * self.width + columns.start..j * self.width + columns.end]
     }
 
-    /// The part of row `j` of a plane without the inset, to be written.
+    /// The part of row `j` of a plane without the inset, mutable.
     #[inline(always)]
     pub fn row_mut<T>(self, plane: &mut [T], j: usize) -> &mut [T] {
         let columns = self.columns();
@@ -57,7 +57,7 @@ impl Extent {
     }
 }
 
-/// The code of the direction of one step: `east` and `south` are -1, 0 or 1, not both 0.
+/// The code of the direction of a step: `east` and `south` are -1, 0 or 1.
 #[inline(always)]
 pub fn code(east: isize, south: isize) -> u8 {
     const CODES: [u8; 9] = [5, 6, 7, 4, 8, 0, 3, 2, 1];

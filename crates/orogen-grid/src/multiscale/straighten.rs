@@ -1,4 +1,5 @@
-//! Shorter rivers on the finest level: where a river comes back to a cell beside itself, it goes there directly.
+//! Shorter rivers on the finest level: where a river returns to a cell next to itself, the loop is replaced with a
+//! direct link.
 
 use super::carve::{Carved, UNKNOWN};
 use super::drainage::FREE;
@@ -7,25 +8,25 @@ use crate::grid::Window;
 use crate::hydrology::direction::{NONE, STEPS};
 use crate::random::mix64;
 
-/// Number of links that are looked ahead.
+/// Number of links to look ahead.
 const AHEAD: usize = 5;
 
-/// Cells that a shortcut skips, at most, and their distance from its start.
+/// Maximum number of cells that a shortcut skips, and their maximum distance from its start.
 const SKIPPED: usize = AHEAD - 1;
 const NEAR: usize = 3;
 
-/// Cells that the result of a cell depends on: a shortcut over it starts at most `NEAR` cells away, those that compete
-/// with it as far from there, and each looks at links up to `SKIPPED` cells away.
+/// Number of cells that the result of a cell depends on. A shortcut over the cell starts at most `NEAR` cells away,
+/// competing shortcuts start at most `NEAR` cells further away, and each looks at links up to `SKIPPED` cells away.
 pub const REACH: usize = 2 * NEAR + SKIPPED;
 
-/// A river that can go to a cell directly.
+/// A direct link that replaces a loop of a river.
 struct Shortcut {
     from: usize,
     code: u8,
-    /// The cells between, in the order of the river.
+    /// The skipped cells, in the order of the river.
     skipped: [usize; SKIPPED],
     count: usize,
-    /// Of two shortcuts of which one skips the start of the other, that of the higher rank is taken.
+    /// If one of two shortcuts skips the start of the other, the one with the higher rank is used.
     rank: u64,
 }
 
@@ -35,8 +36,8 @@ impl Shortcut {
     }
 }
 
-/// Replaces loops of rivers by direct links. Cells that are skipped lose the water that now passes beside them, and
-/// those without any become free.
+/// Replaces loops of rivers with direct links. Skipped cells lose the water that now bypasses them; cells without any
+/// water become free.
 pub fn straighten(extent: Extent, window: &Window, carved: &mut Carved) {
     let found = shortcuts(extent, window, carved);
     let mut of_start = vec![u32::MAX; extent.len()];
@@ -51,7 +52,7 @@ pub fn straighten(extent: Extent, window: &Window, carved: &mut Carved) {
         }
     }
     let taken: Vec<&Shortcut> = found.iter().zip(&beaten).filter(|(_, beaten)| !**beaten).map(|(one, _)| one).collect();
-    // The starts keep their water, because nothing that is taken skips them: what the skipped cells lose is exact.
+    // The starts keep their water, because no used shortcut skips them. What the skipped cells lose is therefore exact.
     for shortcut in &taken {
         for &q in shortcut.skipped() {
             carved.area[q] -= carved.area[shortcut.from];
@@ -61,7 +62,7 @@ pub fn straighten(extent: Extent, window: &Window, carved: &mut Carved) {
         let code = f32::from(shortcut.code);
         (carved.fixed[shortcut.from], carved.receiver[shortcut.from]) = (code, code);
     }
-    // A skipped cell is dry if no river is left that leads to it.
+    // A skipped cell is dry if no remaining river leads to it.
     for _ in 0..SKIPPED {
         for shortcut in &taken {
             for &q in shortcut.skipped() {
@@ -107,7 +108,7 @@ fn shortcuts(extent: Extent, window: &Window, carved: &Carved) -> Vec<Shortcut> 
             let mut skipped = [0; SKIPPED];
             skipped[..count].copy_from_slice(&way[1..=count]);
             let (x, y) = (window.x + i as i64, window.y + j as i64);
-            // Every second cell of a staircase goes first, so that all of it becomes a diagonal.
+            // Every second cell of a staircase has a higher rank, so that the whole staircase becomes a diagonal.
             let even = u64::from((x ^ y) & 1 == 0);
             let chance = mix64(mix64(x as u64) ^ y as u64) >> 8;
             found.push(Shortcut { from, code, skipped, count, rank: (count as u64) << 60 | even << 57 | chance });
@@ -116,11 +117,11 @@ fn shortcuts(extent: Extent, window: &Window, carved: &Carved) -> Vec<Shortcut> 
     found
 }
 
-/// The cells whose river leads to a cell.
+/// The cells whose river leads to `q`.
 fn donors(extent: Extent, carved: &Carved, q: usize) -> impl Iterator<Item = usize> {
     STEPS.iter().enumerate().filter_map(move |(code, (east, south))| {
         let donor = q.wrapping_add_signed(south * extent.width as isize + east);
-        // Water of lakes has receivers, too.
+        // The water of lakes also has receivers.
         let is_river = carved.fixed[donor] > FREE && carved.receiver[donor] == ((code + 4) & 7) as f32;
         is_river.then_some(donor)
     })

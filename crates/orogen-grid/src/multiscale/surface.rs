@@ -11,30 +11,30 @@ use crate::progress::Progress;
 
 /// The terrain at the lattice points of a level.
 ///
-/// Standing water is the sea and lakes. Elsewhere the water level is NaN.
+/// Standing water is either sea or a lake. Elsewhere the water level is NaN.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Surface {
-    /// Height of the ground in metres, under water that of the bottom. The sea is at 0.
+    /// Height of the ground in metres; under water, the height of the bottom. The sea is at 0.
     pub height: Grid,
-    /// Drainage area in m^2: exact on the finest level of valleys, that of the nearest node on others.
+    /// Drainage area in m^2: exact on the finest level of valleys, the value of the nearest node on other levels.
     pub flow: Grid,
     /// Depth of lakes in metres; 0 elsewhere, also in the sea.
     pub lake_depth: Grid,
-    /// Height of the surface of standing water in metres: 0 in the sea. NaN on land.
+    /// Height of the surface of standing water in metres; 0 in the sea, NaN on land.
     pub water_level: Grid,
-    /// Receiver as in [`Level`]: exact on the finest level of valleys, that of the nearest node on others.
+    /// Receiver as in [`Level`]: exact on the finest level of valleys, the value of the nearest node on other levels.
     pub receiver: Grid<u8>,
 }
 
-/// Square of the radius of the nodes that a point depends on, in cells.
+/// Square of the distance in cells within which nodes affect a point.
 const RADIUS_SQUARED: f32 = 2.5;
 
-/// Least depth of standing water, in metres.
+/// Minimum depth of standing water, in metres.
 const MIN_DEPTH: f32 = 0.5;
 
-/// Mean change of heights by the finer levels, by their number: a share of the rise from a node to the next one up at
-/// the source of a river. Measured in mountains.
+/// Mean change of heights by finer levels, indexed by the number of these levels, as a share of the rise from a node at
+/// the source of a river to the next node up. Measured in mountains.
 const MEAN_CHANGE: [f32; 7] = [0.0, -0.108, -0.083, -0.073, -0.025, 0.05, 0.05];
 
 /// One point of a surface.
@@ -47,12 +47,12 @@ struct Point {
 }
 
 impl Refinement {
-    /// Samples of the level beyond a window that [`Refinement::surface`] reads.
+    /// Number of samples of the level beyond a window that [`Refinement::surface`] reads.
     pub const SURFACE_REACH: usize = 2;
 
-    /// The terrain at the lattice points of `window`, from a level that covers it grown by
-    /// [`Refinement::SURFACE_REACH`]. On coarser levels heights are interpolated between nodes, and the mean change by
-    /// finer levels is included.
+    /// The terrain at the lattice points of `window`, from a level that covers the window grown by
+    /// [`Refinement::SURFACE_REACH`]. On levels other than the finest level of valleys, heights are interpolated
+    /// between nodes. They include the mean change by finer levels.
     ///
     /// # Errors
     /// If the level covers too little, the window is not one of the level, or the work is cancelled.
@@ -60,11 +60,11 @@ impl Refinement {
         self.surface_at(0.0, level, window, progress)
     }
 
-    /// The same at a position within the cells of a coarser level: at `share` of their sides, 0 for the lattice points
-    /// of [`Refinement::surface`], 0.5 for the middles. On the finest level of valleys points are always at its nodes.
+    /// [`Refinement::surface`] at another position within the cells: at `share` of their sides, 0 for the lattice
+    /// points, 0.5 for the middles. On the finest level of valleys points are always at its nodes.
     ///
     /// # Errors
-    /// Those of [`Refinement::surface`].
+    /// The errors of [`Refinement::surface`].
     pub fn surface_at(&self, share: f32, level: &Level, window: &Window, progress: &Progress) -> Result<Surface> {
         self.check(level.depth, window)?;
         let nodes = self.nodes_at(level.depth, window);
@@ -93,18 +93,18 @@ impl Refinement {
         Ok(surface)
     }
 
-    /// Where points at a share of the sides of cells are, in cells from the corner of the node's cell.
+    /// The position of points at a share of the sides of cells, in cells from the corner of the node's cell.
     pub(super) fn inside(&self, depth: usize, share: f32) -> f32 {
         share + self.half_finest(depth) - self.ahead(depth) as f32
     }
 
-    /// The mean change of heights by the levels that are finer, as in [`MEAN_CHANGE`].
+    /// The mean change of heights by finer levels (see [`MEAN_CHANGE`]).
     pub(super) fn mean_change(&self, depth: usize) -> f32 {
         MEAN_CHANGE[self.levels.saturating_sub(depth).min(MEAN_CHANGE.len() - 1)]
     }
 
-    /// The point at a share of the sides of cell `q`, half a finest cell further inside, from the nodes of 4 x 4 cells.
-    /// Around a corner these are all that count; around a middle, of 3 x 3 cells.
+    /// The point at a share of the sides of cell `q`, offset by half a finest cell, from the nodes of 4 x 4 cells.
+    /// These contain all nodes within the radius of a corner; for a middle, 3 x 3 cells do.
     fn between(&self, share: f32, level: &Level, q: usize) -> Point {
         let width = level.window.width;
         let inside = self.inside(level.depth, share);
@@ -145,7 +145,7 @@ impl Refinement {
         let change = self.mean_change(level.depth)
             * slope_of_one_cell(self, level.depth, level.variation[nearest.1] + level.uplift[nearest.1]);
         let height = land.at_origin() + change;
-        // Land at a shore is not lower than the water.
+        // Land at a shore is at least as high as the water.
         let height = if nearest_water.0 < f32::INFINITY { height.max(level.height[nearest_water.1]) } else { height };
         Point { height, area, lake_depth: 0.0, water_level: f32::NAN, receiver: receiver.min(NONE) }
     }
@@ -162,14 +162,14 @@ fn node(level: &Level, q: usize) -> Point {
     Point { height: bed, area, lake_depth, water_level: height, receiver }
 }
 
-/// Fall of the bottom of lakes with an outlet from the shore, in metres per km, and their greatest depth.
+/// Slope of the bottom of lakes with an outlet, in metres per km from the shore, and their maximum depth in metres.
 const VALLEY_LAKE: (f32, f32) = (80.0, 300.0);
 
-/// The same of lakes without one.
+/// Slope and maximum depth of lakes without an outlet.
 const BASIN_LAKE: (f32, f32) = (8.0, 120.0);
 
-/// Height of the bottom of standing water. Lakes fall from the shore to their greatest depth. The sea has a shelf of 80
-/// km, a continental slope and a deep plain.
+/// Height of the bottom of standing water. The bottom of lakes falls from the shore to their maximum depth. The sea has
+/// a shelf of 80 km, a continental slope and a deep plain.
 fn bottom(level: &Level, q: usize) -> f32 {
     let (height, distance) = (level.height[q], (-level.shore[q]).max(0.0));
     if height > 0.0 {
@@ -181,7 +181,7 @@ fn bottom(level: &Level, q: usize) -> f32 {
     sea_bottom(distance)
 }
 
-/// Height of the bottom of the sea at this distance from the shore, in km.
+/// Height of the sea floor at a distance from the shore, in km.
 pub(super) fn sea_bottom(distance: f32) -> f32 {
     let t = ((distance - 80.0) / 200.0).clamp(0.0, 1.0);
     let shelf = 1.8 * distance.min(80.0);
@@ -189,19 +189,19 @@ pub(super) fn sea_bottom(distance: f32) -> f32 {
     -(shelf + 3400.0 * t * t * (3.0 - 2.0 * t) + rise)
 }
 
-/// The bed of a lake with this surface that is not below the sea: a recipe's sea is where the ground is at or below sea
-/// level.
+/// The bed of a lake with this surface, limited so that it is not below the sea, because a recipe's sea is where the
+/// ground is at or below sea level.
 fn above_the_sea(bed: f32, surface: f32) -> f32 {
     bed.max(0.5 * surface.min(1.0))
 }
 
-/// Weighted sums for the plane that fits values best.
+/// Weighted sums for the least-squares plane through values.
 #[derive(Default)]
 struct Plane {
     weight: f32,
-    /// Of x, y and the values.
+    /// Sums of x, y and the values.
     first: [f32; 3],
-    /// Of x x, x y, y y, x value and y value.
+    /// Sums of x x, x y, y y, x value and y value.
     second: [f32; 5],
 }
 
@@ -224,12 +224,12 @@ impl Plane {
         self.first[2] / self.weight.max(1e-6)
     }
 
-    /// The value of the plane at (0, 0), between the values of the nodes if those lie on one side.
+    /// The value of the plane at (0, 0). If all nodes lie on one side, it is limited to their values.
     fn at_origin(&self) -> f32 {
         let inverse = 1.0 / self.weight.max(1e-6);
         let [x, y, value] = self.first.map(|sum| sum * inverse);
         let [xx, xy, yy, x_value, y_value] = self.second.map(|sum| sum * inverse);
-        // The small term keeps the plane from tilting where nodes are on one line.
+        // The small term prevents the plane from tilting if the nodes are on one line.
         let (a, b, d) = (xx - x * x + 0.02, xy - x * y, yy - y * y + 0.02);
         let (e, f) = (x_value - x * value, y_value - y * value);
         let determinant = a * d - b * b;

@@ -1,4 +1,4 @@
-//! Properties of the levels as a whole: windows agree, water flows down.
+//! Properties of all levels: windows agree, and water flows down.
 
 mod details;
 mod floors;
@@ -16,7 +16,7 @@ use crate::hydrology::direction::{NONE, STEPS};
 use crate::progress::Progress;
 use crate::random::mix64;
 
-/// The level over a window, computed from nothing else.
+/// The level over a window, computed independently of other windows.
 fn level(land: &Continents, depth: usize, window: &Window) -> Level {
     let windows: Vec<Window> = (0..depth)
         .rev()
@@ -42,7 +42,7 @@ fn bits(level: &Level) -> Vec<Vec<u32>> {
     level.clone().into_planes().iter().map(|plane| plane.data().iter().map(|value| value.to_bits()).collect()).collect()
 }
 
-/// A place on land, in samples of a level: one with relief, rivers and a shore within reach.
+/// A position on land, in samples of a level, with relief, rivers and a shore nearby.
 fn coast(depth: usize) -> (i64, i64) {
     let at = |finest: i64| (finest << depth) >> 11;
     (at(45_312), at(-43_264))
@@ -91,7 +91,7 @@ fn a_parent_that_covers_too_little_is_refused_and_more_changes_nothing() {
             land.refine(&less, &Given::default(), &window, &Progress::none()).unwrap_err().kind(),
             ErrorKind::Request
         );
-        // What is further away than the reach does not matter.
+        // Nodes beyond the reach have no effect.
         let mut changed = parent.clone();
         changed.height[0] += 100.0;
         changed.receiver[3] = NONE;
@@ -108,7 +108,7 @@ fn heights_fall_along_receivers_to_water_or_out_of_the_window() {
         for (q, &receiver) in level.receiver.iter().enumerate() {
             assert!(level.height[q].is_finite() && level.height[q] < 12_000.0 && level.area[q] >= 1.0);
             let Some((east, south)) = STEPS.get(usize::from(receiver)) else {
-                // Water is level: no receiver.
+                // Water is level, so it has no receiver.
                 assert!(receiver == NONE && level.shore[q] < 0.0);
                 continue;
             };
@@ -227,7 +227,7 @@ fn more_relief_is_higher_and_more_land_is_land() {
 }
 
 /// The number of links from nodes with more than `least` cells of drainage area, and the shares of the area that are
-/// lost where it falls.
+/// lost where it decreases downstream.
 fn lost_areas(level: &Level, least: f32) -> (usize, Vec<f32>) {
     let (width, height) = (level.window.width, level.window.height);
     let (mut links, mut lost) = (0, Vec::new());

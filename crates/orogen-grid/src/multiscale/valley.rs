@@ -1,12 +1,13 @@
-//! Where valleys lie between the samples of given land.
+//! The positions of valleys between the samples of given land.
 
-/// Distance from the middle of a cell, in cells, up to which a valley is that of the cell; a little more than half a
-/// cell, because heights have errors.
+/// Maximum distance of a valley from the middle of a cell, in cells, so that it belongs to the cell. It is slightly
+/// more than half a cell, because heights have errors.
 const IN_CELL: f32 = 0.6;
 
-/// Where the line of a valley passes the middle of a cell most closely, east and south of it in cells: the lowest place
-/// across the direction of the strongest curvature, of the quadratic surface through 3 x 3 samples (Steger 1998). (0,
-/// 0) without a valley in the cell. `height` is that of the sample some steps east and south of the middle.
+/// The point of a valley's line that is closest to the middle of a cell, in cells to the east and south of the middle:
+/// the lowest point across the direction of the strongest curvature of the quadratic surface through 3 x 3 samples
+/// (Steger 1998). (0, 0) if there is no valley in the cell. `height` returns the height of the sample at a number of
+/// steps to the east and south of the middle.
 pub fn valley(height: impl Fn(i64, i64) -> f32) -> (f32, f32) {
     let h = height;
     let (gx, gy) = (0.5 * (h(1, 0) - h(-1, 0)), 0.5 * (h(0, 1) - h(0, -1)));
@@ -36,7 +37,7 @@ mod tests {
             let angle = f64::from(degrees).to_radians();
             let (sine, cosine) = (libm::sin(angle) as f32, libm::cos(angle) as f32);
             for distance in [-0.4f32, 0.0, 0.25] {
-                // A parabola across a line at this distance, which falls along it.
+                // A parabola across a line at this distance, falling along the line.
                 let height = |x: i64, y: i64| {
                     let across = x as f32 * cosine + y as f32 * sine - distance;
                     let along = y as f32 * cosine - x as f32 * sine;

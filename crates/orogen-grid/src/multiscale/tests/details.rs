@@ -37,7 +37,7 @@ fn windows_made_separately_are_crops_of_a_larger_one() {
             assert!(bits(&whole.crop(&part).unwrap()) == bits(&level(&land, depth, &part)), "level {depth}, {part:?}");
         }
     }
-    // The finest level of valleys does not know of details.
+    // The finest level of valleys does not depend on details.
     let depth = 11;
     let at = window(&land, depth, coast(depth), (20, 20));
     assert!(bits(&level(&land, depth, &at)) == bits(&level(&Continents::new(1), depth, &at)));
@@ -77,7 +77,7 @@ fn water_flows_down() {
             let (i, j) = ((q % width).wrapping_add_signed(*east), (q / width).wrapping_add_signed(*south));
             if i < width && j < height {
                 let below = level.height[j * width + i];
-                // Large rivers in plains fall by less than heights have digits.
+                // Large rivers in plains fall by less than the precision of heights.
                 let falls = below < level.height[q] || (below == level.height[q] && level.area[q] > 1000.0);
                 assert!(falls, "seed {seed}, level {depth}: {below} below {}", level.height[q]);
             }
@@ -118,7 +118,7 @@ fn heights_stay_near_those_of_the_level_above() {
 fn rivers_have_beds_that_fall_and_agree_between_windows() {
     let land = detailed(1);
     let (depth, refinement) = (16, &land.refinement);
-    // The largest river within 3 km of a place on land.
+    // The largest river within 3 km of a position on land.
     let wide = level(&land, 11, &window(&land, 11, coast(11), (50, 50)));
     let river = (0..wide.area.len())
         .filter(|q| wide.receiver[*q] < NONE)
@@ -135,7 +135,7 @@ fn rivers_have_beds_that_fall_and_agree_between_windows() {
     let lowered = cut.height.data().iter().zip(ground.height.data()).filter(|(cut, ground)| cut < ground).count();
     assert!(lowered > 200 && lowered < 7200, "{lowered} samples of beds");
     assert!(cut.height.data().iter().zip(ground.height.data()).all(|(cut, ground)| cut <= ground));
-    // Coarser levels have no beds of their own.
+    // Coarser levels have no beds.
     assert_eq!(refinement.rivers_reach(11), 0);
     let less = level(&land, depth, &refinement.nodes_at(depth, &samples).grown(5));
     let mut uncut = ground.clone();

@@ -1,4 +1,4 @@
-//! Floods and sediment of a river in a valley of plane sides.
+//! Floods and sediment of a river in a valley with plane sides.
 
 use crate::grid::{Grid, Window};
 use crate::hydrology::direction::NONE;
@@ -14,8 +14,8 @@ const CELL: f64 = 60.0;
 /// Drainage area of the river, in cells.
 const AREA: f32 = 1e6;
 
-/// A river along the middle column, which falls to the south by a metre per cell; `side` is the height of the ground
-/// over it at that many cells beside. All ground drains straight to the river. In the south there is a lake.
+/// A river along the middle column, which falls to the south by a metre per cell. `side` is the height of the ground
+/// above it at a distance in cells. All ground drains straight to the river. In the south there is a lake.
 fn valley(side: impl Fn(i64) -> f32) -> (Refinement, Level) {
     let land = Refinement::default().with_levels(0).with_cell(CELL);
     let window = Window::new(SIDE, SIDE, CELL).at(-150, -150);
@@ -64,7 +64,7 @@ fn floods_are_as_wide_as_the_slopes_of_the_valley_let_them() {
         for j in 0..20 {
             for i in 0..40 {
                 let (x, y) = (i as i64 - 20, j as i64 - 6);
-                // The flood rises over the banks by three times the depth of the river.
+                // The flood rises above the banks by three times the depth of the river.
                 let wanted = if x == 0 { 4.0 * depth } else { (3.0 * depth - slope * x.abs() as f32).max(0.0) };
                 let wanted = if y > 10 { 0.0 } else { wanted };
                 assert!((made[(i, j)] - wanted).abs() < 1e-3, "({x}, {y}): {} m, not {wanted}", made[(i, j)]);

@@ -10,7 +10,7 @@ fn land() -> Continents {
     land.with_refinement(land.refinement.with_lakes(1.0).with_details(1))
 }
 
-/// A place with lakes, in samples of a level.
+/// A position with lakes, in samples of a level.
 fn district(depth: usize) -> (i64, i64) {
     let (east, south) = coast(8);
     let at = |middle: i64| (middle << 4) >> (12 - depth);
@@ -44,7 +44,7 @@ fn every_lake_drains_to_its_outlet_and_holds_the_water_of_its_rivers() {
                 outlets += 1;
                 short += usize::from(level.area[to] < 0.98 * level.area[q]);
             }
-            // The way along receivers leaves the lake.
+            // The path along receivers leaves the lake.
             let (mut at, mut links) = (q, 0);
             while let Some(next) = receiver(&level, at).filter(|_| level.receiver[at] >= LAKE) {
                 (at, links) = (next, links + 1);
@@ -55,7 +55,7 @@ fn every_lake_drains_to_its_outlet_and_holds_the_water_of_its_rivers() {
             lakes > 30 && (outlets > 0 || depth > 11) && inlets > 2,
             "level {depth}: {lakes} nodes, {outlets} outlets"
         );
-        // As everywhere, a few areas fall downstream.
+        // As elsewhere, a few areas decrease downstream.
         assert!(short * 10 <= outlets, "level {depth}: {short} of {outlets} outlets drain less than their lake");
         assert!(outlets * 8 < lakes, "level {depth}: {outlets} outlets of {lakes} nodes");
     }
@@ -77,7 +77,7 @@ fn water_leaves_lakes_only_along_rivers() {
             }
         }
         assert!(shores > 40, "level {depth}: {shores}");
-        // Outlets, and other rivers that come near.
+        // The remaining ones are outlets and other rivers that come near.
         assert!(lower * 50 < shores, "level {depth}: {lower} of {shores} links across the shore fall by more than 1 m");
     }
 }

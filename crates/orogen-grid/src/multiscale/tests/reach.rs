@@ -1,6 +1,6 @@
-//! The declared reach of levels: it is enough, and not much larger than what changes nodes. That a reach one sample too
-//! small breaks the laws is tested with an op that reads exactly as far as it says (`registered_ops` in the crate
-//! `orogen`).
+//! The declared reach of levels is sufficient, and not much larger than necessary. A separate test with an op that
+//! reads exactly as far as it declares shows that a reach that is one sample too small breaks the laws
+//! (`registered_ops` in the crate `orogen`).
 
 use super::{Continents, Given, Level, NONE, Progress, STEPS, Window, bits, coast, level, window};
 
@@ -21,7 +21,7 @@ fn inwards(window: &Window, border: usize, sample: usize) -> u8 {
     STEPS.iter().position(|other| *other == step).map_or(NONE, |code| code as u8)
 }
 
-/// The level with other nodes in its outermost `border` samples.
+/// The level with different nodes in its outermost `border` samples.
 fn poisoned(level: &Level, border: usize, kind: usize) -> Level {
     let mut poisoned = level.clone();
     for sample in outside(&level.window, border) {
@@ -61,7 +61,7 @@ fn poisoned(level: &Level, border: usize, kind: usize) -> Level {
     poisoned
 }
 
-/// The number of rings of samples, from the outermost, that no refinement of these parents depends on.
+/// The number of rings of samples, from the outermost, on which no refinement of these parents depends.
 fn slack(land: &Continents, depth: usize, places: &[(i64, i64)]) -> usize {
     let refine = |parent: &Level, window: &Window| {
         bits(&land.refine(parent, &Given::default(), window, &Progress::none()).unwrap())
@@ -80,9 +80,9 @@ fn slack(land: &Continents, depth: usize, places: &[(i64, i64)]) -> usize {
     least
 }
 
-/// The reach is that of the longest chain of passes, each of which reads one sample further, so it is an upper bound:
-/// no parent that was tried changes a node from its whole reach. If it were much larger than what changes a node,
-/// windows would cost more than they have to.
+/// The reach follows from the longest chain of passes, each of which reads one sample further, so it is an upper bound:
+/// no tested parent changes a node at the whole reach. If it were much larger than the distance over which nodes
+/// change, windows would cost more than necessary.
 #[test]
 fn nodes_depend_on_more_than_a_third_of_their_reach() {
     let land = Continents::new(1);
