@@ -15,13 +15,13 @@ pub use super::variants::Variant;
 /// The tiles of a class.
 #[derive(Debug, Clone, Default)]
 pub struct ClassTiles {
-    // For each of the 256 masks its tiles.
+    // The tiles of each of the 256 masks.
     groups: Vec<Group>,
     variants: Variants,
 }
 
 impl ClassTiles {
-    /// Tiles by their reduced mask. Variants of a mask are tiles with the same one.
+    /// Tiles with their masks, which are reduced. Tiles with the same reduced mask are variants.
     #[must_use]
     pub fn new(layout: Layout, tiles: &[(u8, Variant)]) -> ClassTiles {
         let mut made = ClassTiles::default();
@@ -33,7 +33,7 @@ impl ClassTiles {
         made
     }
 
-    /// The tile for a mask at the position `place` of the plane, column and row; `None` if there is no tile.
+    /// The tile for a mask at the column and row `place` of the plane; `None` if there is no tile.
     #[inline]
     #[must_use]
     pub fn choose(&self, mask: u8, place: [i64; 2], seed: u64) -> Option<u32> {
@@ -41,7 +41,7 @@ impl ClassTiles {
     }
 }
 
-/// Wang tiles: each has a class along its sides, at its corners or both, so one tile shows several classes.
+/// Wang tiles. Each has a class along its sides, at its corners or both, so one tile shows several classes.
 #[derive(Debug, Clone, Default)]
 pub struct WangTiles {
     groups: HashMap<[u8; 8], Group>,
@@ -49,7 +49,7 @@ pub struct WangTiles {
 }
 
 impl WangTiles {
-    /// Tiles by their wang id: see [`Layout::wang_id`]. Variants are tiles with the same one.
+    /// Tiles with their wang id (see [`Layout::wang_id`]). Tiles with the same wang id are variants.
     #[must_use]
     pub fn new(tiles: &[([u8; 8], Variant)]) -> WangTiles {
         let mut made = WangTiles::default();
@@ -63,7 +63,7 @@ impl WangTiles {
         made
     }
 
-    /// The tile with a wang id at the position `place` of the plane, column and row; `None` if there is no tile.
+    /// The tile with a wang id at the column and row `place` of the plane; `None` if there is no tile.
     #[inline]
     #[must_use]
     pub fn choose(&self, id: &[u8; 8], place: [i64; 2], seed: u64) -> Option<u32> {
@@ -74,20 +74,20 @@ impl WangTiles {
 /// The tiles of a tileset.
 #[derive(Debug, Clone)]
 pub enum Tiles {
-    /// Tiles for the layers of the classes, in order; of the first class only the full tile is drawn.
+    /// Tiles for one layer per class, in order. Of the first class only the full tile is drawn.
     Layers(Vec<ClassTiles>),
-    /// Tiles that show all classes of their place, for a single layer.
+    /// Tiles that show all classes of their cell, for a single layer.
     Wang(WangTiles),
 }
 
-/// The number of a place without a tile in a layer of tiles.
+/// The tile number where a layer has no tile.
 pub const NONE: u32 = u32::MAX;
 
-/// Draws classes with tiles: for each class a layer of tile numbers, row-major, bottom to top, or one layer of wang
-/// tiles; [`NONE`] where a layer has no tile. Tiles below a full tile are left out. The same tiles at the same
-/// positions of the plane for any window, except beside sides at which the plane goes on.
+/// Draws classes with tiles. Returns a layer of tile numbers for each class, row-major, bottom to top, or one layer of
+/// wang tiles; [`NONE`] where a layer has no tile. Tiles below a full tile are left out. Any window gives the same
+/// tiles at the same positions of the plane, except at sides beyond which the plane continues.
 ///
-/// Places for which there is no tile are left out: see [`Drawable::gaps`].
+/// Positions for which there is no tile are left out (see [`Drawable::gaps`]).
 #[must_use]
 pub fn layers(classes: &Classes, drawable: &Drawable, tiles: &Tiles, seed: u64) -> Vec<Vec<u32>> {
     match tiles {

@@ -2,14 +2,14 @@
 
 use crate::random::{STEP, mix64};
 
-/// Random bits of the cell (x, y) of the plane, the same for any window.
+/// Random bits of the cell (x, y) of the plane, independent of the window.
 #[inline]
 pub(super) fn hash([x, y]: [i64; 2], seed: u64) -> u64 {
     mix64(mix64(seed ^ (x as u64).wrapping_mul(STEP)) ^ (y as u64).wrapping_mul(0xD1B5_4A32_D192_ED03))
 }
 
-/// Terrain classes, row-major, with the position of the first in the plane, so that parts of a map are cleaned and
-/// drawn as the whole is. Beyond the sides of the window the nearest cell counts.
+/// Terrain classes, row-major, with the position of the first cell in the plane, so that a part of a map is cleaned and
+/// drawn like the whole map. Outside the window, the class of the nearest cell counts.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Classes {
     /// Column of the first cell.
@@ -22,15 +22,15 @@ pub struct Classes {
 }
 
 impl Classes {
-    /// The classes of `width` x `height` cells from the cell (x, y). Classes that are missing at the end are 0, and
-    /// those beyond it are left out.
+    /// The classes of `width` x `height` cells from the cell (x, y). If `data` is too short, the missing classes are 0;
+    /// if it is too long, the rest is ignored.
     #[must_use]
     pub fn new([x, y]: [i64; 2], width: usize, height: usize, mut data: Vec<u8>) -> Classes {
         data.resize(width * height, 0);
         Classes { x, y, width, height, data }
     }
 
-    /// Cells per row.
+    /// Number of cells per row.
     #[must_use]
     pub fn width(&self) -> usize {
         self.width
@@ -48,14 +48,15 @@ impl Classes {
         &self.data
     }
 
-    /// The row `y` of the window; rows beyond it are the nearest of it. A window without cells has empty rows.
+    /// Row `y` of the window, or the nearest row if it is outside. A window without cells has empty rows.
     #[must_use]
     pub fn row(&self, y: i64) -> &[u8] {
         let y = y.clamp(0, (self.height as i64 - 1).max(0)) as usize;
         self.data.get(y * self.width..(y + 1) * self.width).unwrap_or_default()
     }
 
-    /// The class in column `x` and row `y` of the window, or the nearest in it; 0 in a window without cells.
+    /// The class in column `x` and row `y` of the window, or the class of the nearest cell if it is outside; 0 in a
+    /// window without cells.
     #[inline]
     #[must_use]
     pub fn at(&self, x: i64, y: i64) -> u8 {
@@ -71,8 +72,8 @@ impl Classes {
         }
     }
 
-    /// The part of `width` x `height` cells from the cell (x, y) in the plane. Cells outside the window have the class
-    /// of the nearest in it.
+    /// The part of `width` x `height` cells from the cell (x, y) of the plane. Cells outside the window have the class
+    /// of the nearest cell.
     #[must_use]
     pub fn part(&self, [x, y]: [i64; 2], width: usize, height: usize) -> Classes {
         let rows = (0..height as i64)
@@ -80,7 +81,7 @@ impl Classes {
         Classes::new([x, y], width, height, rows.collect())
     }
 
-    /// How many cells have each class, up to the largest class.
+    /// The number of cells of each class, up to the largest class.
     #[must_use]
     pub fn counts(&self) -> Vec<usize> {
         let mut counts = [0; 256];

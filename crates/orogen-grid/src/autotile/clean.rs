@@ -1,18 +1,19 @@
-//! Clean-up: changes of classes where a tileset has no tile, for example at necks of one cell or where two areas touch
-//! at a corner only.
+//! Clean-up: changes classes where a tileset has no tile, for example at necks of one cell or where two areas touch
+//! only at a corner.
 //!
-//! In each of a fixed number of rounds, every place without a tile proposes the change of one cell that leaves the
-//! fewest such places. Of proposals near each other the best is done, so each change has the effect that it was chosen
-//! for, and the number of places without a tile falls with every change. What is left after these rounds, in the middle
-//! of dense noise, is filled: for tiles of cells by blocks of 2 x 2 cells of one class, which the smallest common
-//! tilesets can draw; for tiles on corners by raising all corners of the tile to the class that lacks one.
+//! In each of a fixed number of rounds, every position without a tile proposes the change of one cell that leaves the
+//! fewest such positions. Of proposals near each other only the best is applied. Each change therefore has the effect
+//! for which it was chosen, and the number of positions without a tile falls with every change. After these rounds some
+//! positions may remain in dense noise, and they are filled. For tiles of cells, blocks of 2 x 2 cells get one class,
+//! which the smallest common tilesets can draw. For tiles on corners, all corners of the tile are raised to the class
+//! that lacks one.
 //!
-//! Wang tiles usually show some pairs of classes only. There, before all else and between the fills, a class that joins
-//! both is put between two that no tile shows together. Their fills give the corners or cells that a missing tile sees
-//! the class that most of them have.
+//! Wang tiles usually show only some pairs of classes. Before the other rounds and between the fills, a class that
+//! joins both is inserted between two classes that no tile shows together. The fill for wang tiles sets all corners or
+//! cells that a missing tile sees to their most frequent class.
 //!
-//! A round looks at a fixed distance, so a part of a map that is cleaned with its surroundings ([`HALO`]) is the part
-//! of the cleaned map.
+//! A round looks at cells up to a fixed distance. If a part of a map is cleaned with its surroundings ([`HALO`]), the
+//! result is equal to that part of the cleaned map.
 
 use std::collections::HashMap;
 
@@ -23,43 +24,44 @@ use super::drawable::{Drawable, Gap, MissingTile};
 use crate::error::Result;
 use crate::progress::Progress;
 
-/// Rounds in which classes are put between others, for wang tiles.
+/// Number of rounds in which classes are inserted between others, for wang tiles.
 const BRIDGE_ROUNDS: usize = 6;
 
-/// Rounds of single changes.
+/// Number of rounds of single changes.
 const ROUNDS: usize = 8;
 
-/// Rounds in which what is left is filled. In white noise each leaves a quarter of the places without a tile that there
-/// were before it, so that no place is left in millions of cells.
+/// Number of rounds that fill the remaining positions. In white noise each leaves a quarter of the positions without a
+/// tile, so that none remains in millions of cells.
 const FILL_ROUNDS: usize = 14;
 
-/// Proposals within this distance, in cells along either axis, exclude each other: a change affects tiles one cell
+/// Proposals within this distance, in cells along either axis, exclude each other. A change affects tiles one cell
 /// away, which see one cell further.
 const APART: i64 = 3;
 
-/// How far a round of single changes looks: to proposals that exclude a change ([`APART`]), the places they come from
-/// (1), and what those see to choose (3).
+/// Number of cells that a round of single changes depends on: proposals that exclude a change ([`APART`]), the
+/// positions that made them (1), and the cells that these see to choose (3).
 const ROUND_HALO: usize = APART as usize + 4;
 
-/// How far a round of fills looks: to a tile that sees the block, and what it sees.
+/// Number of cells that a round of fills depends on: a tile that sees the block, and the cells that the tile sees.
 const FILL_HALO: usize = 4;
 
-/// How far a round looks that puts classes between others: to the tiles that see a cell, and what they see.
+/// Number of cells that a round of insertions depends on: the tiles that see a cell, and the cells that they see.
 const BRIDGE_HALO: usize = 2;
 
-/// How far the clean-up looks, in cells: a part grown by this much on all sides and cleaned is the part of the whole.
+/// Number of cells that the clean-up depends on. If a part of a map is grown by this much on all sides and cleaned, it
+/// equals that part of the cleaned map.
 pub const HALO: usize = BRIDGE_ROUNDS * BRIDGE_HALO + ROUNDS * ROUND_HALO + FILL_ROUNDS * FILL_HALO;
 
-/// The best change for a place without a tile.
+/// The best change for a position without a tile.
 #[derive(Debug, Clone, Copy)]
 struct Proposal {
-    // Change in the number of places without a tile: the lower the better. Then the change of class, and a hash.
+    // Change in the number of positions without a tile (lower is better), then the change of class, then a hash.
     rank: (i32, u8, u64),
     class: u8,
 }
 
-/// Changes as few classes as it finds necessary for `drawable` to have a tile everywhere. Where that fails, the places
-/// remain, as [`Drawable::gaps`] lists them.
+/// Changes as few classes as possible so that `drawable` has a tile everywhere. Where this fails, positions without a
+/// tile remain, and [`Drawable::gaps`] lists them.
 ///
 /// # Errors
 /// If `progress` is cancelled.
@@ -92,7 +94,7 @@ pub fn clean(classes: &mut Classes, drawable: &Drawable, progress: &Progress) ->
     Ok(())
 }
 
-/// The places without a tile after changes: those before, and those beside the changes.
+/// The positions without a tile after changes. Only previous ones and those near the changes are tested.
 fn gaps_again(classes: &Classes, drawable: &Drawable, gaps: &[Gap], changes: &[(i64, i64, u8)]) -> Vec<Gap> {
     let [width, height] = drawable.tiles(classes).map(|side| side as i64);
     let nearby = changes.iter().flat_map(|(x, y, _)| affected(drawable, *x, *y));
@@ -121,7 +123,7 @@ fn seen(drawable: &Drawable, x: i64, y: i64) -> impl Iterator<Item = (i64, i64)>
     (y - before..=y + 1).flat_map(move |row| (x - before..=x + 1).map(move |column| (column, row)))
 }
 
-/// The changes of a round: the best proposals.
+/// The changes of a round: the best proposals that do not exclude each other.
 fn changes(classes: &Classes, drawable: &Drawable, gaps: &[Gap]) -> Vec<(i64, i64, u8)> {
     let proposals: Vec<((i64, i64), Proposal)> =
         parallel::map(gaps, |gap| propose(classes, drawable, gap)).into_iter().flatten().collect();
@@ -143,19 +145,19 @@ fn changes(classes: &Classes, drawable: &Drawable, gaps: &[Gap]) -> Vec<(i64, i6
     done
 }
 
-/// How far the choice of a change looks from a place without a tile, in cells.
+/// Distance from a position without a tile within which cells affect the choice of a change, in cells.
 const SIGHT: i64 = 3;
 
-/// The change of one cell after which the fewest tiles around it are missing, if that is fewer than now.
+/// The change of one cell that leaves the fewest missing tiles around it; `None` if that is not fewer than now.
 fn propose(classes: &Classes, drawable: &Drawable, gap: &Gap) -> Option<((i64, i64), Proposal)> {
     let [width, height] = [classes.width() as i64, classes.height() as i64];
     let is_inside = |at: i64, side: i64| (SIGHT..side - SIGHT).contains(&at);
     if !is_inside(gap.x, width) || !is_inside(gap.y, height) {
-        // Cells beyond the sides are the nearest in the window.
+        // Cells outside the window have the class of the nearest cell inside.
         let inside = |(x, y): (i64, i64)| (x.clamp(0, width - 1), y.clamp(0, height - 1));
         return best_change(classes, drawable, gap, |x, y| classes.at(x, y), inside);
     }
-    // The classes in sight are read many times.
+    // The classes in sight are read many times, so they are copied.
     const SIDE: usize = 2 * SIGHT as usize + 1;
     let mut seen = [[0; SIDE]; SIDE];
     for (row, y) in seen.iter_mut().zip(gap.y - SIGHT..) {
@@ -165,7 +167,8 @@ fn propose(classes: &Classes, drawable: &Drawable, gap: &Gap) -> Option<((i64, i
     best_change(classes, drawable, gap, at, |place| place)
 }
 
-/// [`propose`] with a function that reads classes, and one that tells which cell of the window counts at a position.
+/// [`propose`] with a function that reads classes, and a function that returns the cell of the window that counts at a
+/// position.
 #[inline(always)]
 fn best_change(
     classes: &Classes,
@@ -211,8 +214,8 @@ fn best_change(
     best
 }
 
-/// The blocks of 2 x 2 cells, at even positions of the plane, that a place without a tile sees: all cells get the most
-/// frequent class of the block, or the lowest of those.
+/// Changes to blocks of 2 x 2 cells, at even positions of the plane, that a position without a tile sees: all cells get
+/// the most frequent class of the block, or the lowest one of several.
 fn blocks(classes: &Classes, drawable: &Drawable, gaps: &[Gap]) -> Vec<(i64, i64, u8)> {
     let mut corners: Vec<(i64, i64)> = gaps
         .iter()
@@ -230,13 +233,14 @@ fn blocks(classes: &Classes, drawable: &Drawable, gaps: &[Gap]) -> Vec<(i64, i64
     corners.into_iter().flat_map(block).collect()
 }
 
-/// The most frequent class, or the lowest of those.
+/// The most frequent class, or the lowest one of several.
 fn majority(found: &[u8]) -> u8 {
     let often = |class: u8| found.iter().filter(|other| **other == class).count();
     found.iter().copied().max_by_key(|class| (often(*class), std::cmp::Reverse(*class))).unwrap_or_default()
 }
 
-/// What missing tiles see gets the most frequent class of it. Of several classes for a cell the lowest counts.
+/// Changes to all cells that missing tiles see: they get their most frequent class. If a cell would get several
+/// classes, it gets the lowest.
 fn majorities(classes: &Classes, drawable: &Drawable, gaps: &[Gap]) -> Vec<(i64, i64, u8)> {
     let cells = gaps.iter().flat_map(|gap| {
         let found: Vec<u8> = seen(drawable, gap.x, gap.y).map(|(x, y)| classes.at(x, y)).collect();
@@ -246,7 +250,7 @@ fn majorities(classes: &Classes, drawable: &Drawable, gaps: &[Gap]) -> Vec<(i64,
     lowest(cells.collect())
 }
 
-/// Cells beside a lower class that no tile shows with theirs, with a class for them that joins both.
+/// Changes to cells next to a lower class that no tile shows together with their own: they get a class that joins both.
 fn bridges(classes: &Classes, drawable: &Drawable, gaps: &[Gap]) -> Vec<(i64, i64, u8)> {
     let cells = gaps.iter().flat_map(|gap| {
         let found: Vec<u8> = seen(drawable, gap.x, gap.y).map(|(x, y)| classes.at(x, y)).collect();
@@ -261,15 +265,15 @@ fn bridges(classes: &Classes, drawable: &Drawable, gaps: &[Gap]) -> Vec<(i64, i6
     lowest(cells.collect())
 }
 
-/// One change for each cell: that to the lowest class.
+/// One change for each cell: the one to the lowest class.
 fn lowest(mut changes: Vec<(i64, i64, u8)>) -> Vec<(i64, i64, u8)> {
     changes.sort_unstable();
     changes.dedup_by_key(|(x, y, _)| (*x, *y));
     changes
 }
 
-/// The corners of tiles that are missing, raised to the class whose layer lacks them. Layers only grow by this, so that
-/// it ends.
+/// Changes to the corners of missing tiles: they are raised to the class whose layer lacks the tile. Layers only grow
+/// by this, so it terminates.
 fn raised(classes: &Classes, drawable: &Drawable, gaps: &[Gap]) -> Vec<(i64, i64, u8)> {
     let corners = gaps.iter().flat_map(|gap| {
         let least = match gap.tile {
@@ -279,7 +283,7 @@ fn raised(classes: &Classes, drawable: &Drawable, gaps: &[Gap]) -> Vec<(i64, i64
         let raised = move |(x, y)| (x, y, classes.at(x, y).max(least));
         seen(drawable, gap.x, gap.y).map(raised)
     });
-    // A corner that several tiles raise gets the highest class, which is the last.
+    // A corner that several tiles raise gets the highest class, which is the last one.
     let mut corners: Vec<(i64, i64, u8)> = corners.collect();
     corners.sort_unstable();
     corners

@@ -1,4 +1,4 @@
-//! Which cells a tileset can draw.
+//! Finds out which cells a tileset can draw.
 
 use std::collections::HashSet;
 
@@ -6,50 +6,50 @@ use super::classes::Classes;
 use super::mask::{CORNERS, Layout, OFFSETS};
 use crate::parallel;
 
-/// The tiles of a tileset: which surroundings of each class can be drawn.
+/// The tiles of a tileset, as the surroundings of each class that can be drawn.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Drawable {
     layout: Layout,
     tiles: Present,
 }
 
-/// Which tiles there are.
+/// The tiles that exist.
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum Present {
-    /// For each class from the second on, whether there is a tile for a mask. All 256, so that masks need not be
+    /// For each class from the second on, whether there is a tile for each of the 256 masks, so that masks need not be
     /// reduced.
     Layers(Vec<[bool; 256]>),
-    /// Tiles that show all classes of their place.
+    /// Tiles that show all classes of their cell.
     Wang(Wang),
 }
 
-/// Which wang tiles there are.
+/// The wang tiles that exist.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Wang {
     classes: usize,
     ids: HashSet<[u8; 8]>,
-    /// For each pair of classes the class after the first on the shortest way from the first to the second through
-    /// classes that some tile shows together.
+    /// For each pair of classes, the class after the first one on the shortest path to the second, through classes that
+    /// a tile shows together.
     next: Vec<Vec<u8>>,
 }
 
-/// A place that a tileset has no tile for.
+/// A position for which a tileset has no tile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Gap {
     /// Column of the tile in the window of the classes.
     pub x: i64,
     /// Row of the tile.
     pub y: i64,
-    /// The tile that is missing.
+    /// The missing tile.
     pub tile: MissingTile,
 }
 
-/// A tile that a tileset lacks.
+/// A tile that a tileset does not have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MissingTile {
     /// The tile of a class for a reduced mask.
     Layer {
-        /// The class whose layer lacks it.
+        /// The class whose layer lacks the tile.
         class: u8,
         /// The reduced mask.
         mask: u8,
@@ -59,8 +59,8 @@ pub enum MissingTile {
 }
 
 impl Drawable {
-    /// Tiles of a layout for layers: for each class from the second on, the masks that there are tiles for. Masks are
-    /// reduced. The first class covers everything and needs no other tile than a full one.
+    /// Tiles of a layout for layers: for each class from the second on, the reduced masks for which there are tiles.
+    /// The first class covers everything and needs only a full tile.
     #[must_use]
     pub fn new<'m>(layout: Layout, masks: impl IntoIterator<Item = &'m [u8]>) -> Drawable {
         let present = masks.into_iter().map(|masks| {
@@ -74,7 +74,7 @@ impl Drawable {
         Drawable { layout, tiles: Present::Layers(present.collect()) }
     }
 
-    /// Wang tiles of a layout with this number of classes: the [ids](Layout::wang_id) that there are tiles for.
+    /// Wang tiles of a layout with this number of classes: the [ids](Layout::wang_id) for which there are tiles.
     #[must_use]
     pub fn wang(layout: Layout, classes: usize, ids: impl IntoIterator<Item = [u8; 8]>) -> Drawable {
         let ids: HashSet<[u8; 8]> = ids.into_iter().collect();
@@ -84,7 +84,7 @@ impl Drawable {
             let seen: Vec<usize> = seen.map(|(_, class)| usize::from(*class)).filter(|of| *of < classes).collect();
             seen.iter().for_each(|a| seen.iter().for_each(|b| meet[*a][*b] = true));
         }
-        // From each class, how far the others are; the next class on the way to `to` is the first of those that are
+        // The distances from each class to the others. The next class on the path to `to` is the first one that is
         // nearest to it.
         let distances: Vec<Vec<usize>> = (0..classes).map(|from| distances(from, &meet)).collect();
         let next = |from: usize, to: usize| {
@@ -108,8 +108,8 @@ impl Drawable {
         self.layout
     }
 
-    /// Whether every surroundings of every class can be drawn. False of wang tiles, of which there are too many to
-    /// count.
+    /// Whether all surroundings of all classes can be drawn. Always false for wang tiles, of which there are too many
+    /// to count.
     #[must_use]
     pub fn is_complete(&self) -> bool {
         match &self.tiles {
@@ -132,8 +132,8 @@ impl Drawable {
         matches!(self.tiles, Present::Wang(_))
     }
 
-    /// The class to put between two classes beside each other that no tile shows together; `None` if there is such a
-    /// tile, or no way from one to the other.
+    /// The class to insert between two adjacent classes that no tile shows together. `None` if there is such a tile, or
+    /// if no path leads from one class to the other.
     #[inline]
     pub(super) fn between(&self, from: u8, to: u8) -> Option<u8> {
         let Present::Wang(wang) = &self.tiles else { return None };
@@ -148,8 +148,8 @@ impl Drawable {
         self.layout.wang_id(seen, own)
     }
 
-    /// The classes that a tile sees, clockwise from the north as the bits of masks, and the class of its cell. Tiles on
-    /// corners have the class of their north-west corner in column `x` and row `y`, see four classes, and no own one.
+    /// The classes that a tile sees, clockwise from the north as in masks, and the class of its cell. Tiles on corners
+    /// see four classes, of which the north-western one is in column `x` and row `y`; they have no class of their own.
     #[inline]
     pub(super) fn seen(&self, at: impl Fn(i64, i64) -> u8, x: i64, y: i64) -> ([u8; 8], u8) {
         if self.layout.is_on_corners() {
@@ -159,13 +159,13 @@ impl Drawable {
         (OFFSETS.map(|[dx, dy]| at(x + dx, y + dy)), at(x, y))
     }
 
-    /// The mask of the layer of `class` in what a tile sees: not reduced.
+    /// The mask, not reduced, of the layer of `class` for the classes that a tile sees.
     #[inline]
     pub(super) fn mask(&self, seen: &[u8; 8], class: u8) -> u8 {
         seen.iter().enumerate().fold(0, |mask, (bit, other)| mask | (u8::from(*other >= class) << bit))
     }
 
-    /// The tile that is missing: of layers that of the uppermost that lacks one.
+    /// The missing tile, if there is one. For layers, the uppermost layer that lacks a tile counts.
     #[inline]
     pub(super) fn missing(&self, at: impl Fn(i64, i64) -> u8, x: i64, y: i64) -> Option<MissingTile> {
         let layers = match &self.tiles {
@@ -189,18 +189,18 @@ impl Drawable {
         None
     }
 
-    /// The number of tiles per row and of rows for a window of classes.
+    /// The number of tiles per row and the number of rows for a window of classes.
     #[must_use]
     pub fn tiles(&self, classes: &Classes) -> [usize; 2] {
         let fewer = usize::from(self.layout.is_on_corners());
         [classes.width().saturating_sub(fewer), classes.height().saturating_sub(fewer)]
     }
 
-    /// All places without a tile, row by row.
+    /// All positions without a tile, row by row.
     #[must_use]
     pub fn gaps(&self, classes: &Classes) -> Vec<Gap> {
         let [width, height] = self.tiles(classes);
-        // A tile in the middle of one class needs only a full tile, but that may be missing, too.
+        // A tile in the middle of one class needs only a full tile, but that tile may be missing, too.
         let lacks_full = match &self.tiles {
             Present::Layers(layers) => layers.iter().any(|masks| !masks[255]),
             Present::Wang(_) => true,
@@ -218,8 +218,8 @@ impl Drawable {
     }
 }
 
-/// The number of steps from a class to each other through classes that meet; the number of classes where there is no
-/// way.
+/// The number of steps from a class to each class through classes that a tile shows together; the number of classes if
+/// there is no path.
 fn distances(from: usize, meet: &[Vec<bool>]) -> Vec<usize> {
     let mut distances = vec![meet.len(); meet.len()];
     distances[from] = 0;
@@ -232,7 +232,7 @@ fn distances(from: usize, meet: &[Vec<bool>]) -> Vec<usize> {
     distances
 }
 
-/// For each tile of a row, whether it may see two classes. False only where it sees one.
+/// For each tile of a row, whether it may see two classes. False only for tiles that see one class.
 pub(super) fn varied(classes: &Classes, y: i64, is_on_corners: bool) -> Vec<bool> {
     let [above, own, below] = match is_on_corners {
         true => [classes.row(y), classes.row(y), classes.row(y + 1)],

@@ -1,7 +1,7 @@
 //! Flips and quarter turns of tiles.
 
-/// How a tile is turned before it is drawn: first over its diagonal from the upper left to the lower right, then left
-/// to right, then top to bottom.
+/// The transformation of a tile before it is drawn: first a flip over its diagonal from the upper left to the lower
+/// right, then left to right, then top to bottom.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub struct Flip {
     /// Columns and rows are exchanged.
@@ -12,7 +12,7 @@ pub struct Flip {
     pub y: bool,
 }
 
-/// Which flips and turns a tileset allows.
+/// The flips and turns that a tileset allows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Flips {
     /// Left and right may be exchanged.
@@ -24,23 +24,23 @@ pub struct Flips {
 }
 
 impl Flip {
-    /// As it is.
+    /// No change.
     pub const NONE: Flip = Flip { diagonal: false, x: false, y: false };
 
-    /// All eight, the unchanged one first.
+    /// All eight transformations, the unchanged tile first.
     #[must_use]
     pub fn all() -> [Flip; 8] {
         std::array::from_fn(|n| Flip { diagonal: n & 4 != 0, x: n & 1 != 0, y: n & 2 != 0 })
     }
 
-    /// Where the direction with this number lies afterwards; directions are numbered clockwise from the north, 0 to 7.
+    /// The direction of `from` after the transformation. Directions are numbered clockwise from the north, 0 to 7.
     fn direction(self, from: usize) -> usize {
         let from = if self.diagonal { (14 - from) % 8 } else { from };
         let from = if self.x { (8 - from) % 8 } else { from };
         if self.y { (12 - from) % 8 } else { from }
     }
 
-    /// What is known of each direction, turned like the tile.
+    /// Values for each direction, transformed like the tile.
     #[must_use]
     pub fn turned<T: Copy>(self, around: [T; 8]) -> [T; 8] {
         let mut turned = around;
@@ -50,7 +50,7 @@ impl Flip {
         turned
     }
 
-    /// A mask of directions, turned like the tile.
+    /// A mask of directions, transformed like the tile.
     #[must_use]
     pub fn mask(self, mask: u8) -> u8 {
         (0..8).filter(|from| mask >> from & 1 == 1).fold(0, |turned, from| turned | 1 << self.direction(from))
@@ -72,7 +72,7 @@ impl Flips {
     pub fn all(self) -> Vec<Flip> {
         let is_allowed = |flip: &Flip| match self {
             Flips { turns: true, x: false, y: false } => {
-                // Quarter turns alone: no mirror images, which have an odd number of flips.
+                // Quarter turns without mirror images, which have an odd number of flips.
                 (usize::from(flip.diagonal) + usize::from(flip.x) + usize::from(flip.y)).is_multiple_of(2)
             }
             Flips { turns: true, .. } => true,

@@ -1,8 +1,8 @@
-//! Masks of neighbors, and the masks that each layout of tiles tells apart.
+//! Masks of neighbors, and the masks that each layout of tiles distinguishes.
 //!
 //! A mask has a bit for each of the eight directions, clockwise from the north: N 1, NE 2, E 4, SE 8, S 16, SW 32, W
-//! 64, NW 128. These are the weights of the common "blob" tilesets, and the order of Tiled's wang ids. A bit is set
-//! where the layer goes on.
+//! 64, NW 128. These are the weights of the common "blob" tilesets, and the order of wang ids in Tiled. A bit is set if
+//! the layer continues in that direction.
 
 /// North.
 pub const N: u8 = 1;
@@ -30,11 +30,11 @@ pub const CORNERS: u8 = NE | SE | SW | NW;
 /// Column and row of each direction, in the order of the bits.
 pub const OFFSETS: [[i64; 2]; 8] = [[0, -1], [1, -1], [1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1]];
 
-/// Each corner with the sides beside it.
+/// Each corner with the two sides that meet there.
 const BESIDE: [(u8, u8); 4] = [(NE, N | E), (SE, S | E), (SW, S | W), (NW, N | W)];
 
-/// The masks of the smallest common blob tilesets: a full tile, four sides, four outer and four inner corners. They
-/// have no tile for necks of one cell, nor for areas that touch at a corner.
+/// The masks of the smallest common blob tilesets: a full tile, four sides, four outer and four inner corners. There is
+/// no tile for necks of one cell, nor for areas that touch at a corner.
 pub const SIMPLE_BLOB: [u8; 13] = [
     255,
     !(NW | N | NE),
@@ -51,7 +51,7 @@ pub const SIMPLE_BLOB: [u8; 13] = [
     !NW,
 ];
 
-/// How tiles follow their surroundings.
+/// The way in which tiles depend on their surroundings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Layout {
@@ -65,15 +65,15 @@ pub enum Layout {
     /// The tiles of [`Layout::Corner`], shifted by half a tile so that each class is in the middle of a cell: a map of
     /// W x H cells has (W + 1) x (H + 1) tiles.
     Dual,
-    /// Any of the 256 surroundings, for tiles that are chosen by rules: see [`super::rule`].
+    /// Any of the 256 surroundings, for tiles that are chosen by rules (see [`super::rule`]).
     Rule,
 }
 
 impl Layout {
-    /// The layouts of which complete sets of tiles are drawn.
+    /// The layouts for which complete sets of tiles can be drawn.
     pub const ALL: [Layout; 4] = [Layout::Blob, Layout::Edge, Layout::Corner, Layout::Dual];
 
-    /// Its name, as on the command line.
+    /// The name of the layout, as on the command line.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -85,13 +85,13 @@ impl Layout {
         }
     }
 
-    /// The layout of this name.
+    /// The layout with this name.
     #[must_use]
     pub fn named(name: &str) -> Option<Layout> {
         Layout::ALL.into_iter().chain([Layout::Rule]).find(|layout| layout.name() == name)
     }
 
-    /// What it is for, in a line.
+    /// A short description of its use.
     #[must_use]
     pub const fn about(self) -> &'static str {
         match self {
@@ -103,14 +103,14 @@ impl Layout {
         }
     }
 
-    /// Whether classes are at the corners of tiles, so that a tile sees four of them. Otherwise they are those of
-    /// cells, and a tile sees its own and eight neighbors.
+    /// Whether classes are at the corners of tiles, so that a tile sees four classes. Otherwise classes belong to
+    /// cells, and a tile sees its own class and those of eight neighbors.
     #[must_use]
     pub fn is_on_corners(self) -> bool {
         matches!(self, Layout::Corner | Layout::Dual)
     }
 
-    /// The mask without the bits that make no difference to the tile.
+    /// The mask without the bits that do not affect the tile.
     #[must_use]
     pub fn reduced(self, mask: u8) -> u8 {
         match self {
@@ -124,15 +124,15 @@ impl Layout {
         }
     }
 
-    /// The mask of a tile that is covered as a whole.
+    /// The mask of a tile that is completely covered.
     #[must_use]
     pub fn full(self) -> u8 {
         self.reduced(255)
     }
 
-    /// The classes along the sides and at the corners of a tile, clockwise from the north, for the classes around it
-    /// and its own: those of the directions that the layout tells apart, the others 0. On a side of a cell the lower
-    /// class of the two cells counts, and at a corner the lowest of the four, so neighbors agree. Tiles on corners have
+    /// The classes along the sides and at the corners of a tile, clockwise from the north, from the classes around it
+    /// and its own class. Directions that the layout does not distinguish have 0. The lower class of two cells counts
+    /// on their common side, and the lowest of four at their common corner, so neighbors agree. Tiles on corners have
     /// the class of each corner.
     #[inline]
     #[must_use]
@@ -152,7 +152,7 @@ impl Layout {
         id
     }
 
-    /// The directions that a wang id of the layout has, as a mask.
+    /// The directions that wang ids of the layout use, as a mask.
     #[must_use]
     pub fn directions(self) -> u8 {
         match self {
@@ -162,7 +162,7 @@ impl Layout {
         }
     }
 
-    /// Whether a tile with this mask covers its place as a whole, so that nothing below it is seen.
+    /// Whether a tile with this mask covers its cell completely, so that nothing below it is visible.
     #[inline]
     #[must_use]
     pub fn is_full(self, mask: u8) -> bool {
@@ -170,8 +170,8 @@ impl Layout {
         mask & full == full
     }
 
-    /// All reduced masks, in ascending order. An empty tile of [`Layout::Corner`] and [`Layout::Dual`], mask 0, is not
-    /// drawn and is no part of it.
+    /// All reduced masks, in ascending order. Mask 0, the empty tile of [`Layout::Corner`] and [`Layout::Dual`], is not
+    /// drawn and not included.
     #[must_use]
     pub fn masks(self) -> Vec<u8> {
         let first = u8::from(self.is_on_corners());
@@ -189,7 +189,7 @@ mod tests {
         assert_eq!(Layout::Blob.full(), 255);
     }
 
-    /// The list of the 47 masks that blob tilesets are usually published with.
+    /// Compares the 47 masks with the list that is usually published for blob tilesets.
     #[test]
     fn the_blob_masks_are_the_published_ones() {
         let published = [

@@ -1,8 +1,8 @@
 //! Tilemaps: terrain classes of cells, the tiles that fit their neighbors, and changes of classes where no tile fits.
 //!
-//! Classes are ordered: a tilemap draws one layer for each, over the layers of the classes before it. The layer of a
-//! class covers the cells of this class and of all later ones, so each layer needs only tiles for "covered or not"
-//! ([`mask`]), and classes of any number meet anywhere without tiles for every pair.
+//! Classes are ordered. A tilemap draws one layer for each class, over the layers of the previous classes. The layer of
+//! a class covers the cells of this class and of all later ones, so each layer needs only tiles for "covered or not"
+//! ([`mask`]), and any number of classes can meet without tiles for every pair.
 //!
 //! ```
 //! use orogen_grid::Progress;

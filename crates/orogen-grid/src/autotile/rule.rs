@@ -1,4 +1,4 @@
-//! Rule tiles: tiles chosen by the first of several patterns that their surroundings match.
+//! Rule tiles: tiles chosen by the first of several patterns that matches their surroundings.
 
 use super::flip::Flips;
 use super::mask::OFFSETS;
@@ -6,18 +6,18 @@ use super::mask::OFFSETS;
 /// A pattern of the eight cells around a cell, as masks of directions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Pattern {
-    /// Directions in which the layer must go on.
+    /// Directions in which the layer must continue.
     pub must: u8,
-    /// Directions in which it must end.
+    /// Directions in which the layer must end.
     pub must_not: u8,
 }
 
 impl Pattern {
-    /// Reads three rows of three characters, from the north: `#` where the layer must go on, `.` where it must end, `?`
-    /// for any; the middle is `#`. Spaces are left out.
+    /// Reads three rows of three characters, from the north: `#` where the layer must continue, `.` where it must end,
+    /// and `?` for any. The middle is `#`. Spaces are ignored.
     ///
     /// # Errors
-    /// What is wrong with the rows, as the end of a sentence.
+    /// A description of the fault in the rows, as the end of a sentence.
     pub fn read(rows: &[impl AsRef<str>]) -> Result<Pattern, String> {
         let rows: Vec<Vec<char>> =
             rows.iter().map(|row| row.as_ref().chars().filter(|at| *at != ' ').collect()).collect();
@@ -39,15 +39,15 @@ impl Pattern {
         Ok(pattern)
     }
 
-    /// Whether surroundings match.
+    /// Whether the surroundings `mask` match the pattern.
     #[must_use]
     pub fn matches(self, mask: u8) -> bool {
         mask & self.must == self.must && mask & self.must_not == 0
     }
 }
 
-/// For each of the 256 surroundings the first rule that matches, and how its tiles are turned. A rule matches with any
-/// of its flips, the unchanged first.
+/// For each of the 256 surroundings, the first rule that matches and the transformation of its tiles. A rule matches
+/// with any of its transformations; the unchanged tile is tried first.
 #[must_use]
 pub fn first_matches(rules: &[(Pattern, Flips)]) -> Vec<Option<(usize, super::flip::Flip)>> {
     let matching = |mask: u8| {
@@ -88,7 +88,7 @@ mod tests {
         ];
         let found = first_matches(&rules);
         assert_eq!(found[usize::from(E)], Some((0, Flip::NONE)));
-        // An end in the east, and the layer goes on in the south: a quarter turn clockwise.
+        // The layer ends in the east and continues in the south: a quarter turn clockwise.
         let turned = found[usize::from(S | W | N)].unwrap();
         assert_eq!(turned, (0, Flip { diagonal: true, x: true, y: false }));
         assert_eq!(found[255], Some((1, Flip::NONE)));

@@ -13,7 +13,7 @@ fn without_saddles() -> Vec<u8> {
     Layout::Corner.masks().into_iter().filter(|mask| ![NW | SE, NE | SW].contains(&(mask & CORNERS))).collect()
 }
 
-/// Classes drawn at random, or those of random blobs of about `grain` cells.
+/// Random classes, or classes of random blobs of about `grain` cells.
 fn random(seed: u64, grain: i64, count: u64, side: usize) -> Classes {
     let at = |x: i64, y: i64, level: i64| {
         let cell = [x, y].map(|at| at.div_euclid(level));
@@ -78,7 +78,7 @@ fn a_part_is_cleaned_and_drawn_as_the_whole_is() {
             let mut part = whole.part([start[0] - halo, start[1] - halo], width + 2 * HALO, height + 2 * HALO);
             clean(&mut part, &drawable, &Progress::none()).unwrap();
             assert_eq!(part.part(start, width, height), cleaned.part(start, width, height), "{name}");
-            // Tiles need one more cell around.
+            // Tiles depend on one more cell around.
             let around = part.part([start[0] - 1, start[1] - 1], width + 2, height + 2);
             let small = layers(&around, &drawable, &tiles, 5);
             let ([columns, _], [inner, _]) = (drawable.tiles(&cleaned), drawable.tiles(&around));
@@ -92,7 +92,7 @@ fn a_part_is_cleaned_and_drawn_as_the_whole_is() {
     }
 }
 
-/// What two tiles side by side show along their common edge and at its corners is the same.
+/// Two adjacent tiles show the same along their common edge and at its corners.
 #[test]
 fn neighbors_match_along_edges_and_corners() {
     for (name, layout, masks) in sets() {
@@ -100,7 +100,7 @@ fn neighbors_match_along_edges_and_corners() {
         let mut map = random(3, 2, 4, 90);
         clean(&mut map, &drawable, &Progress::none()).unwrap();
         let [width, height] = drawable.tiles(&map);
-        // The masks of a layer: of all tiles that it reaches, also of those that tiles above it hide.
+        // The masks of a layer, for all tiles that it reaches, including those that are hidden by tiles above.
         let masks_of = |class: u8| -> Vec<Option<u8>> {
             let tiles = (0..height as i64).flat_map(|y| (0..width as i64).map(move |x| (x, y)));
             let mask = |(x, y): (i64, i64)| {
@@ -122,11 +122,11 @@ fn neighbors_match_along_edges_and_corners() {
                         assert_eq!(bits(own, [SW, SE]).or(none), bits(south, [NW, NE]).or(none), "{name}");
                         continue;
                     }
-                    // A side is covered on both sides of it, or it is a border of the layer.
+                    // Both tiles show a side as covered, or it is a border of the layer.
                     assert_eq!(own.is_some_and(|mask| mask & E != 0), own.is_some() && east.is_some(), "{name}");
                     assert_eq!(east.is_some_and(|mask| mask & W != 0), own.is_some() && east.is_some(), "{name}");
                     assert_eq!(own.is_some_and(|mask| mask & S != 0), own.is_some() && south.is_some(), "{name}");
-                    // Where the layer goes on, both tiles show the same at the ends of the side.
+                    // Where the layer continues, both tiles show the same at the ends of the side.
                     if let (Layout::Blob, Some(own), Some(east)) = (layout, own, east) {
                         let corner = |mask: u8, side: u8, corner: u8| mask & side != 0 && mask & corner != 0;
                         assert_eq!(corner(own, N, NE), corner(east, N, NW), "{name}");
@@ -166,7 +166,7 @@ fn variants_are_drawn_by_their_weights() {
     assert_eq!(tiles.choose(7, [0, 0], 11), None);
 }
 
-/// Wang tiles with every way in which two classes of a pair meet.
+/// Wang tiles for all ways in which two classes of a pair can meet.
 fn of_pairs(layout: Layout, pairs: &[[u8; 2]], is_removed: impl Fn(u8) -> bool) -> Vec<[u8; 8]> {
     let tiles = pairs.iter().flat_map(|[low, high]| {
         let masks = (0..=255).filter(|mask| mask & !layout.directions() == 0 && !is_removed(*mask));
@@ -182,7 +182,7 @@ fn of_pairs(layout: Layout, pairs: &[[u8; 2]], is_removed: impl Fn(u8) -> bool) 
     tiles.collect()
 }
 
-/// Sets of wang tiles as they are published: no tile shows three classes, and only some pairs meet.
+/// Sets of wang tiles as commonly published: no tile shows three classes, and only some pairs meet.
 fn wang_sets() -> Vec<(&'static str, Drawable)> {
     let (hub, chain) = ([[0, 1], [0, 2], [0, 3]], [[0, 1], [1, 2], [2, 3]]);
     let all = |_| false;
@@ -224,7 +224,7 @@ fn wang_tiles_join_and_parts_are_the_whole() {
         clean(&mut part, &drawable, &Progress::none()).unwrap();
         assert_eq!(part.part(start, width, height), cleaned.part(start, width, height), "{name}");
 
-        // Each tile shows what the tiles beside it show along their common side, and at its ends.
+        // Each tile and its neighbors show the same along their common sides, including the ends.
         let id = |x: i64, y: i64| drawable.wang_id(|x, y| cleaned.at(x, y), x, y);
         let [columns, rows] = drawable.tiles(&cleaned).map(|side| side as i64);
         for (x, y) in (0..rows - 1).flat_map(|y| (0..columns - 1).map(move |x| (x, y))) {

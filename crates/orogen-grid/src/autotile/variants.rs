@@ -1,25 +1,25 @@
-//! Tiles of which one is drawn at random.
+//! Groups of tiles from which one is drawn at random.
 
 use super::classes::hash;
 
 /// A tile that may be drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Variant {
-    /// Its number in the tileset.
+    /// The number of the tile in the tileset.
     pub tile: u32,
-    /// How often it is drawn, compared with the others for the same surroundings: above 0.
+    /// Relative frequency among the variants for the same surroundings; above 0.
     pub weight: f32,
 }
 
-/// Groups of tiles; of each group one is drawn.
+/// Groups of tiles. One tile of each group is drawn.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Variants {
     variants: Vec<Variant>,
-    // The part of the draw below which each variant is chosen.
+    // The upper bound of the random number for each variant.
     bounds: Vec<f32>,
 }
 
-/// A group: its first variant, and how many they are.
+/// A group: the index of its first variant, and the number of variants.
 pub(super) type Group = [u32; 2];
 
 impl Variants {
@@ -37,7 +37,7 @@ impl Variants {
         [first as u32, added.len() as u32]
     }
 
-    /// The tile of a group at a position of the plane, column and row; `None` if the group is empty.
+    /// The tile of a group at a column and row of the plane; `None` if the group is empty.
     #[inline]
     pub(super) fn choose(&self, group: Group, place: [i64; 2], seed: u64) -> Option<u32> {
         let [first, count] = group.map(|at| at as usize);

@@ -2,26 +2,26 @@
 
 use super::year::Year;
 
-/// Water that plants and soil would evaporate in a year if it were there, in mm, for each degree of biotemperature
-/// (Holdridge 1967).
+/// Potential evapotranspiration per degree of biotemperature, in mm per year (Holdridge 1967).
 pub const PER_DEGREE: f64 = 58.93;
 
 /// Maximum of [`humidity`].
 pub const MAX_HUMIDITY: f64 = 100.0;
 
-/// Potential evapotranspiration in mm per year: 58.93 times the [biotemperature](Year::biotemperature) (Holdridge
-/// 1967).
+/// Potential evapotranspiration in mm per year: the water that plants and soil would evaporate if it were available. It
+/// is 58.93 times the [biotemperature](Year::biotemperature) (Holdridge 1967).
 #[must_use]
 pub fn potential(year: &Year) -> f64 {
     PER_DEGREE * year.biotemperature()
 }
 
-/// Rain over potential evapotranspiration, both in mm per year, at most 100: the aridity index of UNEP (1992). Below
-/// 0.05 the climate is hyperarid, below 0.2 arid, below 0.5 semi-arid, below 0.65 dry subhumid, and humid from there.
+/// The aridity index of UNEP (1992): rain over potential evapotranspiration, both in mm per year, at most 100. The
+/// climate is hyperarid below 0.05, arid below 0.2, semi-arid below 0.5, dry subhumid below 0.65, and humid from there
+/// on.
 #[must_use]
 pub fn humidity(rain: f64, potential: f64) -> f64 {
     let rain = rain.max(0.0);
-    // Also where nothing evaporates; 0 / 0 counts as humid, because no water leaves.
+    // This includes places without evaporation. 0 / 0 counts as humid, because no water evaporates.
     if rain >= MAX_HUMIDITY * potential { MAX_HUMIDITY } else { rain / potential }
 }
 

@@ -1,4 +1,4 @@
-//! Filters of heights by wavenumber.
+//! Filters of heights in the frequency domain.
 
 use crate::analysis::fourier::Fourier;
 use crate::error::{Error, Result};
@@ -14,15 +14,15 @@ pub(super) struct Lattice {
     window: Window,
 }
 
-/// Columns or rows that are transformed together: a cache line holds four numbers.
+/// Number of columns or rows that are transformed together. A cache line holds four complex numbers.
 const TOGETHER: usize = 8;
 
-/// Minimum number of samples that the strip beyond the window may have: small windows are cheap.
+/// Minimum of the allowed width of the strip beyond the window, in samples. For small windows this costs little.
 const MIN_STRIP: usize = 256;
 
 impl Lattice {
-    /// The lattice with a strip of at least `reach` metres beyond the window, at most as wide as the window or 256
-    /// samples.
+    /// The lattice with a strip of at least `reach` metres beyond the window. The strip is at most as wide as the
+    /// window or 256 samples, whichever is more.
     pub(super) fn new(window: &Window, reach: f64) -> Lattice {
         let largest = window.width.max(window.height).max(MIN_STRIP);
         let strip = ((reach / window.cell).ceil() as usize).min(largest);
@@ -30,19 +30,20 @@ impl Lattice {
         Lattice { columns: side(window.width), rows: side(window.height), window: *window }
     }
 
-    /// Number of columns of the transform of real numbers.
+    /// Number of columns of the transform of real rows.
     fn half(&self) -> usize {
         self.columns / 2 + 1
     }
 
-    /// Memory of a filter, in bytes: the transforms of all rows, and those of the window's rows after the columns.
+    /// Memory of a filter, in bytes: the transforms of all rows, and the transforms of the window's rows after the
+    /// columns.
     pub(super) fn memory(&self) -> u64 {
         (self.half() as u64).saturating_mul((self.rows + self.window.height) as u64).saturating_mul(16)
     }
 
-    /// The heights, as `of` makes them from samples, filtered by `response`: a complex factor for each wave, given by
-    /// its wavenumbers in 1/m to the east and to the south. Beyond the window heights change smoothly to those of its
-    /// opposite side.
+    /// Applies `of` to the samples and filters the result with `response`, which returns a complex factor for a wave
+    /// with the given wavenumbers in 1/m to the east and to the south. Beyond each side of the window, heights change
+    /// smoothly to those of the opposite side.
     pub(super) fn filtered(
         &self,
         heights: &Grid,
@@ -64,7 +65,7 @@ impl Lattice {
         Ok(out)
     }
 
-    /// The transforms of all rows, row by row. Two real rows are transformed as the real and imaginary part of one.
+    /// The transforms of all rows, row by row. Two real rows are transformed at once, as a real and an imaginary part.
     fn transformed_rows(
         &self,
         heights: &Grid,
@@ -110,7 +111,7 @@ impl Lattice {
         strip.iter_mut().enumerate().for_each(|(i, value)| *value = mixed(last, first, fade(i, count)));
     }
 
-    /// The filtered transforms of rows, at the window's rows, column by column.
+    /// The filtered transforms at the window's rows, column by column.
     fn filtered_columns(
         &self,
         rows: &[[f64; 2]],
@@ -138,7 +139,7 @@ impl Lattice {
                 for (l, value) in column.iter_mut().enumerate() {
                     let [re, im] = wave(first + c, l).map_or([0.0; 2], response);
                     let [x, y] = *value;
-                    // The conjugate: the inverse transform is the transform between two conjugations.
+                    // Conjugated: the inverse transform is the transform between two conjugations.
                     *value = [(x * re - y * im) * scale, -(x * im + y * re) * scale];
                 }
                 across.transform(column);
@@ -149,8 +150,8 @@ impl Lattice {
         Ok(columns)
     }
 
-    /// The wavenumbers of a column and a row of the transform. Those of half the lattice's frequency have no sign, so
-    /// they have none.
+    /// The wavenumbers of a column and a row of the transform. `None` at half the sampling frequency, where a wave has
+    /// no sign.
     fn waves(&self) -> impl Fn(usize, usize) -> Option<[f64; 2]> + Sync + use<> {
         let (columns, rows, cell) = (self.columns, self.rows, self.window.cell);
         let [east, south] = [columns, rows].map(|side| std::f64::consts::TAU / (side as f64 * cell));
@@ -174,7 +175,7 @@ impl Lattice {
                 let values = &column[first..first + count];
                 for (pair, values) in values.chunks(2).enumerate() {
                     let ([a, b], [c, d]) = (values[0], values.get(1).copied().unwrap_or_default());
-                    // The conjugate of both, and of the waves in the opposite direction.
+                    // The conjugate of both rows, and of the waves in the opposite direction.
                     let both = &mut pairs[pair * n..][..n];
                     both[(n - k) % n] = [a + d, b - c];
                     both[k] = [a - d, -(b + c)];
@@ -191,7 +192,7 @@ impl Lattice {
     }
 }
 
-/// The share of the opposite side in sample `i` of `count` beyond a side.
+/// The weight of the opposite side at sample `i` of `count` beyond a side.
 fn fade(i: usize, count: usize) -> f64 {
     let t = (i + 1) as f64 / (count + 1) as f64;
     t * t * (3.0 - 2.0 * t)
@@ -215,7 +216,7 @@ mod tests {
     #[test]
     fn a_factor_of_one_changes_only_the_finest_waves() {
         for window in [Window::new(37, 50, 10.0), Window::new(64, 9, 3.0), Window::new(1, 1, 1.0)] {
-            // Smooth, so that half the lattice's frequency has no share.
+            // Smooth, so that the wave at half the sampling frequency is absent.
             let mut grid = noise(window);
             for j in 0..window.height {
                 for i in 0..window.width {

@@ -8,9 +8,9 @@ use crate::progress::Progress;
 
 /// The linear theory of orographic precipitation (Smith and Barstad 2004, J. Atmos. Sci. 61).
 ///
-/// Air that is lifted by the ground condenses water, which drifts with the wind while it turns into rain and falls.
-/// With the Fourier transform h of the heights and the intrinsic frequency sigma = U k + V l, the transform of the rain
-/// is (their equation 49)
+/// Air that the ground lifts condenses water. The water drifts with the wind while it turns into rain and falls. With
+/// the Fourier transform h of the heights and the intrinsic frequency sigma = U k + V l, the transform of the rain is
+/// (their equation 49)
 ///
 /// ```text
 /// P = Cw i sigma h / ((1 - i m Hw) (1 + i sigma tau_c) (1 + i sigma tau_f))
@@ -37,8 +37,7 @@ pub struct OrographicRain {
     pub uplift_sensitivity: f64,
     /// Rain where the ground is level, in mm per year. Default: 800.
     pub background: f64,
-    /// Hours of rain in a year: the factor between the rate of the theory in mm/h and the rain of a year. Default:
-    /// 1000.
+    /// Hours of rain in a year, which convert the rate in mm/h of the theory to the rain of a year. Default: 1000.
     pub rain_hours: f64,
 }
 
@@ -71,10 +70,10 @@ orogen_noise::builder!(
     with_rain_hours(rain_hours: f64)
 );
 
-/// Seconds of an hour: kg/(m^2 s) are mm/s.
+/// Seconds in an hour. 1 kg/(m^2 s) is 1 mm/s.
 const SECONDS: f64 = 3600.0;
 
-/// Distance beyond the heights, in distances that the wind covers in both times, over which the transform fades them.
+/// Distance beyond the heights over which they are faded, in units of the distance that the wind covers in both times.
 const REACH: f64 = 4.0;
 
 impl OrographicRain {
@@ -84,11 +83,11 @@ impl OrographicRain {
         [-sin * self.wind_speed, cos * self.wind_speed]
     }
 
-    /// Rain of a year in mm, as a complex number, for 1 m of height of a wave with wavenumbers in 1/m to the east and
+    /// The rain of a year in mm, as a complex number, for a wave of 1 m height with wavenumbers in 1/m to the east and
     /// to the south.
     fn response(&self, wind: [f64; 2], wave: [f64; 2]) -> [f64; 2] {
         let sigma = wind[0] * wave[0] + wind[1] * wave[1];
-        // Waves along the wind lift no air.
+        // Waves whose crests are parallel to the wind lift no air.
         if sigma.abs() < 1e-12 {
             return [0.0; 2];
         }
@@ -111,7 +110,7 @@ impl OrographicRain {
         Lattice::new(window, reach)
     }
 
-    /// Memory for the rain over a window beside the heights and the result, in bytes.
+    /// Memory for computing the rain over a window, in bytes, in addition to the heights and the result.
     #[must_use]
     pub fn memory(&self, window: &Window) -> u64 {
         self.lattice(window).memory()
@@ -119,10 +118,10 @@ impl OrographicRain {
 
     /// Rain in mm per year over the window of the heights, at least 0.
     ///
-    /// Ground below `sea_level` counts as at `sea_level`, and NaN, too. Beyond the sides of the window heights change
+    /// Ground below `sea_level` and NaN count as ground at `sea_level`. Beyond each side of the window, heights change
     /// smoothly to those of the opposite side, over at least 4 times the distance that the wind covers in both times,
-    /// or the size of the window if that is less; so land that ends at a side ends in a gentle slope there. Costs O(n
-    /// log n) on all threads; the bits do not depend on their number.
+    /// or the size of the window if that is less. Land that is cut off at a side therefore ends in a gentle slope. The
+    /// time is O(n log n), on all threads; the bits do not depend on the number of threads.
     ///
     /// # Errors
     /// If `progress` is cancelled.
@@ -135,7 +134,7 @@ impl OrographicRain {
         Ok(rain)
     }
 
-    /// The difference to the background that the ground makes, in mm per year, also negative.
+    /// The difference from the background that the ground causes, in mm per year; may be negative.
     fn perturbation(&self, heights: &Grid, sea_level: f32, progress: &Progress) -> Result<Grid> {
         let wind = self.wind();
         let above_sea = |height: f32| if height > sea_level { f64::from(height) - f64::from(sea_level) } else { 0.0 };
@@ -170,8 +169,8 @@ mod tests {
     /// A ridge that runs from north to south.
     const RIDGE: Window = Window { x: -1000, y: 0, width: 2001, height: 9, cell: 500.0 };
 
-    /// The rain of an infinitely long ridge by the integral over its waves, without a discrete transform: `spectrum` is
-    /// the integral of h(x) cos(k x) over all x, of a ridge that is symmetric about 0.
+    /// The rain of an infinitely long ridge as the integral over its waves, without a discrete transform. `spectrum` is
+    /// the integral of h(x) cos(k x) over all x, for a ridge that is symmetric about 0.
     fn integral(law: &OrographicRain, x: f64, spectrum: impl Fn(f64) -> f64) -> f64 {
         let (step, mut sum) = (2e-8, 0.0);
         for n in 0..100_000 {
@@ -243,7 +242,7 @@ mod tests {
         assert!(rain[(190, 200)] > 1500.0 && rain[(225, 200)] < 400.0, "{} {}", rain[(190, 200)], rain[(225, 200)]);
         assert!(rain.data().iter().all(|rain| *rain >= 0.0));
         assert!((rain[(20, 40)] - 800.0).abs() < 30.0);
-        // What is gained on one side is lost on the other.
+        // The gain on one side equals the loss on the other.
         let change = perturbation(&law, &hill);
         let sum: f64 = change.data().iter().map(|rain| f64::from(*rain)).sum();
         let all: f64 = change.data().iter().map(|rain| f64::from(*rain).abs()).sum();
@@ -265,7 +264,7 @@ mod tests {
                 assert!((turned - west[(i, j)]).abs() < 1e-3 * highest, "{what} at {i} {j}");
             }
         }
-        // Between the axes: the same along the diagonal as along the row.
+        // Between the axes: the rain along the diagonal equals that along the row.
         let southwest = from(225.0);
         for k in 0..40 {
             let (dx, along) = (f64::from(k) * 1000.0, std::f64::consts::SQRT_2);

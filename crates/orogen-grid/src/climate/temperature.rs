@@ -2,9 +2,9 @@
 
 /// The temperature of the air near the ground.
 ///
-/// The mean at sea level is `equator` - (`equator` - `pole`) sin^2(latitude), two modes of an energy balance (North,
-/// Cahalan and Coakley 1981). The range follows from Conrad's index of continentality K (Conrad 1946), K = 1.7 A /
-/// sin(latitude + 10 degrees) - 14 with the annual range A.
+/// The mean at sea level is `equator` - (`equator` - `pole`) sin^2(latitude): two modes of an energy balance (North,
+/// Cahalan and Coakley 1981). The annual range A follows from Conrad's index of continentality K (Conrad 1946): K = 1.7
+/// A / sin(latitude + 10 degrees) - 14.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Temperature {
@@ -14,7 +14,7 @@ pub struct Temperature {
     pub pole: f64,
     /// Decrease with height above sea level, in K per km. Default: 6.5.
     pub lapse_rate: f64,
-    /// Latitude where y is 0, in degrees north, -90 to 90. Default: 45.
+    /// Latitude at y = 0, in degrees north, -90 to 90. Default: 45.
     pub latitude: f64,
     /// Distance along y of one degree of latitude, in metres; greater than 0. Default: 111 195.
     pub metres_per_degree: f64,
@@ -46,26 +46,26 @@ orogen_noise::builder!(
 );
 
 impl Temperature {
-    /// Latitude in degrees north at a position in metres south, at most 90 and at least -90.
+    /// Latitude in degrees north, clamped to -90 to 90, at `south` metres to the south of the origin.
     #[must_use]
     pub fn latitude_at(&self, south: f64) -> f64 {
         (self.latitude - south / self.metres_per_degree).clamp(-90.0, 90.0)
     }
 
-    /// Mean temperature at sea level, in degrees C, at a position in metres south.
+    /// Mean temperature at sea level, in degrees C, at `south` metres to the south of the origin.
     #[must_use]
     pub fn at_sea_level(&self, south: f64) -> f64 {
         let sin = libm::sin(self.latitude_at(south).to_radians());
         self.equator - (self.equator - self.pole) * sin * sin
     }
 
-    /// Decrease of the temperature from sea level to a height above it, in K; 0 below sea level.
+    /// Decrease of the temperature from sea level to `above_sea` metres above it, in K; 0 below sea level.
     #[must_use]
     pub fn decrease(&self, above_sea: f64) -> f64 {
         self.lapse_rate * (above_sea.max(0.0) / 1000.0)
     }
 
-    /// Index of continentality at a distance from the sea in metres, 0 at the sea to 100: 100 d / (d +
+    /// Index of continentality at `from_sea` metres from the sea, from 0 at the sea to 100: 100 d / (d +
     /// `continental_distance`).
     #[must_use]
     pub fn continentality(&self, from_sea: f64) -> f64 {
@@ -73,15 +73,15 @@ impl Temperature {
         100.0 * distance / (distance + self.continental_distance)
     }
 
-    /// Half the difference between the warmest and the coldest month, in K, for each unit of 14 + K, at a position in
-    /// metres south.
+    /// Half the difference between the warmest and the coldest month, in K, per unit of 14 + K, at `south` metres to
+    /// the south of the origin.
     #[must_use]
     pub fn seasonality(&self, south: f64) -> f64 {
         libm::sin((self.latitude_at(south).abs() + 10.0).to_radians()) / (2.0 * 1.7)
     }
 }
 
-/// K + 14 for an index of continentality K: the factor of [`Temperature::seasonality`].
+/// K + 14 for an index of continentality K: the factor for [`Temperature::seasonality`].
 #[must_use]
 pub fn seasons(continentality: f64) -> f64 {
     continentality + 14.0
@@ -98,7 +98,7 @@ mod tests {
         assert_eq!(there.at_sea_level(0.0), 29.0);
         assert!((there.at_sea_level(south(90.0)) + 13.0).abs() < 1e-9);
         assert!((there.at_sea_level(south(45.0)) - 8.0).abs() < 1e-9);
-        // Both hemispheres are alike, and there is nothing beyond the poles.
+        // Both hemispheres are alike, and positions beyond a pole count as the pole.
         assert_eq!(there.at_sea_level(south(30.0)), there.at_sea_level(south(-30.0)));
         assert_eq!(there.at_sea_level(south(90.0)), there.at_sea_level(south(300.0)));
         assert_eq!([there.decrease(1000.0), there.decrease(-500.0)], [6.5, 0.0]);

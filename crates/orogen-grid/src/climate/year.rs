@@ -1,6 +1,6 @@
 //! The temperatures of the months of a year.
 
-/// A sinusoidal year of temperatures.
+/// The temperatures of a year, as a sine wave.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Year {
     /// Mean temperature, in degrees C.
@@ -31,7 +31,7 @@ impl Year {
         self.mean - self.range
     }
 
-    /// Biotemperature, in degrees C: the mean over the months of temperatures limited to 0 to 30 degrees C (Holdridge
+    /// Biotemperature, in degrees C: the mean of the monthly temperatures, each clamped to 0 to 30 degrees C (Holdridge
     /// 1967).
     #[must_use]
     pub fn biotemperature(&self) -> f64 {
@@ -39,7 +39,7 @@ impl Year {
     }
 }
 
-/// The cosine of a month's place in the year, 1 in the warmest month.
+/// The cosine of a month's phase in the year, 1 in the warmest month.
 pub(super) fn cosine(month: usize) -> f64 {
     COSINES[month.min(12 - month)]
 }

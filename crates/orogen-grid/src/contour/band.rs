@@ -1,12 +1,12 @@
-//! Marching squares over a band of rows: crossings of levels with the edges between samples, and their order along
-//! lines.
+//! Marching squares over a band of rows: finds the crossings of levels with the edges between samples, and their order
+//! along lines.
 //!
 //! A sample counts as high for every level that it reaches, including a level equal to it. Each edge is therefore
-//! crossed by a contiguous range of levels, each once, and the number of a crossing follows without a search.
+//! crossed by a contiguous range of levels, once by each, and the number of a crossing follows without a search.
 //!
-//! A cell whose four corners are high, low, high, low is ambiguous. It is resolved as the bilinear surface through its
-//! corners: by the height of that surface's saddle (Nielson and Hamann, "The asymptotic decider", Visualization 1991).
-//! The saddle is the same for all levels, so lines of different levels never cross.
+//! A cell whose four corners are high, low, high, low is ambiguous. It is resolved with the bilinear surface through
+//! its corners: by the height of the saddle of that surface (Nielson and Hamann, "The asymptotic decider",
+//! Visualization 1991). The saddle is the same for all levels, so lines of different levels never cross.
 
 use std::ops::Range;
 
@@ -18,28 +18,29 @@ const MISSING: u16 = u16::MAX;
 /// The end of a line: no next crossing.
 pub const NONE: u32 = u32::MAX;
 
-/// The crossings of a band: on the edges along its rows, and on the edges down from them.
+/// The crossings of a band: on the edges along its rows, and on the edges down from its rows.
 ///
-/// Crossings are numbered by rows: along a row, then down from it. After the band's own crossings follow those along
-/// the first row of the next band, numbered as that band's first, so that bands are joined by adding offsets.
+/// Crossings are numbered by rows: along a row, then down from it. The band's own crossings are followed by those along
+/// the first row of the next band, which have the same order as in that band. Bands are therefore joined by adding
+/// offsets.
 #[derive(Debug, Default)]
 pub struct Band {
-    /// Column and row.
+    /// Column and row of each crossing.
     pub points: Vec<[f64; 2]>,
     /// The next crossing along the line, or [`NONE`].
     pub next: Vec<u32>,
-    /// Whether a line leads to this crossing from another.
+    /// Whether a line leads from another crossing to this one.
     pub entered: Vec<bool>,
-    /// The index of the level.
+    /// The index of the level of each crossing.
     pub level: Vec<u16>,
-    /// The number of the band's own crossings.
+    /// Number of the band's own crossings.
     pub own: usize,
 }
 
 /// Levels, prepared for comparison.
 pub struct Levels {
     exact: Vec<f64>,
-    /// The smallest f32 that reaches each level, between infinities: class k is from `steps[k]` up to `steps[k + 1]`.
+    /// The smallest f32 that reaches each level, between infinities. Class k is from `steps[k]` up to `steps[k + 1]`.
     steps: Vec<f32>,
 }
 
@@ -90,8 +91,8 @@ impl<'a> Row<'a> {
 }
 
 impl Band {
-    /// The band of these rows, which must not be the grid's last row alone. Its cells extend to the next row, if there
-    /// is one.
+    /// The band of these rows, which must not be only the last row of the grid. Its cells extend to the next row, if
+    /// there is one.
     #[must_use]
     pub fn of(grid: &Grid, rows: Range<usize>, levels: &Levels) -> Band {
         let width = grid.width();
@@ -167,12 +168,13 @@ impl Band {
             if nw == ne && nw == sw && nw == se {
                 continue;
             }
-            // The missing class is greater than all others.
+            // The class of a missing sample is greater than all others.
             let high = nw.max(ne).max(sw.max(se));
             if high == MISSING {
                 continue;
             }
-            // The number that the crossing of level 0 on an edge would have; wraps if that is before the first.
+            // The number that the crossing of level 0 on an edge would have. It wraps around if that is before the
+            // first.
             let base = |first: u32, a: u16, b: u16| first.wrapping_sub(u32::from(a.min(b)));
             let top = base(above.first[i], nw, ne);
             let bottom = base(below.first[i], sw, se);

@@ -2,11 +2,11 @@
 
 use super::line::Line;
 
-/// Cuts the corners of a line, `rounds` times: every corner is replaced by the points at a quarter and three quarters
+/// Cuts the corners of a line, `rounds` times. Every corner is replaced with the points at a quarter and three quarters
 /// of the adjacent segments (G. Chaikin, "An algorithm for high-speed curve generation", Computer Graphics and Image
 /// Processing 3, 1974). Each round doubles the number of points.
 ///
-/// The ends of an open line stay, on the border. A point moves by at most a quarter of the longer adjacent segment, so
+/// The ends of an open line do not move. Other points move by at most a quarter of the longer adjacent segment, so
 /// neighboring lines rarely touch, but they may if they were very close.
 #[must_use]
 pub fn chaikin(line: &Line, rounds: usize) -> Line {
@@ -31,7 +31,7 @@ fn open(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut out = vec![*first];
     let stretches = points.len() - 1;
     for (k, pair) in points.windows(2).enumerate() {
-        // The segments at the ends keep their outer quarter.
+        // The first and last segments keep their outer quarter.
         if k > 0 {
             out.push(between(pair[0], pair[1], 0.25));
         }
@@ -69,7 +69,7 @@ mod tests {
         let square = line(true, &[[0.0, 0.0], [0.0, 8.0], [8.0, 8.0], [8.0, 0.0]]);
         let round = chaikin(&square, 5);
         assert!(round.closed && round.points.len() == 4 << 5);
-        // The limit of a square is five sixths of it.
+        // The limit of a square has five sixths of its area.
         assert!((round.area() / 64.0 - 5.0 / 6.0).abs() < 1e-3, "{}", round.area());
     }
 }

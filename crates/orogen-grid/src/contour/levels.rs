@@ -5,7 +5,7 @@ use crate::error::{Error, ErrorKind, Result};
 /// Maximum number of levels.
 pub const MOST: usize = 65_000;
 
-/// The multiples of `interval` metres above `low` and up to `high`.
+/// The multiples of `interval` metres that are above `low` and at most `high`.
 ///
 /// # Errors
 /// If the interval is not above 0, or there would be more than [`MOST`] levels.
@@ -24,7 +24,7 @@ pub fn levels_every(interval: f64, low: f64, high: f64) -> Result<Vec<f64>> {
             last - first + 1.0
         ));
     }
-    // Multiples instead of a running sum: the levels do not depend on the lowest height.
+    // Multiples instead of a running sum, so that the levels do not depend on the lowest height.
     Ok((first as i64..=last as i64).map(|k| k as f64 * interval).collect())
 }
 
@@ -73,7 +73,7 @@ mod tests {
     fn multiples_within_the_ground() {
         for (interval, low, high, expect) in [
             (100.0, 95.0, 310.0, vec![100.0, 200.0, 300.0]),
-            // All samples are above the lowest height: no line. The highest height is included.
+            // All samples are at or above the lowest height, so it has no line. The highest height is included.
             (100.0, 100.0, 300.0, vec![200.0, 300.0]),
             (0.1, -0.25, 0.05, vec![-0.2, -0.1, 0.0]),
             (50.0, 7.0, 7.0, vec![]),

@@ -6,7 +6,7 @@
 /// and clockwise around hollows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Line {
-    /// The height, in metres.
+    /// The height of the line, in metres.
     pub elevation: f64,
     /// The index of its level among the requested levels, from 0.
     pub level: usize,
@@ -17,7 +17,7 @@ pub struct Line {
 }
 
 impl Line {
-    /// The points; a ring repeats the first one at the end.
+    /// The points of the line; a ring repeats the first one at the end.
     pub fn path(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
         let first = self.points.first().filter(|_| self.closed);
         self.points.iter().chain(first).copied()
@@ -40,11 +40,12 @@ impl Line {
     }
 }
 
-/// Twice the area within a ring of eastings and southings, positive if it is counter-clockwise with north up.
+/// Twice the area within a ring, given by eastings and southings; positive if it is counter-clockwise with north up.
 #[must_use]
 pub fn twice_area(points: &[[f64; 2]]) -> f64 {
     let Some(&[x0, y0]) = points.first() else { return 0.0 };
-    // Relative to the first point: far from the origin, products of coordinates would lose the area to rounding.
+    // Relative to the first point, because far from the origin rounding of products of coordinates would exceed the
+    // area.
     let turns = points.windows(2).map(|pair| {
         let ([ax, ay], [bx, by]) = (pair[0], pair[1]);
         (ay - y0) * (bx - x0) - (ax - x0) * (by - y0)

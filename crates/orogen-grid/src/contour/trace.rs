@@ -10,10 +10,11 @@ use super::line::{Line, twice_area};
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::Grid;
 
-/// Rows of a band: enough to make the overhead of a band small, and few enough to share the work between cores.
+/// Number of rows of a band: enough to make the overhead of a band small, and few enough to share the work between
+/// cores.
 const ROWS: usize = 128;
 
-/// The contours of a grid at these levels (in any order), by marching squares on its samples.
+/// The contours of a grid at these levels (in any order), with marching squares on its samples.
 ///
 /// Samples are lattice points, so lines reach the border of the window: an open line ends there, or at a hole. All
 /// other lines are rings. Higher ground is to the left ([`Line`]). A point is where the linear interpolation between
@@ -24,9 +25,9 @@ const ROWS: usize = 128;
 ///
 /// *Holes.* A cell with a corner that is not finite has no lines.
 ///
-/// Lines are ordered by level, then open lines before rings, then by their starting points, rows from the north; rings
-/// start at their northernmost row. The order does not depend on the number of threads. Costs O(samples + crossings),
-/// and about 24 bytes per crossing.
+/// Lines are ordered by level, then open lines before rings, then by their starting points in rows from the north.
+/// Rings start at their northernmost row. The order does not depend on the number of threads. The time is O(samples +
+/// crossings), the memory about 24 bytes per crossing.
 ///
 /// ```
 /// use orogen_grid::contour::trace::contours;
@@ -71,7 +72,7 @@ fn joined(bands: Vec<Band>) -> Result<Band> {
     whole.next.reserve_exact(total);
     whole.entered.reserve_exact(total);
     whole.level.reserve_exact(total);
-    // The links that the previous band has for the first crossings of this one.
+    // The links of the previous band for the first crossings of this one.
     let mut said: Vec<(u32, bool)> = Vec::new();
     for band in bands {
         let base = whole.points.len();
@@ -124,8 +125,8 @@ fn follow(mut crossings: Band, grid: &Grid, levels: &[f64]) -> Vec<Line> {
     found.into_iter().flatten().collect()
 }
 
-/// Adds a point unless it equals the last one. If the line turns back on itself, removes the dead end. Both occur only
-/// between samples at the level.
+/// Adds a point unless it equals the last one. If the line turns back on itself, the dead end is removed. Both occur
+/// only between samples at the level.
 fn push(walked: &mut Vec<[f64; 2]>, point: [f64; 2]) {
     match walked.as_slice() {
         [.., last] if *last == point => {}
@@ -189,7 +190,7 @@ mod tests {
     fn a_slope_ends_on_the_border() {
         let slope = grid(5, 4, |i, _| i as f32 * 10.0);
         let lines = contours(&slope, &[15.0, 40.0, 0.0, -5.0]).unwrap();
-        // Level 0 is the lowest height: all samples count as above. Level 40 follows the border.
+        // Level 0 is the lowest height, so all samples count as above it. Level 40 follows the border.
         assert_eq!(lines.iter().map(|line| line.elevation).collect::<Vec<_>>(), [15.0, 40.0]);
         assert_eq!(lines[0].points, (0..4).map(|j| [1.5, f64::from(j)]).collect::<Vec<_>>());
         assert_eq!(lines[1].points, (0..4).map(|j| [4.0, f64::from(j)]).collect::<Vec<_>>());
@@ -220,14 +221,14 @@ mod tests {
     #[test]
     fn a_saddle_is_cut_as_the_surface_through_its_corners_is() {
         let saddle = grid(2, 2, |i, j| if i == j { 1.0 } else { 0.0 });
-        // The value in the middle is 0.5: below it, the high corners are connected.
+        // The value in the middle is 0.5. Below it, the high corners are connected.
         for (level, south) in [(0.4, 0.4), (0.6, 0.6)] {
             let lines = contours(&saddle, &[level]).unwrap();
             assert_eq!(lines.len(), 2);
             let joined = level < 0.5;
             let north = &lines.iter().find(|line| line.points.iter().any(|p| p[1] == 0.0)).unwrap().points;
-            // A line from the northern edge goes to the east around the low north-east, or to the west around the high
-            // north-west.
+            // A line from the northern edge leads east around the low north-east corner, or west around the high
+            // north-west corner.
             assert_eq!(north.iter().any(|p| p[0] == 1.0), joined, "{north:?}");
             assert!(lines.iter().flat_map(|l| &l.points).any(|p| p[1] == south || 1.0 - p[1] == south), "{lines:?}");
         }
@@ -257,7 +258,7 @@ mod tests {
         }
     }
 
-    /// Invariants of any field: every crossing of an edge is on exactly one line, with higher ground to its left.
+    /// Invariants of any field: every crossing of an edge is on exactly one line, with higher ground to the left of it.
     #[test]
     fn every_crossing_is_on_a_line_and_higher_ground_to_its_left() {
         for seed in 0..12 {

@@ -4,7 +4,7 @@ use super::droplet_paths::UNIT;
 use crate::parallel;
 use orogen_simd::{Body, Simd, dispatch};
 
-/// A Gaussian truncated at `radius`, in cells, with a standard deviation of half the radius. Its weights sum to 1 along
+/// A Gaussian truncated at `radius` cells, with a standard deviation of half the radius. Its weights sum to 1 along
 /// each axis.
 pub struct Brush {
     radius: f64,
@@ -12,7 +12,7 @@ pub struct Brush {
 }
 
 impl Brush {
-    /// A brush of this radius in cells; 0 spreads nothing.
+    /// A brush with this radius in cells; 0 spreads nothing.
     #[must_use]
     pub fn new(radius: f64) -> Brush {
         let reach = radius.ceil() as i64;
@@ -27,14 +27,14 @@ impl Brush {
         self.radius
     }
 
-    /// The number of cells that it reaches to each side.
+    /// The number of cells that the brush covers on each side of its center.
     #[must_use]
     pub fn reach(&self) -> usize {
         self.weights.len() / 2
     }
 
-    /// Converts sums in units, over rows of `width`, into metres and spreads them. The result has `border` cells less
-    /// on each side.
+    /// Converts sums in units to metres and spreads them. `sums` has rows of `width` cells; the result has `border`
+    /// cells less on each side.
     #[must_use]
     pub fn over(&self, sums: &[i64], width: usize, border: usize) -> Vec<f32> {
         let (inner, tall) = (width - 2 * border, sums.len() / width - 2 * border);
@@ -60,7 +60,7 @@ impl Brush {
     }
 }
 
-/// The weighted sum of slices that start `apart` from each other.
+/// The weighted sum of slices that start `apart` elements after each other.
 struct Weighted<'a> {
     weights: &'a [f32],
     from: &'a [f32],

@@ -7,7 +7,7 @@ use crate::random::{STEP, mix64};
 use orogen_simd::{Body, Simd, dispatch};
 use std::ops::Range;
 
-/// Parameters that are the same for all droplets.
+/// Parameters that are common to all droplets.
 #[derive(Debug, Clone, Copy)]
 pub struct Step {
     /// Seed of the droplets.
@@ -16,11 +16,11 @@ pub struct Step {
     pub expected: f64,
     /// Maximum length of a path, in cells.
     pub steps: usize,
-    /// Inertia: the share of the direction that is kept.
+    /// Inertia: the share of the previous direction that is kept, 0 to 1.
     pub inertia: f32,
     /// Capacity per m/s on a vertical slope, in metres over one cell.
     pub capacity: f32,
-    /// One over the cell.
+    /// The inverse of the cell size in metres.
     pub per_cell: f32,
     /// Minimum slope for the capacity.
     pub least_slope: f32,
@@ -28,13 +28,13 @@ pub struct Step {
     pub erosion: f32,
     /// Share of the excess sediment that is deposited.
     pub deposition: f32,
-    /// Share of the water that remains after a cell.
+    /// Share of the water that remains after a step of one cell.
     pub left: f32,
     /// Gravity, in m/s^2.
     pub gravity: f32,
 }
 
-/// The output of a band's droplets: rows from `first`, in units.
+/// The output of a band's droplets, in units, for rows from `first`.
 pub struct Sums<'a> {
     /// The first row.
     pub first: usize,
@@ -44,10 +44,10 @@ pub struct Sums<'a> {
     pub laid: &'a mut [i64],
 }
 
-/// Metres per unit of the sums: fine enough for the last share of a droplet, and 2^62 units are higher than any ground.
+/// Metres per unit of the sums. Fine enough for the last share of a droplet, and 2^62 units are higher than any ground.
 pub const UNIT: f64 = 1.0 / (1u64 << 36) as f64;
 
-/// Columns over which droplets run at a time, so that the ground stays in cache.
+/// Number of columns over which droplets run at a time, so that the ground stays in the cache.
 const COLUMNS: usize = 128;
 
 /// Initial speed of all droplets, in m/s.
@@ -119,7 +119,7 @@ impl Corners {
         north + (south - north) * y
     }
 
-    /// The gradient per cell, east and south.
+    /// The gradient per cell, to the east and to the south.
     #[inline(always)]
     fn gradient(&self, [x, y]: [f32; 2]) -> [f32; 2] {
         let (north, south) = (self.ne - self.nw, self.se - self.sw);
@@ -153,10 +153,11 @@ fn go(heights: &Grid, step: &Step, [mut i, mut j]: [usize; 2], mut at: [f32; 2],
         let scale = 1.0 / length;
         way = turned.map(|part| part * scale);
         let moved = [at[0] + way[0], at[1] + way[1]];
-        // A step is one cell long, so the next position is in -1 .. 2, and truncation after adding 1 equals the floor.
+        // A step is one cell long, so the next position is in -1 .. 2, and truncation after adding 1 is equivalent to
+        // rounding down.
         let whole = moved.map(|place| (place + 1.0) as i32 - 1);
         let (east, south) = (i.wrapping_add_signed(whole[0] as isize), j.wrapping_add_signed(whole[1] as isize));
-        // A position before the first column or row wraps around to a value beyond the last.
+        // A position before the first column or row wraps around to a value beyond the last one.
         if east >= width - 1 || south >= heights.height() - 1 {
             break;
         }
@@ -203,7 +204,8 @@ fn spread(sums: &mut [i64], first: usize, width: usize, [i, j]: [usize; 2], [x, 
     below[1] += units(se);
 }
 
-/// Rounds a value below 2^51 to the nearest integer: after adding 1.5 * 2^52 it is in the low bits of the sum.
+/// Rounds a value below 2^51 to the nearest integer. After adding 1.5 * 2^52, the integer is in the low bits of the
+/// sum.
 #[inline(always)]
 fn units(amount: f64) -> i64 {
     const WHOLE: f64 = 6_755_399_441_055_744.0;

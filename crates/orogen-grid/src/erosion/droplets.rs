@@ -9,23 +9,24 @@ use crate::grid::Grid;
 use crate::parallel;
 use crate::progress::Progress;
 
-/// Erosion by droplets after H. T. Beyer, "Implementation of a method for hydraulic erosion" (2015), in metres.
+/// Erosion by droplets, after H. T. Beyer, "Implementation of a method for hydraulic erosion" (2015), with lengths in
+/// metres.
 ///
-/// A droplet moves one cell at a time along its direction, inertia d - (1 - inertia) slope. With s the slope ahead of
-/// it, v its speed, w its water and a the ground area that it represents (one over the density), its capacity is the
-/// volume
+/// A droplet moves one cell at a time in the direction inertia d - (1 - inertia) slope, where d is its previous
+/// direction. With s the slope ahead of it, v its speed, w its water and a the ground area that it represents (one over
+/// the density), its capacity is the volume
 ///
 /// ```text
 /// C = capacity max(s, least) v w a        v^2 = v^2 + g (h - h_ahead)        w = w exp(-evaporation l)
 /// ```
 ///
-/// It erodes `erosion` of the unused capacity, at most the drop ahead of it, and deposits `deposition` of the excess.
-/// Before a rise it fills the hollow that it is in. (In widely copied code the sign before g is wrong.) At its end it
-/// deposits all it carries: mass is conserved.
+/// It erodes a share `erosion` of the unused capacity, at most the drop ahead of it, and deposits a share `deposition`
+/// of the excess. Before a rise it fills the hollow that it is in. (In widely copied code the sign before g is wrong.)
+/// At the end of its path it deposits everything that it carries, so mass is conserved.
 ///
-/// Droplets simulated one after another depend on their order. Here they are simulated in batches: all droplets of a
-/// batch see the same ground, and their changes are summed in fixed point, where order does not matter. The result is
-/// therefore exact for any window.
+/// The result of droplets that are simulated one after another depends on their order. Here they are simulated in
+/// batches: all droplets of a batch see the same ground, and their changes are summed in fixed point, where the order
+/// does not matter. The result is therefore exact for any window.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Droplets {
@@ -37,7 +38,7 @@ pub struct Droplets {
     pub lifetime: f64,
     /// Radius of the brush, in metres.
     pub radius: f64,
-    /// Inertia: the share of the direction that is kept, 0 to 1.
+    /// Inertia: the share of the previous direction that is kept, 0 to 1.
     pub inertia: f64,
     /// Capacity per m/s on a vertical slope, in metres of ground.
     pub capacity: f64,
@@ -92,7 +93,7 @@ orogen_noise::builder!(
 );
 
 impl Droplets {
-    /// Length of a path, in cells.
+    /// Maximum length of a path, in cells.
     fn steps(&self, cell: f64) -> usize {
         (self.lifetime / cell).ceil().min(FARTHEST) as usize
     }
@@ -107,7 +108,7 @@ impl Droplets {
         self.batches * self.reach(cell)
     }
 
-    /// The halo of one batch: a path, the cells between which it lies, and the brush.
+    /// The halo of one batch: a path, the cells around its end, the brush, and the passes in which deposits slide.
     fn reach(&self, cell: f64) -> usize {
         self.steps(cell) + 2 + self.brush(cell).reach() + SETTLED
     }
@@ -129,7 +130,7 @@ impl Droplets {
         Ok(heights)
     }
 
-    /// One batch; `sums` is memory that is reused between calls.
+    /// Computes one batch. `sums` is memory that is reused between calls.
     fn batch(&self, heights: &Grid, batch: u64, sums: &mut [Vec<i64>; 2], progress: &Progress) -> Result<Grid> {
         let window = *heights.window();
         let reach = self.reach(window.cell);
@@ -162,7 +163,7 @@ impl Droplets {
             let before = &heights.row(j + reach)[reach..reach + width];
             let cut = &cut[(j + SETTLED) * inner.width + SETTLED..][..width];
             let loose = settled.row(j)[LOOSE];
-            // Rounded once.
+            // The sum is rounded once.
             for (((out, before), cut), loose) in row.iter_mut().zip(before).zip(cut).zip(loose) {
                 *out = before + (loose - cut);
             }
@@ -177,7 +178,7 @@ impl Droplets {
         let window = *heights.window();
         let reach = self.steps(window.cell) + 2;
         let step = self.step(window.cell, batch);
-        // As many bands of each kind as give all threads equal shares.
+        // Each thread gets the same number of bands of each kind.
         let all = 2 * parallel::threads();
         let most = (window.height / (2 * reach)).clamp(1, 8 * all);
         let bands = if most > all { most - most % all } else { most };
@@ -216,7 +217,7 @@ impl Droplets {
             expected: self.density * cell * cell / 1e6 / self.batches as f64,
             steps: self.steps(cell),
             inertia: self.inertia as f32,
-            // Volumes are expressed as metres over one cell.
+            // Volumes are expressed in metres over one cell.
             capacity: (self.capacity * ground / (cell * cell)) as f32,
             per_cell: (1.0 / cell) as f32,
             least_slope: self.least_slope as f32,
@@ -228,7 +229,7 @@ impl Droplets {
     }
 }
 
-/// Splits off `size` sums after `skip`; `all` keeps the sums after them.
+/// Splits off `size` sums after the first `skip`; the sums after them remain in `all`.
 fn part<'a>(all: &mut &'a mut [i64], skip: usize, size: usize) -> &'a mut [i64] {
     let (_, rest) = std::mem::take(all).split_at_mut(skip);
     let (part, rest) = rest.split_at_mut(size);
@@ -236,14 +237,14 @@ fn part<'a>(all: &mut &'a mut [i64], skip: usize, size: usize) -> &'a mut [i64] 
     part
 }
 
-/// Passes in which freshly deposited ground slides: all droplets of a batch see the same hollow and would fill it to a
-/// spike.
+/// Number of passes in which freshly deposited ground slides. All droplets of a batch see the same hollow, and would
+/// otherwise fill it to a spike.
 const SETTLED: usize = 16;
 
-/// Slope, rise over run, at which it is stable.
+/// Slope, rise over run, at which deposited ground is stable.
 const LIES: f64 = 0.02;
 
-/// Maximum length in cells; longer ones would not fit in memory.
+/// Maximum length of a path in cells. Halos of longer paths would not fit in memory.
 const FARTHEST: f64 = 16_384.0;
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::progress::Progress;
 use orogen_simd::{Body, Simd, dispatch};
 
-/// The stream power law with uplift and deposition, for all cells at once: after H. Schott, A. Paris, L. Fournier, E.
+/// The stream power law with uplift and deposition, for all cells at once. After H. Schott, A. Paris, L. Fournier, E.
 /// Guerin and E. Galin, "Large-scale terrain authoring through interactive erosion simulation" (2023), with the
 /// deposition of X. P. Yuan, J. Braun, L. Guerit, D. Rouby and G. Cordonnier, "A new efficient method to solve the
 /// stream power law model taking into account sediment deposition" (2019).
@@ -20,9 +20,10 @@ use orogen_simd::{Body, Simd, dispatch};
 /// h' = h - E + D + dt (U + creep (d2h/dx2 + d2h/dy2))
 /// ```
 ///
-/// S is the upwind gradient, which is isotropic. The denominator makes the step stable for any dt (the implicit step of
-/// Braun and Willett 2013 with the neighbor's old height). Water and sediment move one cell per iteration; start with
-/// the drainage areas of a coarser solution to include distant catchments. An iteration reads two cells on each side.
+/// S is the upwind gradient, which is isotropic. The denominator makes the step stable for any dt: it is the implicit
+/// step of Braun and Willett (2013) with the neighbor's old height. Water and sediment move one cell per iteration. To
+/// include distant catchments, start with the drainage areas of a coarser solution. An iteration reads two cells on
+/// each side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct LocalStreamPower {
@@ -42,13 +43,13 @@ pub struct LocalStreamPower {
     pub deposition: f64,
     /// Soil creep: the diffusivity, in m^2 per year.
     pub creep: f64,
-    /// Cells at or below this height do not change.
+    /// Height of the sea in metres; cells at or below it do not change. `None` means no sea.
     pub sea_level: Option<f32>,
 }
 
 impl LocalStreamPower {
-    /// The law for cells of this side in metres, without uplift and sea; the other fields are those of the op
-    /// `local-stream-power` at its defaults (1e5 years in 50 iterations).
+    /// The law for cells with this side in metres, without uplift and sea. The other fields have the defaults of the op
+    /// `local-stream-power` (1e5 years in 50 iterations).
     #[must_use]
     pub const fn new(cell: f64) -> LocalStreamPower {
         LocalStreamPower {
@@ -78,17 +79,17 @@ orogen_noise::builder!(
     with_sea_level(sea_level: Option<f32>)
 );
 
-/// Limit of creep per iteration, as a share of a squared cell: stable, and without oscillation.
+/// Maximum creep per iteration, as a share of a squared cell: stable and without oscillation.
 const FASTEST: f64 = 0.2;
 
 /// The radius that an iteration reads, in cells.
 pub const RADIUS: usize = 2;
 
-/// Indices of the planes: heights, in metres,
+/// Index of the plane of heights, in metres.
 pub const HEIGHT: usize = 0;
-/// drainage areas, in m^2,
+/// Index of the plane of drainage areas, in m^2.
 pub const AREA: usize = 1;
-/// and the sediment that leaves a cell, in m^3 per year.
+/// Index of the plane of the sediment that leaves a cell, in m^3 per year.
 pub const SEDIMENT: usize = 2;
 
 impl LocalStreamPower {
@@ -116,7 +117,7 @@ impl LocalStreamPower {
             ("laid_rate", c.laid),
             ("step_years", c.years),
             ("spread", c.spread),
-            // No reader needs to expect an infinite number.
+            // Avoids an infinite number, which not every reader can represent.
             ("sea_level", c.sea_level.max(f32::MIN)),
         ]
     }
@@ -181,7 +182,7 @@ impl Body for Rows<'_> {
         let ring: [&mut [f32]; 3] = std::array::from_fn(|_| rows.next().unwrap_or_default());
         for j in 0..self.from.height() - 2 {
             let three = [j, j + 1, j + 2].map(|row| self.from.row(row));
-            // The amount that a cell of row j + 1 gives per unit of slope^4.
+            // The amount that a cell of row j + 1 gives to a neighbor per unit of slope^4.
             let (areas, loads) = ring[j % 3].split_at_mut(wide);
             self.constants.give(three.map(|row| row[HEIGHT]), [three[1][AREA], three[1][SEDIMENT]], [areas, loads]);
             if j >= 2 {
@@ -194,7 +195,7 @@ impl Body for Rows<'_> {
 }
 
 impl Constants {
-    /// The weight of a slope: its fourth power, 0 uphill.
+    /// The weight of a slope: its fourth power, or 0 uphill.
     #[inline(always)]
     fn weight(&self, drop: f32, per: f32) -> f32 {
         let slope = positive(drop) * per;
@@ -202,7 +203,7 @@ impl Constants {
         square * square
     }
 
-    /// The amounts that a row's inner cells give per unit of weight: area and sediment.
+    /// The amounts of area and sediment that the inner cells of a row give per unit of weight.
     #[inline(always)]
     fn give(&self, heights: [&[f32]; 3], [area, load]: [&[f32]; 2], [areas, loads]: [&mut [f32]; 2]) {
         let n = areas.len();
@@ -224,7 +225,7 @@ impl Constants {
         }
     }
 
-    /// Adds the inflow to a row's cells, and erodes and deposits.
+    /// Adds the inflow to the cells of a row, then erodes and deposits.
     #[inline(always)]
     fn take(&self, heights: [&[f32]; 3], given: [&[f32]; 3], [height, area, load]: [&mut [f32]; 3]) {
         let n = height.len();
@@ -255,7 +256,7 @@ impl Constants {
                 rate *= power(most(steep, 1e-12), self.slope_exponent);
             }
             let cut = least(rate * steep / (1.0 + rate * side), positive(h - lowest));
-            // At most the inflow, and nothing on cells above their surroundings.
+            // At most the inflow is deposited, and nothing on cells above their surroundings.
             let all = came * self.years / self.cell_area;
             let mean = 0.25 * ((nc[i] + sc[i]) + (w[i] + e[i]));
             let hollow = positive(mean - (h - cut));
@@ -317,7 +318,7 @@ mod tests {
 
     #[test]
     fn on_a_plane_each_iteration_brings_the_area_of_another_cell() {
-        // Along the rows, the columns, and in between: the upstream area of a strip one cell wide.
+        // Along the rows, along the columns, and in between: the upstream area of a strip one cell wide.
         let iterations = 12;
         let window = Window::new(9, 7, 20.0);
         for (east, south) in [(0.2, 0.0), (0.0, -0.3), (0.15, 0.1), (0.2, 0.2)] {

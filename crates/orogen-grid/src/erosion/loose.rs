@@ -6,9 +6,9 @@ use crate::error::Result;
 use crate::progress::Progress;
 use orogen_simd::{Body, Simd, dispatch};
 
-/// Loose ground on top of firm ground. Of the height difference to a neighbor beyond `stands`, a fifth crosses the
-/// common side in a pass, and at most a quarter of the loose ground of the higher cell. Mass is conserved; firm ground
-/// does not move.
+/// Loose ground on firm ground. In a pass, a fifth of the height difference to a neighbor beyond `stands` crosses the
+/// common side, but at most a quarter of the loose ground of the higher cell. Mass is conserved, and firm ground does
+/// not move.
 pub struct Loose {
     /// Height difference between neighbors, in metres, at which loose ground is stable.
     pub stands: f32,
@@ -72,7 +72,7 @@ impl Body for Rows<'_> {
 }
 
 impl Loose {
-    /// The amounts that cross the sides from the cells of one row to those of another.
+    /// The amounts that cross the sides between the cells of row `from` and those of row `to`.
     #[inline(always)]
     fn across(&self, from: [&[f32]; 2], to: [&[f32]; 2], out: &mut [f32]) {
         let n = out.len();

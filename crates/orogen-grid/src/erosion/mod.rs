@@ -1,7 +1,8 @@
-//! Erosion by local rules: slopes slide, water flows and carries sediment.
+//! Erosion with local rules: slopes slide, and water flows and carries sediment.
 //!
-//! Pure functions on grids. The result at a sample depends only on the samples within a fixed reach, so any window
-//! grown by that reach gives the same bits; the filters of the same names request exactly that halo.
+//! All functions are pure functions on grids. The result at a sample depends only on the samples within a fixed
+//! distance, so any window grown by that distance gives the same bits. The filters of the same names request exactly
+//! that halo.
 
 #[doc(hidden)]
 pub mod brush;

@@ -7,14 +7,14 @@ use super::rows::{least, most, positive};
 pub const BED: usize = 0;
 /// Index of the plane of the water depth, in metres.
 pub const DEPTH: usize = 1;
-/// Sediment in the water, as metres of ground.
+/// Index of the plane of sediment in the water, as metres of ground.
 pub const SEDIMENT: usize = 2;
-/// Flow over the cell's eastern side.
+/// Index of the plane of flow over the eastern side of each cell.
 pub const EAST: usize = 3;
-/// Flow over the cell's southern side.
+/// Index of the plane of flow over the southern side of each cell.
 pub const SOUTH: usize = 4;
 
-/// Parameters of one iteration that are the same for all cells. Flows are in metres of a cell's water per iteration.
+/// Parameters of one iteration that are common to all cells. Flows are in metres of a cell's water per iteration.
 #[derive(Debug, Clone, Copy)]
 pub struct Constants {
     /// Flow gained per metre of difference between two surfaces.
@@ -35,26 +35,27 @@ pub struct Constants {
     pub left: f32,
 }
 
-/// The state of an iteration that moves down the rows. At row j it computes and limits the flows out of that row. The
-/// row above, whose sides are then all known, passes on water and sediment. The bed of the next row above, whose
-/// surrounding changes are then all known, receives its part of them and has its final value of the iteration.
+/// The state of an iteration that moves down the rows. At row j it computes and limits the flows out of that row. All
+/// flows of the row above are then known, and that row passes on water and sediment. All changes around the next row
+/// above are then known, and its bed receives its share of them and is final for the iteration.
 pub struct Sweep {
-    /// For three rows, indexed by row number modulo 3: the share of the outflow that the water suffices for,
+    /// The share of the outflow for which there is enough water. All three fields have three rows, indexed by row
+    /// number modulo 3.
     limits: [Vec<f32>; 3],
-    /// the sediment per metre of water,
+    /// The sediment per metre of water.
     loads: [Vec<f32>; 3],
-    /// and the deposited ground.
+    /// The deposited ground, in metres; negative where ground is eroded.
     changes: [Vec<f32>; 3],
 }
 
-/// Number of rows that a sweep must be ahead of the next one.
+/// Number of rows by which a sweep must be ahead of the next one.
 pub const AHEAD: usize = 3;
 
 /// Depths and flows below this count as 0, to avoid division by 0.
 const TINY: f32 = 1e-30;
 
 impl Sweep {
-    /// The state above the first row of planes of this width.
+    /// The state above the first row of planes with `width` columns.
     #[must_use]
     pub fn new(width: usize) -> Sweep {
         let rows = || std::array::from_fn(|_| vec![0.0; width]);
@@ -79,7 +80,7 @@ impl Sweep {
         }
     }
 
-    /// Flows out of row `j`.
+    /// Computes the flows out of row `j`.
     #[inline(always)]
     fn flow(&mut self, planes: &mut Planes<5>, j: usize, constants: &Constants) {
         let last = j + 2 == planes.height();
@@ -93,7 +94,7 @@ impl Sweep {
         limit([&*depth, &*sediment], [&*east, &*south, &*above[SOUTH]], [limits, loads]);
     }
 
-    /// Water and sediment of row `j` after the iteration, and the changes of the ground.
+    /// Computes the water and sediment of row `j` after the iteration, and the changes of the ground.
     #[inline(always)]
     fn pass_on(&mut self, planes: &mut Planes<5>, j: usize, constants: &Constants) {
         if j == 0 || j + 1 >= planes.height() {
@@ -119,8 +120,8 @@ impl Sweep {
         }
     }
 
-    /// The bed of row `j`: the changes of a cell are shared with the cells around it, so that erosion and deposition
-    /// are wider than a cell.
+    /// Updates the bed of row `j`. The changes of a cell are shared with the cells around it, so that erosion and
+    /// deposition are wider than a cell.
     #[inline(always)]
     fn lay(&mut self, planes: &mut Planes<5>, j: usize) {
         if j == 0 || j + 1 >= planes.height() {
@@ -141,7 +142,7 @@ impl Sweep {
     }
 }
 
-/// Accelerates the flows over the eastern and southern sides of a row by the difference of the surfaces.
+/// Accelerates the flows over the eastern and southern sides of a row by the difference of the water surfaces.
 #[inline(always)]
 fn pull([bed, depth]: [&[f32]; 2], below: [&[f32]; 2], [east, south]: [&mut [f32]; 2], constants: &Constants) {
     let n = bed.len() - 2;
@@ -162,7 +163,7 @@ fn pull([bed, depth]: [&[f32]; 2], below: [&[f32]; 2], [east, south]: [&mut [f32
     }
 }
 
-/// The share of a row's outflow that the water suffices for, and its sediment per metre of water.
+/// The share of a row's outflow for which there is enough water, and its sediment per metre of water.
 #[inline(always)]
 fn limit([depth, sediment]: [&[f32]; 2], [east, south, north]: [&[f32]; 3], [limits, loads]: [&mut [f32]; 2]) {
     let n = depth.len() - 2;
@@ -176,7 +177,7 @@ fn limit([depth, sediment]: [&[f32]; 2], [east, south, north]: [&[f32]; 3], [lim
     }
 }
 
-/// Limits the outflow of a cell to the water that it has.
+/// Limits the outflow of a cell to its water.
 #[inline(always)]
 fn hold([here, below]: [&[f32]; 2], [east, south]: [&mut [f32]; 2]) {
     let n = here.len() - 2;
@@ -211,7 +212,7 @@ fn settle(
         let out = (out_e + out_w) + (out_s + out_n);
         let came = (positive(-e) * load_e[i] + positive(w) * load_w[i])
             + (positive(-s) * load_s[i] + positive(nn) * load_n[i]);
-        // The outflow is at most the content; rounding must not make it negative.
+        // The outflow is at most the content, but rounding must not make it negative.
         let carried = positive(sediment[i] - out * load_c[i]) + came;
         let left = positive(depth[i] + ((w - e) + (nn - s)));
         let (across, down) = (w + e, nn + s);
@@ -230,7 +231,7 @@ fn settle(
     }
 }
 
-/// Shares a cell's change over 3 x 3 cells, with weights (1, 2, 1) / 4 along each axis.
+/// Shares the changes of cells over 3 x 3 cells, with weights (1, 2, 1) / 4 along each axis.
 #[inline(always)]
 fn share([north, here, south]: [&[f32]; 3], [bed, sediment]: [&mut [f32]; 2]) {
     let n = bed.len() - 2;
@@ -244,7 +245,7 @@ fn share([north, here, south]: [&[f32]; 3], [bed, sediment]: [&mut [f32]; 2]) {
         let under = (sw[i] + se[i]) + 2.0 * sc[i];
         let change = 0.0625 * ((above + under) + 2.0 * middle);
         let new = bed[i] + change;
-        // The rounding error of the bed goes to the sediment in the water.
+        // The rounding error of the bed is added to the sediment in the water.
         sediment[i] += change - (new - bed[i]);
         bed[i] = new;
     }

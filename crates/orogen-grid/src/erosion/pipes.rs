@@ -24,12 +24,12 @@ use orogen_simd::{Body, Simd, dispatch};
 /// Where the sediment s is less than C, erosion dt (C - s) is eroded; where it is more, deposition dt (s - C) is
 /// deposited. Erosion is limited to half the drop to the lowest neighbor, and deposition to the neighbors' mean plus
 /// a quarter of the water depth, which prevents pits and spikes. Sediment moves as a share of the water that flows over
-/// each side, instead of the backtracing along the velocity in Mei and others: mass is conserved. One signed flow per
+/// each side, instead of backtracing along the velocity as in Mei and others, so mass is conserved. One signed flow per
 /// side replaces their two (J. F. O'Brien and J. K. Hodgins, 1995).
 ///
 /// Erosion and deposition are shared over 3 x 3 cells, with weights (1, 2, 1) along each axis; otherwise grooves would
-/// form along the grid's axes. An iteration reads three cells on each side: a side's flow reads its cells' surfaces,
-/// the limit reads the other sides of that cell, and then changes are shared.
+/// form along the grid's axes. An iteration reads three cells on each side: a side's flow depends on the surfaces of
+/// its two cells, the limit depends on the other sides of a cell, and finally the changes are shared.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Pipes {
@@ -49,7 +49,7 @@ pub struct Pipes {
     pub friction: f64,
     /// Gravity, in m/s^2.
     pub gravity: f64,
-    /// Time step in seconds; reduced to the longest stable step.
+    /// Time step in seconds. It is reduced to the longest stable step.
     pub time_step: f64,
 }
 
@@ -89,8 +89,8 @@ pub const RADIUS: usize = 3;
 /// Maximum of dt^2 g A / l^3: waves are stable below 1/2.
 const COURANT: f64 = 0.25;
 
-/// Ground and water: the planes bed, depth, sediment (all in metres), flow east and flow south (in metres of a cell's
-/// water per iteration).
+/// Ground and water. The planes are bed, depth and sediment (in metres), and flow east and flow south (in metres of a
+/// cell's water per iteration).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wet {
     /// The planes, with one row and column around them that represent the walls.
@@ -99,7 +99,7 @@ pub struct Wet {
 }
 
 impl Wet {
-    /// Dry ground within walls.
+    /// Dry ground surrounded by walls.
     #[must_use]
     pub fn new(bed: &Grid) -> Wet {
         let window = *bed.window();
@@ -125,7 +125,7 @@ impl Wet {
         out
     }
 
-    /// Sets the walls to the height of the adjacent ground, so that they have no slope, and without water.
+    /// Sets the walls to the height of the adjacent ground, so that they have no slope, and removes their water.
     fn wall(&mut self) {
         let (width, height) = (self.window.width, self.window.height);
         for j in 0..height + 2 {
@@ -144,8 +144,8 @@ impl Wet {
         }
     }
 
-    /// The speed of the water, in m/s, computed by `pipes`: discharge over depth; 0 where the depth is less than 0.1
-    /// mm.
+    /// The speed of the water, in m/s, with the time step of `pipes`: discharge over depth. It is 0 where the depth is
+    /// less than 0.1 mm.
     #[must_use]
     pub fn speed(&self, pipes: &Pipes) -> Grid {
         let mut out = Grid::filled(self.window, 0.0f32);
@@ -166,13 +166,13 @@ impl Wet {
 }
 
 impl Pipes {
-    /// Seconds per iteration at this cell: the time step, or the longest stable one.
+    /// Seconds per iteration for this cell size: the time step, or the longest stable step if that is shorter.
     #[must_use]
     pub fn step(&self, cell: f64) -> f64 {
         self.time_step.min(cell * (COURANT / (self.gravity * self.pipe)).sqrt())
     }
 
-    /// Advances by `iterations` within the walls.
+    /// Advances by `iterations`; the walls enclose the ground.
     ///
     /// # Errors
     /// If the work is cancelled.
@@ -180,8 +180,8 @@ impl Pipes {
         self.go(wet, iterations, 0, progress)
     }
 
-    /// Advances by `iterations` on a part of larger ground: the result is smaller by [`RADIUS`] cells per iteration on
-    /// each side, which the walls may have influenced.
+    /// Advances by `iterations` on a part of larger ground. The result is smaller by [`RADIUS`] cells per iteration on
+    /// each side, because the walls may have influenced these cells.
     ///
     /// # Errors
     /// If the work is cancelled.
@@ -206,7 +206,7 @@ impl Pipes {
         Ok(wet)
     }
 
-    /// The constants of an iteration, in the order of [`Constants`], and the speed in m/s of a flow over two sides in a
+    /// The constants of an iteration, in the order of [`Constants`], and the speed in m/s of a flow over two sides at a
     /// depth of 1 m.
     #[doc(hidden)]
     #[must_use]
@@ -225,7 +225,7 @@ impl Pipes {
         ]
     }
 
-    /// The speed in m/s of a flow over two sides in a depth of 1 m.
+    /// The speed in m/s of a flow over two sides at a depth of 1 m.
     fn speed_scale(&self, cell: f64) -> f32 {
         (0.5 * cell / self.step(cell)) as f32
     }
@@ -237,7 +237,8 @@ impl Pipes {
             pull: (dt * dt * self.gravity * self.pipe / (cell * cell)) as f32,
             kept: (1.0 - share(self.friction)) as f32,
             rain: (dt * self.rain) as f32,
-            // Discharge per metre of width from the sum of two sides' flows, and slope from the difference of two beds.
+            // Discharge per metre of width from the sum of the flows over two sides, and slope from the difference of
+            // two beds.
             capacity: (self.capacity * 0.5 * cell / dt) as f32,
             level: (4.0 * cell * cell) as f32,
             erosion: share(self.erosion) as f32,
@@ -248,18 +249,18 @@ impl Pipes {
 }
 
 /// Number of iterations that follow each other down the rows. Their data stays in a core's own cache, and memory is
-/// read once for all of them. More iterations would gain little, and bands would compute more rows twice.
+/// read only once for all of them. More iterations would gain little, and bands would compute more rows twice.
 const AT_ONCE: usize = 8;
 
-/// The extent of one call.
+/// The extent of one call of [`advance`].
 struct Stride {
     iterations: usize,
     /// Cells lost on each side.
     lost: usize,
 }
 
-/// Computes `to` from `from`. Bands of rows, one per thread, run in parallel, each with enough rows of its neighbors;
-/// the bits do not depend on the number of bands. `spare` is memory that is reused between calls.
+/// Computes `to` from `from`. Bands of rows, one per thread, run in parallel, each with enough rows of its neighbors.
+/// The bits do not depend on the number of bands. `spare` is memory that is reused between calls.
 fn advance(
     from: &Wet,
     to: &mut Wet,
@@ -312,7 +313,7 @@ impl Body for Down<'_> {
     fn run<S: Simd>(self, simd: S) -> Result<()> {
         let (width, rows) = (self.planes.width(), self.planes.height());
         let mut sweeps: Vec<Sweep> = (0..self.iterations).map(|_| Sweep::new(width)).collect();
-        // An iteration at a row makes the second row above it final; the next iteration reads that row as the one below
+        // An iteration at a row makes the second row above it final. The next iteration reads that row as the row below
         // its own.
         for step in 0..=rows + AHEAD * self.iterations {
             self.progress.check()?;
@@ -394,7 +395,7 @@ mod tests {
         let moved: f64 = bed.data().iter().zip(wet.plane(BED).data()).map(|(a, b)| f64::from((a - b).abs())).sum();
         assert!(moved > 0.1 * cells, "{moved} m moved");
         assert!((before - after - carried).abs() < 1e-5 * moved, "{before} {after} {carried}, {moved} moved");
-        // The rounding of a bed 1500 m high changes the sediment.
+        // The rounding error of a bed 1500 m high changes the sediment.
         assert!(wet.plane(DEPTH).data().iter().chain(wet.plane(SEDIMENT).data()).all(|v| *v > -2e-4));
     }
 

@@ -1,4 +1,4 @@
-//! Several values per cell, stored row by row, and stencil passes over them that stay in cache.
+//! Several values per cell, stored row by row, and stencil passes over them that stay in the cache.
 
 use crate::error::Result;
 use crate::grid::{Grid, Window};
@@ -21,7 +21,7 @@ impl<const N: usize> Planes<N> {
         Planes { width, height, data: vec![0.0; width * height * N] }
     }
 
-    /// Samples per row.
+    /// Number of samples per row.
     #[must_use]
     pub fn width(&self) -> usize {
         self.width
@@ -47,7 +47,7 @@ impl<const N: usize> Planes<N> {
         planes_of(&mut self.data[j * N * self.width..(j + 1) * N * self.width], self.width)
     }
 
-    /// Plane `plane` as a grid over `window`, which must have as many samples.
+    /// Plane `plane` as a grid over `window`, which must have the same number of samples.
     #[must_use]
     pub fn grid(&self, plane: usize, window: Window) -> Grid {
         let mut grid = Grid::filled(window, 0.0f32);
@@ -56,7 +56,7 @@ impl<const N: usize> Planes<N> {
         grid
     }
 
-    /// Fills plane `plane` from a grid with as many samples.
+    /// Fills plane `plane` from a grid with the same number of samples.
     pub fn fill(&mut self, plane: usize, grid: &Grid) {
         let height = self.height;
         parallel::for_each(self.rows_mut(0, height).into_iter().enumerate(), |(j, row)| {
@@ -77,7 +77,7 @@ impl<const N: usize> Planes<N> {
         std::array::from_fn(|_| std::array::from_fn(|_| rows.next().unwrap_or_default()))
     }
 
-    /// Replaces the planes by a copy of the rows `first..last` of `from`.
+    /// Replaces the planes with a copy of the rows `first..last` of `from`.
     pub fn copy_rows(&mut self, from: &Planes<N>, first: usize, last: usize) {
         let all = N * from.width;
         (self.width, self.height) = (from.width, last - first);
@@ -92,7 +92,7 @@ impl<const N: usize> Planes<N> {
         rows.map(|row| planes_of(row, width)).collect()
     }
 
-    /// [`Planes::rows_mut`] in bands of `rows`.
+    /// Like [`Planes::rows_mut`], grouped in bands of `rows` rows.
     pub fn bands_mut(&mut self, first: usize, height: usize, rows: usize) -> Vec<Vec<[&mut [f32]; N]>> {
         let mut left = self.rows_mut(first, height).into_iter();
         (0..height.div_ceil(rows)).map(|_| left.by_ref().take(rows).collect()).collect()
@@ -103,7 +103,7 @@ impl<const N: usize> Planes<N> {
         (self.width, self.height) = (width, height);
         let size = width * height * N;
         if size > self.data.capacity() {
-            // Newly allocated memory is zero, and the thread that uses it touches it first.
+            // Newly allocated memory is zero, and the thread that uses it is the first to touch it.
             self.data = vec![0.0; size];
         } else {
             self.data.resize(size, 0.0);
@@ -123,20 +123,20 @@ pub trait Pass<const N: usize>: Sync {
     /// The radius that the stencil reads, in cells.
     const RADIUS: usize;
 
-    /// Computes `to`, which is smaller than `from` by the radius on each side, from `from`. `scratch` is memory that is
-    /// reused between calls.
+    /// Computes `to` from `from`. `to` is smaller by the radius on each side. `scratch` is memory that is reused
+    /// between calls.
     fn make(&self, from: &Planes<N>, to: &mut Planes<N>, scratch: &mut Vec<f32>);
 }
 
-/// Passes over a band of rows before it is written back.
+/// Number of passes over a band of rows before it is written back.
 const AT_ONCE: usize = 8;
 
-/// Rows of a band: the buffers of two bands fit in a core's own cache.
+/// Number of rows of a band, such that the buffers of two bands fit in a core's own cache.
 const BAND: usize = 64;
 
-/// The planes after `passes` passes, smaller by that many radii on each side. Bands of rows run in parallel, each
-/// several passes at a time while in cache. Rows that neighboring bands need of each other are computed twice; the
-/// bits do not depend on the number of threads.
+/// The planes after `passes` passes, smaller by the radius per pass on each side. Bands of rows run in parallel, each
+/// for several passes while it is in the cache. Rows that neighboring bands need from each other are computed twice.
+/// The bits do not depend on the number of threads.
 ///
 /// # Errors
 /// If the work is cancelled.

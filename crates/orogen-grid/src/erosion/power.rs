@@ -1,7 +1,7 @@
-//! Powers of positive numbers, vectorised.
+//! Vectorized powers of positive numbers.
 
-/// x to the power y, accurate to a few parts in a million, for x from 1e-37 to 1e37. Uses only sums, products and bit
-/// operations, so it gives the same bits on every machine and vectorises.
+/// x to the power y, accurate to a few parts in a million, for x from 1e-37 to 1e37. It uses only sums, products and
+/// bit operations, so it gives the same bits on every machine and can be vectorized.
 #[inline(always)]
 #[must_use]
 pub fn power(x: f32, y: f32) -> f32 {
@@ -25,7 +25,7 @@ fn log2(x: f32) -> f32 {
 /// 2 to the power y; y is clamped to -126 ..= 127.
 #[inline(always)]
 fn exp2(y: f32) -> f32 {
-    // After adding 1.5 2^23, the integer part of a number is in the low bits.
+    // After adding 1.5 * 2^23, the integer part of a number is in the low bits.
     const WHOLE: f32 = 12_582_912.0;
     let y = if y > -126.0 { y } else { -126.0 };
     let y = if y < 127.0 { y } else { 127.0 };

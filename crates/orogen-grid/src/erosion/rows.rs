@@ -1,7 +1,7 @@
-//! Helpers of stencils over rows. Explicit comparisons compile to one instruction each; those of the library, which
-//! handle NaN, to three.
+//! Helpers for stencils over rows. Explicit comparisons compile to one instruction each; the functions of the standard
+//! library, which handle NaN, compile to three.
 
-/// The positive part.
+/// `x`, or 0 if it is negative or NaN.
 #[inline(always)]
 #[must_use]
 pub fn positive(x: f32) -> f32 {
@@ -22,8 +22,8 @@ pub fn most(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
-/// A row plus the flows over its cells' sides: `sides` flows east between the columns (one more than there are cells),
-/// `above` and `below` flow south over the row's two edges.
+/// A row plus the flows over the sides of its cells. `sides` flows east between the columns (one more than there are
+/// cells); `above` and `below` flow south over the two edges of the row.
 #[inline(always)]
 pub fn settle(here: &[f32], [sides, above, below]: [&[f32]; 3], out: &mut [f32]) {
     let n = out.len();

@@ -1,4 +1,4 @@
-//! Thermal weathering: slopes slide until they are at the talus angle.
+//! Thermal weathering: slopes slide until they reach the talus angle.
 
 use super::planes::{self, Pass, Planes};
 use super::rows::settle;
@@ -11,14 +11,15 @@ use orogen_simd::{Body, Simd, dispatch};
 /// terrains" (1989): material on slopes above the talus angle moves down.
 ///
 /// The original compares each cell with its neighbors in eight directions, which gives octagonal cones. Here the
-/// material that crosses the side between two cells is, with g the gradient there (both components) and T the stable
-/// slope,
+/// following amount of material crosses the side between two cells, where g is the gradient there (both components) and
+/// T the stable slope:
 ///
 /// ```text
 /// q = fraction (1 - T / |g|) g_across    where |g| > T, else 0
 /// ```
 ///
-/// so the talus slope is the same in all directions. What leaves one cell enters the next: mass is conserved.
+/// so the talus slope is the same in all directions. The amount that leaves one cell enters the next, so mass is
+/// conserved.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Thermal {
@@ -29,7 +30,7 @@ pub struct Thermal {
 }
 
 impl Thermal {
-    /// Weathering to this stable slope (rise over run), with a rate of 1.
+    /// Weathering to the stable slope `talus` (rise over run), with a rate of 1.
     #[must_use]
     pub const fn new(talus: f64) -> Thermal {
         Thermal { talus, rate: 1.0 }
@@ -38,12 +39,12 @@ impl Thermal {
 
 orogen_noise::builder!(Thermal: with_talus(talus: f64), with_rate(rate: f64));
 
-/// The share of a height difference that crosses a side at a rate of 1. From 1/4 on, a chequerboard of heights would
-/// not decay.
+/// The share of a height difference that crosses a side at a rate of 1. With 1/4 or more, a checkerboard of heights
+/// would not decay.
 const FASTEST: f64 = 0.2;
 
 impl Thermal {
-    /// The heights after `passes` passes, over a window that is smaller by one sample per pass on each side: use
+    /// The heights after `passes` passes, over a window that is smaller by one sample per pass on each side. Use
     /// [`Grid::padded`] for a result as large as the heights.
     ///
     /// # Errors
@@ -180,7 +181,7 @@ mod tests {
                 for i in 0..degrees.width() {
                     let (x, y) = (degrees.window().east(i), degrees.window().south(j));
                     let r = (x * x + y * y).sqrt();
-                    // Without the tip and the foot, which are rounded.
+                    // Excludes the tip and the foot, which are rounded.
                     if (24.0..46.0).contains(&r) {
                         let off = f64::from(degrees[(i, j)]) - angle;
                         assert!(off.abs() < 0.5, "{angle}: {off} off at ({x}, {y})");

@@ -1,8 +1,8 @@
-//! Lines and polygons cut at the sides of a rectangle, so that the parts in two rectangles with a common side meet in
+//! Clips lines and polygons at the sides of a rectangle, so that the parts in two rectangles with a common side meet in
 //! the same points.
 //!
-//! A point on the western or northern side is inside, one on the eastern or southern side outside. A cut depends on the
-//! segment and the side only: the neighbor's cut has the same bits if positions are [snapped].
+//! A point on the western or northern side is inside, a point on the eastern or southern side is outside. A cut depends
+//! only on the segment and the side, so the neighbor's cut has the same bits if positions are [snapped].
 
 use super::given::snapped;
 use super::joints::Path;
@@ -19,14 +19,13 @@ pub struct Rectangle {
 /// A part of a line within a rectangle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Piece {
-    /// Its points.
+    /// The points of the part.
     pub points: Vec<[f64; 3]>,
-    /// The points of the line that it contains, by their indices; empty if it only crosses the rectangle between two
-    /// points.
+    /// The indices of the line's points in this part; empty if the part only crosses the rectangle between two points.
     pub inner: std::ops::Range<usize>,
-    /// Whether it begins at a side, not with the line.
+    /// Whether the part begins at a side instead of the start of the line.
     pub enters: bool,
-    /// Whether it ends at a side, not with the line.
+    /// Whether the part ends at a side instead of the end of the line.
     pub leaves: bool,
 }
 
@@ -38,8 +37,8 @@ impl Rectangle {
         west <= x && x < east && north <= y && y < south
     }
 
-    /// For each side, the position along a segment, 0 to 1, at which it crosses the side; only sides that `point` is
-    /// beyond.
+    /// For each side that `point` is beyond, the position along a segment, 0 to 1, at which the segment crosses the
+    /// side.
     fn crossings(&self, a: [f64; 3], b: [f64; 3], point: [f64; 3]) -> impl Iterator<Item = (f64, usize)> {
         let [west, north, east, south] = self.sides;
         let beyond = [point[0] < west, point[1] < north, point[0] >= east, point[1] >= south];
@@ -51,7 +50,7 @@ impl Rectangle {
         (0..4).filter(move |side| beyond[*side]).map(move |side| (along(side), side))
     }
 
-    /// The point of a segment at a side.
+    /// The point at which a segment crosses a side.
     fn cut(&self, a: [f64; 3], b: [f64; 3], (along, side): (f64, usize)) -> [f64; 3] {
         let [west, north, east, south] = self.sides;
         let at = |c: usize| a[c] + snapped(along * (b[c] - a[c]));
@@ -62,7 +61,7 @@ impl Rectangle {
         }
     }
 
-    /// Where a segment that ends inside enters, or one that begins inside leaves.
+    /// The crossing at which a segment that ends inside enters, or a segment that begins inside leaves.
     fn entry(&self, a: [f64; 3], b: [f64; 3]) -> Option<(f64, usize)> {
         self.crossings(a, b, a).max_by(|a, b| a.0.total_cmp(&b.0))
     }
@@ -71,7 +70,7 @@ impl Rectangle {
         self.crossings(a, b, b).min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// The parts of a line within the rectangle, in its order.
+    /// The parts of a line within the rectangle, in the order of the line.
     #[must_use]
     pub fn pieces(&self, line: &[[f64; 3]]) -> Vec<Piece> {
         let mut pieces: Vec<Piece> = Vec::new();
@@ -115,8 +114,8 @@ impl Rectangle {
         pieces
     }
 
-    /// The parts of a shore within the rectangle. A ring whose first point is inside continues from its end to its
-    /// beginning.
+    /// The parts of a shore within the rectangle. For a ring whose first point is inside, the last part continues with
+    /// the first one.
     fn arcs(&self, line: &Path) -> Vec<Piece> {
         let line: Vec<[f64; 3]> = line.iter().map(|[x, y]| [*x, *y, 0.0]).collect();
         let mut pieces = self.pieces(&line);
@@ -179,7 +178,8 @@ impl Rectangle {
         }
     }
 
-    /// Rings of arcs that enter and leave: from the end of each along the sides to the start of the next.
+    /// Rings of arcs that enter and leave. From the end of each arc, a ring continues along the sides to the start of
+    /// the next one.
     fn linked(&self, arcs: &[Path]) -> Vec<Path> {
         let [west, north, east, south] = self.sides;
         let corners = [[west, south], [east, south], [east, north], [west, north]];
@@ -206,7 +206,7 @@ impl Rectangle {
                 let here = self.around(last);
                 let split = starts.partition_point(|(start, _)| *start < here);
                 let order = starts[split..].iter().chain(&starts[..split]);
-                // Starts and ends alternate along the sides, so the next start is free or the first.
+                // Starts and ends alternate along the sides, so the next start is unused or is the first one.
                 let next = order.copied().find(|(_, arc)| !used[*arc] || *arc == first);
                 let Some((start, next)) = next else { break };
                 let there = if start < here { start + whole } else { start };
@@ -289,7 +289,7 @@ mod tests {
 
     #[test]
     fn parts_of_polygons_have_the_area_of_the_whole() {
-        // A comb whose teeth cross the common side, with a hole in each second tooth, and a ring around everything.
+        // A comb whose teeth cross the common side, with a hole in every second tooth, and a ring around everything.
         let area = |parts: &[Vec<Path>]| parts.iter().flatten().map(|ring| twice_area(ring) / 2.0).sum::<f64>();
         let mut comb: Path = vec![[1.0, 0.0], [1.0, 9.0]];
         let mut part = vec![Vec::new()];

@@ -1,5 +1,5 @@
-//! Water from drainage that is known already: receivers, drainage areas and standing water are taken from the caller,
-//! not computed from the heights. Whatever runs into the grid from outside is included.
+//! Water from known drainage: receivers, drainage areas and standing water are given by the caller, not computed from
+//! the heights. Water that enters the grid from outside is included.
 
 use crate::checks::now_and_then;
 use crate::error::{Error, ErrorKind, Result};
@@ -15,39 +15,39 @@ use crate::progress::Progress;
 use super::network::{AT_SEA, Network};
 use super::water::{Cover, Least, Water};
 
-/// Drainage that is known. All grids have one window.
+/// Known drainage. All grids have the same window.
 #[derive(Debug, Clone)]
 pub struct GivenWater {
-    /// Heights of the samples.
+    /// Heights of the samples, in metres.
     pub heights: Grid,
-    /// Height of the surface of standing water at the samples; NaN where there is none, also in the sea.
+    /// Height of the surface of standing water at the samples, in metres; NaN where there is none, and in the sea.
     pub standing: Grid,
-    /// The node of each sample: one node of the network per sample.
+    /// The nodes of the network, one per sample.
     pub nodes: Nodes,
 }
 
 /// Nodes of a given network, one per sample.
 #[derive(Debug, Clone)]
 pub struct Nodes {
-    /// Height of each node: of the ground, or of the surface of standing water.
+    /// Height of each node in metres: the ground, or the surface of standing water.
     pub height: Grid,
     /// Drainage area of each node in m^2.
     pub flow: Grid,
-    /// Code of the direction of each node's receiver; 8 in standing water. Water of a lake with an outlet has
-    /// receivers, too; where nodes are not at their samples, 16 is added to its codes.
+    /// Code of the direction of each node's receiver; 8 in standing water. Nodes in a lake with an outlet also have
+    /// receivers. If nodes are not at their samples, 16 is added to the codes of these nodes.
     pub receiver: Grid,
-    /// Columns and rows from the sample to its node; none if nodes are at their samples.
+    /// Columns and rows from the sample to its node; `None` if nodes are at their samples.
     pub offset: Option<[Grid; 2]>,
 }
 
-/// Largest difference of two water levels of one lake, in metres: more than rounding, less than a step between lakes.
+/// Maximum difference between two water levels of one lake, in metres: more than rounding errors, less than a step
+/// between lakes.
 const ONE_LEVEL: f32 = 0.05;
 
-/// Positions are whole multiples of this part of a cell. Sums of them have no rounding, so they are the same in every
-/// window.
+/// Positions are integer multiples of this part of a cell. Their sums are exact, so they are the same in every window.
 const PARTS: f64 = (1 << 20) as f64;
 
-/// A coordinate in columns or rows rounded to 2^-20 of a cell.
+/// Rounds a coordinate in columns or rows to 2^-20 of a cell.
 #[must_use]
 pub fn snapped(coordinate: f64) -> f64 {
     (coordinate * PARTS).round() / PARTS
@@ -55,8 +55,8 @@ pub fn snapped(coordinate: f64) -> f64 {
 
 impl Water {
     /// The water of known drainage. Rivers begin where the drainage area reaches that of `least.spring` samples and
-    /// continue to standing water or the border. The order of a reach into which water runs from outside the grid is
-    /// unknown, 0. Lakes are connected samples of standing water with one level; those of fewer than `least.lake`
+    /// continue to standing water or the border. A reach that receives water from outside the grid has order 0, which
+    /// means unknown. Lakes are connected samples of standing water with one level. Lakes of fewer than `least.lake`
     /// samples are [small](Water::is_small).
     ///
     /// # Errors
@@ -77,23 +77,23 @@ impl Water {
         let in_lake: Vec<bool> = receiver.data().iter().map(|code| *code >= f32::from(LAKE)).collect();
         let mut receivers = inside(&receiver);
         drop(receiver);
-        // Rivers have no courses in the sea, and none beyond it.
+        // Rivers have no courses in the sea and beyond it.
         let sea = at_sea(&heights, &bed, offset.as_ref(), &receivers, sea_level);
         let drowned = match sea_level {
             Some(level) => {
-                // The bed of a river may be lower than the sea, but not its water.
+                // The bed of a river may be lower than the sea, but its water is not.
                 let beds = bed.data_mut().iter_mut().zip(&sea);
                 beds.filter(|(_, at_sea)| !**at_sea).for_each(|(bed, _)| *bed = bed.max(level));
                 beyond(&receivers, &sea, progress)?
             }
             None => vec![false; window.len()],
         };
-        // Another river may join beyond the sea, and goes on.
+        // Another river may join beyond the sea and continues.
         let codes = receivers.codes_mut().iter_mut().zip(&sea);
         codes.filter(|(_, at_sea)| **at_sea).for_each(|(code, _)| *code = NONE);
         let drained = accumulate_with(&receivers, &progress.part(0.0))?;
-        // A cycle has no first node, so its nodes and those below it are not visited. No level has one, but a recipe
-        // may.
+        // A cycle has no first node, so its nodes and the nodes below it are not visited. Levels have no cycles, but a
+        // recipe may introduce one.
         let mut visited = vec![false; window.len()];
         drained.upstream_first().for_each(|node| visited[node] = true);
         let lost = receivers.codes_mut().iter_mut().zip(&visited);
@@ -129,8 +129,8 @@ impl Water {
         Ok(water)
     }
 
-    /// Which lakes are too small to be shown: those of fewer than `fewest` samples, unless a river ends in them or they
-    /// reach the border.
+    /// Whether each lake is too small to be shown: it has fewer than `fewest` samples, no river ends in it, and it does
+    /// not reach the border.
     fn small_lakes(&self, fewest: u32) -> Vec<bool> {
         let mut small: Vec<bool> = self.lakes.iter().map(|lake| lake.cells < fewest).collect();
         let mut keep = |label: u32| {
@@ -151,7 +151,7 @@ impl Water {
     }
 }
 
-/// A node while orders are found.
+/// The state of a node while orders are computed.
 #[derive(Clone, Copy, Default)]
 struct Stream {
     order: u8,
@@ -161,7 +161,8 @@ struct Stream {
     is_unknown: bool,
 }
 
-/// The rivers that begin at nodes with a large drainage area, with their orders. Beds do not rise along them.
+/// Finds the rivers that begin at nodes with a large drainage area, and their orders. Lowers beds so that they do not
+/// rise along rivers.
 fn orders(
     receivers: &Receivers,
     drained: &Accumulation,
@@ -175,7 +176,7 @@ fn orders(
         now_and_then(k, &|| progress.check())?;
         let is_border = is_border(&window, node);
         let order = &mut river[node];
-        // An area may fall a little downstream where areas are carried down from level to level: a river goes on.
+        // Areas that are carried down from level to level may decrease a little downstream; a river continues there.
         order.is_river |= is_large(node);
         if !order.is_river {
             continue;
@@ -189,7 +190,7 @@ fn orders(
             next.is_unknown |= from.is_unknown;
             next.met = (next.met && next.order >= from.order) || next.order == from.order;
             next.order = next.order.max(from.order);
-            // Where heights are interpolated or changed by the recipe, a bed may rise.
+            // A bed may rise where heights are interpolated or changed by the recipe.
             let height = bed.data()[node];
             let below = &mut bed.data_mut()[to];
             *below = if receivers.code(to) == NONE { *below } else { below.min(height) };
@@ -203,16 +204,16 @@ fn is_border(window: &Window, sample: usize) -> bool {
     i == 0 || j == 0 || i + 1 == window.width || j + 1 == window.height
 }
 
-/// Nodes along its course that lie in the sea where a river ends in a narrow bay; fewer than the samples beyond a
-/// window.
+/// Number of consecutive nodes along the course that must be in the sea where a river ends in a narrow bay. It is less
+/// than the number of samples beyond a window.
 const COURSE: usize = 16;
 
-/// Samples on each side of a node, and how many of all of them are sea where it is wide.
+/// Number of samples on each side of a node, and number of these that must be in the sea where it is wide.
 const WIDE: (usize, usize) = (2, 15);
 
-/// Which nodes are in the sea: where the ground between the samples is not above its level, if the sea is wide there or
-/// the course goes on in it. A bed on a plain may be lower than the sea far inland, and the land around a valley of a
-/// coarser level may have drowned.
+/// Whether each node is in the sea: the ground between the samples is not above sea level, and either the sea is wide
+/// there or the course continues in it. The height alone is not sufficient, because a bed on a plain may be lower than
+/// the sea far inland, and the land around a valley of a coarser level may have drowned.
 fn at_sea(
     heights: &Grid,
     bed: &Grid,
@@ -228,7 +229,7 @@ fn at_sea(
         let sample = |i: usize, j: usize| heights[(i.min(width - 1), j.min(height - 1))];
         let row = |j: usize| sample(i, j) * (1.0 - east) + sample(i + 1, j) * east;
         let ground = row(j) * (1.0 - south) + row(j + 1) * south;
-        // Standing water of the network whose shore the samples show is the sea, whatever the recipe adds to its level.
+        // Standing water of the network whose shore the samples show is the sea, even if the recipe raises its level.
         let touches = || [(i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)].into_iter().any(|(i, j)| sample(i, j) <= sea);
         ground <= sea || receivers.code(k) == NONE && (bed.data()[k] <= sea || touches())
     };
@@ -247,7 +248,7 @@ fn at_sea(
     (0..drowned.len()).map(is_at_sea).collect()
 }
 
-/// Which nodes are in the sea, or receive water that has been in the sea.
+/// Whether each node is in the sea or receives water that has been in the sea.
 fn beyond(receivers: &Receivers, sea: &[bool], progress: &Progress) -> Result<Vec<bool>> {
     let mut beyond = sea.to_vec();
     for node in accumulate_with(receivers, &progress.part(0.0))?.upstream_first() {
@@ -256,7 +257,7 @@ fn beyond(receivers: &Receivers, sea: &[bool], progress: &Progress) -> Result<Ve
     Ok(beyond)
 }
 
-/// The receivers that lead to nodes of the grid.
+/// The receivers that lead to nodes inside the grid.
 fn inside(codes: &Grid) -> Receivers {
     let window = *codes.window();
     let mut receivers = Receivers::none(window);
@@ -322,8 +323,8 @@ fn lakes_of(
     Ok((labels, lakes))
 }
 
-/// The standing water of each node: the sea, a lake next to it, or 0 on land. A lake without an outlet that no sample
-/// shows has the number after the last.
+/// The standing water of each node: the sea, a nearby lake, or 0 on land. A lake without an outlet that no sample shows
+/// has the number [`AT_SEA`] - 1.
 fn covers_of(receivers: &Receivers, in_lake: &[bool], sea: &[bool], labels: &Grid<u32>) -> Grid<u32> {
     let window = *labels.window();
     let unseen = AT_SEA - 1;
@@ -341,7 +342,7 @@ fn covers_of(receivers: &Receivers, in_lake: &[bool], sea: &[bool], labels: &Gri
                     .map(|at| labels[at])
                     .find(|label| *label > 0)
             };
-            // A river runs on through a lake with an outlet that no sample shows.
+            // A river continues through a lake with an outlet that no sample shows.
             let hidden = if in_lake { 0 } else { unseen };
             covers.data_mut()[k] = near(0).or_else(|| near(1)).unwrap_or(hidden);
         }
@@ -357,8 +358,8 @@ mod tests {
     use crate::hydrography::shores::Shores;
     use crate::hydrography::water::Frame;
 
-    /// A slope to the east with a river in row 4 that enters from the west, one that joins it from the north in column
-    /// 5, and a lake from column 15 on.
+    /// A slope to the east with a river in row 4 that enters from the west, a river that joins it from the north in
+    /// column 5, and a lake from column 15 on.
     fn given(width: usize) -> GivenWater {
         let window = Window::new(width, 9, 10.0);
         let grid = |value: &dyn Fn(usize, usize) -> f32| {
@@ -389,7 +390,7 @@ mod tests {
     #[test]
     fn a_river_ends_in_the_sea_and_does_not_rise_again_on_an_island() {
         let mut land = given(20);
-        // A channel of the sea with an island in it, which the valley crosses.
+        // A channel of the sea with an island, which the valley crosses.
         for j in 0..9 {
             land.heights.row_mut(j)[6..15].fill(-5.0);
             land.nodes.height.row_mut(j)[6..15].fill(if j == 4 { 3.0 } else { -5.0 });
@@ -415,7 +416,7 @@ mod tests {
         let mut shores = Shores::of(&water, &Frame::whole(&water), 1).unwrap();
         let rivers = rivers_within(&water, &frame, &rectangle, 3, &mut shores);
         let areas = shores.areas_within(&water, &rectangle);
-        // A lake of few samples that reaches the border is not small.
+        // A lake with few samples that reaches the border is not small.
         assert_eq!((water.lakes.len(), areas.len(), water.is_small(1)), (1, 1, false));
         assert_eq!((water.lakes[0].level, water.lakes[0].cells), (185.0, 45));
         assert_eq!(rivers.len(), 3);
@@ -429,7 +430,7 @@ mod tests {
         let end = last.points[last.points.len() - 1];
         assert_eq!(end[2], 185.0);
         assert!(areas[0].parts[0][0].contains(&[end[0], end[1]]));
-        // The lake is cut at the side.
+        // The lake is clipped at the side.
         assert!(areas[0].parts[0][0].iter().all(|[x, y]| *x <= 17.5 && (0.5..=7.5).contains(y)));
     }
 
@@ -443,7 +444,7 @@ mod tests {
             let is_river = j == 4 && (2..12).contains(&i) || i == 5 && (2..4).contains(&j);
             given.nodes.flow.data_mut()[k] = if is_river { 5000.0 } else { 100.0 };
         }
-        // A step up, and an area that falls.
+        // A step up, and a decreasing area.
         given.nodes.height[(8, 4)] = 260.0;
         given.nodes.flow[(9, 4)] = 1900.0;
         let water = Water::given(given, None, Least::new(20, 1), &Progress::none()).unwrap();
@@ -459,7 +460,7 @@ mod tests {
     #[test]
     fn receivers_that_lead_nowhere_are_dropped() {
         let mut given = given(12);
-        // A cycle, a code that is none, and another window.
+        // A cycle, an invalid code, and another window.
         given.nodes.receiver[(7, 4)] = 4.0;
         given.nodes.receiver[(3, 2)] = f32::NAN;
         given.nodes.receiver[(3, 3)] = 77.0;

@@ -1,13 +1,14 @@
-//! Crossings of lines with shores: each crossing becomes a point of both.
+//! Crossings of lines with shores. Each crossing becomes a point of both.
 
 use std::collections::HashMap;
 
 use super::given::snapped;
 
-/// A shore: an open line or a ring, whose last point repeats its first.
+/// A shore: an open line, or a ring whose last point repeats its first.
 pub type Path = Vec<[f64; 2]>;
 
-/// Land between two stretches of water, in samples, that a line which ends in the water does not cross again.
+/// Length of land between two stretches of water, in samples, below which a line that ends in the water is cut before
+/// that land.
 const SPIT: f64 = 1.0;
 
 /// A crossing of a segment with a shore.
@@ -15,14 +16,14 @@ const SPIT: f64 = 1.0;
 struct Crossing {
     /// The position along the segment, 0 to 1.
     along: f64,
-    /// The line of the shore, its segment, and the position along that.
+    /// The line of the shore.
     line: u32,
     segment: u32,
     other: f64,
     at: [f64; 2],
 }
 
-/// An index of lines by the squares of one sample that their segments touch, and the points to insert into them.
+/// An index of lines by the squares of one sample that their segments touch, and a list of points to insert into them.
 pub struct Joints<'a> {
     lines: &'a [Path],
     /// The water of each line.
@@ -35,8 +36,8 @@ pub struct Joints<'a> {
 }
 
 impl<'a> Joints<'a> {
-    /// An index over these lines, whose points are columns and rows; `waters` has the number of the water that each
-    /// line is the shore of.
+    /// An index of `lines`, whose points are columns and rows. `waters` has, for each line, the number of the water
+    /// whose shore it is.
     #[must_use]
     pub fn new(lines: &'a [Path], waters: &'a [u32]) -> Joints<'a> {
         let mut squares: HashMap<[i64; 2], Vec<(u32, u32)>> = HashMap::new();
@@ -48,15 +49,15 @@ impl<'a> Joints<'a> {
         Joints { lines, waters, squares, found: Vec::new(), is_snapped: false }
     }
 
-    /// The same with crossings that have the same bits in every window.
+    /// The same index, with crossings that have the same bits in every window.
     #[must_use]
     pub fn snapped(self) -> Joints<'a> {
         Joints { is_snapped: true, ..self }
     }
 
-    /// The crossing with the shore of a water at which a path that ends in it enters it: the last one, or an earlier
-    /// one if the path leaves the water for less than a sample after it. The index of the path's segment, the position
-    /// along it (0 to 1), and the point, which is also inserted into the shore.
+    /// The crossing at which a path that ends in a water enters it. This is the last crossing with the shore of
+    /// `water`, or an earlier one if the path leaves the water for less than a sample after it. Returns the index of
+    /// the path's segment, the position along it (0 to 1), and the point, which is also inserted into the shore.
     pub fn entry(&mut self, path: &[[f64; 3]], water: u32) -> Option<(usize, f64, [f64; 2])> {
         let pairs = path.windows(2).enumerate();
         let crossings: Vec<_> =
@@ -77,7 +78,7 @@ impl<'a> Joints<'a> {
         Some((k, along, at))
     }
 
-    /// The crossings of a segment with the shore of a water, along it.
+    /// The crossings of a segment with the shore of a water, in order along the segment.
     fn crossings(&self, pair: &[[f64; 3]], water: u32) -> impl Iterator<Item = Crossing> {
         let [a, b] = [pair[0], pair[1]].map(|[x, y, _]| [x, y]);
         let mut found: Vec<(f64, u32, u32, f64)> = Vec::new();
@@ -93,12 +94,12 @@ impl<'a> Joints<'a> {
             }
         });
         found.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-        // Squares may name a segment twice, and two segments meet in one point.
+        // Several squares may list the same segment, and two segments may meet in one point.
         found.dedup_by_key(|found| found.0);
         found.into_iter().map(|(along, line, segment, other)| {
             let ends = &self.lines[line as usize][segment as usize..segment as usize + 2];
             let at = match other {
-                // A crossing at an end of the segment: the point exists already.
+                // At an end of the segment, the point already exists.
                 0.0 => ends[0],
                 1.0 => ends[1],
                 other => {
@@ -115,7 +116,7 @@ impl<'a> Joints<'a> {
     pub fn nearest(&self, [x, y]: [f64; 2], water: u32) -> Option<[f64; 2]> {
         let (column, row) = (x.floor() as i64, y.floor() as i64);
         let mut best: Option<(f64, [f64; 2])> = None;
-        // On coarse levels, inlets of a given network may be narrower than the samples show.
+        // On coarse levels, inlets of a given network may be too narrow for the samples to show.
         let reach = if self.is_snapped { 6 } else { 3 };
         for square in (-reach..=reach).flat_map(|v| (-reach..=reach).map(move |u| [column + u, row + v])) {
             for (line, segment) in self.squares.get(&square).into_iter().flatten() {
@@ -142,7 +143,7 @@ pub struct Points(Vec<(u32, u32, f64, [f64; 2])>);
 impl Points {
     /// Inserts the points.
     pub fn insert(mut self, lines: &mut [Path]) {
-        // From the end of each line, so that the indices of earlier segments stay valid.
+        // From the end of each line, so that indices of earlier segments stay valid.
         self.0.sort_by(|a, b| (b.0, b.1).cmp(&(a.0, a.1)).then(b.2.total_cmp(&a.2)));
         for (line, segment, _, at) in self.0 {
             let path = &mut lines[line as usize];
@@ -202,7 +203,7 @@ mod tests {
     #[test]
     fn a_line_enters_the_water_that_it_ends_in() {
         let square = |x: f64, side: f64| vec![[x, -5.0], [x + side, -5.0], [x + side, 5.0], [x, 5.0], [x, -5.0]];
-        // A pond, a strip of land, and the sea; and the same with a spit between.
+        // A pond, a strip of land, and the sea; then the same with a narrow spit instead of the strip.
         for (width, expected) in [(2.0, 20.0), (17.5, 2.0)] {
             let lines = vec![square(2.0, width), square(20.0, 40.0)];
             let mut joints = Joints::new(&lines, &[0, 0]);

@@ -1,8 +1,8 @@
 //! Vector features of water and relief: rivers that end at the shores of lakes and of the sea, lakes, watersheds,
-//! coasts, summits.
+//! coasts and summits.
 //!
-//! [`water::Water`] computes the drainage once, or takes it from a network that is known; all features are derived from
-//! it. Positions are columns and rows of its grid.
+//! [`water::Water`] computes the drainage once, or takes it from a known network. All features are derived from it.
+//! Positions are columns and rows of its grid.
 
 #[doc(hidden)]
 pub mod clip;

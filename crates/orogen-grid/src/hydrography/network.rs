@@ -1,17 +1,17 @@
-//! A network of rivers that is known, one node per sample.
+//! A known network of rivers, with one node per sample.
 
 use crate::grid::Grid;
 
-/// What [`Water`](super::water::Water) keeps of a given network.
+/// The parts of a given network that [`Water`](super::water::Water) stores.
 #[derive(Debug, Clone)]
 pub struct Network {
     /// Drainage area of each node in m^2.
     pub flow: Grid,
-    /// Columns and rows from the sample to its node; none if nodes are at their samples.
+    /// Columns and rows from the sample to its node; `None` if nodes are at their samples.
     pub offset: Option<[Grid; 2]>,
-    /// The standing water of each node that is not at its sample: the number of a lake, [`AT_SEA`] or 0.
+    /// The standing water of each node: the number of a lake, [`AT_SEA`], or 0. `None` if nodes are at their samples.
     pub covers: Option<Grid<u32>>,
 }
 
-/// The sea, where lakes are numbers.
+/// The number of the sea among the numbers of lakes.
 pub const AT_SEA: u32 = u32::MAX;

@@ -1,8 +1,8 @@
 //! Outlines of labeled samples: polygons that tile the plane, with bit-equal common borders.
 //!
-//! Each sample is the center of a square; a polygon is the union of the squares of one label. Corners of borders are
-//! cut (Chaikin) between the nodes where three polygons meet, which stay fixed. Borders cannot cross, because each cut
-//! corner lies in a triangle of its own.
+//! Each sample is the center of a square, and a polygon is the union of the squares with one label. Corners of borders
+//! are cut (Chaikin) between the nodes where three polygons meet; nodes stay fixed. Borders cannot cross, because each
+//! cut corner lies in its own triangle.
 
 use super::joints::Path;
 use super::rings::nested;
@@ -16,13 +16,13 @@ const AROUND: u32 = u32::MAX;
 /// Steps along the sides of squares: east, south, west, north.
 const STEPS: [(i64, i64); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
 
-/// The polygons of each label from 1 to `count`: its parts, each an outer ring and holes, in columns and rows of the
-/// labels' lattice. Corners are cut `rounds` times.
+/// The polygons of each label from 1 to `count`, in columns and rows of the labels' lattice. A polygon is a list of
+/// parts, each an outer ring and its holes. Corners are cut `rounds` times.
 #[must_use]
 pub fn outlines(labels: &Grid<u32>, count: usize, rounds: usize) -> Vec<Vec<Vec<Path>>> {
     let squares = Squares { labels, width: labels.width() as i64, height: labels.height() as i64 };
     let mut rings: Vec<Vec<Path>> = vec![Vec::new(); count];
-    // Whether the upper side of a square was already walked westward, with the square on the left.
+    // Whether the upper side of a square was already followed to the west, with the square on the left.
     let mut walked = vec![false; labels.data().len()];
     for j in 0..squares.height {
         for i in 0..squares.width {
@@ -70,21 +70,21 @@ impl Squares<'_> {
         }
     }
 
-    /// The ring around squares connected by their sides. It starts at the north-east corner of square (i, j), whose
-    /// upper side belongs to the ring.
+    /// Follows the ring around squares that are connected by their sides. It starts at the north-east corner of square
+    /// (i, j), whose upper side belongs to the ring.
     fn walk(&self, i: i64, j: i64, label: u32, walked: &mut [bool]) -> Vec<(i64, i64)> {
         let start = (i + 1, j);
         let (mut at, mut step) = (start, 2);
         let mut ring = Vec::new();
         loop {
             if step == 2 {
-                // The square to the left of a step to the west is the one below it.
+                // The square to the left of a step to the west is the square below it.
                 walked[(at.1 * self.width + at.0 - 1) as usize] = true;
             }
             ring.push(at);
             at = (at.0 + STEPS[step].0, at.1 + STEPS[step].1);
-            // Turns left if that keeps the same squares at the side, else goes ahead, else right: squares that touch
-            // only at a corner are not connected.
+            // Turns left if that keeps the same squares at the side, otherwise goes straight on, otherwise turns right.
+            // Squares that touch only at a corner are therefore not connected.
             step = [step + 3, step, step + 1]
                 .map(|step| step % 4)
                 .into_iter()
@@ -109,7 +109,7 @@ impl Squares<'_> {
         corner || borders.count() > 2
     }
 
-    /// A ring with its corners cut between nodes, in columns and rows. Straight parts keep only their end points.
+    /// A ring with its corners cut between nodes, in columns and rows. Straight parts keep only their ends.
     fn smoothed(&self, ring: &[(i64, i64)], rounds: usize) -> Path {
         let point = |at: &(i64, i64)| [at.0 as f64, at.1 as f64];
         let line = |points: Vec<[f64; 2]>, closed| Line { elevation: 0.0, level: 0, closed, points };
@@ -191,7 +191,7 @@ mod tests {
             let found = outlines(&labels, kinds as usize, rounds);
             let all: f64 = found.iter().map(|parts| area(parts)).sum();
             assert!((all - 1200.0).abs() < 1e-9, "{all}");
-            // Each border segment belongs to two areas, once per direction, or to one area and the rim.
+            // Each border segment belongs to two areas, once in each direction, or to one area and the rim.
             let mut edges: HashMap<[[u64; 2]; 2], i32> = HashMap::new();
             for ring in found.iter().flatten().flatten() {
                 assert_eq!(ring.first(), ring.last());

@@ -1,4 +1,4 @@
-//! Watersheds of chosen outlets (pour points), which are moved to the nearest stream first.
+//! Watersheds of chosen outlets (pour points), which are first moved to the nearest stream.
 
 use super::water::{Cover, Water};
 use super::watersheds::label_way;
@@ -6,21 +6,22 @@ use super::zones::ZoneStats;
 use crate::error::Result;
 use crate::progress::Progress;
 
-/// No outlet.
+/// The index that stands for no outlet.
 pub const NONE: u32 = u32::MAX;
 
-/// The node of a stream near a place.
+/// The stream node near a position.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Snapped {
-    /// The node.
+    /// The index of the node.
     pub node: usize,
-    /// Its distance from the place, in samples.
+    /// The distance of the node from the position, in samples.
     pub moved: f64,
 }
 
-/// The stream node within `radius` samples of a place that is nearest to it: a node on land or in a lake through which
-/// at least `least` samples drain (Jenson 1991). Of equally near ones, the one that drains the most. `at` is a column
-/// and a row of the grid; only nodes of samples that `inside` accepts are considered. Costs O(distance^2).
+/// The stream node that is nearest to a position, within `radius` samples (Jenson 1991). Stream nodes are nodes on land
+/// or in a lake through which at least `least` samples drain. Of equally near nodes, the one with the largest drainage
+/// area is returned. `at` is a column and a row of the grid. Only nodes of samples that `inside` accepts are
+/// considered. The time is O(distance^2).
 ///
 /// # Errors
 /// If the work was cancelled.
@@ -38,7 +39,8 @@ pub fn nearest_stream(
     let farthest = radius.min((width + height) as f64).ceil() as i64 + 2;
     let mut best: Option<Snapped> = None;
     for ring in 0..=farthest {
-        // A node is at most a sample from its own, and the place half of one from that of the ring's center.
+        // A node is at most one sample from its own sample, and the position half a sample from the center of the
+        // rings.
         if best.is_some_and(|best| best.moved < ring as f64 - 2.0) {
             break;
         }
@@ -68,18 +70,18 @@ pub fn nearest_stream(
     Ok(best)
 }
 
-/// The land that drains to chosen nodes.
+/// The land that drains to each of several chosen nodes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PourPoints {
     /// For each node, the index of the first outlet that its water passes; [`NONE`] if it passes none.
     pub labels: Vec<u32>,
-    /// For each outlet, the index of the next one downstream.
+    /// For each outlet, the index of the next outlet downstream.
     pub downstream: Vec<Option<u32>>,
 }
 
 impl PourPoints {
-    /// The land that drains to each of these nodes. Of equal nodes, the water passes the later one first. Costs
-    /// O(nodes).
+    /// The land that drains to each of these nodes. If two outlets are at the same node, the water passes the later one
+    /// first. The time is O(nodes).
     ///
     /// # Errors
     /// If the work was cancelled.
@@ -109,7 +111,7 @@ impl PourPoints {
         Ok(PourPoints { labels, downstream })
     }
 
-    /// For each outlet, itself and those upstream of it.
+    /// For each outlet, its own index and those of the outlets upstream.
     #[must_use]
     pub fn upstream(&self) -> Vec<Vec<u32>> {
         let mut all: Vec<Vec<u32>> = vec![Vec::new(); self.downstream.len()];
@@ -124,16 +126,16 @@ impl PourPoints {
     }
 }
 
-/// The samples of a label.
+/// Statistics of the samples of a label.
 #[derive(Debug, Clone, Copy)]
 pub struct LabelStats {
-    /// Their ground.
+    /// The heights of the samples.
     pub ground: ZoneStats,
     /// The first and the last column.
     pub columns: [usize; 2],
     /// The first and the last row.
     pub rows: [usize; 2],
-    /// Whether one is at the border, or beside one without a height.
+    /// Whether a sample is at the border of the grid, or next to a sample without a height.
     pub at_border: bool,
 }
 
@@ -142,7 +144,7 @@ impl LabelStats {
     pub const EMPTY: LabelStats =
         LabelStats { ground: ZoneStats::EMPTY, columns: [usize::MAX, 0], rows: [usize::MAX, 0], at_border: false };
 
-    /// Both.
+    /// The statistics of the samples of both.
     #[must_use]
     pub fn join(mut self, other: &LabelStats) -> LabelStats {
         let span = |a: [usize; 2], b: [usize; 2]| [a[0].min(b[0]), a[1].max(b[1])];
@@ -157,7 +159,7 @@ impl LabelStats {
 }
 
 impl PourPoints {
-    /// The label of each sample on land, of some columns and rows of the water's grid, and the samples of each of
+    /// The label of each land sample in some columns and rows of the water's grid, and the statistics of each of
     /// `count` labels.
     #[must_use]
     pub fn sampled(

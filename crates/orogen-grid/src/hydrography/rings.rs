@@ -11,7 +11,7 @@ pub fn nested(rings: Vec<&Path>) -> Vec<Vec<Path>> {
     parts.sort_by(|a, b| twice_area(&b[0]).total_cmp(&twice_area(&a[0])));
     for hole in holes {
         // A hole may touch the ring around it, but not along an edge. It belongs to the smallest part that contains it;
-        // parts are sorted.
+        // parts are sorted by size.
         let at = match hole.as_slice() {
             [[ax, ay], [bx, by], ..] => [(ax + bx) / 2.0, (ay + by) / 2.0],
             _ => continue,

@@ -1,8 +1,8 @@
-//! Rivers as lines: reaches over land, from sources, confluences and lakes to confluences, lakes, the sea and the
-//! border.
+//! Rivers as lines: reaches over land that start at sources, confluences and lakes, and end at confluences, lakes, the
+//! sea and the border.
 //!
-//! A reach that meets a shore shares a point with it. Reaches that meet share a point too. Heights never rise along a
-//! reach, nor from a reach to the next.
+//! A reach that meets a shore shares a point with it. Reaches that meet also share a point. Heights never rise along a
+//! reach, nor from a reach to the next one.
 
 use std::collections::HashMap;
 
@@ -40,19 +40,20 @@ pub enum Mouth {
 pub struct River {
     /// Column, row and height of each point, downstream.
     pub points: Vec<[f64; 3]>,
-    /// Strahler order; 0 if it is unknown, because water runs in from outside a given network.
+    /// Strahler order; 0 if it is unknown because water enters from outside a given network.
     pub order: u8,
-    /// Number of samples that drain to its end.
+    /// Number of samples that drain to the end of the reach.
     pub drained: f64,
     /// The first land sample of the reach.
     pub start: u32,
-    /// The last sample that belongs to this reach only; the next one belongs to another reach or to water.
+    /// The last sample that belongs only to this reach; the next one belongs to another reach or to water.
     pub end: u32,
     /// The start of the reach.
     pub source: Source,
     /// The end of the reach.
     pub mouth: Mouth,
-    /// The reach that its water continues in, beyond the lake if it ends in one.
+    /// The index of the reach in which its water continues, beyond the lake if it ends in one; `None` at the sea and
+    /// the border.
     pub downstream: Option<u32>,
 }
 
@@ -74,18 +75,18 @@ enum End {
     Border,
 }
 
-/// The number of the sea; lakes are numbered from 1.
+/// The number of the sea in shores; lakes are numbered from 1.
 const SEA: u32 = 0;
 
-/// The reaches within a frame, smoothed `rounds` times. Their crossings with the shores are inserted into `shores`.
+/// The reaches within a frame, smoothed `rounds` times. Their crossings with shores are inserted into `shores`.
 pub fn rivers(water: &Water, frame: &Frame, rounds: usize, shores: &mut Shores) -> Vec<River> {
     traced(water, frame, rounds, shores).into_iter().map(|(river, _)| river).collect()
 }
 
-/// The reaches of a given network within a rectangle: lines of the whole grid, smoothed, ended at the shores of the
-/// whole grid and then cut. Where the rectangles of two windows have a common side, the parts of a reach meet in the
-/// same point, as long as both grids extend some samples beyond the side. A reach that leaves and comes back is
-/// several.
+/// The reaches of a given network within a rectangle. The lines of the whole grid are smoothed, ended at the shores of
+/// the whole grid, and then clipped. Where the rectangles of two windows have a common side, the parts of a reach meet
+/// in the same point, as long as both grids extend some samples beyond the side. A reach that leaves and returns gives
+/// several parts.
 pub fn rivers_within(
     water: &Water,
     frame: &Frame,
@@ -95,7 +96,7 @@ pub fn rivers_within(
 ) -> Vec<River> {
     let all = traced(water, &Frame::whole(water), rounds, shores);
     let mut parts: Vec<River> = Vec::new();
-    // The part with which each reach begins, if that is within the rectangle.
+    // The part at the start of each reach, if the start is within the rectangle.
     let mut first: Vec<Option<u32>> = vec![None; all.len()];
     for (k, (river, cells)) in all.iter().enumerate() {
         for piece in rectangle.pieces(&river.points).into_iter().filter(|piece| piece.points.len() > 1) {
@@ -114,9 +115,9 @@ pub fn rivers_within(
     parts
 }
 
-/// A part of a reach.
+/// The part of a reach that is given by a clipped piece of its line.
 fn part(water: &Water, frame: &Frame, river: &River, cells: &[u32], piece: Piece) -> River {
-    // Points and nodes have the same indices, but the last points of a line may be cut off at a shore.
+    // Points and nodes have the same indices, but the last points of a line may have been cut off at a shore.
     let at = |k: usize| cells[k.min(cells.len().saturating_sub(1))];
     let own = cells.partition_point(|cell| *cell != river.end).min(cells.len().saturating_sub(1));
     let inner = piece.inner.clone();
@@ -124,7 +125,7 @@ fn part(water: &Water, frame: &Frame, river: &River, cells: &[u32], piece: Piece
     let end = if !piece.leaves {
         river.end
     } else {
-        // A smoothed line may leave before or after its nodes do: watersheds need a node of the frame.
+        // A smoothed line may leave the frame before or after its nodes do; watersheds need a node inside the frame.
         let last = inner.end.saturating_sub(1).min(own);
         let nodes = cells[inner.start.min(last)..=last].iter().rev().copied();
         nodes.into_iter().find(|cell| frame.holds(water, *cell as usize)).unwrap_or(cells[last])
@@ -193,7 +194,7 @@ fn traced(water: &Water, frame: &Frame, rounds: usize, shores: &mut Shores) -> V
     made
 }
 
-/// The last cell that belongs to the stretch only; the next one belongs to the next reach or to water.
+/// The last cell that belongs only to the stretch; the next one belongs to the next reach or to water.
 fn last_own(stretch: &Stretch) -> usize {
     let count = stretch.cells.len();
     match stretch.mouth {
@@ -202,15 +203,15 @@ fn last_own(stretch: &Stretch) -> usize {
     }
 }
 
-/// Splits a reach of the network where it enters or leaves water, and at the frame. Each stretch also holds the first
-/// water cell at its ends.
+/// Splits a reach of the network where it enters or leaves water, and at the frame. Each stretch also contains the
+/// first water cell at each of its ends.
 fn cut(water: &Water, frame: &Frame, cells: &[usize], order: u8, next: Option<u32>) -> Vec<Stretch> {
     let mut stretches = Vec::new();
     let mut part: Vec<usize> = Vec::new();
     let mut source = Source::Land;
     let mut finish = |part: &mut Vec<usize>, source: Source, mouth: End| {
         let cells = std::mem::take(part);
-        // Nodes in a lake may be far from the samples that show it.
+        // Nodes in a lake may be far from the samples that show the lake.
         let in_lake = matches!((source, mouth), (Source::Lake(from), End::Lake(to)) if from == to);
         if cells.len() > 1 && !in_lake {
             stretches.push(Stretch { cells, order, source, mouth });
@@ -284,7 +285,7 @@ fn line(water: &Water, stretch: &Stretch, mouth: Mouth, rounds: usize, joints: &
     points
 }
 
-/// Ends a line at the shore of the water that it leads into. The height there is that of the water.
+/// Ends a line at the shore of the water that it enters. The height there is that of the water.
 fn end_at(points: &mut Vec<[f64; 3]>, raw: &[[f64; 3]], joints: &mut Joints, water: u32) {
     let [.., land, wet] = raw else { return };
     let level = wet[2];
@@ -306,7 +307,8 @@ fn end_at(points: &mut Vec<[f64; 3]>, raw: &[[f64; 3]], joints: &mut Joints, wat
     }
 }
 
-/// Smooths a line by weighted means of three points (1, 2, 1); its ends stay. A descending line stays descending.
+/// Smooths a line with weighted means of three points (1, 2, 1). Its ends do not move. A descending line stays
+/// descending.
 #[must_use]
 pub fn even(points: &[[f64; 3]], rounds: usize) -> Vec<[f64; 3]> {
     let mut points = points.to_vec();
@@ -368,7 +370,7 @@ mod tests {
             if let Some(next) = river.downstream.map(|next| &rivers[next as usize]) {
                 assert!(next.points[0][2] <= last[2] && next.order >= river.order && next.drained > river.drained);
             }
-            // The path downstream ends.
+            // The downstream path ends.
             let (mut at, mut steps) = (k, 0);
             while let Some(next) = rivers[at].downstream {
                 at = next as usize;

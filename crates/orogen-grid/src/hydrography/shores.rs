@@ -13,11 +13,11 @@ use crate::contour::trace::contours;
 use crate::error::Result;
 use crate::grid::{Grid, Window};
 
-/// Offset in metres that replaces an exact 0, for a sample exactly at the water level.
+/// Offset in metres that replaces an exact 0, for samples exactly at the water level.
 const HARDLY: f32 = 1e-3;
 
-/// The shores of lakes and of the sea, as lines in columns and rows. With north up, land is to the right of the shore
-/// of a lake, in the direction of the line, and to the left of the coast of the sea.
+/// The shores of lakes and of the sea, as lines in columns and rows. With north up, in the direction of the line, land
+/// is to the right of the shore of a lake and to the left of the coast of the sea.
 #[derive(Debug, Clone, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Shores {
@@ -29,10 +29,10 @@ pub struct Shores {
 
 impl Shores {
     /// All shores within a frame, with corners cut `rounds` times. Lakes that extend beyond the frame are closed along
-    /// it.
+    /// its sides.
     ///
     /// # Errors
-    /// If there are more than can be numbered.
+    /// If there are more shores than can be numbered.
     pub fn of(water: &Water, frame: &Frame, rounds: usize) -> Result<Shores> {
         let mut shores = Shores::default();
         for line in contours(&depths(water, frame), &[0.0])? {
@@ -56,7 +56,7 @@ impl Shores {
         Shores { waters: vec![0; lines.len()], lines }
     }
 
-    /// The lakes within a rectangle as polygons, in the order of their numbers, without those that are too small.
+    /// The lakes within a rectangle as polygons, in the order of their numbers, without lakes that are too small.
     #[must_use]
     pub fn areas_within(&self, water: &Water, rectangle: &Rectangle) -> Vec<LakeArea> {
         let mut areas = self.areas();
@@ -97,7 +97,7 @@ pub struct LakeArea {
     pub parts: Vec<Vec<Path>>,
 }
 
-/// A shore of a given network, with positions that have the same bits in every window.
+/// A shore. For a given network, its positions have the same bits in every window.
 fn shared(mut line: Line, water: &Water) -> Line {
     if water.network.is_some() {
         line.points.iter_mut().for_each(|point| *point = point.map(snapped));
@@ -106,8 +106,8 @@ fn shared(mut line: Line, water: &Water) -> Line {
     line
 }
 
-/// Depth of the water in the lakes of a frame and one sample around it; negative values are the height of the adjacent
-/// land above the water. A high wall around the frame makes shores follow its outermost samples.
+/// Depth of the water in lakes, for the samples of a frame and one sample around it. Negative values are the height of
+/// the adjacent land above the water. A high wall around the frame makes shores follow its outermost samples.
 fn depths(water: &Water, frame: &Frame) -> Grid {
     const WALL: f32 = -1e30;
     let (columns, rows) = (&frame.columns, &frame.rows);
@@ -133,12 +133,12 @@ fn depths(water: &Water, frame: &Frame) -> Grid {
     depth
 }
 
-/// The height of a frame's samples above the sea. Samples at sea level are sea.
+/// The height above the sea of the samples of a frame. Samples at sea level belong to the sea.
 fn over_the_sea(water: &Water, frame: &Frame, sea: f32) -> Option<Grid> {
     let (columns, rows) = (&frame.columns, &frame.rows);
     let window = Window::new(columns.len(), rows.len(), 1.0).at(columns.start as i64, rows.start as i64);
     let rise = |height: f32| if height > sea { (height - sea).max(HARDLY) } else { (height - sea).min(-HARDLY) };
-    // A given lake is no sea, even if its bed is below the sea.
+    // A given lake is not the sea, even if its bed is below sea level.
     let lakes = if water.network.is_some() { water.lakes.as_slice() } else { &[] };
     let level = |lake: u32| lakes.get((lake as usize).wrapping_sub(1)).map(|lake| lake.level);
     let of_row = |j: usize| {

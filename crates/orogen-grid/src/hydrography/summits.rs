@@ -9,11 +9,11 @@ use crate::parallel;
 pub struct Summit {
     /// Column and row.
     pub place: [usize; 2],
-    /// Its height.
+    /// Height of the summit, in metres.
     pub height: f32,
     /// Metres down to the key col; for the highest summit, to the lowest ground or to the sea.
     pub prominence: f32,
-    /// Column and row of the key col, the highest pass to higher ground; none for the highest summit.
+    /// Column and row of the key col, the highest pass to higher ground; `None` for the highest summit.
     pub col: Option<[usize; 2]>,
 }
 
@@ -22,8 +22,8 @@ pub const MEMORY: u64 = 16;
 
 const NOT_YET: u32 = u32::MAX;
 
-/// The summits within a frame with at least this prominence, in metres, the most prominent first. Samples in the sea
-/// and at the border of the frame, where the ground may continue to rise, are excluded.
+/// The summits within a frame with a prominence of at least `least` metres, the most prominent first. Samples in the
+/// sea are excluded, and so are samples at the border of the frame, where the ground may continue to rise.
 ///
 /// Samples are processed from the highest down and joined to their processed neighbors. Where two hills meet, the
 /// sample is the key col of the lower summit (union-find, O(n log n)). Of equal heights the first in row order counts
@@ -38,7 +38,7 @@ pub fn summits(heights: &Grid, frame: &Frame, sea_level: Option<f32>, least: f32
     order.retain(|cell| at(*cell as usize).is_finite());
     parallel::sort_by(&mut order, |a, b| at(*b as usize).total_cmp(&at(*a as usize)).then(a.cmp(b)));
     let Some(lowest) = order.last().map(|cell| at(*cell as usize)) else { return Vec::new() };
-    // The hill of each sample, by its parent; a summit is its own parent.
+    // The hill of each sample, as a union-find forest: a summit is its own parent.
     let mut parents = vec![NOT_YET; width * height];
     let higher = |a: u32, b: u32| (at(a as usize), b) > (at(b as usize), a);
     let mut found: Vec<(u32, f32, Option<u32>)> = Vec::new();
@@ -122,7 +122,7 @@ mod tests {
         // With the sea at 0, each hill is an island.
         let islands = summits(&grid, &frame, Some(0.0), 1.0);
         assert!(islands.iter().all(|summit| summit.col.is_none() && summit.prominence == summit.height));
-        // A sample at the border of the frame is no summit.
+        // A sample at the border of the frame is not a summit.
         assert_eq!(summits(&grid, &Frame { columns: 5..10, rows: 1..5 }, None, 1.0).len(), 1);
         assert_eq!(summits(&grid, &frame, None, 6.0).len(), 2);
     }

@@ -18,19 +18,19 @@ use crate::progress::Progress;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Least {
-    /// Samples that must drain to the source of a river.
+    /// Minimum number of samples that drain to the source of a river.
     pub spring: u32,
     /// Minimum area of a lake, in samples.
     pub lake: u32,
     /// Minimum depth of a lake, in metres.
     pub depth: f32,
-    /// Whether receivers are random: on heights that are smooth at the scale of a few samples, steepest descent gives
-    /// parallel lines.
+    /// Whether receivers are random. On heights that are smooth at the scale of a few samples, steepest descent would
+    /// give parallel lines.
     pub scattered: bool,
 }
 
 impl Least {
-    /// Rivers and lakes from these numbers of samples on; lakes of any depth, receivers by steepest descent.
+    /// Rivers and lakes with these minimum numbers of samples, lakes of any depth, and receivers by steepest descent.
     #[must_use]
     pub const fn new(spring: u32, lake: u32) -> Least {
         Least { spring, lake, depth: 0.0, scattered: false }
@@ -62,22 +62,23 @@ pub enum Cover {
 /// The water of a grid.
 #[derive(Debug, Clone)]
 pub struct Water {
-    /// The heights.
+    /// The heights of the samples, in metres.
     pub heights: Grid,
-    /// Land: the heights, with depressions that are not lakes raised until they drain. Lakes: their level. The surface
-    /// never rises along the receivers. Of a given network: the heights of its nodes, which never rise along rivers.
+    /// On land, the heights, with depressions that are not lakes raised until they drain; in lakes, their level. The
+    /// surface never rises along the receivers. For a given network, the heights of its nodes, which never rise along
+    /// rivers.
     pub surface: Grid,
     /// The receiver of each sample.
     pub receivers: Receivers,
-    /// Number of samples that drain through each sample, including itself; empty if the network is given.
+    /// Number of samples that drain through each sample, including the sample itself; empty if the network is given.
     pub area: Grid<u32>,
     /// The lake at each sample, from 1; 0 on land.
     pub labels: Grid<u32>,
     /// The lakes; lake k is at index k - 1.
     pub lakes: Vec<Lake>,
-    /// The reaches of rivers, from source or confluence to confluence or outlet, also below lakes.
+    /// The reaches of rivers, from each source or confluence to the next confluence or outlet, also below lakes.
     pub reaches: Vec<Reach>,
-    /// The height of the sea.
+    /// The height of the sea in metres; `None` without a sea.
     pub sea_level: Option<f32>,
     /// The network, if it was [given](Water::given).
     pub network: Option<Network>,
@@ -113,7 +114,7 @@ impl Frame {
 pub const MEMORY: u64 = 44;
 
 impl Water {
-    /// The volume of each lake within a frame, at the index of its label, of samples of this area.
+    /// The volume of each lake within a frame, at the index of its label. `cell_area` is the area of a sample.
     #[must_use]
     pub fn lake_volumes(&self, frame: &Frame, cell_area: f64) -> Vec<f64> {
         let mut volumes = vec![0.0f64; self.lakes.len() + 1];
@@ -128,7 +129,7 @@ impl Water {
         volumes
     }
 
-    /// Computes the water of a grid. A grid of fewer than three columns or rows has none.
+    /// Computes the water of a grid. A grid with fewer than three columns or rows has none.
     ///
     /// # Errors
     /// If the work was cancelled.
@@ -141,7 +142,7 @@ impl Water {
         let receivers = drainage.receivers;
         drop(drainage.basins);
         progress.check()?;
-        // Shallow lakes are dropped, and the others renumbered.
+        // Shallow lakes are dropped, and the others are renumbered.
         let mut kept = vec![0u32];
         let mut deep = Vec::new();
         for lake in &found.lakes {
@@ -182,7 +183,7 @@ impl Water {
         }
     }
 
-    /// Number of samples that drain through a node, including its own; of a given network its area in samples.
+    /// Number of samples that drain through a node, including its own sample. For a given network, its area in samples.
     #[must_use]
     pub fn drained(&self, node: usize) -> f64 {
         match &self.network {
@@ -221,7 +222,7 @@ impl Water {
         }
     }
 
-    /// The node that is nearest to a sample.
+    /// The node nearest to a sample.
     #[must_use]
     pub fn nearest_node(&self, sample: usize) -> usize {
         if self.network.as_ref().is_none_or(|network| network.offset.is_none()) {

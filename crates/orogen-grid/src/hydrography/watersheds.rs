@@ -1,4 +1,4 @@
-//! Watersheds of river mouths, and the land between them.
+//! Watersheds of river mouths, and of the land between them.
 
 use super::rivers::{Mouth, River};
 use super::water::{Cover, Frame, Water};
@@ -12,21 +12,22 @@ use std::ops::Range;
 pub struct Watersheds {
     /// Labels from 1, row-major over the frame; 0 for the sea.
     pub labels: Vec<u32>,
-    /// For label k, at index k - 1: the index of the reach that ends at the mouth; none for land that no river drains.
+    /// For label k, at index k - 1, the index of the reach that ends at the mouth; `None` for land that no river
+    /// drains.
     pub rivers: Vec<Option<u32>>,
 }
 
 const UNKNOWN: u32 = u32::MAX;
 
-/// The watersheds of all reaches that end in the sea or at the border of a frame, and in lakes of a given network, in
-/// the order of the reaches; then the remaining land, one label per part connected by the sides of samples. Costs
-/// O(samples).
+/// The watersheds of all reaches that end in the sea, at the border of a frame, or in lakes of a given network, in the
+/// order of the reaches. The remaining land follows, with one label for each part that is connected by the sides of
+/// samples. The time is O(samples).
 #[must_use]
 pub fn watersheds(water: &Water, frame: &Frame, reaches: &[River]) -> Watersheds {
     let mut found = mouths(water, reaches);
     let mut way = Vec::new();
     for start in 0..found.labels.len() {
-        // What drains to no mouth has label 0.
+        // Land that drains to no mouth has label 0.
         label_way(&water.receivers, start, &mut found.labels, [UNKNOWN, 0], &mut way);
     }
     let is_land = |cell: usize| matches!(water.cover(cell), Cover::Land | Cover::Lake(_));
@@ -49,7 +50,7 @@ pub fn watersheds(water: &Water, frame: &Frame, reaches: &[River]) -> Watersheds
 fn mouths(water: &Water, reaches: &[River]) -> Watersheds {
     let mut labels = vec![UNKNOWN; water.heights.data().len()];
     let mut rivers = Vec::new();
-    // The watershed of each lake of a given network: water that runs into it stays.
+    // The watershed of each lake of a given network, where the water that enters the lake stays.
     let mut of_lake: Vec<Option<u32>> = vec![None; if water.network.is_some() { water.lakes.len() } else { 0 }];
     for (k, reach) in reaches.iter().enumerate() {
         match reach.mouth {
@@ -87,8 +88,8 @@ fn mouths(water: &Water, reaches: &[River]) -> Watersheds {
     Watersheds { labels, rivers }
 }
 
-/// Gives the nodes on the way down from a node the label of the first one that has one, or `none` if none has. `way` is
-/// scratch memory.
+/// Follows the receivers from a node to the first node that has a label, and gives that label to all nodes on the path,
+/// or `none` if there is none. `way` is scratch memory.
 pub(super) fn label_way(
     receivers: &Receivers,
     start: usize,
@@ -111,7 +112,7 @@ pub(super) fn label_way(
 }
 
 impl Watersheds {
-    /// Labels the parts of unknown land, of this number of columns.
+    /// Labels the parts of unknown land, in rows of `across` columns.
     fn label_rest(&mut self, across: usize) {
         let count = self.labels.len();
         let mut waiting = Vec::new();
@@ -141,8 +142,8 @@ impl Watersheds {
         }
     }
 
-    /// The labels of some columns and rows of the water's grid, and the ground of each label; those outside the frame
-    /// are at its edge.
+    /// The labels of some columns and rows of the water's grid, and the heights of each label. Samples outside the
+    /// frame get the label at its edge.
     #[must_use]
     pub fn sampled(
         &self,

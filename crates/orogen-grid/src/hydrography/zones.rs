@@ -7,9 +7,9 @@ pub struct ZoneStats {
     pub count: u64,
     /// The lowest height in metres.
     pub low: f32,
-    /// The highest.
+    /// The highest height in metres.
     pub high: f32,
-    /// The sum of all heights.
+    /// The sum of all heights in metres.
     pub sum: f64,
 }
 

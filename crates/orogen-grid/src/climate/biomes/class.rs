@@ -1,4 +1,4 @@
-//! A class of a scheme, and the climate that it is found from.
+//! A class of a scheme, and the climate that determines it.
 
 use crate::climate::year::{Year, cosine};
 
@@ -9,7 +9,7 @@ pub struct Class {
     pub code: u8,
     /// The name, in lower case.
     pub name: &'static str,
-    /// The color on maps, sRGB.
+    /// The color on maps, in sRGB.
     pub color: [u8; 3],
 }
 
@@ -23,8 +23,8 @@ pub struct Climate {
     pub year: Year,
     /// Rain of a year, in mm.
     pub rain: f64,
-    /// When the rain falls, -1 to 1: 0 evenly over the year; the rain of a month is 1 + `seasonality` cos t of the
-    /// mean, with t = 0 in the warmest month.
+    /// Seasonality of the rain, -1 to 1: the rain of a month is 1 + `seasonality` cos t times the mean, with t = 0 in
+    /// the warmest month. 0 means even rain over the year.
     pub seasonality: f64,
 }
 

@@ -48,21 +48,21 @@ pub(super) const CLASSES: &[Class] = &[
 /// The code of the polar desert.
 const POLAR_DESERT: u8 = 1;
 
-/// The first code of each belt of temperature and the number of its zones: subpolar, boreal, cool temperate, warm
+/// The first code of each temperature belt and the number of its zones: subpolar, boreal, cool temperate, warm
 /// temperate, tropical. The subtropical zones follow those of the warm temperate belt.
 const BELTS: [(u8, i32); 5] = [(2, 4), (6, 5), (11, 6), (17, 7), (31, 8)];
 
-/// Index of the belt that the frost line divides, and the number of its zones.
+/// Index of the belt that the frost line divides.
 const WARM: usize = 3;
 
-/// Biotemperature of the frost line, in degrees C: the middle between 12 and 24 in the logarithm.
+/// Biotemperature of the frost line, in degrees C: the logarithmic mean of 12 and 24.
 const FROST_LINE: f64 = 16.970_562_748_477_14;
 
-/// Lowest biotemperature of the subpolar belt, in degrees C, and least rain of its second zone, in mm, halved.
+/// Lowest biotemperature of the subpolar belt, in degrees C, and half the least rain of its second zone, in mm.
 const COLDEST: f64 = 1.5;
 const DRIEST: f64 = 62.5;
 
-/// The class of a climate: the hexagon that contains its biotemperature, rain and their ratio, in logarithms.
+/// The class of a climate: the hexagon that contains its biotemperature, its rain and their ratio, in logarithms.
 pub(super) fn code(climate: &Climate) -> u8 {
     let biotemperature = climate.year.biotemperature();
     if biotemperature <= 0.0 {
@@ -80,13 +80,13 @@ pub(super) fn code(climate: &Climate) -> u8 {
     }
 }
 
-/// The hexagon that contains a point: its column and row. Hexagons are regular if the axes of columns, of rows and of
+/// The column and row of the hexagon that contains a point. Hexagons are regular if the axes of columns, of rows and of
 /// their difference are at 120 degrees to each other.
 fn hexagon(column: f64, row: f64) -> (i32, i32) {
     let axes = [column, -row, row - column];
     let [mut q, mut r, s] = axes.map(f64::round);
     let [off_q, off_r, off_s] = [(q - axes[0]).abs(), (r - axes[1]).abs(), (s - axes[2]).abs()];
-    // The three numbers of a hexagon have the sum 0: the one that was rounded most follows from the others.
+    // The three numbers of a hexagon have the sum 0, so the one that was rounded most follows from the others.
     if off_q > off_r && off_q > off_s {
         q = -r - s;
     } else if off_r > off_s {

@@ -1,4 +1,4 @@
-//! Climates of Köppen and Geiger.
+//! Köppen-Geiger climates.
 
 use super::class::{Class, Climate};
 
@@ -44,7 +44,7 @@ const TEMPERATE: u8 = 8;
 const COLD: u8 = 17;
 const POLAR: u8 = 29;
 
-/// The six months around the warmest one. The other six are the winter.
+/// The six months around the warmest one. The other six are winter.
 const SUMMER: [usize; 6] = [10, 11, 0, 1, 2, 3];
 
 /// The class of a climate, by the criteria of Peel, Finlayson and McMahon (2007).
@@ -77,7 +77,7 @@ pub(super) fn code(climate: &Climate) -> u8 {
         () if dry_winter < most(&summer) / 10.0 => 1,
         () => 2,
     };
-    // 0 for hot summers, 1 for warm ones, 2 for cold ones.
+    // 0 for hot summers, 1 for warm summers, 2 for cold summers.
     let warm_months = year.months().iter().filter(|month| **month >= 10.0).count();
     let warmth = match year.warmest() {
         warmest if warmest >= 22.0 => 0,
@@ -86,14 +86,14 @@ pub(super) fn code(climate: &Climate) -> u8 {
     };
     match year.coldest() {
         coldest if coldest > 0.0 => TEMPERATE + 3 * season + warmth,
-        // A winter below -38 degrees C counts more than a cold summer.
+        // A winter below -38 degrees C takes precedence over a cold summer.
         coldest if coldest < -38.0 && warmth == 2 => COLD + 4 * season + 3,
         _ => COLD + 4 * season + warmth,
     }
 }
 
-/// What the threshold of aridity is above twice the mean temperature: 0 if seven tenths of the rain fall in winter, 28
-/// if they fall in summer, else 14.
+/// Difference between the aridity threshold and twice the mean temperature: 0 if at least seven tenths of the rain fall
+/// in winter, 28 if they fall in summer, otherwise 14.
 fn extra(rain: f64, summer: f64, winter: f64) -> f64 {
     match () {
         () if winter >= 0.7 * rain => 0.0,

@@ -19,15 +19,15 @@ pub enum Scheme {
     /// Biomes by mean temperature and rain (Whittaker 1975), with straight lines along the borders of the diagram in
     /// Ricklefs (2008), and ice where no month is above 0 degrees C.
     Whittaker,
-    /// Life zones by biotemperature, rain and their ratio (Holdridge 1967): hexagons in the logarithms.
+    /// Life zones by biotemperature, rain and their ratio (Holdridge 1967): hexagons in the logarithms of the three.
     Holdridge,
-    /// Climates by the temperatures and the rain of months (Köppen and Geiger; criteria and colors of Peel, Finlayson
-    /// and McMahon 2007, and Beck and others 2018).
+    /// Climates by the monthly temperatures and rain (Köppen and Geiger; criteria and colors of Peel, Finlayson and
+    /// McMahon 2007, and Beck and others 2018).
     KoppenGeiger,
 }
 
 impl Scheme {
-    /// All classes; the code of each is its index. The first is water.
+    /// All classes. The code of each class is its index; the first one is water.
     #[must_use]
     pub fn classes(self) -> &'static [Class] {
         match self {
@@ -37,7 +37,7 @@ impl Scheme {
         }
     }
 
-    /// The class with a code, if there is one.
+    /// The class with this code, if there is one.
     #[must_use]
     pub fn class(self, code: u8) -> Option<&'static Class> {
         self.classes().get(usize::from(code))

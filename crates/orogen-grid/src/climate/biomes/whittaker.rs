@@ -28,11 +28,11 @@ const SAVANNA: u8 = 8;
 const RAIN_FOREST: u8 = 9;
 const ICE: u8 = 10;
 
-/// Mean temperature in degrees C between boreal and temperate forest, and between temperate and tropical biomes.
+/// Mean temperatures in degrees C that separate boreal from temperate forest, and temperate from tropical biomes.
 const BOREAL: f64 = 3.0;
 const TROPICAL: f64 = 19.0;
 
-/// The class of a climate: straight lines along the borders of the diagram.
+/// The class of a climate, with straight lines along the borders of the diagram.
 pub(super) fn code(climate: &Climate) -> u8 {
     let (mean, rain) = (climate.year.mean, climate.rain);
     if climate.year.warmest() < 0.0 {
@@ -45,7 +45,7 @@ pub(super) fn code(climate: &Climate) -> u8 {
             _ => RAIN_FOREST,
         };
     }
-    // Tundra reaches to milder places where it is wet.
+    // In wet climates, tundra extends to milder temperatures.
     if mean < line(rain, [0.0, -6.9], 0.0027).min(-4.0) {
         return TUNDRA;
     }
