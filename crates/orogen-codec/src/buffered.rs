@@ -1,17 +1,17 @@
-//! A buffer before a writer: small pieces are gathered by code of this crate.
+//! A buffered writer whose code is compiled in this crate.
 
 use std::io::{self, BufWriter, Write};
 
-/// A writer of large pieces.
+/// A writer that collects small pieces and writes large ones.
 pub struct Buffered<'a>(BufWriter<&'a mut dyn Write>);
 
 impl<'a> Buffered<'a> {
-    /// A buffer of so many bytes before `out`.
+    /// A buffer of `bytes` bytes in front of `out`.
     pub fn new(out: &'a mut dyn Write, bytes: usize) -> Buffered<'a> {
         Buffered(BufWriter::with_capacity(bytes, out))
     }
 
-    /// Ends it. What it still holds is not written.
+    /// Drops the buffer without writing the bytes that it still holds.
     pub fn discard(self) {
         drop(self.0.into_parts());
     }

@@ -1,10 +1,10 @@
 //! Interpolation of missing samples.
 
-/// Fills every NaN. A pyramid of means over two by two samples is built from the existing ones. From the top down, each
-/// missing sample is interpolated bilinearly from the next coarser level. The filled surface is smooth from rim to rim.
-/// Existing heights do not change. Costs O(samples).
+/// Fills every NaN. A pyramid of means over two by two samples is built from the existing samples. From the top down,
+/// each missing sample is interpolated bilinearly from the next coarser level. The filled surface is smooth from rim to
+/// rim. Existing heights do not change. The time is O(samples).
 ///
-/// Returns the number of missing samples. If all are missing, they stay missing.
+/// Returns the number of samples that were missing. If all samples are missing, they stay missing.
 pub fn fill(heights: &mut Vec<f32>, width: usize, height: usize) -> usize {
     let missing = heights.iter().filter(|height| height.is_nan()).count();
     if missing == 0 || missing == heights.len() {
@@ -31,7 +31,8 @@ struct Level {
 }
 
 impl Level {
-    /// A level with half the samples along each side, each the mean of those of its four that exist.
+    /// The level with half the samples along each side. Each sample is the mean of the existing ones among its four
+    /// samples.
     fn halved(&self) -> Level {
         let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
         let mut heights = Vec::with_capacity(width * height);
@@ -53,7 +54,7 @@ impl Level {
         Level { width, height, heights }
     }
 
-    /// Fills missing samples from a complete level of half the samples.
+    /// Fills missing samples from a complete level with half the samples along each side.
     fn complete(&mut self, coarse: &Level) {
         for j in 0..self.height {
             for i in 0..self.width {
@@ -65,8 +66,8 @@ impl Level {
         }
     }
 
-    /// The value at sample (i, j) of the next finer level: its center is a quarter of a cell from that of the nearest
-    /// sample here.
+    /// The value at sample (i, j) of the next finer level. Its center is a quarter of a cell away from the center of
+    /// the nearest sample of this level.
     fn between(&self, i: usize, j: usize) -> f32 {
         let pair = |k: usize, side: usize| {
             let near = (k / 2).min(side - 1);

@@ -1,8 +1,8 @@
-//! The one door to the file system: `std::fs` with the feature `fs`, and without it the same items, each of which
+//! File system access. With the feature `fs` this is `std::fs`. Without it the module has the same items, but each
 //! fails with [`std::io::ErrorKind::Unsupported`].
 //!
-//! All libraries of Orogen reach files through here, so a host without a file system runs everything that needs none,
-//! and everything that does fails with an error that says why.
+//! All libraries of Orogen access files through this module. A host without a file system can therefore run everything
+//! that needs no files, and gets an error that states the reason for everything else.
 
 use std::path::{Path, PathBuf};
 
@@ -14,7 +14,7 @@ pub use absent::*;
 #[cfg(feature = "fs")]
 pub use std::fs::*;
 
-/// Whether this build has a file system: the feature `fs`.
+/// Whether this build has a file system (the feature `fs`).
 pub const AVAILABLE: bool = cfg!(feature = "fs");
 
 /// Whether a file exists at `path`; links are followed.
@@ -35,7 +35,7 @@ pub fn is_present(path: &Path) -> bool {
     metadata(path).is_ok()
 }
 
-/// The system's temporary folder. A host without files has none, and gets an empty path.
+/// The system's temporary folder; an empty path on a host without files.
 #[must_use]
 pub fn temporary_folder() -> PathBuf {
     match AVAILABLE && !cfg!(all(target_family = "wasm", not(target_os = "wasi"))) {
@@ -44,7 +44,7 @@ pub fn temporary_folder() -> PathBuf {
     }
 }
 
-/// Whether the name is in use, also by a dangling link.
+/// Whether the name is in use, even by a dangling link.
 #[must_use]
 pub fn is_taken(path: &Path) -> bool {
     symlink_metadata(path).is_ok()

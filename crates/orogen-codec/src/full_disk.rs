@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 /// Accepts `left` bytes, then fails like a full disk.
 pub struct Full {
-    /// Bytes that it still takes.
+    /// Number of bytes that the writer still accepts.
     pub left: usize,
 }
 

@@ -1,13 +1,13 @@
-//! What file formats compute sample by sample and byte by byte, and the buffers that they need. Programs use it as
-//! parts of `orogen-io`, which holds the formats: what they read and write once a file or a row.
+//! The inner loops of file formats over samples and bytes, and the buffers that they need. Programs use this crate as a
+//! part of `orogen-io`, which contains the file formats.
 //!
-//! - [`mod@format`]: compression, pictures, samples and features as bytes and text, and the formats that consist of
-//!   little else.
-//! - [`palette`]: colors of heights.
-//! - [`raster`]: a layer in memory or in pages on disk; both give the same bits.
-//! - [`read_at`]: bytes that are read by position, from any thread.
-//! - [`spool`]: byte buffers in memory or on disk; [`records`]: values in order, packed in such a buffer.
-//! - [`samples`]: samples as bytes, whole rows at a time; [`fill`]: missing samples from those around.
+//! - [`mod@format`]: compression, pictures, samples and features as bytes and text, and file formats that need little
+//!   more
+//! - [`palette`]: colors of heights
+//! - [`raster`]: a layer in memory or in pages on disk, with the same bits in both cases
+//! - [`read_at`]: bytes that are read by position, from any thread
+//! - [`spool`]: byte buffers in memory or on disk; [`records`]: a sequence of values, compressed in such a buffer
+//! - [`samples`]: conversion of samples to bytes, for whole rows at a time; [`fill`]: interpolation of missing samples
 #![forbid(unsafe_code)]
 
 #[doc(hidden)]

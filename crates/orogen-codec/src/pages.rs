@@ -1,4 +1,4 @@
-//! A grid in a file, in square pages with checksums; the pages read last are kept in memory.
+//! A grid in a file, in square pages with checksums. The most recently read pages are kept in memory.
 
 use crate::read_at::{PositionedFile, ReadAt};
 use crate::temporary::Temporary;
@@ -19,13 +19,13 @@ pub const BYTES: usize = SIDE * SIDE * 4;
 /// Maximum number of pages kept in memory.
 const MAX_KEPT: usize = 16;
 
-/// Memory of a grid in a file, in bytes.
+/// Memory needed for a grid in a file, in bytes.
 #[must_use]
 pub fn memory(window: &Window) -> u64 {
     (count(window).min(MAX_KEPT) * BYTES + count(window) * size_of::<Option<u32>>()) as u64
 }
 
-/// Size of a grid over a window in a file, in bytes.
+/// Size of the file of a grid over a window, in bytes.
 #[must_use]
 pub fn disk(window: &Window) -> u64 {
     (count(window) as u64).saturating_mul(BYTES as u64)
@@ -43,19 +43,19 @@ pub fn checksum(bytes: &[u8]) -> u32 {
     crc32fast::hash(bytes)
 }
 
-/// Whether bytes have this checksum.
+/// Whether bytes have the checksum `sum`.
 #[must_use]
 pub fn has_checksum(bytes: &[u8], sum: u32) -> bool {
     checksum(bytes) == sum
 }
 
-/// Bytes with pages, which several grids may share. Any number of threads read at the same time.
+/// A file of pages, which several grids can share. Any number of threads can read it at the same time.
 #[derive(Debug)]
 pub struct PageFile {
     bytes: Bytes,
-    /// The name in messages.
+    /// The file name in messages.
     path: PathBuf,
-    /// Its temporary name, if it could not be removed at once.
+    /// The temporary file name, if it could not be removed at once.
     _name: Option<Temporary>,
 }
 
@@ -67,10 +67,10 @@ enum Bytes {
 
 impl PageFile {
     /// A new file in `folder`, which is created if needed. The file is removed on drop, or when the program ends for
-    /// whatever reason.
+    /// any reason.
     ///
     /// # Errors
-    /// If it cannot be created.
+    /// If the file cannot be created.
     pub fn scratch(folder: &Path) -> Result<PageFile> {
         let made = fs::create_dir_all(folder).and_then(|()| Temporary::create(folder));
         let (name, file) = made.map_err(|cause| Error::file("work in", folder, &cause))?;
@@ -78,7 +78,7 @@ impl PageFile {
         Ok(PageFile { bytes, path: folder.to_path_buf(), _name: name.unlink() })
     }
 
-    /// Stored bytes, with the name for messages. Nothing can be written to them.
+    /// Bytes that are already stored, with the file name for messages. They are read-only.
     #[must_use]
     pub fn stored(bytes: Box<dyn ReadAt>, name: &Path) -> PageFile {
         PageFile { bytes: Bytes::Stored(bytes), path: name.to_path_buf(), _name: None }
@@ -105,16 +105,16 @@ impl PageFile {
 pub struct Pages {
     window: Window,
     file: Arc<PageFile>,
-    /// Offset of its first page in the file.
+    /// Offset of the first page in the file.
     base: u64,
-    /// The checksum of each page that was written; the others are zeros.
+    /// The checksum of each page that was written. Pages without one are zeros.
     sums: Vec<Option<u32>>,
     kept: Mutex<Kept>,
 }
 
 type Page = Arc<Vec<f32>>;
 
-/// The pages read last, each with the time of its last use.
+/// The most recently read pages, each with the time of its last use.
 #[derive(Debug, Default)]
 struct Kept {
     pages: HashMap<usize, (u64, Page)>,
@@ -130,7 +130,7 @@ impl Pages {
         Ok(Pages::within(Arc::new(PageFile::scratch(folder)?), 0, vec![None; count(&window)], window))
     }
 
-    /// A grid whose pages are in a file from offset `base`, with their checksums.
+    /// A grid whose pages are in a file from offset `base` on. `sums` has their checksums.
     #[must_use]
     pub fn within(file: Arc<PageFile>, base: u64, sums: Vec<Option<u32>>, window: Window) -> Pages {
         Pages { window, file, base, sums, kept: Mutex::default() }
@@ -141,10 +141,10 @@ impl Pages {
         &self.window
     }
 
-    /// The samples of page `index`, [`SIDE`] per row, zeros beyond the window.
+    /// The samples of page `index`, with [`SIDE`] per row, and zeros outside the window.
     ///
     /// # Errors
-    /// If it cannot be read, or does not match its checksum.
+    /// If the page cannot be read, or does not match its checksum.
     pub fn page(&self, index: usize) -> Result<Page> {
         {
             let mut kept = lock(&self.kept);
@@ -186,10 +186,10 @@ impl Pages {
         }
     }
 
-    /// Writes the overlapping part of `part`.
+    /// Writes the part of `part` that overlaps the grid.
     ///
     /// # Errors
-    /// If the disk is full or fails, or a partially written page cannot be read.
+    /// If the disk is full or fails, or if a partially overwritten page cannot be read.
     pub fn put(&mut self, part: &Grid) -> Result<()> {
         for (index, window) in self.touched(part.window()) {
             let whole = part.window().contains(&self.valid(&window));
@@ -209,7 +209,7 @@ impl Pages {
         Ok(())
     }
 
-    /// The samples of a window inside this one.
+    /// The samples of a window, which must be inside the window of the grid.
     ///
     /// # Errors
     /// If a page cannot be read.
@@ -228,7 +228,7 @@ impl Pages {
         Ok(grid)
     }
 
-    /// The pages that overlap a window, with their own windows.
+    /// The pages that overlap a window, each with its own window.
     fn touched(&self, window: &Window) -> Vec<(usize, Window)> {
         let whole = self.window;
         let columns = whole.width.div_ceil(SIDE);
@@ -256,7 +256,7 @@ impl Pages {
     }
 }
 
-/// The data is consistent even if a thread panicked with the lock.
+/// Ignores poisoning: the data is consistent even if a thread panicked while it held the lock.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -7,7 +7,7 @@ use orogen_grid::resample::{self, LayerKind, NOWHERE};
 use orogen_noise::Points;
 use std::path::Path;
 
-/// Samples over a window, written and read in parts. The bits that are read do not depend on where it is stored.
+/// Samples over a window, which are written and read in parts. The result does not depend on where they are stored.
 #[derive(Debug)]
 pub struct Raster {
     kept: Kept,
@@ -43,13 +43,13 @@ impl Raster {
         Ok(Raster::on_disk(pages))
     }
 
-    /// Memory of a raster on disk, in bytes.
+    /// Memory needed for a raster on disk, in bytes.
     #[must_use]
     pub fn memory_on_disk(window: &Window) -> u64 {
         pages::memory(window)
     }
 
-    /// Memory of this raster, in bytes.
+    /// Memory that this raster uses, in bytes.
     pub fn memory(&self) -> u64 {
         match &self.kept {
             Kept::Memory(grid) => grid.window().len() as u64 * 4,
@@ -57,7 +57,7 @@ impl Raster {
         }
     }
 
-    /// Whether it is on disk.
+    /// Whether the raster is on disk.
     pub fn is_on_disk(&self) -> bool {
         matches!(self.kept, Kept::Disk(_))
     }
@@ -70,7 +70,7 @@ impl Raster {
         }
     }
 
-    /// Writes the overlapping part of `part`.
+    /// Writes the part of `part` that overlaps the raster.
     ///
     /// # Errors
     /// If the disk is full or fails.
@@ -87,7 +87,7 @@ impl Raster {
     /// The samples of a window, which must be inside the raster.
     ///
     /// # Errors
-    /// If it is not, or the disk fails.
+    /// If the window is not inside the raster, or if the disk fails.
     pub fn get(&self, window: &Window) -> Result<Grid> {
         if !self.window().contains(window) {
             let message = format!("{window:?} is not part of the raster over {:?}", self.window());
@@ -99,8 +99,8 @@ impl Raster {
         }
     }
 
-    /// Reads the raster at all points into `out`, interpolated according to `kind`. Beyond its border the border
-    /// samples continue; a point that is not finite gives NaN.
+    /// Reads the raster at all points into `out`, interpolated according to `kind`. Outside the raster the samples at
+    /// its border are repeated. A point that is not finite gives NaN.
     ///
     /// # Errors
     /// If the disk fails.
@@ -113,10 +113,11 @@ impl Raster {
     }
 }
 
-/// Maximum number of samples that are fetched at once for some points.
+/// Maximum number of samples that are fetched at once.
 const FETCHED: usize = 1 << 18;
 
-/// Reads nearby points from one grid around them: all at once if that is small, otherwise in ever smaller runs.
+/// Reads nearby points from one grid around them: all points at once if that grid is small, otherwise in smaller and
+/// smaller runs.
 fn read_pages(pages: &Pages, kind: LayerKind, at: &Points, out: &mut [f32]) -> Result<()> {
     if let Points::Lattice { xs, ys } = at {
         let around = around(pages.window(), xs.iter().copied(), ys.iter().copied());
@@ -125,7 +126,7 @@ fn read_pages(pages: &Pages, kind: LayerKind, at: &Points, out: &mut [f32]) -> R
             return Ok(());
         }
     }
-    // A run of consecutive points; limited, so that the far ends of a lattice are not read repeatedly.
+    // A run of consecutive points. Its length is limited, so that the far ends of a lattice are not read repeatedly.
     const RUN: usize = 4096;
     let mut runs: Vec<(usize, usize)> = (0..out.len()).step_by(RUN).map(|k| (k, (k + RUN).min(out.len()))).collect();
     let (mut xs, mut ys) = (Vec::with_capacity(RUN), Vec::with_capacity(RUN));
@@ -148,8 +149,8 @@ fn read_pages(pages: &Pages, kind: LayerKind, at: &Points, out: &mut [f32]) -> R
     Ok(())
 }
 
-/// The samples of `window` that may be read for these positions: at least one, so that positions beyond the border find
-/// the border.
+/// The samples of `window` that may be read for these positions; at least one, so that positions outside the window get
+/// samples at its border.
 fn around(window: &Window, xs: impl Iterator<Item = f64>, ys: impl Iterator<Item = f64>) -> Window {
     fn span(positions: impl Iterator<Item = f64>, cell: f64, first: i64, last: i64) -> (i64, usize) {
         let indices =
@@ -183,7 +184,7 @@ mod tests {
             let window = Window::new(700, 530, cell).at(-2, -2);
             let grid = pattern(window);
             let (memory, mut disk) = (Raster::in_memory(grid.clone()), scratch(window));
-            // Parts that do not match pages, each written once, in random order.
+            // Parts that do not coincide with pages, each written once, in reverse order.
             let parts: Vec<Window> = window.tiles(190).collect();
             parts.iter().rev().for_each(|part| disk.put(&grid.crop(part).unwrap()).unwrap());
             let extent = [700.0 * cell, 530.0 * cell];
@@ -217,7 +218,7 @@ mod tests {
         let window = Window::new(300, 20, 1.0).at(-2, 5);
         let mut raster = scratch(window);
         assert_eq!(raster.get(&window).unwrap(), Grid::filled(window, 0.0));
-        // A window larger than the raster: only the part inside is written.
+        // If the window is larger than the raster, only the part inside is written.
         raster.put(&pattern(window.grown(3))).unwrap();
         assert_eq!(raster.get(&window).unwrap(), pattern(window.grown(3)).crop(&window).unwrap());
         let spilled = Raster::in_memory(pattern(window)).copied_to_disk(&std::env::temp_dir()).unwrap();
@@ -226,7 +227,7 @@ mod tests {
         assert!(Pages::scratch(Path::new("/dev/null/no"), window).is_err());
     }
 
-    /// One pass over all tiles: every sample becomes the mean of itself and its neighbors, read from `from`.
+    /// One pass over all tiles: every sample becomes the mean of itself and its neighbors in `from`.
     fn sweep(from: &Raster, to: &mut Raster, side: usize) {
         let whole = *from.window();
         for tile in whole.tiles(side) {

@@ -5,7 +5,7 @@ use std::fmt::Debug;
 use std::io;
 use std::sync::Arc;
 
-/// Bytes that are read by position. Several threads read at the same time; no position is shared between them.
+/// Bytes that are read by position. Several threads can read at the same time, because there is no shared position.
 ///
 /// ```
 /// use orogen_codec::read_at::ReadAt;
@@ -24,10 +24,10 @@ pub trait ReadAt: Send + Sync + Debug {
     /// If it cannot be determined.
     fn length(&self) -> io::Result<u64>;
 
-    /// Fills `bytes` with those from offset `at` on.
+    /// Fills `bytes` with the bytes from offset `at` on.
     ///
     /// # Errors
-    /// If there are fewer ([`io::ErrorKind::UnexpectedEof`]), or they cannot be read.
+    /// If there are not enough bytes ([`io::ErrorKind::UnexpectedEof`]), or if they cannot be read.
     fn read_exact_at(&self, at: u64, bytes: &mut [u8]) -> io::Result<()>;
 }
 
@@ -74,7 +74,7 @@ impl<T: ReadAt + ?Sized> ReadAt for Box<T> {
     }
 }
 
-/// A file that is read and written by position. On Unix and Windows no lock is held meanwhile; elsewhere each access
+/// A file that is read and written by position. On Unix and Windows this needs no lock. On other systems each access
 /// sets the file's own position under a lock.
 #[derive(Debug)]
 pub struct PositionedFile {
@@ -84,7 +84,7 @@ pub struct PositionedFile {
 }
 
 impl PositionedFile {
-    /// An open file.
+    /// Wraps an open file.
     #[must_use]
     pub fn new(file: File) -> PositionedFile {
         PositionedFile {

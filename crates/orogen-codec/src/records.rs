@@ -1,5 +1,5 @@
-//! Many records of one kind, in order: in memory, or compressed in a [`Spool`], so that files of any size are made in
-//! bounded memory.
+//! A sequence of records of one kind, in memory or compressed in a [`Spool`], so that files of any size can be written
+//! in bounded memory.
 
 use std::io::{self, Write};
 use std::marker::PhantomData;
@@ -8,36 +8,36 @@ use std::sync::{Mutex, PoisonError};
 use crate::format::deflate::stream::{Deflate, Inflate, MEMORY as STREAM, Wrap};
 use crate::spool::Spool;
 
-/// Level of compression: tiles take 7 % more than at level 6, and half of its time.
+/// Compression level. Tiles take 7 % more space than at level 6, and half the time.
 const LEVEL: u8 = 3;
 
-/// Packed bytes that are read at once.
+/// Number of compressed bytes that are read at once.
 const PIECE: usize = 64 << 10;
 
-/// Unpacked bytes that are converted at once.
+/// Number of uncompressed bytes that are converted at once.
 const BLOCK: usize = 48 << 10;
 
-/// Memory of records that are packed, without those in the spool, in bytes.
+/// Memory of compressed records in bytes, without their bytes in the spool.
 pub const MEMORY: u64 = STREAM + 2 * BLOCK as u64;
 
-/// A value of a fixed number of bytes.
+/// A value with a fixed number of bytes.
 pub trait Record: Copy {
     /// Number of bytes.
     const BYTES: usize;
 
-    /// Writes its bytes.
+    /// Writes the bytes of the value.
     fn put(self, bytes: &mut [u8]);
 
-    /// The value of its bytes.
+    /// The value with these bytes.
     fn get(bytes: &[u8]) -> Self;
 
-    /// Replaces `bytes` with those of records.
+    /// Replaces the content of `bytes` with the bytes of records.
     fn put_all(records: &[Self], bytes: &mut Vec<u8>) {
         bytes.resize(records.len() * Self::BYTES, 0);
         bytes.chunks_exact_mut(Self::BYTES).zip(records).for_each(|(bytes, record)| record.put(bytes));
     }
 
-    /// Appends the records of bytes.
+    /// Appends the records in `bytes`.
     fn get_all(bytes: &[u8], to: &mut Vec<Self>) {
         to.extend(bytes.chunks_exact(Self::BYTES).map(Self::get));
     }
@@ -54,7 +54,7 @@ impl Record for u8 {
         bytes.first().copied().unwrap_or_default()
     }
 
-    // Not those of the trait, which would be compiled where they are called.
+    // These replace the default methods, which would be compiled in the calling crate.
     fn put_all(records: &[u8], bytes: &mut Vec<u8>) {
         bytes.clear();
         bytes.extend_from_slice(records);
@@ -65,7 +65,7 @@ impl Record for u8 {
     }
 }
 
-/// Little-endian.
+/// Little-endian bytes.
 impl Record for u32 {
     const BYTES: usize = 4;
 
@@ -87,7 +87,7 @@ impl Record for u32 {
     }
 }
 
-/// Records in order.
+/// A sequence of records.
 pub struct Records<T> {
     length: u64,
     stored: Stored<T>,
@@ -117,7 +117,7 @@ impl<T: Record> Records<T> {
         self.length
     }
 
-    /// Whether there are none.
+    /// Whether there are no records.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.length == 0
@@ -141,7 +141,7 @@ impl<T: Record> Records<T> {
         Ok(all)
     }
 
-    /// Reads the records from the first on.
+    /// A reader that starts at the first record.
     #[must_use]
     pub fn reader(&self) -> Reader<'_, T> {
         let inflate = match &self.stored {
@@ -151,7 +151,7 @@ impl<T: Record> Records<T> {
         Reader { records: self, next: 0, inflate, packed: 0, bytes: Vec::new() }
     }
 
-    /// Writes the bytes of all records as one zlib stream, which is the same wherever they are.
+    /// Writes the bytes of all records as one zlib stream. The stream does not depend on where the records are stored.
     ///
     /// Fails if `out` or the disk fails.
     pub fn write_packed(&self, out: &mut dyn Write) -> io::Result<()> {
@@ -178,7 +178,7 @@ impl<T: Record> Records<T> {
     }
 }
 
-/// Reads the piece of a spool from `at` on, which is empty at its end; returns its length.
+/// Reads the next piece of a spool, from `at` on; it is empty at the end. Returns its length.
 fn next_piece(spool: &Mutex<Spool>, at: u64, piece: &mut Vec<u8>) -> io::Result<u64> {
     let mut spool = spool.lock().unwrap_or_else(PoisonError::into_inner);
     let length = (spool.length() - at).min(PIECE as u64);
@@ -190,16 +190,16 @@ fn next_piece(spool: &Mutex<Spool>, at: u64, piece: &mut Vec<u8>) -> io::Result<
 /// Reads records in order.
 pub struct Reader<'r, T> {
     records: &'r Records<T>,
-    /// The next record.
+    /// The index of the next record.
     next: u64,
     inflate: Option<Inflate>,
-    /// Packed bytes that were read.
+    /// Number of compressed bytes that were read.
     packed: u64,
     bytes: Vec<u8>,
 }
 
 impl<T: Record> Reader<'_, T> {
-    /// Replaces `to` with the next `count` records, or as many as there are.
+    /// Replaces the content of `to` with the next `count` records, or with as many as there are.
     ///
     /// Fails if the disk fails.
     pub fn read(&mut self, count: usize, to: &mut Vec<T>) -> io::Result<()> {
@@ -228,7 +228,7 @@ impl<T: Record> Reader<'_, T> {
         Ok(())
     }
 
-    /// Passes over records.
+    /// Skips records.
     ///
     /// Fails if the disk fails.
     pub fn skip(&mut self, count: u64) -> io::Result<()> {
@@ -244,7 +244,7 @@ impl<T: Record> Reader<'_, T> {
     }
 }
 
-/// Makes [`Records`].
+/// Collects [`Records`].
 pub struct Recorder<T> {
     length: u64,
     kept: Kept<T>,
@@ -262,7 +262,7 @@ impl<T: Record> Recorder<T> {
         Recorder { length: 0, kept: Kept::Memory(Vec::new()) }
     }
 
-    /// Packs records into a spool.
+    /// Compresses records into a spool.
     #[must_use]
     pub fn packed(spool: Spool) -> Recorder<T> {
         let kept = Kept::Packed { spool, stream: Deflate::new(Wrap::Zlib, LEVEL), bytes: Vec::new(), of: PhantomData };

@@ -1,5 +1,5 @@
-//! Samples as bytes and back: little-endian f32. Functions of whole slices: crates that are compiled without
-//! optimization call them instead of a loop of their own.
+//! Conversion of samples to bytes and back, as little-endian f32. The functions process whole slices: crates that are
+//! compiled without optimization call them instead of their own loops.
 
 use orogen_grid::grid::Grid;
 
@@ -16,27 +16,27 @@ pub fn to_bytes(samples: &[f32]) -> Vec<u8> {
     bytes
 }
 
-/// Fills bytes from samples, as many as there are of both.
+/// Copies samples to bytes, as many as both slices have.
 pub fn write_bytes(bytes: &mut [u8], samples: &[f32]) {
     for (bytes, sample) in bytes.as_chunks_mut().0.iter_mut().zip(samples) {
         *bytes = sample.to_le_bytes();
     }
 }
 
-/// Fills samples from bytes, as many as there are of both.
+/// Copies bytes to samples, as many as both slices have.
 pub fn read_bytes(samples: &mut [f32], bytes: &[u8]) {
     for (sample, bytes) in samples.iter_mut().zip(bytes.as_chunks().0) {
         *sample = f32::from_le_bytes(*bytes);
     }
 }
 
-/// The samples in bytes; an incomplete last one is left out.
+/// The samples in bytes. An incomplete sample at the end is ignored.
 #[must_use]
 pub fn from_bytes(bytes: &[u8]) -> Vec<f32> {
     bytes.as_chunks().0.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect()
 }
 
-/// Three rows, interleaved sample by sample; the second is negated if `flipped`.
+/// Interleaves three rows sample by sample. The second row is negated if `flipped`.
 #[must_use]
 pub fn interleaved([first, second, third]: [&[f32]; 3], flipped: bool) -> Vec<f32> {
     let sign = if flipped { -1.0 } else { 1.0 };
@@ -49,7 +49,7 @@ pub fn pick(grid: &Grid, columns: &[usize], rows: &[usize]) -> Vec<f32> {
     rows.iter().flat_map(|j| columns.iter().map(move |i| grid[(*i, *j)])).collect()
 }
 
-/// A square of `side` samples reduced to half of that, by the mean of 2 x 2 samples.
+/// Reduces a square of `side` x `side` samples to half of them along each side, with the mean of 2 x 2 samples.
 #[must_use]
 pub fn halved(samples: &[f32], side: usize) -> Vec<f32> {
     let half = side / 2;
@@ -61,27 +61,27 @@ pub fn halved(samples: &[f32], side: usize) -> Vec<f32> {
     (0..half).flat_map(|j| (0..half).map(move |i| (i, j))).map(mean).collect()
 }
 
-/// Values above this are not heights: some programs write the largest float as nodata.
+/// Values above this are not heights, because some programs write the largest float as nodata.
 const HIGHEST: f32 = 1e30;
 
-/// Whether bytes contain others.
+/// Whether `bytes` contain the sequence `part`.
 #[must_use]
 pub fn contains(bytes: &[u8], part: &[u8]) -> bool {
     bytes.windows(part.len().max(1)).any(|own| own == part)
 }
 
-/// So many samples of one value.
+/// A vector of `count` samples with one value.
 #[must_use]
 pub fn filled(value: f32, count: usize) -> Vec<f32> {
     vec![value; count]
 }
 
-/// Makes all samples NaN that are not heights. Returns whether a height is left.
+/// Sets all samples that are not heights to NaN. Returns whether a height is left.
 pub fn keep_heights(samples: &mut [f32]) -> bool {
     let is_height = |sample: &f32| sample.abs() < HIGHEST;
     let mut found = false;
     for piece in samples.chunks_mut(64) {
-        // Almost all pieces have nothing else, and are only read.
+        // Almost all pieces contain only heights and do not change.
         if piece.iter().fold(true, |all, sample| all & is_height(sample)) {
             found = true;
             continue;
@@ -96,7 +96,7 @@ pub fn keep_heights(samples: &mut [f32]) -> bool {
     found
 }
 
-/// Whether a sample is not NaN.
+/// Whether any sample is not NaN.
 #[must_use]
 pub fn has_height(samples: &[f32]) -> bool {
     samples.iter().any(|sample| !sample.is_nan())
@@ -108,22 +108,22 @@ pub fn missing(samples: &[f32]) -> usize {
     samples.iter().filter(|sample| sample.is_nan()).count()
 }
 
-/// Makes samples with the number `nodata` NaN.
+/// Sets samples with the value `nodata` to NaN.
 pub fn hide(samples: &mut [f32], nodata: f64) {
     samples.iter_mut().filter(|sample| f64::from(**sample) == nodata).for_each(|sample| *sample = f32::NAN);
 }
 
-/// Adds samples of one value until there are `length`.
+/// Appends samples with one value until there are `length`.
 pub fn grow(samples: &mut Vec<f32>, length: usize, value: f32) {
     samples.resize(length, value);
 }
 
-/// Replaces samples of one value.
+/// Replaces samples with the value `value` by `by`.
 pub fn replace(samples: &mut [f32], value: f32, by: f32) {
     samples.iter_mut().filter(|sample| **sample == value).for_each(|sample| *sample = by);
 }
 
-/// Lays samples over others. NaN shows the one below, unless that is `nothing`.
+/// Copies samples over those below. Where a sample is NaN, the one below stays, unless it equals `nothing`.
 pub fn lay(below: &mut [f32], above: &[f32], nothing: f32) {
     for (sample, own) in below.iter_mut().zip(above) {
         if !own.is_nan() || *sample == nothing {

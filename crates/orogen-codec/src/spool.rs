@@ -1,4 +1,5 @@
-//! Temporary storage for bytes whose position in a file is not known yet: in memory if they are few, otherwise on disk.
+//! Temporary storage for bytes whose position in a file is not known yet: in memory if there are few, otherwise on
+//! disk.
 
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -6,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::fs::{self, File};
 use crate::temporary::Temporary;
 
-/// Bytes that stay in memory: little compared with any `--memory`, and enough for small files.
+/// Number of bytes that are kept in memory: little compared with any `--memory`, and enough for small files.
 pub const IN_MEMORY: usize = 8 << 20;
 
 /// A file that can be written and read back.
@@ -14,16 +15,16 @@ trait Disk: Read + Write + Seek + Send {}
 
 impl<T: Read + Write + Seek + Send> Disk for T {}
 
-/// Temporary storage of bytes, which can be read back in any order. Its file is removed on drop.
+/// Temporary storage of bytes, which can be read in any order. Its file is removed on drop.
 #[derive(Default)]
 pub struct Spool {
     memory: Vec<u8>,
-    /// The folder for a file, if there are more bytes than [`Spool::most`].
+    /// The folder for the file that is needed for more than [`Spool::most`] bytes.
     folder: Option<PathBuf>,
     most: usize,
-    /// Dropped before the name below: some systems cannot remove open files.
+    /// Dropped before the name below, because some systems cannot remove open files.
     file: Option<Box<dyn Disk>>,
-    /// The file's name, if it could not be removed at once.
+    /// The name of the file, if it could not be removed at once.
     name: Option<Temporary>,
     length: u64,
 }
@@ -35,14 +36,14 @@ impl Spool {
         Spool::default()
     }
 
-    /// Keeps up to [`IN_MEMORY`] in memory, and more than that in a file on the same disk as `path`. If `path` is a
-    /// pipe or a device, the file is in the system's temporary folder.
+    /// Keeps up to [`IN_MEMORY`] bytes in memory, and more in a file on the same disk as `path`. If `path` is a pipe or
+    /// a device, the file is in the system's temporary folder.
     #[must_use]
     pub fn beside(path: &Path) -> Spool {
         Spool { folder: Some(folder_of(path)), most: IN_MEMORY, ..Spool::default() }
     }
 
-    /// Keeps at most this many bytes in memory.
+    /// Keeps at most `most` bytes in memory.
     #[must_use]
     pub fn with_most(self, most: usize) -> Spool {
         Spool { most, ..self }
@@ -54,7 +55,7 @@ impl Spool {
         self.length
     }
 
-    /// Stores bytes; returns the position for [`Spool::read`].
+    /// Stores bytes and returns their position for [`Spool::read`].
     pub fn push(&mut self, bytes: &[u8]) -> io::Result<u64> {
         let at = self.length;
         if self.file.is_none()
@@ -75,7 +76,7 @@ impl Spool {
         Ok(at)
     }
 
-    /// Reads bytes stored at `at`. No more bytes can be stored afterwards.
+    /// Reads bytes that are stored at `at`. No more bytes can be stored afterwards.
     pub fn read(&mut self, at: u64, bytes: &mut [u8]) -> io::Result<()> {
         if let Some(file) = &mut self.file {
             file.seek(SeekFrom::Start(at))?;
@@ -88,7 +89,7 @@ impl Spool {
     }
 }
 
-/// Written bytes are stored.
+/// Stores the written bytes.
 impl Write for Spool {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.push(bytes).map(|_| bytes.len())
@@ -108,7 +109,7 @@ fn folder_of(path: &Path) -> PathBuf {
     }
 }
 
-/// A new file, without a name if the system allows that, so that it is removed even after a kill.
+/// A new file. If the system allows it, the file has no name, so that it is removed even if the process is killed.
 fn scratch(folder: &Path) -> io::Result<(File, Option<Temporary>)> {
     let (name, file) = Temporary::create(folder)?;
     Ok((file, name.unlink()))
@@ -119,7 +120,7 @@ mod tests {
     use super::*;
     use std::io::Cursor;
 
-    /// Accepts `left` bytes, then fails as a full disk does.
+    /// Accepts `left` bytes, then fails like a full disk.
     struct Full {
         disk: Cursor<Vec<u8>>,
         left: usize,

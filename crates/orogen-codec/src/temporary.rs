@@ -1,9 +1,9 @@
-//! Temporary files, and their removal after their process was killed.
+//! Temporary files, which are also removed after their process was killed.
 //!
-//! A process that writes into a folder holds a lock there: it locks a file `.orogen-PID-N.lock` for as long as it has
-//! temporary files `.orogen-PID-N-K.tmp` beside it. The system releases the lock when the process ends, for whatever
-//! reason. A temporary file whose lock can be taken, or does not exist, therefore has no owner any more. Process
-//! numbers are not sufficient: they are reused, and containers that share a folder have separate numbers.
+//! A process that writes into a folder holds a lock there: it locks a file `.orogen-PID-N.lock` as long as it has
+//! temporary files `.orogen-PID-N-K.tmp` next to it. The system releases the lock when the process ends, for any
+//! reason. A temporary file whose lock is free or does not exist therefore has no owner. Process numbers are not
+//! sufficient, because they are reused, and because containers that share a folder have separate numbers.
 
 use std::collections::HashMap;
 use std::io;
@@ -13,24 +13,25 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
 use crate::fs::{self, File, OpenOptions, TryLockError};
 
-/// Number of names to try: if all of them are taken, something is wrong with the folder.
+/// Number of names to try. If all of them are taken, something is wrong with the folder.
 const NAMES: usize = 100;
 
 const PREFIX: &str = ".orogen-";
 const LOCK: &str = ".lock";
 const TEMPORARY: &str = ".tmp";
 
-/// A temporary file beside its target, removed on drop unless it was renamed.
+/// A temporary file in the folder of its target. It is removed on drop unless it was renamed.
 #[derive(Debug)]
 pub struct Temporary {
     path: PathBuf,
-    /// Indicates that this process is alive. Dropped after the file is removed.
+    /// Shows that this process is alive. Dropped after the file is removed.
     _lock: Option<Arc<FolderLock>>,
 }
 
 impl Temporary {
-    /// Creates one in `folder`. Its name does not contain the target's name, so that the longest names work. The file
-    /// must not exist, so that a file or link planted under its name is neither followed nor overwritten.
+    /// Creates a temporary file in `folder`. Its name does not contain the target's name, so that the longest file
+    /// names work. The file must not exist, so that a file or link planted under its name is neither followed nor
+    /// overwritten.
     pub fn create(folder: &Path) -> io::Result<(Temporary, File)> {
         static COUNT: AtomicU64 = AtomicU64::new(0);
         let lock = FolderLock::hold(folder)?;
@@ -52,7 +53,7 @@ impl Temporary {
         &self.path
     }
 
-    /// Removes the name of the file, which continues to exist while it is open; returns the temporary file where the
+    /// Removes the name of the file, which continues to exist while it is open. Returns the temporary file if the
     /// system does not support that.
     #[must_use]
     pub fn unlink(mut self) -> Option<Temporary> {
@@ -72,13 +73,13 @@ impl Temporary {
         Ok(())
     }
 
-    /// Moves the file to its target if that does not exist, atomically.
+    /// Moves the file to its target atomically, if the target does not exist.
     pub fn rename_new(self, real: &Path) -> io::Result<()> {
         match fs::hard_link(&self.path, real) {
-            // Drop removes the temporary name.
+            // Dropping `self` removes the temporary name.
             Ok(()) => Ok(()),
             Err(cause) if cause.kind() == io::ErrorKind::AlreadyExists => Err(cause),
-            // A file system without hard links: the earlier check has to suffice.
+            // On a file system without hard links, only this check is possible.
             Err(_) if !fs::is_taken(real) => self.rename(real),
             Err(_) => Err(io::ErrorKind::AlreadyExists.into()),
         }
@@ -103,8 +104,8 @@ struct FolderLock {
 }
 
 impl FolderLock {
-    /// The lock that this process has in `folder`, or a new one. Taking the first lock in a folder removes files that
-    /// killed processes left there.
+    /// The lock that this process already has in `folder`, or a new one. Taking the first lock in a folder removes
+    /// files that killed processes left there.
     fn hold(folder: &Path) -> io::Result<Arc<FolderLock>> {
         static HELD: OnceLock<Mutex<HashMap<PathBuf, Weak<FolderLock>>>> = OnceLock::new();
         let real = fs::canonicalize(folder)?;
@@ -132,10 +133,10 @@ impl FolderLock {
                 Err(cause) => return Err(cause),
             };
             match file.try_lock() {
-                // Another process swept the folder between creation and locking, and removes the file.
+                // Another process has cleaned the folder between creation and locking, and removes the file.
                 Err(TryLockError::WouldBlock) => continue,
                 Ok(()) if !fs::is_present(&path) => continue,
-                // A file system without locks: its temporary files are never removed.
+                // On a file system without locks, leftover temporary files are never removed.
                 Ok(()) | Err(TryLockError::Error(_)) => return Ok(FolderLock { stem, path, _file: file }),
             }
         }
@@ -171,7 +172,7 @@ pub fn sweep(folder: &Path) {
             Err(_) => None,
         };
         if let Some(_held) = lock {
-            // The lock is removed last: without it, remaining files still count as ownerless.
+            // The lock is removed last. Remaining files without a lock still have no owner.
             files.iter().filter(|file| **file != path).for_each(|file| drop(fs::remove_file(file)));
             let _ = fs::remove_file(&path);
         }
@@ -232,7 +233,7 @@ mod tests {
         }
         // A folder with such a name.
         fs::create_dir(folder.join(".orogen-5-0-0.tmp")).unwrap();
-        // A running process holds its lock: a lock through another open file conflicts as with another process.
+        // A running process holds its lock. A lock through another open file conflicts like a lock of another process.
         fs::write(folder.join(".orogen-8-0-0.tmp"), "x").unwrap();
         let alive = File::create(folder.join(".orogen-8-0.lock")).unwrap();
         alive.try_lock().unwrap();
@@ -262,7 +263,7 @@ mod tests {
         let (one, _) = Temporary::create(&folder).unwrap();
         let (other, _) = Temporary::create(&folder.join(".")).unwrap();
         assert_eq!(names(&folder).len(), 3, "one lock for both: {:?}", names(&folder));
-        // Another process removes leftovers while they are at work.
+        // Another process removes leftover files while these are in use.
         sweep(&folder);
         assert_eq!(names(&folder).len(), 3);
         drop(one);

@@ -7,8 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::fs;
 
-/// A new, empty folder in the system's folder for temporary files. It is removed with all that is in it when this is
-/// dropped.
+/// A new, empty folder in the system's temporary folder. It is removed with its contents on drop.
 #[derive(Debug)]
 pub struct TestFolder {
     path: PathBuf,
@@ -18,18 +17,18 @@ impl TestFolder {
     /// A folder whose name contains `name`.
     ///
     /// # Errors
-    /// If it cannot be made.
+    /// If the folder cannot be created.
     pub fn new(name: &str) -> io::Result<TestFolder> {
         static COUNT: AtomicU64 = AtomicU64::new(0);
         let count = COUNT.fetch_add(1, Ordering::Relaxed);
         let path = std::env::temp_dir().join(format!("orogen-{name}-{}-{count}", std::process::id()));
-        // From a killed process with the same number.
+        // A killed process with the same number may have left a folder.
         let _ = fs::remove_dir_all(&path);
         fs::create_dir_all(&path)?;
         Ok(TestFolder { path })
     }
 
-    /// The names of the files and folders in it, sorted.
+    /// The names of the files and folders in the folder, sorted.
     #[must_use]
     pub fn names(&self) -> Vec<String> {
         let entries = fs::read_dir(&self.path).into_iter().flatten().flatten();

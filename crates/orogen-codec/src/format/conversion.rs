@@ -1,18 +1,18 @@
 //! The conversion of stored samples to heights in metres.
 
-/// Nodata values that programs use most; files often do not declare them.
+/// The most common nodata values, which files often do not declare.
 const COMMON_NODATA: [f64; 3] = [-32768.0, -9999.0, -32767.0];
 
-/// Stored values above this are nodata, whatever a file declares: some programs write the largest float.
+/// Stored values above this are nodata, whatever a file declares, because some programs write the largest float.
 const HIGHEST: f64 = 1e30;
 
-/// The conversion of stored samples to heights in metres, and which unusual values it has met.
+/// The conversion of stored samples to heights in metres. It records the unusual values that it encounters.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Conversion {
     nodata: Vec<f64>,
     whole: Option<[f64; 2]>,
     linear: Linear,
-    /// The unit, if it is not a known length.
+    /// The name of the unit, if it is not a known length.
     unknown: Option<String>,
     seen: Seen,
 }
@@ -22,13 +22,13 @@ pub struct Conversion {
 pub struct Linear {
     /// The scale of the samples.
     pub scale: f64,
-    /// What is added to the scaled samples.
+    /// The offset that is added to the scaled samples.
     pub offset: f64,
     /// Metres per unit.
     pub metres: f64,
 }
 
-/// Undeclared nodata values among samples.
+/// Undeclared nodata values that were found among samples.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct Seen {
     common: [bool; COMMON_NODATA.len()],
@@ -36,8 +36,8 @@ struct Seen {
 }
 
 impl Conversion {
-    /// A conversion of samples that are missing if they have one of the values `nodata`. Samples become whole numbers
-    /// of the range `whole`, if there is one. `unknown` is their unit, if it is not a known length.
+    /// A conversion in which samples with one of the values `nodata` are missing. If `whole` is given, samples become
+    /// integers in that range. `unknown` is their unit, if it is not a known length.
     #[must_use]
     pub fn new(nodata: Vec<f64>, whole: Option<[f64; 2]>, linear: Linear, unknown: Option<String>) -> Conversion {
         Conversion { nodata, whole, linear, unknown, seen: Seen::default() }
@@ -45,7 +45,7 @@ impl Conversion {
 
     /// The height of a stored sample of `size` bytes, in metres; NaN if it is missing.
     pub fn height(&mut self, value: f64, size: usize) -> f32 {
-        // Some programs write nodata with fewer digits than the float has.
+        // Some programs write nodata values with fewer digits than the float has.
         let is = |nodata: &f64| value == *nodata || size == 4 && value as f32 == *nodata as f32;
         if value.is_nan() || self.nodata.iter().any(is) {
             return f32::NAN;
@@ -70,8 +70,8 @@ impl Conversion {
         ((value * self.linear.scale + self.linear.offset) * self.linear.metres) as f32
     }
 
-    /// The height of samples that a file does not store, such as absent blocks: missing if the band has a nodata value,
-    /// otherwise that of the value 0, as GDAL reads them.
+    /// The height of samples that a file does not store, such as absent blocks. As in GDAL, they are missing if the
+    /// band has a nodata value; otherwise they have the height of the value 0.
     #[must_use]
     pub fn absent(&self) -> f32 {
         match self.nodata.is_empty() {
@@ -86,12 +86,12 @@ impl Conversion {
         [0.0, most].map(|value| (value * self.linear.scale + self.linear.offset) * self.linear.metres)
     }
 
-    /// Converts samples that a reader has stored as f32.
+    /// Converts samples that a reader has stored as f32, in place.
     pub fn apply(&mut self, samples: &mut [f32]) {
         samples.iter_mut().for_each(|sample| *sample = self.height(f64::from(*sample), 4));
     }
 
-    /// [`notes`](Conversion::notes) about the heights that a mask has left.
+    /// [`notes`](Conversion::notes) about the heights that are left after a mask was applied.
     #[must_use]
     pub fn notes_of(mut self, heights: &[f32]) -> Vec<String> {
         for (common, seen) in COMMON_NODATA.iter().zip(&mut self.seen.common).filter(|(_, seen)| **seen) {

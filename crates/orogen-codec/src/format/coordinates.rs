@@ -1,16 +1,16 @@
-//! Positions of lines and areas: many numbers, `each` of them a position.
+//! Positions of lines and areas, as lists of numbers with `each` numbers per position.
 
 use std::ops::Range;
 
 use super::number::number;
 
-/// The bounds (west, south, east, north) of two others.
+/// The bounds (west, south, east, north) that contain two others.
 #[must_use]
 pub fn join(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
     [a[0].min(b[0]), a[1].min(b[1]), a[2].max(b[2]), a[3].max(b[3])]
 }
 
-/// The bounds of positions, joined with those of others.
+/// The bounds (west, south, east, north) of positions and of `others`; `None` if there are neither.
 #[must_use]
 pub fn bounds(numbers: &[f64], each: usize, others: Option<[f64; 4]>) -> Option<[f64; 4]> {
     numbers.chunks_exact(each).map(|at| [at[0], at[1], at[0], at[1]]).fold(others, |bounds, own| match bounds {
@@ -19,8 +19,8 @@ pub fn bounds(numbers: &[f64], each: usize, others: Option<[f64; 4]>) -> Option<
     })
 }
 
-/// Places positions on a map, whose `origin` is at (0, 0) and which has `per_metre` units a metre; without a map y
-/// points north.
+/// Converts positions to the coordinates of a map, in which the world's origin is at `origin` and `per_metre` is the
+/// number of units per metre. Without a map, y is only negated, so that it points north.
 pub fn place(numbers: &mut [f64], each: usize, map: Option<([f64; 2], [f64; 2])>) {
     for at in numbers.chunks_exact_mut(each) {
         let (x, y) = (at[0], at[1]);
@@ -31,7 +31,7 @@ pub fn place(numbers: &mut [f64], each: usize, map: Option<([f64; 2], [f64; 2])>
     }
 }
 
-/// Appends the numbers `taken` of each position, little-endian.
+/// Appends the numbers with the indices `taken` of each position, little-endian.
 pub fn append_bytes(numbers: &[f64], each: usize, taken: Range<usize>, bytes: &mut Vec<u8>) {
     bytes.reserve(numbers.len() / each * taken.len() * 8);
     for at in numbers.chunks_exact(each) {
@@ -39,7 +39,7 @@ pub fn append_bytes(numbers: &[f64], each: usize, taken: Range<usize>, bytes: &m
     }
 }
 
-/// Appends a list of positions as JSON, with the first `taken` numbers of each; heights have three decimals.
+/// Appends a list of positions as JSON, with the first `taken` numbers of each position. Heights have three decimals.
 pub fn append_list(text: &mut String, numbers: &[f64], each: usize, taken: usize, decimals: usize) {
     text.push('[');
     for (k, at) in numbers.chunks_exact(each).enumerate() {
@@ -51,7 +51,7 @@ pub fn append_list(text: &mut String, numbers: &[f64], each: usize, taken: usize
     text.push(']');
 }
 
-/// Appends a position as JSON; heights have three decimals.
+/// Appends a position as JSON. Heights have three decimals.
 pub fn append_position(text: &mut String, at: &[f64], decimals: usize) {
     text.push('[');
     for (k, value) in at.iter().enumerate() {
@@ -63,7 +63,7 @@ pub fn append_position(text: &mut String, at: &[f64], decimals: usize) {
     text.push(']');
 }
 
-/// Appends a line as commands of an SVG path, relative to `origin`.
+/// Appends a line as path commands of SVG, relative to `origin`.
 pub fn append_path(text: &mut String, line: &[[f64; 2]], origin: [f64; 2], decimals: usize) {
     for (k, [x, y]) in line.iter().enumerate() {
         text.push(if k == 0 { 'M' } else { 'L' });

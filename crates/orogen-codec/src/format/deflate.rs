@@ -2,13 +2,13 @@
 //!
 //! In a GeoTIFF a row of a tile is stored as planes: all highest bytes, then all second highest, and so on. For heights
 //! the two lower planes are mostly noise. A general compressor spends most of its time searching for repeats in them,
-//! and mixes their codes with those of the upper planes. Here each plane of each row is classified separately: noise is
-//! *stored* without coding; other planes are Huffman coded in blocks of their own, with literals, runs of one byte, and
-//! copies of the plane in the row above. This is several times as fast, and the result is usually smaller. Other
-//! formats mix the bytes of a sample in other ways; for those a plane is simply a piece of the bytes.
+//! and mixes their codes with those of the upper planes. Here each plane of each row is classified separately. Noise is
+//! *stored* without coding. Other planes are Huffman coded in separate blocks, with literals, runs of one byte, and
+//! copies of the same plane in the row above. This is several times as fast, and the result is usually smaller. Other
+//! formats mix the bytes of a sample in other ways; for them a plane is simply a piece of the bytes.
 //!
-//! Bytes with little noise (whole metres, masks, labels, level ground) repeat at other distances too. A general
-//! compressor handles those.
+//! Bytes with little noise (integer metres, masks, labels, level ground) also repeat at other distances, so a general
+//! compressor is used for them.
 
 mod matches;
 pub mod packer;
@@ -17,7 +17,7 @@ pub mod stream;
 use matches::Matches;
 use miniz_oxide::deflate::compress_to_vec_zlib;
 
-/// Level of the general compressor. Higher levels take up to eight times as long to save 1 %.
+/// Level of the general compressor. Higher levels take up to eight times as long and save only 1 %.
 const LEVEL: u8 = 3;
 
 /// Maximum length of a match in deflate.
@@ -34,7 +34,8 @@ const LENGTHS: usize = 19;
 /// Maximum number of tokens in a block.
 const BLOCK: usize = 1 << 15;
 
-/// Compresses rows of planes of `side` bytes, four planes per row, to a zlib stream. The last plane may be shorter.
+/// Compresses rows of planes of `side` bytes, with four planes per row, to a zlib stream. The last plane may be
+/// shorter.
 #[must_use]
 pub fn pack(rows: &[u8], side: usize) -> Vec<u8> {
     let logarithms = Logarithms::new(side);
@@ -68,13 +69,13 @@ pub fn pack(rows: &[u8], side: usize) -> Vec<u8> {
     packer.finish(rows)
 }
 
-/// Compresses bytes with mixed planes to a zlib stream, in pieces of `side` (OpenEXR). Most of them look like noise,
-/// but if one of the planes is not noise, sequences repeat. Pieces are coded by such matches where that saves enough,
-/// and stored otherwise.
+/// Compresses bytes with mixed planes to a zlib stream, in pieces of `side` bytes (OpenEXR). Most bytes look like
+/// noise, but if one of the planes is not noise, sequences repeat. Pieces are coded with such matches where that saves
+/// enough, and stored otherwise.
 #[must_use]
 pub fn pack_mixed(bytes: &[u8], side: usize) -> Vec<u8> {
     let logarithms = Logarithms::new(side);
-    // A sample of the pieces decides.
+    // A quarter of the pieces is tested.
     let noise: Vec<bool> = bytes.chunks(side).step_by(4).map(|piece| logarithms.is_noise(piece)).collect();
     if 4 * noise.iter().filter(|noise| **noise).count() < noise.len() {
         return compress_to_vec_zlib(bytes, LEVEL);
@@ -82,7 +83,7 @@ pub fn pack_mixed(bytes: &[u8], side: usize) -> Vec<u8> {
     let (mut packer, mut matches, mut misses) = (Packer::new(), Matches::new(), 0);
     for k in 0..bytes.len().div_ceil(side) {
         let piece = k * side..((k + 1) * side).min(bytes.len());
-        // If nothing repeats, only some pieces are tried.
+        // If nothing repeats, only some of the pieces are tried.
         let is_tried = misses < 2 || k % 4 == 0;
         if is_tried && matches.code(bytes, piece.clone(), &mut packer) {
             misses = 0;
@@ -105,8 +106,8 @@ impl Logarithms {
         Logarithms((0..=side).map(|n| if n > 0 { n as f64 * libm::log2(n as f64) } else { 0.0 }).collect())
     }
 
-    /// Whether entropy coding would save less than a sixteenth. The entropy of few bytes is underestimated, which is
-    /// corrected.
+    /// Whether entropy coding would save less than a sixteenth. The estimate is corrected, because the entropy of few
+    /// bytes is underestimated.
     fn is_noise(&self, plane: &[u8]) -> bool {
         let mut counts = [0u16; 256];
         for byte in plane {
@@ -114,7 +115,7 @@ impl Logarithms {
         }
         let n = plane.len() as f64;
         let spread: f64 = counts.iter().map(|count| self.0[usize::from(*count)]).sum();
-        // The correction of Miller and Madow for the entropy of few samples.
+        // The correction of Miller and Madow for the entropy of small samples.
         let kinds = counts.iter().filter(|count| **count > 0).count() as f64;
         let bits = libm::log2(n) - spread / n + (kinds - 1.0) * 0.72 / n;
         bits > 7.5
@@ -130,7 +131,7 @@ enum Token {
 
 struct Packer {
     out: Vec<u8>,
-    /// Bits of an incomplete byte, the first one lowest, and their number.
+    /// Bits of an incomplete byte, with the first bit lowest, and the number of these bits.
     bits: u64,
     count: u32,
     /// Tokens of the next block.
@@ -138,12 +139,12 @@ struct Packer {
 }
 
 impl Packer {
-    /// A stream with only its header.
+    /// A stream that has only its header.
     fn new() -> Packer {
         Packer { out: vec![0x78, 0x01], bits: 0, count: 0, tokens: Vec::with_capacity(BLOCK) }
     }
 
-    /// Adds the bytes of a plane, with runs of equal bytes as matches.
+    /// Adds the bytes of a plane, and codes runs of equal bytes as matches.
     fn runs(&mut self, plane: &[u8]) {
         let mut at = 0;
         while at < plane.len() {
@@ -160,10 +161,10 @@ impl Packer {
         }
     }
 
-    /// Adds a match of `length` bytes at distance `back`.
+    /// Adds matches for `length` bytes at the distance `back`.
     fn repeat(&mut self, mut length: usize, back: usize) {
         while length >= SHORTEST {
-            // The rest must not be shorter than the minimum length.
+            // The rest must not be shorter than the minimum length of a match.
             let take = match length {
                 n if n <= LONGEST => n,
                 n if n < LONGEST + SHORTEST => n - SHORTEST,
@@ -228,7 +229,7 @@ impl Packer {
         self.tokens.clear();
     }
 
-    /// Writes the code lengths, which are coded themselves.
+    /// Writes the code lengths, which are also Huffman coded.
     fn head(&mut self, literals: &[Code; LITERALS], distances: &[Code; DISTANCES]) {
         /// The order of the code length codes in RFC 1951.
         const ORDER: [usize; LENGTHS] = [16, 17, 18, 0, 8, 7, 9, 6, 10, 5, 11, 4, 12, 3, 13, 2, 14, 1, 15];
@@ -237,7 +238,7 @@ impl Packer {
         };
         let (many, far) = (used(literals, 257), used(distances, 1));
         let lengths: Vec<u8> = (literals[..many].iter().chain(&distances[..far])).map(|code| code.length).collect();
-        // Symbols with their extra bits: 16 repeats the last, 17 and 18 are zeros.
+        // Symbols with their extra bits: 16 repeats the last length, 17 and 18 are runs of zeros.
         let mut symbols: Vec<(usize, u32, u32)> = Vec::new();
         let mut at = 0;
         while at < lengths.len() {
@@ -302,7 +303,7 @@ impl Packer {
 
     fn finish(mut self, rows: &[u8]) -> Vec<u8> {
         self.block();
-        // The last block: fixed codes, and only the end symbol.
+        // The last block has fixed codes and only the end symbol.
         self.put(0b011, 3);
         self.put(0, 7);
         self.put(0, (8 - self.count % 8) % 8);
@@ -321,14 +322,14 @@ struct Code {
 
 /// The codes of symbols with these counts, none longer than `most`.
 ///
-/// Huffman code lengths by the in-place method of Moffat and Katajainen on the sorted counts. Lengths that are too long
-/// are cut, and others grow until the code is valid again.
+/// Huffman code lengths are computed with the in-place method of Moffat and Katajainen on the sorted counts. Lengths
+/// that are too long are cut, and others are increased until the code is valid again.
 fn codes<const N: usize>(counts: &[u32; N], most: u8) -> [Code; N] {
     let mut symbols: Vec<(u32, usize)> =
         counts.iter().enumerate().filter(|(_, count)| **count > 0).map(|(symbol, count)| (*count, symbol)).collect();
     symbols.sort_unstable();
     let mut codes = [Code::default(); N];
-    // A tree needs at least two leaves: add a second symbol.
+    // A tree needs at least two leaves, so a second symbol is added.
     for spare in [0, 1] {
         if symbols.len() < 2 && !symbols.iter().any(|(_, symbol)| *symbol == spare) {
             symbols.insert(0, (0, spare));
@@ -354,10 +355,10 @@ fn codes<const N: usize>(counts: &[u32; N], most: u8) -> [Code; N] {
     codes
 }
 
-/// The depth of each count in the Huffman tree, the smallest count first; at least two counts.
+/// The depth of each count in the Huffman tree. Counts are sorted, the smallest first, and there are at least two.
 fn depths(counts: &[u32]) -> Vec<u8> {
     let n = counts.len();
-    // Nodes are made in order of weight: two queues, of leaves and of pairs.
+    // Nodes are created in order of weight, from two queues: one of leaves and one of pairs.
     let mut weights: Vec<u64> = counts.iter().map(|count| u64::from(*count)).collect();
     let mut parents = vec![0usize; 2 * n - 1];
     let (mut leaf, mut pair) = (0, n);
@@ -384,13 +385,14 @@ fn limit(depths: &mut [u8], most: u8) {
     let whole = 1u32 << most;
     depths.iter_mut().for_each(|depth| *depth = (*depth).min(most));
     let mut taken: u32 = depths.iter().map(|depth| whole >> depth).sum();
-    // The rarest symbols that may still grow go first, and cost the least.
+    // The rarest symbols whose lengths may still grow come first, because they cost the least.
     while taken > whole {
         let Some(depth) = depths.iter_mut().filter(|depth| **depth < most).max_by_key(|depth| **depth) else { return };
         taken -= whole >> (*depth + 1);
         *depth += 1;
     }
-    // The rest goes to the most frequent symbols that can take it: decoders require a complete code.
+    // The remaining room is given to the most frequent symbols that can use it, because decoders require a complete
+    // code.
     while taken < whole {
         let left = whole - taken;
         let Some(depth) = depths.iter_mut().rev().find(|depth| **depth > 1 && whole >> **depth <= left) else { return };
@@ -430,7 +432,8 @@ fn adler(bytes: &[u8]) -> u32 {
     let (mut a, mut b) = (1u32, 0u32);
     // The largest piece whose sums fit in 32 bits.
     for piece in bytes.chunks(5552) {
-        // b grows by the value of a at each byte: the bytes, weighted by the number of bytes from them to the end.
+        // b grows by the value of a at each byte: it is the sum of the bytes, each weighted by the number of bytes from
+        // it to the end.
         let n = piece.len() as u32;
         let sum: u32 = piece.iter().map(|byte| u32::from(*byte)).sum();
         let weighed: u32 =

@@ -1,4 +1,4 @@
-//! Heights encoded in the red, green and blue of a picture, for web maps.
+//! Heights encoded in the red, green and blue channels of a picture, for web maps.
 
 /// The encoding of a height in three bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -6,7 +6,7 @@
 pub enum Encoding {
     /// height = 256 R + G + B / 256 - 32768: steps of 1/256 m (Mapzen).
     Terrarium,
-    /// height = (65536 R + 256 G + B) / 10 - 10000: steps of a decimetre (Mapbox).
+    /// height = (65536 R + 256 G + B) / 10 - 10000: steps of 0.1 m (Mapbox).
     TerrainRgb,
 }
 
@@ -14,7 +14,7 @@ impl Encoding {
     /// All encodings.
     pub const ALL: [Encoding; 2] = [Encoding::Terrarium, Encoding::TerrainRgb];
 
-    /// The name for users.
+    /// The name that users see.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -32,7 +32,7 @@ impl Encoding {
         }
     }
 
-    /// The height of 0, 0, 0, and the number of steps per metre.
+    /// The height of the bytes 0, 0, 0, and the number of steps per metre.
     fn scale(self) -> (f64, f64) {
         match self {
             Encoding::Terrarium => (-32768.0, 256.0),
@@ -60,7 +60,7 @@ impl Encoding {
         }
     }
 
-    /// The height of three bytes.
+    /// The height that three bytes encode, in metres.
     #[must_use]
     pub fn height(self, bytes: [u8; 3]) -> f64 {
         let (base, steps) = self.scale();
@@ -91,7 +91,7 @@ mod tests {
         // Mapbox's documentation: 65536 R + 256 G + B tenths above -10000.
         assert_eq!(Encoding::TerrainRgb.height([1, 134, 160]), 0.0);
         assert_eq!(Encoding::TerrainRgb.bytes(0.0), [1, 134, 160]);
-        // Mapzen's: sea level is 128, 0, 0.
+        // Mapzen's documentation: sea level is 128, 0, 0.
         assert_eq!(Encoding::Terrarium.bytes(0.0), [128, 0, 0]);
     }
 }

@@ -1,10 +1,11 @@
 //! Writing OpenEXR: float channels without conversion.
 //!
-//! "OpenEXR File Layout" (openexr.com), version 2 without tiles or parts: scan lines from the top, in blocks of 16 rows
-//! compressed with ZIP (bytes split in two halves, differences, zlib), in increasing order. Readers in engines support
-//! this kind. Channels are sorted by name, as the format requires; a single channel is called `Y`, which is gray.
+//! Follows "OpenEXR File Layout" (openexr.com), version 2 without tiles or parts: scan lines from the top in increasing
+//! order, in blocks of 16 rows compressed with ZIP (bytes split into two halves, differences, zlib). Readers in game
+//! engines support this kind. Channels are sorted by name, as the format requires; a single channel is called `Y`,
+//! which is gray.
 //!
-//! Compressed blocks are kept in a spool until the table of their offsets can be written before them.
+//! Compressed blocks are kept in a spool, because the table of their offsets precedes them in the file.
 
 use std::io::{self, Write};
 
@@ -13,7 +14,7 @@ use orogen_grid::parallel;
 use super::{deflate, half};
 use crate::spool::Spool;
 
-/// Rows of a block.
+/// Number of rows in a block.
 const ROWS: usize = 16;
 
 /// Size of a piece that is compressed in one way, in bytes.
@@ -24,7 +25,7 @@ const PLANE: usize = 4096;
 pub enum Sample {
     /// Four bytes: the f32 itself.
     Float,
-    /// Two bytes, the nearest value: see [`half`].
+    /// Two bytes, the nearest half-precision value (see [`half`]).
     Half,
 }
 
@@ -40,7 +41,7 @@ impl Sample {
 /// Description of a picture.
 #[derive(Debug, Clone)]
 pub struct Picture {
-    /// Samples per row.
+    /// Number of samples per row.
     pub width: usize,
     /// Number of rows.
     pub height: usize,
@@ -94,8 +95,8 @@ impl Writer {
         self.picture.width * self.order.len() * self.picture.sample.bytes()
     }
 
-    /// Takes the next rows: a slice per channel, in the order of [`Picture::channels`], all of the same number of whole
-    /// rows.
+    /// Takes the next rows. `channels` has a slice for each channel, in the order of [`Picture::channels`], all with
+    /// the same number of complete rows.
     ///
     /// Fails if the spool fails, or if the samples are not whole rows or exceed the picture.
     pub fn rows(&mut self, channels: &[&[f32]]) -> io::Result<()> {
@@ -201,7 +202,7 @@ impl Writer {
     }
 }
 
-/// Rows taken at a time: whole blocks, enough for all threads.
+/// Number of rows taken at a time: complete blocks, enough for all threads.
 const PIECE: usize = 16 * ROWS;
 
 struct Head(Vec<u8>);
@@ -217,7 +218,7 @@ impl Head {
     }
 }
 
-/// A compressed block; uncompressed if that is not longer.
+/// A compressed block, or the uncompressed bytes if they are not longer.
 fn pack(bytes: &[u8]) -> Vec<u8> {
     let mut parted = vec![0u8; bytes.len()];
     let (even, odd) = parted.split_at_mut(bytes.len().div_ceil(2));
@@ -317,7 +318,7 @@ mod tests {
         for (width, height) in [(1, 1), (7, 5), (33, 16), (20, 17), (9, 700)] {
             let y: Vec<f32> = (0..width * height).map(|k| libm::sinf(k as f32) * 1000.0).collect();
             let mut writer = Writer::new(picture(width, height, &["Y"], Sample::Float), Spool::in_memory()).unwrap();
-            // In pieces whose size is no divisor of the total.
+            // In pieces whose size does not divide the total.
             y.chunks(3 * width).for_each(|rows| writer.rows(&[rows]).unwrap());
             let mut bytes = Vec::new();
             writer.finish(&mut bytes).unwrap();

@@ -1,4 +1,4 @@
-//! Blocks of OpenEXR pictures, as readers unpack them.
+//! Decompression of blocks of OpenEXR pictures.
 
 use miniz_oxide::inflate::decompress_to_vec_zlib_with_limit;
 
@@ -8,20 +8,20 @@ pub fn damaged() -> String {
     "it is a damaged OpenEXR picture".into()
 }
 
-/// Takes so many bytes off the front.
+/// Removes `count` bytes from the front of `rest` and returns them.
 ///
 /// # Errors
-/// A message if there are fewer.
+/// A message if there are not enough bytes.
 pub fn take<'a>(rest: &mut &'a [u8], count: usize) -> Result<&'a [u8], String> {
     let (head, tail) = rest.split_at_checked(count).ok_or_else(damaged)?;
     *rest = tail;
     Ok(head)
 }
 
-/// Decompresses a block of `due` bytes.
+/// Decompresses a block to `due` bytes.
 ///
 /// # Errors
-/// A message if it is damaged.
+/// A message if the block is damaged.
 pub fn unpack(packing: u8, packed: &[u8], due: usize) -> Result<Vec<u8>, String> {
     let mut parted = match packing {
         1 => runs(packed, due)?,
@@ -38,8 +38,8 @@ pub fn unpack(packing: u8, packed: &[u8], due: usize) -> Result<Vec<u8>, String>
     Ok((0..due).map(|k| if k % 2 == 0 { even[k / 2] } else { odd[k / 2] }).collect())
 }
 
-/// Run-length coding: a negative count precedes that many literal bytes; another count precedes a byte that is repeated
-/// count + 1 times.
+/// Run-length coding: a negative count is followed by that number of literal bytes; any other count is followed by a
+/// byte that is repeated count + 1 times.
 fn runs(packed: &[u8], due: usize) -> Result<Vec<u8>, String> {
     let mut out = Vec::new();
     let mut rest = packed;

@@ -76,7 +76,8 @@ fn list<T>(text: &mut String, items: &[T], mut item: impl FnMut(&mut String, &T)
 }
 
 /// Writes points as lines of a CSV file: east, north, height and the attributes. Coordinates are rounded to `decimals`
-/// decimals, heights to millimetres. Returns false, having written those before it, at a feature that is not a point.
+/// decimals, heights to millimetres. Returns false at the first feature that is not a point; the features before it
+/// have then been written.
 ///
 /// # Errors
 /// If `out` fails.

@@ -24,8 +24,8 @@ pub enum Geometry {
     Point([f64; 3]),
     /// A line; in a layer of 2D lines the heights are 0.
     Line(Vec<[f64; 3]>),
-    /// Parts, each an outer ring and its holes. The last point of a ring repeats the first. With north up, outer rings
-    /// are counter-clockwise and holes clockwise.
+    /// A list of parts, each an outer ring and its holes. The last point of a ring repeats the first. With north up,
+    /// outer rings are counter-clockwise and holes clockwise.
     MultiPolygon(Vec<Vec<Ring>>),
 }
 
@@ -48,7 +48,7 @@ pub enum FieldType {
 /// An attribute of the features of a layer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Field {
-    /// The name: lower case, with underscores.
+    /// The name, in lower case with underscores.
     pub name: &'static str,
     /// The type.
     pub kind: FieldType,
@@ -63,7 +63,7 @@ pub enum Value {
     Null,
     /// An integer.
     Integer(i64),
-    /// A number; one that is not finite is written as [`Value::Null`].
+    /// A number. If it is not finite, it is written like [`Value::Null`].
     Real(f64),
     /// A boolean.
     Boolean(bool),
@@ -81,13 +81,13 @@ pub struct Feature {
 }
 
 impl Value {
-    /// A text that is known in advance.
+    /// A static text.
     #[must_use]
     pub fn text(text: &'static str) -> Value {
         Value::Text(Cow::Borrowed(text))
     }
 
-    /// An optional integer.
+    /// An optional integer; [`Value::Null`] without a number.
     #[must_use]
     pub fn id(number: Option<u32>) -> Value {
         number.map_or(Value::Null, |number| Value::Integer(i64::from(number)))
@@ -119,7 +119,7 @@ impl Geometry {
         match self {
             Geometry::Point(at) => coordinates::bounds(at, 3, None),
             Geometry::Line(points) => coordinates::bounds(points.as_flattened(), 3, None),
-            // Holes are within the outer ring.
+            // Holes are inside the outer ring.
             Geometry::MultiPolygon(parts) => (parts.iter().filter_map(|part| part.first()))
                 .fold(None, |others, ring| coordinates::bounds(ring.as_flattened(), 2, others)),
         }
@@ -135,19 +135,19 @@ impl Geometry {
     }
 }
 
-/// The length of a line in the plane, without heights.
+/// The length of a line in the plane; heights are ignored.
 #[must_use]
 pub fn length(points: &[[f64; 3]]) -> f64 {
     points.windows(2).map(|pair| libm::hypot(pair[1][0] - pair[0][0], pair[1][1] - pair[0][1])).sum()
 }
 
-/// Places features on a map, whose `origin` is at (0, 0) and which has `per_metre` units a metre; without a map y
-/// points north.
+/// Converts features to the coordinates of a map, in which the world's origin is at `origin` and `per_metre` is the
+/// number of units per metre. Without a map, y is only negated, so that it points north.
 pub fn place(features: &mut [Feature], map: Option<([f64; 2], [f64; 2])>) {
     features.iter_mut().for_each(|feature| feature.geometry.place(map));
 }
 
-/// The bounds of all features: west, south, east, north.
+/// The bounds of all features: west, south, east, north. `None` if there are no vertices.
 #[must_use]
 pub fn bounds(features: &[Feature]) -> Option<[f64; 4]> {
     features.iter().filter_map(|feature| feature.geometry.bounds()).reduce(join)

@@ -1,12 +1,12 @@
-//! FlatBuffers (flatbuffers.dev, "FlatBuffer Internals"): tables whose fields are found by offsets. Buffers are built
-//! from their end to their start.
+//! FlatBuffers (flatbuffers.dev, "FlatBuffer Internals"): tables whose fields are located by offsets. Buffers are built
+//! from the end to the start.
 
 /// A buffer that grows towards its start. Offsets are counted from its end.
 #[derive(Default)]
 pub struct Builder {
     /// The bytes in reverse order.
     reversed: Vec<u8>,
-    /// The largest alignment of its content.
+    /// The largest alignment of the content.
     align: usize,
 }
 
@@ -26,7 +26,7 @@ pub enum Slot {
     Int(i32),
     /// Eight bytes.
     Long(u64),
-    /// An object written before.
+    /// An object that was written before.
     Reference(Offset),
 }
 
@@ -52,7 +52,7 @@ impl Builder {
         self.reversed.len() as Offset
     }
 
-    /// A text.
+    /// Adds a text.
     pub fn text(&mut self, text: &str) -> Offset {
         self.prepare(4, text.len() + 1);
         self.push(&[0]);
@@ -61,7 +61,7 @@ impl Builder {
         self.here()
     }
 
-    /// Elements of `size` bytes each, little-endian.
+    /// Adds a vector of elements of `size` bytes each, which are little-endian.
     fn vector(&mut self, bytes: &[u8], size: usize) -> Offset {
         self.prepare(4, bytes.len());
         self.prepare(size, bytes.len());
@@ -70,7 +70,7 @@ impl Builder {
         self.here()
     }
 
-    /// Adds bytes.
+    /// Adds a vector of bytes.
     pub fn bytes(&mut self, bytes: &[u8]) -> Offset {
         self.vector(bytes, 1)
     }
@@ -81,7 +81,7 @@ impl Builder {
         self.vector(&bytes, 4)
     }
 
-    /// Adds a vector of floats, which are little-endian.
+    /// Adds a vector of 64-bit floats, given as little-endian bytes.
     pub fn numbers(&mut self, bytes: &[u8]) -> Offset {
         self.vector(bytes, 8)
     }
@@ -124,7 +124,7 @@ impl Builder {
             }
             *place = self.here();
         }
-        // The offset from the table to its vtable is known after that is written.
+        // The offset from the table to its vtable is filled in after the vtable is written.
         self.prepare(4, 0);
         self.push(&[0; 4]);
         let table = self.here();
@@ -141,7 +141,7 @@ impl Builder {
         table
     }
 
-    /// The bytes of a buffer whose root is this table, prefixed by its length.
+    /// The bytes of a buffer whose root is the table `root`, preceded by their length.
     #[must_use]
     pub fn finish(mut self, root: Offset) -> Vec<u8> {
         self.prepare(self.align, 8);

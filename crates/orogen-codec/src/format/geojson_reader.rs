@@ -1,7 +1,7 @@
-//! Lines and areas of GeoJSON (RFC 7946).
+//! Reads lines and areas from GeoJSON (RFC 7946).
 //!
-//! Geometries alone, features, and collections of both are read. Properties, coordinate systems and points are skipped.
-//! y points north in GeoJSON: it is negated. The third coordinate is the height.
+//! A file can be a geometry, a feature, or a collection of either. Properties, coordinate systems and points are
+//! skipped. y points north in GeoJSON, so it is negated. The third coordinate is the height.
 
 use std::cell::Cell;
 use std::fmt;
@@ -12,10 +12,10 @@ use serde::de::{self, DeserializeSeed, Deserializer, IgnoredAny, MapAccess, SeqA
 
 use super::outlines::{Collector, DrawingKind, MAX_POINTS};
 
-/// Maximum number of objects, lists and positions.
+/// Maximum number of objects, lists and positions in a file.
 const MAX_ITEMS: usize = 2 * MAX_POINTS;
 
-/// Reads a text.
+/// Reads a GeoJSON text into `collector`.
 pub fn read(text: &str, collector: &mut Collector) -> Result<(), String> {
     let left = Cell::new(MAX_ITEMS);
     let mut deserializer = serde_json::Deserializer::from_str(text);
@@ -28,7 +28,7 @@ pub fn read(text: &str, collector: &mut Collector) -> Result<(), String> {
     geometry(&object, collector)
 }
 
-/// Recursion is bounded by the parser, which rejects deep nesting.
+/// Recursion is bounded, because the parser rejects deep nesting.
 fn geometry(object: &Object, collector: &mut Collector) -> Result<(), String> {
     use DrawingKind::{Areas, Lines};
     for inner in object.geometry.as_deref().into_iter().chain(&object.objects) {
@@ -48,7 +48,7 @@ fn geometry(object: &Object, collector: &mut Collector) -> Result<(), String> {
     collector.take(&kinds, outlines)
 }
 
-/// The lines of nested lists: at depth 1 a list of positions.
+/// The lines in nested lists. At depth 1 the list consists of positions.
 fn lines(coordinates: &Coordinates, depth: usize, outlines: &mut Vec<Outline>) -> Result<(), String> {
     let Coordinates::List(items) = coordinates else {
         return Err("its coordinates are not nested as this type has them".into());
@@ -67,7 +67,7 @@ fn lines(coordinates: &Coordinates, depth: usize, outlines: &mut Vec<Outline>) -
     Ok(())
 }
 
-/// What is read of any object.
+/// The members of an object that are read.
 #[derive(Default)]
 struct Object {
     kind: Option<String>,
@@ -82,7 +82,7 @@ enum Coordinates {
     List(Vec<Coordinates>),
 }
 
-/// Deserializes a kind of value; counts what is made.
+/// Deserializes values of kind `K`, and counts the items that it creates.
 struct Seed<'a, K> {
     left: &'a Cell<usize>,
     kind: PhantomData<K>,
@@ -107,7 +107,7 @@ impl<K: Copy> Seed<'_, K> {
 #[derive(Clone, Copy)]
 struct ObjectVisitor;
 
-/// An object, or null.
+/// An object or null.
 #[derive(Clone, Copy)]
 struct OptionalObject;
 
@@ -117,7 +117,7 @@ struct ObjectList;
 #[derive(Clone, Copy)]
 struct CoordinatesVisitor;
 
-/// An item of a list of coordinates.
+/// An item in a list of coordinates.
 enum Item {
     Number(f64),
     Coordinates(Coordinates),
@@ -229,7 +229,7 @@ impl<'de> Visitor<'de> for Seed<'_, CoordinatesVisitor> {
         while let Some(item) = items.next_element_seed(self.of(ItemVisitor))? {
             match item {
                 Item::Coordinates(inner) if count == 0 => lists.push(inner),
-                // More than three are allowed, and have no meaning.
+                // More than three numbers are allowed; the others are ignored.
                 Item::Number(number) if lists.is_empty() => {
                     if let Some(place) = numbers.get_mut(count) {
                         *place = number;

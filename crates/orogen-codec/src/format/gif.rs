@@ -1,16 +1,16 @@
 //! GIF animations.
 //!
-//! "Graphics Interchange Format, Version 89a" (CompuServe, 1990), with the extension that repeats it endlessly in
-//! browsers. A GIF has at most 256 colors. One palette serves all frames, which avoids flicker; it is found by median
-//! cut (P. Heckbert, "Color image quantization for frame buffer display", 1982). Intermediate colors are dithered with
-//! the same pattern in every frame (B. Bayer's ordered dither, 1973). Unchanged pixels are transparent, which
-//! compresses better.
+//! Follows "Graphics Interchange Format, Version 89a" (CompuServe, 1990), with the extension that repeats the animation
+//! endlessly in browsers. A GIF has at most 256 colors. One palette is used for all frames, which avoids flicker. It is
+//! found by median cut (P. Heckbert, "Color image quantization for frame buffer display", 1982). Intermediate colors
+//! are dithered with the same pattern in every frame (B. Bayer's ordered dither, 1973). Unchanged pixels are
+//! transparent, which compresses better.
 
 use std::io::{self, Write};
 
 use super::png::Animation;
 
-/// Number of colors; one more index means "unchanged".
+/// Number of colors, and the index that means "unchanged".
 const COLORS: usize = 255;
 const SAME: u8 = 255;
 
@@ -24,22 +24,22 @@ pub struct Palette {
     colors: Vec<[u8; 3]>,
     /// The index of the nearest color, for each of `SIDE`^3 colors.
     nearest: Vec<u8>,
-    /// Amplitude of the dither, in steps of a byte.
+    /// Amplitude of the dither, in units of a byte's steps.
     spread: i32,
 }
 
-/// A box of colors that become one.
+/// A box of colors that are replaced with one color.
 #[derive(Debug, Clone)]
 struct Cluster {
     /// Cells of the histogram.
     cells: Vec<usize>,
-    /// The variation along the channel of largest variation, times the number of pixels; and that channel.
+    /// The variation along the channel with the largest variation, weighted by the number of pixels; then that channel.
     spread: f64,
     channel: usize,
 }
 
 impl Palette {
-    /// A palette for pixels of three bytes each.
+    /// The palette for pixels of three bytes each.
     pub fn of(pixels: &[u8]) -> Palette {
         let mut counts = vec![0u32; SIDE * SIDE * SIDE];
         let mut sums = vec![[0u64; 3]; SIDE * SIDE * SIDE];
@@ -56,7 +56,7 @@ impl Palette {
                     let value = |cell: &usize| f64::from(counts[*cell]) * libm::pow(mean(*cell, channel), power);
                     cells.iter().map(value).sum::<f64>() / pixels
                 };
-                // The eye distinguishes greens best, and blues worst.
+                // The eye distinguishes shades of green best, and shades of blue worst.
                 (weigh(2.0) - weigh(1.0) * weigh(1.0)).max(0.0) * [0.9, 1.4, 0.6][channel]
             });
             let channel = (0..3).fold(0, |best, channel| if vary[channel] > vary[best] { channel } else { best });
@@ -94,7 +94,7 @@ impl Palette {
                 })
             })
             .collect();
-        // An order that does not depend on how the boxes were split.
+        // The order must not depend on how the boxes were split.
         colors.sort_unstable();
         colors.dedup();
         Palette::new(colors)
@@ -128,7 +128,7 @@ impl Palette {
         Palette { colors, nearest, spread: (f64::from(gap / 10).sqrt() as i32).clamp(0, 24) }
     }
 
-    /// The index for a pixel at a position.
+    /// The index of the color for a pixel at a position.
     fn index(&self, pixel: &[u8], x: usize, y: usize) -> u8 {
         let push = (i32::from(BAYER[y & 7][x & 7]) * 2 - 63) * self.spread / 64;
         let color = [0, 1, 2].map(|c| (i32::from(pixel[c]) + push).clamp(0, 255));
@@ -152,9 +152,9 @@ const BAYER: [[u8; 8]; 8] = [
     [63, 31, 55, 23, 61, 29, 53, 21],
 ];
 
-/// Writes an animation. `fill` makes the frames one at a time: it gets the frame's number, from 0, and its bytes, three
-/// per pixel. The animation repeats endlessly. The delay of a frame is rounded to hundredths of a second, at least two,
-/// which is the minimum of browsers.
+/// Writes an animation. `fill` computes the frames one at a time: it receives the frame's number, from 0, and the
+/// frame's bytes, three per pixel. The animation repeats endlessly. The delay of a frame is rounded to hundredths of a
+/// second, with a minimum of two, which is also the minimum in browsers.
 ///
 /// Fails if `out` or `fill` fails, or if the picture has no pixels or more than 65 535 per side.
 pub fn write_animation(
@@ -187,7 +187,7 @@ fn write_frames(
     }
     out.write_all(b"GIF89a")?;
     out.write_all(&[wide[0], wide[1], high[0], high[1]])?;
-    // A palette of 256 colors for all frames.
+    // A palette of 256 colors that applies to all frames.
     out.write_all(&[0xf7, 0, 0])?;
     let mut table = [0u8; 768];
     table.chunks_exact_mut(3).zip(&palette.colors).for_each(|(entry, color)| entry.copy_from_slice(color));
@@ -216,7 +216,7 @@ fn write_frames(
     out.write_all(b"\x3b")
 }
 
-/// Gray values as pixels of three bytes.
+/// Converts gray values to pixels of three bytes.
 pub fn rgb_of_grey(greys: &[u8], rgb: &mut [u8]) {
     rgb.chunks_exact_mut(3).zip(greys).for_each(|(rgb, grey)| rgb.fill(*grey));
 }
@@ -231,7 +231,7 @@ const END: u16 = 257;
 fn pack(out: &mut dyn Write, indices: impl Iterator<Item = u8>) -> io::Result<()> {
     let mut blocks = Blocks { out, block: Vec::with_capacity(255), bits: 0, held: 0 };
     blocks.out.write_all(&[8])?;
-    // The successors of each code: the code of both together, 0 for none.
+    // For each code and each next index, the code of both together; 0 if there is none.
     let mut after = vec![0u16; 256 << LONGEST];
     let (mut next, mut width) = (END + 1, 9);
     blocks.push(CLEAR, width)?;
@@ -368,7 +368,7 @@ mod tests {
             let (back, used) = unpack(&bytes);
             assert!(back == indices && used == bytes.len(), "{length} of {colors}");
         }
-        // Every length near those where codes get longer.
+        // All lengths near those at which codes get longer.
         for length in (200..800).chain(3500..4500) {
             let indices: Vec<u8> = (0..length).map(|k| (k * k / 7 % 256) as u8).collect();
             let mut bytes = Vec::new();

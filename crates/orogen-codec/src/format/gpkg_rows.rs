@@ -7,11 +7,11 @@ use super::features::{Feature, Geometry, GeometryType, Value};
 use super::packed_tree::{Bounds, hilbert_order, levels};
 use super::sqlite::{Column, Database};
 
-/// Cells per node of an R-tree, and bytes of a node.
+/// Number of cells in a node of an R-tree, and number of bytes of a cell.
 const NODE_CELLS: usize = 51;
 const NODE_CELL: usize = 24;
 
-/// Adds the table of features. `srs` is the number of their coordinate system.
+/// Adds the table of features. `srs` is the number of their spatial reference system.
 ///
 /// # Errors
 /// The errors of [`Database::table`].
@@ -31,7 +31,7 @@ pub fn features(
     database.table(name, sql, rows)
 }
 
-/// The column of an attribute.
+/// The database value of an attribute.
 fn column(value: &Value) -> Column<'_> {
     match value {
         Value::Integer(number) => Column::Integer(*number),
@@ -42,7 +42,7 @@ fn column(value: &Value) -> Column<'_> {
     }
 }
 
-/// A geometry in GeoPackage binary: its header with the bounds, then ISO WKB, little-endian.
+/// A geometry in GeoPackage binary: a header with the bounds, then ISO WKB, little-endian.
 fn blob(geometry: &Geometry, kind: GeometryType, srs: i64) -> Vec<u8> {
     let mut out = Vec::with_capacity(64 + geometry.vertices() * 24);
     let bounds = geometry.bounds().filter(|_| kind != GeometryType::Point);
@@ -93,7 +93,7 @@ fn numbers(numbers: &[f64], out: &mut Vec<u8>) {
     numbers.iter().for_each(|number| out.extend_from_slice(&number.to_le_bytes()));
 }
 
-/// Adds the tables that hold the R-tree `name` of features.
+/// Adds the tables of the R-tree `name` of features.
 ///
 /// # Errors
 /// The errors of [`Database::table`].
@@ -116,9 +116,9 @@ pub fn index(database: &mut Database, name: &str, features: &[Feature]) -> io::R
 
 /// The nodes of an R-tree in SQLite's format.
 struct Nodes {
-    /// The leaf of each row.
+    /// The number of the leaf that contains each row.
     rows: Vec<(i64, i64)>,
-    /// The nodes, from number 1, the root.
+    /// The nodes in the order of their numbers, from 1, the root.
     blobs: Vec<Vec<u8>>,
     /// The parent of each node except the root.
     parents: Vec<(i64, i64)>,
@@ -134,7 +134,7 @@ impl Nodes {
             nodes.blobs.push(node(0, &[]));
             return nodes;
         }
-        // The number of the first node of each level: 1 for the root; lower levels follow.
+        // The number of the first node of each level. The root has 1, and the lower levels follow.
         let mut first = vec![1i64; levels.len()];
         for k in (0..levels.len() - 1).rev() {
             first[k] = first[k + 1] + levels[k + 1].len() as i64;
@@ -160,7 +160,7 @@ impl Nodes {
     }
 }
 
-/// A node: depth and cells; a cell is a number and its bounds as f32, rounded outward.
+/// A node: its depth and its cells. A cell is a number and its bounds as f32, rounded outward.
 fn node(depth: u16, cells: &[(i64, Bounds)]) -> Vec<u8> {
     let mut out = Vec::with_capacity(4 + NODE_CELLS * NODE_CELL);
     out.extend_from_slice(&depth.to_be_bytes());

@@ -8,16 +8,16 @@ use super::encoding::Encoding;
 use super::input::{Input, afford};
 use super::stored::{Kind, Stored};
 
-/// A picture whose rows are read.
+/// A picture that is read row by row.
 pub struct Pixels<'a> {
     reader: Reader<BufReader<&'a mut dyn Input>>,
-    /// Pixels per row.
+    /// Number of pixels per row.
     pub width: u64,
     /// Number of rows.
     pub height: u64,
-    /// The kind of its pixels.
+    /// The color type of its pixels.
     pub color: ColorType,
-    /// Bits per channel.
+    /// Number of bits per channel.
     pub depth: BitDepth,
     count: usize,
 }
@@ -32,14 +32,14 @@ fn broken(fault: DecodingError) -> String {
 }
 
 impl<'a> Pixels<'a> {
-    /// Reads the header of a picture.
+    /// Reads the header of a picture and checks its size.
     ///
     /// # Errors
-    /// A message if it is not a PNG, or its heights take more than `allowed` bytes.
+    /// A message if it is not a PNG, or if its heights need more than `allowed` bytes.
     pub fn open(input: &'a mut dyn Input, allowed: u64) -> Result<Pixels<'a>, String> {
         let limit = usize::try_from(allowed).unwrap_or(usize::MAX);
-        // What the decoder takes for any picture is no matter of this one: a picture that does not fit is refused with
-        // its size.
+        // The memory that the decoder needs for any picture is allowed in any case, so that a picture that is too large
+        // is rejected with a message about its size.
         const DECODER: usize = 64 << 10;
         let mut decoder = Decoder::new_with_limits(BufReader::new(input), Limits { bytes: limit.max(DECODER) });
         decoder.set_transformations(Transformations::IDENTITY);
@@ -51,10 +51,10 @@ impl<'a> Pixels<'a> {
         Ok(Pixels { reader, width, height, color, depth, count })
     }
 
-    /// Checks that the picture has its rows in order.
+    /// Checks that the rows of the picture are stored in order.
     ///
     /// # Errors
-    /// A message that it is interlaced.
+    /// A message if the picture is interlaced.
     pub fn check_rows(&self) -> Result<(), String> {
         match self.reader.info().interlaced {
             true => Err("it is interlaced; save it without interlacing".into()),
@@ -76,7 +76,7 @@ impl<'a> Pixels<'a> {
         }
     }
 
-    /// The heights of grays of `size` bytes from 0, which is `range[0]`, to `most`, which is `range[1]`.
+    /// The heights of gray levels of `size` bytes. Level 0 is the height `range[0]`, level `most` is `range[1]`.
     ///
     /// # Errors
     /// A message if the picture is damaged.
@@ -85,14 +85,14 @@ impl<'a> Pixels<'a> {
         self.heights(&mut |row, heights| stored.append_scaled(row, most, range, nodata, heights))
     }
 
-    /// The heights that are encoded in pixels of `size` bytes: red, green, blue and, if there are four, alpha.
+    /// The heights that are encoded in pixels of `size` bytes: red, green, blue and, if `size` is 4, alpha.
     ///
     /// # Errors
     /// A message if the picture is damaged.
     pub fn encoded(&mut self, size: usize, encoding: Encoding) -> Result<Vec<f32>, String> {
         self.heights(&mut |row, heights| {
             heights.extend(row.chunks_exact(size).map(|pixel| match *pixel {
-                // Transparent pixels have no height, nor has 0, 0, 0.
+                // Transparent pixels and pixels 0, 0, 0 have no height.
                 [_, _, _, 0] | [0, 0, 0, ..] => f32::NAN,
                 [red, green, blue, ..] => encoding.height([red, green, blue]) as f32,
                 _ => f32::NAN,

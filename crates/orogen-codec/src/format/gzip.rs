@@ -1,10 +1,10 @@
-//! Gzip (RFC 1952): one member, written as a stream.
+//! Gzip (RFC 1952) with one member, written as a stream.
 
 use std::io::{self, Write};
 
 use super::deflate::packer::Packer;
 
-/// Writes the header, and returns what takes the data. The header has no time and no file name, so equal data give
+/// Writes the header, and returns the writer for the data. The header has no time and no file name, so equal data give
 /// equal files.
 ///
 /// Fails if `out` fails.
@@ -13,9 +13,9 @@ pub fn start(out: &mut dyn Write) -> io::Result<Packer<'_>> {
     Ok(Packer::new(out))
 }
 
-/// Writes the rest, the checksum and the length.
+/// Writes the remaining data, the checksum and the length.
 ///
-/// Fails if the writer below fails.
+/// Fails if the underlying writer fails.
 pub fn finish(packer: Packer) -> io::Result<()> {
     let (out, checksum, length) = packer.finish()?;
     out.write_all(&checksum.to_le_bytes())?;

@@ -1,5 +1,5 @@
-//! 16-bit floats (IEEE 754 binary16), which some engines use for heights: 11 bits of precision, so steps of 2 m above
-//! 2048 m.
+//! 16-bit floats (IEEE 754 binary16), which some engines use for heights. They have 11 bits of precision, so heights
+//! above 2048 m have steps of 2 m.
 
 /// The nearest half, ties to even. Values of 65520 and more become infinite; NaN stays NaN.
 #[must_use]
@@ -15,7 +15,7 @@ pub fn from_f32(value: f32) -> u16 {
         return sign | 0x7c00;
     }
     if magnitude < 0x3880_0000 {
-        // Below the smallest normal half: steps of 2^-24.
+        // Numbers below the smallest normal half have steps of 2^-24.
         let steps = f64::from(f32::from_bits(magnitude)) * 16_777_216.0;
         return sign | steps.round_ties_even() as u16;
     }

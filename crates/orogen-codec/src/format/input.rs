@@ -1,4 +1,4 @@
-//! What readers take bytes from, and how much memory they may take.
+//! The sources of readers, and their memory limits.
 
 use std::io::{Read, Seek};
 
@@ -9,10 +9,10 @@ pub trait Input: Read + Seek {}
 
 impl<T: Read + Seek> Input for T {}
 
-/// Checks, before allocation, that heights of this size fit in `allowed` bytes. Returns their number.
+/// Checks, before allocation, that `width` x `height` heights fit in `allowed` bytes. Returns the number of heights.
 ///
 /// # Errors
-/// A message with both figures.
+/// A message with both sizes.
 pub fn afford(width: u64, height: u64, allowed: u64) -> Result<usize, String> {
     if width == 0 || height == 0 {
         return Err(format!("its header declares {width} x {height} samples, which is empty"));
@@ -29,14 +29,14 @@ pub fn afford(width: u64, height: u64, allowed: u64) -> Result<usize, String> {
     }
 }
 
-/// Size of a reader's buffers that is not counted, in bytes.
+/// Size of a reader's buffers, in bytes, that does not count towards the limit.
 const BUFFER: u64 = 4 << 20;
 
-/// Checks that `beside` more bytes, which a reader holds during decompression, fit with `count` heights in `allowed`
-/// bytes.
+/// Checks that `beside` bytes, which a reader needs during decompression, fit in `allowed` bytes in addition to `count`
+/// heights.
 ///
 /// # Errors
-/// A message with both figures.
+/// A message with both sizes.
 pub fn afford_beside(count: usize, beside: u64, allowed: u64) -> Result<(), String> {
     let needed = (count as u64).saturating_mul(4).saturating_add(beside);
     match beside > BUFFER && needed > allowed {
@@ -59,7 +59,7 @@ pub fn turn_rows(samples: &mut [f32], width: usize) {
     }
 }
 
-/// The length of an input in bytes; its position is then at the start.
+/// The length of an input in bytes. Afterwards its position is at the start.
 pub fn length(input: &mut dyn Input) -> Result<u64, String> {
     let length = input.seek(std::io::SeekFrom::End(0)).map_err(|cause| cause.to_string())?;
     input.rewind().map_err(|cause| cause.to_string())?;

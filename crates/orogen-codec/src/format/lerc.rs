@@ -1,11 +1,11 @@
-//! LERC (Limited Error Raster Compression, "Lerc2", versions 3 to 6) by Esri, as contained in GeoTIFFs.
+//! LERC (Limited Error Raster Compression, "Lerc2", versions 3 to 6) by Esri, as used in GeoTIFF files.
 //!
-//! A blob is a header, a mask of valid pixels, and the values: as one sequence, as Huffman codes of bytes, or in square
-//! blocks of integers with as many bits as the largest needs: value = offset + 2 error number. A Fletcher checksum
-//! covers the whole blob. Follows Esri's description of the format and the behavior of its decoder
-//! (github.com/Esri/lerc, Apache 2.0).
+//! A blob is a header, a mask of valid pixels, and the values. The values are one sequence, Huffman codes of bytes, or
+//! square blocks of integers with as many bits as the largest one needs: value = offset + 2 error number. A Fletcher
+//! checksum covers the whole blob. This decoder follows Esri's description of the format and the behavior of Esri's
+//! decoder (github.com/Esri/lerc, Apache 2.0).
 
-/// Sizes of the sample types, by the format's numbers.
+/// Sizes in bytes of the sample types, by their numbers in the format.
 const SIZES: [usize; 8] = [1, 1, 2, 2, 4, 4, 4, 8];
 const CHAR: usize = 0;
 const BYTE: usize = 1;
@@ -15,16 +15,16 @@ const DOUBLE: usize = 7;
 /// Maximum number of codes in a Huffman table.
 const MAX_CODES: usize = 1 << 15;
 
-/// Decodes a blob of `width` x `height` pixels with `bands` samples of `size` bytes, to little-endian samples, the
-/// bands of a pixel interleaved. Masked pixels are NaN, or 0 for integers.
+/// Decodes a blob of `width` x `height` pixels with `bands` samples of `size` bytes. Returns little-endian samples,
+/// with the bands of a pixel interleaved. Masked pixels are NaN, or 0 for integers.
 ///
 /// # Errors
-/// A message if it is damaged, of another size, or uses an unsupported encoding.
+/// A message if the blob is damaged, has another size, or uses an unsupported encoding.
 pub fn unpack(packed: &[u8], [width, height]: [usize; 2], bands: usize, size: usize) -> Result<Vec<u8>, String> {
     let mut input = Input { bytes: packed };
     let head = Head::read(&mut input, packed)?;
     let (columns, rows) = (head.columns, head.rows);
-    // The last strip of a file may be encoded at its actual height.
+    // The last strip of a file may be encoded with its actual height.
     if columns != width || rows > height || head.bands != bands || SIZES[head.kind] != size {
         return Err(format!(
             "a block compressed with LERC holds {columns} x {rows} pixels with {} bands of {} bytes instead of {width} x {height} with {bands} of {size}",
@@ -42,7 +42,7 @@ fn damaged() -> String {
     "a block compressed with LERC is damaged".into()
 }
 
-/// Bytes that are read from the front.
+/// Bytes that are consumed from the front.
 #[derive(Clone, Copy)]
 struct Input<'a> {
     bytes: &'a [u8],
@@ -67,12 +67,12 @@ impl<'a> Input<'a> {
         Ok(self.whole(4)? as i32)
     }
 
-    /// A size, which must not be negative.
+    /// Reads a size, which must not be negative.
     fn count(&mut self) -> Result<usize, String> {
         usize::try_from(self.int()?).map_err(|_| damaged())
     }
 
-    /// A value of type `kind`.
+    /// Reads a value of type `kind`.
     fn value(&mut self, kind: usize) -> Result<f64, String> {
         let bytes = self.take(SIZES[kind])?;
         let bits = bytes.iter().rev().fold(0u64, |bits, byte| bits << 8 | u64::from(*byte));
@@ -135,7 +135,7 @@ impl Head {
     }
 }
 
-/// The 32-bit Fletcher checksum over pairs of bytes, the higher first.
+/// The 32-bit Fletcher checksum over pairs of bytes, the higher byte first.
 fn fletcher(bytes: &[u8]) -> u32 {
     let (mut low, mut high) = (0xffffu32, 0xffffu32);
     let fold = |sum: u32| (sum & 0xffff) + (sum >> 16);
@@ -149,7 +149,7 @@ fn fletcher(bytes: &[u8]) -> u32 {
     fold(high) << 16 | fold(low)
 }
 
-/// The mask of valid pixels; `None` if all are valid.
+/// Reads the mask of valid pixels; `None` if all pixels are valid.
 fn mask(input: &mut Input, head: &Head) -> Result<Option<Vec<u8>>, String> {
     let length = input.count()?;
     let pixels = head.rows * head.columns;
@@ -188,7 +188,7 @@ fn is_set(bits: &[u8], k: usize) -> bool {
     bits[k / 8] & 0x80 >> (k % 8) != 0
 }
 
-/// Integers of `width` bits each, the lowest bit first.
+/// Reads `count` integers of `width` bits each, the lowest bit first.
 fn bits(input: &mut Input, count: usize, width: usize) -> Result<Vec<u32>, String> {
     let bytes = input.take((count * width).div_ceil(8))?;
     let mut numbers = Vec::with_capacity(count);
@@ -205,7 +205,7 @@ fn bits(input: &mut Input, count: usize, width: usize) -> Result<Vec<u32>, Strin
     Ok(numbers)
 }
 
-/// At most `most` numbers, bit-packed or as indices into a table.
+/// Reads at most `most` numbers, which are bit-packed or indices into a table.
 fn numbers(input: &mut Input, most: usize) -> Result<Vec<u32>, String> {
     let first = input.byte()?;
     let size = match first >> 6 {
@@ -242,7 +242,7 @@ impl Values {
         self.valid.as_ref().is_none_or(|bits| is_set(bits, pixel))
     }
 
-    /// Sets a sample, converted to its type.
+    /// Sets a sample, converted to the type of the blob.
     fn set(&mut self, pixel: usize, band: usize, value: f64) {
         let size = SIZES[self.head.kind];
         let at = (pixel * self.head.bands + band) * size;
@@ -365,7 +365,7 @@ impl Values {
         Ok(())
     }
 
-    /// Decodes Huffman codes of bytes, or of differences from the pixel to the left or above.
+    /// Decodes Huffman codes of bytes, or of differences to the pixel to the left or above.
     fn huffman(&mut self, input: &mut Input, differences: bool) -> Result<(), String> {
         let Head { rows, columns, bands, kind, .. } = self.head;
         let codes = Codes::read(input)?;
@@ -412,7 +412,7 @@ impl Values {
     }
 }
 
-/// The type of an offset: the format's own table of smaller types.
+/// The type of an offset, from the format's table of smaller types.
 fn smaller(kind: usize, code: usize) -> Result<usize, String> {
     let smaller = match kind {
         2 | 4 => kind.checked_sub(code),
@@ -424,10 +424,10 @@ fn smaller(kind: usize, code: usize) -> Result<usize, String> {
     smaller.ok_or_else(damaged)
 }
 
-/// Little-endian 32-bit words, read from the highest bit.
+/// Little-endian 32-bit words, read from the highest bit on.
 struct Words<'a> {
     bytes: &'a [u8],
-    /// Number of bits read.
+    /// Number of bits that were read.
     at: usize,
 }
 
@@ -491,7 +491,7 @@ mod tests {
     fn numbers_of_any_width() {
         let packed = [0b1010_1100, 0b0000_0001];
         assert_eq!(bits(&mut Input { bytes: &packed }, 3, 3).unwrap(), [4, 5, 6]);
-        // Three entries of 4 bits: 0 itself, 9 and 12; places of 2 bits: 2, 0, 1.
+        // Three entries of 4 bits: 0, which is not stored, 9 and 12. Then indices of 2 bits: 2, 0, 1.
         let table = [0b1010_0100, 3, 3, 0xC9, 0b0001_0010];
         assert_eq!(numbers(&mut Input { bytes: &table }, 3).unwrap(), [12, 0, 9]);
         assert!(numbers(&mut Input { bytes: &table }, 2).is_err());
@@ -504,7 +504,8 @@ mod tests {
         assert_eq!(fletcher(&[0, 1]), 0x0001_0001);
     }
 
-    /// Damage with a valid checksum: a file of another program, changed byte by byte, with a new checksum.
+    /// Damage with a valid checksum: a file of another program, changed at one byte at a time, with the checksum
+    /// recomputed.
     #[test]
     fn sealed_damage_is_samples_or_a_sentence() {
         let corpus = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus/dem");

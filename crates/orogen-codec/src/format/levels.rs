@@ -2,7 +2,7 @@
 
 use orogen_grid::grid::Grid;
 
-/// A range of heights mapped to all levels of an integer format: `low` becomes 0 and `high` the largest level.
+/// Maps a range of heights to all levels of an integer format: `low` becomes 0 and `high` the largest level.
 ///
 /// With an empty range (`low == high`) every height becomes 0, and [`Levels::is_flat`] returns true. Heights outside
 /// the range, including infinities, are clamped; NaN becomes 0.
@@ -13,7 +13,8 @@ pub struct Levels {
 }
 
 impl Levels {
-    /// The range from `low` to `high`, in the grid's unit. It is flat unless both are finite and in this order.
+    /// The range from `low` to `high`, in the unit of the grid. It is flat unless both are finite and `low` is less
+    /// than `high`.
     #[must_use]
     pub fn new(low: f32, high: f32) -> Levels {
         match low.is_finite() && high.is_finite() && low < high {
@@ -74,7 +75,7 @@ impl Levels {
         samples.iter().flat_map(|sample| self.to_u16(*sample).to_le_bytes()).collect()
     }
 
-    /// In f64, where the difference of two f32 and its product with a level neither overflow nor round twice.
+    /// Computed in f64, where the difference of two f32 and its product with a level neither overflow nor round twice.
     fn level(&self, height: f32, most: f64) -> f64 {
         if height.is_nan() || self.is_flat() {
             return 0.0;
@@ -88,7 +89,7 @@ impl Levels {
 /// The initial value of [`extremes`]: the range of no samples.
 pub const NO_SAMPLES: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
 
-/// The minimum and maximum of the finite samples and of the range so far.
+/// Extends the range `before` to the minimum and maximum of the finite samples.
 #[must_use]
 pub fn extremes(before: [f32; 2], samples: &[f32]) -> [f32; 2] {
     let finite = samples.iter().copied().filter(|sample| sample.is_finite());

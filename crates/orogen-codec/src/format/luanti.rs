@@ -1,7 +1,7 @@
-//! Map blocks of Luanti (Minetest) and the database that holds them.
+//! Map blocks of Luanti (Minetest), and the database that contains them.
 //!
-//! After "Luanti World Format 22...29" (doc/world_format.md): blocks of 16 x 16 x 16 nodes, version 28, which every
-//! Luanti since 0.4.16 reads; zlib. x points east, y up and z north.
+//! Follows "Luanti World Format 22...29" (doc/world_format.md): blocks of 16 x 16 x 16 nodes in version 28, which
+//! Luanti reads since 0.4.16, compressed with zlib. x points east, y up and z north.
 
 use std::io::{self, Write};
 
@@ -9,25 +9,25 @@ use miniz_oxide::deflate::compress_to_vec_zlib;
 
 use super::sqlite::{Column, Database};
 
-/// Nodes along a side of a map block.
+/// Number of nodes along a side of a map block.
 pub const SIDE: usize = 16;
 
-/// Nodes of a map block.
+/// Number of nodes in a map block.
 pub const NODES: usize = SIDE * SIDE * SIDE;
 
-/// Largest coordinate of a node: the world of Luanti ends there.
+/// Maximum coordinate of a node, at which the world of Luanti ends.
 pub const MAX_COORDINATE: i64 = 30_911;
 
-/// Level of compression.
+/// Compression level.
 const LEVEL: u8 = 6;
 
-/// The names of nodes, by their number in a block.
+/// Returns the name of a node for its number in a block.
 pub type Names<'a> = &'a dyn Fn(u8) -> &'a str;
 
-/// The bytes of a map block, from its nodes and their light (the light of the day, 0 to 15), each in the order z, y, x.
+/// The bytes of a map block, from its nodes and their daylight (0 to 15), each in the order z, y, x.
 #[must_use]
 pub fn block(nodes: &[u8; NODES], light: &[u8; NODES], is_underground: bool, names: Names) -> Vec<u8> {
-    // Flags, then lighting that is complete, then the bytes of a node's content and parameters.
+    // Flags, then complete lighting, then the numbers of bytes of a node's content and parameters.
     let mut bytes = vec![28, u8::from(is_underground), 0xff, 0xff, 2, 2];
     let mut data: Vec<u8> = nodes.iter().flat_map(|node| [0, *node]).collect();
     data.extend_from_slice(light);
@@ -48,7 +48,7 @@ pub fn block(nodes: &[u8; NODES], light: &[u8; NODES], is_underground: bool, nam
         bytes.extend_from_slice(&(name.len() as u16).to_be_bytes());
         bytes.extend_from_slice(name);
     }
-    // No timers, of ten bytes each.
+    // No timers; a timer would have ten bytes.
     bytes.extend_from_slice(&[10, 0, 0]);
     bytes
 }
@@ -59,14 +59,14 @@ pub fn key([x, y, z]: [i64; 3]) -> i64 {
     (z << 24) + (y << 12) + x
 }
 
-/// Writes `map.sqlite` from blocks with their keys, in ascending order.
+/// Writes `map.sqlite` from blocks with their keys, in ascending order of keys.
 ///
 /// # Errors
 /// If `out` fails, or the blocks are not in order.
 pub fn write_database(out: &mut dyn Write, blocks: &[(i64, Vec<u8>)]) -> io::Result<()> {
     let mut database = Database::new();
     let rows = blocks.iter().map(|(key, bytes)| (*key, vec![Column::Null, Column::Blob(bytes)]));
-    // The key is the number of the row, so that the table needs no index.
+    // The key is the row number, so the table needs no index.
     database.table("blocks", "CREATE TABLE `blocks` (`pos` INTEGER PRIMARY KEY, `data` BLOB)", rows)?;
     database.write(out, 0, 0)
 }

@@ -1,9 +1,9 @@
-//! Heights in whole metres of 16 bits: those of SRTM's `.hgt`, and those of DTED, which have a bit for the sign.
+//! Heights in integer metres of 16 bits, as in SRTM's `.hgt` (two's complement) and in DTED (a separate sign bit).
 
-/// The missing height of `.hgt`.
+/// The value of a missing height in `.hgt`.
 const VOID: i16 = -32768;
 
-/// Appends heights as `.hgt` stores them: big-endian.
+/// Appends heights in the format of `.hgt`, which is big-endian.
 pub fn append_bytes(bytes: &mut Vec<u8>, heights: &[f32]) {
     bytes.extend(heights.iter().flat_map(|height| {
         let whole = if height.is_nan() { VOID } else { height.round().clamp(-32767.0, 32767.0) as i16 };
@@ -11,7 +11,7 @@ pub fn append_bytes(bytes: &mut Vec<u8>, heights: &[f32]) {
     }));
 }
 
-/// The heights of an `.hgt`.
+/// The heights of an `.hgt` file; missing ones are NaN.
 #[must_use]
 pub fn heights(bytes: &[u8]) -> Vec<f32> {
     let height = |pair: &[u8; 2]| match i16::from_be_bytes(*pair) {
@@ -21,7 +21,7 @@ pub fn heights(bytes: &[u8]) -> Vec<f32> {
     bytes.as_chunks().0.iter().map(height).collect()
 }
 
-/// Puts the samples of DTED's column `i`, which begins in the south, into rows of `width` heights.
+/// Copies the samples of DTED's column `i`, which begins in the south, into rows of `width` heights.
 pub fn dted_column(bytes: &[u8], heights: &mut [f32], width: usize, i: usize) {
     let rows = heights.chunks_exact_mut(width).rev();
     for (row, pair) in rows.zip(bytes.as_chunks().0) {
@@ -29,8 +29,8 @@ pub fn dted_column(bytes: &[u8], heights: &mut [f32], width: usize, i: usize) {
     }
 }
 
-/// A height with a bit for its sign. -32767 is missing. Some programs write two's complement: no land is below -16 000
-/// m.
+/// A height with a sign bit. -32767 is missing. Some programs write two's complement instead, which is recognized
+/// because no land is below -16 000 m.
 #[must_use]
 fn signed(bits: u16) -> f32 {
     match (bits >> 15, bits & 0x7fff) {

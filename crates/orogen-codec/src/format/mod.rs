@@ -1,4 +1,4 @@
-//! The parts of file formats that work on samples and bytes.
+//! The parts of file formats that process samples and bytes.
 
 pub mod conversion;
 pub mod coordinates;

@@ -1,11 +1,12 @@
-//! Named binary tags (NBT) of Minecraft: Java Edition, as they are written to files: big-endian, strings in modified
+//! Named binary tags (NBT) of Minecraft: Java Edition, in the form of files: big-endian, with strings in modified
 //! UTF-8.
 //!
-//! Only the tags that other formats here need. Texts are ASCII, which modified UTF-8 writes as it is.
+//! Only the tags that other formats in this crate need are supported. Texts must be ASCII, which is unchanged in
+//! modified UTF-8.
 
 use std::io::{self, Write};
 
-/// The numbers of the types of tags.
+/// The numbers of tag types.
 const END: u8 = 0;
 const SHORT: u8 = 2;
 const INT: u8 = 3;
@@ -15,13 +16,13 @@ const LIST: u8 = 9;
 const COMPOUND: u8 = 10;
 const INT_ARRAY: u8 = 11;
 
-/// Writes the tags of compounds, one after the other.
+/// Writes the tags of compounds in sequence.
 pub struct Tags<'a> {
     out: &'a mut dyn Write,
 }
 
 impl<'a> Tags<'a> {
-    /// Tags to `out`.
+    /// Writes tags to `out`.
     pub fn new(out: &'a mut dyn Write) -> Tags<'a> {
         Tags { out }
     }
@@ -38,7 +39,7 @@ impl<'a> Tags<'a> {
         self.out.write_all(text.as_bytes())
     }
 
-    /// Begins a compound; its tags follow, until [`Tags::end`].
+    /// Begins a compound. Its tags follow until [`Tags::end`].
     pub fn compound(&mut self, name: &str) -> io::Result<()> {
         self.head(COMPOUND, name)
     }
@@ -48,38 +49,38 @@ impl<'a> Tags<'a> {
         self.out.write_all(&[END])
     }
 
-    /// A number of 16 bits; formats with unsigned ones use the same bits.
+    /// Writes a 16-bit number. Formats with unsigned numbers use the same bits.
     pub fn short(&mut self, name: &str, number: u16) -> io::Result<()> {
         self.head(SHORT, name)?;
         self.out.write_all(&number.to_be_bytes())
     }
 
-    /// A number of 32 bits.
+    /// Writes a 32-bit number.
     pub fn int(&mut self, name: &str, number: i32) -> io::Result<()> {
         self.head(INT, name)?;
         self.out.write_all(&number.to_be_bytes())
     }
 
-    /// Numbers of 32 bits.
+    /// Writes an array of 32-bit numbers.
     pub fn ints(&mut self, name: &str, numbers: &[i32]) -> io::Result<()> {
         self.head(INT_ARRAY, name)?;
         self.out.write_all(&(numbers.len() as i32).to_be_bytes())?;
         numbers.iter().try_for_each(|number| self.out.write_all(&number.to_be_bytes()))
     }
 
-    /// A text of ASCII characters.
+    /// Writes a text of ASCII characters.
     pub fn string(&mut self, name: &str, text: &str) -> io::Result<()> {
         self.head(STRING, name)?;
         self.text(text)
     }
 
-    /// A list of compounds without any.
+    /// Writes an empty list of compounds.
     pub fn empty_list(&mut self, name: &str) -> io::Result<()> {
         self.head(LIST, name)?;
         self.out.write_all(&[COMPOUND, 0, 0, 0, 0])
     }
 
-    /// Bytes.
+    /// Writes an array of bytes.
     pub fn bytes(&mut self, name: &str, bytes: &[u8]) -> io::Result<()> {
         let length = i32::try_from(bytes.len()).map_err(|_| io::Error::other("an array of NBT has more than 2 GiB"))?;
         self.head(BYTE_ARRAY, name)?;

@@ -1,9 +1,9 @@
-//! NumPy's `.npy`: the samples as they are, without loss.
+//! NumPy's `.npy`: the unchanged samples.
 //!
-//! The format is NEP 1 (numpy.lib.format): a magic, a version, the length of a header, the header as a Python
-//! dictionary padded so that the data begins at a multiple of 64, the data. Written: version 1.0, `<f4`, C order. Read:
-//! versions 1 to 3, one or two dimensions, floats and integers of any byte order, in C order. What a file claims is
-//! never believed further than its bytes go: a header that promises more samples than follow costs no memory.
+//! The format is NEP 1 (numpy.lib.format): a magic number, a version, the length of the header, the header as a Python
+//! dictionary padded so that the data begins at a multiple of 64, and the data. The writer produces version 1.0 with
+//! `<f4` in C order. The reader accepts versions 1 to 3, one or two dimensions, and floats and integers of any byte
+//! order in C order. It allocates memory only for bytes that exist, not for those that a header claims.
 
 use std::io::{self, Read, Write};
 
@@ -15,10 +15,10 @@ use orogen_grid::grid::{Grid, Window};
 
 const MAGIC: &[u8; 6] = b"\x93NUMPY";
 
-/// The longest header read. NumPy's own reader stops at 10 000 too.
+/// Maximum length of a header. NumPy's own reader has the same limit.
 const LONGEST_HEADER: usize = 10_000;
 
-/// How many bytes are converted at a time, a multiple of every sample size.
+/// Number of bytes that are converted at a time, a multiple of every sample size.
 const PIECE: usize = 1 << 16;
 
 /// Writes a grid as an array of `height` x `width` f32, little-endian.
@@ -27,21 +27,21 @@ pub fn write(out: &mut dyn Write, grid: &Grid) -> io::Result<()> {
     write_rows(out, grid.data())
 }
 
-/// Writes what comes before the samples of a grid. Exactly `width * height` of them must follow by [`write_rows`].
+/// Writes everything before the samples of a grid. Exactly `width * height` samples must follow with [`write_rows`].
 pub fn write_header(out: &mut dyn Write, width: usize, height: usize) -> io::Result<()> {
     write_shape(out, &[height, width])
 }
 
-/// Writes what comes before the samples of an array of any dimensions, the last the fastest. Exactly their product of
-/// samples must follow by [`write_rows`].
+/// Writes everything before the samples of an array with any number of dimensions, of which the last varies fastest.
+/// Exactly as many samples as the product of `shape` must follow with [`write_rows`].
 pub fn write_shape(out: &mut dyn Write, shape: &[usize]) -> io::Result<()> {
-    // Python writes a tuple of one with a comma behind it.
+    // Python writes a tuple of one element with a trailing comma.
     let sides: Vec<String> = shape.iter().map(usize::to_string).collect();
     let comma = if sides.len() == 1 { "," } else { "" };
     let shape = format!("({}{comma})", sides.join(", "));
     let mut header = format!("{{'descr': '<f4', 'fortran_order': False, 'shape': {shape}, }}");
     let before = MAGIC.len() + 2 + 2;
-    // The newline ends the header, and the data behind it begins at a multiple of 64.
+    // The newline ends the header, and the data after it begins at a multiple of 64.
     let total = (before + header.len() + 1).next_multiple_of(64);
     while before + header.len() + 1 < total {
         header.push(' ');
@@ -53,7 +53,7 @@ pub fn write_shape(out: &mut dyn Write, shape: &[usize]) -> io::Result<()> {
     out.write_all(header.as_bytes())
 }
 
-/// Writes the next samples of an array, row-major, any number at a time.
+/// Writes the next samples of an array, row-major. Any number of samples can be written at a time.
 pub fn write_rows(out: &mut dyn Write, samples: &[f32]) -> io::Result<()> {
     let mut bytes = Vec::with_capacity(PIECE.min(samples.len() * 4));
     for piece in samples.chunks(PIECE / 4) {
@@ -67,12 +67,12 @@ pub fn write_rows(out: &mut dyn Write, samples: &[f32]) -> io::Result<()> {
 /// Reads an array as a grid that starts at the origin, with `cell` metres between samples (the file does not store it).
 /// A one-dimensional array becomes one row. Wider numbers are rounded to f32.
 ///
-/// `name` is the file's name in errors.
+/// `name` is the name of the file in error messages.
 pub fn read(input: &mut dyn Read, name: &str, cell: f64) -> Result<Grid> {
     read_within(input, name, cell, u64::MAX)
 }
 
-/// [`read`], with at most `allowed` bytes for the samples as f32.
+/// [`read`] with a limit of `allowed` bytes for the samples as f32.
 pub fn read_within(input: &mut dyn Read, name: &str, cell: f64, allowed: u64) -> Result<Grid> {
     let refuse = |why: String| Error::new(ErrorKind::File, format!("cannot read {name}: {why}"));
     let header = read_header(input).map_err(refuse)?;
@@ -89,11 +89,11 @@ struct Header {
     kind: Kind,
     size: usize,
     big_endian: bool,
-    /// Rows, columns.
+    /// Number of rows and of columns.
     shape: [usize; 2],
 }
 
-/// Fills `bytes`, or fails if the file ends before.
+/// Fills `bytes`; fails if the file ends before they are complete.
 fn read_exactly(input: &mut dyn Read, bytes: &mut [u8], what: &str) -> std::result::Result<(), String> {
     input.read_exact(bytes).map_err(|cause| match cause.kind() {
         io::ErrorKind::UnexpectedEof => format!("it ends within its {what}"),

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-/// Number of decimals that resolve a thousandth of a step.
+/// Number of decimals that resolve a thousandth of `step`.
 #[must_use]
 pub fn decimals(step: f64) -> usize {
     (3.0 - libm::log10(step).floor()).clamp(0.0, 15.0) as usize
@@ -30,7 +30,7 @@ pub fn number(text: &mut String, value: f64, decimals: usize) {
 
 const POWERS: [f64; 16] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15];
 
-/// Appends a line for each sample, at these positions. One that is not finite has no value.
+/// Appends a line for each sample: its position and its value. A sample that is not finite has no value.
 pub fn append_samples(text: &mut String, places: &[[f64; 2]], decimals: usize, samples: &[f32]) {
     for (place, sample) in places.iter().zip(samples) {
         for position in place {
@@ -44,7 +44,7 @@ pub fn append_samples(text: &mut String, places: &[[f64; 2]], decimals: usize, s
     }
 }
 
-/// Appends a row of numbers with a blank between them; those that are not finite are `nodata`.
+/// Appends a row of numbers, separated by blanks. Numbers that are not finite are written as `nodata`.
 pub fn append_row(text: &mut String, row: &[f32], nodata: f32) {
     for (i, height) in row.iter().enumerate() {
         if i > 0 {

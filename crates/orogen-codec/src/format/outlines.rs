@@ -1,4 +1,4 @@
-//! The outlines that readers of vector files find.
+//! Collects the outlines that readers of vector files find.
 
 use orogen_grid::polylines::outline::{Outline, Piece};
 use sha2::{Digest, Sha256};
@@ -9,7 +9,7 @@ pub const MAX_POINTS: usize = 1 << 20;
 /// Maximum coordinate, in the unit of the file.
 pub const MAX_COORDINATE: f64 = 1e9;
 
-/// What is read of a file.
+/// The kind of outlines that are read from a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum DrawingKind {
     /// Lines.
@@ -19,7 +19,7 @@ pub enum DrawingKind {
 }
 
 impl DrawingKind {
-    /// What one of them is called.
+    /// The noun for this kind in messages.
     #[doc(hidden)]
     #[must_use]
     pub fn word(self) -> &'static str {
@@ -39,7 +39,7 @@ impl DrawingKind {
         }
     }
 
-    /// The op that reads them.
+    /// The name of the op that reads this kind.
     #[doc(hidden)]
     #[must_use]
     pub fn op(self) -> &'static str {
@@ -54,7 +54,7 @@ impl DrawingKind {
 #[doc(hidden)]
 pub struct Collector {
     kind: DrawingKind,
-    /// Those of the wanted kind.
+    /// The outlines of the requested kind.
     pub outlines: Vec<Outline>,
     /// Number of outlines of the other kind.
     pub others: usize,
@@ -62,13 +62,13 @@ pub struct Collector {
 }
 
 impl Collector {
-    /// A collector of one kind.
+    /// A collector for outlines of one kind.
     #[must_use]
     pub fn new(kind: DrawingKind) -> Collector {
         Collector { kind, outlines: Vec::new(), others: 0, points: 0 }
     }
 
-    /// Takes outlines of an element that is of these kinds.
+    /// Adds the outlines of an element that can be used as any of `kinds`.
     pub fn take(&mut self, kinds: &[DrawingKind], outlines: Vec<Outline>) -> Result<(), String> {
         if !kinds.contains(&self.kind) {
             self.others += outlines.len();
@@ -100,7 +100,7 @@ impl Collector {
     }
 }
 
-/// A hash of all that outlines have.
+/// A hash of all properties of outlines.
 #[doc(hidden)]
 #[must_use]
 pub fn hash(outlines: &[Outline]) -> [u8; 32] {

@@ -3,10 +3,10 @@
 
 use super::coordinates::join;
 
-/// West, south, east, north.
+/// Bounds: west, south, east, north.
 pub type Bounds = [f64; 4];
 
-/// The order of boxes by their centers along a Hilbert curve over all of them; ties keep the order of the list.
+/// The order of boxes along a Hilbert curve over all of them, by their centers. Ties keep the order of the list.
 pub fn hilbert_order(boxes: &[Bounds]) -> Vec<usize> {
     let Some(all) = boxes.iter().copied().reduce(join) else { return Vec::new() };
     const LARGEST: f64 = 65_535.0;
@@ -38,8 +38,8 @@ fn hilbert(mut x: u32, mut y: u32) -> u32 {
     along
 }
 
-/// The boxes of all nodes over sorted boxes, `fanout` per node: the lowest level first, the root's level (one node)
-/// last. Without boxes there are no levels.
+/// The boxes of all nodes over sorted boxes, with `fanout` children per node. The lowest level is first, the level of
+/// the root (one node) last. Without boxes there are no levels.
 #[must_use]
 pub fn levels(boxes: &[Bounds], fanout: usize) -> Vec<Vec<Bounds>> {
     let mut levels: Vec<Vec<Bounds>> = Vec::new();
@@ -62,11 +62,11 @@ mod tests {
 
     #[test]
     fn the_curve_goes_from_cell_to_neighboring_cell() {
-        // The first 4^5 cells of the curve fill a square; consecutive cells are adjacent.
+        // The first 4^5 cells of the curve fill a square, and consecutive cells are adjacent.
         let mut cells: Vec<(u32, [i64; 2])> = Vec::new();
         for x in 0..32u32 {
             for y in 0..32u32 {
-                // The largest cells: those that a coarse curve would have.
+                // The largest cells, which are the cells of a coarser curve.
                 cells.push((hilbert(x << 11, y << 11) >> 22, [i64::from(x), i64::from(y)]));
             }
         }

@@ -1,7 +1,7 @@
-//! PNG pictures: grayscale of 8 and 16 bits, color, normals, and animations (APNG).
+//! PNG pictures: grayscale with 8 and 16 bits, color, normals, and animations (APNG).
 //!
-//! The PNG specification (third edition, W3C 2025). 16-bit samples are big-endian. Grays and normals are data, so they
-//! have no gamma or color chunk that a reader could apply; colors are marked as sRGB. Compression favors speed.
+//! Follows the PNG specification (third edition, W3C 2025). 16-bit samples are big-endian. Grays and normals are data,
+//! so they have no gamma or color chunk that a reader could apply. Colors are marked as sRGB. Compression favors speed.
 
 use std::io::{self, Write};
 use std::ops::Range;
@@ -11,7 +11,8 @@ use ::png::{BitDepth, ColorType, Compression, Encoder, EncodingError, SrgbRender
 use super::levels::Levels;
 use orogen_grid::grid::Grid;
 
-/// Bytes of rows that are filled at a time: enough to share among threads, and small compared with a grid.
+/// Maximum number of bytes of the rows that are filled at a time: enough to share among threads, and small compared
+/// with a grid.
 const BAND: usize = 1 << 20;
 
 /// The type of a pixel.
@@ -35,7 +36,7 @@ pub enum Pixel {
 }
 
 impl Pixel {
-    /// Bytes per pixel.
+    /// Number of bytes per pixel.
     #[must_use]
     pub fn bytes(self) -> usize {
         match self {
@@ -52,13 +53,13 @@ impl Pixel {
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Picture<'a> {
-    /// Pixels per row.
+    /// Number of pixels per row.
     pub width: usize,
     /// Number of rows.
     pub height: usize,
     /// The type of the pixels.
     pub pixel: Pixel,
-    /// Keyword and text pairs of the file's text chunks (Latin-1; keywords of 1 to 79 characters).
+    /// Pairs of keyword and text for the file's text chunks (Latin-1; keywords of 1 to 79 characters).
     pub notes: &'a [(&'a str, &'a str)],
 }
 
@@ -94,7 +95,7 @@ impl Animation {
     }
 }
 
-/// Writes a picture. `fill` makes its rows in bands from the top: it gets the range of rows and their bytes.
+/// Writes a picture. `fill` computes its rows in bands from the top: it receives the range of rows and their bytes.
 ///
 /// Fails if `out` or `fill` fails, or if the picture has no pixels or more than 2^31 - 1 per side.
 pub fn write(
@@ -105,10 +106,10 @@ pub fn write(
     write_bands(out, picture, &mut fill)
 }
 
-/// What makes the bytes of a range of rows.
+/// Computes the bytes of a range of rows.
 type Fill<'a> = dyn FnMut(Range<usize>, &mut [u8]) -> io::Result<()> + 'a;
 
-// Behind `dyn`: the encoder is compiled once, not in every crate that writes pictures.
+// A `dyn` function, so that the encoder is compiled only once and not in every crate that writes pictures.
 fn write_bands(out: &mut dyn Write, picture: &Picture, fill: &mut Fill) -> io::Result<()> {
     write_through(out, picture, |rows| {
         let row_bytes = picture.width * picture.pixel.bytes();
@@ -124,7 +125,7 @@ fn write_bands(out: &mut dyn Write, picture: &Picture, fill: &mut Fill) -> io::R
     })
 }
 
-/// Writes a picture. `body` writes its bytes, row by row from the top: exactly as many as the picture has.
+/// Writes a picture. `body` writes exactly the bytes of the picture, row by row from the top.
 ///
 /// Fails under the same conditions as [`write()`].
 pub fn write_through(
@@ -145,14 +146,15 @@ fn write_stream(
     let mut rows = writer.stream_writer_with_size(BAND).map_err(plain)?;
     body(&mut rows)?;
     rows.finish().map_err(plain)?;
-    // Finished explicitly: an error in the last chunk would be lost on drop.
+    // Finished explicitly, because an error in the last chunk would be lost on drop.
     writer.finish().map_err(plain)
 }
 
-/// Writes an animation. `fill` makes the frames one at a time: it gets the frame's number, from 0, and its bytes.
+/// Writes an animation. `fill` computes the frames one at a time: it receives the frame's number, from 0, and the
+/// frame's bytes.
 ///
-/// A reader without support for animations shows the first frame. Fails under the same conditions as [`write()`], and
-/// without frames.
+/// Readers without support for animations show the first frame. Fails under the same conditions as [`write()`], and if
+/// there are no frames.
 pub fn write_animation(
     out: &mut dyn Write,
     picture: &Picture,
@@ -172,7 +174,7 @@ fn write_frames(
     encoder.set_animated(animation.frames, 0).map_err(plain)?;
     encoder.set_frame_delay(animation.delay, 1000).map_err(plain)?;
     let mut writer = encoder.write_header().map_err(plain)?;
-    // The encoder's streams do not number the chunks of later frames correctly, so each frame is made as a whole.
+    // The encoder's streams do not number the chunks of later frames correctly, so each frame is written as a whole.
     let mut bytes = vec![0; picture.width * picture.height * picture.pixel.bytes()];
     for frame in 0..animation.frames {
         fill(frame, &mut bytes)?;
@@ -214,7 +216,7 @@ pub fn write_grey16(out: &mut dyn Write, grid: &Grid, levels: &Levels, notes: &[
     })
 }
 
-/// Writes a grid as 8-bit gray over the range of `levels`, low black.
+/// Writes a grid as 8-bit gray over the range of `levels`; low heights are black.
 pub fn write_grey8(out: &mut dyn Write, grid: &Grid, levels: &Levels, notes: &[(&str, &str)]) -> io::Result<()> {
     let picture = Picture { width: grid.width(), height: grid.height(), pixel: Pixel::Grey8, notes };
     write(out, &picture, |rows, bytes| {

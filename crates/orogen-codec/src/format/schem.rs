@@ -1,8 +1,8 @@
-//! Sponge schematics, version 3: blocks for Minecraft: Java Edition (WorldEdit and others paste them).
+//! Sponge schematics, version 3: blocks for Minecraft: Java Edition, which WorldEdit and other programs can paste.
 //!
-//! After the Sponge Schematic Specification, version 3 (2021). NBT in gzip. Blocks are numbers of a palette of block
-//! states, in the order y, z, x: a varint each, which is one byte for the palettes here. x points east, y up and z
-//! south.
+//! Follows the Sponge Schematic Specification, version 3 (2021): NBT in gzip. Blocks are indices into a palette of
+//! block states, in the order y, z, x. Each index is a varint, which has one byte for the palettes here. x points east,
+//! y up and z south.
 
 use std::io::{self, Write};
 
@@ -11,34 +11,34 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 use super::gzip;
 use super::nbt::Tags;
 
-/// Maximum number of blocks along a side: sizes are unsigned numbers of 16 bits.
+/// Maximum number of blocks along a side, because sizes are unsigned 16-bit numbers.
 pub const MAX_SIDE: usize = u16::MAX as usize;
 
-/// Maximum number of entries of a palette here, so that each block takes a byte.
+/// Maximum number of entries of a palette, so that each index takes one byte.
 const MAX_PALETTE: usize = 128;
 
-/// The version of the game's data whose block states are used: 1.20.4.
+/// The data version of the game that defines the block states: 1.20.4.
 const DATA_VERSION: i32 = 3700;
 
 /// A box of blocks.
 #[derive(Debug, Clone, Copy)]
 pub struct Schematic<'a> {
-    /// Blocks to the east, up and to the south.
+    /// Number of blocks to the east, up and to the south.
     pub size: [usize; 3],
-    /// Position of the first block relative to where the schematic is pasted.
+    /// Position of the first block relative to the position at which the schematic is pasted.
     pub offset: [i32; 3],
-    /// The name of each block state, such as `minecraft:stone`; at most 128.
+    /// The name of each block state, such as `minecraft:stone`; at most 128 names.
     pub palette: &'a [&'a str],
     /// The index of each block in the palette, in the order y, z, x.
     pub blocks: &'a [u8],
-    /// The name of the schematic: ASCII.
+    /// The name of the schematic, in ASCII.
     pub name: &'a str,
 }
 
 /// Checks that a schematic can have this size.
 ///
 /// # Errors
-/// If a side has more than 65535 blocks, or all together are more than 2^31 - 1.
+/// If a side has more than 65535 blocks, or if there are more than 2^31 - 1 blocks in total.
 pub fn check(size: [usize; 3]) -> Result<()> {
     let count = size.iter().fold(1u64, |count, side| count.saturating_mul(*side as u64));
     if size.iter().all(|side| *side <= MAX_SIDE) && count <= i32::MAX as u64 {
@@ -55,7 +55,7 @@ pub fn check(size: [usize; 3]) -> Result<()> {
 /// Writes a schematic.
 ///
 /// # Errors
-/// If `out` fails, if it is [too large](check), or if palette and blocks do not fit it.
+/// If `out` fails, if the schematic is [too large](check), or if the palette or the blocks do not match it.
 pub fn write(out: &mut dyn Write, schematic: &Schematic) -> io::Result<()> {
     let Schematic { size, offset, palette, blocks, name } = *schematic;
     check(size)?;

@@ -7,15 +7,15 @@ use super::features::{Feature, Geometry, Value};
 use super::flatbuffer::{Builder, Offset, Slot};
 use super::packed_tree::{Bounds, hilbert_order, levels};
 
-/// Children per node of the index.
+/// Number of children per node of the index.
 pub const FANOUT: usize = 16;
 
-/// Types of geometries.
+/// Geometry types of FlatGeobuf.
 const POLYGON: u8 = 3;
-/// The type of geometries of several polygons.
+/// The geometry type of several polygons.
 pub const MULTI_POLYGON: u8 = 6;
 
-/// Features along a Hilbert curve.
+/// Features in the order of a Hilbert curve.
 pub struct Sorted<'a> {
     /// The features.
     pub features: Vec<&'a Feature>,
@@ -23,7 +23,7 @@ pub struct Sorted<'a> {
 }
 
 impl<'a> Sorted<'a> {
-    /// Sorts the features that have vertices: others cannot be in the index.
+    /// Sorts the features that have vertices. Others are left out, because they cannot be in the index.
     #[must_use]
     pub fn of(features: &'a [Feature]) -> Sorted<'a> {
         let there: Vec<&Feature> = features.iter().filter(|feature| feature.geometry.vertices() > 0).collect();
@@ -45,8 +45,8 @@ impl<'a> Sorted<'a> {
             bounds.iter().try_for_each(|number| out.write_all(&number.to_le_bytes()))?;
             out.write_all(&leads_to.to_le_bytes())
         };
-        // The root first, each node with the number of its first child; last the boxes of features, each with its byte
-        // offset.
+        // The root comes first, each node with the number of its first child. The boxes of features come last, each
+        // with its byte offset.
         let mut first_child = 0u64;
         for (depth, level) in levels.iter().enumerate().rev() {
             first_child += level.len() as u64;
@@ -65,7 +65,7 @@ impl<'a> Sorted<'a> {
     }
 }
 
-/// A feature.
+/// The bytes of a feature.
 fn packed(feature: &Feature, has_z: bool) -> Vec<u8> {
     let mut builder = Builder::new();
     let geometry = match &feature.geometry {

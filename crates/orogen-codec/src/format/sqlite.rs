@@ -1,7 +1,7 @@
-//! SQLite database files (version 3), written once from start to end: tables with sorted rows become packed B-trees.
+//! SQLite database files (version 3), written once from start to end. Tables with sorted rows become packed B-trees.
 //!
-//! After "Database File Format", sqlite.org/fileformat2.html. Pages of 4096 bytes, UTF-8, rollback journal. This module
-//! neither reads nor changes databases.
+//! Follows "Database File Format", sqlite.org/fileformat2.html, with pages of 4096 bytes, UTF-8 and rollback journal.
+//! This module neither reads nor changes databases.
 
 use std::io::{self, Write};
 
@@ -11,10 +11,10 @@ pub const PAGE: usize = 4096;
 /// Size of the file header in the first page, in bytes.
 const FILE_HEAD: usize = 100;
 
-/// The version of SQLite stated in the file.
+/// The version of SQLite that is written into the file.
 const SQLITE_VERSION: u32 = 3_045_000;
 
-/// The page with the byte that SQLite locks; it is never used.
+/// The page that contains the byte that SQLite locks; it is never used.
 const LOCKED: u32 = (1 << 30) / PAGE as u32 + 1;
 
 /// Types of pages.
@@ -37,9 +37,9 @@ pub enum Column<'a> {
     Blob(&'a [u8]),
 }
 
-/// A database during writing.
+/// A database that is being written.
 pub struct Database {
-    /// All pages; the first is filled at the end.
+    /// All pages. The first one is filled at the end.
     pages: Vec<u8>,
     /// The rows of `sqlite_schema`: type, name, table, root page, SQL.
     schema: Vec<(&'static str, String, String, u32, Option<String>)>,
@@ -58,7 +58,7 @@ impl Database {
         Database { pages: vec![0; PAGE], schema: Vec::new() }
     }
 
-    /// Adds a table of rows in ascending order of their numbers.
+    /// Adds a table. Its rows must be in ascending order of their numbers.
     ///
     /// Fails if the rows are not in order.
     pub fn table<'a>(
@@ -93,10 +93,10 @@ impl Database {
         Ok(())
     }
 
-    /// Adds the index that SQLite makes for the `number`-th UNIQUE or PRIMARY KEY constraint of a table: keys, each
-    /// with the number of its row.
+    /// Adds the index that SQLite creates for the `number`-th UNIQUE or PRIMARY KEY constraint of a table. `keys` are
+    /// the keys, each with its row number.
     ///
-    /// Fails if the keys take more than a page.
+    /// Fails if the keys need more than a page.
     pub fn unique_index(&mut self, table: &str, number: usize, mut keys: Vec<(Vec<&str>, i64)>) -> io::Result<()> {
         keys.sort_unstable();
         let mut tree = Tree::default();
@@ -134,7 +134,7 @@ impl Database {
             let columns =
                 [Column::Text(kind), Column::Text(name), Column::Text(table), Column::Integer(i64::from(*root)), sql];
             let cell = self.table_cell(k as i64 + 1, &record(&columns));
-            // The first page has less room; whether all rows fit there is known only at the end.
+            // The first page has less room. Only at the end is it known whether all rows fit there.
             if !tree.fits(&cell, PAGE - FILE_HEAD) {
                 self.leaf(&mut tree);
             }
@@ -153,7 +153,7 @@ impl Database {
         let mut head = Vec::with_capacity(FILE_HEAD);
         head.extend_from_slice(b"SQLite format 3\0");
         head.extend_from_slice(&(PAGE as u16).to_be_bytes());
-        // Rollback journal for writers and readers; no reserved bytes; the fixed payload fractions.
+        // Rollback journal for writers and readers, no reserved bytes, and the fixed payload fractions.
         head.extend_from_slice(&[1, 1, 0, 64, 32, 32]);
         // Change counter, pages, free list, schema cookie and format, cache, vacuum, UTF-8, versions.
         let numbers = [1, count, 0, 0, 1, 4, 0, 0, 1, user_version, 0, application];
@@ -186,13 +186,13 @@ impl Database {
         tree.cells.clear();
     }
 
-    /// Adds interior pages until the rest fits on one page, beside `taken` bytes.
+    /// Adds interior pages until the remaining children fit on one page in addition to `taken` bytes.
     fn joined(&mut self, mut children: Vec<(u32, i64)>, taken: usize) -> Vec<(u32, i64)> {
-        // A child takes its pointer, its page and at most nine bytes of its last row's number.
+        // A child needs its pointer, its page number and at most nine bytes of the number of its last row.
         const CHILD: usize = 2 + 4 + 9;
         let most = |taken: usize| (PAGE - taken - 12) / CHILD;
         while children.len() > most(taken) {
-            // Evenly, so that no page has a single child.
+            // Children are distributed evenly, so that no page has a single child.
             let groups = children.len().div_ceil(most(0));
             let count = children.len();
             let ends = (1..=groups).map(|k| k * count / groups);
@@ -207,7 +207,7 @@ impl Database {
         children
     }
 
-    /// The cell of a row on a leaf, with overflow pages if it does not fit.
+    /// The cell of a row on a leaf. Adds overflow pages if the row does not fit.
     fn table_cell(&mut self, number: i64, payload: &[u8]) -> Vec<u8> {
         let mut cell = Vec::new();
         varint(payload.len() as u64, &mut cell);
@@ -217,7 +217,7 @@ impl Database {
         let rest = &payload[here..];
         if !rest.is_empty() {
             let pieces: Vec<&[u8]> = rest.chunks(PAGE - 4).collect();
-            // The last page first, because each refers to the next.
+            // The last page comes first, because each page refers to the next one.
             let mut next = 0u32;
             for piece in pieces.iter().rev() {
                 let mut page = Vec::with_capacity(PAGE);
@@ -232,7 +232,7 @@ impl Database {
     }
 }
 
-/// Bytes of a row of this length that are stored on its leaf.
+/// Number of bytes of a row of this length that are stored on its leaf.
 fn local(length: usize) -> usize {
     let most = PAGE - 35;
     if length <= most {
@@ -250,7 +250,7 @@ struct Tree {
     cells: Vec<Vec<u8>>,
     /// The number of the last row.
     last: i64,
-    /// Leaves so far, each with the number of its last row.
+    /// The leaves so far, each with the number of its last row.
     children: Vec<(u32, i64)>,
 }
 
@@ -262,7 +262,7 @@ impl Tree {
     }
 }
 
-/// A page of cells, which are placed from its end.
+/// A page of cells, which are placed from the end of the page.
 fn page(kind: u8, cells: &[Vec<u8>], rightmost: Option<u32>, taken: usize) -> Vec<u8> {
     let mut page = vec![0u8; PAGE];
     let mut at = PAGE;
@@ -335,7 +335,7 @@ fn record(columns: &[Column]) -> Vec<u8> {
     out
 }
 
-/// A variable-length integer of 1 to 9 bytes: seven bits per byte from the highest, eight in the ninth.
+/// Appends a variable-length integer of 1 to 9 bytes: seven bits per byte from the highest, and eight in the ninth.
 fn varint(number: u64, out: &mut Vec<u8>) {
     if number >> 56 != 0 {
         (0..8).for_each(|k| out.push((number >> (57 - 7 * k)) as u8 & 0x7F | 0x80));

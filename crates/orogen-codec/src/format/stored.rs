@@ -1,35 +1,35 @@
-//! Samples as files store them: numbers of one to eight bytes.
+//! Samples as stored in files: numbers of one to eight bytes.
 
 use super::conversion::Conversion;
 use super::half;
 
-/// Numbers that are converted at once.
+/// Number of samples that are converted at once.
 const PIECE: usize = 256;
 
-/// The kind of a sample's number.
+/// The number type of a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// A whole number without a sign.
+    /// An unsigned integer.
     Unsigned,
-    /// A whole number, in two's complement.
+    /// A signed integer, in two's complement.
     Signed,
     /// A float of IEEE 754, of 16, 32 or 64 bits.
     Float,
 }
 
-/// How samples are stored.
+/// The storage format of samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stored {
-    /// The kind of their numbers.
+    /// The number type.
     pub kind: Kind,
-    /// Bytes per sample.
+    /// Number of bytes per sample.
     pub size: usize,
     /// Whether the highest byte comes first.
     pub big_endian: bool,
 }
 
 impl Stored {
-    /// The bits of a sample, right-aligned in 64.
+    /// The bits of a sample, right-aligned in 64 bits.
     fn bits(&self, bytes: &[u8]) -> u64 {
         match self.big_endian {
             true => bytes.iter().fold(0, |bits, byte| bits << 8 | u64::from(*byte)),
@@ -37,7 +37,7 @@ impl Stored {
         }
     }
 
-    /// Appends the bits of samples, right-aligned in 64.
+    /// Appends the bits of samples, right-aligned in 64 bits.
     pub(crate) fn append_bits(&self, bytes: &[u8], out: &mut Vec<u64>) {
         match (self.size, self.big_endian) {
             (2, false) => out.extend(bytes.as_chunks().0.iter().map(|pair| u64::from(u16::from_le_bytes(*pair)))),
@@ -46,7 +46,7 @@ impl Stored {
         }
     }
 
-    /// The number of a sample's bits.
+    /// The value of a sample's bits.
     pub(crate) fn number(&self, bits: u64) -> f64 {
         let shift = 64 - 8 * self.size as u32;
         match (self.kind, self.size) {
@@ -58,18 +58,18 @@ impl Stored {
         }
     }
 
-    /// The number of a sample.
+    /// The value of a sample.
     #[must_use]
     pub fn value(&self, bytes: &[u8]) -> f64 {
         self.number(self.bits(bytes))
     }
 
-    /// The numbers of samples, as many as there are of both.
+    /// Converts samples to values, as many as both slices have.
     fn values(&self, bytes: &[u8], values: &mut [f64]) {
         fn all<const N: usize>(bytes: &[u8], values: &mut [f64], number: impl Fn([u8; N]) -> f64) {
             values.iter_mut().zip(bytes.as_chunks().0).for_each(|(value, bytes)| *value = number(*bytes));
         }
-        // What most files have, without a loop over the bytes of a sample.
+        // The most common formats, without a loop over the bytes of a sample.
         match (self.kind, self.size, self.big_endian) {
             (Kind::Unsigned, 2, false) => all(bytes, values, |pair| f64::from(u16::from_le_bytes(pair))),
             (Kind::Unsigned, 2, true) => all(bytes, values, |pair| f64::from(u16::from_be_bytes(pair))),
@@ -82,7 +82,7 @@ impl Stored {
         }
     }
 
-    /// Passes on the numbers of samples, in pieces.
+    /// Calls `take` with the values of samples, in pieces.
     fn pieces(&self, bytes: &[u8], take: &mut dyn FnMut(&[f64])) {
         let mut values = [0.0; PIECE];
         for piece in bytes.chunks(PIECE * self.size) {
@@ -92,22 +92,22 @@ impl Stored {
         }
     }
 
-    /// Appends the numbers of samples.
+    /// Appends the values of samples.
     pub fn append_values(&self, bytes: &[u8], values: &mut Vec<f64>) {
         self.pieces(bytes, &mut |piece| values.extend_from_slice(piece));
     }
 
-    /// Appends samples as they are; those with the number `nodata` are NaN.
+    /// Appends the values of samples, unscaled. Samples with the value `nodata` become NaN.
     pub fn append(&self, bytes: &[u8], nodata: Option<f64>, samples: &mut Vec<f32>) {
-        // A number that no number equals.
+        // NaN equals no number.
         let nodata = nodata.unwrap_or(f64::NAN);
         self.pieces(bytes, &mut |piece| {
             samples.extend(piece.iter().map(|value| if *value == nodata { f32::NAN } else { *value as f32 }));
         });
     }
 
-    /// Appends the heights of samples from 0, which is `low`, to `most`, which is `high`; those with the number
-    /// `nodata` are NaN.
+    /// Appends the heights of samples: 0 becomes `low`, and `most` becomes `high`. Samples with the value `nodata`
+    /// become NaN.
     pub fn append_scaled(
         &self,
         bytes: &[u8],
@@ -121,7 +121,7 @@ impl Stored {
         self.pieces(bytes, &mut |piece| heights.extend(piece.iter().map(height)));
     }
 
-    /// Copies samples as they are, as many as there are of both.
+    /// Copies the values of samples, unscaled, as many as both slices have.
     pub fn copy(&self, bytes: &[u8], samples: &mut [f32]) {
         let mut samples = samples.iter_mut();
         self.pieces(bytes, &mut |piece| {
@@ -129,7 +129,7 @@ impl Stored {
         });
     }
 
-    /// Makes heights of samples, as many as there are of both.
+    /// Converts samples to heights, as many as both slices have.
     pub fn convert(&self, bytes: &[u8], conversion: &mut Conversion, heights: &mut [f32]) {
         let mut heights = heights.iter_mut();
         self.pieces(bytes, &mut |piece| {

@@ -1,12 +1,12 @@
-//! Path data of SVG: the attribute `d`, and other lists of numbers.
+//! Path data of SVG, from the attribute `d`, and other lists of numbers.
 
 use orogen_grid::polylines::cubic::Cubic;
 use orogen_grid::polylines::outline::{Outline, Piece};
 
-/// Maximum angle of a piece of an arc, in radians: a cubic curve of it keeps within 1e-7 of the radius.
+/// Maximum angle of a piece of an arc, in radians. A cubic curve over it deviates by less than 1e-7 of the radius.
 const MAX_ANGLE: f64 = std::f64::consts::PI / 8.0;
 
-/// Numbers of an attribute: separated by spaces, a comma, or by their own signs and points.
+/// Numbers of an attribute, separated by spaces, by a comma, or by their own signs and decimal points.
 pub struct Numbers<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -30,7 +30,7 @@ impl<'a> Numbers<'a> {
         }
     }
 
-    /// Spaces, at most one comma, and spaces.
+    /// Skips spaces, at most one comma, and spaces.
     pub fn skip_separator(&mut self) {
         self.skip_spaces();
         if self.peek() == Some(b',') {
@@ -39,7 +39,7 @@ impl<'a> Numbers<'a> {
         }
     }
 
-    /// Whether nothing is left but white space.
+    /// Whether only white space is left.
     #[must_use]
     pub fn is_at_end(&self) -> bool {
         self.at >= self.bytes.len()
@@ -56,7 +56,7 @@ impl<'a> Numbers<'a> {
         self.bytes.get(self.at..).unwrap_or_default()
     }
 
-    /// The next number and the separator after it.
+    /// Reads the next number and the separator after it.
     pub fn number(&mut self) -> Result<f64, String> {
         let start = self.at;
         let digits = |numbers: &mut Numbers| {
@@ -102,7 +102,7 @@ impl<'a> Numbers<'a> {
         Ok([self.number()?, self.number()?])
     }
 
-    /// A flag of an arc, which needs no separator: `00` is two of them.
+    /// Reads a flag of an arc, which needs no separator: `00` is two flags.
     fn flag(&mut self) -> Result<bool, String> {
         let flag = match self.peek() {
             Some(b'0') => false,
@@ -121,7 +121,7 @@ impl<'a> Numbers<'a> {
     }
 }
 
-/// The pairs of a list of points, such as the attribute `points`.
+/// The points in a list of coordinate pairs, such as the attribute `points`.
 pub fn points(text: &str) -> Result<Vec<[f64; 2]>, String> {
     let mut numbers = Numbers::new(text);
     numbers.skip_spaces();
@@ -143,7 +143,7 @@ pub fn parse(text: &str) -> Result<Vec<Outline>, String> {
     Ok(reader.pen.finish())
 }
 
-/// Draws outlines piece by piece.
+/// Creates outlines piece by piece.
 #[derive(Default)]
 pub struct Pen {
     done: Vec<Outline>,
@@ -178,7 +178,7 @@ impl Pen {
         self.push(Piece::Curve(control, [x, y, 0.0]));
     }
 
-    /// An arc of an ellipse with these radii, turned by an angle in degrees (SVG 2, appendix B.2).
+    /// Draws an arc of an ellipse with these radii, rotated by an angle in degrees (SVG 2, appendix B.2).
     pub fn arc_to(&mut self, radii: [f64; 2], turn: f64, [is_large, is_positive]: [bool; 2], to: [f64; 2]) {
         let (from, [mut rx, mut ry]) = (self.at, radii.map(f64::abs));
         if from == to {
@@ -190,7 +190,7 @@ impl Pen {
         let (sin, cos) = libm::sincos(turn.to_radians());
         let half = [0, 1].map(|k| 0.5 * (from[k] - to[k]));
         let (x, y) = (cos * half[0] + sin * half[1], cos * half[1] - sin * half[0]);
-        // Radii that are too small are enlarged until the ellipse reaches both points.
+        // Radii that are too small are increased until the ellipse reaches both points.
         let reach = (x / rx) * (x / rx) + (y / ry) * (y / ry);
         if reach > 1.0 {
             (rx, ry) = (rx * reach.sqrt(), ry * reach.sqrt());
@@ -237,7 +237,7 @@ impl Pen {
         self.move_to(self.start);
     }
 
-    /// The outlines.
+    /// The finished outlines.
     #[must_use]
     pub fn finish(mut self) -> Vec<Outline> {
         self.done.extend(self.current.take());
@@ -245,7 +245,7 @@ impl Pen {
     }
 }
 
-/// The last control point, which a smooth command mirrors.
+/// The last control point, which smooth commands mirror.
 enum Handle {
     None,
     Quadratic([f64; 2]),

@@ -1,8 +1,8 @@
-//! MagicaVoxel models (.vox, version 150): colored voxels, in models of at most 256 voxels along each side, placed by a
-//! scene graph.
+//! MagicaVoxel models (.vox, version 150): colored voxels, in models of at most 256 voxels along each side that a scene
+//! graph places.
 //!
-//! After "MagicaVoxel .vox File Format" and its extension for scenes (ephtracy, voxel-model). Chunks: SIZE and XYZI for
-//! each model, then nTRN, nGRP and nSHP, then the palette, RGBA. x points east, y north and z up.
+//! Follows "MagicaVoxel .vox File Format" and its extension for scenes (ephtracy, voxel-model). The chunks are SIZE and
+//! XYZI for each model, then nTRN, nGRP and nSHP, then the palette RGBA. x points east, y north and z up.
 
 use std::io::{self, Write};
 
@@ -11,23 +11,23 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 /// Maximum number of voxels along a side of a model.
 pub const MAX_SIDE: usize = 256;
 
-/// Maximum number of voxels along a side of a scene: `MagicaVoxel` has positions from -1000 to 999.
+/// Maximum number of voxels along a side of a scene, because `MagicaVoxel` supports positions from -1000 to 999.
 pub const MAX_SCENE: usize = 2000;
 
-/// Bytes of the head of a chunk.
+/// Number of bytes in the header of a chunk.
 const HEAD: u64 = 12;
 
-/// The scene: the models, and where they are.
+/// A scene of voxels.
 pub struct Scene<'a> {
-    /// Voxels to the east, north and up.
+    /// Number of voxels to the east, north and up.
     pub size: [usize; 3],
-    /// The colors of the numbers 1 to 255: red, green, blue, opacity.
+    /// The colors of the numbers 1 to 255, as red, green, blue and opacity.
     pub palette: &'a [[u8; 4]],
-    /// The number of the color of a voxel, at its position in x, y and z; 0 where there is none.
+    /// Returns the color number of the voxel at a position in x, y and z; 0 if there is no voxel.
     pub voxel: &'a dyn Fn([usize; 3]) -> u8,
 }
 
-/// A model: its first voxel and its size.
+/// A model: its first voxel, and its size.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Model {
     start: [usize; 3],
@@ -36,7 +36,7 @@ struct Model {
 }
 
 impl Model {
-    /// Calls a function for each voxel, with its position in the model.
+    /// Calls `visit` for each voxel, with its position in the model and its color number.
     fn each(&self, scene: &Scene, mut visit: impl FnMut([u8; 3], u8) -> io::Result<()>) -> io::Result<()> {
         for z in 0..self.size[2] {
             for y in 0..self.size[1] {
@@ -51,16 +51,16 @@ impl Model {
         Ok(())
     }
 
-    /// Bytes of its chunks.
+    /// Number of bytes of the model's chunks.
     fn bytes(&self) -> u64 {
         HEAD + 12 + HEAD + 4 + 4 * self.count
     }
 }
 
-/// Checks that a scene of this size is not larger than `MagicaVoxel`'s.
+/// Checks that `MagicaVoxel` supports scenes of this size.
 ///
 /// # Errors
-/// If it is.
+/// If the scene is too large.
 pub fn check([x, y, z]: [usize; 3]) -> Result<()> {
     if x.max(y).max(z) <= MAX_SCENE {
         return Ok(());
@@ -101,7 +101,7 @@ pub fn write(out: &mut dyn Write, scene: &Scene) -> io::Result<()> {
     out.write_all(&chunk(b"RGBA", &colors))
 }
 
-/// The models with voxels: boxes of up to [`MAX_SIDE`].
+/// The models of the scene: boxes of at most [`MAX_SIDE`] along each side that have voxels.
 fn models(scene: &Scene) -> io::Result<Vec<Model>> {
     let mut models = Vec::new();
     let starts = |side: usize| (0..side).step_by(MAX_SIDE);
@@ -126,11 +126,11 @@ fn models(scene: &Scene) -> io::Result<Vec<Model>> {
     Ok(models)
 }
 
-/// The chunks of the scene graph: a transform of the whole, a group, and a transform and a shape for each model.
+/// The chunks of the scene graph: a transform of the whole scene, a group, and a transform and a shape for each model.
 fn graph(scene: &Scene, models: &[Model]) -> Vec<u8> {
     let number = |numbers: &[i32]| numbers.iter().flat_map(|number| number.to_le_bytes()).collect::<Vec<u8>>();
     let text = |text: &str| [&(text.len() as u32).to_le_bytes(), text.as_bytes()].concat();
-    // The node, no attributes, its child, a reserved number, the layer, and one frame.
+    // The number of the node, no attributes, its child, a reserved number, the layer, and one frame.
     let transform = |node: i32, child: i32, place: Option<String>| {
         let frame = place.map_or_else(|| number(&[0]), |place| [number(&[1]), text("_t"), text(&place)].concat());
         chunk(b"nTRN", &[number(&[node, 0, child, -1, 0, 1]), frame].concat())
@@ -138,12 +138,12 @@ fn graph(scene: &Scene, models: &[Model]) -> Vec<u8> {
     let mut bytes = transform(0, 1, None);
     let children: Vec<i32> = (0..models.len() as i32).map(|model| 2 + 2 * model).collect();
     bytes.extend(chunk(b"nGRP", &[number(&[1, 0, children.len() as i32]), number(&children)].concat()));
-    // A translation is that of a model's middle. The scene stands on the ground, with its middle at the origin.
+    // A translation places the middle of a model. The scene stands on the ground, with its middle at the origin.
     let middle = [scene.size[0] as i64 / 2, scene.size[1] as i64 / 2, 0];
     for (model, node) in models.iter().zip(children) {
         let place = [0, 1, 2].map(|axis| (model.start[axis] + model.size[axis] / 2) as i64 - middle[axis]);
         bytes.extend(transform(node, node + 1, Some(format!("{} {} {}", place[0], place[1], place[2]))));
-        // The node, no attributes, one model: its number, no attributes.
+        // The number of the node, no attributes, and one model: its number, no attributes.
         bytes.extend(chunk(b"nSHP", &number(&[node + 1, 0, 1, node / 2 - 1, 0])));
     }
     bytes
@@ -158,7 +158,7 @@ fn chunk(name: &[u8; 4], content: &[u8]) -> Vec<u8> {
 mod tests {
     use super::*;
 
-    /// The chunks of a file: name and content.
+    /// The chunks of a file, as name and content.
     fn chunks(file: &[u8]) -> Vec<(String, &[u8])> {
         assert!(file.starts_with(b"VOX \x96\0\0\0MAIN\0\0\0\0"));
         let four = |at: usize| u32::from_le_bytes(file[at..at + 4].try_into().unwrap()) as usize;
@@ -191,7 +191,7 @@ mod tests {
             chunks.iter().filter(|(name, _)| name == "XYZI").flat_map(|(_, bytes)| bytes[4..].chunks(4)).collect();
         assert_eq!(voxels.len(), 6 * 20);
         assert_eq!(voxels.iter().filter(|voxel| voxel[3] == 2 && voxel[0] == 94 && voxel[1] == 3).count(), 20);
-        // The third model: 88 voxels wide from 512 on, its middle 556 - 300 from the scene's.
+        // The third model is 88 voxels wide from 512 on. Its middle is 556 - 300 from the middle of the scene.
         let places: Vec<&[u8]> = chunks.iter().filter(|(name, _)| name == "nTRN").map(|(_, bytes)| *bytes).collect();
         assert!(places[3].ends_with(b"\x02\0\0\0_t\x09\0\0\x00256 0 128"), "{:?}", String::from_utf8_lossy(places[3]));
         assert_eq!(chunks.last().unwrap().1[..8], [1, 2, 3, 255, 4, 5, 6, 255]);

@@ -1,11 +1,12 @@
-//! Weights of surfaces as bytes.
+//! Weights of surface materials as bytes.
 
 use orogen_grid::grid::Grid;
 
-/// Row `row` of weights, one grid for each surface, as bytes: those of one sample side by side, adding up to 255.
+/// Row `row` of weights as bytes, where `weights` has one grid for each surface. The bytes of a sample are adjacent and
+/// add up to 255.
 ///
-/// They are rounded down, and the remainder is given to those with the largest rounding loss, the first of equals
-/// first. All are 0 where no weight is positive.
+/// Weights are rounded down, and the remainder is given to those with the largest rounding loss; of equal ones to the
+/// first. All bytes are 0 where no weight is positive.
 #[must_use]
 pub fn row_bytes(weights: &[Grid], row: usize) -> Vec<u8> {
     let mut of_sample = vec![0.0; weights.len()];
@@ -17,7 +18,7 @@ pub fn row_bytes(weights: &[Grid], row: usize) -> Vec<u8> {
     bytes
 }
 
-/// Some of the `count` bytes of each sample, in the order of `channels`.
+/// Copies some of the `count` bytes of each sample to pixels of `pixel` bytes, in the order of `channels`.
 pub fn select(bytes: &[u8], count: usize, channels: &[usize], pixels: &mut [u8], pixel: usize) {
     for (pixel, weights) in pixels.chunks_exact_mut(pixel).zip(bytes.chunks_exact(count)) {
         pixel.iter_mut().zip(channels).for_each(|(byte, k)| *byte = weights[*k]);

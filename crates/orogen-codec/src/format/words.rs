@@ -4,10 +4,10 @@ use std::io::{BufRead, BufReader};
 
 use super::input::Input;
 
-/// Maximum length of a line of the header, and of a number.
+/// Maximum length of a header line, and of a number.
 const LONGEST_WORD: usize = 64;
 
-/// The words of a text; each is at most as long as a number.
+/// Reads the words of a text. Each is at most as long as a number.
 pub struct Words<'a> {
     input: BufReader<&'a mut dyn Input>,
     word: Vec<u8>,
@@ -19,11 +19,11 @@ impl<'a> Words<'a> {
         Words { input: BufReader::new(input), word: Vec::new() }
     }
 
-    /// Heights in so many columns and rows, of which the first is the word `first`; those of the value `nodata` are
-    /// NaN.
+    /// Reads heights in the given numbers of columns and rows. `first` is the first word. Heights with the value
+    /// `nodata` become NaN.
     ///
     /// # Errors
-    /// A message if a word is not a number, or there are too few.
+    /// A message if a word is not a number, or if there are too few words.
     pub fn heights(
         &mut self,
         first: Option<String>,
@@ -52,7 +52,7 @@ impl<'a> Words<'a> {
         Ok(heights)
     }
 
-    /// Skips the byte order mark that editors of Windows write.
+    /// Skips the byte order mark that Windows editors write.
     ///
     /// # Errors
     /// A message if the input fails.
@@ -63,17 +63,17 @@ impl<'a> Words<'a> {
         Ok(())
     }
 
-    /// The next word.
+    /// The next word; `None` at the end.
     ///
     /// # Errors
-    /// A message if the input fails, or a word is none of such a text.
+    /// A message if the input fails, or if a word does not belong in such a text.
     #[allow(clippy::should_implement_trait, reason = "it can fail")]
     pub fn next(&mut self) -> Result<Option<String>, String> {
         self.advance()?;
         Ok((!self.word.is_empty()).then(|| String::from_utf8_lossy(&self.word).into_owned()))
     }
 
-    /// Goes to the next word, which is empty at the end.
+    /// Advances to the next word, which is empty at the end.
     fn advance(&mut self) -> Result<(), String> {
         self.word.clear();
         loop {
@@ -99,7 +99,7 @@ impl<'a> Words<'a> {
     }
 }
 
-/// The number of a word.
+/// The number that a word represents, with a decimal point or comma.
 #[must_use]
 pub fn number(word: &str) -> Option<f64> {
     // Some locales write decimal commas.

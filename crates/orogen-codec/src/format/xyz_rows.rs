@@ -1,4 +1,4 @@
-//! The lines of a regular grid as text: east, north and height.
+//! Text lines of a regular grid: east, north and height.
 
 use std::io::{BufRead, BufReader, Read};
 
@@ -7,28 +7,28 @@ use super::input::{Input, afford};
 /// Maximum length of a line, in bytes.
 const LONGEST_LINE: u64 = 1 << 10;
 
-/// Maximum deviation of a sample from its place, in cells.
+/// Maximum deviation of a sample from its position in the grid, in cells.
 const BESIDE: f64 = 0.01;
 
-/// What the lines state.
+/// The contents of the lines.
 pub struct Rows {
     /// The heights, row by row.
     pub heights: Vec<f32>,
-    /// Heights per row.
+    /// Number of heights per row.
     pub width: usize,
     /// East and north of the first sample.
     pub first: [f64; 2],
-    /// East of the second sample of a row minus that of the first.
+    /// East of the second sample of a row minus east of the first one.
     pub step: f64,
-    /// North of the second row minus that of the first.
+    /// North of the second row minus north of the first one.
     pub down: f64,
 }
 
 /// Reads all lines.
 ///
 /// # Errors
-/// A message if a line is not three numbers, the samples are not all of a regular grid, or heights take more than
-/// `allowed` bytes.
+/// A message if a line is not three numbers, if the samples do not form a complete regular grid, or if the heights need
+/// more than `allowed` bytes.
 pub fn read(input: &mut dyn Input, allowed: u64) -> Result<Rows, String> {
     let mut lines = BufReader::new(input);
     let mut heights: Vec<f32> = Vec::new();
@@ -81,14 +81,14 @@ pub fn read(input: &mut dyn Input, allowed: u64) -> Result<Rows, String> {
     Ok(Rows { heights, width, first, step, down })
 }
 
-/// The numbers of a line; none for an empty line, a comment, or the names in the first line.
+/// The numbers of a line; `None` for an empty line, a comment, or the names in the first line.
 fn parse(line: &[u8], number: usize) -> Result<Option<[f64; 3]>, String> {
     let text = std::str::from_utf8(line).map_err(|_| format!("line {number} is not text"))?.trim();
     let text = text.trim_start_matches('\u{feff}');
     if text.is_empty() || text.starts_with('#') {
         return Ok(None);
     }
-    // Where semicolons separate the numbers, commas are those of decimals.
+    // If semicolons separate the numbers, commas are decimal commas.
     let is_decimal = text.contains(';');
     let separates = |c: char| matches!(c, ' ' | '\t' | ';') || c == ',' && !is_decimal;
     let mut words = text.split(separates).filter(|word| !word.is_empty());

@@ -1,4 +1,5 @@
-//! The only file of a ZIP archive (APPNOTE 6.3), stored or compressed with deflate, as SRTM tiles are distributed.
+//! Reads the only file of a ZIP archive (APPNOTE 6.3), stored or compressed with deflate. SRTM tiles are distributed in
+//! this form.
 
 use std::io::{Read, SeekFrom};
 
@@ -14,10 +15,11 @@ const LOCAL: usize = 30;
 /// Maximum length of the comment after the last record.
 const MAX_COMMENT: u64 = 1 << 16;
 
-/// The bytes of the only file in the archive, of at most `most` bytes.
+/// The bytes of the only file in the archive, which must have at most `most` bytes.
 ///
 /// # Errors
-/// A message if it is not a ZIP archive, holds several files, or is damaged, encrypted or too large.
+/// A message if the input is not a ZIP archive, or if the archive has several files or is damaged, encrypted or too
+/// large.
 pub fn only_file(input: &mut dyn Input, most: u64) -> Result<Vec<u8>, String> {
     let there = length(input)?;
     let tail = there.min(END as u64 + MAX_COMMENT);
@@ -57,7 +59,7 @@ fn damaged() -> String {
     "it is a damaged ZIP archive".into()
 }
 
-/// `count` bytes at `at` of an input of `there` bytes.
+/// Reads `count` bytes at offset `at` of an input of `there` bytes.
 fn part(input: &mut dyn Input, there: u64, at: u64, count: u64) -> Result<Vec<u8>, String> {
     if at.checked_add(count).is_none_or(|end| end > there) {
         return Err(damaged());
@@ -106,7 +108,7 @@ mod tests {
         for n in 0..packed.len() {
             assert!(read(&packed[..n], 1000).is_err(), "{n}");
         }
-        // Any damage is a message or a file.
+        // Any damage gives a message or a file.
         for n in 0..packed.len() {
             let mut damaged = packed.clone();
             damaged[n] ^= 0xff;

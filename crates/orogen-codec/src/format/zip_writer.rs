@@ -1,4 +1,4 @@
-//! ZIP archives (APPNOTE 6.3), written as a stream: files compressed with deflate, each with its sizes behind its data.
+//! ZIP archives (APPNOTE 6.3), written as a stream: files compressed with deflate, with their sizes after the data.
 
 use std::io::{self, Write};
 
@@ -8,25 +8,25 @@ use orogen_grid::error::{Error, ErrorKind};
 /// Version of the format that readers need.
 const VERSION: u16 = 20;
 
-/// Flags: the sizes are behind the data, and names are UTF-8.
+/// Flags: the sizes follow the data, and names are UTF-8.
 const FLAGS: u16 = 1 << 3 | 1 << 11;
 
-/// The method deflate.
+/// The number of the method deflate.
 const DEFLATE: u16 = 8;
 
-/// 1 January 1980, the first day that an archive can name, so that equal data give equal archives.
+/// 1 January 1980, the earliest date in an archive, so that equal data give equal archives.
 const DATE: u16 = 1 << 5 | 1;
 
-/// An archive that is written.
+/// An archive that is being written.
 pub struct ZipWriter<'a> {
     out: Counted<'a>,
-    /// The directory at the end of the archive, and its number of files.
+    /// The directory at the end of the archive, and the number of files in it.
     directory: Vec<u8>,
     files: u16,
 }
 
 impl<'a> ZipWriter<'a> {
-    /// An archive in `out`.
+    /// An archive that is written to `out`.
     pub fn new(out: &'a mut dyn Write) -> ZipWriter<'a> {
         ZipWriter { out: Counted { out, count: 0 }, directory: Vec::new(), files: 0 }
     }
@@ -34,14 +34,14 @@ impl<'a> ZipWriter<'a> {
     /// Adds a file.
     ///
     /// # Errors
-    /// If `body` or the writer below fails, or if the archive would be 4 GiB or larger.
+    /// If `body` or the underlying writer fails, or if the archive would be 4 GiB or larger.
     pub fn file(&mut self, name: &str, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
         let start = small(self.out.count)?;
         let length = u16::try_from(name.len()).map_err(|_| io::ErrorKind::InvalidInput)?;
         let common = numbers(&[VERSION, FLAGS, DEFLATE, 0, DATE]);
         self.out.write_all(b"PK\x03\x04")?;
         self.out.write_all(&common)?;
-        // The checksum and the sizes, which are not known yet.
+        // The checksum and the sizes are not known yet.
         self.out.write_all(&[0; 12])?;
         self.out.write_all(&numbers(&[length, 0]))?;
         self.out.write_all(name.as_bytes())?;
@@ -67,7 +67,7 @@ impl<'a> ZipWriter<'a> {
     /// Writes the directory.
     ///
     /// # Errors
-    /// If the writer below fails, or if the archive would be 4 GiB or larger.
+    /// If the underlying writer fails, or if the archive would be 4 GiB or larger.
     pub fn finish(mut self) -> io::Result<()> {
         let start = small(self.out.count)?;
         let length = small(self.directory.len() as u64)?;
@@ -83,7 +83,7 @@ fn numbers(values: &[u16]) -> Vec<u8> {
     values.iter().flat_map(|value| value.to_le_bytes()).collect()
 }
 
-/// A size or a position, which has 32 bits.
+/// Converts a size or a position to 32 bits; fails if it is too large.
 fn small(size: u64) -> io::Result<u32> {
     let refused =
         |_| Error::new(ErrorKind::Request, "the file would be 4 GiB or larger, more than its format can hold");

@@ -1,6 +1,6 @@
-//! The items of `std::fs` that Orogen uses, on a host without a file system.
+//! The items of `std::fs` that Orogen uses, for a host without a file system.
 //!
-//! No file can be opened, so a [`File`] never exists: its methods compile and are never called.
+//! No file can be opened, so a [`File`] never exists. Its methods compile but are never called.
 
 use std::convert::Infallible;
 use std::ffi::OsString;
@@ -8,7 +8,7 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-/// The error of everything here.
+/// The error that every operation returns.
 fn no<T>() -> io::Result<T> {
     Err(io::Error::new(io::ErrorKind::Unsupported, "this build has no file system: its feature `fs` is off"))
 }
@@ -17,31 +17,31 @@ fn no<T>() -> io::Result<T> {
 #[derive(Debug)]
 pub struct File(Infallible);
 
-/// How to open a file.
+/// Options for opening a file.
 #[derive(Debug, Clone, Default)]
 pub struct OpenOptions;
 
-/// What is known of a file.
+/// Metadata of a file.
 #[derive(Debug, Clone)]
 pub struct Metadata(Infallible);
 
-/// Who may use a file.
+/// Permissions of a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Permissions(Infallible);
 
-/// File, folder or link.
+/// The type of an entry: file, folder or link.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct FileType(Infallible);
 
-/// A file or folder in a folder.
+/// A file or folder inside a folder.
 #[derive(Debug)]
 pub struct DirEntry(Infallible);
 
-/// The files and folders in a folder.
+/// An iterator over the files and folders inside a folder.
 #[derive(Debug)]
 pub struct ReadDir(Infallible);
 
-/// Why a file could not be locked.
+/// The reason why a file could not be locked.
 #[derive(Debug)]
 pub enum TryLockError {
     /// Another error.
@@ -266,7 +266,7 @@ functions! {
     symlink_metadata(path) -> Metadata;
 }
 
-/// As `std::fs::write`.
+/// Like `std::fs::write`.
 ///
 /// # Errors
 /// Always.

@@ -6,26 +6,26 @@ use super::ramp::Ramp;
 use crate::format::levels::Levels;
 use orogen_grid::grid::Grid;
 
-/// The atlas tint: green lowlands, then straw, ochre, brown, gray and white heights; the sea darkens with depth. Land
+/// The atlas tint: green lowlands, then straw, ochre, brown, gray and white heights. The sea darkens with depth. Land
 /// and sea meet exactly at sea level.
 ///
-/// In a printed atlas every height has a fixed color, so hills of 300 m are all green; with all colors stretched over
-/// the relief they would have snow. This tint is a compromise: the more relief the land has, the higher in the ramp its
-/// summits are (300 m is ochre, 4000 m is white), and likewise for the depth of the sea. Most real land is low. Where
-/// much land is high, colors are shifted towards green, so that summits still stand out.
+/// In a printed atlas every height has a fixed color, so hills of 300 m are all green. If all colors were stretched
+/// over the relief, such hills would have snow. This tint is a compromise: the more relief the land has, the higher in
+/// the ramp its summits are (300 m is ochre, 4000 m is white), and likewise for the depth of the sea. Most real land is
+/// low. If much of the land is high, colors are shifted towards green, so that summits still stand out.
 #[derive(Debug, Clone)]
 pub struct Atlas {
     land: Ramp,
     sea: Ramp,
     sea_level: f32,
-    /// The height where the land's colors start, and the shares of the ramps per metre.
+    /// The height at which the land's colors start, and the shares of the ramps per metre.
     base: f32,
     land_scale: f32,
     sea_scale: f32,
 }
 
-/// Land from the lowest height up. Lightness decreases to the browns and increases again to the snow, as on printed
-/// maps.
+/// Colors of the land, from the lowest height up. Lightness decreases towards brown and increases again towards snow,
+/// as on printed maps.
 pub const LAND: [(f32, Rgb); 10] = [
     (0.00, [101, 149, 103]),
     (0.10, [130, 170, 111]),
@@ -39,7 +39,7 @@ pub const LAND: [(f32, Rgb); 10] = [
     (1.00, [250, 251, 252]),
 ];
 
-/// The sea from the shore downward.
+/// Colors of the sea, from the shore downward.
 pub const SEA: [(f32, Rgb); 6] = [
     (0.00, [190, 222, 229]),
     (0.12, [160, 206, 223]),
@@ -53,11 +53,11 @@ pub const SEA: [(f32, Rgb); 6] = [
 const MIDDLE: f32 = 0.40;
 const MAX_BENT: f32 = 1.4;
 
-/// Number of samples for estimating the median of the land.
+/// Number of samples for the estimate of the median height of land.
 const PROBES: usize = 1 << 16;
 
 impl Atlas {
-    /// The tint for a world between `low` and `high` with the sea at `sea_level`, in metres.
+    /// The tint for a world with heights from `low` to `high` and the sea at `sea_level`, in metres.
     #[must_use]
     pub fn new(low: f32, high: f32, sea_level: f32) -> Atlas {
         Atlas::bent(low, high, sea_level, 1.0)
@@ -82,9 +82,9 @@ impl Atlas {
         Atlas::bent(low, high, sea_level, (libm::logf(MIDDLE) / libm::logf(share)).clamp(1.0, MAX_BENT))
     }
 
-    /// The tint with the land's colors at `share of the relief ^ power`.
+    /// The tint with land colors at the position `share of the relief ^ power` in the ramp.
     fn bent(low: f32, high: f32, sea_level: f32, power: f32) -> Atlas {
-        // Land above the sea starts with green at its lowest height: plateaus have lowlands too.
+        // Land above the sea starts with green at its lowest height, so that plateaus have lowlands, too.
         let base = if low.is_finite() { low.max(sea_level) } else { sea_level };
         let relief = if high > base { high - base } else { 0.0 };
         let depth = if low < sea_level { sea_level - low } else { 0.0 };
@@ -100,7 +100,7 @@ impl Atlas {
         }
     }
 
-    /// Whether a height is below sea level.
+    /// Whether a height is at or below sea level.
     #[must_use]
     pub fn is_sea(&self, height: f32) -> bool {
         height <= self.sea_level
@@ -125,7 +125,7 @@ fn inverse(range: f32) -> f32 {
     if inverse.is_finite() { inverse } else { 0.0 }
 }
 
-/// From `a` at x0 to `b` at x1, linear in the logarithm of x, constant outside.
+/// Interpolates from `a` at x0 to `b` at x1, linearly in the logarithm of x. Constant outside.
 fn grows(x: f32, x0: f32, a: f32, x1: f32, b: f32) -> f32 {
     let share = libm::logf(x.max(x0) / x0) / libm::logf(x1 / x0);
     a + (b - a) * share.min(1.0)

@@ -6,13 +6,13 @@ pub type Light = [f32; 3];
 /// A color in sRGB bytes: red, green, blue.
 pub type Rgb = [u8; 3];
 
-/// A table for conversion of linear light to sRGB bytes.
+/// A lookup table that converts linear light to sRGB bytes.
 #[derive(Debug, Clone)]
 pub struct Encoder {
     table: Vec<u8>,
 }
 
-/// Fine enough to reach all dark byte values.
+/// Number of table entries, enough to reach all dark byte values.
 const LEVELS: usize = 1 << 13;
 
 impl Default for Encoder {
@@ -55,7 +55,7 @@ pub fn encode(light: f32) -> u8 {
     (c.clamp(0.0, 1.0) * 255.0 + 0.5) as u8
 }
 
-/// Linear light to Oklab: lightness, green to red, blue to yellow.
+/// Converts linear light to Oklab: lightness, green to red, blue to yellow.
 #[must_use]
 pub fn oklab([r, g, b]: Light) -> [f32; 3] {
     let l = libm::cbrtf(0.412_221_46 * r + 0.536_332_55 * g + 0.051_445_995 * b);
@@ -68,7 +68,7 @@ pub fn oklab([r, g, b]: Light) -> [f32; 3] {
     ]
 }
 
-/// Oklab to linear light.
+/// Converts Oklab to linear light.
 #[must_use]
 pub fn linear([lightness, a, b]: [f32; 3]) -> Light {
     let l = lightness + 0.396_337_78 * a + 0.215_803_76 * b;

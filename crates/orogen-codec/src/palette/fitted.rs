@@ -3,14 +3,14 @@
 use super::color::{Light, Rgb, decode, linear, mix, oklab};
 use super::palette::{Mix, NO_DATA, Palette, Position};
 
-/// Table entries for the narrowest interval between two stops, and the minimum and maximum size of a table.
+/// Number of table entries for the narrowest interval between two stops, and minimum and maximum size of a table.
 const PER_STRETCH: f64 = 48.0;
 const ENTRIES: [f64; 2] = [256.0, 16_384.0];
 
-/// A palette over known heights, prepared for lookup.
+/// A palette fitted to a range of heights, prepared for lookup.
 #[derive(Debug, Clone)]
 pub struct Fitted {
-    /// Pieces without a hard step inside, in ascending order; each starts at its height.
+    /// Pieces without a hard step inside, in ascending order. Each begins at its own height.
     pieces: Vec<Segment>,
     missing: Light,
 }
@@ -34,12 +34,12 @@ impl Segment {
 }
 
 impl Fitted {
-    /// A palette applied to heights from `low` to `high` with the sea at `sea_level`.
+    /// A palette fitted to heights from `low` to `high` with the sea at `sea_level`, in metres.
     pub fn new(palette: &Palette, low: f32, high: f32, sea_level: f32) -> Fitted {
         let [low, high, sea] = [low, high, sea_level].map(f64::from);
         let low = if low.is_finite() { low } else { 0.0 };
         let high = if high > low { high } else { low + 1.0 };
-        // Land above the sea starts at its lowest height; a world without land ends at the sea's surface.
+        // Land above the sea starts at its lowest height. A world without land ends at the surface of the sea.
         let shore = if sea.is_finite() { sea.max(low) } else { low };
         let [depth, relief] = [if sea > low { sea - low } else { 1.0 }, if high > shore { high - shore } else { 1.0 }];
         let resolved = |at: Position| match at {
@@ -50,7 +50,7 @@ impl Fitted {
         };
         let mut stops: Vec<(f64, Rgb)> = palette.stops.iter().map(|stop| (resolved(stop.at), stop.color)).collect();
         stops.retain(|(at, _)| at.is_finite());
-        // A file may mix kinds of positions; the sort is stable at equal positions.
+        // A file may mix kinds of positions. The sort is stable for equal positions.
         stops.sort_by(|a, b| a.0.total_cmp(&b.0));
         if palette.mix == Mix::Nearest {
             stops = stepped(&stops);
@@ -101,7 +101,7 @@ impl Fitted {
     }
 }
 
-/// Stops with a hard step halfway between each two.
+/// Stops with a hard step halfway between any two.
 fn stepped(stops: &[(f64, Rgb)]) -> Vec<(f64, Rgb)> {
     let mut steps: Vec<(f64, Rgb)> = stops.first().copied().into_iter().collect();
     for pair in stops.windows(2) {
@@ -112,7 +112,7 @@ fn stepped(stops: &[(f64, Rgb)]) -> Vec<(f64, Rgb)> {
     steps
 }
 
-/// The smallest f32 at or above a height.
+/// The smallest f32 that is at least `height`.
 fn reached(height: f64) -> f32 {
     let near = height as f32;
     if f64::from(near) >= height { near } else { near.next_up() }
@@ -122,7 +122,7 @@ fn flat(from: f32, color: Rgb) -> Segment {
     Segment { from, start: 0.0, per_metre: 0.0, table: vec![color.map(decode)] }
 }
 
-/// Number of entries of a table over this many metres.
+/// Number of entries of a table over `length` metres.
 fn entries(length: f64, narrowest: f64) -> f64 {
     (length / narrowest * PER_STRETCH).ceil()
 }
@@ -146,7 +146,7 @@ fn piece(from: f32, stops: &[(f64, Rgb)], mix: Mix) -> Segment {
     Segment { from, start: first.0, per_metre: (entries / length).min(1e30), table: table.collect() }
 }
 
-/// The mixed color of two.
+/// The mixture of two colors.
 fn mixed(from: Rgb, to: Rgb, share: f32, how: Mix) -> Light {
     match how {
         Mix::Oklab => linear(mix(oklab(from.map(decode)), oklab(to.map(decode)), share)),
@@ -189,7 +189,7 @@ pub fn hsv(color: Rgb) -> [f32; 3] {
     [60.0 * sixth, if most > 0.0 { chroma / most } else { 0.0 }, most]
 }
 
-/// Red, green and blue, 0 to 1, of hue (degrees), saturation and value.
+/// Red, green and blue, 0 to 1, from hue (degrees), saturation and value.
 #[must_use]
 pub fn of_hsv([hue, saturation, value]: [f32; 3]) -> [f32; 3] {
     let part = |n: f32| {
@@ -249,7 +249,7 @@ mod tests {
             let at = [sea - 300.0, sea, sea.next_up(), sea + 800.0];
             assert_eq!(bytes(&shore, [sea - 300.0, sea + 800.0, sea], &at), [BLUE, RED, LIME, WHITE]);
         }
-        // A plateau far above the sea starts with the first land color; a map of sea only ends at its surface.
+        // A plateau far above the sea starts with the first land color. A map with only sea ends at its surface.
         assert_eq!(bytes(&shore, [500.0, 900.0, 0.0], &[500.5, 900.0])[1], WHITE);
         assert_eq!(bytes(&shore, [500.0, 900.0, 0.0], &[500.0])[0], LIME);
         assert_eq!(bytes(&shore, [-500.0, -90.0, 0.0], &[-500.0, 0.0]), [BLUE, RED]);
@@ -265,7 +265,7 @@ mod tests {
         assert_eq!(bytes(&ends, [0.0, 9.0, 0.0], &at), [LIME, BLUE, RED, WHITE, [1, 2, 3]]);
     }
 
-    /// Halves may be rounded either way.
+    /// Values halfway between two bytes may be rounded either way.
     fn near(a: Rgb, b: Rgb) -> bool {
         a.iter().zip(b).all(|(a, b)| a.abs_diff(b) <= 1)
     }

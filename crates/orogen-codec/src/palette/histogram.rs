@@ -7,19 +7,19 @@ use super::color::{Light, decode, oklab};
 use crate::fs::{self, File};
 use orogen_grid::error::{Error, ErrorKind, Result};
 
-/// Levels of lightness in the histogram.
+/// Number of lightness levels in the histogram.
 const LEVELS: usize = 4096;
 
 /// Maximum number of pixels of a picture.
 const MAX_PIXELS: u64 = 1 << 27;
 
-/// Number of pixels of a picture up to which all are counted. Of a larger one every second row is, or every third, and
-/// so on.
+/// Number of pixels of a picture up to which all pixels are counted. In a larger picture only every second row is
+/// counted, or every third, and so on.
 const COUNTED: u64 = 1 << 24;
 
-/// Reads a `.png` and returns `count` colors in linear light, from dark to light: each is the mean color of an equal
-/// share of the pixels, ordered by their lightness in Oklab. Transparent pixels are ignored. The picture is read row by
-/// row and never held as a whole.
+/// Reads a `.png` and returns `count` colors in linear light, from dark to light. Each is the mean color of an equal
+/// share of the pixels, which are ordered by their lightness in Oklab. Transparent pixels are ignored. The picture is
+/// read row by row and is never completely in memory.
 ///
 /// # Errors
 /// If the file cannot be read, is not a PNG, or has no opaque pixel.
@@ -36,7 +36,7 @@ pub fn read(path: &Path, count: usize) -> Result<Vec<Light>> {
 
 /// [`read`] for a picture in memory or from any reader.
 ///
-/// # Errors
+/// A message that describes the problem.
 /// A message about what is wrong.
 pub fn parse(input: impl BufRead + Seek, count: usize) -> std::result::Result<Vec<Light>, String> {
     let mut decoder = ::png::Decoder::new(input);
@@ -53,7 +53,7 @@ pub fn parse(input: impl BufRead + Seek, count: usize) -> std::result::Result<Ve
     let (color, _) = reader.output_color_type();
     let channels = color.samples();
     let light: Vec<f32> = (0..=255).map(decode).collect();
-    // Counts and sums in f64, in the order of the file: the same on every machine.
+    // Counts and sums in f64, in the order of the file, so that they are the same on every machine.
     let mut levels = vec![[0.0f64; 4]; LEVELS];
     let mut rows = 0;
     while let Some(row) = reader.next_row().map_err(|cause| format!("it is damaged: {cause}"))? {
@@ -96,7 +96,7 @@ fn shares(levels: &[[f64; 4]], total: f64, count: usize) -> Vec<Light> {
     let mut rest = levels.next().unwrap_or_default();
     for _ in 0..count {
         let (mut missing, mut sum) = (share, [0.0f64; 3]);
-        // The last share may lack what rounding lost.
+        // The last share may be smaller by the rounding errors.
         while missing > total * 1e-12 {
             if rest[0] <= 0.0 {
                 match levels.next() {

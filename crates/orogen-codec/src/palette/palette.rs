@@ -9,16 +9,17 @@ pub const NO_DATA: Rgb = [222, 222, 222];
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Position {
-    /// A height in metres, or a value in the layer's unit.
+    /// A height in metres, or a value in the unit of the layer.
     Value(f64),
-    /// A share of the range: 0 is the lowest value, 1 the highest.
+    /// A share of the range, from 0 at the lowest value to 1 at the highest.
     Share(f64),
-    /// -1 is the deepest sea, 0 the shore, 1 the highest land. Land that does not reach the sea starts at 0.
+    /// Relative to the sea: -1 is the deepest sea, 0 the shore, 1 the highest land. Land that does not reach the sea
+    /// starts at 0.
     Sea(f64),
 }
 
 impl Position {
-    /// Its number, of whatever kind.
+    /// The number of the position, of any kind.
     #[doc(hidden)]
     #[must_use]
     pub fn number(self) -> f64 {
@@ -27,7 +28,7 @@ impl Position {
         }
     }
 
-    /// What the files of palettes call its kind.
+    /// The name of the kind in palette files.
     #[doc(hidden)]
     #[must_use]
     pub fn unit(self) -> &'static str {
@@ -39,7 +40,7 @@ impl Position {
     }
 }
 
-/// A color and its position. Two stops at one position make a hard step.
+/// A color and its position. Two stops at the same position give a hard step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stop {
     /// The position.
@@ -57,18 +58,18 @@ pub enum Mix {
     Oklab,
     /// sRGB bytes, as in most other programs.
     Rgb,
-    /// Hue, saturation and value; the hue takes the shorter way.
+    /// Hue, saturation and value. The hue follows the shorter arc.
     Hsv,
     /// Not mixed: the color of the nearest stop.
     Nearest,
 }
 
 impl Mix {
-    /// All of them.
+    /// All color spaces.
     #[doc(hidden)]
     pub const ALL: [Mix; 4] = [Mix::Oklab, Mix::Rgb, Mix::Hsv, Mix::Nearest];
 
-    /// What the files of palettes call it.
+    /// The name in palette files.
     #[doc(hidden)]
     #[must_use]
     pub fn word(self) -> &'static str {
@@ -87,17 +88,17 @@ impl Mix {
 pub struct Palette {
     /// The name.
     pub name: String,
-    /// Colors in ascending order of their positions, if the positions are of one kind.
+    /// Colors in ascending order of their positions, if all positions are of the same kind.
     pub stops: Vec<Stop>,
-    /// The mixing of colors between stops.
+    /// The color space for mixing between stops.
     pub mix: Mix,
-    /// The color below the first stop; by default that of the first stop.
+    /// The color below the first stop; by default the color of the first stop.
     pub below: Option<Rgb>,
-    /// The color above the last stop; by default that of the last stop.
+    /// The color above the last stop; by default the color of the last stop.
     pub above: Option<Rgb>,
     /// The color of samples that are not finite; by default [`NO_DATA`].
     pub missing: Option<Rgb>,
-    /// Whether it is the atlas tint, which is fitted to the relief.
+    /// Whether this is the atlas tint, which is fitted to the relief.
     pub follows_relief: bool,
 }
 
@@ -108,14 +109,14 @@ impl Palette {
         Palette { name: name.to_string(), stops, ..Palette::default() }
     }
 
-    /// The same with only the colors of its stops: each value has that of the nearest one. The atlas tint is then not
-    /// fitted to the relief.
+    /// The same palette without mixing: each value has the color of the nearest stop. The atlas tint is then not fitted
+    /// to the relief.
     #[must_use]
     pub fn nearest(self) -> Palette {
         Palette { mix: Mix::Nearest, follows_relief: false, ..self }
     }
 
-    /// Whether it distinguishes sea from land: its stops are not all shares of the range.
+    /// Whether the palette distinguishes sea from land: it is the atlas tint, or a stop is relative to the sea.
     #[must_use]
     pub fn has_sea(&self) -> bool {
         self.follows_relief || self.stops.iter().any(|stop| matches!(stop.at, Position::Sea(_)))

@@ -2,7 +2,7 @@
 
 use super::color::{Light, Rgb, decode, linear, mix, oklab};
 
-/// Number of table entries: steps are far below the resolution of eight bits.
+/// Number of table entries, so that steps are far below the resolution of eight bits.
 const STEPS: usize = 1024;
 
 /// A color ramp over 0 to 1.
@@ -12,14 +12,14 @@ pub struct Ramp {
 }
 
 impl Ramp {
-    /// A ramp through `stops`: positions in ascending order, with their colors in sRGB bytes. Before the first stop
-    /// and after the last it is constant; without stops it is black.
+    /// A ramp through `stops`: positions in ascending order, with their colors in sRGB bytes. It is constant before the
+    /// first stop and after the last one, and black without stops.
     #[must_use]
     pub fn new(stops: &[(f32, Rgb)]) -> Ramp {
         Ramp::bent(stops, |at| at)
     }
 
-    /// [`Ramp::new`], with the color of `bend(at)` at `at`.
+    /// Like [`Ramp::new`], but the color at `at` is the color of the stops at `bend(at)`.
     pub(super) fn bent(stops: &[(f32, Rgb)], bend: impl Fn(f32) -> f32) -> Ramp {
         let labs: Vec<(f32, [f32; 3])> =
             stops.iter().map(|&(at, [r, g, b])| (at, oklab([decode(r), decode(g), decode(b)]))).collect();
@@ -36,7 +36,7 @@ impl Ramp {
     }
 }
 
-/// The interpolated color of the two stops around `at`.
+/// The interpolated color at `at`, from the two stops around it.
 fn between(stops: &[(f32, [f32; 3])], at: f32) -> [f32; 3] {
     let after = stops.partition_point(|stop| stop.0 <= at);
     match (after.checked_sub(1).map(|before| stops[before]), stops.get(after)) {

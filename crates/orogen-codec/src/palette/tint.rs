@@ -12,7 +12,7 @@ use orogen_grid::grid::Grid;
 pub struct Tint {
     colors: Colors,
     sea_level: f32,
-    /// Whether water is distinguished from land by color.
+    /// Whether water has different colors from land.
     sea: bool,
 }
 
@@ -23,7 +23,7 @@ enum Colors {
 }
 
 impl Tint {
-    /// The atlas tint (`Atlas`) for a world between `low` and `high` with the sea at `sea_level`, in metres.
+    /// The atlas tint (`Atlas`) for a world with heights from `low` to `high` and the sea at `sea_level`, in metres.
     #[must_use]
     pub fn hypsometric(low: f32, high: f32, sea_level: f32) -> Tint {
         Tint { colors: Colors::Atlas(Atlas::new(low, high, sea_level)), sea_level, sea: true }
@@ -35,8 +35,8 @@ impl Tint {
         Tint { colors: Colors::Atlas(Atlas::fit(grid, sea_level)), sea_level, sea: true }
     }
 
-    /// A palette over the heights of a grid: its ends are the extremes of the grid, unless its positions are values.
-    /// The atlas tint is fitted to the relief.
+    /// A palette fitted to the heights of a grid: it extends from the lowest to the highest, unless its positions are
+    /// values. The atlas tint is fitted to the relief.
     #[must_use]
     pub fn of(palette: &Palette, grid: &Grid, sea_level: f32) -> Tint {
         if palette.follows_relief {
@@ -46,7 +46,8 @@ impl Tint {
         Tint::between(palette, [levels.low(), levels.high()], sea_level)
     }
 
-    /// A palette between two heights, independent of a grid: the same for every window of a world.
+    /// A palette over a fixed range of heights, which is independent of a grid and thus the same for every window of a
+    /// world.
     #[must_use]
     pub fn between(palette: &Palette, [low, high]: [f32; 2], sea_level: f32) -> Tint {
         if palette.follows_relief {
@@ -56,7 +57,7 @@ impl Tint {
         Tint { colors: Colors::Fitted(fitted), sea_level, sea: palette.has_sea() }
     }
 
-    /// Whether a height is below sea level.
+    /// Whether a height is in the sea; always false if the tint does not distinguish water from land.
     #[must_use]
     pub fn is_sea(&self, height: f32) -> bool {
         self.sea && height.is_finite() && height <= self.sea_level

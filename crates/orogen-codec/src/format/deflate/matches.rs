@@ -1,21 +1,21 @@
-//! Matches within 32 KiB, for bytes whose entropy coding saves nothing. For each position only the latest earlier
+//! Matches within 32 KiB, for bytes for which entropy coding saves nothing. For each position only the latest earlier
 //! position with the same three bytes is tested.
 
 use super::{Packer, Token};
 
-/// Maximum match length of deflate, and its window.
+/// Maximum length of a match in deflate, and size of its window.
 const LONGEST: usize = 258;
 const WINDOW: usize = 32768;
 
-/// Bits of a hash.
+/// Number of bits of a hash.
 const HASH: u32 = 15;
 
-/// Approximate bits of a match, without its distance.
+/// Approximate number of bits of a match, without its distance.
 const MATCH: usize = 7;
 
 /// The latest positions of sequences of three bytes.
 pub(super) struct Matches {
-    /// By hash: the position after the sequence; 0 for none.
+    /// For each hash, the position after the latest sequence; 0 if there is none.
     seen: Vec<u32>,
     tokens: Vec<Token>,
 }
@@ -26,8 +26,8 @@ impl Matches {
         Matches { seen: vec![0; 1 << HASH], tokens: Vec::new() }
     }
 
-    /// Codes a piece of `bytes` if that saves at least a twentieth, and returns whether it did. Matches may refer to
-    /// any block: `bytes` is the whole input.
+    /// Codes a piece of `bytes` if that saves at least a twentieth, and returns whether it did. `bytes` is the whole
+    /// input, because matches may refer to any earlier block.
     pub fn code(&mut self, bytes: &[u8], piece: std::ops::Range<usize>, packer: &mut Packer) -> bool {
         self.tokens.clear();
         let (mut at, mut bits) = (piece.start, 0);
@@ -49,7 +49,7 @@ impl Matches {
         saves
     }
 
-    /// The length and the distance of the match with the latest position with the same start. Records the current
+    /// The length and the distance of the match at the latest position with the same start. Records the current
     /// position.
     #[inline(always)]
     fn latest(&mut self, bytes: &[u8], at: usize, end: usize) -> Option<(usize, usize)> {
@@ -57,12 +57,12 @@ impl Matches {
         let hash = ((four << 8).wrapping_mul(0x9E37_79B1) >> (32 - HASH)) as usize;
         let before = std::mem::replace(&mut self.seen[hash], at as u32 + 1).checked_sub(1)? as usize;
         let back = at - before;
-        // Matches end at the end of the piece: the next one may be stored.
+        // Matches end at the end of the piece, because the next piece may be stored.
         let most = LONGEST.min(end - at);
         if back > WINDOW || most < 3 {
             return None;
         }
-        // The first byte is the lowest, so trailing zero bits give the number of equal bytes.
+        // The first byte is the lowest, so the trailing zero bits give the number of equal bytes.
         let other = u32::from_le_bytes(*bytes.get(before..)?.first_chunk::<4>()?);
         let differ = four ^ other;
         match differ.trailing_zeros() {

@@ -1,4 +1,4 @@
-//! Deflate with the checksum that containers store behind the data.
+//! A deflate stream and the checksum that containers store after it.
 
 use std::io::{self, Write};
 
@@ -6,10 +6,10 @@ use crc32fast::Hasher;
 
 use super::stream::{Deflate, Wrap};
 
-/// Level of compression.
+/// Compression level.
 const LEVEL: u8 = 6;
 
-/// A writer that compresses what is written to it.
+/// A writer that compresses the bytes written to it.
 pub struct Packer<'a> {
     out: &'a mut dyn Write,
     stream: Deflate,
@@ -18,14 +18,15 @@ pub struct Packer<'a> {
 }
 
 impl<'a> Packer<'a> {
-    /// A writer of raw deflate data to `out`.
+    /// A writer that compresses to raw deflate data in `out`.
     pub fn new(out: &'a mut dyn Write) -> Packer<'a> {
         Packer { out, stream: Deflate::new(Wrap::None, LEVEL), checksum: Hasher::new(), length: 0 }
     }
 
-    /// Writes the rest. Returns the writer below, and the CRC-32 and the length of the data.
+    /// Writes the remaining data. Returns the underlying writer, and the CRC-32 and the length of the uncompressed
+    /// data.
     ///
-    /// Fails if the writer below fails.
+    /// Fails if the underlying writer fails.
     pub fn finish(self) -> io::Result<(&'a mut dyn Write, u32, u64)> {
         self.stream.finish(self.out)?;
         Ok((self.out, self.checksum.finalize(), self.length))

@@ -1,6 +1,6 @@
-//! Deflate (RFC 1951) and zlib (RFC 1950) as streams: bytes of any number in bounded memory.
+//! Deflate (RFC 1951) and zlib (RFC 1950) as streams, for any number of bytes in bounded memory.
 //!
-//! What is written does not depend on the pieces in which the bytes come.
+//! The output does not depend on how the input is divided into pieces.
 
 use std::io::{self, Write};
 
@@ -9,23 +9,23 @@ use miniz_oxide::deflate::stream::deflate;
 use miniz_oxide::inflate::stream::{InflateState, inflate};
 use miniz_oxide::{DataFormat, MZError, MZFlush, MZStatus};
 
-/// Bytes that are compressed at once.
+/// Maximum number of bytes that are compressed at once.
 const PIECE: usize = 64 << 10;
 
 /// Memory of a stream, in bytes.
 pub const MEMORY: u64 = 512 << 10;
 
-/// What is around the compressed bytes.
+/// The container of the compressed bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Wrap {
-    /// Nothing.
+    /// No container: raw deflate.
     None,
-    /// A header and a checksum.
+    /// A zlib header and checksum.
     Zlib,
 }
 
-/// A stream that compresses.
+/// A compressing stream.
 pub struct Deflate {
     compressor: Box<CompressorOxide>,
     piece: Vec<u8>,
@@ -44,7 +44,7 @@ impl Deflate {
         Deflate { compressor: Box::new(compressor), piece: vec![0; PIECE] }
     }
 
-    /// Compresses bytes, and writes what is ready to `out`.
+    /// Compresses `bytes`, and writes the output that is ready to `out`.
     ///
     /// Fails if `out` fails.
     pub fn write(&mut self, out: &mut dyn Write, mut bytes: &[u8]) -> io::Result<()> {
@@ -55,7 +55,7 @@ impl Deflate {
         Ok(())
     }
 
-    /// Writes the rest.
+    /// Writes the remaining output.
     ///
     /// Fails if `out` fails.
     pub fn finish(mut self, out: &mut dyn Write) -> io::Result<()> {
@@ -63,7 +63,7 @@ impl Deflate {
         Ok(())
     }
 
-    /// Compresses a part of `bytes`; returns how many bytes it took, and whether the stream has ended.
+    /// Compresses a part of `bytes`. Returns the number of consumed bytes, and whether the stream has ended.
     fn step(&mut self, out: &mut dyn Write, bytes: &[u8], flush: MZFlush) -> io::Result<(usize, bool)> {
         let done = deflate(&mut self.compressor, bytes, &mut self.piece, flush);
         let is_ended = match done.status {
@@ -77,10 +77,10 @@ impl Deflate {
     }
 }
 
-/// A stream that unpacks what [`Deflate`] wrote with [`Wrap::Zlib`].
+/// A stream that decompresses the output of [`Deflate`] with [`Wrap::Zlib`].
 pub struct Inflate {
     state: Box<InflateState>,
-    /// Packed bytes that are not unpacked yet: those from `next` on.
+    /// Compressed bytes; those from `next` on are not decompressed yet.
     packed: Vec<u8>,
     next: usize,
 }
@@ -98,9 +98,9 @@ impl Inflate {
         Inflate { state: InflateState::new_boxed(DataFormat::Zlib), packed: Vec::new(), next: 0 }
     }
 
-    /// Fills `bytes` with the next unpacked bytes. `more` gives the next packed bytes; none at their end.
+    /// Fills `bytes` with the next decompressed bytes. `more` provides the next compressed bytes, or none at their end.
     ///
-    /// Fails if `more` fails, or if the packed bytes are damaged or end too early.
+    /// Fails if `more` fails, or if the compressed bytes are damaged or end too early.
     pub fn read(&mut self, bytes: &mut [u8], mut more: impl FnMut(&mut Vec<u8>) -> io::Result<()>) -> io::Result<()> {
         let mut filled = 0;
         while filled < bytes.len() {
@@ -114,7 +114,7 @@ impl Inflate {
             self.next += done.bytes_consumed;
             filled += done.bytes_written;
             match done.status {
-                // Bytes that were unpacked before may still wait.
+                // Bytes that were decompressed before may still be in the buffer.
                 Ok(_) | Err(MZError::Buf) if done.bytes_written > 0 || !is_at_end => {}
                 _ => return Err(io::ErrorKind::UnexpectedEof.into()),
             }

@@ -1,4 +1,4 @@
-//! Overviews: half the samples along each side, each the mean over its own area.
+//! Overviews with half the samples along each side. Each sample is the mean over its own area.
 
 use orogen_grid::parallel;
 
@@ -8,21 +8,22 @@ pub fn half(n: usize) -> usize {
     n.div_ceil(2)
 }
 
-/// The samples along a side under one sample of the overview, and how much of it each covers. A sample of the overview
-/// is at most twice as long, so it touches at most three.
+/// The samples along a side under one sample of the overview, and the share that each covers. A sample of the overview
+/// is at most twice as long as a sample, so it touches at most three.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Span {
     /// Index of the first sample.
     pub first: usize,
-    /// The share that each covers; 0 for samples beyond the span.
+    /// The share that each sample covers; 0 for samples beyond the span.
     pub shares: [f64; 3],
 }
 
 impl Span {
-    /// The samples under sample `i` of the overview of a side of `n` samples.
+    /// The samples under sample `i` of the overview of a side with `n` samples.
     #[must_use]
     pub fn of(i: usize, n: usize) -> Span {
-        // In units in which a sample of the overview has the length n and one below it m, all ends are integers.
+        // In units in which a sample of the overview has length n and a sample below it length m, all ends are
+        // integers.
         let m = half(n);
         let (start, end) = (i * n, (i + 1) * n);
         let first = start / m;
@@ -34,35 +35,36 @@ impl Span {
         Span { first, shares }
     }
 
-    /// The index after the last sample that it needs.
+    /// The index after the last sample of the span.
     #[must_use]
     pub fn end(&self) -> usize {
         self.first + self.shares.iter().filter(|share| **share > 0.0).count()
     }
 }
 
-/// The input of some rows of an overview: rows of the raster, or a part of them.
+/// The samples from which some rows of an overview are computed: rows of the raster, or parts of them.
 pub struct Below<'a> {
     /// Samples, row-major.
     pub rows: &'a [f32],
-    /// The first column.
+    /// The index of the first column.
     pub left: usize,
-    /// The first row.
+    /// The index of the first row.
     pub first: usize,
-    /// Samples per row.
+    /// Number of samples per row.
     pub width: usize,
     /// Number of rows of the whole raster.
     pub height: usize,
 }
 
 /// Computes the overview's rows `made..until`, in the columns of the given spans, which `below` must contain. Samples
-/// that are NaN or `missing` are excluded from the means; if none is left, the overview's sample is missing too.
+/// that are NaN or equal to `missing` are excluded from the means. If no sample is left, the overview's sample is
+/// missing, too.
 #[must_use]
 pub fn reduce(below: &Below, columns: &[Span], made: usize, until: usize, missing: Option<f32>) -> Vec<f32> {
     let mut out = vec![0.0; columns.len() * (until - made)];
     parallel::for_each(out.chunks_exact_mut(columns.len()).enumerate(), |(j, row)| {
         let span = Span::of(made + j, below.height);
-        // Rows and columns beyond the raster have no share; the last one is used in their place.
+        // Rows and columns beyond the raster have share 0, so the last ones are used in their place.
         let rows: [&[f32]; 3] = std::array::from_fn(|k| {
             let start = (span.first + k).min(span.end() - 1) - below.first;
             &below.rows[start * below.width..(start + 1) * below.width]
@@ -76,7 +78,7 @@ pub fn reduce(below: &Below, columns: &[Span], made: usize, until: usize, missin
     out
 }
 
-/// The weighted mean of nine samples, in f64: level ground stays level bit for bit.
+/// The weighted mean of nine samples, in f64, so that level ground stays level bit for bit.
 fn mean(rows: [&[f32]; 3], at: [usize; 3], down: [f64; 3], across: [f64; 3], missing: Option<f32>) -> f32 {
     let mut sum = 0.0;
     for (row, down) in rows.iter().zip(down) {
@@ -116,7 +118,7 @@ mod tests {
                 let middle: f64 =
                     span.shares.iter().enumerate().map(|(k, s)| s * ((span.first + k) as f64 + 0.5)).sum();
                 let expect = (i as f64 + 0.5) * n as f64 / half(n) as f64;
-                // A raster with overviews is hundreds of samples wide: this is a thousandth of a sample.
+                // A raster with overviews has hundreds of samples per row, so this is a thousandth of a sample.
                 assert!((middle - expect).abs() < 0.5 / n as f64, "{n} {i}: {middle}, not {expect}");
             }
         }

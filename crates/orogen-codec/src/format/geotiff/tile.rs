@@ -2,8 +2,8 @@
 
 use crate::format::deflate;
 
-/// Compresses the tile in `column` of a row of tiles. `rows` are the samples, `width` per row. The part of the tile
-/// beyond the raster repeats the edge: readers do not show it, and it compresses well.
+/// Compresses the tile in column `column` of a row of tiles. `rows` are the samples, with `width` per row. The part of
+/// the tile beyond the raster repeats the edge: readers do not show it, and it compresses well.
 #[must_use]
 pub fn pack(rows: &[f32], width: usize, column: usize, side: usize) -> Vec<u8> {
     let first = column * side;
@@ -18,14 +18,14 @@ pub fn pack(rows: &[f32], width: usize, column: usize, side: usize) -> Vec<u8> {
         filtered.push(planes[0]);
         filtered.extend(planes.windows(2).map(|pair| pair[1].wrapping_sub(pair[0])));
     }
-    // Each row is filtered separately, so the last one can be repeated as it is.
+    // Each row is filtered separately, so the last one can be repeated unchanged.
     while filtered.len() < 4 * side * side {
         filtered.extend_from_within(filtered.len() - 4 * side..);
     }
     deflate::pack(&filtered, side)
 }
 
-/// All highest bytes, then all second highest, and so on, which groups similar bytes.
+/// Stores all highest bytes, then all second highest bytes, and so on, which groups similar bytes.
 fn split(samples: &[f32], planes: &mut [u8]) {
     for (k, plane) in planes.chunks_exact_mut(samples.len()).enumerate() {
         let shift = 24 - 8 * k;

@@ -1,4 +1,4 @@
-//! Decoding of a strip or tile to the bytes of its samples.
+//! Decompresses a strip or tile to the bytes of its samples.
 
 use std::io::Read;
 
@@ -10,19 +10,19 @@ use crate::format::conversion::Conversion;
 use crate::format::lerc;
 use crate::format::stored::Stored;
 
-/// Compression 34887.
+/// The number of LERC compression in TIFF's tag 259.
 const LERC: u64 = 34887;
 
 /// The compression of a file's blocks.
 #[derive(Debug, Clone, Copy)]
 pub struct Packing {
-    /// TIFF's tag 259.
+    /// The value of TIFF's tag 259.
     pub method: u64,
-    /// The compression of LERC blobs, from the second number of tag 50674: 0 none, 1 deflate, 2 Zstandard.
+    /// The additional compression of LERC blobs, from the second number of tag 50674: 0 none, 1 deflate, 2 Zstandard.
     pub outer: u64,
-    /// Samples per pixel in a block.
+    /// Number of samples per pixel in a block.
     pub bands: usize,
-    /// Bytes per sample.
+    /// Number of bytes per sample.
     pub size: usize,
 }
 
@@ -31,18 +31,18 @@ impl Packing {
     #[must_use]
     pub fn max_growth(&self) -> u64 {
         match self.method {
-            // The longest run of a 12-bit LZW code; deflate has 1032.
+            // 4096 is the longest run of a 12-bit LZW code; deflate has 1032.
             1 | 5 | 8 | 32946 | 32773 => 4096,
-            // A block of one repeated byte: 4 bytes for 128 KiB.
+            // A block of one repeated byte has 4 bytes for 128 KiB.
             50000 => 1 << 15,
-            // LZMA's longest run is 273 bytes, at almost no cost in bits.
+            // The longest run of LZMA is 273 bytes, and takes almost no bits.
             34925 => 1 << 15,
-            // A block of one value has only a header.
+            // A block with a single value has only a header.
             _ => u64::MAX,
         }
     }
 
-    /// Decompresses exactly `length` bytes, `size` pixels. It is an error if the data holds more.
+    /// Decompresses a block to exactly `length` bytes, which are `size` pixels. Fails if the data has more bytes.
     pub fn unpack(&self, packed: Vec<u8>, length: usize, size: [usize; 2]) -> Result<Vec<u8>, String> {
         let out = match self.method {
             1 => packed,
@@ -52,7 +52,7 @@ impl Packing {
             50000 => zstandard(&packed, length)?,
             34925 => lzma(&packed, length)?,
             LERC => {
-                // A blob has at most its samples, a mask and a header.
+                // A blob has at most the samples, a mask and a header.
                 let most = length + length / 8 + 4096;
                 let blob = match self.outer {
                     0 => packed,
@@ -85,7 +85,7 @@ fn inflate(packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
         .map_err(|fault| format!("a block compressed with deflate is damaged ({fault})"))
 }
 
-/// Zstandard (RFC 8878), a single frame.
+/// Decompresses a single frame of Zstandard (RFC 8878).
 pub fn zstandard(packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
     let damaged = |fault: &dyn std::fmt::Display| format!("a block compressed with Zstandard is damaged ({fault})");
     let mut decoder = FrameDecoder::new();
@@ -103,7 +103,7 @@ pub fn zstandard(packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
     if out.len() > most { Err(damaged(&"it is too long")) } else { Ok(out) }
 }
 
-/// LZMA2 in an xz container, as libtiff writes it.
+/// Decompresses LZMA2 in an xz container, as written by libtiff.
 fn lzma(packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
     let mut out = Vec::new();
     // The dictionary grows with the data; presets have at most 64 MiB.
@@ -112,13 +112,15 @@ fn lzma(packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
     Ok(out)
 }
 
-/// LZW of TIFF 6.0: codes of 9 to 12 bits, highest bit first, which widen one code early. Stops after `most` bytes.
+/// Decompresses LZW of TIFF 6.0: codes of 9 to 12 bits, highest bit first, whose width grows one code early. Stops
+/// after `most` bytes.
 fn lzw(packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
     const CLEAR: usize = 256;
     const END: usize = 257;
     const FIRST: usize = 258;
     let mut out: Vec<u8> = Vec::with_capacity(most.min(packed.len() * 4));
-    // The position and length of each code's string in `out`: a string is its predecessor plus the following byte.
+    // The position and length of each code's string in `out`. A string consists of its predecessor and the following
+    // byte.
     let mut table: Vec<(usize, usize)> = Vec::with_capacity(4096 - FIRST);
     let (mut width, mut bits, mut held) = (9u32, 0u32, 0u32);
     let mut last: Option<(usize, usize)> = None;
@@ -156,7 +158,7 @@ fn lzw(packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
         } else {
             let damaged = || "a block compressed with LZW is damaged".to_string();
             let (from, length) = code.checked_sub(FIRST).and_then(|k| table.get(k)).copied().ok_or_else(damaged)?;
-            // Byte by byte: the string may overlap its own copy.
+            // Byte by byte, because the string may overlap its own copy.
             for k in from..from + length {
                 let byte = out.get(k).copied().ok_or_else(damaged)?;
                 out.push(byte);
@@ -168,7 +170,7 @@ fn lzw(packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
     Ok(out)
 }
 
-/// Apple's PackBits: runs and literals. Stops after `most` bytes.
+/// Decompresses Apple's PackBits: runs and literals. Stops after `most` bytes.
 fn pack_bits(packed: &[u8], most: usize) -> Vec<u8> {
     let mut out = Vec::with_capacity(most.min(packed.len() * 4));
     let mut rest = packed;
@@ -193,19 +195,19 @@ fn pack_bits(packed: &[u8], most: usize) -> Vec<u8> {
     out
 }
 
-/// The layout of a row's bytes.
+/// The layout of the bytes of a row.
 #[derive(Debug, Clone, Copy)]
 pub struct Layout {
-    /// How samples are stored: in 1, 2, 4 or 8 bytes.
+    /// The number type of the samples, with 1, 2, 4 or 8 bytes.
     pub stored: Stored,
-    /// TIFF's tag 317: 1 none, 2 differences of integers, 3 floating point.
+    /// The value of TIFF's tag 317: 1 none, 2 differences of integers, 3 floating point.
     pub predictor: u64,
-    /// Interleaved samples per pixel.
+    /// Number of interleaved samples per pixel.
     pub bands: usize,
 }
 
 impl Layout {
-    /// A row's samples as bits, right-aligned in 64, with the predictor undone.
+    /// Undoes the predictor of a row. Replaces `out` with the bits of its samples, right-aligned in 64 bits.
     pub fn row(&self, bytes: &mut [u8], out: &mut Vec<u64>) {
         let size = self.stored.size;
         let count = bytes.len() / size;
@@ -214,7 +216,7 @@ impl Layout {
             for k in self.bands..bytes.len() {
                 bytes[k] = bytes[k].wrapping_add(bytes[k - self.bands]);
             }
-            // All samples' highest bytes, then all second highest, whatever the byte order of the file.
+            // All samples' highest bytes come first, then all second highest, whatever the byte order of the file.
             for plane in bytes.chunks_exact(count.max(1)).take(size) {
                 if out.is_empty() {
                     out.extend(plane.iter().map(|byte| u64::from(*byte)));
@@ -234,7 +236,7 @@ impl Layout {
     }
 }
 
-/// Samples of one band in a row of pixels.
+/// The samples of one band in a row of pixels.
 #[derive(Debug, Clone, Copy)]
 pub struct Row {
     /// The layout of the row.
@@ -246,14 +248,14 @@ pub struct Row {
 }
 
 impl Row {
-    /// The bits of its samples.
+    /// The bits of the samples.
     fn samples<'a>(&self, row: &mut [u8], bits: &'a mut Vec<u64>) -> impl Iterator<Item = u64> + 'a {
         self.layout.row(row, bits);
         let bands = self.layout.bands;
         bits.iter().copied().skip(self.first * bands + self.band).step_by(bands)
     }
 
-    /// Makes heights of samples, as many as there are of both.
+    /// Converts the samples of `row` to heights, as many as both have.
     pub fn convert(&self, row: &mut [u8], bits: &mut Vec<u64>, conversion: &mut Conversion, heights: &mut [f32]) {
         let stored = self.layout.stored;
         for (height, bits) in heights.iter_mut().zip(self.samples(row, bits)) {
@@ -261,7 +263,7 @@ impl Row {
         }
     }
 
-    /// Makes heights NaN where the sample, which is alpha, is 0.
+    /// Sets heights to NaN where the sample, which is alpha, is 0.
     pub fn hide(&self, row: &mut [u8], bits: &mut Vec<u64>, heights: &mut [f32]) {
         for (height, alpha) in heights.iter_mut().zip(self.samples(row, bits)) {
             if alpha == 0 {
@@ -271,8 +273,8 @@ impl Row {
     }
 }
 
-/// Makes heights NaN where a mask is 0: pixel `first` of `row` and those after it. A pixel is a bit, or one of `bands`
-/// bytes: the one with the index `band`.
+/// Sets heights to NaN where a mask is 0. The first height belongs to pixel `first` of `row`. A pixel is one bit, or
+/// `bands` bytes, of which the one with index `band` counts.
 pub fn mask(row: &[u8], bits: u64, bands: usize, band: usize, first: usize, heights: &mut [f32]) {
     for (height, column) in heights.iter_mut().zip(first..) {
         let valid = match bits {
@@ -328,7 +330,7 @@ mod tests {
         let mut out = Vec::new();
         layout(2, true, 2, 1).row(&mut [1, 0, 0, 2, 0xff, 0xff], &mut out);
         assert_eq!(out, [256, 258, 257]);
-        // Two bands: each is predicted by itself.
+        // Two bands, each with its own prediction.
         layout(1, false, 2, 2).row(&mut [1, 10, 2, 20, 3, 30], &mut out);
         assert_eq!(out, [1, 10, 3, 30, 6, 60]);
         // Two floats, 1.0 and 2.0: planes 3f 40, 80 00, 00 00, 00 00, then differences.

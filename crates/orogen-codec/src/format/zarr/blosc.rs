@@ -1,22 +1,22 @@
-//! The codec `blosc`: byte shuffle, then zlib, in the frame of C-Blosc 1.
+//! The codec `blosc`: byte shuffle, then zlib, in a frame of C-Blosc 1.
 //!
-//! The frame (C-Blosc `README_CHUNK_FORMAT.rst`, format version 2): a header of sixteen bytes, the offset of each
-//! block, then the blocks, each preceded by its length. This module writes a single block.
+//! The frame (C-Blosc `README_CHUNK_FORMAT.rst`, format version 2) consists of a header of sixteen bytes, the offset of
+//! each block, and the blocks, each preceded by its length. This module writes a single block.
 
 use miniz_oxide::deflate::compress_to_vec_zlib;
 
-/// Compression level. Half of a height's bits are noise to deflate: higher levels take longer and save 1 %.
+/// Compression level. Half of a height's bits are noise for deflate, so higher levels take longer and save only 1 %.
 pub const LEVEL: u8 = 3;
 
-/// The version of the frame, and that of its zlib format.
+/// The version of the frame, and the version of its zlib format.
 const VERSIONS: [u8; 2] = [2, 1];
 
-/// Flags: shuffled bytes, blocks not split into a stream per byte of a number, zlib.
+/// Flags: shuffled bytes, blocks that are not split into one stream per byte of a number, zlib.
 const SHUFFLED: u8 = 1;
 const WHOLE: u8 = 1 << 4;
 const ZLIB: u8 = 3 << 5;
 
-/// Bytes before the block: the header, the block's offset, its length.
+/// Number of bytes before the block: the header, the offset of the block, and its length.
 const HEADER: usize = 16;
 const BEFORE: usize = HEADER + 4 + 4;
 
@@ -26,7 +26,7 @@ pub fn pack(bytes: &[u8], size: u8) -> Option<Vec<u8>> {
     let length = i32::try_from(bytes.len() + BEFORE).ok()? as usize - BEFORE;
     let shuffled = shuffle(bytes, usize::from(size));
     let packed = compress_to_vec_zlib(&shuffled, LEVEL);
-    // A block with the length of its content counts as uncompressed.
+    // A block that is as long as its content counts as uncompressed.
     let block = if packed.len() < length { &packed } else { &shuffled };
     let mut out = Vec::with_capacity(BEFORE + block.len());
     out.extend_from_slice(&VERSIONS);
@@ -38,7 +38,7 @@ pub fn pack(bytes: &[u8], size: u8) -> Option<Vec<u8>> {
     Some(out)
 }
 
-/// All first bytes, then all second ones, and so on.
+/// Stores the first bytes of all numbers, then all second bytes, and so on.
 fn shuffle(bytes: &[u8], size: usize) -> Vec<u8> {
     let mut out = Vec::with_capacity(bytes.len());
     for k in 0..size {

@@ -1,4 +1,4 @@
-//! Decoding of Zarr chunks: gzip, zlib, Zstandard, LZ4 and frames of C-Blosc.
+//! Decompression of Zarr chunks: gzip, zlib, Zstandard, LZ4 and frames of C-Blosc.
 
 use miniz_oxide::inflate::{decompress_to_vec_with_limit, decompress_to_vec_zlib_with_limit};
 
@@ -39,7 +39,7 @@ impl Codec {
     /// Decompresses at most `most` bytes.
     ///
     /// # Errors
-    /// A message if they are damaged, or there are more.
+    /// A message if the bytes are damaged, or if there would be more.
     pub fn unpack(self, packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
         let damaged = || "a chunk is damaged".to_string();
         match self {
@@ -71,7 +71,7 @@ fn gzip(packed: &[u8], most: usize) -> Option<Vec<u8>> {
 }
 
 fn lz4(packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
-    // Allocates only as much as the bytes can expand to: 255 for one.
+    // Allocates only as much as the bytes can expand to, which is a factor of 255.
     let mut out = vec![0; most.min(packed.len().saturating_mul(255))];
     let length = lz4_flex::block::decompress_into(packed, &mut out)
         .map_err(|_| "a chunk compressed with LZ4 is damaged".to_string())?;
@@ -79,10 +79,10 @@ fn lz4(packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
     Ok(out)
 }
 
-/// Minimum number of bytes per stream for which a block is split into a stream per byte of its numbers.
+/// Minimum number of bytes per stream for which a block is split into one stream per byte of its numbers.
 const MIN_PART: usize = 128;
 
-/// A frame of C-Blosc 1 (README_CHUNK_FORMAT.rst).
+/// Decompresses a frame of C-Blosc 1 (README_CHUNK_FORMAT.rst).
 fn blosc(frame: &[u8], most: usize) -> Result<Vec<u8>, String> {
     let damaged = || "a chunk compressed with Blosc is damaged".to_string();
     let number = |at: usize| {
@@ -161,7 +161,7 @@ mod tests {
         for n in 0..frame.len() {
             let mut frame = frame.clone();
             frame[n] ^= 0x55;
-            // Any result except a panic.
+            // Any result is accepted, but no panic.
             let _ = Codec::Blosc.unpack(&frame, 4000);
         }
     }
