@@ -4,7 +4,7 @@ use crate::lanes::FAR;
 use crate::{F64Lanes, Level};
 use core::arch::x86_64::*;
 
-/// Rounding down, without exceptions.
+/// Rounding mode: down, without exceptions.
 const DOWN: i32 = _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC;
 
 /// 8 f32, twice.

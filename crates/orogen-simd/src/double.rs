@@ -1,4 +1,4 @@
-//! Two registers of a level side by side: while one waits for a result, the processor works on the other.
+//! Two registers of a level together: while one waits for a result, the processor works on the other one.
 
 use crate::{Body, F32Lanes, F64Lanes, Level, MaskLanes, Simd, U32Lanes};
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
@@ -8,7 +8,7 @@ use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 #[derive(Clone, Copy, Debug)]
 pub struct Double<S>(pub S);
 
-/// Two of the same type.
+/// Two values of the same type.
 #[derive(Clone, Copy, Debug)]
 pub struct Pair<T>(T, T);
 
@@ -134,7 +134,7 @@ impl<S: Simd> Simd for Double<S> {
     }
 }
 
-/// Methods that do the same in either half.
+/// Methods that do the same for both halves.
 macro_rules! in_halves {
     ($(fn $name:ident($($other:ident: $type:ty),*) -> $result:ty;)*) => {$(
         #[inline(always)]
@@ -144,7 +144,7 @@ macro_rules! in_halves {
     )*};
 }
 
-/// Lanes from either half, selected by the highest significant bit of the index.
+/// Lanes from either half, selected by the most significant bit of the index.
 #[inline(always)]
 fn half<S: Simd>(from: Pair<S::F32>, index: S::U32) -> S::F32 {
     let sign = 31 - S::LANES.trailing_zeros();

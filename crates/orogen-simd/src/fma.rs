@@ -1,9 +1,9 @@
-//! Emulation of the fused multiply-add for machines without one, and other scalar operations.
+//! Emulation of the fused multiply-add for machines without the instruction, and other scalar operations.
 
-/// `a * b + c` rounded once, from f64 arithmetic: the same bits as the hardware instruction.
+/// `a * b + c` rounded once, computed in f64. The bits are the same as with the hardware instruction.
 ///
 /// The product of two f32 is exact in f64. Its sum with `c` is computed with *round to odd*: if it is inexact, the last
-/// bit is set instead of rounded. 53 bits are more than 2 * 24 + 2, so rounding that sum to f32 gives the correctly
+/// bit is set instead of rounded. 53 bits are more than 2 * 24 + 2, so rounding this sum to f32 gives the correctly
 /// rounded result, including subnormals (Boldo and Melquiond, "Emulation of a FMA and correctly rounded sums: proved
 /// algorithms using rounding to odd", IEEE Transactions on Computers 57(4), 2008).
 #[inline(always)]
@@ -25,10 +25,10 @@ pub fn fma(a: f32, b: f32, c: f32) -> f32 {
     f64::from_bits(bits.wrapping_add(step)) as f32
 }
 
-/// The largest integer not above `x`, without the platform's libm.
+/// The largest integer that is not larger than `x`, without the platform's libm.
 #[inline(always)]
 pub(crate) fn floor32(x: f32) -> f32 {
-    // Adding and subtracting 1.5 * 2^23 rounds to an integer; values from 2^22 are handled below.
+    // Adding and subtracting 1.5 * 2^23 rounds to an integer. Values from 2^22 on are handled below.
     const MAGIC: f32 = 12_582_912.0;
     let size = f32::from_bits(x.to_bits() & 0x7FFF_FFFF);
     let small = size < 4_194_304.0;
@@ -44,7 +44,7 @@ fn trunc32(x: f32) -> f32 {
     f32::from_bits(x.to_bits() & !1)
 }
 
-/// The largest integer not above `x`, without the platform's libm.
+/// The largest integer that is not larger than `x`, without the platform's libm.
 #[inline(always)]
 pub(crate) fn floor64(x: f64) -> f64 {
     const MAGIC: f64 = 6_755_399_441_055_744.0;
@@ -56,7 +56,7 @@ pub(crate) fn floor64(x: f64) -> f64 {
     if size < 4_503_599_627_370_496.0 { signed } else { x }
 }
 
-/// Truncation to i32; NaN and values out of range give `i32::MIN`, as on x86.
+/// Truncation to i32. NaN and values out of range give `i32::MIN`, as on x86.
 #[inline(always)]
 pub(crate) fn to_i32(x: f32) -> i32 {
     if (-2_147_483_648.0..2_147_483_648.0).contains(&x) { x as i32 } else { i32::MIN }

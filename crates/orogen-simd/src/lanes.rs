@@ -5,10 +5,10 @@
 use crate::{Body, Level, Stream};
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
-/// Proof that a level's instructions may be used, and access to its lanes. Lane values come only from a token, so safe
-/// code never runs an instruction that the processor lacks.
+/// Proof that a level's instructions may be used, and access to its lanes. Lane values can only be created with a
+/// token, so safe code never executes an instruction that the processor does not have.
 ///
-/// Loads and stores panic if a slice is too short, like indexing; the `_partial` forms accept any length.
+/// Loads and stores panic if a slice is too short, as indexing does. The `_partial` forms accept any length.
 pub trait Simd: Copy + Send + Sync + 'static {
     /// `LANES` f32.
     type F32: F32Lanes<Self>;
@@ -88,8 +88,8 @@ pub trait Simd: Copy + Send + Sync + 'static {
     /// The entry for each lane, selected by the low four bits of its index.
     fn lookup16(self, table: Self::Table16, index: Self::U32) -> Self::F32;
 
-    /// The floor of each number, and that integer in two's complement: the low words, and the high words plus
-    /// 0x4338_0000. For numbers with an absolute value below 2^51; the sign of a zero is unspecified.
+    /// The floor of each number, and the floor as an integer in two's complement: its low word, and its high word plus
+    /// 0x4338_0000. Numbers must have an absolute value below 2^51; the sign of a zero is unspecified.
     #[inline(always)]
     fn whole(self, number: Self::F64) -> (Self::F64, Self::U32, Self::U32) {
         // After adding 1.5 * 2^52, an integer is in the low bits of the sum.
@@ -98,25 +98,25 @@ pub trait Simd: Copy + Send + Sync + 'static {
         (whole, low, high)
     }
     /// The floor of each number, and its index among the `count` integers that start at `from`. The last result is zero
-    /// in all lanes if all floors are in that range. Otherwise at least one of its lanes, not always that of the number
-    /// outside, is not zero, and the indices are unspecified. `from` is an integer below 2^50 in absolute value,
-    /// `count` a power of two up to 2^31; the numbers may have any value.
+    /// in all lanes if all floors are in that range. Otherwise at least one lane is not zero, not necessarily the lane
+    /// of the number outside the range, and the indices are unspecified. `from` is an integer with an absolute value
+    /// below 2^50, `count` is a power of two up to 2^31. The numbers can have any value.
     #[inline(always)]
     fn place(self, number: Self::F64, from: f64, count: u32) -> (Self::F64, Self::U32, Self::U32) {
-        // A sum of that size is exact, and no other has its high word.
+        // A sum with this absolute value is exact, and no other sum has its high word.
         let whole = number.floor();
         let (low, high) = (whole + self.f64(FAR - from)).words();
         let elsewhere = self.u32((FAR.to_bits() >> 32) as u32) ^ high;
         (whole, low, elsewhere | (low & self.u32(!(count - 1))))
     }
 
-    /// `from[index]` per lane, with unsigned indices; an index beyond the end reads the last entry, an empty slice
+    /// `from[index]` per lane, with unsigned indices. An index beyond the end reads the last entry; an empty slice
     /// gives 0.
     #[inline(always)]
     fn gather(self, from: &[f32], index: Self::U32) -> Self::F32 {
         self.load(&picked(from, index))
     }
-    /// `from[index]` per lane, with unsigned indices; an index beyond the end reads the last entry, an empty slice
+    /// `from[index]` per lane, with unsigned indices. An index beyond the end reads the last entry; an empty slice
     /// gives 0.
     #[inline(always)]
     fn gather_u32(self, from: &[u32], index: Self::U32) -> Self::U32 {
@@ -124,7 +124,7 @@ pub trait Simd: Copy + Send + Sync + 'static {
     }
 }
 
-/// 1.5 * 2^52: the sum with an integer below 2^51 in absolute value has that integer in its low bits.
+/// 1.5 * 2^52. The sum with an integer whose absolute value is below 2^51 has that integer in its low bits.
 pub(crate) const FAR: f64 = 6_755_399_441_055_744.0;
 
 /// `from[index]` per lane, for levels without a gather instruction.
@@ -140,8 +140,8 @@ fn picked<S: Simd, I: U32Lanes<S>, T: Copy + Default>(from: &[T], index: I) -> [
     entries
 }
 
-/// `S::LANES` f32. `+ - * /`, [`sqrt`](Self::sqrt) and [`mul_add`](Self::mul_add) round correctly (to nearest, ties to
-/// even); subnormals are kept.
+/// `S::LANES` f32. `+ - * /`, [`sqrt`](Self::sqrt) and [`mul_add`](Self::mul_add) are rounded correctly (to nearest,
+/// ties to even). Subnormals are kept.
 pub trait F32Lanes<S: Simd>:
     Copy
     + Send
@@ -166,8 +166,8 @@ pub trait F32Lanes<S: Simd>:
         let room = to.len();
         to.copy_from_slice(&lanes[..room]);
     }
-    /// Writes as many lanes as `to` has elements: with non-temporal stores if `to` is aligned to a register (and the
-    /// level supports them), otherwise like [`store_partial`](Self::store_partial).
+    /// Writes as many lanes as `to` has elements. Uses non-temporal stores if `to` is aligned to a register and the
+    /// level supports them; otherwise it works like [`store_partial`](Self::store_partial).
     #[inline(always)]
     fn stream(self, to: &mut [f32], stream: &Stream) {
         let _ = stream;
@@ -177,9 +177,9 @@ pub trait F32Lanes<S: Simd>:
     fn mul_add(self, factor: Self, term: Self) -> Self;
     /// `term - self * factor`, rounded once.
     fn neg_mul_add(self, factor: Self, term: Self) -> Self;
-    /// `self < other ? self : other`: `other` if either is NaN or both are zero.
+    /// `self < other ? self : other`, which is `other` if either is NaN or both are zero.
     fn min(self, other: Self) -> Self;
-    /// `self > other ? self : other`: `other` if either is NaN or both are zero.
+    /// `self > other ? self : other`, which is `other` if either is NaN or both are zero.
     fn max(self, other: Self) -> Self;
     /// The absolute value (clears the sign bit).
     fn abs(self) -> Self;
@@ -193,7 +193,7 @@ pub trait F32Lanes<S: Simd>:
     fn le(self, other: Self) -> S::Mask;
     /// `self == other`; false for NaN.
     fn eq(self, other: Self) -> S::Mask;
-    /// `self` where the mask holds, else `other`.
+    /// `self` where the mask is set, otherwise `other`.
     fn select(self, mask: S::Mask, other: Self) -> Self;
     /// Truncation to i32; NaN and values out of range give `i32::MIN`.
     fn to_i32(self) -> S::U32;
@@ -201,11 +201,11 @@ pub trait F32Lanes<S: Simd>:
     fn bits(self) -> S::U32;
     /// Conversion to f64, which is exact.
     fn widen(self) -> S::F64;
-    /// Lane i gets lane `index[i] % LANES`.
+    /// Permutes the lanes: lane i gets lane `index[i] % LANES`.
     fn permute(self, index: S::U32) -> Self;
 }
 
-/// `S::LANES` u32. `+ - *` wrap.
+/// `S::LANES` u32. `+ - *` wrap around.
 pub trait U32Lanes<S: Simd>:
     Copy
     + Send
@@ -242,17 +242,17 @@ pub trait U32Lanes<S: Simd>:
     fn eq(self, other: Self) -> S::Mask;
     /// `self < other`, as i32.
     fn lt_i32(self, other: Self) -> S::Mask;
-    /// `self` where the mask holds, else `other`.
+    /// `self` where the mask is set, otherwise `other`.
     fn select(self, mask: S::Mask, other: Self) -> Self;
-    /// Interpreted as i32, converted and rounded to nearest.
+    /// Conversion of the lanes, interpreted as i32, rounded to nearest.
     fn i32_to_f32(self) -> S::F32;
     /// The lanes as bit patterns of f32.
     fn as_f32(self) -> S::F32;
-    /// Lane i gets lane `index[i] % LANES`.
+    /// Permutes the lanes: lane i gets lane `index[i] % LANES`.
     fn permute(self, index: S::U32) -> Self;
 }
 
-/// `S::LANES` f64, for positions. Arithmetic rounds correctly.
+/// `S::LANES` f64, for positions. Arithmetic is rounded correctly.
 pub trait F64Lanes<S: Simd>:
     Copy + Send + Sync + 'static + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
 {
@@ -277,7 +277,7 @@ pub trait MaskLanes:
     /// Number of lanes.
     const LANES: usize;
 
-    /// Lane i in bit i; higher bits are 0.
+    /// The lanes as bits: lane i is bit i, and higher bits are 0.
     fn to_bits(self) -> u32;
     /// Whether any lane is true.
     #[inline(always)]

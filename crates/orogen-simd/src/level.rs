@@ -1,25 +1,25 @@
-//! SIMD levels: detected once, or forced for tests and bug reports.
+//! SIMD levels, which are detected once, or forced for tests and bug reports.
 
 use std::fmt;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-/// A set of instructions a body is compiled for. Every level gives the same bits.
+/// A set of instructions for which a body is compiled. Every level gives the same bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum Level {
     /// No instructions beyond the target's baseline: 4 lanes, in SSE2 registers on x86-64, in arrays elsewhere.
     Scalar,
-    /// WebAssembly's 128-bit vectors: 4 lanes. Available in modules that are built with them.
+    /// WebAssembly's 128-bit vectors: 4 lanes. Available in modules that are compiled with them.
     Simd128,
     /// ARM's 128-bit vectors: 4 lanes. Available on every aarch64 target.
     Neon,
-    /// x86-64 with AVX2 and FMA (2013 on): 8 lanes.
+    /// x86-64 with AVX2 and FMA (since 2013): 8 lanes.
     Avx2,
-    /// x86-64 with AVX-512 F, BW, DQ and VL (servers from 2017 on): 16 lanes.
+    /// x86-64 with AVX-512 F, BW, DQ and VL (servers since 2017): 16 lanes.
     Avx512,
 }
 
-/// The environment variable that forces a level for a whole process: `scalar`, `simd128`, `neon`, `avx2` or `avx512`.
+/// The environment variable that forces a level for the whole process: `scalar`, `simd128`, `neon`, `avx2` or `avx512`.
 pub const LEVEL_VARIABLE: &str = "OROGEN_SIMD";
 
 /// The reason why a level cannot be used.
@@ -28,7 +28,7 @@ pub const LEVEL_VARIABLE: &str = "OROGEN_SIMD";
 pub enum LevelError {
     /// No level has this name.
     Unknown(String),
-    /// The level exists, but this processor (or this build) lacks it.
+    /// The level exists, but this processor or this build does not support it.
     Unavailable(Level),
 }
 
@@ -73,7 +73,7 @@ impl Level {
     /// All levels, slowest first.
     pub const ALL: [Level; 5] = [Level::Scalar, Level::Simd128, Level::Neon, Level::Avx2, Level::Avx512];
 
-    /// The level's name, as in [`LEVEL_VARIABLE`].
+    /// The name of the level, as in [`LEVEL_VARIABLE`].
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -117,16 +117,16 @@ impl Level {
         Level::ALL.into_iter().filter(|level| level.is_available()).collect()
     }
 
-    /// The fastest level that this machine supports, ignoring the environment.
+    /// The fastest level that this machine supports. Ignores the environment variable.
     #[must_use]
     pub fn detect() -> Level {
         Level::ALL.into_iter().rev().find(|level| level.is_available()).unwrap_or(Level::Scalar)
     }
 
-    /// The level that [`LEVEL_VARIABLE`] requests, if any.
+    /// The level that [`LEVEL_VARIABLE`] requests; `None` if it is not set.
     ///
     /// # Errors
-    /// The variable contains an unknown level, or one that this machine lacks.
+    /// The variable contains an unknown level, or one that this machine does not support.
     pub fn environment() -> Result<Option<Level>, LevelError> {
         let Some(name) = std::env::var_os(LEVEL_VARIABLE).filter(|name| !name.is_empty()) else {
             return Ok(None);
@@ -135,8 +135,9 @@ impl Level {
         if level.is_available() { Ok(Some(level)) } else { Err(LevelError::Unavailable(level)) }
     }
 
-    /// The level that [`crate::dispatch`] uses: the last one set by [`Level::force`], otherwise that of the
-    /// environment, otherwise the fastest. An invalid environment is ignored here; [`Level::environment`] reports it.
+    /// The level that [`crate::dispatch`] uses: the last one set with [`Level::force`], otherwise the one of the
+    /// environment variable, otherwise the fastest. An invalid variable is ignored here; [`Level::environment`] reports
+    /// it.
     #[inline]
     #[must_use]
     pub fn current() -> Level {
@@ -149,18 +150,18 @@ impl Level {
     #[cold]
     fn first() -> Level {
         let level = Level::environment().ok().flatten().unwrap_or_else(Level::detect);
-        // If another thread has forced a level in the meantime, that one is used.
+        // If another thread has forced a level in the meantime, that level is used.
         match CURRENT.compare_exchange(0, level.number(), Ordering::Relaxed, Ordering::Relaxed) {
             Ok(_) => level,
             Err(number) => Level::ALL[usize::from(number - 1) % Level::ALL.len()],
         }
     }
 
-    /// Makes all later calls of [`crate::dispatch`] in the process use `level`. The results keep their bits; only the
-    /// speed changes.
+    /// Makes all later calls of [`crate::dispatch`] in the process use `level`. The results have the same bits; only
+    /// the speed changes.
     ///
     /// # Errors
-    /// This machine lacks the level; the current level does not change.
+    /// This machine does not support the level; the current level does not change.
     pub fn force(level: Level) -> Result<(), LevelError> {
         if !level.is_available() {
             return Err(LevelError::Unavailable(level));

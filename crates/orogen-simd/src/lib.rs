@@ -1,5 +1,5 @@
-//! Portable SIMD: a generic body is compiled once per instruction set, the fastest one is selected at run time, and all
-//! give the same bits.
+//! Portable SIMD: a generic body is compiled once per instruction set, and the fastest one is selected at run time. All
+//! instruction sets give the same bits.
 //!
 //! ```
 //! use orogen_simd::{Body, F32Lanes, Simd, dispatch};
@@ -29,13 +29,14 @@
 //! assert_eq!(y, [7.0; 19]);
 //! ```
 //!
-//! A default x86-64 build contains every level; compiler flags are not needed. Three rules keep a body fast: mark `run`
-//! and every function it calls `#[inline(always)]` (functions that are not inlined are compiled without the level's
-//! instructions), keep closures out of hot loops for the same reason, and split large bodies with [`Simd::run`], which
-//! makes a separate function *with* the instructions.
+//! A default x86-64 build contains every level; no compiler flags are needed. Three rules keep a body fast: mark `run`
+//! and every function that it calls as `#[inline(always)]` (functions that are not inlined are compiled without the
+//! level's instructions), keep closures out of hot loops for the same reason, and split large bodies with
+//! [`Simd::run`], which compiles a separate function *with* the instructions.
 //!
 //! This is the only crate of the workspace with `unsafe` code. It is sound because lane values and the tokens of the
-//! hardware levels have private contents: a token comes from [`dispatch`] or from detection, a lane value from a token.
+//! hardware levels have private contents: a token can only be obtained from [`dispatch`] or from detection, and a lane
+//! value only from a token.
 
 // First, because the modules of the levels use its macros.
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64", all(target_arch = "wasm32", target_feature = "simd128")))]
@@ -86,7 +87,7 @@ pub use simd128::Simd128;
 #[cfg(target_arch = "x86_64")]
 pub use sse2::Sse2;
 
-/// Code that is written once for all levels. Mark `run` `#[inline(always)]`.
+/// Code that is written once for all levels. Mark `run` as `#[inline(always)]`.
 pub trait Body {
     /// The return type.
     type Output;
@@ -109,7 +110,7 @@ fn baseline() -> impl Simd {
 pub fn dispatch<B: Body>(body: B) -> B::Output {
     match Level::current() {
         #[cfg(target_arch = "x86_64")]
-        // SAFETY: `Level::current` only ever gives a level whose instructions were detected.
+        // SAFETY: `Level::current` only returns a level whose instructions were detected.
         Level::Avx512 => unsafe { Avx512::new_unchecked() }.run(body),
         #[cfg(target_arch = "x86_64")]
         // SAFETY: as above.
@@ -125,7 +126,7 @@ pub fn dispatch<B: Body>(body: B) -> B::Output {
 /// Runs `body` at a given level, regardless of the current one.
 ///
 /// # Errors
-/// This machine lacks the level; the body was not run.
+/// This machine does not support the level; the body was not run.
 pub fn dispatch_at<B: Body>(level: Level, body: B) -> Result<B::Output, LevelError> {
     match level {
         Level::Scalar => Ok(baseline().run(body)),

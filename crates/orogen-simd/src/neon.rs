@@ -1,12 +1,12 @@
-//! NEON: 4 lanes in one register, f64 in two. Part of every aarch64 target, so its token needs no check.
+//! NEON: 4 lanes in one register, f64 in two. It is part of every aarch64 target, so its token needs no check.
 
 use crate::Level;
 use core::arch::aarch64::*;
 
-/// 8 f32, as bytes to look up.
+/// 8 f32, as bytes for lookup.
 #[derive(Clone, Copy, Debug)]
 pub struct Table8(uint8x16x2_t);
-/// 16 f32, as bytes to look up.
+/// 16 f32, as bytes for lookup.
 #[derive(Clone, Copy, Debug)]
 pub struct Table16(uint8x16x4_t);
 
@@ -47,7 +47,7 @@ level! {
         fn store(a, to: [f32]) => vst1q_f32(to, a);
         fn mul_add(a, factor, term) => vfmaq_f32(term, a, factor);
         fn neg_mul_add(a, factor, term) => vfmsq_f32(term, a, factor);
-        // Not vminq and vmaxq, which propagate NaN.
+        // vminq and vmaxq are not used, because they propagate NaN.
         fn min(a, b) => vbslq_f32(vcltq_f32(a, b), a, b);
         fn max(a, b) => vbslq_f32(vcltq_f32(b, a), a, b);
         fn abs(a) => vabsq_f32(a);
@@ -58,7 +58,7 @@ level! {
         fn eq(a, b) -> Mask => vceqq_f32(a, b);
         fn select(a, mask: Mask, b) => vbslq_f32(mask, a, b);
         fn to_i32(a) -> U32 => {
-            // The instruction saturates; values out of range and NaN must give the lowest number.
+            // The instruction saturates, but values out of range and NaN must give the lowest number.
             let (lowest, above) = (vdupq_n_f32(-2_147_483_648.0), vdupq_n_f32(2_147_483_648.0));
             let fits = vandq_u32(vcgeq_f32(a, lowest), vcltq_f32(a, above));
             vbslq_u32(fits, vreinterpretq_u32_s32(vcvtq_s32_f32(a)), vdupq_n_u32(0x8000_0000))
@@ -135,7 +135,7 @@ fn bytes(entries: &[f32]) -> uint8x16_t {
     unsafe { vreinterpretq_u8_f32(vld1q_f32(entries.as_ptr())) }
 }
 
-/// The lanes with these indices; the lower bits of an index count.
+/// The lanes with these indices. Only the lower bits of an index are used.
 #[inline(always)]
 fn permute(a: uint32x4_t, index: uint32x4_t) -> uint32x4_t {
     // SAFETY: see above.

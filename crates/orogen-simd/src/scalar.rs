@@ -1,11 +1,12 @@
-//! The level of every machine: lanes emulated with arrays, 4, 8 or 16 wide so that tests can emulate any register.
+//! The level that every machine supports: lanes emulated with arrays of 4, 8 or 16, so that tests can emulate any
+//! register.
 
 use crate::fma::{floor32, floor64, fma, to_i32};
 use crate::{Body, F32Lanes, F64Lanes, Level, MaskLanes, Simd, U32Lanes};
 use std::array::from_fn;
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
-/// The token of the emulated level with `N` lanes; anyone may make one. `N` is 4, 8 or 16.
+/// The token of the emulated level with `N` lanes. It needs no check. `N` is 4, 8 or 16.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Scalar<const N: usize>;
 
@@ -22,7 +23,7 @@ pub struct ScalarF64<const N: usize>([f64; N]);
 #[derive(Clone, Copy, Debug)]
 pub struct ScalarMask<const N: usize>([bool; N]);
 
-/// Methods that work lane by lane: `self` and the other parameters stand for their values in one lane.
+/// Methods that work lane by lane. `self` and the other parameters stand for their values in one lane.
 macro_rules! by_lane {
     ($(fn $name:ident $lanes:tt -> $result:ident => $value:expr;)*) => {$(
         by_lane!(@fn $name $lanes $result $value);
@@ -155,8 +156,8 @@ impl<const N: usize> Simd for Scalar<N> {
     }
 }
 
-// Unlike the other levels' operations, these are inlined at the compiler's discretion, because unrolled arrays are
-// long. The long operations are separate functions: eight copies of each in every body would make the code of this
+// Unlike the operations of the other levels, these are inlined at the compiler's discretion, because unrolled arrays
+// are long. The long operations are separate functions: eight copies of each in every body would make the code of this
 // level by far the largest.
 
 #[inline(never)]

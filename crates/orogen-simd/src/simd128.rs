@@ -1,14 +1,14 @@
-//! WebAssembly's 128-bit vectors: 4 lanes in one register, f64 in two. A module is built with them or without (`-C
-//! target-feature=+simd128`), so the token needs no check. They have no fused multiply-add with defined rounding: it is
+//! WebAssembly's 128-bit vectors: 4 lanes in one register, f64 in two. A module is compiled with or without them (`-C
+//! target-feature=+simd128`), so the token needs no check. They have no fused multiply-add with defined rounding; it is
 //! emulated with f64, as at the scalar level.
 
 use crate::Level;
 use core::arch::wasm32::*;
 
-/// 8 f32, as bytes to look up.
+/// 8 f32, as bytes for lookup.
 #[derive(Clone, Copy, Debug)]
 pub struct Table8([v128; 2]);
-/// 16 f32, as bytes to look up.
+/// 16 f32, as bytes for lookup.
 #[derive(Clone, Copy, Debug)]
 pub struct Table16([v128; 4]);
 
@@ -57,7 +57,7 @@ level! {
         fn eq(a, b) -> Mask => f32x4_eq(a, b);
         fn select(a, mask: Mask, b) => v128_bitselect(a, b, mask);
         fn to_i32(a) -> U32 => {
-            // The instruction saturates; values out of range and NaN must give the lowest number.
+            // The instruction saturates, but values out of range and NaN must give the lowest number.
             let (lowest, above) = (f32x4_splat(-2_147_483_648.0), f32x4_splat(2_147_483_648.0));
             let fits = v128_and(f32x4_ge(a, lowest), f32x4_lt(a, above));
             v128_bitselect(i32x4_trunc_sat_f32x4(a), u32x4_splat(0x8000_0000), fits)
@@ -118,7 +118,8 @@ fn fused(a: v128, b: v128, c: v128) -> v128 {
     demote(sum, fma_to_odd(promote_high(a), promote_high(b), promote_high(c)))
 }
 
-/// `a * b + c` of f32 widened to f64, rounded to odd: rounded to f32 it is the fused multiply-add (see [`crate::fma`]).
+/// `a * b + c` of f32 widened to f64, rounded to odd. Rounded to f32, it is the fused multiply-add (see
+/// [`crate::fma`]).
 #[inline(always)]
 fn fma_to_odd(a: v128, b: v128, c: v128) -> v128 {
     let zero = f64x2_splat(0.0);
@@ -163,7 +164,7 @@ fn look_up<const N: usize>(table: [v128; N], mut numbers: v128) -> v128 {
     found
 }
 
-/// The lanes with these indices; the lower bits of an index count.
+/// The lanes with these indices. Only the lower bits of an index are used.
 #[inline(always)]
 fn permute(a: v128, index: v128) -> v128 {
     u8x16_swizzle(a, byte_numbers(v128_and(index, u32x4_splat(3))))

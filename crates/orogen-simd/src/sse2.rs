@@ -1,8 +1,8 @@
-//! The scalar level of x86-64, in SSE2 registers, which belong to that target: 4 lanes in one register, f64 in two.
-//! Arrays of lanes (see [`crate::Scalar`]) give the same bits, but take longer to compile and to run.
+//! The scalar level of x86-64, in SSE2 registers, which every x86-64 processor has: 4 lanes in one register, f64 in
+//! two. Arrays of lanes (see [`crate::Scalar`]) give the same bits, but take longer to compile and to run.
 //!
-//! SSE2 has no fused multiply-add, no floor and no lookup. They are emulated, each in one function that is not inlined:
-//! copies in every body would make the code of the slowest level the largest.
+//! SSE2 has no fused multiply-add, no floor and no lookup. Each is emulated in one function that is not inlined,
+//! because copies in every body would make the code of the slowest level the largest.
 
 use crate::Level;
 use core::arch::x86_64::*;
@@ -82,7 +82,7 @@ level! {
         impl Add: add(a, b) => _mm_add_epi32(a, b);
         impl Sub: sub(a, b) => _mm_sub_epi32(a, b);
         impl Mul: mul(a, b) => {
-            // The instruction multiplies the even lanes.
+            // The instruction multiplies only the even lanes.
             let (odd_a, odd_b) = (_mm_srli_epi64::<32>(a), _mm_srli_epi64::<32>(b));
             let even = _mm_shuffle_epi32::<0b10_00>(_mm_mul_epu32(a, b));
             let odd = _mm_shuffle_epi32::<0b10_00>(_mm_mul_epu32(odd_a, odd_b));
@@ -133,13 +133,13 @@ level! {
 /// An expression of intrinsics on values.
 macro_rules! sse2 {
     ($expression:expr) => {
-        // SAFETY: SSE2 belongs to the x86-64 baseline, so the processor has the instructions. Those that read or write
-        // memory stand in blocks of their own.
+        // SAFETY: SSE2 belongs to the x86-64 baseline, so the processor has the instructions. Instructions that read or
+        // write memory are in separate blocks.
         unsafe { $expression }
     };
 }
 
-/// `a` where the mask holds, else `b`.
+/// `a` where the mask is set, otherwise `b`.
 #[inline(always)]
 fn choose(mask: __m128i, a: __m128i, b: __m128i) -> __m128i {
     sse2!(_mm_or_si128(_mm_and_si128(mask, a), _mm_andnot_si128(mask, b)))
@@ -152,8 +152,8 @@ fn lanes(a: __m128i) -> [u32; 4] {
     [low as u32, (low >> 32) as u32, high as u32, (high >> 32) as u32]
 }
 
-// The functions that are not inlined have a calling convention that passes vectors in registers; Rust's own passes them
-// in memory. They are never called from outside, so that it is no foreign interface.
+// The functions that are not inlined have a calling convention that passes vectors in registers, because Rust's own
+// convention passes them in memory. They are never called from outside, so this is not a foreign interface.
 
 /// `a * b + c`, rounded once.
 #[allow(improper_ctypes_definitions)]
@@ -166,7 +166,8 @@ extern "sysv64" fn fused(a: __m128, b: __m128, c: __m128) -> __m128 {
     })
 }
 
-/// `a * b + c` of f32 widened to f64, rounded to odd: rounded to f32 it is the fused multiply-add (see [`crate::fma`]).
+/// `a * b + c` of f32 widened to f64, rounded to odd. Rounded to f32, it is the fused multiply-add (see
+/// [`crate::fma`]).
 #[inline(always)]
 fn fma_to_odd(a: __m128d, b: __m128d, c: __m128d) -> __m128d {
     sse2!({
@@ -177,7 +178,7 @@ fn fma_to_odd(a: __m128d, b: __m128d, c: __m128d) -> __m128d {
         let error = _mm_add_pd(_mm_sub_pd(product, _mm_sub_pd(sum, back)), _mm_sub_pd(c, back));
         let below = _mm_cmplt_pd(error, zero);
         let inexact = _mm_castpd_si128(_mm_or_pd(below, _mm_cmpgt_pd(error, zero)));
-        // All ones where the sum was rounded towards zero: there the step is 1, otherwise -1.
+        // All ones where the sum was rounded towards zero. The step is 1 there, otherwise -1.
         let towards = _mm_castpd_si128(_mm_xor_pd(below, _mm_cmpgt_pd(sum, zero)));
         let bits = _mm_castpd_si128(sum);
         let odd = _mm_and_si128(bits, _mm_set1_epi64x(1));
@@ -200,7 +201,7 @@ extern "sysv64" fn floor(x: __m128) -> __m128 {
     sse2!({
         let sign = _mm_and_ps(x, _mm_set1_ps(-0.0));
         let size = _mm_xor_ps(x, sign);
-        // Numbers from 2^23 on, and NaN, are their own floor. All others fit in an i32.
+        // Numbers from 2^23 on and NaN are their own floor. All others fit in an i32.
         let whole = _mm_cvtepi32_ps(_mm_cvttps_epi32(x));
         let down = _mm_sub_ps(whole, _mm_and_ps(_mm_cmpgt_ps(whole, x), _mm_set1_ps(1.0)));
         let fraction = _mm_castps_si128(_mm_cmplt_ps(size, _mm_set1_ps(8_388_608.0)));
@@ -216,7 +217,7 @@ extern "sysv64" fn floor_f64(x: __m128d) -> __m128d {
         let far = _mm_set1_pd(4_503_599_627_370_496.0);
         let sign = _mm_and_pd(x, _mm_set1_pd(-0.0));
         let size = _mm_xor_pd(x, sign);
-        // Adding 2^52 rounds a positive number to an integer. Numbers from 2^52 on, and NaN, are their own floor.
+        // Adding 2^52 rounds a positive number to an integer. Numbers from 2^52 on and NaN are their own floor.
         let near = _mm_or_pd(_mm_sub_pd(_mm_add_pd(size, far), far), sign);
         let down = _mm_sub_pd(near, _mm_and_pd(_mm_cmpgt_pd(near, x), _mm_set1_pd(1.0)));
         let fraction = _mm_castpd_si128(_mm_cmplt_pd(size, far));
@@ -224,7 +225,7 @@ extern "sysv64" fn floor_f64(x: __m128d) -> __m128d {
     })
 }
 
-/// The entries with these indices; the lower bits of an index count. `N` is a power of two.
+/// The entries with these indices. Only the lower bits of an index are used. `N` is a power of two.
 #[allow(improper_ctypes_definitions)]
 #[inline(never)]
 extern "sysv64" fn look_up<const N: usize>(table: &[f32; N], index: __m128i) -> __m128 {
@@ -236,12 +237,12 @@ extern "sysv64" fn look_up<const N: usize>(table: &[f32; N], index: __m128i) -> 
 #[inline(always)]
 fn permute(a: __m128, index: __m128i) -> __m128 {
     let mut entries = [0.0; 4];
-    // SAFETY: there is room for four values; the instruction takes any alignment.
+    // SAFETY: there is room for four values, and the instruction supports any alignment.
     unsafe { _mm_storeu_ps(entries.as_mut_ptr(), a) };
     look_up(&entries, index)
 }
 
-/// `from[index]` per lane; an index beyond the end reads the last entry, an empty slice gives 0.
+/// `from[index]` per lane. An index beyond the end reads the last entry; an empty slice gives 0.
 #[inline(always)]
 fn picked<T: Copy + Default>(from: &[T], index: U32) -> [T; 4] {
     lanes(index.0).map(|index| from.get(index as usize).or(from.last()).copied().unwrap_or_default())

@@ -1,6 +1,6 @@
 //! Non-temporal stores.
 
-/// A permit for non-temporal stores: see [`streaming`].
+/// A permit for non-temporal stores (see [`streaming`]).
 #[derive(Debug)]
 pub struct Stream(());
 
@@ -18,7 +18,7 @@ impl Drop for Stream {
 /// results that are larger than the caches and are not read again soon. When it returns, the results are visible to all
 /// threads.
 pub fn streaming<R>(work: impl FnOnce(&Stream) -> R) -> R {
-    // Dropped here in any case, because only this function owns one.
+    // It is always dropped here, because only this function owns it.
     let stream = Stream(());
     work(&stream)
 }

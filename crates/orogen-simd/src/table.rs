@@ -1,12 +1,12 @@
-//! The macro that makes a level from its table: the intrinsics of each operation.
+//! The macro that defines a level from a table with the intrinsics of each operation.
 
-/// Declares a level in a module of its own: the token, the lane types `F32`, `U32`, `F64` and `Mask`, and all their
-/// traits. `requires` lists the target features; it is empty if every processor of the target has them.
+/// Declares a level in its own module: the token, the lane types `F32`, `U32`, `F64` and `Mask`, and all their traits.
+/// `requires` lists the target features; it is empty if every processor of the target has them.
 ///
 /// A row is the signature of a method and the expression that it returns: `fn min(a, b) => _mm256_min_ps(a, b);`. The
 /// names in the expression are registers:
 ///
-/// - The first parameter is `self`. Rows of `Simd` leave it out, because the token has no contents.
+/// - The first parameter is `self`. Rows of `Simd` omit it, because the token has no contents.
 /// - A parameter or result without a type has the type of the row's block.
 /// - A slice (`from: [f32]`, `to: [f32]`) is a pointer, valid for one register, with any alignment (`stream`: aligned).
 /// - A row of `F64` is evaluated for each of the two registers, unless its parameters are `low` and `high`.
@@ -16,7 +16,7 @@
 /// Rows that start with `impl` are operators. `by_hand` is the rest of the impl of `Simd`.
 ///
 /// The expressions are evaluated in `unsafe` blocks. They may call intrinsics of the required features and access one
-/// register at a pointer, and nothing else that is unsafe.
+/// register at a pointer, but nothing else that is unsafe.
 macro_rules! level {
     (
         $(#[$token_doc:meta])*
@@ -93,7 +93,7 @@ macro_rules! token {
         pub struct $token(());
 
         impl $token {
-            /// The token, if the processor and the operating system support the instructions.
+            /// The token; `None` if the processor or the operating system does not support the instructions.
             #[inline]
             #[must_use]
             pub fn detect() -> Option<$token> {
@@ -125,17 +125,17 @@ macro_rules! lane_impl {
     };
 }
 
-/// The value of an expression of a row, in which the names have these values.
+/// Evaluates the expression of a row, in which the names have these values.
 macro_rules! evaluate {
     ($value:expr; $($name:ident = $of:expr),*) => {{
         $(let $name = $of;)*
-        // SAFETY: tokens and lane values have private contents, and lane values come from a token, which exists only
-        // where the processor has the required features. The pointers are those of slices whose length was checked.
+        // SAFETY: tokens and lane values have private contents, and lane values come from a token, which exists only if
+        // the processor has the required features. The pointers come from slices whose length was checked.
         unsafe { $value }
     }};
 }
 
-/// A method of `Simd` from its row.
+/// A method of `Simd`, defined by its row.
 macro_rules! simd_row {
     // load_f64
     ($name:ident ($from:ident: [$element:ty]) -> F64 = $value:expr) => {
@@ -186,7 +186,7 @@ macro_rules! simd_row {
     };
 }
 
-/// A method of lanes from its row.
+/// A method of lanes, defined by its row.
 macro_rules! row {
     (F64: store($a:ident, $to:ident: [$element:ty]) = $value:expr) => {
         #[inline(always)]
@@ -210,7 +210,7 @@ macro_rules! row {
             $result(evaluate!($value; $low = self.0, $high = self.1))
         }
     };
-    // All others of F64.
+    // All other methods of F64.
     (F64: $name:ident($a:ident $(, $b:ident)*) = $value:expr) => {
         #[inline(always)]
         fn $name(self $(, $b: Self)*) -> Self {
@@ -257,7 +257,7 @@ macro_rules! row {
             }
         }
     };
-    // All others.
+    // All other methods.
     ($type:ident: $name:ident($a:ident $(, $b:ident $(: $b_type:ident)?)*) = $value:expr) => {
         row!($type: $name($a $(, $b $(: $b_type)?)*) -> Self = $value);
     };
@@ -279,7 +279,7 @@ macro_rules! type_or_self {
     };
 }
 
-/// The highest index of a gather: its indices are signed 32-bit, so the rest of a larger slice cannot be reached.
+/// The highest index of a gather. Its indices are signed 32-bit, so the rest of a larger slice cannot be reached.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 pub(crate) fn last_index(length: usize) -> Option<i32> {

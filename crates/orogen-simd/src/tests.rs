@@ -1,4 +1,4 @@
-//! Every level does what the scalar rules say, bit for bit.
+//! Every level gives the same bits as the scalar rules.
 
 use crate::*;
 
@@ -11,7 +11,7 @@ impl Rng {
         let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
         z ^ (z >> 31)
     }
-    /// A bit pattern of an f32: any one, or an edge case.
+    /// A bit pattern of an f32: any pattern, or an edge case.
     fn pattern(&mut self) -> u32 {
         let word = self.word();
         let special = [
@@ -45,7 +45,7 @@ impl Rng {
     }
 }
 
-/// All results of one round of 32 lanes, NaNs made one.
+/// All results of one round of 32 lanes, in which all NaNs have the same bits.
 type Results = Vec<(&'static str, Vec<u64>)>;
 
 struct Round {
@@ -138,7 +138,7 @@ impl Body for Round {
                 ("f64 max", x.max(y)),
                 ("f64 floor", x.floor()),
             ] {
-                // A NaN of f64 is quieted by hand: its low word is unspecified too.
+                // A NaN in f64 is normalized here, because its low word is unspecified, too.
                 let mut out = [0.0; 32];
                 lanes.store(&mut out);
                 let out = out.map(|x: f64| if x.is_nan() { f64::NAN } else { x });
@@ -151,7 +151,7 @@ impl Body for Round {
     }
 }
 
-/// The body with two registers abreast.
+/// The body with two registers together.
 struct Twice<B>(B);
 
 impl<B: Body> Body for Twice<B> {
@@ -189,7 +189,7 @@ fn every_level_gives_the_same_bits() {
         };
         let (x, y) = (wide(), wide());
         let round = || Round { a, b, c, x, y };
-        // What is one call of 16 lanes here is several of fewer there; 16 emulated lanes are the reference.
+        // One call with 16 lanes corresponds to several calls with fewer lanes. The reference is 16 emulated lanes.
         let expected = Scalar::<16>.run(round());
         let mut found = vec![("4", Scalar::<4>.run(round())), ("8", Scalar::<8>.run(round()))];
         for level in Level::available() {
@@ -200,7 +200,7 @@ fn every_level_gives_the_same_bits() {
             for ((name, expected), (_, mut found)) in expected.iter().zip(found) {
                 let mut expected = expected.clone();
                 if name.starts_with("f64") || ["add", "sub", "mul", "shl", "shr", "sar"].contains(name) {
-                    // Several results share these names and interleave differently.
+                    // Several results have the same name and are in a different order.
                     expected.sort_unstable();
                     found.sort_unstable();
                 }
@@ -266,7 +266,7 @@ fn tails_are_read_and_written_whole() {
     }
 }
 
-/// `a * b + c` rounded once, by whole numbers of any size: the sum's bits are laid out in a wide integer.
+/// `a * b + c` rounded once, computed with wide integers.
 fn exact_fma(a: f32, b: f32, c: f32) -> f32 {
     if !(a.is_finite() && b.is_finite() && c.is_finite()) {
         // Infinities and NaN need no rounding: f64 gives the right class.
@@ -281,8 +281,8 @@ fn exact_fma(a: f32, b: f32, c: f32) -> f32 {
     };
     let ((ma, ea), (mb, eb), (mc, ec)) = (parts(a), parts(b), parts(c));
     let (product, ep) = (ma * mb, ea + eb);
-    // Where one term is so far above the other that they do not fit 128 bits, the lower only breaks ties: a stub of it
-    // does.
+    // If one term is so much larger than the other that both do not fit in 128 bits, the smaller one only breaks ties,
+    // so a minimal term replaces it.
     let (mut high, mut eh, mut low, mut el) = if ep >= ec { (product, ep, mc, ec) } else { (mc, ec, product, ep) };
     if high == 0 {
         (high, eh, low, el) = (low, el, 0, el);
@@ -311,7 +311,7 @@ fn exact_fma(a: f32, b: f32, c: f32) -> f32 {
         let (whole, rest, half) = (size >> unit, size & ((1 << unit) - 1), 1_u128 << (unit - 1));
         whole + u128::from(rest > half || (rest == half && whole & 1 == 1))
     };
-    // At most 2^24, times a power of two: exact in f64, and infinite as f32 where it overflows.
+    // At most 2^24 times a power of two, which is exact in f64, and infinite in f32 if it overflows.
     let exponent = el + unit;
     let mut value = rounded as f64;
     for _ in 0..exponent.unsigned_abs() {
@@ -333,7 +333,7 @@ fn the_scalar_fma_is_exact() {
     for _ in 0..200_000 {
         let [a, b, c] = [0; 3].map(|_| f32::from_bits(rng.pattern()));
         same(a, b, c);
-        // Nearly cancelling, and ties broken by a distant term.
+        // Sums that nearly cancel, and ties that are broken by a distant term.
         let near = f32::from_bits((-(a * b)).to_bits().wrapping_add((rng.word() % 5) as u32).wrapping_sub(2));
         same(a, b, near);
         let scale = f32::from_bits(((rng.word() % 254 + 1) as u32) << 23);
@@ -351,7 +351,7 @@ fn the_scalar_fma_is_exact() {
     same(-0.0, 1.0, 0.0);
 }
 
-/// Asks one number at a time, filled up by numbers that are in place, whether it is among the places.
+/// Tests one number at a time, together with numbers that are in range, for whether it is in range.
 struct Placed<'a> {
     numbers: &'a [f64],
     from: f64,
@@ -385,7 +385,7 @@ fn numbers_are_placed_where_they_are_and_nowhere_else() {
         for size in [1.0, 16.0, 1e3, 4_294_967_296.0, 1e15, 4.5e15, 9e15, 1e19, 1e300] {
             numbers.extend([from + size, from - size, size, -size]);
         }
-        // What only the places of low bits would take for one of them.
+        // Numbers that would be in range if only their low bits were compared.
         numbers.extend([
             from + 4_294_967_296.0 * 3.0 + 2.0,
             from - 2_251_799_813_685_248.0,
