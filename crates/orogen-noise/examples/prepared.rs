@@ -1,5 +1,5 @@
-//! Prints the time of one call in nanoseconds, of noises directly and prepared: a single point, and a block of 8 x 8
-//! samples.
+//! Prints the time of one call in nanoseconds, with a noise directly and with a prepared noise: for a single point, and
+//! for a block of 8 x 8 samples.
 //!
 //! `cargo run --release -p orogen-noise --example prepared`
 
@@ -7,8 +7,8 @@ use orogen_noise::{Basis, Fractal, LengthMismatch, Perlin, Points, Simplex, Worl
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Nanoseconds per call: the minimum of 500 runs of 200 calls, so short that most runs are not interrupted by other
-/// processes.
+/// Nanoseconds per call: the minimum of 500 runs of 200 calls. The runs are so short that most of them are not
+/// interrupted by other processes.
 fn time(mut call: impl FnMut(usize)) -> f64 {
     let mut least = f64::INFINITY;
     for _ in 0..500 {
@@ -21,7 +21,7 @@ fn time(mut call: impl FnMut(usize)) -> f64 {
     least
 }
 
-/// Time of a point and of a block, in nanoseconds.
+/// The times of a point and of a block, in nanoseconds.
 fn times(
     sample: impl Fn(f64, f64) -> f32,
     fill: impl Fn(&Points, &mut [f32]) -> Result<(), LengthMismatch>,
@@ -32,7 +32,7 @@ fn times(
     });
     let block = time(|k| {
         let xs = [0, 1, 2, 3, 4, 5, 6, 7].map(|i| (k * 8 + i) as f64);
-        // The slices have the points' length.
+        // The slices have the same length as the points, so this cannot fail.
         let _ = fill(&Points::Lattice { xs: black_box(&xs), ys: &xs }, &mut heights);
         black_box(&heights);
     });

@@ -1,5 +1,5 @@
-//! Prints how many million points a second each noise makes on one thread, per SIMD level: 1024 x 1024 samples,
-//! wavelength of 100 samples.
+//! Prints how many million points per second each noise computes on one thread, at each SIMD level, for 1024 x 1024
+//! samples with a wavelength of 100 samples.
 //!
 //! `cargo run --release -p orogen-noise --example throughput [LEVEL [CASE]]`
 
@@ -11,15 +11,15 @@ const SIDE: usize = 1024;
 /// Fills a value and two slopes.
 type Work<'a> = &'a mut dyn FnMut(&mut [f32], &mut [f32], &mut [f32]);
 
-/// Processor time of this thread in seconds, so that a busy machine does not count; wall time where the system does not
-/// tell.
+/// Processor time of this thread in seconds, so that other load on the machine does not count. Wall time if the system
+/// does not provide it.
 fn clock(since: Instant) -> f64 {
     let spent = std::fs::read_to_string("/proc/thread-self/schedstat");
     let nanoseconds = spent.ok().and_then(|text| text.split(' ').next()?.parse::<f64>().ok());
     nanoseconds.map_or_else(|| since.elapsed().as_secs_f64(), |nanoseconds| nanoseconds / 1e9)
 }
 
-/// Millions of points a second over about a fifth of a second.
+/// Millions of points per second, measured over about a fifth of a second.
 fn speed(mut work: impl FnMut()) -> f64 {
     work();
     let since = Instant::now();

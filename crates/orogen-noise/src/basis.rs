@@ -1,11 +1,11 @@
-//! The bases of fractals: a new one is a row of this table.
+//! The bases of fractals. To add a basis, add a row to this table.
 
 use crate::choices::{ClassicVariant, Distance, Fade, Feature, Smoothness};
 use crate::program::{Cellular, Source};
 use crate::tables::reference::{BOUND_3D, BOUND_4D};
 
-/// Declares the bases. A row has a description for recipes and more documentation, the variant, its name in recipes and
-/// on the command line, the numbers at its lattice points, and its [cost](Basis::cost).
+/// Declares the bases. A row has a description for recipes, more documentation, the variant, its name in recipes and on
+/// the command line, its source, and its [cost](Basis::cost).
 macro_rules! bases {
     ($(
         #[doc = $about:literal]
@@ -47,8 +47,8 @@ macro_rules! bases {
                 }
             }
 
-            /// Nanoseconds per sample of one octave, at arbitrary positions and on a lattice of columns and rows:
-            /// measured over 512 x 512 samples, wavelength 100 samples, 6 octaves.
+            /// Nanoseconds per sample of one octave, at arbitrary positions and on a lattice of columns and rows,
+            /// measured over 512 x 512 samples with a wavelength of 100 samples and 6 octaves.
             #[doc(hidden)]
             #[must_use]
             pub const fn cost(self) -> [f64; 2] {
@@ -57,7 +57,7 @@ macro_rules! bases {
                 }
             }
 
-            /// The numbers at lattice points.
+            /// The source of the numbers at lattice points.
             pub(crate) const fn source(self) -> Source {
                 match self {
                     $(Basis::$basis => $source,)*
@@ -104,7 +104,7 @@ bases! {
     WorleyEdge = "worley-edge", cells(Feature::Edge), cost 7.2, 7.2;
 }
 
-/// Points anywhere in their cells.
+/// Cellular noise with points anywhere in their cells.
 const fn cells(feature: Feature) -> Source {
     Source::Worley(Cellular { distance: Distance::Euclidean, feature, jitter: 1.0 })
 }
@@ -116,8 +116,8 @@ impl Basis {
         Basis::all().iter().copied().find(|basis| basis.name() == name)
     }
 
-    /// Whether the noise has a gradient. White noise has none, and that of Worley noise is not computed; methods that
-    /// return gradients return zeros for them.
+    /// Whether the noise has a gradient. White noise has none, and the gradient of Worley noise is not implemented.
+    /// Methods that return gradients return zeros for them.
     #[must_use]
     pub const fn has_gradient(self) -> bool {
         self.source().sloped()
@@ -129,7 +129,7 @@ impl Basis {
         self.source().repeats()
     }
 
-    /// The maximum absolute value of the basis in 2, 3 or 4 dimensions; a [`crate::Fractal`] divides by it. Perlin's
+    /// The maximum absolute value of the basis in 2, 3 or 4 dimensions, by which a [`crate::Fractal`] divides. Perlin's
     /// reference noise reaches 1.03635 in 3D and 1.53658 in 4D.
     #[must_use]
     pub const fn bound(self, dimensions: usize) -> f64 {

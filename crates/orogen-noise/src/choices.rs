@@ -1,6 +1,6 @@
-//! Enums of the noises' parameters.
+//! Enums for the parameters of noises.
 
-/// How value noise blends from one lattice point to the next.
+/// How value noise interpolates between lattice points, as a function of the fraction t in the cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 #[non_exhaustive]
 pub enum Fade {
@@ -42,7 +42,7 @@ pub enum Kind {
     Ridged,
     /// The sum of 2 |noise| - 1: sharp valleys, round hills. Its gradient is exact except where the noise is 0.
     Billow,
-    /// Each octave is damped by the slope of the previous ones: level ground has detail, steep ground is smooth.
+    /// Each octave is damped by the slope of the previous ones, so level ground is detailed and steep ground is smooth.
     ///
     /// ```text
     /// d += (gain lacunarity)^i grad n_i       slope of the plain sum, per wavelength of the first octave
@@ -59,7 +59,7 @@ pub enum Kind {
         /// Shape of the damping.
         falloff: Falloff,
     },
-    /// The sum of triangle waves of the noise: bands like those of agate.
+    /// The sum of triangle waves of the noise, which gives bands like those of agate.
     ///
     /// ```text
     /// t = strength (n_i + 1);  h += gain^i (1 - 2 |1 - (t - 2 floor(t / 2))|)
@@ -71,7 +71,7 @@ pub enum Kind {
         /// three folds.
         strength: f64,
     },
-    /// Musgrave's hybrid multifractal: the weight of an octave is the product of the previous ones, so lowlands are
+    /// Musgrave's hybrid multifractal: the weight of an octave is the product of the previous octaves, so lowlands are
     /// smooth and heights are rough.
     ///
     /// ```text
@@ -121,13 +121,13 @@ pub enum Kind {
     Jordan {
         /// Displacement of later octaves by the slopes, in cells of the octave. Typical: 0.35.
         warp: f64,
-        /// How much slopes of previous octaves let later octaves through; with 0 only the first octave remains.
+        /// Strength with which slopes of previous octaves enable later octaves; with 0 only the first octave remains.
         /// Typical: 0.8.
         damp: f64,
     },
 }
 
-/// The damping factor of [`Kind::Weighted`] for a squared slope m, 1 at no slope.
+/// The damping factor of [`Kind::Weighted`] for a squared slope m. It is 1 where the slope is 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 #[non_exhaustive]
 pub enum Falloff {
@@ -138,7 +138,7 @@ pub enum Falloff {
     Exponential,
     /// 1 / (1 + k sqrt m).
     SquareRoot,
-    /// 1 - smoothstep(k m): no detail at all from k m = 1 on.
+    /// 1 - smoothstep(k m), which is 0 from k m = 1 on.
     Smoothstep,
 }
 
@@ -153,7 +153,7 @@ pub enum Smoothness {
     Smooth,
 }
 
-/// How [`crate::Worley`] measures distance.
+/// The distance that [`crate::Worley`] uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 #[non_exhaustive]
 pub enum Distance {

@@ -1,4 +1,4 @@
-//! Perlin's noise over the permutation table of his 2002 reference.
+//! Perlin's noise with the permutation table of his 2002 reference.
 
 use crate::builder::noise_builder;
 use crate::choices::ClassicVariant;
@@ -7,11 +7,11 @@ use crate::prepared::preparable;
 use crate::program::{Program, Source};
 use crate::tiled::tileable;
 
-/// Perlin's improved noise as published: its table has 256 entries, so it repeats every 256 cells.
+/// Perlin's improved noise as published. Its table has 256 entries, so it repeats every 256 cells.
 ///
-/// For comparison with textbooks: with seed 0 and wavelength 1, its three-dimensional methods return
+/// It exists for comparison with textbooks: with seed 0 and wavelength 1, its three-dimensional methods return
 /// `ImprovedNoise.noise(x, y, z)` of the reference. [`crate::Perlin`] has better quality and is faster. The table has
-/// no seed; other seeds displace the lattice by whole cells, so two seeds show two parts of one noise.
+/// no seed. Other seeds displace the lattice by whole cells, so two seeds give two parts of the same noise.
 ///
 /// Range: -1 ..= 1 in 2D, within 1.03635 in 3D, within 1.53658 in 4D. Zero at every lattice point. Its gradient is
 /// exact.
@@ -25,7 +25,7 @@ use crate::tiled::tileable;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Classic {
-    /// 0 is the published noise; other values displace it. Default 0.
+    /// Seed. 0 is the published noise; other values displace it. Default 0.
     pub seed: u64,
     /// Distance between lattice points, in metres. Default 1.
     pub wavelength: f64,

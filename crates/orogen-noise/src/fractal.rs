@@ -25,7 +25,7 @@ use crate::tiled::tileable;
 pub struct Fractal {
     /// The noise that is summed. Default [`Basis::Perlin`].
     pub basis: Basis,
-    /// How the octaves are combined. Default [`Kind::Fbm`].
+    /// The combination of the octaves. Default [`Kind::Fbm`].
     pub kind: Kind,
     /// Any number; neighboring seeds give unrelated noise. Default 0.
     pub seed: u64,

@@ -1,4 +1,4 @@
-//! Coherent noise with analytic derivatives, bit for bit the same everywhere.
+//! Coherent noise with analytic derivatives and the same bits on every machine.
 //!
 //! ```
 //! use orogen_noise::{Fractal, Points};
@@ -19,23 +19,24 @@
 //!
 //! A noise is a plain struct: [`White`], [`Value`], [`Perlin`], [`Classic`], [`Simplex`], [`OpenSimplex2`], [`Worley`],
 //! or a [`Fractal`] over any [`Basis`]. `new` takes its seed and wavelength, and `with_*` methods set the other fields.
-//! Each noise has `sample` and `fill`, `fill_with_gradient` if it has a gradient, and the same in three and four
-//! dimensions: `sample3`, `fill3`, `fill3_with_gradient`, `sample4` and so on. Positions and wavelengths are in metres,
-//! or any other unit of length; values have no unit and are in -1 ..= 1. [`Phacelle`] noise makes stripes along given
-//! directions. A [`Warp`] displaces positions before another noise is evaluated there.
+//! Each noise has `sample` and `fill`, `fill_with_gradient` if it has a gradient, and the same methods in three and
+//! four dimensions: `sample3`, `fill3`, `fill3_with_gradient`, `sample4` and so on. Positions and wavelengths are in
+//! metres, or in any other unit of length. Values have no unit and are in -1 ..= 1. [`Phacelle`] noise gives stripes
+//! along given directions. A [`Warp`] displaces positions before another noise is evaluated there.
 //!
-//! **Many small calls.** `prepare` computes the tables of a noise once, for many calls and from any thread: see
-//! [`Prepared`].
+//! **Many small calls.** `prepare` computes the tables of a noise once for many calls, which can come from any thread
+//! (see [`Prepared`]).
 //!
-//! **Determinism.** A value depends only on the noise's parameters and the position. It does not depend on the
+//! **Determinism.** A value depends only on the parameters of the noise and on the position. It does not depend on the
 //! processor, the SIMD level ([`Level`]), the build, the form of the points ([`Points`]) or their division into calls.
 //!
-//! **Seamless tiles.** Most noises have a method `tiled`, which makes them repeat after whole numbers of cells: see
-//! [`Tiled`].
+//! **Seamless tiles.** Most noises have a method `tiled`, which makes them repeat after an integer number of cells (see
+//! [`Tiled`]).
 //!
-//! **Large coordinates.** Positions are f64. Each octave splits them into a whole cell and a fraction before it rounds
-//! to f32, so noise at 1e9 m is as smooth as at 0. Positions beyond 2^50 cells of the finest octave (2^47 for Simplex
-//! and OpenSimplex2) are clamped, infinite ones too. NaN counts as the lower end. The result is always finite.
+//! **Large coordinates.** Positions are f64. Each octave splits them into an integer cell and a fraction before it
+//! rounds to f32, so noise at 1e9 m is as smooth as at 0. Positions beyond 2^50 cells of the finest octave (2^47 for
+//! Simplex and OpenSimplex2) are clamped, including infinite ones. NaN counts as the lower end. The result is always
+//! finite.
 //!
 //! **Octave coordinates.** Octave i is evaluated at `x * lacunarity^i / wavelength + offset`, in f64 and in this order.
 

@@ -1,4 +1,4 @@
-//! The methods every noise has, written once.
+//! The methods of every noise.
 
 use crate::kernel::fill::Fill;
 use crate::kernel::outputs::Outputs;
@@ -6,8 +6,8 @@ use crate::points::{Depth, LengthMismatch, Points};
 use crate::program::Program;
 use orogen_simd::{Level, LevelError, dispatch, dispatch_at};
 
-/// Runs a program at the current SIMD level. `depths` are z and w, as far as these axes exist; `slopes` has one slice
-/// per axis.
+/// Runs a program at the current SIMD level. `depths` are z and w, if these axes exist; `slopes` has one slice per
+/// axis.
 pub(crate) fn fill(
     program: &Program,
     points: &Points,
@@ -59,38 +59,38 @@ fn check(
     Ok(())
 }
 
-/// One sample.
+/// The value at one position.
 pub(crate) fn sample(program: &Program, x: f64, y: f64, depths: &[Depth]) -> f32 {
     let mut value = [0.0];
-    // The lengths agree, so there is no error to hand on.
+    // The lengths match, so there is no error to return.
     let _ = fill(program, &Points::Scattered { x: &[x], y: &[y] }, depths, &mut value, None);
     value[0]
 }
 
-/// The methods of a noise that has a `program` for each number of dimensions, without slopes.
+/// The methods of a noise that has a `program` for each number of dimensions; those without slopes.
 macro_rules! value_methods {
     ($noise:ident) => {
         impl $noise {
-            /// The value at (x, y), metres. For many points at once, [`fill`](Self::fill) is many times faster and
-            /// gives the same bits; for many single points, see [`Prepared`](crate::Prepared).
+            /// The value at (x, y), in metres. For many points at once, [`fill`](Self::fill) is many times faster and
+            /// gives the same bits. For many single points, see [`Prepared`](crate::Prepared).
             #[must_use]
             pub fn sample(&self, x: f64, y: f64) -> f32 {
                 $crate::methods::sample(&self.program(2), x, y, &[])
             }
 
-            /// The value at (x, y, z), metres.
+            /// The value at (x, y, z), in metres.
             #[must_use]
             pub fn sample3(&self, x: f64, y: f64, z: f64) -> f32 {
                 $crate::methods::sample(&self.program(3), x, y, &[$crate::Depth::Slice(z)])
             }
 
-            /// The value at (x, y, z, w), metres.
+            /// The value at (x, y, z, w), in metres.
             #[must_use]
             pub fn sample4(&self, x: f64, y: f64, z: f64, w: f64) -> f32 {
                 $crate::methods::sample(&self.program(4), x, y, &[$crate::Depth::Slice(z), $crate::Depth::Slice(w)])
             }
 
-            /// The values at the points, in their order.
+            /// The values at the points, in the order of the points.
             ///
             /// # Errors
             /// A slice does not have the points' length; nothing is written.
@@ -111,7 +111,7 @@ macro_rules! value_methods {
                 $crate::methods::fill(&self.program(3), points, &[*depth], value, None)
             }
 
-            /// The values at the points in four dimensions; `depths` are z and w.
+            /// The values at the points in four dimensions. `depths` are z and w.
             ///
             /// # Errors
             /// A slice does not have the points' length; nothing is written.
@@ -124,10 +124,10 @@ macro_rules! value_methods {
                 $crate::methods::fill(&self.program(4), points, depths, value, None)
             }
 
-            /// [`fill`](Self::fill) at a chosen SIMD level, for tests and bug reports: the bits are the same.
+            /// [`fill`](Self::fill) at a given SIMD level, for tests and bug reports. The bits are the same.
             ///
             /// # Errors
-            /// This machine lacks the level; inside, a slice of the wrong length.
+            /// This machine does not support the level. The inner error is a slice of the wrong length.
             pub fn fill_at(
                 &self,
                 level: $crate::Level,
@@ -141,7 +141,7 @@ macro_rules! value_methods {
 }
 pub(crate) use value_methods;
 
-/// The methods of a noise that has slopes, too.
+/// The methods of a noise that also has slopes.
 macro_rules! noise_methods {
     ($noise:ident) => {
         $crate::methods::value_methods!($noise);
@@ -177,7 +177,7 @@ macro_rules! noise_methods {
             }
 
             /// The values at the points in four dimensions and their slopes along x, y, z and w, per metre, in
-            /// `gradient`; `depths` are z and w.
+            /// `gradient`. `depths` are z and w.
             ///
             /// # Errors
             /// A slice does not have the points' length; nothing is written.

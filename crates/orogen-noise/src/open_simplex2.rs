@@ -15,8 +15,9 @@ use crate::program::{Program, Source};
 /// | smooth | 2/3 | 3/4 | 4/5 |
 ///
 /// The lattices, gradients and wide kernels are those of K. Spencer's OpenSimplex2. The hash is different, and the fast
-/// kernels in 3D and 4D end at 1/2 instead of .6, so that no corner is missed. In 4D the gradients are the 32 of
-/// [`crate::Perlin`], and the smooth variant reads every corner within the kernel's radius, which is slow.
+/// kernels in 3D and 4D end at 1/2 instead of .6, so that no corner is missed. In 4D the gradients are the 32
+/// directions of [`crate::Perlin`], and the smooth variant evaluates every corner within the radius of the kernel,
+/// which is slow.
 ///
 /// Range: -1 ..= 1, with a maximum of 1. Zero mean. Its gradient is exact. It cannot repeat along the axes.
 ///

@@ -9,8 +9,8 @@ use crate::program::{Program, Source};
 use crate::tiled::tileable;
 use orogen_simd::dispatch;
 
-/// Perlin's improved gradient noise. Gradients are hashed from 64-bit cells instead of a table of 256, so it never
-/// repeats, and every seed gives a different noise.
+/// Perlin's improved gradient noise. Gradients are hashed from 64-bit cell numbers instead of a table of 256 entries,
+/// so the noise never repeats, and every seed gives a different noise.
 ///
 /// All gradients have the same length. In 2D there are 16 directions, 11.25 + 22.5 k degrees; none lies along an axis
 /// or a diagonal. In 3D there are 32: the corners and face centers of an icosahedron. The result is scaled to a maximum
@@ -48,12 +48,13 @@ impl Perlin {
     }
 
     /// The values at points around an origin, in f32: sample k is at `(origin.0 + x[k], origin.1 + y[k])`, in metres.
-    /// It is faster than [`fill`](Self::fill) at scattered points, in particular if they span at most 16 cells along
+    /// This is faster than [`fill`](Self::fill) at scattered points, in particular if they are within 16 cells along
     /// each axis.
     ///
-    /// The origin may be any position. Coordinates are relative to the corner of its cell and exact to about 2^-24 of
-    /// the distance to it. Therefore the bits differ from those of `fill` and depend on the origin. They do not depend
-    /// on the SIMD level. Coordinates are clamped to 2^30 wavelengths around that corner; NaN counts as the lower end.
+    /// The origin can be any position. Coordinates are relative to the corner of its cell and exact to about 2^-24 of
+    /// the distance to that corner. Therefore the bits differ from those of `fill` and depend on the origin. They do
+    /// not depend on the SIMD level. Coordinates are clamped to 2^30 wavelengths around that corner; NaN counts as the
+    /// lower end.
     ///
     /// # Errors
     /// The slices have different lengths; nothing is written.

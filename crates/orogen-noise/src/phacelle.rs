@@ -7,23 +7,23 @@ use crate::program::{MAX_PERIOD, Program, Source};
 use orogen_simd::{Level, LevelError, dispatch, dispatch_at};
 
 /// Phacelle noise: stripes along a direction that the caller gives for each sample. Stripes merge where directions
-/// change. Along the slope of a terrain they look like gullies.
+/// change. If they follow the slope of a terrain, they look like gullies.
 ///
-/// Each cell has a pivot within half a cell of its lattice point, with a plane wave of random phase. A sample is the
-/// mean of the waves of the 4 x 4 pivots around it, weighted by max(0, e^(-2 d^2) - e^(-4.5)) at distance d in cells,
-/// and lengthened towards length 1:
+/// Each cell has a pivot within half a cell of its lattice point. The pivot has a plane wave with a random phase. A
+/// sample is the mean of the waves of the 4 x 4 pivots around it, weighted by max(0, e^(-2 d^2) - e^(-4.5)) at distance
+/// d in cells. The mean is then lengthened towards length 1:
 ///
 /// ```text
 /// wave = sum w (cos phi, sin phi) / sum w,   phi = 2 pi (v . side / wavelength + phase)
 /// result = wave / max(1 - normalisation, |wave|)
 /// ```
 ///
-/// with v from the pivot to the sample and `side` perpendicular to the direction. Other pivots have a weight of 0, so
-/// there are no discontinuities.
+/// where v is the vector from the pivot to the sample, and `side` is perpendicular to the direction. Other pivots have
+/// a weight of 0, so there are no discontinuities.
 ///
 /// Range: -1 ..= 1 for cosine and sine. Zero mean. There is no exact gradient, because it would need the derivatives of
-/// the directions. Across the stripes the slope of the cosine is about -2 pi / wavelength times the sine. Two
-/// dimensions only.
+/// the directions. Across the stripes the slope of the cosine is about -2 pi / wavelength times the sine. Only two
+/// dimensions are supported.
 ///
 /// R. Skovbo Johansen, "Phacelle noise" (2025).
 ///
@@ -44,17 +44,17 @@ use orogen_simd::{Level, LevelError, dispatch, dispatch_at};
 pub struct Phacelle {
     /// Any number; neighboring seeds give unrelated noise. Default 0.
     pub seed: u64,
-    /// Distance from stripe to stripe, metres. Default 1.
+    /// Distance from stripe to stripe, in metres. Default 1.
     pub wavelength: f64,
-    /// Side of a cell in wavelengths. It limits the length of a stripe. Default 0.7.
+    /// Side of a cell, in wavelengths. It limits the length of a stripe. Default 0.7.
     pub cell: f64,
-    /// How far waves that cancel each other are lengthened, from 0 (not at all) to 1 (to full height); clamped. Default
-    /// 0.5.
+    /// How much waves that cancel each other are lengthened, from 0 (not at all) to 1 (to full height); clamped.
+    /// Default 0.5.
     pub normalisation: f64,
     /// Direction of the stripes for methods without directions: an angle from x (east) towards y (south), in degrees.
     /// Default 0.
     pub direction: f64,
-    /// Period along x and y in cells; 0 along axes without a period. At most 2^26. Default [0, 0].
+    /// Period along x and y in cells, at most 2^26; 0 along axes without a period. Default [0, 0].
     pub period: [u32; 2],
 }
 
@@ -75,11 +75,11 @@ impl Phacelle {
     fn program(&self) -> Program {
         let program = Program::single(Source::Perlin, self.seed, self.wavelength * self.cell);
         let [x, y] = self.period.map(|cells| cells.min(MAX_PERIOD as u32));
-        // A period held so far down always fits.
+        // A period up to this limit is always possible.
         program.tiled([x, y, 0, 0]).unwrap_or(program)
     }
 
-    /// The noise with its tables computed once: the same methods, the same bits, and less work per call.
+    /// The noise with its tables computed once. It has the same methods and bits, and does less work per call.
     #[must_use]
     pub fn prepare(&self) -> PreparedPhacelle {
         let angle = self.direction.to_radians();
@@ -91,15 +91,15 @@ impl Phacelle {
         let normalisation = if self.normalisation >= 0.0 { self.normalisation.min(1.0) } else { 0.0 };
         PreparedPhacelle {
             program: self.program(),
-            // Never 0: waves that cancel each other exactly stay as they are.
+            // Never 0, so that waves that cancel each other exactly are unchanged.
             shortest: ((1.0 - normalisation) as f32).max(1e-6),
             stripes: if self.cell.is_finite() { self.cell.clamp(-1e6, 1e6) as f32 } else { 0.0 },
             direction,
         }
     }
 
-    /// The cosine at (x, y), metres, of stripes along [`Phacelle::direction`]. Each call computes the tables of the
-    /// noise: [`prepare`](Self::prepare) does that once for many calls.
+    /// The cosine at (x, y), in metres, of stripes along [`Phacelle::direction`]. Each call computes the tables of the
+    /// noise; [`prepare`](Self::prepare) computes them once for many calls.
     #[must_use]
     pub fn sample(&self, x: f64, y: f64) -> f32 {
         self.prepare().sample(x, y)
@@ -113,8 +113,8 @@ impl Phacelle {
         self.prepare().fill(points, value)
     }
 
-    /// Cosines and sines at the points, of stripes along (dx, dy), one direction for each sample. The length of a
-    /// direction does not matter; a direction of length 0 makes no stripes.
+    /// The cosines and sines at the points, of stripes along (dx, dy), with one direction for each sample. The length
+    /// of a direction does not matter; a direction of length 0 gives no stripes.
     ///
     /// # Errors
     /// A slice does not have the points' length; nothing is written.
@@ -126,14 +126,14 @@ impl Phacelle {
         cosine: &mut [f32],
         sine: &mut [f32],
     ) -> Result<(), LengthMismatch> {
-        // The direction is not read.
+        // The direction of the prepared noise is not used.
         self.towards([1.0, 0.0]).fill_along(points, dx, dy, cosine, sine)
     }
 
-    /// [`fill_along`](Phacelle::fill_along) at a chosen SIMD level, for tests and bug reports: the bits are the same.
+    /// [`fill_along`](Phacelle::fill_along) at a given SIMD level, for tests and bug reports. The bits are the same.
     ///
     /// # Errors
-    /// This machine lacks the level; inside, a slice of the wrong length.
+    /// This machine does not support the level. The inner error is a slice of the wrong length.
     pub fn fill_along_at(
         &self,
         level: Level,
@@ -145,8 +145,8 @@ impl Phacelle {
     }
 }
 
-/// [`Phacelle`] noise whose tables are computed once, for many calls; [`Phacelle::prepare`] makes it. Any number of
-/// threads can use it at the same time.
+/// [`Phacelle`] noise whose tables are computed once for many calls. It is created with [`Phacelle::prepare`]. Any
+/// number of threads can use it at the same time.
 ///
 /// ```
 /// let stripes = orogen_noise::Phacelle::new(7, 100.0).with_direction(30.0);
@@ -160,7 +160,7 @@ pub struct PreparedPhacelle {
     stripes: f32,
     /// Minimum length that a wave is divided by.
     shortest: f32,
-    /// Direction of the stripes where samples have none of their own.
+    /// Direction of the stripes where samples have no direction.
     direction: [f32; 2],
 }
 
@@ -174,16 +174,16 @@ impl PreparedPhacelle {
         [self.stripes, self.shortest]
     }
 
-    /// [`Phacelle::sample`] of the noise that was prepared.
+    /// [`Phacelle::sample`] of the prepared noise.
     #[must_use]
     pub fn sample(&self, x: f64, y: f64) -> f32 {
         let mut value = [0.0];
-        // The lengths agree, so there is no error to hand on.
+        // The lengths match, so there is no error to return.
         let _ = self.fill(&Points::Scattered { x: &[x], y: &[y] }, &mut value);
         value[0]
     }
 
-    /// [`Phacelle::fill`] of the noise that was prepared.
+    /// [`Phacelle::fill`] of the prepared noise.
     ///
     /// # Errors
     /// A slice does not have the points' length; nothing is written.
@@ -194,7 +194,7 @@ impl PreparedPhacelle {
         Ok(())
     }
 
-    /// [`Phacelle::fill_along`] of the noise that was prepared.
+    /// [`Phacelle::fill_along`] of the prepared noise.
     ///
     /// # Errors
     /// A slice does not have the points' length; nothing is written.
@@ -211,10 +211,10 @@ impl PreparedPhacelle {
         Ok(())
     }
 
-    /// [`Phacelle::fill_along_at`] of the noise that was prepared.
+    /// [`Phacelle::fill_along_at`] of the prepared noise.
     ///
     /// # Errors
-    /// This machine lacks the level; inside, a slice of the wrong length.
+    /// This machine does not support the level. The inner error is a slice of the wrong length.
     pub fn fill_along_at(
         &self,
         level: Level,

@@ -1,37 +1,37 @@
-//! Positions for noises, and the error of their methods.
+//! Positions at which noises are evaluated, and the error of their methods.
 
 use std::fmt;
 
 /// The positions at which a noise is evaluated, in metres, in f64.
 ///
-/// The three forms give the same bits for the same positions; they differ in speed. A lattice is several times faster
-/// than scattered points, because values that depend on x alone or y alone are computed once per column or row.
+/// The three forms give the same bits for the same positions, but differ in speed. A lattice is several times faster
+/// than scattered points, because values that depend only on x or only on y are computed once per column or row.
 #[derive(Clone, Copy, Debug)]
 pub enum Points<'a> {
-    /// Sample k = j * xs.len() + i is at `(xs[i], ys[j])`. Evenly spaced, ascending columns are fastest; all values are
-    /// valid.
+    /// Sample k = j * xs.len() + i is at `(xs[i], ys[j])`. Evenly spaced, ascending columns are fastest, but any values
+    /// are valid.
     Lattice {
-        /// x of each column, metres.
+        /// x of each column, in metres.
         xs: &'a [f64],
-        /// y of each row, metres.
+        /// y of each row, in metres.
         ys: &'a [f64],
     },
     /// A warped lattice: sample k = j * xs.len() + i is at `(xs[i] + dx[k], ys[j] + dy[k])`, with sums in f64.
     Displaced {
-        /// x of each column, metres.
+        /// x of each column, in metres.
         xs: &'a [f64],
-        /// y of each row, metres.
+        /// y of each row, in metres.
         ys: &'a [f64],
-        /// Displacement of each sample along x, metres; row-major.
+        /// Displacement of each sample along x, in metres; row-major.
         dx: &'a [f32],
-        /// Displacement of each sample along y, metres; row-major.
+        /// Displacement of each sample along y, in metres; row-major.
         dy: &'a [f32],
     },
     /// Sample k is at `(x[k], y[k])`.
     Scattered {
-        /// x of each sample, metres.
+        /// x of each sample, in metres.
         x: &'a [f64],
-        /// y of each sample, metres.
+        /// y of each sample, in metres.
         y: &'a [f64],
     },
 }
@@ -69,7 +69,7 @@ impl Points<'_> {
         }
     }
 
-    /// Checks that the slices belong together.
+    /// Checks that the lengths of the slices match.
     pub(crate) fn check(&self) -> Result<(), LengthMismatch> {
         match *self {
             Points::Lattice { .. } => Ok(()),
@@ -85,9 +85,9 @@ impl Points<'_> {
 /// The third or fourth coordinate of the samples, in metres.
 #[derive(Clone, Copy, Debug)]
 pub enum Depth<'a> {
-    /// One coordinate for all samples, which form a slice. Lattices keep their speed.
+    /// One coordinate for all samples, which form a slice. Lattices are as fast as in the plane.
     Slice(f64),
-    /// A coordinate for each sample.
+    /// One coordinate for each sample, in the order of the samples.
     Each(&'a [f64]),
 }
 
@@ -96,7 +96,7 @@ pub enum Depth<'a> {
 pub struct LengthMismatch {
     /// Name of the slice.
     pub slice: &'static str,
-    /// Its length.
+    /// Length of the slice.
     pub length: usize,
     /// The required length.
     pub expected: usize,

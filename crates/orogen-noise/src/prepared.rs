@@ -1,19 +1,19 @@
-//! Noises with their tables computed once.
+//! Noises whose tables are computed once.
 
 use crate::methods::{self, noise_methods};
 use crate::points::{Depth, LengthMismatch, Points};
 use crate::program::Program;
 use crate::shader::function::Shader;
 
-/// A noise whose tables of octaves are computed once, for many calls.
+/// A noise whose tables of octaves are computed once for many calls.
 ///
 /// Every call of [`Fractal::sample`](crate::Fractal::sample) or [`fill`](crate::Fractal::fill) first derives the
-/// octaves' seeds, offsets and amplitudes from the noise's fields. A prepared noise has done that. It has the same
-/// methods and returns the same bits; single points and small blocks are faster, large grids are not.
+/// octaves' seeds, offsets and amplitudes from the fields of the noise. In a prepared noise this is already done. It
+/// has the same methods and returns the same bits. Single points and small blocks are faster, large grids are not.
 ///
-/// [`prepare`](crate::Fractal::prepare) of any noise makes one. It is immutable, so any number of threads can use it at
-/// the same time. It takes about 12 KiB on the heap. Where the noise has no gradient, the methods `*_with_gradient`
-/// write zeros.
+/// Any noise is prepared with its method [`prepare`](crate::Fractal::prepare). A prepared noise is immutable, so any
+/// number of threads can use it at the same time. It takes about 12 KiB on the heap. If the noise has no gradient, the
+/// methods `*_with_gradient` write zeros.
 ///
 /// ```
 /// use orogen_noise::{Fractal, Points};
@@ -32,7 +32,7 @@ use crate::shader::function::Shader;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Prepared {
-    /// In two, three and four dimensions.
+    /// The noise in two, three and four dimensions.
     programs: Box<[Program; 3]>,
 }
 
@@ -47,13 +47,13 @@ impl Prepared {
 
 noise_methods!(Prepared);
 
-/// A noise of a number of dimensions with its tables computed once.
+/// A noise in a fixed number of dimensions, with its tables computed once.
 #[doc(hidden)]
 #[derive(Clone, Debug)]
 pub struct PreparedIn(pub(crate) Program);
 
 impl PreparedIn {
-    /// The values at the points, with a depth for each dimension beyond the second.
+    /// The values at the points. `depths` has a depth for each dimension beyond the second.
     ///
     /// # Errors
     /// A slice does not have the points' length; nothing is written.
@@ -61,25 +61,25 @@ impl PreparedIn {
         methods::fill(&self.0, points, depths, value, None)
     }
 
-    /// A noise of the plane as a function of WGSL, for graphics cards.
+    /// A noise in the plane as a WGSL function, for GPUs.
     #[must_use]
     pub fn shader(&self) -> Shader {
         self.0.shader()
     }
 }
 
-/// Writes `prepare` and `prepare_in` of a noise that does not repeat.
+/// Defines `prepare` and `prepare_in` of a noise that does not repeat.
 macro_rules! preparable {
     ($noise:ident) => {
         impl $noise {
-            /// The noise in a number of dimensions with its tables computed once.
+            /// The noise in a fixed number of dimensions, with its tables computed once.
             #[doc(hidden)]
             #[must_use]
             pub fn prepare_in(&self, dimensions: usize) -> $crate::PreparedIn {
                 $crate::PreparedIn(self.program(dimensions))
             }
 
-            /// The noise with its tables computed once: the same methods, the same bits, and less work per call.
+            /// The noise with its tables computed once. It has the same methods and bits, and does less work per call.
             #[must_use]
             pub fn prepare(&self) -> $crate::Prepared {
                 $crate::Prepared::new([self.program(2), self.program(3), self.program(4)])

@@ -1,63 +1,63 @@
-//! The input of the kernels: a noise as a list of octaves. Every public noise compiles to this.
+//! The input of the kernels: a noise as a list of octaves. Every public noise is compiled to this form.
 
 use crate::choices::{ClassicVariant, Distance, Fade, Falloff, Feature, Kind, Smoothness};
 use crate::seed;
 use std::f32::consts::SQRT_2;
 use std::fmt;
 
-/// Maximum number of octaves of a fractal; more are ignored. Thirty-two octaves of lacunarity 2 span a factor of four
+/// Maximum number of octaves of a fractal; more are ignored. Thirty-two octaves with lacunarity 2 span a factor of four
 /// billion in wavelength, which exceeds the precision of a sum in f32.
 pub const MAX_OCTAVES: u32 = 32;
 
 /// Positions are clamped to this many cells of the finest octave, where f64 still resolves a quarter of a cell. Cell
-/// numbers are then exact and results finite, for NaN and infinite positions too.
+/// numbers are then exact and results finite, also for NaN and infinite positions.
 const FARTHEST: f64 = 1_125_899_906_842_624.0;
 
-/// The same on lattices of simplices, where the skew adds up to as many cells again along each axis.
+/// The same limit on lattices of simplices, where the skew adds up to as many cells again along each axis.
 const FARTHEST_SLANTED: f64 = FARTHEST / 8.0;
 
-/// The same for lattices that repeat: rounding of coordinates to 2^-24 of a cell works up to here.
+/// The same limit for lattices that repeat. Up to here, coordinates can be rounded to 2^-24 of a cell.
 const FARTHEST_TILED: f64 = 134_217_727.0;
 
-/// Maximum period in cells, in any octave: twice this is inside the limit.
+/// Maximum period in cells, in any octave. Twice this number is within the limit.
 pub(crate) const MAX_PERIOD: f64 = 67_108_864.0;
 
-/// Maximum size of slope factors, so that the slopes of all octaves have a finite sum.
+/// Maximum absolute value of slope factors, so that the slopes of all octaves have a finite sum.
 const STEEPEST: f32 = 1e36;
 
-/// The same where slopes damp octaves: the square of the sum of slopes is finite too, and so is its product with
-/// another factor.
+/// The same limit where slopes damp octaves: the square of the sum of slopes must be finite, and so must its product
+/// with another factor.
 const STEEPEST_WEIGHTED: f32 = 1e16;
 
-/// The numbers at lattice points.
+/// The source of the numbers at lattice points.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Source {
-    /// Values, interpolated.
+    /// Interpolated values.
     Value(Fade),
     /// Hashed gradients.
     Perlin,
     /// Gradients from the 2002 table.
     Classic(ClassicVariant),
-    /// Points, one per cell.
+    /// Cellular noise with one point per cell.
     Worley(Cellular),
     /// Gradients on the corners of simplices.
     Simplex,
-    /// The same lattice with other kernels and gradients.
+    /// The lattice of `Simplex` with other kernels and gradients.
     OpenSimplex2(Smoothness),
 }
 
 impl Source {
-    /// Whether an octave is a sum of few products of a column's and a row's numbers: see kernel/basis.rs.
+    /// Whether an octave is a sum of few products of a column's and a row's numbers (see kernel/basis.rs).
     pub(crate) fn low_rank(self) -> bool {
         matches!(self, Source::Value(_) | Source::Perlin | Source::Classic(_))
     }
 
-    /// Whether it has slopes; else they are zero.
+    /// Whether the noise has slopes; otherwise they are zero.
     pub(crate) const fn sloped(self) -> bool {
         !matches!(self, Source::Value(Fade::Step) | Source::Worley(_))
     }
 
-    /// Whether its lattice can repeat along the axes.
+    /// Whether the lattice can repeat along the axes.
     pub(crate) const fn repeats(self) -> bool {
         !matches!(self, Source::Simplex | Source::OpenSimplex2(_))
     }
@@ -73,14 +73,14 @@ pub(crate) struct Cellular {
 }
 
 impl Cellular {
-    /// Maximum size of the feature, in cells.
+    /// Maximum value of the feature, in cells.
     ///
-    /// Let the nearest lattice corner of a sample be x, y (and z) away, each at most 1/2. Its own cell's point is
-    /// within (1 - x, 1 - y), and that of the neighbor across its nearest side within 2 min(x, y) more along one axis.
-    /// The maxima of these over all positions bound the nearest and the second nearest distance, and points in the
-    /// farthest corners reach them. An edge is at most sqrt 2 (sqrt 3, 2) minus the nearest distance away, because a
-    /// position farther off would have no point, and at most half the sum of the nearest two distances: together less
-    /// than 1 (2 / sqrt 3, 4 / 3).
+    /// Let the nearest lattice corner of a sample be x, y (and z) away, each at most 1/2. The point of its own cell is
+    /// within (1 - x, 1 - y), and the point of the neighbor across the nearest side is within 2 min(x, y) more along
+    /// one axis. The maxima of these over all positions bound the nearest and the second nearest distance, and points
+    /// in the farthest corners reach them. The distance of an edge is at most sqrt 2 (sqrt 3, 2) minus the nearest
+    /// distance, because a position farther away would have no point. It is also at most half the sum of the two
+    /// nearest distances. Together this is less than 1 (2 / sqrt 3, 4 / 3).
     #[inline]
     pub(crate) fn bound(self, dims: usize) -> f32 {
         let pick = |bounds: [f32; 3]| bounds[dims.clamp(2, 4) - 2];
@@ -108,13 +108,13 @@ impl Cellular {
 pub(crate) struct Octave {
     /// Cells per metre.
     pub frequency: f64,
-    /// Added to position times frequency, in cells.
+    /// Offset that is added to position times frequency, in cells.
     pub offset: [f64; 4],
     /// The words of the lattice hash, per axis.
     pub words: [[u32; 2]; 4],
     /// Factor of the value.
     pub amplitude: f32,
-    /// Factor of the gradient by cell coordinates.
+    /// Factor of the gradient with respect to cell coordinates.
     pub slope: f32,
     /// Weight in combinations that are not plain sums.
     pub gain: f32,
@@ -134,7 +134,7 @@ pub(crate) struct Octaves {
     pub bound: f64,
     pub kind: Kind,
     pub seed: u64,
-    /// Wavelength of the first octave, metres.
+    /// Wavelength of the first octave, in metres.
     pub wavelength: f64,
     pub count: u32,
     pub lacunarity: f64,
@@ -144,41 +144,41 @@ pub(crate) struct Octaves {
 /// How octaves are combined.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Combine {
-    /// The sum.
+    /// The plain sum.
     Sum,
     /// `start + sign * sum of absolute values`.
     Sizes {
-        /// +1 (billow) or -1 (ridged); the sum starts at minus that.
+        /// +1 (billow) or -1 (ridged). The sum starts at minus this number.
         sign: f32,
     },
     /// The sum, each octave damped by the slope of the previous ones.
     Weighted {
         /// Strength of the damping.
         k: f32,
-        /// Its shape.
+        /// The shape of the damping.
         falloff: Falloff,
         /// Factor from the kernels' gradient unit to 1 / metre of the normalized sum.
         gradient: f32,
     },
-    /// Other combinations: octaves are numbers in -1 ..= 1, with slopes per first wavelength.
+    /// Other combinations. Octaves are numbers in -1 ..= 1, with slopes per first wavelength.
     Shaped {
         /// The shape.
         shape: Shape,
-        /// Factor from the shape's own range to -1 ..= 1.
+        /// Factor from the range of the shape to -1 ..= 1.
         scale: f32,
         /// Factor from the kernels' gradient unit to 1 / metre of the result.
         gradient: f32,
     },
 }
 
-/// Combinations that are not plain sums; see [`Kind`].
+/// Combinations that are not plain sums (see [`Kind`]).
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Shape {
-    /// Folded values, summed.
+    /// The sum of folded values.
     PingPong { strength: f32 },
-    /// Each octave weighted by the product of those before.
+    /// Each octave is weighted with the product of the previous ones.
     Hybrid { offset: f32 },
-    /// Each octave scaled by the sum so far.
+    /// Each octave is scaled with the sum so far.
     Hetero { offset: f32 },
     /// Ridges that displace later octaves.
     Swiss { warp: f32 },
@@ -187,7 +187,7 @@ pub(crate) enum Shape {
 }
 
 impl Combine {
-    /// Whether octaves displace the positions of later ones. Then rows of samples share nothing.
+    /// Whether octaves displace the positions of later ones. Rows of samples then have no common values.
     pub(crate) fn moves(self) -> bool {
         matches!(self, Combine::Shaped { shape: Shape::Swiss { .. } | Shape::Jordan { .. }, .. })
     }
@@ -203,7 +203,7 @@ impl Combine {
 pub(crate) struct Program {
     pub source: Source,
     pub combine: Combine,
-    /// Positions are clamped to plus and minus this, in metres.
+    /// Maximum absolute value of positions, in metres; others are clamped.
     pub limit: f64,
     pub count: usize,
     pub all: [Octave; MAX_OCTAVES as usize],
@@ -213,16 +213,16 @@ pub(crate) struct Program {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum TileError {
-    /// An octave does not have a whole number of cells in the period.
+    /// An octave does not have an integer number of cells in the period.
     Octave {
         /// The octave, counted from 0.
         octave: usize,
         /// The axis: 0 for x, 1 for y, 2 for z, 3 for w.
         axis: usize,
-        /// The number of its cells in one period: the first octave's times a power of the lacunarity.
+        /// The number of its cells in one period: the number of the first octave times a power of the lacunarity.
         cells: f64,
     },
-    /// The noise uses a lattice of simplices, which can only repeat along its own skewed axes.
+    /// The noise uses a lattice of simplices, which can only repeat along its skewed axes.
     Slanted,
 }
 
@@ -249,7 +249,7 @@ impl fmt::Display for TileError {
 impl std::error::Error for TileError {}
 
 impl Program {
-    /// A single noise: its lattice has a point at the origin.
+    /// A noise of one octave, whose lattice has a point at the origin.
     pub(crate) fn single(source: Source, seed: u64, wavelength: f64) -> Program {
         let frequency = defined(1.0 / wavelength);
         let mut all = [Octave::default(); MAX_OCTAVES as usize];
@@ -278,7 +278,7 @@ impl Program {
             total += f64::abs(amplitude);
             amplitude *= gain;
         }
-        // A hair above the sum, so that rounding in f32 cannot carry the result past 1.
+        // Slightly more than the sum, so that rounding in f32 cannot exceed 1.
         total *= bound * (1.0 + 1.0 / 1_048_576.0);
         let shape = shape(fractal.kind);
         let (mut amplitude, mut ratio, mut fastest) = (1.0, 1.0, 0.0_f64);
@@ -290,7 +290,7 @@ impl Program {
             let [value, slope] = match fractal.kind {
                 Kind::Fbm => [share, share * frequency],
                 Kind::Ridged | Kind::Billow => [2.0 * share, 2.0 * share * frequency],
-                // The slope of the sum before it is normalized, per first wavelength.
+                // The slope of the sum before normalization, per first wavelength.
                 Kind::Weighted { .. } => [share, amplitude * turns],
                 _ => [1.0 / bound, turns / bound],
             };
@@ -318,7 +318,7 @@ impl Program {
             (Kind::Ridged, _) => Combine::Sizes { sign: -1.0 },
             (Kind::Billow, _) => Combine::Sizes { sign: 1.0 },
             (Kind::Weighted { k, falloff }, _) => Combine::Weighted {
-                // Finite, so that where there is no slope its product is none.
+                // Finite, so that its product with a slope of 0 is 0.
                 k: if k >= 0.0 { k.min(f64::from(f32::MAX)) as f32 } else { 0.0 },
                 falloff,
                 gradient: if count == 0 { 0.0 } else { defined32((base / total) as f32, STEEPEST_WEIGHTED) },
@@ -336,7 +336,7 @@ impl Program {
         Program { source, combine, limit: limit(source, fastest), count: count as usize, all }
     }
 
-    /// The same noise with a period: `period` cells of the first octave along x, y, z and w; 0 for none.
+    /// The same noise with a period of `period` cells of the first octave along x, y, z and w; 0 for no period.
     pub(crate) fn tiled(mut self, period: [u32; 4]) -> Result<Program, TileError> {
         if period == [0; 4] {
             return Ok(self);
@@ -347,11 +347,11 @@ impl Program {
         let mut fastest = 0.0_f64;
         for (number, octave) in self.all.iter_mut().take(self.count).enumerate() {
             octave.tiled = true;
-            // In multiples of the coordinates' own rounding.
+            // Offsets are multiples of the rounding of coordinates.
             octave.offset = octave.offset.map(|offset| (offset * 16_777_216.0).floor() / 16_777_216.0);
             fastest = fastest.max(octave.frequency.abs());
             for (axis, &cells) in period.iter().enumerate() {
-                // An octave without a frequency is a constant: it repeats as it is.
+                // An octave without a frequency is constant, so it repeats without a change.
                 if octave.frequency == 0.0 || cells == 0 {
                     continue;
                 }
@@ -372,7 +372,7 @@ impl Program {
     }
 }
 
-/// The shape of a kind of fractal; NaN parameters count as 0.
+/// The shape of a kind of fractal. NaN parameters count as 0.
 fn shape(kind: Kind) -> Option<Shape> {
     let held = |number: f64, most: f64| if number.is_nan() { 0.0 } else { number.clamp(-most, most) as f32 };
     match kind {
@@ -385,7 +385,7 @@ fn shape(kind: Kind) -> Option<Shape> {
     }
 }
 
-/// Maximum size of a shape's result before it is scaled, with a margin so that rounding in f32 cannot exceed 1.
+/// Maximum absolute value of a shape before scaling, with a margin so that rounding in f32 cannot exceed 1.
 fn greatest(shape: Shape, gain: f64, count: u32) -> f64 {
     let gains = || (0..count).scan(1.0, move |next, _| Some(std::mem::replace(next, *next * gain.abs())));
     let size = match shape {
@@ -406,12 +406,12 @@ fn words(source: Source, seed: u64) -> [[u32; 2]; 4] {
     }
 }
 
-/// Replaces an invalid frequency by 0: the octave is then constant.
+/// Replaces an invalid frequency with 0, which makes the octave constant.
 fn defined(frequency: f64) -> f64 {
     if frequency.is_finite() { frequency } else { 0.0 }
 }
 
-/// The same for a slope factor, which is also clamped.
+/// Replaces an invalid slope factor with 0, and clamps it to `most`.
 fn defined32(factor: f32, most: f32) -> f32 {
     if factor.is_finite() { factor.clamp(-most, most) } else { 0.0 }
 }

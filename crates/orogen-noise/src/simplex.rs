@@ -6,12 +6,12 @@ use crate::prepared::preparable;
 use crate::program::{Program, Source};
 
 /// Perlin's Simplex noise: gradients on the corners of triangles (tetrahedra in 3D, simplices in 4D) instead of
-/// squares. The gradients are hashed, like those of [`crate::Perlin`].
+/// squares. The gradients are hashed, as in [`crate::Perlin`].
 ///
 /// A sample has three corners in the plane, four in space and five in 4D. Each contributes (1/2 - d^2)^4 g . d at
-/// distance d. The kernel ends at the next simplex in 3D and 4D too, so the noise is continuous; the usual radius of .6
-/// causes discontinuities. It has fewer axis-aligned features than Perlin noise. Features are about .7 times as wide at
-/// the same wavelength.
+/// distance d. The kernel ends at the next simplex in 3D and 4D, too, so the noise is continuous; the usual radius of
+/// .6 causes discontinuities. Simplex noise has fewer axis-aligned features than Perlin noise. Its features are about
+/// .7 times as wide at the same wavelength.
 ///
 /// Range: -1 ..= 1, with maxima of 1 in all dimensions. Zero mean; zero at every corner. Its gradient is exact. It
 /// cannot repeat along the axes.

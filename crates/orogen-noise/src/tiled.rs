@@ -3,17 +3,17 @@
 use crate::methods::noise_methods;
 use crate::program::{Program, TileError};
 
-/// A noise that repeats, so that copies of one period join without a seam. The method `tiled` of a noise makes it. It
-/// has the same methods, speed, range and gradients, and its tables are computed once, as in
+/// A noise that repeats, so that copies of one period join without a seam. It is created with the method `tiled` of a
+/// noise. It has the same methods, speed, range and gradients, and its tables are computed once, as in
 /// [`Prepared`](crate::Prepared).
 ///
-/// A period is a whole number of cells of the first octave: along an axis with period p and wavelength w the noise
-/// repeats every p * w metres. Every other octave must have a whole number of cells in the period too. An integer
+/// A period is an integer number of cells of the first octave: along an axis with period p and wavelength w the noise
+/// repeats every p * w metres. Every other octave must also have an integer number of cells in the period. An integer
 /// lacunarity always fits; other values fit some periods.
 ///
-/// Both sides of a seam are equal to the bit. For this, positions are rounded to 2^-24 of a cell. The equality holds if
-/// a period of n samples lies within 2^26 / n cells of the origin, counted in the finest octave. Positions beyond 2^27
-/// of those cells are clamped.
+/// Both sides of a seam have the same bits. For this, positions are rounded to 2^-24 of a cell. With n samples per
+/// period, the samples must be within 2^26 / n cells of the origin, counted in the finest octave. Positions beyond 2^27
+/// of these cells are clamped.
 ///
 /// ```
 /// use orogen_noise::{Fractal, Points};
@@ -29,12 +29,12 @@ use crate::program::{Program, TileError};
 /// ```
 #[derive(Clone, Debug)]
 pub struct Tiled {
-    /// In two, three and four dimensions.
+    /// The noise in two, three and four dimensions.
     programs: [Program; 3],
 }
 
 /// The period along x, y, z and w in cells of the first octave; 0 along axes without a period. Arrays of two to four
-/// numbers convert to it.
+/// numbers can be converted to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Period([u32; 4]);
 
@@ -68,7 +68,7 @@ impl Tiled {
 
 noise_methods!(Tiled);
 
-/// Writes `tiled`.
+/// Defines `tiled`.
 macro_rules! tileable {
     ($noise:ident) => {
         impl $noise {
@@ -76,8 +76,8 @@ macro_rules! tileable {
             /// on; 0 along axes without a period.
             ///
             /// # Errors
-            /// An octave does not have a whole number of cells in the period, or the noise is a simplex noise: see
-            /// [`Tiled`](crate::Tiled).
+            /// If an octave does not have an integer number of cells in the period, or if the noise is a simplex noise
+            /// (see [`Tiled`](crate::Tiled)).
             pub fn tiled(&self, period: impl Into<$crate::Period>) -> Result<$crate::Tiled, $crate::TileError> {
                 $crate::tiled::Tiled::new([self.program(2), self.program(3), self.program(4)], period.into())
             }

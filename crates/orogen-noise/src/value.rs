@@ -9,8 +9,8 @@ use crate::tiled::tileable;
 
 /// Value noise: random values on a square lattice, interpolated.
 ///
-/// Range: -1 ..= 1. Zero mean. Its gradient is exact (with [`Fade::Linear`] except on the lattice lines). It is cheaper
-/// than [`crate::Perlin`], and its lattice is more visible.
+/// Range: -1 ..= 1. Zero mean. Its gradient is exact (with [`Fade::Linear`] except on the lattice lines). It is faster
+/// than [`crate::Perlin`], but its lattice is more visible.
 ///
 /// ```
 /// let noise = orogen_noise::Value::new(7, 100.0);

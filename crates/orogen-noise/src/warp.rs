@@ -13,10 +13,10 @@ use crate::seed;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 #[non_exhaustive]
 pub enum WarpKind {
-    /// Two fractals, one for each axis: the usual domain warp.
+    /// Two fractals, one for each axis. This is the usual domain warp.
     #[default]
     Independent,
-    /// Octave by octave; each is evaluated at the position that the previous ones displaced it to.
+    /// Octave by octave. Each octave is evaluated at the position to which the previous ones displaced the sample.
     Progressive,
     /// Along the gradient of one fractal, per first wavelength: towards its crests and away from its valleys.
     Gradient,
@@ -43,13 +43,13 @@ pub enum WarpKind {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Warp {
-    /// How displacements are computed. Default [`WarpKind::Independent`].
+    /// The method of computing displacements. Default [`WarpKind::Independent`].
     pub kind: WarpKind,
     /// The noise that is summed. Default [`Basis::Perlin`].
     pub basis: Basis,
     /// Any number; neighboring seeds give unrelated warps. Default 0.
     pub seed: u64,
-    /// Wavelength of the first octave, metres. Default 1.
+    /// Wavelength of the first octave, in metres. Default 1.
     pub wavelength: f64,
     /// Number of octaves, up to [`crate::MAX_OCTAVES`]. Default 3.
     pub octaves: u32,
@@ -86,8 +86,8 @@ noise_builder!(
 );
 
 impl Warp {
-    /// Displacements of the points along x and y, in metres. For points that are displaced already, these are further
-    /// displacements at the displaced positions.
+    /// The displacements of the points along x and y, in metres. For points that are already displaced, these are
+    /// further displacements at the displaced positions.
     ///
     /// # Errors
     /// A slice does not have the points' length; nothing is written.
@@ -95,7 +95,7 @@ impl Warp {
         self.prepare().displace(points, dx, dy)
     }
 
-    /// The warp with its tables computed once: the same bits, and less work per call.
+    /// The warp with its tables computed once. It gives the same bits, and does less work per call.
     #[must_use]
     pub fn prepare(&self) -> PreparedWarp {
         let fractal = |seed, wavelength, octaves| Fractal {
@@ -138,8 +138,8 @@ impl Warp {
     }
 }
 
-/// A [`Warp`] whose tables of octaves are computed once, for many calls; [`Warp::prepare`] makes it. Any number of
-/// threads can use it at the same time.
+/// A [`Warp`] whose tables of octaves are computed once for many calls. It is created with [`Warp::prepare`]. Any
+/// number of threads can use it at the same time.
 ///
 /// ```
 /// use orogen_noise::{Points, Warp};
@@ -158,14 +158,15 @@ impl Warp {
 #[derive(Clone, Debug)]
 pub struct PreparedWarp {
     kind: WarpKind,
-    /// One per axis; with [`WarpKind::Progressive`] one per octave and axis; with [`WarpKind::Gradient`] one.
+    /// One program per axis. With [`WarpKind::Progressive`] one per octave and axis, with [`WarpKind::Gradient`] only
+    /// one.
     programs: Vec<Program>,
-    /// Factor of the noise; with [`WarpKind::Progressive`] one per octave.
+    /// Factor of the noise. With [`WarpKind::Progressive`] one per octave.
     factors: Vec<f32>,
 }
 
 impl PreparedWarp {
-    /// [`Warp::displace`] of the warp that was prepared.
+    /// [`Warp::displace`] of the prepared warp.
     ///
     /// # Errors
     /// A slice does not have the points' length; nothing is written.

@@ -7,11 +7,11 @@ use crate::prepared::preparable;
 use crate::program::{Cellular, Program, Source};
 use crate::tiled::tileable;
 
-/// Worley's cellular noise: a lattice with one random point per cell. The value of a sample follows from the points
+/// Worley's cellular noise: a lattice with one random point per cell. The value of a sample is computed from the points
 /// nearest to it.
 ///
-/// The search covers all cells that can hold a nearest point. The usual search of 3 x 3 cells misses some, which causes
-/// discontinuities.
+/// The search covers all cells that can contain a nearest point. The usual search of 3 x 3 cells misses some, which
+/// causes discontinuities.
 ///
 /// Range: -1 ..= 1. A distance d becomes 2 d / bound - 1, where the bound is the maximum in wavelengths:
 ///
@@ -37,13 +37,13 @@ use crate::tiled::tileable;
 pub struct Worley {
     /// Any number; neighboring seeds give unrelated noise. Default 0.
     pub seed: u64,
-    /// Side of a cell, metres. Default 1.
+    /// Side of a cell, in metres. Default 1.
     pub wavelength: f64,
-    /// How distance is measured. Default [`Distance::Euclidean`].
+    /// The distance that is used. Default [`Distance::Euclidean`].
     pub distance: Distance,
     /// The computed value. Default [`Feature::F1`].
     pub feature: Feature,
-    /// Share of its cell in which a point is placed, along each axis, from 0 (the center) to 1 (anywhere); clamped.
+    /// Share of the cell in which the point is placed, along each axis, from 0 (the center) to 1 (anywhere); clamped.
     /// Default 1.
     pub jitter: f64,
 }

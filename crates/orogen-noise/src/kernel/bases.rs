@@ -8,7 +8,7 @@ use crate::kernel::value::{Blended, Flat};
 use crate::program::Source;
 use orogen_simd::Simd;
 
-/// Runs the work with the basis of the source, in `DIMS` dimensions.
+/// Runs the work with the basis for the source, in `DIMS` dimensions.
 #[inline(always)]
 pub(crate) fn with_basis<S: Simd, V: Visit<S>, const DIMS: usize>(simd: S, source: Source, work: V) {
     match source {

@@ -1,7 +1,7 @@
 //! One octave of a basis in low-rank form: a few row vectors along x, and a few coefficients along y.
 //!
-//! For a row of samples at fixed y, with t the fraction of x in its cell, u its fade, and (gx, gy) the gradients of one
-//! line of the lattice,
+//! For a row of samples at fixed y, let t be the fraction of x in its cell, u the fade of t, and (gx, gy) the gradients
+//! of one line of the lattice. Then
 //!
 //! ```text
 //! X(x) = (1 - u) t gx[c] + u (t - 1) gx[c + 1]
@@ -11,16 +11,16 @@
 //!
 //! where 0 and 1 are the lattice lines above and below, s is the fraction of y and v its fade. X and Y are the same for
 //! all samples between two lattice lines, so a sample costs four fused multiply-adds. Value noise has one vector per
-//! line instead of two. In 3D a slice at fixed z is noise of the same form, after the numbers of each lattice point are
-//! blended along z.
+//! line instead of two. In 3D a slice at fixed z is noise of the same form, after the numbers of each lattice point
+//! were interpolated along z.
 //!
-//! Scattered points evaluate the same functions, so their bits are the same.
+//! Scattered points are evaluated with the same functions, so their bits are the same.
 
 use crate::kernel::cell::Cell;
 use crate::program::{Octave, Source};
 use orogen_simd::{F32Lanes, Simd};
 
-/// The numbers of a lattice point: those of the value, then as many for its slope along z, then for its slope along w.
+/// The numbers of a lattice point: those of the value, then as many for the slope along z, then for the slope along w.
 pub(crate) type Numbers<S> = [<S as Simd>::F32; 9];
 /// The row vectors of one lattice line: two for the value, two for the slope along x, two each for those along z and w.
 pub(crate) type Rows<S> = [<S as Simd>::F32; 8];
@@ -41,7 +41,7 @@ pub(crate) struct Weights<S: Simd> {
 }
 
 impl<S: Simd> Weights<S> {
-    /// The compiler removes fields that are not read.
+    /// The compiler removes fields that are not used.
     #[inline(always)]
     pub(crate) fn new(simd: S, t: S::F32, [u, du]: [S::F32; 2]) -> Weights<S> {
         let one = simd.f32(1.0);
@@ -56,36 +56,36 @@ impl<S: Simd> Weights<S> {
     }
 }
 
-/// Coefficients of the row vectors: of the first line, then of the second. Bases with one vector use every other slot.
+/// Coefficients of the row vectors of the first line, then of the second. Bases with one vector use every other slot.
 #[derive(Clone, Copy)]
 pub(crate) struct Coefficients<S: Simd> {
-    /// Of the value.
+    /// Coefficients of the value.
     pub value: [S::F32; 4],
-    /// Of the slopes along x, z and w, which have their own row vectors.
+    /// Coefficients of the slopes along x, z and w, which have separate row vectors.
     pub along: [S::F32; 4],
-    /// Of the slope along y, which uses the value's row vectors.
+    /// Coefficients of the slope along y, which uses the row vectors of the value.
     pub across: [S::F32; 4],
 }
 
 /// One octave of a basis.
 pub(crate) trait Basis<S: Simd>: Copy {
-    /// Whether a sample is the number of its cell's lower corner: no blend, no slope.
+    /// Whether a sample is the number of the lower corner of its cell, without interpolation and slope.
     const FLAT: bool = false;
-    /// Row vectors per line.
+    /// Number of row vectors per line.
     const RANK: usize;
-    /// Numbers per lattice point without slopes along z and w, which follow them.
+    /// Number of numbers per lattice point, without the slopes along z and w, which follow.
     const NUMBERS: usize;
     /// Number of axes: 2, 3 or 4.
     const DIMS: usize;
 
     /// The basis for an octave.
     fn new(simd: S, source: Source, octave: &Octave) -> Self;
-    /// The same basis with keys that are kept: see [`crate::kernel::source::Lattice::folded`].
+    /// The same basis with other keys, for keys that are stored (see [`crate::kernel::source::Lattice::folded`]).
     #[inline(always)]
     fn folded(self) -> Self {
         self
     }
-    /// The keys of a cell and the next along an axis.
+    /// The keys of a cell and of the next cell along an axis.
     fn keys(self, simd: S, axis: usize, cell: &Cell<S>) -> [S::U32; 2];
     /// The numbers of a lattice point; with `SLOPES`, also their slopes along z and w.
     fn point<const SLOPES: bool>(self, simd: S, x: S::U32, y: S::U32, depths: &Depths<S>) -> Numbers<S>;
@@ -126,7 +126,7 @@ pub(crate) struct DepthPart<S: Simd> {
     pub weights: Weights<S>,
 }
 
-/// Interpolation between two numbers, by the weights of both.
+/// Interpolation between two numbers with their weights.
 #[inline(always)]
 pub(crate) fn blend<S: Simd>(weights: [S::F32; 2], left: S::F32, right: S::F32) -> S::F32 {
     weights[1].mul_add(right, weights[0] * left)

@@ -13,7 +13,7 @@ use orogen_simd::{Body, Simd};
 pub(crate) struct Blocks<'a, const DIMS: usize> {
     pub program: &'a Program,
     pub points: Points<'a>,
-    /// z and w, as far as these axes exist.
+    /// z and w, if these axes exist.
     pub depths: &'a [Depth<'a>],
     pub outputs: Outputs<'a>,
 }

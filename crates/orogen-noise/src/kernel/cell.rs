@@ -3,43 +3,44 @@
 use crate::program::Octave;
 use orogen_simd::{F32Lanes, F64Lanes, Simd, U32Lanes};
 
-/// 1.5 * 2^28: a number of size below 2^27 added to it is rounded to a multiple of 2^-24.
+/// 1.5 * 2^28. Adding it to a number with an absolute value below 2^27 rounds the number to a multiple of 2^-24.
 const SNAP: f64 = 402_653_184.0;
 
-/// Lanes of one coordinate, split.
+/// Lanes of one coordinate, split into cell and fraction.
 #[derive(Clone, Copy)]
 pub(crate) struct Cell<S: Simd> {
     /// The cell's number.
     pub whole: S::F64,
-    /// Low word of the cell's number in two's complement.
+    /// Low word of the cell number in two's complement.
     pub low: S::U32,
-    /// High word, plus a constant.
+    /// High word of the cell number, plus a constant.
     pub high: S::U32,
-    /// Fraction in the cell, from 0 to 1. It is 1 where f32 rounds it up. All noises are continuous there, so the value
-    /// is that of the next cell at 0.
+    /// Fraction in the cell, from 0 to 1. It is 1 if f32 rounds it up. All noises are continuous there, so the value is
+    /// that of the next cell at 0.
     pub t: S::F32,
 }
 
-/// The octave's coordinate, in cells, of a position along an axis. The position is within the program's limit.
+/// The coordinate of a position along an axis, in cells of the octave. The position must be within the program's limit.
 #[inline(always)]
 pub(crate) fn coordinate<S: Simd>(simd: S, octave: &Octave, axis: usize, position: S::F64) -> S::F64 {
     snapped(simd, octave, position * simd.f64(octave.frequency) + simd.f64(octave.offset[axis]))
 }
 
-/// A coordinate displaced by this number of cells.
+/// The coordinate displaced by a number of cells.
 #[inline(always)]
 pub(crate) fn moved<S: Simd>(simd: S, octave: &Octave, coordinate: S::F64, by: S::F32) -> S::F64 {
     coordinate + snapped(simd, octave, by.widen())
 }
 
-/// Rounds coordinates of repeating lattices so that both sides of a seam agree.
+/// Rounds coordinates of repeating lattices, so that both sides of a seam agree.
 #[inline(always)]
 fn snapped<S: Simd>(simd: S, octave: &Octave, u: S::F64) -> S::F64 {
     if octave.tiled { (u + simd.f64(SNAP)) - simd.f64(SNAP) } else { u }
 }
 
 impl<S: Simd> Cell<S> {
-    /// The cell and fraction of a position along an axis of the octave. The position is within the program's limit.
+    /// The cell and fraction of a position along an axis of the octave. The position must be within the program's
+    /// limit.
     #[inline(always)]
     pub(crate) fn split(simd: S, octave: &Octave, axis: usize, position: S::F64) -> Cell<S> {
         Cell::of(simd, coordinate(simd, octave, axis, position))
@@ -77,7 +78,7 @@ impl<S: Simd> Cell<S> {
 
     #[inline(always)]
     fn wrapped(simd: S, whole: S::F64, period: f64) -> [S::U32; 2] {
-        // The center of a cell is so far from the ends of a period that rounding cannot move it across.
+        // The center of a cell is far enough from the ends of a period that rounding cannot move it across them.
         let turns = ((whole + simd.f64(0.5)) * simd.f64(1.0 / period)).floor();
         let (_, low, high) = simd.whole(whole - turns * simd.f64(period));
         [low, high]

@@ -1,4 +1,4 @@
-//! Cellular noise, sample by sample.
+//! Cellular noise, evaluated sample by sample.
 
 use crate::kernel::cell::Cell;
 use crate::kernel::combine::Sample;
@@ -8,7 +8,7 @@ use crate::kernel::source::Hashed;
 use crate::program::{self, Octave, Source};
 use orogen_simd::{F32Lanes, Simd};
 
-/// Cellular noise, sample by sample. It has no slopes.
+/// Cellular noise, evaluated sample by sample. It has no slopes.
 #[derive(Clone, Copy)]
 pub(crate) struct Cellular<S: Simd, const DIMS: usize>(Field<S>);
 

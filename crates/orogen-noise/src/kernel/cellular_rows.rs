@@ -19,19 +19,19 @@ const SPAN: usize = WIDTH + 48;
 /// Maximum number of lanes.
 const MAX_LANES: usize = 16;
 
-/// Rows per band if columns are processed in runs. All rows of a band lie in one line of cells.
+/// Number of rows per band if columns are processed in runs. All rows of a band lie in one line of cells.
 const BAND: usize = 8;
-/// Maximum length of a run, in columns. Fewer points can be nearest in a shorter run.
+/// Maximum length of a run, in columns. In a shorter run fewer points can be the nearest.
 const RUN: usize = 64;
 
-/// Successive columns in one cell.
+/// Consecutive columns in one cell.
 #[derive(Clone, Copy)]
 struct Run {
     start: usize,
     end: usize,
-    /// The cell, relative to the first of the strip.
+    /// The index of the cell, relative to the first cell of the strip.
     cell: usize,
-    /// The range of their fractions.
+    /// The range of the fractions of the columns.
     range: [f32; 2],
 }
 
@@ -53,13 +53,13 @@ struct Strip {
     first: [u32; WIDTH / 4],
     /// Whether a register lies within one cell.
     alone: [bool; WIDTH / 4],
-    /// The line of cells in each third of the tables.
+    /// The line of cells that each third of the tables holds.
     held: [Option<f64>; 3],
-    /// Number of cells.
+    /// Number of cells of the strip.
     cells: usize,
     /// The cell number of the first column.
     origin: f64,
-    /// The runs of columns; empty if runs are too short to be faster.
+    /// The runs of columns. Empty if runs are too short to be faster.
     runs: Vec<Run>,
     /// Whether the cells of a register fit into one register of the tables.
     dense: bool,
@@ -120,7 +120,7 @@ pub(crate) fn fill<S: Simd, const DIMS: usize>(
     }
 }
 
-/// Values that all strips share.
+/// Values that are common to all strips.
 #[derive(Clone, Copy)]
 struct Job<'a> {
     limit: f64,
@@ -156,7 +156,7 @@ impl Body for Columns<'_> {
             }
             cell.t.store(&mut strip.t[at..]);
             cell.whole.store(&mut strip.wholes[at..]);
-            // Small numbers are exact. Large ones become huge and fail the tests below.
+            // Small numbers are exact. Large numbers become huge and fail the tests below.
             let place = (cell.whole - simd.f64(origin)).narrow().to_i32();
             let mut places = [0; MAX_LANES];
             place.store(&mut places);
@@ -197,7 +197,7 @@ impl Strip {
             while end < columns && cell(end) == cell(start) {
                 end += 1;
             }
-            // Pieces of about equal length. All but the last consist of whole registers.
+            // Pieces of about equal length. All but the last one consist of whole registers.
             let pieces = (end - start).div_ceil(RUN);
             let length = (end - start).div_ceil(pieces).next_multiple_of(lanes);
             for from in (start..end).step_by(length) {
@@ -216,9 +216,9 @@ impl Strip {
     }
 }
 
-/// The rows of a strip that lie in one line of cells, at most [`BAND`]; for F1 with euclidean distance in the plane.
-/// Returns their number. The samples of a run in these rows share one cell. Of its nine neighbors, only those that can
-/// be nearest to one of the samples are read.
+/// The rows of a strip that lie in one line of cells, at most [`BAND`], for F1 with euclidean distance in the plane.
+/// Returns their number. The samples of a run in these rows are in the same cell. Of its nine neighbors, only those
+/// whose points can be the nearest to one of the samples are read.
 struct Band<'a> {
     job: Job<'a>,
     strip: &'a mut Strip,
@@ -231,7 +231,7 @@ struct Band<'a> {
     columns: usize,
 }
 
-/// Points that can be nearest, relative to the cell of the samples.
+/// Points that can be the nearest, relative to the cell of the samples.
 struct Candidates {
     x: [f32; 9],
     y: [f32; 9],
@@ -292,10 +292,10 @@ impl Body for Band<'_> {
                     continue;
                 }
                 if run.end - run.start >= S::LANES {
-                    // Computes some columns twice.
+                    // This computes some columns twice.
                     nearest::<S, 1>(simd, &place, &strip.t, to, run.end - S::LANES, None);
                 } else {
-                    // Writes wrong values into some columns of the next run, which overwrites them.
+                    // This writes wrong values into some columns of the next run, which overwrites them.
                     nearest::<S, 1>(simd, &place, &strip.t, to, at, Some(run.range));
                 }
             }
@@ -304,7 +304,7 @@ impl Body for Band<'_> {
     }
 }
 
-/// The points that can be nearest in a run. `y` is the range of fractions of its rows.
+/// The points that can be the nearest in a run. `y` is the range of the fractions of its rows.
 #[inline(always)]
 fn candidates<S: Simd>(simd: S, strip: &Strip, thirds: [usize; 3], run: &Run, y: [f32; 2]) -> Candidates {
     /// Rounding errors of squared distances are far below this.
@@ -318,7 +318,7 @@ fn candidates<S: Simd>(simd: S, strip: &Strip, thirds: [usize; 3], run: &Run, y:
         ys[number] = places[1][at] + (y as f32 - 1.0);
     }
     // Squared distances from the four corners of the samples' box. The difference of two squared distances is linear
-    // over the box. Therefore a point that is farther than another from all four corners is farther from every sample.
+    // over the box, so a point that is farther than another from all four corners is farther from every sample.
     let mut corners = [[0.0; MAX_LANES]; 4];
     for at in (0..9).step_by(S::LANES) {
         let (x, height) = (simd.load(&xs[at..]), simd.load(&ys[at..]));
@@ -357,20 +357,20 @@ fn candidates<S: Simd>(simd: S, strip: &Strip, thirds: [usize; 3], run: &Run, y:
     near
 }
 
-/// Values that the samples of a row and run share.
+/// Values that are common to the samples of a row and run.
 struct RunSamples<'a, S: Simd> {
     field: &'a Field<S>,
     octave: &'a Octave,
     near: &'a Candidates,
-    /// Their cell.
+    /// The cell of the samples.
     whole: [f64; 2],
-    /// Their fraction of y.
+    /// The fraction of y of the samples.
     y: f32,
     /// Maximum distance.
     bound: f32,
 }
 
-/// `N` registers of a row from column `at` on. Fractions outside of `range` are clamped to it.
+/// Computes `N` registers of a row from column `at` on. Fractions outside `range` are clamped to it.
 #[inline(always)]
 fn nearest<S: Simd, const N: usize>(
     simd: S,
@@ -411,7 +411,7 @@ fn nearest<S: Simd, const N: usize>(
     }
 }
 
-/// Searches beyond the neighboring cells of a register of samples, if the nearest point is farther than [`NEAR`].
+/// Searches beyond the neighboring cells for a register of samples, if the nearest point is farther than [`NEAR`].
 struct Beyond<'a> {
     cellular: program::Cellular,
     octave: &'a Octave,
@@ -481,7 +481,7 @@ impl<const DIMS: usize, const PLAIN: bool> Body for Row<'_, DIMS, PLAIN> {
     }
 }
 
-/// Computes the points of the three lines of cells around the line `y` that are missing; returns their indices.
+/// Computes the missing points of the three lines of cells around the line `y`; returns the indices of the lines.
 #[inline(always)]
 fn hold<S: Simd, const DIMS: usize>(
     simd: S,
@@ -537,7 +537,7 @@ struct KeptSites<'a, S: Simd> {
     index: S::U32,
 }
 
-/// The same for a register within one cell.
+/// Points selected for a register within one cell.
 struct LoneSites<'a> {
     strip: &'a Strip,
     thirds: [usize; 3],

@@ -1,4 +1,4 @@
-//! Combines octaves into one number, lane by lane. Lattice and scattered points share these steps.
+//! Combines octaves into one number, lane by lane. Lattices and scattered points use the same code.
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
@@ -9,7 +9,7 @@ use orogen_simd::{F32Lanes, Simd, U32Lanes};
 /// A value and its slopes along x, y, z and w.
 pub(crate) type Sample<S> = [<S as Simd>::F32; 5];
 
-/// The state after some octaves.
+/// The state after a number of octaves.
 #[derive(Clone, Copy)]
 pub(crate) struct State<S: Simd> {
     pub sum: Sample<S>,
@@ -25,7 +25,7 @@ impl<S: Simd> State<S> {
         State { sum: [simd.f32(0.0); 5], slope: [simd.f32(0.0); 5], weight: simd.f32(1.0) }
     }
 
-    /// The displacement of the next octave along an axis, in its cells.
+    /// The displacement of the next octave along an axis, in cells of that octave.
     #[inline(always)]
     pub(crate) fn shift(&self, simd: S, combine: &Combine, octave: &Octave, axis: usize) -> S::F32 {
         let factor = match *combine {
@@ -34,12 +34,12 @@ impl<S: Simd> State<S> {
             _ => 0.0,
         };
         let shift = self.slope[1 + axis] * simd.f32(factor);
-        // Huge displacements and NaN are ignored.
+        // Huge displacements and NaN count as 0.
         shift.select(shift.abs().lt(simd.f32(1_048_576.0)), simd.f32(0.0))
     }
 
     /// Adds an octave: its value and slopes, scaled by its amplitude and slope factor. Slopes exist with `SLOPES` and
-    /// if the combination needs them; `axes` of them.
+    /// if the combination needs them; `axes` is their number.
     #[inline(always)]
     pub(crate) fn add<const SLOPES: bool>(
         &mut self,
@@ -97,7 +97,7 @@ impl<S: Simd> State<S> {
                 self.weight = held;
             }
             Shape::Hetero { offset } => {
-                // The weight is the height so far; 1 for the first octave.
+                // The weight is the height so far, or 1 for the first octave.
                 let signal = (noise + simd.f32(offset)) * gain;
                 let added = self.weight * signal;
                 for axis in 1..=kept {
@@ -139,7 +139,7 @@ impl<S: Simd> State<S> {
         }
     }
 
-    /// The steps after the last octave.
+    /// The computations after the last octave.
     #[inline(always)]
     pub(crate) fn finish<const SLOPES: bool>(&mut self, simd: S, combine: &Combine, axes: usize) {
         let kept = if SLOPES { axes } else { 0 };
@@ -170,7 +170,7 @@ impl<S: Simd> State<S> {
     }
 }
 
-/// Adds the absolute value of an octave to a sum; slopes change sign with the value.
+/// Adds the absolute value of an octave to a sum. Slopes change their sign with the value.
 #[inline(always)]
 pub(crate) fn add_size<S: Simd>(simd: S, sum: &mut Sample<S>, octave: &Sample<S>, axes: usize) {
     let sign = octave[0].bits() & simd.u32(0x8000_0000);
@@ -191,7 +191,7 @@ pub(crate) fn finish_sizes<S: Simd>(simd: S, sum: &mut Sample<S>, sign: f32, axe
 }
 
 /// Adds one octave to a weighted sum. `slope` is the slope of the plain sum so far (indices 1 to 3). The slopes of the
-/// weighted sum are computed with `SLOPES`.
+/// weighted sum are computed only with `SLOPES`.
 #[inline(always)]
 pub(crate) fn add_weighted<S: Simd, const SLOPES: bool>(
     simd: S,
@@ -230,11 +230,11 @@ fn damping<S: Simd>(simd: S, squared: S::F32, k: f32, falloff: Falloff) -> S::F3
     }
 }
 
-/// e^-x for x >= 0, within 3 units in the last place; results below e^-87 become e^-87.
+/// e^-x for x >= 0, within 3 units in the last place. Results below e^-87 become e^-87.
 #[inline(always)]
 pub(crate) fn exp_minus<S: Simd>(simd: S, x: S::F32) -> S::F32 {
     let x = x.min(simd.f32(87.0));
-    // x = n ln 2 + r, with ln 2 split into two parts so that r keeps its precision.
+    // x = n ln 2 + r. ln 2 is split into two parts, so that r keeps its precision.
     let n = x.mul_add(simd.f32(std::f32::consts::LOG2_E), simd.f32(0.5)).floor();
     let r = n.neg_mul_add(simd.f32(1.428_606_8e-6), n.neg_mul_add(simd.f32(0.693_145_75), x));
     // The Taylor polynomial of e^-r for |r| up to ln 2 / 2.

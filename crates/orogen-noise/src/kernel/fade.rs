@@ -6,7 +6,7 @@ use orogen_simd::{F32Lanes, Simd};
 /// 6 t^5 - 15 t^4 + 10 t^3 and its slope 30 t^2 (t - 1)^2.
 ///
 /// Written around the center, with s = t - 1/2, it is the odd polynomial 1/2 + s (15/8 - 5 s^2 + 6 s^4). This form is
-/// exact at both ends and within 1e-7 everywhere; the usual form has terms of size 10 that cancel near t = 1.
+/// exact at both ends and within 1e-7 everywhere. The usual form has terms of size 10 that cancel near t = 1.
 #[inline(always)]
 pub(crate) fn quintic<S: Simd>(simd: S, t: S::F32) -> [S::F32; 2] {
     let half = simd.f32(0.5);

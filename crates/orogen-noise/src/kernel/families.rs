@@ -1,4 +1,4 @@
-//! The kernels of every noise for evaluation sample by sample, by source.
+//! The kernels that evaluate each noise sample by sample, selected by source.
 
 use crate::choices::{Fade, Smoothness};
 use crate::kernel::cellular::Cellular;
@@ -11,13 +11,13 @@ use crate::kernel::value::{Blended, Flat};
 use crate::program::Source;
 use orogen_simd::Simd;
 
-/// A noise at any SIMD level: the [`Pointwise`] noise of a source.
+/// A noise that is generic over the SIMD level: the [`Pointwise`] noise of a source.
 pub(crate) trait Family {
     /// The noise at a SIMD level.
     type At<S: Simd>: Pointwise<S>;
-    /// Whether it has slopes; else they are zero.
+    /// Whether the noise has slopes; otherwise they are zero.
     const SLOPED: bool = true;
-    /// Whether plain sums are faster with two registers of points at a time. They are not if one point needs all
+    /// Whether plain sums are faster with two registers of points at a time. They are not if a single point needs all
     /// registers.
     const PAIRED: bool = false;
 }
@@ -28,7 +28,7 @@ pub(crate) trait VisitFamily {
     fn visit<F: Family>(self);
 }
 
-/// Runs the work with the noise of the source, in `DIMS` dimensions.
+/// Runs the work with the noise for the source, in `DIMS` dimensions.
 #[inline(always)]
 pub(crate) fn with_family<V: VisitFamily, const DIMS: usize>(source: Source, work: V) {
     match source {

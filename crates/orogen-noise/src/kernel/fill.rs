@@ -10,7 +10,7 @@ use crate::points::{Depth, Points};
 use crate::program::{Combine, Program, Source};
 use orogen_simd::{Body, Simd};
 
-/// One call of a public `fill`. Depths are z and w, as far as these axes exist.
+/// One call of a public `fill`. Depths are z and w, if these axes exist.
 pub(crate) struct Fill<'a> {
     pub program: &'a Program,
     pub points: Points<'a>,

@@ -30,8 +30,8 @@ fn scaled_ramps<S: Simd>(row: &Weights<S>, factor: S::F32) -> [S::F32; 4] {
     [a, a * row.t[0], c, c * row.t[1]]
 }
 
-/// A lattice point blended along z: gradients along x and y, the remainder of the ramp along z, the slopes of these
-/// along z; the gradient along w, and its slope along z.
+/// A lattice point interpolated along z: gradients along x and y, the remainder of the ramp along z, and the slopes of
+/// these along z; then the gradient along w, and its slope along z.
 #[inline(always)]
 fn along_z<S: Simd, G: Gradients<S>, const DIMS: usize>(
     lattice: G,

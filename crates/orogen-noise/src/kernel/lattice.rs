@@ -1,4 +1,4 @@
-//! Lattices of samples: strip by strip, row by row, all octaves of a row together.
+//! Lattices of samples: strip by strip and row by row, with all octaves of a row together.
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
@@ -9,11 +9,11 @@ use crate::program::{Combine, Octave, Program, Source};
 use orogen_simd::{Body, F32Lanes, Simd, Stream, streaming};
 use std::cell::Cell;
 
-/// Minimum number of columns of a wide window, and the number of rows that all its strips fill before the next rows.
+/// Minimum number of columns of a wide window, and number of rows that all its strips fill before the next rows.
 const WIDE: usize = 4096;
 const BAND: usize = 64;
 
-/// Minimum number of samples of results that exceed the caches.
+/// Minimum number of samples of results that are larger than the caches.
 const HUGE: usize = 1 << 24;
 
 /// Buffers that a thread keeps between calls.
@@ -26,14 +26,14 @@ thread_local! {
     static SCRATCH: Cell<Option<Box<Scratch>>> = const { Cell::new(None) };
 }
 
-/// Whether kernels exist for this case. Rare cases are evaluated point by point; kernels for them would double the
-/// code.
+/// Whether there are kernels for this case. Rare cases are evaluated point by point, because kernels for them would
+/// double the size of the code.
 pub(crate) fn covers(program: &Program, dims: usize, slopes: bool) -> bool {
     let shaped = matches!(program.combine, Combine::Shaped { .. });
     !(slopes && shaped) && !(dims == 4 && (slopes || program.combine.needs_slopes()))
 }
 
-/// Fills a lattice for which [`covers`] returns true. `depths` are z and w of the slice, as many as `dims` requires.
+/// Fills a lattice for which [`covers`] returns true. `depths` are z and w of the slice, as required by `dims`.
 #[inline(always)]
 pub(crate) fn fill<S: Simd>(
     simd: S,
@@ -52,7 +52,7 @@ pub(crate) fn fill<S: Simd>(
     let strips = &mut strips[..octaves.len()];
     let whole = Whole { simd, program, xs, ys, dims, depths };
     if xs.len() > WIDE && xs.len() * ys.len() >= HUGE {
-        // Stores bypass the caches in whole registers: the first strip ends at an aligned address.
+        // Whole registers are stored past the caches, so the first strip ends at an aligned address.
         let register = S::LANES * size_of::<f32>();
         let beyond = outputs.value.as_ptr().addr() % register;
         let lead = (register - beyond) % register / size_of::<f32>();
@@ -63,7 +63,7 @@ pub(crate) fn fill<S: Simd>(
     SCRATCH.set(Some(scratch));
 }
 
-/// A lattice to be filled.
+/// A lattice that is to be filled.
 struct Whole<'a, S> {
     simd: S,
     program: &'a Program,
@@ -74,7 +74,7 @@ struct Whole<'a, S> {
 }
 
 impl<S: Simd> Whole<'_, S> {
-    /// Fills it strip by strip. The first strip has `lead` columns.
+    /// Fills the lattice strip by strip. The first strip has `lead` columns.
     #[inline(always)]
     fn fill(
         &self,
@@ -87,8 +87,8 @@ impl<S: Simd> Whole<'_, S> {
         let octaves = program.octaves();
         let slopes = outputs.slopes.is_some() || program.combine.needs_slopes();
         let (first, others) = xs.split_at(lead.min(xs.len()));
-        // Rows that are far apart in memory lie in different pages, so a strip of a wide window covers only a band of
-        // rows at a time.
+        // Rows of a wide window are far apart in memory and lie in different pages. A strip therefore covers only a
+        // band of rows at a time.
         let band = if xs.len() > WIDE { BAND } else { ys.len().max(1) };
         for (b, band_ys) in ys.chunks(band).enumerate() {
             let mut column = 0;
@@ -146,7 +146,7 @@ fn of_kind<S: Simd, const RANK: usize, const DIMS: usize>(simd: S, row: Row) {
     }
 }
 
-// The combination that a kernel is compiled for.
+// The combinations for which kernels are compiled.
 const SUM: usize = 0;
 const SIZES: usize = 1;
 const WEIGHTED: usize = 2;
@@ -157,7 +157,7 @@ struct Row<'a> {
     combine: &'a Combine,
     octaves: &'a [Octave],
     strips: &'a [StripOctave],
-    /// Its index in the group of rows.
+    /// The index of the row in its group.
     r: usize,
     target: Outputs<'a>,
     /// Set if stores bypass the caches.
@@ -177,8 +177,8 @@ impl<const RANK: usize, const KIND: usize, const DIMS: usize, const SLOPES: bool
         let mut row = self.0;
         let mut at = 0;
         while at < row.target.value.len() {
-            // The number of registers per step affects only speed: enough to hide the latency of the multiply-adds, few
-            // enough for the register file. All numbers divide the width of a strip.
+            // The number of registers per step affects only the speed. It is large enough to hide the latency of the
+            // multiply-adds and small enough for the register file. All numbers divide the width of a strip.
             at += S::LANES
                 * match (KIND, SLOPES, S::LANES) {
                     (SUM, false, _) => block::<S, DIMS, RANK, 8, KIND, SLOPES>(simd, &mut row, at),
@@ -193,8 +193,8 @@ impl<const RANK: usize, const KIND: usize, const DIMS: usize, const SLOPES: bool
     }
 }
 
-/// `N` registers of one row, from column `at` on; returns `N`. Lanes beyond the last column read values of an earlier
-/// strip; their results are dropped.
+/// Computes `N` registers of one row, from column `at` on; returns `N`. Lanes beyond the last column read values of an
+/// earlier strip, and their results are dropped.
 #[inline(always)]
 fn block<S: Simd, const DIMS: usize, const RANK: usize, const N: usize, const KIND: usize, const SLOPES: bool>(
     simd: S,

@@ -1,7 +1,8 @@
-//! The kernels: every noise as a program, for lattices and scattered points.
+//! The kernels, which evaluate any noise as a program, for lattices and scattered points.
 //!
-//! Code that runs per sample is in `#[inline(always)]` functions and plain loops over an index. A closure or iterator
-//! adaptor is a separate function; if it is not inlined, it is compiled *without* the instructions of the SIMD level.
+//! Code that runs per sample is in `#[inline(always)]` functions and plain loops over an index. A closure or an
+//! iterator adaptor is a separate function. If it is not inlined, it is compiled *without* the instructions of the SIMD
+//! level.
 
 pub(crate) mod bases;
 pub(crate) mod basis;

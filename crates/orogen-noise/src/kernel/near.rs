@@ -1,4 +1,4 @@
-//! Scattered points in the plane that share few cells: the keys of these cells are looked up in a table.
+//! Scattered points in the plane that lie in few cells. The keys of these cells are looked up in a table.
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
@@ -11,18 +11,18 @@ use orogen_simd::{Body, Double, F32Lanes, F64Lanes, MaskLanes, Simd, U32Lanes};
 
 /// Number of points that are examined to find their range of cells.
 const AHEAD: usize = 256;
-/// Minimum number of remaining points for a table.
+/// Minimum number of remaining points for which a table is built.
 const WORTH: usize = 4 * AHEAD;
 /// Number of points that are computed without a table after their range of cells was too large for one.
 const PLAIN: usize = 16 * AHEAD;
-/// Cells along an axis that a table covers.
+/// Number of cells along an axis that a table covers.
 const CELLS: usize = 16;
 /// Number of registers with points outside the table after which a new table is built.
 const MISSES: usize = 4;
 /// Maximum number of lanes.
 const LANES: usize = 32;
-/// Limit of cells in tables. The program's limit is twice as far; positions beyond that must be clamped, which tables
-/// do not do.
+/// Limit of cells in tables. The program's limit is twice as far. Positions beyond it must be clamped, which tables do
+/// not support.
 const FARTHEST: f64 = 562_949_953_421_312.0;
 
 /// Registers of points.
@@ -35,8 +35,8 @@ pub(crate) trait Placed<S: Simd> {
     fn cell(&self, simd: S, axis: usize, start: usize) -> Cell<S>;
 }
 
-/// Whether [`Scattered`] supports the octave: a single octave of a noise that is not a fractal, because offset and
-/// amplitude are left out.
+/// Whether [`Scattered`] supports the octave. It must be the only octave of a noise that is not a fractal, because
+/// offset and amplitude are ignored.
 #[inline(always)]
 pub(crate) fn covers(octave: &Octave) -> bool {
     !octave.tiled && octave.amplitude == 1.0 && octave.offset[0] == 0.0 && octave.offset[1] == 0.0
@@ -74,7 +74,7 @@ impl<S: Simd> Placed<S> for Scattered<'_> {
     }
 }
 
-/// Points around an origin, in f32.
+/// Points around an origin, with f32 coordinates.
 struct Around<'a> {
     frequency: f32,
     /// The cell of the origin, and the origin's fraction in it.
@@ -104,7 +104,7 @@ impl<S: Simd> Placed<S> for Around<'_> {
     fn place(&self, simd: S, axis: usize, start: usize, from: f64) -> (S::F32, S::U32, S::U32) {
         let u = self.coordinate(simd, axis, start);
         let whole = u.floor();
-        // Tables lie around the points, so the difference fits into an i32.
+        // Tables lie near the points, so the difference fits into an i32.
         let first = (from - self.whole[axis]) as i32;
         let place = whole.to_i32() - simd.u32(first as u32);
         (u - whole, place, place & simd.u32(!(CELLS as u32 - 1)))
@@ -157,8 +157,7 @@ struct Near<S: Simd> {
 }
 
 impl<S: Simd> Near<S> {
-    /// The keys around the points from `start` on, of which there are at least [`AHEAD`]; `None` if they span too many
-    /// cells.
+    /// The keys around the points from `start` on, which are at least [`AHEAD`]; `None` if they lie in too many cells.
     #[inline(always)]
     fn of<P: Pointwise<S>, A: Placed<S>>(simd: S, noise: P, points: &A, start: usize) -> Option<Near<S>> {
         let mut near = Near { first: [0.0; 2], keys: [[simd.table16(&[0.0; 16]); 2]; 2] };
@@ -199,7 +198,7 @@ impl<S: Simd> Near<S> {
         Some(near)
     }
 
-    /// Fills from `start` on while most points are inside the table; returns the end.
+    /// Fills from `start` on while most points are inside the table; returns the index at which it stopped.
     #[inline(always)]
     fn fill<P: Pointwise<S>, A: Placed<S>>(
         &self,
@@ -239,7 +238,7 @@ impl<S: Simd> Near<S> {
 pub(crate) struct FillAround<'a> {
     pub program: &'a Program,
     pub origin: [f64; 2],
-    /// x and y of the points relative to the origin, in metres; as many as results.
+    /// x and y of the points relative to the origin, in metres; both as long as the results.
     pub at: [&'a [f32]; 2],
     pub value: &'a mut [f32],
 }
@@ -253,7 +252,7 @@ impl Body for FillAround<'_> {
     }
 }
 
-/// The same with the number of registers per step that is fastest.
+/// The same body with the fastest number of registers per step.
 struct Abreast<'a>(FillAround<'a>);
 
 impl Body for Abreast<'_> {

@@ -1,7 +1,7 @@
-//! OpenSimplex2: the lattice of Simplex noise with more gradients. In space the lattice is rotated so that horizontal
-//! planes have the least visible structure. The smooth variant has wider kernels. In space the corners are two lattices
-//! of cubes, each at the centers of the other's cubes. A sample is rotated so that their common diagonal is the z axis,
-//! and the nearest corners are found in each lattice separately.
+//! OpenSimplex2: the lattice of Simplex noise with more gradients. The smooth variant has wider kernels. In space the
+//! lattice is rotated so that horizontal planes have the least visible structure. Its corners form two lattices of
+//! cubes, each at the centers of the cubes of the other. A sample is rotated so that their common diagonal is the z
+//! axis, and the nearest corners are found in each lattice separately.
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
@@ -68,7 +68,7 @@ impl<S: Simd> Gradients<S> for OpenSource<S> {
             }
             return gradient;
         }
-        // A number below 12 from the upper half of the hash, and the signs from the remainder.
+        // A number below 12 from the upper half of the hash, and the signs from the remaining bits.
         let twelfths = hash.shr(16) * simd.u32(12);
         for axis in 0..DIMS {
             let (table, sign) =
@@ -80,7 +80,7 @@ impl<S: Simd> Gradients<S> for OpenSource<S> {
     }
 }
 
-/// OpenSimplex2 in the plane and in four dimensions, as noise on corners of simplices.
+/// OpenSimplex2 in the plane and in four dimensions, as noise on the corners of simplices.
 #[derive(Clone, Copy)]
 pub(crate) struct Open;
 
@@ -93,12 +93,13 @@ impl Corners for Open {
 #[derive(Clone, Copy)]
 pub(crate) struct Wide<S: Simd, const DIMS: usize>(OpenSource<S>);
 
-/// Squared radius of a corner's kernel: in the plane the distance to the next corner, in four dimensions almost that.
+/// Squared radius of a corner's kernel. In the plane it is the distance to the next corner, in four dimensions slightly
+/// less.
 pub(crate) const WIDE_REACH: [f32; 3] = [2.0 / 3.0, 0.75, 0.8];
 pub(crate) const WIDE_SCALE: [f32; 3] = [18.241_9, 11.867_1, 8.491_0];
 
 impl<S: Simd, const DIMS: usize> Wide<S, DIMS> {
-    /// Five corners around a triangle: those of its rhombus, and the nearer one of the two beside the triangle.
+    /// Five corners around a triangle: those of its rhombus, and the nearer one of the two next to the triangle.
     #[inline(always)]
     fn plane<const SLOPES: bool>(self, simd: S, at: &[Slanted<S>; 4]) -> Sample<S> {
         let (zero, one) = (simd.f32(0.0), simd.f32(1.0));
@@ -134,7 +135,7 @@ impl<S: Simd, const DIMS: usize> Wide<S, DIMS> {
         raw
     }
 
-    /// All corners whose kernels can reach a cube: from one before it to one after it, along each axis.
+    /// All corners whose kernels can reach a cube: from one before it to one after it along each axis.
     #[inline(always)]
     fn time<const SLOPES: bool>(self, simd: S, at: &[Slanted<S>; 4]) -> Sample<S> {
         let zero = simd.f32(0.0);
@@ -280,8 +281,8 @@ impl<S: Simd, const SMOOTH: bool> Pointwise<S> for Cubes<S, SMOOTH> {
         let zero = simd.f64(0.0);
         let [mut first, mut second] = [[Cell::at(simd, zero); 3]; 2];
         for axis in 0..3 {
-            // Corners are at whole numbers in one lattice and at halves in the other. The smooth variant reads the cube
-            // between them, the fast variant the cube around them.
+            // Corners are at integers in one lattice and at half integers in the other. The smooth variant uses the
+            // cube between them, the fast variant the cube around them.
             (first[axis], second[axis]) = if SMOOTH {
                 (Cell::of(simd, turned[axis]), Cell::of(simd, turned[axis] + simd.f64(-0.5)))
             } else {

@@ -1,13 +1,13 @@
 //! Output slices.
 
-/// Output slices: values, and slopes along x, y, z and w if requested. Their lengths are checked before.
+/// Output slices: values, and slopes along x, y, z and w if requested. Their lengths were checked before.
 pub(crate) struct Outputs<'a> {
     pub value: &'a mut [f32],
     pub slopes: Option<[&'a mut [f32]; 4]>,
 }
 
 impl Outputs<'_> {
-    /// Sets all slopes to zero, for a noise that has none.
+    /// Sets all slopes to zero, for a noise without slopes.
     pub(crate) fn flatten(&mut self) {
         for slope in self.slopes.iter_mut().flatten() {
             slope.fill(0.0);

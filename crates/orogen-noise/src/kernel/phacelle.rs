@@ -1,4 +1,4 @@
-//! Phacelle noise: stripes along a direction given for each sample.
+//! Phacelle noise: stripes along a direction that is given for each sample.
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
@@ -25,12 +25,12 @@ pub(crate) struct Fill<'a> {
     pub program: &'a Program,
     pub points: Points<'a>,
     pub along: Along<'a>,
-    /// Stripes per cell.
+    /// Number of stripes per cell.
     pub stripes: f32,
     /// Minimum length that a wave is divided by.
     pub shortest: f32,
     pub cosine: &'a mut [f32],
-    /// As long as the other, or empty if not requested.
+    /// The sines, as many as cosines, or empty if not requested.
     pub sine: &'a mut [f32],
 }
 
@@ -89,7 +89,7 @@ impl Body for Block<'_> {
                 Along::One([dx, dy]) => [simd.f32(dx), simd.f32(dy)],
                 Along::Each([dx, dy]) => [simd.load_partial(&dx[start..], 0.0), simd.load_partial(&dy[start..], 0.0)],
             };
-            // Turns per cell across the stripes; a direction of length 0 or NaN gives none.
+            // Turns per cell across the stripes. A direction with a length of 0 or NaN gives none.
             let length = dy.mul_add(dy, dx * dx).sqrt();
             let sensible = zero.lt(length) & length.lt(simd.f32(f32::MAX));
             let scale = (simd.f32(stripes) / length).select(sensible, zero);
@@ -135,19 +135,19 @@ impl Body for Block<'_> {
     }
 }
 
-/// e^(-2 1.5^2): subtracted from weights so that they are 0 at one and a half cells.
+/// e^(-2 1.5^2), which is subtracted from weights so that they are 0 at a distance of one and a half cells.
 const LEAST: f32 = 0.011_108_997;
 
-/// A hash as a number in 0 .. 1.
+/// A hash as a number from 0 (included) to 1 (excluded).
 #[inline(always)]
 fn unit<S: Simd>(simd: S, hash: S::U32) -> S::F32 {
     hash.shr(8).i32_to_f32() * simd.f32(1.0 / 16_777_216.0)
 }
 
-/// Cosine and sine of this number of turns, within 4e-7.
+/// Cosine and sine of a number of turns, within 4e-7.
 #[inline(always)]
 fn circle<S: Simd>(simd: S, turns: S::F32) -> [S::F32; 2] {
-    // Quarter turns from the nearest whole one. An odd number of them swaps sine and cosine.
+    // Quarter turns from the nearest integer. An odd number of them swaps sine and cosine.
     let quarters = turns * simd.f32(4.0);
     let whole = (quarters + simd.f32(0.5)).floor();
     let a = (quarters - whole) * simd.f32(std::f32::consts::FRAC_PI_2);

@@ -3,10 +3,11 @@
 use crate::points::Points;
 use orogen_simd::{Body, F32Lanes, F64Lanes, Simd};
 
-/// Points per block, if their positions are copied into buffers. The buffers fit into the first-level cache.
+/// Number of points per block if their positions are copied into buffers. The buffers fit into the first-level cache.
 pub(crate) const BLOCK: usize = 256;
 
-/// x and y of the points from `start` on, as many as the buffers hold: the caller's slices, or the buffers.
+/// x and y of the points from `start` on, as many as the buffers hold. The result is either the caller's slices or the
+/// buffers.
 #[inline(always)]
 pub(crate) fn positions<'a, S: Simd>(
     simd: S,
@@ -55,7 +56,7 @@ fn gather<S: Simd>(
     }
 }
 
-/// Adds displacements to positions: to different positions, or all to the same one.
+/// Adds displacements to positions: one to each position, or all to the same position.
 struct Displace<'a> {
     to: &'a mut [f64],
     from: Option<&'a [f64]>,

@@ -1,4 +1,4 @@
-//! Octaves evaluated sample by sample: every noise supports this.
+//! Octaves evaluated sample by sample, which every noise supports.
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
@@ -13,31 +13,31 @@ pub(crate) trait Pointwise<S: Simd>: Copy {
     /// A coordinate along one axis, split into the parts that the noise needs.
     type Coordinate: Copy;
 
-    /// The noise for an octave.
+    /// The noise for one octave.
     fn new(simd: S, source: Source, octave: &Octave) -> Self;
     /// Splits a coordinate in cells.
     fn split(simd: S, coordinate: S::F64) -> Self::Coordinate;
     /// Adds the octave's value and (with `SLOPES`) slopes, scaled, to a sample.
     fn add<const SLOPES: bool>(self, simd: S, octave: &Octave, at: &[Self::Coordinate; 4], sum: &mut Sample<S>);
 
-    /// Whether a sample in the plane depends on its cell only through keys along x and y. The two methods below exist
-    /// only then.
+    /// Whether a sample in the plane depends on its cell only through keys along x and y. The two methods below are
+    /// only used in this case.
     const KEYED: bool = false;
-    /// The keys of a cell and of the next along an axis.
+    /// The keys of a cell and of the next cell along an axis.
     #[inline(always)]
     fn keys(self, simd: S, axis: usize, cell: &Cell<S>) -> [S::U32; 2] {
         let _ = (axis, cell);
         [simd.u32(0); 2]
     }
-    /// Adds the value of an octave of amplitude 1 to a sample in the plane. `t` are its fractions, `keys` those of its
-    /// cell and of the next one along x and y.
+    /// Adds the value of an octave with amplitude 1 to a sample in the plane. `t` are the fractions of the sample,
+    /// `keys` the keys of its cell and of the next cell along x and y.
     #[inline(always)]
     fn add_keyed(self, simd: S, t: [S::F32; 2], keys: [[S::U32; 2]; 2], sum: &mut Sample<S>) {
         let _ = (simd, t, keys, sum);
     }
 }
 
-/// A low-rank basis, sample by sample: the operations of the lattice path in the same order.
+/// A low-rank basis, evaluated sample by sample with the operations of the lattice path in the same order.
 #[derive(Clone, Copy)]
 pub(crate) struct LowRank<B>(B);
 
@@ -79,8 +79,8 @@ impl<S: Simd, B: Basis<S>> Pointwise<S> for LowRank<B> {
     }
 }
 
-/// Adds an octave's value (and slopes), times their factors, to a sample with these fractions, in the cell with these
-/// keys.
+/// Adds an octave's value (and slopes), times their factors, to a sample. `t` are its fractions, and `keys` belong to
+/// its cell.
 #[inline(always)]
 fn add<S: Simd, B: Basis<S>, const SLOPES: bool>(
     simd: S,
@@ -108,7 +108,7 @@ fn add<S: Simd, B: Basis<S>, const SLOPES: bool>(
     accumulate::<S, B, SLOPES>(&coefficients, &rows, sum);
 }
 
-/// Adds the octave's value (and slopes) to a sample. The order of the additions is that of the lattice path.
+/// Adds the octave's value (and slopes) to a sample. The order of the additions is the same as in the lattice path.
 #[inline(always)]
 fn accumulate<S: Simd, B: Basis<S>, const SLOPES: bool>(
     coefficients: &Coefficients<S>,

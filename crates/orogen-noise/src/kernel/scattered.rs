@@ -1,4 +1,4 @@
-//! Points at any position: register by register, all octaves of a register together.
+//! Points at any position: register by register, with all octaves of a register together.
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
@@ -35,8 +35,8 @@ impl<S: Simd, const DIMS: usize> VisitFamily for Call<'_, S, DIMS> {
     }
 }
 
-/// Evaluates a program at points, with slopes if the noise has any. Compiled as a separate function for each level and
-/// noise.
+/// Evaluates a program at points, with slopes if the noise has any. It is compiled as a separate function for each
+/// level and noise.
 struct Scatter<'a, F, const DIMS: usize> {
     program: &'a Program,
     at: [&'a [f64]; 4],
@@ -49,7 +49,7 @@ impl<F: Family, const DIMS: usize> Body for Scatter<'_, F, DIMS> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        // If all slopes are zero, the terms that read them are zero too.
+        // If all slopes are zero, the terms that use them are zero, too.
         if F::SLOPED { self.go::<S, true>(simd) } else { self.go::<S, false>(simd) }
     }
 }
@@ -75,8 +75,8 @@ impl<F: Family, const DIMS: usize> Scatter<'_, F, DIMS> {
                     }
                     place[axis] = F::At::<S>::split(simd, u);
                 }
-                // A plain sum accumulates across octaves. There is only one call for both cases, because it is inlined
-                // and long.
+                // A plain sum accumulates across octaves. There is only one call for both cases, because the function
+                // is long and inlined.
                 let runs_on = matches!(combine, Combine::Sum);
                 let mut one = if runs_on { state.sum } else { [simd.f32(0.0); 5] };
                 noise.add::<SLOPES>(simd, octave, &place, &mut one);
@@ -117,7 +117,7 @@ impl<F: Family, const DIMS: usize> Body for Sums<'_, F, DIMS> {
         if F::PAIRED
             && let [octave] = octaves
         {
-            // The values of the only octave stay in registers from point to point.
+            // The values of the only octave stay in registers for all points.
             let noise = F::At::<S>::new(simd, program.source, octave);
             if F::At::<S>::KEYED && const { DIMS == 2 } && near::covers(octave) {
                 let points = near::Scattered { frequency: octave.frequency, limit: program.limit, at: [at[0], at[1]] };
@@ -156,7 +156,7 @@ fn positions<S: Simd, const DIMS: usize>(simd: S, program: &Program, at: &[&[f64
     position
 }
 
-/// Positions in the coordinates of an octave, split as its noise needs them.
+/// Positions in the coordinates of an octave, split as required by its noise.
 #[inline(always)]
 fn places<S: Simd, F: Family, const DIMS: usize>(
     simd: S,

@@ -2,9 +2,9 @@
 //!
 //! The plane is divided into triangles (space into tetrahedra, and so on) by a lattice of cubes that is compressed
 //! along its main diagonal. A coordinate u_i with cell and fraction w_i + t_i is skewed to u_i + F sum u_j. Each F u_j
-//! is split into a whole number and a fraction, so that a sample adds only small fractions and whole numbers at any
-//! position. The order of the fractions gives the simplex of a sample. A corner at distance d contributes (r^2 - d^2)^4
-//! g . d if r^2 > d^2.
+//! is split into an integer and a fraction, so that a sample adds only small fractions and integers at any position.
+//! The order of the fractions determines the simplex of a sample. A corner at distance d contributes (r^2 - d^2)^4 g .
+//! d if r^2 > d^2.
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
@@ -22,13 +22,13 @@ pub(crate) struct Slanted<S: Simd> {
     pub whole: S::F64,
     /// The fraction.
     pub t: S::F32,
-    /// Whole number of F times the coordinate.
+    /// Integer part of F times the coordinate.
     pub skew: S::F64,
     /// Fraction of F times the coordinate.
     pub rest: S::F32,
 }
 
-/// (sqrt(n + 1) - 1) / n: factor of the skew.
+/// (sqrt(n + 1) - 1) / n: factor of the skew for n = 2, 3, 4.
 pub(crate) const SKEW: [f64; 3] = [0.366_025_403_784_438_65, 1.0 / 3.0, 0.309_016_994_374_947_45];
 /// (1 - 1 / sqrt(n + 1)) / n: factor of the inverse skew.
 pub(crate) const UNSKEW: [f32; 3] = [0.211_324_87, 1.0 / 6.0, 0.138_196_6];
@@ -41,7 +41,7 @@ pub(crate) fn slanted<S: Simd, const DIMS: usize>(simd: S, coordinate: S::F64) -
     Slanted { whole: here.whole, t: here.t, skew: skew.whole, rest: skew.t }
 }
 
-/// A sample in the skewed lattice: the number of its cube, and fractions from 0 to 1.
+/// A sample in the skewed lattice: the number of its cube, and its fractions from 0 to 1.
 pub(crate) struct SkewedPoint<S: Simd> {
     pub whole: [S::F64; 4],
     pub t: [S::F32; 4],
@@ -50,7 +50,7 @@ pub(crate) struct SkewedPoint<S: Simd> {
 /// Combines the coordinates.
 #[inline(always)]
 pub(crate) fn place<S: Simd, const DIMS: usize>(simd: S, at: &[Slanted<S>; 4]) -> SkewedPoint<S> {
-    // The axes beyond x first: all samples of a row share them.
+    // The axes beyond x come first, because they are common to all samples of a row.
     let (rest, skew) = beyond_x::<S, DIMS>(at);
     let (carry, rest) = wrapped(simd, at[0].rest + rest);
     let skew = at[0].skew + skew + carry.widen();
@@ -63,7 +63,7 @@ pub(crate) fn place<S: Simd, const DIMS: usize>(simd: S, at: &[Slanted<S>; 4]) -
     place
 }
 
-/// The skew of the axes beyond x: its fraction and its whole number.
+/// The skew of the axes beyond x: its fraction and its integer part.
 #[inline(always)]
 pub(crate) fn beyond_x<S: Simd, const DIMS: usize>(at: &[Slanted<S>; 4]) -> (S::F32, S::F64) {
     let (mut rest, mut skew) = (at[1].rest, at[1].skew);
@@ -79,7 +79,7 @@ pub(crate) fn beyond_x<S: Simd, const DIMS: usize>(at: &[Slanted<S>; 4]) -> (S::
     (rest, skew)
 }
 
-/// Splits a number from 0 to 2 into 0 or 1 and the remainder.
+/// Splits a number from 0 to 2 into an integer (0 or 1) and the remainder.
 #[inline(always)]
 pub(crate) fn wrapped<S: Simd>(simd: S, t: S::F32) -> (S::F32, S::F32) {
     let one = simd.f32(1.0);
@@ -139,7 +139,7 @@ pub(crate) fn scaled<S: Simd, const DIMS: usize, const SLOPES: bool>(
 pub(crate) trait Corners: Copy {
     /// The lattice and its gradients.
     type Lattice<S: Simd>: Gradients<S>;
-    /// Reciprocal of the maximum raw value, in two to four dimensions.
+    /// Reciprocal of the maximum raw value in two, three and four dimensions.
     const SCALE: [f32; 3];
 }
 
@@ -147,14 +147,14 @@ pub(crate) trait Corners: Copy {
 #[derive(Clone, Copy)]
 pub(crate) struct Simplices<S: Simd, C: Corners, const DIMS: usize>(pub C::Lattice<S>);
 
-/// Source of the gradients at the corners of a simplex.
+/// A source of gradients at the corners of a simplex.
 pub(crate) trait CornerGradients<S: Simd> {
-    /// The gradient of corner `number`, counted from the lower corner of the cube. `waits` are the axes that the corner
-    /// has not stepped along; it is undefined for the first and the last corner.
+    /// The gradient of corner `number`, counted from the lower corner of the cube. `waits` are the axes along which the
+    /// corner has not stepped; it is undefined for the first and the last corner.
     fn gradient(&self, simd: S, number: usize, waits: &[S::Mask; 4]) -> [S::F32; 4];
 }
 
-/// Gradients computed for each sample, from the keys of its cube and of the next one along each axis.
+/// Gradients that are computed for each sample, from the keys of its cube and of the next cube along each axis.
 struct HashedCorners<'a, S: Simd, G, const DIMS: usize> {
     lattice: G,
     keys: &'a [[S::U32; 2]; 4],
@@ -182,7 +182,7 @@ impl<S: Simd, G: Gradients<S>, const DIMS: usize> CornerGradients<S> for HashedC
 pub(crate) const REACH: f32 = 0.5;
 
 impl<S: Simd, C: Corners, const DIMS: usize> Simplices<S, C, DIMS> {
-    /// The raw value and slopes at a position of the skewed lattice, with the keys of its cube and of the next one
+    /// The raw value and slopes at a position in the skewed lattice, with the keys of its cube and of the next cube
     /// along each axis.
     #[inline(always)]
     pub(crate) fn raw<const SLOPES: bool>(self, simd: S, t: &[S::F32; 4], keys: &[[S::U32; 2]; 4]) -> Sample<S> {
@@ -190,7 +190,7 @@ impl<S: Simd, C: Corners, const DIMS: usize> Simplices<S, C, DIMS> {
     }
 }
 
-/// The raw value and slopes at a position of the skewed lattice.
+/// The raw value and slopes at a position in the skewed lattice.
 #[inline(always)]
 pub(crate) fn raw<S: Simd, G: CornerGradients<S>, const DIMS: usize, const SLOPES: bool>(
     simd: S,
@@ -206,7 +206,7 @@ pub(crate) fn raw<S: Simd, G: CornerGradients<S>, const DIMS: usize, const SLOPE
     for axis in 0..DIMS {
         from[axis] = total.neg_mul_add(simd.f32(UNSKEW[DIMS - 2]), t[axis]);
     }
-    // Not a loop, because the numbers must be constants.
+    // This is not a loop, because the numbers must be constants.
     let mut raw = [simd.f32(0.0); 5];
     add_corner::<S, G, DIMS, SLOPES>(simd, gradients, 0, &from, &waiting, &mut raw);
     add_corner::<S, G, DIMS, SLOPES>(simd, gradients, 1, &from, &waiting, &mut raw);
@@ -243,8 +243,8 @@ fn add_corner<S: Simd, G: CornerGradients<S>, const DIMS: usize, const SLOPES: b
     corner::<S, DIMS, SLOPES>(simd, REACH, &gradient, &way, raw);
 }
 
-/// The axes that corner k has not stepped along, counted from the lower corner of the cube. It has stepped along the k
-/// largest fractions. Undefined for the first and the last corner.
+/// The axes along which corner k has not stepped, counted from the lower corner of the cube. It has stepped along the
+/// axes with the k largest fractions. Undefined for the first and the last corner.
 #[inline(always)]
 fn waiting<S: Simd, const DIMS: usize>(simd: S, t: &[S::F32; 4]) -> [[S::Mask; 4]; 5] {
     let (zero, one) = (simd.f32(0.0), simd.f32(1.0));
@@ -302,7 +302,7 @@ impl<S: Simd, C: Corners, const DIMS: usize> Pointwise<S> for Simplices<S, C, DI
     }
 }
 
-/// Simplex noise: the gradients of hashed Perlin noise.
+/// Simplex noise with the gradients of hashed Perlin noise.
 #[derive(Clone, Copy)]
 pub(crate) struct Plain;
 

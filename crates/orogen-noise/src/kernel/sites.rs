@@ -1,7 +1,7 @@
-//! The points of cellular noise, one per cell, and the search for the nearest.
+//! The points of cellular noise, one per cell, and the search for the nearest one.
 //!
-//! The search starts with the cells around the sample's own cell and continues with shells of cells farther out. Any
-//! point beyond shell r is at least r + m away, in all three distances, where m is the distance of the sample from the
+//! The search starts with the cells around the sample's own cell and continues with shells of cells farther out. With
+//! all three distances, any point beyond shell r is at least r + m away, where m is the distance of the sample from the
 //! side of its cell. The search ends when the result is smaller than that. Skipped points cannot change the result, so
 //! the bits do not depend on how far neighboring lanes extend the search.
 
@@ -13,28 +13,28 @@ use crate::kernel::source::{Hashed, Lattice, value};
 use crate::program::Cellular;
 use orogen_simd::{F32Lanes, MaskLanes, Simd, U32Lanes};
 
-/// Maximum number of shells. With one point per cell, the two nearest are at most 3 away in the widest case (3D,
-/// manhattan). Points that decide an edge are at most as far as the nearest plus twice the distance of the edge: 5 in
-/// all.
+/// Maximum number of shells. With one point per cell, the two nearest points are at most 3 away in the worst case (3D,
+/// manhattan). Points that determine an edge are at most as far away as the nearest point plus twice the distance of
+/// the edge, which is 5 in total.
 const SHELLS: i32 = 5;
 /// Rounding errors of distances and of their bounds stay well below this share.
 const MARGIN: f32 = 1.0 - 1e-6;
-/// The same for distances of edges, which are computed from differences.
+/// The same share for distances of edges, which are computed from differences.
 const EDGE_MARGIN: f32 = 1.0 - 1e-5;
 
-/// Larger than any distance.
+/// A distance larger than any other.
 pub(crate) const FAR: f32 = 1e9;
 
-/// If the squared distance of the nearest point is less than this, no point beyond the neighboring cells is nearer:
-/// the first shell's bound is at least 1 at any position in the cell.
+/// If the squared distance of the nearest point is less than this, no point beyond the neighboring cells is nearer. The
+/// bound of the first shell is at least 1 at any position in the cell.
 pub(crate) const NEAR: f32 = MARGIN * MARGIN;
 
 /// A point: its position in its cell, and the hash of its cell.
 pub(crate) type Site<S> = ([<S as Simd>::F32; 4], <S as Simd>::U32);
 
-/// Source of the points in the cells next to a sample's cell.
+/// A source of the points in the cells next to a sample's cell.
 pub(crate) trait Sites<S: Simd> {
-    /// The point of the cell at this offset from the sample's own; each component is -1, 0 or 1.
+    /// The point of the cell at this offset from the sample's own cell. Each component is -1, 0 or 1.
     fn near(&self, simd: S, offset: [i32; 4]) -> Site<S>;
 }
 
@@ -63,7 +63,7 @@ impl<S: Simd> Field<S> {
         (place, hash)
     }
 
-    /// The key of the cell `offset` cells on along an axis.
+    /// The key of the cell that is `offset` cells further along an axis.
     #[inline(always)]
     pub(crate) fn key(&self, simd: S, axis: usize, cell: &Cell<S>, offset: i32) -> S::U32 {
         let at = Cell::at(simd, cell.whole + simd.f64(f64::from(offset)));
@@ -101,9 +101,9 @@ impl<S: Simd, const DIMS: usize> Sites<S> for HashedSites<S, DIMS> {
     }
 }
 
-/// The two nearest points so far.
+/// The two nearest points found so far.
 pub(crate) struct Nearest<S: Simd> {
-    /// Distances; squared for the euclidean one.
+    /// Distances; squared for the euclidean distance.
     pub first: S::F32,
     second: S::F32,
     /// Vector from the sample to the nearest point, and the hash of that point's cell.
@@ -112,7 +112,7 @@ pub(crate) struct Nearest<S: Simd> {
 }
 
 impl<S: Simd> Nearest<S> {
-    /// A search result with only one point, at this distance.
+    /// A search result with a single point at the distance `first`.
     #[inline(always)]
     pub(crate) fn at(simd: S, first: S::F32) -> Nearest<S> {
         let far = simd.f32(FAR);
@@ -120,7 +120,7 @@ impl<S: Simd> Nearest<S> {
     }
 }
 
-/// The distance of a vector; squared for the euclidean one.
+/// The length of a vector; squared for the euclidean distance.
 #[inline(always)]
 fn measure<S: Simd, const DIMS: usize>(distance: Distance, way: &[S::F32; 4]) -> S::F32 {
     match distance {
@@ -148,7 +148,7 @@ fn measure<S: Simd, const DIMS: usize>(distance: Distance, way: &[S::F32; 4]) ->
     }
 }
 
-/// Vector from the sample at fraction `t` to a point in the cell at `offset`.
+/// The vector from the sample at fraction `t` to a point in the cell at `offset`.
 #[inline(always)]
 fn way<S: Simd, const DIMS: usize>(simd: S, place: &[S::F32; 4], t: &[S::F32; 4], offset: [i32; 4]) -> [S::F32; 4] {
     let mut way = [simd.f32(0.0); 4];
@@ -158,7 +158,7 @@ fn way<S: Simd, const DIMS: usize>(simd: S, place: &[S::F32; 4], t: &[S::F32; 4]
     way
 }
 
-/// Updates the search result with a point, as far as the feature needs it.
+/// Updates the search result with a point. Computes only the parts that the feature needs.
 #[inline(always)]
 fn keep<S: Simd, const DIMS: usize>(field: &Field<S>, nearest: &mut Nearest<S>, way: [S::F32; 4], hash: S::U32) {
     let Cellular { distance, feature, .. } = field.cellular;
@@ -178,7 +178,7 @@ fn keep<S: Simd, const DIMS: usize>(field: &Field<S>, nearest: &mut Nearest<S>, 
     }
 }
 
-/// Distance of the sample from the nearest side of its cell.
+/// The distance of the sample from the nearest side of its cell.
 #[inline(always)]
 fn side<S: Simd, const DIMS: usize>(simd: S, t: &[S::F32; 4]) -> S::F32 {
     let mut side = t[0].min(simd.f32(1.0) - t[0]);
@@ -188,7 +188,7 @@ fn side<S: Simd, const DIMS: usize>(simd: S, t: &[S::F32; 4]) -> S::F32 {
     side
 }
 
-/// Offset of a neighboring cell by its number, including the cell itself.
+/// The offset of a neighboring cell by its number. The cell itself is one of them.
 #[inline(always)]
 fn neighbor<const DIMS: usize>(number: usize) -> [i32; 4] {
     let (mut offset, mut rest) = ([0; 4], number);
@@ -199,7 +199,7 @@ fn neighbor<const DIMS: usize>(number: usize) -> [i32; 4] {
     offset
 }
 
-/// The noise of one register of samples, in -1 ..= 1. `cells` are those of the samples.
+/// The noise for one register of samples, in -1 ..= 1. `cells` are the cells of the samples.
 #[inline(always)]
 pub(crate) fn evaluate<S: Simd, P: Sites<S>, const DIMS: usize>(
     simd: S,
@@ -233,7 +233,7 @@ pub(crate) fn evaluate<S: Simd, P: Sites<S>, const DIMS: usize>(
     spread(simd, raw, field.cellular.bound(DIMS))
 }
 
-/// Maps the size of a feature to -1 ..= 1.
+/// Maps the value of a feature to -1 ..= 1.
 #[inline(always)]
 pub(crate) fn spread<S: Simd>(simd: S, raw: S::F32, bound: f32) -> S::F32 {
     raw.mul_add(simd.f32(2.0 / bound), simd.f32(-1.0)).min(simd.f32(1.0))
@@ -272,7 +272,7 @@ pub(crate) fn search_shells<S: Simd, const DIMS: usize>(
     side
 }
 
-/// Distance to the nearest edge: to the nearest plane midway between the nearest point and another one.
+/// The distance to the nearest edge, which is the nearest plane midway between the nearest point and another one.
 #[inline(always)]
 fn edge<S: Simd, P: Sites<S>, const DIMS: usize>(
     simd: S,
@@ -305,7 +305,7 @@ fn edge<S: Simd, P: Sites<S>, const DIMS: usize>(
     least
 }
 
-/// Distance from the sample to the plane midway between two points; very large if they are the same.
+/// The distance from the sample to the plane midway between two points; very large if they are the same.
 #[inline(always)]
 fn midway<S: Simd, const DIMS: usize>(simd: S, near: &[S::F32; 4], other: &[S::F32; 4]) -> S::F32 {
     let (mut along, mut apart) = (simd.f32(0.0), simd.f32(0.0));
@@ -318,7 +318,7 @@ fn midway<S: Simd, const DIMS: usize>(simd: S, near: &[S::F32; 4], other: &[S::F
     distance.select(simd.f32(1e-12).lt(apart), simd.f32(FAR))
 }
 
-/// A point more than one cell away.
+/// The point of a cell that is not next to the sample's cell.
 #[inline(always)]
 fn distant<S: Simd, const DIMS: usize>(simd: S, field: &Field<S>, cells: &[Cell<S>; 4], offset: [i32; 4]) -> Site<S> {
     let mut keys = [simd.u32(0); 4];
@@ -344,7 +344,7 @@ impl<const DIMS: usize> Shell<DIMS> {
         Shell { radius, next }
     }
 
-    /// The next cell. This is not an iterator because of inlining: see kernel/mod.rs.
+    /// The next cell. This is not an iterator because of inlining (see kernel/mod.rs).
     #[inline(always)]
     fn advance(&mut self) -> Option<[i32; 4]> {
         let radius = self.radius;
@@ -352,7 +352,7 @@ impl<const DIMS: usize> Shell<DIMS> {
         if here[DIMS - 1] > radius {
             return None;
         }
-        // Inside the square (or cube) of the shell, only the two ends of a row belong to it.
+        // Inside the square (or cube) of the shell, only the two ends of a row belong to the shell.
         let mut whole = false;
         for axis in 1..DIMS {
             whole |= here[axis].abs() == radius;

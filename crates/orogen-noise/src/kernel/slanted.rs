@@ -1,9 +1,9 @@
-//! Simplex noise on lattices of samples: sums of octaves, row by row.
+//! Simplex noise on lattices of samples: sums of octaves, computed row by row.
 //!
-//! Along a row the cubes of successive samples are neighbors, so their keys are kept in a table and selected by
+//! Along a row the cubes of successive samples are neighbors, so their keys are stored in a table and selected with
 //! permutes, like lattice lines of the low-rank bases. If cubes are wide, most registers of samples lie in one line of
-//! cubes along x. In that case the gradients of the lattice lines at the edges of these cubes are kept instead. The
-//! remaining arithmetic uses small fractions; see [`crate::kernel::simplex`].
+//! cubes along x. In this case the gradients of the lattice lines at the edges of these cubes are stored instead. The
+//! remaining arithmetic uses small fractions (see [`crate::kernel::simplex`]).
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
@@ -19,16 +19,16 @@ use std::marker::PhantomData;
 
 /// Columns per strip.
 const WIDTH: usize = 256;
-/// Maximum number of cubes of a strip whose keys are kept.
+/// Maximum number of cubes of a strip whose keys are stored.
 const SPAN: usize = WIDTH + 48;
 /// Maximum number of lanes.
 const MAX_LANES: usize = 16;
 
-/// Maximum number of cubes along x of a strip for which the gradients of lattice lines are kept.
+/// Maximum number of cubes of a strip along x for which the gradients of lattice lines are stored.
 const LINE: usize = 64;
-/// Minimum number of rows for which that is faster.
+/// Minimum number of rows for which this is faster.
 const ROWS: usize = 16;
-/// Number of lattice lines that are kept. The lines at the edges of one line of cubes have separate slots.
+/// Number of lattice lines that are stored. The lines at the edges of one line of cubes have different slots.
 const LINES: usize = 16;
 
 /// The gradients of the points of a lattice line along x.
@@ -36,7 +36,7 @@ const LINES: usize = 16;
 #[derive(Clone, Copy)]
 struct Line {
     gradients: [[f32; LINE]; 3],
-    /// The cell numbers of its first point.
+    /// The cell numbers of the first point.
     of: [f64; 3],
 }
 
@@ -54,14 +54,14 @@ struct Strip {
     origin: [f64; 2],
     /// Number of keys.
     span: [usize; 2],
-    /// Keys along each axis, and the cell number of the first one.
+    /// Keys along each axis, and the cell number of the first key.
     keys: [[u32; SPAN]; 4],
     held: [Option<f64>; 4],
     /// Whether the cubes of a register fit into one register of keys.
     dense: bool,
-    /// Whether registers lie in one line of cubes often enough to keep lattice lines.
+    /// Whether registers lie in one line of cubes often enough to store lattice lines.
     wide: bool,
-    /// If wide: the lanes of each register whose number along the other axes is one more than that of the first lane.
+    /// If wide, the lanes of each register whose number along the other axes is one more than that of the first lane.
     steps: [u32; WIDTH / 4],
     /// Lattice lines; the number of a line selects its slot.
     lines: Vec<Line>,
@@ -86,7 +86,7 @@ impl Strip {
     }
 }
 
-/// Fills a lattice with a plain sum of octaves; `depths` are z and w of the slice.
+/// Fills a lattice with a plain sum of octaves. `depths` are z and w of the slice.
 #[inline(always)]
 pub(crate) fn fill<S: Simd, C: Corners, const DIMS: usize>(
     simd: S,
@@ -151,14 +151,15 @@ impl<const DIMS: usize> Body for Columns<'_, DIMS> {
                     whole.store(&mut lanes);
                     strip.origin[which] = lanes[0];
                 }
-                // Small numbers are exact. Large ones, and cells before the first, become huge and fail the test below.
+                // Small numbers are exact. Large numbers, and cells before the first, become huge and fail the test
+                // below.
                 let place = (whole - simd.f64(strip.origin[which])).narrow().to_i32();
                 let mut places = [0; MAX_LANES];
                 place.store(&mut places);
                 let index = place - simd.u32(places[0]);
                 index.store(&mut strip.index[which][at..]);
                 strip.first[which][v] = places[0];
-                // If fractions sum to more than one, the cube advances by up to two.
+                // If the fractions sum to more than one, the cube advances by up to two.
                 reach[which] = reach[which] | index | (index + simd.u32(2));
                 farthest[which] = farthest[which].max(places[0]);
                 if which == 1 {
@@ -173,7 +174,7 @@ impl<const DIMS: usize> Body for Columns<'_, DIMS> {
             strip.dense &= !spread.any() && (farthest[which] as usize) < SPAN - 2 * S::LANES - 1;
             strip.span[which] = (farthest[which] as usize + S::LANES + 1).next_multiple_of(S::LANES).min(SPAN);
         }
-        // If a register advances twice along the other axes, hardly any lies in one line of cubes.
+        // If a register advances twice along the other axes, hardly any register lies in one line of cubes.
         let narrow = !most.shr(1).eq(simd.u32(0));
         strip.wide = strip.dense && DIMS < 4 && rows >= ROWS && !narrow.any() && strip.span[0] <= LINE;
         if strip.wide && strip.lines.is_empty() {
@@ -239,7 +240,7 @@ impl<C: Corners, const DIMS: usize> Body for Row<'_, C, DIMS> {
     }
 }
 
-/// Computes the keys of the cubes along the row, unless they are those of the previous row.
+/// Computes the keys of the cubes along the row, unless they are the same as in the previous row.
 #[inline(always)]
 fn hold<S: Simd, C: Corners, const DIMS: usize>(
     simd: S,
@@ -273,13 +274,14 @@ fn hold<S: Simd, C: Corners, const DIMS: usize>(
 struct SkewedPoints<S: Simd> {
     /// Fractions.
     t: [S::F32; 4],
-    /// Lanes where the fractions of the skew sum to a step along all axes.
+    /// Lanes in which the fractions of the skew sum to a step along all axes.
     shared: S::Mask,
-    /// Lanes where an axis makes a step of its own.
+    /// Lanes in which an axis makes an additional step.
     carry: [S::Mask; 4],
 }
 
-/// The fractions of a register of samples: the result of [`crate::kernel::simplex::place`], by the same steps.
+/// The fractions of a register of samples: the result of [`crate::kernel::simplex::place`], computed with the same
+/// steps.
 #[inline(always)]
 fn look_up<S: Simd, const DIMS: usize>(
     simd: S,
@@ -297,7 +299,7 @@ fn look_up<S: Simd, const DIMS: usize>(
     place
 }
 
-/// Splits a number from 0 to 2 into a fraction and a mask of the lanes where it was at least 1.
+/// Splits a number from 0 to 2 into a fraction and a mask of the lanes in which the number is at least 1.
 #[inline(always)]
 fn stepped<S: Simd>(simd: S, t: S::F32) -> (S::F32, S::Mask) {
     let one = simd.f32(1.0);
@@ -306,16 +308,17 @@ fn stepped<S: Simd>(simd: S, t: S::F32) -> (S::F32, S::Mask) {
 }
 
 impl<S: Simd> SkewedPoints<S> {
-    /// The cubes along an axis, relative to the first of the register, as indices of a permute.
+    /// The cubes along an axis, relative to the first cube of the register, as indices for a permute.
     #[inline(always)]
     fn index(&self, simd: S, strip: &Strip, start: usize, axis: usize) -> S::U32 {
-        // A permute reads this value as 1. It compiles to one masked addition; adding 1 would take two instructions.
+        // A permute interprets this value as 1. It compiles to one masked addition; adding 1 would take two
+        // instructions.
         let (zero, one) = (simd.u32(0), simd.u32(1 + 2 * MAX_LANES as u32));
         let index = simd.load_u32(&strip.index[usize::from(axis > 0)][start..]);
         index + one.select(self.shared, zero) + one.select(self.carry[axis], zero)
     }
 
-    /// The keys of the cubes and of their successors.
+    /// The keys of the cubes and of the next cubes.
     #[inline(always)]
     fn keys<const DIMS: usize>(&self, simd: S, strip: &Strip, start: usize) -> [[S::U32; 2]; 4] {
         let mut keys = [[simd.u32(0); 2]; 4];
@@ -329,8 +332,8 @@ impl<S: Simd> SkewedPoints<S> {
         keys
     }
 
-    /// The line of cubes along x that contains all samples, if there is one: its numbers along y and z, relative to the
-    /// first key.
+    /// The line of cubes along x that contains all samples, if there is one, as its numbers along y and z, relative to
+    /// the first key.
     #[inline(always)]
     fn line<const DIMS: usize>(&self, strip: &Strip, start: usize) -> Option<[usize; 2]> {
         let v = start / S::LANES;
@@ -351,17 +354,17 @@ impl<S: Simd> SkewedPoints<S> {
 /// The lattice lines at the edges of a line of cubes.
 #[derive(Clone, Copy)]
 struct Edges {
-    /// The line of cubes: its numbers along y and z, relative to the first key.
+    /// The numbers of the line of cubes along y and z, relative to the first key.
     y: usize,
     z: usize,
-    /// The slots of its lattice lines: those at y and y + 1, then the same at z + 1.
+    /// The slots of the lattice lines: those at y and y + 1, then the same at z + 1.
     slots: [usize; 4],
 }
 
 impl Edges {
     const NONE: Edges = Edges { y: usize::MAX, z: usize::MAX, slots: [0; 4] };
 
-    /// Computes the lines that are missing.
+    /// Computes the missing lines.
     #[inline(always)]
     fn of<S: Simd, C: Corners, const DIMS: usize>(
         simd: S,
@@ -398,7 +401,7 @@ struct Make<'a, C, const DIMS: usize> {
     source: Source,
     octave: &'a Octave,
     strip: &'a mut Strip,
-    /// Its index among the keys along y and z.
+    /// The index of the line among the keys along y and z.
     at: [usize; 2],
     slot: usize,
     of: [f64; 3],
@@ -425,7 +428,7 @@ impl<C: Corners, const DIMS: usize> Body for Make<'_, C, DIMS> {
     }
 }
 
-/// Gradients kept for lattice lines.
+/// Gradients that are stored for lattice lines.
 struct LineCorners<'a, S: Simd, const DIMS: usize> {
     /// See [`Edges`].
     lines: [&'a [[f32; LINE]; 3]; 4],
@@ -436,7 +439,7 @@ struct LineCorners<'a, S: Simd, const DIMS: usize> {
 }
 
 impl<S: Simd, const DIMS: usize> LineCorners<'_, S, DIMS> {
-    /// The gradient of the corner at this offset along each axis.
+    /// The gradient of the corner at an offset along each axis.
     #[inline(always)]
     fn on(&self, simd: S, [x, y, z]: [usize; 3]) -> [S::F32; 4] {
         let line = self.lines[y + 2 * z];
@@ -447,7 +450,7 @@ impl<S: Simd, const DIMS: usize> LineCorners<'_, S, DIMS> {
         gradient
     }
 
-    /// `a` where the mask is set, else `b`.
+    /// `one` where the mask is set, otherwise `other`.
     #[inline(always)]
     fn either(mask: S::Mask, mut one: [S::F32; 4], other: [S::F32; 4]) -> [S::F32; 4] {
         for axis in 0..DIMS.min(3) {

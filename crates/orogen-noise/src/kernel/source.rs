@@ -8,15 +8,15 @@ use crate::program::{Octave, Source};
 use crate::tables::{directions, reference};
 use orogen_simd::{F32Lanes, Simd, U32Lanes};
 
-/// A lattice whose points have hashes. The hash of a point is computed from one key per axis, so a lattice of samples
-/// computes keys once per lattice column and row.
+/// A lattice whose points have hashes. The hash of a point is computed from one key per axis, so on a lattice of
+/// samples keys are computed only once per lattice column and row.
 pub(crate) trait Lattice<S: Simd>: Copy {
-    /// The keys of a cell and of the next one.
+    /// The keys of a cell and of the next cell.
     fn keys(self, simd: S, axis: usize, cell: &Cell<S>) -> [S::U32; 2];
-    /// The hash of a point with these keys along its first `DIMS` axes. The top bits have the best quality.
+    /// The hash of a point with these keys along its first `DIMS` axes. The quality of the top bits is the best.
     fn hash<const DIMS: usize>(self, simd: S, keys: [S::U32; 4]) -> S::U32;
-    /// The same lattice and hashes with other keys, which cost more to compute and less to combine; for keys that are
-    /// kept.
+    /// The same lattice and hashes with different keys, which cost more to compute and less to combine. Useful if keys
+    /// are stored.
     #[inline(always)]
     fn folded(self) -> Self {
         self
@@ -31,12 +31,14 @@ pub(crate) trait Gradients<S: Simd>: Lattice<S> {
     fn gradient<const DIMS: usize>(self, simd: S, hash: S::U32) -> [S::F32; 4];
 }
 
-/// The hashed lattice: 64-bit cells and 64 bits of seed per axis give a 32-bit key, and the keys give a 32-bit hash.
+/// The hashed lattice. A 64-bit cell number and 64 bits of seed per axis give a 32-bit key, and the keys give a 32-bit
+/// hash.
 ///
-/// A key is two rounds of xorshift-multiply: of the low word, and then of the high word and the second half of the
-/// seed. Keys are combined by xor and a third round, whose top bits depend on every bit of each key. The xorshift of
-/// that round distributes over xor, so folded keys already contain it. The constants are odd numbers with good spectral
-/// properties modulo 2^32 (G. Steele and S. Vigna, "Computationally easy, spectrally good multipliers", 2021).
+/// A key consists of two rounds of xorshift-multiply: the first of the low word, the second of the high word and the
+/// second half of the seed. Keys are combined with xor and a third round, whose top bits depend on every bit of each
+/// key. The xorshift of that round distributes over xor, so folded keys already contain it. The constants are odd
+/// numbers with good spectral properties modulo 2^32 (G. Steele and S. Vigna, "Computationally easy, spectrally good
+/// multipliers", 2021).
 #[derive(Clone, Copy)]
 pub(crate) struct Hashed<S: Simd> {
     words: [[S::U32; 2]; 4],
@@ -58,13 +60,13 @@ impl<S: Simd> Hashed<S> {
         Hashed { words, period: octave.period, folded: false }
     }
 
-    /// The hash of keys combined by xor.
+    /// The hash of keys that were combined with xor.
     #[inline(always)]
     fn finish(simd: S, joined: S::U32) -> S::U32 {
         Self::finish_folded(simd, joined ^ joined.shr(15))
     }
 
-    /// The hash of folded keys combined by xor.
+    /// The hash of folded keys that were combined with xor.
     #[inline(always)]
     pub(crate) fn finish_folded(simd: S, joined: S::U32) -> S::U32 {
         joined * simd.u32(ROUND_3)
@@ -111,7 +113,7 @@ impl<S: Simd> Lattice<S> for Hashed<S> {
     }
 }
 
-/// A hash as a number in -1 ..= 1, a millionth inside the ends, so that interpolation cannot round past them.
+/// A hash as a number in -1 ..= 1. It is a millionth inside the ends, so that interpolation cannot round past them.
 #[inline(always)]
 pub(crate) fn value<S: Simd>(simd: S, hash: S::U32) -> S::F32 {
     const UNIT: f32 = (1.0 - 1.0 / 1_048_576.0) / 2_147_483_648.0;
@@ -122,8 +124,8 @@ pub(crate) fn value<S: Simd>(simd: S, hash: S::U32) -> S::F32 {
 #[derive(Clone, Copy)]
 pub(crate) struct PerlinSource<S: Simd> {
     lattice: Hashed<S>,
-    // The same directions twice: a table of sixteen where one instruction can look them up, else a table of eight and a
-    // sign.
+    // The same directions twice: as a table of sixteen for levels that look it up with one instruction, and as a table
+    // of eight with a sign for the others.
     wide: [S::Table16; 2],
     half: [S::Table8; 2],
     space: [S::Table16; 3],
@@ -190,7 +192,7 @@ impl<S: Simd> Gradients<S> for PerlinSource<S> {
     }
 }
 
-/// The lattice of Perlin's 2002 reference: a permutation of 0 ..= 255, looked up once per axis.
+/// The lattice of Perlin's 2002 reference: a permutation of 0 ..= 255 that is looked up once per axis.
 #[derive(Clone, Copy)]
 pub(crate) struct ClassicSource<S: Simd> {
     shift: [S::U32; 4],

@@ -1,4 +1,4 @@
-//! A strip of lattice columns, octave by octave: values that depend on x alone, and the row vectors of two lattice
+//! A strip of lattice columns, octave by octave: values that depend only on x, and the row vectors of two lattice
 //! lines.
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
@@ -9,31 +9,32 @@ use crate::kernel::cell::{Cell, clamp};
 use crate::program::{Octave, Source};
 use orogen_simd::{Body, F32Lanes, F64Lanes, MaskLanes, Simd, U32Lanes};
 
-/// Columns per strip. The row vectors of six octaves at this width fill half of a first-level cache.
+/// Number of columns per strip. At this width, the row vectors of six octaves fill half of a first-level cache.
 pub(crate) const WIDTH: usize = 256;
-/// Maximum number of lattice points of a strip that are hashed once each.
+/// Maximum number of lattice points of a strip that are hashed only once.
 const SPAN: usize = WIDTH + 32;
 /// Maximum number of lanes.
 pub(crate) const MAX_LANES: usize = 16;
 
-/// One octave over the strip. Each array starts at a cache line, because a register that straddles two costs twice as
-/// much.
+/// One octave over the strip. Each array starts at a cache line, because a register that straddles two cache lines
+/// costs twice as much.
 #[repr(C, align(64))]
 pub(crate) struct StripOctave {
-    /// The row vectors of two lattice lines, side by side. Vectors of values are read most and lie in one page, so that
-    /// octaves do not evict each other from the cache.
+    /// The row vectors of two lattice lines, next to each other. Vectors of values are read most often and lie in one
+    /// page, so that octaves do not evict each other from the cache.
     lines: [[[f32; WIDTH]; 2]; 8],
-    /// Per row: coefficients of the value, of the slopes along x (and z and w), and of the slope along y; four each.
+    /// For each row: coefficients of the value, of the slopes along x (and z and w), and of the slope along y; four
+    /// each.
     pub coefficients: [[[f32; MAX_LANES]; 4]; 3],
-    /// Fractions and fades per column: (1 - u) t, u (t - 1), 1 - u, u, then the slopes of the first two and of u.
+    /// Fractions and fades for each column: (1 - u) t, u (t - 1), 1 - u, u, then the slopes of the first two and of u.
     weights: [[f32; WIDTH]; 7],
     /// If dense: the lattice point of each column, relative to the first of its register.
     index: [u32; WIDTH],
-    /// If dense: the keys of the lattice points. Else: the keys of each column's cell and of the next one.
+    /// If dense, the keys of the lattice points. Otherwise the keys of each column's cell and of the next cell.
     keys: [[u32; SPAN]; 2],
-    /// Per row: the keys of the lattice lines above and below.
+    /// For each row, the keys of the lattice lines above and below.
     line_keys: [[u32; MAX_LANES]; 2],
-    /// Per row: its row of cells.
+    /// For each row, its row of cells.
     cells: [u64; MAX_LANES],
     /// If dense: the first lattice point of each register, relative to the first of the strip.
     first: [u32; WIDTH / 4],
@@ -71,8 +72,8 @@ impl StripOctave {
         &self.lines[vector & 7][(self.upper ^ line) & 1]
     }
 
-    /// Sets the lines to those around row `r` of the group. Only changes are computed: successive rows mostly share
-    /// both lines, and the next row of cells shares one.
+    /// Sets the lines to those around row `r` of the group. Only changes are computed: successive rows mostly have the
+    /// same two lines, and the next row of cells shares one line.
     #[inline(always)]
     pub(crate) fn hold<S: Simd>(&mut self, simd: S, job: &Job, octave: &Octave, points: &mut Points, r: usize) {
         let cell = self.cells[r];
@@ -113,17 +114,17 @@ pub(crate) struct Points([[f32; SPAN]; 9]);
 /// An empty [`Points`].
 pub(crate) const NO_POINTS: Points = Points([[0.0; SPAN]; 9]);
 
-/// Values that all octaves of a strip share. Kernels get a reference, because a struct that is copied field by field is
-/// slow to read as a whole.
+/// Values that are common to all octaves of a strip. Kernels receive a reference, because a struct that is copied field
+/// by field is slow to read as a whole.
 pub(crate) struct Job {
     pub source: Source,
     pub limit: f64,
     pub slopes: bool,
     /// Number of axes.
     pub dims: usize,
-    /// z and w of the slice in metres, as far as these axes exist.
+    /// z and w of the slice in metres, if these axes exist.
     pub depths: [f64; 2],
-    /// Columns of the strip.
+    /// Number of columns of the strip.
     pub columns: usize,
 }
 
@@ -151,7 +152,7 @@ pub(crate) struct Columns<'a> {
     pub job: &'a Job,
     pub octave: &'a Octave,
     pub strip: &'a mut StripOctave,
-    /// x of the columns, metres; at least one.
+    /// x of the columns in metres; at least one column.
     pub xs: &'a [f64],
 }
 
@@ -160,7 +161,7 @@ impl Body for Columns<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        // Values that depend on x or y alone are the same in all dimensions.
+        // Values that depend only on x or only on y are the same in all dimensions.
         with_basis::<S, _, 2>(simd, self.job.source, self);
     }
 }
@@ -187,8 +188,8 @@ impl<S: Simd> Visit<S> for Columns<'_> {
             for place in 0..if job.slopes { 7 } else { 4 } {
                 kept[place].store(&mut strip.weights[place][at::<S>(v)..]);
             }
-            // Cells relative to the first of the strip. Small numbers are exact. Large ones, and cells before the
-            // first, become huge and fail the tests below.
+            // Cells relative to the first cell of the strip. Small numbers are exact. Large numbers, and cells before
+            // the first, become huge and fail the tests below.
             let place = (cell.whole - simd.f64(origin)).narrow().to_i32();
             let mut places = [0; MAX_LANES];
             place.store(&mut places);
@@ -225,7 +226,7 @@ pub(crate) struct Rows<'a> {
     pub job: &'a Job,
     pub octave: &'a Octave,
     pub strip: &'a mut StripOctave,
-    /// y of the rows in metres; from one to the number of lanes.
+    /// y of the rows in metres; at most as many as there are lanes.
     pub ys: &'a [f64],
 }
 
@@ -234,7 +235,7 @@ impl Body for Rows<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        // Values that depend on x or y alone are the same in all dimensions.
+        // Values that depend only on x or only on y are the same in all dimensions.
         with_basis::<S, _, 2>(simd, self.job.source, self);
     }
 }

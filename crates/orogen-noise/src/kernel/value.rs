@@ -1,4 +1,4 @@
-//! Value noise as a basis, blended or flat, in two to four dimensions.
+//! Value noise as a basis, interpolated or flat, in two to four dimensions.
 
 use crate::choices::Fade;
 use crate::kernel::basis::{Basis, Coefficients, Depths, Numbers, Rows, Weights, blend};
@@ -27,7 +27,7 @@ fn value_coefficients<S: Simd>(simd: S, row: &Weights<S>, amplitude: S::F32, slo
 }
 
 impl<S: Simd, const DIMS: usize> Blended<S, DIMS> {
-    /// The value of a lattice point blended along z, and its slope. `far` selects the side along w.
+    /// The value of a lattice point interpolated along z, and its slope. `far` selects the side along w.
     #[inline(always)]
     fn along_z(self, simd: S, [x, y]: [S::U32; 2], depths: &Depths<S>, far: usize) -> [S::F32; 2] {
         let [z, w] = depths;

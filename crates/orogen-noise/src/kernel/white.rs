@@ -1,5 +1,5 @@
-//! White noise on lattices of samples: one key per column and per row, one hash per sample. The values are those of the
-//! flat bases of [`crate::kernel::value`]; there are no lookups and no interpolation.
+//! White noise on lattices of samples: one key per column and per row, and one hash per sample. The values are the same
+//! as with the flat bases of [`crate::kernel::value`], but there are no lookups and no interpolation.
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
@@ -9,9 +9,9 @@ use crate::kernel::source::{Hashed, Lattice, value};
 use crate::program::{Octave, Program};
 use orogen_simd::{Body, F32Lanes, Simd, U32Lanes};
 
-/// Columns whose keys are kept at a time: a quarter of a first-level cache.
+/// Number of columns whose keys are stored at a time, which takes a quarter of a first-level cache.
 const WIDTH: usize = 2048;
-/// Rows whose keys are computed at a time.
+/// Number of rows whose keys are computed at a time.
 const ROWS: usize = 16;
 
 /// Fills a lattice with one octave of white noise.
@@ -37,7 +37,7 @@ pub(crate) fn fill<S: Simd>(
             for r in 0..group.len() {
                 let start = (g * ROWS + r) * xs.len() + s * WIDTH;
                 let to = &mut outputs.value[start..start + part.len()];
-                // Keys are combined by xor, so the keys of depths are applied once per row.
+                // Keys are combined with xor, so the keys of depths are applied only once per row.
                 simd.run(Row {
                     columns: &columns.0,
                     key: rows[r] ^ depth[0] ^ depth[1],
@@ -93,7 +93,7 @@ impl Body for Row<'_> {
     fn run<S: Simd>(self, simd: S) {
         let Row { columns, key, amplitude, to } = self;
         let (key, amplitude) = (simd.u32(key), simd.f32(amplitude));
-        // Whole blocks first: enough registers to hide the latency of a multiplication.
+        // Whole blocks come first. Their registers are enough to hide the latency of a multiplication.
         let (block, blocks) = (8 * S::LANES, to.len().min(WIDTH) / (8 * S::LANES));
         for b in 0..blocks {
             let (from, to) = (&columns[b * block..][..block], &mut to[b * block..][..block]);

@@ -1,36 +1,36 @@
-//! Functions of WGSL with their numbers.
+//! WGSL functions and the numbers that they read.
 
 use super::lattice::{AxisWords, LATTICE_WORDS, Lattice, Positions};
 
-/// A function of WGSL that computes one number per sample.
+/// A WGSL function that computes one number per sample.
 ///
-/// Its signature is `fn NAME(base: u32, place: Placement, a: f32, b: f32, ..) -> f32` with one number for each input of
-/// the op. What it reads of `data` starts at `base`: its `words`, and then a block for each of its lattices. Parameters
-/// are words, so the text depends on none of them.
+/// Its signature is `fn NAME(base: u32, place: Placement, a: f32, b: f32, ..) -> f32`, with one number for each input
+/// of the op. The function reads `data` from `base` on: its `words`, and then a block for each of its lattices.
+/// Parameters are words, so the text does not depend on them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shader {
     /// The name of the function.
     pub name: &'static str,
-    /// The parts of the text that defines it, each of which other functions may have, too: the text of a kernel
-    /// contains each once, in this order. [`PLACE`](super::lattice::PLACE) is always there.
+    /// The parts of the text that defines it. Functions can have parts in common; the text of a kernel contains each
+    /// part once, in this order. [`PLACE`](super::lattice::PLACE) is always included.
     pub code: Vec<&'static str>,
-    /// Its numbers.
+    /// The numbers that the function reads.
     pub words: Vec<u32>,
-    /// The lattices on which it needs the position of samples.
+    /// The lattices on which the function needs the position of samples.
     pub lattices: Vec<Lattice>,
-    /// A faster function of the same words, if there is one, for samples that are not displaced.
+    /// A faster function with the same words, for samples that are not displaced; `None` if there is none.
     pub undisplaced: Option<Undisplaced>,
 }
 
-/// A function for samples that are not displaced: its tables have the keys of the hash in place of cells, which are not
-/// hashed for each sample.
+/// A function for samples that are not displaced. Its tables contain the keys of the hash instead of cells, so that
+/// cells are not hashed for each sample.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Undisplaced {
     /// The name of the function.
     pub name: &'static str,
-    /// The last part of the text, in place of that of the other function.
+    /// The last part of the text, which replaces the last part of the other function.
     pub code: &'static str,
-    /// The words of the hash on each lattice.
+    /// The words of the hash for each lattice.
     pub hashes: Vec<AxisWords>,
 }
 
@@ -42,14 +42,14 @@ impl Shader {
         Shader { name, code: vec![code], words, lattices: Vec::new(), undisplaced: None }
     }
 
-    /// With a lattice on which it needs the position of samples.
+    /// Adds a lattice on which the function needs the position of samples.
     #[must_use]
     pub fn on(mut self, lattice: Lattice) -> Shader {
         self.lattices.push(lattice);
         self
     }
 
-    /// The function for samples that are displaced or not: its name, and the parts of its text.
+    /// The name of the function for displaced or undisplaced samples, and the parts of its text.
     #[must_use]
     pub fn function(&self, is_displaced: bool) -> (&'static str, Vec<&'static str>) {
         match self.undisplaced.as_ref().filter(|_| !is_displaced) {
@@ -61,8 +61,8 @@ impl Shader {
         }
     }
 
-    /// Appends the numbers and the tables for samples at these positions, from which they may be displaced, to `data`;
-    /// returns the `base`.
+    /// Appends the words and the tables for samples at these positions to `data`. Returns the `base`. `is_displaced`
+    /// states whether samples may be displaced from the positions.
     pub fn encode(&self, positions: &Positions, is_displaced: bool, data: &mut Vec<u32>) -> u32 {
         let base = data.len();
         data.extend_from_slice(&self.words);

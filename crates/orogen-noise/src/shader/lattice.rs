@@ -1,8 +1,8 @@
-//! Lattices as a graphics card reads them. The cells of columns and rows are computed here, in f64: positions keep
-//! their precision at any distance from the origin, and a shader adds only the fraction and what displaces the sample.
+//! Lattices for GPUs. The cells of columns and rows are computed here, in f64, so that positions keep their precision
+//! at any distance from the origin. A shader only adds the fraction and the displacement of the sample.
 
-/// Positions of the columns and rows of a window along each axis, in metres. The position of a sample is the sum of its
-/// column's and its row's. An empty list contributes nothing: columns of the plane have no y.
+/// Positions of the columns and rows of a window along each axis, in metres. The position of a sample is the sum of the
+/// positions of its column and its row. An empty list contributes nothing; for example, columns in the plane have no y.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Positions {
     /// x and y of the columns.
@@ -11,25 +11,25 @@ pub struct Positions {
     pub rows: [Vec<f64>; 2],
 }
 
-/// A lattice: coordinates in cells are `matrix` times the position in metres, plus `offset`.
+/// A lattice. Coordinates in cells are `matrix` times the position in metres, plus `offset`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lattice {
-    /// Cells per metre, a row for each axis of the lattice.
+    /// Cells per metre, with a row for each axis of the lattice.
     pub matrix: [[f64; 2]; 2],
     /// Coordinates of the origin, in cells.
     pub offset: [f64; 2],
-    /// Positions are clamped to plus and minus this, in metres.
+    /// Maximum absolute value of positions, in metres; others are clamped.
     pub limit: f64,
 }
 
 shader_constants! {
-    /// The functions that find the cell of a sample: needed by every shader with lattices. A lattice's block is its
-    /// matrix as pairs of f32, and the tables of columns and rows along each axis.
+    /// The functions that find the cell of a sample, which every shader with lattices needs. The block of a lattice is
+    /// its matrix as pairs of f32, and the tables of columns and rows along each axis.
     pub PLACE = "place.wgsl", LATTICE_TABLES = 8, LATTICE_WORDS = 12, TABLED_WORDS = 3
 }
 
 impl Lattice {
-    /// Square cells along the axes, `1 / frequency` metres large.
+    /// Square cells along the axes with a side of `1 / frequency` metres.
     #[must_use]
     pub fn square(frequency: f64, offset: [f64; 2]) -> Lattice {
         Lattice { matrix: [[frequency, 0.0], [0.0, frequency]], offset, limit: f64::MAX }
@@ -41,8 +41,8 @@ impl Lattice {
         Lattice::square(1.0 / unit, origin.map(|origin| -origin / unit))
     }
 
-    /// Appends the tables to `data`; returns the block. With the words of the hash along each axis, the tables have the
-    /// keys of cells in place of the cells.
+    /// Appends the tables to `data` and returns the block. If the words of the hash along each axis are given, the
+    /// tables contain the keys of cells instead of the cells.
     pub(super) fn encode(
         &self,
         positions: &Positions,
@@ -53,7 +53,7 @@ impl Lattice {
         for axis in 0..2 {
             for by in 0..2 {
                 let factor = self.matrix[axis][by];
-                // A pair of f32 has twice the digits: displacements of many cells keep their fraction.
+                // A pair of f32 has twice as many digits, so that displacements by many cells keep their fraction.
                 let first = factor as f32;
                 let [high, low] = [first, (factor - f64::from(first)) as f32];
                 block[4 * axis + 2 * by] = high.to_bits();
@@ -62,7 +62,7 @@ impl Lattice {
             let offset = self.offset[axis];
             let columns = self.part(axis, &positions.columns);
             let rows = self.part(axis, &positions.rows);
-            // The offset belongs to one of them.
+            // The offset is added to only one of the two.
             let (to_columns, to_rows) = if columns.is_empty() { (0.0, offset) } else { (offset, 0.0) };
             let hash = hash.map(|words| words[axis]);
             block[LATTICE_TABLES + 2 * axis] = table(&columns, to_columns, hash, data);
@@ -71,7 +71,7 @@ impl Lattice {
         block
     }
 
-    /// The coordinates along an axis that columns or rows contribute, without the offset; empty if none.
+    /// The coordinates along an axis that columns or rows contribute, without the offset; empty if there are none.
     fn part(&self, axis: usize, at: &[Vec<f64>; 2]) -> Vec<f64> {
         let [by_x, by_y] = self.matrix[axis];
         let held = |position: f64| position.max(-self.limit).min(self.limit);
@@ -81,7 +81,7 @@ impl Lattice {
             }
             ([x, _], true, _) if !x.is_empty() => x.iter().map(|x| held(*x) * by_x).collect(),
             ([_, y], _, true) if !y.is_empty() => y.iter().map(|y| held(*y) * by_y).collect(),
-            // A lattice without cells along the axis: all samples are at its offset.
+            // A lattice without cells along this axis: all samples are at its offset.
             ([x, y], false, false) => vec![0.0; x.len().max(y.len())],
             _ => Vec::new(),
         }
@@ -91,7 +91,7 @@ impl Lattice {
 /// The words of a hash along each axis.
 pub type AxisWords = [[u32; 2]; 2];
 
-/// The key of a cell along an axis: `noise_key` of `hash.wgsl`.
+/// The key of a cell along an axis, as computed by `noise_key` of `hash.wgsl`.
 fn key([low, high]: [u32; 2], cell: i64) -> u32 {
     let here = (cell as u32).wrapping_mul(0x915f_77f5).wrapping_add(low);
     let upper = ((cell >> 32) as u32).wrapping_add(0x4338_0000);
@@ -99,8 +99,8 @@ fn key([low, high]: [u32; 2], cell: i64) -> u32 {
     key ^ (key >> 15)
 }
 
-/// Appends a table of cells: low word, high word and fraction of each, or two keys and the fraction; returns its index,
-/// or 0 if there is none.
+/// Appends a table of cells: the low word, high word and fraction of each cell, or two keys and the fraction. Returns
+/// its index, or 0 if there is no table.
 fn table(coordinates: &[f64], offset: f64, hash: Option<[u32; 2]>, data: &mut Vec<u32>) -> u32 {
     if coordinates.is_empty() {
         return 0;

@@ -1,7 +1,7 @@
-//! Noise for graphics cards: functions of WGSL, and the numbers that they read.
+//! Noise for GPUs: WGSL functions and the numbers that they read.
 
-/// Declares numbers that shaders share with this side: as constants here, and in a text of WGSL, which ends with that
-/// of a file.
+/// Declares numbers that shaders and this crate have in common: as constants here, and in a WGSL text that ends with
+/// the content of a file.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! shader_constants {

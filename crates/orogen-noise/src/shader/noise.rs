@@ -1,4 +1,4 @@
-//! Noises as functions of WGSL. The text depends only on the kind of lattice and on the kind of sum; all parameters are
+//! Noises as WGSL functions. The text depends only on the kind of lattice and on the kind of sum; all parameters are
 //! words.
 
 use super::function::{Shader, Undisplaced};
@@ -14,11 +14,11 @@ use std::sync::OnceLock;
 pub(super) const HASH: &str = include_str!("hash.wgsl");
 
 shader_constants! {
-    /// How octaves are stored, and displaced.
+    /// How octaves are stored and displaced.
     OCTAVES = "octaves.wgsl",
-    // Words before the octaves, after their number.
+    // Indices of words before the octaves, after the number of octaves.
     NOISE_SOURCE_WORDS = 1, NOISE_SKEW = 2, NOISE_PARAMETERS = 3, NOISE_OCTAVES = 6,
-    // Words of an octave, after those of the hash.
+    // Indices of the words of an octave, after the words of the hash.
     NOISE_AMPLITUDE = 4, NOISE_SLOPE = 5, NOISE_GAIN = 6, NOISE_SHIFT = 7, NOISE_PER_RATIO = 8, NOISE_OCTAVE = 9
 }
 
@@ -30,11 +30,11 @@ shader_constants! {
     WORLEY_JITTER = 0, WORLEY_REST = 1, WORLEY_DISTANCE = 2, WORLEY_FEATURE = 3, WORLEY_SCALE = 4
 }
 
-/// What the functions of a source start with, and their text.
+/// The prefix of a source's functions, and their text.
 struct Family {
     name: &'static str,
     code: &'static [&'static str],
-    /// Whether it needs the keys of two cells along each axis alone.
+    /// Whether the functions need only the keys of two cells along each axis.
     is_keyed: bool,
 }
 
@@ -47,7 +47,7 @@ const FAMILIES: [Family; 5] = [
     Family { name: "worley", code: &[WORLEY], is_keyed: false },
 ];
 
-/// The names of the sums, and their texts. `SOURCE` in them stands for the name of the source's family.
+/// The names of the sums and their texts. `SOURCE` in a text stands for the name of the source's family.
 const SUMS: [[&str; 2]; 8] = [
     ["sum", include_str!("combine/sum.wgsl")],
     ["sizes", include_str!("combine/sizes.wgsl")],
@@ -59,17 +59,17 @@ const SUMS: [[&str; 2]; 8] = [
     ["jordan", include_str!("combine/jordan.wgsl")],
 ];
 
-/// Number of the sums, from the first, whose octaves do not displace samples.
+/// Number of sums, from the first on, whose octaves do not displace samples.
 const UNDISPLACED_SUMS: usize = 6;
 
 /// The name of a function and its text.
 type Text = OnceLock<[String; 2]>;
 
-/// Those of each sum over each family, also with tables of keys: written at the first use.
+/// The texts of each sum over each family, without and with tables of keys. They are created at the first use.
 static TEXTS: [[[Text; 2]; FAMILIES.len()]; SUMS.len()] =
     [const { [const { [const { OnceLock::new() }; 2] }; FAMILIES.len()] }; SUMS.len()];
 
-/// The function of a sum over a family.
+/// The function of a sum over a family, created at the first use.
 fn text_of(sum: usize, family: usize, is_keyed: bool) -> &'static [String; 2] {
     TEXTS[sum][family][usize::from(is_keyed)].get_or_init(|| {
         let ([sum, text], name) = (SUMS[sum], FAMILIES[family].name);
@@ -84,7 +84,7 @@ fn text_of(sum: usize, family: usize, is_keyed: bool) -> &'static [String; 2] {
 }
 
 impl Program {
-    /// The noise in the plane as a function of WGSL.
+    /// The noise in the plane as a WGSL function.
     pub(crate) fn shader(&self) -> Shader {
         let (family, of_source, skew) = self.source.encoded();
         let (sum, parameters) = self.combine.encoded();
@@ -134,7 +134,7 @@ impl Program {
 }
 
 impl Source {
-    /// Index of its family, its words, and the skew of its lattice.
+    /// Index of the family, words of the source, and skew of its lattice.
     fn encoded(self) -> (usize, Vec<u32>, f64) {
         let slanted = |corners: u32, reach: f32, scale: f32, directions: u32| {
             let [reach, scale] = [reach, scale].map(f32::to_bits);
@@ -185,7 +185,7 @@ impl Source {
     }
 }
 
-/// Words at their indices, of this number.
+/// A list of `count` words with the given words at their indices.
 fn placed(words: &[(usize, u32)], count: usize) -> Vec<u32> {
     let mut placed = vec![0; count];
     words.iter().for_each(|(at, word)| placed[*at] = *word);
@@ -208,7 +208,7 @@ fn classic(variant: ClassicVariant) -> Vec<u32> {
 }
 
 impl Combine {
-    /// Index of its sum, and the sum's parameters.
+    /// Index of the sum, and its parameters.
     fn encoded(self) -> (usize, [u32; 3]) {
         let numbers = |numbers: [f32; 2]| [numbers[0].to_bits(), numbers[1].to_bits(), 0];
         match self {

@@ -1,16 +1,16 @@
-//! Phacelle noise as functions of WGSL.
+//! Phacelle noise as WGSL functions.
 
 use super::lattice::{Lattice, PLACE};
 use super::noise::HASH;
 use crate::phacelle::Phacelle;
 
-/// The parts of a text that define `fn phacelle(words: u32, x: Cell, y: Cell, direction: vec2<f32>) -> vec2<f32>`:
-/// cosine and sine of stripes along a direction, in the cell of [`Phacelle::shader_lattice`], with
-/// [`Phacelle::shader_words`] at `words`.
+/// The parts of a text that defines `fn phacelle(words: u32, x: Cell, y: Cell, direction: vec2<f32>) -> vec2<f32>`. It
+/// returns the cosine and sine of stripes along a direction. The cell is that of [`Phacelle::shader_lattice`], and
+/// `words` is the index of [`Phacelle::shader_words`].
 pub const PHACELLE: [&str; 3] = [PLACE, HASH, include_str!("phacelle.wgsl")];
 
 impl Phacelle {
-    /// The words that the function reads; without the period.
+    /// The words that the function reads. They do not include the period.
     #[doc(hidden)]
     #[must_use]
     pub fn shader_words(&self) -> Vec<u32> {
@@ -21,7 +21,7 @@ impl Phacelle {
         words
     }
 
-    /// The lattice of its cells.
+    /// The lattice of cells.
     #[doc(hidden)]
     #[must_use]
     pub fn shader_lattice(&self) -> Lattice {

@@ -1,4 +1,4 @@
-//! Numbers that noises look up.
+//! Lookup tables of noises.
 
 pub(crate) mod directions;
 pub(crate) mod reference;

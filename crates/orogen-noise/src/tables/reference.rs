@@ -1,8 +1,8 @@
-//! The permutation of Perlin's 2002 reference and the gradients its hashes stand for.
+//! The permutation of Perlin's 2002 reference, and the gradients for its hashes.
 
 use std::f32::consts::SQRT_2;
 
-/// The greatest size of the 3D reference: three ramps of equal sign meet best at (.3552566, .5185078, .5).
+/// The maximum of the 3D reference, which is reached at (.3552566, .5185078, .5), where three ramps of equal sign meet.
 pub(crate) const BOUND_3D: f64 = 1.036_354;
 
 pub(crate) const DIAGONAL_X: [f32; 8] = [1.0, -1.0, 1.0, -1.0, 1.0, 1.0, -1.0, -1.0];
@@ -16,10 +16,11 @@ pub(crate) const REFERENCE_Y: [f32; 16] =
 pub(crate) const REFERENCE_Z: [f32; 16] =
     [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0, 0.0, 1.0, 0.0, -1.0];
 
-/// The greatest size of the 4D reference: where its gradients agree best, at (.644, .482, .5, .508) in a cell.
+/// The maximum of the 4D reference, which is reached at (.644, .482, .5, .508) in a cell, where its gradients agree
+/// best.
 pub(crate) const BOUND_4D: f64 = 1.536_584;
 
-// The 32 gradients of the 4D reference: the low three bits are signs, the two above pick the axes.
+// The 32 gradients of the 4D reference. The low three bits of a hash are signs, and the next two select the axes.
 #[rustfmt::skip]
 pub(crate) static REFERENCE_4D_X: [f32; 32] = [
     1.0, 1.0, 1.0, 1.0, -1.0, -1.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0,
@@ -62,7 +63,7 @@ pub(crate) static TABLE: [u32; 256] = [
     222, 114, 67, 29, 24, 72, 243, 141, 128, 195, 78, 66, 215, 61, 156, 180,
 ];
 
-/// sqrt 2 times the sine of 256 angles; the cosine stands 64 places on.
+/// sqrt 2 times the sine of 256 angles. The cosine is 64 entries later.
 #[rustfmt::skip]
 pub(crate) static SINE: [f32; 256] = [
     0.0, 0.034706537, 0.06939217, 0.104036, 0.13861717, 0.17311484, 0.20750822, 0.24177662,

@@ -1,4 +1,4 @@
-//! Laws over every noise: the same bits at every level, in every way of asking, however it is cut.
+//! Tests of every noise: the bits are the same at every level, with every method, and for every division into calls.
 
 use crate::kernel::fill::Fill;
 use crate::kernel::outputs::Outputs;
@@ -26,7 +26,7 @@ fn axis(start: f64, cell: f64, count: usize) -> Vec<f64> {
 
 #[test]
 fn every_machine_and_every_way_of_asking_gives_the_same_bits() {
-    // Wavelengths from many samples per cell to many cells per sample; near, negative, and far places; odd sizes.
+    // From many samples per cell to many cells per sample; near, negative and far positions; odd sizes.
     let cases = [
         (10.24, 300.0, (-3.0, 2.0), (37, 11)),
         (0.1, 1.1, (-17.0, 5.0), (19, 18)),

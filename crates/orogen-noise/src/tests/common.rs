@@ -1,4 +1,4 @@
-//! What the tests share.
+//! Helpers that several tests use.
 
 use crate::program::Program;
 use crate::{
@@ -6,7 +6,7 @@ use crate::{
     Smoothness, Value, White, Worley,
 };
 
-/// The kinds of fractals but the weighted ones.
+/// All kinds of fractals except the weighted ones.
 pub(crate) const KINDS: [Kind; 8] = [
     Kind::Fbm,
     Kind::Ridged,
@@ -18,7 +18,7 @@ pub(crate) const KINDS: [Kind; 8] = [
     Kind::Jordan { warp: 0.35, damp: 0.8 },
 ];
 
-/// Random numbers for positions: splitmix64.
+/// Random numbers for positions (splitmix64).
 pub(crate) struct Rng(pub u64);
 
 impl Rng {
@@ -26,13 +26,13 @@ impl Rng {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         crate::seed::mix64(self.0)
     }
-    /// Between two numbers.
+    /// A random number between two others.
     pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * ((self.word() >> 11) as f64 / 9_007_199_254_740_992.0)
     }
 }
 
-/// Every basis and every way to sum, in so many dimensions.
+/// Every basis and every combination of octaves, in `dims` dimensions.
 pub(crate) fn programs(wavelength: f64, dims: usize) -> Vec<(String, Program)> {
     let mut list = Vec::new();
     let mut add = |name: String, program: Program| list.push((name, program));

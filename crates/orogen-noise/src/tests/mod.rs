@@ -1,4 +1,4 @@
-//! Tests that look inside.
+//! Tests that need private items.
 
 mod bits;
 mod common;

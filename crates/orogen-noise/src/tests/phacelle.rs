@@ -1,4 +1,4 @@
-//! Phacelle noise against a twin in f64, and its laws; domain warps.
+//! Tests of Phacelle noise, with a reference implementation in f64, and of domain warps.
 
 use crate::program::Source;
 use crate::tests::common::Rng;
@@ -6,7 +6,7 @@ use crate::tests::twins::hash;
 use crate::{Basis, LengthMismatch, Level, Phacelle, Points, Warp, WarpKind};
 use std::f64::consts::TAU;
 
-/// Cosine and sine as documented: with every pivot within reach, not only those that are looked at.
+/// Cosine and sine as documented, with every pivot within reach, not only those that the kernel reads.
 fn twin(noise: &Phacelle, at: [f64; 2], way: [f64; 2]) -> [f64; 2] {
     let program = crate::program::Program::single(Source::Perlin, noise.seed, noise.wavelength * noise.cell);
     let octave = &program.all[0];
@@ -71,7 +71,7 @@ fn stripes_run_along_the_direction_and_average_out() {
     assert!(
         values.iter().all(|x| x.abs() <= 1.0) && values.iter().any(|x| *x > 0.99) && values.iter().any(|x| *x < -0.99)
     );
-    // A step along the stripes changes far less than one across.
+    // A step along the stripes changes the value much less than a step across them.
     let change = |angle: f64| -> f64 {
         let (sin, cos) = (libm::sin(angle.to_radians()), libm::cos(angle.to_radians()));
         let mut rng = Rng(2);
@@ -137,7 +137,7 @@ fn warps_are_the_same_however_they_are_asked_and_keep_their_reach() {
             assert!(kind == WarpKind::Gradient || found[0] != found[1], "{warp:?}");
         }
     }
-    // A single octave has nothing to progress from; none at all moves nothing.
+    // Without octaves there is no displacement.
     let still = Warp { octaves: 0, kind: WarpKind::Progressive, strength: f64::NAN, ..Default::default() };
     let (mut dx, mut dy) = (vec![1.0; n], vec![1.0; n]);
     still.displace(&lattice, &mut dx, &mut dy).unwrap();

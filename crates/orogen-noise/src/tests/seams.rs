@@ -1,4 +1,5 @@
-//! Noise that repeats: both sides of every seam are equal to the bit, and what cannot repeat says so.
+//! Tests of repeating noise: both sides of every seam have the same bits, and noise that cannot repeat returns an
+//! error.
 
 use crate::{Basis, Classic, Depth, Falloff, Fractal, Kind, Perlin, Points, TileError, Tiled, Value, White};
 
@@ -22,7 +23,7 @@ fn noises(wavelength: f64) -> Vec<(String, Tiled)> {
     list
 }
 
-/// Values and slopes of a whole window, as bits.
+/// Values and slopes of a window, as bits.
 fn bits(noise: &Tiled, xs: &[f64], ys: &[f64], z: Option<f64>) -> Vec<[u32; 4]> {
     let points = Points::Lattice { xs, ys };
     let mut out = [0; 4].map(|_| vec![0.0_f32; points.len()]);
@@ -38,7 +39,7 @@ fn bits(noise: &Tiled, xs: &[f64], ys: &[f64], z: Option<f64>) -> Vec<[u32; 4]> 
 fn seams_are_equal_to_the_bit() {
     for wavelength in [12.8, 100.0, 7.3, 1.0 / 3.0] {
         for (name, noise) in noises(wavelength) {
-            // Sample counts that divide nothing; windows before, on and after the origin.
+            // Numbers of samples that divide nothing, and windows before, on and after the origin.
             let side = |axis: usize, count: usize, turn: i32| -> Vec<f64> {
                 let cell = f64::from(PERIOD[axis]) * wavelength / count as f64;
                 (0..count as i32).map(|i| f64::from(i + turn * count as i32) * cell).collect()
@@ -69,7 +70,7 @@ fn an_axis_may_stay_endless_and_no_period_changes_nothing() {
     assert_ne!(ring.sample(3.0, 5.0), ring.sample(3.0, 37.0));
     let fractal = Fractal { wavelength: 9.0, ..Default::default() };
     assert_eq!(fractal.tiled([0; 3]).unwrap().sample3(1.0, 2.0, 3.0), fractal.sample3(1.0, 2.0, 3.0));
-    // The whole numbers of cells are what counts, not how they come about.
+    // Only the integer numbers of cells matter, not how they come about.
     assert!(Fractal { lacunarity: 1.5, octaves: 3, ..fractal }.tiled([4, 8, 12]).is_ok());
     assert!(Fractal { wavelength: 0.0, ..fractal }.tiled([4, 8, 12]).is_ok());
 }
@@ -86,7 +87,7 @@ fn what_cannot_repeat_says_where() {
     assert_eq!(error, TileError::Octave { octave: 1, axis: 0, cells: 0.5 });
     let error = Fractal { basis: Basis::Simplex, ..fractal }.tiled([2, 2]).unwrap_err();
     assert_eq!(error, TileError::Slanted);
-    // Octaves that are constants repeat as they are.
+    // Constant octaves repeat without a change.
     assert!(Fractal { lacunarity: f64::NAN, ..fractal }.tiled([2; 3]).is_ok());
     assert!(Perlin::default().tiled([u32::MAX, 1, 1]).is_err());
 }

@@ -1,5 +1,5 @@
-//! Independence of lattice points, chunks, and what is told of wrong lengths. (Statistics of what a user sees:
-//! tests/suite/statistics.rs.)
+//! Tests of the independence of lattice points, of chunks, and of errors for wrong lengths. Statistics of the public
+//! API are in tests/suite/statistics.rs.
 
 use crate::{Basis, Depth, Falloff, Fractal, Kind, LengthMismatch, Perlin, Points, White};
 
@@ -18,7 +18,7 @@ fn correlation(a: &[f32], b: &[f32]) -> f64 {
 
 #[test]
 fn neighbors_on_the_lattice_are_strangers() {
-    // One sample per cell: along, across, diagonal, mirrored.
+    // One sample per cell, compared along, across, diagonally and mirrored.
     let side = 500;
     let at = axis(0.5, 1.0, side);
     let mut white = vec![0.0; side * side];
@@ -29,7 +29,7 @@ fn neighbors_on_the_lattice_are_strangers() {
             (0..n).map(|k| white[(k / (side - dx) + oy) * side + k % (side - dx) + ox]).collect()
         };
         let found = correlation(&pick(0, 0), &pick(dx, dy));
-        // Three standard deviations of unrelated numbers.
+        // Four standard deviations of unrelated numbers.
         assert!(found.abs() < 4.0 / (n as f64).sqrt(), "({dx}, {dy}): {found}");
     }
     let mirrored: Vec<f32> = (0..side * side).map(|k| white[k % side * side + k / side]).collect();

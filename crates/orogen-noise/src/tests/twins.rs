@@ -1,4 +1,5 @@
-//! Twins of every noise in f64, written the textbook way: values against them, gradients against their differences.
+//! Reference implementations of every noise in f64, as in textbooks. Values are compared with them, and gradients with
+//! differences of values.
 
 use crate::program::{Combine, Octave, Program, Shape, Source};
 use crate::tables::directions;
@@ -14,7 +15,7 @@ fn quintic(t: f64) -> f64 {
     t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
 }
 
-/// `ImprovedNoise.noise` of the 2002 reference, operation by operation.
+/// `ImprovedNoise.noise` of the 2002 reference, with the same operations.
 fn improved_noise(x: f64, y: f64, z: f64) -> f64 {
     let p = |i: i64| i64::from(TABLE[(i & 255) as usize]);
     let grad = |hash: i64, x: f64, y: f64, z: f64| {
@@ -50,10 +51,10 @@ fn improved_noise(x: f64, y: f64, z: f64) -> f64 {
     )
 }
 
-/// Published values of the 2002 reference, as independent ports of it test themselves. The first is Rosetta Code's
-/// ("Perlin noise"), which most ports use; those up to the origin are from ports to Zig (one of them gives the places
-/// of the first two at z = 0, where the sign of the second turns). Of negative places, and of places beyond the table's
-/// 256 entries, there is one each.
+/// Published values of the 2002 reference, which are tests of independent ports. The first is from Rosetta Code
+/// ("Perlin noise"), and most ports use it. The values up to the origin are from ports to Zig; one of them has the
+/// positions of the first two at z = 0, where the sign of the second one changes. There is one value at a negative
+/// position, and one beyond the 256 entries of the table.
 const PUBLISHED: [([f64; 3], f64); 9] = [
     #[allow(clippy::approx_constant)] // no pi: the place of the published value
     ([3.14, 42.0, 7.0], 0.136_919_958_784_000_12),
@@ -68,7 +69,7 @@ const PUBLISHED: [([f64; 3], f64); 9] = [
     ([-1.0, -1.0, -1.0], 0.0),
 ];
 
-/// The same along the diagonal x = y = z, from a port to Java that rounds places to f32 first.
+/// Published values along the diagonal x = y = z, from a port to Java that first rounds positions to f32.
 const PUBLISHED_DIAGONAL: [(f32, f64); 11] = [
     (0.1, 0.186_160_716_667_925_97),
     (0.5, -0.25),
@@ -102,7 +103,7 @@ fn the_reference_values_are_met() {
     }
 }
 
-/// The hash of a lattice point with as many cells as there are dimensions.
+/// The hash of a lattice point. `cells` has an entry for each dimension.
 pub(crate) fn hash(source: Source, octave: &Octave, cells: &[f64]) -> u32 {
     if let Source::Classic(_) = source {
         let step = |sum: u32, (cell, words): (&f64, &[u32; 2])| {
@@ -119,7 +120,7 @@ pub(crate) fn hash(source: Source, octave: &Octave, cells: &[f64]) -> u32 {
     (joined ^ joined >> 15).wrapping_mul(0xADB4_A92D)
 }
 
-/// What a lattice point contributes at an offset from it.
+/// The contribution of a lattice point at an offset from it.
 fn corner(source: Source, octave: &Octave, cells: &[f64], from: &[f64]) -> f64 {
     let hash = hash(source, octave, cells);
     let dot = |gradient: &[f64]| gradient.iter().zip(from).map(|(g, d)| g * d).sum::<f64>();
@@ -157,10 +158,10 @@ fn corner(source: Source, octave: &Octave, cells: &[f64], from: &[f64]) -> f64 {
             }
         }
         Source::Simplex => corner(Source::Perlin, octave, cells, from),
-        // These have a twin of their own.
+        // These have a separate reference implementation.
         Source::Worley(_) => 0.0,
         Source::Classic(_) if from.len() == 4 => {
-            // As the 4D reference has it.
+            // As in the 4D reference.
             let axes = [[0, 1, 2], [3, 0, 1], [2, 3, 0], [1, 2, 3]][(hash >> 3 & 3) as usize];
             (0..3).map(|k| if hash >> (2 - k) & 1 == 0 { from[axes[k]] } else { -from[axes[k]] }).sum()
         }
@@ -173,7 +174,7 @@ fn corner(source: Source, octave: &Octave, cells: &[f64], from: &[f64]) -> f64 {
             dot(&[libm::cos(angle), libm::sin(angle)]) * std::f64::consts::SQRT_2
         }
         Source::Classic(ClassicVariant::Diagonal) => {
-            // As ports of the reference have it: u and v are x and y, or swapped, each with a sign.
+            // As in ports of the reference: u and v are x and y, or swapped, each with a sign.
             let (u, v) = if hash & 7 < 4 { (from[0], from[1]) } else { (from[1], from[0]) };
             (if hash & 1 == 0 { u } else { -u }) + (if hash & 2 == 0 { v } else { -v })
         }
@@ -183,7 +184,7 @@ fn corner(source: Source, octave: &Octave, cells: &[f64], from: &[f64]) -> f64 {
     }
 }
 
-/// Noise on corners of simplices, the slow way: every corner of a lattice that may reach.
+/// Noise on corners of simplices, computed slowly with every corner of a lattice that may contribute.
 fn corners_at(source: Source, octave: &Octave, at: &[f64]) -> f64 {
     let n = at.len();
     let smooth = matches!(source, Source::OpenSimplex2(Smoothness::Smooth));
@@ -194,8 +195,8 @@ fn corners_at(source: Source, octave: &Octave, at: &[f64]) -> f64 {
         _ => [99.836_6, 108.291_0, 96.463_1],
     }[n - 2];
     let cubes = n == 3 && !matches!(source, Source::Simplex);
-    // The lattices: where the sample is in each, how far a step along all axes is taken back, and what tells them
-    // apart.
+    // For each lattice: the position of the sample in it, the length that is subtracted for a step along all axes, and
+    // the salt that distinguishes the lattices.
     let lattices: Vec<(Vec<f64>, f64, u32)> = if cubes {
         let third = 1.0 / libm::sqrt(3.0);
         let both = (at[0] + at[1]) * (third - 1.0) / 2.0 + at[2] * third;
@@ -216,7 +217,7 @@ fn corners_at(source: Source, octave: &Octave, at: &[f64]) -> f64 {
             let way: Vec<f64> = way.iter().map(|x| x - back).collect();
             let left = reach - way.iter().map(|x| x * x).sum::<f64>();
             if left > 0.0 {
-                // The second lattice of cubes has the same keys but for these bits.
+                // The second lattice of cubes has the same keys, except for these bits.
                 let mut octave = *octave;
                 let hashed = if salt == 0 { cells.clone() } else { salted(&mut octave, &cells, salt) };
                 sum += left * left * left * left * corner(source, &octave, &hashed, &way);
@@ -226,7 +227,8 @@ fn corners_at(source: Source, octave: &Octave, at: &[f64]) -> f64 {
     sum * scale
 }
 
-/// An octave and cells whose joined keys are those of the given ones, xor the salt: along x the key is made to be so.
+/// An octave and cells whose combined keys equal those of the given ones xor the salt. The key along x is chosen
+/// accordingly.
 fn salted(octave: &mut Octave, cells: &[f64], salt: u32) -> Vec<f64> {
     let key = |words: &[u32; 2], cell: f64| {
         let bits = (cell + 6_755_399_441_055_744.0).to_bits();
@@ -235,7 +237,7 @@ fn salted(octave: &mut Octave, cells: &[f64], salt: u32) -> Vec<f64> {
         (first, high, (first ^ first >> 15 ^ high ^ words[1]).wrapping_mul(0x93D7_65DD))
     };
     let (first, high, wanted) = key(&octave.words[0], cells[0]);
-    // The last multiplication undone: the inverse of an odd number modulo 2^32, by Newton.
+    // Reverts the last multiplication with the inverse of an odd number modulo 2^32, by Newton's method.
     let mut inverse = 0x93D7_65DD_u32;
     for _ in 0..5 {
         inverse = inverse.wrapping_mul(2_u32.wrapping_sub(0x93D7_65DD_u32.wrapping_mul(inverse)));
@@ -244,7 +246,7 @@ fn salted(octave: &mut Octave, cells: &[f64], salt: u32) -> Vec<f64> {
     cells.to_vec()
 }
 
-/// One octave, without its amplitude, at cell coordinates.
+/// One octave without its amplitude, at coordinates in cells.
 fn octave_at(source: Source, octave: &Octave, at: &[f64]) -> f64 {
     if matches!(source, Source::Simplex | Source::OpenSimplex2(_)) {
         return corners_at(source, octave, at);
@@ -271,7 +273,7 @@ fn octave_at(source: Source, octave: &Octave, at: &[f64]) -> f64 {
     sum
 }
 
-/// A whole program at a position in metres.
+/// The value of a whole program at a position in metres.
 fn twin(program: &Program, position: &[f64]) -> f64 {
     let coordinates = |octave: &Octave| -> Vec<f64> {
         position.iter().zip(octave.offset).map(|(x, offset)| x * octave.frequency + offset).collect()
@@ -309,7 +311,7 @@ fn twin(program: &Program, position: &[f64]) -> f64 {
     }
 }
 
-/// The shapes, as [`crate::Kind`] states them.
+/// The shapes as documented in [`crate::Kind`].
 fn shaped(program: &Program, shape: Shape, scale: f64, coordinates: &dyn Fn(&Octave) -> Vec<f64>) -> f64 {
     let (mut h, mut w, mut d) = (0.0_f64, 1.0_f64, [0.0; 4]);
     for octave in program.octaves() {
@@ -394,7 +396,7 @@ fn values_and_gradients_are_those_of_the_twins() {
                 let position = &position[..dims];
                 let expected = twin(&program, position);
                 let tolerance = match () {
-                    // Places moved by slopes, which are f32 and steep.
+                    // Positions are displaced by slopes, which are f32 and steep.
                     () if program.combine.moves() => 1e-4,
                     () if weighted || creased || !program.source.low_rank() => 3e-6,
                     () => 1e-6,
@@ -404,7 +406,8 @@ fn values_and_gradients_are_those_of_the_twins() {
                     "{name} at {position:?}: {} is not {expected}",
                     out[0][k]
                 );
-                // A crease within the step has no slope to compare with; nor has the edge of a step or linear fade.
+                // There is no slope to compare with if a crease is within the step, or at the edge of a step or linear
+                // fade.
                 let fade_edge = matches!(program.source, Source::Value(Fade::Step | Fade::Linear));
                 if weighted || fade_edge {
                     continue;
@@ -460,8 +463,8 @@ fn the_weighted_gradient_without_weights_is_the_plain_one() {
     }
 }
 
-/// The greatest value a gradient noise reaches with gradients chosen at will, by search on a fine grid and ever finer
-/// ones around the best place: the sum over the corners of each one's best.
+/// The maximum of a gradient noise whose gradients can be chosen freely: the sum of the maxima of the corners. It is
+/// found by search on a fine grid, and on finer and finer grids around the best position.
 fn supremum(gradients: &[Vec<f64>]) -> f64 {
     let axes = gradients[0].len();
     let value = |at: &[f64]| {

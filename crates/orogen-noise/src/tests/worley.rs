@@ -1,4 +1,4 @@
-//! Cellular noise against a search that looks everywhere, in f64; and its bounds.
+//! Tests of cellular noise against an exhaustive search in f64, and of its bounds.
 
 use crate::program::{Cellular, Octave, Source};
 use crate::tests::common::Rng;
@@ -18,7 +18,7 @@ fn measure(distance: Distance, way: &[f64]) -> f64 {
     }
 }
 
-/// Every cell whose offset along each axis is at most `radius`.
+/// Every offset of at most `radius` along each axis.
 fn window(axes: usize, radius: i32) -> Vec<Vec<f64>> {
     let side = 2 * radius + 1;
     (0..side.pow(axes as u32))
@@ -26,7 +26,7 @@ fn window(axes: usize, radius: i32) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// The way to the point of a cell from a place in cell coordinates, and the cell's hash.
+/// The vector from a position in cell coordinates to the point of a cell, and the hash of the cell.
 fn site(octave: &Octave, jitter: f64, at: &[f64], offset: &[f64]) -> (Vec<f64>, u32) {
     let cell: Vec<f64> = at.iter().zip(offset).map(|(u, o)| u.floor() + o).collect();
     let first = hash(Source::Perlin, octave, &cell);
@@ -37,7 +37,7 @@ fn site(octave: &Octave, jitter: f64, at: &[f64], offset: &[f64]) -> (Vec<f64>, 
     ((0..at.len()).map(|axis| cell[axis] + place(axis) - at[axis]).collect(), first)
 }
 
-/// The noise, and how clear the nearest point's lead is.
+/// The noise, and the difference between the nearest two distances.
 fn twin(octave: &Octave, cellular: Cellular, at: &[f64]) -> (f64, f64) {
     let sites: Vec<(Vec<f64>, u32)> =
         window(at.len(), 4).iter().map(|o| site(octave, f64::from(cellular.jitter), at, o)).collect();
@@ -110,7 +110,8 @@ fn the_stated_bounds_are_the_true_ones() {
     for axes in 2..=4 {
         for distance in DISTANCES {
             let (mut first, mut second, mut product) = (0.0_f64, 0.0_f64, 0.0_f64);
-            // From every place of a cell: with each point as far away as it can be, how far the nearest two are.
+            // For all positions in a cell: the distances to the nearest two points if each point is as far away as
+            // possible.
             let steps = [40_i32, 12, 4][axes - 2];
             for k in 0..(steps + 1).pow(axes as u32) {
                 let at: Vec<f64> = (0..axes)

@@ -1,6 +1,6 @@
-//! The bits of every noise, as hashes in a file. A change here changes every terrain made from the noise.
+//! The bits of every noise, as hashes in a file. A change of a hash changes every terrain that uses the noise.
 //!
-//! `OROGEN_BLESS=1 cargo test -p orogen-noise --test suite goldens` writes the file anew.
+//! `OROGEN_BLESS=1 cargo test -p orogen-noise --test suite goldens` rewrites the file.
 
 use crate::noises::at_each_level;
 use orogen_noise::{
@@ -18,7 +18,7 @@ fn hash(values: &[f32]) -> u64 {
         .fold(0xCBF2_9CE4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3))
 }
 
-/// Value and gradient, in the plane and in space, of a window that crosses the origin and of one far away.
+/// Hashes of value and gradient, in the plane and in space, for a window that crosses the origin and a window far away.
 macro_rules! golden {
     ($list:expr, $name:expr, $noise:expr) => {{
         let noise = $noise;
@@ -37,7 +37,7 @@ macro_rules! golden {
     }};
 }
 
-/// The same of a noise without slopes.
+/// The same hashes for a noise without slopes.
 macro_rules! golden_values {
     ($list:expr, $name:expr, $noise:expr) => {{
         let noise = $noise;
@@ -56,7 +56,7 @@ macro_rules! golden_values {
     }};
 }
 
-/// The same in four dimensions.
+/// The same hashes in four dimensions.
 macro_rules! golden_time {
     ($list:expr, $name:expr, $noise:expr) => {{
         let noise = $noise;
@@ -130,7 +130,7 @@ fn goldens() -> Vec<String> {
     list
 }
 
-/// Whether the tests write what they would compare: `OROGEN_BLESS=1`.
+/// Whether the tests write the file instead of comparing with it (`OROGEN_BLESS=1`).
 fn bless() -> bool {
     let value = std::env::var_os("OROGEN_BLESS");
     assert!(

@@ -1,4 +1,4 @@
-//! Tests of the noises as a program uses them.
+//! Tests of the public API of noises.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
 mod goldens;

@@ -1,5 +1,4 @@
-//! The one list of noises for the tests that ask as a user asks: a new basis, kind, feature or distance joins every law
-//! by being here.
+//! The list of noises for all tests of the public API. To test a new basis, kind, feature or distance, add it here.
 
 use orogen_noise::{
     Basis, Classic, ClassicVariant, Depth, Distance, Fade, Falloff, Feature, Fractal, Kind, LengthMismatch, Level,
@@ -10,43 +9,43 @@ use std::sync::{Mutex, PoisonError};
 /// Values, then slopes along x, y and z.
 pub type Columns = [Vec<f32>; 4];
 
-/// What a noise is asked.
+/// The arguments of an evaluation.
 pub struct Ask<'a> {
     pub points: Points<'a>,
-    /// None in the plane.
+    /// The depth; `None` in the plane.
     pub depth: Option<Depth<'a>>,
-    /// Whether slopes are wanted too.
+    /// Whether slopes are requested.
     pub slopes: bool,
 }
 
 type Fill = Box<dyn Fn(&Ask, &mut Columns) -> Result<(), LengthMismatch>>;
 
-/// What its documentation says of a noise's slopes.
+/// The accuracy of a noise's slopes according to its documentation.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Slope {
-    /// There is none: zero, or not offered.
+    /// Zero, or not available.
     Flat,
     /// Exact.
     Exact,
-    /// Exact but on creases.
+    /// Exact except on creases.
     Creased,
-    /// Part of it is left out.
+    /// Incomplete.
     Approximate,
 }
 
-/// A noise that can be asked anything.
+/// A noise that can be evaluated with any arguments.
 pub struct Noise {
     pub name: String,
     pub slope: Slope,
     /// Whether its mean is zero.
     pub centered: bool,
-    /// Whether it offers slopes.
+    /// Whether the noise has methods that return slopes.
     offers_slopes: bool,
     fill: Fill,
 }
 
 impl Noise {
-    /// Answers, in columns of the points' length; those that were not asked for are empty.
+    /// The results, with columns as long as the points. Columns that were not requested are empty.
     pub fn ask(&self, ask: &Ask) -> Result<Columns, LengthMismatch> {
         let count = ask.points.len();
         let slopes = if ask.slopes && self.offers_slopes { count } else { 0 };
@@ -56,7 +55,7 @@ impl Noise {
         Ok(out)
     }
 
-    /// The greatest size of its values in the plane and in space, as documented.
+    /// The maximum absolute values in the plane and in space, as documented.
     pub fn bounds(&self) -> [f32; 2] {
         [1.0, if self.name.starts_with("classic ") { 1.036_36 } else { 1.0 }]
     }
@@ -72,7 +71,7 @@ fn bits(columns: &Columns) -> [Vec<u32>; 4] {
     columns.each_ref().map(|column| column.iter().map(|x| x.to_bits()).collect())
 }
 
-/// Whether two answers agree in every bit of every column that both have.
+/// Whether two results have the same bits in every column that both have.
 pub fn same_bits(a: &Columns, b: &Columns) -> bool {
     bits(a).iter().zip(&bits(b)).all(|(a, b)| a.is_empty() || b.is_empty() || a == b)
 }
@@ -102,7 +101,7 @@ macro_rules! flat {
 }
 
 fn noise(name: impl Into<String>, slope: Slope, (offers_slopes, fill): (bool, Fill)) -> Noise {
-    // One-sided are what counts sizes or distances.
+    // Noises that count absolute values or distances are one-sided.
     Noise { name: name.into(), slope, centered: true, offers_slopes, fill }
 }
 
@@ -123,7 +122,7 @@ fn slope_of(basis: Basis, kind: Kind) -> Slope {
     }
 }
 
-/// Every basis by itself: a fractal of one octave, which moves its lattice and divides by its bound.
+/// Every basis as a fractal of one octave, which displaces its lattice and divides by its bound.
 pub fn bases(seed: u64, wavelength: f64) -> Vec<Noise> {
     let one = |&basis: &Basis| {
         let fractal = Fractal::new(seed, wavelength).with_basis(basis).with_octaves(1);
@@ -134,7 +133,7 @@ pub fn bases(seed: u64, wavelength: f64) -> Vec<Noise> {
 
 const FALLOFFS: [Falloff; 4] = [Falloff::Reciprocal, Falloff::Exponential, Falloff::SquareRoot, Falloff::Smoothstep];
 
-/// Every way to sum octaves, with one set of usual parameters each.
+/// Every combination of octaves, each with one set of typical parameters.
 pub fn kinds() -> Vec<Kind> {
     let weighted = FALLOFFS.map(|falloff| Kind::Weighted { k: 1.5, falloff });
     let plain = [
@@ -150,7 +149,7 @@ pub fn kinds() -> Vec<Kind> {
     plain.into_iter().chain(weighted).collect()
 }
 
-/// Weighted fractals of every falloff.
+/// Weighted fractals with every falloff.
 pub fn damped(k: f64, like: Fractal) -> Vec<Noise> {
     let one = |&falloff: &Falloff| {
         let fractal = like.with_kind(Kind::Weighted { k, falloff });
@@ -159,7 +158,7 @@ pub fn damped(k: f64, like: Fractal) -> Vec<Noise> {
     FALLOFFS.iter().map(one).collect()
 }
 
-/// Fractals: plain sums over every basis, every other kind over two of them.
+/// Fractals: plain sums over every basis, and every other kind over two bases.
 pub fn fractals(like: Fractal) -> Vec<Noise> {
     let mut list = Vec::new();
     for kind in kinds() {
@@ -176,7 +175,7 @@ pub fn fractals(like: Fractal) -> Vec<Noise> {
     list
 }
 
-/// What stands for itself and is no basis: lattices on the origin, other fades, cells.
+/// Single noises that are not a basis: lattices at the origin, other fades, cells.
 pub fn singles(seed: u64, wavelength: f64) -> Vec<Noise> {
     let mut list = vec![
         noise("white noise", Slope::Flat, sloped!(White::new(seed, wavelength))),
@@ -222,7 +221,7 @@ pub fn tiled(seed: u64, wavelength: f64) -> Vec<Noise> {
     ]
 }
 
-/// All that never repeat.
+/// All noises that never repeat.
 pub fn endless(seed: u64, wavelength: f64) -> Vec<Noise> {
     let fractal = Fractal::new(seed, wavelength).with_octaves(4).with_lacunarity(1.9).with_gain(0.6);
     let mut list = bases(seed, wavelength);
@@ -231,14 +230,14 @@ pub fn endless(seed: u64, wavelength: f64) -> Vec<Noise> {
     list
 }
 
-/// All of them.
+/// All noises.
 pub fn all(seed: u64, wavelength: f64) -> Vec<Noise> {
     let mut list = endless(seed, wavelength);
     list.extend(tiled(seed, wavelength));
     list
 }
 
-/// Runs `law` once per level, while no other law of the process forces one.
+/// Runs `law` once per level. Only one such test can force a level at a time.
 pub fn at_each_level(mut law: impl FnMut(Level)) {
     static TURN: Mutex<()> = Mutex::new(());
     let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);

@@ -1,9 +1,9 @@
-//! Odd arguments: every level and every way of asking gives finite numbers within the bounds, or says what is wrong.
+//! Odd arguments: every level and every method returns finite numbers within the bounds, or an error.
 
 use crate::noises::{Ask, Columns, Noise, all, at_each_level, damped, fractals, same_bits};
 use orogen_noise::{Depth, Fractal, LengthMismatch, MAX_OCTAVES, Points};
 
-/// Positions no map has.
+/// Positions that do not occur on maps.
 const PLACES: [f64; 12] = [
     f64::NAN,
     f64::INFINITY,
@@ -19,7 +19,7 @@ const PLACES: [f64; 12] = [
     -0.0,
 ];
 
-/// Wavelengths no map has, and one it has.
+/// Wavelengths that do not occur on maps, and one that does.
 const WAVELENGTHS: [f64; 13] =
     [0.0, -0.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 5e-324, 1e-300, 3e-39, -1e-30, 1e300, f64::MAX, -7.0, 1.0];
 
@@ -30,15 +30,15 @@ fn sound(noise: &Noise, columns: &Columns, what: &str) {
     assert!(slopes.iter().flatten().all(|x| x.is_finite()), "{name}, {what}: slopes {slopes:?}");
 }
 
-/// Asks for all pairs of odd places in every way, and looks at each answer.
+/// Evaluates all pairs of odd positions with every method, and checks each result.
 fn ask_everywhere(noise: &Noise, what: &str) -> Columns {
-    // Every place along x meets every kind of place along y.
+    // Every position along x is combined with every kind of position along y.
     let (xs, ys) = (&PLACES, &PLACES[..7]);
     let lattice = Points::Lattice { xs, ys };
     let n = lattice.len();
     let (x, y): (Vec<f64>, Vec<f64>) = (0..n).map(|k| lattice.position(k).unwrap()).unzip();
     let z: Vec<f64> = (0..n).map(|k| PLACES[(k * 7 + k / 5) % PLACES.len()]).collect();
-    // Displacements may be odd as well.
+    // Displacements can be odd, too.
     let odd32 = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::MIN, 1e-40, -0.0];
     let shift: Vec<f32> = (0..n).map(|k| odd32[k * 3 % odd32.len()]).collect();
     let displaced = Points::Displaced { xs, ys, dx: &shift, dy: &shift };
@@ -62,7 +62,7 @@ fn ask_everywhere(noise: &Noise, what: &str) -> Columns {
     all
 }
 
-/// The answers must be sound, and the same at every level.
+/// Checks that the results are valid, and the same at every level.
 fn hold(noises: impl Fn() -> Vec<(Noise, String)>) {
     let mut expected: Vec<Columns> = Vec::new();
     at_each_level(|level| {

@@ -1,4 +1,4 @@
-//! Paths that are taken where there are many points in few cells give the bits of those that are taken anywhere.
+//! Code paths for many points in few cells give the same bits as the general code paths.
 
 use crate::noises::at_each_level;
 use orogen_noise::{
@@ -28,12 +28,12 @@ fn bits(noise: &(String, Fill), points: &Points, z: Option<f64>) -> Vec<u32> {
     out.into_iter().map(f32::to_bits).collect()
 }
 
-/// The points a few at a time: too few for tables.
+/// Evaluates only a few points at a time, too few for tables.
 fn few(noise: &(String, Fill), x: &[f64], y: &[f64], z: Option<f64>) -> Vec<u32> {
     x.chunks(97).zip(y.chunks(97)).flat_map(|(x, y)| bits(noise, &Points::Scattered { x, y }, z)).collect()
 }
 
-/// Numbers from 0 to 1 in no order.
+/// Random numbers from 0 to 1.
 fn random(state: &mut u64) -> f64 {
     *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
     (*state >> 11) as f64 / (1_u64 << 53) as f64
@@ -42,7 +42,8 @@ fn random(state: &mut u64) -> f64 {
 #[test]
 fn many_scattered_points_have_the_bits_of_few() {
     let mut state = 7;
-    // The middle of the points, in cells, and how many cells they cover; every how manieth is elsewhere, and where.
+    // The center of the points in cells, the number of cells that they cover, the interval of points that are
+    // elsewhere, and where these are.
     let places = [
         ((0.0, 0.0), 1.0, 0, 0.0),
         ((0.3, -0.2), 14.9, 0, 0.0),
@@ -59,7 +60,7 @@ fn many_scattered_points_have_the_bits_of_few() {
         .map(|&((x, y), wide, every, elsewhere)| {
             (0..2731_usize)
                 .map(|i| {
-                    // Later points lie some cells on; some lie on corners of the lattice.
+                    // Later points are some cells away, and some points are on corners of the lattice.
                     let on = if i > 1500 { 20.0 } else { 0.0 };
                     let mut at = [x + on, y].map(|middle| middle + (random(&mut state) - 0.5) * wide);
                     if i % 29 == 0 {
@@ -102,7 +103,7 @@ fn points_around_an_origin_are_near_the_exact_ones() {
     let mut state = 9;
     let origins =
         [(0.0, 0.0), (-50.3, 70.9), (2e9 + 0.3, -4e9), (3.7 * 4_294_967_295.5, -3.7 * 4_294_967_296.5), (1e15, 1e15)];
-    // How many wavelengths points are apart, and every how manieth is far away.
+    // The distance between points in wavelengths, and the interval of points that are far away.
     for (wide, every) in [(0.5, 0), (13.0, 0), (12.0, 700), (300.0, 0)] {
         let (x, y): (Vec<f32>, Vec<f32>) = (0..2731_usize)
             .map(|i| {
@@ -126,7 +127,7 @@ fn points_around_an_origin_are_near_the_exact_ones() {
                 } else {
                     assert!(found == expected, "{level}, {origin:?}, {wide}");
                 }
-                // Far out the exact ones, too, are as exact as their positions.
+                // Far away, the results of the exact method are also only as exact as their positions.
                 let allowed = 4.0 * (wide * 90.0 / 16_777_216.0 + (origin.0 / 3.7 * f64::EPSILON).abs()) + 1e-6;
                 for (k, found) in whole.iter().enumerate() {
                     let exact = noise.sample(origin.0 + f64::from(x[k]), origin.1 + f64::from(y[k]));
@@ -135,7 +136,7 @@ fn points_around_an_origin_are_near_the_exact_ones() {
             });
         }
     }
-    // Whatever is asked, there is an answer.
+    // Any arguments give a result.
     let odd = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, 1e12, -1e12, 0.0, -0.0];
     for (wavelength, origin) in
         [(1.0, (f64::NAN, f64::INFINITY)), (0.0, (1.0, 2.0)), (1e-300, (0.0, 1e300)), (-2.0, (1e18, -1e18))]

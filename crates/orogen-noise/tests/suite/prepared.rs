@@ -1,4 +1,4 @@
-//! Prepared noises return the bits of the direct ones.
+//! Prepared noises return the same bits as direct ones.
 
 use orogen_noise::{
     Basis, Classic, Depth, Fade, Feature, Fractal, Kind, OpenSimplex2, Perlin, Points, Prepared, Simplex, Smoothness,
@@ -8,7 +8,7 @@ use orogen_noise::{
 const XS: [f64; 9] = [-310.0, -3.5, 0.0, 1.25, 17.0, 40.0, 90.0, 1e6, -2e9];
 const YS: [f64; 4] = [-77.0, 0.0, 3.25, 5e5];
 
-/// Values in two, three and four dimensions: on a lattice, at scattered points, at single points.
+/// Values in two, three and four dimensions: on a lattice, at scattered points, and at single points.
 macro_rules! values {
     ($noise:expr) => {{
         let (noise, lattice) = (&$noise, Points::Lattice { xs: &XS, ys: &YS });

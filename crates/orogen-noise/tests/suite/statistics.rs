@@ -1,13 +1,13 @@
-//! Numbers over many samples, for every noise there is: mean and range, independence of seeds, sameness in all
-//! directions, slopes, smoothness far away.
+//! Statistics over many samples of every noise: mean and range, independence of seeds, isotropy, slopes, and smoothness
+//! far away.
 //!
-//! `cargo test --release -p orogen-noise --test suite statistics -- --ignored --nocapture` takes a hundred times the
+//! `cargo test --release -p orogen-noise --test suite statistics -- --ignored --nocapture` uses a hundred times as many
 //! samples.
 
 use crate::noises::{Ask, Noise, Slope, bases, endless, fractals, singles};
 use orogen_noise::{Depth, Fractal, Points};
 
-/// Samples per side of one window.
+/// Number of samples per side of a window.
 const SIDE: usize = 1000;
 
 fn axis(start: f64, cell: f64, count: usize) -> Vec<f64> {
@@ -38,14 +38,14 @@ fn means_of_many_samples_are_zero_and_ranges_within_bounds() {
     check_means(100);
 }
 
-/// Means and ranges of so many windows of a million samples each.
+/// Checks means and ranges of `windows` windows with a million samples each.
 fn check_means(windows: usize) {
     for (place, name) in ["in the plane", "in space"].into_iter().enumerate() {
         for (number, noise) in endless(11, 1.0).iter().enumerate() {
             let (mut sum, mut low, mut high) = (0.0, f32::MAX, f32::MIN);
             for window in 0..windows {
-                // A third of a cell apart and a bit more, so that all parts of cells are met; in space, at another
-                // depth each time.
+                // Slightly more than a third of a cell apart, so that all parts of cells are sampled. In space, each
+                // window has a different depth.
                 let start = -60.0 + window as f64 * 377.17;
                 let (xs, ys) = (axis(start, 0.371, SIDE), axis(-start * 0.7, 0.371, SIDE));
                 let depth = (place == 1).then_some(Depth::Slice(0.43 + window as f64 * 1.37));
@@ -79,8 +79,8 @@ fn correlation(a: &[f32], b: &[f32]) -> f64 {
 
 #[test]
 fn neighboring_seeds_are_strangers() {
-    // One place of every third cell, of every octave: where a size or distance is greater on the average in one part of
-    // its cell than in another, that says nothing of seeds.
+    // One position in every third cell of every octave. If absolute values or distances are greater on average in one
+    // part of a cell, this says nothing about seeds.
     let side = axis(-299.629, 3.0, 500);
     let points = Points::Lattice { xs: &side, ys: &side };
     let ask = |seed: u64| -> Vec<(String, Vec<f32>)> {
@@ -93,13 +93,13 @@ fn neighboring_seeds_are_strangers() {
     for (from, pairs) in [(&origin, vec![1, u64::MAX, 1 << 32, 1 << 63]), (&ask(255), vec![256])] {
         for to in pairs {
             for ((name, a), (_, b)) in from.iter().zip(ask(to)) {
-                // Samples stand in a different place of each simplex: what is one-sided has their pattern in common.
+                // Samples are at different positions in each simplex, and one-sided noises have this pattern in common.
                 if name.contains(" over simplex") && !matches!(&name[..3], "Fbm" | "Wei") {
                     continue;
                 }
                 let found = correlation(a, &b);
-                // The 2002 table repeats after 65 536 cells: unrelated numbers correlate by .004 there, and at times by
-                // thrice that.
+                // The 2002 table repeats after 65 536 cells. Unrelated numbers have a correlation of .004 there, and
+                // sometimes three times as much.
                 let most = if name.contains("classic") { 0.015 } else { 0.01 };
                 assert!(found.abs() < most, "{name}, seed {to} and its neighbor: {found}");
             }
@@ -107,7 +107,7 @@ fn neighboring_seeds_are_strangers() {
     }
 }
 
-/// The most, in percent, by which the mean squared difference of two samples a distance apart depends on the direction.
+/// The maximum dependence on direction, in percent, of the mean squared difference of two samples at a distance.
 fn anisotropy(noise: &Noise, distance: f64) -> f64 {
     const DIRECTIONS: usize = 16;
     let side = axis(-811.0, 1.037, 700);
@@ -127,14 +127,14 @@ fn anisotropy(noise: &Noise, distance: f64) -> f64 {
     powers.iter().fold(0.0, |most, power| f64::max(most, (power / middle - 1.0).abs())) * 100.0
 }
 
-/// What is stated, in percent. White noise is made of squares; the 2002 table has few directions and repeats.
+/// The expected maximum, in percent. White noise consists of squares; the 2002 table has few directions and repeats.
 fn stated_anisotropy(name: &str) -> f64 {
     match name {
         "white" => 18.0,
         "value" | "perlin" | "classic-diagonal" => 2.5,
         "classic-eight" => 4.0,
         "simplex" | "opensimplex2" | "opensimplex2-smooth" => 1.0,
-        // A cell is a square at heart, and its edges tell.
+        // A cell is based on a square, which is visible in its edges.
         "worley-edge" => 7.0,
         _ => 5.0,
     }
@@ -151,7 +151,7 @@ fn directions_are_alike() {
     }
 }
 
-/// Slopes along one axis, by five-point differences of the values, in f64.
+/// Slopes along one axis, from five-point differences of the values, in f64.
 fn differences(noise: &Noise, at: [&[f64]; 3], along: usize, deep: bool) -> Vec<f64> {
     const STEP: f64 = 0.0625;
     let values = |by: f64| -> Vec<f64> {
@@ -165,10 +165,11 @@ fn differences(noise: &Noise, at: [&[f64]; 3], along: usize, deep: bool) -> Vec<
     (0..a.len()).map(|k| (8.0 * (c[k] - b[k]) - (d[k] - a[k])) / (12.0 * STEP)).collect()
 }
 
-/// What has creases is held against twins in f64 instead, which come closer to them: src/tests/twins.rs.
+/// Noises with creases are compared with reference implementations in f64 instead, which work closer to the creases
+/// (src/tests/twins.rs).
 #[test]
 fn slopes_are_those_of_the_values() {
-    // Places that f64 holds with their steps exactly.
+    // Positions that f64 represents exactly together with their steps.
     let mut state = 1_u64;
     let mut places = || -> Vec<f64> {
         let mut next = || {
@@ -197,8 +198,8 @@ fn slopes_are_those_of_the_values() {
     }
 }
 
-/// Second differences along x: their RMS and the greatest, over 2000 rows of samples, five first wavelengths of 10
-/// each.
+/// Second differences along x: their RMS and their maximum, over 2000 rows of samples, each of five first wavelengths
+/// with 10 samples each.
 fn bends(noise: &Noise, start: f64) -> [f64; 2] {
     const CELL: f64 = 0.125;
     let (xs, ys) = (axis(start, CELL, 402), axis(start, 17.0, 2000));
@@ -218,8 +219,8 @@ fn far_away_is_as_smooth_as_here() {
             let there = bends(noise, start);
             let [usual, greatest] = [0, 1].map(|i| (there[i] / here[i] - 1.0).abs());
             println!("{} at {start:e}: {usual:.4}, {greatest:.4}", noise.name);
-            // Of the 2002 table, which repeats, a strip of five cells meets some of the steepest places or none.
-            // Products of octaves (hetero) have rare great values.
+            // The 2002 table repeats, so a strip of five cells contains some of the steepest positions or none.
+            // Products of octaves (hetero) have rare large values.
             let rare = noise.name.contains("classic") || noise.name.starts_with("Hetero");
             let most = if rare { 0.25 } else { 0.06 };
             assert!(usual < 0.02 && greatest < most, "{} at {start:e}: {usual}, {greatest}", noise.name);

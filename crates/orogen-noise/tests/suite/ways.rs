@@ -1,4 +1,5 @@
-//! Lattices, displaced and scattered points, whole and in parts, with slopes and without: the same bits at every level.
+//! Lattices, displaced points and scattered points, whole and in parts, with and without slopes, give the same bits at
+//! every level.
 
 use crate::noises::{Ask, Columns, Noise, all, at_each_level, same_bits};
 use orogen_noise::{Depth, Fractal, Points};
@@ -14,7 +15,7 @@ struct Window {
 fn windows() -> Vec<Window> {
     let axis =
         |start: f64, cell: f64, count: usize| (0..count).map(|i| (start + i as f64) * cell).collect::<Vec<f64>>();
-    // From many samples per cell to many cells per sample; near, negative and far places; odd sizes.
+    // From many samples per cell to many cells per sample; near, negative and far positions; odd sizes.
     [
         (10.24, 300.0, (-3.0, 2.0), (37, 7)),
         (0.1, 1.1, (-17.0, 5.0), (19, 9)),
@@ -32,7 +33,8 @@ fn windows() -> Vec<Window> {
     .collect()
 }
 
-/// Every way to ask for the samples of a window, each with its name; in space, the depth for all and for each.
+/// The results of every method for the samples of a window, each with its name. In space, the depth is given once for
+/// all samples and once for each.
 fn answers(noise: &Noise, window: &Window, deep: bool) -> Vec<(&'static str, Columns)> {
     let (xs, ys) = (&window.xs, &window.ys);
     let lattice = Points::Lattice { xs, ys };
@@ -52,7 +54,7 @@ fn answers(noise: &Noise, window: &Window, deep: bool) -> Vec<(&'static str, Col
     ] {
         list.push((name, noise.ask(&Ask { points, depth: deep.then_some(depth), slopes }).unwrap()));
     }
-    // The same window in two parts, side by side.
+    // The same window in two adjacent parts.
     let (left, right) = xs.split_at(xs.len() / 2 + 1);
     let [left, right] = [left, right].map(|xs| {
         let points = Points::Lattice { xs, ys };
@@ -75,7 +77,7 @@ fn answers(noise: &Noise, window: &Window, deep: bool) -> Vec<(&'static str, Col
 #[test]
 fn every_way_of_asking_gives_the_same_bits_at_every_level() {
     let windows = windows();
-    // The first answer of the first level is what all others are held against.
+    // The first result of the first level is the reference for all others.
     let mut expected: Vec<Columns> = Vec::new();
     at_each_level(|level| {
         let mut number = 0;
@@ -104,8 +106,8 @@ fn every_way_of_asking_gives_the_same_bits_at_every_level() {
     assert!(expected.iter().flat_map(|columns| &columns[0]).all(|x| x.abs() <= 1.0));
 }
 
-/// Windows larger than caches are written past them, in whole registers from where one begins in memory: wherever the
-/// window lies there, and however its rows do, it is the small one's crop.
+/// Windows larger than the caches are stored past them, in whole registers from an aligned address on. The result
+/// equals the same part of a small window, independent of the alignment of the window and its rows.
 #[test]
 fn huge_windows_are_what_small_ones_are() {
     let noise = Fractal::new(5, 90.0).with_octaves(2);
