@@ -104,7 +104,7 @@ impl Progress {
     }
 
     /// Adds to the amount of work. Declare all of it before the first [`Progress::advance`]: if work is added later,
-    /// the share stays constant until it has caught up.
+    /// the share stays constant until the completed work has caught up.
     pub fn expect(&self, work: f64) {
         if self.is_heard() {
             self.count().expected += work.max(0.0);

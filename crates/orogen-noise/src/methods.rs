@@ -93,7 +93,7 @@ macro_rules! value_methods {
             /// The values at the points, in the order of the points.
             ///
             /// # Errors
-            /// A slice does not have the points' length; nothing is written.
+            /// A slice does not have the same length as the points. Nothing is written then.
             pub fn fill(&self, points: &$crate::Points, value: &mut [f32]) -> Result<(), $crate::LengthMismatch> {
                 $crate::methods::fill(&self.program(2), points, &[], value, None)
             }
@@ -101,7 +101,7 @@ macro_rules! value_methods {
             /// The values at the points in space.
             ///
             /// # Errors
-            /// A slice does not have the points' length; nothing is written.
+            /// A slice does not have the same length as the points. Nothing is written then.
             pub fn fill3(
                 &self,
                 points: &$crate::Points,
@@ -114,7 +114,7 @@ macro_rules! value_methods {
             /// The values at the points in four dimensions. `depths` are z and w.
             ///
             /// # Errors
-            /// A slice does not have the points' length; nothing is written.
+            /// A slice does not have the same length as the points. Nothing is written then.
             pub fn fill4(
                 &self,
                 points: &$crate::Points,
@@ -150,7 +150,7 @@ macro_rules! noise_methods {
             /// The values and their slopes along x and y, per metre.
             ///
             /// # Errors
-            /// A slice does not have the points' length; nothing is written.
+            /// A slice does not have the same length as the points. Nothing is written then.
             pub fn fill_with_gradient(
                 &self,
                 points: &$crate::Points,
@@ -164,7 +164,7 @@ macro_rules! noise_methods {
             /// The values at the points in space and their slopes along x, y and z, per metre, in `gradient`.
             ///
             /// # Errors
-            /// A slice does not have the points' length; nothing is written.
+            /// A slice does not have the same length as the points. Nothing is written then.
             pub fn fill3_with_gradient(
                 &self,
                 points: &$crate::Points,
@@ -180,7 +180,7 @@ macro_rules! noise_methods {
             /// `gradient`. `depths` are z and w.
             ///
             /// # Errors
-            /// A slice does not have the points' length; nothing is written.
+            /// A slice does not have the same length as the points. Nothing is written then.
             pub fn fill4_with_gradient(
                 &self,
                 points: &$crate::Points,

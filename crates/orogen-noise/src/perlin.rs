@@ -57,7 +57,7 @@ impl Perlin {
     /// lower end.
     ///
     /// # Errors
-    /// The slices have different lengths; nothing is written.
+    /// The slices have different lengths. Nothing is written then.
     ///
     /// ```
     /// let noise = orogen_noise::Perlin::new(7, 100.0);

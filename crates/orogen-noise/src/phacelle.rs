@@ -108,7 +108,7 @@ impl Phacelle {
     /// The cosines at the points, of stripes along [`Phacelle::direction`].
     ///
     /// # Errors
-    /// A slice does not have the points' length; nothing is written.
+    /// A slice does not have the same length as the points. Nothing is written then.
     pub fn fill(&self, points: &Points, value: &mut [f32]) -> Result<(), LengthMismatch> {
         self.prepare().fill(points, value)
     }
@@ -117,7 +117,7 @@ impl Phacelle {
     /// of a direction does not matter; a direction of length 0 gives no stripes.
     ///
     /// # Errors
-    /// A slice does not have the points' length; nothing is written.
+    /// A slice does not have the same length as the points. Nothing is written then.
     pub fn fill_along(
         &self,
         points: &Points,
@@ -186,7 +186,7 @@ impl PreparedPhacelle {
     /// [`Phacelle::fill`] of the prepared noise.
     ///
     /// # Errors
-    /// A slice does not have the points' length; nothing is written.
+    /// A slice does not have the same length as the points. Nothing is written then.
     pub fn fill(&self, points: &Points, value: &mut [f32]) -> Result<(), LengthMismatch> {
         points.check()?;
         LengthMismatch::check("value", value.len(), points.len())?;
@@ -197,7 +197,7 @@ impl PreparedPhacelle {
     /// [`Phacelle::fill_along`] of the prepared noise.
     ///
     /// # Errors
-    /// A slice does not have the points' length; nothing is written.
+    /// A slice does not have the same length as the points. Nothing is written then.
     pub fn fill_along(
         &self,
         points: &Points,

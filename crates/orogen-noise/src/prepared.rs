@@ -56,7 +56,7 @@ impl PreparedIn {
     /// The values at the points. `depths` has a depth for each dimension beyond the second.
     ///
     /// # Errors
-    /// A slice does not have the points' length; nothing is written.
+    /// A slice does not have the same length as the points. Nothing is written then.
     pub fn fill(&self, points: &Points, depths: &[Depth], value: &mut [f32]) -> Result<(), LengthMismatch> {
         methods::fill(&self.0, points, depths, value, None)
     }

@@ -90,7 +90,7 @@ impl Warp {
     /// further displacements at the displaced positions.
     ///
     /// # Errors
-    /// A slice does not have the points' length; nothing is written.
+    /// A slice does not have the same length as the points. Nothing is written then.
     pub fn displace(&self, points: &Points, dx: &mut [f32], dy: &mut [f32]) -> Result<(), LengthMismatch> {
         self.prepare().displace(points, dx, dy)
     }
@@ -169,7 +169,7 @@ impl PreparedWarp {
     /// [`Warp::displace`] of the prepared warp.
     ///
     /// # Errors
-    /// A slice does not have the points' length; nothing is written.
+    /// A slice does not have the same length as the points. Nothing is written then.
     pub fn displace(&self, points: &Points, dx: &mut [f32], dy: &mut [f32]) -> Result<(), LengthMismatch> {
         points.check()?;
         LengthMismatch::check("dx", dx.len(), points.len())?;

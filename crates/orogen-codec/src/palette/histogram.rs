@@ -36,8 +36,8 @@ pub fn read(path: &Path, count: usize) -> Result<Vec<Light>> {
 
 /// [`read`] for a picture in memory or from any reader.
 ///
+/// # Errors
 /// A message that describes the problem.
-/// A message about what is wrong.
 pub fn parse(input: impl BufRead + Seek, count: usize) -> std::result::Result<Vec<Light>, String> {
     let mut decoder = ::png::Decoder::new(input);
     decoder.set_transformations(::png::Transformations::EXPAND | ::png::Transformations::STRIP_16);

@@ -218,7 +218,7 @@ impl Constants {
             let corners = (self.weight(h - nw[i], corner) + self.weight(h - ne[i], corner))
                 + (self.weight(h - sw[i], corner) + self.weight(h - se[i], corner));
             let all = sides + corners;
-            // A pit gives nothing.
+            // A pit has no outflow.
             let share = if all > 1e-24 { 1.0 / all } else { 0.0 };
             areas[i] = area[i] * share;
             loads[i] = load[i] * share;

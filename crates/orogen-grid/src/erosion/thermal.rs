@@ -137,7 +137,7 @@ impl Slide {
     fn moved(&self, across: f32, along: f32) -> f32 {
         let steep = (across * across + along * along).sqrt();
         let excess = 1.0 - self.stands / steep;
-        // Level ground gives a division by 0; NaN moves nothing.
+        // On level ground this is a division by 0, and the resulting NaN must move nothing.
         let excess = if excess > 0.0 { excess } else { 0.0 };
         self.share * excess * across
     }

@@ -155,7 +155,7 @@ impl Water {
 #[derive(Clone, Copy, Default)]
 struct Stream {
     order: u8,
-    /// Whether the highest order so far has flowed in more than once.
+    /// Whether at least two inflows have the highest order so far.
     met: bool,
     is_river: bool,
     is_unknown: bool,

@@ -47,6 +47,7 @@ pub struct Spill {
 
 /// Finds the basins of `receivers` and floods them. Every cell must lead to an outlet or to a single pit (see
 /// [`flats::resolve`](super::flats::resolve)).
+///
 /// Of equally low passes the first in row order is used. `phase` is called after each of the three phases; its error
 /// ends the work. The time is O(cells + basins log basins).
 pub(super) fn find_basins<E>(
@@ -181,7 +182,7 @@ pub fn passes(heights: &Grid, labels: &[u32]) -> Vec<Pass> {
         let (h, h_below) = (heights.row(j), heights.row(beneath));
         let mut i = 0;
         while i < width {
-            // Most cells have only neighbors of their own basin.
+            // Most cells have only neighbors in the same basin.
             if let (Some(run), Some(beneath)) = (here.get(i..=i + RUN), below.get(i.max(1) - 1..=i + RUN))
                 && run.iter().chain(beneath).fold(0, |differ, label| differ | (label ^ here[i])) == 0
             {
@@ -211,7 +212,7 @@ impl Found {
     /// first cell.
     fn look(&mut self, [here, below]: [&[u32]; 2], [h, h_below]: [&[f32]; 2], i: usize, start: u32) {
         let mine = here[i];
-        // A missing neighbor counts as one of the same basin.
+        // A missing neighbor counts as a cell of the same basin.
         let (west, east) = (i.max(1) - 1, (i + 1).min(here.len() - 1));
         let or_mine = |there: bool, label: u32| if there { label } else { mine };
         let around = [here[east], or_mine(east > i, below[east]), below[i], or_mine(west < i, below[west])];

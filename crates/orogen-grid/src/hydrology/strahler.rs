@@ -45,7 +45,7 @@ fn ordered<E>(
         None => area[cell] >= threshold,
     };
     let mut orders = Grid::filled(*receivers.window(), 0u8);
-    // Whether the highest order so far has flowed in more than once.
+    // Whether at least two inflows have the highest order so far.
     let mut met = vec![false; area.len()];
     for (k, cell) in accumulation.upstream_first().enumerate() {
         now_and_then(k, check)?;

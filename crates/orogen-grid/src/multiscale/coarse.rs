@@ -29,7 +29,7 @@ impl Refinement {
     /// nodes are near them.
     ///
     /// # Errors
-    /// If a parameter is out of range, the window is not one of the level, a grid covers too little, or the work is
+    /// If a parameter is out of range, the window does not belong to the level, a grid is too small, or the work is
     /// cancelled.
     pub fn coarsest_of(&self, land: &Coarse, given: &Given, window: &Window, progress: &Progress) -> Result<Level> {
         self.check(0, window)?;

@@ -65,7 +65,7 @@ impl Continents {
     /// [`Continents::COARSEST_REACH`], which `given` must cover.
     ///
     /// # Errors
-    /// If a parameter is out of range, the window is not one of the level, or the work is cancelled.
+    /// If a parameter is out of range, the window does not belong to the level, or the work is cancelled.
     pub fn coarsest(&self, given: &Given, window: &Window, progress: &Progress) -> Result<Level> {
         self.check()?;
         self.refinement.check(0, window)?;

@@ -136,7 +136,7 @@ impl Floods<'_> {
         self.is_large(q) && !self.level.is_water(q)
     }
 
-    /// Whether the drainage area is that of a river.
+    /// Whether the drainage area is large enough for a river.
     fn is_large(&self, q: usize) -> bool {
         f64::from(self.level.area[q] * self.square_metres) >= self.least_area
     }

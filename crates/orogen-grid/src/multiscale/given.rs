@@ -27,7 +27,7 @@ pub struct Given<'a> {
     pub continents: Option<&'a Continents>,
 }
 
-/// The smallest uplift over erodibility, so that its logarithm is finite.
+/// Minimum of uplift over erodibility, so that its logarithm is finite.
 const LEAST_UPLIFT: f32 = 1e-4;
 
 impl Given<'_> {

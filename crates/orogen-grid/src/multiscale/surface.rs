@@ -55,7 +55,7 @@ impl Refinement {
     /// between nodes. They include the mean change by finer levels.
     ///
     /// # Errors
-    /// If the level covers too little, the window is not one of the level, or the work is cancelled.
+    /// If the level covers too little, the window does not belong to the level, or the work is cancelled.
     pub fn surface(&self, level: &Level, window: &Window, progress: &Progress) -> Result<Surface> {
         self.surface_at(0.0, level, window, progress)
     }

@@ -216,7 +216,7 @@ impl Layout {
             for k in self.bands..bytes.len() {
                 bytes[k] = bytes[k].wrapping_add(bytes[k - self.bands]);
             }
-            // All samples' highest bytes come first, then all second highest, whatever the byte order of the file.
+            // All highest bytes come first, then all second highest, independent of the byte order of the file.
             for plane in bytes.chunks_exact(count.max(1)).take(size) {
                 if out.is_empty() {
                     out.extend(plane.iter().map(|byte| u64::from(*byte)));
