@@ -54,8 +54,8 @@ impl Refinement {
     /// levels.
     ///
     /// # Errors
-    /// If the parent covers too little, a parameter is out of range, the window does not belong to the level, or the work
-    /// is cancelled.
+    /// If the parent covers too little, a parameter is out of range, the window does not belong to the level, or the
+    /// work is cancelled.
     pub fn refine(&self, parent: &Level, given: &Given, window: &Window, progress: &Progress) -> Result<Level> {
         let depth = parent.depth + 1;
         let given = if self.is_detail(depth) { &Given::default() } else { given };
