@@ -10,6 +10,7 @@ mod install;
 mod neon;
 mod passed;
 mod presets;
+mod python;
 mod studio;
 mod wasm;
 
@@ -50,6 +51,7 @@ Builds `orogen` in release mode, installs missing clients and runs every step of
   relief    gdaldem computes the same hillshade, slope and aspect
   layers    WhiteboxTools and traces along flow directions give the same layers of water
   taplo     taplo validates every recipe against the JSON Schema, and rejects broken ones
+  python    the Python package, as a wheel in a new environment: its tests, its types, its generated files
   studio    the studio's tests with Mesa's software Vulkan, and its window under Xvfb in both languages
   gpu       fields, filters, presets and pictures on a graphics card, or Mesa's software Vulkan, beside the processor's; and without any card
 
@@ -66,7 +68,7 @@ Only if named or with --all, because they take long or need large programs:
 
 xtask/clients/passed.txt says when each of these last passed; a run without them prints those that are older than 14 days.
 
-`install`, `packages` and `build` always run first, the last two side by side. Then `window` to `taplo` run side by side, one for
+`install`, `packages` and `build` always run first, the last two side by side. Then `window` to `python` run side by side, one for
 each core: each prints when it ends, and what it has printed so far is in target/steps. The others run alone. On systems other
 than Debian, or without root, the command prints what to install.
 ";
@@ -167,6 +169,21 @@ const CLIENTS: &[Client] = &[
         npm: &[],
     },
     Client { name: "fuzz", apt: &[("g++", "g++")], pip: &[], npm: &[] },
+    Client {
+        name: "python",
+        apt: &[],
+        pip: &[
+            NUMPY,
+            "xarray==2026.9.0",
+            "dask==2026.8.0",
+            "maturin==1.16.0",
+            "pytest==9.2.0",
+            "hypothesis==6.170.17",
+            "mypy==2.4.1",
+            "tqdm==4.70.1",
+        ],
+        npm: &[],
+    },
     Client { name: "taplo", apt: &[("node", "nodejs"), ("npm", "npm")], pip: &[], npm: &["@taplo/cli@0.7.0"] },
 ];
 
@@ -217,6 +234,7 @@ const STEPS: &[&Step] = &[
     &BUILD,
     &beside("window", "clippy and build of the studio's window and of graphics cards", studio::build),
     &beside("wasm", "four presets made by the libraries built for WebAssembly", wasm::check_four),
+    &beside("python", "the Python package in a new environment", python::check),
     &beside("presets", "the presets' golden hashes at every level", presets::check),
     &beside("meshes", "the glTF validator, trimesh, meshio and admesh read meshes", || script("meshes")),
     &beside("water", "GDAL, SQLite and Shapely read rivers, lakes and watersheds", || script("water")),

@@ -17,7 +17,9 @@ pub fn check() -> Result {
     let folder = shell::target_dir().join("packages");
     // Archives of other versions.
     shell::empty_dir(&folder.join("package"))?;
-    let left_out = "--exclude xtask --exclude orogen-bench --exclude orogen-features --exclude orogen-fuzz-targets";
+    // The Python package is published as a wheel.
+    let left_out = "--exclude xtask --exclude orogen-bench --exclude orogen-features --exclude orogen-fuzz-targets \
+        --exclude orogen-py";
     let pack = format!("package --quiet --workspace {left_out} --allow-dirty --no-verify");
     sh(cargo(&pack).arg("--target-dir").arg(&folder))?;
     let unpacked = unpacked();

@@ -84,9 +84,6 @@ impl DrawOptions {
     }
 }
 
-/// The folder of the cache; an empty value disables it.
-const CACHE_VARIABLE: &str = "OROGEN_CACHE";
-
 impl Limits {
     /// Opens the world of a recipe within these limits. The world and the command's own [reservations](Budget::reserve)
     /// share `budget`, which is [`Limits::budget`].
@@ -132,10 +129,5 @@ impl Limits {
 
 /// The folder of the cache: the given one, otherwise that of the environment variable, otherwise the system's.
 pub fn cache_folder(asked: Option<&PathBuf>) -> Option<PathBuf> {
-    match (asked, std::env::var_os(CACHE_VARIABLE)) {
-        (Some(folder), _) => Some(folder.clone()),
-        (None, Some(folder)) if folder.is_empty() => None,
-        (None, Some(folder)) => Some(PathBuf::from(folder)),
-        (None, None) => FolderStore::system_folder(),
-    }
+    asked.cloned().or_else(FolderStore::usual_folder)
 }

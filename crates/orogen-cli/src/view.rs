@@ -77,11 +77,6 @@ impl SizedView {
         sized(&self.view, world, self.size)
     }
 
-    /// Whether a part of the world is requested.
-    pub fn has_part(&self) -> bool {
-        self.view.has_part()
-    }
-
     /// See [`View::each_seed`].
     pub fn each_seed(
         &self,

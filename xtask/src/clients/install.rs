@@ -38,7 +38,8 @@ pub fn node_bin() -> PathBuf {
     node().join("node_modules/.bin")
 }
 
-fn venv() -> PathBuf {
+/// The folder of the environment with the pinned packages.
+pub fn venv() -> PathBuf {
     super::folder().join("venv")
 }
 

@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use orogen::Progress;
 use orogen::jobs::blocks::LuantiFolder;
 use orogen::jobs::{BlockFormat, BlocksJob};
-use orogen::view::Size;
 use orogen::world::HEIGHT;
 
 use crate::bar::Bar;
@@ -37,12 +36,6 @@ pub struct Args {
     run: RunOptions,
 }
 
-/// Columns along the longer side of a map without --size and --cell.
-const SIDE: usize = 256;
-
-/// Columns along the longer side up to which a world has one for each of its cells.
-const MAX_OWN_SIDE: f64 = 512.0;
-
 /// Makes the blocks.
 pub fn run(args: &Args) -> Result<(), Failure> {
     args.samples.each_output(&args.out, |samples, out| blocks(&Args { samples, out, ..args.clone() }))
@@ -73,14 +66,9 @@ fn format(args: &Args) -> Result<BlockFormat, Failure> {
 fn make(args: &Args, format: BlockFormat, progress: &Progress) -> Result<(), Failure> {
     let job = BlocksJob::new(format).with_options(&args.options.read()?)?;
     let Opened { mut recipe, budget, policy, .. } = args.run.read(&args.recipe, &args.samples.view)?;
-    let spec = &recipe.world;
-    // A small world has a block for each of its cells.
-    let is_small = spec.size.is_some_and(|size| size[0].max(size[1]) <= MAX_OWN_SIDE * spec.cell);
-    let is_free = args.samples.size.is_none() && args.samples.view.cell.is_none() && !args.samples.has_part();
-    let size = args.samples.size.or((is_free && !is_small).then_some(Size::Longer(SIDE)));
-    let samples = SizedView { size, ..args.samples.clone() };
+    let view = BlocksJob::view(&args.samples.view.samples(args.samples.size)?, &recipe.world);
     // The classes of a recipe without any depend on the cell of the map.
-    let window = samples.window(&args.run.limits.open(recipe.clone(), &budget)?)?;
+    let window = view.window(&args.run.limits.open(recipe.clone(), &budget)?, |_| ())?;
     job.prepare(&mut recipe, window.cell)?;
     let world = args.run.limits.open(recipe, &budget)?;
     let make = || -> Result<_, Failure> {

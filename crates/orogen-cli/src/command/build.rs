@@ -3,11 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use orogen::Window;
 use orogen::builder::run::Start;
-use orogen::builder::{Build, BuildSpec, Form, Report, xyz};
+use orogen::builder::{Build, BuildSpec, Form, Report};
 use orogen::grid::words::{self, bytes, count, number};
-use orogen::options::Options;
-use orogen::{Window, World};
 
 use crate::bar::Bar;
 use crate::declared::OptionsOf;
@@ -57,7 +56,8 @@ fn build(args: &Args) -> Result<(), Failure> {
     let Opened { recipe, budget, policy, .. } = args.run.read(&args.recipe, &args.samples.view)?;
     let output = policy.output(&args.out)?;
     let world = args.run.limits.open(recipe, &budget)?;
-    let spec = BuildSpec::new(form, window(args, &world, form, &options)?).with_options(&options);
+    let view = args.samples.view.samples(args.samples.size)?;
+    let spec = BuildSpec::new(form, form.window(&world, &view, &options)?).with_options(&options);
     let build = Build::new(&world, &spec, &output)?;
     let start = match (args.resume, args.run.replace.force) {
         (true, _) => Start::Resume,
@@ -80,33 +80,6 @@ fn build(args: &Args) -> Result<(), Failure> {
         ));
     }
     if args.run.quiet { Ok(()) } else { say::out(&closing(args, &spec, &report, begun.elapsed().as_secs_f64())) }
-}
-
-/// The requested window.
-fn window(args: &Args, world: &World, form: Form, options: &Options) -> Result<Window, Failure> {
-    let SizedView { view, size } = &args.samples;
-    let cell = view.cell.unwrap_or(match form {
-        Form::Xyz(_) => {
-            let tile = options.whole("tile").map(|side| side as usize).or(form.usual_tile()).unwrap_or(1);
-            xyz::cell_near(world.recipe().world.cell, tile, world.recipe().georeference().as_ref())
-        }
-        _ => world.recipe().world.cell,
-    });
-    if let (Form::Xyz(_), Some(_)) = (form, size) {
-        return Err(Failure::Usage("an XYZ tree has fixed cell sizes; leave out --size, or use --cell".into()));
-    }
-    if let Some(part) = view.samples(*size)?.part(world.recipe(), cell)? {
-        return Ok(part);
-    }
-    let whole = match size {
-        Some(_) => args.samples.window(world)?,
-        None => world.full_window(cell)?,
-    };
-    Ok(match form {
-        // Including the far edge, which tiles share with neighbors that do not exist here.
-        Form::Tiles(_) => Window { width: whole.width + 1, height: whole.height + 1, ..whole },
-        _ => whole,
-    })
 }
 
 /// Prints the requirements, and fails if they are not met.

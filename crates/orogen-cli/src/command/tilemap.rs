@@ -5,8 +5,6 @@ use std::path::PathBuf;
 use orogen::Progress;
 use orogen::recipe::outputs::CLASS;
 use orogen::tilemap::TilemapJob;
-use orogen::tilemap::files::SIDE;
-use orogen::view::Size;
 use orogen::world::HEIGHT;
 
 use crate::bar::Bar;
@@ -53,15 +51,9 @@ fn make(args: &Args, progress: &Progress) -> Result<String, Failure> {
     let Opened { mut recipe, budget, policy, .. } = args.run.read(&args.recipe, &args.samples.view)?;
     let job = TilemapJob::with_options(&args.options.read()?)?;
     let policy = policy.protecting(&job.files);
-    let samples = SizedView {
-        size: args
-            .samples
-            .size
-            .or((args.samples.view.cell.is_none() && !args.samples.has_part()).then_some(Size::Longer(SIDE))),
-        ..args.samples.clone()
-    };
+    let view = TilemapJob::view(&args.samples.view.samples(args.samples.size)?);
     // The classes of a recipe without any depend on the cell of the map.
-    let window = samples.window(&args.run.limits.open(recipe.clone(), &budget)?)?;
+    let window = view.window(&args.run.limits.open(recipe.clone(), &budget)?, |_| ())?;
     let source_layer = if recipe.outputs().any(|name| name == CLASS) { CLASS } else { HEIGHT };
     job.prepare(&mut recipe, window.cell)?;
     let world = args.run.limits.open(recipe, &budget)?;

@@ -26,6 +26,9 @@ pub struct FolderStore {
     pub slower_than: Duration,
 }
 
+/// The environment variable with the folder of the cache; an empty value disables it.
+const CACHE_VARIABLE: &str = "OROGEN_CACHE";
+
 impl FolderStore {
     /// A store in `folder` of at most 10 GiB, for solutions that take a core more than about 0.25 s.
     pub fn new(folder: impl Into<PathBuf>) -> FolderStore {
@@ -45,6 +48,17 @@ impl FolderStore {
             return home.map(|path| path.join("Library/Caches/orogen"));
         }
         absolute("XDG_CACHE_HOME").or_else(|| home.map(|path| path.join(".cache"))).map(|path| path.join("orogen"))
+    }
+
+    /// The folder that is used unless another one is chosen: that of the environment variable `OROGEN_CACHE`,
+    /// otherwise the [system's](FolderStore::system_folder); `None` if the variable is empty, or none is known.
+    #[must_use]
+    pub fn usual_folder() -> Option<PathBuf> {
+        match std::env::var_os(CACHE_VARIABLE) {
+            Some(folder) if folder.is_empty() => None,
+            Some(folder) => Some(PathBuf::from(folder)),
+            None => FolderStore::system_folder(),
+        }
     }
 
     pub(super) fn path(&self, key: &EntryKey) -> PathBuf {

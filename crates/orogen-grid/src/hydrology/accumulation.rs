@@ -84,6 +84,27 @@ impl Band {
 }
 
 impl Accumulation {
+    /// The drainage area of each cell in square metres, of cells of the window's size; weighted by the rain if it is
+    /// known.
+    #[must_use]
+    pub fn areas(&self) -> Grid {
+        let window = *self.area.window();
+        let cell_area = window.cell * window.cell;
+        let mut out = Grid::filled(window, 0.0f32);
+        match &self.discharge {
+            Some(discharge) => {
+                let unit_area = cell_area / f64::from(UNIT_WEIGHT);
+                let pairs = out.data_mut().iter_mut().zip(discharge.data());
+                pairs.for_each(|(area, weight)| *area = (*weight as f64 * unit_area) as f32);
+            }
+            None => {
+                let pairs = out.data_mut().iter_mut().zip(self.area.data());
+                pairs.for_each(|(area, cells)| *area = (f64::from(*cells) * cell_area) as f32);
+            }
+        }
+        out
+    }
+
     /// Iterates over every cell once, each after its receiver.
     #[must_use]
     pub fn downstream_first(&self) -> impl DoubleEndedIterator<Item = usize> {

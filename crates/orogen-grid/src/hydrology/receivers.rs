@@ -1,6 +1,6 @@
 //! Receivers: the neighbor that each cell drains to.
 
-use super::direction::{NONE, neighbor, opposite, strides};
+use super::direction::{Convention, NONE, neighbor, opposite, strides};
 use crate::grid::{Grid, Window};
 use crate::parallel;
 
@@ -74,6 +74,14 @@ impl Receivers {
             }
         });
         donors
+    }
+
+    /// The codes in the numbers of another program.
+    #[must_use]
+    pub fn coded(&self, convention: Convention) -> Grid<u8> {
+        let mut codes = self.codes.clone();
+        codes.data_mut().iter_mut().for_each(|code| *code = convention.of(*code));
+        codes
     }
 
     /// The code of cell `index`.

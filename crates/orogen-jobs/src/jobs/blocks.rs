@@ -7,6 +7,8 @@ use super::render::EXAGGERATION;
 use crate::options::{OptionSpec, Options, ValueKind};
 use orogen_engine::budget::Reservation;
 use orogen_engine::recipe::document::Recipe;
+use orogen_engine::recipe::WorldSpec;
+use orogen_engine::view::View;
 use orogen_engine::world::World;
 use orogen_grid::analysis::finite::FiniteCount;
 use orogen_grid::error::{Error, ErrorKind, Result};
@@ -97,6 +99,12 @@ pub struct BlocksJob {
 /// Memory for writing a file, in bytes.
 const ENCODERS: u64 = 4 << 20;
 
+/// Samples along the longer side without a choice.
+const SIDE: usize = 256;
+
+/// Cells along the longer side up to which a world has a block for each.
+const MAX_OWN_SIDE: f64 = 512.0;
+
 const OPTIONS: &[OptionSpec] = &[
     OptionSpec::new("below", "N", ValueKind::Whole(0, MAX_BELOW as u64))
         .with_about("Levels of blocks below the lowest ground [default: 16; with --caves 48]")
@@ -153,6 +161,14 @@ impl BlocksJob {
             return refuse("--section draws a picture: name a .png with -o, or use --format png".into());
         }
         Ok(())
+    }
+
+    /// The samples of a world that blocks are made of, if neither a part nor a cell nor a size is chosen: one for each
+    /// cell of a world of up to 512 cells along a side, otherwise 256 along the longer side.
+    #[must_use]
+    pub fn view(view: &View, world: &WorldSpec) -> View {
+        let is_small = world.size.is_some_and(|size| size[0].max(size[1]) <= MAX_OWN_SIDE * world.cell);
+        if is_small { *view } else { view.sized(SIDE) }
     }
 
     /// Appends to a recipe the nodes that the blocks need; call it before the world is opened. `cell` is the size of a

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use orogen_engine::recipe::class::named::number;
 use orogen_engine::recipe::class::standard::classify;
 use orogen_engine::recipe::outputs::CLASS;
+use orogen_engine::view::View;
 use orogen_engine::{Recipe, World};
 use orogen_grid::autotile::clean::HALO;
 use orogen_grid::autotile::drawable::Drawable;
@@ -15,6 +16,7 @@ use orogen_io::records::MEMORY as RECORDS;
 
 use super::class_rows::ClassRows;
 use super::drawing::{Drawing, IN_MEMORY, Stores, seen, sides};
+use super::files::SIDE;
 use super::map::Tilemap;
 use super::map_objects::{has_objects, objects};
 use super::tileset::Tileset;
@@ -62,6 +64,13 @@ impl TilemapJob {
     /// Sets whether maps of Tiled are infinite.
     pub fn with_infinite(self, is_infinite: bool) -> TilemapJob {
         TilemapJob { is_infinite, ..self }
+    }
+
+    /// The samples of a world that a map has: [`SIDE`] along the longer side, if neither a part nor a cell nor a size is
+    /// chosen.
+    #[must_use]
+    pub fn view(view: &View) -> View {
+        view.sized(SIDE)
     }
 
     /// Adds what the map needs to a recipe: its own [classes](orogen_engine::recipe::class) with the numbers of the

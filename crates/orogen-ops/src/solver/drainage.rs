@@ -1,7 +1,7 @@
 //! Drainage: flow directions, drainage areas, watersheds and stream order.
 
 use super::routing::{self, Flats, Planes, step, then};
-use super::terrain::{Terrain, TiledTerrain, cells_of, flow_layer, layer_of, sea_level_of};
+use super::terrain::{Terrain, TiledTerrain, cells_of, layer_of, sea_level_of};
 use crate::budget::memory;
 use crate::declare::{Declared, Input};
 use crate::large::areas::Layers;
@@ -110,7 +110,7 @@ impl Solver for Drainage {
         counting.finish();
         context.progress.check()?;
         let threshold = cells_of(self.stream, receivers.window(), 0);
-        let flow = flow_layer(&accumulation);
+        let flow = accumulation.areas();
         let [labelling, ordering] = naming.parts([1.0, 1.0]);
         let watersheds = watersheds::watersheds_with(&receivers, &outlets, &accumulation, &labelling)?;
         labelling.finish();

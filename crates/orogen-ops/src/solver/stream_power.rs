@@ -1,7 +1,7 @@
 //! Stream power erosion with uplift.
 
 use super::routing::{self, Descent, Flats, LAST, Planes, then};
-use super::terrain::{flow_layer, sea_level, sea_level_of};
+use super::terrain::{sea_level, sea_level_of};
 use crate::budget::memory;
 use crate::declare::{Declared, Input};
 use crate::lower::{Lowering, Passes};
@@ -311,6 +311,6 @@ fn solution(sources: &dyn Sources, heights: Grid, drained: &Accumulation, source
     for (change, height) in change.data_mut().iter_mut().zip(heights.data()) {
         *change = height - *change;
     }
-    let layers = vec![sources.keep(heights)?, sources.keep(flow_layer(drained))?, sources.keep(change)?];
+    let layers = vec![sources.keep(heights)?, sources.keep(drained.areas())?, sources.keep(change)?];
     Ok(Solution { layers, scalars: Vec::new() })
 }

@@ -6,7 +6,6 @@ use crate::large::tiling::Tiling;
 use crate::op::{Context, Sources, WorldParams};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
-use orogen_grid::hydrology::accumulation::{Accumulation, UNIT_WEIGHT};
 use orogen_grid::hydrology::drainage::{self, Drainage};
 use orogen_grid::hydrology::outlets::Outlets;
 use orogen_grid::hydrology::steepest::Descent;
@@ -40,18 +39,6 @@ pub(crate) fn layer_of<T: Copy>(grid: &Grid<T>, value: impl Fn(T) -> f32) -> Gri
     let mut layer = Grid::filled(*grid.window(), 0.0f32);
     layer.data_mut().iter_mut().zip(grid.data()).for_each(|(sample, of)| *sample = value(*of));
     layer
-}
-
-/// The drainage areas in m^2, weighted by the rain if it is known.
-pub(crate) fn flow_layer(drained: &Accumulation) -> Grid {
-    let cell_area = drained.area.window().cell * drained.area.window().cell;
-    match &drained.discharge {
-        Some(discharge) => {
-            let unit_area = cell_area / f64::from(UNIT_WEIGHT);
-            layer_of(discharge, |weight| (weight as f64 * unit_area) as f32)
-        }
-        None => layer_of(&drained.area, |cells| (f64::from(cells) * cell_area) as f32),
-    }
 }
 
 /// A layer with a value for each cell of a window.

@@ -40,6 +40,13 @@ const OVERVIEW: f64 = 4096.0;
 const NEAR: f64 = 1e-6;
 
 impl View {
+    /// The same with this number of samples along the longer side, if neither a part nor a cell nor a size is chosen.
+    #[must_use]
+    pub fn sized(&self, side: usize) -> View {
+        let is_chosen = self.window.is_some() || self.bounds.is_some() || self.cell.is_some() || self.size.is_some();
+        if is_chosen { *self } else { View { size: Some(Size::Longer(side)), ..*self } }
+    }
+
     /// The requested window: a part, or the whole world. A world of length L has round(L / cell) samples. For an
     /// unbounded world it starts at the origin and has the default size. A world that is too large for its own cell is
     /// shown as a whole with a larger one, and `note` gets a remark that says so.

@@ -1,0 +1,134 @@
+"""Worlds as xarray datasets: whole, or lazily through `xarray.open_dataset(path, engine="orogen")`."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+from xarray.backends import BackendArray, BackendEntrypoint
+from xarray.core import indexing
+
+from orogen._arrays import F32, F64
+from orogen._world import Window, World
+from orogen.errors import RequestError
+
+
+def dataset(world: World, layers: Sequence[str], window: Window, arrays: dict[str, Any]) -> xr.Dataset:
+    """Arrays of a window with its coordinates; arrays may be lazy."""
+    (west, north), (per_east, per_north) = world._native.placement
+    x, y = west + window.east * per_east, north - window.south * per_north
+    units = "degree" if world.epsg is not None and abs(per_east) < 0.1 else "m"
+    coordinates: dict[str, Any] = {
+        "y": ("y", y, {"units": units, "axis": "Y", "long_name": "northing"}),
+        "x": ("x", x, {"units": units, "axis": "X", "long_name": "easting"}),
+    }
+    mapping: dict[str, Any] = {}
+    if world.epsg is not None:
+        attributes = {"crs_wkt": world._native.wkt, "GeoTransform": _transform(x, y, window, per_east, per_north)}
+        coordinates["spatial_ref"] = ((), 0, attributes)
+        mapping = {"grid_mapping": "spatial_ref"}
+    variables: dict[str, Any] = {}
+    for layer in layers:
+        unit = world.layers.get(layer, "")
+        attributes = {"long_name": layer, "cell": window.cell} | ({"units": unit} if unit else {}) | mapping
+        array = arrays[layer]
+        dims = ("y", "x") if array.ndim == 2 else ("channel", "y", "x")
+        variables[layer] = xr.Variable(dims, array, attributes)
+    about = {"title": world.name, "comment": world.about, "source": "Orogen", "seed": world.seed}
+    return xr.Dataset(variables, coordinates, about)
+
+
+def _transform(x: F64, y: F64, window: Window, per_east: float, per_north: float) -> str:
+    """The transform of GDAL: from the corner of the first pixel."""
+    step_x, step_y = window.cell * per_east, -window.cell * per_north
+    return f"{x[0] - step_x / 2!r} {step_x!r} 0 {y[0] - step_y / 2!r} 0 {step_y!r}"
+
+
+class LayerArray(BackendArray):
+    """A layer over a window, of which only the samples that are read are made."""
+
+    def __init__(self, world: World, layer: str, window: Window) -> None:
+        self.world = world
+        self.layer = layer
+        self.whole = window
+        self.shape = window.shape
+        self.dtype: npt.DTypeLike = np.dtype(np.float32)
+
+    @property
+    def ndim(self) -> int:
+        """Number of dimensions."""
+        return len(self.shape)
+
+    def __getitem__(self, key: Any) -> Any:
+        return indexing.explicit_indexing_adapter(key, self.shape, indexing.IndexingSupport.BASIC, self._read)
+
+    def _read(self, key: tuple[Any, ...]) -> Any:
+        rows, columns = (_spread(part, length) for part, length in zip(key, self.shape, strict=True))
+        whole = self.whole
+        window = Window(
+            whole.x + columns.start, whole.y + rows.start, len(columns) or 1, len(rows) or 1, whole.cell
+        )
+        if len(rows) == 0 or len(columns) == 0:
+            samples: F32 = np.empty((len(rows), len(columns)), np.float32)
+        else:
+            samples = self.world.window(self.layer, window=window)
+        # What is left of the key: an index drops its dimension, and a step or a direction chooses among the samples.
+        return samples[tuple(_rest(part, length) for part, length in zip(key, self.shape, strict=True))]
+
+
+def _spread(part: Any, length: int) -> range:
+    """All samples between the first and the last one of an index or a slice."""
+    if isinstance(part, slice):
+        chosen = range(*part.indices(length))
+        return range(min(chosen), max(chosen) + 1) if len(chosen) else range(0)
+    return range(int(part), int(part) + 1)
+
+
+def _rest(part: Any, length: int) -> Any:
+    if not isinstance(part, slice):
+        return 0
+    return slice(None, None, part.indices(length)[2])
+
+
+class OrogenBackend(BackendEntrypoint):
+    """Presets, recipes and files of heights as datasets whose samples are made when they are read."""
+
+    description = "Worlds of Orogen: presets, recipes (.toml) and their layers, lazily"
+    open_dataset_parameters = ("filename_or_obj", "drop_variables")
+
+    def open_dataset(  # type: ignore[override]
+        self,
+        filename_or_obj: Any,
+        *,
+        drop_variables: str | Iterable[str] | None = None,
+        layers: Sequence[str] | None = None,
+        size: int | tuple[int, int] | None = None,
+        window: Any = None,
+        bounds: tuple[float, float, float, float] | None = None,
+        cell: float | None = None,
+        parameters: dict[str, float] | None = None,
+        seed: int | None = None,
+        memory: int | str | None = None,
+    ) -> xr.Dataset:
+        """Opens a world; `layers` are by default those of the recipe, the other options as those of `World`."""
+        world = World(filename_or_obj, parameters=parameters, seed=seed, memory=memory)
+        names = list(world.layers) if layers is None else [layers] if isinstance(layers, str) else list(layers)
+        dropped = [drop_variables] if isinstance(drop_variables, str) else list(drop_variables or ())
+        names = [name for name in names if name not in dropped]
+        unknown = [name for name in names if name not in world.layers]
+        if unknown:
+            raise RequestError(f"the recipe has no layer {unknown[0]!r}; it has: {', '.join(world.layers)}")
+        found = world.view(size=size, window=window, bounds=bounds, cell=cell)
+        arrays = {name: indexing.LazilyIndexedArray(LayerArray(world, name, found)) for name in names}
+        return dataset(world, names, found, arrays)
+
+    def guess_can_open(self, filename_or_obj: Any) -> bool:
+        """Recipes alone: other readers open files of heights."""
+        try:
+            return os.fspath(filename_or_obj).endswith(".toml")
+        except TypeError:
+            return False
