@@ -13,19 +13,19 @@ use std::borrow::Cow;
 use std::fmt;
 use std::sync::Arc;
 
-/// Computes steps of plans in place of the processor. Its results are close to those of the processor, and not the
-/// same: a [session](crate::Session) keeps none of them for later requests, and gives nothing of them to solvers and
+/// Computes steps of plans in place of the processor. The results are close to the processor's, but not bit-equal. A
+/// [session](crate::Session) therefore does not keep them for later requests, and does not pass them to solvers and
 /// levelled ops.
 ///
-/// What the device does not compute, the processor does. An error ends the request. What a step makes may stay on the
-/// device until the processor [asks](Device::read) for it.
+/// The processor computes whatever the device declines. An error ends the request. The result of a step may stay on the
+/// device until the processor [reads](Device::read) it.
 pub trait Device: Send + Sync {
-    /// Whether it is the processor itself, by a software driver: then it is slower than without it.
+    /// Whether the device is a software driver that runs on the processor; it is then slower than computing without it.
     fn is_software(&self) -> bool {
         false
     }
 
-    /// Computes the outputs of a program over a window. `grids` are those that the program reads.
+    /// Computes the outputs of a program over a window. `grids` are the grids that the program reads.
     ///
     /// # Errors
     /// If the work was cancelled.
@@ -40,7 +40,7 @@ pub trait Device: Send + Sync {
         Ok(Computed::Declined)
     }
 
-    /// Computes the wanted layers of the last of some passes.
+    /// Runs passes one after the other and computes the wanted layers of the last one.
     ///
     /// # Errors
     /// If the work was cancelled.
@@ -59,19 +59,19 @@ pub trait Device: Send + Sync {
     }
 }
 
-/// What comes of work.
+/// The result of work that a device may decline.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Computed<T> {
     /// This.
     Done(T),
-    /// Nothing, because it cannot be done here, or has failed.
+    /// No result: the device cannot do this work, or has failed.
     Declined,
-    /// Nothing, because the device has lost a grid that it had made: the processor makes all again.
+    /// No result: the device has lost a grid that it had made. The processor computes everything again.
     Lost,
 }
 
 impl<T> Computed<T> {
-    /// What was computed, if it was.
+    /// The computed value; `None` if the work was declined or lost.
     #[must_use]
     pub fn done(self) -> Option<T> {
         match self {
@@ -102,13 +102,13 @@ impl PlanGrid {
         self.memory.as_ref()
     }
 
-    /// The grid in the processor's memory, if it is there.
+    /// The grid, if it is in the processor's memory; drops any copy on the device.
     #[must_use]
     pub fn into_memory(self) -> Option<Grid> {
         self.memory
     }
 
-    /// The grid on the device, if it is there.
+    /// The grid, if it is on the device.
     #[must_use]
     pub fn on_device(&self) -> Option<&DeviceGrid> {
         self.on_device.as_ref()
@@ -141,7 +141,7 @@ pub struct DeviceGrid {
 }
 
 impl DeviceGrid {
-    /// A grid over a window; `samples` is what the device knows its samples by.
+    /// A grid over a window. `samples` is the device's handle for its samples, such as a buffer.
     #[must_use]
     pub fn new<T: Any + Send + Sync>(window: Window, samples: T) -> DeviceGrid {
         DeviceGrid { window, samples: Arc::new(samples) }
@@ -153,7 +153,7 @@ impl DeviceGrid {
         &self.window
     }
 
-    /// What the device knows its samples by; `None` if that has another type.
+    /// The device's handle for the samples; `None` if it has another type.
     #[must_use]
     pub fn samples<T: Any>(&self) -> Option<&T> {
         self.samples.downcast_ref()
@@ -166,41 +166,41 @@ impl fmt::Debug for DeviceGrid {
     }
 }
 
-/// Passes one after the other.
+/// Passes to be run one after the other.
 #[derive(Debug, Clone, Copy)]
 pub struct PassRun<'a> {
-    /// The passes: those of a filter or a solver, or of levels, each from the layers of the one before, and of layers
-    /// of the last level. Each level covers the samples that the next one reads.
+    /// The passes: of a filter, of a solver, or of levels followed by the layers of the last level. Each level reads
+    /// the layers of the level before it, which cover the samples that it needs.
     pub steps: &'a [PassStep<'a>],
     /// The planes of the level above the first, over exactly the samples that `Levelled::refine` gets.
     pub above: &'a [Grid],
-    /// Whether the result may stay on the device. Otherwise it is in memory.
+    /// Whether the result may stay on the device; otherwise it must be returned in memory.
     pub stays: bool,
 }
 
-/// Passes with what they are run on.
+/// Passes with their inputs and the window of their result.
 #[derive(Debug, Clone)]
 pub struct PassStep<'a> {
     /// The passes.
     pub passes: Passes,
-    /// The op's inputs, which cover at least what it reads of them.
+    /// The op's inputs, each covering at least the samples that the op reads.
     pub inputs: Vec<Option<Cow<'a, PlanGrid>>>,
     /// The window of the result.
     pub window: Window,
 }
 
-/// A program for a device: each instruction makes the value of its index, and each coordinate set is written once.
+/// A program for a device. Instruction `i` computes value `i`, and each coordinate set is written once.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LoweredProgram {
     /// The instructions, in order.
     pub instructions: Vec<Lowered>,
     /// The coordinate sets. The first is the block itself.
     pub coord_sets: Vec<LoweredCoords>,
-    /// The values that are the results.
+    /// The values that are the program's results, by number.
     pub outputs: Vec<usize>,
 }
 
-/// An instruction for a device. Numbers name values and coordinate sets.
+/// An instruction for a device. It refers to values and coordinate sets by number.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Lowered {
     /// A constant.
@@ -211,7 +211,7 @@ pub enum Lowered {
         shader: Shader,
         /// The coordinate set.
         coords: usize,
-        /// Its inputs there; a missing one is 0.
+        /// The values of its inputs at the coordinate set; a missing input is 0.
         inputs: Vec<Option<usize>>,
     },
     /// A function of numbers.
@@ -246,7 +246,7 @@ pub enum Lowered {
 pub enum LoweredOperand {
     /// A constant.
     Number(f32),
-    /// A value.
+    /// A value, by number.
     Value(usize),
 }
 
@@ -278,7 +278,7 @@ pub enum LoweredCoords {
 }
 
 impl LoweredProgram {
-    /// The values that an instruction reads, with those of its coordinate set.
+    /// The values that an instruction reads, including the values that displace its coordinate set.
     #[must_use]
     pub fn reads(&self, instruction: usize) -> Vec<usize> {
         let Some(lowered) = self.instructions.get(instruction) else { return Vec::new() };

@@ -1,9 +1,9 @@
-//! Which device computes windows, as it is written on command lines.
+//! The choice of the device that computes windows, as written on command lines.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// Which device computes windows.
+/// The device that computes windows.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum DeviceChoice {
     /// The processor: `cpu`.
@@ -11,8 +11,8 @@ pub enum DeviceChoice {
     Processor,
     /// A graphics card if there is one, otherwise the processor: `auto`.
     Auto,
-    /// A graphics card, `gpu`, or the one with this number or with this text in its name, `gpu:NAME`. The processor
-    /// stands in for one that is not there.
+    /// A graphics card: any one (`gpu`), or the one with this number or with this text in its name (`gpu:NAME`). If
+    /// there is no such card, the processor is used.
     Card(Option<String>),
 }
 

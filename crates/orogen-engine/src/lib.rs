@@ -1,8 +1,8 @@
-//! The engine of Orogen: a recipe describes a world, and the engine makes any window of it, at any resolution, always
-//! the same.
+//! The engine of Orogen: a recipe describes a world, and the engine computes any window of it at any resolution, with
+//! the same bits on every machine.
 //!
-//! The crate `orogen` puts this engine, its files, maps and meshes together, and is what programs usually depend on.
-//! This crate alone is for programs that want terrain and write no files.
+//! Programs usually depend on the crate `orogen`, which combines this engine with files, maps and meshes. This crate
+//! alone is for programs that want terrain and write no files.
 //!
 //! ```
 //! use orogen_engine::Window;

@@ -126,7 +126,7 @@ impl Registry {
         }
     }
 
-    /// The message for a name that no op has.
+    /// The message for an unknown op name, with a suggestion.
     #[must_use]
     pub fn unknown(&self, op: &str) -> String {
         let registered = || self.registered.iter().map(|node| node.spec().op);

@@ -11,8 +11,8 @@ use orogen_grid::grid::Window;
 /// **Chunks.** A chunk of level l has sides of `cells * cell * 2^l` metres. The terrain within `range` of the viewer is
 /// divided into chunks of the coarsest level. Each chunk that is closer to the viewer than `detail` of its sides is
 /// replaced by the four finer ones that cover it, down to level 0. Distances are Chebyshev distances (the greater of
-/// those east and south), so rings are square. The chunks cover the terrain once, and neighbors differ by at most one
-/// level.
+/// the distances east and south), so rings are square. The chunks cover the terrain once, and neighbors differ by at
+/// most one level.
 ///
 /// **Borders.** A chunk has `cells + 1` samples per side: its last row and column are its neighbor's first, with the
 /// same bits. If the neighbor is one level coarser, its samples are every second one of the finer chunk's, with the
@@ -56,7 +56,7 @@ orogen_noise::builder!(
 const MAX_ACROSS: f64 = 256.0;
 
 impl LodConfig {
-    /// The defaults, for constants.
+    /// The default configuration. Unlike `default`, it can be called in constants.
     #[must_use]
     pub const fn new() -> LodConfig {
         LodConfig { cells: 64, cell: 1.0, levels: 6, detail: 1.5, range: 8000.0, slack: 0.25 }
@@ -122,8 +122,8 @@ impl LodConfig {
         Window::new(samples, samples, self.cell_of(id.level)).at(first(id.x), first(id.y))
     }
 
-    /// The samples of a chunk in a world of this size, in metres; `None` if they do not overlap. A chunk at the world's
-    /// far edges is clipped to its samples.
+    /// The samples of a chunk in a world of `size` metres; `None` if the chunk lies outside of the world. A chunk at
+    /// the world's far edges is clipped to its samples.
     pub(super) fn window_within(&self, id: ChunkId, size: Option<[f64; 2]>) -> Option<Window> {
         let window = self.window(id);
         let Some(size) = size else { return Some(window) };

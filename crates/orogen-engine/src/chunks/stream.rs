@@ -7,7 +7,7 @@ use crate::world::World;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
 
-/// The next step.
+/// A step of [`Chunks::next_step`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ChunkStep {
     /// Make this chunk and show it.
@@ -54,13 +54,13 @@ pub enum ChunkStep {
 pub struct Chunks {
     lod: LodConfig,
     size: Option<[f64; 2]>,
-    /// The chunks that cover the ground, sorted.
+    /// The chunks that cover the terrain around the viewer, sorted.
     wanted: Vec<ChunkId>,
-    /// Those that are not being made yet, the nearest last.
+    /// Wanted chunks that are not being made yet, nearest last.
     queue: Vec<ChunkId>,
-    /// Those returned by [`Chunks::take`], sorted.
+    /// Chunks returned by [`Chunks::take`], sorted.
     known: Vec<Known>,
-    /// Those made and no longer wanted.
+    /// Chunks that have been made and are no longer wanted.
     leaving: Vec<ChunkId>,
     /// Chunks that are replaced by finer ones, and chunks of the coarsest level in range, both sorted. Both change with
     /// hysteresis.
@@ -185,7 +185,7 @@ impl Chunks {
         std::mem::swap(&mut self.fresh, &mut self.roots);
     }
 
-    /// Splits them into finer ones.
+    /// Splits the chunks near the viewer into finer ones.
     fn cut(&mut self, viewer: [f64; 2]) {
         self.wanted.clear();
         self.fresh.clear();

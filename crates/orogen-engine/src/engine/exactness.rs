@@ -1,4 +1,4 @@
-//! Which grids of a plan have the bits of the processor, and which must have them.
+//! Exactness: which grids of a plan have the processor's bits, and which must have them.
 
 use super::preview::Preview;
 use crate::plan::levels::{self, Serving};
@@ -7,17 +7,18 @@ use crate::plan::steps::{Plan, Step, wanted};
 use orogen_ops::ids::{GridId, IndexVec};
 use orogen_ops::op::Op;
 
-/// Which grids have the bits of the processor, and which must have them.
+/// Which grids of a plan have the processor's bits, and which must have them.
 pub struct Exactness<'a> {
     preview: Option<&'a Preview<'a>>,
-    /// What tiles of levels are made from, because they are kept, and what is made on the processor alone.
+    /// Grids that must be exact: inputs of tiles of levels, which are kept, and of ops that only the processor
+    /// computes.
     required: IndexVec<GridId, bool>,
-    /// What a device made, and what was made from that.
+    /// Grids that a device made, and grids computed from them.
     approximate: IndexVec<GridId, bool>,
 }
 
 impl<'a> Exactness<'a> {
-    /// That of a plan before its first step.
+    /// The exactness of a plan's grids before its first step.
     pub fn of(resolved: &ResolvedRecipe, preview: Option<&'a Preview<'a>>, plan: &Plan) -> Exactness<'a> {
         let none = || -> IndexVec<GridId, bool> { vec![false; plan.grids.len()].into() };
         let mut required = none();
@@ -35,7 +36,7 @@ impl<'a> Exactness<'a> {
         step.writes().iter().any(|grid| self.required[*grid])
     }
 
-    /// Whether all that a step reads has them.
+    /// Whether everything that a step reads has the processor's bits.
     pub fn is_read_by(&self, step: &Step) -> bool {
         let Some(preview) = self.preview else { return true };
         let reads_solution = step.solvers_read().any(|node| preview.is_approximate(node));
@@ -59,8 +60,8 @@ impl<'a> Exactness<'a> {
     }
 }
 
-/// The grids that must be exact for a levelled op: none if it reads what the device makes anyway. Otherwise its tiles
-/// are exact; if it is made on the device, that begins below the tiled levels.
+/// The grids that must be exact for a levelled op: none if an input is approximate anyway. Otherwise its tiles are
+/// exact. If the op is made on the device, only the levels below the tiled ones are approximate.
 fn exact_inputs(resolved: &ResolvedRecipe, preview: Option<&Preview>, step: &Step) -> Vec<GridId> {
     let Step::Refine { node, inputs, window, out } = step else { return Vec::new() };
     let exact = match (preview, resolved.op(*node)) {

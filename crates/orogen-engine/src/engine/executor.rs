@@ -1,4 +1,4 @@
-//! What does the work of a plan: a device where it can, and otherwise the processor.
+//! Executors, which do the work of a plan: a device where possible, otherwise the processor.
 
 use super::grids::Grids;
 use super::preview::Preview;
@@ -14,7 +14,7 @@ use orogen_ops::op::{Context, Solution, Solver};
 
 /// Does work of a plan, or declines it.
 pub(super) trait Executor {
-    /// Whether it is a device, whose results are close to those of the processor and not the same.
+    /// Whether it is a device, whose results are close to the processor's but not bit-equal.
     fn is_device(&self) -> bool;
 
     /// The grids of a program or a filter.
@@ -26,7 +26,8 @@ pub(super) trait Executor {
         progress: &Progress,
     ) -> Result<Computed<Vec<PlanGrid>>>;
 
-    /// The planes of as many of these levels as are made one from the other, and their number.
+    /// Makes the first of these levels, or several of them one from the other. Returns the planes of the last one made,
+    /// and the number of levels made.
     fn levels(
         &self,
         refining: &Refining,
@@ -34,7 +35,7 @@ pub(super) trait Executor {
         above: &[Grid],
     ) -> Result<Computed<(Vec<Grid>, usize)>>;
 
-    /// The layers of the last of some levels, and these levels.
+    /// Makes the levels of a piece, and the layers of the last one.
     fn layers(&self, refining: &Refining, piece: &Piece) -> Result<Computed<Vec<Option<PlanGrid>>>>;
 
     /// The solution of a solver.
@@ -53,12 +54,12 @@ pub(super) struct OnDevice<'a> {
 }
 
 impl Engine<'_> {
-    /// The device, if there is one that has lost nothing.
+    /// The device, if there is one and it has lost no grid.
     pub(super) fn device(&self) -> Option<&dyn Device> {
         self.preview.filter(|preview| !preview.has_lost()).map(|preview| preview.device)
     }
 
-    /// Does work on the device, if there is one and it `may` do it, and otherwise on the processor.
+    /// Does work on the device if there is one and `may` allows it, otherwise on the processor.
     pub(super) fn execute<T>(
         &self,
         may: bool,
@@ -74,7 +75,7 @@ impl Engine<'_> {
         work(&Processor { engine: self })
     }
 
-    /// Notes that the device has lost grids: it is not asked again for this plan.
+    /// Records that the device has lost grids. It is not used again for this plan.
     pub(super) fn lose_device(&self) {
         self.preview.into_iter().for_each(Preview::lose);
     }

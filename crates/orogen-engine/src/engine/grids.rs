@@ -18,7 +18,7 @@ impl Grids {
         Grids { slots: plan.grids.iter().map(|_| None).collect() }
     }
 
-    /// A grid, wherever it is.
+    /// A grid, in memory or on the device.
     pub fn find(&self, slot: GridId) -> Option<&PlanGrid> {
         self.slots.find(slot)?.as_ref()
     }
@@ -28,7 +28,7 @@ impl Grids {
         self.find(slot)?.memory()
     }
 
-    /// Whether a grid is on the device alone.
+    /// Whether a grid is only on the device.
     pub fn is_away(&self, slot: GridId) -> bool {
         self.find(slot).is_some_and(|grid| grid.memory().is_none())
     }
@@ -45,7 +45,7 @@ impl Grids {
         }
     }
 
-    /// Drops those that no step after this one reads.
+    /// Drops the grids that no later step reads.
     pub fn drop_after(&mut self, at: StepId, plan: &Plan) {
         for (slot, planned) in plan.grids.entries() {
             if planned.last_use.is_some_and(|last| last <= at) {
@@ -54,8 +54,8 @@ impl Grids {
         }
     }
 
-    /// Copies those that are on the device alone to memory. Returns whether all are there: a device may have been lost
-    /// with its grids.
+    /// Copies the grids that are only on the device to memory. Returns whether all of them are in memory: a device may
+    /// have been lost with its grids.
     pub fn fetch(&mut self, slots: &[GridId], device: Option<&dyn Device>, progress: &Progress) -> Result<bool> {
         let mut away: Vec<GridId> = slots.iter().filter(|slot| self.is_away(**slot)).copied().collect();
         away.sort_unstable();
@@ -76,7 +76,7 @@ impl Grids {
     }
 }
 
-/// A grid that steps before should have computed is not there.
+/// The error for a grid that an earlier step should have computed.
 pub fn missing(what: &str) -> Error {
     Error::new(ErrorKind::Internal, format!("{what} was not computed"))
 }

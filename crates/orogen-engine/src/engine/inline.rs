@@ -34,8 +34,8 @@ impl Engine<'_> {
         Ok(Some(PreparedProgram { program: program.clone(), evaluators, solutions, grids, anywhere }))
     }
 
-    /// Computes the samples of a window, row-major, into `out`, which must have its length; returns the buffers. Only
-    /// if it is valid [anywhere](PreparedProgram::anywhere).
+    /// Computes the samples of a window, row-major, into `out`, which must have its length; returns the buffers. The
+    /// program must be valid [anywhere](PreparedProgram::anywhere).
     pub fn fill_inline(
         &self,
         ready: &PreparedProgram,
@@ -53,7 +53,7 @@ impl Engine<'_> {
     }
 
     /// Computes the samples of a window at each altitude into `out`, slice by slice, each row-major; returns the
-    /// buffers. `out` must have their number. The program must be valid for the window.
+    /// buffers. `out` must have as many elements as there are samples. The program must be valid for the window.
     pub fn volume_inline(
         &self,
         ready: &PreparedProgram,

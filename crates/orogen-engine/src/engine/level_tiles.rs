@@ -1,5 +1,5 @@
-//! Tiles of the coarse levels that a window of a levelled op is made from: found in memory or in the store, or made,
-//! coarsest first.
+//! Tiles of the coarse levels from which a window of a levelled op is made. They are taken from memory or the store, or
+//! made, coarsest first.
 
 use super::refine::{Planes, Refining};
 use super::run::Engine;
@@ -13,14 +13,14 @@ use orogen_ops::op::Levelled;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 
-/// A tile of a level by its column and row.
+/// The column and row of a tile of a level.
 type At = (i64, i64);
 
 /// Minimum cost of a tile that is stored for later runs, in nanoseconds per sample of a plane; reading one takes about
 /// three.
 const EXPENSIVE: f64 = 16.0;
 
-/// What a window is made from at one level.
+/// The tiles of one level from which a window is made.
 struct LevelTiles {
     level: usize,
     found: Planes,
@@ -28,8 +28,8 @@ struct LevelTiles {
 }
 
 impl Engine<'_> {
-    /// The tiles of the first of the `direct` levels that pieces of the last are made from. It must not run on a thread
-    /// of the pool if it is to wait for tiles that other requests make.
+    /// The tiles of the first of the `direct` levels, from which pieces of the last one are made. Only a thread outside
+    /// of the pool waits for tiles that other requests make.
     pub(super) fn level_tiles(
         &self,
         refining: &Refining,
@@ -63,8 +63,8 @@ impl Engine<'_> {
         self.pool.install(|| self.make_level_tiles(refining, tiles, claims, is_stored))
     }
 
-    /// What is found of each level from `last`, and what is missing: the tiles that are missing at each level tell
-    /// which the level above must have. Tiles that were `found` before are not looked for again.
+    /// Looks up the tiles of each level from `last` up, and lists the missing ones: they determine which tiles of the
+    /// level above are needed. Tiles that were `found` before are not looked up again.
     fn find_level_tiles(
         &self,
         refining: &Refining,
@@ -92,7 +92,7 @@ impl Engine<'_> {
         tiles
     }
 
-    /// The planes of a tile from memory, otherwise from the store.
+    /// The planes of a tile, from memory or else from the store.
     fn find_level_tile(&self, refining: &Refining, level: usize, at: At) -> Option<Vec<Grid>> {
         let tile = self.level_tile(refining, level, at);
         self.kept.level_tiles.find(&tile).or_else(|| {
@@ -103,7 +103,7 @@ impl Engine<'_> {
         })
     }
 
-    /// The tiles of the last level, with those that are missing made, and stored if required.
+    /// The tiles of the last level. Makes the missing ones, and stores them if required.
     fn make_level_tiles(
         &self,
         refining: &Refining,

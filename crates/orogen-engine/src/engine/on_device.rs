@@ -34,7 +34,7 @@ impl Executor for OnDevice<'_> {
         match step {
             Step::Fill { .. } => fill(self.engine, self.device, step, solutions, grids, progress),
             Step::Apply { .. } => apply(self.engine, self.device, step, grids, progress),
-            // The levels and the layers are work of their own.
+            // `levels` and `layers` do the work of this step.
             Step::Refine { .. } => Ok(Computed::Declined),
         }
     }

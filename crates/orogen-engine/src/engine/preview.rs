@@ -1,4 +1,4 @@
-//! Previews: what a device computes, kept apart from what the processor computes.
+//! Previews: results that a device computes, kept apart from the processor's results.
 
 use crate::device::Device;
 use crate::plan::domain::Domain;
@@ -12,16 +12,16 @@ use orogen_ops::lower::Passes;
 use orogen_ops::op::{Op, Solver};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// A device, and which nodes of a recipe are approximate with it.
+/// A device, and the nodes of a recipe whose results it makes approximate.
 pub struct Preview<'a> {
     pub device: &'a dyn Device,
     pub kept: &'a Kept,
-    /// Whether the device also solves what is chaotic.
+    /// Whether the device also runs chaotic solvers.
     is_draft: bool,
-    /// Solvers and levelled ops that the device computes, and all that reads them. Fields and filters that it computes
-    /// are not among them: whether they must be exact depends on who reads them.
+    /// Solvers and levelled ops that the device computes, and all nodes that depend on them. Fields and filters that it
+    /// computes are not marked: whether they must be exact depends on the nodes that read them.
     approximate: IndexVec<NodeId, bool>,
-    /// Whether a node reads such a node.
+    /// Whether each node reads an approximate node.
     reads: IndexVec<NodeId, bool>,
     /// Whether the device has lost grids.
     has_lost: AtomicBool,
@@ -55,7 +55,7 @@ impl<'a> Preview<'a> {
         }
     }
 
-    /// How the device solves a solver; `None` if the processor does.
+    /// The passes by which the device runs a solver; `None` if the processor runs it.
     pub fn passes_of(&self, resolved: &ResolvedRecipe, node: NodeId, solver: &dyn Solver) -> Option<Passes> {
         let passes = lowered(resolved, node, solver)?;
         (self.is_draft || !passes.is_chaotic).then_some(passes)
@@ -66,29 +66,29 @@ impl<'a> Preview<'a> {
         self.has_lost.load(Ordering::Relaxed)
     }
 
-    /// Notes that it has.
+    /// Records that the device has lost grids.
     pub fn lose(&self) {
         self.has_lost.store(true, Ordering::Relaxed);
     }
 
-    /// Whether a node is made on the device, or from what is made there.
+    /// Whether a node is computed on the device, or depends on a node that is.
     pub fn is_approximate(&self, node: NodeId) -> bool {
         self.approximate[node]
     }
 
-    /// Whether a node is made from what is made on the device.
+    /// Whether a node depends on a node that is computed on the device.
     pub fn is_read_by(&self, node: NodeId) -> bool {
         self.reads[node]
     }
 }
 
-/// How a device solves a solver, also if that is chaotic.
+/// The passes by which a device runs a solver, chaotic or not.
 fn lowered(resolved: &ResolvedRecipe, node: NodeId, solver: &dyn Solver) -> Option<Passes> {
     let padded = Domain::of(solver, &resolved.world_params).padded;
     solver.lower(&padded, &resolved.given(node), &resolved.world_params).shader()
 }
 
-/// Whether a device would make other land than the processor of one of the solvers that a plan has to solve.
+/// Whether a solver that a plan has to solve is chaotic on a device: its terrain would differ from the processor's.
 pub fn may_draft(resolved: &ResolvedRecipe, store: &Store, plan: &Plan) -> bool {
     let is_missing = |order: &&Solve| !store.has(&order.key);
     plan.solves.iter().filter(is_missing).any(|order| match resolved.op(order.node) {

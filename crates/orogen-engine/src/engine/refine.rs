@@ -22,7 +22,7 @@ pub(super) type Planes = BTreeMap<(i64, i64), Vec<Grid>>;
 /// Approximate time for making the layers of a sample, in nanoseconds.
 const LAYER_COST: f64 = 50.0;
 
-/// A levelled op at work.
+/// A levelled op, its inputs and the layers to make.
 pub(super) struct Refining<'a> {
     pub op: &'a dyn Levelled,
     pub node: NodeId,
@@ -38,7 +38,7 @@ pub(super) struct Refining<'a> {
 
 /// A part of a window.
 pub(super) struct Piece<'a> {
-    /// The levels that it is made from: tiles of the first, one from the other, until its own.
+    /// The levels that it is made from: from tiles of the first one, level by level, to its own.
     pub levels: RangeInclusive<usize>,
     pub window: &'a Window,
     /// The tiles of the first of these levels.
@@ -46,8 +46,8 @@ pub(super) struct Piece<'a> {
 }
 
 impl Engine<'_> {
-    /// Computes the wanted layers of a levelled op over a window; they may be on a device. Work is done on the threads
-    /// of the pool, and the calling thread waits for tiles that other requests make.
+    /// Computes the wanted layers of a levelled op over a window; they may be on a device. Work runs on the threads of
+    /// the pool; the calling thread waits for tiles that other requests make.
     pub(super) fn refine(
         &self,
         node: NodeId,
@@ -86,7 +86,7 @@ impl Engine<'_> {
         if samples.is_empty() {
             return Ok(in_memory(refining.layers(&samples)));
         }
-        // A device is best used by one piece at a time.
+        // A device is most efficient with one piece at a time.
         let threads = if self.device().is_some() { 1 } else { self.pool.threads() };
         let pieces: Vec<Window> = serving.pieces(threads).collect();
         let levels = levels::tiled(refining.op, refining.wanted, serving)..=level;
@@ -168,7 +168,7 @@ impl Refining<'_> {
         self.checked(planes, window)
     }
 
-    /// How a device makes a level from the one above it; `None` if the processor is to do it.
+    /// The passes by which a device makes a level from the level above it; `None` if the processor makes it.
     pub fn level_step(&self, level: usize, window: &Window) -> Result<Option<PassStep<'static>>> {
         let lowered = self.op.lower(level, &self.given, self.world_params).shader();
         let Some(passes) = lowered else { return Ok(None) };
@@ -226,7 +226,7 @@ impl Refining<'_> {
         Ok(planes)
     }
 
-    /// An op of another crate may return other grids than it was asked for.
+    /// Checks the planes: an op of another crate may return grids over another window.
     pub fn checked(&self, planes: Vec<Grid>, window: &Window) -> Result<Vec<Grid>> {
         let fits = planes.len() == self.op.planes() && planes.iter().all(|plane| plane.window() == window);
         if fits {
@@ -246,7 +246,7 @@ impl Refining<'_> {
     }
 }
 
-/// A layer at the samples of a window with another cell.
+/// A layer interpolated to the samples of a window with another cell.
 fn interpolated(grid: &Grid, kind: LayerKind, window: &Window, progress: &Progress) -> Result<Grid> {
     let mut out = Grid::filled(*window, 0.0f32);
     let (xs, ys) = (window.eastings(), window.southings());

@@ -26,9 +26,9 @@ use std::sync::Arc;
 #[derive(Clone, Copy)]
 pub struct Engine<'a> {
     pub resolved: &'a ResolvedRecipe,
-    /// What is kept for later requests.
+    /// Results that are kept for later requests.
     pub kept: &'a Kept,
-    /// Whether grids of expensive filters are kept, and taken from what is kept.
+    /// Whether grids of expensive filters are kept and reused.
     pub keeps_grids: bool,
     pub budget: &'a Budget,
     /// The thread pool. Waiting happens only on the calling thread.
@@ -80,7 +80,7 @@ impl<'a> Engine<'a> {
         if let Computed::Done(made) = self.steps_once(plan, solutions, progress)? {
             return Ok(made);
         }
-        // The device has lost grids that steps had made: all are made again without it.
+        // The device has lost grids that steps had made: all steps run again without it.
         self.lose_device();
         self.steps_once(plan, solutions, progress)?.done().ok_or_else(|| missing("a grid of a step"))
     }
@@ -116,8 +116,8 @@ impl<'a> Engine<'a> {
         outputs.collect::<Result<_>>().map(Computed::Done)
     }
 
-    /// Takes kept grids of expensive filters from earlier requests, those on the device only if there is one. Returns
-    /// which steps are still needed: those whose grids are results or are read by needed steps.
+    /// Takes kept grids of expensive filters from earlier requests; grids on the device only if it is still in use.
+    /// Returns which steps are still needed: those whose grids are results or are read by needed steps.
     fn kept_grids(&self, plan: &Plan, grids: &mut Grids, exactness: &mut Exactness) -> IndexVec<StepId, bool> {
         let mut needed: IndexVec<StepId, bool> = vec![true; plan.steps.len()].into();
         let Some(store) = self.grid_store() else { return needed };
@@ -216,7 +216,7 @@ impl<'a> Engine<'a> {
         Ok(made.into_iter().map(PlanGrid::from).collect())
     }
 
-    /// Keeps the grids of an expensive filter for later requests; those that are not exact for previews alone.
+    /// Keeps the grids of an expensive filter for later requests; approximate ones only for previews.
     fn keep_grids(&self, step: &Step, made: &[PlanGrid], is_exact: bool) {
         let Some(exact) = self.grid_store() else { return };
         for (key, grid) in self.grid_keys(step).into_iter().flatten().zip(made) {

@@ -58,7 +58,7 @@ impl Engine<'_> {
         Ok(there)
     }
 
-    /// The solution of an order that is there: an exact one, or in a preview one that an earlier preview made.
+    /// An existing solution: an exact one or, in a preview, one that an earlier preview made.
     fn found(&self, order: &Solve) -> Result<Option<Arc<Solution>>> {
         let exact = self.kept.store.find(&order.key, order.on_disk)?;
         match self.preview {
@@ -99,7 +99,8 @@ impl Engine<'_> {
         work
     }
 
-    /// A solution that two requests computed at once may be in memory although this request needs it on disk.
+    /// Moves a solution to disk if this request needs it there: another request may have computed the same solution in
+    /// memory.
     fn moved(&self, order: &Solve, solution: Arc<Solution>) -> Result<Arc<Solution>> {
         match order.on_disk {
             true => Ok(self.store_of(order.node).find(&order.key, true)?.unwrap_or(solution)),
@@ -107,7 +108,7 @@ impl Engine<'_> {
         }
     }
 
-    /// Solves one solver; all solutions that its sources read are in `there`.
+    /// Runs one solver. `there` has all solutions that its sources read.
     fn solved(&self, order: &Solve, there: &Solutions, progress: &Progress) -> Result<Solution> {
         let Op::Solver(solver) = self.resolved.recipe.nodes()[order.node.index()].node.op() else {
             return Err(Error::new(ErrorKind::Internal, "a node that is not a solver was to be solved"));
@@ -117,7 +118,7 @@ impl Engine<'_> {
         sources.expect(order.source_work);
         let make = |link: Link, tile: Window| {
             let plan = planner.source(link, tile)?;
-            // The solution is kept, its sources are not. If it is exact, so are they.
+            // The solution is kept, its sources are not. An exact solution has exact sources.
             let preview = self.preview.filter(|preview| preview.is_approximate(order.node));
             let engine = Engine { keeps_grids: false, preview, ..*self };
             engine.steps(&plan, there, &sources.part(cost::steps(&plan, &self.resolved.recipe)))

@@ -21,7 +21,7 @@ pub struct Tiles<'a> {
 }
 
 impl Tiles<'_> {
-    /// What an input reads, if it is given.
+    /// The target of an input, if it is given.
     fn link(&self, name: &str) -> Option<Link> {
         self.links.get(self.spec.input_named(name)?).copied().filter(|link| *link != Link::None)
     }

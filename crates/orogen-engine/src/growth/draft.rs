@@ -1,11 +1,11 @@
 //! Drafts: frames of an early stage with a quarter of the samples and without later stages.
 //!
-//! A full frame of a stage that others follow needs all later stages, over the whole world at their own cell. A draft
-//! skips them: they pass their source through. It is made at twice the cell, without the octaves of gullies that are
-//! too fine for it, and is interpolated. At the end of the stage the frame is made in full, so the difference to its
-//! draft is known there. That difference, with a weight that increases towards the end, is added to every earlier
-//! frame. Detail therefore appears gradually, and the last frame of the stage continues in the first one of the next
-//! stage without a jump.
+//! A full frame of a stage needs all later stages, over the whole world at their own cell. A draft skips them: they
+//! pass their source through. It is made at twice the cell, without the octaves of gullies that are too fine for it,
+//! and is interpolated. At the end of the stage the frame is made in full, so the difference to its draft is known
+//! there. That difference, with a weight that increases towards the end, is added to every earlier frame. Detail
+//! therefore appears gradually, and the last frame of the stage continues in the first one of the next stage without a
+//! jump.
 
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::Graph;

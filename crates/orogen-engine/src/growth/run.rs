@@ -59,7 +59,7 @@ impl Stage {
 /// The solution of a stage.
 type Solved = (NodeId, Arc<Solution>);
 
-/// The number of solutions that a run computed (not found in the store).
+/// The number of solutions that a run computed, without those found in the store.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Solves {
@@ -98,8 +98,8 @@ impl<'w> Growth<'w> {
         Ok(Growth { world, layer: layer.to_string(), window, plan, stages, read, drafted })
     }
 
-    /// The same with every frame computed in full, which takes several times as long if a recipe has several stages.
-    /// Each frame then has the bits of a recipe whose stages have that many steps of the same length.
+    /// Computes every frame in full, which takes several times as long if a recipe has several stages. Each frame then
+    /// has the bits of a recipe whose stages have that many steps of the same length.
     #[must_use]
     pub fn in_full(self) -> Growth<'w> {
         Growth { drafted: false, ..self }
@@ -242,7 +242,7 @@ impl Frames<'_> {
         self.make(self.growth.recipe(step), &self.growth.window, solved, self.work)
     }
 
-    /// A draft, from that solution; without one, at the start.
+    /// A draft of the frame after a step, from the solution of the stage; `None` at the start.
     fn draft(&self, step: u32, solved: Option<Solved>) -> Result<Grid> {
         let growth = self.growth;
         let given = solved.as_ref().map(|(node, _)| *node);

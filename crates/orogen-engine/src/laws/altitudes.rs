@@ -1,4 +1,4 @@
-//! The law of layers in space.
+//! The test of [`Law::Altitudes`].
 
 use super::case::Case;
 use super::check::Laws;
@@ -14,8 +14,8 @@ use orogen_ops::op::Op;
 use orogen_ops::value::Value;
 
 impl Laws<'_> {
-    /// [`Law::Altitudes`], for a field that may read nodes that depend on the altitude. The op, its inputs and its mask
-    /// are noises of space, as far as they are noises. It forces SIMD levels for the whole process and restores the
+    /// [`Law::Altitudes`], for a field that may read nodes that depend on the altitude. Where the op, its inputs and
+    /// its mask are noises, they are noises in space. It forces SIMD levels for the whole process and restores the
     /// previous one at the end.
     ///
     /// # Errors

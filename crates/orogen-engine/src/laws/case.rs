@@ -74,8 +74,8 @@ impl Case {
     }
 }
 
-/// Tile == crop for every layer of one recipe: the whole against tiles of several sizes and offsets, thread counts,
-/// fresh and warm.
+/// Tile == crop for every layer of one recipe: compares the whole with tiles of several sizes and offsets, for several
+/// numbers of threads, with new and with filled stores.
 pub(super) fn tiles_equal_crop(case: &Case, what: &str, recipe: &Recipe, cell: f64) -> Verdict {
     let whole = full(cell);
     let layers: Vec<&str> = recipe.outputs().collect();

@@ -146,7 +146,7 @@ impl<'a> Laws<'a> {
             return Ok(());
         }
         let mut recipe = without_outputs(&(self.recipe)(world_of(cell), false));
-        // Warps that read filters that read solvers that read the node.
+        // A chain: a warp reads a filter, which reads a solver, which reads the node.
         let noise = Fbm { seed: 8, wavelength: 20.0 * cell, octaves: 2, ..Default::default() };
         recipe.add("move", noise).add("kept", Bake { source: NODE.into(), cell: 0.7 * cell, ..Bake::default() });
         recipe.add("soft2", Blur { source: "kept".into(), radius: 1.1 * cell });
@@ -349,9 +349,9 @@ impl<'a> Laws<'a> {
     }
 
     /// [`Law::Cancel`] without a clock, in a world of `side` x `side` samples on one thread: the result does not depend
-    /// on how busy the machine is. Times are those of the costs that the ops state. Cancels the work at five different
-    /// shares of it. Returns the longest time for which it continued, or between two reports of progress, if that is
-    /// longer.
+    /// on how busy the machine is. Times are computed from the costs that the ops state. Cancels the work at five
+    /// different shares of it. Returns the longest time for which it continued, or the longest time between two reports
+    /// of progress, if that is longer.
     ///
     /// # Errors
     /// If the time is longer than [`LONGEST_CANCEL`], or if the work ended with another error than

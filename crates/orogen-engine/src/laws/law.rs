@@ -1,4 +1,4 @@
-//! What a law says, and what it is to break one.
+//! The laws, and their violations.
 
 use orogen_grid::grid::Window;
 use std::fmt;
@@ -7,7 +7,7 @@ use std::time::Duration;
 /// Maximum time for which work may continue after a request to cancel.
 pub const LONGEST_CANCEL: Duration = Duration::from_millis(100);
 
-/// A law.
+/// A law: a property that every op must have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Law {
     /// A tile has the bits of the crop of the whole.

@@ -47,7 +47,7 @@ pub(super) fn unsoftened(from: &Recipe) -> Recipe {
 /// The node that a `source` is read through.
 const SOFT: &str = "soft";
 
-/// The name of the output of a layer that is not the first one, whose output is `height`.
+/// The name of the output of a layer other than the first one, whose output is `height`.
 pub(super) fn output_of(layer: &Layer) -> &'static str {
     if layer.name == "height" { "layer_height" } else { layer.name }
 }
@@ -60,8 +60,8 @@ pub fn world_of(cell: f64) -> WorldSpec {
 }
 
 /// A recipe with the node as [`NODE`]. Each input is a separate noise, about -1 to 1 with a wavelength of nine cells.
-/// An input called `source` reads it through a blur, so that halos add up. The outputs are the node's layers, the first
-/// one named `height`, and another one of that name `layer_height`.
+/// An input called `source` reads it through a blur, so that halos add up. The outputs are the node's layers. The first
+/// one is named `height`; if another layer has that name, its output is `layer_height`.
 #[must_use]
 pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
     let mut node = node.clone();

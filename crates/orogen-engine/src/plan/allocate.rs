@@ -6,7 +6,7 @@ use orogen_ops::program::{Instruction, Program};
 
 /// Ids that are reused as soon as they are free.
 struct Pool<I> {
-    /// Where each value is, while it is needed.
+    /// The id assigned to each value while it is needed.
     assigned: IndexVec<I, Option<I>>,
     free: Vec<I>,
     count: usize,
@@ -36,8 +36,8 @@ impl<I: Id> Pool<I> {
 }
 
 /// Assigns registers and coordinate sets. In the input, each is written once (the block itself never); the output
-/// reuses them. The instructions from number `once` on can be run repeatedly: they do not overwrite what they read of
-/// earlier ones.
+/// reuses them. The instructions from number `once` on can be run repeatedly: they do not overwrite values that they
+/// read from earlier ones.
 ///
 /// # Errors
 /// If an instruction reads a value before it is written, which is a bug.

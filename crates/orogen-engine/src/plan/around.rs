@@ -6,8 +6,8 @@ use orogen_grid::resample::split;
 /// Samples that the interpolating cubic reads around a position.
 const MARGIN: i64 = 2;
 
-/// The samples with another cell that a window is read from: the window itself if the cells are equal, otherwise those
-/// around it, to be interpolated.
+/// The samples at cell `cell` from which a window is read: the window itself if the cells are equal, otherwise the
+/// samples around it, which are interpolated.
 #[must_use]
 pub fn samples_around(window: &Window, cell: f64) -> Window {
     if cell == window.cell || window.is_empty() {

@@ -289,7 +289,7 @@ impl<'a> Compiler<'a> {
         Ok(out)
     }
 
-    /// The cell at which the source of a field is computed that interpolates it, for the coordinates.
+    /// The cell at which the source of an interpolating field is computed, for a coordinate set.
     fn source_cell(&self, field: &dyn Field, coords: CoordSetId) -> Option<f64> {
         field.source_cell(self.coord_sets.window(coords).cell, self.scope.resolved.recipe.world.cell)
     }

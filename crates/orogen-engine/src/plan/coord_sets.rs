@@ -6,13 +6,13 @@ use orogen_ops::op::{Affine, CoordMap, Stencil};
 use orogen_ops::program::Instruction;
 use std::collections::HashMap;
 
-/// Coordinate sets and what they are for: each exists once.
+/// Coordinate sets by their purpose; each exists once.
 pub struct CoordSets {
-    /// The samples around each, on the lattice of filters.
+    /// The samples around each coordinate set, on the lattice of filters.
     windows: IndexVec<CoordSetId, Window>,
     /// Where fields with a coordinate map read their source.
     entered: HashMap<(NodeId, CoordSetId), CoordSetId>,
-    /// Those around a coordinate set, by the bits of their distance.
+    /// The four coordinate sets around another one, by the bits of their distance.
     surrounding: HashMap<(u64, CoordSetId), [CoordSetId; 4]>,
 }
 

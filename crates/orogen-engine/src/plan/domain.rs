@@ -48,7 +48,7 @@ mod tests {
         assert_eq!(domain(0.0).padded, Window::new(105, 55, 10.0).at(-2, -2));
         assert_eq!(domain(30.0).window, Window::new(107, 57, 10.0).at(-3, -3));
         assert_eq!(domain(30.0).padded, Window::new(111, 61, 10.0).at(-5, -5));
-        // A part of a cell, and a whole number of cells that division does not make whole.
+        // A fraction of a cell, and a whole number of cells whose division is not exact.
         assert_eq!(domain(30.1).window, Window::new(109, 59, 10.0).at(-4, -4));
         let fine = WorldParams { cell: 0.1, ..world };
         let fine = Domain::of(&Fill { margin: 0.3, ..Fill::default() }, &fine);

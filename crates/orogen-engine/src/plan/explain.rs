@@ -147,7 +147,7 @@ fn layers_read(recipe: &Recipe, node: NodeId, out: &[Option<GridId>]) -> String 
     if layers.len() > 1 { format!(" ({})", wanted.collect::<Vec<_>>().join(", ")) } else { String::new() }
 }
 
-/// The margin of a solver, behind "world".
+/// The margin of a solver, to follow the word "world".
 fn beyond(margin: Option<f64>) -> String {
     match margin {
         Some(margin @ f64::MIN_POSITIVE..) => format!(" and {} m around", number(margin)),

@@ -1,8 +1,9 @@
-//! How a window of a levelled op is made: the level that serves it, the pieces that are made side by side, and the
-//! windows of the levels above each.
+//! How a window of a levelled op is made: the level that serves it, the pieces that are made in parallel, and the
+//! windows of the levels above each piece.
 //!
-//! Coarse levels are made in *tiles* of a fixed side, which neighboring windows share. Levels of which a piece needs
-//! more than a few tiles are made over the piece itself: in tiles, their halos would cost more than sharing saves.
+//! Coarse levels are made in *tiles* of a fixed side, which neighboring windows share. If a piece needs more than a few
+//! tiles of a level, that level is made over the piece itself: the halos of the tiles would cost more than sharing
+//! saves.
 
 use super::around::samples_around;
 use super::steps::grid_bytes;
@@ -15,7 +16,7 @@ use std::ops::Range;
 /// Samples along the sides of the tiles of coarse levels.
 const TILE: usize = 64;
 
-/// The same of level 0, whose halo is usually wide.
+/// Samples along the sides of the tiles of level 0, whose halo is usually wide.
 const COARSEST_TILE: usize = 128;
 
 /// Samples along the sides of the tiles of a level, and samples of tile (0, 0) before the origin. A tile of level 0 has
@@ -24,7 +25,7 @@ fn shape(level: usize) -> (usize, i64) {
     if level == 0 { (COARSEST_TILE, COARSEST_TILE as i64 / 2) } else { (TILE, 0) }
 }
 
-/// Samples along the sides of a window up to which it is read from tiles.
+/// Maximum number of samples along the sides of a window that is read from tiles.
 const FEW_TILES: usize = TILE + TILE / 2;
 
 /// Largest and smallest number of rows and columns of a piece, if the window has as many.
@@ -36,12 +37,12 @@ const MAX_SAMPLES: u64 = 1 << 34;
 /// Number of pieces of a window whose memory is estimated.
 const MEASURED_PIECES: usize = 1024;
 
-/// The samples of a level that a window is read from.
+/// The samples of a level from which a window is read.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Serving {
     /// The level.
     pub level: usize,
-    /// Its samples: the window itself if the cells are equal, otherwise those around it, to be interpolated.
+    /// Its samples: the window itself if the cells are equal, otherwise the samples around it, which are interpolated.
     pub samples: Window,
 }
 
@@ -53,14 +54,14 @@ impl Serving {
         Serving { level, samples: samples_around(window, levels.cell(level)) }
     }
 
-    /// Checks that the samples are not far more than those of any picture: a window with large cells far above those of
-    /// the coarsest level needs a lot of them for each of its own samples.
+    /// Checks that the number of samples is reasonable: a window whose cell is far larger than the coarsest level's
+    /// needs many samples of that level for each of its own.
     ///
     /// # Errors
-    /// If they are; the message has the largest cell for a window of so many samples.
+    /// If there are too many; the message has the largest possible cell for a window of this size.
     pub fn check(&self, levels: &Levels, window: &Window, node: &str) -> Result<()> {
         let Window { x, y, width, height, cell } = self.samples;
-        // Where whole numbers are no longer exact, samples fall together.
+        // Beyond 2^53 whole numbers are not exact, so samples coincide.
         if [x, y].iter().any(|first| first.unsigned_abs() > 1 << 53) {
             let message = format!(
                 "the window is too far from the origin for node `{node}`; use a window within {} m of it",
@@ -98,7 +99,7 @@ impl Serving {
         Err(Error::new(ErrorKind::Request, message))
     }
 
-    /// Parts of the samples that are made side by side: at least one a thread, unless they would be slivers.
+    /// Parts of the samples that are made in parallel: at least one per thread, unless they would be too narrow.
     pub fn pieces(&self, threads: usize) -> impl Iterator<Item = Window> + use<> {
         let [most, least] = PIECE;
         let samples = self.samples;
@@ -123,9 +124,8 @@ impl Serving {
     }
 }
 
-/// The level whose tiles the pieces of a window are made from. It does not depend on the number of threads, which
-/// decides about pieces. `wanted` says of each layer of the op whether it is requested, here and in the functions
-/// below.
+/// The level from whose tiles the pieces of a window are made. It does not depend on the number of threads; only the
+/// pieces do. `wanted` says for each layer of the op whether it is requested, here and in the functions below.
 #[must_use]
 pub fn tiled(op: &dyn Levelled, wanted: &[bool], serving: &Serving) -> usize {
     let Serving { mut level, samples } = *serving;
@@ -139,7 +139,7 @@ pub fn tiled(op: &dyn Levelled, wanted: &[bool], serving: &Serving) -> usize {
     level
 }
 
-/// The windows of the levels from `tiled` to `level` that a piece of `level` is made from.
+/// The windows of the levels from `tiled` to `level` from which a piece of `level` is made.
 #[must_use]
 pub fn windows(op: &dyn Levelled, wanted: &[bool], tiled: usize, level: usize, piece: &Window) -> Vec<Window> {
     let mut windows = vec![piece.grown(op.surface_halo(level, wanted))];
@@ -151,8 +151,8 @@ pub fn windows(op: &dyn Levelled, wanted: &[bool], tiled: usize, level: usize, p
     windows
 }
 
-/// Windows of the levels from the coarsest that contain all that a window is made from: whole tiles of the tiled
-/// levels.
+/// For each level from the coarsest, a window that contains all samples from which a window is made; for the tiled
+/// levels it consists of whole tiles.
 #[must_use]
 pub fn covering(op: &dyn Levelled, wanted: &[bool], window: &Window) -> Vec<Window> {
     let serving = Serving::of(&op.levels(), window);
@@ -201,7 +201,7 @@ pub fn tile(level: usize, (column, row): (i64, i64), cell: f64) -> Window {
     Window::new(side, side, cell).at(first(column), first(row))
 }
 
-/// Memory of making a window beside its layers, in bytes.
+/// Memory for making a window in addition to its layers, in bytes.
 #[must_use]
 pub fn memory(op: &dyn Levelled, wanted: &[bool], window: &Window, threads: usize) -> u64 {
     let serving = Serving::of(&op.levels(), window);
@@ -209,7 +209,7 @@ pub fn memory(op: &dyn Levelled, wanted: &[bool], window: &Window, threads: usiz
     let planes = op.planes() as u64;
     let layers = wanted.iter().filter(|wanted| **wanted).count() as u64;
     let held = |window: &Window| grid_bytes(window).saturating_mul(planes);
-    // Whole tiles cover up to a tile more on each side; the level above them has a quarter as many, and its halo.
+    // Whole tiles cover up to a tile more on each side. The level above has a quarter as many samples, plus its halo.
     let of_tiles = |window: &Window| held(&window.grown(COARSEST_TILE)).saturating_mul(2);
     let piece = |piece: &Window| {
         let windows = windows(op, wanted, tiled, level, piece);
@@ -219,7 +219,7 @@ pub fn memory(op: &dyn Levelled, wanted: &[bool], window: &Window, threads: usiz
         let made = grid_bytes(piece).saturating_mul(layers);
         pair.unwrap_or_else(|| windows.iter().map(held).sum()).saturating_add(scratch.unwrap_or(0)).saturating_add(made)
     };
-    // Of pieces of the same size, those at other places need at most a row and a column more.
+    // Pieces of the same size at other positions need at most one more row and column.
     let largest = serving.pieces(threads).take(MEASURED_PIECES).map(|window| piece(&window)).max().unwrap_or(0);
     let pieces = serving.pieces(threads).take(threads).count() as u64;
     let all = windows(op, wanted, tiled, level, &samples).first().map_or(0, of_tiles);
@@ -237,7 +237,7 @@ pub fn memory(op: &dyn Levelled, wanted: &[bool], window: &Window, threads: usiz
     all.saturating_add(working).saturating_add(apart)
 }
 
-/// Approximate time for making a window on one core, in nanoseconds, without tiles that are kept.
+/// Approximate time for making a window on one core, in nanoseconds, if no tiles are kept yet.
 #[must_use]
 pub fn cost(op: &dyn Levelled, wanted: &[bool], window: &Window) -> f64 {
     let serving = Serving::of(&op.levels(), window);

@@ -42,7 +42,7 @@ pub fn grids(plan: &Plan) -> u64 {
     most
 }
 
-/// Memory of the steps beside the grids: registers of each thread, or a filter's own memory.
+/// Memory of the steps in addition to the grids: registers of each thread, or a filter's own memory.
 fn beside(plan: &Plan, recipe: &Recipe, threads: usize) -> u64 {
     let step = |step: &Step| match step {
         Step::Fill { program, .. } => block_bytes(program).saturating_mul(threads as u64),
@@ -64,7 +64,8 @@ fn beside(plan: &Plan, recipe: &Recipe, threads: usize) -> u64 {
     plan.steps.iter().map(step).max().unwrap_or(0)
 }
 
-/// Maximum memory of a plan's steps, in bytes, with all solvers solved: that of a solver's tile.
+/// Maximum memory of a plan's steps after all solvers are solved, in bytes; also the memory for a tile of a solver's
+/// sources.
 pub fn steps(plan: &Plan, recipe: &Recipe, threads: usize) -> u64 {
     grids(plan).saturating_add(beside(plan, recipe, threads))
 }
@@ -75,7 +76,7 @@ pub fn rasters(solve: &Solve) -> u64 {
     one.saturating_mul(solve.rasters as u64)
 }
 
-/// Memory of solving beside the rasters, in bytes.
+/// Memory for solving in addition to the rasters, in bytes.
 fn scratch(solve: &Solve) -> u64 {
     if solve.on_disk { solve.scratch_on_disk } else { solve.scratch }
 }

@@ -1,4 +1,4 @@
-//! Whether the heights that a plan reads are there: those of a large file may have been read in part.
+//! Checks that the heights that a plan reads are available: a large file may have been read only in part.
 
 use super::steps::{Plan, Step};
 use crate::recipe::document::Recipe;
@@ -7,11 +7,11 @@ use orogen_ops::ids::{CoordSetId, Id, NodeId};
 use orogen_ops::node::Node;
 use orogen_ops::program::Instruction;
 
-/// Checks that a plan reads only heights that were read from their files. Solvers read the whole world, and points may
-/// be anywhere in it, so they need whole files.
+/// Checks that a plan uses only heights that have been read from their files. Solvers read the whole world, and points
+/// may be anywhere in it, so they need whole files.
 ///
 /// # Errors
-/// [`ErrorKind::Part`] if it needs others.
+/// [`ErrorKind::Part`] if it needs other heights.
 pub fn check(plan: &Plan, recipe: &Recipe) -> Result<()> {
     let is_part =
         |node: &Node| matches!(node, Node::Dem(dem) if dem.path.ground().is_some_and(|ground| ground.is_part()));

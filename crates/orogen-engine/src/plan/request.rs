@@ -1,4 +1,4 @@
-//! What programs and filters ask for: grids that earlier steps must make.
+//! Requests of programs and filters for grids that earlier steps must make.
 
 use super::resolved::ResolvedRecipe;
 use crate::recipe::graph::{LayerRef, Link};
@@ -20,7 +20,7 @@ pub struct GridRequest {
 }
 
 impl GridRequest {
-    /// A request for a layer as others read it: a filter or a levelled op without a mask makes that itself.
+    /// A request for a node's result. A filter or a levelled op without a mask makes it itself.
     pub fn of(resolved: &ResolvedRecipe, target: LayerRef, window: Window) -> GridRequest {
         let op = resolved.recipe.nodes()[target.node.index()].node.op();
         let raw = matches!(op, Op::Filter(_) | Op::Levelled(_)) && resolved.graph.masks[target.node] == Link::None;
@@ -45,7 +45,7 @@ impl Requests {
         id
     }
 
-    /// Adds a request that no node serves but this grid.
+    /// Adds a request that is served by this grid instead of a node.
     pub fn add_served(&mut self, request: GridRequest, grid: GridId) -> RequestId {
         self.grids.push(Some(grid));
         self.requests.push(request)

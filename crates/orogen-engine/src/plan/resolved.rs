@@ -1,4 +1,4 @@
-//! Resolved recipes: what is known of a recipe before any request.
+//! Resolved recipes: everything that is known about a recipe before any request.
 
 use super::key::{Key, identity, keys};
 use crate::recipe::document::Recipe;
@@ -6,7 +6,7 @@ use crate::recipe::graph::{Graph, Link};
 use orogen_ops::ids::{Id, IndexVec, NodeId};
 use orogen_ops::op::{Op, WorldParams};
 
-/// A valid recipe, what its nodes read, and their content keys.
+/// A valid recipe with its graph and the content keys of its nodes.
 pub struct ResolvedRecipe {
     pub recipe: Recipe,
     pub graph: Graph,

@@ -1,5 +1,5 @@
-//! Ordering: from what is asked to steps, last step first, so that all requests for a node are known before the steps
-//! that serve them.
+//! Ordering: turns the requested layers into steps, last step first, so that all requests for a node are known before
+//! the steps that serve them.
 
 use super::compile::{Scope, compile};
 use super::grid_merge::{Cluster, clusters};
@@ -15,14 +15,14 @@ use orogen_ops::ids::{GridId, Id, IndexVec, NodeId, RequestId};
 use orogen_ops::op::{Filter, Levelled, Op};
 use std::collections::HashSet;
 
-/// What a plan is made for.
+/// The request for which a plan is made.
 #[derive(Clone, Copy)]
 pub struct Asked<'a> {
     /// The layers.
     pub targets: &'a [Link],
     /// The window.
     pub window: Window,
-    /// Whether they are evaluated at arbitrary points within the window instead of its lattice.
+    /// Whether the layers are evaluated at arbitrary points within the window instead of at its lattice.
     pub scattered: bool,
 }
 
@@ -45,7 +45,7 @@ pub struct Schedule {
     pub evaluations: Evaluations,
 }
 
-/// Finds the steps for what is asked, with the results of `kept` read from grids.
+/// Finds the steps for a request. The results of the nodes in `kept` are read from grids.
 ///
 /// # Errors
 /// If nested warps lead to more evaluations than can be planned.
@@ -77,7 +77,7 @@ struct Scheduler<'a> {
 }
 
 impl Scheduler<'_> {
-    /// The last step: a program for what is asked.
+    /// The last step: a program for the requested layers.
     fn answer(&mut self, scope: Scope, asked: &Asked) -> Result<()> {
         if !asked.scattered {
             let node = |link: &Link| match link {

@@ -1,4 +1,4 @@
-//! The solvers of a plan: which ones must be solved, in which order, and what that takes.
+//! The solvers of a plan: which ones must be solved, in which order, and their time and memory.
 
 use super::domain::Domain;
 use super::planner::Planner;
@@ -12,7 +12,7 @@ use orogen_ops::op::Op;
 use std::collections::{BTreeMap, BTreeSet};
 
 impl Planner<'_> {
-    /// The solvers that are read and those that their sources read, sources first.
+    /// The solvers in `read` and all solvers that their sources read, sources first.
     pub(super) fn solves(&self, read: BTreeSet<NodeId>) -> Result<Vec<Solve>> {
         let mut rank: IndexVec<NodeId, usize> = vec![0; self.resolved.recipe.nodes().len()].into();
         self.resolved.graph.order.iter().enumerate().for_each(|(position, &node)| rank[node] = position);

@@ -1,5 +1,5 @@
-//! The split of a program between a device and the processor: what the device cannot compute is computed first, with
-//! all that it reads, and handed over as grids.
+//! The split of a program between a device and the processor. The processor first computes the values that the device
+//! cannot, with everything that they depend on, and passes them to the device as grids.
 
 use super::allocate::allocate;
 use crate::device::{Lowered, LoweredCoords, LoweredOperand, LoweredProgram};
@@ -13,17 +13,17 @@ use std::collections::BTreeMap;
 /// A program in two parts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Split {
-    /// What the processor computes first; its outputs follow [`Split::grids`] as grids that the device reads.
+    /// The program that the processor runs first. The device reads its outputs as grids, which follow [`Split::grids`].
     pub processor: Option<Program>,
     /// The grids of the plan that the device reads.
     pub grids: Vec<GridId>,
-    /// What the device computes from them.
+    /// The program that the device runs on these grids.
     pub device: LoweredProgram,
 }
 
-/// Splits a program. `lower` is the function that computes a field, or reads a solution, on the device, if there is
-/// one; `is_away` says of a grid whether it is on the device alone. Returns `None` if no field and no such grid is left
-/// for the device: then it would only copy grids.
+/// Splits a program. `lower` returns the function that computes a field, or reads a solution, on the device, if there
+/// is one. `is_away` returns whether a grid is only on the device. Returns `None` if the device would compute no field
+/// and read no such grid, because it would then only copy grids.
 ///
 /// # Errors
 /// If an instruction reads a value before it is written, which is a bug.
@@ -128,7 +128,7 @@ impl WrittenOnce {
         Ok(WrittenOnce { instructions, values, coord_sets, outputs })
     }
 
-    /// Whether each coordinate set is at an altitude of its own.
+    /// Whether each coordinate set has its own altitude.
     fn at_altitudes(&self) -> IndexVec<CoordSetId, bool> {
         let mut at_altitudes: IndexVec<CoordSetId, bool> = vec![false; self.coord_sets].into();
         for instruction in &self.instructions {
@@ -141,7 +141,8 @@ impl WrittenOnce {
         at_altitudes
     }
 
-    /// Which instructions are needed for values; what those before a `border` read is not.
+    /// Which instructions are needed for `values`. Instructions for which `is_border` holds are needed, but not what
+    /// they read.
     fn needed(&self, values: &[RegisterId], is_border: impl Fn(usize) -> bool) -> Vec<bool> {
         let mut value_needed: IndexVec<RegisterId, bool> = vec![false; self.values].into();
         let mut coords_needed: IndexVec<CoordSetId, bool> = vec![false; self.coord_sets].into();
@@ -171,7 +172,7 @@ impl WrittenOnce {
     }
 }
 
-/// A device's program that is being made.
+/// A device's program under construction.
 struct Lowering {
     grids: Vec<GridId>,
     values: BTreeMap<RegisterId, usize>,
@@ -280,7 +281,7 @@ mod tests {
         let split = split(&program, shader, |_| false).unwrap().unwrap();
         let processor = split.processor.unwrap();
         assert_eq!((processor.instructions.len(), processor.outputs.len()), (2, 1));
-        // The grid that is handed over, 2, the sum and 3.
+        // The grid from the processor, 2, the sum and 3.
         let device = split.device;
         assert_eq!((device.instructions.len(), device.outputs.as_slice()), (4, &[3][..]));
         assert_eq!(device.reads(2), [1, 0]);

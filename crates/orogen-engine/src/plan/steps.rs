@@ -40,15 +40,15 @@ pub struct Solve {
     /// Its domain on its lattice: the world and the solver's margin.
     #[serde(alias = "world")]
     pub domain: Window,
-    /// The same with the samples beyond the edge that readers may need.
+    /// The domain with the samples beyond its edge that readers may need.
     pub padded: Window,
     /// Number of rasters that it keeps or works in, each over `padded`.
     pub rasters: usize,
-    /// Whether they are on disk.
+    /// Whether the rasters are on disk.
     pub on_disk: bool,
-    /// Memory of solving beside the rasters, in bytes.
+    /// Memory for solving in addition to the rasters, in bytes.
     pub scratch: u64,
-    /// The same if the rasters are on disk.
+    /// [`Solve::scratch`] if the rasters are on disk.
     pub scratch_on_disk: u64,
     /// Side of the tiles in which its sources are made, in samples.
     pub side: usize,

@@ -8,7 +8,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 use sha2::{Digest, Sha256};
 use std::fmt::{self, Write};
 
-/// The format of stored plans. It is raised when a plan means something else than before.
+/// The format of stored plans. It is increased when the meaning of a plan changes.
 const FORMAT: u32 = 4;
 
 fn first_format() -> u32 {
@@ -19,7 +19,7 @@ fn first_format() -> u32 {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 struct StoredPlan {
     orogen: String,
-    /// Plans that were made before they had this number have format 1.
+    /// Plans from before this field was added have format 1.
     #[serde(default = "first_format")]
     format: u32,
     checksum: Key,

@@ -7,7 +7,8 @@ use orogen_ops::declare::Input;
 use orogen_ops::ids::Id;
 use orogen_ops::node::Node;
 
-/// The output that is the layer of a `biome`, and its classes: the output `biome`, or the first such output.
+/// The output that reads the layer of a `biome` op, with its classes: the output `biome` if it does, otherwise the
+/// first one.
 #[must_use]
 pub fn biomes(recipe: &Recipe) -> Option<(&str, Scheme)> {
     let scheme_of = |input: &Input| {

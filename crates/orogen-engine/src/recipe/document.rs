@@ -139,7 +139,7 @@ impl Recipe {
         self.outputs = outputs;
     }
 
-    /// Adds a surface on top of the existing ones. A recipe without surfaces has those of
+    /// Adds a surface on top of the existing ones. A recipe without surfaces has the surfaces of
     /// [`standard`](super::surface::standard).
     pub fn surface(&mut self, surface: Surface) -> &mut Recipe {
         self.surfaces.push(surface);
@@ -227,7 +227,8 @@ impl Recipe {
         &self.parameters.formulas
     }
 
-    /// The formula that stands in place of the number of a node's parameter, without its `=`.
+    /// The formula in place of the number of a node's parameter, without its `=`; `None` if the parameter has no
+    /// formula.
     #[must_use]
     pub fn formula(&self, node: &str, key: &str) -> Option<&str> {
         let is_there = |formula: &&Formula| match formula.path.as_slice() {
@@ -285,7 +286,7 @@ impl Recipe {
         self.nodes.iter_mut().map(|named| &mut named.node).for_each(change);
     }
 
-    /// Sets the folder that relative paths in it refer to: that of its file.
+    /// Sets the folder that relative paths in the recipe refer to, usually the folder of its file.
     pub fn set_base_dir(&mut self, folder: &Path) {
         let nodes = self.nodes.iter_mut().flat_map(|named| named.node.files());
         nodes
@@ -364,8 +365,9 @@ impl Recipe {
         self.check_map()
     }
 
-    /// The position of the world on a map: that of the first real place in the recipe, otherwise that of the world's
-    /// `crs` and `origin`. A place without a coordinate system is in that of the world. Known after the files are read.
+    /// The position of the world on a map: the position of the first real place in the recipe, otherwise the world's
+    /// `crs` and `origin`. A place without a coordinate system is in the world's `crs`. It is known after the files are
+    /// read.
     #[must_use]
     pub fn georeference(&self) -> Option<Georeference> {
         match (self.place(), self.world.georeference()) {
@@ -433,7 +435,7 @@ impl Recipe {
         recipe
     }
 
-    /// Whether its heights are those of a file, without changes.
+    /// Whether its heights are the unchanged heights of a file.
     #[doc(hidden)]
     #[must_use]
     pub fn is_dem(&self) -> bool {

@@ -15,9 +15,10 @@ const STEPS: &str = "steps";
 const FEWEST_STEPS: f64 = 8.0;
 
 impl Recipe {
-    /// The same world with solvers at `coarser` times their cell and with as many fewer time steps, at least 8 of them.
-    /// Fields, filters and levels stay as they are. For a first picture while the solutions of the recipe itself are
-    /// made: solvers take `coarser` cubed times less work. The land differs in detail: its valleys lie elsewhere.
+    /// A draft: the same world with solvers at `coarser` times their cell and with a `coarser`-th of their time steps,
+    /// at least 8. Fields, filters and levels do not change. Solvers take about `coarser` cubed times less work, so a
+    /// draft is suited for a first picture while the recipe itself is solved. The terrain differs in detail: valleys
+    /// are in other places.
     ///
     /// ```
     /// let recipe = orogen_engine::presets::find("alpine").ok_or("no such preset")?.recipe()?;
@@ -46,7 +47,7 @@ impl Recipe {
                     }
                     _ => continue,
                 };
-                // Out of the parameter's range the value stays.
+                // A value outside of the parameter's range is rejected and stays as it is.
                 let _ = node.set_param(i, &changed);
             }
         });

@@ -218,7 +218,7 @@ impl Graph {
         GraphDiagnostic { at: At::Node(reader.index(), key.to_string()), message }
     }
 
-    /// The error for diagnostics without a text.
+    /// The error for diagnostics of a recipe without a text.
     #[must_use]
     pub fn error(diagnostics: Vec<GraphDiagnostic>) -> Error {
         let diagnostics = diagnostics.into_iter().map(|diagnostic| Diagnostic::new(diagnostic.message)).collect();
@@ -251,7 +251,7 @@ impl Graph {
     }
 }
 
-/// An op that is computed on grids reads a node that depends on the altitude.
+/// The problem of an op that is computed on grids and reads a node that depends on the altitude.
 fn altitude_fault(recipe: &Recipe, reader: NodeId, key: &str, source: NodeId) -> GraphDiagnostic {
     let (reading, source) = (&recipe.nodes()[reader.index()], &recipe.nodes()[source.index()]);
     let message = format!(
@@ -359,7 +359,7 @@ impl<'a> Resolver<'a> {
         self.enough()
     }
 
-    /// The name of an op decides about content keys: it is no built-in op's, and no other op's.
+    /// Checks the name of an op, which is part of content keys: no built-in op and no other op may have it.
     fn check_registered(&mut self, index: usize, spec: &'static Spec) {
         let message = match (check_name(spec.op), self.registered.insert(spec.op, spec)) {
             (Err(message), _) => message,
@@ -371,7 +371,7 @@ impl<'a> Resolver<'a> {
         self.diagnostic(At::Node(index, String::new()), message);
     }
 
-    /// Values set by a program pass the same checks as those read from a text.
+    /// Checks values that a program set in the same way as values read from a text.
     fn check_params(&mut self, index: usize, node: &Node) {
         let mut copy = node.clone();
         let mut sound = true;
@@ -386,7 +386,7 @@ impl<'a> Resolver<'a> {
         }
     }
 
-    /// A domain with a margin may have more samples than the world.
+    /// Checks the size of a solver's domain, which with a margin may have more samples than the world.
     fn check_domain(&mut self, index: usize, node: &Node) {
         let (Op::Solver(solver), Some([width, height]), Some(margin)) =
             (node.op(), self.recipe.world.size, node.margin())

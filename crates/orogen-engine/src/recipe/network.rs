@@ -1,4 +1,4 @@
-//! The river network that a recipe's own levels provide.
+//! The river network of a recipe with levels.
 
 use super::document::Recipe;
 use super::graph::{Graph, LayerRef};
@@ -55,14 +55,14 @@ impl OwnNetwork {
         })
     }
 
-    /// A layer of the node, by the name that worlds know it by.
+    /// The name by which worlds know a layer of the node.
     #[must_use]
     pub fn layer(&self, name: &str) -> String {
         format!("{}.{name}", self.node)
     }
 
-    /// The name of the layer of drainage areas: of the nodes, if the levels have them, so that areas and receivers
-    /// agree at every level.
+    /// The name of the layer with drainage areas. If the levels have layers of nodes, it is one of them, so that areas
+    /// and receivers agree at every level.
     #[must_use]
     pub fn flow(&self) -> &'static str {
         if self.has_nodes { "node_flow" } else { "flow" }
@@ -74,20 +74,20 @@ impl OwnNetwork {
         if self.has_nodes { "node_receiver" } else { "receiver" }
     }
 
-    /// Whether the nodes of a level are at the samples of its lattice: those of the finest level of valleys are.
+    /// Whether the nodes of a level are at the samples of its lattice, as at the finest level of valleys.
     #[must_use]
     pub fn is_at_samples(&self, cell: f64) -> bool {
         cell == self.levels.cell(self.at_samples)
     }
 
-    /// Whether the recipe's heights are those of the node.
+    /// Whether the recipe's heights are the heights of the node.
     #[must_use]
     pub fn is_height(&self) -> bool {
         self.is_height
     }
 
-    /// The cell of the level whose rivers a window with this cell shows; none if the node has only those of another
-    /// level.
+    /// The cell of the level whose rivers a window with this cell shows; `None` if the node has only the rivers of
+    /// another level.
     #[must_use]
     pub fn cell_for(&self, cell: f64) -> Option<f64> {
         let serving = self.levels.cell(self.levels.serving(cell));

@@ -1,4 +1,4 @@
-//! Outputs of recipes that have a meaning of their own.
+//! Outputs of recipes with a special meaning.
 
 /// The output from which maps and meshes are made.
 pub const HEIGHT: &str = "height";

@@ -31,7 +31,7 @@ pub struct Parameter {
     pub unit: String,
     /// The minimum and maximum value; infinite if there is no bound.
     pub range: [f64; 2],
-    /// The value: the default, unless the recipe was read with another.
+    /// The value: the default, unless the recipe was read with another value.
     pub value: f64,
 }
 
@@ -158,8 +158,8 @@ impl Parameters {
         }
     }
 
-    /// Puts formulas back into the text of a recipe, where the number there is still the one that the formula makes.
-    /// `spec` says what is declared of an op.
+    /// Puts formulas back into the text of a recipe, where the number is still the formula's value. `spec` returns the
+    /// declaration of an op.
     pub fn restore(&self, text: String, spec: impl Fn(&str) -> Option<&'static Spec>) -> String {
         if self.formulas.is_empty() {
             return text;

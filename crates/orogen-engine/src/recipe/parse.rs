@@ -59,12 +59,12 @@ fn tables<T: Clone>(top: &Table, list: &List<T>, values: &mut ValueReader, mut a
 
 type Table = [(Spanned<String>, Spanned<Value>)];
 
-/// Reads a recipe and those that it uses.
+/// Reads a recipe and the recipes that it uses.
 pub(super) fn parse(text: &str, name: &str, set: &[(String, f64)], origin: &Origin) -> Result<Recipe> {
     if text.len() as u64 > LONGEST_TEXT {
         return Err(too_long(name));
     }
-    // A mark of the byte order, which some editors write.
+    // A byte order mark, which some editors write.
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     if text.trim().is_empty() {
         return Err(Error::new(
@@ -78,7 +78,7 @@ pub(super) fn parse(text: &str, name: &str, set: &[(String, f64)], origin: &Orig
     let is_json = text.text.trim_start().starts_with('{');
     let tree = match is_json {
         true => json::read(&text)?,
-        // A file that says that it is JSON gets messages about JSON.
+        // A file whose name says that it is JSON gets messages about JSON.
         false => {
             toml::read(&text).or_else(|error| if name.ends_with(".json") { json::read(&text) } else { Err(error) })?
         }
@@ -234,7 +234,7 @@ impl Walk<'_> {
             expanded.map(|(entry, it)| (entry.name.clone(), it.nodes.clone())).collect()
         });
         self.check_tables(&recipe, "class", &classes, &names, |whole| {
-            // Why it cannot have classes was reported.
+            // The reason why it cannot have classes was reported above.
             let _ = class::expand::expand(whole);
             let expanded = whole.classes().iter().zip(whole.expanded_classes());
             expanded.map(|(class, it)| (class.name.clone(), it.nodes.clone())).collect()
@@ -270,8 +270,9 @@ impl Walk<'_> {
         uses
     }
 
-    /// Reports problems of the tables of a list at these `places`, which appear in the nodes that `expand` adds to a
-    /// recipe: it returns the name and the nodes of each table. `names` are those of nodes in all tables.
+    /// Reports problems that appear only in the nodes that the tables of a list expand to. `expand` adds these nodes to
+    /// a recipe and returns the name and the nodes of each table. `places` are the positions of the tables, `names` the
+    /// names of nodes in all tables.
     fn check_tables(
         &mut self,
         written: &Recipe,
@@ -467,7 +468,7 @@ impl Walk<'_> {
         node
     }
 
-    /// Complains of what is wrong within an expression, where it is wrong.
+    /// Reports problems within an expression at their positions.
     fn expression(&mut self, index: usize, value: &Spanned<Value>) -> bool {
         let Value::Text(text) = &value.value else { return true };
         let expr = Expression::from(text.as_str());

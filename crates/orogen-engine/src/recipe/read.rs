@@ -13,15 +13,16 @@ impl Registry {
     /// Reads a recipe of these ops from a file, TOML or JSON.
     ///
     /// # Errors
-    /// If the file cannot be read, is no text, or is no valid recipe: then every diagnostic has its line and column.
+    /// If the file cannot be read, is not text, or is not a valid recipe. Every diagnostic of a recipe has its line and
+    /// column.
     pub fn read(&self, path: &Path) -> Result<Recipe> {
         self.read_with(path, &[])
     }
 
-    /// The same with other values for some of its parameters.
+    /// [`Registry::read`] with other values for some of the recipe's parameters.
     ///
     /// # Errors
-    /// As [`Registry::read`], and if a parameter is not there or may not have that value.
+    /// As [`Registry::read`], and if a parameter does not exist or its value is out of range.
     pub fn read_with(&self, path: &Path, set: &[(String, f64)]) -> Result<Recipe> {
         let doing = "read the recipe";
         let Some(bytes) = open::bytes(path, doing, LONGEST_TEXT)? else {
@@ -31,8 +32,8 @@ impl Registry {
         parse(&text_of(bytes, path)?, &path.display().to_string(), set, &Origin::file(path, &shared))
     }
 
-    /// Reads a recipe of these ops from a text in place of the content of a file, such as one that is being edited:
-    /// relative paths in it start at the file's folder, and diagnostics name the file, which need not exist.
+    /// Reads a recipe of these ops from a text in place of the content of a file, for example while the file is edited.
+    /// Relative paths in it start at the file's folder. Diagnostics name the file, which need not exist.
     ///
     /// # Errors
     /// As [`Registry::parse`].
@@ -41,19 +42,19 @@ impl Registry {
         parse(text, &path.display().to_string(), &[], &Origin::file(path, &shared))
     }
 
-    /// Reads a recipe of these ops from a text, TOML or (if it begins with a brace) JSON; `name` is what diagnostics
-    /// call it.
+    /// Reads a recipe of these ops from a text: JSON if it begins with a brace, otherwise TOML. `name` is the name of
+    /// the text in diagnostics.
     ///
     /// # Errors
-    /// If it is no valid recipe. All diagnostics are reported at once, in the order of the text.
+    /// If it is not a valid recipe. All diagnostics are reported at once, in the order of the text.
     pub fn parse(&self, text: &str, name: &str) -> Result<Recipe> {
         self.parse_with(text, name, &[])
     }
 
-    /// The same with other values for some of its parameters.
+    /// [`Registry::parse`] with other values for some of the recipe's parameters.
     ///
     /// # Errors
-    /// As [`Registry::parse`], and if a parameter is not there or may not have that value.
+    /// As [`Registry::parse`], and if a parameter does not exist or its value is out of range.
     pub fn parse_with(&self, text: &str, name: &str, set: &[(String, f64)]) -> Result<Recipe> {
         let shared = Shared::new(self, parse);
         parse(text, name, set, &Origin::text(&shared))
@@ -84,8 +85,8 @@ impl Recipe {
         parse(text, &format!("recipes/{name}.toml"), set, &Origin::preset(name, &shared))
     }
 
-    /// Reads a recipe of built-in ops from a text, TOML or (if it begins with a brace) JSON; `name` is what diagnostics
-    /// call it.
+    /// Reads a recipe of built-in ops from a text: JSON if it begins with a brace, otherwise TOML. `name` is the name
+    /// of the text in diagnostics.
     ///
     /// # Errors
     /// As [`Registry::parse`].

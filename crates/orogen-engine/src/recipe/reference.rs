@@ -7,7 +7,7 @@ use orogen_ops::node::Node;
 use orogen_ops::value::Value;
 use std::fmt::Write as _;
 
-/// One line a built-in op: its name, its locality and what it does.
+/// One line per built-in op: its name, its locality and what it does.
 #[must_use]
 pub fn overview() -> String {
     overview_of(&Registry::new())

@@ -1,4 +1,4 @@
-//! The recipe that refines a real place.
+//! A recipe that refines a real place.
 
 use super::document::Recipe;
 use orogen_grid::error::{Error, ErrorKind, Result};
@@ -9,37 +9,40 @@ use orogen_ops::filter::{Blur, Slope, SlopeUnit};
 use orogen_ops::levelled::Amplify;
 use orogen_ops::solver::{Bake, Breach, Drainage};
 
-/// Cells of the place beyond its edge that its rivers are solved for, so that they leave outside what is seen.
+/// Margin around the place in which its rivers are solved, in cells of the place, so that they leave the domain outside
+/// of the visible area.
 const MARGIN: f64 = 16.0;
 
-/// The most halvings of the place's cell. Slopes below follow other laws than those of rivers.
+/// Maximum number of halvings of the place's cell. Slopes at smaller cells do not follow the laws of rivers.
 const MAX_HALVINGS: f64 = 8.0;
 
-/// Maximum depth, in metres, of a channel through the rim of a depression. Rivers of deeper ones run over the rim.
+/// Maximum depth of a channel through the rim of a depression, in metres. If it would be deeper, the river runs over
+/// the rim.
 const DEEPEST: f64 = 100.0;
 
-/// Steps that correct the heights, and the radius of each as a share of the place's cell: fewer or wider ones leave
-/// larger errors, more or narrower ones flatten the new slopes.
+/// Number of steps that correct the heights. Fewer steps leave larger errors, more steps flatten the new slopes.
 const CORRECTIONS: usize = 3;
+/// Radius of the blur of each correction, in cells of the place. A larger radius leaves larger errors, a smaller one
+/// flattens the new slopes.
 const CORRECTION_RADIUS: f64 = 0.5;
 
-/// Uplift over erodibility of which `amplify` makes slopes like those of the place: its law S = s t / (s + t) with s =
-/// 0.25 U A^-0.45 (A in km^2) and t = 0.9, solved for U. The factor 6 instead of 4 balances that slopes at a large cell
-/// are gentler. Gentle ground needs a limit because it may be level, steep ground because the law has no solution from
-/// t on.
+/// Uplift over erodibility for which `amplify` makes slopes like the place's. It is the law S = s t / (s + t) with s =
+/// 0.25 U A^-0.45 (A in km^2) and t = 0.9, solved for U. The factor is 6 instead of 4 because slopes at a large cell
+/// are gentler. The slope has a lower limit because the ground may be level, and an upper limit because the law has no
+/// solution for S >= t.
 const UPLIFT: &str = "log(6 * max(slope, 0.003) / (1 - min(slope / 0.9, 0.7)) * pow(flow * 1e-6, 0.45))";
 
-/// Factor of the width of valley floors. Wide floors are in the heights of the place.
+/// Factor of the width of valley floors. It is small because the heights of the place have the wide floors already.
 const FLOORS: f64 = 0.2;
 
 impl Recipe {
-    /// Refines a real place, the recipe of [`Recipe::from_dem`], to a smaller cell: the rivers of its heights are led
-    /// through smaller cells, side valleys and slopes grow between them that are as steep as those of the place, and
-    /// what the heights then differ from those of the place is corrected smoothly. The outputs are `height` and, solved
-    /// from it if it is read, `flow`.
+    /// Refines a real place, a recipe of [`Recipe::from_dem`], to a smaller cell. The rivers of its heights are
+    /// continued at the smaller cell. Side valleys and slopes are added between them, as steep as the slopes of the
+    /// place. The difference to the place's heights is then corrected smoothly. The outputs are `height` and `flow`,
+    /// which is solved from `height` if it is read.
     ///
     /// # Errors
-    /// If the recipe is not a place, or the cell is not smaller than its cell or too small.
+    /// If the recipe is not a place, or the cell is not smaller than the place's cell, or is too small.
     pub fn refine_place(&mut self, cell: f64) -> Result<()> {
         let coarse = self.world.cell;
         let Some((_, Input::Node(place))) = self.output_inputs().iter().find(|(name, _)| name == "height").cloned()
@@ -90,7 +93,7 @@ impl Recipe {
         let mut heights = "refined.surface".to_string();
         for step in 1..=CORRECTIONS {
             let [error, change, corrected] = ["error", "change", "corrected"].map(|name| format!("{name}{step}"));
-            // Channels through rims stay. Depressions that were filled do not: the place has them.
+            // Channels through rims are kept. Filled depressions are restored, because the place has them.
             let error_of = Expr::new("min(drained, place) - heights").with("place", place.as_str());
             self.add(&error, error_of.with("heights", heights.as_str()));
             self.add(&change, Blur { source: error.as_str().into(), radius: CORRECTION_RADIUS * coarse });

@@ -11,7 +11,7 @@ use orogen_ops::value::Value;
 use serde_json::{Map, Value as Json, json};
 use std::collections::BTreeMap;
 
-/// The schema (draft 7) that editors check recipes of built-in ops against.
+/// The JSON Schema (draft 7) of recipes of built-in ops, with which editors check recipes.
 #[must_use]
 pub fn json_schema() -> Json {
     json_schema_of(&Registry::new())
@@ -118,9 +118,9 @@ fn uses_schema(name: &Json) -> Json {
     })
 }
 
-/// A node: by its op, one of the ops' schemas. `if` and `then` rather than `oneOf`, so that a wrong key is named and
-/// not just the whole node called wrong; all keys of all ops beside them, because that is where editors look for
-/// completions.
+/// The schema of a node, chosen by its op. It uses `if` and `then` instead of `oneOf`, so that an editor reports the
+/// wrong key instead of the whole node. All keys of all ops are listed next to them, because editors look for
+/// completions there.
 fn node_schema(nodes: &[Node]) -> Json {
     let ops: Vec<Json> = nodes
         .iter()
@@ -294,7 +294,7 @@ mod tests {
     use super::*;
     use crate::recipe::document::Recipe;
 
-    /// The schemas of nodes that the schema selects for this op.
+    /// The node schemas that apply to this op.
     fn taken<'a>(schema: &'a Json, op: &str) -> Vec<&'a Json> {
         let named =
             |name: &Json| name["const"] == op || name["enum"].as_array().is_some_and(|all| all.contains(&json!(op)));

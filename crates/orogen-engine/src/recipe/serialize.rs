@@ -1,4 +1,5 @@
-//! Recipes within documents of other programs, by `serde`: the keys are those of a recipe's own file.
+//! Serialization of recipes with `serde`, as part of other programs' documents. The keys are the same as in recipe
+//! files.
 
 use std::fmt;
 
@@ -12,14 +13,15 @@ use super::toml;
 use orogen_grid::error::{Diagnostic, Error};
 use orogen_ops::value::{Spanned, Value, toml_key};
 
-/// What messages call a recipe that is in no file.
+/// The name in messages of a recipe that is not in a file.
 const NAME: &str = "the recipe";
 
-/// Deepest nesting read. A recipe needs four levels; what recurses must never meet more than its stack holds.
+/// Maximum nesting. A recipe needs four levels; the limit protects the stack during recursion.
 const DEEPEST: usize = 64;
 
-/// As the document that [`Recipe::to_toml`] writes: the same keys in the same order, every default written out. What is
-/// read back is equal to it; nodes that were added to compute its surfaces are made again when a world is opened.
+/// Serializes the document that [`Recipe::to_toml`] writes: the same keys in the same order, with all defaults.
+/// Deserializing it gives an equal recipe. Nodes that compute its surfaces are not included; opening a world adds them
+/// again.
 impl Serialize for Recipe {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let text = self.to_toml();
@@ -28,18 +30,18 @@ impl Serialize for Recipe {
     }
 }
 
-/// From the keys of a recipe's file, through the same checks as [`Recipe::parse`]. An error has all diagnostics, each
-/// behind the key that it is about (`nodes.hills.radius: ...`).
+/// Deserializes the keys of a recipe file, with the same checks as [`Recipe::parse`]. An error has all diagnostics,
+/// each after its key (`nodes.hills.radius: ...`).
 ///
-/// The format must describe itself, as JSON and TOML do. Nodes stand in the order in which it hands over keys. Relative
-/// paths count from the folder that [`Recipe::set_base_dir`] is told.
+/// The format must be self-describing, as JSON and TOML are. Nodes are in the order in which the format provides keys.
+/// Relative paths start at the folder set with [`Recipe::set_base_dir`].
 impl<'de> Deserialize<'de> for Recipe {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Recipe, D::Error> {
         let Value::Table(entries) = deserializer.deserialize_map(Reader { depth: 0 })? else {
             return Err(de::Error::custom("a recipe must be a table of keys"));
         };
         let mut lines = Lines::default();
-        // Line 1 is empty: what is about no key in particular is reported at the start of a text.
+        // Line 1 is empty: problems of no particular key are reported at the start of a text.
         lines.push("", "");
         lines.table("", "", &entries);
         Recipe::parse(&lines.text, NAME).map_err(|error| de::Error::custom(lines.keyed(&error)))
@@ -65,14 +67,14 @@ impl Serialize for Tree<'_> {
     }
 }
 
-/// Reads any value of a format that describes itself.
+/// Reads any value of a self-describing format.
 #[derive(Clone, Copy)]
 struct Reader {
     depth: usize,
 }
 
 impl Reader {
-    /// The reader of what is in a list or table.
+    /// The reader of the values in a list or table.
     fn within<E: de::Error>(self) -> Result<Reader, E> {
         match self.depth < DEEPEST {
             true => Ok(Reader { depth: self.depth + 1 }),
@@ -136,7 +138,7 @@ impl<'de> Visitor<'de> for Reader {
     }
 }
 
-/// A recipe's text that is written to be read at once, with the key that each of its lines is about.
+/// A recipe's text that is written only to be parsed, with the key of each line.
 #[derive(Default)]
 struct Lines {
     text: String,
@@ -150,8 +152,8 @@ impl Lines {
         self.keys.push(key.to_string());
     }
 
-    /// The entries of the table that is called `name` in TOML and `key` in messages: first those of one line, as TOML
-    /// asks.
+    /// Writes the entries of a table that is called `name` in TOML and `key` in messages. Entries of one line come
+    /// first, as TOML requires.
     fn table(&mut self, name: &str, key: &str, entries: &[(Spanned<String>, Spanned<Value>)]) {
         let joined = |parent: &str, name: &str| match parent {
             "" => name.to_string(),
@@ -183,7 +185,7 @@ impl Lines {
         }
     }
 
-    /// The error with keys in place of lines that nobody wrote.
+    /// The error with keys in place of line numbers, because the user did not write these lines.
     fn keyed(&self, error: &Error) -> Error {
         let keyed = |diagnostic: &Diagnostic| {
             let Some(place) = diagnostic.place.as_ref().filter(|place| place.file == NAME) else {
@@ -225,7 +227,7 @@ mod tests {
             let recipe = preset.recipe().unwrap();
             let text = serde_json::to_string(&recipe).unwrap();
             assert_eq!(serde_json::from_str::<Recipe>(&text).unwrap(), recipe, "{}", preset.name);
-            // The same document, and the same text again.
+            // The text gives the same document, and the document the same text.
             assert_eq!(Recipe::parse(&text, "text").unwrap(), recipe, "{}", preset.name);
             assert_eq!(serde_json::from_str::<Recipe>(&text).unwrap().to_toml(), recipe.to_toml(), "{}", preset.name);
         }

@@ -1,4 +1,4 @@
-//! What an argument names: a recipe file, a preset, or a file of heights.
+//! Sources of recipes: a recipe file, a preset, or a file of heights.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -32,7 +32,7 @@ impl RecipeSource {
         match argument.to_str().and_then(presets::find) {
             Some(preset) if !fs::is_file(argument) => Ok(RecipeSource::Preset(preset)),
             None if open::is_dem(argument) => Ok(RecipeSource::Dem(argument.to_path_buf())),
-            // Reading it says how to convert it.
+            // The error of reading it says how to convert it.
             None if fs::is_file(argument) && (foreign(argument).is_some() || content::of_file(argument).is_some()) => {
                 Ok(RecipeSource::Dem(argument.to_path_buf()))
             }
@@ -117,7 +117,7 @@ mod tests {
         );
         fs::write(&path, "orogen = 1").unwrap();
         assert!(matches!(RecipeSource::find(&path), Ok(RecipeSource::File(found)) if found == path));
-        // Reading it says what is wrong.
+        // The error of reading it says what is wrong.
         assert!(matches!(RecipeSource::find(&folder.join("none.toml")), Ok(RecipeSource::File(_))));
         assert!(matches!(RecipeSource::find(Path::new("none.asc")), Ok(RecipeSource::Dem(_) | RecipeSource::File(_))));
         for (name, expect) in [("alpin", "did you mean `alpine`?"), ("zzzzzzzz", "available presets: ")] {

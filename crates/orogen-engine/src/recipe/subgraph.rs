@@ -27,27 +27,27 @@ pub const MAX_USES: usize = 256;
 pub struct Origin<'a> {
     /// The folder of relative paths; `None` for a text without a file.
     pub folder: Option<PathBuf>,
-    /// Its identity, after those of the recipes that use it, the outermost first.
+    /// The identities of the recipes that use this one, outermost first, and its own.
     chain: Vec<String>,
-    /// What all recipes of one reading share.
+    /// State that all recipes of one reading share.
     shared: &'a Shared<'a>,
 }
 
 /// Parses a recipe: text, name, values for parameters, and origin.
 pub type Parse = fn(&str, &str, &[(String, f64)], &Origin) -> Result<Recipe>;
 
-/// What all recipes of one reading share: what is left to read, and how.
+/// State that all recipes of one reading share: the remaining limits, the ops and the parser.
 pub struct Shared<'a> {
     uses: Cell<usize>,
     bytes: Cell<u64>,
     /// The ops that all of them may use.
     registry: &'a Registry,
-    /// Given from outside: used recipes are read as the first one is.
+    /// The parser of used recipes, the same as for the first one.
     parse: Parse,
 }
 
 impl<'a> Shared<'a> {
-    /// Nothing is read yet.
+    /// The state before the first recipe is read.
     pub fn new(registry: &'a Registry, parse: Parse) -> Shared<'a> {
         Shared { uses: Cell::new(MAX_USES), bytes: Cell::new(LONGEST_TEXT), registry, parse }
     }
@@ -59,17 +59,17 @@ impl<'a> Origin<'a> {
         self.shared.registry
     }
 
-    /// A text without a file.
+    /// The origin of a text without a file.
     pub fn text(shared: &'a Shared<'a>) -> Origin<'a> {
         Origin { folder: None, chain: Vec::new(), shared }
     }
 
-    /// A file.
+    /// The origin of a file.
     pub fn file(path: &Path, shared: &'a Shared<'a>) -> Origin<'a> {
         Origin { folder: Some(folder_of(path)), chain: vec![known_as(path)], shared }
     }
 
-    /// A preset.
+    /// The origin of a preset.
     pub fn preset(name: &str, shared: &'a Shared<'a>) -> Origin<'a> {
         Origin { folder: None, chain: vec![name.to_string()], shared }
     }
@@ -301,7 +301,7 @@ fn include(
     Ok(())
 }
 
-/// New seeds for all noises: each node's seed hashed with that of the use.
+/// Gives all noises new seeds: each node's seed hashed with the seed of the use.
 fn reseed(node: &mut Node, seed: u64) {
     let params = node.spec().params;
     for i in (0..params.len()).filter(|i| matches!(params[*i].shape, Shape::Seed)) {

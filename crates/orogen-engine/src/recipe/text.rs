@@ -88,7 +88,7 @@ pub fn too_long(name: &str) -> Error {
 
 /// The content of a file as text.
 pub fn text_of(content: Vec<u8>, path: &Path) -> Result<String> {
-    // As some editors and shells of Windows write text.
+    // UTF-16, which some Windows editors and shells write.
     if content.starts_with(b"\xff\xfe") || content.starts_with(b"\xfe\xff") {
         let path = path.display();
         return Err(Error::new(

@@ -18,7 +18,7 @@ use std::sync::Arc;
 /// The magic of every file. Its number changes with the layout.
 const MAGIC: &[u8; 16] = b"orogen solved 1\n";
 
-/// More layers or numbers than any solver makes; a larger count means damage.
+/// Maximum number of layers and of numbers. No solver makes as many; a larger count means damage.
 const MOST: usize = 1 << 16;
 
 /// Size of a stored solution, in bytes.
@@ -66,7 +66,7 @@ pub fn write(out: &mut dyn Write, key: &[u8; 32], solution: &Solution) -> io::Re
     out.write_all(&checksum(&sums).to_le_bytes())
 }
 
-/// Reads the bytes of [`write`], into memory or left in the store. All bytes are verified first.
+/// Reads the bytes that [`write`] wrote, into memory or leaving them in the store. All bytes are verified first.
 ///
 /// # Errors
 /// If the bytes cannot be read, are incomplete or damaged, or contain another solution.
@@ -212,7 +212,7 @@ mod tests {
     use orogen_grid::grid::Grid;
     use orogen_io::read_at::PositionedFile;
 
-    /// A header whose checksum matches, as no solver writes it: no pages follow from an empty window, however high.
+    /// A header with a valid checksum that no solver writes: an empty window, however high, has no pages.
     #[test]
     fn layers_that_no_solver_makes_are_refused() {
         let key = [7; 32];

@@ -21,8 +21,9 @@ pub struct FolderStore {
     pub folder: PathBuf,
     /// Maximum size of all entries, in bytes. While tiles of levels are stored, it may be exceeded by a few percent.
     pub limit: u64,
-    /// Solutions whose estimated time on one core is less are not stored, nor tiles of levels if the time of those of a
-    /// request is less than a tenth of it. An estimate, so that the same solutions are stored on any machine.
+    /// Minimum estimated time on one core of solutions that are stored. The tiles of levels of a request are stored if
+    /// together they take at least a tenth of it. The time is an estimate, so the same solutions are stored on any
+    /// machine.
     pub slower_than: Duration,
 }
 
@@ -30,7 +31,7 @@ pub struct FolderStore {
 const CACHE_VARIABLE: &str = "OROGEN_CACHE";
 
 impl FolderStore {
-    /// A store in `folder` of at most 10 GiB, for solutions that take a core more than about 0.25 s.
+    /// A store in `folder` of at most 10 GiB, for solutions that take more than about 0.25 s on one core.
     pub fn new(folder: impl Into<PathBuf>) -> FolderStore {
         FolderStore { folder: folder.into(), limit: 10 << 30, slower_than: Duration::from_millis(250) }
     }
@@ -70,8 +71,8 @@ impl FolderStore {
         name.strip_suffix(EXTENSION)?.parse().ok()
     }
 
-    /// Whether the folder is tidied after a tile. Listing a folder takes longer than writing a tile, so only some of
-    /// them do, chosen by their keys: about one in each 64th of the limit.
+    /// Whether the folder is tidied after a tile is stored. Listing a folder takes longer than writing a tile, so this
+    /// is done only after some tiles, chosen by their keys: about once per 64th of the limit.
     fn is_tidied_by(&self, key: &EntryKey, bytes: u64) -> bool {
         let chance = u64::from(u32::from_le_bytes([key.0[0], key.0[1], key.0[2], key.0[3]]));
         u128::from(chance) * u128::from(self.limit / 64) < u128::from(bytes) << 32
@@ -122,7 +123,8 @@ impl SolutionStore for FolderStore {
         }
         fs::create_dir_all(&self.folder)?;
         let path = self.path(key);
-        // A wait for the disk takes longer than a tile does to be made, and damage is found.
+        // Waiting for the disk takes longer than making a tile, and a damaged tile is detected, so tiles are written
+        // without waiting.
         let put = match entry.is_tile() {
             true => file::replace_unsynced(&path, |out| entry.write_to(out)),
             false => file::replace_whole(&path, |out| entry.write_to(out)),

@@ -37,7 +37,7 @@ pub struct GridKey {
 }
 
 impl GridKey {
-    /// Bytes of the grid.
+    /// Size of the grid, in bytes.
     fn bytes(&self) -> u64 {
         4 * self.samples[2].unsigned_abs() * self.samples[3].unsigned_abs()
     }
@@ -56,7 +56,7 @@ impl<G: Clone> GridStore<G> {
         GridStore { limit, held: Mutex::new(none) }
     }
 
-    /// The most that it keeps, in bytes.
+    /// Maximum size of all grids, in bytes.
     pub fn limit(&self) -> u64 {
         self.limit
     }
@@ -117,7 +117,7 @@ impl<G: Clone> GridStore<G> {
         self.lock().shrink(allowed);
     }
 
-    /// Bytes of all grids.
+    /// Size of all grids, in bytes.
     pub fn memory(&self) -> u64 {
         self.lock().bytes
     }

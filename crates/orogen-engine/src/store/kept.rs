@@ -1,4 +1,4 @@
-//! What a session keeps for later requests.
+//! Results that a session keeps for later requests.
 
 use super::grids::GridStore;
 use super::level_tiles::LevelTiles;
@@ -8,8 +8,8 @@ use crate::plan::key::Key;
 use orogen_ops::op::Solution;
 use std::sync::Arc;
 
-/// Results that a session keeps for later requests. Its previews and its drafts have their own, which are never stored
-/// for later runs or used for exact results.
+/// Results that a session keeps for later requests. Previews and drafts have separate ones, which are never stored for
+/// later runs or used for exact results.
 pub struct Kept {
     /// Solutions.
     pub store: Store,

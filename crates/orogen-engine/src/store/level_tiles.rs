@@ -18,7 +18,7 @@ pub struct LevelTiles {
     grids: GridStore,
     /// Tiles that are being made.
     making: Mutex<HashSet<GridKey>>,
-    /// Notified when a tile is kept, or is not made any more.
+    /// Notified when a tile has been kept, or is no longer being made.
     ended: Condvar,
     made: AtomicU64,
 }
@@ -26,7 +26,7 @@ pub struct LevelTiles {
 /// Permission to make a tile. When it is dropped, others may make the tile, if it was not kept.
 pub struct Claim<'a> {
     tiles: &'a LevelTiles,
-    /// The mark of the tile; `None` if another request that cannot be waited for makes it too.
+    /// The mark of the tile; `None` if another request also makes the tile and the caller may not wait for it.
     mark: Option<GridKey>,
 }
 
@@ -43,7 +43,7 @@ impl Drop for Claim<'_> {
 const PATIENCE: Duration = Duration::from_millis(20);
 
 impl LevelTiles {
-    /// Room for tiles of at most `limit` bytes.
+    /// A cache for tiles of at most `limit` bytes.
     pub fn new(limit: u64) -> LevelTiles {
         LevelTiles {
             grids: GridStore::new(limit),
@@ -53,7 +53,7 @@ impl LevelTiles {
         }
     }
 
-    /// The most that is kept, in bytes.
+    /// Maximum size of all tiles, in bytes.
     pub fn limit(&self) -> u64 {
         self.grids.limit()
     }
@@ -77,7 +77,7 @@ impl LevelTiles {
         let mut making = self.making();
         let mut waited = false;
         loop {
-            // A tile is kept before its mark is removed: one without a mark is either kept or nobody makes it.
+            // A tile is kept before its mark is removed: a tile without a mark is either kept or not being made.
             if tiles.iter().any(|tile| self.grids.has(&tile.grids())) {
                 return Ok(None);
             }
@@ -117,7 +117,7 @@ impl LevelTiles {
         self.grids.make_room(allowed);
     }
 
-    /// Bytes of all tiles.
+    /// Size of all tiles, in bytes.
     pub fn memory(&self) -> u64 {
         self.grids.memory()
     }
@@ -171,7 +171,7 @@ mod tests {
                 assert!(tiles.find(&tile(2)).is_none());
                 assert!(claim(&tiles, &[2], true).is_some());
             });
-            // Whether it waits by now or not, it cannot have passed.
+            // The claim cannot have been granted yet, whether the thread waits already or not.
             std::thread::sleep(Duration::from_millis(30));
             assert!(!other.is_finished());
             let [first, second] = claims.try_into().ok().unwrap();
@@ -189,7 +189,7 @@ mod tests {
         let claims = claim(&tiles, &[0], true).unwrap();
         std::thread::scope(|scope| {
             let other = scope.spawn(|| {
-                // It may come too late to wait: then it may make the tile at once.
+                // The thread may start too late to wait; it is then allowed to make the tile at once.
                 let made = claim(&tiles, &[0], true).or_else(|| claim(&tiles, &[0], true));
                 assert!(made.is_some());
             });

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use std::io;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// A store in memory, up to a limit. Its memory belongs to no session's budget.
+/// A store in memory, up to a limit. Its memory does not count towards the budget of any session.
 #[derive(Debug)]
 pub struct MemoryStore {
     limit: u64,
@@ -22,7 +22,7 @@ struct Held {
 }
 
 impl MemoryStore {
-    /// An empty store of at most `limit` bytes. If they are exceeded, the entries that were not used for longest go.
+    /// An empty store of at most `limit` bytes. If the limit is exceeded, the least recently used entries are removed.
     #[must_use]
     pub fn new(limit: u64) -> MemoryStore {
         MemoryStore { limit, held: Mutex::default() }
@@ -34,7 +34,7 @@ impl MemoryStore {
         self.lock().entries.len()
     }
 
-    /// Bytes of all entries.
+    /// Size of all entries, in bytes.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         self.lock().bytes

@@ -1,4 +1,4 @@
-//! Stores: where solutions and tiles of levels wait for later runs, as bytes under a key.
+//! Stores, which keep solutions and tiles of levels for later runs as bytes under a key.
 
 pub use super::entry_key::{EntryKey, NoEntryKey};
 use super::level_tile::LevelTile;
@@ -11,19 +11,19 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Keeps solutions, and tiles of levels if it [wants](SolutionStore::keeps_tiles), for later runs and other sessions:
+/// Keeps solutions, and optionally [tiles of levels](SolutionStore::keeps_tiles), for later runs and other sessions, as
 /// bytes under a key. [`FolderStore`](super::folder::FolderStore) keeps them in a folder,
-/// [`MemoryStore`](super::memory::MemoryStore) in memory; a program may keep them anywhere else.
+/// [`MemoryStore`](super::memory::MemoryStore) in memory. A program can implement other stores.
 ///
-/// A [`Session`](crate::Session) looks for a solution before it solves, and stores one after it has solved. A store may
-/// forget entries at any time and may be shared by any number of sessions and processes; its methods are called from
-/// several threads at once.
+/// A [`Session`](crate::Session) looks up a solution before it solves, and stores it after solving. A store may drop
+/// entries at any time and may be shared by any number of sessions and processes; its methods are called from several
+/// threads at once.
 ///
 /// A store cannot change terrain. Each entry contains its key and checksums of all its bytes, and a session verifies
-/// them before it uses the entry, so whatever a store returns is either the solution or recognised as damaged. If an
-/// entry is missing or damaged or the store fails, the session solves instead;
-/// [`Session::store_failure`](crate::Session::store_failure) tells why. If an entry is left in the store to save memory
-/// and can no longer be read while it is used, the request ends with an error.
+/// them before it uses the entry: data that is not the solution is recognized as damaged. If an entry is missing or
+/// damaged, or the store fails, the session solves instead; [`Session::store_failure`](crate::Session::store_failure)
+/// returns the reason. To save memory, an entry may be read from the store while it is used. If that fails, the request
+/// ends with an error.
 ///
 /// ```
 /// use orogen_engine::store::solution_store::{Entry, EntryKey, SolutionStore};
@@ -78,49 +78,49 @@ use std::time::Duration;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait SolutionStore: Send + Sync + fmt::Debug {
-    /// The bytes stored under `key`; `None` if there are none. They must stay readable while they are held, even if the
-    /// entry is removed or replaced meanwhile.
+    /// The bytes stored under `key`; `None` if there are none. The returned reader must stay valid even if the entry is
+    /// removed or replaced meanwhile.
     ///
     /// # Errors
     /// If the store fails. The session then solves.
     fn get(&self, key: &EntryKey) -> io::Result<Option<Box<dyn ReadAt>>>;
 
-    /// Stores an entry under `key`, atomically: a reader finds all of it or none of it. An entry that is there already
-    /// is replaced. A store that has no room for it may ignore it.
+    /// Stores an entry under `key`, atomically: a reader finds all of it or none of it. An existing entry is replaced.
+    /// A store without enough space may ignore the entry.
     ///
     /// # Errors
-    /// If the store fails. The session keeps the solution in memory all the same.
+    /// If the store fails. The session still keeps the solution in memory.
     fn put(&self, key: &EntryKey, entry: &Entry) -> io::Result<()>;
 
-    /// Whether there is an entry under `key`, intact or not. It is asked for estimates of work, so it should be quick;
-    /// a store that cannot tell returns `false`.
+    /// Whether there is an entry under `key`, intact or not. It is called for estimates of work, so it should be fast.
+    /// A store that does not know returns `false`.
     fn contains(&self, key: &EntryKey) -> bool;
 
-    /// Removes a damaged entry. It is no error if there is none.
+    /// Removes a damaged entry. It is not an error if the entry does not exist.
     ///
     /// # Errors
     /// If the store fails.
     fn remove(&self, key: &EntryKey) -> io::Result<()>;
 
-    /// Solutions whose estimated time on one core is less are not stored. By default all are stored. Tiles of levels
-    /// are stored if those of a request take about a tenth of this time or more.
+    /// Minimum estimated time on one core of solutions that are stored. By default it is 0, so all are stored. The
+    /// tiles of levels of a request are stored if together they take about a tenth of this time or more.
     fn slower_than(&self) -> Duration {
         Duration::ZERO
     }
 
-    /// Whether tiles of the levels of [levelled ops](orogen_ops::op::Levelled) are stored, too. A tile has some hundred
-    /// KiB and takes milliseconds to make, and a request looks for some ten of them, one after the other: a store that
-    /// is slower than a disk should not keep them. By default it does not.
+    /// Whether tiles of the levels of [levelled ops](orogen_ops::op::Levelled) are also stored. Default: `false`. A
+    /// tile has a few hundred KiB and takes milliseconds to make, and a request looks up about ten tiles one after the
+    /// other. A store that is slower than a disk should therefore not keep them.
     fn keeps_tiles(&self) -> bool {
         false
     }
 
-    /// The folder for data that does not fit in memory, if the session's options name none. By default there is none.
+    /// The folder for data that does not fit in memory, if the session's options do not name one. Default: `None`.
     fn scratch_folder(&self) -> Option<&Path> {
         None
     }
 
-    /// The name of an entry in messages: by default its key.
+    /// The name of an entry in messages. Default: its key.
     fn name(&self, key: &EntryKey) -> PathBuf {
         PathBuf::from(key.to_string())
     }
@@ -148,7 +148,7 @@ impl<'a> Entry<'a> {
         Entry { key, content: Content::Tile(tile, planes) }
     }
 
-    /// Whether it is a tile of a level: there are many of them, and each is made again in milliseconds.
+    /// Whether it is a tile of a level. There are many tiles, and each can be made again in milliseconds.
     #[must_use]
     pub fn is_tile(&self) -> bool {
         matches!(self.content, Content::Tile(..))
@@ -163,7 +163,7 @@ impl<'a> Entry<'a> {
         }
     }
 
-    /// Writes its bytes: those of a solution a page of 256 KiB at a time, those of a tile at once.
+    /// Writes its bytes: a solution in pages of 256 KiB, a tile at once.
     ///
     /// # Errors
     /// If `out` fails, or a solution on disk cannot be read.

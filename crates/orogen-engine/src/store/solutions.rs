@@ -33,7 +33,7 @@ struct Entries {
     turn: u64,
     /// Number of solutions computed so far.
     made: u64,
-    /// The latest failure of the store behind this one.
+    /// The latest failure of the backing store.
     failure: Option<Error>,
 }
 
@@ -41,7 +41,7 @@ struct Entries {
 pub enum Begun<'a> {
     /// The solution, which another thread has just computed.
     Found(Arc<Solution>),
-    /// There is no solution and no other thread computes it: the caller must do it.
+    /// There is no solution, and no other thread is computing it: the caller must compute it.
     Make(Making<'a>),
 }
 
@@ -50,7 +50,8 @@ pub enum Begun<'a> {
 pub struct Making<'a> {
     store: &'a Store,
     key: Key,
-    /// Whether the key is marked: not if the same solution is being computed by a thread that cannot be waited for.
+    /// Whether the key is marked: `false` if another thread is computing the same solution and the caller may not wait
+    /// for it.
     marked: bool,
 }
 
@@ -82,15 +83,15 @@ impl Drop for Making<'_> {
 const PATIENCE: Duration = Duration::from_millis(20);
 
 impl Store {
-    /// A store backed by another, with `scratch` for data that does not fit in memory: by default that of the store
-    /// behind it, otherwise the system's temporary folder.
+    /// A store backed by another one. `scratch` is the folder for data that does not fit in memory. Default: the folder
+    /// of the backing store, otherwise the system's temporary folder.
     pub fn new(backing: Option<Arc<dyn SolutionStore>>, scratch: Option<PathBuf>) -> Store {
         let behind = || backing.as_deref().and_then(SolutionStore::scratch_folder).map(Path::to_path_buf);
         let scratch = scratch.or_else(behind).unwrap_or_else(fs::temporary_folder);
         Store { held: Mutex::default(), ended: Condvar::new(), backing, scratch }
     }
 
-    /// A store with these solutions, the same folder and no other behind it.
+    /// A store with these solutions, the same folder and no backing store.
     pub fn holding(&self, solutions: Vec<(Key, Arc<Solution>)>) -> Store {
         let solutions = solutions.into_iter().map(|(key, solution)| (key, (0, solution))).collect();
         let held = Mutex::new(Entries { solutions, ..Entries::default() });
@@ -173,12 +174,12 @@ impl Store {
         Begun::Make(self.making(*key, false))
     }
 
-    /// The store behind this one.
+    /// The backing store.
     pub(super) fn backing(&self) -> Option<&dyn SolutionStore> {
         self.backing.as_deref()
     }
 
-    /// Remembers a failure of the store behind this one.
+    /// Records a failure of the backing store.
     pub(super) fn set_failure(&self, error: Error) {
         self.lock().failure = Some(error);
     }
@@ -188,7 +189,7 @@ impl Store {
         self.lock().made
     }
 
-    /// The latest failure of the store behind this one.
+    /// The latest failure of the backing store.
     pub fn failure(&self) -> Option<Error> {
         self.lock().failure.clone()
     }
@@ -249,7 +250,7 @@ pub(super) fn look_up(store: &dyn SolutionStore, key: &Key, on_disk: bool) -> Re
         Err(cause) => return Err(Error::file("read the stored solution", &name, &cause)),
     };
     entry::read(bytes, &name, &key.0, on_disk).map(Some).inspect_err(|_| {
-        // If it stays, it is found to be damaged again.
+        // If it cannot be removed, it is detected as damaged again.
         let _ = store.remove(&key);
     })
 }

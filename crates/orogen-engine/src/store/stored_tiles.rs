@@ -13,18 +13,18 @@ use orogen_io::file;
 const PART: f64 = 0.1;
 
 impl Store {
-    /// Whether tiles are looked for in the store behind this one.
+    /// Whether tiles are looked up in the backing store.
     pub fn has_tiles(&self) -> bool {
         self.backing().is_some_and(SolutionStore::keeps_tiles)
     }
 
-    /// Whether the tiles of a request are stored that together take about `work` nanoseconds to make.
+    /// Whether the tiles of a request are stored, if together they take about `work` nanoseconds to make.
     pub fn keeps_tiles(&self, work: f64) -> bool {
         let is_slow = |backing: &dyn SolutionStore| work >= PART * backing.slower_than().as_nanos() as f64;
         self.backing().is_some_and(|backing| backing.keeps_tiles() && is_slow(backing))
     }
 
-    /// The planes of a tile from the store behind this one, verified. If it fails or has a damaged entry, the tile is
+    /// The planes of a tile from the backing store, verified. If the store fails or the entry is damaged, the tile is
     /// made instead.
     pub fn find_tile(&self, tile: &LevelTile) -> Option<Vec<Grid>> {
         let found = look_up(self.backing()?, tile);
@@ -54,7 +54,7 @@ fn look_up(store: &dyn SolutionStore, tile: &LevelTile) -> Result<Option<Vec<Gri
         Err(cause) => return Err(Error::file("read the stored tile", &name, &cause)),
     };
     tile_entry::read(&*bytes, &name, &key, tile).map(Some).inspect_err(|_| {
-        // If it stays, it is found to be damaged again.
+        // If it cannot be removed, it is detected as damaged again.
         let _ = store.remove(&key);
     })
 }

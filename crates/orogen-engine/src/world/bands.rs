@@ -10,8 +10,9 @@ use orogen_grid::words::count;
 use orogen_io::pages::Pages;
 use orogen_io::raster::Raster;
 
-/// Approximate number of samples per band, and minimum and maximum number of rows.
+/// Approximate number of samples per band.
 const SAMPLES: usize = 1 << 23;
+/// Minimum and maximum number of rows of a band.
 const ROWS: [usize; 2] = [16, 512];
 
 /// Minimum number of rows if memory is short.
@@ -25,7 +26,7 @@ pub struct Bands<'w> {
     rows: usize,
     /// The first row of the next band.
     next: usize,
-    /// The grids over whole rows that were made last, of which bands are still to be cut.
+    /// The grids over whole rows that were made last, from which the next bands are cut.
     made: Vec<Grid>,
 }
 
@@ -130,7 +131,7 @@ impl Iterator for Bands<'_> {
 }
 
 impl Bands<'_> {
-    /// A band of rows that are made whole, which need not be cut into tiles.
+    /// Cuts a band from grids over whole rows, which need not be cut into tiles.
     fn cut(&mut self, band: &Window) -> Option<Result<Vec<Grid>>> {
         if self.made.is_empty() {
             match self.tiles.next_grids()? {

@@ -1,4 +1,4 @@
-//! Worlds: opened recipes, and what is requested of them: windows, points, tiles, bands, objects and volumes.
+//! Worlds, which are opened recipes, and requests to them: windows, points, tiles, bands, objects and volumes.
 
 #[doc(hidden)]
 pub mod bands;

@@ -20,21 +20,21 @@ pub struct Object {
     pub entry: usize,
     /// Metres east and south of the world's origin.
     pub position: [f64; 2],
-    /// Height of the ground in metres: that of the full mesh of the window's samples.
+    /// Height of the ground in metres, on the full mesh of the window's samples.
     pub height: f64,
     /// Scale factor.
     pub size: f64,
-    /// Turn about the vertical axis in degrees, clockwise seen from above, 0 to less than 360.
+    /// Rotation about the vertical axis in degrees, clockwise seen from above, 0 to less than 360.
     pub turn: f64,
 }
 
 impl World {
     /// The recipe's [scatter](crate::recipe::scatter::document::Scatter) over a window: the objects from its first
-    /// sample up to, but not including, one cell beyond its last one. Windows side by side therefore have each object
-    /// once. They are ordered by entry, and then row by row of a lattice.
+    /// sample up to, but not including, one cell beyond its last one. Adjacent windows therefore never share an object.
+    /// The objects are ordered by entry, then row by row of a lattice.
     ///
-    /// Which objects there are, and where, does not depend on the window and its cell: conditions are computed at the
-    /// world's cell, or at that of the entry. Heights are those of the window's samples.
+    /// The objects and their positions do not depend on the window and its cell: conditions are computed at the entry's
+    /// cell, by default the world's. Heights are computed from the window's samples.
     ///
     /// # Errors
     /// If the recipe has no scatter or no layer `height`, the window is not valid for this world, memory does not
@@ -92,7 +92,7 @@ impl World {
         Ok(objects)
     }
 
-    /// The points of an entry within bounds, clear of those `placed` before.
+    /// The points of an entry within bounds, at their clearance from the points `placed` before.
     fn placed(
         &self,
         entry: &Scatter,
@@ -120,7 +120,7 @@ impl World {
         let grids = self.grids_beside(&layers, &window, 0, &progress.part(1.0))?;
         let _grids = self.budget().reserve((window.len().saturating_mul(layers.len() * size_of::<f32>())) as u64)?;
         let Some((density, water)) = grids.split_first() else { return Err(missing()) };
-        // All points around the bounds, which are more than those within.
+        // All points within and around the bounds.
         let area = window.len() as f64 * window.cell * window.cell;
         let count = area / (entry.spacing * entry.spacing) * POINTS * mean(density).min(1.0) * 1.02 + 1000.0;
         let held = self.budget().reserve((count * POINT_MEMORY) as u64)?;
@@ -150,7 +150,7 @@ impl World {
     }
 }
 
-/// Bytes for a point, in the list of its entry, in the search and among those of all entries.
+/// Memory per point, in bytes: in the list of its entry, in the search, and in the list of all entries.
 const POINT_MEMORY: f64 = 144.0;
 
 /// The points of an entry, with their random bits.
@@ -159,8 +159,8 @@ struct Placed {
     _held: Reservation,
 }
 
-/// How far beyond the window the points of each entry are needed, in metres, because those of later entries depend on
-/// them.
+/// Distance beyond the window to which the points of each entry are needed, in metres, because points of later entries
+/// depend on them.
 fn beyond(entries: &[(&Scatter, &ExpandedScatter)]) -> Vec<f64> {
     let mut beyond = vec![0.0; entries.len()];
     let mut furthest: f64 = 0.0;

@@ -1,4 +1,4 @@
-//! Requests: plans of a world are admitted and run.
+//! Requests: admission and execution of a world's plans.
 
 use super::world::World;
 use crate::engine::inline::PreparedProgram;
@@ -40,7 +40,7 @@ impl World {
     }
 
     /// Makes a layer over a window that may extend beyond the world by the margin of its solvers; the caller holds
-    /// `beside` bytes.
+    /// another `beside` bytes.
     ///
     /// # Errors
     /// The errors of [`World::plan`] and [`World::run`].
@@ -68,11 +68,11 @@ impl World {
         self.run(&plan, progress)
     }
 
-    /// A plan for layers over a window, and `bytes` that are reserved beside it.
+    /// A plan for layers over a window, and a reservation of another `bytes`.
     ///
     /// # Errors
-    /// The errors of [`World::plan`]. If both do not fit together, the message has what both need, so that a limit of
-    /// that suffices.
+    /// The errors of [`World::plan`]. If both do not fit together, the message has the memory that both need, which
+    /// suffices as a limit.
     #[doc(hidden)]
     pub fn plan_beside(&self, layers: &[&str], window: &Window, bytes: u64) -> Result<(Plan, Reservation)> {
         let plan = self.plan_within(layers, window, self.limit_beside(bytes))?;
@@ -168,7 +168,7 @@ impl World {
         self.session.budget.afford((window.width as u64).saturating_mul(window.height as u64).saturating_mul(4))
     }
 
-    /// Rejects a plan of another recipe, whose nodes are not these.
+    /// Rejects a plan of another recipe, which refers to other nodes.
     pub(super) fn check_plan(&self, plan: &Plan) -> Result<()> {
         if plan.recipe == self.resolved.identity {
             return Ok(());

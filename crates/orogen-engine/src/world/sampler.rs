@@ -16,8 +16,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 /// thread, and any number of threads may use it at once. Its results have the same bits as the world's own windows and
 /// points.
 ///
-/// For a layer without filters, it makes any window and any point without allocation, after the first request of that
-/// size on as many threads. For a layer with filters it keeps some patches of terrain around the last requested points.
+/// For a layer without filters it does not allocate, except for the first requests of a size on a number of threads.
+/// For a layer with filters it keeps some patches of terrain around the last requested points.
 ///
 /// A sampler holds its world: a reference, a [`World`], or an [`Arc`] if it is shared.
 ///
@@ -48,7 +48,7 @@ pub struct Sampler<W: Borrow<World>> {
     patches: Mutex<Vec<Patch>>,
     /// Buffers that no thread is using.
     idle: Mutex<Vec<Buffers>>,
-    /// A progress without listener; kept, because making one allocates.
+    /// A progress without a listener, kept because creating one allocates.
     silence: Progress,
 }
 
@@ -181,7 +181,7 @@ impl<W: Borrow<World>> Sampler<W> {
         }
     }
 
-    /// Makes the samples of a window at each of the altitudes, in metres: those of [`World::volume`].
+    /// Makes the samples of a window at each of the altitudes, in metres, as [`World::volume`] does.
     ///
     /// # Errors
     /// The errors of [`World::volume`].
@@ -251,7 +251,7 @@ impl<W: Borrow<World>> Sampler<W> {
             patches.push(patch);
             return Ok(ready);
         }
-        // Not under the lock: making it takes time, and threads.
+        // Released, because making a patch takes time and threads.
         drop(patches);
         let spec = &self.world().recipe().world;
         let corners = [0, 1].map(|axis| {

@@ -20,12 +20,12 @@ pub struct Options {
     /// Memory limit, in bytes, for all concurrent requests and reservations of callers. Larger solutions are kept on
     /// disk.
     pub memory: Budget,
-    /// Where solutions and tiles of levels are kept for later runs: a [`FolderStore`](crate::FolderStore), a
+    /// The store of solutions and tiles of levels for later runs: a [`FolderStore`](crate::FolderStore), a
     /// [`MemoryStore`](crate::MemoryStore), or a [store of your own](SolutionStore). `None` keeps them for this session
     /// only.
     pub store: Option<Arc<dyn SolutionStore>>,
-    /// The folder for data that does not fit in memory; `None` uses that of the store, otherwise the system's temporary
-    /// folder. No files remain in it, even after a kill.
+    /// The folder for data that does not fit in memory; `None` uses the folder of the store, otherwise the system's
+    /// temporary folder. No files remain in it, even after a kill.
     pub scratch: Option<PathBuf>,
     /// Memory limit, in bytes, for grids of expensive filters that are kept for later requests. `None` means 256 MiB,
     /// or a quarter of the memory limit if that is less; 0 keeps none.
@@ -39,8 +39,8 @@ pub struct Options {
 /// - A solution is computed once, even for concurrent requests, and is reused by every world with the same nodes: after
 ///   an edit of a recipe, only nodes that depend on the edited node are solved again.
 /// - Grids of expensive filters are kept as long as there is memory.
-/// - A tile of a coarse level of a levelled op is made once, even for concurrent requests, and kept as long as there is
-///   memory, and in the store.
+/// - A tile of a coarse level of a levelled op is made once, even for concurrent requests. It is kept as long as there
+///   is memory, and in the store.
 /// - Concurrent requests together never exceed the [budget](Options::memory): requests that do not fit wait for others.
 ///
 /// ```
@@ -60,9 +60,9 @@ pub struct Session {
     pub(crate) kept: Arc<Kept>,
     pub(crate) budget: Budget,
     pub(crate) device: Option<Arc<dyn Device>>,
-    /// What previews with the device keep.
+    /// Results of previews with the device.
     pub(crate) previews: Arc<Kept>,
-    /// What its drafts keep, and whether windows are drafts.
+    /// Results of drafts.
     pub(crate) drafts: Arc<Kept>,
     pub(crate) is_draft: bool,
 }
@@ -95,10 +95,10 @@ impl Session {
         })
     }
 
-    /// The same session with a device that computes windows in place of the processor, where it can and exact bits are
-    /// not needed: for previews. Stored solutions, tiles of levels and kept grids remain those of the processor, and so
-    /// do points, objects and volumes: what is made on the device is kept in memory, for later windows of sessions with
-    /// it.
+    /// The same session with a device for previews. The device computes windows in place of the processor where it can
+    /// and where exact bits are not needed. The processor still computes stored solutions, tiles of levels, kept grids,
+    /// points, objects and volumes. Results of the device are kept in memory for later windows of sessions with the
+    /// same device.
     #[doc(hidden)]
     #[must_use]
     pub fn with_device(&self, device: Arc<dyn Device>) -> Session {
@@ -106,16 +106,15 @@ impl Session {
         Session { device: Some(device), previews: kept(), drafts: kept(), ..self.clone() }
     }
 
-    /// The same session, whose device also computes solvers that are chaotic: of which the device makes other land, as
-    /// real as that of the processor. Their rivers lie elsewhere, so this is for drafts. Without a device it changes
-    /// nothing.
+    /// The same session for drafts: its device also runs chaotic solvers. Their terrain on the device is as realistic
+    /// as the processor's, but has other rivers. Without a device this has no effect.
     #[doc(hidden)]
     #[must_use]
     pub fn drafting(&self) -> Session {
         Session { is_draft: true, ..self.clone() }
     }
 
-    /// The same session without its device: all is computed by the processor.
+    /// The same session without its device: the processor computes everything.
     #[doc(hidden)]
     #[must_use]
     pub fn without_device(&self) -> Session {
@@ -128,7 +127,7 @@ impl Session {
         &self.budget
     }
 
-    /// Runs work on a thread of its own, for callers that must not wait, such as a user interface. Cancel it with the
+    /// Runs work on a separate thread, for callers that must not wait, such as a user interface. Cancel it with the
     /// [`Progress`](orogen_grid::progress::Progress) that it uses. Without threads the work is done before this
     /// returns.
     ///
@@ -172,8 +171,8 @@ impl Session {
         self.kept.store.made()
     }
 
-    /// The latest failure of the [store](Options::store), or a damaged entry that it had. It stops no work: what cannot
-    /// be read is solved again, and what cannot be stored stays in memory.
+    /// The latest failure of the [store](Options::store), or a damaged entry that it had. Failures do not stop work: a
+    /// solution that cannot be read is solved again, and one that cannot be stored stays in memory.
     #[must_use]
     pub fn store_failure(&self) -> Option<Error> {
         self.kept.store.failure()
@@ -191,7 +190,7 @@ impl Session {
         self.kept.grids.found()
     }
 
-    /// Memory of kept solutions, grids and tiles, in bytes, without that of running requests.
+    /// Memory of kept solutions, grids and tiles, in bytes, without the memory of running requests.
     #[must_use]
     pub fn kept_memory(&self) -> u64 {
         [&self.kept, &self.previews, &self.drafts].iter().fold(0, |sum, kept| kept.memory().saturating_add(sum))
@@ -210,8 +209,8 @@ impl Session {
         Session { kept, previews: nothing(), drafts: nothing(), ..self.clone() }
     }
 
-    /// Drops kept grids and solutions, the least recently used first, until those not in `needed` fit beside the memory
-    /// in use.
+    /// Drops kept grids and solutions, the least recently used first, until those not in `needed` fit together with the
+    /// memory in use.
     pub(crate) fn make_room(&self, needed: &[Key]) {
         if let Some(unused) = self.budget.unused() {
             let left = self.kept.make_room(unused, needed);

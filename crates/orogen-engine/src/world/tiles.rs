@@ -13,8 +13,8 @@ use std::collections::VecDeque;
 pub struct Tiling {
     /// Side of a tile in samples. The tiles at the window's east and south edges may be smaller.
     pub side: usize,
-    /// Samples that a tile has beyond its side in the east and south, which are its neighbors' first ones: 0 for tiles
-    /// that only touch, 1 for tiles that share an edge, as engines require.
+    /// Number of additional samples at a tile's east and south edges, which are its neighbors' first ones: 0 for tiles
+    /// without shared samples, 1 for tiles that share an edge, as game engines require.
     pub overlap: usize,
     /// Memory limit of the stream, in bytes, without the returned tiles; `None` for the world's limit.
     pub memory: Option<u64>,
@@ -66,13 +66,13 @@ pub struct Tile {
 /// Maximum number of samples that are made at once: enough to make halos and plans cheap.
 const AT_ONCE: usize = 1 << 24;
 
-/// Number of samples that suffice if more do not make a sample cheaper, and by how much they have to: memory of smaller
-/// grids is used again by the next ones.
+/// Number of samples above which more are made at once only if that makes a sample cheaper by a factor of [`CHEAPER`]:
+/// the memory of smaller grids is reused by the next ones.
 const ENOUGH: usize = 1 << 22;
 const CHEAPER: f64 = 1.01;
 
-/// The share of a memory limit that one grid of what is made at once takes at most. The allocator keeps what a thread
-/// has freed for this thread, outside of the budget, so many small grids take less memory than a few large ones.
+/// Inverse of the share of a memory limit that one grid made at once may take. The allocator keeps memory that a thread
+/// has freed for that thread, outside of the budget, so many small grids take less memory than a few large ones.
 const PART_OF_LIMIT: u64 = 16;
 
 /// The tiles of a large window, made on demand: see [`World::tiles`].
@@ -82,7 +82,8 @@ pub struct Tiles<'w> {
     window: Window,
     tiling: Tiling,
     progress: Progress,
-    /// The work of solving, which precedes the first strip, and of a sample; known once the first strip is requested.
+    /// The work of solving, which precedes the first strip, and the work per sample; known once the first strip is
+    /// requested.
     work: Option<[f64; 2]>,
     /// Number of tiles made at once, east and south.
     at_once: [usize; 2],
@@ -163,7 +164,8 @@ impl World {
 }
 
 impl<'w> Tiles<'w> {
-    /// Restricts the stream to tiles for which `wanted(column, row)` returns true, for example if others exist already.
+    /// Restricts the stream to tiles for which `wanted(column, row)` returns true, for example if the other tiles exist
+    /// already.
     pub fn only(mut self, wanted: impl Fn(usize, usize) -> bool + Send + 'w) -> Tiles<'w> {
         self.wanted = Box::new(wanted);
         self
@@ -317,7 +319,7 @@ impl<'w> Tiles<'w> {
         Ok(making / window.len().max(1) as f64)
     }
 
-    /// Memory for making this many tiles at once, in bytes: that of the plan, and of the tiles cut from its result.
+    /// Memory for making this many tiles at once, in bytes: of the plan, and of the tiles cut from its result.
     fn needed(&self, at_once: [usize; 2]) -> Result<u64> {
         let layers: Vec<&str> = self.layers.iter().map(String::as_str).collect();
         let window = self.tiling.run(&self.window, [0, 0], at_once);
@@ -325,7 +327,7 @@ impl<'w> Tiles<'w> {
         Ok(self.world.memory_of(&plan)?.saturating_add(self.cut(&window)))
     }
 
-    /// Memory of the tiles cut from what is made over a window, in bytes.
+    /// Memory of the tiles cut from the result over a window, in bytes.
     fn cut(&self, window: &Window) -> u64 {
         (window.len() as u64).saturating_mul(4).saturating_mul(self.layers.len() as u64)
     }
@@ -335,7 +337,7 @@ impl<'w> Tiles<'w> {
         self.tiling.memory.or(self.world.memory_limit())
     }
 
-    /// The plan for what is made over a window at once.
+    /// The plan for layers over a window that is made at once.
     fn plan(&self, layers: &[&str], window: &Window) -> Result<Plan> {
         let allowed = self.allowed().map(|allowed| allowed.saturating_sub(self.cut(window)));
         self.world.plan_within(layers, window, allowed)

@@ -74,10 +74,10 @@ impl World {
     }
 
     /// A layer in space: the samples of a window at each of the altitudes, which are in metres and may be in any order.
-    /// What does not depend on the altitude is computed once per column: all filters, levels and solutions, and fields
-    /// that do not read it.
+    /// Everything that does not depend on the altitude is computed once per column: filters, levels, solutions, and
+    /// fields that do not read the altitude.
     ///
-    /// Any part of the window and of the altitudes has the same bits, and the samples at altitude 0 are those of
+    /// Any part of the window and of the altitudes has the same bits, and the slice at altitude 0 equals
     /// [`World::window`].
     ///
     /// ```

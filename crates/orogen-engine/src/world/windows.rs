@@ -1,4 +1,4 @@
-//! The windows, points and cells that a world has.
+//! Valid windows, points and cells of a world.
 
 use super::world::World;
 use crate::plan::domain::world_windows;
@@ -70,7 +70,7 @@ impl World {
         self.resolved.world_params.size.ok_or_else(|| Error::new(ErrorKind::Request, message))
     }
 
-    /// A window extended by `reach` samples on each side, as far as the world extends.
+    /// A window extended by `reach` samples on each side, clipped to the world.
     #[doc(hidden)]
     pub fn surroundings(&self, window: &Window, reach: usize) -> Window {
         let wide = window.grown(reach);
@@ -82,7 +82,7 @@ impl World {
         if self.check(&wide).is_ok() { wide } else { *window }
     }
 
-    /// The samples at the world's cell around points that the interpolating cubic reads.
+    /// The samples at the world's cell that the interpolating cubic reads around points.
     pub(crate) fn around(&self, x: &[f64], y: &[f64]) -> Window {
         let cell = self.resolved.world_params.cell;
         let span = |values: &[f64]| {

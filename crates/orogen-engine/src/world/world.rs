@@ -27,7 +27,7 @@ use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 use std::sync::{Arc, Mutex};
 
-/// A world, from which any window can be made, at any resolution, always with the same bits.
+/// A world: an opened recipe, from which any window can be made at any resolution, always with the same bits.
 ///
 /// ```
 /// use orogen_engine::{Recipe, Window, World};
@@ -53,7 +53,7 @@ use std::sync::{Arc, Mutex};
 pub struct World {
     pub(super) resolved: ResolvedRecipe,
     pub(super) session: Session,
-    /// Plans for points of layers that need no grids: the same for every point.
+    /// Plans for points of layers that need no grids, which are valid for every point.
     pub(super) pointwise: Mutex<HashMap<String, Arc<Plan>>>,
 }
 
@@ -116,7 +116,7 @@ impl World {
         self.session.kept.store.find(key, on_disk)
     }
 
-    /// Number of solutions that this world computed (not found in the store).
+    /// Number of solutions that this world computed, without those found in the store.
     pub(crate) fn solutions_made(&self) -> usize {
         self.session.solutions_made() as usize
     }
@@ -127,7 +127,7 @@ impl World {
         self.planned(&links, Window::new(1, 1, self.resolved.world_params.cell), false, self.memory_limit())
     }
 
-    /// The nodes in an order where each comes after those that it reads.
+    /// The nodes in an order where each comes after the nodes that it reads.
     pub(crate) fn order(&self) -> &[NodeId] {
         &self.resolved.graph.order
     }
@@ -204,12 +204,12 @@ impl World {
         Ok(plan)
     }
 
-    /// Memory limit of a request beside `bytes` that its caller holds.
+    /// Memory limit of a request whose caller holds another `bytes`.
     pub(super) fn limit_beside(&self, bytes: u64) -> Option<u64> {
         self.memory_limit().map(|limit| limit.saturating_sub(bytes))
     }
 
-    /// Maximum disk space for running a plan, in bytes, without the cache.
+    /// Maximum disk space for running a plan, in bytes, without the store.
     pub fn disk_of(&self, plan: &Plan) -> u64 {
         memory::disk(plan)
     }
@@ -223,7 +223,7 @@ impl World {
         Ok(memory::needed(plan, &self.resolved.recipe, self.threads()))
     }
 
-    /// Approximate time of a plan on one core, in nanoseconds: for solving what is not solved yet, and for the steps.
+    /// Approximate time of a plan on one core, in nanoseconds: for solvers that are not solved yet, and for the steps.
     ///
     /// # Errors
     /// The plan was made for another recipe.
@@ -262,8 +262,8 @@ impl World {
         self.session.device.as_deref()
     }
 
-    /// Whether a [draft](Session::drafting) of a plan would be other land: because its device solves a solver of it
-    /// that is chaotic and not solved yet.
+    /// Whether a [draft](Session::drafting) of a plan would have different terrain, because its device would run a
+    /// chaotic solver that is not solved yet.
     ///
     /// # Errors
     /// The plan was made for another recipe.
@@ -278,8 +278,8 @@ impl World {
         self.session.threads()
     }
 
-    /// A hash of everything that a layer depends on: its nodes with their parameters, and what they read of the world
-    /// (seed, extent, cell, sea level). Names of nodes are not included.
+    /// A hash of everything that a layer depends on: its nodes with their parameters, and the properties of the world
+    /// that they read (seed, extent, cell, sea level). Names of nodes are not included.
     ///
     /// # Errors
     /// If there is no such layer.

@@ -1,4 +1,4 @@
-//! Solvers at a cell of their own.
+//! Solvers with their own cell.
 
 use orogen_engine::declare::Input;
 use orogen_engine::field::{Fbm, Multiply};
@@ -8,7 +8,7 @@ use orogen_engine::{Grid, Progress, Recipe, Window, World, WorldSpec};
 
 const CELL: f64 = 10.0;
 
-/// A solver of rough land in a world with `cell`; its own cell is `own`.
+/// A solver of rough terrain in a world with the cell `cell`; the solver's own cell is `own`.
 fn world_of(node: &Node, cell: f64, own: f64) -> World {
     let mut node = node.clone();
     let param = node.spec().params.iter().position(|param| param.name == "cell").unwrap();
@@ -32,7 +32,7 @@ fn layers_of(world: &World, window: &Window) -> Vec<Grid> {
     world.grids(&layers, window, &Progress::none()).unwrap()
 }
 
-/// A solver at a cell of its own, read at its samples, is that of a world with this cell.
+/// A solver with its own cell, read at its samples, equals the solver in a world with this cell.
 #[test]
 fn a_solver_at_its_own_cell_is_that_of_a_coarser_world() {
     let mut checked = Vec::new();
@@ -48,7 +48,7 @@ fn a_solver_at_its_own_cell_is_that_of_a_coarser_world() {
         for (own, coarse) in own.iter().zip(&coarse) {
             assert_eq!(own.data(), coarse.data(), "`{op}`");
         }
-        // Fields are the same at any cell, and so are shares of them, nearly.
+        // Fields are the same at any cell, and shares of them nearly so.
         if op != "bake" && op != "select-share" {
             let fine = layers_of(&world_of(&node, CELL, 0.0), &window);
             assert!(own.iter().zip(&fine).any(|(own, fine)| own.data() != fine.data()), "`{op}` ignores its cell");

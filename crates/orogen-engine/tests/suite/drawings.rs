@@ -36,17 +36,17 @@ fn layers_of_a_path() {
         ("drawn.chainage", [0.0, 250.0, 800.0, 1100.0, 0.0]),
         ("drawn.position", [0.0, 250.0 / 1100.0, 800.0 / 1100.0, 1.0, 0.0]),
         ("drawn.height", [100.0, 75.0, 50.0, 50.0, 100.0]),
-        // Half the width is 20 m: 60 m are the middle of the falloff.
+        // Half the width is 20 m, so the middle of the falloff is at 60 m.
         ("drawn.inside", [1.0, 1.0, 0.5, 0.957_031_25, 0.0]),
     ] {
         let values = at(&world, layer, &points);
         assert!(close(&values, &expect, 1e-4), "{layer}: {values:?}");
     }
-    // Closed: the last side is a line, too.
+    // Closed: a line also joins the last point and the first.
     let ring = open("path", "points = [[0, 0], [300, 0], [300, 300]]\nclosed = true\nfalloff = 0\nwidth = 2");
     assert!(close(&at(&ring, "drawn", &[[150.0, 150.0], [0.0, 300.0]]), &[0.0, 212.132], 1e-3));
     assert_eq!(at(&ring, "drawn.inside", &[[150.0, 150.9], [150.0, 152.0]]), [1.0, 0.0]);
-    // Several lines: the nearest one counts.
+    // Of several lines the nearest one counts.
     let two = open("path", "points = [[[0, 0], [0, 100]], [[1000, 0], [1000, 50]]]");
     assert_eq!(at(&two, "drawn", &[[10.0, 50.0], [970.0, 20.0]]), [10.0, 30.0]);
     assert_eq!(at(&two, "drawn.position", &[[10.0, 50.0], [970.0, 25.0]]), [0.5, 0.5]);
@@ -54,7 +54,7 @@ fn layers_of_a_path() {
 
 #[test]
 fn layers_of_a_polygon() {
-    // A square with a square hole, in which is an island.
+    // A square with a square hole that has an island.
     let square = |low: f64, high: f64, z: f64| {
         format!("[[{low}, {low}, {z}], [{high}, {low}, {z}], [{high}, {high}, {z}], [{low}, {high}, {z}]]")
     };
@@ -169,7 +169,7 @@ fn files_of_both_formats_give_what_points_give() {
             assert_eq!(made, points, "{file}.{layer}");
         }
     }
-    // What is missing or of the other kind is told with the node and the place.
+    // A missing file or one of the wrong kind is reported with the node and the position.
     let refused = |op: &str, file: &str| {
         fs::write(folder.join("recipe.toml"), text(op, &format!("file = \"{file}\""))).unwrap();
         let recipe = Recipe::read(&folder.join("recipe.toml")).unwrap();

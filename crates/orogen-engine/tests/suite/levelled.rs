@@ -1,4 +1,4 @@
-//! Where the land that levelled ops make lies, and its rivers.
+//! The position of the terrain of levelled ops, and its rivers.
 
 use orogen_engine::{Grid, Options, Progress, Recipe, Window, World};
 
@@ -158,7 +158,7 @@ receiver = "land.receiver"
         let options = Options { threads: Some(threads), ..Options::default() };
         World::with_options(Recipe::parse(text, "details").unwrap(), options).unwrap()
     };
-    // A cell of a level, and one between two levels; beside the origin and far away, with an odd size.
+    // A cell of a level and a cell between two levels, near the origin and far away, with an odd size.
     for (cell, at) in [(3.75, (-91, 33)), (2.0, (1_000_000_007, -2_000_000_011))] {
         let whole = Window::new(153, 131, cell).at(at.0, at.1);
         let grids = open(2).grids(&names, &whole, &Progress::none()).unwrap();
@@ -189,7 +189,7 @@ sediment = "land.sediment"
 "#;
     let world = World::open(Recipe::parse(text, "floods").unwrap()).unwrap();
     let names = ["height", "flow", "surface", "depth", "floodplain", "sediment"];
-    // At the sea, at a coarse cell, at that of valleys and at a fine one.
+    // At the sea: at a coarse cell, at the cell of valleys and at a fine one.
     for (cell, x, y) in [(960.0, -400, -300), (60.0, 10, -40), (7.5, 80, -320)] {
         let window = Window::new(300, 300, cell).at(x, y);
         let grids = world.grids(&names, &window, &Progress::none()).unwrap();
@@ -210,7 +210,7 @@ sediment = "land.sediment"
             }
         }
         assert!(flooded > 0 || cell > 60.0, "{flooded} samples beside rivers are flooded, {water} are water");
-        // A window by itself.
+        // A window on its own.
         let part = Window::new(70, 50, cell).at(x + 111, y + 90);
         for (whole, part) in grids.iter().zip(world.grids(&names, &part, &Progress::none()).unwrap()) {
             assert!(whole.crop(part.window()).unwrap() == part, "a crop differs at {cell} m");
@@ -303,7 +303,7 @@ fn rivers_of_amplified_land_end_at_the_shore_of_its_sea() {
     }
     assert!(land > 200_000 && sea > 200_000, "{land} samples of land, {sea} of sea");
 
-    // The shore is that of the source within a coarse cell, and the sea is as deep.
+    // The shore is within a coarse cell of the source's shore, and the sea is as deep.
     let (mut far, mut deep, mut error) = (0, 0.0f64, 0.0f64);
     for j in (8..SIDE - 8).step_by(3) {
         for i in (8..SIDE - 8).step_by(3) {

@@ -1,4 +1,4 @@
-//! How a graphics card computes the built-in fields, filters, levels and solvers.
+//! The shaders of the built-in fields, filters, levels and solvers.
 
 use orogen_engine::levelled::{Amplify, Continents};
 use orogen_engine::lower::{Lowering, Over, Pass, Passes};
@@ -31,7 +31,7 @@ fn check(name: &str, passes: &Passes, most: impl Fn(&Pass) -> usize) {
 fn every_field_says_how_a_graphics_card_computes_it() {
     for node in Node::all() {
         let Op::Field(field) = node.op() else { continue };
-        // The engine computes these by instructions of its own.
+        // The engine computes these with its own instructions.
         if field.terms().is_some() || field.coord_map().is_some() || field.source_cell(1.0, 1.0).is_some() {
             continue;
         }
@@ -71,7 +71,7 @@ fn the_text_of_a_filter_does_not_depend_on_the_cell() {
     }
 }
 
-/// How a level is computed with all inputs.
+/// The lowering of a level with all inputs.
 fn level(levelled: &dyn Levelled, level: usize) -> Lowering<Passes> {
     levelled.lower(level, &[true; 8], &WORLD)
 }
@@ -114,7 +114,7 @@ fn lowered(levelled: &dyn Levelled) -> Vec<usize> {
 fn levels_are_computed_on_a_graphics_card_except_where_they_cannot_be() {
     let amplify = Amplify { details: 2, ..Default::default() };
     assert_eq!(lowered(&amplify), [1, 2, 3, 4, 5, 6]);
-    // Cells of 960 m and 480 m have new lakes, which the level below each begins with.
+    // Levels with cells of 960 m and 480 m have new lakes, which the level below starts from.
     assert_eq!(lowered(&Amplify { lakes: 0.5, ..amplify }), [3, 4, 5, 6]);
     assert_eq!(lowered(&Continents::default()), [6, 7, 8, 9, 10, 11]);
 }
@@ -127,7 +127,7 @@ fn every_solver_says_how_a_graphics_card_computes_it() {
         let Op::Solver(solver) = node.op() else { continue };
         let (name, inputs) = (node.spec().op, node.inputs());
         let required: Vec<bool> = inputs.iter().map(|input| input.required).collect();
-        // With all inputs the processor may have to do it, but it says so.
+        // With all inputs the processor may have to compute it; the op must say so.
         assert_ne!(solver.lower(&window, &vec![true; inputs.len()], &WORLD), Lowering::Missing, "{name}");
         match solver.lower(&window, &required, &WORLD) {
             Lowering::Missing => panic!("{name} does not say how a graphics card computes it"),

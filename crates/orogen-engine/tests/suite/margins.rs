@@ -28,15 +28,15 @@ fn set(node: &mut Node, name: &str, value: &Value) {
     }
 }
 
-/// A solver of land whose origin is `shift` cells from the world's origin. Choices that depend on a sample's number are
-/// off.
+/// A solver of terrain whose origin is `shift` cells from the world's origin. Random choices that depend on a sample's
+/// index are switched off.
 fn recipe_of(node: &Node, world: WorldSpec, shift: usize) -> Recipe {
     let mut node = node.clone();
     let metres = shift as f64 * CELL;
     let pair = |at: [f64; 2]| Value::List(at.map(|n| Spanned::unplaced(Value::Number(n))).into());
     set(&mut node, "jitter", &Value::Number(0.0));
     set(&mut node, "random_receivers", &Value::Flag(false));
-    // Water leaves at the border of the domain alone.
+    // Water leaves only at the border of the domain.
     set(&mut node, "sea", &Value::Flag(false));
     set(&mut node, "smallest", &Value::Number(500.0));
     set(&mut node, "stream", &Value::Number(3000.0));
@@ -63,7 +63,7 @@ fn layers_of(recipe: Recipe, window: &Window) -> Vec<Grid> {
     World::open(recipe).unwrap().grids(&layers, window, &Progress::none()).unwrap()
 }
 
-/// A world with a margin is the middle of a world that is larger by that margin, bit for bit.
+/// A world with a margin equals the middle of a world that is larger by that margin, bit for bit.
 #[test]
 fn a_world_with_a_margin_is_the_middle_of_a_larger_world() {
     let mut checked = 0;
@@ -83,7 +83,7 @@ fn a_world_with_a_margin_is_the_middle_of_a_larger_world() {
             changed += usize::from(bits(without) != bits(with));
             checked += 1;
         }
-        // Lines of sight do not leave the world, and baked samples are what they were.
+        // Lines of sight do not leave the world, and baked samples do not change.
         if op != "viewshed" {
             assert_eq!(changed == 0, op == "bake", "`{op}`: a margin changes {changed} layers");
         }
@@ -150,7 +150,7 @@ fn margins_that_cannot_be_are_named() {
     let options = Options { memory: Budget::of(1 << 30), ..Options::default() };
     let error = World::with_options(wide, options).unwrap().window("height", &Window::new(8, 8, 1.0)).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::Memory, "{error}");
-    // In code, too.
+    // The same for a recipe made in code.
     let mut recipe = recipe_of(&Normalise { margin: f64::NAN, ..Normalise::default() }.into(), world(0), 0);
     recipe.about.clear();
     assert!(World::open(recipe).is_err_and(|error| error.to_string().contains("`margin` must be")));

@@ -1,4 +1,4 @@
-//! Scattered objects: the same in any window, at their distances, on any number of threads.
+//! Scattered objects: they keep their distances, and are the same in any window and on any number of threads.
 
 use orogen_engine::{Object, Options, Progress, Recipe, Window, World};
 use orogen_grid::random::Random;
@@ -47,7 +47,7 @@ fn objects(world: &World, window: &Window) -> Vec<Object> {
     world.objects(window, &Progress::none()).unwrap()
 }
 
-/// In an order that does not depend on windows.
+/// Sorts objects in an order that does not depend on windows.
 fn sorted(mut objects: Vec<Object>) -> Vec<Object> {
     objects.sort_by(|a, b| {
         let key = |object: &Object| (object.entry, object.position[1], object.position[0]);
@@ -89,7 +89,7 @@ fn windows_side_by_side_have_each_object_once() {
 fn distances_are_kept() {
     let world = open("", 2);
     let all = objects(&world, &Window::new(120, 120, 10.0).at(-999_950, 1_000_000));
-    // Spacings, and distances to the entries before.
+    // Spacings, and distances to earlier entries.
     let distances = [(90.0, 90.0), (9.0, 25.0), (14.0, 3.0), (8.0, 8.0)];
     for (k, a) in all.iter().enumerate() {
         for b in &all[k + 1..] {

@@ -19,7 +19,7 @@ fn painted(strokes: &[Stroke], background: f64, points: &[[f64; 2]]) -> Vec<f32>
 
 #[test]
 fn a_dab_falls_from_its_center_to_its_radius() {
-    // Full up to 5 m, half in the middle of the rest, nothing from 10 m on.
+    // Full effect up to 5 m, half in the middle of the falloff, none from 10 m on.
     let at = [[0.0, 0.0], [3.0, 4.0], [0.0, 7.5], [-8.0, 6.0], [0.0, 11.0]];
     let dab = stroke(&[[0.0, 0.0]], StrokeMode::Add, 8.0);
     assert_eq!(painted(std::slice::from_ref(&dab), 100.0, &at), [108.0, 108.0, 104.0, 100.0, 100.0]);
@@ -45,7 +45,7 @@ fn strokes_are_applied_in_their_order() {
     let erase = stroke(&dab, StrokeMode::Erase, 9.0);
     assert_eq!(painted(&[add.clone(), set.clone()], 0.0, &at), [1.0, 1.5]);
     assert_eq!(painted(&[set.clone(), add], 0.0, &at), [5.0, 2.5]);
-    // Erased is the background, not 0.
+    // Erasing restores the background, not 0.
     assert_eq!(painted(&[set.clone(), erase.clone()], 0.25, &at), [0.25, 0.4375]);
     assert_eq!(painted(&[set.clone(), Stroke { strength: 0.5, ..erase }], 0.25, &at), [0.625, 0.53125]);
     let clear = stroke(&dab, StrokeMode::Set, 0.0);

@@ -48,7 +48,7 @@ fn points_may_be_formulas() {
     let read = Recipe::parse_with(&text, "t", &[("reach".into(), 800.0)]).unwrap();
     assert_eq!(read.nodes()[0].node.param(0).to_toml(), "[[0.0, 0.0], [800.0, 400.0]]");
     assert!(read.to_toml().contains("[[0.0, 0.0], [\"= reach\", \"= reach / 2\"]]"), "{}", read.to_toml());
-    // A formula without a value is told once.
+    // A formula without a value is reported once.
     let error = Recipe::parse(&text.replace("= reach / 2", "= raech"), "t").unwrap_err();
     assert_eq!(error.diagnostics().len(), 1, "{error}");
 }

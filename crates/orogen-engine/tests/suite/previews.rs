@@ -1,4 +1,4 @@
-//! Windows that a device computes, and what is kept of them.
+//! Windows that a device computes, and results that are kept for later windows.
 
 use orogen_engine::device::{Computed, Device, DeviceGrid, PassRun, PassStep, PlanGrid};
 use orogen_engine::field::{Fbm, Multiply};
@@ -43,10 +43,10 @@ impl Solver for Solved {
     }
 }
 
-/// What the device adds to all that it solves and filters.
+/// Offset that the device adds to everything that it solves and filters.
 const OFF: f32 = 1000.0;
 
-/// A device that is off by as much, so that what it made is recognised, and counts.
+/// A device whose results are off by [`OFF`], so that they can be recognized. It counts its work.
 #[derive(Default)]
 struct Off {
     refuses: bool,
@@ -62,7 +62,7 @@ impl Device for Off {
                 self.filtered.fetch_add(1, Ordering::Relaxed);
                 None
             }
-            // Built-in solvers are left to the processor.
+            // The processor computes built-in solvers.
             _ if !passes.passes.is_empty() => return Ok(Computed::Declined),
             _ => {
                 self.solved.fetch_add(1, Ordering::Relaxed);
@@ -125,13 +125,13 @@ fn what_a_device_makes_is_never_taken_for_exact() {
     let preview = session.with_device(Arc::clone(&device) as Arc<dyn Device>);
     for _ in 0..2 {
         let made = LAYERS.map(|layer| window(&preview, layer));
-        // The land is as high as the device makes it, and what is made from it by the processor too.
+        // The terrain has the device's offset, also where the processor computed it from the device's results.
         let mut heights = made[0].data().iter().zip(exact[0].data());
         assert!(heights.all(|(made, exact)| (made - exact - OFF).abs() < 0.01));
         let mean = |grid: &Grid| grid.data().iter().sum::<f32>() / grid.data().len() as f32;
         assert!((mean(&made[2]) - mean(&exact[2]) - OFF).abs() < 50.0, "{} {}", mean(&made[2]), mean(&exact[2]));
         assert!(made[3].data().iter().all(|height| *height == OFF));
-        // What depends on nothing of the device is exact.
+        // Layers that do not depend on the device's results are exact.
         assert_eq!(made[4], exact[4]);
     }
     // Solutions and grids of filters are kept for later previews.
@@ -142,7 +142,7 @@ fn what_a_device_makes_is_never_taken_for_exact() {
         assert_eq!(window(&preview.without_device(), layer), *exact, "{layer}");
     }
     assert_eq!(session.solutions_made(), 3);
-    // What is exact by now is taken for previews, too.
+    // Previews also use exact results that exist already.
     let made = window(&session.with_device(Arc::new(Off::default())), "solved");
     assert_eq!(made, exact[0]);
     // Points are always exact.
@@ -166,7 +166,7 @@ fn other_land_is_made_for_drafts_alone() {
     let heights = window(&preview, "solved");
     assert!(heights.iter().zip(&draft).all(|(height, draft)| (draft - height - OFF).abs() < 0.01));
     assert_eq!(session.solutions_made(), 1);
-    // What is solved exactly by now needs no draft.
+    // Solvers that are already solved exactly need no draft.
     assert!(!may_draft(&preview) && window(&preview.drafting(), "solved") == heights);
     assert_eq!(window(&session.drafting(), "solved"), heights);
 }
@@ -181,7 +181,7 @@ fn what_a_device_refuses_is_made_by_the_processor() {
     assert!(device.solved.load(Ordering::Relaxed) > 0 && device.filtered.load(Ordering::Relaxed) > 0);
 }
 
-/// A device that filters and keeps what it has made, until it is lost.
+/// A device that filters and keeps its results, until it is lost.
 #[derive(Default)]
 struct Keeping {
     is_lost: AtomicBool,
@@ -190,7 +190,7 @@ struct Keeping {
 }
 
 impl Keeping {
-    /// A grid, wherever it is.
+    /// A grid, in memory or on the device.
     fn grid<'a>(&self, grid: &'a PlanGrid) -> &'a Grid {
         grid.memory().or_else(|| grid.on_device()?.samples::<Grid>()).unwrap()
     }
@@ -238,11 +238,11 @@ fn grids_stay_on_a_device_until_the_processor_reads_them() {
     let window = |session: &Session, layer: &str| session.open(filtered()).unwrap().window(layer, &WINDOW).unwrap();
     let count = |count: &AtomicUsize| count.swap(0, Ordering::Relaxed);
     let land = window(&session, "land");
-    // The one between is not read.
+    // The intermediate grid is not read.
     let twice = window(&preview, "eroded");
     assert!(twice.data().iter().zip(land.data()).all(|(made, land)| (made - land - 2.0 * OFF).abs() < 0.01));
     assert_eq!((count(&device.filtered), count(&device.read)), (2, 1));
-    // It is kept on the device for a later window.
+    // The grid is kept on the device for a later window.
     assert_eq!(window(&preview, "eroded"), twice);
     assert_eq!((count(&device.filtered), count(&device.read)), (0, 1));
     // The processor reads both for a field, and only once.
@@ -250,7 +250,7 @@ fn grids_stay_on_a_device_until_the_processor_reads_them() {
     let expect = |(both, land): (&f32, &f32)| (both / ((land + OFF) * (land + 2.0 * OFF)) - 1.0).abs() < 1e-5;
     assert!(both.data().iter().zip(land.data()).all(expect));
     assert_eq!(count(&device.read), 2);
-    // A device that is lost has lost what is kept on it; the processor makes it.
+    // A lost device has lost the grids that it kept; the processor makes them again.
     device.is_lost.store(true, Ordering::Relaxed);
     for layer in ["eroded", "both"] {
         assert_eq!(window(&preview, layer), window(&session, layer), "{layer}");

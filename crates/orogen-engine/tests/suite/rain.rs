@@ -1,4 +1,4 @@
-//! Drainage areas weighted by the rain.
+//! Drainage areas weighted by rain.
 
 use orogen_engine::declare::Input;
 use orogen_engine::field::{Fbm, Multiply, Ramp};
@@ -9,7 +9,7 @@ use orogen_engine::{Grid, Progress, Recipe, Window, World, WorldSpec};
 
 const CELL: f64 = 10.0;
 
-/// Windows of 130 x 90 samples of all layers of a solver of rough land, in memory or on disk.
+/// All layers of a solver of rough terrain over 130 x 90 samples, in memory or on disk.
 fn layers_of(node: impl Into<Node>, threads: usize, on_disk: Option<usize>) -> Vec<Grid> {
     let spec = WorldSpec::default().with_seed(5).with_size(Some([1300.0, 900.0])).with_cell(CELL);
     let (mut recipe, node) = (Recipe::new(spec), node.into());
@@ -69,7 +69,7 @@ fn rain_weights_the_flow_in_memory_and_on_disk() {
                 "{threads}, {side:?}"
             );
         }
-        // Directions, watersheds and heights are those without rain; flow and orders are not.
+        // Rain does not change directions, watersheds and heights; it changes flow and orders.
         let same: Vec<bool> = bits(&dry).iter().zip(&bits(&wet)).map(|(dry, wet)| dry == wet).collect();
         assert_eq!(same, [false, true, true, false, true]);
         // Between 0.01 and about twice the area: the domain is a few cells wider than the world.
@@ -83,7 +83,7 @@ fn rain_weights_the_flow_in_memory_and_on_disk() {
 fn rivers_cut_deeper_where_more_rain_falls() {
     let [dry, wet] = [Input::None, "rain".into()].map(|rain| layers_of(stream_power(rain), 2, None));
     assert_eq!(bits(&layers_of(stream_power("rain".into()), 1, Some(41))), bits(&wet));
-    // The mean height of the columns from 10 % to 30 %, where it is dry, and from 70 % to 90 %.
+    // The mean height of the columns from 10 % to 30 %, where it is dry, and from 70 % to 90 %, where it is wet.
     let mean = |layers: &[Grid], columns: std::ops::Range<usize>| {
         let row = |j: usize| layers[0].row(j)[columns.clone()].iter().map(|height| f64::from(*height)).sum::<f64>();
         (0..90).map(row).sum::<f64>() / (90 * columns.len()) as f64

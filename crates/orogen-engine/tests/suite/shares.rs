@@ -17,7 +17,7 @@ fn recipe(seed: u64, land: Expr, share: SelectShare) -> Recipe {
     recipe
 }
 
-/// The mask, the values and the places of all samples at a cell.
+/// The mask, the values and the positions of all samples at a cell.
 fn samples(recipe: &Recipe, cell: f64) -> [Vec<f32>; 3] {
     let world = World::open(recipe.clone()).unwrap();
     let window = world.full_window(cell).unwrap();
@@ -33,7 +33,7 @@ fn plain() -> Expr {
     Expr::new("hills")
 }
 
-/// The samples with the lowest or highest values, of equal ones those that are first, row by row.
+/// The samples with the lowest or highest values; of equal values the first ones, row by row.
 fn expected(values: &[f32], candidate: impl Fn(usize) -> bool, share: f64, highest: bool) -> Vec<f32> {
     let known = values.iter().filter(|value| !value.is_nan()).count();
     let mut order: Vec<usize> = (0..values.len()).filter(|k| !values[*k].is_nan() && candidate(*k)).collect();

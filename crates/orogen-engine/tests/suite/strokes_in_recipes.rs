@@ -24,7 +24,7 @@ fn strokes_are_read_and_written_with_a_line_for_each() {
         { points = [[7, 8]], radius = 5, hardness = 1, mode = \"add\", value = 1, strength = 1 },\n]\n";
     assert!(toml.contains(expect), "{toml}");
     assert_eq!(parse(&toml), read);
-    // As tables of their own, and as JSON.
+    // As separate tables, and as JSON.
     let tables = "orogen = 1\n[nodes.painted]\nop = \"paint\"\n[[nodes.painted.strokes]]\npoints = [[0, 0], [1.5, -2]]\nradius = 20\nvalue = -3\nmode = \"set\"\nstrength = 0.25\n\
         [[nodes.painted.strokes]]\npoints = [[7, 8]]\nradius = 5\nhardness = 1\n[outputs]\nheight = \"painted\"\n";
     assert_eq!(parse(tables), read);

@@ -9,7 +9,7 @@ use std::ops::Range;
 /// Maximum number of classes of a recipe.
 pub const MAX_CLASSES: usize = 255;
 
-/// Colors of classes without one, by their names.
+/// Default colors of classes, by name.
 const COLORS: [(&str, u32); 14] = [
     ("water", 0x3f_74a8),
     ("sea", 0x2f_5f96),
@@ -27,7 +27,7 @@ const COLORS: [(&str, u32); 14] = [
     ("snow", 0xf1_f5f8),
 ];
 
-/// Colors of classes without one that have other names, one after the other.
+/// Default colors of classes with other names, used in turn.
 const OTHERS: [u32; 8] = [0xb0_6a55, 0xc9_a04c, 0x86_9c4e, 0x4f_9a86, 0x59_7fb5, 0x8a_6fae, 0xb7_6c96, 0x9a_8468];
 
 table! {
@@ -49,7 +49,7 @@ table! {
 /// An exact share of all cells of a bounded world.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Share {
-    /// What cells are ordered by: `height`, or a node or layer.
+    /// The quantity by which cells are ordered: `height`, or a node or layer.
     pub of: String,
     /// Which end of that order is selected.
     pub end: End,
@@ -67,7 +67,7 @@ pub enum End {
 }
 
 impl End {
-    /// Both, with their keys in recipes.
+    /// Both ends, with their keys in recipes.
     pub const ALL: [(&'static str, End); 2] = [("lowest", End::Lowest), ("highest", End::Highest)];
 }
 

@@ -9,7 +9,7 @@ use orogen_ops::declare::Input;
 use orogen_ops::field::{Expr, Label};
 use orogen_ops::solver::SelectShare;
 
-/// Adds the nodes to a recipe that compute its classes, and the output with their numbers, unless they exist. Opening a
+/// Adds the nodes that compute a recipe's classes, and the output with their numbers, unless they exist. Opening a
 /// world does this. Shares are exact at the world's cell.
 ///
 /// # Errors
@@ -19,7 +19,8 @@ pub fn expand(recipe: &mut Recipe) -> Result<()> {
     expand_at(recipe, 0.0, &codes)
 }
 
-/// The same with shares that are exact at `cell`, in metres (0 for the world's cell), and with a number for each class.
+/// Like [`expand`], with shares that are exact at `cell`, in metres (0 for the world's cell), and with a given number
+/// for each class.
 ///
 /// # Errors
 /// As [`expand`].
@@ -66,7 +67,7 @@ pub(crate) const NO_HEIGHT: &str =
     "`[[class]]` needs an output `height`; name the heights in [outputs], such as height = \"NODE\"";
 
 impl ShareNodes<'_> {
-    /// The number of this class where it is, and `below` elsewhere.
+    /// A node with the number of this class where its conditions hold, and `below` elsewhere.
     fn class(&mut self, number: usize, class: &TerrainClass, below: Input, code: u8, cell: f64) -> Input {
         let prefix = format!("class-{number}");
         let TerrainClass { all, any, mask, share, .. } = class;

@@ -37,7 +37,7 @@ fn class(table: &Table, values: &mut ValueReader, before: &[(TerrainClass, Span)
     class
 }
 
-/// A table of what cells are ordered by, and how many are selected from one end.
+/// A table with the quantity by which cells are ordered, and the share that is selected from one end.
 impl OfKey for Share {
     fn schema(_: &Key) -> Json {
         let part = |about: &str| json!({ "type": "number", "minimum": 0, "maximum": 1, "description": about });

@@ -1,9 +1,9 @@
-//! Terrain classes: water, sand, grass and others, each with the conditions of where it is, as an output with the
-//! number of each sample's class.
+//! Terrain classes such as water, sand and grass, each with conditions. They become an output with the number of each
+//! sample's class.
 //!
 //! - [`document`]: a class, with its keys
 //! - `list`: the list of `[[class]]` tables, and shares as values
-//! - [`standard`]: those of a recipe that has none of its own; [`named`]: their numbers by their names
+//! - [`standard`]: the classes of a recipe without any; [`named`]: numbers of classes by their names
 //! - [`expand`]: expansion to nodes that compute the output
 
 #[doc(hidden)]

@@ -1,14 +1,14 @@
-//! The classes of a recipe by their names: as the terrains of a tileset, or as the standard classes.
+//! Numbering of a recipe's classes by their names: as the terrains of a tileset, or as the standard classes.
 
 use crate::recipe::class::expand::expand_at;
 use crate::recipe::document::Recipe;
 use orogen_grid::error::{Error, ErrorKind, Result};
 
-/// Gives the classes of a recipe the numbers of their names in a list. `list` is what has these names, for messages:
-/// "terrain of the tileset `fields-16`". `cell` is that of the map, in metres.
+/// Gives the classes of a recipe the numbers of their names in a list. `list` describes the list in messages: "terrain
+/// of the tileset `fields-16`". `cell` is the cell of the map, in metres.
 ///
 /// # Errors
-/// If a class has another name, or the recipe has an output `class`, too.
+/// If a class has a name that is not in the list, or the recipe also has an output `class`.
 pub fn number(recipe: &mut Recipe, names: &[&str], list: &str, cell: f64) -> Result<()> {
     let code_of = |name: &str| {
         let code = (0..).zip(names).find(|(_, known)| **known == name).map(|(code, _): (u8, _)| code);

@@ -1,4 +1,4 @@
-//! The terrain classes of a recipe that has none of its own: water, sand, grass, forest, rock and snow by height, slope
+//! The standard terrain classes, for a recipe without any: water, sand, grass, forest, rock and snow by height, slope
 //! and distance from water.
 //!
 //! | class | where |
@@ -82,8 +82,7 @@ pub fn classify(recipe: &mut Recipe, cell: f64) -> Result<()> {
         snow = sea + 2600.0,
     );
     let beach = format!("(shore < {}) * (slope < 15)", BEACH * cell);
-    // Of land and beach one counts: a beach is class 1.
-    // Where the height is not a number, neither is the class.
+    // A beach replaces the class of the land; it is class 1. Where the height is not a number, neither is the class.
     let expr = format!("(1 - water) * (({beach}) + (1 - ({beach})) * ({land})) + 0 * height");
     let node = Expr::new(&expr)
         .with("height", height)

@@ -145,7 +145,7 @@ fn recipes_that_cannot_have_classes_are_told_why() {
     assert!(list("[]").contains("`class` needs at least one entry"), "{}", list("[]"));
     let many: String = (0..256).map(|k| format!("[[class]]\nname = \"c{k}\"\n")).collect();
     assert!(error(recipe(&many)).contains("there are 256 tables `[[class]]`; a recipe has at most 255"));
-    // In code, too.
+    // The same for classes that are added in code.
     let mut whole = Recipe::parse(&recipe(CLASSES), "test").unwrap();
     whole.output("class", "land");
     assert!(World::open(whole).is_err_and(|error| error.to_string().contains("remove one of them")));

@@ -50,8 +50,8 @@ impl<'r> ShareNodes<'r> {
         Input::Node(free)
     }
 
-    /// The product of all conditions, of the largest share of the alternatives and of `more`, always a node. Names of
-    /// nodes start with `prefix`.
+    /// A node with the product of all conditions, the largest share of the alternatives, and `more`. Names of nodes
+    /// start with `prefix`.
     pub fn share(
         &mut self,
         prefix: &str,
@@ -74,7 +74,7 @@ impl<'r> ShareNodes<'r> {
         self.product(&name("share"), factors)
     }
 
-    /// The product of shares, always a node.
+    /// A node with the product of shares.
     fn product(&mut self, name: &str, factors: Vec<Input>) -> Input {
         let product = factors.into_iter().reduce(|a, b| match (a, b) {
             (a, Input::Value(1.0)) => a,
@@ -130,7 +130,7 @@ impl<'r> ShareNodes<'r> {
         }
     }
 
-    /// Drainage areas: the recipe's own, or those of its heights.
+    /// Drainage areas: the recipe's output, or a node that computes them from its heights.
     fn flow(&mut self) -> Option<Input> {
         if self.flow.is_none() && self.recipe.world.size.is_some() {
             let source = self.height.clone();

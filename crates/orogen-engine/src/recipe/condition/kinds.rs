@@ -1,4 +1,4 @@
-//! The kinds of conditions: for each quantity its key, the bounds of its ranges, and what further keys its table has.
+//! The kinds of conditions: for each quantity its key, the bounds of its ranges, and the further keys of its table.
 
 use super::document::{Condition, MAX_ALTERNATIVES, Noise, Quantity};
 use crate::recipe::table::key::Key;
@@ -9,9 +9,9 @@ use orogen_grid::words::suggestion;
 use orogen_ops::value::{Spanned, Value};
 use serde_json::{Value as Json, json};
 
-/// A kind of conditions.
+/// A kind of condition.
 pub struct Kind {
-    /// The key of a condition; for layers, that of the table of their conditions.
+    /// The key of a condition; for layers, the key of the table that has their conditions.
     pub name: &'static str,
     doc: &'static str,
     /// The quantity with its defaults.
@@ -54,7 +54,7 @@ macro_rules! of_noise {
 /// Default distance of the heights of a curvature, in metres.
 const SCALE: f64 = 50.0;
 
-/// All, with that of layers last.
+/// All kinds; layers are last.
 pub static KINDS: [Kind; 6] = [
     kind!("height" "Height above the sea. Unit: m.", Quantity::Height, [-1e6, 1e6], 2e6, needs &[]),
     kind!("slope" "Slope. Unit: degrees.", Quantity::Slope, [0.0, 90.0], 90.0, needs &[]),
@@ -76,7 +76,7 @@ pub static KINDS: [Kind; 6] = [
     kind!("layers" "A node or layer, in its own unit.", Quantity::Layer(String::new()), [-1e9, 1e9], 1e9, needs &[]),
 ];
 
-/// Whether a key is that of a condition.
+/// Whether a key is the key of a condition.
 pub fn is_condition(key: &str) -> bool {
     KINDS.iter().any(|kind| kind.name == key)
 }
@@ -91,7 +91,7 @@ impl Kind {
         matches!((self.of)(), Quantity::Layer(_))
     }
 
-    /// The conditions of the key: one, or one for each layer.
+    /// Reads the conditions of the key: one, or one for each layer.
     pub fn read(&self, value: &Spanned<Value>, values: &mut ValueReader) -> Vec<Condition> {
         if self.is_layers() {
             let Some(entries) = values.table("`layers`", value) else { return Vec::new() };
@@ -106,7 +106,7 @@ impl Kind {
         vec![self.range(of, value, values)]
     }
 
-    /// A range: `[MIN, MAX]` or a table of its keys.
+    /// Reads a range: `[MIN, MAX]` or a table of its keys.
     fn range(&self, of: Quantity, value: &Spanned<Value>, values: &mut ValueReader) -> Condition {
         let key = self.name;
         let mut condition = Condition::new(of, None, None, [0.0; 2]);

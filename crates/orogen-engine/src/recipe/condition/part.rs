@@ -1,4 +1,4 @@
-//! The keys of conditions, `any` and `mask`, which tables of several lists have.
+//! The keys of conditions, `any` and `mask`, which several lists of tables share.
 
 use super::document::{Condition, Quantity};
 use super::kinds::{KINDS, Kind, entries, is_condition};
@@ -44,7 +44,7 @@ pub fn rename_layer(layer: &mut String, of: &impl Fn(&str) -> Option<Input>) {
     }
 }
 
-/// The part of a table that has the conditions of a `T`.
+/// The part of a table with the conditions of a `T`.
 pub struct Where<T> {
     /// The key `mask`.
     pub mask: Key<'static>,
@@ -89,7 +89,7 @@ pub fn is_limit(key: &str) -> bool {
     matches!(key, "any" | "mask") || is_condition(key)
 }
 
-/// Reports a key of the first table that limits where it is.
+/// Reports a key that limits where the first entry is: the first entry must be everywhere.
 pub fn refuse_limit(values: &mut ValueReader, noun: &str, key: &Spanned<String>) {
     let message = format!("the first {noun} is everywhere and cannot have `{}`; list the base {noun} first", key.value);
     values.diagnostic(&key.span, message);

@@ -40,12 +40,12 @@ table! {
     conditions and mask "A node, a layer or a number that multiplies the density.";
 }
 
-/// The turn of objects about the vertical axis.
+/// The rotation of objects about the vertical axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Turn {
-    /// A random one for each object.
+    /// A random angle for each object.
     Random,
-    /// The same for all, in degrees clockwise seen from above: 0 to less than 360.
+    /// The same angle for all objects, in degrees clockwise seen from above: 0 to less than 360.
     Fixed(f64),
 }
 
@@ -61,7 +61,7 @@ pub enum InWater {
 }
 
 impl InWater {
-    /// All, with their names in recipes.
+    /// All values, with their names in recipes.
     pub const ALL: [(&'static str, InWater); 3] =
         [("avoid", InWater::Avoid), ("any", InWater::Any), ("only", InWater::Only)];
 }

@@ -6,7 +6,7 @@ use crate::recipe::document::Recipe;
 use crate::recipe::outputs::HEIGHT;
 use orogen_ops::declare::Input;
 
-/// Adds the nodes to a recipe that compute the densities of its scatter, unless they exist. A recipe without a layer
+/// Adds the nodes that compute the densities of a recipe's scatter, unless they exist. A recipe without a layer
 /// `height` has no objects. Opening a world does this.
 pub fn expand(recipe: &mut Recipe) {
     let Some((_, height)) = recipe.output_inputs().iter().find(|(name, _)| name == HEIGHT) else { return };

@@ -1,4 +1,4 @@
-//! Scatter: objects such as trees, rocks and houses, and the conditions of where they stand.
+//! Scatter: objects such as trees, rocks and houses, and the conditions for their positions.
 //!
 //! - [`document`]: a kind of object, with its keys
 //! - `list`: the list of `[[scatter]]` tables, and types of their values

@@ -75,7 +75,7 @@ const GRAIN: Key<'static> = Key {
     ..Key::new("grain", "Wavelength of the gradient's noise. Unit: m.")
 };
 
-/// The keys of what gives a color.
+/// The keys that give a coloring.
 const COLORINGS: [&str; 3] = ["color", "gradient", "picture"];
 
 /// The keys of the quantity along which a gradient runs.

@@ -35,8 +35,8 @@ const QUANTILES: [[f64; 2]; 17] = [
 /// Octaves of the noise of gradients.
 const OCTAVES: u32 = 4;
 
-/// Adds the nodes to a recipe that compute its surfaces, or those of [`standard`] if it has none, unless they exist. A
-/// recipe without a layer `height` has no surfaces.
+/// Adds the nodes that compute a recipe's surfaces, or the surfaces of [`standard`] if it has none, unless they exist.
+/// A recipe without a layer `height` has no surfaces.
 pub fn expand(recipe: &mut Recipe) {
     let Some((_, height)) = recipe.output_inputs().iter().find(|(name, _)| name == HEIGHT) else { return };
     if !recipe.expanded().is_empty() {

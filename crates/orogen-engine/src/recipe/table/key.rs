@@ -8,7 +8,7 @@ pub struct Key<'k> {
     pub range: Option<[f64; 2]>,
     /// Whether a string may be any text, not only a name.
     pub text: Option<bool>,
-    /// What messages call two numbers, such as `[WIDTH, HEIGHT]`.
+    /// The name of two numbers in messages, such as `[WIDTH, HEIGHT]`.
     pub pair: Option<&'k str>,
     /// Whether one number may stand for both.
     pub single: Option<bool>,
@@ -21,7 +21,7 @@ pub struct Key<'k> {
 }
 
 impl<'k> Key<'k> {
-    /// A key without any of the facts that it may have.
+    /// A key without any of the optional properties.
     pub const fn new(name: &'k str, doc: &'k str) -> Key<'k> {
         let (text, single, ascending) = (None, None, None);
         Key { name, doc, range: None, text, pair: None, single, ascending, stated: None, omitted: None }

@@ -9,13 +9,13 @@ use std::fmt::Write as _;
 
 /// The keys of a table that makes a `T`.
 pub struct Keys<'k, T> {
-    /// The keys that every table has, each with what the message says of it where it is missing.
+    /// The required keys, each with the message for when it is missing.
     pub needs: &'k [(&'static str, &'static str)],
     pub parts: &'k [&'k dyn Part<T>],
 }
 
 impl<T: Clone> Keys<'_, T> {
-    /// Reads a table into what has the defaults.
+    /// Reads a table into `out`, which has the defaults.
     pub fn read(&self, table: &Table, values: &mut ValueReader, mut out: T) -> T {
         for (_, what) in self.needs.iter().filter(|(key, _)| !table.has(key)) {
             values.diagnostic(table.span, format!("{} needs a {what}", table.name));
@@ -36,7 +36,7 @@ impl<T: Clone> Keys<'_, T> {
         entries
     }
 
-    /// Appends a table to a recipe's text, with such a heading as `[world]`.
+    /// Appends a table to a recipe's text, with a heading such as `[world]`.
     pub fn write(&self, heading: &str, of: &T, text: &mut String) {
         let _ = writeln!(text, "\n{heading}");
         for (key, value) in self.entries(of) {

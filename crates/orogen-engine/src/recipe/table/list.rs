@@ -10,7 +10,7 @@ pub struct List<T: 'static> {
     /// The key of the list.
     pub key: &'static str,
     pub doc: &'static str,
-    /// What messages call one table, and several.
+    /// The names in messages of one table and of several.
     pub names: [&'static str; 2],
     /// Minimum and maximum number of tables.
     pub count: [usize; 2],

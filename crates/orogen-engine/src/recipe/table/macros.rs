@@ -1,7 +1,7 @@
 //! `table!` and `key!`.
 
-/// A key of a table whose value is a field: `key!(TYPE.FIELD, DOC)`, followed by facts of a
-/// [`Key`](super::key::Key), such as `range [0.0, 1.0]`, or by `part PART` for a field that several keys make.
+/// A key of a table whose value is a field: `key!(TYPE.FIELD, DOC)`, followed by properties of a
+/// [`Key`](super::key::Key), such as `range [0.0, 1.0]`, or by `part PART` for a field that is read from several keys.
 macro_rules! key {
     ($type:ident . $field:ident, $doc:expr, part $part:expr) => { &$part };
     ($type:ident . $field:ident, $doc:expr $(, $fact:ident $value:expr)*) => {
@@ -20,8 +20,8 @@ macro_rules! key {
 
 /// Declares an entry of a list of tables: its struct, its defaults, and its keys as `PARTS`.
 ///
-/// A key is a field, `name: TYPE = DEFAULT`, with the doc of both, and the facts of `key!`. At `conditions and mask
-/// DOC;` the entry has conditions, alternatives and a mask with this doc.
+/// A key is a field, `name: TYPE = DEFAULT`, with a doc for both and the properties of `key!`. With `conditions and
+/// mask DOC;` the entry has conditions, alternatives and a mask with this doc.
 macro_rules! table {
     (
         $(#[doc = $doc:literal])+

@@ -1,4 +1,4 @@
-//! Parts of tables, and what types of values do with a key.
+//! Parts of tables, and traits of the types of values.
 
 use super::key::Key;
 use super::reader::{Entry, Table, ValueReader};
@@ -6,7 +6,7 @@ use orogen_ops::declare::short;
 use orogen_ops::value::{Spanned, Value};
 use serde_json::{Value as Json, json};
 
-/// A type of what a key has.
+/// The type of a key's value.
 pub trait OfKey: Sized {
     /// The schema, without a description.
     fn schema(key: &Key) -> Json;
@@ -24,7 +24,7 @@ pub trait Part<T>: Sync {
     fn schemas(&self) -> Vec<Json>;
     /// Reads the part from a table.
     fn read(&self, table: &Table, values: &mut ValueReader, out: &mut T);
-    /// Appends the part to the entries of a table. What it makes stays as it is.
+    /// Appends the part to the entries of a table. `of` is not changed.
     fn write(&self, of: &mut T, entries: &mut Vec<Entry>);
 }
 

@@ -11,7 +11,7 @@ pub type Entry = (Spanned<String>, Spanned<Value>);
 
 /// A table to read.
 pub struct Table<'a> {
-    /// What messages call it, such as "a surface".
+    /// Its name in messages, such as "a surface".
     pub name: &'a str,
     /// Where problems of the whole table are reported.
     pub span: &'a Span,
@@ -42,7 +42,7 @@ pub struct ValueReader {
 }
 
 impl ValueReader {
-    /// Reads values of a recipe with such a world.
+    /// A reader for a recipe whose world is bounded or not.
     pub fn new(bounded: bool) -> ValueReader {
         ValueReader { diagnostics: Vec::new(), names: Vec::new(), bounded }
     }

@@ -1,4 +1,4 @@
-//! Types of what keys of several tables have.
+//! Types of values that several tables use.
 
 use super::key::Key;
 use super::part::{OfKey, entry};
@@ -112,7 +112,7 @@ impl OfKey for [f64; 2] {
     }
 }
 
-/// A name; any text where the key is declared so, left out if it is empty.
+/// A name, or any text if the key allows it; an empty text is left out.
 impl OfKey for String {
     fn schema(key: &Key) -> Json {
         match key.text {
@@ -141,7 +141,7 @@ impl OfKey for String {
     }
 }
 
-/// A table of values by names that are free.
+/// A table of values by arbitrary names.
 impl<V: OfKey> OfKey for Vec<(Spanned<String>, V)> {
     fn schema(key: &Key) -> Json {
         json!({ "type": "object", "additionalProperties": V::schema(key) })

@@ -1,4 +1,4 @@
-//! Which samples of a world: a part of it, a cell or a number of samples, and the window that they define.
+//! Views: the choice of a part of a world, a cell or a number of samples, and the window that it defines.
 
 mod number;
 mod region;
@@ -15,7 +15,7 @@ pub use number::{MAX_SIDE, finite};
 pub use region::{Bounds, Rectangle};
 pub use size::Size;
 
-/// Which samples of a world. Without any choice, the whole world at its own cell.
+/// A choice of samples of a world. By default the whole world at its own cell.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct View {
     /// Distance between samples, in metres.
@@ -32,11 +32,12 @@ pub struct View {
 /// Default number of samples per side of an unbounded world.
 const UNBOUNDED: usize = 1024;
 
-/// Maximum number of samples along a side of a whole world that is shown at its own cell, and of one that is not.
+/// Maximum number of samples along a side of a whole world that is shown at its own cell.
 const LARGE: f64 = 16_384.0;
+/// Maximum number of samples along a side of a whole world that is shown at a larger cell.
 const OVERVIEW: f64 = 4096.0;
 
-/// Tolerance, in cells, for coordinates that are meant to be those of a sample.
+/// Tolerance for coordinates that are meant to be at a sample, in cells.
 const NEAR: f64 = 1e-6;
 
 impl View {
@@ -172,8 +173,8 @@ fn request(message: String) -> Error {
     Error::new(ErrorKind::Request, message)
 }
 
-/// The cell that shows a whole world which has too many samples at its own cell: a power of two times as large. A file
-/// of heights is always shown at its own.
+/// The cell at which a whole world is shown that has too many samples at its own cell: larger by a power of two. A file
+/// of heights is always shown at its own cell.
 fn overview(world: &World, extent: [f64; 2], note: impl FnOnce(&str)) -> Option<f64> {
     let cell = world.recipe().world.cell;
     let samples = |cell: f64| extent[0].max(extent[1]) / cell;

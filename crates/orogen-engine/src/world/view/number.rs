@@ -3,7 +3,7 @@
 /// Maximum number of samples per side: far beyond any memory, and small enough to avoid overflow.
 pub const MAX_SIDE: u64 = 1_000_000_000;
 
-/// Number of samples of a side.
+/// Parses a number of samples along a side.
 ///
 /// # Errors
 /// If it is not one.
@@ -15,7 +15,7 @@ pub fn samples(text: &str) -> Result<usize, String> {
     }
 }
 
-/// A finite number.
+/// Parses a finite number.
 ///
 /// # Errors
 /// If it is not one.

@@ -45,7 +45,7 @@ impl FromStr for Rectangle {
     }
 }
 
-/// A length with its unit: 500m or 2.5km.
+/// Parses a length with its unit, `500m` or `2.5km`, to metres.
 fn length(text: &str) -> Result<f64, String> {
     let (number, unit) = match text.strip_suffix("km") {
         Some(number) => (number, 1000.0),
