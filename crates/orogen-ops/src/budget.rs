@@ -9,7 +9,7 @@ use orogen_grid::grid::Window;
 use orogen_grid::progress::Progress;
 use orogen_grid::words::bytes_apart;
 
-/// Memory of a window with this many bytes per sample; `u64::MAX` if it is more.
+/// Memory of a window with this many bytes per sample; `u64::MAX` on overflow.
 pub(crate) fn memory(window: &Window, bytes_per_sample: u64) -> u64 {
     (window.width as u64).saturating_mul(window.height as u64).saturating_mul(bytes_per_sample)
 }
@@ -53,9 +53,9 @@ pub fn bytes(text: &str) -> std::result::Result<u64, String> {
 
 /// A memory limit in bytes. Clones share one limit.
 ///
-/// Two kinds of memory count: memory that a caller *holds* for any time ([`Budget::reserve`]), and memory that
-/// *requests* need while they run ([`Budget::admit`]). Together they never exceed the limit. A request that does not
-/// fit now, but would after others have ended, waits for them.
+/// Two kinds of memory count towards it: memory that a caller *holds* for any time ([`Budget::reserve`]), and memory
+/// that *requests* need while they run ([`Budget::admit`]). Together they never exceed the limit. A request that does
+/// not fit now, but would after others have ended, waits for them.
 ///
 /// ```
 /// use orogen_ops::budget::Budget;
@@ -88,7 +88,7 @@ struct Account {
     held: u64,
     /// Needed by requests that run.
     running: u64,
-    /// The most of both together so far.
+    /// The maximum of both together so far.
     peak: u64,
 }
 
@@ -114,7 +114,7 @@ impl Budget {
         self.limit
     }
 
-    /// Bytes that no caller holds, which a request may need. `None` if there is no limit.
+    /// Bytes that no caller holds, so that a request may use them. `None` if there is no limit.
     #[must_use]
     pub fn left(&self) -> Option<u64> {
         self.limit.map(|limit| limit.saturating_sub(self.shared.lock().held))
@@ -146,8 +146,8 @@ impl Budget {
         }
     }
 
-    /// Holds this many bytes until the result is dropped. If they would fit without running requests, waits for those
-    /// to end.
+    /// Holds this many bytes until the result is dropped. If they would fit without the running requests, waits for
+    /// those requests to end.
     ///
     /// # Errors
     /// The errors of [`Budget::afford`].
@@ -156,8 +156,8 @@ impl Budget {
     }
 
     /// Reserves the bytes that a request needs while it runs, until the result is dropped. If they would fit without
-    /// other requests, waits for those to end; on a thread of a pool, where waiting could block the awaited request
-    /// itself, it fails instead.
+    /// other requests, waits for those requests to end. On a thread of a pool it fails instead, because waiting could
+    /// block the awaited request itself.
     ///
     /// # Errors
     /// The errors of [`Budget::afford`], and [`ErrorKind::Cancelled`] if `progress` is cancelled during the wait.
@@ -200,8 +200,8 @@ impl Budget {
         Reservation { shared: Arc::clone(&self.shared), bytes, kind }
     }
 
-    /// The error for work that needs `needed` bytes beside those that are held: `what` needs them, and `instead` is the
-    /// advice.
+    /// The error for work that needs `needed` bytes in addition to the held ones. `what` describes the work, and
+    /// `instead` is advice for the user.
     #[must_use]
     pub fn refusal(&self, what: &str, needed: u64, instead: &str) -> Error {
         let all = needed.saturating_add(self.shared.lock().held);

@@ -2,14 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A source that a field also reads around its position: [`Inputs::around`](crate::op::Inputs::around) is that source
-/// at `step` metres to the east, west, south and north. The engine makes the four positions and evaluates the source
-/// there, so the slope is known at any point, without neighboring samples.
+/// A source that a field also reads around its position: [`Inputs::around`](crate::op::Inputs::around) returns the
+/// source at `step` metres to the east, west, south and north. The engine evaluates the source at these four positions,
+/// so the field knows the slope at any point without neighboring samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stencil {
     /// Index of the input.
     pub source: usize,
-    /// Distance from the position to each of the four, in metres.
+    /// Distance from the position to each of the four positions, in metres.
     pub step: f64,
 }
 
@@ -48,7 +48,7 @@ pub enum CoordMap {
 }
 
 impl CoordMap {
-    /// The altitude at which the source is read, in metres; `None` for that of the field.
+    /// The altitude at which the source is read, in metres; `None` for the altitude of the field.
     #[must_use]
     pub fn altitude(&self) -> Option<f64> {
         match self {
@@ -58,16 +58,16 @@ impl CoordMap {
     }
 }
 
-/// A similarity of the plane, p -> rotate(p) * scale + offset, to the same altitude or a given one.
+/// A similarity transform of the plane, p -> rotate(p) * scale + offset, at the same altitude or a given one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Affine {
-    /// Cosine and sine of the rotation; [1, 0] is none.
+    /// Cosine and sine of the rotation; [1, 0] is no rotation.
     pub turn: [f64; 2],
     /// Scale factor.
     pub scale: f64,
     /// Offset east and south, in metres.
     pub offset: [f64; 2],
-    /// The altitude to which it leads, in metres; `None` for that of the position.
+    /// The altitude of the mapped position, in metres; `None` for the altitude of the original position.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub altitude: Option<f64>,
 }

@@ -1,4 +1,4 @@
-//! Ids: indices of different kinds that cannot be taken for one another.
+//! Ids: typed indices, so that indices of different kinds cannot be confused.
 
 use serde::{Deserialize, Serialize};
 use std::marker::PhantomData;
@@ -38,7 +38,7 @@ ids! {
     StepId,
     /// A grid of a plan.
     GridId,
-    /// A grid that a plan's program or filter asks for, before it is known which step makes it.
+    /// A grid that a plan's program or filter requests, before the step that makes it is known.
     RequestId,
     /// A register of a program: one block of samples.
     RegisterId,

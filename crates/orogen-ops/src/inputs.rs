@@ -41,12 +41,14 @@ impl<'a> Inputs<'a> {
     /// The input with this name, which must be declared as required.
     ///
     /// # Errors
-    /// If it is not given, or not declared: an internal error, because plans always provide it.
+    /// If the input is not given or not declared. This is an internal error, because plans always provide required
+    /// inputs.
     pub fn required(&self, name: &str) -> Result<&'a [f32]> {
         self.get(name).ok_or_else(|| self.spec.missing(name))
     }
 
-    /// The source of a field with a [stencil](crate::op::Field::stencil), east, west, south and north of the points.
+    /// The source of a field with a [stencil](crate::op::Field::stencil), at its four positions east, west, south and
+    /// north of each point.
     ///
     /// # Errors
     /// If the field has no stencil: an internal error.
@@ -66,7 +68,7 @@ pub struct GridInputs<'a> {
 }
 
 impl<'a> GridInputs<'a> {
-    /// Inputs in the order of their declaration; `None` for those that are not given.
+    /// Inputs in the order of their declaration; `None` for inputs that are not given.
     #[must_use]
     pub fn new(spec: &'static Spec, grids: &'a [Option<&'a Grid>]) -> GridInputs<'a> {
         GridInputs { spec, grids }
@@ -81,7 +83,8 @@ impl<'a> GridInputs<'a> {
     /// The input with this name, which must be declared as required.
     ///
     /// # Errors
-    /// If it is not given, or not declared: an internal error, because plans always provide it.
+    /// If the input is not given or not declared. This is an internal error, because plans always provide required
+    /// inputs.
     pub fn required(&self, name: &str) -> Result<&'a Grid> {
         self.get(name).ok_or_else(|| self.spec.missing(name))
     }

@@ -21,7 +21,7 @@ pub struct Bindings<'a> {
     pub grids: &'a (dyn Fn(GridId) -> Option<&'a Grid> + Sync),
 }
 
-/// The fields of a program that are prepared for many blocks.
+/// The fields of a program, prepared for many blocks.
 #[derive(Default)]
 pub struct Evaluators(BTreeMap<NodeId, Evaluator>);
 
@@ -57,7 +57,7 @@ struct CoordSet {
     y: Vec<f64>,
     dx: Vec<f32>,
     dy: Vec<f32>,
-    /// The altitude if it is not that of the samples, in metres.
+    /// The altitude in metres; `None` for the altitude of the samples.
     altitude: Option<f64>,
 }
 
@@ -115,7 +115,7 @@ impl<'p> Interpreter<'p> {
     }
 
     /// Runs the program over a block of the lattice at each altitude, and passes the first output to `visit` with the
-    /// altitude's index. What does not depend on the altitude is computed once.
+    /// altitude's index. Instructions that do not depend on the altitude run once.
     pub fn run_block_at(
         &mut self,
         block: &Window,
@@ -336,8 +336,9 @@ fn copy_or_read(grid: &Grid, kind: LayerKind, block: Option<&Window>, points: &P
     }
 }
 
-/// Displaces every point. From a lattice, the columns and rows stay known beside the displacements; from other sets the
-/// new positions are plain points. In both cases a position is the f64 sum of its old value and the f32 displacement.
+/// Displaces every point. For a lattice, its columns and rows are kept together with the displacements; for other sets
+/// the new positions are plain points. In both cases a position is the f64 sum of its old value and the f32
+/// displacement.
 fn displace(from: &CoordSet, count: usize, by: impl Fn(usize) -> (f32, f32), to: &mut CoordSet) {
     to.x.clear();
     to.y.clear();

@@ -1,14 +1,14 @@
-//! The ops of Orogen: what a node of a recipe can compute, and how ops are declared.
+//! The ops of Orogen, which the nodes of recipes compute, and the declaration of ops.
 //!
 //! - [`field`], [`filter`], [`solver`], [`levelled`]: the ops by their locality, one per file.
 //! - [`declare`], [`op!`], [`choice!`]: inputs, parameters and layers, declared once.
-//! - [`mod@op`]: what an op computes from; [`node`]: one of all built-in ops.
+//! - [`mod@op`]: the traits of ops and their arguments; [`node`]: a node of a recipe, with any op.
 //! - [`program`] and its [`interpreter`]: fused fields over a block of samples.
 //! - [`expression`]: formulas of recipes.
 //! - [`large`]: water over areas larger than memory; [`budget`]: a shared limit of memory.
 //!
-//! An op knows its inputs and nothing of the recipe or the plan that it is part of; those are in the crate
-//! `orogen-engine`, which holds this one.
+//! An op knows its inputs, but not the recipe and the plan that it is part of. These are in the crate `orogen-engine`,
+//! which re-exports this one.
 #![forbid(unsafe_code)]
 
 #[macro_use]

@@ -1,22 +1,22 @@
-//! How ops are computed on a graphics card: each field has a function of WGSL, and each filter has passes, beside its
-//! computation on the processor.
+//! Lowering: the computation of ops on a graphics card. A field has a WGSL function, other ops have passes, in addition
+//! to their computation on the processor.
 
-/// The function `selected` of WGSL, which several ops have: a range with smooth ends.
+/// The WGSL function `selected`, a range with smooth ends, which several ops use.
 pub const SELECTION: &str = include_str!("lower/selection.wgsl");
 
-/// How a graphics card computes a node.
+/// The computation of a node on a graphics card.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Lowering<T> {
-    /// By this.
+    /// The shader or passes.
     Shader(T),
-    /// Not at all: the processor computes it, for this reason.
+    /// The processor computes it, for this reason.
     Processor(&'static str),
-    /// Not declared: the processor computes it. Every built-in op declares one of the others.
+    /// Not declared, so the processor computes it. Every built-in op declares one of the others.
     Missing,
 }
 
 impl<T> Lowering<T> {
-    /// By what a graphics card computes it, if it does.
+    /// The shader or passes; `None` if the processor computes it.
     pub fn shader(self) -> Option<T> {
         match self {
             Lowering::Shader(shader) => Some(shader),
@@ -25,25 +25,25 @@ impl<T> Lowering<T> {
     }
 }
 
-/// A filter, a solver, a level of a levelled op, or the layers of a level, as passes over planes: grids of one size in
-/// the same place.
+/// A filter, a solver, a level of a levelled op, or the layers of a level, as passes over planes. Planes are grids over
+/// the same window.
 ///
-/// The planes are the inputs, the layers, and others beside them. Those that hold neither an input nor what was made
-/// before start as zeros. The text of a pass defines a function `fn NAME(base: u32, at: vec2<i32>)`, which is called
-/// for every sample of a part of the planes. It reads numbers with `number(base, i)`, or by the name that was declared
-/// with them, and samples with `plane(k, at)`, where positions beyond the border are those of the border, and writes
-/// samples with `set_plane(k, at, value)`; `size()` is the number of columns and rows of the planes. A pass may run for
-/// all samples at once: it must not read samples that another call writes. Calls of a [shared](Pass::is_shared) pass
-/// may, if the result does not depend on their order: they read and write planes as words, `word(k, cell)`. All
-/// functions that passes have in common are in `planes.wgsl` of orogen-gpu.
+/// The planes are the inputs, the layers and scratch planes. Planes that have neither an input nor the result of
+/// earlier passes start as zeros. The text of a pass defines a function `fn NAME(base: u32, at: vec2<i32>)`, which is
+/// called for every sample of a part of the planes. It reads numbers with `number(base, i)`, or with a function of the
+/// declared name. It reads samples with `plane(k, at)`, which clamps positions to the border, and writes samples with
+/// `set_plane(k, at, value)`. `size()` is the number of columns and rows of the planes. A pass may run for all samples
+/// at once: it must not read samples that another call writes. Calls of a [shared](Pass::is_shared) pass may do so if
+/// the result does not depend on their order; they read and write planes as words, `word(k, cell)`. The common
+/// functions of passes are in `planes.wgsl` of orogen-gpu.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Passes {
-    /// Declarations that stand before the text of each pass: the numbers that it shares with this side. They do not
+    /// Declarations that precede the text of each pass: functions that read the numbers, and constants. They do not
     /// depend on parameters.
     pub head: String,
     /// The numbers that the functions read.
     pub words: Vec<u32>,
-    /// What the planes hold before the passes, and which samples they have.
+    /// The content of the planes before the passes, and their samples.
     pub extent: Extent,
     /// The plane of each input, if it has one.
     pub inputs: Vec<Option<usize>>,
@@ -51,7 +51,7 @@ pub struct Passes {
     pub layers: Vec<usize>,
     /// Number of planes.
     pub planes: usize,
-    /// Whether rounding errors can change where rivers run: for drafts only.
+    /// Whether rounding errors can change the courses of rivers; such passes are used only for drafts.
     pub is_chaotic: bool,
     /// The passes, in order.
     pub passes: Vec<Pass>,
@@ -59,28 +59,29 @@ pub struct Passes {
     code: &'static str,
 }
 
-/// What the planes of passes hold before them, and which samples they have.
+/// The content of the planes before the passes, and their samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Extent {
-    /// The inputs over a window grown by this number of samples: those of a filter.
+    /// For a filter: the inputs over a window grown by this number of samples.
     Halo(usize),
-    /// The inputs over the whole domain at once: those of a solver.
+    /// For a solver: the inputs over the whole domain.
     Domain,
-    /// The inputs, and in planes of half the columns and rows the layers of the level above: those of a level. Sample
-    /// (i, j) of the level is in the cell of sample (i / 2, j / 2) of the level above. Functions also read `above(k,
-    /// at)`, write `set_above(k, at, value)`, and have the number `above_size()` of columns and rows of the level
-    /// above, and the position of the first sample on the lattice as whole numbers of 64 bits, `first_column()` and
-    /// `first_row()`.
+    /// For a level: the inputs and, in planes with half the columns and rows, the planes of the level above. Sample (i,
+    /// j) of the level is in the cell of sample (i / 2, j / 2) of the level above. Functions also read `above(k, at)`
+    /// and write `set_above(k, at, value)`. `above_size()` is the number of columns and rows of the level above.
+    /// `first_column()` and `first_row()` are the position of the first sample on the lattice, as whole numbers of 64
+    /// bits.
     Above {
-        /// Number of planes beside those of the level above, at its cell.
+        /// Number of scratch planes at the cell of the level above.
         scratch: usize,
-        /// Number of samples that the lattices of the level above and of the level are ahead of those of windows.
+        /// Number of samples by which the lattices of the level above and of the level are ahead of the lattices of
+        /// windows.
         ahead: [i64; 2],
         /// Number of samples of the level above that are read beyond the halved window.
         reach: usize,
     },
-    /// The planes of the level before, over at least a window grown by this number of samples. Planes beside those of
-    /// the level have any values.
+    /// For layers: the planes of the level, over at least a window grown by this number of samples. Other planes have
+    /// undefined values.
     Before(usize),
 }
 
@@ -91,25 +92,25 @@ pub struct Pass {
     pub code: &'static str,
     /// The name of the function.
     pub function: &'static str,
-    /// A number that the function reads as `frame.step`, such as that of the iteration.
+    /// A number that the function reads as `frame.step`, such as the number of the iteration.
     pub step: u32,
     /// The samples for which it runs.
     pub over: Over,
-    /// Number of samples that a call reads, about. The samples of an expensive pass are computed in parts, so that no
-    /// driver ends it as a hang.
+    /// Approximate number of samples that a call reads. The samples of an expensive pass are computed in several parts,
+    /// so that the driver does not abort it after a timeout.
     pub reads: usize,
-    /// Whether calls write to samples of other calls, or read what they write.
+    /// Whether calls write samples of other calls, or read samples that other calls write.
     pub is_shared: bool,
 }
 
 /// The samples for which a pass runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Over {
-    /// Those of the planes without this number of columns and rows at each side, at most the halo.
+    /// The samples of the planes without this number of columns and rows at each side, at most the halo.
     Planes([usize; 2]),
-    /// The same of the planes of the level above.
+    /// The samples of the planes of the level above, without this number of columns and rows at each side.
     Above([usize; 2]),
-    /// Those of the window, and this number of samples around it.
+    /// The samples of the window and this number of samples around it.
     Window(usize),
 }
 
@@ -117,7 +118,7 @@ pub enum Over {
 const READS: usize = 20;
 
 impl Passes {
-    /// Passes that read these numbers, whose functions this text defines.
+    /// Passes with these numbers. The functions of the passes added later are in `code`.
     #[must_use]
     pub fn new(code: &'static str, numbers: &[f32]) -> Passes {
         Passes {
@@ -133,14 +134,14 @@ impl Passes {
         }
     }
 
-    /// With these words after the others.
+    /// Appends words.
     #[must_use]
     pub fn with_words(mut self, words: impl IntoIterator<Item = u32>) -> Passes {
         self.words.extend(words);
         self
     }
 
-    /// With these words after the others, each with a function `NAME(base)` that reads it.
+    /// Appends words, each with a function `NAME(base)` that reads it.
     #[must_use]
     pub fn with_named_words<'a>(self, words: impl IntoIterator<Item = (&'a str, u32)>) -> Passes {
         words.into_iter().fold(self, |passes, (name, word)| {
@@ -149,7 +150,7 @@ impl Passes {
         })
     }
 
-    /// With these numbers after the words, each with a function `NAME(base)` that reads it.
+    /// Appends numbers, each with a function `NAME(base)` that reads it.
     #[must_use]
     pub fn with_numbers<'a>(self, numbers: impl IntoIterator<Item = (&'a str, f32)>) -> Passes {
         numbers.into_iter().fold(self, |passes, (name, number)| {
@@ -158,8 +159,7 @@ impl Passes {
         })
     }
 
-    /// With these numbers of 64 bits after the words, each with a function `NAME(base)` that reads it, the lower part
-    /// first.
+    /// Appends numbers of 64 bits, the lower part first, each with a function `NAME(base)` that reads it.
     #[must_use]
     pub fn with_pairs<'a>(self, pairs: impl IntoIterator<Item = (&'a str, u64)>) -> Passes {
         pairs.into_iter().fold(self, |passes, (name, pair)| {
@@ -169,7 +169,7 @@ impl Passes {
         })
     }
 
-    /// With these words after the others, and a function `NAME(base, k)` that reads one of them.
+    /// Appends words, with a function `NAME(base, k)` that reads word `k` of them.
     #[must_use]
     pub fn with_table(mut self, name: &str, words: impl IntoIterator<Item = u32>) -> Passes {
         let line =
@@ -178,13 +178,13 @@ impl Passes {
         self.with_words(words)
     }
 
-    /// With words, and a function that reads them.
+    /// Appends words, with a function that reads them.
     fn with_reader(mut self, name: &str, kind: &str, reads: &str, words: impl IntoIterator<Item = u32>) -> Passes {
         self.head += &format!("fn {name}(base: u32) -> {kind} {{ return {reads}; }}\n");
         self.with_words(words)
     }
 
-    /// With these constants in the head.
+    /// Adds constants to the head.
     #[must_use]
     pub fn with_constants<'a>(mut self, constants: impl IntoIterator<Item = (&'a str, u32)>) -> Passes {
         let lines = constants.into_iter().map(|(name, value)| format!("const {name} = {value};\n"));
@@ -192,7 +192,7 @@ impl Passes {
         self
     }
 
-    /// With planes for inputs and then for layers before the others.
+    /// Adds planes for inputs, then for the wanted layers, before all other planes.
     #[must_use]
     pub fn with_planes(mut self, extent: Extent, inputs: usize, wanted: &[bool]) -> Passes {
         self.extent = extent;
@@ -203,21 +203,22 @@ impl Passes {
         self
     }
 
-    /// Passes whose result is other land, as real as that of the processor.
+    /// Marks the passes as [chaotic](Passes::is_chaotic): their terrain differs from the processor's, but is as
+    /// realistic.
     #[must_use]
     pub fn chaotic(mut self) -> Passes {
         self.is_chaotic = true;
         self
     }
 
-    /// With this number of planes more.
+    /// Adds scratch planes.
     #[must_use]
     pub fn with_scratch(mut self, planes: usize) -> Passes {
         self.planes += planes;
         self
     }
 
-    /// With a run of a function after the others, which leaves out `inset` columns and rows at each side.
+    /// Appends a pass that runs a function for the planes without `inset` columns and rows at each side.
     #[must_use]
     pub fn then(mut self, function: &'static str, step: u32, inset: [usize; 2]) -> Passes {
         let over = Over::Planes(inset);
@@ -225,7 +226,7 @@ impl Passes {
         self
     }
 
-    /// With this number of samples that a call of the last pass reads, about.
+    /// Sets the approximate number of samples that a call of the last pass reads.
     #[must_use]
     pub fn reading(mut self, reads: usize) -> Passes {
         if let Some(pass) = self.passes.last_mut() {
@@ -234,7 +235,7 @@ impl Passes {
         self
     }
 
-    /// With the last pass as one whose calls [share](Pass::is_shared) samples.
+    /// Marks the last pass as one whose calls [share](Pass::is_shared) samples.
     #[must_use]
     pub fn shared(mut self) -> Passes {
         if let Some(pass) = self.passes.last_mut() {
@@ -244,8 +245,8 @@ impl Passes {
     }
 }
 
-/// The planes that iterations read and write in turn, as the step of a pass: the plane that is read in the lower eight
-/// bits, and the one that is written in the next eight. The first iteration reads `first`, the last one writes
+/// The planes that iterations read and write in turn, as the step of a pass: the lower eight bits are the plane that is
+/// read, the next eight bits the plane that is written. The first iteration reads `first`, the last one writes
 /// `turns[0]`, the one before it `turns[1]`, and so on.
 #[must_use]
 pub fn alternating(iterations: u32, first: u32, turns: [u32; 2]) -> Vec<u32> {

@@ -1,4 +1,4 @@
-//! The list of all built-in ops, and the ops of programs: one enum that a recipe is made of.
+//! Nodes of recipes: an enum of all built-in ops and of ops that programs register.
 
 use crate::declare::{Declared, Input, InputName, Spec};
 use crate::layer::Layer;
@@ -31,7 +31,7 @@ macro_rules! nodes {
         }
 
         impl<T: OpType> From<T> for Node {
-            /// A built-in op becomes its own variant, any other [`Node::Registered`].
+            /// A built-in op becomes its own variant, any other op becomes [`Node::Registered`].
             fn from(op: T) -> Node {
                 match built_in(&op) {
                     Some(node) => node,
@@ -40,7 +40,7 @@ macro_rules! nodes {
             }
         }
 
-        /// A function of its own, because `From` is compiled once per op and crate.
+        /// A separate function, because `From` is compiled once per op and crate.
         fn built_in(op: &dyn Any) -> Option<Node> {
             $( if let Some(op) = op.downcast_ref::<field::$field>() { return Some(Node::$field(op.clone())); } )*
             $( if let Some(op) = op.downcast_ref::<filter::$filter>() { return Some(Node::$filter(op.clone())); } )*
@@ -50,7 +50,7 @@ macro_rules! nodes {
         }
 
         impl Node {
-            /// Every built-in op, with its defaults. A `Registry` of the engine lists those of the program, too.
+            /// Every built-in op, with its defaults. A `Registry` of the engine also lists the ops of the program.
             pub fn all() -> Vec<Node> {
                 vec![
                     $( Node::$field(Default::default()), )*
@@ -80,7 +80,7 @@ macro_rules! nodes {
                 }
             }
 
-            /// The node as what it is.
+            /// The op of the node, by its locality.
             pub fn op(&self) -> Op<'_> {
                 match self {
                     $( Node::$field(op) => Op::Field(op as &dyn Field), )*
@@ -97,7 +97,7 @@ macro_rules! nodes {
 include!("node_list.rs");
 
 impl Node {
-    /// The built-in op of that name with its defaults.
+    /// The built-in op of this name, with its defaults.
     pub fn named(op: &str) -> Option<Node> {
         static BUILT_IN: LazyLock<BTreeMap<&str, Node>> =
             LazyLock::new(|| Node::all().into_iter().map(|node| (node.spec().op, node)).collect());
@@ -110,7 +110,7 @@ impl Node {
         self.declared().spec()
     }
 
-    /// Its inputs: those that its op declares, or the names in its expression.
+    /// Its inputs: the inputs that its op declares, or the names in its expression.
     #[must_use]
     pub fn inputs(&self) -> Vec<InputName<'_>> {
         self.declared().inputs()

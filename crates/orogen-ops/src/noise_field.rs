@@ -1,4 +1,4 @@
-//! Fields that are noises, as `op!` declares them.
+//! Fields that are noises, for the `noise` block of `op!`.
 
 use crate::lower::Lowering;
 use crate::op::Evaluator;
@@ -6,10 +6,10 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_noise::shader::function::Shader;
 use orogen_noise::{Basis, Depth, Kind, LengthMismatch, PreparedIn};
 
-/// How a graphics card computes a noise.
+/// The computation of a noise on a graphics card.
 pub type Lowered = Lowering<Shader>;
 
-/// Number of dimensions of a noise: it is one of the plane if `vertical`, its wavelength along the altitude, is 0.
+/// Number of dimensions of a noise: 2 if `vertical`, its wavelength along the altitude, is 0, otherwise 3.
 #[must_use]
 pub fn dimensions(vertical: f64) -> usize {
     if vertical > 0.0 { 3 } else { 2 }
@@ -22,7 +22,7 @@ pub struct NoiseField {
 }
 
 impl NoiseField {
-    /// A noise of the [`dimensions`] of `vertical`.
+    /// A noise with the [`dimensions`] for `vertical`.
     #[must_use]
     pub fn new(noise: PreparedIn, vertical: f64) -> NoiseField {
         NoiseField { noise, vertical }
@@ -38,7 +38,7 @@ impl NoiseField {
         })
     }
 
-    /// How graphics cards compute it.
+    /// The computation on graphics cards.
     #[must_use]
     pub fn lower(&self) -> Lowered {
         if self.vertical > 0.0 {
@@ -48,17 +48,18 @@ impl NoiseField {
     }
 }
 
-/// The result of a noise over a block: the engine's blocks always have the length of their points.
+/// Converts the result of a noise. It fails only if the lengths differ, which is a bug: blocks always have the length
+/// of their points.
 pub(crate) fn checked(filled: std::result::Result<(), LengthMismatch>) -> Result<()> {
     filled.map_err(|mismatch| Error::new(ErrorKind::Internal, mismatch.to_string()))
 }
 
-/// Nanoseconds per sample of a fractal at any positions, and on a lattice of columns and rows.
+/// Nanoseconds per sample of a fractal, at arbitrary positions and on a lattice of columns and rows.
 #[must_use]
 pub fn fractal_cost(basis: Basis, kind: Kind, octaves: u32) -> [f64; 2] {
     let [anywhere, in_rows] = basis.cost();
     let octave = match kind {
-        // Earlier octaves displace the positions of later ones, so that rows share nothing. That costs time, too.
+        // Earlier octaves displace the positions of later ones, which takes time, and rows share no work.
         Kind::Swiss { .. } | Kind::Jordan { .. } => [anywhere + 1.1; 2],
         _ => [anywhere, in_rows],
     };

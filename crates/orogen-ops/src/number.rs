@@ -1,4 +1,4 @@
-//! Numbers of a stored plan: formats such as JSON have none for infinity and NaN, which are text there.
+//! Serialization of numbers in stored plans. Formats such as JSON have no infinity and NaN, so these become text.
 
 use serde::de::{Error, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer, Serializer};

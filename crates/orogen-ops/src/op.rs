@@ -32,7 +32,7 @@ pub struct WorldParams {
 
 impl WorldParams {
     /// The seed of a node in this world: both seeds are hashed together, so that consecutive seeds give independent
-    /// results (splitmix64's finaliser, Steele, Lea and Flood 2014, over both).
+    /// results (splitmix64's finalizer, Steele, Lea and Flood 2014, over both).
     #[must_use]
     pub fn seed_of(&self, node_seed: u64) -> u64 {
         let world = mix64(self.seed.wrapping_add(STEP));
@@ -54,8 +54,8 @@ pub fn world_window(size: [f64; 2], cell: f64) -> Window {
     Window::new(width, height, cell)
 }
 
-/// A length in whole cells. One that is a whole number of cells up to rounding is that number: 1000 / 0.1 is 10 000
-/// cells.
+/// A length in whole cells. A length that is a whole number of cells up to rounding errors gives that number: 1000 /
+/// 0.1 is 10 000 cells.
 #[doc(hidden)]
 #[must_use]
 pub fn whole_cells(length: f64, cell: f64, round: impl Fn(f64) -> f64) -> usize {
@@ -65,7 +65,7 @@ pub fn whole_cells(length: f64, cell: f64, round: impl Fn(f64) -> f64) -> usize 
     whole.max(0.0) as usize
 }
 
-/// A field prepared for many blocks of points: what depends on neither points nor inputs is computed once.
+/// A field prepared for many blocks of points: everything that depends on neither points nor inputs is computed once.
 #[doc(hidden)]
 pub type Evaluator = Box<dyn Fn(&Points, &Inputs, &mut [f32]) -> Result<()> + Send + Sync>;
 
@@ -75,7 +75,7 @@ pub trait Field: Declared + Send + Sync {
     /// Computes one value per point. A field with [`Field::terms`] need not implement it.
     ///
     /// # Errors
-    /// If a required input is missing: an internal error.
+    /// If a required input is missing, which is an internal error.
     fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) -> Result<()> {
         match (self.prepare(world_params), self.terms()) {
             (Some(evaluate), _) => evaluate(at, inputs, out)?,
@@ -88,8 +88,8 @@ pub trait Field: Declared + Send + Sync {
         Ok(())
     }
 
-    /// Computes one value of a layer per point. A field that declares several layers implements it; others have
-    /// [`Field::eval`] alone.
+    /// Computes one value of a layer per point. A field that declares several layers implements it; others implement
+    /// only [`Field::eval`].
     ///
     /// # Errors
     /// As for [`Field::eval`].
@@ -112,8 +112,8 @@ pub trait Field: Declared + Send + Sync {
         None
     }
 
-    /// The field as a function of its inputs, if it is only that: each input is named by its index. The engine then
-    /// evaluates these terms, and never calls [`Field::eval`].
+    /// The field as an expression of its inputs, if it depends on nothing else. Inputs are named by their indices. The
+    /// engine then evaluates these terms, and never calls [`Field::eval`].
     fn terms(&self) -> Option<Vec<Term>> {
         None
     }
@@ -129,9 +129,9 @@ pub trait Field: Declared + Send + Sync {
         None
     }
 
-    /// The cell at which the first input of a field is computed that interpolates between samples of a cell of its own,
-    /// for a requested cell and that of the world, all in metres. Such a field need not implement [`Field::eval`]: the
-    /// engine makes those samples and interpolates them.
+    /// For a field that interpolates its first input between samples at its own cell: that cell, for the requested cell
+    /// and the world's cell, all in metres. Such a field need not implement [`Field::eval`]: the engine computes and
+    /// interpolates the samples.
     fn source_cell(&self, requested: f64, world_cell: f64) -> Option<f64> {
         let _ = (requested, world_cell);
         None
@@ -155,20 +155,20 @@ pub trait Field: Declared + Send + Sync {
         false
     }
 
-    /// Memory of files that it holds while its world is open, in bytes.
+    /// Memory of the files that it keeps while its world is open, in bytes.
     fn memory(&self) -> u64 {
         0
     }
 
-    /// How a graphics card computes a layer in the plane. A field with terms, a coordinate map or a cell of its own
-    /// need not implement it: the engine computes it otherwise.
+    /// The computation of a layer in the plane on a graphics card. A field with terms, a coordinate map or its own cell
+    /// need not implement it.
     #[doc(hidden)]
     fn lower(&self, layer: usize, world_params: &WorldParams) -> Lowering<Shader> {
         let _ = (layer, world_params);
         Lowering::Missing
     }
 
-    /// The position of the world's metres on a map, if this is a georeferenced real place.
+    /// The position of the world on a map, if the field is a georeferenced real place.
     fn georeference(&self) -> Option<Georeference> {
         None
     }
@@ -178,13 +178,13 @@ pub trait Field: Declared + Send + Sync {
         0.2
     }
 
-    /// The same for a field without inputs whose samples are on a lattice.
+    /// Approximate nanoseconds per sample on a lattice, for a field without inputs.
     fn cost_in_rows(&self) -> f64 {
         self.cost() * IN_ROWS
     }
 }
 
-/// The share of its cost that a field without inputs has on a lattice, where rows share work.
+/// Cost of a field without inputs on a lattice, where rows share work, relative to its cost at arbitrary points.
 const IN_ROWS: f64 = 0.15;
 
 /// The context of a filter or solver.
@@ -197,16 +197,17 @@ pub struct Context<'a> {
     pub observer: Option<&'a (dyn StepObserver + Sync)>,
 }
 
-/// Receives the solutions of a solver after some of its steps: those of shorter runs of the same steps.
+/// Receives the solutions of a solver after some of its steps. Each equals the solution of a shorter run with the same
+/// steps.
 pub trait StepObserver {
-    /// Whether the solution after this many steps is wanted; 0 is that of one step of zero duration. Not called for the
-    /// last step.
+    /// Whether the solution after this many steps is wanted; 0 is the solution after one step of zero duration. It is
+    /// not called for the last step.
     fn wants(&self, step: u32) -> bool;
 
-    /// Whether a layer of those solutions is read. If only the first is read, the solver may omit the others.
+    /// Whether a layer of these solutions is read. If only the first layer is read, the solver may omit the others.
     fn reads(&self, layer: usize) -> bool;
 
-    /// Receives such a solution.
+    /// Receives a wanted solution.
     ///
     /// # Errors
     /// An error ends the solver's work with that error.
@@ -228,7 +229,7 @@ pub trait Filter: Declared + Send + Sync {
     /// layer: a grid of zeros over `window` if the layer is requested, otherwise `None`.
     fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()>;
 
-    /// How a graphics card computes the filter at this cell, in metres.
+    /// The computation of the filter on a graphics card, at this cell in metres.
     #[doc(hidden)]
     fn lower(&self, cell: f64, world_params: &WorldParams) -> Lowering<Passes> {
         let _ = (cell, world_params);
@@ -247,16 +248,17 @@ pub trait Filter: Declared + Send + Sync {
         false
     }
 
-    /// The same for the extent of the world.
+    /// Whether the result depends on the world's extent. A filter that returns false must not read it, because the
+    /// content key would be wrong.
     fn reads_size(&self) -> bool {
         false
     }
 }
 
-/// The grid of a filter with one layer, of those that [`Filter::apply`] is given.
+/// The grid of a filter with one layer, from the `out` of [`Filter::apply`].
 ///
 /// # Errors
-/// If it is not the only one: an internal error, because plans always provide it.
+/// If there is not exactly one grid. This is an internal error, because plans always provide it.
 pub fn only_layer(out: &mut [Option<Grid>]) -> Result<&mut Grid> {
     match out {
         [Some(out)] => Ok(out),
@@ -264,7 +266,7 @@ pub fn only_layer(out: &mut [Option<Grid>]) -> Result<&mut Grid> {
     }
 }
 
-/// The error of a filter that is not given its layers.
+/// The internal error for a filter that does not get the grids of its layers.
 pub(crate) fn wrong_layers() -> Error {
     Error::new(ErrorKind::Internal, "a filter was given grids for other layers than its own")
 }
@@ -286,20 +288,20 @@ impl Levels {
         self.finest * (1u64 << halvings) as f64
     }
 
-    /// The level that a window with this cell is read from: the coarsest with the same or a smaller cell, otherwise the
-    /// finest.
+    /// The level from which a window with this cell is read: the coarsest level with the same or a smaller cell,
+    /// otherwise the finest level.
     #[must_use]
     pub fn serving(&self, cell: f64) -> usize {
         (0..self.count).find(|level| self.cell(*level) <= cell).unwrap_or(self.count.saturating_sub(1))
     }
 }
 
-/// A levelled op is a pyramid of lattices. Each level over any window is a function of the coarser level over that
-/// window and a finite halo, so a coarse level is the preview of the finer ones, and no window depends on the extent of
-/// the world. Level 0 depends on its inputs, positions and the seed alone.
+/// A levelled op is a pyramid of lattices. Each level over a window depends only on the coarser level over that window
+/// and a finite halo. A coarse level is therefore a preview of the finer ones, and no window depends on the extent of
+/// the world. Level 0 depends only on the op's inputs, positions and the seed.
 ///
-/// The data of a level are *planes*: grids over its window whose meaning only the op knows. The layers are made from
-/// them last.
+/// The data of a level are *planes*: grids over its window whose meaning only the op knows. The layers are computed
+/// from the planes at the end.
 pub trait Levelled: Declared + Send + Sync {
     /// The lattices.
     fn levels(&self) -> Levels;
@@ -307,21 +309,21 @@ pub trait Levelled: Declared + Send + Sync {
     /// Number of planes of each level.
     fn planes(&self) -> usize;
 
-    /// Number of samples of the level above that [`Levelled::refine`] to `level` reads beyond the window, halved.
+    /// Number of samples of the level above that [`Levelled::refine`] to `level` reads beyond the halved window.
     fn halo(&self, level: usize) -> usize;
 
-    /// Number of samples beyond the window that a level reads of the op's inputs.
+    /// Number of samples of the op's inputs that a level reads beyond the window.
     fn source_halo(&self, level: usize) -> usize {
         let _ = level;
         0
     }
 
-    /// The level whose data are at the samples of its lattice; those of other levels may lie between.
+    /// The level whose data are at the samples of its lattice; the data of other levels may be between the samples.
     fn level_at_samples(&self) -> usize {
         self.levels().count.saturating_sub(1)
     }
 
-    /// Number of levels, from the coarsest, that read the op's inputs. Finer ones are given none.
+    /// Number of levels, from the coarsest, that read the op's inputs. Finer levels get no inputs.
     fn levels_with_inputs(&self) -> usize {
         self.levels().count
     }
@@ -332,7 +334,7 @@ pub trait Levelled: Declared + Send + Sync {
     /// If the work was cancelled.
     fn coarsest(&self, inputs: &GridInputs, window: &Window, context: &Context) -> Result<Vec<Grid>>;
 
-    /// The planes of `level`, at least 1, over `window`, from those of the level above over [the window's
+    /// The planes of `level`, at least 1, over `window`, from the planes of the level above over [the window's
     /// parent](Levelled::parent). Each given input covers `window.grown(source_halo(level))` at the cell of the level.
     ///
     /// # Errors
@@ -346,12 +348,12 @@ pub trait Levelled: Declared + Send + Sync {
         context: &Context,
     ) -> Result<Vec<Grid>>;
 
-    /// Number of samples of a level that [`Levelled::layers_of`] reads beyond the window. `wanted` says of each
+    /// Number of samples of a level that [`Levelled::layers_of`] reads beyond the window. `wanted` says for each
     /// declared layer whether it is requested.
     fn surface_halo(&self, level: usize, wanted: &[bool]) -> usize;
 
     /// Computes layers over `window` from the planes of `level` over `window` grown by the [halo of the wanted
-    /// layers](Levelled::surface_halo). `out` is that of [`Filter::apply`].
+    /// layers](Levelled::surface_halo). `out` is as in [`Filter::apply`].
     ///
     /// # Errors
     /// If the work was cancelled.
@@ -364,23 +366,22 @@ pub trait Levelled: Declared + Send + Sync {
         context: &Context,
     ) -> Result<()>;
 
-    /// How a graphics card computes what [`Levelled::refine`] does, where `given` says of each input whether it is
-    /// given.
+    /// The computation of [`Levelled::refine`] on a graphics card. `given` says for each input whether it is given.
     #[doc(hidden)]
     fn lower(&self, level: usize, given: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
         let _ = (level, given, world_params);
         Lowering::Missing
     }
 
-    /// How a graphics card computes what [`Levelled::layers_of`] does, for layers that are wanted, from a level that it
-    /// has made.
+    /// The computation of [`Levelled::layers_of`] on a graphics card, for the wanted layers, from a level that it has
+    /// made.
     #[doc(hidden)]
     fn lower_layers(&self, level: usize, wanted: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
         let _ = (level, wanted, world_params);
         Lowering::Missing
     }
 
-    /// Memory beside planes and layers for making a level over `window`, in bytes.
+    /// Memory for making a level over `window` in addition to planes and layers, in bytes.
     fn scratch(&self, level: usize, window: &Window) -> u64 {
         let _ = (level, window);
         0
@@ -398,15 +399,15 @@ pub trait Levelled: Declared + Send + Sync {
         false
     }
 
-    /// The samples of the level above that `level` over `window` is made from: from half the first, rounded down, to
-    /// half the last, rounded up, and the halo around them.
+    /// The samples of the level above from which `level` over `window` is made: from half the first index, rounded
+    /// down, to half the last index, rounded up, and the halo around them.
     fn parent(&self, level: usize, window: &Window) -> Window {
         halved(window, self.levels().cell(level.saturating_sub(1))).grown(self.halo(level))
     }
 }
 
-/// The samples of the lattice with `cell`, twice that of the window, from half the window's first, rounded down, to
-/// half the last, rounded up.
+/// The samples of the lattice with `cell`, twice the window's cell, from half the window's first index, rounded down,
+/// to half its last index, rounded up.
 #[must_use]
 pub fn halved(window: &Window, cell: f64) -> Window {
     let halved = |first: i64, end: i64| (first.div_euclid(2), end.div_euclid(2) + 1);
@@ -431,13 +432,13 @@ impl Solution {
     }
 }
 
-/// A solver's inputs over its whole domain, computed tile by tile on request, and rasters for its work.
+/// A solver's inputs over its whole domain, computed tile by tile on request, and rasters for intermediate data.
 pub trait Sources {
-    /// The samples of the domain: those of the world, 0 ..= extent / cell on both axes, and of the solver's
+    /// The samples of the domain: the world, 0 ..= extent / cell on both axes, and the solver's
     /// [margin](crate::declare::Declared::margin) beyond each side.
     fn domain(&self) -> &Window;
 
-    /// The domain with the two samples beyond its edge that readers may need, which a solution's layers must cover.
+    /// The domain with the two samples beyond its edge that readers may need. A solution's layers must cover it.
     fn padded(&self) -> &Window;
 
     /// Whether the input with this name is given.
@@ -447,14 +448,15 @@ pub trait Sources {
     /// tiles cover the window once.
     ///
     /// # Errors
-    /// If the input is not given, or not declared: an internal error. Those of `visit`, or if the work was cancelled.
+    /// If the input is not given or not declared, which is an internal error; the errors of `visit`; or if the work was
+    /// cancelled.
     fn each_tile(&self, name: &str, window: &Window, visit: &mut dyn FnMut(&Grid) -> Result<()>) -> Result<()>;
 
     /// The input with this name over all of `window` at once, for solvers that cannot work tile by tile. Include it in
     /// [`Solver::scratch`].
     ///
     /// # Errors
-    /// Those of [`Sources::each_tile`].
+    /// The errors of [`Sources::each_tile`].
     fn whole(&self, name: &str, window: &Window) -> Result<Grid> {
         let mut grid = Grid::filled(*window, 0.0f32);
         self.each_tile(name, window, &mut |tile| {
@@ -464,8 +466,8 @@ pub trait Sources {
         Ok(grid)
     }
 
-    /// A raster of zeros over [`Sources::padded`], for work or for the result: in memory or on disk, depending on the
-    /// budget.
+    /// A raster of zeros over [`Sources::padded`], for intermediate data or for the result, in memory or on disk
+    /// depending on the budget.
     fn raster(&self) -> Result<Raster>;
 
     /// Whether rasters are on disk because memory is short.
@@ -495,20 +497,21 @@ pub trait Solver: Declared + Send + Sync {
         world_cell
     }
 
-    /// Maximum number of rasters of its domain that it holds at once: layers of the solution and those for its work.
+    /// Maximum number of rasters of its domain that it holds at once, for layers of the solution and intermediate data.
     fn rasters(&self) -> usize {
         self.spec().layers.len()
     }
 
-    /// Memory of solving beside those rasters, in bytes, for [`Sources::padded`]. 0 for a solver that works tile
-    /// by tile; a solver that needs whole grids counts all that it holds at once, including those that become layers.
+    /// Memory for solving in addition to the rasters, in bytes, for [`Sources::padded`]. 0 for a solver that works tile
+    /// by tile. A solver that needs whole grids counts all grids that it holds at once, including those that become
+    /// layers.
     fn scratch(&self, padded: &Window) -> u64 {
         let _ = padded;
         0
     }
 
-    /// The same if its rasters are on disk, for a solver that then works tile by tile, with the same bits. It calls
-    /// [`Sources::on_disk`] to choose.
+    /// [`Solver::scratch`] if its rasters are on disk, for a solver that then works tile by tile, with the same bits.
+    /// The solver calls [`Sources::on_disk`] to choose.
     fn scratch_on_disk(&self, padded: &Window) -> u64 {
         self.scratch(padded)
     }
@@ -529,15 +532,15 @@ pub trait Solver: Declared + Send + Sync {
         }
     }
 
-    /// How a graphics card computes what [`Solver::solve`] does over `padded`, the window of [`Sources::padded`], where
-    /// `given` says of each input whether it is given: the layers of the solution, without numbers.
+    /// The computation of [`Solver::solve`] on a graphics card over `padded`, the window of [`Sources::padded`].
+    /// `given` says for each input whether it is given. The result is the layers of the solution, without numbers.
     #[doc(hidden)]
     fn lower(&self, padded: &Window, given: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
         let _ = (padded, given, world_params);
         Lowering::Missing
     }
 
-    /// How a graphics card computes what [`Solver::read`] does.
+    /// The computation of [`Solver::read`] on a graphics card.
     #[doc(hidden)]
     fn lower_read(&self, layer: usize, solution: &Solution) -> Lowering<Shader> {
         let _ = (layer, solution);
@@ -556,13 +559,13 @@ pub trait Solver: Declared + Send + Sync {
     }
 }
 
-/// A type that is an op. [`op!`](crate::op!) implements it, by the locality that it declares.
+/// A type that is an op. [`op!`](crate::op!) implements it according to the declared locality.
 pub trait OpType: Declared + Debug + Default + Clone + PartialEq + Send + Sync + 'static {
-    /// The op as what it is.
+    /// The op, by its locality.
     fn as_op(&self) -> Op<'_>;
 }
 
-/// A node as what it is.
+/// An op, by its locality.
 pub enum Op<'a> {
     /// Depends on one position.
     Field(&'a dyn Field),

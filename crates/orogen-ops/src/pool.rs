@@ -4,7 +4,7 @@ use orogen_grid::error::Result;
 #[cfg(all(feature = "threads", not(target_family = "wasm")))]
 use orogen_grid::error::{Error, ErrorKind};
 
-/// Whether other threads can exist; otherwise no thread may wait for another.
+/// Whether there can be several threads. Otherwise no thread may wait for another one.
 pub const HAS_THREADS: bool = cfg!(all(feature = "threads", not(target_family = "wasm")));
 
 /// A thread pool. On a host without threads (WebAssembly), or without the feature `threads`, it is empty, and all work
@@ -38,7 +38,7 @@ impl Pool {
         self.threads.current_num_threads()
     }
 
-    /// Runs work on a new thread that is not one of the pool, so it may wait.
+    /// Runs work on a new thread outside of the pool, so it may wait.
     ///
     /// # Errors
     /// If the system cannot start it.
@@ -76,7 +76,7 @@ impl Pool {
         1
     }
 
-    /// Runs work before it returns.
+    /// Runs work on the calling thread, before it returns.
     ///
     /// # Errors
     /// Never.

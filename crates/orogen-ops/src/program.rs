@@ -33,7 +33,7 @@ impl Operand {
     }
 }
 
-/// An instruction. It runs once per block, however many others read its result. While it is planned, it reads requests
+/// An instruction. It runs once per block, no matter how many others read its result. During planning it reads requests
 /// instead of grids.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Instruction<G = GridId> {
@@ -206,7 +206,7 @@ impl<G> Instruction<G> {
         }
     }
 
-    /// Renames what it reads.
+    /// Renames the registers and the coordinate set that it reads.
     pub fn rename(
         &mut self,
         register: impl Fn(RegisterId) -> Result<RegisterId>,
@@ -254,7 +254,7 @@ impl<G> Instruction<G> {
         }
     }
 
-    /// Whether it makes a coordinate set at an altitude of its own.
+    /// Whether it makes a coordinate set with its own altitude.
     pub fn has_altitude(&self) -> bool {
         matches!(self, Instruction::Map { map, .. } if map.altitude.is_some())
     }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-/// Bytes of the text, from its start.
+/// A range of byte offsets in the text.
 pub type Span = Range<usize>;
 
 /// A value and its position in the text. Values made in code have an empty span.

@@ -1,4 +1,4 @@
-//! The trait that every op implements through its declaration.
+//! The trait that every op implements by its declaration.
 
 use super::input::{Input, InputName};
 use super::param::AnyParam;
@@ -9,7 +9,7 @@ use orogen_io::dem::file_ref::FileRef;
 /// The value of a parameter that an op does not have.
 const NO_PARAM: Value = Value::Other("nothing");
 
-/// The implementation by an `op!` block: access to a node's inputs and parameters by their index in the [`Spec`].
+/// Access to a node's inputs and parameters by their index in the [`Spec`]. An `op!` block implements it.
 pub trait Declared {
     /// The declaration.
     fn spec(&self) -> &'static Spec;
@@ -24,7 +24,7 @@ pub trait Declared {
     /// The parameters.
     #[doc(hidden)]
     fn params(&self) -> Vec<&dyn AnyParam>;
-    /// The parameters, to be changed.
+    /// The parameters, mutable.
     #[doc(hidden)]
     fn params_mut(&mut self) -> Vec<&mut dyn AnyParam>;
     /// Parameter `i`.
@@ -45,15 +45,16 @@ pub trait Declared {
         self.params_mut().into_iter().filter_map(|param| param.file_ref()).collect()
     }
     /// The parameter [`MARGIN`](super::spec::MARGIN) of a solver whose domain may extend beyond the world, in metres;
-    /// `None` if the op has none.
+    /// `None` if the op has no such parameter.
     fn margin(&self) -> Option<f64> {
         None
     }
-    /// The parameter [`VERTICAL`](super::spec::VERTICAL) of a noise that may be one of space; 0 if the op has none.
+    /// The parameter [`VERTICAL`](super::spec::VERTICAL) of a noise; 0 for a noise of the plane, and if the op has no
+    /// such parameter.
     fn vertical(&self) -> f64 {
         0.0
     }
-    /// The unit of a layer, or empty: that of the declaration, unless it depends on parameters.
+    /// The unit of a layer, or empty: the declared unit, unless it depends on parameters.
     fn unit(&self, layer: usize) -> &'static str {
         self.spec().layers.get(layer).map_or("", |layer| layer.unit)
     }

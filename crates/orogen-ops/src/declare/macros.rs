@@ -1,7 +1,7 @@
-//! `op!` and `choice!`, for ops of this crate and of any other: every path begins with `$crate`.
+//! `op!` and `choice!`. Every path begins with `$crate`, so that they work in any crate.
 
 /// A parameter that is one of several names. The first variant is the default. With `as TYPE` after its name it
-/// converts into that enum, which has variants of the same names.
+/// converts into the enum `TYPE`, whose variants have the same names.
 ///
 /// ```
 /// orogen_ops::choice! {
@@ -68,34 +68,35 @@ macro_rules! choice {
     };
 }
 
-/// Declares an op: its struct, defaults, name in recipes, inputs, parameters and layers. The struct then implements
-/// [`Field`](crate::op::Field), [`Filter`](crate::op::Filter), [`Levelled`](crate::op::Levelled) or
-/// [`Solver`](crate::op::Solver), the locality that the declaration names.
+/// Declares an op: its struct, defaults, name in recipes, inputs, parameters and layers. You then implement the trait
+/// of the declared locality for the struct: [`Field`](crate::op::Field), [`Filter`](crate::op::Filter),
+/// [`Levelled`](crate::op::Levelled) or [`Solver`](crate::op::Solver).
 ///
-/// The name of an op that is not part of this crate has a namespace: `"mygame.terraces"`. A `Registry` of the engine
-/// makes it known to recipes. The revision is part of the content key of every node of the op: raise it when the op
-/// comes to make other bits.
+/// The name of an op that is not part of this crate has a namespace: `"mygame.terraces"`. Register it in a `Registry`
+/// of the engine to use it in recipes. The revision is part of the content key of every node of the op: increase it
+/// when the results of the op change.
 ///
-/// The blocks, in this order, all of them optional:
+/// The blocks are in this order; all are optional:
 ///
-/// - `inputs { /// .. source: required, /// .. other: optional, }`: the nodes it reads, by their names in the
-///   `inputs` that it is given. `inputs of NAME;` instead reads whatever the expression in its parameter NAME names.
+/// - `inputs { /// .. source: required, /// .. other: optional, }`: the inputs, by their names in the `inputs`
+///   argument. With `inputs of NAME;` the inputs are instead the names in the expression of the parameter NAME.
 /// - `params { /// .. name: TYPE = DEFAULT, unit "m", range 0.0 to 1e5; }`: unit and range are optional. A type is any
 ///   [`Param`](crate::declare::Param): `f64`, `u32`, `u64` (a seed), `bool`, `[f64; 2]`, `Vec<[f64; 2]>` (a curve),
 ///   `LinePoints` or `AreaPoints`, `Strokes`, `FileRef`, `Expression`, or a [`choice!`](crate::choice).
-/// - `layers { /// .. name: height, unit "m"; }`: what a filter or solver makes besides one layer of heights, and how
-///   each is read between samples (`height`, `label`, `flow`, or as its `source`).
+/// - `layers { /// .. name: height, unit "m"; }`: the layers, if there are others than one layer of heights, and how
+///   each is interpolated between samples (`height`, `label`, `flow`, or like the first input: `source`).
 /// - `units |op, layer| "m";`: the unit of a layer by its index, if it depends on parameters.
-/// - `check |op| Ok(());`: what a single parameter cannot see, a key and a message if parameters contradict each other.
-/// - `noise |op, world_params| NOISE; cost |op| [f64; 2];`: a field that is a noise of [`orogen_noise`], with its
-///   nanoseconds per sample at any positions and on a lattice. It gets the parameter `vertical`, and implements
-///   `Field`.
+/// - `check |op| Ok(());`: a check across parameters. It returns a key and a message if parameters contradict each
+///   other.
+/// - `noise |op, world_params| NOISE; cost |op| [f64; 2];`: a field that is a noise of [`orogen_noise`], with its time
+///   in nanoseconds per sample, at arbitrary positions and on a lattice. The op gets the parameter `vertical`, and
+///   `Field` is implemented for it.
 ///
-/// After an input's need, or at the end of a parameter, `alias "other"` names another key that recipes may use: a
-/// former one, or the word of textbooks. With `octaves |op| KIND;` after its name the op is a fractal: a noise with the
-/// parameters that all fractals share, beside its own. With `margin;` after its name the op is a solver with the
-/// parameter `margin`: its domain extends beyond the world by that length on each side, and it need not know it
-/// ([`Sources::domain`](crate::op::Sources::domain) is the domain).
+/// After `required` or `optional`, or at the end of a parameter, `alias "other"` declares another key that recipes may
+/// use: a former key or a common term. With `octaves |op| KIND;` after its name the op is a fractal: a noise with its
+/// own parameters and those that all fractals share. With `margin;` after its name the op is a solver with the
+/// parameter `margin`: its domain extends beyond the world by that length on each side. The implementation needs no
+/// code for it, because [`Sources::domain`](crate::op::Sources::domain) is the extended domain.
 ///
 /// ```
 /// use orogen_ops::op::{Context, Filter, GridInputs, only_layer};

@@ -1,13 +1,13 @@
-//! A value that is made from parameters once and shared.
+//! A value that is computed from parameters once and shared.
 
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The last value made. A parameter that has one can be evaluated from any thread without making it again.
+/// The last computed value. Any thread can use it without computing it again.
 pub struct Memo<T>(Mutex<Option<Arc<T>>>);
 
 impl<T> Memo<T> {
-    /// The value, if it is current; otherwise a new one. Other threads wait while it is made.
+    /// The value, if it is current; otherwise a new one. Other threads wait while it is computed.
     pub fn get_or_make(&self, is_current: impl FnOnce(&T) -> bool, make: impl FnOnce() -> T) -> Arc<T> {
         let mut made = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         match made.as_ref().filter(|value| is_current(value)) {
@@ -23,14 +23,14 @@ impl<T> Default for Memo<T> {
     }
 }
 
-/// A copy has the same value, and makes its own when it changes.
+/// A copy shares the value until one of them computes a new one.
 impl<T> Clone for Memo<T> {
     fn clone(&self) -> Memo<T> {
         Memo(Mutex::new(self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()))
     }
 }
 
-/// What follows from parameters does not distinguish them.
+/// Always equal: a value that follows from parameters does not distinguish nodes.
 impl<T> PartialEq for Memo<T> {
     fn eq(&self, _: &Memo<T>) -> bool {
         true

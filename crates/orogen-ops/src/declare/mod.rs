@@ -1,15 +1,15 @@
 //! Declarations of ops: name, inputs, parameters and layers.
 //!
-//! One `op!` block gives the struct, its defaults, parsing and validation, serialization, the JSON Schema, the help of
-//! the command line and the sliders of a user interface.
+//! One `op!` block defines the struct, its defaults, parsing, validation and serialization, the JSON Schema, the help
+//! on the command line and the sliders of a user interface.
 //!
-//! - [`spec`]: what is declared of an op, its inputs and its parameters
-//! - [`input`]: what a node reads
+//! - [`spec`]: the declarations of ops, inputs and parameters, as data
+//! - [`input`]: inputs of nodes
 //! - [`param`]: the types that parameters can have
-//! - [`points`]: lists of points as parameters, and their segments; [`memo`]: a value made from parameters once
+//! - [`points`]: lists of points as parameters, and their segments; [`memo`]: values computed from parameters once
 //! - [`strokes`]: strokes of a brush as a parameter
-//! - [`declared`]: what every op implements
-//! - `macros`: [`op!`](crate::op!) and [`choice!`](crate::choice), which write all of it
+//! - [`declared`]: the trait that every op implements by its declaration
+//! - `macros`: [`op!`](crate::op!) and [`choice!`](crate::choice), which generate all of this
 
 #[macro_use]
 mod macros;
@@ -36,7 +36,7 @@ pub use input::{Input, InputName};
 #[doc(hidden)]
 pub use input::{named, set_named};
 pub use orogen_io::dem::file_ref::{AreaFile, FileRef, LineFile};
-/// What the octaves of a fractal are made of.
+/// Noise of the octaves of fractals.
 #[doc(hidden)]
 pub use orogen_noise as noise;
 #[doc(hidden)]

@@ -6,9 +6,9 @@ use crate::value::{Spanned, Value};
 use orogen_grid::hex;
 use orogen_io::dem::file_ref::{AreaFile, FileRef, LineFile, Picture};
 
-/// A type of parameters.
+/// A type that parameters can have.
 pub trait Param: Sized {
-    /// The kind of value that it is read from.
+    /// The kind of its value.
     const SHAPE: Shape;
     /// The parameter from a value; `None` if the value has another kind.
     fn read(value: &Value) -> Option<Self>;
@@ -19,11 +19,11 @@ pub trait Param: Sized {
         let _ = range;
         true
     }
-    /// The part that affects results: the parameter itself, or the content of a file.
+    /// The part of it that affects results: the parameter itself or, for a file, its content.
     fn key(&self) -> Value {
         self.write()
     }
-    /// The file that it names, if it is a file.
+    /// The file, if the parameter is a file.
     fn file(&mut self) -> Option<&mut FileRef> {
         None
     }
@@ -38,7 +38,7 @@ pub trait AnyParam {
     fn key_value(&self) -> Value;
     /// [`Param::file`].
     fn file_ref(&mut self) -> Option<&mut FileRef>;
-    /// Reads it; the error describes the valid kind and range.
+    /// Sets it from a value; the error describes the valid kind and range.
     fn set(&mut self, spec: &ParamSpec, value: &Value) -> Result<(), String>;
 }
 
@@ -139,7 +139,8 @@ impl Param for u32 {
     const SHAPE: Shape = Shape::Integer;
     fn read(value: &Value) -> Option<u32> {
         match value {
-            // Values that do not fit are out of every declared range: saturate, so that the message states the range.
+            // Values that do not fit are out of every declared range. They saturate, so that the message states the
+            // range.
             Value::Integer(integer) => Some(u32::try_from(*integer).unwrap_or(u32::MAX)),
             _ => None,
         }
@@ -220,7 +221,7 @@ pub fn read_param<T: Param>(spec: &ParamSpec, value: &Value) -> Result<T, String
     T::read(value).filter(|param| param.within(spec.range)).ok_or_else(|| refusal(spec, value))
 }
 
-/// Why a value is not valid. Apart from [`read_param`], which is compiled for each type.
+/// The message for an invalid value. It is separate from [`read_param`], which is compiled for each type.
 #[cold]
 fn refusal(spec: &ParamSpec, value: &Value) -> String {
     if let Some((_, message)) = spec.problem(value) {

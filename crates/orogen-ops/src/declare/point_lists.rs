@@ -1,4 +1,4 @@
-//! Reading of lists of points, and what is wrong with them.
+//! Reading of lists of points, with messages about problems.
 
 use crate::value::{Span, Spanned, Value};
 use orogen_grid::words::count;
@@ -8,16 +8,16 @@ pub const MAX_POINTS: usize = 100_000;
 
 pub(super) type Lists = Vec<Vec<[f64; 3]>>;
 
-/// How points are written.
+/// The form in which points are written.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Form {
-    /// As a list of lists.
+    /// Whether they are a list of lists.
     pub(super) is_nested: bool,
-    /// Whether every point has one.
+    /// Whether every point has a height.
     pub(super) has_heights: bool,
 }
 
-/// What points are of.
+/// The kind of drawing that the points belong to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Drawn {
     Stroke,
@@ -26,12 +26,12 @@ pub(super) enum Drawn {
 }
 
 impl Drawn {
-    /// What lists of at least this many points are.
+    /// The kind of drawing whose lists have at least this many points.
     pub(super) fn of_at_least(points: usize) -> Drawn {
         if points > 2 { Drawn::Area } else { Drawn::Line }
     }
 
-    /// The fewest points of a list.
+    /// Minimum number of points of a list.
     pub(super) fn min(self) -> usize {
         match self {
             Drawn::Stroke => 1,
@@ -48,7 +48,7 @@ impl Drawn {
         }
     }
 
-    /// How a point is written.
+    /// The syntax of a point, for messages.
     fn point(self) -> &'static str {
         match self {
             Drawn::Stroke => "[x, y]",
@@ -56,12 +56,12 @@ impl Drawn {
         }
     }
 
-    /// The most numbers of a point.
+    /// Maximum number of numbers of a point.
     fn numbers(self) -> usize {
         if self == Drawn::Stroke { 2 } else { 3 }
     }
 
-    /// Where more points go.
+    /// Advice for more points than are allowed.
     fn elsewhere(self) -> &'static str {
         match self {
             Drawn::Stroke => "paint the others in a node of their own",
@@ -74,9 +74,9 @@ impl Drawn {
 pub(super) struct Reader<'a> {
     /// The name of the parameter.
     pub(super) name: &'a str,
-    /// What a coordinate must be.
+    /// The valid values of a coordinate, for messages.
     pub(super) number: String,
-    /// What the points are of.
+    /// The kind of drawing.
     pub(super) drawn: Drawn,
     /// The range of coordinates.
     pub(super) range: [f64; 2],
@@ -117,8 +117,8 @@ impl Reader<'_> {
         (span.clone(), format!("`{}`: {what}", self.name))
     }
 
-    /// The points of one list. `of` names the list, `numbers` is the length of all points, and `left` the number of
-    /// points that there may still be.
+    /// The points of one list. `of` names the list in messages, `numbers` is the number of numbers of every point
+    /// (`None` until the first point is read), and `left` is the number of points that are still allowed.
     pub(super) fn list(
         &self,
         items: &[Spanned<Value>],

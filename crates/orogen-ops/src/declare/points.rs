@@ -12,14 +12,14 @@ use orogen_grid::polylines::segments::Segments;
 use orogen_io::dem::file_ref::FileRef;
 use orogen_io::format::drawing::Drawing;
 
-/// The points of lines: at least two for each.
+/// The points of lines, at least two per line.
 pub type LinePoints = PointLists<2>;
 
-/// The corners of areas: at least three for each ring.
+/// The corners of areas, at least three per ring.
 pub type AreaPoints = PointLists<3>;
 
-/// Lists of points, each of at least `MIN` points, or none. Recipes write one list as `[[x, y], ...]` and several as
-/// `[[[x, y], ...], ...]`; a third number of every point is its height.
+/// Lists of points, each with at least `MIN` points; it may be empty. Recipes write one list as `[[x, y], ...]` and
+/// several as `[[[x, y], ...], ...]`; a third number of every point is its height.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PointLists<const MIN: usize> {
     lists: Arc<Lists>,
@@ -27,7 +27,7 @@ pub struct PointLists<const MIN: usize> {
     segments: Memo<Made>,
 }
 
-/// How points or the outlines of a file become segments.
+/// Options of the conversion of points, or of a file's outlines, to segments.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OutlineOptions {
     /// Whether lines are smooth curves through their points.
@@ -42,7 +42,7 @@ pub struct OutlineOptions {
     pub offset: [f64; 2],
 }
 
-/// Segments, and what they were made of.
+/// Segments, with the options and the file from which they were made.
 struct Made {
     options: OutlineOptions,
     file: Option<Arc<Drawing>>,
@@ -90,8 +90,8 @@ impl<const MIN: usize> PointLists<MIN> {
         &self.lists
     }
 
-    /// The segments of the points and of the file's outlines. They are made once, and again only for other options or
-    /// another file.
+    /// The segments of the points and of the file's outlines. They are made once, and made again only for other options
+    /// or another file.
     pub fn with_segments<T>(&self, file: &FileRef, options: OutlineOptions, read: impl FnOnce(&Segments) -> T) -> T {
         let drawing = file.drawing();
         let is_current = |made: &Made| {

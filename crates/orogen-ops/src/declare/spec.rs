@@ -33,10 +33,10 @@ impl Locality {
     }
 }
 
-/// The name of the parameter by which a solver's domain extends beyond the world.
+/// The name of the parameter for the width by which a solver's domain extends beyond the world.
 pub const MARGIN: &str = "margin";
 
-/// The name of the parameter by which a noise is one of space.
+/// The name of the parameter that makes a noise one of space, with a wavelength along the altitude.
 pub const VERTICAL: &str = "vertical";
 
 /// The declaration of an op.
@@ -52,7 +52,7 @@ pub struct Spec {
     pub doc: &'static str,
     /// The inputs.
     pub inputs: &'static [InputSpec],
-    /// Whether the names in its expression are inputs, too.
+    /// Whether the names in its expression are also inputs.
     pub named_inputs: bool,
     /// The parameters.
     pub params: &'static [ParamSpec],
@@ -71,33 +71,33 @@ impl Spec {
         self.input_named(name).filter(|i| given.get(*i) == Some(&true))
     }
 
-    /// What is given for the input with this name, of a list in the order of the inputs.
+    /// The item for the input with this name in a list in the order of the inputs.
     #[doc(hidden)]
     #[must_use]
     pub fn given<T: Copy>(&self, name: &str, given: &[Option<T>]) -> Option<T> {
         given.get(self.input_named(name)?).copied().flatten()
     }
 
-    /// The error of an input that the op needs and is not given: plans always provide it.
+    /// The internal error for a required input that is not given: plans always provide it.
     #[doc(hidden)]
     #[must_use]
     pub fn missing(&self, name: &str) -> Error {
         Error::new(ErrorKind::Internal, format!("the input `{name}` of `{}` is missing", self.op))
     }
 
-    /// The input with this key, also its other one.
+    /// The index of the input with this key or alias.
     #[must_use]
     pub fn input_named(&self, key: &str) -> Option<usize> {
         self.inputs.iter().position(|input| input.name == key || (!key.is_empty() && input.alias == key))
     }
 
-    /// The parameter with this key, also its other one.
+    /// The index of the parameter with this key or alias.
     #[must_use]
     pub fn param_named(&self, key: &str) -> Option<usize> {
         self.params.iter().position(|param| param.name == key || (!key.is_empty() && param.alias == key))
     }
 
-    /// The other keys of inputs and parameters (former ones, and words of textbooks), each with the key.
+    /// The aliases of inputs and parameters (former keys and common terms), each with its key.
     pub fn aliases(&self) -> impl Iterator<Item = (&'static str, &'static str)> + '_ {
         let inputs = self.inputs.iter().map(|input| (input.alias, input.name));
         inputs.chain(self.params.iter().map(|param| (param.alias, param.name))).filter(|(alias, _)| !alias.is_empty())
@@ -109,7 +109,7 @@ impl Spec {
 pub struct InputSpec {
     /// The key.
     pub name: &'static str,
-    /// Another key that recipes may use: a former one, or the word of textbooks; or empty.
+    /// Another key that recipes may use, such as a former key or a common term; or empty.
     pub alias: &'static str,
     /// The documentation.
     pub doc: &'static str,
@@ -122,7 +122,7 @@ pub struct InputSpec {
 pub struct ParamSpec {
     /// The key.
     pub name: &'static str,
-    /// Another key that recipes may use: a former one, or the word of textbooks; or empty.
+    /// Another key that recipes may use, such as a former key or a common term; or empty.
     pub alias: &'static str,
     /// The documentation.
     pub doc: &'static str,
@@ -168,7 +168,7 @@ pub enum Shape {
 /// The declaration of tables in a list, such as the strokes of a brush.
 #[derive(Debug)]
 pub struct TableSpec {
-    /// What a table is, in the singular and the plural.
+    /// The name of a table in messages, in the singular and the plural.
     pub names: [&'static str; 2],
     /// The keys.
     pub keys: &'static [ParamSpec],
@@ -178,7 +178,7 @@ pub struct TableSpec {
     pub defaults: fn() -> Vec<Value>,
     /// Maximum number of tables.
     pub max: usize,
-    /// What is wrong in a list, which is the value of a parameter of this name.
+    /// The first problem of a list, which is the value of the parameter with this name: its position and a message.
     pub problem: fn(&str, &Value) -> Option<(Span, String)>,
 }
 
@@ -217,8 +217,8 @@ impl ParamSpec {
         format!("a finite number{}{}", self.bounds(), self.unit_in_parentheses())
     }
 
-    /// What is wrong within a value of several parts, and its position; `None` if nothing is, or the value is a single
-    /// part.
+    /// The first problem within a value of several parts: its position and a message. `None` if there is none, or the
+    /// value is a single part.
     #[must_use]
     pub fn problem(&self, value: &Value) -> Option<(Span, String)> {
         match self.shape {

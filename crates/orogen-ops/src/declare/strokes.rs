@@ -25,20 +25,20 @@ choice! {
     }
 }
 
-/// A stroke of a brush: a line, and what it does around it.
+/// A stroke of a brush: a line, and its effect around it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stroke {
-    /// The points of the line: metres east and south. One point is a dab.
+    /// The points of the line, in metres east and south. One point is a dab.
     pub points: Vec<[f64; 2]>,
-    /// The distance from the line up to which it has effect, in metres.
+    /// The distance from the line up to which it has an effect, in metres.
     pub radius: f64,
-    /// The share of the radius with full effect.
+    /// The share of the radius with full effect, 0 to 1.
     pub hardness: f64,
-    /// What it does.
+    /// The operation.
     pub mode: StrokeMode,
-    /// What is added or set.
+    /// The value that is added or set.
     pub value: f64,
-    /// The effect on the line: 1 is all of it.
+    /// The share of the effect on the line; 1 is the full effect.
     pub strength: f64,
 }
 
@@ -129,14 +129,14 @@ impl Stroke {
         Value::Table(values.map(entry).collect())
     }
 
-    /// The table of a recipe, without the keys that have their defaults.
+    /// The table for a recipe, without keys that have their defaults.
     #[must_use]
     pub fn short_table(&self) -> Value {
         let defaults = Stroke::default().values();
         self.table(|k, value| k < STROKE.required || defaults.get(k) != Some(value))
     }
 
-    /// The share of its effect at a distance from its line: 1 on the line, 0 from the radius on.
+    /// The share of its effect at a distance from its line in metres: 1 on the line, 0 from the radius on.
     #[must_use]
     pub fn falloff(&self, distance: f64) -> f64 {
         let hard = self.hardness * self.radius;
@@ -161,7 +161,7 @@ impl Stroke {
     }
 }
 
-/// A number as short as recipes may have it: 200 in place of 200.0.
+/// A number in its shortest form for recipes: 200 instead of 200.0.
 fn shortest(number: f64) -> Value {
     let is_whole = number.abs() < 1e15 && number == (number as i64) as f64;
     if is_whole { Value::Integer(number as i64) } else { Value::Number(number) }
@@ -188,13 +188,13 @@ impl Strokes {
         &self.list
     }
 
-    /// The lines of the strokes, each with its radius around it. They are made once.
+    /// The buffers around the lines of the strokes, each with the stroke's radius. They are made once.
     pub fn with_buffers<T>(&self, read: impl FnOnce(&Buffers) -> T) -> T {
         let make = || Buffers::new(self.list.iter().map(|stroke| (stroke.points.as_slice(), stroke.radius)));
         read(&self.buffers.get_or_make(|_| true, make))
     }
 
-    /// Memory that they take, in bytes.
+    /// Memory of the strokes, in bytes.
     #[must_use]
     pub fn memory(&self) -> u64 {
         let points: usize = self.list.iter().map(|stroke| size_of_val(&*stroke.points)).sum();
@@ -217,7 +217,7 @@ fn read(name: &str, value: &Value) -> Result<Vec<Stroke>, (Span, String)> {
     items.iter().enumerate().map(|(k, item)| stroke(name, k + 1, item, &mut left)).collect()
 }
 
-/// Reads the stroke of this number. `left` is the number of points that there may still be.
+/// Reads the stroke of this number. `left` is the number of points that are still allowed.
 fn stroke(name: &str, number: usize, item: &Spanned<Value>, left: &mut usize) -> Result<Stroke, (Span, String)> {
     let wrong = |span: &Span, what: String| Err((span.clone(), format!("`{name}`: {what}")));
     let Value::Table(entries) = &item.value else {

@@ -54,7 +54,7 @@ pub fn place_of(text: &str, name: &str) -> Span {
     tokens.into_iter().find(|(token, _)| *token == Token::Name(name)).map_or(0..text.len(), |(_, span)| span)
 }
 
-/// The same expression with its names replaced; names for which `of` returns `None` stay.
+/// The expression with its names replaced; names for which `of` returns `None` do not change.
 pub fn renamed(text: &str, of: impl Fn(&str) -> Option<String>) -> String {
     let mut out = String::with_capacity(text.len());
     let mut at = 0;

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Samples that are computed at a time if an argument is a number: it is repeated this often, and stays in the nearest
-/// cache.
+/// Number of samples that are computed at a time if an argument is a number. The number is repeated this many times and
+/// stays in the L1 cache.
 const CHUNK: usize = 256;
 
 /// Maximum number of arguments of a function.

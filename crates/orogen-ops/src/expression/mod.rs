@@ -3,7 +3,7 @@
 //! - `function`: the functions of expressions
 //! - `token`: the tokenizer
 //! - `parse`: the parser, with bounded recursion
-//! - `term`: an expression as a list of terms, each after those that it reads
+//! - `term`: an expression as a list of terms, each after the terms that it reads
 //! - [`text`]: an expression with its text
 //! - `formula`: an expression of parameters, evaluated once in f64
 

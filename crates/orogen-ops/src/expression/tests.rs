@@ -115,7 +115,7 @@ fn what_is_too_large_is_refused_quickly() {
     assert!(Expression::from(wide("a", 30_000).as_str()).error().is_some());
     assert!(Expression::from(wide("a*b", 1000).as_str()).error().is_none());
     assert!(Expression::from(("(".repeat(MAX_DEPTH) + "1" + &")".repeat(MAX_DEPTH)).as_str()).error().is_none());
-    // Work that grows with the square of the length would take hours.
+    // Quadratic time would take hours.
     assert!(begun.elapsed().as_secs() < 120, "{:?}", begun.elapsed());
 }
 

@@ -17,7 +17,7 @@ pub enum Token<'t> {
 /// Longer symbols first.
 const SIGNS: [&str; 15] = ["<=", ">=", "==", "!=", "+", "-", "*", "/", "^", "%", "<", ">", "(", ")", ","];
 
-/// Symbols of other languages, with ours.
+/// Symbols of other languages, each with the symbol to use instead.
 const FOREIGN: [(&str, &str); 7] = [
     ("**", "powers are written `a ^ b`"),
     ("&&", "write `a * b`: comparisons are 1 or 0"),

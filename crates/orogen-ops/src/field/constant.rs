@@ -15,7 +15,7 @@ op! {
     }
 }
 
-/// The number that it is given.
+/// The shader function of a constant, whose value is its only number.
 pub(super) const CONSTANT: &str = "fn constant(base: u32, place: Placement) -> f32 { return number(base, 0u); }";
 
 impl Field for Constant {

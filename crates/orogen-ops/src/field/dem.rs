@@ -64,8 +64,8 @@ op! {
 }
 
 impl Dem {
-    /// Whether the heights of the file that a window reads are there. They are not, if only a part of the file was read
-    /// and the window is not inside it.
+    /// Whether the heights of the file that a window reads are available. If only a part of the file was read, the
+    /// window must be inside that part.
     #[must_use]
     pub fn holds(&self, window: &Window) -> bool {
         let Some(ground) = self.path.ground().filter(|ground| ground.is_part() && self.shows == DemShows::Height)
@@ -100,7 +100,7 @@ impl Dem {
 
 impl Field for Dem {
     fn eval(&self, at: &Points, _: &Inputs, _: &WorldParams, out: &mut [f32]) -> Result<()> {
-        // A world is not opened without its files; a plan that runs without a world has nothing to show.
+        // A world is not opened without its files. A plan that runs without a world has no values here.
         let Some(ground) = self.path.ground() else {
             out.fill(f32::NAN);
             return Ok(());
@@ -115,7 +115,7 @@ impl Field for Dem {
             let lattice = matches!(points, Points::Lattice { .. });
             for (k, sample) in out.iter_mut().enumerate() {
                 let (x, y) = if lattice { (xs[k % xs.len()], ys[k / xs.len()]) } else { (xs[k], ys[k]) };
-                // 0 / 0 is no number: without a fade there is no way from one to the other.
+                // 0 / 0 is NaN, so a fade of 0 is handled separately.
                 let beyond = match self.fade == 0.0 {
                     true => f64::from(u8::from(!((0.0..=size[0]).contains(&x) && (0.0..=size[1]).contains(&y)))),
                     false => self.beyond(x, y, size),

@@ -1,5 +1,5 @@
-// The falloff towards the edges of the world: whether corners are square, and two lattices whose unit is the width of the border: from the north-western
-// corner and from the south-eastern one.
+// The falloff towards the edges of the world: whether corners are square, and two lattices whose unit is the width of
+// the border. They start at the north-western and at the south-eastern corner.
 fn edge(base: u32, place: Placement) -> f32 {
     let near = vec2<f32>(coordinate(base + 1u, 0u, place), coordinate(base + 1u, 1u, place));
     let far = -vec2<f32>(coordinate(base + 13u, 0u, place), coordinate(base + 13u, 1u, place));

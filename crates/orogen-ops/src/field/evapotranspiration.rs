@@ -31,9 +31,9 @@ op! {
     }
 }
 
-/// Half the difference between the warmest and the coldest month, in K, and the rain in mm per year, where they are not
-/// given.
+/// Default of half the difference between the warmest and the coldest month, in K.
 pub(super) const DEFAULT_RANGE: f32 = 10.0;
+/// Default of the rain, in mm per year.
 pub(super) const DEFAULT_RAIN: f32 = 1000.0;
 
 /// The sample of an input, or its default.

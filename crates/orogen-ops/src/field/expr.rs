@@ -40,7 +40,7 @@ impl Expr {
         Expr { expr, inputs }
     }
 
-    /// The same with something else for a name.
+    /// Replaces the input for a name.
     pub fn with(mut self, name: &str, input: impl Into<Input>) -> Expr {
         set_named(&mut self.inputs, self.expr.names(), name, input.into());
         self

@@ -1,7 +1,7 @@
 // Gullies on the slopes of a source.
 //
-// Words: number of octaves, slope per difference, onset, assumed slope, weight, detail, and sharpness. For each octave: six words of
-// its noise, its depth, and how far it turns the next one. The lattices of the octaves follow.
+// Words: number of octaves, slope per difference, onset, assumed slope, weight, detail, and sharpness. For each octave:
+// six words of its noise, its depth, and how far it turns the next one. The lattices of the octaves follow.
 
 fn gullies_soft(t: f32) -> f32 {
     let started = select(t - 0.5, 0.5 * t * t, t < 1.0);

@@ -1,4 +1,4 @@
-//! Fields: ops that look at one position and the seed.
+//! Fields: ops whose result depends on one position and the seed.
 
 // The list below is written by `cargo xtask codegen`.
 mod add;

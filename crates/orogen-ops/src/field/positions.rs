@@ -3,15 +3,15 @@
 use orogen_grid::resample::NOWHERE;
 use orogen_noise::Points;
 
-/// Time for looking at a segment of a drawing, in nanoseconds.
+/// Time for evaluating a segment of a drawing, in nanoseconds.
 pub(super) const SEGMENT_COST: f64 = 10.0;
 
-/// Writes `value(x, y)` of each position, in metres.
+/// Writes `value(x, y)` for each position, in metres.
 pub(super) fn each(at: &Points, out: &mut [f32], mut value: impl FnMut(f64, f64) -> f32) {
     change(at, out, |x, y, _| value(x, y));
 }
 
-/// Writes `value(x, y, before)` of each position, in metres, and of the value that is there.
+/// Replaces the value at each position by `value(x, y, before)`, with the position in metres and the previous value.
 pub(super) fn change(at: &Points, out: &mut [f32], mut value: impl FnMut(f64, f64, f32) -> f32) {
     match at {
         Points::Lattice { xs, ys } if !xs.is_empty() => {
@@ -30,7 +30,7 @@ pub(super) fn change(at: &Points, out: &mut [f32], mut value: impl FnMut(f64, f6
     }
 }
 
-/// Hermite's smooth step from 0 at 0 to 1 at 1, flat beyond.
+/// The smoothstep 3 t^2 - 2 t^3 from 0 at 0 to 1 at 1, constant beyond.
 pub(super) fn smoothstep(t: f64) -> f64 {
     let t = t.clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)

@@ -7,7 +7,7 @@ use orogen_simd::{Body, Simd, dispatch};
 /// If the base is in 2^-12 .. 1 and the exponent in 0.1 .. 10, which is the usual case, several bases are processed
 /// together.
 pub(super) fn raise(bases: &mut [f32], exponent: f32) {
-    // Exponents that libm handles separately, and those whose powers may be too small for the fast path.
+    // Exponents that libm handles separately, and exponents whose powers may be too small for the fast path.
     if !(0.1..=10.0).contains(&exponent) || [0.5, 1.0, 2.0].contains(&exponent) {
         bases.iter_mut().for_each(|base| *base = libm::powf(*base, exponent));
         return;

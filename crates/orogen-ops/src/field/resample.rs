@@ -1,4 +1,4 @@
-//! A part of the graph computed at a cell of its own, at any requested cell.
+//! A part of the graph computed at its own cell, whatever cell is requested.
 
 use crate::op::Field;
 
@@ -58,7 +58,7 @@ mod tests {
         assert_eq!(Resample::default().source_cell(240.0, 30.0), Some(30.0));
         let op = Resample { max_ratio: 1.0, ..op };
         assert_eq!([19.0, 20.0, 21.0].map(|cell| op.source_cell(cell, 1.0)), [20.0, 20.0, 40.0].map(Some));
-        // A cell that is not finite is refused with its window: planning must only end.
+        // A cell that is not finite is rejected with its window; planning only has to terminate.
         assert_eq!(op.source_cell(f64::INFINITY, 1.0), Some(f64::INFINITY));
     }
 }

@@ -1,4 +1,4 @@
-//! A field at one altitude.
+//! A horizontal section of a field.
 
 use crate::op::{Affine, CoordMap, Field};
 

@@ -93,7 +93,7 @@ impl Temperature {
     }
 }
 
-/// A function of the position south at each point. It is computed once for successive points of a row.
+/// Writes a function of the position south at each point. It is computed once for successive points of a row.
 fn by_row(at: &Points, out: &mut [f32], value: impl Fn(f64) -> f64) {
     let (mut row, mut there) = (f64::NAN, 0.0);
     each(at, out, |_, south| {

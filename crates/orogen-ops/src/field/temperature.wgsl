@@ -1,5 +1,6 @@
-// Temperature: latitude of the northern edge, means at the equator and the poles, decrease per metre, sea level, whether the distance from the sea is given,
-// the distance at which the index of continentality is 50, and the seasons without a distance. The lattice has degrees.
+// Temperature: latitude of the northern edge, means at the equator and the poles, decrease per metre, sea level,
+// whether the distance from the sea is given, the distance at which the index of continentality is 50, and the seasons
+// without a distance. The lattice has degrees.
 fn temperature_latitude(base: u32, place: Placement) -> f32 {
     return clamp(number(base, 0u) - coordinate(base + 8u, 1u, place), -90.0, 90.0);
 }

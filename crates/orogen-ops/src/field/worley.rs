@@ -58,6 +58,6 @@ op! {
             .with_feature(op.feature.into())
             .with_jitter(op.jitter)
     };
-    // One octave of a wavelength looks at fewer cells than the finer ones of a fractal.
+    // A single octave reads fewer cells per block than the fine octaves of a fractal.
     cost |op| if op.feature == Feature::Edge { [5.8, 2.6] } else { [3.0, 1.1] };
 }

@@ -46,7 +46,7 @@ impl Filter for Blur {
 
     fn scratch(&self, window: &Window) -> u64 {
         let reach = self.halo(window.cell);
-        // A tile for each band that is worked on, which may be all of them.
+        // One tile for each band in progress; all bands may be in progress.
         let rows = window.height.div_ceil(band(reach)).saturating_mul(band(reach) + 2 * reach);
         memory(&Window { width: TILE, height: rows, ..*window }, 4)
     }
@@ -70,7 +70,7 @@ impl Filter for Blur {
                 for left in (0..window.width).step_by(TILE) {
                     let width = TILE.min(window.width - left);
                     context.progress.step((width * height) as f64)?;
-                    // Along x into rows that stay in cache, then along y out of them.
+                    // First along x into rows that stay in the cache, then along y from these rows.
                     for (j, row) in rows.chunks_mut(TILE).take(height + 2 * reach).enumerate() {
                         let source = &source.row(top + j)[left..];
                         weigh(&mut row[..width], &weights, source, 1);
@@ -102,13 +102,13 @@ impl Filter for Blur {
 /// Columns of a tile.
 const TILE: usize = 256;
 
-/// Rows of a band: enough that the rows shared by two bands do not matter.
+/// Rows of a band: so many that the rows shared by two bands cost little.
 fn band(reach: usize) -> usize {
     (4 * reach).max(256)
 }
 
 /// Each value of `out` becomes the weighted sum of as many samples of `from` as there are weights, `step` apart,
-/// starting at the same index. Sums run in the order of the weights, many side by side in registers.
+/// starting at the same index. Sums run in the order of the weights; many sums are computed at once in registers.
 fn weigh(out: &mut [f32], weights: &[f32], from: &[f32], step: usize) {
     const ABREAST: usize = 32;
     let (registers, rest) = out.as_chunks_mut::<ABREAST>();

@@ -45,7 +45,7 @@ impl Filter for Distance {
 
     fn scratch(&self, window: &Window) -> u64 {
         let grown = window.grown(self.halo(window.cell));
-        // Distances down the columns, and those that are found.
+        // Distances along the columns, and the result.
         memory(&Window { height: window.height, ..grown }, 4).saturating_add(memory(window, 4))
     }
 
@@ -74,7 +74,7 @@ impl Filter for Distance {
         numbers.extend(self.fade().numbers());
         // Steps of 1, 2, 4, ... add up to every distance up to the reach.
         let doublings = usize::BITS - reach.leading_zeros();
-        // Plane 2 has the distances within the columns at last.
+        // At the end, plane 2 has the distances along the columns.
         let first = if doublings.is_multiple_of(2) { 2 } else { 1 };
         let steps = alternating(doublings, first, [2, 1]);
         let passes = Passes::new(CODE, &numbers).then("mark", first << 8, [0; 2]);

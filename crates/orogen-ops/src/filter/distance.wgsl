@@ -1,7 +1,9 @@
-// Distance to the nearest marked sample: the threshold, the reach in samples, the cell, the reach in metres, the range of the mask.
+// Distance to the nearest marked sample: the threshold, the reach in samples, the cell, the reach in metres, the range
+// of the mask.
 //
-// Distances within the columns are minima over steps of 1, 2, 4, ..., of which every distance is a sum. `frame.step` holds the plane that is read in its lower
-// eight bits, the one that is written in the next eight, and the length of the step from bit 16 on.
+// Distances along the columns are minima over steps of 1, 2, 4, ...: every distance is a sum of such steps. The lower
+// eight bits of `frame.step` are the plane that is read, the next eight bits the plane that is written, and the bits
+// from 16 on the length of the step.
 const NONE = 1e9;
 
 fn mark(base: u32, at: vec2<i32>) {
@@ -16,7 +18,8 @@ fn down_columns(base: u32, at: vec2<i32>) {
     set_plane((frame.step >> 8u) & 0xffu, at, min(plane(source, at), there + f32(length)));
 }
 
-// Squared distances in plane 1, from the distances within the columns in plane 2. The nearest columns are tried first, because only a few matter.
+// Squared distances in plane 1, from the distances along the columns in plane 2. The nearest columns are tried first,
+// because few columns matter.
 fn along_rows(base: u32, at: vec2<i32>) {
     let reach = i32(number(base, 1u));
     var best = NONE * NONE;

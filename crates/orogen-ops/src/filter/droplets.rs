@@ -77,7 +77,7 @@ impl Filter for Droplets {
     }
 
     fn lower(&self, _: f64, _: &WorldParams) -> Lowering<Passes> {
-        // Sums of fractions in any order would make the result depend on the card and on the moment.
+        // Sums of fractions in arbitrary order would make the result depend on the card and differ from run to run.
         Lowering::Processor(
             "its droplets add up their changes in whole numbers of 64 bits, for which WGSL has no atomic sum",
         )

@@ -92,7 +92,7 @@ impl Filter for Extrapolate {
     }
 }
 
-/// A position along an axis that is beyond the first or the last sample of the world.
+/// A position along an axis beyond the first or the last sample of the world.
 struct Beyond {
     /// The sample at the edge, and the one before it.
     last: i64,
@@ -102,7 +102,7 @@ struct Beyond {
 }
 
 impl Beyond {
-    /// A position in a world of `count` samples; `None` if it is inside.
+    /// The position `at` along a side of `count` samples; `None` if it is inside.
     fn of(at: i64, count: usize) -> Option<Beyond> {
         let end = count as i64 - 1;
         let last = at.clamp(0, end);

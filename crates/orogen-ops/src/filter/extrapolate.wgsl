@@ -1,4 +1,5 @@
-// Linear extrapolation beyond the world: its columns and rows (0 if it is unbounded), and the number of samples beyond an edge.
+// Linear extrapolation beyond the world: its columns and rows (0 if it is unbounded), and the number of samples beyond
+// an edge.
 
 // The value `steps` samples beyond the sample `last` at an edge.
 fn continued(last: f32, before: f32, steps: i32) -> f32 {
@@ -6,12 +7,12 @@ fn continued(last: f32, before: f32, steps: i32) -> f32 {
     return select(next, last, is_missing(next));
 }
 
-// The sample at the edge that is the nearest one to a position, among `count`.
+// The sample that is nearest to a position, of `count` samples.
 fn nearest(position: i32, count: i32) -> i32 {
     return clamp(position, 0, count - 1);
 }
 
-// The value at a position of the planes whose row is inside the world. `place` is the position in the world.
+// The value at a position whose row is inside the world. `at` is the position in the planes, `place` in the world.
 fn in_row(base: u32, at: vec2<i32>, place: i32) -> f32 {
     let columns = i32(data[base]);
     let last = nearest(place, columns);

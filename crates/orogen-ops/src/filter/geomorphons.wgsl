@@ -1,12 +1,12 @@
-// Landforms by lines of sight: samples along the axes and along the diagonals, the tangent of the limit, and the forms by the numbers of lower and higher
-// directions.
-// Whether a direction leads up (1), down (-1) or is level (0); 2 if a sample is missing.
+// Landforms by lines of sight. Words: number of samples along the axes and along the diagonals, the tangent of the
+// limit, and the forms by the numbers of lower and higher directions. Whether a direction leads up (1), down (-1) or is
+// level (0); 2 if a sample is missing.
 fn look(base: u32, at: vec2<i32>, along: vec2<i32>) -> i32 {
     let center = plane(0u, at);
     let is_diagonal = along.x * along.y != 0;
     let farthest = i32(select(straight(base), diagonal(base), is_diagonal));
-    // The rise and the number of steps of the highest and the lowest line. Products are compared, not quotients: they are exact for heights in whole metres,
-    // so that equal slopes up and down cancel.
+    // The rise and the number of steps of the highest and the lowest line. Products are compared instead of quotients,
+    // because they are exact for heights in whole metres, so that equal slopes up and down cancel.
     var up = vec2<f32>(0.0, 1.0);
     var down = vec2<f32>(0.0, 1.0);
     for (var k = 1; k <= farthest; k += 1) {

@@ -1,4 +1,5 @@
-// Hillshade, as in orogen-grid's `analysis/hillshade.rs`: 1 / (8 cell), the direction of the light (east, north, up), and the factor of heights.
+// Hillshade, as in orogen-grid's `analysis/hillshade.rs`: 1 / (8 cell), the direction of the light (east, north, up),
+// and the factor of heights.
 fn hillshade(base: u32, at: vec2<i32>) {
     let rise = number(base, 4u) * gradient(0u, at, number(base, 0u));
     if (is_missing(rise.x + rise.y)) {

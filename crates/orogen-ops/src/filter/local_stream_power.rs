@@ -69,7 +69,7 @@ impl Filter for LocalStreamPower {
     }
 
     fn scratch(&self, window: &Window) -> u64 {
-        // Three planes before and after some iterations, and bands of them.
+        // Three planes before and after a group of iterations, and their bands.
         memory(&window.grown(self.halo(window.cell)), 36)
     }
 
@@ -103,7 +103,7 @@ impl Filter for LocalStreamPower {
     }
 
     fn lower(&self, cell: f64, world_params: &WorldParams) -> Lowering<Passes> {
-        // The layer of the heights, and the other plane that has them after every second iteration.
+        // The two planes of heights, which the iterations use in turn; the first one is the layer.
         const TURNS: [u32; 2] = [2, 7];
         let first = TURNS[(self.iterations % 2) as usize];
         let passes = Passes::new(CODE, &[]).with_numbers(self.law(cell, world_params).numbers()).with_scratch(3);

@@ -1,6 +1,8 @@
-// Stream power with local rules: an iteration of orogen-grid's `erosion/local_stream_power.rs` as two passes. The numbers are those of its `Constants`.
+// Stream power with local rules: an iteration of orogen-grid's `erosion/local_stream_power.rs` as two passes. The
+// numbers are those of its `Constants`.
 //
-// The lower eight bits of `frame.step` are the plane of the heights that are read, and the next eight that of those that are written.
+// The lower eight bits of `frame.step` are the plane of heights that is read, the next eight bits the plane that is
+// written.
 const SOURCE = 0u;
 const FLOW = 1u;
 const AREA = 3u;
@@ -24,7 +26,7 @@ fn weight(drop: f32, per: f32) -> f32 {
     return square * square;
 }
 
-// What a cell gives per unit of weight: area and sediment.
+// The area and sediment that a cell gives per unit of weight.
 fn give(base: u32, at: vec2<i32>) {
     let heights = frame.step & 0xffu;
     let h = plane(heights, at);
@@ -80,7 +82,7 @@ fn take(base: u32, at: vec2<i32>) {
         rate *= power(max(steep, 1e-12), slope_exponent(base));
     }
     let cut = min(rate * steep / (1.0 + rate * side), h - lowest);
-    // At most the inflow, and nothing on cells above their surroundings.
+    // Deposits at most the inflow, and nothing on cells above their surroundings.
     let years = step_years(base);
     let all = came * years / cell_area(base);
     let hollow = positive(0.25 * sides + cut);

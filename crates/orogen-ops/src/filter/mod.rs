@@ -1,4 +1,4 @@
-//! Filters: ops that read a finite halo.
+//! Filters: ops that read a finite halo around each sample.
 
 // The list below is written by `cargo xtask codegen`.
 mod aspect;

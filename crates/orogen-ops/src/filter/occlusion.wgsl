@@ -1,5 +1,5 @@
-// The visible share of the sky, as in orogen-grid's `analysis/sky.rs`. The words are the number of steps, and of each its offset, 1 / distance, and the share of
-// its direction in the circle at the last step of that direction, otherwise 0.
+// The visible share of the sky, as in orogen-grid's `analysis/sky.rs`. Words: the number of steps, and for each step
+// its offset, 1 / distance and, at the last step of a direction, that direction's share of the circle, otherwise 0.
 fn view(base: u32, at: vec2<i32>) {
     let here = plane(0u, at);
     if (is_missing(here)) {

@@ -66,7 +66,7 @@ const CODE: &str = include_str!("pipes.wgsl");
 
 impl Filter for Pipes {
     fn halo(&self, _: f64) -> usize {
-        // One more for the velocity, which is defined between the sides of a cell.
+        // One more cell for the velocity, which is computed from the flows over a cell's sides.
         RADIUS * self.iterations as usize + 1
     }
 
@@ -108,7 +108,7 @@ impl Filter for Pipes {
     }
 }
 
-/// The sediment. Where there is none it may differ from 0 by the rounding of the bed's height.
+/// The sediment, at least 0: rounding of the bed's height may make it slightly negative.
 fn carried(wet: &Wet) -> Grid {
     let mut carried = wet.plane(SEDIMENT);
     carried.data_mut().iter_mut().for_each(|metres| *metres = metres.max(0.0));

@@ -1,12 +1,12 @@
-// Virtual pipes: an iteration of orogen-grid's `erosion/pipe_rows.rs` as three passes. The numbers are those of its `Constants`, then the metres per second
-// of the flow over two sides in a depth of 1 m.
+// Virtual pipes: an iteration of orogen-grid's `erosion/pipe_rows.rs` as three passes. Words: the fields of its
+// `Constants`, then the velocity in m/s of the flow over two sides at a depth of 1 m.
 //
-// Flows are held in two pairs of planes: the first pass reads one and writes the other, and the second pass goes the other way.
+// Flows are in two pairs of planes: the first pass reads one pair and writes the other, the second pass the reverse.
 const SOURCE = 0u;
 const BED = 1u;
 const DEPTH = 2u;
 const SEDIMENT = 3u;
-// The layer of the velocity, which is computed last, has the changes of the ground until then.
+// The plane of the velocity has the changes of the ground until the velocity is computed at the end.
 const VELOCITY = 4u;
 const CHANGE = 4u;
 const EAST = 5u;
@@ -31,7 +31,7 @@ fn pulled(base: u32, flow: f32, bed: vec2<f32>, depth: vec2<f32>) -> f32 {
     return kept(base) * flow + pull(base) * ((bed.x - bed.y) + (depth.x - depth.y));
 }
 
-// Flows over the eastern and southern side; the share of the outflow that the water suffices for, and its sediment.
+// Flows over the eastern and southern sides, the share of the outflow for which there is water, and its sediment.
 fn flow(base: u32, at: vec2<i32>) {
     let west_at = at - vec2<i32>(1, 0);
     let north_at = at - vec2<i32>(0, 1);
@@ -50,7 +50,8 @@ fn flow(base: u32, at: vec2<i32>) {
     set_plane(LOAD, at, plane(SEDIMENT, at) / max(depth, TINY));
 }
 
-// A flow, limited to the water of the cell that it comes from: the limits of the cells that it leaves and enters if it is positive.
+// A flow, limited to the water of the cell that it comes from. `left` and `entered` are the limits of the cells that a
+// positive flow leaves and enters.
 fn held(flow: f32, left: f32, entered: f32) -> f32 {
     return flow * select(entered, left, flow > 0.0);
 }
@@ -111,7 +112,7 @@ fn lay(base: u32, at: vec2<i32>) {
     set_plane(BED, at, changed);
 }
 
-// The velocity, and no sediment below 0 by the rounding of the bed.
+// Computes the velocity, and sets sediment that rounding of the bed made negative to 0.
 fn finish(base: u32, at: vec2<i32>) {
     let east = plane(EAST, at - vec2<i32>(1, 0)) + plane(EAST, at);
     let south = plane(SOUTH, at - vec2<i32>(0, 1)) + plane(SOUTH, at);

@@ -1,4 +1,5 @@
-// Second differences of heights far above zero. The differences' own rounding errors are added, because what is left of the heights is small.
+// Second differences of heights far above zero. The rounding errors of the first differences are added, because they
+// are not negligible compared with the result.
 
 // The rounding error of `difference`, which is a - b.
 fn rounding(a: f32, b: f32, difference: f32) -> f32 {

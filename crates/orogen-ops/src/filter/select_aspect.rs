@@ -54,7 +54,7 @@ impl Filter for SelectAspect {
             context.progress.step(1.0)?;
             gradients_between([source.row(j), source.row(j + 1), source.row(j + 2)], window.cell, |i, gradient| {
                 let off = (aspect_of(gradient) - direction).abs() % 360.0;
-                // The smaller of the two angles. Level ground, whose aspect is not a number, is not selected.
+                // The smaller of the two angles. Level ground, whose aspect is NaN, is not selected.
                 let off = if off > 180.0 { 360.0 - off } else { off };
                 row[i] = directions.of(off) * slopes.of(libm::atanf(gradient.steepness()).to_degrees());
             });

@@ -48,7 +48,7 @@ op! {
 }
 
 impl CurvatureKind {
-    /// The kind, for the processor and as the number that shaders read.
+    /// The kind for the processor, and the number for shaders.
     pub(super) fn kind(self) -> (Curvature, f32) {
         match self {
             CurvatureKind::Total => (Curvature::Total, 0.0),

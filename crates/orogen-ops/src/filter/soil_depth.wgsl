@@ -1,14 +1,15 @@
 // Steady-state soil depth: cell, critical slope, creep, decay, density ratio times production, deepest.
 //
-// The depth follows from the difference of the fluxes through opposite sides, which is much smaller than the fluxes. With the slopes S across the two sides
-// and s = |slope|^2 / critical^2 there, it is
+// The depth follows from the difference of the fluxes through opposite sides, which is much smaller than the fluxes.
+// With the slopes S across the two sides and s = |slope|^2 / critical^2 there, it is
 //
 //   creep ((S1 - S0) (1 - s0) + S0 (s1 - s0)) / ((1 - s0) (1 - s1))
 //
 // where the differences of slopes are second differences of heights.
 
-// The difference of the fluxes through two sides, for a creep of 1: the slopes `across` and `along` each of them, and the differences of those slopes. The
-// second part of the result is 1 if a side is at the critical slope or above it, otherwise 0.
+// The difference of the fluxes through two sides, for a creep of 1, from the slopes `across` and `along` each side and
+// the differences of the slopes. The second part of the result is 1 if a side is at the critical slope or above it,
+// otherwise 0.
 fn flux_difference(across: vec2<f32>, along: vec2<f32>, difference: vec2<f32>, critical: f32) -> vec2<f32> {
     let square = critical * critical;
     let share = (across * across + along * along) / square;
@@ -32,7 +33,7 @@ fn depths(base: u32, at: vec2<i32>) {
     let sw = plane(0u, at + vec2<i32>(-1, 1));
     let s = plane(0u, at + vec2<i32>(0, 1));
     let se = plane(0u, at + vec2<i32>(1, 1));
-    // A difference with a missing height is missing, and the sum of their sizes is, too.
+    // A difference with a missing height is missing, and so is the sum of the absolute differences.
     let all = (abs(nw - z) + abs(n - z) + abs(ne - z)) + (abs(w - z) + abs(e - z)) + (abs(sw - z) + abs(s - z) + abs(se - z));
     if (is_missing(all)) {
         set_plane(1u, at, missing());

@@ -39,7 +39,7 @@ impl Filter for Thermal {
     }
 
     fn scratch(&self, window: &Window) -> u64 {
-        // All rows before and after some passes, and the bands.
+        // All rows before and after a group of passes, and the bands.
         memory(&window.grown(self.iterations as usize), 12)
     }
 

@@ -1,6 +1,6 @@
-// Thermal weathering: the height difference between neighbors at the stable slope, and the share that moves.
-// `frame.step` holds the plane that is read in its lower eight bits, and the one that is written in the next eight.
-// What crosses a side, by the height differences across and along it.
+// Thermal weathering: the height difference between neighbors at the stable slope, and the share that moves. The lower
+// eight bits of `frame.step` are the plane that is read, the next eight bits the plane that is written. The material
+// that crosses a side, from the height differences across and along it.
 fn moved(base: u32, across: f32, along: f32) -> f32 {
     let stands = stands(base);
     let steep = sqrt(across * across + along * along);

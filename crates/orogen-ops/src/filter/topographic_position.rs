@@ -74,7 +74,7 @@ impl Filter for TopographicPosition {
             }
         }
         if let Some(classes) = classes {
-            // Slopes of a few rows at a time.
+            // Computes slopes of a few rows at a time.
             let found = found.data().chunks(BAND * width);
             parallel::try_for_each(
                 classes.data_mut().chunks_mut(BAND * width).zip(found).enumerate(),
@@ -95,7 +95,7 @@ impl Filter for TopographicPosition {
 
     fn lower(&self, cell: f64, _: &WorldParams) -> Lowering<Passes> {
         let radius = self.halo(cell);
-        // A disc is the same turned by a right angle.
+        // The disc is unchanged by a turn of 90 degrees.
         let halves = half_widths(radius);
         let count: usize = halves.iter().map(|half| 2 * half + 1).sum();
         let passes = Passes::new(CODE, &[])

@@ -1,8 +1,9 @@
-// Topographic position: 1 / (8 cell), the radius, the number of samples in the disc, then the half height of each of its columns, from the west. All but the
-// first are whole numbers.
+// Topographic position. Words: 1 / (8 cell), the radius, the number of samples in the disc, then the half height of
+// each of its columns from the west. All but the first word are whole numbers.
 //
-// Heights are rounded to 1/256 m. Their sums and the sums of their squares down each column are kept exactly, as in orogen-grid's `analysis/position.rs`, in
-// planes of 24 bits each, which f32 holds exactly. Whole numbers of 64 bits are pairs of u32, the lower part first.
+// Heights are rounded to 1/256 m. Their sums and the sums of their squares down each column are kept exactly, as in
+// orogen-grid's `analysis/position.rs`, in planes of 24 bits each, which f32 holds exactly. Whole numbers of 64 bits
+// are pairs of u32, the lower part first.
 const SUM = 4u;
 const SQUARES = 6u;
 const LIMB = 0x00ffffffu;
@@ -42,7 +43,8 @@ fn rounded(a: vec2<u32>) -> f32 {
     return f32(a.y) * 4294967296.0 + f32(a.x);
 }
 
-// A height in units of 1/256 m; 0 if it is not a number. Halves are rounded away from 0, as on the processor; `round` of WGSL rounds them to even numbers.
+// A height in units of 1/256 m; 0 if it is not a number. Halves are rounded away from 0, as on the processor; `round`
+// of WGSL rounds them to even numbers.
 fn counts(height: f32) -> i32 {
     if ((bitcast<u32>(height) & 0x7fffffffu) > 0x7f800000u) {
         return 0;
@@ -117,7 +119,7 @@ fn compare(base: u32, at: vec2<i32>) {
     sum.y = bitcast<u32>(bitcast<i32>(sum.y << 16u) >> 16u);
     let height = plane(0u, at);
     let center = counts(height);
-    // Relative to the center, then to the mean, so that f32 suffices for what is left.
+    // Relative to the center, then to the mean, so that f32 is precise enough for the remainder.
     let n = f32(count);
     let from_center = rounded(minus(sum, times(vec2<u32>(count, 0u), center))) / n;
     let mean = center + i32(round(from_center));
@@ -130,7 +132,7 @@ fn compare(base: u32, at: vec2<i32>) {
     let variance = rounded(total) / n - rest * rest;
     // Heights are not always multiples of 1/256 m.
     let position = (height - f32(center) / 256.0) - from_center / 256.0;
-    // A variance below one unit is rounding.
+    // A variance below one unit is a rounding error.
     var deviation = 0.0;
     if (variance >= 1.0) {
         deviation = position * 256.0 / sqrt(variance);

@@ -1,8 +1,8 @@
 //! Drainage areas, watersheds and stream orders, tile by tile (Barnes, "Parallel non-divergent flow accumulation for
 //! trillion cell digital elevation models on desktops or clusters", 2016).
 //!
-//! Of each tile only the cells where water leaves it or enters it are kept: a graph of a few thousand cells per tile.
-//! Sums are passed through this graph, and then each tile is finished separately.
+//! For each tile only the cells where water leaves or enters it are kept, as a graph of a few thousand cells per tile.
+//! Sums are propagated through this graph, then each tile is finished separately.
 
 use super::tiling::{Border, Queue, Tiling, border};
 use orogen_grid::error::Result;
@@ -15,7 +15,7 @@ use orogen_io::raster::Raster;
 /// No exit or outlet.
 const NOWHERE: u32 = u32::MAX;
 
-/// The results.
+/// The result layers.
 pub struct Layers<'a> {
     /// Drainage areas in m^2.
     pub flow: &'a mut Raster,
@@ -23,16 +23,16 @@ pub struct Layers<'a> {
     pub watershed: &'a mut Raster,
     /// Strahler orders.
     pub strahler: &'a mut Raster,
-    /// Minimum number of cells that a stream drains, weighted by the rain if it is given.
+    /// Minimum number of cells that a stream drains, weighted by rain if it is given.
     pub threshold: u64,
 }
 
 /// A cell where water leaves its tile.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Exit {
-    /// Its index in the tile.
+    /// The index of the cell in the tile.
     pub index: u32,
-    /// The cell of another tile that it drains to.
+    /// The number of the cell of another tile that it drains to.
     pub to: u64,
     /// Number of cells that drain through it, or the sum of their weights.
     area: u64,
@@ -47,7 +47,7 @@ pub(super) struct Exit {
 pub(super) struct Inflow {
     area: u64,
     order: u8,
-    /// Whether two streams of that order flow in.
+    /// Whether two streams of the highest order flow in.
     met: bool,
 }
 
@@ -101,7 +101,7 @@ pub(super) struct Areas<'a> {
     progress: &'a Progress,
     /// The exits of each tile.
     pub exits: Vec<Vec<Exit>>,
-    /// For each tile and cell along its border: where water that enters there ends.
+    /// For each tile, the end of the flow path that enters at each cell along its border.
     ends: Vec<Border<End>>,
 }
 
@@ -324,7 +324,7 @@ impl Tile {
         Grid::from_data(self.window, data).unwrap_or_else(|| Grid::filled(self.window, 0.0))
     }
 
-    /// The areas from the sources downstream; `inflows` come from other tiles.
+    /// The area of each cell, with `inflows` from other tiles.
     pub(super) fn areas(&self, inflows: &Border<Inflow>) -> Vec<u64> {
         let mut area = match &self.weights {
             Some(weights) => weights.iter().map(|weight| u64::from(*weight)).collect(),

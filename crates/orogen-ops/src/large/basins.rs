@@ -1,8 +1,8 @@
 //! Basins, tile by tile: spill levels, and receivers routed out of depressions over the lowest passes.
 //!
 //! After Barnes, "Parallel Priority-Flood depression filling for trillion cell digital elevation models" (2016). The
-//! tree of passes is kept (see [`tree`](super::tree)), so that not only the levels but also the flow paths equal those
-//! computed in memory.
+//! tree of passes is kept (see [`tree`](super::tree)), so that both the levels and the flow paths equal the results in
+//! memory.
 
 use super::tiling::{Border, Tiling, border};
 use super::tree::{self, Beside, Branch, Sets};
@@ -34,7 +34,7 @@ pub fn drain(
         progress.advance(1.0);
     }
     let map = Map::new(tiling, &shares);
-    // Paths that continue in another tile: the cell where they do, and its new receiver.
+    // Paths that continue in another tile: the first cell there and its new receiver.
     let mut turns: Vec<Vec<(u32, u8)>> = vec![Vec::new(); tiling.count()];
     for (last, code) in map.over_borders(tiling) {
         let (t, index) = tiling.locate(last);
@@ -102,7 +102,7 @@ fn step(window: &Window, cell: usize, code: u8) -> std::result::Result<usize, (i
     }
 }
 
-/// The basins of a tile: the outside, those with a pit in it, and one for each cell where water leaves it.
+/// The basins of a tile: the outside, one for each pit in the tile, and one for each cell where water leaves the tile.
 struct Basins {
     heights: Grid,
     labels: Vec<u32>,
@@ -110,8 +110,8 @@ struct Basins {
     count: usize,
     /// Exits of the tile: the basin, and the position of the receiving cell.
     exits: Vec<(u32, (i64, i64))>,
-    /// The names of basins that the map knows: 0 is the outside, then those along the border, then those where paths
-    /// between them branch.
+    /// The names of basins that the map knows: 0 is the outside, followed by basins along the border and basins where
+    /// paths between them branch.
     names: Vec<Option<u32>>,
     branches: Vec<Branch>,
 }
@@ -164,8 +164,8 @@ impl Basins {
         Ok(Basins { heights, labels, count, exits, names, branches })
     }
 
-    /// The level of each basin, and the starts of paths to reverse: the last cell of each basin before the pass that it
-    /// drains over in this tile, and the code over it.
+    /// The level of each basin, and the starts of paths to reverse: for each basin that drains over a pass in this
+    /// tile, the last cell before the pass and the code that leads over it.
     fn spills(&self, known: &Known) -> (Vec<f32>, Vec<(u32, u8)>) {
         let mut levels = vec![f32::NEG_INFINITY; self.count];
         let mut taken = known.taken.iter();
@@ -240,14 +240,14 @@ impl Share {
 struct Known<'a> {
     /// Whether each of the passes that may be replaced is part of the map's tree, in their order.
     taken: &'a [bool],
-    /// The level of each, and whether it drains over a pass of the tile.
+    /// The level of each named basin, and whether it drains over a pass of the tile.
     levels: Vec<(f32, bool)>,
 }
 
 /// A pass between named basins of the map.
 struct Join {
     height: f32,
-    /// The cell and code from which it leads, for passes between tiles.
+    /// For passes between tiles, the cell and code from which the pass leads.
     place: u64,
     ends: [u32; 2],
     /// The tile that contains it, and its index there; `None` for a pass between tiles.
@@ -263,7 +263,7 @@ struct Map {
     levels: Vec<f32>,
     /// Whether the basin drains over a pass of its tile at this name.
     up: Vec<bool>,
-    /// Passes between tiles that basins drain over: the last cell and its new code.
+    /// Passes between tiles over which basins drain: the last cell and its new code.
     crossings: Vec<(u64, u8)>,
 }
 
@@ -278,8 +278,8 @@ impl Map {
             let (t, index) = tiling.locate(cell);
             shares[t].labels.get(index).map(|label| bases[t] + label)
         };
-        // Names of the same basin: the outside is the same in all tiles, and water that leaves a tile belongs to the
-        // next one's basin.
+        // Merges names of the same basin: the outside is the same in all tiles, and water that leaves a tile belongs to
+        // a basin of the next tile.
         let mut same = Sets::new(count);
         for (t, share) in shares.iter().enumerate() {
             same.join(0, bases[t]);

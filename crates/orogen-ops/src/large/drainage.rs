@@ -62,8 +62,8 @@ impl Water<'_> {
         flats::resolve(self.heights, &self.tiling, self.sea, codes, self.progress)
     }
 
-    /// Computes areas, watersheds and orders from complete receivers. Areas are weighted by the factors of the `rain`,
-    /// if they are given: the same as
+    /// Computes areas, watersheds and orders from complete receivers. If `rain` is given, areas are weighted by its
+    /// factors. The result is the same as
     /// [`hydrology::accumulation::accumulate_rain_with`](crate::hydrology::accumulation::accumulate_rain_with).
     ///
     /// # Errors
@@ -107,7 +107,7 @@ mod tests {
         }
     }
 
-    /// Factors of the rain, of which some are too large or too small.
+    /// Rain factors, some of them too large or too small.
     fn rain(window: &Window) -> Grid {
         let factors = (0..window.len()).map(|cell| hashed(cell as i64, 5) % 1000).map(|k| k as f32 / 400.0 - 0.2);
         Grid::from_data(*window, factors.map(|factor| if factor > 2.2 { 1e3 } else { factor }).collect()).unwrap()

@@ -138,7 +138,7 @@ impl Flats<'_> {
     }
 }
 
-/// A tile and two cells around it: its receivers by steepest descent, and the flat cells in it and next to it.
+/// A tile with two cells around it: its receivers by steepest descent, and the flat cells in the tile and next to it.
 struct FlatTile<'a> {
     tiling: &'a Tiling,
     heights: Grid,
@@ -146,11 +146,11 @@ struct FlatTile<'a> {
     strides: [isize; 8],
     /// The flat cells.
     flat: Vec<u32>,
-    /// The index of each cell among them.
+    /// The index of each cell among the flat cells.
     places: Vec<u32>,
-    /// The index in the tile of each of them; `None` if it is outside.
+    /// The index of each flat cell in the tile; `None` if it is outside.
     own: Vec<Option<u32>>,
-    /// Their numbers in the map.
+    /// The number of each flat cell in the map.
     numbers: Vec<u64>,
 }
 
@@ -192,14 +192,15 @@ impl<'a> FlatTile<'a> {
         self.strides.iter().enumerate().filter_map(level)
     }
 
-    /// The directions with a neighbor as high as the cell that has a receiver of its own.
+    /// The directions to neighbors at the height of the cell that have a receiver.
     fn drained_beside(&self, cell: usize) -> u8 {
         let h = self.heights.data();
         let drains = |n: usize| h[n] == h[cell] && self.places[n] == NO_PLACE;
         (0..8).filter(|k| drains(neighbor(cell, self.strides[*k]))).fold(0, |set, k| set | 1 << k)
     }
 
-    /// 1 for each flat cell of the tile for which `at` is true, given its index among flat cells and in the tile.
+    /// Seeds of 1 at the flat cells of the tile for which `at` is true. `at` gets the index among the flat cells and
+    /// the index in the tile.
     fn seeds(&self, at: impl Fn(usize, usize) -> bool) -> Vec<u64> {
         let cells = self.flat.iter().zip(&self.own).enumerate();
         cells.map(|(place, (c, own))| if own.is_some() && at(place, *c as usize) { 1 } else { UNKNOWN }).collect()
@@ -214,7 +215,7 @@ impl<'a> FlatTile<'a> {
         self.seeds(|_, cell| self.drained_beside(cell) != 0)
     }
 
-    /// The rims, and the first cell of each flat without one.
+    /// Seeds at the rims, and at the first cell of each flat without a rim.
     fn toward_seeds(&self, rims: &Borders, first: &Borders) -> Vec<u64> {
         let first = self.spread(self.numbers(&self.spread(self.rim_seeds(), rims, 1)), first, 0);
         self.seeds(|place, cell| first[place] == self.numbers[place] || self.drained_beside(cell) != 0)

@@ -1,5 +1,5 @@
-//! Hydrology of maps that do not fit in memory, with the same bits as [`hydrology`](orogen_grid::hydrology): tile by
-//! tile, with the map on disk and only the values along the tiles' borders in memory.
+//! Hydrology of maps that do not fit in memory, with the same bits as [`hydrology`](orogen_grid::hydrology). The map is
+//! on disk and is processed tile by tile; only the values along the tiles' borders are in memory.
 
 pub(crate) mod areas;
 pub(crate) mod basins;

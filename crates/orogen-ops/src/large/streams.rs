@@ -37,8 +37,9 @@ pub const STRIP_SAMPLE: u64 = 14;
 pub const PASSES: f64 = 4.0;
 
 impl<'a> Streams<'a> {
-    /// From complete receivers, as direction codes, with [`NONE`](crate::hydrology::direction::NONE) for outlets. A
-    /// cell that drains fewer than `threshold` cells is not a stream. The map must have fewer than 2^32 cells.
+    /// Computes the streams from complete receivers, given as direction codes with
+    /// [`NONE`](crate::hydrology::direction::NONE) for outlets. A cell that drains fewer than `threshold` cells is not
+    /// a stream. The map must have fewer than 2^32 cells.
     ///
     /// # Errors
     /// If the disk fails, or the work is cancelled.
@@ -119,7 +120,7 @@ impl<'a> Streams<'a> {
 }
 
 impl Tile {
-    /// The longest flow path to each cell; `incoming` are those from other tiles.
+    /// The longest flow path to each cell; `incoming` are the paths from other tiles.
     fn ways(&self, incoming: &Border<Way>) -> Vec<Way> {
         let mut ways = vec![Way::default(); self.window.len()];
         border(&self.window).for_each(|index| ways[index] = incoming.get(index).unwrap_or_default());

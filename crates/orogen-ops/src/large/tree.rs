@@ -3,8 +3,8 @@
 //! The pass that each basin drains over follows from the minimum spanning tree of all basins (see
 //! [`hydrology::basins`](crate::hydrology::basins)). A pass that is not in a tile's tree is not in the map's tree
 //! either. A pass in a tile's tree is also in the map's tree, except for the highest pass on each path between two
-//! basins that extend beyond the tile: a lower one elsewhere may replace it. The map therefore needs only these passes
-//! of each tile, and the basins where such paths branch.
+//! basins that extend beyond the tile, because a lower pass elsewhere may replace it. The map therefore needs only
+//! these passes of each tile, and the basins where such paths branch.
 
 use orogen_grid::hydrology::basins::{Pass, ordered};
 
@@ -48,7 +48,7 @@ pub struct Branch {
     pub joins: Option<[u32; 2]>,
 }
 
-/// The minimum spanning tree, or forest, of a tile's basins. `names` are those of basins known beyond the tile,
+/// The minimum spanning tree, or forest, of a tile's basins. `names` are the names of basins known beyond the tile,
 /// numbered from 0; basins where paths between them branch get the next numbers.
 pub fn least(mut passes: Vec<Pass>, names: &mut [Option<u32>]) -> Vec<Branch> {
     passes.sort_unstable_by_key(|pass| (ordered(pass.height), pass.from, pass.code));
@@ -100,7 +100,7 @@ pub fn least(mut passes: Vec<Pass>, names: &mut [Option<u32>]) -> Vec<Branch> {
     branches
 }
 
-/// The branches of a tree at each of its nodes.
+/// The branches at each node of a tree.
 #[derive(Debug, Clone)]
 pub struct Beside {
     starts: Vec<u32>,
@@ -108,7 +108,7 @@ pub struct Beside {
 }
 
 impl Beside {
-    /// From `count` nodes, and the two ends of each branch.
+    /// A tree of `count` nodes with the two ends of each branch.
     pub fn new(count: usize, ends: impl Iterator<Item = [u32; 2]> + Clone) -> Beside {
         let mut starts = vec![0u32; count + 1];
         for node in ends.clone().flatten() {

@@ -1,4 +1,4 @@
-//! Levelled ops that make drained land: one implementation for all.
+//! The common implementation of levelled ops that make drained land.
 
 use super::drained::Drained;
 use super::layer_passes::lower_layers;
@@ -15,14 +15,15 @@ use orogen_grid::multiscale::given::Given;
 use orogen_grid::multiscale::level::Level;
 use orogen_grid::multiscale::refinement::Refinement;
 
-/// Approximate time in nanoseconds for a sample of a coarsest level that is given, of one with continents, whose tiles
-/// have a wide halo, and of a finer level.
+/// Approximate time for a sample of a coarsest level that is given by inputs, in nanoseconds.
 const COST_OF_GIVEN: f64 = 50.0;
+/// Approximate time for a sample of a coarsest level with continents, whose tiles have a wide halo, in nanoseconds.
 const COST_OF_CONTINENTS: f64 = 2e4;
+/// Approximate time for a sample of a finer level, in nanoseconds.
 const COST: f64 = 300.0;
 
-/// `op!` for drained land: the layers that all such ops have stand before those of the declaration. A method
-/// `completed` of the op adds to the land what not all of them have.
+/// `op!` for drained land: the common layers of such ops come before the declared ones. The op's method `completed`
+/// sets parameters of the land that not all of these ops have.
 macro_rules! drained_op {
     (
         $(#[doc = $doc:literal])+
@@ -89,11 +90,11 @@ pub(super) use drained_op;
 
 /// An op whose levels are drained land.
 pub trait DrainedOp: Declared + Send + Sync {
-    /// The land by the op's parameters, with the seed of the node.
+    /// The land with the op's parameters and the seed of the node.
     fn drained(&self) -> Drained;
 }
 
-/// The inputs that all such ops have; those that an op does not declare are not given.
+/// The inputs of all such ops; inputs that an op does not declare are `None`.
 fn given<'a>(inputs: &GridInputs<'a>) -> Given<'a> {
     Given {
         shore: inputs.get("shore"),
@@ -135,7 +136,7 @@ impl<T: DrainedOp> Levelled for T {
     }
 
     fn levels_with_inputs(&self) -> usize {
-        // Detail levels take over what the finest level of valleys has.
+        // Detail levels take over the data of the finest level of valleys and read no inputs.
         self.drained().refinement.levels + 1
     }
 
@@ -230,7 +231,7 @@ impl<T: DrainedOp> Levelled for T {
     }
 }
 
-/// The level of these planes.
+/// The level from its planes.
 fn level_of(depth: usize, planes: &[Grid]) -> Result<Level> {
     Level::from_planes(depth, &planes.iter().collect::<Vec<_>>())
 }

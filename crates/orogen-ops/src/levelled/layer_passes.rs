@@ -1,4 +1,4 @@
-//! The layers of drained land as passes of a graphics card.
+//! The passes by which a graphics card computes the layers of drained land.
 
 use super::drained::Drained;
 use super::layers::surface_halo;
@@ -13,8 +13,8 @@ const SURFACE: &str = code!("layers.wgsl", "surface.wgsl");
 const RIVERS: &str = code!("layers.wgsl", "rivers.wgsl");
 const BEDS: &str = code!("layers.wgsl", "beds.wgsl");
 
-/// The planes after those of a level, by their names in shaders: LAYER_ and the name of the layer for those of layers.
-/// Those in one line are one plane, used in this order.
+/// The planes after the planes of a level, by their names in shaders; planes of layers are called `LAYER_` and the name
+/// of the layer. The names in one line are uses of one plane, in this order.
 const SCRATCH: [&[&str]; 10] = [
     &["LAYER_HEIGHT"],
     &["LAYER_FLOW"],
@@ -29,11 +29,12 @@ const SCRATCH: [&[&str]; 10] = [
     &["NODE_DEPTH"],
 ];
 
-/// Samples that a call reads, about, along a river and in the bed of a link.
+/// Approximate number of samples that a call reads along a river.
 const ALONG: usize = 1000;
+/// Approximate number of samples that a call reads in the bed of a link.
 const BED: usize = 2000;
 
-/// How a graphics card reads layers from a level, which it has made.
+/// The passes by which a graphics card computes layers from a level that it has made.
 #[must_use]
 pub fn lower_layers(
     land: &Drained,
@@ -54,12 +55,13 @@ pub fn lower_layers(
     let [inside, change] = refinement.surface_numbers(level, land.share(level));
     let passes = passes(refinement, level, &SCRATCH).with_scratch(Level::PLANES + SCRATCH.len());
     let mut passes = passes.with_numbers([
-        // Where samples are in their cells, as a share of the sides.
+        // Position of samples in their cells, as a share of the sides.
         ("inside", inside),
         // The mean change of heights by finer levels, as a share of the rise to a node at the source of a river.
         ("mean_change", change),
         ("sea_level", land.sea_level(world_params)),
-        // Least area of rivers in m^2, discharge in m^3/s from a m^2, and width and depth of a river of 1 m^3/s.
+        // Minimum drainage area of rivers in m^2, discharge in m^3/s per m^2, and width and depth of a river of 1
+        // m^3/s.
         ("stream", land.stream as f32),
         ("runoff", channel.discharge(1.0) as f32),
         ("width_of_one", channel.width as f32),

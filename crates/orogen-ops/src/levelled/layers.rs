@@ -59,12 +59,12 @@ pub fn layers_of(
     Ok(())
 }
 
-/// The error of a layer that is declared, but not made here.
+/// The error for a layer that is declared but not implemented here.
 fn unknown(layer: &str) -> Error {
     Error::new(ErrorKind::Internal, format!("drained land has no layer `{layer}`"))
 }
 
-/// Each sample of a layer by its index.
+/// Sets each sample of a layer to a value by its index.
 fn fill(out: &mut Grid, value: impl Fn(usize) -> f32) {
     out.data_mut().iter_mut().enumerate().for_each(|(q, sample)| *sample = value(q));
 }
@@ -72,7 +72,7 @@ fn fill(out: &mut Grid, value: impl Fn(usize) -> f32) {
 /// A layer of the nodes of a level's cells.
 fn nodes_of(refinement: &Refinement, level: &Level, window: &Window, name: &str, out: &mut Grid) -> Result<()> {
     let cell = refinement.cell_of(level.depth);
-    // The nodes of the finest level of valleys are at the samples; cells of detail levels begin at theirs.
+    // The nodes of the finest level of valleys are at the samples; the cells of detail levels start at their samples.
     let first = if level.depth > refinement.levels { 0.0 } else { -0.5 * refinement.cell };
     let metres = |share: f32| (f64::from(share) * cell + first) as f32;
     let value: &dyn Fn(usize) -> f32 = match name {

@@ -1,7 +1,7 @@
-//! Levelled ops: each level from a finite halo of the next coarser one.
+//! Levelled ops: each level is computed from a finite halo of the next coarser level.
 //!
-//! All of them make drained land: `drained_op` is their one implementation, `drained` the land by the parameters of an
-//! op, and `layers` what is read from it. `passes` and `layer_passes` are the same for graphics cards.
+//! All of them make drained land. `drained_op` is their common implementation, `drained` the land with the parameters
+//! of an op, and `layers` computes the layers. `passes` and `layer_passes` do the same on graphics cards.
 
 // The list below is written by `cargo xtask codegen`.
 mod amplify;

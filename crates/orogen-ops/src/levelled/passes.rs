@@ -1,4 +1,4 @@
-//! The levels of drained land as passes of a graphics card.
+//! The passes by which a graphics card computes the levels of drained land.
 
 use super::drained::Drained;
 use crate::declare::Spec;
@@ -9,7 +9,7 @@ use orogen_grid::multiscale::lowered::{FLAGS, Words};
 use orogen_grid::multiscale::refinement::Refinement;
 use orogen_grid::multiscale::schedule::{LevelPass, Schedule};
 
-/// What the passes of one file of shaders need before it.
+/// The text of a shader file, preceded by the files that it needs.
 macro_rules! code {
     ($($file:literal),+) => {
         concat!(include_str!("../lower/power.wgsl"), include_str!("../lower/product.wgsl"), include_str!("passes/common.wgsl"), $(include_str!(concat!("passes/", $file))),+)
@@ -30,37 +30,38 @@ const DRAINAGE: &str = code!("drainage.wgsl");
 const CREEP: &str = code!("creep.wgsl");
 const DETAIL: &str = code!("detail.wgsl");
 
-/// The planes after those of a level, by their names in shaders. Those in one line are one plane, used in this order.
+/// The planes after the planes of a level, by their names in shaders. The names in one line are uses of one plane, in
+/// this order.
 const SCRATCH: [&[&str]; 14] = [
-    // What heights and areas alternate with.
+    // The second planes of heights and areas, which passes read and write in turn.
     &["OTHER_HEIGHT"],
     &["OTHER_AREA"],
-    // Receivers that stay, FREE or WATER.
+    // Fixed receivers, FREE or WATER.
     &["FIXED"],
-    // What links say about each child, with a height, and its water level; then the law of slopes and widths of floors.
+    // What links determine for each child, a height, and its water level; then the law of slopes and widths of floors.
     &["HELD", "RIVER"],
     &["HELD_HEIGHT", "STABLE"],
     &["LEVEL", "WIDTH"],
-    // The direction to the water that has spread to a child, and 1 more, 0 elsewhere; then floors.
+    // The direction to the water that has spread to a child plus 1, 0 elsewhere; then floors.
     &["GAINED", "FIRST_FLOOR"],
     // The direction in which a link leads, NONE elsewhere; then floors.
     &["LED", "SECOND_FLOOR"],
     // Water levels while water spreads; then distances to the nodes in the east, south-east, south and south-west. On
-    // the finest level rivers are straightened instead: shortcuts, and the ways of rivers.
+    // the finest level, where rivers are straightened: shortcuts and the paths of rivers.
     &["FIRST_LEVEL", "DISTANCE", "FOUND"],
     &["DRIED_LEVEL", "TAKEN"],
     &["WAY"],
     &["OTHER_WAY"],
-    // The smallest heights around lakes alternate between these, if there are lakes.
+    // The smallest heights around lakes, read and written in turn, if there are lakes.
     &["RIM"],
     &["LEAST"],
 ];
 const LAKE_SCRATCH: usize = 2;
 
-/// The planes after those of the level above.
+/// The planes after the planes of the level above.
 const SCRATCH_ABOVE: [&[&str]; 5] = [
-    // Nodes that are led to mouths; slopes, their weights and their means; what links are chosen by; then links, with
-    // the shares of their ways up to the exit and the entry.
+    // Nodes that become mouths; slopes, their weights and their means; data for the choice of links; then links, with
+    // the shares of their length up to the exit and the entry.
     &["NEW_EAST", "SLOPE", "DIRECT"],
     &["NEW_SOUTH", "WEIGHT", "USED"],
     &["NEW_HEIGHT", "MEAN", "LINK"],
@@ -68,18 +69,21 @@ const SCRATCH_ABOVE: [&[&str]; 5] = [
     &["NEW_SHORE", "TO_ENTRY"],
 ];
 
-/// The passes in which skipped cells dry up.
+/// Number of passes in which skipped cells lose their rivers.
 const DRY_PASSES: usize = 6;
 
-/// Samples that a call reads, about: of few planes, of the neighbors, and of the links around a cell.
+/// Approximate number of samples that a call reads, from few planes.
 pub(super) const FEW: usize = 10;
+/// Approximate number of samples that a call reads from the neighbors.
 pub(super) const AROUND: usize = 40;
+/// Approximate number of samples that a call reads from the links around a cell.
 const LINKS_AROUND: usize = 200;
 
-/// The inputs that levels read. The words of their planes are `given_` and the name, 0 where nothing is given.
+/// The inputs that levels read. The word with the plane of an input is called `given_` and its name; it is 0 if the
+/// input is not given.
 const GIVEN: [&str; 6] = ["shore", "uplift", "stability_factor", "creep_factor", "floor_factor", "rain"];
 
-/// How a graphics card computes a level of an op, of whose inputs those that `given` says are given.
+/// The passes by which a graphics card computes a level of an op. `given` says for each input whether it is given.
 #[must_use]
 pub fn lower(land: &Drained, level: usize, spec: &Spec, given: &[bool]) -> Lowering<Passes> {
     if level == 0 {
@@ -90,7 +94,7 @@ pub fn lower(land: &Drained, level: usize, spec: &Spec, given: &[bool]) -> Lower
     if schedule.lakes > 0 {
         return Lowering::Processor("lakes are searched along rivers, one after the other");
     }
-    // Detail levels take over what the finest level of valleys has.
+    // Detail levels take over the data of the finest level of valleys and read no inputs.
     let given = if level > refinement.levels { &[] } else { given };
     let ahead = [level - 1, level].map(|level| {
         let sample = Window::new(1, 1, refinement.cell_of(level));
@@ -117,7 +121,7 @@ pub fn lower(land: &Drained, level: usize, spec: &Spec, given: &[bool]) -> Lower
     Lowering::Shader(passes)
 }
 
-/// Passes that read the numbers of a level, with names for these planes after those of the level.
+/// Empty passes with the numbers of a level, and with names for the planes after the planes of the level.
 pub(super) fn passes(refinement: &Refinement, level: usize, scratch: &[&[&'static str]]) -> Passes {
     let Words { flags, hashes, numbers } = refinement.words(level);
     Passes::new("", &[])
@@ -127,7 +131,7 @@ pub(super) fn passes(refinement: &Refinement, level: usize, scratch: &[&[&'stati
         .with_numbers(numbers)
 }
 
-/// The names of planes after those of a level, each with its number.
+/// The names of the planes after the planes of a level, each with its number.
 pub(super) fn numbered(scratch: &[&[&'static str]]) -> impl Iterator<Item = (&'static str, u32)> {
     let planes = (Level::PLANES as u32..).zip(scratch);
     planes.flat_map(|(plane, names)| names.iter().map(move |name| (*name, plane)))
@@ -153,7 +157,7 @@ struct List {
 /// Two planes that are read and written in turn.
 struct Turns {
     planes: [u32; 2],
-    /// Number of passes that are left.
+    /// Number of remaining passes.
     left: usize,
 }
 
@@ -163,7 +167,7 @@ impl Turns {
         self.planes[self.left % 2]
     }
 
-    /// The plane that is read and the one that is written, as the lower bits of a step.
+    /// The plane that is read and the plane that is written, as the lower bits of a step.
     fn next(&mut self) -> u32 {
         let read = self.now();
         self.left = self.left.saturating_sub(1);
@@ -179,7 +183,7 @@ impl List {
             passes: Vec::new(),
             inset: 0,
             heights: turns(["HEIGHT", "OTHER_HEIGHT"], count(LevelPass::writes_heights)),
-            // And the pass that bounds them.
+            // One more for the pass that bounds areas.
             areas: turns(["AREA", "OTHER_AREA"], count(LevelPass::writes_areas) + 1),
             grown: 0,
         };
@@ -235,7 +239,7 @@ impl List {
         self.heights.now() | self.areas.now() << 8
     }
 
-    /// The children, and the rivers and the water of the level above in them.
+    /// Adds the passes that make the children, and carve the rivers and the water of the level above into them.
     fn carve(&mut self, schedule: &Schedule) {
         if schedule.begins_details {
             self.pass_above(DETAIL, "weigh", 1, FEW);

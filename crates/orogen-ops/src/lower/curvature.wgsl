@@ -1,5 +1,6 @@
-// The curvature at a sample of plane `k`, as in orogen-grid's `analysis/curvature.rs`, of heights `apart` samples and `c` metres apart; missing if one of
-// the nine heights is. The kind is 0 for total curvature, 1 along the slope, 2 along the contour.
+// The curvature at a sample of plane `k`, as in orogen-grid's `analysis/curvature.rs`, from heights `apart` samples and
+// `c` metres apart; missing if one of the nine heights is missing. The kind is 0 for total curvature, 1 along the
+// slope, 2 along the contour.
 fn curvature(k: u32, at: vec2<i32>, apart: i32, c: f32, kind: f32) -> f32 {
     let nw = plane(k, at + vec2<i32>(-apart, -apart));
     let n = plane(k, at + vec2<i32>(0, -apart));
@@ -27,6 +28,6 @@ fn curvature(k: u32, at: vec2<i32>, apart: i32, c: f32, kind: f32) -> f32 {
     } else {
         bend = -(r * q * q - 2.0 * d * p * q + t * p * p) / (steep * sqrt(steep));
     }
-    // The corners enter only through d, which shows also where it does not matter whether they are missing.
+    // The corners enter only through d, so d also shows whether a corner is missing where its value does not matter.
     return select(bend, missing(), is_missing(bend) || is_missing(d));
 }

@@ -1,12 +1,13 @@
 // Slopes by Horn's method, as in orogen-grid's `analysis/slope.rs`.
 
-// A neighbor's height; level with the center if it is missing.
+// The height of a neighbor; the height of the center if it is missing.
 fn neighbor(k: u32, at: vec2<i32>, center: f32) -> f32 {
     let height = plane(k, at);
     return select(height, center, is_missing(height));
 }
 
-// The rise per metre to the east and to the north, of heights in plane `k`; missing where the height is. `scale` is 1 / (8 cell).
+// The rise per metre to the east and to the north, of heights in plane `k`; missing where the height is. `scale` is 1 /
+// (8 cell).
 fn gradient(k: u32, at: vec2<i32>, scale: f32) -> vec2<f32> {
     let center = plane(k, at);
     if (is_missing(center)) {

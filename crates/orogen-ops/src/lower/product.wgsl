@@ -1,4 +1,4 @@
-// The product of two whole numbers as a pair, the lower part first.
+// The product of two whole numbers, as a pair with the lower part first.
 fn product(a: u32, b: u32) -> vec2<u32> {
     let low = (a & 0xffffu) * (b & 0xffffu);
     let left = (a >> 16u) * (b & 0xffffu);

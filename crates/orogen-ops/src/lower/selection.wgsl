@@ -1,4 +1,5 @@
-// Masks of ranges with smooth ends, as orogen-grid's `Selection`: low, high, and the widths of the ends below and above are the numbers from `base` on.
+// Masks of ranges with smooth ends, as orogen-grid's `Selection`. The numbers from `base` on are low, high, and the
+// widths of the ends below and above.
 
 fn selection_fall(beyond: f32, width: f32) -> f32 {
     if (beyond < width) {

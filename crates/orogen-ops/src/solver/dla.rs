@@ -63,7 +63,7 @@ impl Solver for Dla {
         let samples = map.into_iter().map(|h| h * factor).collect();
         let map = Grid::from_data(Window::new(across, down, 1.0), samples)
             .unwrap_or_else(|| Grid::filled(Window::new(1, 1, 1.0), 0.0));
-        // Cells of the relief per cell of the world, from center to center.
+        // The position in cells of the relief, measured between cell centers.
         let along = |i: i64, count: usize| ((i as f64 / longest * fine) - 0.5).clamp(0.0, count as f64 - 1.0);
         let rows: Vec<f64> = (0..padded.height).map(|j| along(padded.y + j as i64 - domain.y, down)).collect();
         let columns: Vec<f64> = (0..padded.width).map(|i| along(padded.x + i as i64 - domain.x, across)).collect();

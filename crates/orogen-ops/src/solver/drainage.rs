@@ -158,9 +158,9 @@ impl Solver for Drainage {
     }
 }
 
-/// Number of planes beside inputs, layers, the routing and counters, and the plane of the filled heights, in the
-/// shaders.
+/// Number of planes of the shaders in addition to inputs, layers, the routing and counters.
 const SCRATCH: usize = 3;
+/// The plane of the filled heights in the shaders.
 const FILLED: u32 = 6;
 
 const CODE: &str = concat!(include_str!("routing.wgsl"), include_str!("numbering.wgsl"), include_str!("drainage.wgsl"));
@@ -170,7 +170,7 @@ impl Drainage {
         self.rain != Input::None
     }
 
-    /// Tile by tile.
+    /// Solves tile by tile.
     fn solve_on_disk(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
         let land = TiledTerrain::read(sources, self.sea, context)?;
         let (mut codes, mut filled) = (sources.raster()?, sources.raster()?);

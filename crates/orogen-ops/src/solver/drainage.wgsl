@@ -7,7 +7,7 @@ const STRAHLER = 5u;
 const ORDER = 15u;
 const MARK = 16u;
 const NUMBER = 17u;
-// There are no points between cells.
+// Cells are not displaced, so there is no plane of points.
 const POINT = SOURCE;
 
 // The layer of the filled heights.
@@ -15,7 +15,7 @@ fn fill(base: u32, at: vec2<i32>) {
     set_word(FILLED, cell_at(at), filled_bits(cell_at(at), step_number()));
 }
 
-// Labels that lead to outlets, and the outlets that drain more than themselves.
+// Starts labels that lead to outlets, and marks the outlets that drain other cells.
 fn begin_watersheds(base: u32, at: vec2<i32>) {
     let cell = cell_at(at);
     let receiver = word(RECEIVER, cell);
@@ -26,8 +26,8 @@ fn begin_watersheds(base: u32, at: vec2<i32>) {
     set_word(ORDER, cell, select(0u, 1u, is_stream));
 }
 
-// Streams of the order of the step and higher: those downstream of the confluence of two streams of the order before. Streams of that order stay so, whatever
-// other calls write.
+// Finds streams of at least the order of the step: those downstream of a confluence of two streams of the previous
+// order. Streams of the previous order keep it, whatever other calls write.
 fn raise_order(base: u32, at: vec2<i32>) {
     let order = step_number();
     if (order > 2u && counter(CHANGED) < order - 1u) {

@@ -87,7 +87,7 @@ impl Solver for Fill {
 const CODE: &str = concat!(include_str!("routing.wgsl"), include_str!("fill.wgsl"));
 
 impl Fill {
-    /// Tile by tile.
+    /// Solves tile by tile.
     fn solve_on_disk(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
         let land = TiledTerrain::read(sources, self.sea, context)?;
         let [mut filled, mut codes] = [sources.raster()?, sources.raster()?];

@@ -2,7 +2,7 @@
 const SOURCE = 0u;
 const FILLED = 1u;
 const DEPTH = 2u;
-// There are no points between cells.
+// Cells are not displaced, so there is no plane of points.
 const POINT = SOURCE;
 
 fn fill(base: u32, at: vec2<i32>) {

@@ -106,5 +106,5 @@ impl Solver for HeightAboveDrainage {
 
 const CODE: &str = concat!(include_str!("routing.wgsl"), include_str!("height_above_drainage.wgsl"));
 
-/// Number of planes beside inputs, layers, the routing and counters.
+/// Number of planes of the shaders in addition to inputs, layers, the routing and counters.
 const SCRATCH: usize = 6;

@@ -4,12 +4,12 @@ const HEIGHT = 1u;
 const FLOW_DISTANCE = 2u;
 const DISTANCE = 3u;
 const FILLED = 12u;
-// The cell to which the path of each cell is known, and its length in metres, twice.
+// The cell up to which the path of each cell is known, and the length of that path in metres; two planes each.
 const END = 13u;
 const LENGTH = 15u;
-// Cells to the nearest stream in the same column.
+// Distance to the nearest stream in the same column, in cells.
 const DOWN_COLUMN = 17u;
-// There are no points between cells.
+// Cells are not displaced, so there is no plane of points.
 const POINT = SOURCE;
 
 const FAR = 0x7fffffffu;
@@ -36,7 +36,7 @@ fn begin_paths(base: u32, at: vec2<i32>) {
     set_sample(LENGTH, cell, cell_length(base) * select(1.0, 1.41421356, is_diagonal));
 }
 
-// Follows the paths downstream. The number is 0 or 1, in turn.
+// Follows the paths downstream. The number of the step alternates between 0 and 1.
 fn follow_paths(base: u32, at: vec2<i32>) {
     let cell = cell_at(at);
     let turn = step_number();
@@ -54,7 +54,7 @@ fn follow_paths(base: u32, at: vec2<i32>) {
     set_sample(LENGTH + 1u - turn, cell, length);
 }
 
-// Distances to streams along each column, down and up again.
+// Distances to streams along each column, in a pass down and a pass up.
 fn scan_columns(base: u32, at: vec2<i32>) {
     if (at.y != 0) {
         return;
@@ -72,12 +72,12 @@ fn scan_columns(base: u32, at: vec2<i32>) {
     }
 }
 
-// The square of a distance in cells by columns across and the distance in that column.
+// The square of the distance in cells, from the number of columns across and the distance in that column.
 fn square_of(across: u32, down: u32) -> u32 {
     return select(across * across + down * down, NONE, down == FAR);
 }
 
-// The layers. The number is that of the last of the passes that follow paths.
+// Writes the layers. The number of the step is the number of the last pass that followed paths.
 fn finish(base: u32, at: vec2<i32>) {
     let cell = cell_at(at);
     let end = word(END + step_number(), cell);

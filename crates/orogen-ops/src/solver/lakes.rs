@@ -102,10 +102,10 @@ impl Solver for Lakes {
 
 const CODE: &str = concat!(include_str!("routing.wgsl"), include_str!("numbering.wgsl"), include_str!("lakes.wgsl"));
 
-/// Number of planes beside inputs, layers, the routing and counters.
+/// Number of planes of the shaders in addition to inputs, layers, the routing and counters.
 const SCRATCH: usize = 16;
 
-/// The first plane of the functions of surfaces, in the shaders.
+/// The first plane of the surface functions in the shaders.
 const SURFACES: u32 = 23;
 
 /// Minimum number of cells of a lake.

@@ -4,9 +4,10 @@ const BED = 1u;
 const DEPTH = 2u;
 const SURFACE = 3u;
 const LAKE_NUMBER = 4u;
-// By basin: the lake, which is the number of one of its basins.
+// By basin: its lake, identified by the number of one of the lake's basins.
 const LAKE = 13u;
-// By lake: its cells, the height of the deepest one as an ordered integer, the first cell in row order, the deepest one, and the dry cell over which it spills.
+// By lake: the number of cells, the height of the deepest cell as an ordered integer, the first cell in row order, the
+// deepest cell, and the dry cell over which it spills.
 const COUNT = 14u;
 const LOWEST_HEIGHT = 15u;
 const FIRST = 16u;
@@ -14,11 +15,12 @@ const DEEPEST = 17u;
 const OUTFLOW = 18u;
 const MARK = 19u;
 const NUMBER = 20u;
-// The downstream cell of each cell; from the plane `SURFACES` on, three numbers of a function of the surface there, twice.
+// The downstream cell of each cell. From the plane `SURFACES` on, there are two sets of three planes with the numbers
+// of a function of the surface at that cell.
 const DOWNSTREAM = 21u;
-// There are no points between cells.
+// Cells are not displaced, so there is no plane of points.
 const POINT = SOURCE;
-// Higher than all ground.
+// A height above all ground.
 const ABOVE_ALL = 3e38;
 
 // Adjacent basins belong to one lake if the pass between them is under water.
@@ -40,7 +42,7 @@ fn begin_lakes(base: u32, at: vec2<i32>) {
     }
 }
 
-// Leads each basin to the one that stands for its lake.
+// Finds the basin that identifies the lake of each basin.
 fn find_lake(base: u32, at: vec2<i32>) {
     let cell = cell_at(at);
     var lake = word(LAKE, cell);
@@ -54,7 +56,8 @@ fn find_lake(base: u32, at: vec2<i32>) {
     set_word(LAKE, cell, lake);
 }
 
-// The water over a cell, however small: NONE on land. The number is that of the last raise of the spill levels.
+// The body of water over a cell, of any size; NONE on land. The number of the step is the number of the last pass that
+// raised spill levels.
 fn water_over(cell: u32) -> u32 {
     if (ordered(word(SOURCE, cell)) < spill_level(cell, step_number())) {
         return word(LAKE, word(LABEL, cell));
@@ -62,7 +65,7 @@ fn water_over(cell: u32) -> u32 {
     return NONE;
 }
 
-// The lake over a cell; NONE on land, and in depressions too small for one.
+// The lake over a cell; NONE on land, and in depressions too small for a lake.
 fn lake_over(base: u32, cell: u32) -> u32 {
     let lake = water_over(cell);
     if (lake == NONE) {
@@ -90,7 +93,7 @@ fn find_deepest(base: u32, at: vec2<i32>) {
     }
 }
 
-// Follows the water from the deepest cell of a lake to the first dry one.
+// Follows the water from the deepest cell of a lake to the first dry cell.
 fn find_outflow(base: u32, at: vec2<i32>) {
     let lake = cell_at(at);
     if (word(LAKE, lake) != lake || word(DEEPEST, lake) == NONE) {
@@ -108,8 +111,9 @@ fn find_outflow(base: u32, at: vec2<i32>) {
     set_word(OUTFLOW, lake, cell);
 }
 
-// The surface at a cell is a function of the surface downstream, by three numbers: the second one if it is below the first, otherwise it plus the third.
-// Such functions of such functions have the same form.
+// The surface at a cell is a function of the surface downstream with three numbers: the second number if the surface
+// downstream is below the first, otherwise the surface downstream plus the third. Compositions of such functions have
+// the same form.
 fn begin_surface(base: u32, at: vec2<i32>) {
     let cell = cell_at(at);
     let bits = word(SOURCE, cell);
@@ -130,7 +134,7 @@ fn begin_surface(base: u32, at: vec2<i32>) {
         least = below;
     } else {
         let code = code_between(cell, downstream);
-        // The rise may be less than the last digit of the height, but the cell must drain.
+        // The rise may be less than the precision of the height, but the cell must drain.
         let up = abs(bitcast<f32>(height_bits(ordered(bits) + 1u)) - height);
         rise = max(rise_of_cell(base) * select(1.0, 1.41421356, (code & 1u) == 1u), up);
     }
@@ -140,7 +144,7 @@ fn begin_surface(base: u32, at: vec2<i32>) {
     set_sample(SURFACES + 2u, cell, rise);
 }
 
-// Composes the functions from each cell downstream. The number is 0 or 1, in turn.
+// Composes the functions from each cell downstream. The number of the step alternates between 0 and 1.
 fn compose_surface(base: u32, at: vec2<i32>) {
     let cell = cell_at(at);
     let turn = step_number();
@@ -166,7 +170,7 @@ fn compose_surface(base: u32, at: vec2<i32>) {
     set_sample(written + 2u, cell, rise);
 }
 
-// The layers. The other plane has the surface.
+// Writes the layers. The other plane of the step has the surface.
 fn finish(base: u32, at: vec2<i32>) {
     let cell = cell_at(at);
     let height = word(SOURCE, cell);

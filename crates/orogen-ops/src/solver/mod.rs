@@ -1,4 +1,4 @@
-//! Solvers: ops that read the whole bounded world.
+//! Solvers: ops whose result depends on the whole bounded world.
 
 // The list below is written by `cargo xtask codegen`.
 mod bake;

@@ -71,7 +71,7 @@ impl Solver for Normalise {
 }
 
 impl Normalise {
-    /// The linear map of a solution: what is subtracted, the factor, and what is added.
+    /// The linear map of a solution: the subtrahend, the factor and the offset.
     fn map(&self, solution: &Solution) -> [f32; 3] {
         let [low, high] = [0, 1].map(|i| solution.scalars.get(i).copied().unwrap_or(0.0));
         let relief = high - low;
@@ -80,7 +80,7 @@ impl Normalise {
     }
 }
 
-/// Minimum and maximum of zero samples.
+/// Minimum and maximum of no samples.
 const NOTHING: (f32, f32) = (f32::INFINITY, f32::NEG_INFINITY);
 
 fn join(a: (f32, f32), b: (f32, f32)) -> (f32, f32) {

@@ -1,6 +1,7 @@
-// Numbers marked cells from 1 in row order. A solver defines the planes `MARK` and `NUMBER`; unmarked cells get the number of the last marked one before them.
+// Numbers marked cells from 1 in row order. A solver defines the planes `MARK` and `NUMBER`; unmarked cells get the
+// number of the last marked cell before them.
 
-// The marks of each row, at its first cell.
+// The number of marks of each row, at its first cell.
 fn count_marks(base: u32, at: vec2<i32>) {
     if (at.x != 0) {
         return;
@@ -12,7 +13,7 @@ fn count_marks(base: u32, at: vec2<i32>) {
     set_word(NUMBER, cell_at(at), count);
 }
 
-// The marks of all rows before each row.
+// The number of marks in all rows before each row.
 fn sum_marks(base: u32, at: vec2<i32>) {
     if (any(at != vec2<i32>(0))) {
         return;

@@ -98,7 +98,7 @@ impl Solver for OrographicRain {
             return Err(Error::new(ErrorKind::Internal, "a solution has no rain"));
         };
         rain.read(asked.kind, asked.at, out)?;
-        // The cubic between samples swings below 0 beside dry ground.
+        // Interpolation by the cubic may undershoot 0 next to dry ground.
         out.iter_mut().for_each(|rain| *rain = rain.max(0.0));
         Ok(())
     }

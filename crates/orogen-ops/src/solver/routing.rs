@@ -1,7 +1,7 @@
 //! Drainage on a graphics card: the passes of `routing.wgsl`.
 //!
-//! Depressions are drained as on the processor, by the passes between basins, but the spanning tree of basins is found
-//! by Boruvka's algorithm, whose rounds run for all basins at once (compare Jain, Kerbl, Gain, Finley and Cordonnier,
+//! Depressions are drained over the passes between basins, as on the processor. The spanning tree of basins is found by
+//! Boruvka's algorithm, whose rounds run for all basins at once (compare Jain, Kerbl, Gain, Finley and Cordonnier,
 //! "FastFlow: GPU acceleration of flow and depression routing for landscape simulation", 2024). Paths are followed by
 //! pointer doubling.
 
@@ -11,13 +11,13 @@ use orogen_grid::grid::Window;
 /// Number of planes with the sums of the rain.
 const RAIN_PLANES: usize = 6;
 
-/// The most cells over which the rain can be summed up: the sum of a part of it fits into 32 bits.
+/// Maximum number of cells over which rain can be summed: each partial sum must fit into 32 bits.
 const MAX_RAINY: usize = 1 << 22;
 
 /// Number of planes of the routing.
 const PLANES: usize = 8;
 
-/// The numbers that shaders know by these names.
+/// Constants of the shaders, by name.
 const CONSTANTS: [(&str, u32); 6] = [
     ("HOPS", HOPS as u32),
     ("GATHERED_HOPS", GATHERED_HOPS as u32),
@@ -27,28 +27,30 @@ const CONSTANTS: [(&str, u32); 6] = [
     ("BETWEEN_POINTS", BETWEEN_POINTS),
 ];
 
-/// The step of the last pass of a run, on the lattice.
+/// The bit that marks the last routing of a run, which is on the lattice.
 pub(crate) const LAST: u32 = 1 << 31;
 
 /// Number of counters.
 const COUNTERS: usize = 8;
 
-/// Cells by which one pass follows receivers, and the same for the accumulation.
+/// Number of cells over which one pass follows receivers.
 const HOPS: usize = 16;
+/// Number of cells over which one pass of the accumulation follows receivers.
 const GATHERED_HOPS: usize = 8;
 
-/// How cells choose their receivers, as a word; 0 is by steepest descent.
+/// Choice of receivers as a word; 0 is steepest descent.
 const SCATTERED: u32 = 1;
 const BETWEEN_POINTS: u32 = 2;
 
-/// How cells choose their receivers.
+/// The choice of receivers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Descent {
-    /// By steepest descent.
+    /// Steepest descent.
     Steepest,
-    /// The same with random lengths of diagonals by this salt, to which the number of the step is added.
+    /// Steepest descent with random lengths of diagonals. The salt is the sum of this number and the number of the
+    /// step.
     Scattered(u32),
-    /// By steepest descent between points: their salt, and their maximum displacement along each axis, in cells.
+    /// Steepest descent between displaced points: their salt, and their maximum displacement along each axis, in cells.
     Points(u32, f32),
 }
 
@@ -59,14 +61,14 @@ pub(crate) struct Planes {
     pub(crate) inputs: usize,
     /// Layers.
     pub(crate) layers: usize,
-    /// Those beside inputs, layers, the routing, counters and the rain.
+    /// Planes in addition to inputs, layers, the routing, counters and the rain.
     pub(crate) scratch: usize,
     /// The plane of the rain, if areas are weighted by it.
     pub(crate) rain: Option<usize>,
 }
 
 impl Planes {
-    /// Whether the rain can be summed up over a window.
+    /// Whether rain can be summed over a window.
     pub(crate) fn can_rain(self, padded: &Window) -> bool {
         self.rain.is_none() || padded.len() <= MAX_RAINY
     }
@@ -82,10 +84,10 @@ impl Planes {
     }
 }
 
-/// Why the processor weights the drainage areas of large domains.
+/// The reason why the processor computes weighted drainage areas of large domains.
 pub(crate) const RAIN: &str = "the rain over so many cells needs sums of 64 bits, for which WGSL has no atomics";
 
-/// Passes with words for the routing, and planes.
+/// Passes with the words and planes of the routing.
 pub(crate) fn passes(
     code: &'static str,
     padded: &Window,
@@ -99,7 +101,7 @@ pub(crate) fn passes(
         Descent::Points(salt, reach) => (BETWEEN_POINTS, salt, reach),
     };
     let [routing, counters] = [planes.routing(), planes.counters()];
-    // The plane of the rain, and the first one with its sums.
+    // The plane of the rain, and the first plane with its sums.
     let sums = counters + counter_planes(padded);
     let [rain, sums] = planes.rain.map_or([0; 2], |rain| [rain, sums].map(|plane| plane as u32));
     let rain_planes = if planes.rain.is_some() { RAIN_PLANES } else { 0 };
@@ -112,30 +114,30 @@ pub(crate) fn passes(
         .with_named_words([("descent", kind), ("salt", salt), ("rain_plane", rain), ("rain_sums", sums)])
 }
 
-/// A step as the shaders read it: the planes that are read and written, and a number.
+/// The step of a pass: the planes that are read and written, and a number.
 pub(crate) fn step(from: u32, to: u32, number: u32) -> u32 {
     from | to << 8 | number << 16
 }
 
-/// Number of planes that hold the counters: more than one in tiny windows.
+/// Number of planes of the counters: more than one in tiny windows.
 fn counter_planes(padded: &Window) -> usize {
     COUNTERS.div_ceil(padded.len().max(1))
 }
 
-/// The farthest that cells of flats look for the rim, in cells.
+/// Maximum distance from which cells of flats find the rim, in cells.
 const FARTHEST: usize = 512;
 
-/// Number of rounds over basins in a step that begins with drained ground: there are few pits then. If basins are left,
-/// their pits wait for the next step.
+/// Number of rounds over basins in a step that starts from drained ground, which has few pits. Remaining basins are
+/// drained in the next step.
 pub(crate) const FEW_ROUNDS: usize = 5;
 
-/// Number of rounds over basins that drain everything: each at least halves the basins.
+/// Number of rounds over basins that suffice to drain all of them: each round at least halves their number.
 pub(crate) fn all_rounds(padded: &Window) -> usize {
     let inner = padded.width.saturating_sub(2) * padded.height.saturating_sub(2);
     (usize::BITS - inner.leading_zeros()) as usize
 }
 
-/// Number of passes in which paths over all cells are followed, if each of them multiplies the length by `factor`.
+/// Number of passes that follow paths over all cells, if each pass multiplies the length by `factor`.
 pub(crate) fn doublings(padded: &Window, factor: usize) -> usize {
     let (mut passes, mut length) = (1, factor);
     while length < padded.len() {
@@ -145,22 +147,22 @@ pub(crate) fn doublings(padded: &Window, factor: usize) -> usize {
     passes
 }
 
-/// The same, following receivers by the usual number of cells.
+/// Number of passes that follow receivers over all cells, by [`HOPS`] cells per pass at first.
 pub(crate) fn following(padded: &Window) -> usize {
     doublings(padded, HOPS + 1)
 }
 
-/// Whether flats are drained by gradients over them, which take many passes. Otherwise each of their cells is a basin.
+/// The drainage of flats.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Flats {
-    /// By gradients.
+    /// Flats are drained by gradients over them, which takes many passes.
     Graded,
-    /// As basins.
+    /// Each cell of a flat is a basin.
     Basins,
 }
 
-/// `passes`, and those that find the receivers of all cells from the heights in a plane. The number of the step is that
-/// of the time step.
+/// Appends the passes that find the receivers of all cells from the heights in a plane. The number of the step is the
+/// number of the time step.
 pub(crate) fn route(passes: Passes, padded: &Window, rounds: usize, flats: Flats, step: u32) -> Passes {
     let heights = step & 0xff;
     let at = |passes: Passes, function, number: usize| then(passes, function, heights | (number as u32) << 16);
@@ -180,36 +182,37 @@ pub(crate) fn route(passes: Passes, padded: &Window, rounds: usize, flats: Flats
     at(passes, "lead_out", 0)
 }
 
-/// `passes`, and those that follow the labels of all cells to the end by a function.
+/// Appends the passes that follow the labels of all cells to their end with a function.
 pub(crate) fn follow(passes: Passes, padded: &Window, function: &'static str) -> Passes {
     (0..following(padded)).fold(passes, |passes, _| then(passes, function, 0))
 }
 
-/// `passes`, and those that find the spill levels of basins, and the number by which functions read them.
+/// Appends the passes that find the spill levels of basins. Also returns the number with which functions read these
+/// levels.
 pub(crate) fn spill(passes: Passes, padded: &Window) -> (Passes, u32) {
     let turns = following(padded) as u32;
     let passes = then(passes, "begin_spill", 0);
     ((0..turns).fold(passes, |passes, k| then(passes, "raise_spill", step(0, 0, k % 2))), turns % 2)
 }
 
-/// `passes`, and those that number marked cells, of `numbering.wgsl`.
+/// Appends the passes of `numbering.wgsl`, which number marked cells.
 pub(crate) fn number(passes: Passes) -> Passes {
     ["count_marks", "sum_marks", "number_marks"].into_iter().fold(passes, |passes, name| then(passes, name, 0))
 }
 
-/// `passes`, and those that route the heights of plane 0.
+/// Appends the passes that route the heights of plane 0.
 pub(crate) fn routed(passes: Passes, padded: &Window, flats: Flats) -> Passes {
     route(then(passes, "outlets", 0), padded, all_rounds(padded), flats, 0)
 }
 
-/// `passes`, and those that count the cells that drain through each cell.
+/// Appends the passes that count the cells that drain through each cell.
 pub(crate) fn gather(passes: Passes, padded: &Window) -> Passes {
     let passes = then(passes, "begin_areas", 0);
     let steps = 0..doublings(padded, GATHERED_HOPS) as u32;
     steps.fold(passes, |passes, k| then(passes, "gather_areas", k << 16))
 }
 
-/// The functions whose calls write to words of others, or read what others write.
+/// The functions whose calls write words of other calls, or read words that other calls write.
 const SHARED: [&str; 14] = [
     "begin_flats",
     "spread_flats",
@@ -227,7 +230,7 @@ const SHARED: [&str; 14] = [
     "lead_out",
 ];
 
-/// `passes`, and a run of a function for all cells.
+/// Appends a pass that runs a function for all cells.
 pub(crate) fn then(passes: Passes, function: &'static str, step: u32) -> Passes {
     let passes = passes.then(function, step, [0; 2]);
     if SHARED.contains(&function) { passes.shared() } else { passes }

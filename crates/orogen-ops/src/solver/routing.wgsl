@@ -1,7 +1,9 @@
-// Drainage: receivers by steepest descent, the spills of basins, paths out of depressions, and drainage areas. After orogen-grid's `hydrology`.
+// Drainage: receivers by steepest descent, the spills of basins, paths out of depressions, and drainage areas. After
+// orogen-grid's `hydrology`.
 //
-// Cells are numbered in row order. What `routing.rs` declares stands before it: `ROUTING`, the first of the planes below, `COUNTERS`, the plane of the
-// counters, other constants, and what reads the words. In `frame.step` the lower eight bits are the plane of the heights, the next eight another plane, and the next 15 a number.
+// Cells are numbered in row order. `routing.rs` declares before this text: `ROUTING`, the first of the planes below;
+// `COUNTERS`, the plane of the counters; other constants; and functions that read the words. The lower eight bits of
+// `frame.step` are the plane of heights, the next eight bits another plane, and the next 15 bits a number.
 const OUTLET = ROUTING;
 const RECEIVER = ROUTING + 1u;
 const LABEL = ROUTING + 2u;
@@ -10,7 +12,7 @@ const NEXT = ROUTING + 4u;
 const LOWEST = ROUTING + 5u;
 const EDGE = ROUTING + 6u;
 const WAY_OUT = ROUTING + 7u;
-// These planes take the place of those above before basins are found, and once the water has a way out.
+// These share planes with the ones above, before basins are found and after the water has been routed out.
 const TOWARD = ROUTING + 5u;
 const AWAY = ROUTING + 6u;
 const ANCESTOR = ROUTING + 3u;
@@ -18,9 +20,10 @@ const AREA = ROUTING + 5u;
 const SPILL_NEXT = ROUTING + 3u;
 const SPILL_LEVEL = ROUTING + 5u;
 
-// No cell; as a label, that of all cells that drain to an outlet.
+// No cell; as a label, all cells that drain to an outlet.
 const NONE = 0xffffffffu;
-// The number of passes that had work: rounds over basins, steps of the accumulation, those of the solver, and steps over flats.
+// Counters of passes that had work: rounds over basins, steps of the accumulation, steps of the solver, and steps over
+// flats.
 const ROUNDS = 0u;
 const GATHERED = 1u;
 const CHANGED = 2u;
@@ -60,7 +63,7 @@ fn code_between(cell: u32, to: u32) -> u32 {
     return 8u;
 }
 
-// An integer that sorts like the heights; 0 and -0 are equal.
+// An integer in the order of the heights; 0 and -0 are equal.
 fn ordered(bits: u32) -> u32 {
     if (bits == 0x80000000u) {
         return 0x80000000u;
@@ -68,7 +71,7 @@ fn ordered(bits: u32) -> u32 {
     return select(~bits, bits | 0x80000000u, (bits >> 31u) == 0u);
 }
 
-// The bits of a height by its integer.
+// The bits of a height, from its ordered integer.
 fn height_bits(key: u32) -> u32 {
     return select(~key, key & 0x7fffffffu, (key >> 31u) == 1u);
 }
@@ -86,12 +89,12 @@ fn product(a: vec2<u32>, b: vec2<u32>) -> vec2<u32> {
     return vec2<u32>(a.x * b.x, upper_product(a.x, b.x) + a.x * b.y + a.y * b.x);
 }
 
-// A number of 64 bits shifted down by less than 32.
+// A number of 64 bits shifted right by less than 32 bits.
 fn shifted(a: vec2<u32>, by: u32) -> vec2<u32> {
     return vec2<u32>((a.x >> by) | (a.y << (32u - by)), a.y >> by);
 }
 
-// A hash of a cell's position on the lattice of the world and a salt: that of `hydrology/direction.rs`.
+// A hash of a cell's position on the lattice of the world and a salt, as in `hydrology/direction.rs`.
 fn hashed(base: u32, cell: u32, with_salt: u32) -> u32 {
     let at = vec2<u32>(cell % frame.columns, cell / frame.columns);
     let column = first_column();
@@ -118,7 +121,7 @@ fn between_points(base: u32, cell: u32, code: u32) -> vec2<f32> {
     return vec2<f32>(offset_of(code)) + there - point_of(base, word(POINT, cell));
 }
 
-// Border, sea, cells that are not finite, and their neighbors.
+// Marks outlets: the border, the sea, cells whose height is not finite, and their neighbors.
 fn outlets(base: u32, at: vec2<i32>) {
     let here = word(heights_plane(), cell_at(at));
     var is_outlet = any(at == vec2<i32>(0)) || any(at == size() - vec2<i32>(1)) || bitcast<f32>(here) <= sea_level(base);
@@ -162,7 +165,7 @@ fn steepest(base: u32, cell: u32) -> u32 {
     return one_of(base, cell, found);
 }
 
-// Chooses one direction of a set by a hash of the cell; 8 of an empty set.
+// Chooses one direction of a set by a hash of the cell; 8 for an empty set.
 fn one_of(base: u32, cell: u32, directions: u32) -> u32 {
     if (directions == 0u) {
         return 8u;
@@ -210,8 +213,9 @@ fn begin_basins(base: u32, at: vec2<i32>) {
     set_word(WAY_OUT, cell, NONE);
 }
 
-// Flats after `hydrology/flats.rs`: steps away from higher ground, and steps towards the lower rim. Cells of flats that have no rim, or are farther from it than
-// the passes reach, stay basins of their own. A cell of a flat has a number of steps away, or NONE until it is known; other cells have 0.
+// Flats as in `hydrology/flats.rs`: steps away from higher ground, and steps towards the lower rim. Cells of flats
+// without a rim, or farther from it than the passes reach, remain separate basins. A cell of a flat has its number of
+// steps away, or NONE until it is known; other cells have 0.
 fn begin_flats(base: u32, at: vec2<i32>) {
     let cell = cell_at(at);
     var away = 0u;
@@ -239,7 +243,8 @@ fn is_level(cell: u32, there: u32) -> bool {
     return word(AWAY, there) != 0u && ordered(word(heights_plane(), there)) == ordered(word(heights_plane(), cell));
 }
 
-// Cells beside those with this number of steps have one more. What other calls write now is more than that.
+// Neighbors of cells with this number of steps get one more. Values that other calls write at the same time are larger,
+// so they do not matter.
 fn spread_flats(base: u32, at: vec2<i32>) {
     let steps = step_number();
     let cell = cell_at(at);
@@ -265,7 +270,8 @@ fn spread_flats(base: u32, at: vec2<i32>) {
     }
 }
 
-// Twice the steps towards the rim, less those away from higher ground. The number of the step is more than all steps that were counted.
+// Twice the steps towards the rim, minus the steps away from higher ground. The number of the step is greater than all
+// counted steps.
 fn slope_of_flat(cell: u32) -> i32 {
     return 2 * i32(word(TOWARD, cell)) - i32(min(word(AWAY, cell), step_number()));
 }
@@ -305,7 +311,8 @@ fn drain_flats(base: u32, at: vec2<i32>) {
     set_word(LABEL, cell, receiver);
 }
 
-// Leads the label of each cell towards its pit or outlet. Other calls do the same to the labels that this one reads, which only shortens the way.
+// Moves the label of each cell towards its pit or outlet. Other calls may move the labels that this call reads, which
+// only shortens the path.
 fn find_pit(base: u32, at: vec2<i32>) {
     let cell = cell_at(at);
     var label = word(LABEL, cell);
@@ -323,7 +330,8 @@ fn find_pit(base: u32, at: vec2<i32>) {
     set_word(LABEL, cell, label);
 }
 
-// Basins that are known to spill into each other form components. The component of a cell: its root pit, or NONE outside.
+// Basins that are known to spill into each other form components. The component of a cell: its root pit, or NONE
+// outside.
 fn component_of(cell: u32) -> u32 {
     let label = word(LABEL, cell);
     if (label == NONE) {
@@ -332,7 +340,8 @@ fn component_of(cell: u32) -> u32 {
     return word(COMPONENT, label);
 }
 
-// The ends of an edge: two neighbors. Edges are numbered by their first cell and the direction of the other one, which is below or to the east.
+// The ends of an edge: two neighbors. Edges are numbered by their first cell and the direction of the other one, which
+// is below or to the east.
 fn edge_between(a: u32, b: u32) -> u32 {
     return 4u * min(a, b) + code_between(min(a, b), max(a, b));
 }
@@ -391,7 +400,8 @@ fn choose_pass(base: u32, at: vec2<i32>) {
     }
 }
 
-// Joins each component to the one beyond its pass. Of two that choose the same edge, that with the smaller root waits.
+// Joins each component to the one beyond its pass. If two components choose the same edge, the one with the smaller
+// root waits.
 fn join(base: u32, at: vec2<i32>) {
     let cell = cell_at(at);
     if (counter(ROUNDS) < step_number() || word(LABEL, cell) != cell || word(COMPONENT, cell) != cell) {
@@ -408,7 +418,7 @@ fn join(base: u32, at: vec2<i32>) {
         return;
     }
     set_word(NEXT, cell, theirs);
-    // The basins from the pass to the root spilled towards the root: from now on, towards the pass.
+    // The basins from the pass to the root spilled towards the root. From now on they spill towards the pass.
     var basin = word(LABEL, select(ends.y, ends.x, is_first));
     var way = edge;
     for (var k = 0u; k < cells(); k += 1u) {
@@ -481,7 +491,7 @@ fn begin_spill(base: u32, at: vec2<i32>) {
     set_word(SPILL_LEVEL, pit, pass_key(ends.x, ends.y));
 }
 
-// Raises the spill levels to those of the basins downstream. The number is 0 or 1, in turn.
+// Raises the spill levels to the levels of the basins downstream. The number of the step alternates between 0 and 1.
 fn raise_spill(base: u32, at: vec2<i32>) {
     let pit = cell_at(at);
     if (word(LABEL, pit) != pit) {
@@ -498,7 +508,8 @@ fn raise_spill(base: u32, at: vec2<i32>) {
     set_word(SPILL_LEVEL + 1u - turn, pit, level);
 }
 
-// The rain on a cell in 4096ths of a factor of 1, in two parts of which the first counts 1024: so that their sums over all cells fit into a word each.
+// The rain on a cell in units of 1/4096, as two parts, so that the sum of each over all cells fits into a word. A unit
+// of the first part is 1024 units of the second.
 fn rain_on(base: u32, cell: u32) -> vec2<u32> {
     let bits = word(rain_plane(base), cell);
     var factor = clamp(bitcast<f32>(bits), 0.01, 100.0);
@@ -526,7 +537,8 @@ fn begin_areas(base: u32, at: vec2<i32>) {
     }
 }
 
-// Gives the cells that drain through each cell within 8^k steps to its ancestors: then they are known within 8^(k + 1) steps.
+// Adds the number of cells that drain through each cell within 8^k steps to the cells downstream. Afterwards the
+// numbers within 8^(k + 1) steps are known.
 fn gather_areas(base: u32, at: vec2<i32>) {
     if (counter(GATHERED) < step_number()) {
         return;
@@ -539,7 +551,7 @@ fn gather_areas(base: u32, at: vec2<i32>) {
     }
 }
 
-// Of three planes, one is read, the second one is added to, and the third one is cleared for the next pass.
+// Of three planes, the first is read, the second is added to, and the third is cleared for the next pass.
 fn gather_plane(first: u32, cell: u32) {
     let k = step_number();
     let sum = word(first + k % 3u, cell);
@@ -562,7 +574,7 @@ fn drained_cells(cell: u32) -> u32 {
     return word(AREA + (counter(GATHERED) + 1u) % 3u, cell);
 }
 
-// The same weighted by the rain.
+// The number of cells that drain through a cell, weighted by the rain.
 fn discharge(base: u32, cell: u32) -> f32 {
     let sums = rain_sums(base);
     if (sums == 0u) {
@@ -572,7 +584,8 @@ fn discharge(base: u32, cell: u32) -> f32 {
     return f32(word(turn, cell)) * 0.25 + f32(word(turn + 3u, cell)) * (1.0 / 4096.0);
 }
 
-// The level to which water fills the basin of a cell, as an ordered integer; 0 outside. The number is that of the last raise.
+// The level to which water fills the basin of a cell, as an ordered integer; 0 outside. `turn` is the number of the
+// last pass that raised the levels.
 fn spill_level(cell: u32, turn: u32) -> u32 {
     let label = word(LABEL, cell);
     if (label == NONE) {

@@ -41,13 +41,13 @@ op! {
     }
 }
 
-/// Values of half of the bits of a sample.
+/// Number of values of half of a sample's bits.
 const HALVES: usize = 1 << 16;
 
-/// Samples along a side of the parts in which a raster is read.
+/// Side of the parts in which a raster is read, in samples.
 const SIDE: usize = 1024;
 
-/// Where candidates begin.
+/// Minimum value of the input `among` for candidates.
 const CANDIDATE: f32 = 0.5;
 
 impl Solver for SelectShare {
@@ -126,7 +126,7 @@ impl Solver for SelectShare {
     }
 }
 
-/// The samples that are drawn of a domain, without the last edge.
+/// The samples of a domain that a map shows, without the last edge.
 fn drawn(domain: &Window, world: &WorldParams) -> Window {
     let [margin_x, margin_y] = [domain.x, domain.y].map(|first| first.unsigned_abs() as usize);
     let [width, height] = world.size.unwrap_or_default().map(|length| (length / domain.cell).round() as usize);
@@ -137,7 +137,7 @@ fn drawn(domain: &Window, world: &WorldParams) -> Window {
     }
 }
 
-/// The place of a value in the order of selection: smaller numbers first. Zeros of both signs are equal; NaN has no
+/// The rank of a value in the order of selection; smaller ranks come first. Zeros of both signs are equal; NaN has no
 /// rank.
 fn rank(value: f32, highest: bool) -> Option<u32> {
     const SIGN: u32 = 1 << 31;
@@ -149,7 +149,7 @@ fn rank(value: f32, highest: bool) -> Option<u32> {
     Some(if highest { !rising } else { rising })
 }
 
-/// The last sample that is selected: its rank, and among those of this rank its row and column.
+/// The last sample that is selected: its rank and, among samples of this rank, its row and column.
 struct Last {
     rank: f64,
     row: f64,
@@ -157,7 +157,7 @@ struct Last {
 }
 
 impl Last {
-    /// With all samples of this rank.
+    /// A selection of all samples up to this rank.
     fn all_of(rank: f64) -> Last {
         Last { rank, row: f64::MAX, column: f64::MAX }
     }
@@ -180,7 +180,7 @@ impl Ranked<'_> {
         let upper = self.counts(|rank| Some(rank >> 16))?;
         let Some((half, before)) = nth(&upper, wanted) else { return Ok(Last::all_of(f64::from(u32::MAX))) };
         let lower = self.counts(|rank| (rank >> 16 == half).then_some(rank & 0xFFFF))?;
-        // Those of the lower halves add up to the count of the upper one.
+        // The counts of the lower halves add up to the count of the upper half.
         let (low, before) = nth(&lower, wanted - before).map_or((0xFFFF, 0), |(low, more)| (low, before + more));
         let rank = half << 16 | low;
         let ties = lower.get(low as usize).copied().unwrap_or_default();
@@ -208,7 +208,7 @@ impl Ranked<'_> {
         Ok(Last { rank: f64::from(rank), row: y as f64, column: (self.drawn.x + column) as f64 })
     }
 
-    /// How many samples have each half of their bits.
+    /// Number of samples for each value of half of their bits.
     fn counts(&self, half: impl Fn(u32) -> Option<u32>) -> Result<Vec<u64>> {
         let mut counts = vec![0u64; HALVES];
         self.each_part(|part| {

@@ -155,7 +155,7 @@ impl Solver for StreamPower {
             return Lowering::Processor("so many passes are submitted no faster than the processor computes");
         }
         let factors = ["erodibility_factor", "uplift_factor"].map(|name| given(name).is_some());
-        // Where rivers go in the first steps depends on the last digits of nearly level ground.
+        // The courses of rivers in the first steps depend on the last digits of nearly level ground.
         Lowering::Shader(self.passes(padded, planes, factors, world_params).chaotic())
     }
 
@@ -171,31 +171,31 @@ const CODE: &str =
 const SOURCE: u32 = 0;
 const HEIGHTS: [u32; 3] = [4, 16, 17];
 
-/// Number of planes beside inputs, layers, the routing, counters and the rain.
+/// Number of planes of the shaders in addition to inputs, layers, the routing, counters and the rain.
 const SCRATCH: usize = 7;
 
-/// Number of times that the pieces of the law are chosen in a step: if nothing is known of them, and if those of the
-/// step before are a good guess. Passes after the last change end at once.
+/// Number of times that the pieces of the law are chosen in a step: without an initial guess, and with the pieces of
+/// the previous step as the guess. Passes after the last change end at once.
 const ITERATIONS: [u32; 2] = [12, 8];
 
-/// More of them in a step whose law is not affine in the heights.
+/// Additional iterations in a step whose law is not affine in the heights.
 const MORE_ITERATIONS: u32 = 4;
 
-/// Maximum number of passes of all steps: a second of submissions.
+/// Maximum number of passes of all steps, whose submission takes about a second.
 const MAX_PASSES: f64 = 5e5;
 
-/// Number of passes of a step without creep, about.
+/// Approximate number of passes of a step without creep.
 const PASSES_OF_STEP: f64 = 100.0;
 
 impl StreamPower {
-    /// Number of passes of all steps, about.
+    /// Approximate number of passes of all steps.
     fn passes_of_steps(&self, padded: &Window) -> f64 {
         let steps = f64::from(self.steps.max(1));
         let creep = creep_strides(padded, self.years / steps * self.creep);
         steps * (PASSES_OF_STEP + creep.map_or(0.0, |[strides, stages, _]| strides * stages))
     }
 
-    /// The run of the law.
+    /// The parameters of the erosion.
     fn erosion(&self, world_params: &WorldParams) -> Erosion {
         let law = Law::default()
             .with_erodibility(self.erodibility)
@@ -247,7 +247,7 @@ impl StreamPower {
         if is_between_points {
             passes = then(passes, "draw_points", 0);
         }
-        // The plane of the heights now; the next one is another of the three.
+        // The current plane of heights; each step continues with the next of the three.
         let mut turn = HEIGHTS.into_iter().cycle();
         let mut here = SOURCE;
         let mut next = || turn.next().unwrap_or_default();
@@ -276,15 +276,14 @@ impl StreamPower {
         let to = next();
         passes = routing::route(passes, padded, all, Flats::Basins, step(here, 0, 0) | LAST);
         passes = solved(passes, padded, [here, to], LAST, 0);
-        // The heights may have pits where the last digits of a gentle slope were lost, so the flow is routed through
-        // depressions again.
+        // Rounding of gentle slopes may have made pits, so the flow is routed through depressions again.
         passes = routing::route(passes, padded, all, Flats::Basins, step(to, 0, 0) | LAST);
         then(routing::gather(passes, padded), "finish", step(to, 0, 0))
     }
 }
 
-/// `passes`, and those that solve the law for the heights of a plane, and write them to another one. The kind is
-/// [`LAST`], or 1 if there was a time step before, or 0.
+/// Appends the passes that solve the law for the heights of one plane and write them to another. `kind` is [`LAST`], or
+/// 1 if there was an earlier time step, otherwise 0.
 fn solved(mut passes: Passes, padded: &Window, [from, to]: [u32; 2], kind: u32, more: u32) -> Passes {
     let (last, known) = (kind & LAST, kind & 1);
     // An odd number of passes leaves the result in the second of two planes.
@@ -305,7 +304,7 @@ fn solved(mut passes: Passes, padded: &Window, [from, to]: [u32; 2], kind: u32, 
     then(passes, "set_heights", routing::step(from, to, 0) | last)
 }
 
-/// The layers of heights that started as `source`.
+/// The layers of the solution; `source` are the initial heights.
 fn solution(sources: &dyn Sources, heights: Grid, drained: &Accumulation, source: Grid) -> Result<Solution> {
     let mut change = source;
     for (change, height) in change.data_mut().iter_mut().zip(heights.data()) {

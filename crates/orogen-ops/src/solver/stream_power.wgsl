@@ -1,14 +1,15 @@
-// Stream power: steps of orogen-grid's `hydrology/stream_power.rs`, `erosion.rs`, `creep.rs` and `points.rs`, after `routing.wgsl`.
+// Stream power: the steps of orogen-grid's `hydrology/stream_power.rs`, `erosion.rs`, `creep.rs` and `points.rs`, after
+// `routing.wgsl`.
 //
-// The heights move between three planes. The layers hold other data until the last pass.
+// The heights use three planes in turn. The planes of layers have other data until the last pass.
 const ERODIBILITY = 1u;
 const UPLIFT = 2u;
 const FLOW = 5u;
 const CHANGE = 6u;
 const POINT = 15u;
-// Which piece of the law applies to each cell.
+// The piece of the law that applies to each cell.
 const PIECE = CHANGE;
-// The factor and the offset of a piece, twice.
+// The factor and the offset of a piece; two sets of planes.
 const AFFINE = 18u;
 
 const FREE = 1u;
@@ -22,7 +23,7 @@ struct Law {
     most: f32,
     // Uplift of the step, in metres.
     risen: f32,
-    // The equation of the drop x to the receiver that is left of a drop: x + cut x^n = drop.
+    // Coefficient of the equation for the drop x to the receiver that remains of a drop: x + cut x^n = drop.
     cut: f32,
 }
 
@@ -66,8 +67,8 @@ fn law_of(base: u32, cell: u32, receiver: u32) -> Law {
     return law;
 }
 
-// The drop that is left of a drop without limits, and how much of it is left of a little more drop. Newton's method starts above the root of a convex form, in
-// units of the drop: of s + c s^n = 1 for n > 1, and of t^(1/n) + c t = 1 with t = s^n for n < 1.
+// The remaining drop without limits, and its derivative by the drop. Newton's method starts above the root of a convex
+// form, in units of the drop: of s + c s^n = 1 for n > 1, and of t^(1/n) + c t = 1 with t = s^n for n < 1.
 fn left_of(base: u32, law: Law, drop: f32) -> vec2<f32> {
     let n = slope_exponent(base);
     if (n == 1.0) {
@@ -90,9 +91,10 @@ fn left_of(base: u32, law: Law, drop: f32) -> vec2<f32> {
     return vec2<f32>(drop * s, 1.0 / (1.0 + n * c * power(max(s, 1e-30), n - 1.0)));
 }
 
-// How much cells are raised at least, before anything is known of the pieces. A cell's change is at least that of a receiver that does not change, and at least
-// what keeps it above its raised receiver: max(a, b + x) of the receiver's change x, and so are compositions of such functions. Where a valley is filled,
-// each choice of pieces alone would reach one cell more of it.
+// Lower bounds of the changes of cells, for the first choice of pieces. A cell's change is at least max(a, b + x) for
+// the receiver's change x: a is its change if the receiver does not change, and b + x keeps it above its raised
+// receiver. Compositions of such functions have the same form. Without these bounds, filling a valley would take one
+// choice of pieces per cell of its length.
 fn begin_raise(base: u32, at: vec2<i32>) {
     let cell = cell_at(at);
     let receiver = word(RECEIVER, cell);
@@ -109,7 +111,7 @@ fn begin_raise(base: u32, at: vec2<i32>) {
     set_sample(AFFINE + 1u, cell, law.least - drop);
 }
 
-// Composes them from each cell downstream. The other plane is 0 or 1, in turn.
+// Composes the bounds from each cell downstream. The other plane of the step alternates between 0 and 1.
 fn compose_raise(base: u32, at: vec2<i32>) {
     let cell = cell_at(at);
     let turn = other_plane();
@@ -126,15 +128,16 @@ fn compose_raise(base: u32, at: vec2<i32>) {
     set_sample(AFFINE + 3u - 2u * turn, cell, max(above, -1e30));
 }
 
-// The changes so far are those.
+// Takes the bounds as the changes so far.
 fn end_raise(base: u32, at: vec2<i32>) {
     let cell = cell_at(at);
     set_sample(AFFINE + 3u, cell, sample(AFFINE + 2u, cell));
 }
 
-// The change of a cell's height is a function of its receiver's in three pieces. Two are affine, and so is the third one if the slope exponent is 1; otherwise
-// its tangent is. Chooses the piece by the changes that were computed with the pieces chosen before. The first choice is that of the time step before, if the
-// other plane is 1, otherwise by how much cells are raised.
+// The change of a cell's height is a function of its receiver's change with three pieces. Two pieces are affine, and so
+// is the third one if the slope exponent is 1; otherwise its tangent is used. Chooses the piece from the changes that
+// were computed with the previous choice. The first choice uses the pieces of the previous time step if the other plane
+// of the step is 1, otherwise the lower bounds.
 fn choose_piece(base: u32, at: vec2<i32>) {
     let iteration = step_number();
     if (counter(CHANGED) < iteration) {
@@ -188,7 +191,7 @@ fn choose_piece(base: u32, at: vec2<i32>) {
     set_sample(AFFINE + 1u, cell, offset);
 }
 
-// Composes the pieces from each cell downstream. The other plane is 0 or 1, in turn.
+// Composes the pieces from each cell downstream. The other plane of the step alternates between 0 and 1.
 fn compose_pieces(base: u32, at: vec2<i32>) {
     if (counter(CHANGED) <= step_number()) {
         return;
@@ -223,12 +226,12 @@ fn set_heights(base: u32, at: vec2<i32>) {
     let above = (bitcast<f32>(before) - height_below) + law.risen - change_below;
     let below = height_below + change_below;
     let height = below + max(min(left_of(base, law, above).x, law.most), law.least);
-    // The minimum slope may round to nothing, but the cell must drain.
+    // The minimum slope may be lost by rounding, but the cell must drain.
     let least = height_bits(ordered(bitcast<u32>(below)) + 1u);
     set_word(other_plane(), cell, select(least, bitcast<u32>(height), height > below));
 }
 
-// A stage of soil creep. The third of the planes has the heights of the stage before the last.
+// A stage of soil creep. The third plane has the heights of the stage before the previous one.
 fn creep(base: u32, at: vec2<i32>) {
     let cell = cell_at(at);
     let here = word(heights_plane(), cell);
@@ -253,7 +256,8 @@ fn creep(base: u32, at: vec2<i32>) {
     set_sample(other_plane(), cell, h + again + inflow);
 }
 
-// Interpolates the heights at the points to the lattice along the local slope: that of the least-squares plane through the point.
+// Interpolates the heights at the points to the lattice along the local slope, which is the slope of the least-squares
+// plane through the point.
 fn onto_lattice(base: u32, at: vec2<i32>) {
     let cell = cell_at(at);
     let here = word(heights_plane(), cell);

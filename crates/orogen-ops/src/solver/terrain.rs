@@ -1,4 +1,4 @@
-//! What the solvers of water begin with: the heights of their domain, and the cells at which water leaves it.
+//! Input of the solvers of water: the heights of their domain, and the cells at which water leaves it.
 
 use crate::budget::memory;
 use crate::large::drainage::{self as large, Water};
@@ -24,12 +24,12 @@ pub(crate) fn sea_level(sea: bool, context: &Context) -> Option<f32> {
     sea_level_of(sea, context.world_params)
 }
 
-/// The same in a world.
+/// The sea level of a world as a height, if the sea is an outlet.
 pub(crate) fn sea_level_of(sea: bool, world_params: &WorldParams) -> Option<f32> {
     sea.then_some(world_params.sea_level as f32)
 }
 
-/// An area in whole cells, at least `fewest` of them.
+/// An area in m^2 as a number of cells, at least `fewest`.
 pub(crate) fn cells_of(area: f64, window: &Window, fewest: u32) -> u32 {
     (area / (window.cell * window.cell)).ceil().clamp(f64::from(fewest), f64::from(u32::MAX)) as u32
 }
@@ -70,7 +70,7 @@ impl Terrain {
     }
 }
 
-/// The domain on disk, to be solved tile by tile.
+/// The domain on disk, for solving tile by tile.
 pub(crate) struct TiledTerrain {
     /// The heights.
     pub(crate) heights: Raster,
@@ -94,7 +94,7 @@ impl TiledTerrain {
         Ok(TiledTerrain { heights, tiling, sea: sea_level(sea, context) })
     }
 
-    /// The water on heights over the domain, such as its own.
+    /// The hydrology of heights over the domain, such as its own heights.
     pub(crate) fn water<'a>(&self, heights: &'a Raster, progress: &'a Progress) -> Water<'a> {
         Water { heights, sea: self.sea, tiling: self.tiling, progress }
     }

@@ -1,6 +1,7 @@
-// Beds of rivers, which are cut by the links of their nodes: `channels.rs`. Links may cut the same sample, so planes are words.
+// Beds of rivers, cut along the links between their nodes, as in `channels.rs`. Several links may cut the same sample,
+// so planes are read and written as words.
 
-// Widths in cells from which beds are cut.
+// Minimum width of rivers whose beds are cut, in cells.
 const NARROW = 1.0;
 
 struct Node {
@@ -10,7 +11,7 @@ struct Node {
     depth: f32,
 }
 
-// A node, whose cell is `by` from another.
+// The node of the cell `by` cells from another.
 fn node(at: vec2<i32>, by: vec2<i32>) -> Node {
     let o = at + by;
     let place = vec2<f32>(sample(NODE_EAST, cell_at(o)), sample(NODE_SOUTH, cell_at(o))) + vec2<f32>(by);

@@ -1,4 +1,5 @@
-// Rivers of the level above, carved into the children: `carve.rs`. Each child gathers what the links around its parent say, in their order.
+// Carves rivers of the level above into the children, as in `carve.rs`. Each child gathers the data of the links around
+// its parent, in their order.
 
 fn is_water(at: vec2<i32>) -> bool {
     return plane(LEVEL, at) < KNOWN;
@@ -11,7 +12,7 @@ fn length_of(start: vec2<i32>, end: vec2<i32>) -> f32 {
     return distance_of(start, end);
 }
 
-// The shares of a link's way up to the exit and the entry. Water of lakes with an outlet does not fall.
+// The shares of a link's length up to the exit and the entry. Water of lakes with an outlet does not fall.
 fn measure(base: u32, at: vec2<i32>) {
     let link = link_in(LINK, at);
     let code = above(RECEIVER, at);
@@ -50,12 +51,12 @@ struct Carved {
     led: u32,
 }
 
-// A child on a link. Standing water keeps its level.
+// Adds the height and area of a link to a child. Standing water keeps its level.
 fn put(carved: Carved, at: vec2<i32>, height: f32, area: f32) -> Carved {
     return Carved(select(height, carved.height, is_water(at)), carved.area + area, carved.led);
 }
 
-// What a link says about a child up to its entry.
+// Adds the data of a link up to its entry to a child.
 fn left_by(parent: vec2<i32>, link: Link, at: vec2<i32>, before: Carved) -> Carved {
     let way = way_of(parent, link);
     let has_via = way.via.x >= 0;
@@ -89,7 +90,7 @@ fn arriving(parent: vec2<i32>, way: Way) -> f32 {
     return 4.0 * above(AREA, parent) + steps_of(way);
 }
 
-// What the end of a link from `donor` to `parent` says about a child of `parent`.
+// Adds the data of the end of a link from `donor` to `parent` to a child of `parent`.
 fn arrived_by(donor: vec2<i32>, parent: vec2<i32>, at: vec2<i32>, before: Carved) -> Carved {
     let way = way_of(donor, link_in(LINK, donor));
     let drains_on = drains(above(RECEIVER, parent));
@@ -118,7 +119,8 @@ fn is_kept(parent: vec2<i32>) -> bool {
     return is_inner(parent) && link_in(LINK, parent).kept;
 }
 
-// Heights, areas and receivers of rivers, and of standing water. The lower eight bits of `frame.step` are the plane of heights, the next eight that of areas.
+// Heights, areas and receivers of rivers and of standing water. The lower eight bits of `frame.step` are the plane of
+// heights, the next eight bits the plane of areas.
 fn carve(base: u32, at: vec2<i32>) {
     let parent = at / 2;
     let water = is_water(at);
@@ -155,8 +157,9 @@ fn carve(base: u32, at: vec2<i32>) {
     }
 }
 
-// Keeps the areas between a node and its donors. Water that has spread drains to that beside it, if that does. The lower eight bits of `frame.step` are the
-// plane of areas that is read, the next eight the one that is written.
+// Keeps areas between those of a node and its donors. Water that has spread drains to the adjacent water that it came
+// from, if that water drains. The lower eight bits of `frame.step` are the plane of areas that is read, the next eight
+// bits the plane that is written.
 fn bound_areas(base: u32, at: vec2<i32>) {
     let parent = at / 2;
     let areas = frame.step & 0xffu;
@@ -185,7 +188,7 @@ fn bound_areas(base: u32, at: vec2<i32>) {
         }
     }
     set_plane((frame.step >> 8u) & 0xffu, at, max(area, 1.0));
-    // What water has spread to holds no link, so that no call writes the receiver that another one reads.
+    // Children to which water has spread have no link, so no call writes a receiver that another call reads.
     let gained = u32(plane(GAINED, at));
     if (gained != 0u) {
         if (plane(RECEIVER, at + step_of(gained - 1u)) < WATER) {
@@ -198,8 +201,8 @@ fn between(at: vec2<i32>, code: u32) -> f32 {
     return max(distance_of(at, at + step_of(code)), 0.35);
 }
 
-// Whether the diagonal from a cell to the south-east is open, rather than the one that crosses it: links open theirs, the last one if two cross, and otherwise the
-// shorter one is.
+// Whether the diagonal from a cell to the south-east is open instead of the one that crosses it. A link opens its
+// diagonal; if two links cross, the last one does. Without a link the shorter diagonal is open.
 fn is_falling(at: vec2<i32>) -> bool {
     let east = at + vec2<i32>(1, 0);
     let south = at + vec2<i32>(0, 1);
@@ -215,7 +218,7 @@ fn is_falling(at: vec2<i32>) -> bool {
     return between(at, 1u) < between(east, 3u);
 }
 
-// Distances between the nodes of neighboring cells: `distances.rs`.
+// Distances between the nodes of neighboring cells, as in `distances.rs`.
 fn measure_cells(base: u32, at: vec2<i32>) {
     set_plane(DISTANCE, at, between(at, 0u));
     set_plane(DISTANCE + 2u, at, between(at, 2u));

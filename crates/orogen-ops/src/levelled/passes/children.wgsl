@@ -1,6 +1,7 @@
-// Positions, rock and shores of the children: `children.rs`.
+// Positions, rock and shores of the children, as in `children.rs`.
 
-// Positions. The node that a parent becomes stays near the parent's position; nodes of the finest level of valleys are in the middles of their cells.
+// Positions. The child that takes over a parent's node stays near the parent's position; nodes of the finest level of
+// valleys are in the middles of their cells.
 fn place(base: u32, at: vec2<i32>) {
     var position = vec2<f32>(0.5);
     if (!has(base, FINEST)) {
@@ -18,14 +19,15 @@ fn place(base: u32, at: vec2<i32>) {
     set_plane(SOUTH, at, position.y);
 }
 
-// A number of nearly normal distribution, from hashed bits.
+// A nearly normally distributed number from hashed bits.
 fn normal(base: u32, at: vec2<i32>, change: u32) -> f32 {
     let bits = mix64(child_bits(place_hash(base), at) ^ vec2<u32>(change, 0u));
     let sum = (bits.x & 0xffffu) + (bits.x >> 16u) + (bits.y & 0xffffu) + (bits.y >> 16u);
     return (f32(sum) * 1.52587890625e-5 - 2.0) * 1.7320508;
 }
 
-// A plane of the level above at the four nearest parents: the nearest, those beside it, and the one across the corner.
+// A plane of the level above at the four nearest parents: the nearest, the two next to it, and the one across the
+// corner.
 fn nearest(k: u32, at: vec2<i32>) -> vec4<f32> {
     let near = at / 2;
     let far = near + 2 * (at & vec2<i32>(1)) - vec2<i32>(1);
@@ -36,7 +38,7 @@ fn blended(values: vec4<f32>) -> f32 {
     return 0.5625 * values.x + 0.1875 * values.y + 0.1875 * values.z + 0.0625 * values.w;
 }
 
-// By how much the distance to the shore changes along a kilometre near the shore, at least 1.
+// The change of the distance to the shore per kilometre near the shore, at least 1.
 fn steepness(base: u32, shores: vec4<f32>) -> f32 {
     let side = 2.0 * kilometres(base);
     let falls = vec2<f32>(shores.x - shores.y, shores.x - shores.z);
@@ -45,7 +47,7 @@ fn steepness(base: u32, shores: vec4<f32>) -> f32 {
     return 1.0 + near * max(steep - 1.0, 0.0);
 }
 
-// What a detail level adds to the logarithm of the stable slope: rock is rougher than soil.
+// The term that a detail level adds to the logarithm of the stable slope: rock is rougher than soil.
 fn roughness(logarithm: f32) -> f32 {
     return 0.3 + 0.9 * share_between(logarithm, -0.35, 0.1);
 }

@@ -1,13 +1,13 @@
-// What the passes of drained land have in common: orogen-grid's `multiscale`. The names of all planes, and what reads the numbers of `Refinement::words` and
-// the planes of what is given, stand before it.
+// Common functions of the passes of drained land, as in orogen-grid's `multiscale`. The names of all planes, and
+// functions that read the numbers of `Refinement::words` and the planes of inputs, are declared before this text.
 
-// Codes of receivers: none, and what is added in lakes with an outlet.
+// Codes of receivers: none, and the number that is added in lakes with an outlet.
 const NONE = 8.0;
 const LAKE = 16.0;
-// In planes of fixed receivers.
+// Codes in planes of fixed receivers.
 const FREE = -1.0;
 const WATER = 8.0;
-// Height of nodes that have none yet, and the level of children without water. Smaller numbers are heights.
+// Height of nodes without a height yet, and water level of children without water. Smaller numbers are heights.
 const UNKNOWN = 1e30;
 const KNOWN = 1e29;
 
@@ -15,7 +15,7 @@ fn has(base: u32, flag: u32) -> bool {
     return (flags(base) & flag) != 0u;
 }
 
-// What plane `k` gives for a node; missing if it is 0.
+// The value of the input in plane `k` at a node; missing if `k` is 0.
 fn given(k: u32, at: vec2<i32>) -> f32 {
     if (k == 0u) {
         return missing();
@@ -23,7 +23,7 @@ fn given(k: u32, at: vec2<i32>) -> f32 {
     return plane(k, at);
 }
 
-// A factor that is given, within a range; 1 if nothing is.
+// The factor in plane `k`, limited to a range; 1 if it is not given.
 fn factor(k: u32, at: vec2<i32>, low: f32, high: f32) -> f32 {
     let value = given(k, at);
     if (is_missing(value)) {
@@ -43,18 +43,18 @@ fn plus(a: vec2<u32>, b: vec2<u32>) -> vec2<u32> {
     return vec2<u32>(low, a.y + b.y + select(0u, 1u, low < a.x));
 }
 
-// A number, and the same shifted right by 1 to 31 bits, combined by "exclusive or".
+// A number combined by exclusive or with the same number shifted right by 1 to 31 bits.
 fn folded(a: vec2<u32>, by: u32) -> vec2<u32> {
     return a ^ vec2<u32>((a.x >> by) | (a.y << (32u - by)), a.y >> by);
 }
 
-// The finaliser of splitmix64.
+// The finalizer of splitmix64.
 fn mix64(a: vec2<u32>) -> vec2<u32> {
     let b = times(folded(a, 30u), vec2<u32>(0x1ce4e5b9u, 0xbf58476du));
     return folded(times(folded(b, 27u), vec2<u32>(0x133111ebu, 0x94d049bbu)), 31u);
 }
 
-// The random bits of a node by the start of the hashes.
+// The random bits of a node, from the initial value of its hash.
 fn node_bits(begin: vec2<u32>, x: vec2<u32>, y: vec2<u32>) -> vec2<u32> {
     let column = mix64(begin ^ times(x, vec2<u32>(0x6659fd93u, 0xd6e8feb8u)));
     return mix64(plus(column, times(y, vec2<u32>(0x78bd642fu, 0xa0761d64u))));
@@ -75,7 +75,7 @@ fn parent_bits(begin: vec2<u32>, at: vec2<i32>) -> vec2<u32> {
     return node_bits(begin, x, plus(halved(first_row()), vec2<u32>(u32(at.y), 0u)));
 }
 
-// Numbers from 0 to 1 by the upper 24 bits, by the next 24, and by a part of 16 bits.
+// Numbers from 0 to 1, from the upper 24 bits, from the next 24, and from a part of 16 bits.
 fn unit(bits: vec2<u32>) -> f32 {
     return f32(bits.y >> 8u) * 5.9604644775390625e-8;
 }
@@ -116,7 +116,7 @@ fn drains(code: f32) -> bool {
     return code < NONE || code >= LAKE;
 }
 
-// Which of the four children of a cell its node becomes: bit 0 is set in the east, bit 1 in the south.
+// Which of the four children takes over a cell's node: bit 0 is set in the east, bit 1 in the south.
 fn heir(parent: vec2<i32>) -> u32 {
     return select(0u, 1u, above(EAST, parent) >= 0.5) | select(0u, 2u, above(SOUTH, parent) >= 0.5);
 }
@@ -137,7 +137,7 @@ fn distance_of(start: vec2<i32>, end: vec2<i32>) -> f32 {
     return sqrt(x * x + y * y);
 }
 
-// The share of the way from the first to the second value, 0 before and 1 after.
+// The position of a value between the first and the second one: 0 up to the first, 1 from the second on.
 fn share_between(value: f32, first: f32, second: f32) -> f32 {
     return clamp((value - first) / (second - first), 0.0, 1.0);
 }

@@ -1,5 +1,6 @@
-// Creep of soil, banks of rivers, and steepest descent: `creep.rs` and `banks.rs`. Of `frame.step` the lowest eight bits are the plane of the heights that are
-// read, and then come that of the heights that are written, and that of the areas.
+// Soil creep, banks of rivers, and steepest descent, as in `creep.rs` and `banks.rs`. The lowest eight bits of
+// `frame.step` are the plane of heights that is read, followed by the plane of heights that is written and the plane of
+// areas, with eight bits each.
 
 fn heights() -> u32 {
     return frame.step & 0xffu;
@@ -9,7 +10,7 @@ fn areas() -> u32 {
     return (frame.step >> 16u) & 0xffu;
 }
 
-// The factor of creep: what is given, or of detail levels less where slopes are of rock.
+// The factor of creep: the input; on detail levels less where slopes are of rock.
 fn creep_factor(base: u32, at: vec2<i32>) -> f32 {
     if (has(base, DETAIL)) {
         return 1.0 - 0.9 * share_between(plane(STABLE, at), 0.5, 1.0);
@@ -54,13 +55,13 @@ fn creep(base: u32, at: vec2<i32>) {
     change = min(max(change, lower), upper);
     var height = select(here, here + change, is_land(at));
     if (has(base, LAKES)) {
-        // Land around lakes has not fallen below its smallest height.
+        // Land around lakes does not fall below its smallest height.
         height = max(height, min(here, plane(LEAST, at)));
     }
     set_plane((frame.step >> 8u) & 0xffu, at, height);
 }
 
-// Nodes beside rivers rise to the banks, as far as their donors stay above them.
+// Raises nodes next to rivers to the banks, as long as their donors stay above them.
 fn raise_banks(base: u32, at: vec2<i32>) {
     let here = plane(heights(), at);
     var bank = here;
@@ -81,7 +82,7 @@ fn raise_banks(base: u32, at: vec2<i32>) {
     set_plane((frame.step >> 8u) & 0xffu, at, select(here, raised, is_raised));
 }
 
-// Free nodes drain along the steepest descent.
+// Sets the receivers of free nodes by steepest descent.
 fn descend(base: u32, at: vec2<i32>) {
     if (plane(FIXED, at) != FREE) {
         return;

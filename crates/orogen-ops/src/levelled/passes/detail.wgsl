@@ -1,7 +1,7 @@
-// Turns nodes of the finest level of valleys into those that detail levels begin with: `detail.rs` and `scree.rs`. Planes of the level above: slopes, their
-// weights, and their means.
+// Converts nodes of the finest level of valleys to the nodes that detail levels start from, as in `detail.rs` and
+// `scree.rs`. Planes of the level above: slopes, their weights, and their means.
 
-// The stable slope with which the law gives the slope from a node to its receiver, and its weight.
+// The stable slope for which the law gives the slope from a node to its receiver, and its weight.
 fn weigh(base: u32, at: vec2<i32>) {
     let logarithm = above(VARIATION, at) + above(UPLIFT, at);
     let law = stable_slope(base) * exponential(0.3 * logarithm);

@@ -1,4 +1,4 @@
-// The distances from a node to its neighbors: `distances.rs`.
+// The distances from a node to its neighbors, as in `distances.rs`.
 fn distance_in(code: u32, at: vec2<i32>, base: u32) -> f32 {
     if (has(base, FINEST)) {
         return select(1.0, 1.4142135, (code & 1u) != 0u);

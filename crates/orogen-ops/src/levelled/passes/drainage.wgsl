@@ -1,11 +1,12 @@
-// Steps of drainage areas: `drainage.rs`. The lower eight bits of `frame.step` are the plane of the areas that are read, the next eight that of those that are
-// written.
+// Steps of drainage areas, as in `drainage.rs`. The lower eight bits of `frame.step` are the plane of areas that is
+// read, the next eight bits the plane that is written.
 
 fn donates(at: vec2<i32>, code: u32) -> bool {
     return plane(RECEIVER, at + step_of(code)) == f32(opposite(code));
 }
 
-// Each cell adds up what its donors had. In the first step what is not a river yet has drained nothing: the areas of rivers contain it.
+// Each cell adds up the areas of its donors. In the first step cells that are not rivers yet drain nothing: the areas
+// of rivers contain their cells already.
 fn add_areas(base: u32, at: vec2<i32>) {
     let is_first = (frame.step >> 16u) != 0u;
     var total = factor(given_rain(base), at, 0.01, 100.0);
@@ -18,7 +19,7 @@ fn add_areas(base: u32, at: vec2<i32>) {
     set_plane((frame.step >> 8u) & 0xffu, at, total);
 }
 
-// Areas become at least those of the donors before.
+// Raises areas to at least the previous areas of the donors.
 fn raise_areas(base: u32, at: vec2<i32>) {
     var most = plane(frame.step & 0xffu, at);
     for (var code = 0u; code < 8u; code += 1u) {
@@ -29,7 +30,7 @@ fn raise_areas(base: u32, at: vec2<i32>) {
     set_plane((frame.step >> 8u) & 0xffu, at, most);
 }
 
-// Areas become at most those of the receivers before.
+// Limits areas to at most the previous areas of the receivers.
 fn limit_areas(base: u32, at: vec2<i32>) {
     var least = plane(frame.step & 0xffu, at);
     let receiver = plane(RECEIVER, at);
@@ -39,7 +40,7 @@ fn limit_areas(base: u32, at: vec2<i32>) {
     set_plane((frame.step >> 8u) & 0xffu, at, least);
 }
 
-// Receivers as a level has them.
+// Writes the receivers of the finished level.
 fn finish(base: u32, at: vec2<i32>) {
     let receiver = plane(RECEIVER, at);
     let is_in_lake = plane(FIXED, at) == WATER && receiver < WATER;

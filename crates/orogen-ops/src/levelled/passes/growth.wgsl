@@ -1,7 +1,8 @@
-// A pass of growth: `growth_row.rs`. Of `frame.step` the lowest eight bits are the plane of the heights that are read, and then come that of the heights that
-// are written, that of the areas, and one bit: 0 if the first plane of floors is read and the second one written.
+// A pass of growth, as in `growth_row.rs`. The lowest eight bits of `frame.step` are the plane of heights that is read,
+// followed by the plane of heights that is written and the plane of areas, with eight bits each. The next bit is 0 if
+// the first plane of floors is read and the second one written.
 
-// What all neighbors of a node are measured by, and the best so far.
+// The data with which all neighbors of a node are compared, and the best neighbor so far.
 struct Growing {
     rise: f32,
     flat_rise: f32,
@@ -20,8 +21,8 @@ fn begin(base: u32, at: vec2<i32>, height: f32, area: f32) -> Growing {
     return Growing(rise, min(0.02 * cell(base), rise), select(-UNKNOWN, height, fixed == FREE), fixed, UNKNOWN, -1.0, 0.0);
 }
 
-// Takes the height over the neighbor in a direction where it is the lowest so far. No link crosses a river from one of the two cells beside a diagonal to the
-// other: `beside` are their fixed receivers.
+// Takes the height over the neighbor in a direction if it is the lowest so far. A diagonal link must not cross a river
+// between the two cells on its sides; `beside` are the fixed receivers of these cells.
 fn offer(base: u32, at: vec2<i32>, code: u32, there: f32, beside: vec2<f32>, before: Growing) -> Growing {
     var growing = before;
     let near = at + step_of(code);
@@ -42,7 +43,8 @@ fn offer(base: u32, at: vec2<i32>, code: u32, there: f32, beside: vec2<f32>, bef
     return growing;
 }
 
-// Takes the height of a front that passes between a neighbor and the lower one beside it where it is the lowest so far.
+// Takes the height of a front that passes between a neighbor and the lower neighbor next to it, if it is the lowest so
+// far.
 fn front(here: f32, there: f32, corner: f32, beside: u32, before: Growing) -> Growing {
     var growing = before;
     let fall = there - corner;
@@ -88,7 +90,7 @@ fn grow(base: u32, at: vec2<i32>) {
         set_plane(RECEIVER, at, growing.best);
     }
     if (has(base, FLOORS)) {
-        // The distance over which a river's floor continues, from its size or from downstream.
+        // The distance over which a river's floor continues, from the river's size or from downstream.
         let share = area * floor_area(base);
         var own = 0.0;
         if (share > 1.0 && growing.fixed < WATER) {

@@ -1,6 +1,6 @@
-// The law of slopes, and the last that is done to rivers before growth: `law.rs`, and `free_rivers` of `detail.rs`.
+// The law of slopes, and the last changes of rivers before growth, as in `law.rs` and in `free_rivers` of `detail.rs`.
 
-// Rivers of detail levels keep their slopes where those are steeper than the law.
+// Rivers of detail levels keep slopes that are steeper than the law.
 fn kept_slope(base: u32, at: vec2<i32>, slopes: vec2<f32>) -> vec2<f32> {
     let heights = frame.step & 0xffu;
     let code = plane(FIXED, at);
@@ -19,7 +19,7 @@ fn kept_slope(base: u32, at: vec2<i32>, slopes: vec2<f32>) -> vec2<f32> {
     return slopes;
 }
 
-// The lower eight bits of `frame.step` are the plane of heights, the next eight that of areas.
+// The lower eight bits of `frame.step` are the plane of heights, the next eight bits the plane of areas.
 fn set_law(base: u32, at: vec2<i32>) {
     let variation = plane(VARIATION, at);
     let uplift = plane(UPLIFT, at);

@@ -1,4 +1,4 @@
-// What the passes that read layers from a level have in common.
+// Common functions of the passes that compute layers from a level.
 
 fn square_metres(base: u32) -> f32 {
     return cell(base) * cell(base);

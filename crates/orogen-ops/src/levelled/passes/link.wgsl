@@ -1,4 +1,4 @@
-// The way of a parent's link, as one whole number.
+// The path of a parent's link, encoded as one whole number.
 
 struct Link {
     // Whether the parent has a donor or is water, and whether it has a donor.
@@ -7,7 +7,8 @@ struct Link {
     // The children through which the river leaves and arrives.
     leaves: u32,
     arrives: u32,
-    // The third cell that the link passes: none, that in the east or west, or that in the north or south.
+    // The third cell that the link passes: 0 for none, 1 for the one in the east or west, 2 for the one in the north or
+    // south.
     around: u32,
 }
 
@@ -25,12 +26,12 @@ fn receiver_of(parent: vec2<i32>) -> vec2<i32> {
     return parent + step_of(u32(above(RECEIVER, parent)));
 }
 
-// Whether an inner parent's river leads to a cell.
+// Whether the river of an inner parent leads to a cell.
 fn leads_to(parent: vec2<i32>, cell: vec2<i32>) -> bool {
     return is_inner(parent) && drains(above(RECEIVER, parent)) && all(receiver_of(parent) == cell);
 }
 
-// The child at the corner that a link crosses, in the third cell.
+// The child in the third cell, at the corner that a link crosses.
 fn passed(parent: vec2<i32>, link: Link, around: u32) -> vec2<i32> {
     let by = step_of(u32(above(RECEIVER, parent)));
     if (around == 1u) {
@@ -39,7 +40,7 @@ fn passed(parent: vec2<i32>, link: Link, around: u32) -> vec2<i32> {
     return child_of(parent + vec2<i32>(0, by.y), (link.leaves & 1u) | (link.arrives & 2u));
 }
 
-// The children that a link passes, and how many of them it adds.
+// The children that a link passes. `via` is (-1, -1) if there is no third cell.
 struct Way {
     start: vec2<i32>,
     exit: vec2<i32>,
@@ -57,7 +58,7 @@ fn way_of(parent: vec2<i32>, link: Link) -> Way {
     return Way(child_of(parent, heir(parent)), child_of(parent, link.leaves), via, child_of(to, link.arrives), child_of(to, heir(to)));
 }
 
-// Number of children of a way before its entry, beside the first.
+// Number of children of a path between its start and its entry.
 fn steps_of(way: Way) -> f32 {
     return select(0.0, 1.0, any(way.exit != way.start)) + select(0.0, 1.0, way.via.x >= 0);
 }

@@ -1,7 +1,7 @@
-// Which links of the parents are kept, and the children that they pass: `links.rs`. Planes of the level above: links without detours, the children that links
-// use, and links.
+// Chooses the links of the parents that are kept, and the children that they pass, as in `links.rs`. Planes of the
+// level above: links without detours, the children that links use, and links.
 
-// The exit and the entry of a link across a side, by length and chance.
+// The exit and the entry of a link across a side, chosen by length and at random.
 fn across_side(base: u32, at: vec2<i32>, by: vec2<i32>, straight: vec2<u32>) -> vec2<u32> {
     let to = at + by;
     let begin = child_of(at, heir(at));
@@ -67,7 +67,7 @@ fn occupy(base: u32, at: vec2<i32>) {
     set_above(USED, at, f32(used));
 }
 
-// Leads some links across corners around them, through a child of one of the two other cells that no link uses.
+// Leads some links that cross a corner around it, through an unused child of one of the two other cells.
 fn go_around(base: u32, at: vec2<i32>) {
     let code = above(RECEIVER, at);
     var link = link_in(DIRECT, at);

@@ -1,9 +1,10 @@
-// Mouths of rivers where shores are given: `mouths.rs`.
+// Mouths of rivers where shores are given, as in `mouths.rs`.
 const BELOW_UNKNOWN = 0u;
 const BELOW_LAND = 1u;
 const BELOW_SEA = 2u;
 
-// What the given shore says of the children of a node; of the sea, the child nearest to the heir and its distance from the shore in km.
+// The children of a node according to the given shore. For the sea, the child nearest to the heir and its distance from
+// the shore in km.
 struct Below {
     kind: u32,
     corner: u32,
@@ -50,14 +51,15 @@ fn lowest_donor(parent: vec2<i32>) -> f32 {
     return lowest;
 }
 
-// Whether a river passes between the two cells beside a step across a corner.
+// Whether a river passes between the two cells on the sides of a diagonal step.
 fn is_crossed(parent: vec2<i32>, by: vec2<i32>) -> bool {
     let first = direction_of(parent + vec2<i32>(by.x, 0));
     let second = direction_of(parent + vec2<i32>(0, by.y));
     return first == code_of(vec2<i32>(-by.x, by.y)) || second == code_of(vec2<i32>(by.x, -by.y));
 }
 
-// The direction to the sea beside a node: across a side if possible, across no river, and then furthest from the shore. 8 if there is none.
+// The direction to adjacent sea: across a side if possible, never across a river, and then farthest from the shore. 8
+// if there is none.
 fn way_to_sea(base: u32, parent: vec2<i32>) -> u32 {
     var best = 8u;
     var best_shore = 0.0;
@@ -78,12 +80,12 @@ fn way_to_sea(base: u32, parent: vec2<i32>) -> u32 {
     return best;
 }
 
-// A share of a cell in its first or second half: mirrored if it is in the other one.
+// A position in a cell, moved to its first or second half by mirroring.
 fn in_half(share: f32, second: bool) -> f32 {
     return select(1.0 - share, share, (share >= 0.5) == second);
 }
 
-// Decides what nodes become.
+// Decides which nodes become mouths.
 fn decide_mouths(base: u32, at: vec2<i32>) {
     var east = above(EAST, at);
     var south = above(SOUTH, at);
@@ -121,7 +123,7 @@ fn decide_mouths(base: u32, at: vec2<i32>) {
     set_above(NEW_SHORE, at, shore);
 }
 
-// Nodes become what has been decided.
+// Applies the decisions.
 fn move_mouths(base: u32, at: vec2<i32>) {
     set_above(EAST, at, above(NEW_EAST, at));
     set_above(SOUTH, at, above(NEW_SOUTH, at));

@@ -1,11 +1,11 @@
-// Rivers at nodes of detail levels: `channels.rs`.
+// Rivers at nodes of detail levels, as in `channels.rs`.
 const WIDEST = 20.0;
 const SMOOTHED = 3.0;
 const MIN_SMOOTHED = 8.0;
 const MAX_SMOOTHED = 24.0;
 const NARROW = vec2<f32>(1.0, 2.0);
 
-// The direction to the donor with the largest area, the first of equal ones; NONE at sources.
+// The direction to the donor with the largest area, the first one of equal areas; NONE at sources.
 fn main_donor(at: vec2<i32>) -> u32 {
     var best = 8u;
     var most = 0.0;
@@ -20,7 +20,7 @@ fn main_donor(at: vec2<i32>) -> u32 {
     return best;
 }
 
-// The direction downstream, or that to the main donor; 8 if there is none.
+// The direction downstream, or to the main donor; 8 if there is none.
 fn towards(at: vec2<i32>, is_upstream: bool) -> u32 {
     if (is_upstream) {
         return main_donor(at);

@@ -1,4 +1,5 @@
-// Standing water of the children: `shores.rs`. What is held is encoded as a number.
+// Standing water of the children, as in `shores.rs`. These numbers are what links make of a child: nothing, a river, a
+// mouth or a lake.
 const HELD_NOT = 0u;
 const HELD_RIVER = 1u;
 const HELD_MOUTH = 2u;
@@ -9,7 +10,7 @@ struct Held {
     height: f32,
 }
 
-// What two links say: lakes rather than rivers, and of rivers the lowest.
+// Combines the data of two links: lakes take precedence over rivers, and of two rivers the lower one counts.
 fn gained(held: Held, other: Held) -> Held {
     if (held.kind == HELD_LAKE && other.kind == HELD_RIVER) {
         return held;
@@ -31,7 +32,7 @@ fn is_fed_by_lake(at: vec2<i32>) -> bool {
     return false;
 }
 
-// What a link says about a child, added to what others do.
+// Adds the data of a link to a child.
 fn held_by(parent: vec2<i32>, link: Link, at: vec2<i32>, before: Held) -> Held {
     let way = way_of(parent, link);
     if (!(same(at, way.start) || same(at, way.exit) || same(at, way.via) || same(at, way.entry))) {
@@ -47,7 +48,7 @@ fn held_by(parent: vec2<i32>, link: Link, at: vec2<i32>, before: Held) -> Held {
     if (is_lake(code)) {
         first = lake;
     }
-    // A lake ends at the start of its outlet's link, or behind it if there is nothing else of the lake.
+    // A lake ends at the start of its outlet's link, or one child later if the lake has no other part.
     var later = river;
     if (is_lake(code) && !(is_outlet && is_fed_by_lake(parent))) {
         later = lake;
@@ -72,7 +73,7 @@ fn held_by(parent: vec2<i32>, link: Link, at: vec2<i32>, before: Held) -> Held {
     return held;
 }
 
-// What the links say about each child, and the first water.
+// The data of the links for each child, and the initial water.
 fn hold(base: u32, at: vec2<i32>) {
     let parent = at / 2;
     var held = Held(HELD_NOT, 0.0);
@@ -94,7 +95,7 @@ fn hold(base: u32, at: vec2<i32>) {
             is_mouth = true;
         }
     }
-    // A river that passes is land, wherever another one ends.
+    // A passing river is land even where another river ends.
     if (is_mouth && held.kind == HELD_NOT) {
         held.kind = HELD_MOUTH;
     }
@@ -110,7 +111,7 @@ fn hold(base: u32, at: vec2<i32>) {
     set_plane(FIRST_LEVEL, at, level);
 }
 
-// Whether a river that is, or soon will be, lower than a water level passes beside a child.
+// Whether a river that is or will become lower than a water level passes next to a child.
 fn is_beside_lower(at: vec2<i32>, level: f32) -> bool {
     for (var k = 0u; k < 8u; k += 1u) {
         let near = at + step_of(k);
@@ -125,7 +126,7 @@ fn is_in_lake(at: vec2<i32>) -> bool {
     return u32(plane(HELD, at)) == HELD_LAKE || is_lake(above(RECEIVER, at / 2));
 }
 
-// Lakes with an outlet stay apart from other water and from lower rivers.
+// Keeps lakes with an outlet apart from other water and from lower rivers.
 fn dry_between(base: u32, at: vec2<i32>) {
     let level = plane(FIRST_LEVEL, at);
     var dried = level;
@@ -145,7 +146,7 @@ fn dry_between(base: u32, at: vec2<i32>) {
     set_plane(DRIED_LEVEL, at, dried);
 }
 
-// Water spreads by one cell into low land; shores become those of the water.
+// Spreads water by one cell into low land, and moves shores accordingly.
 fn spread(base: u32, at: vec2<i32>) {
     let held = u32(plane(HELD, at));
     let shore = plane(SHORE, at);

@@ -1,6 +1,7 @@
-// Shorter rivers on the finest level: `straighten.rs`. A shortcut is encoded as its direction and 16 times the number of cells that it skips, 0 without one.
+// Shortens rivers on the finest level, as in `straighten.rs`. A shortcut is encoded as its direction plus 16 times the
+// number of cells that it skips; 0 is no shortcut.
 
-// Where the river of a cell leads to, 9 where there is none, and 16 more in cells that are skipped.
+// Codes of paths: the direction of the river, 9 without a river, plus 16 in cells that are skipped.
 const DRY = 9u;
 const SKIPPED = 16u;
 
@@ -8,7 +9,7 @@ fn river_code(at: vec2<i32>) -> f32 {
     return plane(FIXED, at);
 }
 
-// Where a river comes back to a cell beside itself.
+// Finds shortcuts: places where a river returns to a cell next to its path.
 fn find_shortcuts(base: u32, at: vec2<i32>) {
     var node = at;
     var by = vec2<i32>(0);
@@ -28,7 +29,7 @@ fn find_shortcuts(base: u32, at: vec2<i32>) {
     set_plane(FOUND, at, f32(found));
 }
 
-// Whether a shortcut from a cell skips another one.
+// Whether a shortcut from `start` skips the cell `at`.
 fn skips(start: vec2<i32>, shortcut: u32, at: vec2<i32>) -> bool {
     var node = start;
     for (var k = 0u; k < (shortcut >> 4u); k += 1u) {
@@ -40,7 +41,8 @@ fn skips(start: vec2<i32>, shortcut: u32, at: vec2<i32>) -> bool {
     return false;
 }
 
-// Of two shortcuts of which one skips the start of the other, that of the higher rank is taken: a low and a high word.
+// The rank of a shortcut, as a low and a high word. Of two shortcuts, one of which skips the start of the other, the
+// one with the higher rank is taken.
 fn rank_of(at: vec2<i32>, shortcut: u32) -> vec2<u32> {
     let x = plus(first_column(), vec2<u32>(u32(at.x), 0u));
     let y = plus(first_row(), vec2<u32>(u32(at.y), 0u));
@@ -53,7 +55,8 @@ fn is_higher(a: vec2<u32>, b: vec2<u32>) -> bool {
     return a.y > b.y || (a.y == b.y && a.x > b.x);
 }
 
-// Whether a shortcut gives way to one that skips its start, or whose start it skips.
+// Whether a shortcut is not taken, because another one of a higher rank skips its start or starts in a cell that it
+// skips.
 fn is_beaten(at: vec2<i32>, shortcut: u32) -> bool {
     let rank = rank_of(at, shortcut);
     var node = at;
@@ -87,8 +90,9 @@ fn take_shortcuts(base: u32, at: vec2<i32>) {
     set_plane(TAKEN, at, f32(taken));
 }
 
-// Cells that are skipped lose the water that now passes beside them. The starts keep theirs, because nothing that is taken skips them. The lower eight bits of
-// `frame.step` are the plane of areas, the next eight that of the ways.
+// Skipped cells lose the water that now bypasses them. The starts of shortcuts keep theirs, because no shortcut that is
+// taken skips them. The lower eight bits of `frame.step` are the plane of areas, the next eight bits the plane of
+// paths.
 fn bypass(base: u32, at: vec2<i32>) {
     let code = river_code(at);
     let areas = frame.step & 0xffu;
@@ -120,7 +124,7 @@ fn bypass(base: u32, at: vec2<i32>) {
     set_plane((frame.step >> 8u) & 0xffu, at, f32(way));
 }
 
-// A skipped cell is dry if no river is left that leads to it.
+// A skipped cell becomes dry if no remaining river leads to it.
 fn dry(base: u32, at: vec2<i32>) {
     let ways = frame.step & 0xffu;
     var way = u32(plane(ways, at));
@@ -136,7 +140,8 @@ fn dry(base: u32, at: vec2<i32>) {
     set_plane((frame.step >> 8u) & 0xffu, at, f32(way));
 }
 
-// The lower eight bits of `frame.step` are the plane of heights, the next eight that of areas, and then that of the ways.
+// The lower eight bits of `frame.step` are the plane of heights, followed by the plane of areas and the plane of paths,
+// with eight bits each.
 fn straighten(base: u32, at: vec2<i32>) {
     let areas = (frame.step >> 8u) & 0xffu;
     let way = u32(plane((frame.step >> 16u) & 0xffu, at));

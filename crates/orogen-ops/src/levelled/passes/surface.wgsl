@@ -1,4 +1,4 @@
-// Heights and water at samples: `surface.rs`.
+// Heights and water at samples, as in `surface.rs`.
 const RADIUS_SQUARED = 2.5;
 const MIN_DEPTH = 0.5;
 
@@ -26,7 +26,8 @@ fn bottom(at: vec2<i32>) -> f32 {
     return sea_bottom(distance);
 }
 
-// Weighted sums for the plane that fits values best: of x, y and the values; of x x, x y and y y; of x value and y value.
+// Weighted sums for the least-squares plane through values: of x, y and the values; of x x, x y and y y; of x value and
+// y value.
 struct Sums {
     weight: f32,
     first: vec3<f32>,
@@ -156,7 +157,7 @@ fn surface(base: u32, at: vec2<i32>) {
     set_point(base, at, height, area, 0.0, missing(), min(plane(RECEIVER, nearest), NONE));
 }
 
-// The layers that are read from these.
+// The layers that are computed from these.
 fn finish_layers(base: u32, at: vec2<i32>) {
     let water = plane(WATER_LEVEL, at);
     let is_land = is_missing(water);
