@@ -1,4 +1,4 @@
-//! Prints how far terrain on a graphics card is from the processor's: the tables of docs/gpu.md.
+//! Prints the differences between terrain on a graphics card and on the processor: the tables of docs/gpu.md.
 //!
 //! ```text
 //! cargo run --release -p orogen-gpu --example differences
@@ -14,7 +14,7 @@ use orogen_engine::op::{Op, WorldParams};
 use orogen_engine::{Options, Recipe, Session, Window, presets};
 use std::sync::Arc;
 
-/// What the ops read: noise, heights in metres, and areas.
+/// Inputs of the ops: noise, heights in metres, and areas.
 const SOURCES: &str = "orogen = 1\n[world]\ncell = 10\nsize = [4e6, 4e6]\n[nodes.hills]\nop = \"fbm\"\nseed = 3\nwavelength = 700\n\
     [nodes.other]\nop = \"perlin\"\nseed = 4\nwavelength = 900\n\
     [nodes.heights]\nop = \"expr\"\nexpr = \"300 + 400 * hills\"\n";
@@ -38,7 +38,7 @@ fn recipe(node: &Node) -> Option<Recipe> {
     Recipe::parse(&text, spec.op).ok()
 }
 
-/// A recipe of a solver of water, of the same heights as the processor's, or of a levelled op with its rivers.
+/// A recipe of a solver of water that reads exact heights, or of a levelled op with its rivers.
 fn water_recipe(op: &str) -> Option<Recipe> {
     let more = match op {
         "fill" | "lakes" | "drainage" => "",
@@ -61,8 +61,8 @@ fn water_recipe(op: &str) -> Option<Recipe> {
     Recipe::parse(&text, op).ok()
 }
 
-/// Why the processor computes an op, if it does; `Err` for ops of which there is nothing to compute, or that are
-/// computed level by level.
+/// The reason why the processor computes an op, if it does; `Err` for ops that compute nothing, or that are computed
+/// level by level.
 fn reason(node: &Node) -> Result<Option<&'static str>, ()> {
     let world_params = WorldParams { seed: 0, size: Some([4e6, 4e6]), cell: 10.0, sea_level: 0.0 };
     match node.op() {
@@ -125,8 +125,8 @@ fn main() {
         let Some(recipe) = water_recipe(name) else { continue };
         let cell = if matches!(node.op(), Op::Levelled(_)) { 60.0 } else { 30.0 };
         for layer in node.layers() {
-            // A session of its own has no exact solution that it would take. A draft, so that the card solves one step
-            // of `stream-power`.
+            // A separate session has no exact solutions that it would use. It makes drafts, so that the card solves one
+            // step of `stream-power`.
             let Ok(card) = Session::new(Options::default()) else { continue };
             let card = card.with_device(Arc::new(gpu().clone()));
             let card = if name == "stream-power" { card.drafting() } else { card };

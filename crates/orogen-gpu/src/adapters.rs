@@ -1,4 +1,4 @@
-//! The graphics cards of this machine, and which of them can be used.
+//! The graphics cards of this machine, and whether they can be used.
 
 use std::fmt;
 
@@ -8,30 +8,30 @@ use std::fmt;
 pub struct Adapter {
     /// Its number among the adapters of this machine, from 0.
     pub index: usize,
-    /// The name that its driver gives it.
+    /// The name from its driver.
     pub name: String,
-    /// What it is.
+    /// Its kind.
     pub kind: Kind,
     /// The interface by which it is used: `vulkan`, `metal` or `dx12`.
     pub interface: &'static str,
     /// The driver and its version, if known.
     pub driver: String,
-    /// The limits that matter here.
+    /// The limits that are relevant here.
     pub limits: Limits,
-    /// Why it cannot be used; `None` if it can.
+    /// The reason why it cannot be used; `None` if it can.
     pub refused: Option<String>,
 }
 
 /// The kind of an adapter, in order of preference.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
-    /// A card with memory of its own.
+    /// A card with its own memory.
     Discrete,
-    /// A part of the processor that shares its memory.
+    /// A graphics unit that shares the processor's memory.
     Integrated,
-    /// A card of the host of a virtual machine.
+    /// A virtual card, on the host of a virtual machine.
     Virtual,
-    /// Not known.
+    /// An unknown kind.
     Other,
     /// A driver that computes on the processor, such as Mesa's lavapipe: slower than the engine itself, and used only
     /// on request.
@@ -52,7 +52,7 @@ impl Kind {
     }
 }
 
-/// The limits of an adapter that decide what work it gets.
+/// The limits of an adapter that determine how work is divided.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
     /// Maximum size of a buffer that a shader uses, in bytes. Larger windows are computed in tiles.
@@ -63,18 +63,18 @@ pub struct Limits {
     pub invocations: u32,
 }
 
-/// What the shaders need at least: the values that every implementation of WebGPU has.
+/// The minimum limits for the shaders, which every implementation of WebGPU has.
 pub(crate) const LEAST: Limits = Limits { buffer: 128 << 20, workgroups: 65_535, invocations: 256 };
 
-/// Which adapter is used.
+/// The choice of an adapter.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Choice {
     /// The first usable card that is not software.
     #[default]
     Card,
-    /// The first usable adapter, software too.
+    /// The first usable adapter, including software.
     Any,
-    /// The adapter with this index, or whose name contains this text, in any case.
+    /// The adapter with this index, or the first one whose name contains this text, ignoring case.
     Named(String),
 }
 
@@ -97,8 +97,7 @@ impl fmt::Display for Adapter {
     }
 }
 
-/// The adapters of this machine, in the order in which they are tried: cards with memory of their own first, software
-/// last.
+/// The adapters of this machine, in the order in which they are tried: discrete cards first, software last.
 #[must_use]
 pub fn adapters() -> Vec<Adapter> {
     found().into_iter().map(|(adapter, _)| adapter).collect()

@@ -1,4 +1,5 @@
-// Copies a part of one buffer of samples to another. `data` is the source: the part starts at `frame.base` there, and at `frame.step` among the samples.
+// Copies a part of one buffer of samples to another. `data` is the source. The part starts at `frame.base` in `data`
+// and at `frame.step` in `samples`.
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if (id.x >= frame.width || id.y >= frame.height) {

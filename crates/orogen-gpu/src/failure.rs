@@ -2,19 +2,19 @@
 
 use std::fmt;
 
-/// Why work could not be done on a graphics card. The engine then does it on the processor.
+/// The reason why work could not be done on a graphics card. The engine then does it on the processor.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Failure {
-    /// There is no adapter, or none that can be used: why each was refused.
+    /// There is no adapter, or none can be used; has the reason for each.
     NoAdapter(String),
     /// The device was lost: the driver was restarted or updated, or the card was removed.
     Lost(String),
     /// The device has too little memory, or the work exceeds one of its limits.
     Memory(String),
-    /// The driver refused a shader or a command.
+    /// The driver rejected a shader or a command.
     Driver(String),
-    /// An input does not fit the work.
+    /// An input does not fit the work, for example because it covers too little.
     Input(String),
 }
 

@@ -25,7 +25,7 @@ struct Opened {
     lost: Arc<Mutex<Option<String>>>,
     failure: Mutex<Option<Failure>>,
     seconds: Mutex<f64>,
-    /// When work was begun that nobody has waited for.
+    /// The start of the work that has not been waited for yet.
     begun: Mutex<Option<Instant>>,
     moved: Mutex<Moved>,
     together: AtomicUsize,
@@ -33,7 +33,7 @@ struct Opened {
     kernel: usize,
 }
 
-/// Grids that were copied between the processor's memory and a card's.
+/// Number of samples that were copied between the processor's memory and the card's.
 #[doc(hidden)]
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Moved {
@@ -43,25 +43,25 @@ pub struct Moved {
     pub back: u64,
 }
 
-/// Options of opening a graphics card.
+/// Options for opening a graphics card.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Options {
-    /// Which adapter.
+    /// The choice of the adapter.
     pub choice: Choice,
-    /// Maximum size of a buffer, in bytes: less than the adapter's own limit. `None` uses that.
+    /// Maximum size of a buffer, in bytes, if less than the adapter's limit. `None` uses the adapter's limit.
     pub buffer: Option<u64>,
     /// Maximum number of instructions of a program in one shader, where a call of a noise counts as 8. Larger programs
-    /// are divided. With 1, each instruction is a shader of its own: a recipe whose structure changes compiles only
-    /// what it has not had before, and runs slower.
+    /// are split. Default 64. With 1, each instruction is a separate shader: after a change of a recipe's structure
+    /// only new instructions are compiled, but programs run slower.
     pub kernel: usize,
 }
 
 /// Maximum number of dispatches that are submitted together.
 const TOGETHER: usize = 64;
 
-/// The time that dispatches which are submitted together should take at most, so that work can be cancelled and no
-/// driver ends it as a hang.
+/// Target time of dispatches that are submitted together, so that work can be cancelled and the driver does not abort
+/// it after a timeout.
 const PART: Duration = Duration::from_millis(100);
 
 /// Default of [`Options::kernel`].
@@ -80,14 +80,14 @@ impl Options {
         Options { choice, buffer: None, kernel: KERNEL }
     }
 
-    /// With at most this size of a buffer, in bytes.
+    /// Sets the maximum size of a buffer, in bytes.
     #[must_use]
     pub fn with_buffer(mut self, bytes: u64) -> Options {
         self.buffer = Some(bytes);
         self
     }
 
-    /// With at most this number of instructions in a shader.
+    /// Sets the maximum number of instructions in a shader.
     #[must_use]
     pub fn with_kernel(mut self, instructions: usize) -> Options {
         self.kernel = instructions;
@@ -99,7 +99,7 @@ impl Gpu {
     /// Opens the first adapter that the choice allows and that can be used.
     ///
     /// # Errors
-    /// If there is none: why each was refused.
+    /// If there is none; the message has the reason for each adapter.
     pub fn open(options: &Options) -> Result<Gpu, Failure> {
         let mut refused = Vec::new();
         for (adapter, handle) in found() {
@@ -129,7 +129,7 @@ impl Gpu {
     /// have at most `buffer` bytes, if it is given.
     ///
     /// # Errors
-    /// If a card was asked for and none can be used.
+    /// If a card was requested and none can be used.
     pub fn chosen(choice: &DeviceChoice, buffer: Option<u64>) -> Result<Option<Gpu>, Failure> {
         let wanted = match choice {
             DeviceChoice::Processor => return Ok(None),
@@ -159,7 +159,7 @@ impl Gpu {
             *told.lock().unwrap_or_else(PoisonError::into_inner) = Some(message);
         });
         let told = Arc::clone(&lost);
-        // Errors that no scope catches happen outside of jobs: the device is not used any more.
+        // Errors that no scope catches happen outside of jobs. The device is not used after such an error.
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             *told.lock().unwrap_or_else(PoisonError::into_inner) = Some(error.to_string());
         }));
@@ -202,48 +202,48 @@ impl Gpu {
         self.opened.buffer
     }
 
-    /// The seconds of all jobs since the last call, from the first copy to the device to the end of the last shader:
-    /// without copying back. Successive jobs on grids that stay on the device count together, with what the processor
-    /// does between them.
+    /// The time of all jobs since the last call in seconds, from the first copy to the device to the end of the last
+    /// shader, without copying back. Successive jobs on grids that stay on the device count as one, including the
+    /// processor's work between them.
     #[doc(hidden)]
     #[must_use]
     pub fn take_seconds(&self) -> f64 {
         std::mem::take(&mut *self.opened.seconds.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// What was copied since the last call.
+    /// The samples that were copied since the last call.
     #[doc(hidden)]
     #[must_use]
     pub fn take_moved(&self) -> Moved {
         std::mem::take(&mut *self.opened.moved.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// Counts what is copied.
+    /// Counts copied samples.
     pub(crate) fn count_moved(&self, moved: Moved) {
         let mut sum = self.opened.moved.lock().unwrap_or_else(PoisonError::into_inner);
         sum.there += moved.there;
         sum.back += moved.back;
     }
 
-    /// Number of dispatches to be submitted together: as many as are expected to take a tenth of a second, going by
-    /// those before.
+    /// Number of dispatches to be submitted together, which are expected to take a tenth of a second, judging by
+    /// earlier dispatches.
     pub(crate) fn together(&self) -> usize {
         self.opened.together.load(Ordering::Relaxed)
     }
 
-    /// Notes how long dispatches took that were submitted together.
+    /// Records the time of dispatches that were submitted together.
     pub(crate) fn took(&self, dispatches: usize, time: Duration) {
         let together = self.together();
         let next = match time {
             _ if time > PART => (dispatches as f64 * PART.as_secs_f64() / time.as_secs_f64()) as usize,
-            // As many again would still take less.
+            // Twice as many would still take less time.
             _ if dispatches >= together && 2 * time < PART => 2 * together,
             _ => together,
         };
         self.opened.together.store(next.clamp(1, TOGETHER), Ordering::Relaxed);
     }
 
-    /// Notes that work begins.
+    /// Records the start of work.
     pub(crate) fn begin(&self) {
         self.opened.begun.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert_with(Instant::now);
     }
@@ -273,20 +273,22 @@ impl Gpu {
         Ok(fastest)
     }
 
-    /// Destroys the device, like the restart of a driver: for tests.
+    /// Destroys the device, as a restart of the driver would. For tests.
     #[doc(hidden)]
     pub fn lose(&self) {
         self.opened.device.destroy();
         *self.opened.lost.lock().unwrap_or_else(PoisonError::into_inner) = Some("it was destroyed".to_string());
     }
 
-    /// The first failure, if there was one: from then on, or for that work, the processor stood in.
+    /// The first failure, if there was one. The processor did the failed work, and all later work if the device was
+    /// lost.
     #[must_use]
     pub fn failure(&self) -> Option<Failure> {
         self.opened.failure.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// What the engine gets: work that failed is left to the processor, and cancelled work is an error.
+    /// The result for the engine: failed work is declined, so that the processor does it, and cancelled work is an
+    /// error.
     pub(crate) fn outcome<T>(
         &self,
         made: Result<Option<T>, Failure>,
@@ -329,7 +331,7 @@ impl Gpu {
         }
     }
 
-    /// Whether this is the same card, opened once.
+    /// Whether both are the same opened card.
     pub(crate) fn is(&self, other: &Gpu) -> bool {
         Arc::ptr_eq(&self.opened, &other.opened)
     }
@@ -340,7 +342,7 @@ impl Gpu {
         self.device().create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
     }
 
-    /// Work whose errors are failures.
+    /// Runs work, and converts errors of the device to failures.
     pub(crate) fn scoped<T>(&self, work: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
         self.check()?;
         let out_of_memory = self.device().push_error_scope(wgpu::ErrorFilter::OutOfMemory);

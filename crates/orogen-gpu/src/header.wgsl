@@ -1,7 +1,7 @@
-// What all shaders have in common.
+// The header of all shaders.
 //
-// `data` holds numbers and tables: what belongs to a function starts at its `base`. `samples` holds grids, one after the other. `frame` is the part of the
-// work that this dispatch does.
+// `data` has numbers and tables; the data of a function start at its `base`. `samples` has grids, one after the other.
+// `frame` describes the part of the work that this dispatch does.
 @group(0) @binding(0) var<storage, read> data: array<u32>;
 @group(0) @binding(1) var<storage, read_write> samples: array<f32>;
 
@@ -11,9 +11,9 @@ struct Frame {
     // Number of columns and rows.
     width: u32,
     height: u32,
-    // Any number that changes from dispatch to dispatch, such as that of the iteration.
+    // A number that differs between dispatches, such as the number of the iteration.
     step: u32,
-    // Samples from row to row of what is copied, there and here.
+    // For copies: number of samples from row to row, in the source and in the destination.
     strides: vec2<u32>,
     // Columns and rows of the planes that a pass works on, and the index of their first sample.
     columns: u32,
@@ -27,8 +27,8 @@ fn number(base: u32, index: u32) -> f32 {
     return bitcast<f32>(data[base + index]);
 }
 
-// The arc tangent in radians, to some 2e-7, by the polynomial of Cephes' atanf after reduction to at most tan(pi / 8): WGSL allows its own to be off by 4096
-// units in the last place.
+// The arc tangent in radians, to some 2e-7, by the polynomial of Cephes' atanf after reduction to at most tan(pi / 8):
+// the built-in function of WGSL may be off by 4096 units in the last place.
 fn arc_tangent(a: f32) -> f32 {
     var x = abs(a);
     var start = 0.0;

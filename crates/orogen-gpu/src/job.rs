@@ -1,4 +1,4 @@
-//! One piece of work on a device: what is copied there, what is run, and what is copied back.
+//! Jobs: work on a device, with grids that are copied there, shaders that are run, and grids that are copied back.
 
 use crate::failure::Failure;
 use crate::gpu::{Gpu, Moved};
@@ -21,20 +21,20 @@ pub struct Dispatch<'a> {
     pub base: u32,
     /// Number of columns and rows.
     pub size: [u32; 2],
-    /// Any number, such as that of the iteration.
+    /// A number for the shader, such as the number of the iteration.
     pub step: u32,
     /// For a pass over planes: their columns and rows, and the index of their first sample.
     pub planes: [u32; 3],
 }
 
-/// A part of a grid that is on the device, and where it lies among the samples of a job.
+/// A part of a grid on the device, and its position among the samples of a job.
 #[derive(Clone)]
 pub struct Part<'a> {
     /// The grid.
     pub resident: &'a Resident,
     /// Index of the part's first sample in the grid.
     pub first: usize,
-    /// Index of its first sample among those of the job.
+    /// Index of its first sample among the samples of the job.
     pub at: usize,
     /// Number of samples of the job from row to row.
     pub stride: usize,
@@ -55,7 +55,7 @@ pub struct Job<'a> {
     pub uploads: Vec<(usize, Cow<'a, [f32]>)>,
     /// Parts of grids on the device that are copied to the samples.
     pub loads: Vec<Part<'a>>,
-    /// What is run, in order.
+    /// The shaders to run, in order.
     pub dispatches: Vec<Dispatch<'a>>,
     /// Grids that are copied back: the index of their first sample, and the number of samples.
     pub downloads: Vec<(usize, usize)>,
@@ -72,8 +72,8 @@ impl Job<'_> {
         4 * (self.data.len() + self.samples + downloads) as u64 + FRAME * frames as u64
     }
 
-    /// Runs it; returns the downloads. `is_cancelled` is asked between parts of the work. Without downloads it may not
-    /// have ended yet: later jobs come after it.
+    /// Runs the job and returns the downloads. `is_cancelled` is called between parts of the work. Without downloads
+    /// the work may not have ended on return; later jobs run after it.
     ///
     /// # Errors
     /// If the device was lost, has too little memory, or refuses a shader; `Ok(None)` if the work was cancelled.
@@ -81,10 +81,10 @@ impl Job<'_> {
         gpu.scoped(|| self.submit(gpu, None, is_cancelled))
     }
 
-    /// The same with at most `together` dispatches at once: fewer, if each of them takes long.
+    /// [`run`](Job::run) with at most `together` dispatches at once, or fewer if each of them takes long.
     ///
     /// # Errors
-    /// Those of [`run`](Job::run).
+    /// The errors of [`run`](Job::run).
     pub fn run_in_parts(
         &self,
         gpu: &Gpu,
@@ -136,7 +136,7 @@ impl Job<'_> {
             if is_cancelled() {
                 return Ok(None);
             }
-            // Waiting for the part before has ended its time.
+            // Waiting for the previous part has ended its time measurement.
             gpu.begin();
             let now = done..(done + together.unwrap_or_else(|| gpu.together())).min(self.dispatches.len());
             let (dispatches, offsets) = (&self.dispatches[now.clone()], &offsets[now.clone()]);
@@ -177,10 +177,10 @@ impl Job<'_> {
     }
 }
 
-/// The words of a frame, without what fills it up.
+/// The words of a frame, without padding.
 type Frame = [u32; FRAME_WORDS - 1];
 
-/// The frames of dispatches, equal ones once.
+/// The frames of dispatches; equal frames are stored once.
 #[derive(Default)]
 struct Frames {
     words: Vec<u32>,
@@ -207,7 +207,7 @@ impl Dispatch<'_> {
 }
 
 impl Part<'_> {
-    /// The frame of copying it to the job's samples, or back.
+    /// The frame of the copy to the job's samples, or back.
     fn frame(&self, is_load: bool) -> Frame {
         let ends = [(self.first, self.resident.window.width), (self.at, self.stride)];
         let [from, to] = if is_load { ends } else { [ends[1], ends[0]] };
@@ -223,7 +223,7 @@ struct Copy {
 }
 
 impl Copy {
-    /// From one buffer to another, with their frame.
+    /// A copy from one buffer to another, with its frame.
     fn new(gpu: &Gpu, buffers: [&wgpu::Buffer; 3], offset: u32, size: [usize; 2]) -> Copy {
         Copy { bindings: gpu.pipelines().bind(gpu.device(), buffers), offset, size }
     }

@@ -15,7 +15,7 @@ pub(crate) enum Layers {
 }
 
 impl Layers {
-    /// Some layers over a window, for tiles to be computed.
+    /// Empty layers over a window, to be filled tile by tile.
     ///
     /// # Errors
     /// If the device was lost or has too little memory.
@@ -26,16 +26,16 @@ impl Layers {
         }
     }
 
-    /// The same in memory.
+    /// Empty layers over a window in memory.
     pub fn in_memory(window: &Window, count: usize) -> Layers {
         Layers::Memory((0..count).map(|_| Grid::filled(*window, 0.0f32)).collect())
     }
 
-    /// Runs the job of a tile, whose layers begin at these samples and have rows of `stride` samples. Returns whether
-    /// it was done, not cancelled.
+    /// Runs the job of a tile. In the job, the layers start at the given samples and have rows of `stride` samples.
+    /// Returns `false` if the work was cancelled.
     ///
     /// # Errors
-    /// Those of [`Job::run`].
+    /// The errors of [`Job::run`].
     pub fn run(
         &mut self,
         gpu: &Gpu,
@@ -53,7 +53,7 @@ impl Layers {
                 Ok(Job { stores: parts.collect(), ..job }.run(gpu, is_cancelled)?.is_some())
             }
             Layers::Memory(grids) => {
-                // Whole rows, but of the last one only what the tile has.
+                // Whole rows, except the last one, of which only the tile's samples are read.
                 let count = (tile.height - 1) * stride + tile.width;
                 let job = Job { downloads: firsts.iter().map(|&first| (first, count)).collect(), ..job };
                 let Some(back) = job.run(gpu, is_cancelled)? else { return Ok(false) };
@@ -68,7 +68,7 @@ impl Layers {
         }
     }
 
-    /// The layers in memory, if they are there.
+    /// The layers, if they are in memory.
     pub fn into_memory(self) -> Option<Vec<Grid>> {
         match self {
             Layers::Resident(_) => None,
@@ -76,7 +76,7 @@ impl Layers {
         }
     }
 
-    /// The layers, wherever they are.
+    /// The layers, on the card or in memory.
     pub fn into_grids(self) -> Vec<PlanGrid> {
         match self {
             Layers::Resident(residents) => residents.into_iter().map(PlanGrid::from).collect(),

@@ -1,8 +1,9 @@
 //! The engine's programs, filters and levels as compute shaders, for live previews and fast builds where exact bits are
 //! not needed.
 //!
-//! The processor stays the reference: a graphics card may fuse and reorder operations, so its results are never stored
-//! under the key of a solution, nor called equal. What it cannot compute, the engine computes as always: see [`Gpu`].
+//! The processor is the reference. A graphics card may fuse and reorder operations, so its results are not bit-equal
+//! and are never stored under the key of a solution. The processor computes everything that the card cannot: see
+//! [`Gpu`].
 #![forbid(unsafe_code)]
 
 pub mod adapters;

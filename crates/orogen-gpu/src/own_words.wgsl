@@ -1,5 +1,5 @@
-// Words of passes no two calls of which write the same word, or read one that another one writes: faster than those of `shared_words.wgsl`. The binding is that
-// of `samples`, which they do not use.
+// Words for passes whose calls neither write the same word nor read words that other calls write. They are faster than
+// the atomic words of `shared_words.wgsl`. They have the binding of `samples`, which such passes do not use.
 @group(0) @binding(1) var<storage, read_write> words: array<u32>;
 
 // A word of plane `k`.
@@ -11,12 +11,12 @@ fn set_word(k: u32, cell: u32, value: u32) {
     words[word_index(k, cell)] = value;
 }
 
-// Lowers a word to `value`, if that is less.
+// Sets a word to the minimum of it and `value`.
 fn lower_word(k: u32, cell: u32, value: u32) {
     set_word(k, cell, min(word(k, cell), value));
 }
 
-// Raises a word to `value`, if that is more.
+// Sets a word to the maximum of it and `value`.
 fn raise_word(k: u32, cell: u32, value: u32) {
     set_word(k, cell, max(word(k, cell), value));
 }

@@ -12,25 +12,27 @@ use orogen_grid::grid::{Grid, Window};
 use std::collections::HashMap;
 use std::fmt::Write;
 
-/// What all passes have in common, and what those have whose calls write to their own samples alone, or share samples.
+/// The common functions of all passes; of passes whose calls write only their own words; and of passes whose calls
+/// share words.
 const PLANES: &str = include_str!("planes.wgsl");
 const OWN_WORDS: &str = include_str!("own_words.wgsl");
 const SHARED_WORDS: &str = include_str!("shared_words.wgsl");
 
-/// The pass that takes a plane of the level above from where that level was made.
+/// The pass that copies a plane of the level above from the planes in which that level was made.
 const TAKE_OVER: Pass =
     Pass { code: "", function: "take_over", step: 0, over: Over::Above([0; 2]), reads: 1, is_shared: false };
 
-/// Computes passes one after the other, each from the layers of the one before: the wanted layers of the last. Without
-/// [`stays`](PassRun::stays) they are in memory, otherwise on the card if they fit into its buffers. `Ok(None)` if the
-/// work was cancelled; `is_cancelled` is asked between parts of it. The result is the same in each run on a device.
+/// Runs passes one after the other, each from the layers of the previous one, and returns the wanted layers of the
+/// last. With [`stays`](PassRun::stays) they are on the card if they fit into its buffers, otherwise in memory. Returns
+/// `Ok(None)` if the work was cancelled; `is_cancelled` is called between parts of it. The result is the same in each
+/// run on a device.
 ///
-/// Passes whose planes fit into the [largest buffer](Gpu::buffer_limit) together stay on the card. Those that do not
-/// fit are computed in tiles, each from its own part of what it is made from.
+/// Passes whose planes together fit into the [largest buffer](Gpu::buffer_limit) stay on the card. Other passes are
+/// computed in tiles, each from the parts of its inputs that it needs.
 ///
 /// # Errors
-/// If the device was lost, has too little memory for a single sample and what it is made from, or refuses a shader; if
-/// an input or a level covers too little.
+/// If the device was lost, has too little memory for a single sample and its inputs, or rejects a shader; if an input
+/// or a level covers too little.
 pub fn run(gpu: &Gpu, run: &PassRun, is_cancelled: impl Fn() -> bool) -> Result<Option<Vec<PlanGrid>>, Failure> {
     let Some(last) = run.steps.last() else { return Ok(Some(Vec::new())) };
     if last.window.is_empty() {
@@ -67,7 +69,7 @@ pub fn run(gpu: &Gpu, run: &PassRun, is_cancelled: impl Fn() -> bool) -> Result<
     }
 }
 
-/// The work that makes stages one from the other, the last of them over a tile, and where that is.
+/// The job that makes stages one from the other, the last of them over a tile, and the position of that tile's planes.
 fn job<'a>(stages: &'a [Stage], tile: &Window, above: &'a [Grid]) -> Result<(Job<'a>, Made), Failure> {
     let mut job = Job::default();
     let mut before = Made::NONE;
@@ -79,13 +81,13 @@ fn job<'a>(stages: &'a [Stage], tile: &Window, above: &'a [Grid]) -> Result<(Job
     Ok((job, before))
 }
 
-/// Passes with planes of their own, and those that go on with these planes.
+/// Passes with their own planes, and the passes that continue with these planes.
 struct Stage<'a> {
     steps: Vec<(&'a Passes, Texts)>,
     extent: Extent,
     /// The inputs that have planes.
     inputs: Vec<(usize, Source<'a>)>,
-    /// Number of planes, and of those of the level above that hold its layers, and of others at its cell.
+    /// Number of planes, of planes of the level above, and of scratch planes at its cell.
     planes: usize,
     layers_above: usize,
     scratch_above: usize,
@@ -98,7 +100,8 @@ struct Stage<'a> {
 struct Made {
     /// The index of the first sample.
     first: usize,
-    /// All samples of the planes, those of the planes of the level above, and those of the planes that are right.
+    /// The windows of the planes, of the planes of the level above, and of the samples of the planes that are valid at
+    /// the end.
     planes: Window,
     above: Window,
     window: Window,
@@ -160,7 +163,7 @@ impl<'a> Stage<'a> {
         })
     }
 
-    /// Where planes are for a tile of the result.
+    /// The windows of the planes for a tile of the result.
     fn made(&self, tile: &Window) -> Made {
         let halo = |passes: &Passes| if let Extent::Before(halo) = passes.extent { halo } else { 0 };
         let window = tile.grown(self.steps.iter().map(|(passes, _)| halo(passes)).sum());
@@ -168,7 +171,7 @@ impl<'a> Stage<'a> {
             let halo = if let Extent::Halo(halo) = self.extent { halo } else { 0 };
             return Made { planes: window.grown(halo), window, ..Made::NONE };
         };
-        // Half the first node, rounded down, to half the last, rounded up.
+        // From half the first node, rounded down, to half the last node, rounded up.
         let halved = |first: i64, end: i64| (first.div_euclid(2), end.div_euclid(2) + 1);
         let ((left, right), (top, bottom)) =
             (halved(window.x + ahead, window.right() + ahead), halved(window.y + ahead, window.bottom() + ahead));
@@ -193,7 +196,7 @@ impl<'a> Stage<'a> {
         words(self.planes, &planes).saturating_add(words(self.layers_above + self.scratch_above, &above))
     }
 
-    /// The tiles in which the result is made: one if the stage is not `alone`.
+    /// The tiles in which the result is made: one tile unless `is_alone`.
     fn tiles(&self, gpu: &Gpu, is_alone: bool) -> Result<Vec<Window>, Failure> {
         let limit = gpu.buffer_limit();
         let fits = |tile: &Window| !is_alone || self.bytes(tile) <= limit;
@@ -208,7 +211,7 @@ impl<'a> Stage<'a> {
         })
     }
 
-    /// Adds what makes a tile to a job, from the level `above`, or from what was made `before` in the same job.
+    /// Adds the passes of a tile to a job, from the level `above`, or from the planes made `before` in the same job.
     fn add_to<'b>(
         &'b self,
         job: &mut Job<'b>,
@@ -232,7 +235,7 @@ impl<'a> Stage<'a> {
         for (plane, source) in &self.inputs {
             let at = made.first + plane * cells;
             match *source {
-                // The last samples at the edge of a level read inputs that none of the window's samples depend on.
+                // The outermost samples of a level read inputs on which no sample of the window depends.
                 Source::Memory(grid) if is_level && grid.window() != planes => {
                     let mut part = Grid::filled(*planes, f32::NAN);
                     part.paste(grid);
@@ -254,7 +257,7 @@ impl<'a> Stage<'a> {
         Ok(made)
     }
 
-    /// Number of samples that the lattice of the planes is ahead of that of windows.
+    /// Number of samples by which the lattice of the planes is ahead of the lattice of windows.
     fn ahead(&self) -> i64 {
         if let Extent::Above { ahead: [_, ahead], .. } = self.extent { ahead } else { 0 }
     }
@@ -293,9 +296,9 @@ fn dispatch<'a>(
     }
 }
 
-/// The words before those of passes, with the names by which shaders read them: the number of planes; the position of
-/// the first sample on the lattice, which is `ahead` of that of windows; the planes of the level above, if they were
-/// made before; and the window.
+/// The words before the words of passes, with the names by which shaders read them: the number of planes; the position
+/// of the first sample on the lattice, which is `ahead` samples ahead of the lattice of windows; the planes of the
+/// level above, if they were made in the same job; and the window.
 fn header(
     planes: usize,
     ahead: i64,
@@ -327,19 +330,20 @@ fn header(
     ]
 }
 
-/// Number of words before those of passes.
+/// Number of words before the words of passes.
 const HEADER: usize = 14;
 
-/// The columns and rows that are left of a window without some at each side, and their number.
+/// The part of a window without some columns and rows at each side: its first column and row, and its numbers of
+/// columns and rows.
 fn part(window: &Window, [left, top]: [usize; 2]) -> (usize, usize, usize, usize) {
     (left, top, window.width.saturating_sub(2 * left), window.height.saturating_sub(2 * top))
 }
 
-/// Number of samples that one dispatch reads at most: a fraction of a second on slow cards.
+/// Maximum number of samples that one dispatch reads, which takes a fraction of a second on slow cards.
 const READS: usize = 1 << 30;
 
-/// Bands of rows, of each the first row and the number of rows, of which none reads too much if a row reads `reads`
-/// samples. At least one workgroup is high.
+/// Bands of rows, each with its first row and number of rows, that read at most [`READS`] samples each if a row reads
+/// `reads` samples. A band has at least the rows of one workgroup.
 fn bands(height: usize, reads: usize) -> impl Iterator<Item = (usize, usize)> {
     let group = GROUP as usize;
     let rows = (READS / reads.max(1) / group).max(1) * group;
@@ -349,7 +353,7 @@ fn bands(height: usize, reads: usize) -> impl Iterator<Item = (usize, usize)> {
 /// The shader of each function.
 type Texts = HashMap<&'static str, String>;
 
-/// The shaders of passes. They depend on the op and the functions alone.
+/// The shaders of passes. They depend only on the op and the functions.
 fn texts(passes: &Passes) -> Texts {
     let mut texts = HashMap::new();
     let taken = matches!(passes.extent, Extent::Above { .. }).then_some(&TAKE_OVER);

@@ -1,13 +1,13 @@
-//! Compiled shaders, kept by their text. The text depends on the structure of the work and not on its parameters, which
-//! are data: a moved slider compiles nothing.
+//! Compiled shaders, kept by their text. The text depends only on the structure of the work. Parameters are data, so a
+//! changed parameter compiles nothing.
 
 use crate::failure::Failure;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// What every shader starts with: its data, the samples that it reads and writes, and the part of the data that this
-/// dispatch uses.
+/// The start of every shader: its data, the samples that it reads and writes, and the part of the data that a dispatch
+/// uses.
 pub const HEADER: &str = include_str!("header.wgsl");
 
 /// Compiled shaders.
@@ -18,7 +18,7 @@ pub(crate) struct Pipelines {
     compiled: AtomicU64,
 }
 
-/// Distance of the frames of dispatches, in bytes: that at which all devices allow uniforms.
+/// Distance between the frames of dispatches, in bytes: the uniform alignment that all devices support.
 pub(crate) const FRAME: u64 = 256;
 
 /// Number of words of a frame.
@@ -89,7 +89,7 @@ impl Pipelines {
             module: &module,
             entry_point: Some("main"),
             compilation_options: wgpu::PipelineCompilationOptions {
-                // No shader uses memory of workgroups.
+                // No shader uses workgroup memory.
                 zero_initialize_workgroup_memory: false,
                 ..wgpu::PipelineCompilationOptions::default()
             },

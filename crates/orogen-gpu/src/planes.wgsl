@@ -1,8 +1,8 @@
-// What all passes have in common: planes of one size, one after the other in `samples`, and after them those of the level above, with half the columns and rows.
-// `own_words.wgsl` or `shared_words.wgsl` stands beside it.
+// Common functions of all passes: planes of one size, one after the other in `samples`, followed by the planes of the
+// level above with half the columns and rows. It is used together with `own_words.wgsl` or `shared_words.wgsl`.
 //
-// The words at `frame.base` are the first column and row of this dispatch, and where the words of the passes start. Before these are those that `passes.rs`
-// names `HEADER`, with what reads them.
+// The words at `frame.base` are the first column and row of this dispatch, and the index of the words of the passes.
+// Before these words are the `HEADER` words of `passes.rs`, which also defines the functions that read them.
 
 // Columns and rows of the planes.
 fn size() -> vec2<i32> {
@@ -22,7 +22,7 @@ fn index_of(k: u32, at: vec2<i32>) -> u32 {
     return frame.first + (k * frame.rows + u32(at.y)) * frame.columns + u32(at.x);
 }
 
-// A sample of plane `k`; beyond the border, that of the border.
+// A sample of plane `k`; positions beyond the border are clamped to it.
 fn plane(k: u32, at: vec2<i32>) -> f32 {
     return samples[index_of(k, clamp(at, vec2<i32>(0), size() - vec2<i32>(1)))];
 }
@@ -31,7 +31,7 @@ fn set_plane(k: u32, at: vec2<i32>, value: f32) {
     samples[index_of(k, at)] = value;
 }
 
-// The same samples by their cells, of passes that read and write words.
+// The same samples by their cells, for passes that read and write words.
 fn word_index(k: u32, cell: u32) -> u32 {
     return frame.first + k * cells() + cell;
 }
@@ -44,7 +44,8 @@ fn set_sample(k: u32, cell: u32, value: f32) {
     set_word(k, cell, bitcast<u32>(value));
 }
 
-// Whether a value is infinite or not a number. Shader compilers may assume that there are none, so the bits are compared.
+// Whether a value is infinite or NaN. Shader compilers may assume that there are no such values, so the bits are
+// compared.
 fn is_missing(value: f32) -> bool {
     return is_missing_word(bitcast<u32>(value));
 }
@@ -53,7 +54,7 @@ fn is_missing_word(word: u32) -> bool {
     return (word & 0x7f800000u) == 0x7f800000u;
 }
 
-// Not a number. The sum hides it from compilers that refuse such a constant.
+// NaN. The sum hides it from compilers that reject such a constant.
 fn missing() -> f32 {
     return bitcast<f32>(0x7fc00000u + min(frame.width, 0u));
 }
@@ -69,7 +70,7 @@ fn index_above(k: u32, at: vec2<i32>) -> u32 {
     return first + (k * columns_and_rows.y + u32(at.y)) * columns_and_rows.x + u32(at.x);
 }
 
-// A sample of plane `k` of the level above; beyond the border, that of the border.
+// A sample of plane `k` of the level above; positions beyond the border are clamped to it.
 fn above(k: u32, at: vec2<i32>) -> f32 {
     return samples[index_above(k, clamp(at, vec2<i32>(0), above_size() - vec2<i32>(1)))];
 }
@@ -78,7 +79,7 @@ fn set_above(k: u32, at: vec2<i32>, value: f32) {
     samples[index_above(k, at)] = value;
 }
 
-// Takes a plane of the level above from where that level was made.
+// Copies a plane of the level above from the planes in which that level was made.
 fn take_over(base: u32, at: vec2<i32>) {
     let size = vec2<u32>(made_columns(), made_rows());
     let place = vec2<u32>(at) + vec2<u32>(made_left(), made_top());
@@ -94,7 +95,7 @@ fn first_row() -> vec2<u32> {
     return vec2<u32>(row_low(), row_high());
 }
 
-// Where the window begins among the planes, and its columns and rows.
+// The position of the window in the planes, and its columns and rows.
 fn window_first() -> vec2<i32> {
     return vec2<i32>(vec2<u32>(window_left(), window_top()));
 }

@@ -1,4 +1,4 @@
-//! Grids that stay on the card.
+//! Grids in the memory of the card.
 
 use crate::failure::Failure;
 use crate::gpu::{Gpu, Moved};
@@ -15,11 +15,11 @@ pub struct Resident {
     pub window: Window,
 }
 
-/// The longest wait for buffers to be readable once all work is done.
+/// Maximum time to wait for readable buffers after all work is done.
 const MAPPED: Duration = Duration::from_secs(10);
 
 impl Resident {
-    /// Room for a grid.
+    /// Allocates a grid.
     ///
     /// # Errors
     /// If the device was lost or has too little memory.
@@ -40,7 +40,7 @@ impl From<Resident> for PlanGrid {
 /// Copies grids to the processor's memory.
 ///
 /// # Errors
-/// If the device was lost or has too little memory; if a grid is not on it.
+/// If the device was lost or has too little memory, or a grid is not on it.
 pub(crate) fn read(gpu: &Gpu, grids: &[&DeviceGrid]) -> Result<Vec<Grid>, Failure> {
     let of = |grid: &&DeviceGrid| grid.samples::<Resident>().cloned().filter(|resident| resident.gpu.is(gpu));
     let residents: Option<Vec<Resident>> = grids.iter().map(of).collect();
@@ -54,8 +54,8 @@ pub(crate) fn read(gpu: &Gpu, grids: &[&DeviceGrid]) -> Result<Vec<Grid>, Failur
     grids.collect()
 }
 
-/// Waits for all work, and copies parts of buffers to the processor's memory: of each the first sample and the number
-/// of samples.
+/// Waits for all work, and copies parts of buffers to the processor's memory. A part is a buffer, its first sample and
+/// the number of samples.
 pub(crate) fn download(gpu: &Gpu, parts: &[(&wgpu::Buffer, usize, usize)]) -> Result<Vec<Vec<f32>>, Failure> {
     use wgpu::BufferUsages as Usage;
     let mut back = Vec::with_capacity(parts.len());
@@ -76,7 +76,7 @@ pub(crate) fn download(gpu: &Gpu, parts: &[(&wgpu::Buffer, usize, usize)]) -> Re
     }
     gpu.wait()?;
     for _ in &back {
-        // They are mapped by now, but the callback may still be running on another thread that polls the device.
+        // The buffer is mapped, but the callback may still be running on another thread that polls the device.
         match receiver.recv_timeout(MAPPED) {
             Ok(Ok(())) => {}
             _ => return Err(Failure::Lost("its results could not be read".to_string())),

@@ -7,9 +7,9 @@ use std::sync::Arc;
 
 /// Sessions that compute windows on a graphics card.
 pub trait WithGpu: Sized {
-    /// The same session with the first usable graphics card. Windows of worlds that are opened in it are computed there
-    /// as far as possible: close to those of the processor, and not the same bits. Solutions of solvers, tiles of
-    /// levels, points and objects are always those of the processor.
+    /// The same session with the first usable graphics card. Windows of worlds that are opened in it are computed on
+    /// the card as far as possible. They are close to the processor's, but not bit-equal. The processor always computes
+    /// solutions of solvers, tiles of levels, points and objects.
     ///
     /// ```no_run
     /// use orogen_engine::{Options, Session, Window, presets};

@@ -1,4 +1,4 @@
-//! Grids that work reads, wherever they are.
+//! Grids that jobs read, in memory or on the card.
 
 use crate::failure::Failure;
 use crate::gpu::Gpu;
@@ -8,7 +8,7 @@ use crate::tiles::index;
 use orogen_engine::device::PlanGrid;
 use orogen_grid::grid::{Grid, Window};
 
-/// A grid that work reads, where it is.
+/// A grid that a job reads.
 #[derive(Clone, Copy)]
 pub(crate) enum Source<'a> {
     Memory(&'a Grid),
@@ -19,7 +19,7 @@ impl<'a> Source<'a> {
     /// A grid of a plan: on this card, or in memory.
     ///
     /// # Errors
-    /// If it is on another card alone.
+    /// If it is only on another card.
     pub fn of(gpu: &Gpu, grid: &'a PlanGrid) -> Result<Source<'a>, Failure> {
         let resident = grid.on_device().and_then(|grid| grid.samples::<Resident>());
         match (resident.filter(|resident| resident.gpu.is(gpu)), grid.memory()) {
@@ -29,7 +29,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// Adds a part of it to what a job reads, row after row from a sample on.
+    /// Adds a part of it to the inputs of a job, row after row from a sample on.
     ///
     /// # Errors
     /// If it does not cover the part.

@@ -1,4 +1,4 @@
-//! Tiles of a window whose data fit into the buffers of a device, and where parts of a window are.
+//! Tiles of a window whose data fit into the buffers of a device, and positions of parts of a window.
 
 use orogen_grid::grid::Window;
 
@@ -28,12 +28,12 @@ pub(crate) fn fitting(window: &Window, fits: impl Fn(&Window) -> bool) -> Option
     Some(tiles)
 }
 
-/// The column and the row of a window's part in it.
+/// The column and row of a part of a window in that window.
 pub(crate) fn offset(window: &Window, part: &Window) -> (usize, usize) {
     ((part.x - window.x) as usize, (part.y - window.y) as usize)
 }
 
-/// The index of the first sample of a window's part in it.
+/// The index of the first sample of a part of a window in that window.
 pub(crate) fn index(window: &Window, part: &Window) -> usize {
     let (left, top) = offset(window, part);
     top * window.width + left

@@ -2,7 +2,7 @@
 
 use orogen_engine::expression::function::Function;
 
-/// Functions that WGSL lacks, or has with too few digits.
+/// Functions that WGSL lacks, or has with too little precision.
 pub(crate) const TEXT: &str = include_str!("functions.wgsl");
 
 /// The expression of a function of arguments.

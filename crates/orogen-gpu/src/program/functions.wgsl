@@ -1,7 +1,7 @@
-// The functions of expressions that WGSL lacks, or has with too few digits: its sine may be off by 5e-4.
+// Functions of expressions that WGSL lacks, or has with too little precision: its sine may be off by 5e-4.
 
 fn infinity() -> f32 {
-    // Not a constant: a constant must be finite.
+    // Not a constant, because a constant must be finite.
     return bitcast<f32>(0x7f800000u | (frame.height & 0x00000000u));
 }
 
@@ -32,7 +32,7 @@ fn power(a: f32, b: f32) -> f32 {
     if (a > 0.0) {
         return size;
     }
-    // A negative number has whole powers only.
+    // A negative number has only whole powers.
     if (floor(b) != b) {
         return infinity() - infinity();
     }
@@ -62,7 +62,8 @@ fn step_between(low: f32, high: f32, x: f32) -> f32 {
     return t * t * (3.0 - 2.0 * t);
 }
 
-// Sine and cosine: the angle is reduced to a quarter turn around 0 by pi / 2 in three parts (Cody and Waite 1980), with the polynomials of Cephes' sinf.
+// Sine and cosine: the angle is reduced to a quarter turn around 0 by pi / 2 in three parts (Cody and Waite 1980), with
+// the polynomials of Cephes' sinf.
 fn sine_of(angle: f32, quarters: f32) -> f32 {
     let n = floor(angle * 0.636619772 + 0.5);
     let r = ((angle - n * 1.5703125) - n * 4.837512969970703e-4) - n * 7.549789948768648e-8;

@@ -1,4 +1,5 @@
-// Grids at any position. A grid's block: the index of its first sample, its width and height, and a lattice whose cells are its samples.
+// Grids at any position. A grid's block: the index of its first sample, its width and height, and a lattice whose cells
+// are its samples.
 
 fn grid_sample(base: u32, i: i32, j: i32) -> f32 {
     let column = u32(clamp(i, 0, i32(data[base + GRID_COLUMNS]) - 1));
@@ -6,7 +7,8 @@ fn grid_sample(base: u32, i: i32, j: i32) -> f32 {
     return samples[data[base] + row * data[base + GRID_COLUMNS] + column];
 }
 
-// Index of a sample along an axis. Windows are at most 2^31 samples wide, and beyond them the border continues.
+// Index of a sample along an axis. Windows are at most 2^31 samples wide, and positions beyond them are clamped to the
+// border.
 fn grid_index(cell: Cell) -> i32 {
     let high = bitcast<i32>(cell.high);
     let low = bitcast<i32>(cell.low);
@@ -55,13 +57,13 @@ fn grid_flow(base: u32, place: Placement) -> f32 {
     if (min(min(north.x, north.y), min(south.x, south.y)) <= 0.0) {
         return grid_label(base, place);
     }
-    // Relative to one of them, so that large numbers keep their digits.
+    // Relative to one of them, so that large numbers keep their precision.
     let above = mix(0.0, log2(north.y / north.x), x.t);
     let below = mix(log2(south.x / north.x), log2(south.y / north.x), x.t);
     return north.x * exp2(mix(above, below, y.t));
 }
 
-// A grid with the same samples as the block: its block has the index of the sample at the block's corner, and its width.
+// A grid with the same samples as the block. Its data are the index of the sample at the block's corner, and the width.
 fn grid_copy(base: u32, place: Placement) -> f32 {
     return samples[data[base] + place.row * data[base + GRID_COLUMNS] + place.column];
 }

@@ -1,5 +1,5 @@
-//! The text of a kernel: a part of a program as one shader, and the words that it reads. The text depends on the
-//! structure of the part alone.
+//! The text of a kernel: a part of a program as one shader, and the words that it reads. The text depends only on the
+//! structure of the part.
 
 use super::functions;
 use crate::job::GROUP;
@@ -15,16 +15,16 @@ orogen_noise::shader_constants! {
     pub GRID = "grid.wgsl", GRID_COLUMNS = 1, GRID_ROWS = 2, GRID_LATTICE = 3
 }
 
-/// A word of a kernel's data, before it is known where things are.
+/// A word of a kernel's data, before indices are known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Word {
     /// A number.
     Number(f32),
-    /// Where the data of an instruction's function start.
+    /// The index of the data of an instruction's function.
     Function(usize),
-    /// Where the block of the grid starts that an instruction reads.
+    /// The index of the block of the grid that an instruction reads.
     Grid(usize),
-    /// Where a value is kept between kernels.
+    /// The index of a value that is kept between kernels.
     Slot(usize),
 }
 
@@ -37,7 +37,7 @@ pub(crate) struct Kernel {
     pub words: Vec<Word>,
 }
 
-/// Weight of a call of a field's function, beside 1 for all other instructions: drivers inline it.
+/// Weight of a call of a field's function, which drivers inline; all other instructions have weight 1.
 const FIELD: usize = 8;
 
 /// Divides a program into parts of at most this weight.
@@ -56,8 +56,8 @@ pub(crate) fn parts(program: &LoweredProgram, most: usize) -> Vec<Range<usize>> 
     parts
 }
 
-/// The kernel of a part. `kept` are the values of the part that later parts or the outputs need; `copies` says of each
-/// instruction whether it reads its grid as it is, because the grid has the samples of the block.
+/// The kernel of a part. `kept` are the values of the part that later parts or the outputs need; `copies` says for each
+/// instruction whether it copies its grid without interpolation, because the grid has the samples of the block.
 pub(crate) fn kernel(program: &LoweredProgram, part: Range<usize>, kept: &[usize], copies: &[bool]) -> Kernel {
     let mut writer = Writer {
         program,
@@ -138,7 +138,7 @@ impl Writer<'_> {
         self.names.insert(value, name);
     }
 
-    /// The name of a value; one of an earlier part is read from its slot.
+    /// The name of a value; a value of an earlier part is read from its slot.
     fn value(&mut self, value: usize) -> String {
         if let Some(name) = self.names.get(&value) {
             return name.clone();
@@ -156,7 +156,7 @@ impl Writer<'_> {
 
     /// The name of a coordinate set.
     fn place(&mut self, coords: usize) -> String {
-        // From the block on: a chain of maps has no limit.
+        // Starts from the block, without recursion: a chain of maps may have any length.
         let mut chain = vec![coords];
         while let Some(LoweredCoords::Displaced { from, .. } | LoweredCoords::Mapped { from, .. }) =
             chain.last().and_then(|set| self.program.coord_sets.get(*set))
@@ -198,7 +198,7 @@ impl Writer<'_> {
         name
     }
 
-    /// The expression of an instruction's value; `None` for a constant, which is written where it is read.
+    /// The expression of an instruction's value; `None` for a constant, which is written where it is used.
     fn instruction(&mut self, i: usize, copies: &[bool]) -> Option<String> {
         debug_assert!(self.part.contains(&i), "an instruction of another part");
         Some(match self.program.instructions.get(i)?.clone() {
@@ -208,7 +208,7 @@ impl Writer<'_> {
                 let mut call = format!("{}({}, {place}", shader.function(coords != 0).0, self.word(Word::Function(i)));
                 for input in inputs {
                     let input = input.map_or("0.0".to_string(), |input| self.value(input));
-                    // A String takes any text.
+                    // Writing to a string cannot fail.
                     let _ = write!(call, ", {input}");
                 }
                 call + ")"

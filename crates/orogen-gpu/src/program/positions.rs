@@ -1,4 +1,4 @@
-//! The positions of coordinate sets, without what displaces them.
+//! The positions of coordinate sets, without displacements.
 
 use orogen_engine::device::LoweredCoords;
 use orogen_engine::op::Affine;
@@ -27,7 +27,7 @@ fn mapped(from: &Positions, map: &Affine) -> Positions {
     let rows = turned(&from.rows, map);
     let (mut columns, mut rows) = (columns, rows);
     for axis in 0..2 {
-        // The offset belongs to one of them.
+        // The offset is added to only one of them.
         let list = if columns[axis].is_empty() { &mut rows[axis] } else { &mut columns[axis] };
         list.iter_mut().for_each(|position| *position += map.offset[axis]);
     }

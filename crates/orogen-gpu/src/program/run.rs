@@ -19,7 +19,7 @@ struct Run<'a> {
     program: &'a LoweredProgram,
     grids: &'a [Source<'a>],
     kernels: Vec<Kernel>,
-    /// Of each instruction, whether it reads a grid that has the samples of the window.
+    /// For each instruction, whether it reads a grid that has the samples of the window.
     copies: Vec<bool>,
     /// The slot of each value that is kept between kernels or is an output.
     slots: BTreeMap<usize, usize>,
@@ -27,7 +27,8 @@ struct Run<'a> {
     slot_count: usize,
 }
 
-/// The outputs of a program over a window; `None` if it was cancelled. Parts of the program weigh at most `most`.
+/// The outputs of a program over a window; `None` if it was cancelled. `most` is the maximum weight of a part of the
+/// program.
 pub(crate) fn run(
     gpu: &Gpu,
     program: &LoweredProgram,
@@ -108,7 +109,7 @@ impl<'a> Run<'a> {
     /// The job of a tile.
     ///
     /// # Errors
-    /// If a grid does not cover what is read of it.
+    /// If a grid does not cover the samples that are read.
     fn tile(&self, tile: &Window) -> Result<Job<'_>, Failure> {
         let sets = positions::of_sets(&self.program.coord_sets, tile);
         let mut job = Job { samples: self.slot_count * tile.len(), ..Job::default() };
@@ -119,7 +120,7 @@ impl<'a> Run<'a> {
             job.samples += part.len();
             grid.add_to(&mut job, part, starts[k])?;
         }
-        // The first word is no table.
+        // The first word is reserved: index 0 means no table.
         let mut data = vec![0];
         for kernel in &self.kernels {
             let words: Vec<u32> = kernel
@@ -147,7 +148,7 @@ impl<'a> Run<'a> {
         Ok(Job { data, ..job })
     }
 
-    /// The part of a grid that a tile reads: the tile itself, if the grid is read as it is and nowhere else.
+    /// The part of a grid that a tile reads: the tile itself if the grid is only copied, otherwise the whole grid.
     fn part<'b>(&'b self, grid: usize, tile: &'b Window) -> &'b Window {
         let reads = self.program.instructions.iter().zip(&self.copies);
         let mut reads = reads.filter(|(read, _)| matches!(read, Lowered::Grid { grid: read, .. } if *read == grid));

@@ -1,6 +1,7 @@
 // Detail smaller than a cell: a tile of noise for the grain of rock, grass and water.
 
-// The words of a noise, `NOISE` of them: wavelength in metres, matrix, offset, cosine and sine of its angle, steepness of its waves.
+// A noise has `NOISE` words: wavelength in metres, matrix, offset, cosine and sine of its angle, steepness of its
+// waves.
 fn noise_sample(i: i32, j: i32) -> vec3<f32> {
     let side = i32(GRAIN_SIDE) - 1;
     return triple_of(data[GRAIN] + 3u * (u32(j & side) * GRAIN_SIDE + u32(i & side)));

@@ -50,7 +50,7 @@ fn look_at(site: Site) -> Look {
         // wide, middle, small and fine
         var noise = vec4<f32>(0.0);
         for (var k = select(0u, 2u, colors == SURFACES); k < 4u; k++) {
-            // Not by index: not all shader compilers can assign to a component that is not constant.
+            // By a mask, because not all shader compilers can assign to a component with a variable index.
             let here = vec4<u32>(k) == vec4<u32>(0u, 1u, 2u, 3u);
             noise = select(noise, vec4<f32>(noise_at(site.place, site.footprint, k)), here);
         }

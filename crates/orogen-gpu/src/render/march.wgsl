@@ -1,6 +1,6 @@
 // Intersection of rays with the land.
 
-// What a ray can meet.
+// The surfaces that a ray can meet.
 const NOTHING = 0u;
 const GROUND = 1u;
 const WATER_TOP = 2u;
@@ -11,13 +11,13 @@ const TABLE_TOP = 5u;
 struct Hit {
     distance: f32,
     surface: u32,
-    // The z of ground or water; of a side, that of the ray.
+    // The z of ground or water; on a side, the z of the ray.
     z: f32,
     // The horizontal normal of a side.
     normal: vec2<f32>,
 }
 
-// A line over the land. Directions are divided through `inverse`, which is 0 where the direction is.
+// A line over the land. `inverse` is 1 / `along`, or 0 where `along` is about 0.
 struct Line {
     base: vec2<f32>,
     along: vec2<f32>,
@@ -52,7 +52,7 @@ fn exit_of(walk: Walk, line: Line) -> Exit {
     return Exit(max(min(away.x, away.y), walk.enter), away.x <= away.y);
 }
 
-// Moves to the next node; false if that is outside the land.
+// Moves to the next node. Returns false if it is outside the land.
 fn next_node(walk: ptr<function, Walk>, line: Line, exit: Exit) -> bool {
     let level = (*walk).level;
     let node = (*walk).cell >> vec2<u32>(level);
@@ -129,7 +129,7 @@ fn first_root(above: f32, fall: f32, bend: f32, end: f32) -> f32 {
     if (square < 0.0) {
         return -1.0;
     }
-    // Of the two forms of each root, the one without cancellation.
+    // The form of each root without cancellation.
     let q = -0.5 * (fall + select(sqrt(square), -sqrt(square), fall < 0.0));
     var root = FAR;
     if (abs(q) > 1e-20) {
@@ -165,7 +165,7 @@ fn meets(base: vec3<f32>, along: vec3<f32>, cell: vec2<i32>, enter: f32, exit: f
     if (s < 0.0) {
         return Hit(0.0, NOTHING, 0.0, vec2<f32>(0.0));
     }
-    // The ground's own z: that of the ray has the error of its distance.
+    // The z of the ground, because the z of the ray has the error of its distance.
     return Hit(enter + s, GROUND, ground_in(cell, base.xy + along.xy * (enter + s)), vec2<f32>(0.0));
 }
 
@@ -220,8 +220,8 @@ fn first_hit(base: vec3<f32>, along: vec3<f32>, nearest: f32) -> Hit {
     return nothing;
 }
 
-// The steepest slope (z per cell of distance) from a point to any ground in a horizontal unit direction, at least `nearest` cells away, if it is more than
-// `at_least`. Values above `enough` are not refined.
+// The steepest slope (z per cell of distance) from a point to any ground in a horizontal unit direction, at least
+// `nearest` cells away, if it is more than `at_least`. Values above `enough` are not refined.
 fn steepest(place: vec3<f32>, along: vec2<f32>, nearest: f32, at_least: f32, enough: f32) -> f32 {
     var most = at_least;
     let line = line_of(place.xy, along);
@@ -229,7 +229,7 @@ fn steepest(place: vec3<f32>, along: vec2<f32>, nearest: f32, at_least: f32, eno
     if (clip.enter > clip.leave) {
         return most;
     }
-    // Starting in the highest node would only add descents.
+    // Starting in the topmost node would only add descents.
     var walk = Walk(min(2u, top_level), cell_at(line.base + line.along * clip.enter), clip.enter);
     loop {
         let exit = exit_of(walk, line);
@@ -260,7 +260,8 @@ fn rise_over(place: vec3<f32>, line: Line, walk: Walk, exit: f32) -> f32 {
     let ground = patch_at(walk.cell);
     let along = line.along;
     let uv = line.base + along * walk.enter - vec2<f32>(walk.cell - origin);
-    // The ground above the point, at a distance s from where the line enters: start + climb s + bend s^2. Distances from the point itself would cancel.
+    // The ground above the point, at a distance s from the line's entry: start + climb s + bend s^2. Distances from the
+    // point itself would lose precision by cancellation.
     let start = ground.corner + ground.east * uv.x + (ground.south + ground.twist * uv.x) * uv.y - place.z;
     let climb = ground.east * along.x + ground.south * along.y + ground.twist * (uv.x * along.y + uv.y * along.x);
     let bend = ground.twist * along.x * along.y;

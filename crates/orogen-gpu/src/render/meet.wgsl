@@ -1,4 +1,4 @@
-// What a ray meets: the land and its surroundings.
+// Intersections of rays with the land and its surroundings.
 
 // A ray in the land's own coordinates, mirrored or not.
 struct Ray {
@@ -25,7 +25,8 @@ fn way_to_edge(start: f32, along: f32, low: f32, high: f32) -> f32 {
     return (select(low, high, along > 0.0) - start) / along;
 }
 
-// The first intersection of a ray with the land and, with `copies` above 1, with its mirrored copies: at an edge the ray is mirrored instead.
+// The first intersection of a ray with the land and, with `copies` above 1, with its mirrored copies: at an edge the
+// ray is mirrored instead.
 fn meet_land(first: Ray, first_nearest: f32, copies: u32) -> Met {
     var ray = first;
     var nearest = first_nearest;
@@ -60,7 +61,7 @@ fn meet_land(first: Ray, first_nearest: f32, copies: u32) -> Met {
     return Met(NOTHING, 0.0, vec3<f32>(0.0), vec2<f32>(0.0), ray);
 }
 
-// The same with the table below the land, or the sea around it.
+// Adds the table below the land, or the sea around it.
 fn with_surroundings(land: Met, ray: Ray) -> Met {
     let around = data[AROUND];
     let z = value(AROUND_Z);
@@ -80,7 +81,7 @@ fn with_surroundings(land: Met, ray: Ray) -> Met {
     if (!found || (around == AROUND_TABLE && land.place.z <= z)) {
         return level;
     }
-    // The bed does not exist beyond the land's edge: below the sea surface the sea counts.
+    // There is no bed beyond the land's edge, so rays below the sea surface meet the sea.
     if (around == AROUND_SEA && distance < land.distance && !is_inside(level.place.xy)) {
         return level;
     }

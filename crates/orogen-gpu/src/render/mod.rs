@@ -1,8 +1,8 @@
 //! Rendered pictures of the land on a graphics card.
 //!
-//! The scene is that of `orogen render`: a [`Scene`], whose skylight the card can compute, is drawn by a compute shader
-//! instead of [`Scene::paint`]. The shader has a file per concern like that renderer, and takes colors, tables and all
-//! numbers of the scene from it. Pictures look the same, but are not equal to the last bit.
+//! A compute shader draws a [`Scene`], the same as `orogen render`, in place of [`Scene::paint`]; the card can also
+//! compute the skylight. The shader has the same files as that renderer, and takes colors, tables and all numbers of
+//! the scene from it. Pictures look the same, but are not bit-equal.
 
 mod shader;
 mod skylight;
@@ -24,14 +24,15 @@ use shader::Encoded;
 pub use shader::LightShader;
 pub use skylight::skylight;
 
-/// Maximum number of rays of a dispatch: less than a second on a slow card, and enough to fill a fast one.
+/// Maximum number of rays of a dispatch: less than a second on a slow card, and enough to use a fast one fully.
 const RAYS: usize = 1 << 20;
 
 /// Maximum number of pixels that are copied back at once.
 const PIXELS: usize = 1 << 22;
 
 /// Renders some rows of a picture of `size` pixels as sRGB bytes, three per pixel, like [`Scene::paint`].
-/// `is_cancelled` is asked before each part of the work, with the finished share of it; `Ok(None)` if it was cancelled.
+/// `is_cancelled` is called before each part of the work with the finished share, 0 to 1. Returns `Ok(None)` if the
+/// work was cancelled.
 ///
 /// # Errors
 /// If the scene does not fit into a buffer of the card, or the card fails. The processor can then paint.
@@ -104,7 +105,7 @@ struct Tile {
     size: [u32; 2],
 }
 
-/// Bands of rows, or parts of them where a band would have too many rays.
+/// Bands of rows, split further where a band would have too many rays.
 fn tiles(width: usize, rows: Range<usize>, rays_per_pixel: usize) -> Vec<Tile> {
     let group = GROUP as usize;
     let pixels = RAYS / rays_per_pixel.max(1);
@@ -161,7 +162,7 @@ impl SkylightDevice for Gpu {
             progress.is_cancelled()
         });
         progress.check()?;
-        // What the card cannot do, the processor does: painting, which comes next, says why.
+        // If the card cannot do it, the processor does. Painting, which follows, returns the reason.
         Ok(lit.unwrap_or_default())
     }
 }

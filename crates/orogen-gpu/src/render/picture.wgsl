@@ -1,6 +1,8 @@
-// A tile of a picture: each invocation paints a pixel. The words of a dispatch are the column and the row of its tile in the picture.
+// A tile of a picture: each invocation paints a pixel. The words of a dispatch are the column and the row of its tile
+// in the picture.
 
-// The direction of the ray through a point of the picture: (0, 0) is its upper left corner, (1, 1) its lower right corner.
+// The direction of the ray through a point of the picture: (0, 0) is its upper left corner, (1, 1) its lower right
+// corner.
 fn view_through(across: vec2<f32>) -> vec3<f32> {
     let at = (2.0 * across - vec2<f32>(1.0)) * pair(WIDE);
     return unit(triple(AHEAD) + triple(RIGHT) * at.x + triple(DOWN) * at.y);

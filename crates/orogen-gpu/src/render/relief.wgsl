@@ -1,6 +1,6 @@
 // The land: bilinear patches between samples, water over some of them, and a pyramid of maxima.
 
-// What every ray reads, loaded once per invocation.
+// Data that every ray reads, loaded once per invocation.
 var<private> land_columns: i32;
 // The last patch.
 var<private> land_last: vec2<i32>;
@@ -44,7 +44,7 @@ fn patch_at(cell: vec2<i32>) -> Patch {
     return Patch(nw, ne - nw, sw - nw, nw - ne - sw + se);
 }
 
-// The level of the water of a patch, DRY where there is none.
+// The level of the water of a patch; DRY if there is none.
 fn water_at(cell: vec2<i32>) -> f32 {
     if (data[HAS_WATER] == 0u) {
         return DRY;
@@ -70,7 +70,7 @@ fn ground_in(cell: vec2<i32>, place: vec2<f32>) -> f32 {
     return ground.corner + ground.east * uv.x + (ground.south + ground.twist * uv.x) * uv.y;
 }
 
-// The z of the ground; outside, that of the nearest point of the edge.
+// The z of the ground; outside, the z at the nearest point of the edge.
 fn ground_at(place: vec2<f32>) -> f32 {
     return ground_in(cell_at(place), place);
 }

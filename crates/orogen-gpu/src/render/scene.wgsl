@@ -1,7 +1,8 @@
-// Numbers of the scene. Their indices in `data` are constants that stand before this text.
+// Numbers of the scene. Their indices in `data` are constants that are declared before this text.
 //
-// The CPU twin of each of these files is the file of the same name in `orogen-output/src/render`; `tests/suite/render.rs` compares their pictures. This file and those of
-// the sky, the water and tones are parts of other shaders, too, which have `word`, `triple_of` and `quad_of` of their own.
+// The CPU counterpart of each of these files has the same name in `orogen-output/src/render`; `tests/suite/render.rs`
+// compares their pictures. This file and the files of the sky, the water and tones are also part of other shaders,
+// which define their own `word`, `triple_of` and `quad_of`.
 
 const PI = 3.14159265358979;
 

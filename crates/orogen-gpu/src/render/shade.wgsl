@@ -2,7 +2,7 @@
 
 
 
-// Width of a pixel in metres at a distance; `cosine` is that of the viewing angle.
+// Width of a pixel in metres at a distance; `cosine` is the cosine of the viewing angle.
 fn footprint_at(distance: f32, pixel: f32, cosine: f32) -> f32 {
     // The geometric mean of length and width.
     return distance * pixel * value(CELL) / sqrt(clamp(cosine, 0.04, 1.0)) * 0.7;
@@ -50,8 +50,8 @@ fn ground_light(look: Look, facing: f32, seen: f32, place: vec2<f32>) -> vec3<f3
     return diffuse(look.albedo, max(facing, 0.0) * seen, skylight_at(place));
 }
 
-// The light along a ray from the camera. Each surface is shaded by the same code, whether a ray meets it directly or reflected: the second pass follows the ray that
-// water reflects.
+// The light along a ray from the camera. The same code shades a surface whether a ray meets it directly or reflected:
+// the second pass follows the ray that water reflects.
 fn light_along(view: vec3<f32>) -> vec3<f32> {
     let flip = pair(FLIP);
     var ray = Ray(triple(EYE), vec3<f32>(view.xy * flip, view.z), flip);
@@ -78,7 +78,8 @@ fn light_along(view: vec3<f32>) -> vec3<f32> {
         let distance = before + met.distance;
         let sun_here = triple(SUN) * vec3<f32>(turned, 1.0);
 
-        // What the surface is like, and from where on obstacles hide the sun; 0 if its light does not matter.
+        // The appearance of the surface, and the distance from which obstacles hide the sun; 0 if sunlight does not
+        // matter.
         var look: Look;
         var facing = 0.0;
         var nearest = 0.0;

@@ -1,10 +1,10 @@
-//! The shader's text, and the scene as the shader reads it.
+//! The shader's text, and the encoding of a scene for the shader.
 
 use std::fmt::Write;
 
 use orogen_output::render::encode::SceneData;
 
-/// What other shaders have, too: the light of the sky, of water, and tones.
+/// The parts that other shaders also use: the light of the sky and of water, and tone mapping.
 const LIGHT: [&str; 4] =
     [include_str!("scene.wgsl"), include_str!("sky.wgsl"), include_str!("water.wgsl"), include_str!("tone.wgsl")];
 
@@ -24,13 +24,14 @@ const PARTS: [&str; 10] = [
 
 /// A scene for the shader.
 pub(super) struct Encoded<'a> {
-    /// The shader's text. Names and lengths of what a scene has do not depend on the scene, so it is the same for all.
+    /// The shader's text. Names and lengths of a scene's data do not depend on the scene, so the text is the same for
+    /// all scenes.
     pub text: String,
     /// Numbers and starts of grids. The index of the picture's first row follows.
     pub words: Vec<u32>,
     /// Grids, with the index of their first sample.
     pub uploads: Vec<(usize, &'a [f32])>,
-    /// Number of samples in all grids: the picture follows.
+    /// Number of samples in all grids; the picture follows them.
     pub samples: usize,
     pub rays_per_pixel: usize,
 }
@@ -71,7 +72,7 @@ impl<'a> Named<'a> {
         named
     }
 
-    /// Names the word that comes next.
+    /// Names the next word.
     fn word(&mut self, name: &str) {
         // Writing to a string cannot fail.
         let _ = writeln!(self.text, "const {name} = {}u;", self.words.len());
@@ -92,11 +93,12 @@ impl<'a> Encoded<'a> {
     }
 }
 
-/// The light of pictures for shaders of other programs: that of the sky, of haze, ground and water, and tone mapping.
+/// The light of pictures for shaders of other programs: light of the sky, haze, ground and water, and tone mapping.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LightShader {
-    /// Functions in WGSL; the text is the same for all light. What includes it defines `fn word(at: u32) -> u32`, a
-    /// word, and `fn triple_of(start: u32) -> vec3<f32>`, three successive numbers of the tables.
+    /// Functions in WGSL; the text is the same for all light. The shader that includes it must define `fn word(at: u32)
+    /// -> u32`, which returns a word, and `fn triple_of(start: u32) -> vec3<f32>`, which returns three successive
+    /// numbers of the tables.
     pub text: String,
     /// The words.
     pub words: Vec<u32>,
@@ -105,7 +107,7 @@ pub struct LightShader {
 }
 
 impl LightShader {
-    /// From the data of [`Lighting`](orogen_output::render::lighting::Lighting).
+    /// Encodes the data of [`Lighting`](orogen_output::render::lighting::Lighting).
     #[must_use]
     pub fn new(data: &SceneData) -> LightShader {
         let Named { mut text, words, uploads, .. } = Named::new(data);

@@ -1,6 +1,6 @@
 // The sky, the sun's disc and haze.
 
-// The light from a direction, without the sun; below the horizon, that of the horizon above it.
+// The light from a direction, without the sun; below the horizon, the light from the horizon in that direction.
 fn sky_light(along: vec3<f32>) -> vec3<f32> {
     let up = sqrt(max(along.z, 0.0)) * f32(SKY_ROWS - 1u);
     let level = length(along.xy);
@@ -21,7 +21,8 @@ fn sky_light(along: vec3<f32>) -> vec3<f32> {
 // The light from a direction, including the sun's disc.
 fn sky_seen(along: vec3<f32>) -> vec3<f32> {
     let sky = sky_light(along);
-    // 1 - cos of the angle to the center of the sun, relative to that of its limb; from the chord, because the cosine is too near to 1.
+    // 1 - cos of the angle to the center of the sun, relative to the same for its limb. It is computed from the chord,
+    // because the cosine is too close to 1.
     let chord = along - triple(SUN);
     let away = 0.5 * dot(chord, chord) / SUN_HALF_SQUARE;
     if (away >= 1.5 || along.z < 0.0) {
@@ -32,7 +33,8 @@ fn sky_seen(along: vec3<f32>) -> vec3<f32> {
     return sky + triple(SUNLIGHT) * min(SUN_DISC * edge * rim, 4000.0);
 }
 
-// The visible share of the sun above a horizon that rises by this tangent; `rims` are those of its lower and upper limb.
+// The visible share of the sun above a horizon that rises by this tangent; `rims` are the tangents of its lower and
+// upper limb.
 fn sun_above(rise: f32, rims: vec2<f32>) -> f32 {
     let hidden = clamp((rise - rims.x) / (rims.y - rims.x), 0.0, 1.0);
     return 1.0 - hidden * hidden * (3.0 - 2.0 * hidden);
@@ -45,7 +47,7 @@ fn haze_left(eye: f32, place: f32, distance: f32) -> vec3<f32> {
     let low = min(ends.x, ends.y);
     let high = max(ends.x, ends.y);
     let rise = high - low;
-    // The mean density on the way.
+    // The mean density along the path.
     var thick = exp(-low);
     if (rise >= 1e-3) {
         thick = (exp(-low) - exp(-high)) / rise;
@@ -53,20 +55,23 @@ fn haze_left(eye: f32, place: f32, distance: f32) -> vec3<f32> {
     return exp(-triple(HAZE_DIMS) * (thick * distance));
 }
 
-// The light from ground of an albedo, of which the sun sees a share, under the light of the sky (red, green, blue) and its share relative to a sky without obstacles.
+// The light from ground with an albedo. `sun` is the visible share of the sun; `shed` is the light of the sky (red,
+// green, blue) and its share relative to a sky without obstacles.
 fn diffuse(albedo: vec3<f32>, sun: f32, shed: vec4<f32>) -> vec3<f32> {
     let bounced = MEAN_ALBEDO * (0.7 * triple(LEVEL_SUN) + triple(LEVEL_SKY)) * max(1.0 - shed.w, 0.0);
     return albedo / PI * (triple(SUNLIGHT) * sun + shed.xyz + bounced);
 }
 
-// The light from a side of the block, which sees half sky, half table; the table is darker at its `foot`, which is 1 above it. `facing` is the cosine to the sun.
+// The light from a side of the block, which faces half sky and half table. The table is darker near the foot of the
+// block: `foot` is 1 far above it. `facing` is the cosine of the angle to the sun.
 fn side_of(albedo: vec3<f32>, facing: f32, foot: f32) -> vec3<f32> {
     let table = TABLE * (0.5 * triple(LEVEL_SUN) + triple(LEVEL_SKY));
     return albedo / PI * (triple(SUNLIGHT) * facing + foot * 0.5 * (triple(LEVEL_SKY) + table));
 }
 
-// The light from the table on which the block stands, at a distance from it, and `high` above it at the nearest place. The table fades into the horizon far behind
-// the land, whose diagonal is `across`; the sun sees a share of it.
+// The light from the table on which the block stands. `off` is the distance from the block, `high` the height of the
+// block above the table at the nearest point, `across` the diagonal of the land, and `seen` the visible share of the
+// sun. The table fades into the horizon far behind the land.
 fn table_of(along: vec3<f32>, off: f32, high: f32, across: f32, seen: f32) -> vec3<f32> {
     let open = 0.5 + 0.5 * off / max(sqrt(off * off + high * high), 1e-9);
     let near = TABLE / PI * (triple(LEVEL_SUN) * seen + triple(LEVEL_SKY) * open);
@@ -74,7 +79,7 @@ fn table_of(along: vec3<f32>, off: f32, high: f32, across: f32, seen: f32) -> ve
     return mix(sky_light(unit(vec3<f32>(along.xy, 0.02))), near, far);
 }
 
-// Light from a surface of which the air on the way along a ray leaves a share.
+// Light from a surface after the air along a ray; `left` is the share that the air lets through.
 fn through_air(light: vec3<f32>, along: vec3<f32>, left: vec3<f32>) -> vec3<f32> {
     return mix(sky_light(unit(vec3<f32>(along.xy, max(along.z, 0.0) + 0.015))), light, left);
 }

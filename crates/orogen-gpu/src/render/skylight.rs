@@ -8,10 +8,10 @@ use orogen_output::render::skylight::{ENTRIES, Shed, SkylightInput};
 /// Invocations of a workgroup.
 const INVOCATIONS: u32 = GROUP * GROUP;
 
-/// Lines in one direction that cross every column of the land: the sweep's columns are the land's rows where the
-/// direction is nearer to north or south.
+/// Lines in one direction that cross every column of the land. If the direction is closer to north or south, the
+/// sweep's columns are the land's rows.
 struct Sweep {
-    /// Number of columns of the sweep, and of rows.
+    /// Number of columns and of rows of the sweep.
     length: usize,
     lines: usize,
     /// The direction along the columns, and across them; the first component is the larger.
@@ -38,8 +38,8 @@ impl Sweep {
         ((-drift.max(0.0)) as i32 - 1, self.lines + drift.abs() as usize + 3)
     }
 
-    /// The words of its dispatches, by their names in the shader. `starts` are the indices of the table of its light
-    /// and of the grids.
+    /// The words of its dispatches, by their names in the shader. `starts` are the indices of the table of the
+    /// direction's light and of the grids.
     fn words(&self, columns: usize, starts: [u32; 5]) -> [(&'static str, u32); 16] {
         let [dome, turned, horizons, hulls, shed] = starts;
         let (first, lines) = self.starts();
@@ -69,8 +69,8 @@ impl Sweep {
     }
 }
 
-/// Computes the light of the sky on every sample of the land. `is_cancelled` is asked between parts of the work;
-/// `Ok(None)` if it was cancelled.
+/// Computes the light of the sky on every sample of the land. `is_cancelled` is called between parts of the work.
+/// Returns `Ok(None)` if the work was cancelled.
 ///
 /// # Errors
 /// If the land does not fit into a buffer of the card, or the card fails.
@@ -114,7 +114,7 @@ pub fn skylight(
     }
     let uploads = vec![(0, input.bed.as_slice().into()), (turned, input.turned.as_slice().into())];
     let job = Job { data, samples, uploads, dispatches, downloads: vec![(shed, 4 * count)], ..Job::default() };
-    // Those of one direction at once.
+    // The two dispatches of one direction are submitted together.
     let back = job.run_in_parts(gpu, 2, is_cancelled)?;
     Ok(back.and_then(|mut grids| grids.pop()).map(|shed| shed.as_chunks::<4>().0.to_vec()))
 }

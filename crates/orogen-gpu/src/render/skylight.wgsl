@@ -1,8 +1,10 @@
 // Light of the sky on each sample, with the horizon in every direction.
 //
-// For each direction, two shaders run: with `frame.step` 0 each invocation follows a line across the land and keeps the convex hull of the ground passed; with 1 each
-// invocation adds the light above the horizon of a sample. Lines of one direction are next to each other in memory, so that neighboring invocations read neighboring
-// words. The names of the words stand before this text. The CPU twin is `orogen-output/src/render/skylight.rs`.
+// The shader runs twice for each direction. With `frame.step` 0 each invocation follows a line across the land and
+// keeps the convex hull of the ground that it has passed. With 1 each invocation adds the light above the horizon of a
+// sample. Lines of one direction are next to each other in memory, so that neighboring invocations read neighboring
+// words. The names of the words are declared before this text. The CPU counterpart is
+// `orogen-output/src/render/skylight.rs`.
 
 fn word(index: u32) -> u32 {
     return data[frame.base + index];
@@ -76,7 +78,8 @@ fn dome_at(index: u32) -> vec4<f32> {
     return bitcast<vec4<f32>>(vec4<u32>(data[index], data[index + 1u], data[index + 2u], data[index + 3u]));
 }
 
-// The light above a horizon with slope `slope`, on ground whose normal has the component `lean` towards it and `up` upward.
+// The light above a horizon with slope `slope`, on ground whose normal has the component `lean` towards it and `up`
+// upward.
 fn dome_light(slope: f32, lean: f32, up: f32) -> vec4<f32> {
     let high = max(slope, 0.0);
     let at = high / sqrt(1.0 + high * high) * f32(ENTRIES);
@@ -119,7 +122,7 @@ fn add_light(i: i32, j: i32) {
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_index) local: u32) {
     if (frame.step == 0u) {
-        // Workgroups are in one row: their invocations follow lines next to each other.
+        // Workgroups are in one row; their invocations follow adjacent lines.
         let line = (id.x / 8u) * 64u + local;
         if (line < word(LINE_COUNT)) {
             follow_line(line);

@@ -5,7 +5,7 @@ fn skylight_at(place: vec2<f32>) -> vec4<f32> {
     let columns = whole(SKYLIGHT_SIZE);
     let rows = whole(SKYLIGHT_SIZE + 1u);
     let stride = whole(SKYLIGHT_SIZE + 2u);
-    // Whole strides and the rest of the origin apart: their sum would lose the digits of the position.
+    // Whole strides and the remainder of the origin are kept apart, because their sum would lose precision.
     let first = origin / vec2<i32>(stride);
     let rest = vec2<f32>(origin - first * stride);
     let size = vec2<i32>(columns, rows);

@@ -46,8 +46,8 @@ fn glitter(normal: vec3<f32>, to_eye: vec3<f32>, to_sun: vec3<f32>) -> f32 {
     return facing * mirrored_share(dot(middle, to_eye)) / (4.0 * seen);
 }
 
-// The light from within water and the glitter of the sun on it, of which a share is seen from there; `body` is what the water scatters back, `reflected` what it
-// reflects.
+// The light from within water, and the glitter of the sun on it. `seen` is the visible share of the sun, `body` the
+// light that the water scatters back, `reflected` the share that it reflects.
 fn water_light(body: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>, to_sun: vec3<f32>, seen: f32, reflected: f32) -> vec3<f32> {
     let within = body / PI * (triple(LEVEL_SUN) * seen + triple(LEVEL_SKY));
     return within * (1.0 - reflected) + triple(SUNLIGHT) * (seen * glitter(normal, to_eye, to_sun));

@@ -1,4 +1,4 @@
-//! Layers derived from heights on whatever adapter this machine has, against the processor.
+//! Layers derived from heights on any adapter of this machine, compared with the processor.
 
 use crate::common::{difference, processor, session};
 use orogen_engine::{Grid, Progress, Recipe, Session, Window};
@@ -6,7 +6,7 @@ use orogen_jobs::export::derived::list;
 use orogen_jobs::export::layer_source::LayerSource;
 use orogen_jobs::options::Options;
 
-/// Steep land with ledges that end in nothing.
+/// Steep land with ledges that end at missing samples.
 fn recipe(size: &str) -> Recipe {
     let text = format!(
         "orogen = 1\n[world]\nseed = 5\ncell = 20\n{size}[nodes.hills]\nop = \"fbm\"\nwavelength = 900\n[nodes.land]\nop = \"expr\"\n\

@@ -1,4 +1,4 @@
-//! Filters on whatever adapter this machine has, against the processor.
+//! Filters on any adapter of this machine, compared with the processor.
 
 use crate::common::filters::{
     apply, filter, gpu, gpu_with_buffers_of, inputs, lowered, on_card, on_processor, tried_on_card, variants,
@@ -7,12 +7,12 @@ use orogen_engine::node::Node;
 use orogen_grid::grid::{Grid, Window};
 use std::collections::BTreeMap;
 
-/// How far the layers of a filter may be from the processor's.
+/// The allowed difference between the layers of a filter and the processor's.
 #[derive(Clone, Copy)]
 enum Budget {
     /// Every sample within 1e-4 of the layer's range.
     Close,
-    /// The same, except for this share of the samples, which are beside a threshold.
+    /// As [`Budget::Close`], except for this share of the samples, which are close to a threshold.
     Labels(f64),
     /// Mean and standard deviation within 2 % of the processor's standard deviation; this share of the samples may be
     /// farther than 1e-4 of the range.
@@ -24,7 +24,7 @@ fn budget(op: &str, layer: &str) -> Budget {
         ("geomorphons", _) | ("topographic-position", "class") => Budget::Labels(2e-3),
         // Soil ends at the critical slope, and a mask without a fall-off is a label.
         ("soil-depth" | "select-slope", _) => Budget::Labels(5e-4),
-        // Where ground is almost level, water goes where the last digits of the heights send it.
+        // On almost level ground the direction of water depends on the last digits of the heights.
         ("pipes" | "local-stream-power", _) => Budget::Chaotic(5e-3),
         _ => Budget::Close,
     }
@@ -51,7 +51,7 @@ fn statistics(grid: &Grid) -> [f64; 2] {
     [mean, variance.sqrt()]
 }
 
-/// The range of the values, at least `floor`; of a single sample, its value.
+/// The range of the values, at least `floor`; for a single sample, its value.
 fn range(layer: &Grid, floor: f64) -> f64 {
     if let [only] = layer.data() {
         return f64::from(only.abs()).max(floor);
@@ -123,7 +123,7 @@ fn filters_are_those_of_the_processor() {
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
-/// Adds the differences of a case; what is wrong with it, other than the share of samples that differ.
+/// Adds the differences of a case. Returns a problem other than the share of samples that differ, if there is one.
 fn compare(entry: &mut Differences, budget: Budget, expected: &Grid, made: &Grid, case: &str) -> Option<String> {
     let range = range(expected, 1e-3 * expected.window().cell);
     let mut worst: f64 = 0.0;
@@ -200,7 +200,7 @@ fn layers_that_nobody_wants_are_left_out_and_cancelled_work_ends() {
     };
     let made = apply([false, true, false], &window, false).unwrap();
     assert_eq!(made, on_card(&gpu, &node, &window, &given)[1..2]);
-    // A part of what the inputs cover.
+    // A part of the window that the inputs cover.
     let part = Window::new(5, 3, 10.0).at(4, 2);
     let crop = made[0].crop(&part).unwrap();
     assert_eq!(apply([false, true, false], &part, false).unwrap(), [crop]);
@@ -258,7 +258,7 @@ fn time_of_pipes() {
     let window = Window::new(2048, 2048, 10.0);
     let node = Node::named("pipes").unwrap();
     let given = inputs(&node, &window, true);
-    // Compiles, and warms up.
+    // Compiles the shaders, and warms up.
     let small = Window::new(8, 8, 10.0);
     on_card(&gpu, &node, &small, &inputs(&node, &small, true));
     let begin = std::time::Instant::now();

@@ -1,4 +1,4 @@
-//! Jobs on whatever adapter this machine has.
+//! Jobs on any adapter of this machine.
 
 use orogen_gpu::gpu::Options;
 use orogen_gpu::job::{Dispatch, Job};

@@ -1,4 +1,4 @@
-//! Layers of levels on whatever adapter this machine has, against the processor.
+//! Layers of levels on any adapter of this machine, compared with the processor.
 
 use crate::common;
 use crate::common::filters::{gpu, gpu_with_buffers_of};
@@ -27,7 +27,7 @@ fn passes(op: &dyn Levelled, level: usize, wanted: &[bool]) -> Passes {
     }
 }
 
-/// Layers of the last level of a chain over what is left of its window, from the level above.
+/// Layers of the last level of a chain over its window without the halo, from the level above.
 fn on_card(gpu: &Gpu, chain: &Chain, above: &[Grid], wanted: &[bool]) -> Result<Vec<Grid>, Failure> {
     let level = chain.windows.len() - 1;
     let halo = chain.op.surface_halo(level, wanted);
@@ -36,7 +36,7 @@ fn on_card(gpu: &Gpu, chain: &Chain, above: &[Grid], wanted: &[bool]) -> Result<
     Ok(common::run(gpu, &[chain.step(level), layers], above, || false)?.unwrap())
 }
 
-/// The same by the processor, from the level as the card makes it.
+/// The same layers computed by the processor, from the level that the card made.
 fn on_processor(gpu: &Gpu, chain: &Chain, above: &[Grid], wanted: &[bool]) -> Vec<Grid> {
     let level = chain.windows.len() - 1;
     let planes = chain.on_card(gpu, level, above);
@@ -52,7 +52,7 @@ fn chain<'a>(op: &'a dyn Levelled, level: usize, window: &Window, given: &[bool]
     if given.len() > 6 { Chain::new(op, level, &window, given) } else { Chain::of_nothing(op, level, &window) }
 }
 
-/// Compares the layers of the last level of a chain; returns the share of the samples in water, and of those in rivers.
+/// Compares the layers of the last level of a chain. Returns the shares of samples in water and in rivers.
 fn compare(gpu: &Gpu, case: &str, chain: &Chain) -> [f64; 2] {
     let wanted = wanted(chain.op);
     let above = chain.until(chain.windows.len() - 2);
@@ -77,7 +77,7 @@ fn layers_are_those_of_the_processor() {
     let gpu = shared_gpu();
     println!("{}", gpu.adapter());
     let sea = Amplify { sea: true, ..alpine() };
-    // Rivers of several cells of 30 m.
+    // Rivers that are several cells of 30 m wide.
     let details = Amplify { details: 2, cell: 120.0, halvings: 2, runoff: 1000.0, ..alpine() };
     let cases: [(&str, &Amplify, usize); 5] = [
         ("alpine", &details, 2),
@@ -99,7 +99,7 @@ fn layers_are_those_of_the_processor() {
     assert_eq!(gpu.failure(), None);
 }
 
-/// A window with lakes of some seed.
+/// A window that has lakes for some seeds.
 const LAKES: Window = Window { x: -20, y: 31, width: 150, height: 120, cell: 60.0 };
 
 #[test]
@@ -119,7 +119,7 @@ fn beds_and_lakes_are_cut_as_by_the_processor() {
     println!("{lowered} samples in beds");
     assert!(lowered > 100);
     compare(gpu, "rivers", &chain);
-    // Lakes: where they are depends on the seed.
+    // A seed with lakes in the window.
     let op = (0..40).map(|seed| Amplify { lakes: 1.0, seed, ..alpine() }).find(|op| {
         let chain = self::chain(op, 3, &LAKES, &ALPINE_INPUTS);
         let receivers = chain.until(3).remove(RECEIVER).crop(&LAKES).unwrap();
@@ -174,7 +174,7 @@ fn only_layers_of_levels_are_copied_back() {
     let compiled = gpu.shaders_compiled();
     let heights = made(&other);
     assert_eq!(gpu.failure(), None);
-    // The heights, and what the processor makes the coarse levels of: a level has eight planes.
+    // Samples are copied for the heights and for the coarse levels that the processor makes; a level has eight planes.
     let moved = gpu.take_moved();
     assert!(moved.back < 3 * window.len() as u64, "{moved:?}");
     assert_eq!(gpu.shaders_compiled(), compiled);

@@ -1,4 +1,4 @@
-//! Levels of drained land on whatever adapter this machine has, against the processor.
+//! Levels of drained land on any adapter of this machine, compared with the processor.
 
 use crate::common::filters::{gpu, gpu_with_buffers_of};
 use crate::common::gpu as shared_gpu;
@@ -15,21 +15,21 @@ use orogen_grid::progress::Progress;
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-/// How two levels differ.
+/// The difference between two levels.
 #[derive(Debug, Clone, Copy)]
 struct Difference {
     /// Share of the samples with another receiver.
     receivers: f64,
-    /// Heights: the worst difference and the root of the mean square, in metres, and the share of samples that are off
-    /// by more than 1e-4 of the range.
+    /// Heights: the maximum and the root mean square difference in metres, and the share of samples that differ by more
+    /// than 1e-4 of the range.
     worst: f64,
     rms: f64,
     far: f64,
-    /// Share of the samples whose area is off by more than a thousandth.
+    /// Share of the samples whose area differs by more than a thousandth.
     areas: f64,
     /// Share of the samples in water.
     water: f64,
-    /// The worst difference of the other planes.
+    /// The maximum difference of the other planes.
     others: [f64; 8],
 }
 
@@ -83,9 +83,9 @@ impl Totals {
         sums.iter_mut().zip(shares).for_each(|(sum, share)| *sum += share * samples as f64);
     }
 
-    /// Nearly all samples have the same receiver and height. A rounding error may decide between two ways, and with it
-    /// about all that is upstream: if the rock of level 2 moves by 1e-6, the processor's own level 3 of `alpine` has
-    /// other heights in 5e-3 of the samples and other receivers in 7e-5.
+    /// Checks that nearly all samples have the same receiver and height. A rounding error may decide between two paths,
+    /// which affects everything upstream. If the rock of level 2 changes by 1e-6, level 3 of `alpine` on the processor
+    /// has other heights in 5e-3 of the samples and other receivers in 7e-5.
     fn check(&self) {
         for (level, [samples, receivers, far, areas, water]) in &self.0 {
             let [receivers, far, areas, water] = [receivers, far, areas, water].map(|sum| sum / samples);
@@ -150,7 +150,7 @@ fn levels_are_those_of_the_processor() {
 fn lakes_of_coarser_levels_are_those_of_the_processor() {
     let (gpu, mut totals) = (shared_gpu(), Totals::default());
     let mut found = 0;
-    // Where lakes are frequent depends on the seed.
+    // The positions of lakes depend on the seed.
     for seed in 0..40 {
         let op = Amplify { lakes: 1.0, seed, details: 1, ..alpine() };
         let window = Window::new(80, 70, 30.0).at(-20, 31);
@@ -202,7 +202,7 @@ fn tiles_give_the_same() {
     let chain = Chain::new(&op, 3, &window, &ALPINE_INPUTS);
     let above = chain.until(2);
     let whole = chain.on_card(shared_gpu(), 3, &above);
-    // The planes of some 20 x 20 samples.
+    // The planes of about 20 x 20 samples.
     let cells = (20 + 2 * op.source_halo(3)).pow(2) as u64;
     let tiled = chain.on_card(&gpu_with_buffers_of(4 * 28 * cells), 3, &above);
     let apart = difference(&whole, &tiled);
@@ -222,7 +222,7 @@ fn levels_that_stay_on_the_card_are_those_that_are_copied() {
     let copied = (1..=3).fold(first.clone(), |above, level| chain.on_card(shared_gpu(), level, &above));
     let steps: Vec<PassStep> = (1..=3).map(|level| chain.step(level)).collect();
     let kept = run(shared_gpu(), &steps, &first, || false).unwrap().unwrap();
-    // A buffer for two of them, and one for a part of the last.
+    // Buffers that fit two of the levels, and only a part of the last one.
     let smaller = gpu_with_buffers_of(24 << 20);
     let parts = run(&smaller, &steps, &first, || false).unwrap().unwrap();
     assert_eq!(smaller.failure(), None);
@@ -231,7 +231,7 @@ fn levels_that_stay_on_the_card_are_those_that_are_copied() {
         report("kept", 3, &apart);
         assert!(apart.receivers == 0.0 && apart.worst < 1e-3 && apart.areas == 0.0);
     }
-    // A level that does not cover what the next one reads.
+    // A level that does not cover the samples that the next one reads.
     let mut steps = steps;
     steps[1].window = Window { width: 9, ..steps[1].window };
     assert!(run(shared_gpu(), &steps, &first, || false).is_err());
@@ -251,7 +251,7 @@ fn what_is_missing_is_an_error_and_cancelled_work_ends() {
     assert_eq!(run(gpu, &over(Window { width: 0, ..window }), &above, || false).unwrap().unwrap().len(), 8);
     let given = PassStep { passes: passes(&op, 1, &ALPINE_INPUTS), ..step.clone() };
     assert!(run(gpu, &[given], &above, || false).is_err());
-    // As a device, with the progress of a request.
+    // Through the interface of a device, with the progress of a request.
     let run = PassRun { steps: &[step], above: &above, stays: false };
     let made = gpu.run(&run, &Progress::none()).unwrap().done().unwrap();
     let made: Vec<Grid> = made.into_iter().filter_map(PlanGrid::into_memory).collect();

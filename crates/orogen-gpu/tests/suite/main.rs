@@ -1,4 +1,4 @@
-//! Tests on whatever adapter this machine has.
+//! Tests on any adapter of this machine.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
 mod common;

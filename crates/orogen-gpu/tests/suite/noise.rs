@@ -1,4 +1,4 @@
-//! Noise on graphics cards against the processor's.
+//! Noise on graphics cards, compared with the processor.
 
 use orogen_engine::declare::Declared;
 use orogen_engine::field::Gullies;
@@ -18,7 +18,7 @@ use std::time::Instant;
 
 type Fill = Box<dyn Fn(&Points, &mut [f32])>;
 
-/// A function on both.
+/// A function on the card and on the processor.
 struct Noise {
     name: String,
     shader: Shader,
@@ -26,19 +26,19 @@ struct Noise {
     outliers: Outliers,
 }
 
-/// Which samples may differ by more than the others: their share, and by how much.
+/// Samples that may differ by more than the others: their maximum share and difference.
 #[derive(Clone, Copy, PartialEq)]
 struct Outliers {
     share: f64,
     most: f32,
 }
 
-/// None.
+/// No outliers.
 const SMOOTH: Outliers = Outliers { share: 0.0, most: 0.0 };
 /// Values jump between cells, so a sample may be on the other side.
 const JUMPS: Outliers = Outliers { share: 1e-3, most: 2.0 };
-/// Displacements by the steep slopes of simplex noise grow from octave to octave. On the processor, too, such noise
-/// changes by 2e-3 over 5e-8 wavelengths.
+/// Displacements by the steep slopes of simplex noise grow from octave to octave. Such noise changes by 2e-3 over 5e-8
+/// wavelengths on the processor, too.
 const STEEP: Outliers = Outliers { share: 5e-2, most: 5e-3 };
 
 macro_rules! noise {
@@ -66,7 +66,7 @@ fn kinds(strength: f64) -> Vec<Kind> {
     plain.into_iter().chain(weighted).collect()
 }
 
-/// Every noise by itself.
+/// Every single noise.
 fn singles(seed: u64, wavelength: f64) -> Vec<Noise> {
     let mut list = vec![
         noise!("white", JUMPS, White::new(seed, wavelength)),
@@ -120,13 +120,13 @@ fn all(seed: u64, wavelength: f64) -> Vec<Noise> {
     list
 }
 
-/// Samples: their columns and rows, and how far each is displaced.
+/// Samples: their columns and rows, and their displacements.
 struct Window {
     name: &'static str,
     size: [usize; 2],
     positions: Positions,
     displaced: [Vec<f32>; 2],
-    /// Greatest difference.
+    /// Maximum difference.
     most: f32,
 }
 
@@ -156,7 +156,7 @@ impl Window {
         self
     }
 
-    /// Whether samples are elsewhere than at their columns and rows.
+    /// Whether samples are displaced from their columns and rows.
     fn is_displaced(&self) -> bool {
         let is_turned = self.positions.columns.iter().all(|columns| !columns.is_empty());
         is_turned || self.displaced.iter().flatten().any(|by| *by != 0.0)
@@ -197,8 +197,8 @@ fn windows() -> Vec<Window> {
     ]
 }
 
-/// The text of a kernel that writes the samples of a function from `frame.step` on. Before it are the displacements and
-/// the function's inputs.
+/// The text of a kernel that writes the samples of a function from `frame.step` on. The displacements and the
+/// function's inputs are before that position.
 fn kernel(shader: &Shader, inputs: usize, is_displaced: bool) -> String {
     let (name, code) = shader.function(is_displaced);
     let inputs: String = (0..inputs).map(|i| format!(", samples[at + {}u * count]", 2 + i)).collect();
@@ -220,7 +220,7 @@ fn computed(gpu: &Gpu, noises: &[Noise], window: &Window, inputs: &[Vec<f32>]) -
         noises.iter().map(|noise| kernel(&noise.shader, inputs.len(), window.is_displaced())).collect();
     let count = window.size[0] * window.size[1];
     let before = 2 + inputs.len();
-    // Index 0 stands for tables that are not there.
+    // Index 0 means no table.
     let mut data = vec![0];
     let size = window.size.map(|side| side as u32);
     let dispatches = noises.iter().zip(&texts).enumerate().map(|(n, (noise, text))| {
@@ -235,8 +235,8 @@ fn computed(gpu: &Gpu, noises: &[Noise], window: &Window, inputs: &[Vec<f32>]) -
     job.run(gpu, || false).unwrap().unwrap()
 }
 
-/// Compares functions in a window; returns the greatest difference without outliers and without noises that are
-/// [`STEEP`], and whose it is.
+/// Compares functions in a window. Returns the maximum difference without outliers and without noises that are
+/// [`STEEP`], and the name of the function that has it.
 fn compare(gpu: &Gpu, noises: &[Noise], window: &Window, inputs: &[Vec<f32>]) -> (f32, String) {
     let made = computed(gpu, noises, window, inputs);
     let [x, y] = window.points();
@@ -288,7 +288,7 @@ fn noises_are_those_of_the_processor() {
         let (worst, name) = compare(&gpu, &noises, &window, &[]);
         println!("{}: {worst:.1e} off ({name}), {:.2} s", window.name, start.elapsed().as_secs_f64());
     }
-    // Other parameters are other numbers.
+    // Other parameters change only numbers, not shaders.
     let mut others = singles(u64::MAX, 31.7);
     others.extend(fractals(11, 513.0, 3, 0.6));
     others.push(noise!("no octaves", SMOOTH, Fractal::new(1, 10.0).with_octaves(0)));
@@ -318,7 +318,7 @@ fn functions_of_one_kernel_have_different_names() {
     assert_eq!(job.run(&gpu, || false).unwrap().unwrap(), [[1.5]]);
 }
 
-/// A noise op on both.
+/// A noise op on the card and on the processor.
 macro_rules! op {
     ($($op:ident),*) => {
         vec![$({
@@ -375,7 +375,7 @@ fn gullies_are_those_of_the_processor() {
     .enumerate()
     {
         for mut window in windows() {
-            // Depths are shares of the wavelength.
+            // Depths are multiples of the wavelength.
             window.most *= (gullies.strength * gullies.wavelength) as f32;
             let [x, y] = window.points();
             let land = Fractal::new(3, 900.0);

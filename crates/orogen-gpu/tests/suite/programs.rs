@@ -1,4 +1,4 @@
-//! Programs on whatever adapter this machine has, beside those of the processor.
+//! Programs on any adapter of this machine, compared with the processor.
 
 use crate::common;
 use crate::common::{compare, gpu, session};
@@ -8,7 +8,7 @@ use orogen_gpu::gpu::Options;
 use orogen_gpu::{Choice, Gpu};
 use std::sync::Arc;
 
-/// Positions as numbers: `x` and `y` rise by 1 in 1000 m, and `wave` is a smooth hill and dale.
+/// Positions as numbers: `x` and `y` rise by 1 in 1000 m, and `wave` has a smooth hill and valley.
 const POSITIONS: &str = "orogen = 1\n[nodes.x]\nop = \"ramp\"\n[nodes.y]\nop = \"ramp\"\nazimuth = 180\n\
     [nodes.wave]\nop = \"expr\"\nexpr = \"sin(3 * x) * cos(2 * y)\"\n";
 
@@ -153,7 +153,7 @@ impl Device for LostWhenRead {
     }
 }
 
-/// Fields, two filters of them, and fields that read both.
+/// Fields, two filters that read them, and fields that read both.
 const FILTERED: &str = "[nodes.steep]\nop = \"slope\"\nsource = \"wave\"\n[nodes.soft]\nop = \"blur\"\nsource = \"steep\"\nradius = 45\n\
     [nodes.made]\nop = \"expr\"\nexpr = \"steep - soft + x\"\n[outputs]\nheight = \"made\"\n";
 
@@ -171,12 +171,12 @@ fn grids_stay_on_the_card() {
     assert_eq!((moved.there, moved.back), (0, window.len() as u64), "only the result is copied back");
     let exact = common::exact(&recipe, "height", &window);
     assert!(common::difference(&exact, &whole).share < 1e-4, "{:?}", common::difference(&exact, &whole));
-    // Grids that are larger than a buffer go through memory.
+    // Grids that are larger than a buffer are copied through memory.
     let (tiled, moved) = made(&Options::new(Choice::Any).with_buffer(12_000));
     assert!(moved.there > 0 && moved.back > window.len() as u64, "{moved:?}");
     let worst = whole.data().iter().zip(tiled.data()).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
     assert!(worst <= 1e-5, "{worst}");
-    // Grids in tiles, each of which fits with its planes.
+    // Grids in tiles, each of which fits into a buffer with its planes.
     let (tiled, moved) = made(&Options::new(Choice::Any).with_buffer(40_000));
     assert_eq!((moved.there, moved.back), (0, window.len() as u64));
     let worst = whole.data().iter().zip(tiled.data()).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
@@ -194,7 +194,7 @@ fn a_device_that_is_lost_with_its_grids_leaves_the_work_to_the_processor() {
     assert!(gpu.failure().is_some_and(|failure| failure.to_string().contains("lost")));
 }
 
-/// Presets whose lakes take a software driver ten seconds each.
+/// Presets whose lakes take about ten seconds each with a software driver.
 const SLOW: [&str; 6] = ["badlands", "canyon", "fjords", "himalaya", "hills", "rolling"];
 
 #[test]

@@ -1,4 +1,4 @@
-//! How real land is that a graphics card has eroded, where its samples are not those of the processor.
+//! The realism of land that a graphics card has eroded, whose samples differ from the processor's.
 
 use crate::common::{gpu, processor, session};
 use orogen_engine::{Recipe, Session, Window};

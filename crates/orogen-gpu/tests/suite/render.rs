@@ -1,4 +1,4 @@
-//! Pictures of the graphics card beside those of the processor.
+//! Pictures of the graphics card, compared with the processor's.
 //!
 //! With `OROGEN_RENDER_PICTURES` set to a folder, every pair is written there, side by side.
 
@@ -17,11 +17,11 @@ use std::time::Instant;
 
 const SIZE: [usize; 2] = [320, 200];
 
-/// The least similarity of two pictures of a scene.
+/// Minimum similarity of two pictures of a scene.
 const SIMILAR: f64 = 0.999;
 
-/// The most mean difference of their bytes. A coefficient that only one of the two renderers has makes several times as
-/// much.
+/// Maximum mean difference of their bytes. A coefficient that only one of the two renderers has makes a difference
+/// several times as large.
 const DIFFERENT: f64 = 0.01;
 
 const ALL: View = View::Around { azimuth: 200.0, elevation: 24.0, distance: None };
@@ -115,7 +115,7 @@ fn show(name: &str, one: &[u8], other: &[u8], [width, height]: [usize; 2]) {
     .unwrap();
 }
 
-/// A scene and how it is seen.
+/// A scene and its camera.
 struct Case<'a> {
     name: &'a str,
     land: Land<'a>,
@@ -160,7 +160,7 @@ impl<'a> Case<'a> {
         (scene, camera)
     }
 
-    /// Compares the two pictures; returns that of the card.
+    /// Compares the two pictures and returns the card's.
     fn check(&self, gpu: &Gpu) -> Vec<u8> {
         let (scene, camera) = self.scene();
         let expect = paint(&scene, &camera, self.size);
@@ -264,7 +264,7 @@ fn lands_far_out_look_the_same() {
         Case::new(name, heights).seen(view, 60.0).check(&gpu)
     });
     assert!(ssim(&luminance(&near), &luminance(&far), SIZE) > 0.9999);
-    // At the far end of a long land, from close up.
+    // At the far end of a long world, from close up.
     let long = grid(Window::new(6000, 40, 30.0), |x, y| height(x - 5900.0, y));
     let view = View::At { eye: [179_000.0, 1100.0, 800.0], look: [179_500.0, 500.0] };
     Case::new("far-end", &long).seen(view, 60.0).check(&gpu);

@@ -1,4 +1,4 @@
-//! Solvers on whatever adapter this machine has, against the processor.
+//! Solvers on any adapter of this machine, compared with the processor.
 
 use crate::common;
 use crate::common::filters::{WORLD, gpu, gpu_with_buffers_of, heights, sampled};
@@ -16,7 +16,8 @@ use orogen_grid::hydrology::outlets::Outlets;
 use orogen_grid::progress::Progress;
 use std::time::Instant;
 
-/// Root mean square and worst difference, and the share of samples beyond 1e-4, all of the range of the first grid.
+/// The root mean square difference, the maximum difference, and the share of samples that differ by more than 1e-4, all
+/// relative to the range of the first grid.
 fn differences(expected: &Grid, made: &Grid) -> [f64; 3] {
     let finite = expected.data().iter().filter(|v| v.is_finite());
     let (low, high) = finite.fold((f32::MAX, f32::MIN), |(l, h), v| (l.min(*v), h.max(*v)));
@@ -55,7 +56,7 @@ fn windows() -> Vec<Window> {
     sizes.map(|(width, height, cell)| Window::new(width, height, cell).at(-20, 1_000_000_000_000)).to_vec()
 }
 
-/// The inputs of a solver that reads heights and nothing else.
+/// The inputs of a solver that reads only heights.
 fn alone(node: &Node, heights: &Grid) -> Vec<Option<Grid>> {
     node.inputs().into_iter().map(|input| input.required.then(|| heights.clone())).collect()
 }
@@ -88,8 +89,8 @@ fn filled_ground_lakes_and_heights_above_drainage_are_those_of_the_processor() {
                     if worst > 0.0 {
                         println!("{case}");
                     }
-                    // In closed flats water takes other ways than on the processor: so do streams, and ground that is
-                    // raised along them.
+                    // In closed flats water takes other paths than on the processor, so streams and the ground that is
+                    // raised along them also differ.
                     let most = match (land, op) {
                         ("steps", "height-above-drainage") => 1.0,
                         ("steps", _) => 1e-3,
@@ -127,8 +128,8 @@ fn drainage_is_that_of_the_processor() {
                 [0, 1, 2, 3].map(same)
             );
             assert!(differences(&expected[4], &made[4])[1] <= 1e-4);
-            // On level ground the processor's gradients lead to the nearest outlet, and the card's spanning tree to
-            // any.
+            // On level ground the processor's gradients lead to the nearest outlet, and the card's spanning tree to any
+            // outlet.
             if land == "hills" || land == "holes" {
                 assert!((0..4).all(|k| same(k) > 0.999), "{land}");
             }
@@ -208,8 +209,8 @@ fn a_step_of_stream_power_is_that_of_the_processor() {
                     assert!(after.is_finite() || outlets.at(cell));
                     assert!(!outlets.at(cell) || before.to_bits() == after.to_bits(), "outlets keep their heights");
                 }
-                // Where slopes are at the limit, several neighbors are equally low, and the last digits choose. On
-                // level ground water takes other ways.
+                // Where slopes are at the limit, several neighbors are equally low, and rounding errors decide. On
+                // level ground water takes other paths.
                 if land == "hills" || land == "holes" {
                     assert!(found[0] < 2e-3 && found[2] < 1e-2);
                 }
@@ -218,12 +219,12 @@ fn a_step_of_stream_power_is_that_of_the_processor() {
     }
 }
 
-/// The inputs of the solvers of the preset `alpine`: heights before the first of them, and the factors of erodibility
-/// and uplift, over a part of their domain.
+/// The inputs of the solvers of the preset `alpine` over a part of their domain: the initial heights, and the factors
+/// of erodibility and uplift.
 fn alpine(side: usize) -> [Grid; 3] {
-    // The domain has the world's 129 samples, 104 of the margin on each side, and one beyond.
+    // The domain has 129 samples of the world, 104 of the margin on each side, and one beyond.
     let window = Window::new(side, side, 480.0).at(-105, -105);
-    // Without bounds and solvers, what is beyond the world can be asked for.
+    // Without bounds and solvers, samples beyond the world can be requested.
     let text = include_str!("../../../orogen-engine/recipes/alpine.toml").replace("size = [61440.0, 61440.0]\n", "");
     let (nodes, _) = text.split_once("[nodes.ranges]").unwrap();
     ["foreland", "erodibility", "uplift"].map(|node| {
@@ -272,7 +273,7 @@ fn landscape(layers: &[Grid]) -> Vec<(&'static str, f64)> {
     ]
 }
 
-/// Solves both solvers with these numbers of steps.
+/// Runs both solvers with these numbers of steps, and compares the results.
 fn compare_alpine(side: usize, steps: [u32; 2], most: f64) {
     let gpu = gpu();
     println!("{}", gpu.adapter());
@@ -363,7 +364,7 @@ fn failures_are_errors_and_cancelled_work_ends() {
         let none = common::run(&gpu, &[empty], &[], || false).unwrap().unwrap();
         assert!(none.len() == node.layers().len() && none.iter().all(|layer| layer.data().is_empty()));
     }
-    // As the engine asks: what a lost device fails at is left to the processor.
+    // As the engine does: the processor computes what a lost device cannot.
     let (node, inputs) = solvers.remove(0);
     let (steps, progress) = ([step(&node, &window, &inputs)], Progress::none());
     let run = PassRun { steps: &steps, above: &[], stays: false };
@@ -451,7 +452,7 @@ fn several_steps_stay_with_those_of_the_processor() {
         let made = solved_by_card(&gpu, &node, &window, &inputs);
         let found = differences(&expected[0], &made[0]);
         println!("exponent {slope_exponent}, jitter {jitter}: {}", shown(found));
-        // Each step amplifies the differences of the one before.
+        // Each step amplifies the differences of the previous one.
         assert!(found[0] < 5e-3 && found[2] < 5e-2);
     }
 }

@@ -1,4 +1,4 @@
-//! What the tests of filters have in common: a device, inputs, and the filters with some parameters.
+//! Helpers for tests of filters: a device, inputs, and filters with several parameters.
 #![allow(dead_code, clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
 use orogen_engine::filter::{
@@ -16,7 +16,7 @@ use orogen_grid::progress::Progress;
 
 pub const WORLD: WorldParams = WorldParams { seed: 1, size: None, cell: 10.0, sea_level: 0.0 };
 
-/// A device of its own, so that tests may count what it compiles.
+/// A separate device, so that tests can count the shaders that it compiles.
 pub fn gpu() -> Gpu {
     Gpu::open(&Options::new(Choice::Any)).unwrap()
 }
@@ -58,12 +58,12 @@ pub fn heights(window: &Window) -> Grid {
         let hills = fbm(x / 60.0, y / 60.0, 3, 6);
         let cliff = if fbm(x / 90.0, y / 90.0, 40, 2) > 0.25 { 1.5 } else { 0.0 };
         let height = (hills + 0.25 * cliff) * 14.0;
-        // Heights have metres, slopes do not depend on the cell.
+        // Heights are in metres; slopes do not depend on the cell.
         if height < -4.0 { -4.0 * window.cell } else { (height + 0.02 * x) * window.cell }
     })
 }
 
-/// What an input of this name may get.
+/// Suitable values for the input with this name.
 pub fn input(name: &str, op: &str, window: &Window) -> Grid {
     match (name, op) {
         ("source", "flow-direction") => sampled(window, |x, y| (hash(x as i64, y as i64, 9) * 10.0).floor()),
@@ -95,7 +95,7 @@ pub fn filter(node: &Node) -> Option<&dyn Filter> {
     }
 }
 
-/// How a graphics card computes a node, if it does.
+/// The passes by which a graphics card computes a node, if it does.
 pub fn lowered(node: &Node, cell: f64) -> Option<Passes> {
     match filter(node)?.lower(cell, &WORLD) {
         Lowering::Shader(passes) => Some(passes),
@@ -103,7 +103,7 @@ pub fn lowered(node: &Node, cell: f64) -> Option<Passes> {
     }
 }
 
-/// The inputs of a node over a window of its result, with or without those that are optional.
+/// The inputs of a node for a window of its result, with or without optional ones.
 pub fn inputs(node: &Node, window: &Window, with_optional: bool) -> Vec<Option<Grid>> {
     let grown = window.grown(filter(node).unwrap().halo(window.cell));
     let made = node
@@ -127,7 +127,7 @@ pub fn on_card(gpu: &Gpu, node: &Node, window: &Window, inputs: &[Option<Grid>])
     tried_on_card(gpu, node, window, inputs).unwrap()
 }
 
-/// The same, with its failure.
+/// [`on_card`] with its failure.
 pub fn tried_on_card(gpu: &Gpu, node: &Node, window: &Window, inputs: &[Option<Grid>]) -> Result<Vec<Grid>, Failure> {
     let wanted = vec![true; node.layers().len()];
     let passes = lowered(node, window.cell).unwrap();
@@ -148,7 +148,7 @@ pub fn apply(
     super::run(gpu, &[super::step(passes, inputs, &window)], &[], || is_cancelled)
 }
 
-/// A filter with other parameters than its defaults, several times.
+/// Several variants of a filter with other parameters than the defaults.
 pub fn variants(node: &Node) -> Vec<Node> {
     match node.spec().op {
         "blur" => {

@@ -1,4 +1,4 @@
-//! What the tests of levels have in common: coarse land, and the levels below it.
+//! Helpers for tests of levels: coarse land, and the levels below it.
 #![allow(dead_code, clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
 use super::filters::sampled;
@@ -21,7 +21,7 @@ pub const HEIGHT: usize = 2;
 pub const AREA: usize = 3;
 pub const RECEIVER: usize = 4;
 
-/// Coarse land with rivers, and basins without an outlet: heights and drainage areas.
+/// Coarse land with rivers and basins without an outlet: its heights and drainage areas.
 pub fn land() -> &'static [Grid; 2] {
     static LAND: OnceLock<[Grid; 2]> = OnceLock::new();
     LAND.get_or_init(|| {
@@ -47,14 +47,14 @@ pub fn land() -> &'static [Grid; 2] {
     })
 }
 
-/// A chain of levels: each window is what the next finer one is made from.
+/// A chain of levels: each window contains all samples from which the next finer one is made.
 pub struct Chain<'a> {
     pub op: &'a dyn Levelled,
     /// The windows of the levels from the coarsest.
     pub windows: Vec<Window>,
     /// The inputs of the coarsest level.
     pub coarsest: Vec<Option<Grid>>,
-    /// Which of the other inputs are given, as a function of the position.
+    /// Which inputs of the finer levels are given; their values are functions of the position.
     pub given: Vec<bool>,
 }
 
@@ -62,7 +62,7 @@ pub const fn context(progress: &Progress) -> Context<'_> {
     Context { world_params: &WORLD, progress, observer: None }
 }
 
-/// A factor by the position: smooth, with a hole.
+/// A factor as a function of the position: smooth, with a hole.
 pub fn factor(window: &Window, input: usize) -> Grid {
     let metres = window.cell;
     sampled(window, |x, y| {
@@ -97,7 +97,7 @@ impl Chain<'_> {
         Chain { op, windows, coarsest, given: given.to_vec() }
     }
 
-    /// Without any inputs.
+    /// A chain without any inputs.
     pub fn of_nothing<'a>(op: &'a dyn Levelled, level: usize, window: &Window) -> Chain<'a> {
         let mut windows = vec![*window];
         for depth in (1..=level).rev() {
@@ -114,7 +114,7 @@ impl Chain<'_> {
         }
     }
 
-    /// A level by the processor.
+    /// The planes of a level, computed by the processor.
     pub fn until(&self, level: usize) -> Vec<Grid> {
         (1..=level).fold(self.first(), |above, level| self.on_processor(level, &above))
     }
@@ -164,12 +164,12 @@ pub fn passes(op: &dyn Levelled, level: usize, given: &[bool]) -> Passes {
     }
 }
 
-/// As the preset `alpine` has it.
+/// The op with the parameters of the preset `alpine`.
 pub fn alpine() -> Amplify {
     Amplify { cell: 60.0, halvings: 3, creep: 1.2, variation: 0.75, ..Default::default() }
 }
 
-/// No optional input, and those that `alpine` gives.
+/// Which inputs are given: no optional ones, the ones that `alpine` gives, and all.
 pub const NO_INPUTS: [bool; 8] = [true, true, false, false, false, false, false, false];
 pub const ALPINE_INPUTS: [bool; 8] = [true, true, false, true, true, true, true, false];
 pub const ALL_INPUTS: [bool; 8] = [true, true, false, true, true, true, true, true];

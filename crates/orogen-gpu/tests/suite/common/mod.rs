@@ -1,4 +1,4 @@
-//! What the tests have in common: a graphics card, and the difference between its terrain and the processor's.
+//! Helpers for the tests: a graphics card, and the difference between its terrain and the processor's.
 
 #![allow(
     dead_code,
@@ -20,13 +20,13 @@ use orogen_gpu::{Choice, Failure, Gpu, gpu};
 use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
-/// The first adapter of this machine, software too.
+/// The first adapter of this machine, including software.
 pub fn gpu() -> &'static Gpu {
     static GPU: OnceLock<Gpu> = OnceLock::new();
     GPU.get_or_init(|| Gpu::open(&gpu::Options::new(Choice::Any)).unwrap())
 }
 
-/// A session of the processor alone. All sessions share its solutions.
+/// A session without a device. All sessions share its solutions.
 pub fn processor() -> &'static Session {
     static SESSION: OnceLock<Session> = OnceLock::new();
     SESSION.get_or_init(|| Session::new(Options::default()).unwrap())
@@ -57,7 +57,7 @@ pub fn session() -> Session {
     session_of(gpu())
 }
 
-/// The window as the processor makes it.
+/// A layer over a window, computed by the processor.
 pub fn exact(recipe: &Recipe, layer: &str, window: &Window) -> Grid {
     processor().open(recipe.clone()).unwrap().window(layer, window).unwrap()
 }
@@ -67,7 +67,7 @@ pub fn exact(recipe: &Recipe, layer: &str, window: &Window) -> Grid {
 pub struct Difference {
     pub worst: f32,
     pub rms: f64,
-    /// The worst difference as a share of the range of values.
+    /// The maximum difference as a share of the range of values.
     pub share: f32,
     /// The share of samples that differ by more than 1e-4 of the range.
     pub beyond: f64,

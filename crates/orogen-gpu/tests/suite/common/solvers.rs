@@ -1,4 +1,4 @@
-//! What the tests of solvers have in common: sources in memory, and solutions by the processor and by a card.
+//! Helpers for tests of solvers: sources in memory, and solutions by the processor and by a card.
 #![allow(dead_code, clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
 use super::filters::WORLD;
@@ -60,7 +60,7 @@ pub fn solver(node: &Node) -> Option<&dyn Solver> {
     }
 }
 
-/// How a graphics card solves a node, if it does.
+/// The passes by which a graphics card solves a node, if it does.
 pub fn solver_passes(node: &Node, window: &Window, inputs: &[Option<Grid>]) -> Option<Passes> {
     let given: Vec<bool> = inputs.iter().map(Option::is_some).collect();
     match solver(node)?.lower(window, &given, &WORLD) {
@@ -82,7 +82,7 @@ pub fn solved_by_card(gpu: &Gpu, node: &Node, window: &Window, inputs: &[Option<
     try_card(gpu, node, window, inputs).unwrap()
 }
 
-/// The same, with its failure.
+/// [`solved_by_card`] with its failure.
 pub fn try_card(
     gpu: &Gpu,
     node: &Node,
